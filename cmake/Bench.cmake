@@ -1,0 +1,10 @@
+# Micro benchmarks per shape pair, constraint and stage; whole scenes are `manyworlds bench`.
+
+find_package(benchmark REQUIRED CONFIG)
+
+mw_sources(mw_bench_sources "bench/*.cpp")
+if(mw_bench_sources)
+  add_executable(manyworlds_bench ${mw_bench_sources})
+  target_include_directories(manyworlds_bench PRIVATE "${PROJECT_SOURCE_DIR}")
+  target_link_libraries(manyworlds_bench PRIVATE manyworlds benchmark::benchmark)
+endif()

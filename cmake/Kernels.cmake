@@ -1,0 +1,67 @@
+# The kernels: the same sources once per instruction set and number type, each in a namespace of
+# its own, as an object library mw_kernels_<isa>_<precision>. MW_KERNEL_SETS lists those built.
+#
+# No -march=native: virtual machines misreport their CPU, and it may pick narrower vectors.
+
+mw_sources(mw_kernel_sources "kernels/*.cpp")
+
+set(mw_lanes_scalar_f32 1)
+set(mw_lanes_scalar_f64 1)
+set(mw_lanes_avx2_f32 8)
+set(mw_lanes_avx2_f64 4)
+set(mw_lanes_avx512_f32 16)
+set(mw_real_f32 float)
+set(mw_real_f64 double)
+set(mw_flags_scalar)
+set(mw_flags_avx2 -mavx2 -mfma -mbmi2)
+set(mw_flags_avx512 -mavx512f -mavx512vl -mavx512dq -mavx512bw -mavx2 -mfma -mbmi2
+    -mprefer-vector-width=512)
+# GCC 12's AVX-512 header warns about the undefined operand of its own intrinsics.
+set(mw_quiet_avx512 $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+set(mw_optimization_scalar -O2)
+set(mw_optimization_avx2 -O3)
+set(mw_optimization_avx512 -O3)
+
+set(MW_KERNEL_SETS)
+foreach(isa IN LISTS MW_ISAS)
+  if(NOT DEFINED mw_optimization_${isa})
+    message(FATAL_ERROR "MW_ISAS: unknown instruction set '${isa}'; known: scalar, avx2, avx512")
+  endif()
+  foreach(precision IN LISTS MW_PRECISIONS)
+    if(NOT DEFINED mw_real_${precision})
+      message(FATAL_ERROR "MW_PRECISIONS: unknown precision '${precision}'; known: f32, f64")
+    endif()
+    set(name ${isa}_${precision})
+    if(NOT DEFINED mw_lanes_${name})
+      continue()
+    endif()
+    list(APPEND MW_KERNEL_SETS ${name})
+    set(optimization ${mw_optimization_${isa}})
+    if(MW_KERNEL_OPTIMIZATION)
+      set(optimization ${MW_KERNEL_OPTIMIZATION})
+    endif()
+    string(TOUPPER ${isa} isa_upper)
+
+    add_library(mw_kernels_${name} OBJECT ${mw_kernel_sources})
+    target_compile_definitions(mw_kernels_${name} PRIVATE
+      MW_KERNEL_NAMESPACE=${name} MW_REAL=${mw_real_${precision}} MW_LANES=${mw_lanes_${name}}
+      MW_ISA_${isa_upper}=1)
+    target_compile_options(mw_kernels_${name} PRIVATE
+      -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti
+      ${mw_flags_${isa}} ${mw_quiet_${isa}} ${optimization}
+      # Full debug information doubles the time to compile a kernel; line numbers are free.
+      $<$<CONFIG:RelWithDebInfo>:-g1>)
+    target_include_directories(mw_kernels_${name} PRIVATE "${PROJECT_SOURCE_DIR}")
+    set_target_properties(mw_kernels_${name} PROPERTIES
+      CXX_VISIBILITY_PRESET hidden
+      VISIBILITY_INLINES_HIDDEN ON
+      # Link-time optimisation would inline across instruction sets.
+      INTERPROCEDURAL_OPTIMIZATION OFF)
+  endforeach()
+endforeach()
+
+# The objects alone, for checks that need nothing else built.
+add_custom_target(mw_kernel_objects)
+foreach(name IN LISTS MW_KERNEL_SETS)
+  add_dependencies(mw_kernel_objects mw_kernels_${name})
+endforeach()

@@ -1,0 +1,45 @@
+# Settings that every target of the project shares.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+# Bindings link the static library into shared modules.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+if(PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+endif()
+
+# Fused multiply-adds are written out where they are wanted. Left to the compiler they differ from
+# one instruction set to the next, and so would the bits of a world.
+add_compile_options(-ffp-contract=off)
+
+if(MW_WARNINGS)
+  # Designated initialisers name what differs from the default; what they leave out is meant.
+  add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                      -Wno-missing-field-initializers)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # Wrongly warns about "text" + std::string at -O3 (GCC bug 105651).
+    add_compile_options(-Wno-restrict)
+  endif()
+endif()
+
+if(MW_SANITIZE)
+  add_compile_options(-fsanitize=${MW_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${MW_SANITIZE})
+endif()
+
+if(MW_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  find_program(MW_CCACHE_PROGRAM ccache)
+  mark_as_advanced(MW_CCACHE_PROGRAM)
+  if(MW_CCACHE_PROGRAM)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${MW_CCACHE_PROGRAM}")
+  endif()
+endif()
+
+# mw_sources(VARIABLE PATTERN...): the source files that match, relative to the project.
+function(mw_sources variable)
+  list(TRANSFORM ARGN PREPEND "${PROJECT_SOURCE_DIR}/")
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${ARGN})
+  set(${variable} "${files}" PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,98 @@
+# The tests: Catch2 cases one by one, the fast ones again per forced instruction set, and the checks
+# of the tree itself (floors, kernel symbols, headers, format, embedding).
+
+find_package(Catch2 2.13 REQUIRED CONFIG)
+find_package(fmt REQUIRED CONFIG)
+find_package(nlohmann_json REQUIRED CONFIG)
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+include(Catch)
+
+# mw_test_program(TARGET SOURCE...): one executable whose Catch2 cases are ctest entries.
+function(mw_test_program target)
+  add_executable(${target} ${ARGN} "${PROJECT_SOURCE_DIR}/tests/main.cpp")
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
+  # Catch2 is slow to compile, and most of all its main function.
+  target_compile_options(${target} PRIVATE -O1)
+  set_property(SOURCE "${PROJECT_SOURCE_DIR}/tests/main.cpp" PROPERTY COMPILE_OPTIONS -O0)
+  target_compile_definitions(${target} PRIVATE MW_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${target} PRIVATE
+    manyworlds Catch2::Catch2 fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
+  if(TARGET manyworlds_cli)
+    target_compile_definitions(${target} PRIVATE MW_CLI_PATH="$<TARGET_FILE:manyworlds_cli>")
+    add_dependencies(${target} manyworlds_cli)
+  endif()
+  catch_discover_tests(${target} TEST_SPEC ${MW_TEST_FILTER} PROPERTIES TIMEOUT 900)
+endfunction()
+
+mw_sources(mw_test_sources "tests/*.cpp")
+list(REMOVE_ITEM mw_test_sources "${PROJECT_SOURCE_DIR}/tests/main.cpp")
+set(mw_mjcf_test_sources ${mw_test_sources})
+list(FILTER mw_mjcf_test_sources INCLUDE REGEX "/tests/mjcf/")
+list(FILTER mw_test_sources EXCLUDE REGEX "/tests/mjcf/")
+mw_test_program(manyworlds_tests ${mw_test_sources})
+if(MW_MJCF AND mw_mjcf_test_sources)
+  mw_test_program(manyworlds_mjcf_tests ${mw_mjcf_test_sources})
+  target_link_libraries(manyworlds_mjcf_tests PRIVATE manyworlds_mjcf)
+endif()
+
+# The fast tests with each instruction set forced; one that the CPU lacks is skipped by name.
+if(NOT MW_SANITIZE)
+  foreach(isa IN LISTS MW_ISAS)
+    add_test(NAME fast_tests_forced_${isa}
+      COMMAND ${CMAKE_COMMAND} -D ISA=${isa} -D PROGRAM=$<TARGET_FILE:manyworlds_tests>
+              -P "${PROJECT_SOURCE_DIR}/cmake/RunOnIsa.cmake")
+    set_tests_properties(fast_tests_forced_${isa} PROPERTIES
+      SKIP_REGULAR_EXPRESSION "^skipped: " TIMEOUT 900)
+  endforeach()
+endif()
+
+# The checks below do not depend on a sanitizer; there they would only repeat themselves.
+if(MW_SANITIZE)
+  return()
+endif()
+
+add_test(NAME check_floors
+  COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/check_floors.py"
+          "${PROJECT_SOURCE_DIR}")
+
+foreach(name IN LISTS MW_KERNEL_SETS)
+  add_test(NAME check_kernel_symbols_${name}
+    COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/check_kernel_symbols.py"
+            --nm ${CMAKE_NM} ${name} $<TARGET_OBJECTS:mw_kernels_${name}>
+    COMMAND_EXPAND_LISTS)
+endforeach()
+
+# Each public header compiles alone, under our warnings.
+get_target_property(mw_eigen_include Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+file(GLOB mw_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/manyworlds/*.hpp")
+foreach(header IN LISTS mw_headers)
+  cmake_path(GET header STEM stem)
+  add_test(NAME header_alone_${stem}
+    COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Wshadow
+            -Wconversion -Wno-missing-field-initializers -Werror
+            -I "${PROJECT_SOURCE_DIR}/include" -isystem ${mw_eigen_include}
+            -include ${header} -x c++ /dev/null)
+endforeach()
+
+# Every version of clang-format decides differently; Debian 12's is the one that counts.
+find_program(MW_CLANG_FORMAT NAMES clang-format-14 clang-format)
+mark_as_advanced(MW_CLANG_FORMAT)
+if(MW_CLANG_FORMAT)
+  execute_process(COMMAND "${MW_CLANG_FORMAT}" --version OUTPUT_VARIABLE version ERROR_QUIET)
+  if(version MATCHES "version 14\\.")
+    add_test(NAME clang_format COMMAND "${PROJECT_SOURCE_DIR}/tools/lint" --format-only)
+    set_tests_properties(clang_format PROPERTIES
+      ENVIRONMENT "CLANG_FORMAT=${MW_CLANG_FORMAT}")
+  endif()
+endif()
+
+# A user's project, against the installed package.
+if(MW_INSTALL)
+  add_test(NAME embed
+    COMMAND ${CMAKE_COMMAND}
+            -D BUILD_DIR=${PROJECT_BINARY_DIR} -D SOURCE_DIR=${PROJECT_SOURCE_DIR}/examples/embed
+            -D COMPILER=${CMAKE_CXX_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
+            -D LIBDIR=${CMAKE_INSTALL_LIBDIR}
+            -P "${PROJECT_SOURCE_DIR}/cmake/TestEmbed.cmake")
+  set_tests_properties(embed PROPERTIES TIMEOUT 300)
+endif()

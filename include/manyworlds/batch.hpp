@@ -1,0 +1,181 @@
+// Batch: N worlds of one or several Plans, and the step.
+//
+// One SIMD lane holds one world; groups of worlds spread over threads. A world's bits after n
+// steps depend on its Plan, its initial state and its inputs, on nothing else: not on its lane,
+// the batch size, the thread count, the contact layout or the instruction set (docs/determinism.md).
+//
+// A Batch is not thread safe: one thread calls it at a time. Different Batches share nothing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "manyworlds/fields.hpp"
+#include "manyworlds/plan.hpp"
+
+namespace manyworlds {
+
+enum class Precision { f32, f64 };
+enum class Isa { scalar, avx2, avx512 };
+enum class ContactLayout { automatic, dense, rows };
+const char* to_string(Precision precision);
+const char* to_string(Isa isa);
+const char* to_string(ContactLayout layout);
+
+// Instruction sets that this CPU and this build can run, narrowest first. Never empty.
+std::vector<Isa> available_isas();
+// What a Batch takes when BatchOptions::isa is empty: MANYWORLDS_ISA, else the widest available.
+// Throws std::invalid_argument when MANYWORLDS_ISA names one that is unknown or not available.
+Isa default_isa();
+
+struct BatchOptions {
+  int worlds = 1;
+  int threads = 0;         // 0: as many as the process may run on (affinity mask)
+  std::uint64_t seed = 0;  // world i draws from seed + i
+  Precision precision = Precision::f32;
+  std::optional<Isa> isa = std::nullopt;  // default_isa()
+  ContactLayout layout = ContactLayout::automatic;
+};
+
+// Why a world is lost or what went wrong in it; a set of bits.
+enum class Status : std::uint32_t {
+  ok = 0,
+  non_finite = 1,        // frozen: a number was not finite
+  out_of_range = 2,      // frozen: |x| > 1e10 m or |v| > 1e5 m/s
+  out_of_bounds = 4,     // a body left Options::bounds; the world still steps
+  contact_overflow = 8,  // more contacts than the plan's capacity; the newest were dropped
+};
+inline constexpr Status operator|(Status a, Status b) {
+  return static_cast<Status>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+inline constexpr bool has(Status set, Status bit) {
+  return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(bit)) != 0;
+}
+inline constexpr bool frozen(Status s) {
+  return has(s, Status::non_finite | Status::out_of_range);
+}
+inline constexpr bool lost(Status s) { return frozen(s) || has(s, Status::out_of_bounds); }
+std::string to_string(Status status);  // "ok", "non_finite", "out_of_bounds|contact_overflow"
+
+// Energy of one world at its current state, J. Potential energy is zero at the world's origin.
+struct Energy {
+  double kinetic = 0;
+  double potential = 0;
+};
+
+// What the contacts of the last step looked like, over all worlds (see Batch::measure_contacts).
+struct ContactSummary {
+  double points_per_world = 0;     // points closer than 4 slop
+  double manifolds_per_world = 0;
+  double max_penetration = 0;      // m, measured from the shapes at the current state
+  double mean_occupancy = 0;       // active lanes / lanes of the dense pair slots, last step
+};
+
+// One contact point at the current state, as the next step would see it.
+struct Contact {
+  int body_a = -1, body_b = -1;    // scene bodies; when one is fixed it is body_a
+  int shape_a = -1, shape_b = -1;  // index in Body::shapes
+  Vec3 normal = Vec3::Zero();      // unit, from A to B, world
+  Vec3 point = Vec3::Zero();       // m, world, half way between the surfaces
+  double separation = 0;           // m, negative when the shapes overlap
+  int feature = 0;                 // which features touch; equal ids persist from step to step
+  double normal_impulse = 0;       // N s, what warm starting would carry into the next substep
+};
+
+struct StageTime {
+  std::string stage;
+  double seconds = 0;
+};
+
+class Batch {
+ public:
+  // Throws std::invalid_argument for options that make no sense (worlds < 1, threads < 0, an ISA
+  // that is not available).
+  explicit Batch(Plan plan, const BatchOptions& options = {});
+
+  // Several kinds of world: `worlds` of each plan, in this order. options.worlds is ignored.
+  // Plans must be all planar or all spatial.
+  struct Kind {
+    Plan plan;
+    int worlds = 1;
+  };
+  explicit Batch(std::vector<Kind> kinds, const BatchOptions& options = {});
+
+  ~Batch();
+  Batch(Batch&&) noexcept;
+  Batch& operator=(Batch&&) noexcept;
+
+  // -- shape of the batch
+  int worlds() const;
+  int kinds() const;
+  const Plan& plan(int kind = 0) const;
+  int kind_of(int world) const;
+  int bodies(int world = 0) const;  // state bodies of that world
+  int threads() const;
+  Isa isa() const;
+  Precision precision() const;
+  int lanes() const;
+  std::string kernel_table() const;        // "avx2 f32 x8"
+  std::size_t bytes_per_world() const;     // persistent state, mean over worlds
+  std::size_t scratch_bytes() const;       // per thread
+
+  // -- stepping. Allocates nothing, throws nothing (after the constructor, reset and the first
+  // force call).
+  void step(int n = 1);
+  // Runs whole steps until the simulated time reaches `clock` s (never past it, up to half a
+  // rounding step) and returns how many. `max_steps` keeps a stalled host from spiralling: time
+  // beyond it is dropped. For real-time hosts.
+  int step_to(double clock, int max_steps = 8);
+  double time() const;          // s, simulated since construction or reset of the whole batch
+  std::int64_t steps() const;   // taken since construction or reset of the whole batch
+
+  // -- state, canonical order [world][body][component], for all worlds or one.
+  // Sizes must match exactly; throws std::invalid_argument otherwise.
+  std::size_t size(Field field) const;
+  void read(Field field, std::span<float> out) const;
+  void read(Field field, std::span<double> out) const;
+  void write(Field field, std::span<const float> in);
+  void write(Field field, std::span<const double> in);
+  void read(Field field, int world, std::span<double> out) const;
+  void write(Field field, int world, std::span<const double> in);
+
+  // -- inputs. Forces and torques (world frame, N, N m; planar torque in z) act on the centre of
+  // mass during the next step() call, all its steps, and are cleared after it. Impulses (N s,
+  // N m s) change velocities at once. `body` is a state body; kinematic bodies ignore them.
+  void add_force(int world, int body, const Vec3& force);
+  void add_torque(int world, int body, const Vec3& torque);
+  void add_force_at(int world, int body, const Vec3& force, const Vec3& point_world);
+  void add_impulse(int world, int body, const Vec3& impulse);
+  void add_angular_impulse(int world, int body, const Vec3& impulse);
+  void add_impulse_at(int world, int body, const Vec3& impulse, const Vec3& point_world);
+
+  // -- reset: initial state with a new draw of the scene's jitter. mask has one byte per world,
+  // nonzero = reset. An episode counter per world makes each draw new; reset() of all restarts
+  // the counters, the clock and the step count, so it repeats the first draw exactly.
+  void reset();
+  void reset(std::span<const std::uint8_t> mask);
+
+  // -- results
+  Status status(int world) const;
+  int lost_worlds() const;
+  std::uint64_t hash(int world) const;  // of the state fields in canonical order
+  std::uint64_t hash() const;           // of all worlds' hashes in order
+  Energy energy(int world) const;
+  // Both run the collision stages once more on the current state: not for hot loops.
+  std::vector<Contact> contacts(int world) const;
+  ContactSummary measure_contacts() const;
+
+  // Time spent per stage since the last call, summed over threads; empty until profile(true).
+  void profile(bool on);
+  std::vector<StageTime> take_stage_times();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace manyworlds

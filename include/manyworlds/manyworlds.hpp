@@ -1,0 +1,8 @@
+// Everything a user needs in one include.
+#pragma once
+
+#include "manyworlds/batch.hpp"
+#include "manyworlds/fields.hpp"
+#include "manyworlds/plan.hpp"
+#include "manyworlds/scene.hpp"
+#include "manyworlds/scenes.hpp"

@@ -1,0 +1,95 @@
+// Plan: what the step needs for one scene, and nothing else. Immutable; batches share it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "manyworlds/scene.hpp"
+
+namespace manyworlds {
+
+// Thrown by compile(): carries every issue of the scene; what() lists them one per line.
+class SceneError : public std::invalid_argument {
+ public:
+  explicit SceneError(std::vector<Issue> issues);
+  const std::vector<Issue>& issues() const { return issues_; }
+
+ private:
+  std::vector<Issue> issues_;
+};
+
+// Stages, and rows of a stage, that a Plan leaves out when the scene does not need them.
+// Listing one in PlanOptions::keep switches it back on, to measure its worth and harmlessness.
+enum class Feature {
+  orientation,  // rotation state (left out when every dynamic body is a centred sphere)
+  inertia,      // full inertia tensors and gyroscopic term (left out when all are isotropic)
+  friction,     // tangent rows (left out when no candidate pair has friction)
+  restitution,  // restitution pass (left out when no candidate pair bounces)
+  contacts,     // everything about contacts (left out when no pair can ever touch)
+  drag,         // drag factors
+  gravity,      // gravity and its drift term
+};
+inline constexpr int kFeatureCount = 7;
+const char* to_string(Feature feature);
+
+enum class BroadPhase { automatic, all_pairs, sort_and_sweep };
+const char* to_string(BroadPhase broad_phase);
+
+struct PlanOptions {
+  BroadPhase broad_phase = BroadPhase::automatic;
+  std::vector<Feature> keep;
+};
+
+// What a plan contains, for people: `manyworlds plan` prints it.
+struct PlanReport {
+  struct Item {
+    std::string name;
+    bool in = false;
+    std::string why;
+  };
+  struct PairClass {
+    std::string kernel;  // "sphere-sphere", "box-plane", ...
+    std::string kind;    // "fixed" (against a fixed shape) or "pairs"
+    int candidates = 0;  // pairs of shapes that the step tests
+    int culled = 0;      // pairs of shapes that can never touch, dropped at plan time
+  };
+  struct Array {
+    std::string name;
+    std::string shape;             // "[body][3]"
+    std::size_t bytes_per_world = 0;
+  };
+  std::vector<Item> features;
+  std::vector<Item> stages;       // in the order of the step
+  std::vector<PairClass> pairs;
+  std::vector<Array> arrays;      // persistent, float32
+  BroadPhase broad_phase = BroadPhase::all_pairs;
+  int pair_capacity = 0;          // manifolds per world between moving bodies
+  int fixed_capacity = 0;         // manifolds per world against fixed shapes
+  std::size_t bytes_per_world = 0;
+};
+
+struct PlanData;  // src/plan/plan_data.hpp
+
+class Plan {
+ public:
+  explicit Plan(std::shared_ptr<const PlanData> data) : data_(std::move(data)) {}
+  const Scene& scene() const;
+  int bodies() const;  // bodies with state: dynamic and kinematic, in scene order
+  // Index in the scene of state body i, and the reverse (-1 for fixed bodies).
+  int scene_body(int state_body) const;
+  int state_body(int scene_body) const;
+  bool has(Feature feature) const;
+  PlanReport report() const;
+  const PlanData& data() const { return *data_; }
+
+ private:
+  std::shared_ptr<const PlanData> data_;
+};
+
+// Validates and compiles. Throws SceneError.
+Plan compile(const Scene& scene, const PlanOptions& options = {});
+
+}  // namespace manyworlds

@@ -1,0 +1,170 @@
+// Scene: what one world is. Plain values that a person or a loader fills in; nothing here knows
+// about lanes, batches or steps. validate() lists everything that is wrong with it, compile()
+// (plan.hpp) turns it into what the step needs.
+//
+// Units are SI (m, kg, s, rad). A planar scene uses x and y, with rotations about z; a spatial
+// scene uses all three axes. Frames: "body" is the frame the user places by Body::position and
+// Body::rotation, "world" is the frame of gravity and positions.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace manyworlds {
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Quat = Eigen::Quaterniond;  // Eigen's constructor order: (w, x, y, z)
+
+enum class Space { planar, spatial };
+
+// ---- shapes --------------------------------------------------------------------------------
+
+struct Sphere {  // spatial
+  double radius = 0.5;  // m
+};
+struct Box {  // spatial, centred on the shape frame
+  Vec3 half_extents{0.5, 0.5, 0.5};  // m
+};
+struct Plane {  // spatial, fixed bodies only: all points p with normal . p <= offset are solid
+  Vec3 normal{0, 0, 1};  // unit, body frame, pointing out of the solid
+  double offset = 0;     // m
+};
+struct Circle {  // planar
+  double radius = 0.5;  // m
+};
+struct Polygon {  // planar, convex, 3 to 8 vertices
+  std::vector<Vec2> vertices;  // m, shape frame, counter-clockwise
+
+  // Rectangle of half extents (half_x, half_y) centred on the shape frame.
+  static Polygon box(double half_x, double half_y) {
+    return {{{-half_x, -half_y}, {half_x, -half_y}, {half_x, half_y}, {-half_x, half_y}}};
+  }
+};
+struct HalfPlane {  // planar, fixed bodies only: all points p with normal . p <= offset are solid
+  Vec2 normal{0, 1};  // unit, body frame
+  double offset = 0;  // m
+};
+using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane>;
+
+struct Material {
+  double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean of its two
+  double restitution = 0.0;  // 0 to 1; a pair uses the larger of its two
+};
+
+// Two shapes collide when each one's category is in the other's mask and they are on different
+// bodies of which at least one is dynamic.
+struct Filter {
+  std::uint32_t category = 1;
+  std::uint32_t mask = 0xffffffffu;
+};
+
+struct Shape {
+  Geometry geometry = Sphere{};
+  Vec3 position = Vec3::Zero();         // m, of the shape frame in the body frame
+  Quat rotation = Quat::Identity();     // of the shape frame in the body frame; need not be unit
+  std::optional<double> density;        // kg/m^3 (kg/m^2 planar); default Options::density
+  Material material;
+  Filter filter;
+  std::string name;
+};
+
+// ---- bodies --------------------------------------------------------------------------------
+
+enum class Motion {
+  dynamic,    // moved by forces and contacts
+  kinematic,  // moves with its own velocity, whatever touches it
+  fixed,      // never moves; costs nothing but its contacts
+};
+
+// Mass, centre and inertia of a body. In a planar scene only inertia(2,2) is used.
+struct MassProperties {
+  double mass = 1;              // kg
+  Vec3 center = Vec3::Zero();   // m, centre of mass in the body frame
+  Mat3 inertia = Mat3::Identity();  // kg m^2 about the centre of mass, body axes
+};
+
+// How the initial state differs from world to world: every entry is the half range of a uniform
+// draw around the value given in Body, one draw per component, world and body.
+struct Jitter {
+  Vec3 position = Vec3::Zero();         // m
+  Vec3 linear_velocity = Vec3::Zero();  // m/s
+  double angle = 0;                     // rad, about z
+  bool any_orientation = false;         // spatial: orientation uniform over all rotations
+};
+
+struct Body {
+  std::string name;
+  Motion motion = Motion::dynamic;
+  Vec3 position = Vec3::Zero();          // m, of the body frame in the world
+  Quat rotation = Quat::Identity();      // of the body frame in the world; need not be unit
+  Vec3 linear_velocity = Vec3::Zero();   // m/s, of the centre of mass, world
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s, world
+  std::vector<Shape> shapes;
+  std::optional<MassProperties> mass_properties;  // default: from shapes and densities
+  double gravity_scale = 1;
+  double linear_drag = 0;   // 1/s: v' = v / (1 + h c)
+  double angular_drag = 0;  // 1/s
+  Jitter jitter;
+};
+
+// ---- options -------------------------------------------------------------------------------
+
+struct Options {
+  double dt = 1.0 / 60.0;  // s, one step
+  int substeps = 4;        // contact substeps per step
+  Vec3 gravity{0, 0, -10};  // m/s^2 (planar scenes: set {0, -10, 0})
+  double density = 1000;   // kg/m^3 or kg/m^2, for shapes that give none
+  // Size of a typical body, m. Scales slop, margins and speed limits of the contact model.
+  double length_unit = 1;
+
+  double contact_frequency = 30;     // Hz, of the soft contact; doubled against fixed shapes
+  double contact_damping_ratio = 10;
+  double push_out_speed = 3;         // m/s per length_unit: cap on the speed that removes overlap
+  double slop = 0.005;               // m per length_unit: contact margin is 4 slop
+  double restitution_threshold = 1;  // m/s per length_unit: slower impacts do not bounce
+  int restitution_sweeps = 16;       // most repeats of the restitution pass
+  bool friction_in_bias_pass = false;  // 20x less sway of tall stacks, 6 to 13 % slower
+  bool cast_against_fixed = true;      // stop fast bodies at thin fixed shapes
+
+  // A world is lost when a body's position leaves this box. Default: no bounds.
+  std::optional<Eigen::AlignedBox3d> bounds;
+};
+
+struct Scene {
+  std::string name;
+  Space space = Space::spatial;
+  std::vector<Body> bodies;
+  Options options;
+
+  // Appends and returns the index.
+  int add(Body body) {
+    bodies.push_back(std::move(body));
+    return static_cast<int>(bodies.size()) - 1;
+  }
+};
+
+// ---- checks and derived values -----------------------------------------------------------------
+
+// One thing that is wrong with a scene.
+struct Issue {
+  std::string place;    // "body 3 'crate', shape 1: half_extents.y"
+  std::string message;  // "is -0.2 m, must be > 0"
+};
+// "body 3 'crate', shape 1: half_extents.y is -0.2 m, must be > 0"
+std::string to_string(const Issue& issue);
+
+// Every issue at once, in the order of the scene; empty means that compile() will succeed.
+std::vector<Issue> validate(const Scene& scene);
+
+// Mass properties of a body: what the user gave, or the sum over its shapes by closed forms and
+// the parallel-axis theorem. Precondition: the body passes validate().
+MassProperties mass_properties(const Scene& scene, const Body& body);
+
+}  // namespace manyworlds

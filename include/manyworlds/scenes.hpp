@@ -1,0 +1,23 @@
+// Named scenes shared by tests, benchmarks, the program and the docs.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "manyworlds/scene.hpp"
+
+namespace manyworlds::scenes {
+
+struct Entry {
+  const char* name;
+  const char* summary;    // one line
+  bool standard;          // one of the standard benchmark scenes
+  Scene (*make)();
+};
+
+const std::vector<Entry>& all();                 // in the order they are listed to people
+const Entry* find(std::string_view name);        // nullptr when unknown
+std::string nearest(std::string_view name);      // the known name with the smallest edit distance
+
+}  // namespace manyworlds::scenes

@@ -1,0 +1,166 @@
+// Convex polygons of 3 to 8 vertices against each other, circles and half-planes. Loops run over
+// kMaxVertices in every lane; unused places repeat vertex and normal 0, which never win a
+// strict comparison against the first.
+#pragma once
+
+#include "kernels/collide/round_pairs.hpp"
+#include "kernels/collide/segments.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+struct PolygonCorners {
+  Vec2 vertex[kernels::kMaxVertices], normal[kernels::kMaxVertices];
+};
+
+MW_INLINE PolygonCorners load_corners(const PolygonPose& p) {
+  PolygonCorners c;
+  for (int i = 0; i < kernels::kMaxVertices; i += 2) {
+    load_vertex_pair(p, i, c.vertex[i], c.vertex[i + 1]);
+    load_vertex_pair(p, kernels::kMaxVertices + i, c.normal[i], c.normal[i + 1]);
+  }
+  return c;
+}
+
+// An edge chosen per lane: the running winner of a loop over all edges.
+struct PolygonEdge {
+  Vec2 normal, from, to;
+  Float value, index;
+};
+MW_INLINE void take_edge(Mask better, const PolygonCorners& c, int i, Float value,
+                         PolygonEdge& e) {
+  e.normal = select(better, c.normal[i], e.normal);
+  e.from = select(better, c.vertex[i], e.from);
+  e.to = select(better, c.vertex[(i + 1) % kernels::kMaxVertices], e.to);
+  e.value = select(better, value, e.value);
+  e.index = select(better, Float(static_cast<Real>(i)), e.index);
+}
+MW_INLINE PolygonEdge first_edge(const PolygonCorners& c, Float value) {
+  return {c.normal[0], c.vertex[0], c.vertex[1], value, Real(0)};
+}
+
+// The edge of `ref` with the largest separation from `other`, whose origin is d away.
+MW_INLINE PolygonEdge farthest_edge(const PolygonCorners& ref, const PolygonCorners& other,
+                                    Vec2 d) {
+  PolygonEdge best = first_edge(ref, Real(-1e30));
+  for (int i = 0; i < kernels::kMaxVertices; ++i) {
+    const Vec2 shift = d - ref.vertex[i];
+    Float nearest = dot(ref.normal[i], other.vertex[0]);
+    for (int j = 1; j < kernels::kMaxVertices; ++j) {
+      nearest = min(dot(ref.normal[i], other.vertex[j]), nearest);
+    }
+    const Float s = nearest + dot(ref.normal[i], shift);
+    take_edge(best.value < s, ref, i, s, best);
+  }
+  return best;
+}
+
+// The edge of `other` most opposed to n.
+MW_INLINE PolygonEdge opposed_edge(const PolygonCorners& other, Vec2 n) {
+  const Float tie(Real(1e-3));
+  PolygonEdge best = first_edge(other, dot(other.normal[0], n));
+  for (int i = 1; i < kernels::kMaxVertices; ++i) {
+    const Float along = dot(other.normal[i], n);
+    take_edge(along + tie < best.value, other, i, along, best);
+  }
+  return best;
+}
+
+MW_INLINE PolygonEdge select(Mask m, const PolygonEdge& a, const PolygonEdge& b) {
+  return {select(m, a.normal, b.normal), select(m, a.from, b.from), select(m, a.to, b.to),
+          select(m, a.value, b.value), select(m, a.index, b.index)};
+}
+
+template <class S>
+struct PolygonPolygon {
+  using A = PolygonPose;
+  using B = PolygonPose;
+  static constexpr int kPoints = 2;
+  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float,
+                                Manifold<S, 2>& m) {
+    const Float half(Real(0.5)), zero(Real(0));
+    const PolygonCorners ca = load_corners(a), cb = load_corners(b);
+    const Vec2 d = b.p - a.p;
+    const PolygonEdge edge_a = farthest_edge(ca, cb, d), edge_b = farthest_edge(cb, ca, -d);
+    const Mask from_b = edge_a.value + Float(t.face_bias) < edge_b.value;
+    const PolygonEdge ref = select(from_b, edge_b, edge_a);
+    const PolygonEdge inc =
+        select(from_b, opposed_edge(ca, edge_b.normal), opposed_edge(cb, edge_a.normal));
+    const Vec2 d_r = select(from_b, -d, d);
+    EdgePair e;
+    e.normal = ref.normal;
+    e.middle = (ref.from + ref.to) * half;
+    const Vec2 span = (ref.to - ref.from) * half;
+    e.half = sqrt(dot(span, span));
+    e.incident_middle = fma(inc.from + inc.to, half, d_r);
+    e.incident_half = (inc.to - inc.from) * half;
+    e.flip = from_b;
+    e.d = d;
+    clip_edges(e, Float(t.margin), m);
+    m.code = fma(ref.index, Real(16), inc.index) + select(from_b, Float(Real(8)), zero);
+  }
+};
+
+template <class S>
+struct PolygonCircle {
+  using A = PolygonPose;
+  using B = CirclePose;
+  static constexpr int kPoints = 1;
+  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+    const Float zero(Real(0)), one(Real(1));
+    const PolygonCorners c = load_corners(a);
+    const Vec2 d = b.p - a.p;
+    PolygonEdge best = first_edge(c, Real(-1e30));
+    for (int i = 0; i < kernels::kMaxVertices; ++i) {
+      const Float s = dot(c.normal[i], d - c.vertex[i]);
+      take_edge(best.value < s, c, i, s, best);
+    }
+    // Outside, the nearest point lies on the farthest edge, between its ends.
+    const Vec2 along = best.to - best.from;
+    const Float length2 = dot(along, along);
+    const Float place =
+        clamp(dot(along, d - best.from) / max(length2, Real(1e-20)), zero, one);
+    const Vec2 out = d - fma(along, place, best.from);
+    const Float d2 = dot(out, out);
+    const Mask outside = (zero < best.value) & (Float(kTinyDistance2) < d2);
+    const Float length = sqrt(d2);
+    const Float inv = one / select(outside, length, one);
+    const Vec2 n = select(outside, out * inv, best.normal);
+    const Float separation = select(outside, length, best.value) - b.radius;
+    m.normal = n;
+    m.separation[0] = separation;
+    m.point_b[0] = n * -fma(separation, Real(0.5), b.radius);
+    m.point_a[0] = m.point_b[0] + d;
+    m.feature_x[0] = m.feature_y[0] = zero;
+    m.code = zero;
+    m.match_distance2 = zero;
+    m.valid[0] = mask_from_bits(kAllLanes);
+  }
+};
+
+template <class S>
+struct PlanePolygon {
+  using A = PlanePose;
+  using B = PolygonPose;
+  static constexpr int kPoints = 2;
+  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 2>& m) {
+    const Vec2 n{a.normal.x, a.normal.y};
+    const PolygonEdge e = opposed_edge(load_corners(b), n);
+    const Float height = dot(n, b.p) - a.offset;
+    const Vec2 corner[2] = {e.from, e.to};
+    const Vec2 span = e.to - e.from;
+    const Float half = sqrt(dot(span, span)) * Float(Real(0.5));
+    m.normal = n;
+    for (int i = 0; i < 2; ++i) {
+      m.separation[i] = height + dot(n, corner[i]);
+      m.point_b[i] = fma(n, m.separation[i] * Float(Real(-0.5)), corner[i]);
+      m.point_a[i] = m.point_b[i];
+      m.feature_x[i] = i == 0 ? -half : half;
+      m.feature_y[i] = Real(0);
+      m.valid[i] = mask_from_bits(kAllLanes);
+    }
+    m.code = e.index;
+    m.match_distance2 = match_distance2(half);
+  }
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

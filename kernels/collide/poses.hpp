@@ -1,0 +1,81 @@
+// Poses of shapes in registers, loaded from their rows (tables.hpp says what a row holds).
+#pragma once
+
+#include "kernels/constraint/prepare.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+struct SpherePose {
+  Vec3 p;
+  Float radius;
+};
+struct BoxPose {
+  Mat3 r;
+  Vec3 p, half;
+  Float margin;  // how far this box's bounds reach beyond it, m
+};
+struct CirclePose {
+  Vec2 p;
+  Float radius;
+};
+struct RectanglePose {
+  Vec2 p;
+  Rot2 q;
+  Vec2 half;
+};
+struct PolygonPose {
+  Vec2 p;
+  Float radius;                         // of the bounding circle about p
+  const Real* base;                     // vertices and normals stay in their rows
+  const std::int32_t* offset;
+};
+struct PlanePose {  // origin at the point of the plane nearest to the world's origin
+  Vec3 normal, tangent;
+  Float offset;
+};
+
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, SpherePose& s) {
+  load_rows4(base, o, s.p.x, s.p.y, s.p.z, s.radius);
+}
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, BoxPose& b) {
+  load_rows4(base, o, b.r.x.x, b.r.x.y, b.r.x.z, b.p.x);
+  load_rows4(base + 4, o, b.r.y.x, b.r.y.y, b.r.y.z, b.p.y);
+  load_rows4(base + 8, o, b.r.z.x, b.r.z.y, b.r.z.z, b.p.z);
+  load_rows4(base + 12, o, b.half.x, b.half.y, b.half.z, b.margin);
+}
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, CirclePose& c) {
+  Float unused;
+  load_rows4(base, o, c.p.x, c.p.y, c.radius, unused);
+}
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, RectanglePose& r) {
+  Float unused0, unused1;
+  load_rows4(base, o, r.p.x, r.p.y, r.q.c, r.q.s);
+  load_rows4(base + 4, o, r.half.x, r.half.y, unused0, unused1);
+}
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, PolygonPose& p) {
+  Float unused;
+  load_rows4(base, o, p.p.x, p.p.y, unused, p.radius);
+  p.base = base;
+  p.offset = o;
+}
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, PlanePose& p) {
+  Float unused;
+  load_rows4(base, o, p.normal.x, p.normal.y, p.normal.z, p.offset);
+  load_rows4(base + 4, o, p.tangent.x, p.tangent.y, p.tangent.z, unused);
+}
+
+// Two vertices (or with k >= kMaxVertices normals) of the polygons of the lanes.
+MW_INLINE void load_vertex_pair(const PolygonPose& p, int k, Vec2& a, Vec2& b) {
+  load_rows4(p.base + 4 + 2 * k, p.offset, a.x, a.y, b.x, b.y);
+}
+
+// Any unit vector perpendicular to n, continuous but for n.z = -1 (Duff et al. 2017).
+MW_INLINE Vec3 any_tangent(Vec3 n) {
+  const Float one(Real(1));
+  const Float sign = copysign(one, n.z);
+  const Float a = -(one / (sign + n.z));
+  const Float b = n.x * n.y * a;
+  return {fma(sign * n.x * n.x, a, one), sign * b, -(sign * n.x)};
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

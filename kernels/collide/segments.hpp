@@ -1,0 +1,54 @@
+// Planar manifolds: an incident edge clipped against a reference edge. Shared by rectangles and
+// polygons.
+#pragma once
+
+#include "kernels/collide/plane_box.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// Reference edge: its middle from the reference shape's origin, outward normal, half length.
+// Incident edge: its middle and half vector, from the same origin. flip: the reference is B.
+struct EdgePair {
+  Vec2 normal, middle;
+  Float half;
+  Vec2 incident_middle, incident_half;
+  Mask flip;
+  Vec2 d;  // B's origin from A's
+};
+
+// The part of the incident edge over the reference edge, at most two points.
+template <class S>
+MW_INLINE void clip_edges(const EdgePair& e, Float margin, Manifold<S, 2>& m) {
+  const Float one(Real(1)), half(Real(0.5));
+  const Vec2 along{-e.normal.y, e.normal.x};
+  const Vec2 c = e.incident_middle - e.middle;
+  const Float x = dot(along, c), z = dot(e.normal, c);
+  const Float dx = dot(along, e.incident_half), dz = dot(e.normal, e.incident_half);
+  const Float least(sizeof(Real) == 4 ? Real(1e-6) : Real(1e-12));
+  const Float inv = one / copysign(max(abs(dx), least), dx);
+  const Float middle = -(x * inv), span = abs(e.half * inv);
+  const Float enter = max(-one, middle - span), leave = min(one, middle + span);
+  const Float at[2] = {enter, leave};
+  Float separation[2];
+  for (int i = 0; i < 2; ++i) separation[i] = fma(dz, at[i], z);
+  const Float limit = margin + max(min(separation[0], separation[1]), Real(0));
+  const Mask crosses = enter <= leave;
+  m.normal = select(e.flip, -e.normal, e.normal);
+  for (int i = 0; i < 2; ++i) {
+    const Float place = fma(dx, at[i], x);
+    const Vec2 on_ref =
+        fma(e.normal, separation[i] * half, fma(along, place, e.middle));
+    // on_ref is from the reference's origin; the other origin is d away.
+    m.point_a[i] = select(e.flip, on_ref + e.d, on_ref);
+    m.point_b[i] = select(e.flip, on_ref, on_ref - e.d);
+    m.separation[i] = separation[i];
+    m.feature_x[i] = place;
+    m.feature_y[i] = Real(0);
+    m.valid[i] = crosses & (separation[i] < limit);
+  }
+  // One point of contact when the two ends coincide.
+  m.valid[1] = m.valid[1] & (enter < leave);
+  m.match_distance2 = match_distance2(e.half);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,253 @@
+// contact: the solver passes over one slot, written once for every space, point count and layout.
+//
+// Soft contact with substeps ("TGS soft", Catto). Normal row of a point with separation s:
+//   lambda' = max(0, lambda - m (a v + bias) - i lambda)
+//   s > 0: bias = s / h, a = 1, i = 0 (speculative)
+//   s <= 0: bias = max(a r s, -c), soft gains a, r, i (tables.hpp, Softness), c the push-out speed
+// The points of a manifold are solved in row space: their velocities are read once, each row's
+// change updates the others through K's off-diagonal entries, and the sum is applied once.
+// Friction: |tangent impulse| <= mu * sum(lambda), a circle; twist: |.| <= mu * sum(lambda_i arm_i).
+#pragma once
+
+#include "kernels/constraint/slot.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+enum class Pass { warm_start, bias, relax };
+
+// The two bodies of a slot, loaded once and stored once.
+template <class S, int N, bool kPair, bool kDense>
+struct SlotVelocities {
+  Velocity<S> a, b;
+
+  MW_INLINE SlotVelocities(const Work& w, const Slot<S, N>& s) {
+    constexpr int kBlock = (S::kDim + S::kAng) * kLanes;
+    if constexpr (kDense) {
+      b = load_velocity_dense<S>(w.velocity + s.body_b * kBlock);
+      if constexpr (kPair) a = load_velocity_dense<S>(w.velocity + s.body_a * kBlock);
+    } else {
+      b = load_velocity_row(S{}, w.velocity, s.offset_b);
+      if constexpr (kPair) a = load_velocity_row(S{}, w.velocity, s.offset_a);
+    }
+  }
+  // In the dense layout a lane without this contact keeps its bits; in rows it moves the dummy.
+  MW_INLINE void store(Work& w, const Slot<S, N>& s) const {
+    constexpr int kBlock = (S::kDim + S::kAng) * kLanes;
+    if constexpr (kDense) {
+      Real* to_b = w.velocity + s.body_b * kBlock;
+      Real* to_a = w.velocity + s.body_a * kBlock;
+      if (s.mask == kAllLanes) {
+        store_velocity_dense(to_b, b);
+        if constexpr (kPair) store_velocity_dense(to_a, a);
+      } else {
+        const Mask active = mask_from_bits(s.mask);
+        store_velocity_dense(to_b, select(active, b, load_velocity_dense<S>(to_b)));
+        if constexpr (kPair) {
+          store_velocity_dense(to_a, select(active, a, load_velocity_dense<S>(to_a)));
+        }
+      }
+    } else {
+      store_velocity_row(S{}, w.velocity, s.offset_b, b);
+      if constexpr (kPair) store_velocity_row(S{}, w.velocity, s.offset_a, a);
+    }
+  }
+};
+
+// Applies normal impulses d[i] at all points.
+template <class S, int N, bool kPair, bool kDense>
+MW_INLINE void apply_normal(const Slot<S, N>& s, const Float* d,
+                            SlotVelocities<S, N, kPair, kDense>& v) {
+  using Ang = typename S::Ang;
+  using Inertia = typename S::Inertia;
+  const auto n = load_as<typename S::Vec>(s.normal[0]);
+  Float sum = d[0];
+  Ang turn_b = load_as<Ang>(s.arm_b[0][0]) * d[0];
+  for (int i = 1; i < N; ++i) {
+    sum = sum + d[i];
+    turn_b = fma(load_as<Ang>(s.arm_b[i][0]), d[i], turn_b);
+  }
+  v.b.v = fma(n, sum * Float::load(s.inv_mass_b), v.b.v);
+  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), turn_b);
+  if constexpr (kPair) {
+    Ang turn_a = load_as<Ang>(s.arm_a[0][0]) * d[0];
+    for (int i = 1; i < N; ++i) turn_a = fma(load_as<Ang>(s.arm_a[i][0]), d[i], turn_a);
+    v.a.v = fnma(n, sum * Float::load(s.inv_mass_a), v.a.v);
+    v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), turn_a);
+  }
+}
+
+// Velocity of B against A along the normal at each point.
+template <class S, int N, bool kPair, bool kDense>
+MW_INLINE void normal_speeds(const Slot<S, N>& s, const SlotVelocities<S, N, kPair, kDense>& v,
+                             Float* speed) {
+  using Ang = typename S::Ang;
+  const auto n = load_as<typename S::Vec>(s.normal[0]);
+  Float along = dot(n, v.b.v);
+  if constexpr (kPair) along = dot(n, v.b.v - v.a.v);
+  for (int i = 0; i < N; ++i) {
+    speed[i] = along + dot(load_as<Ang>(s.arm_b[i][0]), v.b.w);
+    if constexpr (kPair) speed[i] = speed[i] - dot(load_as<Ang>(s.arm_a[i][0]), v.a.w);
+  }
+}
+
+// Row k changed by d: the speeds of the rows after it follow.
+template <class S, int N>
+MW_INLINE void couple_following(const Slot<S, N>& s, int k, Float d, Float* speed) {
+  int at = k * N - k * (k + 1) / 2;
+  for (int j = k + 1; j < N; ++j) speed[j] = fma(Float::load(s.cross_k[at++]), d, speed[j]);
+}
+
+// Friction impulses as a world vector at the friction centre, plus a twist about the normal.
+template <class S, int N, bool kPair, bool kDense>
+MW_INLINE void apply_friction(const Slot<S, N>& s, const Float* d, Float twist,
+                              SlotVelocities<S, N, kPair, kDense>& v) {
+  using Vec = typename S::Vec;
+  using Inertia = typename S::Inertia;
+  Vec p = load_as<Vec>(s.tangent[0]) * d[0];
+  if constexpr (S::kDim == 3) {
+    const Vec n = load_as<Vec>(s.normal[0]);
+    p = fma(cross(n, load_as<Vec>(s.tangent[0])), d[1], p);
+  }
+  auto turn_b = cross(load_as<Vec>(s.centre_b[0]), p);
+  if constexpr (Slot<S, N>::kTwist) turn_b = fma(load_as<Vec>(s.normal[0]), twist, turn_b);
+  v.b.v = fma(p, Float::load(s.inv_mass_b), v.b.v);
+  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), turn_b);
+  if constexpr (kPair) {
+    auto turn_a = cross(load_as<Vec>(s.centre_a[0]), p);
+    if constexpr (Slot<S, N>::kTwist) turn_a = fma(load_as<Vec>(s.normal[0]), twist, turn_a);
+    v.a.v = fnma(p, Float::load(s.inv_mass_a), v.a.v);
+    v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), turn_a);
+  }
+}
+
+// What friction may use up: accumulated impulses before, and their bounds.
+struct FrictionBudget {
+  Float before[2], twist_before;
+  Float bound, twist_bound;
+};
+
+// Solves the friction rows; returns the accumulated impulses after.
+template <class S, int N, bool kPair, bool kDense>
+MW_INLINE void solve_friction(const Slot<S, N>& s, const FrictionBudget& budget,
+                              SlotVelocities<S, N, kPair, kDense>& v, Float* after,
+                              Float& twist_after) {
+  using Vec = typename S::Vec;
+  const Vec t = load_as<Vec>(s.tangent[0]);
+  Vec slip = v.b.v + cross(v.b.w, load_as<Vec>(s.centre_b[0]));
+  if constexpr (kPair) {
+    slip = slip - (v.a.v + cross(v.a.w, load_as<Vec>(s.centre_a[0])));
+  }
+  Float d[2] = {Real(0), Real(0)}, twist(Real(0));
+  if constexpr (S::kTangents == 1) {
+    const Float p = fnma(Float::load(s.tangent_mass[0]), dot(t, slip), budget.before[0]);
+    after[0] = clamp(p, -budget.bound, budget.bound);
+    d[0] = after[0] - budget.before[0];
+  } else {
+    const Vec n = load_as<Vec>(s.normal[0]);
+    const Float v1 = dot(t, slip), v2 = dot(cross(n, t), slip);
+    const Float m11 = Float::load(s.tangent_mass[0]), m12 = Float::load(s.tangent_mass[1]),
+                m22 = Float::load(s.tangent_mass[2]);
+    const Float p1 = fnma(m12, v2, fnma(m11, v1, budget.before[0]));
+    const Float p2 = fnma(m22, v2, fnma(m12, v1, budget.before[1]));
+    const Float length = sqrt(fma(p1, p1, p2 * p2));
+    // Both zero only when nothing pushes; the floor keeps 0 / 0 out.
+    const Float shrink = budget.bound / max(length, max(budget.bound, Real(1e-30)));
+    after[0] = p1 * shrink;
+    after[1] = p2 * shrink;
+    d[0] = after[0] - budget.before[0];
+    d[1] = after[1] - budget.before[1];
+    if constexpr (Slot<S, N>::kTwist) {
+      Float spin = dot(n, v.b.w);
+      if constexpr (kPair) spin = dot(n, v.b.w - v.a.w);
+      const Float p = fnma(Float::load(s.twist_mass), spin, budget.twist_before);
+      twist_after = clamp(p, -budget.twist_bound, budget.twist_bound);
+      twist = twist_after - budget.twist_before;
+    }
+  }
+  apply_friction(s, d, twist, v);
+}
+
+template <class S, int N>
+MW_INLINE FrictionBudget friction_budget(const Slot<S, N>& s, const Float* impulse) {
+  FrictionBudget budget;
+  const Float mu = Float::load(s.friction);
+  Float sum = impulse[0];
+  for (int i = 1; i < N; ++i) sum = sum + impulse[i];
+  budget.bound = sum * mu;
+  budget.before[0] = Float::load(s.tangent_impulse[0]);
+  if constexpr (S::kTangents == 2) budget.before[1] = Float::load(s.tangent_impulse[1]);
+  if constexpr (Slot<S, N>::kTwist) {
+    Float arms = impulse[0] * Float::load(s.twist_arm[0]);
+    for (int i = 1; i < N; ++i) arms = fma(impulse[i], Float::load(s.twist_arm[i]), arms);
+    budget.twist_bound = arms * mu;
+    budget.twist_before = Float::load(s.twist_impulse);
+  }
+  return budget;
+}
+
+template <class S, int N, bool kPair, bool kDense, bool kFriction, Pass kPass>
+MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
+  SlotVelocities<S, N, kPair, kDense> v(w, s);
+  Float impulse[N], d[N];
+  for (int i = 0; i < N; ++i) impulse[i] = Float::load(s.impulse[i]);
+
+  if constexpr (kPass == Pass::warm_start) {
+    apply_normal(s, impulse, v);
+    if constexpr (kFriction) {
+      Float f[2] = {Float::load(s.tangent_impulse[0]), Real(0)}, twist(Real(0));
+      if constexpr (S::kTangents == 2) f[1] = Float::load(s.tangent_impulse[1]);
+      if constexpr (Slot<S, N>::kTwist) twist = Float::load(s.twist_impulse);
+      apply_friction(s, f, twist, v);
+    }
+  } else {
+    Float speed[N];
+    normal_speeds(s, v, speed);
+    const Float zero(Real(0)), one(Real(1)), inv_h(t.inv_h);
+    Float bias[N], scale[N], keep[N];
+    if constexpr (kPass == Pass::bias) {
+      const auto& soft = kPair ? t.soft_pair : t.soft_fixed;
+      const Float rate(soft.bias_rate * soft.mass_scale), cap(-t.push_out_speed);
+      for (int i = 0; i < N; ++i) {
+        const Float gap = Float::load(s.separation[i]);
+        const Mask apart = zero < gap;
+        bias[i] = select(apart, gap * inv_h, max(gap * rate, cap));
+        scale[i] = select(apart, one, soft.mass_scale);
+        keep[i] = select(apart, zero, soft.impulse_scale);
+      }
+    } else {
+      // The substep has moved the bodies: carry the separations along, then remove the speed
+      // that pushing out has added.
+      const Float h(t.h);
+      for (int i = 0; i < N; ++i) {
+        const Float gap = fma(h, speed[i], Float::load(s.separation[i]));
+        gap.store(s.separation[i]);
+        bias[i] = max(gap, zero) * inv_h;
+      }
+    }
+    for (int i = 0; i < N; ++i) {
+      const Float mass = Float::load(s.mass[i]);
+      Float x;
+      if constexpr (kPass == Pass::bias) {
+        x = fnma(keep[i], impulse[i], fnma(mass, fma(scale[i], speed[i], bias[i]), impulse[i]));
+      } else {
+        x = fnma(mass, speed[i] + bias[i], impulse[i]);
+      }
+      const Float total = max(x, zero);
+      d[i] = total - impulse[i];
+      impulse[i] = total;
+      total.store(s.impulse[i]);
+      couple_following(s, i, d[i], speed);
+    }
+    apply_normal(s, d, v);
+    if (kFriction && (kPass == Pass::relax || t.friction_in_bias)) {
+      Float after[2], twist_after(Real(0));
+      solve_friction(s, friction_budget(s, impulse), v, after, twist_after);
+      after[0].store(s.tangent_impulse[0]);
+      if constexpr (S::kTangents == 2) after[1].store(s.tangent_impulse[1]);
+      if constexpr (Slot<S, N>::kTwist) twist_after.store(s.twist_impulse);
+    }
+  }
+  v.store(w, s);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,92 @@
+// Stored impulses, one row per manifold and lane, for warm starting the next step:
+//   one point           normal impulse, friction impulse as a world vector
+//   planar, two points  x0 x1 l0 l1 | code f 0 0
+//   spatial, four       x0..x3 | y0..y3 | l0..l3 | code f1 f2 twist
+// x, y is the place of a point on the reference feature. Rows lie in the order of their keys, so
+// the format does not depend on the layout that made them.
+#pragma once
+
+#include "kernels/constraint/slot.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+class CacheWriter {
+ public:
+  CacheWriter(const Tables& t, const Group& g) : t_(t), g_(g) {
+    for (auto& list : count_) {
+      for (auto& n : list) n = 0;
+    }
+  }
+
+  template <class S, int N>
+  void put(const Slot<S, N>& s, ListId list) {
+    const int id = static_cast<int>(list);
+    const int capacity = t_.capacity[id], row = kernels::cache_row_size(t_.dimension, list);
+    alignas(64) std::int32_t o[kLanes];
+    for (int l = 0; l < kLanes; ++l) {
+      // Lanes without this contact write to a row that nobody reads.
+      int at = capacity + 1;
+      if ((s.mask >> l) & 1u) {
+        at = count_[id][l]++;
+        g_.cache[id].keys[l * (capacity + 1) + at] = s.key[l];
+      }
+      o[l] = (l * (capacity + 2) + at) * row;
+    }
+    write(s, g_.cache[id].rows, o);
+  }
+
+  // Ends every lane's keys.
+  void close() {
+    for (int id = 0; id < kLists; ++id) {
+      const int capacity = t_.capacity[id];
+      if (capacity == 0) continue;
+      for (int l = 0; l < kLanes; ++l) {
+        g_.cache[id].keys[l * (capacity + 1) + count_[id][l]] = kernels::kEndOfKeys;
+      }
+    }
+  }
+
+ private:
+  template <class S>
+  void write(const Slot<S, 1>& s, Real* rows, const std::int32_t* o) {
+    const auto t = load_as<typename S::Vec>(s.tangent[0]);
+    const Float f = Float::load(s.tangent_impulse[0]);
+    if (!t_.has_friction) {
+      store_rows4(rows, o, Float::load(s.impulse[0]), Real(0), Real(0), Real(0));
+    } else if constexpr (S::kDim == 2) {
+      store_rows4(rows, o, Float::load(s.impulse[0]), t.x * f, t.y * f, Real(0));
+    } else {
+      const auto n = load_as<Vec3>(s.normal[0]);
+      const Vec3 p = fma(cross(n, t), Float::load(s.tangent_impulse[1]), t * f);
+      store_rows4(rows, o, Float::load(s.impulse[0]), p.x, p.y, p.z);
+    }
+  }
+  void write(const Slot<Planar, 2>& s, Real* rows, const std::int32_t* o) {
+    const Float zero(Real(0));
+    const Float f = t_.has_friction ? Float::load(s.tangent_impulse[0]) : zero;
+    store_rows4(rows, o, Float::load(s.feature_x[0]), Float::load(s.feature_x[1]),
+                Float::load(s.impulse[0]), Float::load(s.impulse[1]));
+    store_rows4(rows + 4, o, Float::load(s.code), f, zero, zero);
+  }
+  template <class S>
+  void write(const Slot<S, 4>& s, Real* rows, const std::int32_t* o) {
+    const Float zero(Real(0));
+    const bool friction = t_.has_friction;
+    store_rows4(rows, o, Float::load(s.feature_x[0]), Float::load(s.feature_x[1]),
+                Float::load(s.feature_x[2]), Float::load(s.feature_x[3]));
+    store_rows4(rows + 4, o, Float::load(s.feature_y[0]), Float::load(s.feature_y[1]),
+                Float::load(s.feature_y[2]), Float::load(s.feature_y[3]));
+    store_rows4(rows + 8, o, Float::load(s.impulse[0]), Float::load(s.impulse[1]),
+                Float::load(s.impulse[2]), Float::load(s.impulse[3]));
+    store_rows4(rows + 12, o, Float::load(s.code),
+                friction ? Float::load(s.tangent_impulse[0]) : zero,
+                friction ? Float::load(s.tangent_impulse[1]) : zero,
+                friction ? Float::load(s.twist_impulse) : zero);
+  }
+
+  const Tables& t_;
+  const Group& g_;
+  std::int32_t count_[kLists][kLanes];
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,114 @@
+// The solver's passes over a group: each contact list in its fixed order. One instantiation per
+// space, friction and layout fills a SolverTable.
+#pragma once
+
+#include <type_traits>
+
+#include "kernels/collide/narrow_phase.hpp"
+#include "kernels/constraint/contact_cache.hpp"
+#include "kernels/constraint/restitution.hpp"
+#include "kernels/finish.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// Calls visit(slot, index, list, pair?) for every slot in solver order.
+template <class S, class Visit>
+MW_INLINE void for_each_slot(Work& w, Visit visit) {
+  constexpr std::integral_constant<bool, true> kMoves{};
+  constexpr std::integral_constant<bool, false> kFixed{};
+  SlotList& l0 = w.slots[static_cast<int>(ListId::pair_multi)];
+  for (int i = 0; i < l0.count; ++i) visit(slot_at<S, S::kMulti>(l0, i), i, l0, kMoves);
+  SlotList& l1 = w.slots[static_cast<int>(ListId::pair_single)];
+  for (int i = 0; i < l1.count; ++i) visit(slot_at<S, 1>(l1, i), i, l1, kMoves);
+  SlotList& l2 = w.slots[static_cast<int>(ListId::fixed_multi)];
+  for (int i = 0; i < l2.count; ++i) visit(slot_at<S, S::kMulti>(l2, i), i, l2, kFixed);
+  SlotList& l3 = w.slots[static_cast<int>(ListId::fixed_single)];
+  for (int i = 0; i < l3.count; ++i) visit(slot_at<S, 1>(l3, i), i, l3, kFixed);
+}
+
+template <class S, bool kDense, bool kFriction>
+struct Passes {
+  template <Pass kPass>
+  static void solve(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      solve_slot<S, N, decltype(pair)::value, kDense, kFriction, kPass>(t, w, s);
+      if constexpr (kPass == Pass::relax) {
+        if (t.has_restitution) accumulate_bounce(s, bounce_at<S, N>(list, i), kFriction);
+      }
+    });
+  }
+
+  // Velocities after the first push are the base of warm starting.
+  static void warm_start(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    first_push<S, kDense>(t, g, w);
+    solve<Pass::warm_start>(t, g, scratch);
+    begin_substeps<S, kDense>(t, w);
+  }
+
+  static void restitute(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    unsigned active = 0;
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      auto& bounce = bounce_at<S, N>(list, i);
+      take_back<S, N, decltype(pair)::value, kDense>(t, w, s, bounce);
+      active |= bounce.participants;
+    });
+    for (int sweep = 0; sweep < t.restitution_sweeps && active != 0; ++sweep) {
+      active = 0;
+      for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+        constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+        active |= play_impact<S, N, decltype(pair)::value, kDense>(
+            t, w, s, bounce_at<S, N>(list, i), sweep == 0);
+      });
+    }
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      finish_impact<S, N, decltype(pair)::value, kDense, kFriction>(w, s,
+                                                                    bounce_at<S, N>(list, i));
+    });
+  }
+
+  static void store(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    CacheWriter writer(t, g);
+    for_each_slot<S>(w, [&](auto& s, int, SlotList& list, auto) {
+      writer.put(s, static_cast<ListId>(&list - w.slots));
+    });
+    writer.close();
+    report_overflow(g, w);
+  }
+
+  static void enter(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    enter_velocities<S, kDense>(t, g, work_of(scratch));
+  }
+  static void advance(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    advance_displacement<S, kDense>(t, work_of(scratch));
+  }
+  static void next(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    next_substep<S, kDense>(t, work_of(scratch));
+  }
+  static void leave(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    leave_state<S, kDense>(t, g, work_of(scratch));
+  }
+
+  static kernels::SolverTable<Real> table() {
+    kernels::SolverTable<Real> out{};
+    out.enter = enter;
+    out.warm_start = warm_start;
+    out.bias = solve<Pass::bias>;
+    out.advance = advance;
+    out.relax = solve<Pass::relax>;
+    out.next = next;
+    out.restitute = restitute;
+    out.store = store;
+    out.leave = leave;
+    fill_narrow_phase<S, kDense>(out.collide);
+    return out;
+  }
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,186 @@
+// finish: checks the new state of every lane and commits it. A world whose new state is not
+// finite or out of range keeps the state before the step, is flagged and stays frozen; the lanes
+// beside it are committed as if it were not there.
+#pragma once
+
+#include "kernels/cast.hpp"
+#include "kernels/integrate.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+inline constexpr Real kMaxPosition = Real(1e10);  // m
+inline constexpr Real kMaxSpeed = Real(1e5);      // m/s
+inline constexpr Real kMaxSpin = Real(1e6);       // rad/s
+inline constexpr Real kMaxFinite = sizeof(Real) == 4 ? Real(3.4028234e38) : Real(1.79769e308);
+
+// Bits of the public Status (include/manyworlds/batch.hpp).
+inline constexpr std::uint32_t kNonFinite = 1, kOutOfRange = 2, kOutOfBounds = 4, kOverflow = 8;
+inline constexpr std::uint32_t kFrozen = kNonFinite | kOutOfRange;
+
+// NaN fails every comparison, so it is out of any range.
+MW_INLINE Mask in_range(Float a, Real limit) { return abs(a) <= Float(limit); }
+MW_INLINE Mask in_range(Vec2 a, Real limit) { return in_range(a.x, limit) & in_range(a.y, limit); }
+MW_INLINE Mask in_range(Vec3 a, Real limit) {
+  return in_range(a.x, limit) & in_range(a.y, limit) & in_range(a.z, limit);
+}
+
+struct LaneCheck {
+  Mask good = mask_from_bits(kAllLanes);
+  Mask finite = mask_from_bits(kAllLanes);
+
+  template <class S>
+  MW_INLINE void add(typename S::Vec x, const Velocity<S>& v) {
+    const Mask ok = in_range(x, kMaxPosition) & in_range(v.v, kMaxSpeed) & in_range(v.w, kMaxSpin);
+    good = good & ok;
+    if (!all(ok)) {
+      finite = finite & in_range(x, kMaxFinite) & in_range(v.v, kMaxFinite) &
+               in_range(v.w, kMaxFinite);
+    }
+  }
+};
+
+// Flags lanes that went bad in this step; returns those that may be committed.
+inline std::uint32_t judge_lanes(const Group& g, const LaneCheck& check) {
+  std::uint32_t commit = bits(check.good);
+  const std::uint32_t finite = bits(check.finite);
+  for (int l = 0; l < kLanes; ++l) {
+    if (g.status[l] & kFrozen) {
+      commit &= ~(1u << l);
+    } else if (!((commit >> l) & 1u)) {
+      g.status[l] |= ((finite >> l) & 1u) ? kOutOfRange : kNonFinite;
+    }
+  }
+  return commit;
+}
+
+// Half of dt times the push of a substep: what symplectic substeps fall too far.
+template <class S, bool kDense>
+MW_INLINE typename S::Vec drift_excess(const Tables& t, const Work& w, int body) {
+  const Float scale(t.dt * Real(0.5));
+  if (w.push) return get_velocity<S, kDense>(w, w.push, body).v * scale;
+  const Real* p = t.push_rows + body * S::kRow;
+  typename S::Vec push;
+  push.x = p[0], push.y = p[1];
+  if constexpr (S::kDim == 3) push.z = p[2];
+  return push * scale;
+}
+
+template <class S>
+MW_INLINE void turn_body(const Tables& t, const Group& g, int body, int component,
+                         typename S::Ang turn, Mask free, Mask commit, typename S::Ang& omega) {
+  Real* p = state_of(t, g, body, component);
+  if constexpr (S::kDim == 2) {
+    const Rot2 old = load_rot2(p);
+    store(p, select(commit, rotate_by(old, turn), old));
+  } else {
+    const Quat old = load_quat(p);
+    Quat q;
+    if constexpr (std::is_same_v<S, Tensor>) {
+      const auto& b = t.body[body];
+      const bool turns_freely = any(free) && b.inv_inertia[0] != Real(0);
+      if (turns_freely) {
+        q = old;
+        Vec3 end = omega;
+        rotate_free(t.dt, {b.inertia[0], b.inertia[1], b.inertia[2]},
+                    {b.inv_inertia[0], b.inv_inertia[1], b.inv_inertia[2]}, end, q);
+        omega = select(free, end, omega);
+        if (!all(free)) q = select(free, q, rotate_by(old, turn));
+      } else {
+        q = rotate_by(old, turn);
+      }
+    } else {
+      q = rotate_by(old, turn);
+    }
+    store(p, select(commit, q, old));
+  }
+  (void)free;
+}
+
+template <class S, bool kDense>
+void commit_bodies(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits) {
+  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
+  const Mask commit = mask_from_bits(commit_bits);
+  Mask inside = mask_from_bits(kAllLanes);
+  for (int b = 0; b < t.bodies; ++b) {
+    Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
+    const Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
+    const Mask free = mask_from_bits(~w.touched[b] & kAllLanes);
+    Real* p = state_of(t, g, b, at.position);
+    const auto old = load_as<typename S::Vec>(p);
+    auto step = moved.v;
+    if (t.has_gravity || w.push) {
+      step = select(free, step - drift_excess<S, kDense>(t, w, b), step);
+    }
+    if (t.cast) step = cast_against_fixed<S>(t, b, old, step);
+    const auto x = select(commit, old + step, old);
+    store(p, x);
+    if (t.has_bounds) inside = inside & within_bounds(t, x);
+    if (t.has_orientation) turn_body<S>(t, g, b, at.orientation, moved.w, free, commit, v.w);
+    Real* p_linear = state_of(t, g, b, at.linear);
+    Real* p_angular = state_of(t, g, b, at.angular);
+    store(p_linear, select(commit, v.v, load_as<typename S::Vec>(p_linear)));
+    store(p_angular, select(commit, v.w, load_as<typename S::Ang>(p_angular)));
+  }
+  const std::uint32_t outside = ~bits(inside) & commit_bits;
+  for (int l = 0; outside != 0 && l < kLanes; ++l) {
+    if ((outside >> l) & 1u) g.status[l] |= kOutOfBounds;
+  }
+}
+
+inline void report_overflow(const Group& g, const Work& w) {
+  for (int l = 0; w.overflow != 0 && l < kLanes; ++l) {
+    if ((w.overflow >> l) & 1u) g.status[l] |= kOverflow;
+  }
+}
+
+template <class S, bool kDense>
+void leave_state(const Tables& t, const Group& g, Work& w) {
+  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
+  LaneCheck check;
+  for (int b = 0; b < t.bodies; ++b) {
+    const Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
+    check.add<S>(load_as<typename S::Vec>(state_of(t, g, b, at.position)) + moved.v,
+                 get_velocity<S, kDense>(w, w.velocity, b));
+  }
+  commit_bodies<S, kDense>(t, g, w, judge_lanes(g, check));
+}
+
+// Plans without contacts: whole steps, the group's state staying in the cache.
+template <class S>
+void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
+  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
+  const Float h(t.h);
+  w.push = g.force ? w.push_storage : nullptr;
+  for (int step = 0; step < steps; ++step) {
+    LaneCheck check;
+    for (int b = 0; b < t.bodies; ++b) {
+      Velocity<S> v{load_as<typename S::Vec>(state_of(t, g, b, at.linear)),
+                    load_as<typename S::Ang>(state_of(t, g, b, at.angular))};
+      Velocity<S> push;
+      if (w.push) {
+        push = push_of_body<S>(t, g, w, b);
+        put_velocity<S, true>(w, w.push, b, push);
+      }
+      const Real* gravity = t.push_rows + b * S::kRow;
+      const Real* factor = t.factor_rows + b * S::kRow;
+      Velocity<S> moved{v.v - v.v, v.w - v.w};
+      for (int k = 0; k < t.substeps; ++k) {
+        if (w.push) {
+          v = {v.v + push.v, v.w + push.w};
+        } else if (t.has_gravity) {
+          v.v.x = v.v.x + gravity[0];
+          v.v.y = v.v.y + gravity[1];
+          if constexpr (S::kDim == 3) v.v.z = v.v.z + gravity[2];
+        }
+        if (t.has_drag) v = {v.v * Float(factor[0]), v.w * Float(factor[S::kDim])};
+        moved = {fma(v.v, h, moved.v), fma(v.w, h, moved.w)};
+      }
+      put_velocity<S, true>(w, w.velocity, b, v);
+      put_velocity<S, true>(w, w.displacement, b, moved);
+      check.add<S>(load_as<typename S::Vec>(state_of(t, g, b, at.position)) + moved.v, v);
+    }
+    commit_bodies<S, true>(t, g, w, judge_lanes(g, check));
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,112 @@
+// The three spaces that rows are written over: Planar (x, y, angle), Isotropic (3D, inertia a
+// scalar) and Tensor (3D, inertia a symmetric matrix). A space names its vector, its angular
+// vector, its inverse inertia, and how a body's velocity lies in memory:
+//   dense  [body][component][lane]
+//   rows   [lane][body][kRow], planar vx vy w 0, spatial vx vy vz wx | wy wz 0 0
+#pragma once
+
+#include "kernels/lane/algebra.hpp"
+#include "kernels/lane/rows.hpp"
+#include "kernels/tables.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+struct Planar {
+  using Vec = Vec2;
+  using Ang = Float;
+  using Inertia = Float;
+  static constexpr int kDim = 2, kAng = 1, kTangents = 1, kRow = 4, kInertia = 1, kMulti = 2;
+  static constexpr auto kKind = kernels::InertiaKind::planar;
+};
+struct Isotropic {
+  using Vec = Vec3;
+  using Ang = Vec3;
+  using Inertia = Float;
+  static constexpr int kDim = 3, kAng = 3, kTangents = 2, kRow = 8, kInertia = 1, kMulti = 4;
+  static constexpr auto kKind = kernels::InertiaKind::isotropic;
+};
+struct Tensor {
+  using Vec = Vec3;
+  using Ang = Vec3;
+  using Inertia = Sym3;
+  static constexpr int kDim = 3, kAng = 3, kTangents = 2, kRow = 8, kInertia = 6, kMulti = 4;
+  static constexpr auto kKind = kernels::InertiaKind::tensor;
+};
+
+// Inverse inertia times an angular vector.
+MW_INLINE Float apply(Float inertia, Float a) { return inertia * a; }
+MW_INLINE Vec3 apply(Float inertia, Vec3 a) { return a * inertia; }
+MW_INLINE Vec3 apply(const Sym3& inertia, Vec3 a) { return mul(inertia, a); }
+
+MW_INLINE Float dot(Float a, Float b) { return a * b; }
+
+// Loads and stores of [component][lane] blocks, by type.
+MW_INLINE void load(const Real* p, Float& a) { a = Float::load(p); }
+MW_INLINE void load(const Real* p, Vec2& a) { a = load_vec2(p); }
+MW_INLINE void load(const Real* p, Vec3& a) { a = load_vec3(p); }
+MW_INLINE void load(const Real* p, Sym3& a) {
+  a = {Float::load(p),
+       Float::load(p + kLanes),
+       Float::load(p + 2 * kLanes),
+       Float::load(p + 3 * kLanes),
+       Float::load(p + 4 * kLanes),
+       Float::load(p + 5 * kLanes)};
+}
+MW_INLINE void store(Real* p, Float a) { a.store(p); }
+MW_INLINE void store(Real* p, const Sym3& a) {
+  a.xx.store(p), a.xy.store(p + kLanes), a.xz.store(p + 2 * kLanes);
+  a.yy.store(p + 3 * kLanes), a.yz.store(p + 4 * kLanes), a.zz.store(p + 5 * kLanes);
+}
+template <class T>
+MW_INLINE T load_as(const Real* p) {
+  T a;
+  load(p, a);
+  return a;
+}
+
+template <class S>
+struct Velocity {
+  typename S::Vec v;
+  typename S::Ang w;
+};
+
+template <class S>
+MW_INLINE Velocity<S> load_velocity_dense(const Real* p) {
+  return {load_as<typename S::Vec>(p), load_as<typename S::Ang>(p + S::kDim * kLanes)};
+}
+template <class S>
+MW_INLINE void store_velocity_dense(Real* p, const Velocity<S>& a) {
+  store(p, a.v);
+  store(p + S::kDim * kLanes, a.w);
+}
+
+MW_INLINE Velocity<Planar> load_velocity_row(Planar, const Real* base, const std::int32_t* o) {
+  Velocity<Planar> a;
+  Float unused;
+  load_rows4(base, o, a.v.x, a.v.y, a.w, unused);
+  return a;
+}
+MW_INLINE void store_velocity_row(Planar, Real* base, const std::int32_t* o,
+                                  const Velocity<Planar>& a) {
+  store_rows4(base, o, a.v.x, a.v.y, a.w, Real(0));
+}
+template <class S>
+MW_INLINE Velocity<S> load_velocity_row(S, const Real* base, const std::int32_t* o) {
+  Velocity<S> a;
+  Float unused0, unused1;
+  load_rows4(base, o, a.v.x, a.v.y, a.v.z, a.w.x);
+  load_rows4(base + 4, o, a.w.y, a.w.z, unused0, unused1);
+  return a;
+}
+template <class S>
+MW_INLINE void store_velocity_row(S, Real* base, const std::int32_t* o, const Velocity<S>& a) {
+  store_rows4(base, o, a.v.x, a.v.y, a.v.z, a.w.x);
+  store_rows4(base + 4, o, a.w.y, a.w.z, Real(0), Real(0));
+}
+
+template <class S>
+MW_INLINE Velocity<S> select(Mask m, const Velocity<S>& a, const Velocity<S>& b) {
+  return {select(m, a.v, b.v), select(m, a.w, b.w)};
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,116 @@
+// Free rotation of bodies whose inertia is not isotropic.
+//
+// Free bodies: DLM splitting (Dullweber, Leimkuhler, McLachlan 1997). The angular momentum L stays
+// put in the world; in the body frame it is turned about x, y, z, y, x by half, half, full, half,
+// half of dt L_k / I_k, and the orientation turns against it. Symplectic, |L| exact, energy bounded.
+// Bodies in contact: one Newton step of the implicit gyroscopic equation in the body frame (Catto
+// 2015), which loses energy but cannot gain it, since splitting would spoil solved contact speeds.
+#pragma once
+
+#include "kernels/lane/algebra.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+inline constexpr Real kMaxTurn = Real(0.5);  // rad per splitting step, about one axis
+inline constexpr int kMaxSplits = 64;
+
+struct Turn {  // rotation by an angle through its half-angle tangent: exactly orthogonal
+  Float t, c, s;
+};
+MW_INLINE Turn turn_by(Float angle) {
+  const Float x = clamp(angle, -kMaxTurn, kMaxTurn);
+  const Float t = x * half_tangent_ratio(x * x);
+  const Float s = (t + t) / fma(t, t, Real(1));
+  return {t, fnma(t, s, Real(1)), s};
+}
+
+// One splitting step: l is L in body axes, q the orientation, not normalised.
+MW_INLINE void split_turn(Vec3 rate_half, Vec3& l, Quat& q) {
+  // rate_half = dt / (2 I). About axis k: l turns by -a, q <- q (1, t e_k).
+  const auto about_x = [&](Float scale) {
+    const Turn u = turn_by(scale * l.x);
+    const Float y = fma(u.c, l.y, u.s * l.z), z = fms(u.c, l.z, u.s * l.y);
+    l.y = y, l.z = z;
+    q = {fnma(q.x, u.t, q.w), fma(q.w, u.t, q.x), fma(q.z, u.t, q.y), fnma(q.y, u.t, q.z)};
+  };
+  const auto about_y = [&](Float scale) {
+    const Turn u = turn_by(scale * l.y);
+    const Float z = fma(u.c, l.z, u.s * l.x), x = fms(u.c, l.x, u.s * l.z);
+    l.z = z, l.x = x;
+    q = {fnma(q.y, u.t, q.w), fnma(q.z, u.t, q.x), fma(q.w, u.t, q.y), fma(q.x, u.t, q.z)};
+  };
+  const auto about_z = [&](Float scale) {
+    const Turn u = turn_by(scale * l.z);
+    const Float x = fma(u.c, l.x, u.s * l.y), y = fms(u.c, l.y, u.s * l.x);
+    l.x = x, l.y = y;
+    q = {fnma(q.z, u.t, q.w), fma(q.y, u.t, q.x), fnma(q.x, u.t, q.y), fma(q.w, u.t, q.z)};
+  };
+  about_x(rate_half.x);
+  about_y(rate_half.y);
+  about_z(rate_half.z + rate_half.z);
+  about_y(rate_half.y);
+  about_x(rate_half.x);
+}
+
+// Free rotation over dt. `omega` (world) and `q` become those at the end.
+MW_INLINE void rotate_free(Real dt, Vec3 inertia, Vec3 inv_inertia, Vec3& omega, Quat& q) {
+  const Mat3 r = matrix(q);
+  const Vec3 omega_body = mul_transposed(r, omega);
+  Vec3 l{omega_body.x * inertia.x, omega_body.y * inertia.y, omega_body.z * inertia.z};
+  const Vec3 l_world = mul(r, l);
+
+  // How many splitting steps a lane needs: the largest turn about one axis stays below kMaxTurn.
+  // |L| / I_min bounds every rate.
+  const Float inv_min = max(max(inv_inertia.x, inv_inertia.y), inv_inertia.z);
+  const Float turn = sqrt(dot(l, l)) * inv_min * Float(dt);
+  const Vec3 rate = inv_inertia * Float(dt * Real(0.5));
+  if (!any(Float(kMaxTurn) < turn)) {
+    split_turn(rate, l, q);
+  } else {
+    // Each lane takes its own power of two of splits; lanes that are done keep their bits.
+    Float splits(Real(1));
+    int most = 1;
+    while (most < kMaxSplits) {
+      const Mask more = splits * Float(kMaxTurn) < turn;
+      if (!any(more)) break;
+      splits = select(more, splits + splits, splits);
+      most *= 2;
+    }
+    const Float share = Float(Real(1)) / splits;
+    const Vec3 part = rate * share;
+    for (int i = 0; i < most; ++i) {
+      const Mask running = Float(static_cast<Real>(i)) < splits;
+      Vec3 next_l = l;
+      Quat next_q = q;
+      split_turn(part, next_l, next_q);
+      next_q = normalize(next_q);
+      l = select(running, next_l, l);
+      q = select(running, next_q, q);
+    }
+  }
+  q = normalize(q);
+  // From the world's L, which does not change: rounding of the splitting leaves no trace in it.
+  const Mat3 end = matrix(q);
+  const Vec3 l_body = mul_transposed(end, l_world);
+  omega = mul(end, {l_body.x * inv_inertia.x, l_body.y * inv_inertia.y, l_body.z * inv_inertia.z});
+}
+
+// One implicit Newton step of I w' + h w' x I w' = I w, body axes; returns the new world omega.
+//   f = h w x I w,  J = I + h (skew(w) I - skew(I w)),  w' = w - J^-1 f
+MW_INLINE Vec3 implicit_gyroscopic(Real dt, Vec3 inertia, const Mat3& r, Vec3 omega) {
+  const Float h(dt);
+  const Vec3 w = mul_transposed(r, omega);
+  const Vec3 l{w.x * inertia.x, w.y * inertia.y, w.z * inertia.z};
+  const Vec3 f = cross(w, l) * h;
+  // Columns of J.
+  const Vec3 jx{inertia.x, h * fms(w.z, inertia.x, l.z), h * fms(l.y, Real(1), w.y * inertia.x)};
+  const Vec3 jy{h * fms(l.z, Real(1), w.z * inertia.y), inertia.y,
+                h * fms(w.x, inertia.y, l.x)};
+  const Vec3 jz{h * fms(w.y, inertia.z, l.y), h * fms(l.x, Real(1), w.x * inertia.z), inertia.z};
+  const Vec3 yz = cross(jy, jz);
+  const Float scale = Float(Real(1)) / dot(jx, yz);
+  const Vec3 d{dot(f, yz) * scale, dot(jx, cross(f, jz)) * scale, dot(jx, cross(jy, f)) * scale};
+  return mul(r, w - d);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

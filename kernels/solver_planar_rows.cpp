@@ -1,0 +1,13 @@
+// Solver passes of the Planar space in the rows layout.
+#include "kernels/solver_tables.hpp"
+
+#include "kernels/constraint/passes.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+void fill_solver_planar_rows(kernels::SolverTable<Real>& with, kernels::SolverTable<Real>& without) {
+  with = Passes<Planar, false, true>::table();
+  without = Passes<Planar, false, false>::table();
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,13 @@
+// Solver passes of the Tensor space in the dense layout.
+#include "kernels/solver_tables.hpp"
+
+#include "kernels/constraint/passes.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+void fill_solver_tensor_dense(kernels::SolverTable<Real>& with, kernels::SolverTable<Real>& without) {
+  with = Passes<Tensor, true, true>::table();
+  without = Passes<Tensor, true, false>::table();
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

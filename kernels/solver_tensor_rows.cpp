@@ -1,0 +1,13 @@
+// Solver passes of the Tensor space in the rows layout.
+#include "kernels/solver_tables.hpp"
+
+#include "kernels/constraint/passes.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+void fill_solver_tensor_rows(kernels::SolverTable<Real>& with, kernels::SolverTable<Real>& without) {
+  with = Passes<Tensor, false, true>::table();
+  without = Passes<Tensor, false, false>::table();
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,75 @@
+// The kernel table of this instruction set and precision.
+#include "kernels/table.hpp"
+
+#include "kernels/finish.hpp"
+#include "kernels/solver_tables.hpp"
+#include "kernels/stages.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+namespace {
+
+template <class S>
+void free_motion(const Tables& t, const Group& g, kernels::Scratch* scratch, int steps) {
+  free_motion_steps<S>(t, g, work_of(scratch), steps);
+}
+
+void set_class(kernels::Scratch* scratch, int class_index) {
+  work_of(scratch).class_index = class_index;
+}
+
+const kernels::GroupCounters& counters(kernels::Scratch* scratch) {
+  return work_of(scratch).counters;
+}
+
+int record(kernels::Scratch* scratch, int lane, kernels::ContactPoint<Real>* out, int max) {
+  Work& w = work_of(scratch);
+  const int count = w.recorder ? w.recorder->count : 0;
+  w.recorder_storage = {out, max, lane, 0};
+  w.recorder = out ? &w.recorder_storage : nullptr;
+  return count;
+}
+
+constexpr const char* isa_name() {
+#if defined(MW_ISA_AVX512)
+  return "avx512";
+#elif defined(MW_ISA_AVX2)
+  return "avx2";
+#else
+  return "scalar";
+#endif
+}
+
+kernels::KernelTable<Real> make_table() {
+  using kernels::InertiaKind;
+  kernels::KernelTable<Real> out{};
+  out.isa = isa_name();
+  out.lanes = kLanes;
+  out.scratch_bytes = scratch_bytes;
+  out.make_scratch = make_scratch;
+  out.begin = begin;
+  out.broad_phase = broad_phase;
+  out.choose_layout = choose_layout;
+  auto& planar = out.solver[static_cast<int>(InertiaKind::planar)];
+  auto& isotropic = out.solver[static_cast<int>(InertiaKind::isotropic)];
+  auto& tensor = out.solver[static_cast<int>(InertiaKind::tensor)];
+  fill_solver_planar_dense(planar[1][0], planar[0][0]);
+  fill_solver_planar_rows(planar[1][1], planar[0][1]);
+  fill_solver_isotropic_dense(isotropic[1][0], isotropic[0][0]);
+  fill_solver_isotropic_rows(isotropic[1][1], isotropic[0][1]);
+  fill_solver_tensor_dense(tensor[1][0], tensor[0][0]);
+  fill_solver_tensor_rows(tensor[1][1], tensor[0][1]);
+  out.free_motion[static_cast<int>(InertiaKind::planar)] = free_motion<Planar>;
+  out.free_motion[static_cast<int>(InertiaKind::isotropic)] = free_motion<Isotropic>;
+  out.free_motion[static_cast<int>(InertiaKind::tensor)] = free_motion<Tensor>;
+  out.set_class = set_class;
+  out.counters = counters;
+  out.record = record;
+  return out;
+}
+
+}  // namespace
+
+void fill_kernel_table(kernels::KernelTable<Real>& out) { out = make_table(); }
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

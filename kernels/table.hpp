@@ -1,0 +1,68 @@
+// KernelTable: the one door into the kernels of an instruction set and precision. src/step calls
+// the stages in order; no stage allocates, throws or keeps state outside its arguments.
+#pragma once
+
+#include <cstddef>
+
+#include "kernels/group.hpp"
+
+namespace manyworlds::kernels {
+
+struct Scratch;  // per-thread work memory; its layout belongs to the kernels
+
+enum class Layout : int { automatic, dense, rows };
+
+template <class Real>
+using Stage = void (*)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*);
+
+// The solver passes over all four lists, for one inertia kind, friction or not, dense or rows.
+template <class Real>
+struct SolverTable {
+  Stage<Real> enter;       // velocities into the solver's layout
+  Stage<Real> warm_start;  // first push, then the stored impulses
+  Stage<Real> bias;        // soft normal rows
+  Stage<Real> advance;     // displacement of the substep
+  Stage<Real> relax;       // normal rows without bias, then friction
+  Stage<Real> next;        // push and warm start of the next substep
+  Stage<Real> restitute;
+  Stage<Real> store;       // impulses into the cache
+  Stage<Real> leave;       // commit positions, orientations, velocities
+  Stage<Real> collide[kPairKinds];  // narrow phase and rows of one class (Scratch::class_index)
+};
+
+template <class Real>
+struct ContactPoint {
+  std::int32_t list, key;      // key identifies class and candidate
+  Real normal[3], point[3];    // point relative to nothing: world, m
+  Real separation;
+  Real impulse;
+  std::int32_t feature;
+};
+
+template <class Real>
+struct KernelTable {
+  const char* isa;
+  int lanes;
+  // Bytes of scratch that these tables need, and its set-up in `memory` (64-byte aligned).
+  std::size_t (*scratch_bytes)(const WorldTables<Real>&);
+  Scratch* (*make_scratch)(const WorldTables<Real>&, void* memory);
+
+  Stage<Real> begin;        // poses, bounds, inertia
+  Stage<Real> broad_phase;  // candidate masks of every class
+  // Dense or rows for this group: by occupancy, or as wished if the slots fit.
+  Layout (*choose_layout)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, Layout);
+  SolverTable<Real> solver[kInertiaKinds][2][2];  // [inertia][friction][layout: dense, rows]
+  // Plans without contacts: n whole steps of free motion.
+  void (*free_motion[kInertiaKinds])(const WorldTables<Real>&, const GroupView<Real>&, Scratch*,
+                                     int steps);
+
+  void (*set_class)(Scratch*, int class_index);  // which class collide works on
+  const GroupCounters& (*counters)(Scratch*);    // of the last step
+  // While set, collide writes the contact points of `lane` to out; returns their number when
+  // called again. Pass nullptr to stop.
+  int (*record)(Scratch*, int lane, ContactPoint<Real>* out, int max);
+};
+
+// Every kernel library defines manyworlds::<isa>_<precision>::fill_kernel_table(KernelTable<Real>&).
+
+}  // namespace manyworlds::kernels

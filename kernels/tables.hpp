@@ -1,0 +1,182 @@
+// WorldTables: what the kernels know of a Plan, in the kernels' number type. Every value is shared
+// by all worlds of the Plan and reaches the lanes by a broadcast load. Built once per Batch by
+// src/state/tables.cpp; plain pointers into arrays that the Batch owns.
+#pragma once
+
+#include <cstdint>
+
+namespace manyworlds::kernels {
+
+enum class Dimension : int { planar, spatial };
+
+// How a body's inertia enters the rows: a scalar in the plane or when isotropic, else a tensor.
+enum class InertiaKind : int { planar, isotropic, tensor };
+inline constexpr int kInertiaKinds = 3;
+
+enum class ShapeKind : int { sphere, box, circle, rectangle, polygon, plane };
+
+// Shape pairs; the first shape is A. Planes and other fixed shapes are always A.
+enum class PairKind : int {
+  sphere_sphere,
+  box_sphere,
+  box_box,
+  plane_sphere,
+  plane_box,
+  circle_circle,
+  rectangle_circle,
+  rectangle_rectangle,
+  polygon_circle,
+  polygon_polygon,
+  plane_circle,
+  plane_rectangle,
+  plane_polygon,
+  sphere_box,        // fixed sphere
+  circle_rectangle,  // fixed circle
+  circle_polygon,    // fixed circle
+};
+inline constexpr int kPairKinds = 16;
+
+// Contacts of a world live in four lists, solved in this order.
+enum class ListId : int { pair_multi, pair_single, fixed_multi, fixed_single };
+inline constexpr int kLists = 4;
+inline constexpr bool is_fixed(ListId id) { return id >= ListId::fixed_multi; }
+inline constexpr bool is_multi(ListId id) {
+  return id == ListId::pair_multi || id == ListId::fixed_multi;
+}
+
+inline constexpr int kMaxVertices = 8;
+inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of pose row
+
+// A pose row describes one shape of one world to the narrow phase:
+//   sphere, circle        x y z radius                       (4; z unused in the plane)
+//   box                   Rx p.x | Ry p.y | Rz p.z | hx hy hz margin, columns of the rotation (16)
+//   rectangle             x y c s | hx hy 0 0                (8)
+//   polygon               x y count radius | 8 vertices | 8 normals, relative to x y, world axes (36)
+//   plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
+inline constexpr int pose_row_size(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::box: return 16;
+    case ShapeKind::rectangle:
+    case ShapeKind::plane: return 8;
+    case ShapeKind::polygon: return 4 + 4 * kMaxVertices;
+    default: return 4;
+  }
+}
+
+template <class Real>
+struct BodyTable {
+  Real inv_mass;
+  Real inertia[3];      // principal, kg m^2 (planar: [2])
+  Real inv_inertia[3];  // 0 for kinematic bodies
+  Real acceleration[3];  // gravity times gravity scale, m/s^2; 0 for kinematic bodies
+  Real linear_factor;   // 1 / (1 + h c), per substep
+  Real angular_factor;
+  Real radius;          // of the bounding sphere about the centre of mass, m
+  Real core_radius;     // of a sphere inside the body about its centre of mass, m; 0: none
+};
+
+template <class Real>
+struct ColliderTable {
+  ShapeKind kind;
+  std::int32_t body;
+  std::int32_t row;  // offset of its pose row in a lane's block
+  Real offset[3];    // shape origin from the centre of mass, principal axes, m
+  Real rotation[9];  // shape axes in principal axes, columns; planar: [0] cos, [1] sin
+  Real half[3];      // half extents (box, rectangle)
+  Real radius;       // sphere, circle; else of the bounding sphere about the shape origin
+  Real margin_cap;   // most that the speculative margin of this shape may grow to, m
+  std::int32_t vertex_count;
+  Real vertices[2 * kMaxVertices];  // polygon, padded by repeating the first
+  Real normals[2 * kMaxVertices];
+};
+
+template <class Real>
+struct FixedTable {
+  ShapeKind kind;
+  std::int32_t row;  // offset of its pose row in WorldTables::fixed_rows
+  Real low[3], high[3];  // bounding box (not for planes)
+  Real plane[4];         // normal, offset
+};
+
+// Candidate pairs of one shape pair kind, all against fixed shapes or all between moving ones.
+template <class Real>
+struct PairClass {
+  PairKind kind;
+  ListId list;
+  std::int32_t count;
+  std::int32_t first_key;       // keys of the class are first_key + 0 .. count - 1
+  const std::int32_t* a;        // [count] collider, or fixed shape
+  const std::int32_t* b;        // [count] collider
+  const Real* friction;         // [count]
+  const Real* restitution;      // [count]
+};
+
+template <class Real>
+struct Softness {  // numerics of the soft constraint: lambda' = lambda - k (m v + b s) - i lambda
+  Real bias_rate, mass_scale, impulse_scale;
+};
+
+template <class Real>
+struct WorldTables {
+  Dimension dimension;
+  InertiaKind inertia_kind;
+  std::int32_t bodies;
+  std::int32_t colliders;
+  std::int32_t fixed_shapes;
+  std::int32_t classes;
+  std::int32_t substeps;
+  std::int32_t restitution_sweeps;
+  bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
+  bool collider_is_body;   // collider i is the only shape of body i, centred and aligned
+  bool friction_in_bias;
+  bool uniform_gravity;    // every body has the acceleration of body 0
+  bool sweep;              // sort and sweep instead of masked all-pairs
+  bool cast;               // cast fast bodies against fixed shapes
+  bool has_bounds;
+
+  const BodyTable<Real>* body;
+  const ColliderTable<Real>* collider;
+  const std::int32_t* collider_row;   // [collider + 1], the last is the dummy's
+  const std::int32_t* collider_body;  // [collider + 1]
+  const FixedTable<Real>* fixed;
+  const Real* fixed_rows;
+  const PairClass<Real>* pair_class;
+  // Sort and sweep: key of the candidate pair of colliders (i, j), in either order, or -1.
+  const std::int32_t* pair_of;  // [collider][collider]
+
+  // Pushes and factors of one substep in the order of a velocity row: [body + pad][row].
+  const Real* push_rows;
+  const Real* factor_rows;
+
+  std::int32_t capacity[kLists];  // manifolds per world
+  std::int32_t row_block;         // reals of one lane's pose rows
+  std::int32_t state_stride;      // components per body in the state
+  std::int32_t state_size;        // components per world in the state
+
+  Real dt, h, inv_h;
+  Softness<Real> soft_pair, soft_fixed;
+  Real push_out_speed;
+  Real margin;          // 4 slop, m
+  Real half_margin;
+  Real restitution_threshold;
+  Real bounds_low[3], bounds_high[3];  // of body positions, m
+  Real face_bias;       // m, preference of the previous kind of axis in separating-axis tests
+};
+
+// State block of one body: components in this order, each kLanes wide. The orientation block is
+// absent when the plan has no orientation.
+struct StateOffsets {
+  int position, linear, angular, orientation, components;
+};
+inline constexpr StateOffsets state_offsets(Dimension d, bool orientation) {
+  return d == Dimension::planar ? StateOffsets{0, 2, 4, 5, orientation ? 7 : 5}
+                                : StateOffsets{0, 3, 6, 9, orientation ? 13 : 9};
+}
+inline constexpr int velocity_row_size(Dimension d) { return d == Dimension::planar ? 4 : 8; }
+
+// Stored impulses of one manifold (see constraint/contact_cache.hpp).
+inline constexpr int cache_row_size(Dimension d, ListId list) {
+  return !is_multi(list) ? 4 : d == Dimension::planar ? 8 : 16;
+}
+
+}  // namespace manyworlds::kernels

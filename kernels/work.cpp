@@ -1,0 +1,152 @@
+// Lays out a thread's scratch: measures it, then carves it out of one block.
+#include "kernels/work.hpp"
+
+#include "kernels/constraint/slot.hpp"
+#include "kernels/stages.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+namespace {
+
+// Hands out 64-byte aligned pieces; with a null base it only counts.
+class Carver {
+ public:
+  explicit Carver(unsigned char* base) : base_(base) {}
+  template <class T>
+  void take(T*& out, std::size_t count) {
+    out = base_ ? reinterpret_cast<T*>(base_ + used_) : nullptr;
+    used_ += (count * sizeof(T) + 63) / 64 * 64;
+  }
+  std::size_t used() const { return used_; }
+
+ private:
+  unsigned char* base_;
+  std::size_t used_ = 0;
+};
+
+template <class S>
+void size_slots(Work& w) {
+  for (int l = 0; l < kLists; ++l) {
+    const bool multi = is_multi(static_cast<ListId>(l));
+    w.slots[l].stride = multi ? sizeof(Slot<S, S::kMulti>) : sizeof(Slot<S, 1>);
+    w.slots[l].bounce_stride = multi ? sizeof(Bounce<S, S::kMulti>) : sizeof(Bounce<S, 1>);
+  }
+}
+
+// Slots of a list: in rows every class needs at most as many as a lane may have, and classes
+// follow one another.
+int slots_needed(const Tables& t, int list) {
+  int slots = 0;
+  for (int c = 0; c < t.classes; ++c) {
+    if (static_cast<int>(t.pair_class[c].list) != list) continue;
+    const int most = t.pair_class[c].count;
+    slots += most < t.capacity[list] ? most : t.capacity[list];
+  }
+  return slots;
+}
+
+void carve(const Tables& t, Work& w, Carver& c) {
+  const int lanes = kLanes;
+  int keys = 1, longest = 1;
+  for (int i = 0; i < t.classes; ++i) {
+    const int end = t.pair_class[i].first_key + t.pair_class[i].count;
+    keys = end > keys ? end : keys;
+    longest = t.pair_class[i].count > longest ? t.pair_class[i].count : longest;
+  }
+  const auto count = [](int n) { return static_cast<std::size_t>(n); };
+  const int dim = t.dimension == kernels::Dimension::spatial ? 3 : 2;
+  const int row = kernels::velocity_row_size(t.dimension);
+  // A lane's rows fill whole registers, so that they can be swept without regard to bodies.
+  int rows = t.bodies + 1;
+  while (rows * row % kLanes != 0) ++rows;
+  w.rows_per_lane = rows;
+  const std::size_t velocities = count(rows * row * lanes);
+  c.take(w.velocity, velocities);
+  c.take(w.warmed, velocities);
+  c.take(w.impulse_part, velocities);
+  c.take(w.displacement, velocities);
+  c.take(w.push_storage, velocities);
+  c.take(w.touched, count(t.bodies + 1));
+  if (!t.has_contacts) return;
+  const int body_row = body_row_size(t.inertia_kind);
+  c.take(w.body_rows, count((t.bodies + 1) * body_row * lanes));
+  c.take(w.pose_rows, count(t.row_block * lanes));
+  c.take(w.bounds, count(t.colliders * 2 * dim * lanes));
+  c.take(w.beyond, count(t.colliders * lanes));
+  c.take(w.hits, count(keys));
+  c.take(w.hit_masks, count(keys));
+  c.take(w.hit_count, count(t.classes));
+  if (t.sweep) {
+    c.take(w.marks, count(keys));
+    c.take(w.sorted, count(t.colliders * 3 * lanes));
+  }
+  for (CandidateList* list : {&w.candidates, &w.found}) {
+    c.take(list->code, count(longest * lanes));
+    c.take(list->key, count(longest * lanes));
+    c.take(list->axis, count(longest * lanes));
+    c.take(list->mask, count(longest));
+  }
+  c.take(w.keep, count(longest));
+  if (t.inertia_kind == kernels::InertiaKind::planar) {
+    size_slots<Planar>(w);
+  } else if (t.inertia_kind == kernels::InertiaKind::isotropic) {
+    size_slots<Isotropic>(w);
+  } else {
+    size_slots<Tensor>(w);
+  }
+  for (int l = 0; l < kLists; ++l) {
+    SlotList& list = w.slots[l];
+    list.max_slots = slots_needed(t, l);
+    c.take(list.slots, count(list.max_slots) * list.stride);
+    list.bounces = nullptr;
+    if (t.has_restitution) c.take(list.bounces, count(list.max_slots) * list.bounce_stride);
+  }
+}
+
+// What never changes: lane bases, the dummy's pose, inverse masses that do not turn.
+void fill_constants(const Tables& t, Work& w) {
+  const int row = kernels::velocity_row_size(t.dimension);
+  const int body_row = body_row_size(t.inertia_kind);
+  for (int l = 0; l < kLanes; ++l) {
+    w.velocity_base[l] = l * w.rows_per_lane * row;
+    w.pose_base[l] = l * t.row_block;
+    w.body_base[l] = l * (t.bodies + 1) * body_row;
+  }
+  if (!t.has_contacts) return;
+  for (int l = 0; l < kLanes; ++l) {
+    Real* dummy = w.pose_rows + w.pose_base[l] + t.row_block - kernels::kDummyRow;
+    for (int i = 0; i < kernels::kDummyRow; ++i) dummy[i] = Real(0);
+    dummy[0] = dummy[5] = dummy[10] = Real(1);  // as a box: unit axes
+    dummy[12] = dummy[13] = dummy[14] = Real(0.5);
+    for (int b = 0; b <= t.bodies; ++b) {
+      Real* r = w.body_rows + w.body_base[l] + b * body_row;
+      for (int i = 0; i < body_row; ++i) r[i] = Real(0);
+      if (b == t.bodies || t.inertia_kind == kernels::InertiaKind::tensor) continue;
+      r[0] = t.body[b].inv_mass;
+      r[1] = t.body[b].inv_inertia[2];
+    }
+  }
+}
+
+}  // namespace
+
+std::size_t scratch_bytes(const Tables& tables) {
+  Work measured{};
+  Carver carver(nullptr);
+  Work* self = nullptr;
+  carver.take(self, 1);
+  carve(tables, measured, carver);
+  return carver.used();
+}
+
+kernels::Scratch* make_scratch(const Tables& tables, void* memory) {
+  Carver carver(static_cast<unsigned char*>(memory));
+  Work* self = nullptr;
+  carver.take(self, 1);
+  *self = Work{};
+  carve(tables, *self, carver);
+  fill_constants(tables, *self);
+  return reinterpret_cast<kernels::Scratch*>(self);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

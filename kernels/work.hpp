@@ -1,0 +1,92 @@
+// Work: the per-thread scratch of one plan, reused from group to group. Laid out once by
+// make_scratch (work.cpp); stages only follow the pointers.
+#pragma once
+
+#include "kernels/lane/space.hpp"
+#include "kernels/table.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+using Tables = kernels::WorldTables<Real>;
+using Group = kernels::GroupView<Real>;
+using kernels::kLists;
+using kernels::ListId;
+
+// Candidates of one class, one per lane and slot. An inactive lane holds the code of the dummy.
+struct CandidateList {
+  int count;
+  std::int32_t* code;   // [slot][lane]: a | b << 16
+  std::int32_t* key;    // [slot][lane]
+  std::uint32_t* mask;  // [slot]: active lanes
+  Real* axis;           // [slot][lane]: separating axis found so far (boxes)
+};
+
+struct SlotList {
+  int count;
+  int max_slots;
+  std::size_t stride;         // bytes of a slot
+  std::size_t bounce_stride;  // bytes of a slot's restitution rows
+  unsigned char* slots;
+  unsigned char* bounces;
+};
+
+// Takes down the contact points of one lane while the collide stages run (KernelTable::record).
+struct Recorder {
+  kernels::ContactPoint<Real>* out;
+  int max, lane, count;
+};
+
+struct Work {
+  // begin
+  Real* pose_rows;  // [lane][row_block], the last kDummyRow of a block are the dummy's
+  Real* body_rows;  // [lane][bodies + 1][body_row], see body_row_size
+  Real* bounds;     // [collider][centre dim, half extent dim][lane], margin included
+  Real* beyond;     // [collider][lane], how much farther its body may move than the margin's cap
+  // broad phase
+  std::int32_t* hits;         // [key] candidate index within its class, compacted per class
+  std::uint32_t* hit_masks;   // [key]
+  std::int32_t* hit_count;    // [class]
+  std::uint32_t* marks;       // [key], sort and sweep
+  Real* sorted;               // [collider][low, high, index][lane], sort and sweep
+  // narrow phase
+  CandidateList candidates;   // of the class at work
+  CandidateList found;        // box pairs: after the separating-axis test
+  std::uint32_t* keep;        // [slot], lanes that passed it
+  SlotList slots[kLists];
+  std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
+  std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
+  std::uint32_t overflow;     // lanes that dropped a contact in this step
+  int class_index;
+  bool dense;
+  // solver
+  Real* velocity;      // dense or rows, see lane/space.hpp
+  Real* warmed;        // velocity after warm start
+  Real* impulse_part;  // what warm starting adds to the velocity of the next substep
+  Real* displacement;
+  Real* push_storage;
+  Real* push;          // h times acceleration of every lane when there are forces, else nullptr
+  int rows_per_lane;   // bodies + dummy + padding
+  alignas(64) std::int32_t velocity_base[kLanes];  // offset of a lane's velocity rows
+  alignas(64) std::int32_t pose_base[kLanes];
+  alignas(64) std::int32_t body_base[kLanes];
+  std::uint32_t* touched;  // [body] lanes in which a contact may push the body in this step
+  Recorder* recorder;      // nullptr but while contacts are recorded
+  Recorder recorder_storage;
+  kernels::GroupCounters counters;
+};
+
+// Inverse mass and inertia of a body, and its centre of mass (for shapes that are off it):
+//   planar      1/m 1/I x y
+//   isotropic   1/m 1/I 0 0 | x y z 0
+//   tensor      Ixx Ixy Ixz Iyy | Iyz Izz 1/m 0 | x y z 0    (inverse, world axes)
+inline constexpr int body_row_size(kernels::InertiaKind kind) {
+  return kind == kernels::InertiaKind::planar ? 4
+         : kind == kernels::InertiaKind::isotropic ? 8 : 12;
+}
+
+MW_INLINE Work& work_of(kernels::Scratch* s) { return *reinterpret_cast<Work*>(s); }
+
+std::size_t scratch_bytes(const Tables& tables);
+kernels::Scratch* make_scratch(const Tables& tables, void* memory);
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,74 @@
+// The list of named scenes and the search for a name.
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+#include "manyworlds/scenes.hpp"
+#include "scenes/cradle.hpp"
+#include "scenes/makers.hpp"
+
+namespace manyworlds::scenes {
+namespace {
+
+// Levenshtein distance: insertions, deletions and substitutions. `row` holds the distances of the
+// prefixes of b from the current prefix of a.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substitution = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({substitution, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+Scene default_cradle() { return newton_cradle(1, 1e-3); }
+
+}  // namespace
+
+const std::vector<Entry>& all() {
+  static const std::vector<Entry> entries = {
+      {"bin2d", "2D: 20 circles and 20 boxes dropped into a bin 10 m wide", true, bin2d},
+      {"pyramid2d", "2D: pyramid of 15 boxes", true, pyramid2d},
+      {"ball2d", "2D: one bouncing ball", true, ball2d},
+      {"bin-spheres", "3D: 20 spheres dropped into a 4 x 4 m bin", true, bin_spheres},
+      {"bin-boxes", "3D: 20 boxes dropped into a 4 x 4 m bin", true, bin_boxes},
+      {"stack10", "3D: stack of 10 unit boxes", true, stack10},
+      {"ball3d", "3D: one bouncing ball", true, ball3d},
+      {"free-flight", "3D: 20 tumbling boxes without gravity or contacts", false, free_flight},
+      {"billiards", "2D: break of 15 balls on a table seen from above", false, billiards},
+      {"domino", "3D: a row of 15 dominoes falling", false, domino},
+      {"newton-cradle", "2D: 5 elastic balls in a row, one comes in", false, default_cradle},
+      {"mixed-pile", "3D: boxes, spheres and compounds of many sizes in a bin", false, mixed_pile},
+      {"mixed-pile2d", "2D: circles and polygons of many sizes in a bin", false, mixed_pile2d},
+  };
+  return entries;
+}
+
+const Entry* find(std::string_view name) {
+  for (const Entry& entry : all()) {
+    if (entry.name == name) return &entry;
+  }
+  return nullptr;
+}
+
+std::string nearest(std::string_view name) {
+  std::string best;
+  std::size_t best_distance = static_cast<std::size_t>(-1);
+  for (const Entry& entry : all()) {
+    const std::size_t distance = edit_distance(name, entry.name);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = entry.name;
+    }
+  }
+  return best;
+}
+
+}  // namespace manyworlds::scenes

@@ -1,0 +1,24 @@
+#include "scenes/cradle.hpp"
+
+#include "scenes/parts.hpp"
+
+namespace manyworlds::scenes {
+
+Scene newton_cradle(int moving, double gap) {
+  constexpr double kRadius = 0.5;
+  Scene scene = planar_scene("newton-cradle");
+  scene.options.gravity.setZero();
+  scene.options.restitution_threshold = 0.01;
+  for (int i = 0; i < 5; ++i) {
+    Body ball;
+    ball.name = "ball" + std::to_string(i);
+    ball.position = {i * (2 * kRadius + gap), 0, 0};
+    ball.linear_velocity = {i < moving ? 1.0 : 0.0, 0, 0};
+    ball.shapes.push_back(shape_of(Circle{kRadius}));
+    ball.shapes.back().material = {.friction = 0, .restitution = 1};
+    scene.add(ball);
+  }
+  return scene;
+}
+
+}  // namespace manyworlds::scenes

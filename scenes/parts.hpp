@@ -1,0 +1,32 @@
+// What the scenes have in common: empty scenes, grounds and bins. Planar scenes have y up, spatial
+// scenes z; gravity is 10 m/s^2 down, the floor is at height 0.
+#pragma once
+
+#include <string>
+
+#include "manyworlds/scene.hpp"
+
+namespace manyworlds::scenes {
+
+// Density 1 kg/m^2 and 1000 kg/m^3.
+Scene planar_scene(std::string name);
+Scene spatial_scene(std::string name);
+
+// A fixed half-space below height 0.
+Body planar_ground(const Material& material = {});
+Body spatial_ground(const Material& material = {});
+
+// Floor and walls whose inner faces are half_width from the middle, as planes: nothing tunnels
+// through them or leaves over the top.
+Body planar_bin(double half_width);
+Body spatial_bin(double half_width);
+
+// Bounds that a body leaves only when its centre is more than 0.5 m through the floor or a wall,
+// or 100 m up.
+Eigen::AlignedBox3d planar_bounds(double half_width);
+Eigen::AlignedBox3d spatial_bounds(double half_width);
+
+// A shape at the body frame with the default material.
+Shape shape_of(Geometry geometry);
+
+}  // namespace manyworlds::scenes

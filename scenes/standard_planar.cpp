@@ -1,0 +1,64 @@
+// The planar standard scenes. Their numbers define the benchmark and must not change.
+#include <string>
+
+#include "scenes/makers.hpp"
+#include "scenes/parts.hpp"
+
+namespace manyworlds::scenes {
+
+// 40 bodies, circles and squares in turn, on a grid of 8 columns in a bin 10 m wide.
+Scene bin2d() {
+  constexpr double kHalfWidth = 5;
+  Scene scene = planar_scene("bin2d");
+  scene.options.bounds = planar_bounds(kHalfWidth);
+  scene.add(planar_bin(kHalfWidth));
+  for (int i = 0; i < 40; ++i) {
+    const int column = i % 8;
+    const int row = i / 8;
+    const bool square = (column + row) % 2 == 1;
+    Body body;
+    body.name = (square ? "box" : "circle") + std::to_string(i);
+    body.position = {(column - 3.5) * 1.2, 1 + 1.45 * row, 0};
+    body.shapes.push_back(square ? shape_of(Polygon::box(0.4, 0.4)) : shape_of(Circle{0.5}));
+    body.jitter.position = {0.05, 0.05, 0};
+    body.jitter.angle = 1.5;
+    scene.add(body);
+  }
+  return scene;
+}
+
+// Rows of 5, 4, 3, 2 and 1 unit squares.
+Scene pyramid2d() {
+  constexpr double kHalfGround = 20;
+  constexpr int kRows = 5;
+  Scene scene = planar_scene("pyramid2d");
+  scene.options.bounds = planar_bounds(kHalfGround);
+  scene.add(planar_ground());
+  for (int row = 0; row < kRows; ++row) {
+    for (int k = 0; k < kRows - row; ++k) {
+      Body box;
+      box.name = "box" + std::to_string(row) + "." + std::to_string(k);
+      box.position = {(k - (4 - row) / 2.0) * 1.1, 0.5 + row, 0};
+      box.shapes.push_back(shape_of(Polygon::box(0.5, 0.5)));
+      box.jitter.position = {0.01, 0, 0};
+      scene.add(box);
+    }
+  }
+  return scene;
+}
+
+Scene ball2d() {
+  Scene scene = planar_scene("ball2d");
+  scene.options.bounds = planar_bounds(20);
+  scene.add(planar_ground());
+  Body ball;
+  ball.name = "ball";
+  ball.position = {0, 5, 0};
+  ball.shapes.push_back(shape_of(Circle{0.5}));
+  ball.shapes.back().material.restitution = 0.9;
+  ball.jitter.position = {0, 1, 0};
+  scene.add(ball);
+  return scene;
+}
+
+}  // namespace manyworlds::scenes

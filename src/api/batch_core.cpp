@@ -1,0 +1,212 @@
+#include <algorithm>
+#include <string>
+
+#include "src/api/batch_impl.hpp"
+#include "src/base/denormals.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+kernels::Layout layout_of(ContactLayout layout) {
+  switch (layout) {
+    case ContactLayout::dense: return kernels::Layout::dense;
+    case ContactLayout::rows: return kernels::Layout::rows;
+    case ContactLayout::automatic: break;
+  }
+  return kernels::Layout::automatic;
+}
+
+template <class Real>
+class CoreOf final : public BatchCore {
+ public:
+  CoreOf(const std::vector<Batch::Kind>& kinds, const BatchOptions& options, Isa isa, int threads)
+      : kernels_(kernels_for<Real>(isa)), layout_(layout_of(options.layout)) {
+    for (const Isa i : {Isa::scalar, Isa::avx2, Isa::avx512}) {
+      if (std::string(kernels_.isa) == to_string(i)) isa_ = i;
+    }
+    int first = 0, groups = 0;
+    for (const auto& kind : kinds) {
+      worlds_.push_back(std::make_unique<Worlds<Real>>(kind.plan, kind.worlds, first,
+                                                       options.seed, kernels_.lanes));
+      first += kind.worlds;
+      first_group_.push_back(groups);
+      groups += worlds_.back()->groups();
+    }
+    first_group_.push_back(groups);
+    for (int slot = 0; slot < threads; ++slot) {
+      auto& scratch = scratch_.emplace_back();
+      for (const auto& w : worlds_) {
+        scratch.memory.emplace_back(kernels_.scratch_bytes(w->tables()));
+        scratch.views.push_back(
+            kernels_.make_scratch(w->tables(), scratch.memory.back().data()));
+      }
+    }
+    clocks_.resize(static_cast<std::size_t>(threads));
+  }
+
+  void step(Executor& executor, int n) override {
+    steps_ = n;
+    // A kind without contacts keeps its group in the cache for all n steps; so does one with
+    // contacts, since groups do not know of each other.
+    executor.run(
+        first_group_.back(),
+        [](void* self, int group, int slot) { static_cast<CoreOf*>(self)->run(group, slot); },
+        this);
+    for (auto& w : worlds_) w->clear_forces();
+  }
+
+  void restart() override {
+    for (auto& w : worlds_) w->restart();
+  }
+  void reset(int kind, int world) override { at(kind).reset(world); }
+  void read(Field field, int kind, int world, float* out) const override {
+    at(kind).read(field, world, out);
+  }
+  void read(Field field, int kind, int world, double* out) const override {
+    at(kind).read(field, world, out);
+  }
+  void write(Field field, int kind, int world, const float* in) override {
+    at(kind).write(field, world, in);
+  }
+  void write(Field field, int kind, int world, const double* in) override {
+    at(kind).write(field, world, in);
+  }
+  void add_force(int kind, int world, int body, const Vec3& f, const Vec3& torque) override {
+    at(kind).add_force(world, body, f, torque);
+  }
+  void add_impulse(int kind, int world, int body, const Vec3& p, const Vec3& l) override {
+    at(kind).add_impulse(world, body, p, l);
+  }
+  Vec3 center_of_mass(int kind, int world, int body) const override {
+    return at(kind).center_of_mass(world, body);
+  }
+  Status status(int kind, int world) const override { return at(kind).status(world); }
+  std::uint64_t hash(int kind, int world) const override { return at(kind).hash(world); }
+  Energy energy(int kind, int world) const override { return at(kind).energy(world); }
+
+  std::vector<Contact> contacts(int kind, int world) const override;
+  double occupancy(int kind) const override;
+
+  std::size_t bytes() const override {
+    std::size_t total = 0;
+    for (const auto& w : worlds_) total += w->bytes();
+    return total;
+  }
+  std::size_t scratch_bytes() const override {
+    std::size_t total = 0;
+    for (const auto& m : scratch_.front().memory) total += m.size();
+    return total;
+  }
+  int lanes() const override { return kernels_.lanes; }
+  Isa isa() const override { return isa_; }
+
+  void profile(bool on) override { profiling_ = on; }
+  std::vector<StageTime> take_stage_times() override {
+    std::vector<StageTime> out;
+    for (std::size_t s = 0; s < StageClock::kStages; ++s) {
+      double sum = 0;
+      for (auto& clock : clocks_) sum += std::exchange(clock.seconds()[s], 0.0);
+      if (sum > 0) out.push_back({StageClock::kNames[s], sum});
+    }
+    return out;
+  }
+
+ private:
+  struct ThreadScratch {  // one block per kind
+    std::vector<AlignedBuffer<unsigned char>> memory;
+    std::vector<kernels::Scratch*> views;
+  };
+
+  Worlds<Real>& at(int kind) const { return *worlds_[static_cast<std::size_t>(kind)]; }
+
+  void run(int group, int slot) {
+    std::size_t kind = 0;
+    while (group >= first_group_[kind + 1]) ++kind;
+    const auto& w = *worlds_[kind];
+    const auto s = static_cast<std::size_t>(slot);
+    step_group<Real>({kernels_, w.tables(), layout_}, w.group(group - first_group_[kind]),
+                     scratch_[s].views[kind], steps_, profiling_ ? &clocks_[s] : nullptr);
+  }
+
+  const kernels::KernelTable<Real>& kernels_;
+  kernels::Layout layout_;
+  Isa isa_ = Isa::scalar;
+  int steps_ = 0;
+  std::vector<std::unique_ptr<Worlds<Real>>> worlds_;
+  std::vector<int> first_group_;
+  std::vector<ThreadScratch> scratch_;
+  std::vector<StageClock> clocks_;
+  bool profiling_ = false;
+};
+
+template <class Real>
+std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
+  const Worlds<Real>& w = at(kind);
+  const auto& t = w.tables();
+  if (!t.has_contacts) return {};
+  int capacity = 0;
+  for (const int c : t.capacity) capacity += c;
+  std::vector<kernels::ContactPoint<Real>> points(static_cast<std::size_t>(capacity) * 4);
+  kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
+  const FlushDenormals flush;
+  kernels_.record(scratch, world % kernels_.lanes, points.data(), static_cast<int>(points.size()));
+  collide_group<Real>({kernels_, t, layout_}, w.group(world / kernels_.lanes), scratch);
+  points.resize(static_cast<std::size_t>(kernels_.record(scratch, 0, nullptr, 0)));
+
+  const PlanData& plan = w.data();
+  std::vector<Contact> out;
+  for (const auto& p : points) {
+    const auto c = std::find_if(plan.classes.begin(), plan.classes.end(), [&](const auto& pairs) {
+      return p.key >= pairs.first_key &&
+             p.key < pairs.first_key + static_cast<int>(pairs.a.size());
+    });
+    const auto index = static_cast<std::size_t>(p.key - c->first_key);
+    const auto& b = plan.colliders[static_cast<std::size_t>(c->b[index])];
+    Contact contact;
+    contact.body_b = b.scene_body, contact.shape_b = b.shape;
+    if (is_fixed(c->list)) {
+      const auto& a = plan.fixed[static_cast<std::size_t>(c->a[index])];
+      contact.body_a = a.scene_body, contact.shape_a = a.shape;
+    } else {
+      const auto& a = plan.colliders[static_cast<std::size_t>(c->a[index])];
+      contact.body_a = a.scene_body, contact.shape_a = a.shape;
+    }
+    for (int k = 0; k < 3; ++k) {
+      contact.normal[k] = static_cast<double>(p.normal[k]);
+      contact.point[k] = static_cast<double>(p.point[k]);
+    }
+    contact.separation = static_cast<double>(p.separation);
+    contact.normal_impulse = static_cast<double>(p.impulse);
+    contact.feature = p.feature;
+    out.push_back(contact);
+  }
+  return out;
+}
+
+template <class Real>
+double CoreOf<Real>::occupancy(int kind) const {
+  const Worlds<Real>& w = at(kind);
+  if (!w.tables().has_contacts) return 0;
+  const FlushDenormals flush;
+  kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
+  double active = 0, slots = 0;
+  for (int g = 0; g < w.groups(); ++g) {
+    collide_group<Real>({kernels_, w.tables(), layout_}, w.group(g), scratch);
+    active += kernels_.counters(scratch).active;
+    slots += kernels_.counters(scratch).dense_slots * static_cast<double>(kernels_.lanes);
+  }
+  return slots > 0 ? active / slots : 0;
+}
+
+}  // namespace
+
+std::unique_ptr<BatchCore> make_core(const std::vector<Batch::Kind>& kinds,
+                                     const BatchOptions& options, Isa isa, int threads) {
+  if (options.precision == Precision::f32) {
+    return std::make_unique<CoreOf<float>>(kinds, options, isa, threads);
+  }
+  return std::make_unique<CoreOf<double>>(kinds, options, isa, threads);
+}
+
+}  // namespace manyworlds

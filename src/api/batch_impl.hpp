@@ -1,0 +1,44 @@
+// What stands behind a Batch: the kinds of world in one number type, stepped by one executor.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "src/dispatch/kernels.hpp"
+#include "src/state/worlds.hpp"
+#include "src/step/for_each_group.hpp"
+#include "src/step/pipeline.hpp"
+
+namespace manyworlds {
+
+// The number type's side of a Batch. World and body indices were checked by the caller.
+class BatchCore {
+ public:
+  virtual ~BatchCore() = default;
+  virtual void step(Executor& executor, int n) = 0;
+  virtual void restart() = 0;
+  virtual void reset(int kind, int world) = 0;
+  virtual void read(Field field, int kind, int world, float* out) const = 0;
+  virtual void read(Field field, int kind, int world, double* out) const = 0;
+  virtual void write(Field field, int kind, int world, const float* in) = 0;
+  virtual void write(Field field, int kind, int world, const double* in) = 0;
+  virtual void add_force(int kind, int world, int body, const Vec3& f, const Vec3& torque) = 0;
+  virtual void add_impulse(int kind, int world, int body, const Vec3& p, const Vec3& l) = 0;
+  virtual Vec3 center_of_mass(int kind, int world, int body) const = 0;
+  virtual Status status(int kind, int world) const = 0;
+  virtual std::uint64_t hash(int kind, int world) const = 0;
+  virtual Energy energy(int kind, int world) const = 0;
+  virtual std::vector<Contact> contacts(int kind, int world) const = 0;
+  virtual double occupancy(int kind) const = 0;  // of dense slots, over all groups, current state
+  virtual std::size_t bytes() const = 0;
+  virtual std::size_t scratch_bytes() const = 0;
+  virtual int lanes() const = 0;
+  virtual Isa isa() const = 0;
+  virtual void profile(bool on) = 0;
+  virtual std::vector<StageTime> take_stage_times() = 0;
+};
+
+std::unique_ptr<BatchCore> make_core(const std::vector<Batch::Kind>& kinds,
+                                     const BatchOptions& options, Isa isa, int threads);
+
+}  // namespace manyworlds

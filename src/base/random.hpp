@@ -1,0 +1,33 @@
+// Counter-based random numbers: a draw depends on (world seed, episode, draw index) and on nothing
+// else, so it is the same whatever the batch, the lane or the order in which worlds are set up.
+#pragma once
+
+#include <cstdint>
+
+namespace manyworlds {
+
+// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection that spreads every bit.
+inline constexpr std::uint64_t mix_bits(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return z ^ (z >> 31);
+}
+
+class Draws {
+ public:
+  constexpr Draws(std::uint64_t world_seed, std::uint64_t episode)
+      : key_(mix_bits(mix_bits(world_seed + kStep) ^ (episode * kStep + 1))) {}
+
+  // Uniform in [0, 1), 53 bits.
+  constexpr double uniform(std::uint64_t index) const {
+    return static_cast<double>(mix_bits(key_ + (index + 1) * kStep) >> 11) * 0x1p-53;
+  }
+  // Uniform in [-1, 1).
+  constexpr double symmetric(std::uint64_t index) const { return 2 * uniform(index) - 1; }
+
+ private:
+  static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ull;
+  std::uint64_t key_;
+};
+
+}  // namespace manyworlds

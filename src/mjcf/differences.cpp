@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "src/mjcf/support.hpp"
+
+namespace manyworlds::mjcf {
+namespace {
+
+// Our friction coefficient of a pair is the geometric mean, MuJoCo's the larger of the two: they
+// agree where all are equal.
+void compare_friction(const Model& model, std::vector<std::string>& warnings) {
+  const mjModel& m = *model.compiled;
+  if ((m.opt.enableflags & mjENBL_OVERRIDE) != 0) return;  // one coefficient for all
+  double low = 0, high = 0;
+  bool first = true;
+  for (int g = 0; g < m.ngeom; ++g) {
+    if (!model.collides(g)) continue;
+    const double friction = m.geom_friction[3 * g];
+    low = first ? friction : std::min(low, friction);
+    high = first ? friction : std::max(high, friction);
+    first = false;
+  }
+  if (low == high) return;
+  char range[64];
+  std::snprintf(range, sizeof range, "%g to %g", low, high);
+  warnings.push_back(std::string("geoms have different sliding friction (") + range +
+                     "): a pair uses the geometric mean here, the larger one in MuJoCo");
+}
+
+void compare_softness(const Model& model, std::vector<std::string>& warnings) {
+  const mjModel& m = *model.compiled;
+  mjsGeom defaults;
+  mjs_defaultGeom(&defaults);
+
+  const auto warn_where = [&](const char* attribute, const char* instead, auto differs) {
+    int first = -1, count = 0;
+    for (int g = 0; g < m.ngeom; ++g) {
+      if (!model.collides(g) || !differs(g)) continue;
+      if (count++ == 0) first = g;
+    }
+    if (count == 0) return;
+    std::string text = model.geom_place(first);
+    if (count > 1) text += " and " + std::to_string(count - 1) + " more";
+    warnings.push_back(text + ": " + attribute + " is ignored; " + instead);
+  };
+  const char* softness = "contacts are as soft as Options::contact_frequency says";
+  const char* margin = "contact margins follow Options::slop";
+  const char* dimension = "contacts are frictional with one sliding coefficient (condim 3)";
+
+  warn_where("solref", softness, [&](int g) {
+    return !std::equal(m.geom_solref + mjNREF * g, m.geom_solref + mjNREF * (g + 1),
+                       defaults.solref);
+  });
+  warn_where("solimp", softness, [&](int g) {
+    return !std::equal(m.geom_solimp + mjNIMP * g, m.geom_solimp + mjNIMP * (g + 1),
+                       defaults.solimp);
+  });
+  warn_where("solmix", softness, [&](int g) { return m.geom_solmix[g] != defaults.solmix; });
+  warn_where("margin", margin, [&](int g) { return m.geom_margin[g] != defaults.margin; });
+  warn_where("gap", margin, [&](int g) { return m.geom_gap[g] != defaults.gap; });
+  warn_where("condim", dimension, [&](int g) { return m.geom_condim[g] != defaults.condim; });
+  warn_where("priority", "a pair mixes the friction of both geoms",
+             [&](int g) { return m.geom_priority[g] != defaults.priority; });
+  warn_where("torsional friction", dimension,
+             [&](int g) { return m.geom_friction[3 * g + 1] != defaults.friction[1]; });
+  warn_where("rolling friction", dimension,
+             [&](int g) { return m.geom_friction[3 * g + 2] != defaults.friction[2]; });
+  if ((m.opt.enableflags & mjENBL_OVERRIDE) != 0) {
+    warnings.push_back("option: o_margin, o_solref and o_solimp are ignored; " +
+                       std::string(softness));
+  }
+}
+
+// One warning for everything that steers MuJoCo's own integrator and solver.
+void compare_solver(const Model& model, std::vector<std::string>& warnings) {
+  const mjOption& option = model.compiled->opt;
+  mjOption defaults;
+  mj_defaultOption(&defaults);
+  const std::pair<const char*, bool> attributes[] = {
+      {"integrator", option.integrator != defaults.integrator},
+      {"cone", option.cone != defaults.cone},
+      {"jacobian", option.jacobian != defaults.jacobian},
+      {"solver", option.solver != defaults.solver},
+      {"iterations", option.iterations != defaults.iterations},
+      {"tolerance", option.tolerance != defaults.tolerance},
+      {"ls_iterations", option.ls_iterations != defaults.ls_iterations},
+      {"ls_tolerance", option.ls_tolerance != defaults.ls_tolerance},
+      {"noslip_iterations", option.noslip_iterations != defaults.noslip_iterations},
+      {"noslip_tolerance", option.noslip_tolerance != defaults.noslip_tolerance},
+      {"ccd_iterations", option.ccd_iterations != defaults.ccd_iterations},
+      {"ccd_tolerance", option.ccd_tolerance != defaults.ccd_tolerance},
+      {"impratio", option.impratio != defaults.impratio},
+  };
+  std::string found;
+  for (const auto& [attribute, differs] : attributes) {
+    if (differs) found += (found.empty() ? "" : ", ") + std::string(attribute);
+  }
+  if (!found.empty()) {
+    warnings.push_back("option: " + found +
+                       " steer MuJoCo's solver and are ignored; ours is set by Options");
+  }
+}
+
+void note_ignored(const Model& model, std::vector<std::string>& warnings) {
+  const mjModel& m = *model.compiled;
+  const auto note = [&](mjtObj type, mjtSize count, const char* why) {
+    if (count == 0) return;
+    std::string text = model.place(type, 0);
+    if (count > 1) text += " and " + std::to_string(count - 1) + " more";
+    warnings.push_back(text + ": ignored; " + why);
+  };
+  note(mjOBJ_SENSOR, m.nsensor, "sensors are not computed");
+  note(mjOBJ_KEY, m.nkey, "worlds start at the poses of the bodies, at rest");
+}
+
+}  // namespace
+
+std::vector<std::string> differences(const Model& model) {
+  std::vector<std::string> warnings;
+  compare_friction(model, warnings);
+  compare_softness(model, warnings);
+  compare_solver(model, warnings);
+  note_ignored(model, warnings);
+  return warnings;
+}
+
+}  // namespace manyworlds::mjcf

@@ -1,0 +1,54 @@
+// Bodies with state: mass, centre, principal axes.
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+// Principal moments and axes. A tensor that is diagonal already keeps its axes.
+void principal_axes(const Mat3& inertia, PlanBody& body) {
+  const double scale = inertia.diagonal().cwiseAbs().maxCoeff();
+  const Mat3 off = inertia - Mat3(inertia.diagonal().asDiagonal());
+  if (off.cwiseAbs().maxCoeff() <= 1e-12 * scale) {
+    body.inertia = inertia.diagonal();
+    return;
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
+  Mat3 axes = solver.eigenvectors();
+  if (axes.determinant() < 0) axes.col(2) *= -1;
+  body.inertia = solver.eigenvalues();
+  body.principal = Quat(axes).normalized();
+}
+
+}  // namespace
+
+void collect_bodies(PlanData& plan) {
+  const Scene& scene = plan.scene;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    plan.state_body.push_back(-1);
+    if (body.motion == Motion::fixed) continue;
+    plan.state_body.back() = static_cast<int>(plan.bodies.size());
+    PlanBody out;
+    out.scene_body = static_cast<int>(i);
+    if (body.motion == Motion::dynamic) {
+      const MassProperties m = mass_properties(scene, body);
+      out.mass = m.mass;
+      out.inv_mass = 1 / m.mass;
+      out.center = m.center;
+      if (scene.space == Space::planar) {
+        out.inertia = Vec3::Constant(m.inertia(2, 2));
+      } else {
+        principal_axes(m.inertia, out);
+      }
+      out.inv_inertia = out.inertia.cwiseInverse();
+    }
+    out.aligned = out.center.isZero(0) && out.principal.vec().isZero(0);
+    plan.bodies.push_back(out);
+  }
+}
+
+}  // namespace manyworlds

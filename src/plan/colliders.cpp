@@ -1,0 +1,216 @@
+// Shapes as the narrow phase wants them: relative to centre of mass and principal axes when they
+// move, as finished pose rows when they are fixed.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+using kernels::ShapeKind;
+
+// A polygon of four vertices with equal diagonals that bisect each other.
+bool is_rectangle(const std::vector<Vec2>& v) {
+  if (v.size() != 4) return false;
+  const double size = (v[2] - v[0]).norm();
+  return ((v[0] + v[2]) - (v[1] + v[3])).norm() <= 1e-12 * size &&
+         std::abs(size - (v[3] - v[1]).norm()) <= 1e-12 * size;
+}
+
+bool all_rectangles(const Scene& scene) {
+  for (const Body& body : scene.bodies) {
+    for (const Shape& shape : body.shapes) {
+      const auto* polygon = std::get_if<Polygon>(&shape.geometry);
+      if (polygon && !is_rectangle(polygon->vertices)) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<Vec2> edge_normals(const std::vector<Vec2>& v) {
+  std::vector<Vec2> out;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const Vec2 e = v[(i + 1) % v.size()] - v[i];
+    out.push_back(Vec2(e.y(), -e.x()).normalized());
+  }
+  return out;
+}
+
+// A shape in its body's frame: origin, axes, sizes.
+PlanCollider local_collider(const Shape& shape, bool rectangles) {
+  PlanCollider c;
+  c.offset = shape.position;
+  c.rotation = shape.rotation.normalized().toRotationMatrix();
+  if (shape.rotation.vec().isZero(0)) c.rotation.setIdentity();
+  if (const auto* s = std::get_if<Sphere>(&shape.geometry)) {
+    c.kind = ShapeKind::sphere;
+    c.radius = c.inner_radius = s->radius;
+  } else if (const auto* circle = std::get_if<Circle>(&shape.geometry)) {
+    c.kind = ShapeKind::circle;
+    c.radius = c.inner_radius = circle->radius;
+  } else if (const auto* box = std::get_if<Box>(&shape.geometry)) {
+    c.kind = ShapeKind::box;
+    c.half = box->half_extents;
+    c.radius = c.half.norm();
+    c.inner_radius = c.half.minCoeff();
+  } else if (const auto* polygon = std::get_if<Polygon>(&shape.geometry)) {
+    const auto& v = polygon->vertices;
+    Vec2 middle = Vec2::Zero();
+    for (const Vec2& p : v) middle += p / static_cast<double>(v.size());
+    if (rectangles) {
+      c.kind = ShapeKind::rectangle;
+      const Vec2 edge = v[1] - v[0];
+      c.half = {edge.norm() / 2, (v[2] - v[1]).norm() / 2, 0};
+      if (!middle.isZero(0)) c.offset += c.rotation * Vec3(middle.x(), middle.y(), 0);
+      if (edge.y() != 0 || edge.x() < 0) {
+        c.rotation = c.rotation * Eigen::AngleAxisd(std::atan2(edge.y(), edge.x()),
+                                                    Vec3::UnitZ()).toRotationMatrix();
+      }
+      c.radius = c.half.norm();
+      c.inner_radius = std::min(c.half.x(), c.half.y());
+    } else {
+      c.kind = ShapeKind::polygon;
+      // Vertices about their own middle, so that rows hold small numbers.
+      c.offset += c.rotation * Vec3(middle.x(), middle.y(), 0);
+      c.inner_radius = std::numeric_limits<double>::max();
+      for (const Vec2& p : v) c.vertices.push_back(p - middle);
+      const auto normals = edge_normals(c.vertices);
+      for (std::size_t i = 0; i < v.size(); ++i) {
+        c.radius = std::max(c.radius, c.vertices[i].norm());
+        c.inner_radius = std::min(c.inner_radius, normals[i].dot(c.vertices[i]));
+      }
+    }
+  } else {
+    c.kind = ShapeKind::plane;
+  }
+  return c;
+}
+
+// The pose row of a fixed shape, and its bounds.
+PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles) {
+  PlanFixed f;
+  const Mat3 body_rotation = body.rotation.normalized().toRotationMatrix();
+  const auto plane = [&](const Vec3& normal, double offset) {
+    const Vec3 n = body_rotation * (shape.rotation.normalized() * normal);
+    const Vec3 origin = body.position + body_rotation * shape.position;
+    f.kind = ShapeKind::plane;
+    f.plane = {n.x(), n.y(), n.z(), offset + n.dot(origin)};
+    const Vec3 side = std::abs(n.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+    const Vec3 t = (side - n * n.dot(side)).normalized();
+    f.row = {n.x(), n.y(), n.z(), f.plane[3], t.x(), t.y(), t.z(), 0};
+  };
+  if (const auto* p = std::get_if<Plane>(&shape.geometry)) {
+    plane(p->normal.normalized(), p->offset);
+    return f;
+  }
+  if (const auto* p = std::get_if<HalfPlane>(&shape.geometry)) {
+    const Vec2 n = p->normal.normalized();
+    plane({n.x(), n.y(), 0}, p->offset);
+    return f;
+  }
+  const PlanCollider c = local_collider(shape, rectangles);
+  const Vec3 x = body.position + body_rotation * c.offset;
+  const Mat3 r = body_rotation * c.rotation;
+  f.kind = c.kind;
+  switch (c.kind) {
+    case ShapeKind::sphere:
+      f.row = {x.x(), x.y(), x.z(), c.radius};
+      f.low = x.array() - c.radius, f.high = x.array() + c.radius;
+      break;
+    case ShapeKind::circle:
+      f.row = {x.x(), x.y(), c.radius, 0};
+      f.low = x.array() - c.radius, f.high = x.array() + c.radius;
+      break;
+    case ShapeKind::box: {
+      for (int k = 0; k < 3; ++k) {
+        f.row.insert(f.row.end(), {r(0, k), r(1, k), r(2, k), x[k]});
+      }
+      f.row.insert(f.row.end(), {c.half.x(), c.half.y(), c.half.z(), 0});
+      const Vec3 e = r.cwiseAbs() * c.half;
+      f.low = x - e, f.high = x + e;
+      break;
+    }
+    case ShapeKind::rectangle: {
+      f.row = {x.x(), x.y(), r(0, 0), r(1, 0), c.half.x(), c.half.y(), 0, 0};
+      const Vec3 e = r.cwiseAbs() * c.half;
+      f.low = x - e, f.high = x + e;
+      break;
+    }
+    default: {
+      f.row = {x.x(), x.y(), static_cast<double>(c.vertices.size()), c.radius};
+      std::vector<Vec2> v;
+      f.low.setConstant(std::numeric_limits<double>::max());
+      f.high = -f.low;
+      for (const Vec2& p : c.vertices) {
+        v.push_back((r * Vec3(p.x(), p.y(), 0)).head<2>());
+        const Vec3 at = x + Vec3(v.back().x(), v.back().y(), 0);
+        f.low = f.low.cwiseMin(at), f.high = f.high.cwiseMax(at);
+      }
+      for (const auto& list : {v, edge_normals(v)}) {
+        for (int i = 0; i < kernels::kMaxVertices; ++i) {
+          const Vec2& p = static_cast<std::size_t>(i) < list.size()
+                              ? list[static_cast<std::size_t>(i)] : list[0];
+          f.row.insert(f.row.end(), {p.x(), p.y()});
+        }
+      }
+    }
+  }
+  return f;
+}
+
+}  // namespace
+
+void collect_colliders(PlanData& plan) {
+  const Scene& scene = plan.scene;
+  const bool rectangles = all_rectangles(scene);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    const int state = plan.state_body[i];
+    for (std::size_t k = 0; k < body.shapes.size(); ++k) {
+      if (body.motion == Motion::fixed) {
+        PlanFixed f = fixed_shape(body, body.shapes[k], rectangles);
+        f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
+        plan.fixed.push_back(std::move(f));
+        continue;
+      }
+      PlanBody& owner = plan.bodies[static_cast<std::size_t>(state)];
+      PlanCollider c = local_collider(body.shapes[k], rectangles);
+      c.body = state, c.scene_body = static_cast<int>(i), c.shape = static_cast<int>(k);
+      if (!owner.aligned) {
+        const Mat3 to_principal = owner.principal.conjugate().toRotationMatrix();
+        c.offset = to_principal * (c.offset - owner.center);
+        c.rotation = to_principal * c.rotation;
+      }
+      // The centre of a symmetric compound comes out of sums: what is only rounding is zero.
+      if (c.offset.norm() <= 1e-14 * c.radius) c.offset.setZero();
+      owner.radius = std::max(owner.radius, c.offset.norm() + c.radius);
+      owner.core_radius = std::max(owner.core_radius, c.inner_radius - c.offset.norm());
+      plan.colliders.push_back(std::move(c));
+    }
+  }
+
+  plan.collider_is_body = plan.colliders.size() == plan.bodies.size();
+  for (std::size_t i = 0; i < plan.colliders.size(); ++i) {
+    PlanCollider& c = plan.colliders[i];
+    const bool round = c.kind == ShapeKind::sphere || c.kind == ShapeKind::circle;
+    plan.collider_is_body = plan.collider_is_body && c.body == static_cast<int>(i) &&
+                            c.offset.isZero(0) && (round || c.rotation.isIdentity(0));
+    c.row = plan.row_block;
+    plan.row_block += kernels::pose_row_size(c.kind);
+  }
+  plan.row_block += kernels::kDummyRow;
+  // Whole cache lines per lane keep every row of every lane aligned.
+  plan.row_block = (plan.row_block + 15) / 16 * 16;
+  int offset = 0;
+  for (PlanFixed& f : plan.fixed) {
+    f.row_offset = offset;
+    offset += static_cast<int>(f.row.size());
+    plan.cast = plan.cast || f.kind != ShapeKind::plane;
+  }
+  plan.cast = plan.cast && scene.options.cast_against_fixed;
+}
+
+}  // namespace manyworlds

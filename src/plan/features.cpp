@@ -1,0 +1,94 @@
+// What the step needs and what it can do without, and why.
+#include <algorithm>
+
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+class Chooser {
+ public:
+  explicit Chooser(PlanData& plan) : plan_(plan) {}
+
+  void set(Feature feature, bool needed, const char* why_in, const char* why_out) {
+    const auto i = static_cast<std::size_t>(feature);
+    const auto& keep = plan_.options.keep;
+    const bool kept = std::find(keep.begin(), keep.end(), feature) != keep.end();
+    plan_.in[i] = needed || kept;
+    plan_.why[i] = needed ? why_in : kept ? "kept on request" : why_out;
+  }
+
+ private:
+  PlanData& plan_;
+};
+
+bool is_isotropic(const PlanBody& body) {
+  return body.inertia.maxCoeff() - body.inertia.minCoeff() <= 1e-9 * body.inertia.maxCoeff();
+}
+
+template <class Test>
+bool any_pair(const PlanData& plan, Test test) {
+  for (const PlanClass& c : plan.classes) {
+    for (std::size_t i = 0; i < c.a.size(); ++i) {
+      if (test(c, i)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+void choose_features(PlanData& plan) {
+  const Scene& scene = plan.scene;
+  const bool planar = scene.space == Space::planar;
+  Chooser choose(plan);
+
+  bool round = true, isotropic = true;
+  for (const PlanCollider& c : plan.colliders) {
+    const bool is_round =
+        c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;
+    round = round && is_round && c.offset.isZero(0);
+  }
+  for (const PlanBody& b : plan.bodies) isotropic = isotropic && is_isotropic(b);
+  // A body without shapes has an orientation that somebody may want to look at.
+  round = round && plan.colliders.size() >= plan.bodies.size();
+  choose.set(Feature::orientation, !(round && isotropic), "shapes or inertia depend on it",
+             "every moving body is a centred ball");
+  choose.set(Feature::inertia, !planar && !isotropic, "some moments of inertia differ",
+             planar ? "the plane has one moment per body" : "every moment of inertia is isotropic");
+  // A kept tensor needs the orientation that turns it.
+  if (plan.has(Feature::inertia) && !plan.has(Feature::orientation)) {
+    choose.set(Feature::orientation, true, "the kept inertia tensors turn with it", "");
+  }
+  const bool tensor = !planar && plan.has(Feature::inertia);
+  plan.inertia_kind = planar   ? kernels::InertiaKind::planar
+                      : tensor ? kernels::InertiaKind::tensor
+                               : kernels::InertiaKind::isotropic;
+
+  const bool contacts = any_pair(plan, [](const PlanClass&, std::size_t) { return true; });
+  choose.set(Feature::contacts, contacts, "some shapes can touch", "no pair of shapes can touch");
+  choose.set(Feature::friction,
+             any_pair(plan, [](const auto& c, std::size_t i) { return c.friction[i] > 0; }),
+             "some pairs have friction", "no pair has friction");
+  choose.set(Feature::restitution,
+             any_pair(plan, [](const auto& c, std::size_t i) { return c.restitution[i] > 0; }),
+             "some pairs bounce", "no pair bounces");
+
+  bool drag = false, gravity = false;
+  Vec3 common = Vec3::Zero();
+  for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+    const PlanBody& b = plan.bodies[i];
+    const Body& body = scene.bodies[static_cast<std::size_t>(b.scene_body)];
+    drag = drag || (b.inv_mass > 0 && (body.linear_drag > 0 || body.angular_drag > 0));
+    const Vec3 g =
+        b.inv_mass > 0 ? Vec3(scene.options.gravity * body.gravity_scale) : Vec3(Vec3::Zero());
+    gravity = gravity || !g.isZero(0);
+    if (i == 0) common = g;
+    plan.uniform_gravity = plan.uniform_gravity && g == common;
+  }
+  choose.set(Feature::drag, drag, "some bodies have drag", "no body has drag");
+  choose.set(Feature::gravity, gravity, "gravity acts on some bodies", "no gravity");
+}
+
+}  // namespace manyworlds

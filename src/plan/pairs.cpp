@@ -1,0 +1,181 @@
+// Candidate pairs: which shapes can ever touch, in which kernel, and in which order the solver
+// will see them.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+using kernels::ListId;
+using kernels::PairKind;
+using kernels::ShapeKind;
+
+// The kernel of a pair, and whether its A is the second shape.
+struct Match {
+  PairKind kind;
+  bool swapped;
+};
+
+Match match(ShapeKind a, ShapeKind b) {
+  static const std::map<std::pair<ShapeKind, ShapeKind>, PairKind> kKernels = {
+      {{ShapeKind::sphere, ShapeKind::sphere}, PairKind::sphere_sphere},
+      {{ShapeKind::box, ShapeKind::sphere}, PairKind::box_sphere},
+      {{ShapeKind::box, ShapeKind::box}, PairKind::box_box},
+      {{ShapeKind::plane, ShapeKind::sphere}, PairKind::plane_sphere},
+      {{ShapeKind::plane, ShapeKind::box}, PairKind::plane_box},
+      {{ShapeKind::circle, ShapeKind::circle}, PairKind::circle_circle},
+      {{ShapeKind::rectangle, ShapeKind::circle}, PairKind::rectangle_circle},
+      {{ShapeKind::rectangle, ShapeKind::rectangle}, PairKind::rectangle_rectangle},
+      {{ShapeKind::polygon, ShapeKind::circle}, PairKind::polygon_circle},
+      {{ShapeKind::polygon, ShapeKind::polygon}, PairKind::polygon_polygon},
+      {{ShapeKind::plane, ShapeKind::circle}, PairKind::plane_circle},
+      {{ShapeKind::plane, ShapeKind::rectangle}, PairKind::plane_rectangle},
+      {{ShapeKind::plane, ShapeKind::polygon}, PairKind::plane_polygon},
+  };
+  const auto straight = kKernels.find({a, b});
+  if (straight != kKernels.end()) return {straight->second, false};
+  return {kKernels.at({b, a}), true};
+}
+
+bool is_single(PairKind kind) {
+  switch (kind) {
+    case PairKind::sphere_sphere:
+    case PairKind::box_sphere:
+    case PairKind::plane_sphere:
+    case PairKind::circle_circle:
+    case PairKind::rectangle_circle:
+    case PairKind::polygon_circle:
+    case PairKind::plane_circle:
+    case PairKind::sphere_box:
+    case PairKind::circle_rectangle:
+    case PairKind::circle_polygon: return true;
+    default: return false;
+  }
+}
+
+bool filters_agree(const Filter& a, const Filter& b) {
+  return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+}
+
+class Collector {
+ public:
+  explicit Collector(PlanData& plan) : plan_(plan) {}
+
+  void moving(int i, int j) {
+    const PlanCollider& a = plan_.colliders[static_cast<std::size_t>(i)];
+    const PlanCollider& b = plan_.colliders[static_cast<std::size_t>(j)];
+    if (a.body == b.body) return;
+    const Match m = match(a.kind, b.kind);
+    const bool dynamic = plan_.bodies[static_cast<std::size_t>(a.body)].inv_mass > 0 ||
+                         plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0;
+    m.swapped ? add(m.kind, false, j, i, shape(b), shape(a), dynamic)
+              : add(m.kind, false, i, j, shape(a), shape(b), dynamic);
+  }
+  void fixed(int f, int j) {
+    const PlanFixed& a = plan_.fixed[static_cast<std::size_t>(f)];
+    const PlanCollider& b = plan_.colliders[static_cast<std::size_t>(j)];
+    const Match m = match(a.kind, b.kind);
+    if (m.swapped) return add_swapped_fixed(f, j);
+    add(m.kind, true, f, j, shape(a), shape(b),
+        plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0);
+  }
+
+  void finish() {
+    int key = 0;
+    for (auto& [id, c] : classes_) {
+      if (c.a.empty() && c.culled == 0) continue;
+      c.first_key = key;
+      key += static_cast<int>(c.a.size());
+      plan_.classes.push_back(std::move(c));
+    }
+  }
+
+ private:
+  const Shape& shape(const PlanCollider& c) const {
+    return plan_.scene.bodies[static_cast<std::size_t>(c.scene_body)]
+        .shapes[static_cast<std::size_t>(c.shape)];
+  }
+  const Shape& shape(const PlanFixed& f) const {
+    return plan_.scene.bodies[static_cast<std::size_t>(f.scene_body)]
+        .shapes[static_cast<std::size_t>(f.shape)];
+  }
+  // A fixed sphere under a moving box: the kernel wants the box as A, but the fixed shape must be
+  // A. Such pairs have kernels of their own order.
+  void add_swapped_fixed(int f, int j) {
+    const PlanFixed& a = plan_.fixed[static_cast<std::size_t>(f)];
+    const PlanCollider& b = plan_.colliders[static_cast<std::size_t>(j)];
+    const PairKind kind = b.kind == ShapeKind::box         ? PairKind::sphere_box
+                          : b.kind == ShapeKind::rectangle ? PairKind::circle_rectangle
+                                                           : PairKind::circle_polygon;
+    add(kind, true, f, j, shape(a), shape(b),
+        plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0);
+  }
+
+  void add(PairKind kind, bool fixed, int a, int b, const Shape& shape_a, const Shape& shape_b,
+           bool dynamic) {
+    const bool single = is_single(kind);
+    const ListId list = fixed ? (single ? ListId::fixed_single : ListId::fixed_multi)
+                              : (single ? ListId::pair_single : ListId::pair_multi);
+    PlanClass& c = classes_[{static_cast<int>(list), static_cast<int>(kind)}];
+    c.kind = kind;
+    c.list = list;
+    if (!dynamic || !filters_agree(shape_a.filter, shape_b.filter)) {
+      ++c.culled;
+      return;
+    }
+    c.a.push_back(a);
+    c.b.push_back(b);
+    const Material &ma = shape_a.material, &mb = shape_b.material;
+    c.friction.push_back(std::sqrt(ma.friction) * std::sqrt(mb.friction));
+    c.restitution.push_back(std::max(ma.restitution, mb.restitution));
+  }
+
+  PlanData& plan_;
+  std::map<std::pair<int, int>, PlanClass> classes_;
+};
+
+}  // namespace
+
+void collect_pairs(PlanData& plan) {
+  Collector collector(plan);
+  const int n = static_cast<int>(plan.colliders.size());
+  // A tournament (circle method): pairs of a round share no shape, so neighbouring rows of the
+  // solver do not wait for each other's velocities.
+  const int seats = n + n % 2;
+  for (int round = 0; round + 1 < seats; ++round) {
+    for (int table = 0; table < seats / 2; ++table) {
+      const int i = table == 0 ? seats - 1 : (round + table) % (seats - 1);
+      const int j = (round + seats - 1 - table) % (seats - 1);
+      if (i < n && j < n) collector.moving(std::min(i, j), std::max(i, j));
+    }
+  }
+  // Shape by shape of the fixed ones: again neighbours are about different bodies.
+  for (int f = 0; f < static_cast<int>(plan.fixed.size()); ++f) {
+    for (int j = 0; j < n; ++j) collector.fixed(f, j);
+  }
+  collector.finish();
+
+  // Manifolds per world. Equal spheres can touch 12 neighbours and equal circles 6, each pair
+  // shared by two; piles of mixed sizes stay well below.
+  std::array<int, kernels::kLists> candidates{};
+  for (const PlanClass& c : plan.classes) {
+    candidates[static_cast<std::size_t>(c.list)] += static_cast<int>(c.a.size());
+  }
+  const int pairs = (plan.scene.space == Space::spatial ? 4 : 3) * n + 8;
+  const int fixed = 2 * n + 8 + static_cast<int>(plan.fixed.size());
+  for (int l = 0; l < kernels::kLists; ++l) {
+    const int limit = is_fixed(static_cast<ListId>(l)) ? fixed : pairs;
+    plan.capacity[static_cast<std::size_t>(l)] =
+        std::min(candidates[static_cast<std::size_t>(l)], limit);
+  }
+
+  constexpr int kSweepFrom = 48;  // shapes; measured crossover, docs/architecture.md
+  plan.sweep = plan.options.broad_phase == BroadPhase::sort_and_sweep ||
+               (plan.options.broad_phase == BroadPhase::automatic && n >= kSweepFrom);
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,90 @@
+// PlanData: everything a Plan knows, in double and in plain arrays. src/state/tables.cpp turns it
+// into the kernels' number type.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "kernels/tables.hpp"
+#include "manyworlds/plan.hpp"
+
+namespace manyworlds {
+
+// A body with state. The kernels see its centre of mass and principal axes; what the user calls
+// position and orientation differs by a fixed transform.
+struct PlanBody {
+  int scene_body = -1;
+  double inv_mass = 0;               // 0: kinematic
+  double mass = 0;                   // kg; 0 for kinematic bodies
+  Vec3 inertia = Vec3::Zero();       // principal; planar: z
+  Vec3 inv_inertia = Vec3::Zero();
+  Vec3 center = Vec3::Zero();        // of mass, in the user's body frame
+  Quat principal = Quat::Identity();  // principal axes in the user's body frame
+  bool aligned = true;               // both are trivial: reading and writing copies bits
+  double radius = 0;                 // bounding sphere about the centre of mass
+  double core_radius = 0;            // inner sphere about the centre of mass
+};
+
+struct PlanCollider {
+  kernels::ShapeKind kind{};
+  int body = -1;  // state body
+  int scene_body = -1, shape = -1;
+  Vec3 offset = Vec3::Zero();  // from the centre of mass, principal axes
+  Mat3 rotation = Mat3::Identity();
+  Vec3 half = Vec3::Zero();
+  double radius = 0, inner_radius = 0;
+  std::vector<Vec2> vertices;  // about the shape's origin
+  int row = 0;
+};
+
+struct PlanFixed {
+  kernels::ShapeKind kind{};
+  int scene_body = -1, shape = -1;
+  std::vector<double> row;  // pose row
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  std::array<double, 4> plane{};
+  int row_offset = 0;
+};
+
+struct PlanClass {
+  kernels::PairKind kind{};
+  kernels::ListId list{};
+  int first_key = 0;
+  int culled = 0;
+  std::vector<std::int32_t> a, b;
+  std::vector<double> friction, restitution;
+};
+
+struct PlanData {
+  Scene scene;
+  PlanOptions options;
+  std::array<bool, kFeatureCount> in{};
+  std::array<std::string, kFeatureCount> why;
+  kernels::InertiaKind inertia_kind{};
+  std::vector<PlanBody> bodies;
+  std::vector<int> state_body;  // per scene body
+  std::vector<PlanCollider> colliders;
+  std::vector<PlanFixed> fixed;
+  std::vector<PlanClass> classes;
+  std::array<int, kernels::kLists> capacity{};
+  bool sweep = false;
+  bool collider_is_body = true;
+  bool cast = false;
+  bool uniform_gravity = true;
+  int row_block = 0;
+
+  bool has(Feature f) const { return in[static_cast<std::size_t>(f)]; }
+  kernels::Dimension dimension() const {
+    return scene.space == Space::planar ? kernels::Dimension::planar
+                                        : kernels::Dimension::spatial;
+  }
+};
+
+// The steps of compile(), in order.
+void collect_bodies(PlanData& plan);     // bodies.cpp
+void collect_colliders(PlanData& plan);  // colliders.cpp
+void collect_pairs(PlanData& plan);      // pairs.cpp
+void choose_features(PlanData& plan);    // features.cpp
+PlanReport describe(const PlanData& plan);  // report.cpp
+
+}  // namespace manyworlds

@@ -1,0 +1,80 @@
+// The plan for people: what is in, what is out and why, and what it takes.
+#include "manyworlds/fields.hpp"
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+const char* name(kernels::PairKind kind) {
+  static constexpr const char* kNames[kernels::kPairKinds] = {
+      "sphere-sphere", "box-sphere", "box-box", "plane-sphere", "plane-box", "circle-circle",
+      "rectangle-circle", "rectangle-rectangle", "polygon-circle", "polygon-polygon",
+      "halfplane-circle", "halfplane-rectangle", "halfplane-polygon", "sphere-box",
+      "circle-rectangle", "circle-polygon"};
+  return kNames[static_cast<int>(kind)];
+}
+
+}  // namespace
+
+PlanReport describe(const PlanData& plan) {
+  PlanReport out;
+  for (int i = 0; i < kFeatureCount; ++i) {
+    const auto f = static_cast<std::size_t>(i);
+    out.features.push_back({to_string(static_cast<Feature>(i)), plan.in[f], plan.why[f]});
+  }
+  const auto why = [&](Feature f) { return plan.why[static_cast<std::size_t>(f)]; };
+  const bool contacts = plan.has(Feature::contacts), bounce = plan.has(Feature::restitution);
+  const std::string touch = why(Feature::contacts);
+  out.stages = {
+      {"free_motion", !contacts, contacts ? "contacts need the substep loop" : touch},
+      {"begin", contacts, touch},
+      {"broad_phase", contacts, plan.sweep ? "sort and sweep" : "masked all-pairs"},
+      {"collide", contacts, touch},
+      {"warm_start", contacts, touch},
+      {"bias", contacts, "soft normal rows, every substep"},
+      {"advance", contacts, "displacement, every substep"},
+      {"relax", contacts,
+       plan.has(Feature::friction) ? "normal rows and friction, every substep"
+                                   : "normal rows, every substep"},
+      {"restitute", contacts && bounce, why(Feature::restitution)},
+      {"store", contacts, "impulses for the next step's warm start"},
+      {"finish", true,
+       plan.cast && contacts ? "commit, with casts against fixed shapes" : "commit"}};
+
+  for (const PlanClass& c : plan.classes) {
+    out.pairs.push_back({name(c.kind), is_fixed(c.list) ? "fixed" : "pairs",
+                         static_cast<int>(c.a.size()), c.culled});
+  }
+
+  const std::size_t bodies = plan.bodies.size();
+  const auto field = [&](Field f) {
+    const auto n = static_cast<std::size_t>(components(f, plan.scene.space));
+    out.arrays.push_back({info(f).name, "[body][" + std::to_string(n) + "]", bodies * n * 4});
+  };
+  field(Field::position);
+  if (plan.has(Feature::orientation)) field(Field::orientation);
+  field(Field::linear_velocity);
+  field(Field::angular_velocity);
+  static constexpr const char* kLists[] = {"impulses of pairs, several points",
+                                           "impulses of pairs, one point",
+                                           "impulses against fixed, several points",
+                                           "impulses against fixed, one point"};
+  for (int l = 0; contacts && l < kernels::kLists; ++l) {
+    const int capacity = plan.capacity[static_cast<std::size_t>(l)];
+    if (capacity == 0) continue;
+    const int row = kernels::cache_row_size(plan.dimension(), static_cast<kernels::ListId>(l));
+    const int bytes = (capacity + 2) * row * 4 + (capacity + 1) * 4;
+    out.arrays.push_back({kLists[l],
+                          "[" + std::to_string(capacity) + "][" + std::to_string(row) + "] + keys",
+                          static_cast<std::size_t>(bytes)});
+    (is_fixed(static_cast<kernels::ListId>(l)) ? out.fixed_capacity : out.pair_capacity) +=
+        capacity;
+  }
+  out.arrays.push_back({"status", "[1]", 4});
+  for (const auto& a : out.arrays) out.bytes_per_world += a.bytes_per_world;
+  out.broad_phase = plan.sweep ? BroadPhase::sort_and_sweep : BroadPhase::all_pairs;
+  return out;
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,52 @@
+// Checks of the options of a scene.
+#include <string>
+#include <utility>
+
+#include "src/scene/checks.hpp"
+
+namespace manyworlds::detail {
+namespace {
+
+constexpr int kMostSubsteps = 64;
+constexpr int kMostRestitutionSweeps = 64;
+
+void check_bounds(Checker& checker, const Eigen::AlignedBox3d& bounds) {
+  constexpr char kAxis[] = {'x', 'y', 'z'};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = bounds.min()[axis];
+    const double high = bounds.max()[axis];
+    const std::string name = std::string(".") + kAxis[axis];
+    if (low > high) {  // includes the default-constructed box, whose corners are not finite
+      std::string message = "are empty: min";
+      message.append(name).append(" is ").append(number_text(low));
+      message.append(" m, must be at most max").append(name).append(", which is ");
+      message.append(number_text(high)).append(" m");
+      checker.add("options.bounds", std::move(message));
+      continue;
+    }
+    checker.finite("options.bounds.min" + name, low, "m");
+    checker.finite("options.bounds.max" + name, high, "m");
+  }
+}
+
+}  // namespace
+
+void check_options(Checker checker, const Options& options) {
+  checker.positive("options.dt", options.dt, "s", kSmallestTime, kLargestFinite);
+  checker.between("options.substeps", options.substeps, 1, kMostSubsteps);
+  checker.finite("options.gravity", options.gravity, "m/s^2");
+  checker.positive("options.density", options.density, checker.planar() ? "kg/m^2" : "kg/m^3",
+                   kSmallestMass, kLargestMass);
+  checker.size("options.length_unit", options.length_unit);
+
+  checker.not_negative("options.contact_frequency", options.contact_frequency, "Hz");
+  checker.not_negative("options.contact_damping_ratio", options.contact_damping_ratio, "");
+  checker.not_negative("options.push_out_speed", options.push_out_speed, "m/s");
+  checker.positive("options.slop", options.slop, "m", kSmallestSize, kLargestSize);
+  checker.not_negative("options.restitution_threshold", options.restitution_threshold, "m/s");
+  checker.between("options.restitution_sweeps", options.restitution_sweeps, 1,
+                  kMostRestitutionSweeps);
+  if (options.bounds) check_bounds(checker, *options.bounds);
+}
+
+}  // namespace manyworlds::detail

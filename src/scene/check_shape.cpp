@@ -1,0 +1,187 @@
+// Checks of one shape: geometry, local pose, density, material.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "src/scene/checks.hpp"
+
+namespace manyworlds::detail {
+namespace {
+
+constexpr std::size_t kFewestVertices = 3;
+constexpr std::size_t kMostVertices = 8;
+// Closer than this, relative to the polygon's extent, two vertices are the same to float32.
+constexpr double kSameVertex = 1e-6;
+// Smallest sine of the turn at a vertex: below it, the normals of two edges cannot be told apart
+// and contact features would flicker between them.
+constexpr double kSmallestTurn = 1e-5;
+// Smallest area relative to the squared extent: a thinner polygon has no usable inside.
+constexpr double kSmallestArea = 1e-6;
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+std::string vertex_name(std::size_t i) { return "vertices[" + std::to_string(i) + "]"; }
+
+// |value| <= kLargestSize; for offsets and coordinates, which may have any sign.
+bool check_coordinate(Checker& checker, std::string_view field, double value) {
+  if (std::abs(value) <= kLargestSize) return true;
+  if (!std::isfinite(value)) return checker.finite(field, value, "m");
+  checker.add(field, "is " + number_text(value) + " m, must be between " +
+                         number_text(-kLargestSize) + " and " + number_text(kLargestSize));
+  return false;
+}
+
+bool check_distinct(Checker& checker, const std::vector<Vec2>& vertices, double extent) {
+  bool good = true;
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if ((vertices[i] - vertices[j]).norm() > kSameVertex * extent) continue;
+      checker.add(vertex_name(i), "is " + vector_text(vertices[i]) + " m, the same as " +
+                                      vertex_name(j) + "; vertices must be distinct");
+      good = false;
+      break;
+    }
+  }
+  return good;
+}
+
+// Precondition: vertices are distinct. sense is +1 for counter-clockwise, -1 for clockwise.
+void check_corners(Checker& checker, const std::vector<Vec2>& vertices, double sense) {
+  const std::size_t n = vertices.size();
+  bool good = true;
+  double turned = 0;  // rad, sum of the exterior angles
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 before = vertices[i] - vertices[(i + n - 1) % n];
+    const Vec2 after = vertices[(i + 1) % n] - vertices[i];
+    const double sine = sense * cross(before, after) / (before.norm() * after.norm());
+    turned += std::atan2(sense * cross(before, after), before.dot(after));
+    if (sine > kSmallestTurn) continue;
+    good = false;
+    if (sine < -kSmallestTurn) {
+      checker.add(vertex_name(i),
+                  "at " + vector_text(vertices[i]) + " m bends inwards, polygons must be convex");
+    } else {
+      checker.add(vertex_name(i), "at " + vector_text(vertices[i]) +
+                                      " m is on a line with its neighbours, must be a corner");
+    }
+  }
+  // A star turns left at every vertex, but goes around twice.
+  if (good && turned > 3 * std::numbers::pi) {
+    checker.add("vertices", "go around more than once, must be the outline of a convex polygon");
+  }
+}
+
+void check_polygon(Checker& checker, const Polygon& polygon) {
+  const std::vector<Vec2>& vertices = polygon.vertices;
+  if (vertices.size() < kFewestVertices || vertices.size() > kMostVertices) {
+    checker.add("vertices", "are " + std::to_string(vertices.size()) + ", must be 3 to 8");
+    return;
+  }
+  bool good = true;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    good &= check_coordinate(checker, vertex_name(i) + ".x", vertices[i].x());
+    good &= check_coordinate(checker, vertex_name(i) + ".y", vertices[i].y());
+  }
+  if (!good) return;
+
+  double extent = 0;  // m, farthest vertex from vertex 0
+  double area = 0;    // m^2, signed; about vertex 0, so that a far polygon loses no digits
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    const Vec2 edge = vertices[i] - vertices[0];
+    extent = std::max(extent, edge.norm());
+    if (i + 1 < vertices.size()) area += 0.5 * cross(edge, vertices[i + 1] - vertices[0]);
+  }
+  if (!check_distinct(checker, vertices, extent)) return;
+  const double smallest = std::max(kSmallestArea * extent * extent, kSmallestSize * kSmallestSize);
+  if (std::abs(area) < smallest) {
+    checker.add("vertices", "enclose " + number_text(std::abs(area)) + " m^2, must be at least " +
+                                number_text(smallest));
+    return;
+  }
+  if (area < 0) checker.add("vertices", "run clockwise, must be counter-clockwise");
+  check_corners(checker, vertices, area < 0 ? -1 : 1);
+}
+
+void check_normal_length(Checker& checker, double length) {
+  if (std::abs(length - 1) <= kInputTolerance) return;
+  checker.add("normal", "has length " + number_text(length) + ", must be 1 (within " +
+                            number_text(kInputTolerance) + ")");
+}
+
+struct GeometryCheck {
+  Checker& checker;
+  const Body& body;
+
+  void operator()(const Sphere& sphere) const {
+    in_space(Space::spatial, "sphere");
+    checker.size("radius", sphere.radius);
+  }
+  void operator()(const Box& box) const {
+    in_space(Space::spatial, "box");
+    checker.size("half_extents.x", box.half_extents.x());
+    checker.size("half_extents.y", box.half_extents.y());
+    checker.size("half_extents.z", box.half_extents.z());
+  }
+  void operator()(const Plane& plane) const {
+    in_space(Space::spatial, "plane");
+    on_fixed_body("plane");
+    bool good = checker.finite("normal.x", plane.normal.x(), "");
+    good &= checker.finite("normal.y", plane.normal.y(), "");
+    good &= checker.finite("normal.z", plane.normal.z(), "");
+    if (good) check_normal_length(checker, plane.normal.norm());
+    check_coordinate(checker, "offset", plane.offset);
+  }
+  void operator()(const Circle& circle) const {
+    in_space(Space::planar, "circle");
+    checker.size("radius", circle.radius);
+  }
+  void operator()(const Polygon& polygon) const {
+    in_space(Space::planar, "polygon");
+    check_polygon(checker, polygon);
+  }
+  void operator()(const HalfPlane& plane) const {
+    in_space(Space::planar, "half-plane");
+    on_fixed_body("half-plane");
+    bool good = checker.finite("normal.x", plane.normal.x(), "");
+    good &= checker.finite("normal.y", plane.normal.y(), "");
+    if (good) check_normal_length(checker, plane.normal.norm());
+    check_coordinate(checker, "offset", plane.offset);
+  }
+
+ private:
+  void in_space(Space space, const std::string& kind) const {
+    if (space == checker.space()) return;
+    checker.add("geometry",
+                "is a " + kind +
+                    (checker.planar() ? ", a planar scene takes circle, polygon and half-plane"
+                                      : ", a spatial scene takes sphere, box and plane"));
+  }
+  void on_fixed_body(const std::string& kind) const {
+    if (body.motion == Motion::fixed) return;
+    checker.add("geometry", "is a " + kind + " on a body that can move, must be on a fixed body");
+  }
+};
+
+}  // namespace
+
+void check_shape(Checker checker, const Body& body, const Shape& shape) {
+  std::visit(GeometryCheck{checker, body}, shape.geometry);
+
+  constexpr std::array<const char*, 3> kPosition = {"position.x", "position.y", "position.z"};
+  if (checker.finite("position", shape.position, "m")) {
+    for (int axis = 0; axis < 3; ++axis) {
+      check_coordinate(checker, kPosition[static_cast<std::size_t>(axis)], shape.position[axis]);
+    }
+  }
+  checker.rotation("rotation", shape.rotation);
+  if (shape.density) {
+    checker.positive("density", *shape.density, checker.planar() ? "kg/m^2" : "kg/m^3",
+                     kSmallestMass, kLargestMass);
+  }
+  checker.not_negative("material.friction", shape.material.friction, "");
+  checker.between("material.restitution", shape.material.restitution, 0, 1);
+}
+
+}  // namespace manyworlds::detail

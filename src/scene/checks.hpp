@@ -1,0 +1,82 @@
+// Checks that validate() is made of: a collector of issues with the place they belong to, and one
+// function per part of a scene. Used only inside src/scene.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "manyworlds/scene.hpp"
+
+namespace manyworlds::detail {
+
+// The step works in float32 unless asked otherwise, so a scene has to fit in it.
+inline constexpr double kLargestFinite = std::numeric_limits<float>::max();
+// Masses and moments of inertia, kg and kg m^2: their inverses must not overflow or flush to zero.
+inline constexpr double kSmallestMass = 1e-30;
+inline constexpr double kLargestMass = 1e30;
+// Sizes, m, and times, s: their squares must neither overflow nor flush to zero.
+inline constexpr double kSmallestSize = 1e-9;
+inline constexpr double kLargestSize = 1e8;
+inline constexpr double kSmallestTime = 1e-9;
+// Relative error that given inertia tensors and plane normals may carry.
+inline constexpr double kInputTolerance = 1e-6;
+
+inline constexpr int kMostBodies = 32767;
+inline constexpr int kMostShapes = 32767;
+
+// Shortest text that reads back as the same number, in any locale; "nan" without a sign.
+std::string number_text(double value);
+std::string vector_text(const Vec2& value);  // "(1, 2)"
+
+// Appends issues of one part of a scene, such as "body 3 'crate', shape 1" (empty: of the scene).
+// The check functions add at most one issue per number and tell whether all was well.
+// `field` names the member as a C++ user writes it, `unit` may be empty.
+class Checker {
+ public:
+  Checker(std::vector<Issue>& issues, Space space, std::string part = {})
+      : issues_(&issues), space_(space), part_(std::move(part)) {}
+
+  Space space() const { return space_; }
+  bool planar() const { return space_ == Space::planar; }
+  std::size_t count() const { return issues_->size(); }  // issues of the whole scene so far
+  // The same collector for a part of this part.
+  Checker at(const std::string& part) const;
+
+  void add(std::string_view field, std::string message);
+
+  bool finite(std::string_view field, double value, std::string_view unit);
+  bool not_negative(std::string_view field, double value, std::string_view unit);
+  // > 0, and between smallest and largest.
+  bool positive(std::string_view field, double value, std::string_view unit, double smallest,
+                double largest);
+  bool size(std::string_view field, double value) {
+    return positive(field, value, "m", kSmallestSize, kLargestSize);
+  }
+  bool between(std::string_view field, double value, double low, double high);
+
+  // Vectors; in a planar scene the z component must be 0.
+  bool finite(std::string_view field, const Vec3& value, std::string_view unit);
+  bool not_negative(std::string_view field, const Vec3& value, std::string_view unit);
+  // As finite(), for rotations: in a planar scene x and y must be 0.
+  bool finite_axial(std::string_view field, const Vec3& value, std::string_view unit);
+  // Finite, not zero, and about z in a planar scene. Need not be unit.
+  bool rotation(std::string_view field, const Quat& value);
+
+ private:
+  bool zero_in_plane(std::string_view field, double value, std::string_view unit);
+
+  std::vector<Issue>* issues_;
+  Space space_;
+  std::string part_;
+};
+
+void check_shape(Checker checker, const Body& body, const Shape& shape);
+// Everything of the body, its shapes included. `density_valid`: whether Options::density is.
+void check_body(Checker checker, const Scene& scene, const Body& body, bool density_valid);
+void check_options(Checker checker, const Options& options);
+
+}  // namespace manyworlds::detail

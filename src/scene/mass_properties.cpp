@@ -1,0 +1,111 @@
+// Mass, centre of mass and inertia of bodies made of shapes.
+//
+// Each shape gives its own mass, centre and inertia about that centre by a closed form; the body
+// sums them with the parallel-axis theorem
+//   I = sum_k R_k I_k R_k^T + m_k (d_k^2 1 - d_k d_k^T),   d_k = c_k - c,   c = sum m_k c_k / m.
+// The centre is found first and the inertia summed about it: summing about the origin and
+// subtracting m c^2 would lose digits when shapes are far from the origin of their body.
+// Shapes that overlap simply add. Planes have no mass.
+#include <vector>
+
+#include "manyworlds/scene.hpp"
+
+namespace manyworlds {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// Diagonal tensor about z: a planar body has one moment. The other two repeat it, so that the
+// matrix stays positive definite for whoever inverts it.
+Mat3 planar_inertia(double moment) { return moment * Mat3::Identity(); }
+
+// Each overload: mass properties in the shape frame for `density` in kg/m^3 (kg/m^2 planar).
+MassProperties of(const Sphere& sphere, double density) {
+  const double r = sphere.radius;
+  const double mass = density * 4.0 / 3.0 * kPi * r * r * r;
+  return {mass, Vec3::Zero(), 0.4 * mass * r * r * Mat3::Identity()};
+}
+
+MassProperties of(const Box& box, double density) {
+  const Vec3 squares = box.half_extents.cwiseAbs2();
+  const double mass = density * 8 * box.half_extents.prod();
+  const Vec3 moments = mass / 3.0 * (Vec3::Constant(squares.sum()) - squares);
+  return {mass, Vec3::Zero(), moments.asDiagonal()};
+}
+
+MassProperties of(const Circle& circle, double density) {
+  const double r = circle.radius;
+  const double mass = density * kPi * r * r;
+  return {mass, Vec3::Zero(), planar_inertia(0.5 * mass * r * r)};
+}
+
+// A fan of triangles (0, a, b) from vertex 0, with twice the signed area D = a x b each:
+//   area += D / 2,  centre moment += D (a + b) / 6,  polar moment += D (a.a + a.b + b.b) / 12.
+MassProperties of(const Polygon& polygon, double density) {
+  const Vec2& origin = polygon.vertices.front();
+  double area = 0;
+  Vec2 first = Vec2::Zero();
+  double second = 0;  // about vertex 0
+  for (std::size_t i = 1; i + 1 < polygon.vertices.size(); ++i) {
+    const Vec2 a = polygon.vertices[i] - origin;
+    const Vec2 b = polygon.vertices[i + 1] - origin;
+    const double twice_area = a.x() * b.y() - a.y() * b.x();
+    area += twice_area / 2;
+    first += twice_area / 6 * (a + b);
+    second += twice_area / 12 * (a.dot(a) + a.dot(b) + b.dot(b));
+  }
+  const Vec2 offset = first / area;
+  const Vec2 center = origin + offset;
+  const double moment = density * (second - area * offset.squaredNorm());
+  return {density * area, {center.x(), center.y(), 0}, planar_inertia(moment)};
+}
+
+MassProperties of(const Plane&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
+MassProperties of(const HalfPlane&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
+
+// In the body frame.
+MassProperties of(const Shape& shape, double default_density) {
+  const double density = shape.density.value_or(default_density);
+  MassProperties part =
+      std::visit([&](const auto& geometry) { return of(geometry, density); }, shape.geometry);
+  const Mat3 rotation = shape.rotation.normalized().toRotationMatrix();
+  part.center = shape.position + rotation * part.center;
+  // Isotropic tensors look the same in every frame: rounding must not make them differ.
+  if (part.inertia != part.inertia(0, 0) * Mat3::Identity()) {
+    part.inertia = rotation * part.inertia * rotation.transpose();
+  }
+  return part;
+}
+
+}  // namespace
+
+MassProperties mass_properties(const Scene& scene, const Body& body) {
+  if (body.mass_properties) return *body.mass_properties;
+
+  std::vector<MassProperties> parts;
+  MassProperties total{0, Vec3::Zero(), Mat3::Zero()};
+  for (const Shape& shape : body.shapes) {
+    parts.push_back(of(shape, scene.options.density));
+    total.mass += parts.back().mass;
+  }
+  if (total.mass == 0) return total;  // no shapes, or only planes
+
+  // Relative to the first part, for the same reason as above.
+  for (const MassProperties& part : parts) {
+    total.center += part.mass / total.mass * (part.center - parts.front().center);
+  }
+  total.center += parts.front().center;
+
+  for (const MassProperties& part : parts) {
+    const Vec3 d = part.center - total.center;
+    total.inertia += part.inertia;
+    if (scene.space == Space::planar) {
+      total.inertia += planar_inertia(part.mass * d.squaredNorm());
+    } else {
+      total.inertia += part.mass * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+    }
+  }
+  return total;
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,37 @@
+// validate(): every issue of a scene, in the order in which its members are declared.
+#include "src/scene/checks.hpp"
+
+namespace manyworlds {
+
+std::string to_string(const Issue& issue) { return issue.place + " " + issue.message; }
+
+std::vector<Issue> validate(const Scene& scene) {
+  std::vector<Issue> issues;
+  detail::Checker checker(issues, scene.space);
+
+  const auto check_count = [&](const char* what, std::size_t count, int most) {
+    if (count <= static_cast<std::size_t>(most)) return;
+    checker.add(what, "are " + std::to_string(count) + ", must be at most " + std::to_string(most));
+  };
+  std::size_t shapes = 0;
+  for (const Body& body : scene.bodies) shapes += body.shapes.size();
+  check_count("bodies", scene.bodies.size(), detail::kMostBodies);
+  check_count("shapes", shapes, detail::kMostShapes);
+
+  // Needed before the bodies, whose masses depend on the default density, but listed after them.
+  std::vector<Issue> option_issues;
+  check_options(detail::Checker(option_issues, scene.space), scene.options);
+  bool density_valid = true;
+  for (const Issue& issue : option_issues) density_valid &= issue.place != "options.density";
+
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    std::string part = "body " + std::to_string(i);
+    if (!body.name.empty()) part += " '" + body.name + "'";
+    check_body(checker.at(part), scene, body, density_valid);
+  }
+  issues.insert(issues.end(), option_issues.begin(), option_issues.end());
+  return issues;
+}
+
+}  // namespace manyworlds

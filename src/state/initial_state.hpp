@@ -1,0 +1,46 @@
+// The initial state of one body in one world: the scene's values plus its jitter, drawn by counter.
+#pragma once
+
+#include <cmath>
+
+#include "manyworlds/scene.hpp"
+#include "src/base/random.hpp"
+
+namespace manyworlds {
+
+struct InitialState {
+  Vec3 position, linear_velocity, angular_velocity;
+  Quat rotation;
+};
+
+// A rotation uniform over all rotations from three numbers in [0, 1) (Shoemake 1992).
+inline Quat uniform_rotation(double u1, double u2, double u3) {
+  constexpr double kTurn = 6.283185307179586;
+  const double a = std::sqrt(1 - u1), b = std::sqrt(u1);
+  return Quat(b * std::cos(kTurn * u3), a * std::sin(kTurn * u2), a * std::cos(kTurn * u2),
+              b * std::sin(kTurn * u3));
+}
+
+inline InitialState draw_initial_state(const Body& body, int index, const Draws& draws) {
+  constexpr std::uint64_t kDrawsPerBody = 16;
+  const std::uint64_t base = static_cast<std::uint64_t>(index) * kDrawsPerBody;
+  const Jitter& j = body.jitter;
+  InitialState s{body.position, body.linear_velocity, body.angular_velocity,
+                 body.rotation.normalized()};
+  for (int c = 0; c < 3; ++c) {
+    const auto k = static_cast<std::uint64_t>(c);
+    s.position[c] += j.position[c] * draws.symmetric(base + k);
+    s.linear_velocity[c] += j.linear_velocity[c] * draws.symmetric(base + 3 + k);
+  }
+  if (j.angle != 0) {
+    const double angle = j.angle * draws.symmetric(base + 6);
+    s.rotation = Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())) * s.rotation;
+  }
+  if (j.any_orientation) {
+    s.rotation = uniform_rotation(draws.uniform(base + 7), draws.uniform(base + 8),
+                                  draws.uniform(base + 9));
+  }
+  return s;
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,219 @@
+#include "src/state/tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace manyworlds {
+
+namespace {
+
+// Implicit Euler of a spring of frequency f and damping ratio z as a soft constraint (Catto 2011).
+template <class Real>
+kernels::Softness<Real> softness(double frequency, double damping_ratio, double h) {
+  if (frequency == 0) return {0, 1, 0};
+  const double omega = 2 * 3.14159265358979323846 * frequency;
+  const double a1 = 2 * damping_ratio + h * omega;
+  const double a2 = h * omega * a1;
+  const double a3 = 1 / (1 + a2);
+  return {static_cast<Real>(omega / a1), static_cast<Real>(a2 * a3), static_cast<Real>(a3)};
+}
+
+template <class Real>
+void copy(const Vec3& from, Real* to) {
+  for (int c = 0; c < 3; ++c) to[c] = static_cast<Real>(from[c]);
+}
+
+}  // namespace
+
+template <class Real>
+TablesOf<Real>::TablesOf(const PlanData& plan) {
+  add_options(plan);
+  add_bodies(plan);
+  add_shapes(plan);
+  add_pairs(plan);
+}
+
+template <class Real>
+void TablesOf<Real>::add_options(const PlanData& plan) {
+  const Options& o = plan.scene.options;
+  auto& t = tables_;
+  t.dimension = plan.dimension();
+  t.inertia_kind = plan.inertia_kind;
+  t.substeps = o.substeps;
+  t.restitution_sweeps = o.restitution_sweeps;
+  t.has_orientation = plan.has(Feature::orientation);
+  t.has_friction = plan.has(Feature::friction);
+  t.has_restitution = plan.has(Feature::restitution);
+  t.has_contacts = plan.has(Feature::contacts);
+  t.has_drag = plan.has(Feature::drag);
+  t.has_gravity = plan.has(Feature::gravity);
+  t.collider_is_body = plan.collider_is_body;
+  t.friction_in_bias = o.friction_in_bias_pass;
+  t.uniform_gravity = plan.uniform_gravity;
+  t.sweep = plan.sweep;
+  t.cast = plan.cast && t.has_contacts;
+  t.has_bounds = o.bounds.has_value();
+  if (o.bounds) {
+    copy(o.bounds->min(), t.bounds_low);
+    copy(o.bounds->max(), t.bounds_high);
+  }
+  const double h = o.dt / o.substeps;
+  t.dt = static_cast<Real>(o.dt);
+  t.h = static_cast<Real>(h);
+  t.inv_h = static_cast<Real>(1 / h);
+  t.soft_pair = softness<Real>(o.contact_frequency, o.contact_damping_ratio, h);
+  t.soft_fixed = softness<Real>(2 * o.contact_frequency, o.contact_damping_ratio, h);
+  t.push_out_speed = static_cast<Real>(o.push_out_speed * o.length_unit);
+  t.margin = static_cast<Real>(4 * o.slop * o.length_unit);
+  t.half_margin = static_cast<Real>(2 * o.slop * o.length_unit);
+  t.restitution_threshold = static_cast<Real>(o.restitution_threshold * o.length_unit);
+  t.face_bias = static_cast<Real>(0.5 * o.slop * o.length_unit);
+  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
+  t.state_stride = at.components;
+  t.bodies = static_cast<std::int32_t>(plan.bodies.size());
+  t.state_size = t.bodies * at.components;
+}
+
+template <class Real>
+void TablesOf<Real>::add_bodies(const PlanData& plan) {
+  auto& t = tables_;
+  const double h = plan.scene.options.dt / plan.scene.options.substeps;
+  const bool planar = t.dimension == kernels::Dimension::planar;
+  const auto row = static_cast<std::size_t>(kernels::velocity_row_size(t.dimension));
+  // Padded as the rows of a lane are (kernels/work.cpp): up to one register more.
+  push_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 1) * row + 16);
+  factor_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 1) * row + 16);
+  for (std::size_t i = 0; i < factor_rows_.size(); ++i) factor_rows_[i] = 1;
+  for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+    const PlanBody& b = plan.bodies[i];
+    const Body& body = plan.scene.bodies[static_cast<std::size_t>(b.scene_body)];
+    kernels::BodyTable<Real> out{};
+    out.inv_mass = static_cast<Real>(b.inv_mass);
+    copy(b.inertia, out.inertia);
+    copy(b.inv_inertia, out.inv_inertia);
+    out.radius = static_cast<Real>(b.radius);
+    out.core_radius = static_cast<Real>(b.core_radius);
+    out.linear_factor = out.angular_factor = 1;
+    if (b.inv_mass > 0) {
+      const Vec3 g = plan.scene.options.gravity * body.gravity_scale;
+      copy(g, out.acceleration);
+      out.linear_factor = static_cast<Real>(1 / (1 + h * body.linear_drag));
+      out.angular_factor = static_cast<Real>(1 / (1 + h * body.angular_drag));
+      const int dim = planar ? 2 : 3;
+      for (int c = 0; c < dim; ++c) {
+        push_rows_[i * row + static_cast<std::size_t>(c)] = static_cast<Real>(h * g[c]);
+      }
+      for (std::size_t c = 0; c < row; ++c) {
+        factor_rows_[i * row + c] =
+            c < static_cast<std::size_t>(dim) ? out.linear_factor : out.angular_factor;
+      }
+    }
+    bodies_.push_back(out);
+  }
+  t.body = bodies_.data();
+  t.push_rows = push_rows_.data();
+  t.factor_rows = factor_rows_.data();
+}
+
+template <class Real>
+void TablesOf<Real>::add_shapes(const PlanData& plan) {
+  auto& t = tables_;
+  const double least_margin = 2 * plan.scene.options.slop * plan.scene.options.length_unit;
+  for (const PlanCollider& c : plan.colliders) {
+    kernels::ColliderTable<Real> out{};
+    out.kind = c.kind;
+    out.body = c.body;
+    out.row = c.row;
+    copy(c.offset, out.offset);
+    for (int k = 0; k < 9; ++k) out.rotation[k] = static_cast<Real>(c.rotation(k % 3, k / 3));
+    copy(c.half, out.half);
+    out.radius = static_cast<Real>(c.radius);
+    // A speculative row holds along one normal, which is good as long as the gap is not large
+    // against the shape. Round shapes keep their normals better.
+    const bool round =
+        c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;
+    out.margin_cap = static_cast<Real>(
+        std::max(least_margin, round ? 2 * c.radius : c.inner_radius));
+    out.vertex_count = static_cast<std::int32_t>(c.vertices.size());
+    for (std::size_t i = 0; i < kernels::kMaxVertices && !c.vertices.empty(); ++i) {
+      const std::size_t n = c.vertices.size(), at = i < n ? i : 0;
+      const Vec2 edge = c.vertices[(at + 1) % n] - c.vertices[at];
+      const Vec2 normal = Vec2(edge.y(), -edge.x()).normalized();
+      for (std::size_t k = 0; k < 2; ++k) {
+        const auto row = static_cast<Eigen::Index>(k);
+        out.vertices[2 * i + k] = static_cast<Real>(c.vertices[at][row]);
+        out.normals[2 * i + k] = static_cast<Real>(normal[row]);
+      }
+    }
+    colliders_.push_back(out);
+    collider_row_.push_back(c.row);
+    collider_body_.push_back(c.body);
+  }
+  collider_row_.push_back(plan.row_block - kernels::kDummyRow);
+  collider_body_.push_back(t.bodies);
+
+  std::size_t rows = 0;
+  for (const PlanFixed& f : plan.fixed) rows += f.row.size();
+  fixed_rows_ = AlignedBuffer<Real>(rows);
+  for (const PlanFixed& f : plan.fixed) {
+    kernels::FixedTable<Real> out{};
+    out.kind = f.kind;
+    out.row = f.row_offset;
+    copy(f.low, out.low);
+    copy(f.high, out.high);
+    for (std::size_t k = 0; k < 4; ++k) out.plane[k] = static_cast<Real>(f.plane[k]);
+    for (std::size_t k = 0; k < f.row.size(); ++k) {
+      fixed_rows_[static_cast<std::size_t>(f.row_offset) + k] = static_cast<Real>(f.row[k]);
+    }
+    if (f.kind == kernels::ShapeKind::box) {
+      fixed_rows_[static_cast<std::size_t>(f.row_offset) + 15] = static_cast<Real>(least_margin);
+    }
+    fixed_.push_back(out);
+  }
+  t.colliders = static_cast<std::int32_t>(colliders_.size());
+  t.fixed_shapes = static_cast<std::int32_t>(fixed_.size());
+  t.collider = colliders_.data();
+  t.collider_row = collider_row_.data();
+  t.collider_body = collider_body_.data();
+  t.fixed = fixed_.data();
+  t.fixed_rows = fixed_rows_.data();
+  t.row_block = plan.row_block;
+}
+
+template <class Real>
+void TablesOf<Real>::add_pairs(const PlanData& plan) {
+  auto& t = tables_;
+  const auto n = static_cast<std::size_t>(t.colliders);
+  if (plan.sweep) pair_of_.assign(n * n, -1);
+  const auto material = [&](const std::vector<double>& values) {
+    materials_.emplace_back(values.begin(), values.end());
+    return materials_.back().data();
+  };
+  for (const PlanClass& c : plan.classes) {
+    if (c.a.empty()) continue;
+    kernels::PairClass<Real> out{};
+    out.kind = c.kind;
+    out.list = c.list;
+    out.count = static_cast<std::int32_t>(c.a.size());
+    out.first_key = c.first_key;
+    out.a = c.a.data();
+    out.b = c.b.data();
+    out.friction = material(c.friction);
+    out.restitution = material(c.restitution);
+    classes_.push_back(out);
+    if (!plan.sweep || is_fixed(c.list)) continue;
+    for (std::size_t i = 0; i < c.a.size(); ++i) {
+      const auto a = static_cast<std::size_t>(c.a[i]), b = static_cast<std::size_t>(c.b[i]);
+      pair_of_[a * n + b] = pair_of_[b * n + a] = c.first_key + static_cast<std::int32_t>(i);
+    }
+  }
+  t.classes = static_cast<std::int32_t>(classes_.size());
+  t.pair_class = classes_.data();
+  t.pair_of = pair_of_.data();
+  for (std::size_t l = 0; l < kernels::kLists; ++l) t.capacity[l] = plan.capacity[l];
+}
+
+template class TablesOf<float>;
+template class TablesOf<double>;
+
+}  // namespace manyworlds

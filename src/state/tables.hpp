@@ -1,0 +1,36 @@
+// TablesOf: a Plan's numbers as the kernels want them, and the arrays they point into.
+#pragma once
+
+#include <vector>
+
+#include "kernels/tables.hpp"
+#include "src/base/aligned_buffer.hpp"
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+template <class Real>
+class TablesOf {
+ public:
+  explicit TablesOf(const PlanData& plan);
+  TablesOf(const TablesOf&) = delete;
+  TablesOf& operator=(const TablesOf&) = delete;
+  const kernels::WorldTables<Real>& get() const { return tables_; }
+
+ private:
+  void add_bodies(const PlanData& plan);
+  void add_shapes(const PlanData& plan);
+  void add_pairs(const PlanData& plan);
+  void add_options(const PlanData& plan);
+
+  kernels::WorldTables<Real> tables_{};
+  std::vector<kernels::BodyTable<Real>> bodies_;
+  std::vector<kernels::ColliderTable<Real>> colliders_;
+  std::vector<std::int32_t> collider_row_, collider_body_, pair_of_;
+  std::vector<kernels::FixedTable<Real>> fixed_;
+  std::vector<kernels::PairClass<Real>> classes_;
+  std::vector<std::vector<Real>> materials_;
+  AlignedBuffer<Real> fixed_rows_, push_rows_, factor_rows_;
+};
+
+}  // namespace manyworlds

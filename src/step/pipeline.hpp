@@ -1,0 +1,50 @@
+// The step of one group: which stages run, in which order. No arithmetic here.
+#pragma once
+
+#include <array>
+#include <chrono>
+
+#include "kernels/table.hpp"
+
+namespace manyworlds {
+
+// Where a step's time goes; off unless somebody asked.
+class StageClock {
+ public:
+  static constexpr int kStages = 11;
+  static constexpr std::array<const char*, kStages> kNames = {
+      "free_motion", "begin",   "broad_phase", "collide",   "warm_start", "bias",
+      "advance",     "relax", "restitute",   "store", "finish"};
+
+  void start() { last_ = Clock::now(); }
+  void lap(int stage) {
+    const auto now = Clock::now();
+    seconds_[static_cast<std::size_t>(stage)] += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+  std::array<double, kStages>& seconds() { return seconds_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_;
+  std::array<double, kStages> seconds_{};
+};
+
+template <class Real>
+struct GroupStep {
+  const kernels::KernelTable<Real>& kernels;
+  const kernels::WorldTables<Real>& tables;
+  kernels::Layout layout;
+};
+
+// `steps` whole steps of one group. clock may be nullptr.
+template <class Real>
+void step_group(const GroupStep<Real>& plan, const kernels::GroupView<Real>& group,
+                kernels::Scratch* scratch, int steps, StageClock* clock);
+
+// The stages up to the narrow phase, without effect on the group.
+template <class Real>
+void collide_group(const GroupStep<Real>& plan, const kernels::GroupView<Real>& group,
+                   kernels::Scratch* scratch);
+
+}  // namespace manyworlds

@@ -1,0 +1,377 @@
+// The program manyworlds, run as its users run it: exit codes, what goes to which stream, JSON.
+#ifdef MW_CLI_PATH
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "manyworlds/batch.hpp"
+#include "manyworlds/scenes.hpp"
+
+namespace manyworlds {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+// A folder of its own, gone with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    static int count = 0;
+    path_ = fs::temp_directory_path() /
+            ("manyworlds_cli_test_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+    fs::create_directories(path_);
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  fs::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+std::string content(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+// `arguments` as a shell takes them; `environment` is put in front of the command.
+Outcome run(const std::string& arguments, const std::string& environment = "") {
+  const ScratchFolder folder;
+  const fs::path out = folder / "out";
+  const fs::path err = folder / "err";
+  const std::string command = environment + " '" MW_CLI_PATH "' " + arguments + " >'" +
+                              out.string() + "' 2>'" + err.string() + "' </dev/null";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::set<std::string> keys(const Json& object) {
+  std::set<std::string> names;
+  for (const auto& item : object.items()) names.insert(item.key());
+  return names;
+}
+
+const std::set<std::string>& report_keys() {
+  static const std::set<std::string> names = {"scene",
+                                              "worlds",
+                                              "steps",
+                                              "steps_per_call",
+                                              "threads",
+                                              "isa",
+                                              "precision",
+                                              "solver",
+                                              "dt",
+                                              "substeps",
+                                              "sleep",
+                                              "world_steps_per_s",
+                                              "body_steps_per_s",
+                                              "contacts_per_world",
+                                              "max_penetration_m",
+                                              "max_joint_gap_m",
+                                              "energy_j",
+                                              "bytes_per_world",
+                                              "lost_worlds",
+                                              "stage_split",
+                                              "hash"};
+  return names;
+}
+
+// The hash that the library itself computes for the job.
+std::string library_hash(const char* scene, int worlds, int steps, std::uint64_t seed) {
+  BatchOptions options;
+  options.worlds = worlds;
+  options.seed = seed;
+  Batch batch(compile(scenes::find(scene)->make()), options);
+  batch.step(steps);
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(batch.hash()));
+  return text;
+}
+
+TEST_CASE("the program explains itself and lists every scene", "[cli]") {
+  const Outcome help = run("--help");
+  CHECK(help.code == 0);
+  CHECK(help.err.empty());
+  for (const char* command : {"scenes", "run", "plan", "bench", "verify", "soak", "info"}) {
+    CHECK(contains(help.out, command));
+    const Outcome detail = run(std::string(command) + " --help");
+    CHECK(detail.code == 0);
+    CHECK(contains(detail.out, "Example"));
+  }
+
+  const Outcome list = run("scenes");
+  CHECK(list.code == 0);
+  for (const scenes::Entry& entry : scenes::all()) {
+    CHECK(contains("\n" + list.out, std::string("\n") + entry.name + " "));
+  }
+  CHECK(std::count(list.out.begin(), list.out.end(), '\n') ==
+        static_cast<std::ptrdiff_t>(scenes::all().size()));
+}
+
+TEST_CASE("bad input ends with exit code 2, one line that names it, and no output", "[cli]") {
+  struct Bad {
+    const char* arguments;
+    const char* message;  // part of the line
+  };
+  const Bad cases[] = {
+      {"", "a command is missing"},
+      {"frobnicate", "unknown command 'frobnicate'"},
+      {"run", "scene is required"},
+      {"run bin-boxen", "unknown scene 'bin-boxen'; did you mean 'bin-boxes'?"},
+      {"plan stack1", "did you mean 'stack10'?"},
+      {"soak bal3d", "did you mean 'ball3d'?"},
+      {"bench --scenes ball3d,bin-shperes", "did you mean 'bin-spheres'?"},
+      {"verify --scenes domina", "did you mean 'domino'?"},
+      {"run ball3d --worlds 0", "--worlds: must be at least 1, is 0"},
+      {"run ball3d --worlds -4", "--worlds: must be at least 1, is -4"},
+      {"run ball3d --worlds 1e3", "--worlds: must be a whole number, is '1e3'"},
+      {"run ball3d --worlds 99999999999", "--worlds: must be at most 2147483647"},
+      {"run ball3d --steps 0", "--steps: must be at least 1, is 0"},
+      {"run ball3d --seconds 0", "--seconds: must be a finite number above 0, is 0"},
+      {"run ball3d --seconds inf", "--seconds: must be a finite number above 0, is inf"},
+      {"run ball3d --seconds 1e300", "--seconds: 1e+300 s at dt"},
+      {"run ball3d --seconds 1 --steps 4", "excludes"},
+      {"run ball3d --dt nan", "--dt: must be a finite number above 0, is nan"},
+      {"run ball3d --dt 0", "--dt: must be a finite number above 0, is 0"},
+      {"run ball3d --dt -0.01", "--dt: must be a finite number above 0, is -0.01"},
+      {"run ball3d --dt 0.01x", "--dt: must be a number, is '0.01x'"},
+      {"run ball3d --substeps 0", "--substeps: must be at least 1, is 0"},
+      {"run ball3d --substeps 65", "--substeps: must be at most 64, is 65"},
+      {"run ball3d --threads -1", "--threads: must be at least 0, is -1"},
+      {"run ball3d --seed -1", "--seed: must be a whole number from 0 to 2^64 - 1, is '-1'"},
+      {"run ball3d --precision f16", "--precision: must be f32 or f64, is 'f16'"},
+      {"run ball3d --isa neon", "--isa: must be scalar, avx2 or avx512, is 'neon'"},
+      {"run ball3d --layout columns", "--layout: must be auto, dense or rows, is 'columns'"},
+      {"run ball3d --broad-phase tree", "must be auto, all-pairs or sort-and-sweep, is 'tree'"},
+      {"run ball3d --keep contactz", "--keep: must be orientation, "},
+      {"run ball3d --json --frobnicate", "--frobnicate"},
+      {"bench --repeats 0", "--repeats: must be at least 1, is 0"},
+      {"run no/such/file.xml", "cannot read 'no/such/file.xml': no such file"},
+      {"run /", "cannot read '/': it is a directory"},
+  };
+  for (const Bad& bad : cases) {
+    INFO("manyworlds " << bad.arguments);
+    const Outcome outcome = run(bad.arguments);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(contains(outcome.err, bad.message));
+    CHECK(outcome.err.rfind("manyworlds: ", 0) == 0);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  }
+}
+
+TEST_CASE("more worlds than the machine can hold are refused", "[cli]") {
+  const Outcome outcome = run("run bin-boxes --worlds 2147483647 --json");
+  CHECK(outcome.code == 2);
+  CHECK(outcome.out.empty());
+  CHECK(contains(outcome.err, "--worlds"));
+}
+
+TEST_CASE("an unknown instruction set in the environment is bad input", "[cli]") {
+  for (const char* command : {"run ball3d --worlds 1 --steps 1", "info"}) {
+    const Outcome outcome = run(command, "MANYWORLDS_ISA=avx1024");
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(contains(outcome.err, "avx1024"));
+  }
+}
+
+TEST_CASE("a cut XML file is bad input", "[cli]") {
+  const ScratchFolder folder;
+  const fs::path file = folder / "cut.xml";
+  std::ofstream(file) << "<mujoco><worldbody><body pos=\"0 0 1\"><freejoint/><geom type=\"sph";
+  const Outcome info = run("info");
+  const Outcome outcome = run("run '" + file.string() + "' --json");
+  CHECK(outcome.code == 2);
+  CHECK(outcome.out.empty());
+  CHECK(contains(outcome.err, "cut.xml"));
+  const bool reads_mjcf = std::regex_search(info.out, std::regex("mjcf +yes"));
+  CHECK(contains(outcome.err, "built without MJCF") == !reads_mjcf);
+}
+
+TEST_CASE("run --json prints exactly the documented keys", "[cli]") {
+  const Outcome outcome = run("run ball3d --worlds 64 --steps 30 --seed 5 --threads 1 --json");
+  REQUIRE(outcome.code == 0);
+  CHECK(outcome.err.empty());
+  const Json json = Json::parse(outcome.out);
+  CHECK(keys(json) == report_keys());
+  CHECK(json["scene"] == "ball3d");
+  CHECK(json["worlds"] == 64);
+  CHECK(json["steps"] == 30);
+  CHECK(json["threads"] == 1);
+  CHECK(json["precision"] == "f32");
+  CHECK(json["solver"] == "tgs-soft");
+  CHECK(json["sleep"] == false);
+  CHECK(json["substeps"] == 4);
+  CHECK(json["dt"].get<double>() == Approx(1.0 / 60));
+  CHECK(json["lost_worlds"] == 0);
+  CHECK(json["max_joint_gap_m"] == 0.0);
+  CHECK(json["world_steps_per_s"].get<double>() > 0);
+  CHECK(json["body_steps_per_s"].get<double>() ==
+        Approx(json["world_steps_per_s"].get<double>()));  // one body
+  CHECK(json["bytes_per_world"].get<double>() > 0);
+  double shares = 0;
+  for (const auto& share : json["stage_split"]) shares += share.get<double>();
+  CHECK(shares == Approx(1.0));
+  CHECK(json["hash"] == library_hash("ball3d", 64, 30, 5));
+}
+
+TEST_CASE("how a job is cut into calls, threads and layouts does not change its hash", "[cli]") {
+  const std::string job = "run bin-boxes --worlds 24 --json --seed 3 ";
+  const Json one = Json::parse(run(job + "--steps 60 --steps-per-call 1 --threads 1").out);
+  for (const char* way :
+       {"--steps 60 --steps-per-call 7", "--seconds 1 --threads 2", "--steps 60 --layout dense",
+        "--steps 60 --layout rows --isa scalar", "--steps 60 --broad-phase sort-and-sweep"}) {
+    INFO(way);
+    const Json other = Json::parse(run(job + way).out);
+    CHECK(other["hash"] == one["hash"]);
+    CHECK(other["steps"] == 60);
+  }
+  const Json double_precision = Json::parse(run(job + "--steps 60 --precision f64").out);
+  CHECK(double_precision["precision"] == "f64");
+  CHECK(double_precision["hash"] != one["hash"]);
+}
+
+TEST_CASE("run prints a summary for people", "[cli]") {
+  const Outcome outcome = run("run bin-spheres --worlds 8 --seconds 0.5 --dt 0.01 --substeps 2");
+  CHECK(outcome.code == 0);
+  CHECK(contains(outcome.out, "bin-spheres: 8 worlds x 50 steps, 0.5 s simulated each"));
+  CHECK(contains(outcome.out, "dt 0.01 s, 2 substeps"));
+  for (const char* row : {"speed", "contacts", "penetration", "energy", "lost worlds", "hash"}) {
+    CHECK(contains(outcome.out, std::string("\n  ") + row));
+  }
+}
+
+TEST_CASE("plan tells what is in and what is out, and --keep brings it back", "[cli]") {
+  const auto feature = [](const Json& plan, const std::string& name) {
+    for (const auto& item : plan["features"]) {
+      if (item["name"] == name) return item["in"].get<bool>();
+    }
+    FAIL("no feature " << name);
+    return false;
+  };
+  const Json plain = Json::parse(run("plan free-flight --json").out);
+  CHECK_FALSE(feature(plain, "contacts"));
+  const Json kept = Json::parse(run("plan free-flight --json --keep contacts --keep drag").out);
+  CHECK(feature(kept, "contacts"));
+  CHECK(feature(kept, "drag"));
+
+  const Outcome text = run("plan bin-boxes");
+  CHECK(text.code == 0);
+  for (const char* part :
+       {"features", "stages", "pairs of shapes", "arrays", "capacity", "box-box"})
+    CHECK(contains(text.out, part));
+}
+
+TEST_CASE("bench measures both kinds of call and ends all runs in the same hash", "[cli]") {
+  const Outcome outcome =
+      run("bench --scenes ball3d,ball2d --worlds 16 --steps 20 --warm-up 5 --repeats 2 --threads 2 "
+          "--json");
+  REQUIRE(outcome.code == 0);
+  const Json list = Json::parse(outcome.out);
+  REQUIRE(list.size() == 8);  // 2 scenes x 2 thread counts x 2 kinds of call
+  for (const Json& report : list) {
+    CHECK(keys(report) == report_keys());
+    CHECK(report["steps"] == 20);
+    CHECK(report["hash"] == library_hash(report["scene"].get<std::string>().c_str(), 16, 25, 0));
+  }
+  CHECK(list[0]["steps_per_call"] == 1);
+  CHECK(list[1]["steps_per_call"] == 16);
+  CHECK(list[0]["threads"] == 1);
+  CHECK(list[2]["threads"] == 2);
+
+  const Outcome table = run("bench --scenes ball3d --worlds 16 --steps 20 --repeats 1 --threads 1");
+  CHECK(table.code == 0);
+  CHECK(contains(table.out, "step(16)"));
+  CHECK(contains(table.out, library_hash("ball3d", 16, 80, 0)));
+}
+
+TEST_CASE("verify finds equal bits and says what it compared", "[cli]") {
+  const Outcome outcome = run("verify --quick --scenes ball3d,bin2d");
+  CHECK(outcome.code == 0);
+  CHECK(outcome.err.empty());
+  CHECK(contains(outcome.out, "comparisons equal"));
+  for (const char* what : {"alone", "position", "size", "threads", "kernels", "frozen"}) {
+    CHECK(contains(outcome.out, what));
+  }
+}
+
+TEST_CASE("soak counts the lost and prints its seed", "[cli]") {
+  const Outcome fixed = run("soak ball3d --worlds 1500 --steps 20 --seed 9");
+  CHECK(fixed.code == 0);
+  CHECK(contains(fixed.out, "1500 worlds x 20 steps, seed 9"));
+  CHECK(std::regex_search(fixed.out, std::regex("lost worlds +0\n")));
+  const std::regex seed("seed ([0-9]+)");
+  std::smatch first;
+  std::smatch second;
+  const std::string one = run("soak ball3d --worlds 2 --steps 1").out;
+  const std::string two = run("soak ball3d --worlds 2 --steps 1").out;
+  REQUIRE(std::regex_search(one, first, seed));
+  REQUIRE(std::regex_search(two, second, seed));
+  CHECK(first[1] != second[1]);
+}
+
+TEST_CASE("a lost world ends with exit code 1 and the command that shows it again", "[cli]") {
+  // Bodies that fly at about 1 m/s leave the range of 1e10 m in one such step.
+  const std::string job = "run free-flight --steps 2 --dt 1e12 ";
+  const Outcome outcome = run(job + "--worlds 12 --seed 40 --json");
+  CHECK(outcome.code == 1);
+  CHECK(Json::parse(outcome.out)["lost_worlds"] == 12);
+  CHECK(contains(outcome.err, "world 0 lost ("));
+  CHECK(contains(outcome.err, "world 9 lost ("));
+  CHECK_FALSE(contains(outcome.err, "world 10 lost"));
+  CHECK(contains(outcome.err, "and 2 more of them"));
+
+  const std::regex command("world 7 lost \\([^)]*\\): manyworlds (run free-flight .*)\n");
+  std::smatch match;
+  REQUIRE(std::regex_search(outcome.err, match, command));
+  CHECK(contains(match[1], "--worlds 1 --seed 47 --steps 2"));
+  CHECK(run(match[1]).code == 1);
+
+  CHECK(run("soak free-flight --worlds 3 --steps 2 --dt 1e12 --seed 1").code == 1);
+}
+
+TEST_CASE("info names the machine and the build", "[cli]") {
+  const Outcome outcome = run("info");
+  CHECK(outcome.code == 0);
+  for (const char* row : {"manyworlds", "compiler", "cpu", "threads", "isa", "precision", "mjcf"}) {
+    CHECK(contains("\n" + outcome.out, std::string("\n") + row));
+  }
+  CHECK(contains(outcome.out, to_string(default_isa())));
+}
+
+}  // namespace
+}  // namespace manyworlds
+
+#endif  // MW_CLI_PATH

@@ -1,0 +1,86 @@
+// Spatial shape pairs against the slow twins: 10,000 random poses or more of each, in f32 and f64,
+// between dynamic bodies and against fixed ones, with shapes on and off their body frames.
+#include <catch2/catch.hpp>
+
+#include "tests/support/pair_check.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+constexpr int kScenes = 8;            // random sizes and offsets
+constexpr int kPosesPerScene = 1536;  // three rounds of worlds: 12,288 poses in all
+
+using Maker = Geometry (*)(Random&);
+
+Geometry any_sphere(Random& r) { return Sphere{r.uniform(0.1, 0.6)}; }
+Geometry any_box(Random& r) { return random_box(r); }
+Geometry any_plane(Random& r) { return Plane{r.direction(), r.uniform(-0.5, 0.5)}; }
+
+void check(Maker first, Motion first_motion, Maker second, const PairPromise& promise) {
+  for (const Table& table : widest_tables()) {
+    Random random(20240601);
+    PairResult sum;
+    for (int i = 0; i < kScenes; ++i) {
+      Scene scene = empty_scene(Space::spatial, 0);
+      const bool offset = i % 2 == 1;
+      scene.add(random_body(first(random), first_motion, offset, Space::spatial, random));
+      scene.add(random_body(second(random), Motion::dynamic, offset, Space::spatial, random));
+      if (i % 4 >= 2) std::swap(scene.bodies[0], scene.bodies[1]);
+      merge(sum, check_pair(scene, table, promise, kPosesPerScene, random));
+    }
+    INFO(name(table) << ": " << sum.deviations << " deviations in " << sum.poses << " poses\n"
+                     << sum.report);
+    CHECK(sum.deviations == 0);
+    CHECK(sum.poses >= 10000);
+    CHECK(sum.overlapping > sum.poses / 3);  // the poses do test something
+    CHECK(sum.with_contacts >= sum.overlapping - sum.poses / 1000);
+  }
+}
+
+// A box prefers a face to an edge that is shallower by up to 5 % of the face's depth, and one
+// face to another by a small length (box_box_axes.hpp).
+PairPromise box_box_promise() {
+  PairPromise p;
+  p.bias = 0.006 * 0.6;
+  p.bias_relative = 0.05 / 0.95;
+  p.max_points = 4;
+  return p;
+}
+PairPromise points(int n) {
+  PairPromise p;
+  p.max_points = n;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("sphere-sphere agrees with its twin", "[slow][collide]") {
+  check(any_sphere, Motion::dynamic, any_sphere, points(1));
+}
+TEST_CASE("sphere against a fixed sphere agrees with its twin", "[slow][collide]") {
+  check(any_sphere, Motion::fixed, any_sphere, points(1));
+}
+TEST_CASE("sphere-plane agrees with its twin", "[slow][collide]") {
+  check(any_plane, Motion::fixed, any_sphere, points(1));
+}
+TEST_CASE("sphere-box agrees with its twin", "[slow][collide]") {
+  check(any_sphere, Motion::dynamic, any_box, points(1));
+}
+TEST_CASE("sphere against a fixed box agrees with its twin", "[slow][collide]") {
+  check(any_box, Motion::fixed, any_sphere, points(1));
+}
+TEST_CASE("box against a fixed sphere agrees with its twin", "[slow][collide]") {
+  check(any_sphere, Motion::fixed, any_box, points(1));
+}
+TEST_CASE("box-plane agrees with its twin", "[slow][collide]") {
+  check(any_plane, Motion::fixed, any_box, points(4));
+}
+TEST_CASE("box-box agrees with its twin", "[slow][collide]") {
+  check(any_box, Motion::dynamic, any_box, box_box_promise());
+}
+TEST_CASE("box against a fixed box agrees with its twin", "[slow][collide]") {
+  check(any_box, Motion::fixed, any_box, box_box_promise());
+}
+
+}  // namespace manyworlds::test

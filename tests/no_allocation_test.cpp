@@ -1,0 +1,119 @@
+// step() allocates nothing. This unit replaces the global operators new and delete of the test
+// program with ones that count while asked to.
+#include <catch2/catch.hpp>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+#include "manyworlds/scenes.hpp"
+#include "tests/support/crowd.hpp"
+#include "tests/support/tables.hpp"
+
+namespace {
+
+std::atomic<bool> counting{false};
+std::atomic<long> calls{0};
+
+void note() {
+  if (counting.load(std::memory_order_relaxed)) calls.fetch_add(1, std::memory_order_relaxed);
+}
+
+void* allocate(std::size_t size, std::size_t alignment) {
+  note();
+  if (size == 0) size = 1;
+  void* p = nullptr;
+  if (alignment <= alignof(std::max_align_t)) {
+    p = std::malloc(size);
+  } else {
+    p = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  }
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
+}
+
+void release(void* p) noexcept {
+  if (p != nullptr) note();
+  std::free(p);
+}
+
+}  // namespace
+
+// NOLINTBEGIN(misc-new-delete-overloads)
+void* operator new(std::size_t size) { return allocate(size, 1); }
+void* operator new[](std::size_t size) { return allocate(size, 1); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return allocate(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return allocate(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* p) noexcept { release(p); }
+void operator delete[](void* p) noexcept { release(p); }
+void operator delete(void* p, std::size_t) noexcept { release(p); }
+void operator delete[](void* p, std::size_t) noexcept { release(p); }
+void operator delete(void* p, std::align_val_t) noexcept { release(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { release(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { release(p); }
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { release(p); }
+// NOLINTEND(misc-new-delete-overloads)
+
+namespace manyworlds::test {
+namespace {
+
+template <class Work>
+long calls_during(Work work) {
+  calls = 0;
+  counting = true;
+  work();
+  counting = false;
+  return calls;
+}
+
+void check_scene(const Scene& scene) {
+  const Plan plan = compile(scene);
+  for (const Table& table : widest_tables()) {
+    for (int threads : {1, 2}) {
+      Batch batch(plan, options_of(table, 100, threads));
+      batch.step();  // may set up the threads
+      INFO(scene.name << ' ' << name(table) << ", " << threads << " threads");
+      CHECK(calls_during([&] {
+              for (int i = 0; i < 40; ++i) batch.step();
+              batch.step(16);
+            }) == 0);
+      CHECK(calls_during([&] { batch.step_to(batch.time() + 0.1); }) == 0);
+      batch.add_force(3, 0, Vec3(1, 0, 0));  // the first one may allocate
+      batch.step();
+      CHECK(calls_during([&] {
+              batch.add_force(5, 0, Vec3(1, 0, 0));
+              batch.add_torque(50, 0, Vec3(0, 0, 1));
+              batch.add_impulse(7, 0, Vec3(0.1, 0, 0));
+              batch.step();
+            }) == 0);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the counter counts", "[fast][allocation]") {
+  CHECK(calls_during([] {
+          ::operator delete(::operator new(3));  // a new expression could be optimised away
+        }) == 2);
+}
+
+TEST_CASE("stepping allocates nothing", "[slow][allocation]") {
+  for (const char* scene : {"bin-boxes", "bin2d", "mixed-pile", "ball3d", "free-flight"}) {
+    const scenes::Entry* entry = scenes::find(scene);
+    REQUIRE(entry != nullptr);
+    check_scene(entry->make());
+  }
+}
+
+TEST_CASE("stepping a crowd allocates nothing", "[fast][allocation]") {
+  check_scene(crowd(Space::planar));
+  check_scene(crowd(Space::spatial));
+}
+
+}  // namespace manyworlds::test

@@ -1,0 +1,107 @@
+// What validate() says about options and about the size of a scene.
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/support/scene_cases.hpp"
+
+namespace manyworlds {
+namespace {
+
+using test::BadInput;
+using test::check_each;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+Scene spatial() { return test::spatial_scene_with(Sphere{0.5}); }
+Scene planar() { return test::planar_scene_with(Circle{0.5}); }
+
+BadInput bad(const std::string& field, double Options::*member, double value,
+             const std::string& message) {
+  return {field, message, [=](Scene& s) { s.options.*member = value; }};
+}
+
+}  // namespace
+
+TEST_CASE("bad options are named with their value", "[fast][scene]") {
+  const std::vector<BadInput> cases = {
+      bad("dt", &Options::dt, 0, "is 0 s, must be > 0"),
+      bad("dt", &Options::dt, -0.01, "is -0.01 s, must be > 0"),
+      bad("dt", &Options::dt, kNan, "is nan s, must be > 0"),
+      bad("dt", &Options::dt, kInf, "is inf s"),
+      bad("dt", &Options::dt, 1e-300, "is 1e-300 s"),
+      {"substeps", "is 0, must be between 1 and 64", [](Scene& s) { s.options.substeps = 0; }},
+      {"substeps", "is -4", [](Scene& s) { s.options.substeps = -4; }},
+      {"substeps", "is 65", [](Scene& s) { s.options.substeps = 65; }},
+      bad("density", &Options::density, 0, "is 0 kg"),
+      bad("density", &Options::density, -1, "is -1 kg"),
+      bad("density", &Options::density, kNan, "is nan kg"),
+      bad("length_unit", &Options::length_unit, 0, "is 0 m, must be > 0"),
+      bad("length_unit", &Options::length_unit, kNan, "is nan m"),
+      bad("contact_frequency", &Options::contact_frequency, -1, "is -1 Hz, must be >= 0"),
+      bad("contact_frequency", &Options::contact_frequency, kInf, "is inf Hz, must be finite"),
+      bad("contact_damping_ratio", &Options::contact_damping_ratio, -1, "must be >= 0"),
+      bad("contact_damping_ratio", &Options::contact_damping_ratio, kNan, "is nan"),
+      bad("push_out_speed", &Options::push_out_speed, -1, "is -1 m/s, must be >= 0"),
+      bad("push_out_speed", &Options::push_out_speed, kNan, "is nan m/s"),
+      bad("slop", &Options::slop, 0, "is 0 m, must be > 0"),
+      bad("slop", &Options::slop, -1, "is -1 m, must be > 0"),
+      bad("slop", &Options::slop, kNan, "is nan m, must be > 0"),
+      bad("restitution_threshold", &Options::restitution_threshold, -1, "is -1 m/s"),
+      bad("restitution_threshold", &Options::restitution_threshold, kNan, "is nan m/s"),
+      {"restitution_sweeps", "is 0, must be between 1 and 64",
+       [](Scene& s) { s.options.restitution_sweeps = 0; }},
+      {"restitution_sweeps", "is 65", [](Scene& s) { s.options.restitution_sweeps = 65; }},
+      {"gravity.x", "is nan m/s^2", [](Scene& s) { s.options.gravity.x() = kNan; }},
+      {"gravity.y", "is inf m/s^2", [](Scene& s) { s.options.gravity.y() = kInf; }}};
+  check_each(spatial(), "options.", cases);
+  check_each(planar(), "options.", cases);
+  check_each(planar(), "options.",
+             {{"gravity.z", "is -10 m/s^2, must be 0 in a planar scene",
+               [](Scene& s) { s.options.gravity.z() = -10; }}});
+}
+
+TEST_CASE("the ends of the option ranges are valid", "[fast][scene]") {
+  Scene scene = spatial();
+  Options& options = scene.options;
+  options.substeps = options.restitution_sweeps = 1;
+  options.contact_frequency = options.contact_damping_ratio = 0;
+  options.push_out_speed = options.restitution_threshold = 0;
+  CHECK(validate(scene).empty());
+  options.substeps = options.restitution_sweeps = 64;
+  CHECK(validate(scene).empty());
+}
+
+TEST_CASE("bounds must hold something and be finite", "[fast][scene]") {
+  const auto set = [](const Vec3& low, const Vec3& high) {
+    return [=](Scene& s) { s.options.bounds = Eigen::AlignedBox3d(low, high); };
+  };
+  check_each(spatial(), "options.",
+             {{"bounds", "are empty: min.y is 1 m, must be at most max.y, which is -1 m",
+               set({-1, 1, -1}, {1, -1, 1})},
+              {"bounds.min.x", "is nan m", set({kNan, -1, -1}, {1, 1, 1})},
+              {"bounds.max.z", "is inf m", set({-1, -1, -1}, {1, 1, kInf})}});
+  Scene scene = spatial();
+  scene.options.bounds.emplace();  // Eigen's empty box
+  CHECK(test::places(scene) ==
+        std::vector<std::string>{"options.bounds", "options.bounds", "options.bounds"});
+}
+
+TEST_CASE("a scene holds at most 32767 bodies and shapes", "[fast][scene]") {
+  Scene scene;
+  Body fixed;
+  fixed.motion = Motion::fixed;
+  scene.bodies.assign(32767, fixed);
+  CHECK(validate(scene).empty());
+  scene.add(fixed);
+  CHECK(test::places(scene) == std::vector<std::string>{"bodies"});
+
+  Scene many_shapes = spatial();
+  many_shapes.bodies[0].shapes.assign(32766, Shape{});
+  CHECK(validate(many_shapes).empty());
+  many_shapes.bodies[0].shapes.emplace_back();
+  REQUIRE(validate(many_shapes).size() == 1);
+  CHECK(to_string(validate(many_shapes)[0]) == "shapes are 32768, must be at most 32767");
+}
+
+}  // namespace manyworlds

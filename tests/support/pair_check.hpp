@@ -1,0 +1,44 @@
+// Random poses of one pair of shapes, seen by Batch::contacts and judged by the slow twins.
+#pragma once
+
+#include <string>
+
+#include "manyworlds/batch.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/solid.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+
+// What a kernel promises about the deepest point of an overlapping pair.
+struct PairPromise {
+  // The normal may be any whose penetration is within bias + bias_relative x depth of the
+  // smallest one (box-box prefers faces); 0 where the smallest is found exactly.
+  double bias = 0;  // m
+  double bias_relative = 0;
+  int max_points = 1;
+};
+
+// Counts, and the first few deviations in words with every number needed to see them again.
+struct PairResult {
+  int poses = 0;
+  int overlapping = 0;
+  int with_contacts = 0;
+  int normals_checked = 0;  // against exact_normal()
+  int deviations = 0;
+  std::string report;
+};
+
+// The scene has two bodies with one shape each; every dynamic one gets random poses, mostly close
+// to touching. Planar scenes get planar poses.
+PairResult check_pair(const Scene& scene, const Table& table, const PairPromise& promise, int poses,
+                      Random& random);
+void merge(PairResult& sum, const PairResult& more);
+
+// Random shapes for check_pair, 0.1 to 0.6 m in half extent.
+Polygon random_polygon(Random& random, int vertices);
+Box random_box(Random& random);
+// A body with this shape, placed off its body frame by a random pose when `offset` is set.
+Body random_body(Geometry geometry, Motion motion, bool offset, Space space, Random& random);
+
+}  // namespace manyworlds::test

@@ -1,0 +1,32 @@
+// Which kernel tables the tests run on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "manyworlds/batch.hpp"
+
+namespace manyworlds::test {
+
+struct Table {
+  Isa isa;
+  Precision precision;
+};
+std::string name(const Table& table);
+
+// Every kernel table that this build has and this machine runs. Development and sanitizer builds
+// leave float64 out; AVX-512 has float32 only.
+const std::vector<Table>& all_tables();
+bool has_table(const Table& table);
+// The instruction set that is taken by default, in every precision that the build has: for tests
+// whose cost matters. Bits are equal over instruction sets (bits_test.cpp), so nothing is lost.
+std::vector<Table> widest_tables();
+
+BatchOptions options_of(const Table& table, int worlds = 1, int threads = 1);
+
+// A tolerance for each precision.
+inline double pick(const Table& table, double f32, double f64) {
+  return table.precision == Precision::f32 ? f32 : f64;
+}
+
+}  // namespace manyworlds::test

@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+"""Includes run downward only: fails on every #include that goes up, sideways or out of bounds.
+
+    tools/check_floors.py [ROOT]
+
+Prints each violation as file:line and exits 1 when there is one. What the floors are is written in
+the tables below and drawn in docs/architecture.md. Also fails on files over 400 lines that do not
+give their reason near the top.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+# A file in src/ includes its own and lower floors.
+SRC_FLOORS = ["base", "scene", "plan", "state", "dispatch", "step", "api"]
+# Off the column: reads models into a Scene and may know nothing below the public headers but these.
+SRC_SIDE = {"mjcf": {"mjcf", "base"}}
+# Floors that may see the kernels' top-level headers (tables and views, no lanes).
+SRC_SEES_KERNELS = {"plan", "state", "dispatch", "step", "api"}
+
+# Top-level headers of kernels/ that hold plain data, shared with src; everything else in kernels/
+# is compiled per instruction set.
+KERNEL_DATA = {"tables.hpp", "group.hpp", "table.hpp"}
+# The rest of kernels/ (collide, constraint, broad phase, ...) stands on the floor above the lanes.
+KERNEL_FLOORS = {"data": 0, "lane": 1, "stage": 2}
+KERNEL_SYSTEM = {
+    "cfloat", "climits", "cmath", "concepts", "cstddef", "cstdint", "immintrin.h", "limits",
+    "type_traits", "utility",
+}
+# Third-party headers with one home: pattern -> folder whose files may include it, and how many.
+ONE_HOME = {
+    r"(oneapi/)?tbb[/.].*": ("src", 1),
+    r"xsimd/.*": ("kernels", 1),
+    r"mujoco/.*": ("src/mjcf", None),
+}
+# Public headers include the standard library (no dot, no slash), Eigen and each other.
+PUBLIC_SYSTEM = re.compile(r"[a-z_0-9]+|Eigen/\w+")
+
+FOLDERS = ["include", "src", "kernels", "scenes", "tests", "bench", "tools", "examples"]
+LINE_LIMIT = 400
+REASON = "over 400 lines because"
+REASON_WITHIN = 15
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def includes(path):
+    """(line number, quoted, name) of each include of a file."""
+    found = []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        match = INCLUDE.match(line)
+        if match:
+            found.append((number, match[1] == '"', match[2]))
+    return found
+
+
+def kernel_floor(name):
+    """Floor of a file in kernels/, given its path from the root."""
+    parts = Path(name).parts
+    if len(parts) == 2 and parts[1] in KERNEL_DATA:
+        return KERNEL_FLOORS["data"]
+    return KERNEL_FLOORS["lane"] if parts[1] == "lane" else KERNEL_FLOORS["stage"]
+
+
+def is_kernel_data(name):
+    return name.startswith("kernels/") and kernel_floor(name) == KERNEL_FLOORS["data"]
+
+
+def check_src(file, name):
+    """Why a file of src/ may not include `name`, or None."""
+    floor = Path(file).parts[1]
+    if name.startswith("src/"):
+        target = Path(name).parts[1]
+        if floor in SRC_SIDE:
+            return None if target in SRC_SIDE[floor] else f"src/{floor} may not know src/{target}"
+        if floor not in SRC_FLOORS:
+            return f"src/{floor} is no floor of src"
+        if target not in SRC_FLOORS:
+            return f"src/{target} is off the column"
+        if SRC_FLOORS.index(target) > SRC_FLOORS.index(floor):
+            return f"goes up from src/{floor} to src/{target}"
+    elif name.startswith("kernels/"):
+        if floor not in SRC_SEES_KERNELS:
+            return f"src/{floor} may not know the kernels"
+        if not is_kernel_data(name):
+            return "src may include the kernels' plain data headers only"
+    elif name.startswith("scenes/"):
+        return "src may not know the scenes"
+    return None
+
+
+def check_kernel(file, name, quoted):
+    """Why a file of kernels/ may not include `name`, or None."""
+    if name.startswith("kernels/"):
+        if kernel_floor(name) > kernel_floor(file):
+            return "goes up inside kernels"
+        return None
+    if quoted:
+        return "kernels include kernels only"
+    if name not in KERNEL_SYSTEM and not name.startswith("xsimd/"):
+        return "kernels may not include this (its code would be compiled per instruction set)"
+    return None
+
+
+def check_public(name, quoted):
+    """Why a public header may not include `name`, or None."""
+    if quoted:
+        return None if name.startswith("manyworlds/") else "public headers include manyworlds/ only"
+    return None if PUBLIC_SYSTEM.fullmatch(name) else "public headers include std and Eigen only"
+
+
+def check_include(file, name, quoted):
+    top = Path(file).parts[0]
+    if top == "src":
+        return check_src(file, name)
+    if top == "kernels":
+        return check_kernel(file, name, quoted)
+    if top == "include":
+        return check_public(name, quoted)
+    if top == "scenes" and name.startswith(("src/", "kernels/")):
+        return "scenes are made from the public headers"
+    return None
+
+
+def homes(graph):
+    """Violations of ONE_HOME."""
+    found = []
+    for pattern, (home, limit) in ONE_HOME.items():
+        users = {}
+        for file, lines in graph.items():
+            for number, _, name in lines:
+                if re.fullmatch(pattern, name):
+                    users.setdefault(file, (number, name))
+        inside = [f for f in users if f.startswith(home + "/")]
+        for file, (number, name) in users.items():
+            # Tests and benchmarks may drive a third-party library of their own accord.
+            if file not in inside and file.startswith(("src/", "kernels/", "include/", "scenes/")):
+                found.append((file, number, f"<{name}> belongs in {home}"))
+            elif limit is not None and file in inside[limit:]:
+                found.append((file, number, f"<{name}> is already included by {inside[0]}"))
+    return found
+
+
+def resolve(file, name, graph):
+    """The file of the tree that a quoted include means: from the root, include/ or beside it."""
+    candidates = (name, f"include/{name}", (Path(file).parent / name).as_posix())
+    return next((c for c in candidates if c in graph), None)
+
+
+def cycles(graph):
+    """One violation per include circle, at the include that closes it."""
+    found, done, path = [], set(), []
+
+    def visit(file):
+        path.append(file)
+        for number, _, name in graph[file]:
+            target = resolve(file, name, graph)
+            if target in path:
+                circle = " > ".join(path[path.index(target):] + [target])
+                found.append((file, number, f"closes the circle {circle}"))
+            elif target is not None and target not in done:
+                visit(target)
+        path.pop()
+        done.add(file)
+
+    for file in graph:
+        if file not in done:
+            visit(file)
+    return found
+
+
+def too_long(root, files):
+    found = []
+    for file in files:
+        lines = (root / file).read_text(encoding="utf-8").splitlines()
+        if len(lines) > LINE_LIMIT and not any(REASON in l for l in lines[:REASON_WITHIN]):
+            found.append((file, LINE_LIMIT + 1,
+                          f"{len(lines)} lines, and no line near the top says '{REASON} ...'"))
+    return found
+
+
+def check(root):
+    """All violations as (file, line, message), and the number of files and includes seen."""
+    code, texts = [], []
+    for folder in FOLDERS + ["cmake", ".ci"]:
+        for path in sorted((root / folder).rglob("*")):
+            if not path.is_file() or "__pycache__" in path.parts:
+                continue
+            file = path.relative_to(root).as_posix()
+            if path.suffix in (".cpp", ".hpp", ".h"):
+                code.append(file)
+            if path.suffix in (".cpp", ".hpp", ".h", ".py", ".sh", ".cmake", ""):
+                texts.append(file)
+    graph = {file: includes(root / file) for file in code}
+    found = []
+    for file, lines in graph.items():
+        for number, quoted, name in lines:
+            why = check_include(file, name, quoted)
+            if why:
+                found.append((file, number, f"{name}: {why}"))
+            elif quoted and resolve(file, name, graph) is None:
+                found.append((file, number, f"{name}: there is no such file"))
+    found += homes(graph) + cycles(graph) + too_long(root, texts)
+    return sorted(found), len(graph), sum(map(len, graph.values()))
+
+
+def main():
+    root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
+    found, files, count = check(root)
+    for file, line, message in found:
+        print(f"{file}:{line}: {message}")
+    if not files:
+        print(f"{root}: no source files here")
+        return 1
+    print(f"{files} files, {count} includes, {len(found)} violations")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,186 @@
+// `manyworlds bench`: the standard scenes by one protocol, so that figures can be compared.
+//
+// Every run starts from reset(), takes the warm-up steps, then the timed ones; the median of the
+// repeats counts. Each scene is run with 1 thread and with all, by step(1) calls and by step(k)
+// calls. The state is hashed after every run: a speed whose hash is not the one of all other runs
+// of that scene is no result, and ends the program with an error.
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "manyworlds/scenes.hpp"
+
+#include "commands.hpp"
+#include "job.hpp"
+#include "lost_worlds.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "text.hpp"
+
+namespace manyworlds::cli {
+namespace {
+
+constexpr int kProfiledSteps = 96;
+constexpr std::size_t kLostShown = 10;
+
+// Bits that should have been equal were not; what() says which.
+class HashMismatch : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+std::vector<std::string> default_scenes() {
+  std::vector<std::string> names;
+  for (const scenes::Entry& entry : scenes::all()) {
+    if (entry.standard) names.emplace_back(entry.name);
+  }
+  if (std::find(names.begin(), names.end(), "free-flight") == names.end()) {
+    names.emplace_back("free-flight");
+  }
+  return names;
+}
+
+// All runs of one scene.
+class SceneBench {
+ public:
+  SceneBench(const BenchOptions& options, const Job& job, Progress& progress)
+      : options_(options), job_(job), progress_(progress) {}
+
+  // The median over the repeats. Throws HashMismatch.
+  Report time(Batch& batch, int steps_per_call) {
+    progress_.set_label(fmt::format("{}, {}, step({})", job_.scene,
+                                    counted(batch.threads(), "thread"), steps_per_call));
+    std::vector<double> seconds;
+    for (int repeat = 0; repeat < options_.repeats; ++repeat) {
+      warm_up(batch, steps_per_call);
+      seconds.push_back(timed_steps(batch, job_.steps, steps_per_call, &progress_));
+      require_same_hash(batch, steps_per_call, repeat);
+    }
+    Report report = measure(batch, job_, job_.steps, steps_per_call, median(seconds));
+    lost_ = LostWorlds();
+    lost_.collect(batch, 0, options_.job.seed.value_or(0));
+    warm_up(batch, steps_per_call);
+    report.stage_split =
+        profile_stages(batch, std::min(job_.steps, kProfiledSteps), steps_per_call);
+    return report;
+  }
+
+  const LostWorlds& lost() const { return lost_; }
+
+ private:
+  void warm_up(Batch& batch, int steps_per_call) {
+    batch.reset();
+    timed_steps(batch, options_.warm_up, steps_per_call, &progress_);
+  }
+
+  void require_same_hash(const Batch& batch, int steps_per_call, int repeat) {
+    const std::uint64_t hash = batch.hash();
+    if (!hash_) hash_ = hash;
+    if (hash == *hash_) return;
+    throw HashMismatch(fmt::format(
+        "{}: hash {} with {} and step({}) calls in run {}, but {} in the first run", job_.scene,
+        hex(hash), counted(batch.threads(), "thread"), steps_per_call, repeat + 1, hex(*hash_)));
+  }
+
+  const BenchOptions& options_;
+  const Job& job_;
+  Progress& progress_;
+  std::optional<std::uint64_t> hash_;
+  LostWorlds lost_;
+};
+
+void print_head(const BenchOptions& options, const Batch& batch) {
+  const std::string calls = fmt::format("step({})", options.job.steps_per_call);
+  fmt::print("{}, {} of warm-up, {} timed, median of {}; {}, sleep off\n\n",
+             counted(options.job.worlds, "world"), counted(options.warm_up, "step"),
+             options.job.steps, counted(options.repeats, "run"), batch.kernel_table());
+  fmt::print("{:<15}{:>8}{:>22}{:>14}{:>10}{:>12}{:>8}  {:<16}\n", "", "", "world-steps/s",
+             "body-steps/s", "contacts", "deepest", "lost", "");
+  fmt::print("{:<15}{:>8}{:>11}{:>11}{:>14}{:>10}{:>12}{:>8}  {:<16}\n", "scene", "threads",
+             "step(1)", calls, calls, "/world", "overlap", "worlds", "hash");
+}
+
+void print_row(const Report& single, const Report& multiple) {
+  fmt::print("{:<15}{:>8}{:>11}{:>11}{:>14}{:>10.1f}{:>12}{:>8}  {:<16}\n", single.scene,
+             single.threads, with_prefix(single.world_steps_per_s),
+             with_prefix(multiple.world_steps_per_s), with_prefix(multiple.body_steps_per_s),
+             single.contacts_per_world, length(single.max_penetration), single.lost_worlds,
+             hex(single.hash));
+  std::fflush(stdout);
+}
+
+std::vector<Job> prepare_all(const BenchOptions& options) {
+  const std::vector<std::string> names = options.scenes.empty() ? default_scenes() : options.scenes;
+  std::vector<Job> jobs;
+  for (const std::string& name : names) {
+    JobOptions one = options.job;
+    one.scene = name;
+    jobs.push_back(prepare(one));
+  }
+  return jobs;
+}
+
+}  // namespace
+
+int bench_command(const BenchOptions& options) {
+  const std::vector<Job> jobs = prepare_all(options);  // every name is checked before the first run
+  const JobOptions& job_options = options.job;
+  const std::uint64_t seed = job_options.seed.value_or(0);
+
+  // Steps of all runs: two thread counts, two kinds of call.
+  const std::int64_t runs = 2 * 2 * static_cast<std::int64_t>(options.repeats);
+  std::int64_t work = 0;
+  for (const Job& job : jobs) work += runs * (job.steps + options.warm_up);
+  Progress progress("bench", work);
+
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  bool any_lost = false;
+  bool head = !job_options.json;
+  for (const Job& job : jobs) {
+    SceneBench bench(options, job, progress);
+    int last_threads = 0;
+    for (const int threads : {1, job_options.threads}) {
+      Batch batch = make_batch(job, job_options, job_options.worlds, seed, threads);
+      if (batch.threads() == last_threads) continue;  // a machine with one core
+      last_threads = batch.threads();
+      if (std::exchange(head, false)) print_head(options, batch);
+      try {
+        const Report single = bench.time(batch, 1);
+        list.push_back(to_json(single));
+        Report multiple = single;
+        if (job_options.steps_per_call > 1) {
+          multiple = bench.time(batch, job_options.steps_per_call);
+          list.push_back(to_json(multiple));
+        }
+        progress.erase();
+        if (!job_options.json) print_row(single, multiple);
+      } catch (const HashMismatch& mismatch) {
+        progress.erase();
+        fmt::print(stderr, "manyworlds: {}\n", mismatch.what());
+        return kWorldLost;
+      }
+    }
+    JobOptions reproduce = job_options;
+    reproduce.scene = job.scene;
+    print_lost(bench.lost(), reproduce, options.warm_up + job.steps, kLostShown);
+    any_lost = any_lost || !bench.lost().lost().empty();
+  }
+  progress.erase();
+  if (job_options.json) fmt::print("{}\n", list.dump(2));
+  return any_lost ? kWorldLost : kOk;
+}
+
+}  // namespace manyworlds::cli

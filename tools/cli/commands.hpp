@@ -1,0 +1,18 @@
+// The subcommands. Each takes parsed options, writes its result to standard output and everything
+// else to standard error, and returns an exit code. They throw InputError, SceneError and
+// std::invalid_argument for input that cannot be used, before anything is written.
+#pragma once
+
+#include "options.hpp"
+
+namespace manyworlds::cli {
+
+int scenes_command(bool json);
+int run_command(const JobOptions& options);
+int plan_command(const JobOptions& options);
+int bench_command(const BenchOptions& options);
+int verify_command(const VerifyOptions& options);
+int soak_command(const JobOptions& options);
+int info_command();
+
+}  // namespace manyworlds::cli

@@ -1,0 +1,68 @@
+// `manyworlds info`: what this program is, and what it runs on.
+#include <sched.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "manyworlds/batch.hpp"
+
+#include "commands.hpp"
+#include "scene_source.hpp"
+#include "version.hpp"
+
+namespace manyworlds::cli {
+namespace {
+
+std::string cpu_model() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("model name")) continue;
+    const std::size_t value = line.find_first_not_of(" \t", line.find(':') + 1);
+    if (value != std::string::npos) return line.substr(value);
+  }
+  return "unknown";
+}
+
+// CPUs in the affinity mask: what --threads 0 comes to.
+int usable_cpus() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
+  return std::max(CPU_COUNT(&set), 1);
+}
+
+std::string isa_list() {
+  const std::vector<Isa> available = available_isas();
+  std::string list;
+  for (const Isa isa : {Isa::scalar, Isa::avx2, Isa::avx512}) {
+    const bool usable = std::find(available.begin(), available.end(), isa) != available.end();
+    list += fmt::format("{}{}{}", list.empty() ? "" : ", ", to_string(isa),
+                        usable ? "" : " (not available)");
+  }
+  return list;
+}
+
+}  // namespace
+
+int info_command() {
+  const Isa in_use = default_isa();  // throws before anything is printed
+  const auto row = [](const char* name, const std::string& value) {
+    fmt::print("{:<13}{}\n", name, value);
+  };
+  row("manyworlds", kVersion);
+  row("compiler", kCompiler);
+  row("cpu", cpu_model());
+  row("threads", fmt::format("{}", usable_cpus()));
+  row("isa", isa_list());
+  row("isa in use", to_string(in_use));
+  row("precision", fmt::format("{}, {}", to_string(Precision::f32), to_string(Precision::f64)));
+  row("mjcf", reads_mjcf() ? "yes" : "no");
+  return kOk;
+}
+
+}  // namespace manyworlds::cli

@@ -1,0 +1,33 @@
+// A scene made ready to step as the options ask, and the clock around its steps.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "manyworlds/batch.hpp"
+#include "manyworlds/plan.hpp"
+
+#include "options.hpp"
+#include "progress.hpp"
+
+namespace manyworlds::cli {
+
+struct Job {
+  std::string scene;  // as the user wrote it
+  Plan plan;
+  int steps = 0;  // --steps, or what --seconds comes to
+};
+
+// Loads, applies --dt and the like, compiles. Throws InputError and SceneError.
+Job prepare(const JobOptions& options);
+
+// A batch of `worlds` whose world i draws from seed + i. Throws InputError when the machine does
+// not have the memory, std::invalid_argument from the library.
+Batch make_batch(const Job& job, const JobOptions& options, int worlds, std::uint64_t seed,
+                 int threads);
+
+// Takes `steps` steps in calls of `steps_per_call` (the last one may be shorter); returns the
+// seconds spent inside step(). `progress` may be null.
+double timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progress);
+
+}  // namespace manyworlds::cli

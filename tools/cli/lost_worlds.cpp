@@ -1,0 +1,66 @@
+#include "lost_worlds.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace manyworlds::cli {
+namespace {
+
+// As a POSIX shell takes it: file names may hold blanks and quotes.
+std::string quoted(const std::string& word) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+void LostWorlds::collect(const Batch& batch, std::int64_t first, std::uint64_t seed) {
+  for (int world = 0; world < batch.worlds(); ++world) {
+    const Status status = batch.status(world);
+    if (has(status, Status::contact_overflow)) ++overflowed_;
+    if (!manyworlds::lost(status)) continue;
+    lost_.push_back({first + world, seed + static_cast<std::uint64_t>(world), status});
+  }
+}
+
+std::map<std::string, std::int64_t> LostWorlds::by_reason() const {
+  std::map<std::string, std::int64_t> counts;
+  for (const LostWorld& world : lost_) ++counts[to_string(world.status)];
+  return counts;
+}
+
+std::string reproduce_command(const JobOptions& options, int steps, std::uint64_t seed) {
+  std::string command = fmt::format("manyworlds run {} --worlds 1 --seed {} --steps {}",
+                                    quoted(options.scene), seed, steps);
+  if (options.dt) command += fmt::format(" --dt {}", *options.dt);
+  if (options.substeps) command += fmt::format(" --substeps {}", *options.substeps);
+  if (options.precision != Precision::f32) {
+    command += fmt::format(" --precision {}", to_string(options.precision));
+  }
+  if (options.broad_phase != BroadPhase::automatic) {
+    command += " --broad-phase " + option_name(options.broad_phase);
+  }
+  for (const Feature feature : options.keep)
+    command += fmt::format(" --keep {}", to_string(feature));
+  return command;
+}
+
+void print_lost(const LostWorlds& worlds, const JobOptions& options, int steps, std::size_t most) {
+  const std::size_t shown = std::min(most, worlds.lost().size());
+  for (std::size_t i = 0; i < shown; ++i) {
+    const LostWorld& lost = worlds.lost()[i];
+    fmt::print(stderr, "manyworlds: world {} lost ({}): {}\n", lost.world, to_string(lost.status),
+               reproduce_command(options, steps, lost.seed));
+  }
+  if (shown < worlds.lost().size()) {
+    fmt::print(stderr, "manyworlds: and {} more of them\n", worlds.lost().size() - shown);
+  }
+}
+
+}  // namespace manyworlds::cli

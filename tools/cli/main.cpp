@@ -1,0 +1,204 @@
+// The program `manyworlds`: parsing and exit codes. What a subcommand does is in its own file.
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "commands.hpp"
+#include "options.hpp"
+#include "version.hpp"
+
+namespace manyworlds::cli {
+namespace {
+
+struct AllOptions {
+  bool scenes_json = false;
+  JobOptions run;
+  JobOptions plan;
+  BenchOptions bench;
+  VerifyOptions verify;
+  std::optional<std::uint64_t> verify_seed;
+  JobOptions soak;
+};
+
+constexpr const char* kAppFooter =
+    "Examples:\n"
+    "  manyworlds run bin-boxes --worlds 4096 --seconds 5\n"
+    "  manyworlds bench --scenes bin-spheres,stack10\n"
+    "  manyworlds run --help\n"
+    "\n"
+    "Exit codes: 0 ok, 1 a world was lost or bits differ, 2 bad input.\n"
+    "MANYWORLDS_ISA=scalar|avx2|avx512 chooses the instruction set of all commands.";
+
+void add_scenes(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command = app.add_subcommand("scenes", "List the scenes that have a name");
+  command->add_flag("--json", all.scenes_json, "print JSON instead of text");
+  command->footer("Example:\n  manyworlds scenes");
+  command->callback([&] { code = scenes_command(all.scenes_json); });
+}
+
+void add_run(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command = app.add_subcommand("run", "Step many worlds of a scene and sum up");
+  add_scene_argument(*command, all.run);
+  add_batch_options(*command, all.run);
+  add_length_options(*command, all.run);
+  add_count(*command, "--steps-per-call", all.run.steps_per_call, 1, "n of each step(n) call");
+  add_plan_options(*command, all.run);
+  add_seed(*command, all.run.seed, "world i draws from seed + i (default: 0)");
+  add_json_option(*command, all.run);
+  command->footer(
+      "Examples:\n"
+      "  manyworlds run bin-boxes --worlds 4096 --seconds 5\n"
+      "  manyworlds run pile.xml --dt 0.005 --substeps 2 --threads 1 --json\n"
+      "  manyworlds run stack10 --precision f64 --worlds 1 --seed 17\n"
+      "\n"
+      "Contacts, penetration, energy, lost worlds and hash are of the state after the last\n"
+      "step. The stage split is measured afterwards, in a few more steps.");
+  command->callback([&] { code = run_command(all.run); });
+}
+
+void add_plan(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command =
+      app.add_subcommand("plan", "Show what a scene's step consists of, what is left out, and why");
+  add_scene_argument(*command, all.plan);
+  add_plan_options(*command, all.plan);
+  add_json_option(*command, all.plan);
+  command->footer(
+      "Examples:\n"
+      "  manyworlds plan bin-boxes\n"
+      "  manyworlds plan ball3d --keep friction --keep drag");
+  command->callback([&] { code = plan_command(all.plan); });
+}
+
+void add_bench(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command = app.add_subcommand("bench", "Measure the standard scenes");
+  JobOptions& job = all.bench.job;
+  add_scene_list(*command, all.bench.scenes);
+  add_batch_options(*command, job);
+  add_count(*command, "--steps", job.steps, 1, "timed steps of every run");
+  add_count(*command, "--warm-up", all.bench.warm_up, 0, "steps before the clock starts");
+  add_count(*command, "--repeats", all.bench.repeats, 1, "runs; the median counts");
+  add_count(*command, "--steps-per-call", job.steps_per_call, 1, "k of the step(k) column");
+  add_plan_options(*command, job);
+  add_seed(*command, job.seed, "world i draws from seed + i (default: 0)");
+  add_json_option(*command, job);
+  command->footer(
+      "Examples:\n"
+      "  manyworlds bench\n"
+      "  manyworlds bench --scenes bin-spheres,bin-boxes --steps 600 --repeats 5\n"
+      "  manyworlds bench --threads 2 --json\n"
+      "\n"
+      "Each scene is measured with 1 thread and with --threads (default: all), by step(1)\n"
+      "calls and by step(k) calls. All runs of a scene must end in the same hash.");
+  command->callback([&] { code = bench_command(all.bench); });
+}
+
+void add_verify(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command = app.add_subcommand(
+      "verify", "Check on this machine that a world's bits do not depend on how it is run");
+  command->add_flag("--quick", all.verify.quick, "fewer scenes and steps");
+  add_scene_list(*command, all.verify.scenes);
+  add_seed(*command, all.verify_seed, "seed of the worlds compared (default: 1)");
+  command->footer(
+      "Examples:\n"
+      "  manyworlds verify --quick\n"
+      "  manyworlds verify --scenes stack10,billiards");
+  command->callback([&] {
+    if (all.verify_seed) all.verify.seed = *all.verify_seed;
+    code = verify_command(all.verify);
+  });
+}
+
+void add_soak(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command =
+      app.add_subcommand("soak", "Run many worlds for long from random seeds, count the lost");
+  all.soak.worlds = 10000;
+  all.soak.steps = 1000;
+  add_scene_argument(*command, all.soak);
+  add_batch_options(*command, all.soak);
+  add_length_options(*command, all.soak);
+  add_plan_options(*command, all.soak);
+  add_seed(*command, all.soak.seed, "world i draws from seed + i (default: random, printed)");
+  command->footer(
+      "Examples:\n"
+      "  manyworlds soak bin-boxes\n"
+      "  manyworlds soak mixed-pile --worlds 100000 --seconds 60");
+  command->callback([&] { code = soak_command(all.soak); });
+}
+
+void add_info(CLI::App& app, int& code) {
+  CLI::App* command =
+      app.add_subcommand("info", "Show the CPU, instruction sets, threads and versions");
+  command->footer("Example:\n  MANYWORLDS_ISA=avx2 manyworlds info");
+  command->callback([&] { code = info_command(); });
+}
+
+// One line per problem, each with the program's name in front.
+int complain(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    if (!line.empty()) fmt::print(stderr, "manyworlds: {}\n", line);
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+  }
+  return kBadInput;
+}
+
+// What is wrong with the command line, and where help is unless the message already says it all.
+std::string describe(const CLI::ParseError& error, const CLI::App& app) {
+  const std::vector<CLI::App*> commands = app.get_subcommands();
+  if (commands.empty()) {
+    std::string names;
+    for (const CLI::App* command : app.get_subcommands(nullptr)) {
+      names += (names.empty() ? "" : ", ") + command->get_name();
+    }
+    const std::vector<std::string> rest = app.remaining();
+    return rest.empty() ? fmt::format("a command is missing: {}", names)
+                        : fmt::format("unknown command '{}'; there are {}", rest.front(), names);
+  }
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return error.what();
+  return fmt::format("{} (see 'manyworlds {} --help')", error.what(), commands.front()->get_name());
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app("Steps thousands of small rigid-body worlds at once.", "manyworlds");
+  app.set_version_flag("--version", fmt::format("manyworlds {}", kVersion));
+  app.footer(kAppFooter);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+
+  AllOptions all;
+  int code = kOk;
+  add_scenes(app, all, code);
+  add_run(app, all, code);
+  add_plan(app, all, code);
+  add_bench(app, all, code);
+  add_verify(app, all, code);
+  add_soak(app, all, code);
+  add_info(app, code);
+  try {
+    app.parse(argc, argv);  // runs the subcommand's callback
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return complain(describe(error, app));
+  } catch (const std::bad_alloc&) {
+    return complain("not enough memory for so many worlds (--worlds)");
+  } catch (const std::exception& error) {
+    return complain(error.what());  // InputError, SceneError, std::invalid_argument
+  }
+  if (std::fflush(stdout) != 0) return complain("cannot write to standard output");
+  return code;
+}
+
+}  // namespace
+}  // namespace manyworlds::cli
+
+int main(int argc, char** argv) { return manyworlds::cli::run_program(argc, argv); }

@@ -1,0 +1,215 @@
+#include "options.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+namespace manyworlds::cli {
+namespace {
+
+// The whole of `text` as a number, or nothing. Stricter than CLI11's own conversion, which takes
+// leading blanks, hexadecimal and, for unsigned numbers, a minus sign.
+template <class Number>
+std::optional<Number> parse(const std::string& text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return value;
+}
+
+// "a, b or c"
+std::string any_of(const std::vector<std::string>& names) {
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) list += i + 1 == names.size() ? " or " : ", ";
+    list += names[i];
+  }
+  return list;
+}
+
+CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
+  return CLI::Validator(
+      [least, most](std::string& text) -> std::string {
+        const std::optional<std::int64_t> value = parse<std::int64_t>(text);
+        if (!value) return fmt::format("must be a whole number, is '{}'", text);
+        if (*value < least) return fmt::format("must be at least {}, is {}", least, text);
+        if (*value > most) return fmt::format("must be at most {}, is {}", most, text);
+        return {};
+      },
+      std::string());
+}
+
+CLI::Validator positive_number() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        const std::optional<double> value = parse<double>(text);
+        if (!value) return fmt::format("must be a number, is '{}'", text);
+        if (!std::isfinite(*value) || *value <= 0) {
+          return fmt::format("must be a finite number above 0, is {}", text);
+        }
+        return {};
+      },
+      std::string());
+}
+
+template <class Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+const Choices<BroadPhase>& broad_phases() {
+  static const Choices<BroadPhase> choices = {{"auto", BroadPhase::automatic},
+                                              {"all-pairs", BroadPhase::all_pairs},
+                                              {"sort-and-sweep", BroadPhase::sort_and_sweep}};
+  return choices;
+}
+
+const Choices<ContactLayout>& layouts() {
+  static const Choices<ContactLayout> choices = {{"auto", ContactLayout::automatic},
+                                                 {"dense", ContactLayout::dense},
+                                                 {"rows", ContactLayout::rows}};
+  return choices;
+}
+
+Choices<Feature> features() {
+  Choices<Feature> choices;
+  for (int i = 0; i < kFeatureCount; ++i) {
+    const auto feature = static_cast<Feature>(i);
+    choices.emplace_back(to_string(feature), feature);
+  }
+  return choices;
+}
+
+template <class Value>
+std::string name_of(const Choices<Value>& choices, Value value) {
+  for (const auto& [name, candidate] : choices) {
+    if (candidate == value) return name;
+  }
+  return {};
+}
+
+// An option that takes one name out of a list, each time it is given.
+template <class Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& flag, const Choices<Value>& choices,
+                        std::function<void(Value)> take, const std::string& help) {
+  std::vector<std::string> names;
+  for (const auto& choice : choices) names.push_back(choice.first);
+  const auto on_values = [flag, choices, names, take](const std::vector<std::string>& values) {
+    for (const std::string& text : values) {
+      bool known = false;
+      for (const auto& [name, value] : choices) {
+        if (name != text) continue;
+        take(value);
+        known = true;
+      }
+      if (!known) {
+        throw CLI::ValidationError(flag, fmt::format("must be {}, is '{}'", any_of(names), text));
+      }
+    }
+  };
+  CLI::Option* option = app.add_option_function<std::vector<std::string>>(flag, on_values, help);
+  return option->type_name(fmt::format("{}", fmt::join(names, "|")))
+      ->expected(1)
+      ->allow_extra_args(false);
+}
+
+}  // namespace
+
+void add_count(CLI::App& app, const std::string& flag, int& value, int least,
+               const std::string& help) {
+  app.add_option(flag, value, help)
+      ->check(whole_number(least, std::numeric_limits<int>::max()))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& help) {
+  app.add_option_function<std::string>(
+         "--seed",
+         [&seed](const std::string& text) {
+           seed = parse<std::uint64_t>(text);
+           if (!seed) {
+             throw CLI::ValidationError(
+                 "--seed", fmt::format("must be a whole number from 0 to 2^64 - 1, is '{}'", text));
+           }
+         },
+         help)
+      ->type_name("N");
+}
+
+void add_scene_argument(CLI::App& app, JobOptions& options) {
+  app.add_option("scene", options.scene, "name of a scene, or an MJCF file (.xml)")
+      ->required()
+      ->type_name("SCENE|FILE.xml");
+}
+
+void add_plan_options(CLI::App& app, JobOptions& options) {
+  app.add_option("--dt", options.dt, "length of a step, s (default: the scene's)")
+      ->check(positive_number())
+      ->type_name("S");
+  app.add_option("--substeps", options.substeps,
+                 "contact substeps per step, 1 to 64 (default: the scene's)")
+      ->check(whole_number(1, 64))
+      ->type_name("N");
+  add_choice<BroadPhase>(
+      app, "--broad-phase", broad_phases(),
+      [&options](BroadPhase value) { options.broad_phase = value; },
+      "how candidate pairs are found; the bits do not depend on it");
+  add_choice<Feature>(
+      app, "--keep", features(), [&options](Feature value) { options.keep.push_back(value); },
+      "keep a stage that the plan would leave out; may be repeated")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_batch_options(CLI::App& app, JobOptions& options) {
+  add_count(app, "--worlds", options.worlds, 1, "number of worlds");
+  app.add_option("--threads", options.threads, "threads; 0: all that the process may use")
+      ->check(whole_number(0, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+  add_choice<Precision>(
+      app, "--precision",
+      {{to_string(Precision::f32), Precision::f32}, {to_string(Precision::f64), Precision::f64}},
+      [&options](Precision value) { options.precision = value; },
+      "arithmetic of the step (default: f32)");
+  add_choice<Isa>(
+      app, "--isa",
+      {{to_string(Isa::scalar), Isa::scalar},
+       {to_string(Isa::avx2), Isa::avx2},
+       {to_string(Isa::avx512), Isa::avx512}},
+      [&options](Isa value) { options.isa = value; },
+      "instruction set (default: MANYWORLDS_ISA, else the widest)");
+  add_choice<ContactLayout>(
+      app, "--layout", layouts(), [&options](ContactLayout value) { options.layout = value; },
+      "storage of contacts between bodies; the bits do not depend on it");
+}
+
+void add_length_options(CLI::App& app, JobOptions& options) {
+  CLI::Option* steps = app.add_option("--steps", options.steps, "steps of every world")
+                           ->check(whole_number(1, std::numeric_limits<int>::max()))
+                           ->type_name("N")
+                           ->capture_default_str();
+  app.add_option("--seconds", options.seconds, "simulated time instead of a number of steps")
+      ->check(positive_number())
+      ->type_name("S")
+      ->excludes(steps);
+}
+
+void add_json_option(CLI::App& app, JobOptions& options) {
+  app.add_flag("--json", options.json, "print JSON instead of text");
+}
+
+void add_scene_list(CLI::App& app, std::vector<std::string>& scenes) {
+  app.add_option("--scenes", scenes, "only these scenes, separated by commas")
+      ->delimiter(',')
+      ->type_name("A,B,...");
+}
+
+std::string option_name(BroadPhase broad_phase) { return name_of(broad_phases(), broad_phase); }
+std::string option_name(ContactLayout layout) { return name_of(layouts(), layout); }
+
+}  // namespace manyworlds::cli

@@ -1,0 +1,85 @@
+// What the subcommands share: the options of a job, their checks, and how they are parsed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "manyworlds/batch.hpp"
+#include "manyworlds/plan.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace manyworlds::cli {
+
+// Exit codes of the program.
+inline constexpr int kOk = 0;
+inline constexpr int kWorldLost = 1;  // or, for verify and bench, bits that differ
+inline constexpr int kBadInput = 2;
+
+// The user asked for something that cannot be done; what() is one complete line.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct JobOptions {
+  std::string scene;  // name of a scene, or path of an MJCF file
+
+  // Changes to the scene and its plan.
+  std::optional<double> dt;     // s
+  std::optional<int> substeps;  // per step
+  BroadPhase broad_phase = BroadPhase::automatic;
+  std::vector<Feature> keep;
+
+  // The batch.
+  int worlds = 1024;
+  int threads = 0;  // 0: all
+  Precision precision = Precision::f32;
+  std::optional<std::uint64_t> seed;  // world i draws from seed + i
+  std::optional<Isa> isa;
+  ContactLayout layout = ContactLayout::automatic;
+
+  // The length of the job.
+  int steps = 300;
+  std::optional<double> seconds;  // s, simulated; replaces steps
+  int steps_per_call = 16;        // n of each step(n) call
+
+  bool json = false;
+};
+
+struct BenchOptions {
+  JobOptions job;
+  std::vector<std::string> scenes;  // empty: the standard ones
+  int warm_up = 60;                 // steps before the clock starts
+  int repeats = 3;                  // timed runs; the median counts
+};
+
+struct VerifyOptions {
+  std::vector<std::string> scenes;  // empty: a chosen handful
+  std::uint64_t seed = 1;
+  bool quick = false;
+};
+
+// Each adds one group of options to a subcommand; values that fail their check make CLI11's parse
+// throw with the option's name in front. The options must outlive the parse.
+void add_scene_argument(CLI::App& app, JobOptions& options);
+void add_plan_options(CLI::App& app, JobOptions& options);
+void add_batch_options(CLI::App& app, JobOptions& options);
+void add_length_options(CLI::App& app, JobOptions& options);
+void add_json_option(CLI::App& app, JobOptions& options);
+void add_scene_list(CLI::App& app, std::vector<std::string>& scenes);
+// A whole number of at least `least`.
+void add_count(CLI::App& app, const std::string& flag, int& value, int least,
+               const std::string& help);
+void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& help);
+
+// The name an option takes for a value: "auto" for automatic, otherwise the library's own.
+std::string option_name(BroadPhase broad_phase);
+std::string option_name(ContactLayout layout);
+
+}  // namespace manyworlds::cli

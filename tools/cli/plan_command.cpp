@@ -1,0 +1,122 @@
+// `manyworlds plan`: what the step of a scene consists of, what was left out, and why.
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "job.hpp"
+#include "text.hpp"
+
+namespace manyworlds::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const std::vector<PlanReport::Item>& items) {
+  Json list = Json::array();
+  for (const auto& item : items) {
+    list.push_back({{"name", item.name}, {"in", item.in}, {"why", item.why}});
+  }
+  return list;
+}
+
+Json to_json(const Job& job, const PlanReport& report) {
+  Json pairs = Json::array();
+  for (const auto& pair : report.pairs) {
+    pairs.push_back({{"kernel", pair.kernel},
+                     {"kind", pair.kind},
+                     {"candidates", pair.candidates},
+                     {"culled", pair.culled}});
+  }
+  Json arrays = Json::array();
+  for (const auto& array : report.arrays) {
+    arrays.push_back(
+        {{"name", array.name}, {"shape", array.shape}, {"bytes_per_world", array.bytes_per_world}});
+  }
+  return {{"scene", job.scene},
+          {"bodies", job.plan.bodies()},
+          {"features", to_json(report.features)},
+          {"stages", to_json(report.stages)},
+          {"pairs", pairs},
+          {"arrays", arrays},
+          {"broad_phase", option_name(report.broad_phase)},
+          {"pair_capacity", report.pair_capacity},
+          {"fixed_capacity", report.fixed_capacity},
+          {"bytes_per_world", report.bytes_per_world}};
+}
+
+template <class Items, class Name>
+std::size_t widest(const Items& items, Name name, std::size_t least) {
+  std::size_t width = least;
+  for (const auto& item : items) width = std::max(width, name(item).size());
+  return width;
+}
+
+void print_items(const char* title, const std::vector<PlanReport::Item>& items) {
+  const std::size_t width = widest(
+      items, [](const auto& item) { return item.name; }, 0);
+  fmt::print("\n{}\n", title);
+  for (const auto& item : items) {
+    fmt::print("  {:<3}  {:<{}}  {}\n", item.in ? "in" : "out", item.name, width, item.why);
+  }
+}
+
+void print_pairs(const std::vector<PlanReport::PairClass>& pairs) {
+  fmt::print("\npairs of shapes\n");
+  if (pairs.empty()) {
+    fmt::print("  none\n");
+    return;
+  }
+  const std::size_t width = widest(
+      pairs, [](const auto& pair) { return pair.kernel; }, 6);
+  fmt::print("  {:<{}}  {:<7}{:>11}{:>11}\n", "kernel", width, "kind", "candidates", "culled");
+  for (const auto& pair : pairs) {
+    fmt::print("  {:<{}}  {:<7}{:>11}{:>11}\n", pair.kernel, width, pair.kind, pair.candidates,
+               pair.culled);
+  }
+}
+
+void print_arrays(const PlanReport& report) {
+  const std::size_t names = widest(
+      report.arrays, [](const auto& array) { return array.name; }, 5);
+  const std::size_t shapes = widest(
+      report.arrays, [](const auto& array) { return array.shape; }, 5);
+  fmt::print("\npersistent arrays, float32\n");
+  fmt::print("  {:<{}}  {:<{}}{:>17}\n", "array", names, "shape", shapes, "bytes per world");
+  for (const auto& array : report.arrays) {
+    fmt::print("  {:<{}}  {:<{}}{:>17}\n", array.name, names, array.shape, shapes,
+               array.bytes_per_world);
+  }
+  fmt::print("  {:<{}}  {:<{}}{:>17}\n", "total", names, "", shapes, report.bytes_per_world);
+}
+
+}  // namespace
+
+int plan_command(const JobOptions& options) {
+  const Job job = prepare(options);
+  const PlanReport report = job.plan.report();
+  if (options.json) {
+    fmt::print("{}\n", to_json(job, report).dump(2));
+    return kOk;
+  }
+  const Scene& scene = job.plan.scene();
+  fmt::print(
+      "{}: {} ({} with state), {}, dt {:.6g} s, {}\n", job.scene,
+      fmt::format("{} {}", scene.bodies.size(), scene.bodies.size() == 1 ? "body" : "bodies"),
+      job.plan.bodies(), scene.space == Space::planar ? "planar" : "spatial", scene.options.dt,
+      counted(scene.options.substeps, "substep"));
+  print_items("features", report.features);
+  print_items("stages, in the order of the step", report.stages);
+  print_pairs(report.pairs);
+  print_arrays(report);
+  fmt::print("\nbroad phase      {}\n", option_name(report.broad_phase));
+  fmt::print("capacity         {} between bodies, {} against fixed shapes\n",
+             counted(report.pair_capacity, "manifold"), report.fixed_capacity);
+  return kOk;
+}
+
+}  // namespace manyworlds::cli

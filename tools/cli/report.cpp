@@ -1,0 +1,98 @@
+#include "report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "text.hpp"
+
+namespace manyworlds::cli {
+namespace {
+
+double total_bodies(const Batch& batch) {
+  double bodies = 0;
+  for (int world = 0; world < batch.worlds(); ++world) bodies += batch.bodies(world);
+  return bodies;
+}
+
+Energy mean_energy(const Batch& batch) {
+  Energy sum;
+  for (int world = 0; world < batch.worlds(); ++world) {
+    const Energy energy = batch.energy(world);
+    sum.kinetic += energy.kinetic;
+    sum.potential += energy.potential;
+  }
+  return {sum.kinetic / batch.worlds(), sum.potential / batch.worlds()};
+}
+
+}  // namespace
+
+Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call, double seconds) {
+  const Options& options = job.plan.scene().options;
+  const ContactSummary contacts = batch.measure_contacts();
+
+  Report report;
+  report.scene = job.scene;
+  report.worlds = batch.worlds();
+  report.steps = steps;
+  report.steps_per_call = steps_per_call;
+  report.threads = batch.threads();
+  report.isa = batch.isa();
+  report.precision = batch.precision();
+  report.dt = options.dt;
+  report.substeps = options.substeps;
+  const double steps_per_s = seconds > 0 ? steps / seconds : 0;
+  report.world_steps_per_s = steps_per_s * batch.worlds();
+  report.body_steps_per_s = steps_per_s * total_bodies(batch);
+  report.contacts_per_world = contacts.points_per_world;
+  report.manifolds_per_world = contacts.manifolds_per_world;
+  report.max_penetration = contacts.max_penetration;
+  report.mean_energy = mean_energy(batch);
+  report.bytes_per_world = batch.bytes_per_world();
+  report.lost_worlds = batch.lost_worlds();
+  report.hash = batch.hash();
+  return report;
+}
+
+std::vector<Report::StageShare> profile_stages(Batch& batch, int steps, int steps_per_call) {
+  batch.profile(true);
+  timed_steps(batch, steps, steps_per_call, nullptr);
+  const std::vector<StageTime> times = batch.take_stage_times();
+  batch.profile(false);
+
+  double total = 0;
+  for (const StageTime& time : times) total += time.seconds;
+  std::vector<Report::StageShare> shares;
+  for (const StageTime& time : times) {
+    shares.push_back({time.stage, total > 0 ? time.seconds / total : 0});
+  }
+  return shares;
+}
+
+nlohmann::ordered_json to_json(const Report& report) {
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const Report::StageShare& share : report.stage_split) stages[share.stage] = share.fraction;
+  return {
+      {"scene", report.scene},
+      {"worlds", report.worlds},
+      {"steps", report.steps},
+      {"steps_per_call", report.steps_per_call},
+      {"threads", report.threads},
+      {"isa", to_string(report.isa)},
+      {"precision", to_string(report.precision)},
+      {"solver", "tgs-soft"},
+      {"dt", report.dt},
+      {"substeps", report.substeps},
+      {"sleep", false},
+      {"world_steps_per_s", report.world_steps_per_s},
+      {"body_steps_per_s", report.body_steps_per_s},
+      {"contacts_per_world", report.contacts_per_world},
+      {"max_penetration_m", report.max_penetration},
+      {"max_joint_gap_m", 0.0},  // no scene has joints
+      {"energy_j", report.mean_energy.kinetic + report.mean_energy.potential},
+      {"bytes_per_world", report.bytes_per_world},
+      {"lost_worlds", report.lost_worlds},
+      {"stage_split", stages},
+      {"hash", hex(report.hash)},
+  };
+}
+
+}  // namespace manyworlds::cli

@@ -1,0 +1,18 @@
+// Where scenes come from: a name, or an MJCF file.
+#pragma once
+
+#include <string>
+
+#include "manyworlds/scene.hpp"
+
+namespace manyworlds::cli {
+
+// True when this program was built with the MJCF reader.
+bool reads_mjcf();
+
+// The scene of that name, or the one in that file. Anything that ends in .xml or holds a slash is
+// taken for a file. Warnings of the reader go to standard error. Throws InputError: unknown name
+// (with the nearest known one), file that cannot be read.
+Scene load_scene(const std::string& name_or_file);
+
+}  // namespace manyworlds::cli

@@ -1,0 +1,63 @@
+// `manyworlds soak`: many worlds for long from seeds nobody chose, to find the one that breaks.
+#include <algorithm>
+#include <cstdio>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "job.hpp"
+#include "lost_worlds.hpp"
+#include "progress.hpp"
+#include "text.hpp"
+
+namespace manyworlds::cli {
+namespace {
+
+// Worlds that are in memory at a time. A world's bits do not depend on it.
+constexpr int kWorldsAtOnce = 1024;
+constexpr std::size_t kLostShown = 20;
+
+}  // namespace
+
+int soak_command(const JobOptions& options) {
+  const Job job = prepare(options);
+  // 32 bits are plenty and short enough to type.
+  const std::uint64_t seed = options.seed ? *options.seed : std::random_device{}();
+
+  LostWorlds worlds;
+  double deepest = 0;
+  double seconds = 0;
+  {
+    const std::int64_t all = options.worlds;
+    const std::int64_t batches = (all + kWorldsAtOnce - 1) / kWorldsAtOnce;
+    Progress progress(fmt::format("soak {}", options.scene), batches * job.steps);
+    for (std::int64_t first = 0; first < all; first += kWorldsAtOnce) {
+      const int count = static_cast<int>(std::min<std::int64_t>(kWorldsAtOnce, all - first));
+      const std::uint64_t batch_seed = seed + static_cast<std::uint64_t>(first);
+      Batch batch = make_batch(job, options, count, batch_seed, options.threads);
+      if (first == 0) {
+        fmt::print("{}: {} x {}, seed {}, {}, {}\n", options.scene,
+                   counted(options.worlds, "world"), counted(job.steps, "step"), seed,
+                   batch.kernel_table(), counted(batch.threads(), "thread"));
+        std::fflush(stdout);
+      }
+      seconds += timed_steps(batch, job.steps, options.steps_per_call, &progress);
+      worlds.collect(batch, first, batch_seed);
+      deepest = std::max(deepest, batch.measure_contacts().max_penetration);
+    }
+  }
+
+  fmt::print("  {:<13}{}\n", "time", fmt::format("{:.3g} s", seconds));
+  fmt::print("  {:<13}{} at most, at the end\n", "penetration", length(deepest));
+  fmt::print("  {:<13}{}\n", "overflowed", worlds.overflowed());
+  fmt::print("  {:<13}{}\n", "lost worlds", worlds.lost().size());
+  for (const auto& [reason, count] : worlds.by_reason()) {
+    fmt::print("    {:<11}{}\n", count, reason);
+  }
+  std::fflush(stdout);
+  print_lost(worlds, options, job.steps, kLostShown);
+  return worlds.lost().empty() ? kOk : kWorldLost;
+}
+
+}  // namespace manyworlds::cli

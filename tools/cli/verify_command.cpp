@@ -1,0 +1,266 @@
+// `manyworlds verify`: that a world's bits depend on nothing but its plan, its initial state and
+// its inputs, shown on the machine at hand. Every comparison is of one world's hash with the hash
+// that the same world has in a reference batch.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "job.hpp"
+#include "progress.hpp"
+#include "text.hpp"
+
+namespace manyworlds::cli {
+namespace {
+
+constexpr int kWorlds = 40;
+
+// What is varied. The order is the order of the table's columns.
+enum Column { kAlone, kPosition, kSize, kThreads, kKernels, kCalls, kReset, kFrozen, kColumns };
+constexpr std::array<const char*, kColumns> kNames = {"alone",   "position", "size",  "threads",
+                                                      "kernels", "calls",    "reset", "frozen"};
+
+struct Tally {
+  std::array<int, kColumns> compared{};
+  std::array<int, kColumns> different{};
+  std::vector<std::string> differences;  // the first of each column
+};
+
+std::vector<std::string> chosen_scenes(const VerifyOptions& options) {
+  if (!options.scenes.empty()) return options.scenes;
+  if (options.quick) return {"bin-spheres", "bin-boxes", "bin2d"};
+  return {"bin-spheres",  "bin-boxes", "bin2d",      "mixed-pile",
+          "mixed-pile2d", "ball3d",    "free-flight"};
+}
+
+bool available(Isa isa) {
+  const std::vector<Isa> isas = available_isas();
+  return std::find(isas.begin(), isas.end(), isa) != isas.end();
+}
+
+// A state body that forces act on; -1 when there is none.
+int first_dynamic_body(const Plan& plan) {
+  for (int body = 0; body < plan.bodies(); ++body) {
+    const auto scene_body = static_cast<std::size_t>(plan.scene_body(body));
+    if (plan.scene().bodies[scene_body].motion == Motion::dynamic) return body;
+  }
+  return -1;
+}
+
+// All comparisons of one scene in one precision.
+class Verifier {
+ public:
+  Verifier(const std::string& scene, Precision precision, const VerifyOptions& options)
+      : seed_(options.seed), quick_(options.quick) {
+    job_options_.scene = scene;
+    job_options_.precision = precision;
+    job_options_.steps = quick_ ? 90 : 150;  // balls of the scenes touch ground after about 60
+    Batch batch = batch_of(job_options_, kWorlds, 0, 1);
+    timed_steps(batch, job_options_.steps, 1, nullptr);
+    for (int world = 0; world < kWorlds; ++world) reference_.push_back(batch.hash(world));
+    hash_ = batch.hash();
+  }
+
+  void compare_all() {
+    for (const Isa isa : available_isas()) {
+      JobOptions with_isa = job_options_;
+      with_isa.isa = isa;
+      if (!supports(with_isa)) continue;
+      for (int world = 0; world < kWorlds; ++world) run(kAlone, with_isa, 1, world, 1);
+      for (const int shift : {1, 3, 7}) run(kPosition, with_isa, kWorlds - shift, shift, 1);
+      for (const int threads : {1, 2, 3, 4}) run(kThreads, with_isa, kWorlds, 0, threads);
+      compare_kernels(with_isa);
+      compare_beside_frozen(with_isa);
+    }
+    for (int size = 1; size <= kWorlds; size += quick_ ? 3 : 1)
+      run(kSize, job_options_, size, 0, 1);
+    compare_reset();
+  }
+
+  std::uint64_t hash() const { return hash_; }
+  const Tally& tally() const { return tally_; }
+
+ private:
+  Batch batch_of(const JobOptions& options, int worlds, int first, int threads) const {
+    const std::uint64_t seed = seed_ + static_cast<std::uint64_t>(first);
+    return make_batch(prepare(options), options, worlds, seed, threads);
+  }
+
+  // A build need not have every kernel in float64 on every instruction set.
+  bool supports(const JobOptions& options) const {
+    try {
+      return batch_of(options, 1, 0, 1).isa() == *options.isa;
+    } catch (const std::invalid_argument&) {
+      if (options.precision == Precision::f32) throw;
+      return false;
+    }
+  }
+
+  // Steps worlds first .. first + worlds - 1 of the reference in a batch of their own.
+  void run(Column column, const JobOptions& options, int worlds, int first, int threads,
+           int steps_per_call = 1) {
+    Batch batch = batch_of(options, worlds, first, threads);
+    timed_steps(batch, options.steps, steps_per_call, nullptr);
+    compare(column, batch, options, first, -1);
+  }
+
+  void compare_kernels(JobOptions options) {
+    for (const int n : {7, options.steps}) run(kCalls, options, kWorlds, 0, 1, n);
+    for (const auto layout :
+         {ContactLayout::automatic, ContactLayout::dense, ContactLayout::rows}) {
+      for (const auto broad_phase :
+           {BroadPhase::automatic, BroadPhase::all_pairs, BroadPhase::sort_and_sweep}) {
+        options.layout = layout;
+        options.broad_phase = broad_phase;
+        run(kKernels, options, kWorlds, 0, 1);
+      }
+    }
+  }
+
+  // One world gets a force that is not a number, half way: it must freeze, the others must not
+  // notice.
+  void compare_beside_frozen(const JobOptions& options) {
+    constexpr int kVictim = 5;
+    Batch batch = batch_of(options, kWorlds, 0, 1);
+    const int body = first_dynamic_body(batch.plan());
+    if (body < 0) return;
+    const int half = options.steps / 2;
+    timed_steps(batch, half, 1, nullptr);
+    batch.add_force(kVictim, body, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    timed_steps(batch, options.steps - half, 1, nullptr);
+    compare(kFrozen, batch, options, 0, kVictim);
+    ++tally_.compared[kFrozen];
+    if (frozen(batch.status(kVictim))) return;
+    note(kFrozen, fmt::format("{}: a NaN force did not freeze world {} (status {})",
+                              describe(batch, options), kVictim, to_string(batch.status(kVictim))));
+  }
+
+  void compare_reset() {
+    Batch batch = batch_of(job_options_, kWorlds, 0, 1);
+    timed_steps(batch, job_options_.steps / 3, 1, nullptr);
+    batch.reset();
+    timed_steps(batch, job_options_.steps, 1, nullptr);
+    compare(kReset, batch, job_options_, 0, -1);
+  }
+
+  void compare(Column column, const Batch& batch, const JobOptions& options, int first, int skip) {
+    for (int world = 0; world < batch.worlds(); ++world) {
+      if (world == skip) continue;
+      ++tally_.compared[column];
+      const std::uint64_t expected = reference_[static_cast<std::size_t>(first + world)];
+      const std::uint64_t found = batch.hash(world);
+      if (found == expected) continue;
+      note(column, fmt::format("{}: world {} (seed {}) has hash {}, the reference {}",
+                               describe(batch, options), world,
+                               seed_ + static_cast<std::uint64_t>(first + world), hex(found),
+                               hex(expected)));
+    }
+  }
+
+  std::string describe(const Batch& batch, const JobOptions& options) const {
+    return fmt::format("{}, {}, {}, layout {}, broad phase {}", batch.kernel_table(),
+                       counted(batch.worlds(), "world"), counted(batch.threads(), "thread"),
+                       option_name(options.layout), option_name(options.broad_phase));
+  }
+
+  void note(Column column, const std::string& difference) {
+    if (tally_.different[column]++ > 0) return;
+    tally_.differences.push_back(
+        fmt::format("{}: {}: {}", job_options_.scene, kNames[column], difference));
+  }
+
+  JobOptions job_options_;
+  std::uint64_t seed_;
+  bool quick_;
+  std::vector<std::uint64_t> reference_;  // hash of each world
+  std::uint64_t hash_ = 0;                // of all of them
+  Tally tally_;
+};
+
+void print_head(const VerifyOptions& options) {
+  std::string isas;
+  std::string missing;
+  for (const Isa isa : {Isa::scalar, Isa::avx2, Isa::avx512}) {
+    std::string& list = available(isa) ? isas : missing;
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", to_string(isa));
+  }
+  fmt::print("Hashes of single worlds, compared with those of a batch of {} (seed {}, {},\n",
+             kWorlds, options.seed, to_string(default_isa()));
+  fmt::print("1 thread, step(1) calls); on {}:\n", isas);
+  fmt::print("  alone     each world as a batch of 1\n");
+  fmt::print("  position  all worlds moved by 1, 3 and 7 places\n");
+  fmt::print("  size      batches of {}\n", options.quick ? "1, 4, ... 40" : "1, 2, ... 40");
+  fmt::print("  threads   1, 2, 3 and 4\n");
+  fmt::print(
+      "  kernels   layouts auto, dense, rows x broad phases auto, all-pairs, "
+      "sort-and-sweep\n");
+  fmt::print("  calls     step(7) and one call for all steps\n");
+  fmt::print("  reset     after a third of the run, and all over\n");
+  fmt::print("  frozen    beside a world that a NaN force froze half way\n");
+  if (!missing.empty()) fmt::print("Not on this CPU or not in this build: {}\n", missing);
+  fmt::print("\n{:<14}{:<6}", "scene", "");
+  for (const char* name : kNames) fmt::print("{:>9}", name);
+  fmt::print("  hash of all\n");
+  std::fflush(stdout);
+}
+
+void print_row(const std::string& scene, Precision precision, const Verifier& verifier) {
+  const Tally& tally = verifier.tally();
+  fmt::print("{:<14}{:<6}", scene, to_string(precision));
+  for (std::size_t column = 0; column < kColumns; ++column) {
+    const int different = tally.different[column];
+    fmt::print("{:>9}", different == 0 ? fmt::format("{}", tally.compared[column])
+                                       : fmt::format("{} BAD", different));
+  }
+  fmt::print("  {}\n", hex(verifier.hash()));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int verify_command(const VerifyOptions& options) {
+  const std::vector<std::string> names = chosen_scenes(options);
+  for (const std::string& name : names) {
+    JobOptions probe;
+    probe.scene = name;
+    prepare(probe);  // every name is checked before the first line
+  }
+  print_head(options);
+
+  Progress progress("verify", 2 * static_cast<std::int64_t>(names.size()));
+  long long compared = 0;
+  long long different = 0;
+  std::vector<std::string> differences;
+  for (const std::string& name : names) {
+    for (const Precision precision : {Precision::f32, Precision::f64}) {
+      progress.set_label(fmt::format("verify {} {}", name, to_string(precision)));
+      Verifier verifier(name, precision, options);
+      verifier.compare_all();
+      progress.erase();
+      print_row(name, precision, verifier);
+      progress.advance(1);
+      const Tally& tally = verifier.tally();
+      for (const int count : tally.compared) compared += count;
+      for (const int count : tally.different) different += count;
+      differences.insert(differences.end(), tally.differences.begin(), tally.differences.end());
+    }
+  }
+  progress.erase();
+  if (different == 0) {
+    fmt::print("\nall {} comparisons equal\n", compared);
+    return kOk;
+  }
+  fmt::print("\n{} of {} comparisons differ\n", different, compared);
+  std::fflush(stdout);
+  for (const std::string& difference : differences) {
+    fmt::print(stderr, "manyworlds: {}\n", difference);
+  }
+  return kWorldLost;
+}
+
+}  // namespace manyworlds::cli

@@ -1,0 +1,82 @@
+# Shared by tools/run and tools/test: sourced, not run. Brings a Debian 12 machine (root, or a user
+# with sudo) from nothing to a configured build/release. Speaks on standard error only.
+
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+program=tools/$(basename "$0")
+build_dir="$root/build/release"
+mujoco_dir="$root/.deps/mujoco"
+
+packages=(
+  ca-certificates ccache cmake g++ ninja-build python3 python3-pip
+  catch2 libbenchmark-dev libcli11-dev libeigen3-dev libfmt-dev libtbb-dev libxsimd-dev
+  nlohmann-json3-dev
+)
+
+say() { printf '%s: %s\n' "$program" "$*" >&2; }
+fail() {
+  say "error: $*"
+  exit 3
+}
+
+# Installs the packages that are missing; touches the network only then.
+install_packages() {
+  command -v dpkg-query >/dev/null ||
+    fail "this is not Debian; install by hand what corresponds to: ${packages[*]}"
+  local missing=() installed package
+  installed=" $(dpkg-query -W -f '${db:Status-Status}:${Package} ' "${packages[@]}" 2>/dev/null || true)"
+  for package in "${packages[@]}"; do
+    [[ $installed == *" installed:$package "* ]] || missing+=("$package")
+  done
+  ((${#missing[@]} == 0)) && return
+
+  local as_root=()
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null ||
+      fail "needs root or sudo to install: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  say "installing ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq >&2 || fail "apt-get update failed"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2 ||
+    fail "apt-get could not install ${missing[*]}"
+}
+
+# MuJoCo reads MJCF files; its headers and library come with its Python wheel.
+fetch_mujoco() {
+  "$root/tools/fetch_mujoco.sh" "$mujoco_dir" >&2 ||
+    fail "could not fetch MuJoCo from PyPI (MW_MJCF=OFF $program builds without MJCF files)"
+}
+
+# Configures build/release when it was not, or when the presets changed. Ninja itself reconfigures
+# when a CMake file or the list of sources changed.
+configure() {
+  local mjcf=$1
+  local arguments=(--preset release -D "MW_MJCF=$mjcf" -D "MW_MUJOCO_DIR=$mujoco_dir")
+  local stamp="$build_dir/configured_with"
+  if [[ -f $build_dir/build.ninja && $stamp -nt $root/CMakePresets.json &&
+    $(<"$stamp") == "${arguments[*]}" ]]; then
+    return
+  fi
+  say "configuring build/release"
+  (cd "$root" && cmake "${arguments[@]}" >&2) || fail "cmake could not configure build/release"
+  printf '%s\n' "${arguments[*]}" >"$stamp"
+}
+
+# build TARGET: everything up to an up-to-date TARGET in build/release. Two at a time wait for one
+# another.
+build() {
+  local target=$1 mjcf=${MW_MJCF:-ON}
+  [[ $mjcf == ON || $mjcf == OFF ]] || fail "MW_MJCF is '$mjcf', must be ON or OFF"
+  install_packages
+  mkdir -p "$root/build"
+  exec 9>"$root/build/release.lock"
+  flock 9
+  [[ $mjcf == OFF ]] || fetch_mujoco
+  configure "$mjcf"
+  cmake --build "$build_dir" --target "$target" --parallel "$(nproc)" >&2 9>&- ||
+    fail "the build failed"
+  exec 9>&-
+}
