@@ -18,6 +18,10 @@ set(mw_flags_avx512 -mavx512f -mavx512vl -mavx512dq -mavx512bw -mavx2 -mfma -mbm
     -mprefer-vector-width=512)
 # GCC 12's AVX-512 header warns about the undefined operand of its own intrinsics.
 set(mw_quiet_avx512 $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+# GCC copies structs of registers in 16-byte pieces unless told otherwise, and the whole-register
+# load that follows then waits for the stores (measured: up to 2x on free motion).
+set(mw_moves_avx2 $<$<CXX_COMPILER_ID:GNU>:-mmove-max=256;-mstore-max=256>)
+set(mw_moves_avx512 $<$<CXX_COMPILER_ID:GNU>:-mmove-max=512;-mstore-max=512>)
 set(mw_optimization_scalar -O2)
 set(mw_optimization_avx2 -O3)
 set(mw_optimization_avx512 -O3)
@@ -48,7 +52,7 @@ foreach(isa IN LISTS MW_ISAS)
       MW_ISA_${isa_upper}=1)
     target_compile_options(mw_kernels_${name} PRIVATE
       -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti
-      ${mw_flags_${isa}} ${mw_quiet_${isa}} ${optimization}
+      ${mw_flags_${isa}} ${mw_moves_${isa}} ${mw_quiet_${isa}} ${optimization}
       # Full debug information doubles the time to compile a kernel; line numbers are free.
       $<$<CONFIG:RelWithDebInfo>:-g1>)
     target_include_directories(mw_kernels_${name} PRIVATE "${PROJECT_SOURCE_DIR}")

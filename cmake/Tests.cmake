@@ -12,7 +12,7 @@ function(mw_test_program target)
   add_executable(${target} ${ARGN} "${PROJECT_SOURCE_DIR}/tests/main.cpp")
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
   # Catch2 is slow to compile, and most of all its main function.
-  target_compile_options(${target} PRIVATE -O1)
+  target_compile_options(${target} PRIVATE -O1 $<$<CONFIG:RelWithDebInfo>:-g1>)
   set_property(SOURCE "${PROJECT_SOURCE_DIR}/tests/main.cpp" PROPERTY COMPILE_OPTIONS -O0)
   target_compile_definitions(${target} PRIVATE MW_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} PRIVATE

@@ -65,13 +65,27 @@ MW_INLINE typename S::Vec drift_excess(const Tables& t, const Work& w, int body)
   return push * scale;
 }
 
-template <class S>
+// What may be written: everything, or the lanes of a mask.
+struct AllLanes {
+  template <class T>
+  MW_INLINE T operator()(const T& fresh, const Real*) const {
+    return fresh;
+  }
+};
+struct SomeLanes {
+  Mask mask;
+  template <class T>
+  MW_INLINE T operator()(const T& fresh, const Real* old) const {
+    return select(mask, fresh, load_as<T>(old));
+  }
+};
+
+template <class S, class Keep>
 MW_INLINE void turn_body(const Tables& t, const Group& g, int body, int component,
-                         typename S::Ang turn, Mask free, Mask commit, typename S::Ang& omega) {
+                         typename S::Ang turn, Mask free, Keep keep, typename S::Ang& omega) {
   Real* p = state_of(t, g, body, component);
   if constexpr (S::kDim == 2) {
-    const Rot2 old = load_rot2(p);
-    store(p, select(commit, rotate_by(old, turn), old));
+    store(p, keep(rotate_by(load_rot2(p), turn), p));
   } else {
     const Quat old = load_quat(p);
     Quat q;
@@ -91,15 +105,13 @@ MW_INLINE void turn_body(const Tables& t, const Group& g, int body, int componen
     } else {
       q = rotate_by(old, turn);
     }
-    store(p, select(commit, q, old));
+    store(p, keep(q, p));
   }
-  (void)free;
 }
 
-template <class S, bool kDense>
-void commit_bodies(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits) {
+template <class S, bool kDense, class Keep>
+void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits, Keep keep) {
   const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
-  const Mask commit = mask_from_bits(commit_bits);
   Mask inside = mask_from_bits(kAllLanes);
   for (int b = 0; b < t.bodies; ++b) {
     Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
@@ -112,18 +124,27 @@ void commit_bodies(const Tables& t, const Group& g, Work& w, std::uint32_t commi
       step = select(free, step - drift_excess<S, kDense>(t, w, b), step);
     }
     if (t.cast) step = cast_against_fixed<S>(t, b, old, step);
-    const auto x = select(commit, old + step, old);
+    const auto x = keep(old + step, p);
     store(p, x);
     if (t.has_bounds) inside = inside & within_bounds(t, x);
-    if (t.has_orientation) turn_body<S>(t, g, b, at.orientation, moved.w, free, commit, v.w);
+    if (t.has_orientation) turn_body<S>(t, g, b, at.orientation, moved.w, free, keep, v.w);
     Real* p_linear = state_of(t, g, b, at.linear);
     Real* p_angular = state_of(t, g, b, at.angular);
-    store(p_linear, select(commit, v.v, load_as<typename S::Vec>(p_linear)));
-    store(p_angular, select(commit, v.w, load_as<typename S::Ang>(p_angular)));
+    store(p_linear, keep(v.v, p_linear));
+    store(p_angular, keep(v.w, p_angular));
   }
   const std::uint32_t outside = ~bits(inside) & commit_bits;
   for (int l = 0; outside != 0 && l < kLanes; ++l) {
     if ((outside >> l) & 1u) g.status[l] |= kOutOfBounds;
+  }
+}
+
+template <class S, bool kDense>
+void commit_bodies(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits) {
+  if (commit_bits == kAllLanes) {
+    commit_lanes<S, kDense>(t, g, w, commit_bits, AllLanes{});
+  } else {
+    commit_lanes<S, kDense>(t, g, w, commit_bits, SomeLanes{mask_from_bits(commit_bits)});
   }
 }
 

@@ -14,36 +14,52 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 inline constexpr Real kMaxTurn = Real(0.5);  // rad per splitting step, about one axis
 inline constexpr int kMaxSplits = 64;
 
-struct Turn {  // rotation by an angle through its half-angle tangent: exactly orthogonal
-  Float t, c, s;
+// A rotation by an angle: half-angle cosine and sine for the quaternion, whole-angle for vectors.
+struct Turn {
+  Float ch, sh, c, s;
 };
+// By Taylor series: |angle| / 2 <= 0.25, where the terms kept here are exact to rounding.
 MW_INLINE Turn turn_by(Float angle) {
-  const Float x = clamp(angle, -kMaxTurn, kMaxTurn);
-  const Float t = x * half_tangent_ratio(x * x);
-  const Float s = (t + t) / fma(t, t, Real(1));
-  return {t, fnma(t, s, Real(1)), s};
+  const Float x = clamp(angle * Float(Real(0.5)), kMaxTurn * Real(-0.5), kMaxTurn * Real(0.5));
+  const Float x2 = x * x;
+  Float p, q;
+  if constexpr (sizeof(Real) == 4) {
+    p = fma(x2, Real(1.0 / 120.0), Real(-1.0 / 6.0));
+    q = fma(x2, fma(x2, Real(-1.0 / 720.0), Real(1.0 / 24.0)), Real(-0.5));
+  } else {
+    p = fma(x2, fma(x2, fma(x2, fma(x2, Real(-1.0 / 39916800.0), Real(1.0 / 362880.0)),
+                            Real(-1.0 / 5040.0)), Real(1.0 / 120.0)), Real(-1.0 / 6.0));
+    q = fma(x2, fma(x2, fma(x2, fma(x2, Real(-1.0 / 3628800.0), Real(1.0 / 40320.0)),
+                            Real(-1.0 / 720.0)), Real(1.0 / 24.0)), Real(-0.5));
+  }
+  const Float sh = fma(p * x2, x, x), ch = fma(q, x2, Real(1));
+  const Float twice = sh + sh;
+  return {ch, sh, fnma(twice, sh, Real(1)), twice * ch};
 }
 
-// One splitting step: l is L in body axes, q the orientation, not normalised.
+// One splitting step: l is L in body axes, q the orientation.
 MW_INLINE void split_turn(Vec3 rate_half, Vec3& l, Quat& q) {
-  // rate_half = dt / (2 I). About axis k: l turns by -a, q <- q (1, t e_k).
-  const auto about_x = [&](Float scale) {
+  // rate_half = dt / (2 I). About axis k: l turns by -a, q <- q (ch, sh e_k).
+  const auto about_x = [&](Float scale) __attribute__((always_inline)) {
     const Turn u = turn_by(scale * l.x);
     const Float y = fma(u.c, l.y, u.s * l.z), z = fms(u.c, l.z, u.s * l.y);
     l.y = y, l.z = z;
-    q = {fnma(q.x, u.t, q.w), fma(q.w, u.t, q.x), fma(q.z, u.t, q.y), fnma(q.y, u.t, q.z)};
+    q = {fms(q.w, u.ch, q.x * u.sh), fma(q.w, u.sh, q.x * u.ch), fma(q.z, u.sh, q.y * u.ch),
+         fms(q.z, u.ch, q.y * u.sh)};
   };
-  const auto about_y = [&](Float scale) {
+  const auto about_y = [&](Float scale) __attribute__((always_inline)) {
     const Turn u = turn_by(scale * l.y);
     const Float z = fma(u.c, l.z, u.s * l.x), x = fms(u.c, l.x, u.s * l.z);
     l.z = z, l.x = x;
-    q = {fnma(q.y, u.t, q.w), fnma(q.z, u.t, q.x), fma(q.w, u.t, q.y), fma(q.x, u.t, q.z)};
+    q = {fms(q.w, u.ch, q.y * u.sh), fms(q.x, u.ch, q.z * u.sh), fma(q.w, u.sh, q.y * u.ch),
+         fma(q.x, u.sh, q.z * u.ch)};
   };
-  const auto about_z = [&](Float scale) {
+  const auto about_z = [&](Float scale) __attribute__((always_inline)) {
     const Turn u = turn_by(scale * l.z);
     const Float x = fma(u.c, l.x, u.s * l.y), y = fms(u.c, l.y, u.s * l.x);
     l.x = x, l.y = y;
-    q = {fnma(q.z, u.t, q.w), fma(q.y, u.t, q.x), fnma(q.x, u.t, q.y), fma(q.w, u.t, q.z)};
+    q = {fms(q.w, u.ch, q.z * u.sh), fma(q.y, u.sh, q.x * u.ch), fms(q.y, u.ch, q.x * u.sh),
+         fma(q.w, u.sh, q.z * u.ch)};
   };
   about_x(rate_half.x);
   about_y(rate_half.y);
@@ -83,7 +99,6 @@ MW_INLINE void rotate_free(Real dt, Vec3 inertia, Vec3 inv_inertia, Vec3& omega,
       Vec3 next_l = l;
       Quat next_q = q;
       split_turn(part, next_l, next_q);
-      next_q = normalize(next_q);
       l = select(running, next_l, l);
       q = select(running, next_q, q);
     }

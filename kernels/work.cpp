@@ -1,4 +1,5 @@
 // Lays out a thread's scratch: measures it, then carves it out of one block.
+#include <initializer_list>
 #include "kernels/work.hpp"
 
 #include "kernels/constraint/slot.hpp"

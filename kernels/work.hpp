@@ -58,6 +58,7 @@ struct Work {
   std::uint32_t overflow;     // lanes that dropped a contact in this step
   int class_index;
   bool dense;
+  int substep;
   // solver
   Real* velocity;      // dense or rows, see lane/space.hpp
   Real* warmed;        // velocity after warm start

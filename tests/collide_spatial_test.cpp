@@ -44,6 +44,7 @@ PairPromise box_box_promise() {
   PairPromise p;
   p.bias = 0.006 * 0.6;
   p.bias_relative = 0.05 / 0.95;
+  p.reach = 1.5;
   p.max_points = 4;
   return p;
 }

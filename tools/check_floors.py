@@ -25,7 +25,8 @@ KERNEL_DATA = {"tables.hpp", "group.hpp", "table.hpp"}
 # The rest of kernels/ (collide, constraint, broad phase, ...) stands on the floor above the lanes.
 KERNEL_FLOORS = {"data": 0, "lane": 1, "stage": 2}
 KERNEL_SYSTEM = {
-    "cfloat", "climits", "cmath", "concepts", "cstddef", "cstdint", "immintrin.h", "limits",
+    "cfloat", "climits", "cmath", "concepts", "cstddef", "cstdint", "immintrin.h",
+    "initializer_list", "limits",
     "type_traits", "utility",
 }
 # Third-party headers with one home: pattern -> folder whose files may include it, and how many.

@@ -90,6 +90,29 @@ MW_INLINE void normal_speeds(const Slot<S, N>& s, const SlotVelocities<S, N, kPa
   }
 }
 
+// Adds to `gaps` how far each point has moved apart since the step began. From displacements:
+// speeds seen in the middle of a pass are not those that moved the bodies.
+template <class S, int N, bool kPair, bool kDense>
+MW_INLINE void moved_apart(const Work& w, const Slot<S, N>& s, Float* gaps) {
+  using Ang = typename S::Ang;
+  constexpr int kBlock = (S::kDim + S::kAng) * kLanes;
+  Velocity<S> a, b;
+  if constexpr (kDense) {
+    b = load_velocity_dense<S>(w.displacement + s.body_b * kBlock);
+    if constexpr (kPair) a = load_velocity_dense<S>(w.displacement + s.body_a * kBlock);
+  } else {
+    b = load_velocity_row(S{}, w.displacement, s.offset_b);
+    if constexpr (kPair) a = load_velocity_row(S{}, w.displacement, s.offset_a);
+  }
+  const auto n = load_as<typename S::Vec>(s.normal[0]);
+  Float along = dot(n, b.v);
+  if constexpr (kPair) along = dot(n, b.v - a.v);
+  for (int i = 0; i < N; ++i) {
+    gaps[i] = gaps[i] + along + dot(load_as<Ang>(s.arm_b[i][0]), b.w);
+    if constexpr (kPair) gaps[i] = gaps[i] - dot(load_as<Ang>(s.arm_a[i][0]), a.w);
+  }
+}
+
 // Row k changed by d: the speeds of the rows after it follow.
 template <class S, int N>
 MW_INLINE void couple_following(const Slot<S, N>& s, int k, Float d, Float* speed) {
@@ -207,20 +230,24 @@ MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
     if constexpr (kPass == Pass::bias) {
       const auto& soft = kPair ? t.soft_pair : t.soft_fixed;
       const Float rate(soft.bias_rate * soft.mass_scale), cap(-t.push_out_speed);
+      Float gaps[N];
+      for (int i = 0; i < N; ++i) gaps[i] = Float::load(s.separation[i]);
+      if (w.substep > 0) {
+        moved_apart<S, N, kPair, kDense>(w, s, gaps);
+        for (int i = 0; i < N; ++i) gaps[i].store(s.gap[i]);
+      }
       for (int i = 0; i < N; ++i) {
-        const Float gap = Float::load(s.separation[i]);
+        const Float gap = gaps[i];
         const Mask apart = zero < gap;
         bias[i] = select(apart, gap * inv_h, max(gap * rate, cap));
         scale[i] = select(apart, one, soft.mass_scale);
         keep[i] = select(apart, zero, soft.impulse_scale);
       }
     } else {
-      // The substep has moved the bodies: carry the separations along, then remove the speed
-      // that pushing out has added.
+      // The substep has moved the bodies; now remove the speed that pushing out has added.
       const Float h(t.h);
       for (int i = 0; i < N; ++i) {
-        const Float gap = fma(h, speed[i], Float::load(s.separation[i]));
-        gap.store(s.separation[i]);
+        const Float gap = fma(h, speed[i], Float::load(s.gap[i]));
         bias[i] = max(gap, zero) * inv_h;
       }
     }
@@ -239,7 +266,8 @@ MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
       couple_following(s, i, d[i], speed);
     }
     apply_normal(s, d, v);
-    if (kFriction && (kPass == Pass::relax || t.friction_in_bias)) {
+    // In the bias pass friction steadies stacks, which stand on manifolds of several points.
+    if (kFriction && (kPass == Pass::relax || (N > 1 && t.friction_in_bias))) {
       Float after[2], twist_after(Real(0));
       solve_friction(s, friction_budget(s, impulse), v, after, twist_after);
       after[0].store(s.tangent_impulse[0]);

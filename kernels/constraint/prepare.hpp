@@ -150,8 +150,9 @@ void record_points(Work& w, ListId list, const Manifold<S, N>& m, const std::int
 
 // Adds one slot to `list`. kPair: A moves too. `active` are the lanes that the narrow phase
 // worked on; lanes without a point close enough drop out.
+// Not inlined: every shape pair shares these few instantiations.
 template <class S, int N, bool kPair, bool kDense>
-MW_INLINE void add_slot(const Tables& t, const Group& g, Work& w, ListId list,
+__attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w, ListId list,
                         const kernels::PairClass<Real>& pair_class, Manifold<S, N>& m, Mask active,
                         const std::int32_t* code, const std::int32_t* key, typename S::Vec pose_a,
                         typename S::Vec pose_b) {
@@ -265,6 +266,7 @@ MW_INLINE void add_slot(const Tables& t, const Group& g, Work& w, ListId list,
     }
     select(m.valid[i], one / k, zero).store(s.mass[i]);
     m.separation[i].store(s.separation[i]);
+    m.separation[i].store(s.gap[i]);
     const Float weight = select(m.valid[i], one, zero);
     count = count + weight;
     centre_b = fma(m.point_b[i], weight, centre_b);

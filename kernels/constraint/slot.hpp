@@ -1,6 +1,6 @@
 // Slot: the rows of one contact manifold, one manifold per lane. What the narrow phase finds and
 // prepare() turns into Jacobians and effective masses; constant during a step but for the
-// separations and impulses.
+// gaps and impulses.
 //
 // With A, B the bodies (A absent for fixed shapes), n the unit normal from A to B, r the anchor of
 // a point from the centre of mass:
@@ -34,7 +34,8 @@ struct alignas(64) Slot : SlotHeader {
   Real arm_a[N][S::kAng][kLanes], arm_b[N][S::kAng][kLanes];            // r x n
   Real cross_k[kCross][kLanes];     // off-diagonal entries of K, (0,1) (0,2) (0,3) (1,2) ...
   Real mass[N][kLanes];             // effective; 0 for points that are not there
-  Real separation[N][kLanes];       // m, carried through the substeps
+  Real separation[N][kLanes];       // m, at the start of the step
+  Real gap[N][kLanes];              // m, at the start of the substep
   Real impulse[N][kLanes];          // N s, accumulated, >= 0
   Real centre_a[S::kDim][kLanes], centre_b[S::kDim][kLanes];  // friction centre from the bodies
   Real tangent_mass[kTangentMass][kLanes];                    // inverse of the 2x2, or 1x1

@@ -42,6 +42,9 @@ MW_INLINE Float operator*(Float a, Float b) { return a.v * b.v; }
 MW_INLINE Float operator/(Float a, Float b) { return a.v / b.v; }
 MW_INLINE Float operator-(Float a) { return -a.v; }
 MW_INLINE Float fma(Float a, Float b, Float c) { return std::fma(a.v, b.v, c.v); }
+// -a b + c and a b - c, each rounded once.
+MW_INLINE Float fnma(Float a, Float b, Float c) { return std::fma(-a.v, b.v, c.v); }
+MW_INLINE Float fms(Float a, Float b, Float c) { return std::fma(a.v, b.v, -c.v); }
 MW_INLINE Float sqrt(Float a) { return std::sqrt(a.v); }
 MW_INLINE Float min(Float a, Float b) { return a.v < b.v ? a.v : b.v; }
 MW_INLINE Float max(Float a, Float b) { return a.v > b.v ? a.v : b.v; }
@@ -91,6 +94,8 @@ MW_INLINE Mask operator|(Mask a, Mask b) { return {a.v | b.v}; }
 namespace raw {  // one overload per register type
 #if defined(MW_ISA_AVX512)
 MW_INLINE __m512 fma(__m512 a, __m512 b, __m512 c) { return _mm512_fmadd_ps(a, b, c); }
+MW_INLINE __m512 fnma(__m512 a, __m512 b, __m512 c) { return _mm512_fnmadd_ps(a, b, c); }
+MW_INLINE __m512 fms(__m512 a, __m512 b, __m512 c) { return _mm512_fmsub_ps(a, b, c); }
 MW_INLINE __m512 min(__m512 a, __m512 b) { return _mm512_min_ps(a, b); }
 MW_INLINE __m512 max(__m512 a, __m512 b) { return _mm512_max_ps(a, b); }
 MW_INLINE __m512 bit_and(__m512 a, __m512 b) { return _mm512_and_ps(a, b); }
@@ -105,6 +110,8 @@ MW_INLINE __mmask16 from_bits(unsigned b, __m512) { return static_cast<__mmask16
 MW_INLINE __mmask16 invert(__mmask16 m) { return static_cast<__mmask16>(~m); }
 #else
 MW_INLINE __m256 fma(__m256 a, __m256 b, __m256 c) { return _mm256_fmadd_ps(a, b, c); }
+MW_INLINE __m256 fnma(__m256 a, __m256 b, __m256 c) { return _mm256_fnmadd_ps(a, b, c); }
+MW_INLINE __m256 fms(__m256 a, __m256 b, __m256 c) { return _mm256_fmsub_ps(a, b, c); }
 MW_INLINE __m256 min(__m256 a, __m256 b) { return _mm256_min_ps(a, b); }
 MW_INLINE __m256 max(__m256 a, __m256 b) { return _mm256_max_ps(a, b); }
 MW_INLINE __m256 bit_and(__m256 a, __m256 b) { return _mm256_and_ps(a, b); }
@@ -124,6 +131,8 @@ MW_INLINE __m256 invert(__m256 m) {
   return _mm256_xor_ps(m, _mm256_castsi256_ps(_mm256_set1_epi32(-1)));
 }
 MW_INLINE __m256d fma(__m256d a, __m256d b, __m256d c) { return _mm256_fmadd_pd(a, b, c); }
+MW_INLINE __m256d fnma(__m256d a, __m256d b, __m256d c) { return _mm256_fnmadd_pd(a, b, c); }
+MW_INLINE __m256d fms(__m256d a, __m256d b, __m256d c) { return _mm256_fmsub_pd(a, b, c); }
 MW_INLINE __m256d min(__m256d a, __m256d b) { return _mm256_min_pd(a, b); }
 MW_INLINE __m256d max(__m256d a, __m256d b) { return _mm256_max_pd(a, b); }
 MW_INLINE __m256d bit_and(__m256d a, __m256d b) { return _mm256_and_pd(a, b); }
@@ -147,6 +156,12 @@ MW_INLINE __m256d invert(__m256d m) {
 
 MW_INLINE Float fma(Float a, Float b, Float c) {
   return Batch(raw::fma(a.v.data, b.v.data, c.v.data));
+}
+MW_INLINE Float fnma(Float a, Float b, Float c) {
+  return Batch(raw::fnma(a.v.data, b.v.data, c.v.data));
+}
+MW_INLINE Float fms(Float a, Float b, Float c) {
+  return Batch(raw::fms(a.v.data, b.v.data, c.v.data));
 }
 MW_INLINE Float min(Float a, Float b) { return Batch(raw::min(a.v.data, b.v.data)); }
 MW_INLINE Float max(Float a, Float b) { return Batch(raw::max(a.v.data, b.v.data)); }
@@ -173,9 +188,6 @@ MW_INLINE Mask mask_from_bits(unsigned b) {
 
 #endif
 
-// -a b + c and a b - c, each rounded once (negation is exact, so these are fma in disguise).
-MW_INLINE Float fnma(Float a, Float b, Float c) { return fma(-a, b, c); }
-MW_INLINE Float fms(Float a, Float b, Float c) { return fma(a, b, -c); }
 MW_INLINE bool any(Mask m) { return bits(m) != 0; }
 MW_INLINE bool all(Mask m) { return bits(m) == kAllLanes; }
 MW_INLINE Float clamp(Float x, Float low, Float high) { return min(max(x, low), high); }

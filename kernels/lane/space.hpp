@@ -52,6 +52,8 @@ MW_INLINE void load(const Real* p, Sym3& a) {
        Float::load(p + 4 * kLanes),
        Float::load(p + 5 * kLanes)};
 }
+MW_INLINE void load(const Real* p, Rot2& a) { a = load_rot2(p); }
+MW_INLINE void load(const Real* p, Quat& a) { a = load_quat(p); }
 MW_INLINE void store(Real* p, Float a) { a.store(p); }
 MW_INLINE void store(Real* p, const Sym3& a) {
   a.xx.store(p), a.xy.store(p + kLanes), a.xz.store(p + 2 * kLanes);

@@ -110,7 +110,7 @@ class Judge {
     if (!contacts.empty()) ++result_.with_contacts;
 
     if (truth_ < -tight_ && contacts.empty()) return deviation("overlap without contact", truth_);
-    if (truth_ > margin + tight_ && !contacts.empty())
+    if (truth_ > promise_.reach * margin + tight_ && !contacts.empty())
       return deviation("contact beyond the margin", contacts[0].separation);
     if (contacts.empty()) return;
     if (static_cast<int>(contacts.size()) > promise_.max_points)
@@ -138,7 +138,9 @@ class Judge {
     if (!(std::abs(c.normal.norm() - 1) < tight_)) deviation("normal not unit", c.normal.norm());
     if (scene_.space == Space::planar && (c.normal.z() != 0 || c.point.z() != 0))
       deviation("leaves the plane", c.normal.z());
-    const double half = 0.5 * std::abs(c.separation) + 2 * tight_;
+    // Half way between the surfaces along the normal. Apart, the surfaces' nearest points may be
+    // off to the side by up to their distance.
+    const double half = std::max(0.5 * std::abs(c.separation), truth_) + 2 * tight_;
     const double in_a = signed_distance(a, c.point), in_b = signed_distance(b, c.point);
     if (!(in_a < half && in_b < half)) deviation("point off the shapes", std::max(in_a, in_b));
   }

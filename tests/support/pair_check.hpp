@@ -16,6 +16,9 @@ struct PairPromise {
   // smallest one (box-box prefers faces); 0 where the smallest is found exactly.
   double bias = 0;  // m
   double bias_relative = 0;
+  // Separating axes see at most the distance of disjoint shapes, so that contacts may begin
+  // farther away than the margin by this factor.
+  double reach = 1;
   int max_points = 1;
 };
 
