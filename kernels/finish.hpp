@@ -80,32 +80,59 @@ struct SomeLanes {
   }
 };
 
+// Orientations of bodies whose inertia is a scalar: by the angle that the substeps swept.
 template <class S, class Keep>
-MW_INLINE void turn_body(const Tables& t, const Group& g, int body, int component,
-                         typename S::Ang turn, Mask free, Keep keep, typename S::Ang& omega) {
-  Real* p = state_of(t, g, body, component);
+MW_INLINE void turn_body(const Tables& t, const Group& g, int body, typename S::Ang turn,
+                         Keep keep) {
+  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
+  Real* p = state_of(t, g, body, at.orientation);
   if constexpr (S::kDim == 2) {
     store(p, keep(rotate_by(load_rot2(p), turn), p));
   } else {
-    const Quat old = load_quat(p);
-    Quat q;
-    if constexpr (std::is_same_v<S, Tensor>) {
-      const auto& b = t.body[body];
-      const bool turns_freely = any(free) && b.inv_inertia[0] != Real(0);
-      if (turns_freely) {
-        q = old;
-        Vec3 end = omega;
-        rotate_free(t.dt, {b.inertia[0], b.inertia[1], b.inertia[2]},
-                    {b.inv_inertia[0], b.inv_inertia[1], b.inv_inertia[2]}, end, q);
-        omega = select(free, end, omega);
-        if (!all(free)) q = select(free, q, rotate_by(old, turn));
-      } else {
-        q = rotate_by(old, turn);
-      }
-    } else {
-      q = rotate_by(old, turn);
+    store(p, keep(rotate_by(load_quat(p), turn), p));
+  }
+}
+
+// Orientations and angular velocities of kBodies bodies from `first` whose inertia is a tensor:
+// free lanes tumble exactly, lanes in contact turn by the angle that the substeps swept.
+template <bool kDense, int kBodies, class Keep>
+MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first, Keep keep) {
+  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
+  Moments moments[kBodies];
+  Vec3 omega[kBodies], tumbled[kBodies];
+  Quat q[kBodies], old[kBodies];
+  for (int i = 0; i < kBodies; ++i) {
+    const auto& b = t.body[first + i];
+    // A kinematic body has no moments; any isotropic ones turn it about its fixed axis.
+    const bool kinematic = b.inv_inertia[0] == Real(0);
+    for (int c = 0; c < 3; ++c) {
+      Float& inertia = c == 0 ? moments[i].inertia.x : c == 1 ? moments[i].inertia.y
+                                                              : moments[i].inertia.z;
+      Float& inverse = c == 0 ? moments[i].inverse.x : c == 1 ? moments[i].inverse.y
+                                                              : moments[i].inverse.z;
+      inertia = kinematic ? Real(1) : b.inertia[c];
+      inverse = kinematic ? Real(1) : b.inv_inertia[c];
     }
-    store(p, keep(q, p));
+    omega[i] = tumbled[i] = get_velocity<Tensor, kDense>(w, w.velocity, first + i).w;
+    q[i] = old[i] = load_quat(state_of(t, g, first + i, at.orientation));
+  }
+  std::uint32_t held_everywhere = kAllLanes;
+  for (int i = 0; i < kBodies; ++i) held_everywhere &= w.touched[first + i];
+  if (held_everywhere != kAllLanes) rotate_free<kBodies>(t.dt, moments, tumbled, q);
+  for (int i = 0; i < kBodies; ++i) {
+    const std::uint32_t touched = w.touched[first + i];
+    Vec3 spin = tumbled[i];
+    if (touched != 0) {
+      const Mask held = mask_from_bits(touched);
+      const Vec3 swept = get_velocity<Tensor, kDense>(w, w.displacement, first + i).w;
+      q[i] = select(held, rotate_by(old[i], swept), q[i]);
+      spin = select(held, omega[i], spin);
+    }
+    if (t.body[first + i].inv_inertia[0] == Real(0)) spin = omega[i];
+    Real* p = state_of(t, g, first + i, at.orientation);
+    store(p, keep(q[i], p));
+    Real* p_angular = state_of(t, g, first + i, at.angular);
+    store(p_angular, keep(spin, p_angular));
   }
 }
 
@@ -114,7 +141,7 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
   const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
   Mask inside = mask_from_bits(kAllLanes);
   for (int b = 0; b < t.bodies; ++b) {
-    Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
+    const Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
     const Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
     const Mask free = mask_from_bits(~w.touched[b] & kAllLanes);
     Real* p = state_of(t, g, b, at.position);
@@ -127,11 +154,18 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     const auto x = keep(old + step, p);
     store(p, x);
     if (t.has_bounds) inside = inside & within_bounds(t, x);
-    if (t.has_orientation) turn_body<S>(t, g, b, at.orientation, moved.w, free, keep, v.w);
     Real* p_linear = state_of(t, g, b, at.linear);
-    Real* p_angular = state_of(t, g, b, at.angular);
     store(p_linear, keep(v.v, p_linear));
-    store(p_angular, keep(v.w, p_angular));
+    if constexpr (!std::is_same_v<S, Tensor>) {
+      Real* p_angular = state_of(t, g, b, at.angular);
+      store(p_angular, keep(v.w, p_angular));
+      if (t.has_orientation) turn_body<S>(t, g, b, moved.w, keep);
+    }
+  }
+  if constexpr (std::is_same_v<S, Tensor>) {
+    int b = 0;
+    for (; b + 1 < t.bodies; b += 2) turn_tensors<kDense, 2>(t, g, w, b, keep);
+    if (b < t.bodies) turn_tensors<kDense, 1>(t, g, w, b, keep);
   }
   const std::uint32_t outside = ~bits(inside) & commit_bits;
   for (int l = 0; outside != 0 && l < kLanes; ++l) {

@@ -37,77 +37,114 @@ MW_INLINE Turn turn_by(Float angle) {
   return {ch, sh, fnma(twice, sh, Real(1)), twice * ch};
 }
 
-// One splitting step: l is L in body axes, q the orientation.
-MW_INLINE void split_turn(Vec3 rate_half, Vec3& l, Quat& q) {
-  // rate_half = dt / (2 I). About axis k: l turns by -a, q <- q (ch, sh e_k).
-  const auto about_x = [&](Float scale) __attribute__((always_inline)) {
-    const Turn u = turn_by(scale * l.x);
-    const Float y = fma(u.c, l.y, u.s * l.z), z = fms(u.c, l.z, u.s * l.y);
-    l.y = y, l.z = z;
-    q = {fms(q.w, u.ch, q.x * u.sh), fma(q.w, u.sh, q.x * u.ch), fma(q.z, u.sh, q.y * u.ch),
-         fms(q.z, u.ch, q.y * u.sh)};
+// L in body axes and the orientation of a body, while it is split.
+struct FreeTop {
+  Vec3 l;
+  Quat q;
+};
+
+// One splitting step of kBodies bodies side by side: each rotation waits for the one before it, so
+// a second body fills the gaps. rate_half = dt / (2 I). About axis k: l turns by -a and
+// q <- q (ch, sh e_k).
+template <int kBodies>
+MW_INLINE void split_turn(const Vec3* rate_half, FreeTop* top) {
+  const auto about_x = [&]() __attribute__((always_inline)) {
+    for (int i = 0; i < kBodies; ++i) {
+      Vec3& l = top[i].l;
+      Quat& q = top[i].q;
+      const Turn u = turn_by(rate_half[i].x * l.x);
+      const Float y = fma(u.c, l.y, u.s * l.z), z = fms(u.c, l.z, u.s * l.y);
+      l.y = y, l.z = z;
+      q = {fms(q.w, u.ch, q.x * u.sh), fma(q.w, u.sh, q.x * u.ch), fma(q.z, u.sh, q.y * u.ch),
+           fms(q.z, u.ch, q.y * u.sh)};
+    }
   };
-  const auto about_y = [&](Float scale) __attribute__((always_inline)) {
-    const Turn u = turn_by(scale * l.y);
-    const Float z = fma(u.c, l.z, u.s * l.x), x = fms(u.c, l.x, u.s * l.z);
-    l.z = z, l.x = x;
-    q = {fms(q.w, u.ch, q.y * u.sh), fms(q.x, u.ch, q.z * u.sh), fma(q.w, u.sh, q.y * u.ch),
-         fma(q.x, u.sh, q.z * u.ch)};
+  const auto about_y = [&]() __attribute__((always_inline)) {
+    for (int i = 0; i < kBodies; ++i) {
+      Vec3& l = top[i].l;
+      Quat& q = top[i].q;
+      const Turn u = turn_by(rate_half[i].y * l.y);
+      const Float z = fma(u.c, l.z, u.s * l.x), x = fms(u.c, l.x, u.s * l.z);
+      l.z = z, l.x = x;
+      q = {fms(q.w, u.ch, q.y * u.sh), fms(q.x, u.ch, q.z * u.sh), fma(q.w, u.sh, q.y * u.ch),
+           fma(q.x, u.sh, q.z * u.ch)};
+    }
   };
-  const auto about_z = [&](Float scale) __attribute__((always_inline)) {
-    const Turn u = turn_by(scale * l.z);
+  about_x();
+  about_y();
+  for (int i = 0; i < kBodies; ++i) {
+    Vec3& l = top[i].l;
+    Quat& q = top[i].q;
+    const Turn u = turn_by((rate_half[i].z + rate_half[i].z) * l.z);
     const Float x = fma(u.c, l.x, u.s * l.y), y = fms(u.c, l.y, u.s * l.x);
     l.x = x, l.y = y;
     q = {fms(q.w, u.ch, q.z * u.sh), fma(q.y, u.sh, q.x * u.ch), fms(q.y, u.ch, q.x * u.sh),
          fma(q.w, u.sh, q.z * u.ch)};
-  };
-  about_x(rate_half.x);
-  about_y(rate_half.y);
-  about_z(rate_half.z + rate_half.z);
-  about_y(rate_half.y);
-  about_x(rate_half.x);
+  }
+  about_y();
+  about_x();
 }
 
-// Free rotation over dt. `omega` (world) and `q` become those at the end.
-MW_INLINE void rotate_free(Real dt, Vec3 inertia, Vec3 inv_inertia, Vec3& omega, Quat& q) {
-  const Mat3 r = matrix(q);
-  const Vec3 omega_body = mul_transposed(r, omega);
-  Vec3 l{omega_body.x * inertia.x, omega_body.y * inertia.y, omega_body.z * inertia.z};
-  const Vec3 l_world = mul(r, l);
-
-  // How many splitting steps a lane needs: the largest turn about one axis stays below kMaxTurn.
-  // |L| / I_min bounds every rate.
-  const Float inv_min = max(max(inv_inertia.x, inv_inertia.y), inv_inertia.z);
-  const Float turn = sqrt(dot(l, l)) * inv_min * Float(dt);
-  const Vec3 rate = inv_inertia * Float(dt * Real(0.5));
-  if (!any(Float(kMaxTurn) < turn)) {
-    split_turn(rate, l, q);
-  } else {
-    // Each lane takes its own power of two of splits; lanes that are done keep their bits.
-    Float splits(Real(1));
-    int most = 1;
-    while (most < kMaxSplits) {
-      const Mask more = splits * Float(kMaxTurn) < turn;
-      if (!any(more)) break;
-      splits = select(more, splits + splits, splits);
-      most *= 2;
-    }
-    const Float share = Float(Real(1)) / splits;
-    const Vec3 part = rate * share;
-    for (int i = 0; i < most; ++i) {
-      const Mask running = Float(static_cast<Real>(i)) < splits;
-      Vec3 next_l = l;
-      Quat next_q = q;
-      split_turn(part, next_l, next_q);
-      l = select(running, next_l, l);
-      q = select(running, next_q, q);
-    }
+// Lanes that would turn too far in one splitting step take a power of two of shorter ones; lanes
+// that are done keep their bits.
+inline void split_fast(Float turn, Vec3 rate_half, FreeTop& top) {
+  Float splits(Real(1));
+  int most = 1;
+  while (most < kMaxSplits) {
+    const Mask more = splits * Float(kMaxTurn) < turn;
+    if (!any(more)) break;
+    splits = select(more, splits + splits, splits);
+    most *= 2;
   }
-  q = normalize(q);
-  // From the world's L, which does not change: rounding of the splitting leaves no trace in it.
-  const Mat3 end = matrix(q);
-  const Vec3 l_body = mul_transposed(end, l_world);
-  omega = mul(end, {l_body.x * inv_inertia.x, l_body.y * inv_inertia.y, l_body.z * inv_inertia.z});
+  const Vec3 part = rate_half * (Float(Real(1)) / splits);
+  for (int i = 0; i < most; ++i) {
+    const Mask running = Float(static_cast<Real>(i)) < splits;
+    FreeTop next = top;
+    split_turn<1>(&part, &next);
+    top.l = select(running, next.l, top.l);
+    top.q = select(running, next.q, top.q);
+  }
+}
+
+// Moments of inertia of a body, shared by all lanes.
+struct Moments {
+  Vec3 inertia, inverse;
+};
+
+// Free rotation over dt of kBodies bodies. omega (world) and q become those at the end.
+template <int kBodies>
+MW_INLINE void rotate_free(Real dt, const Moments* moments, Vec3* omega, Quat* q) {
+  FreeTop top[kBodies];
+  Vec3 l_world[kBodies], rate_half[kBodies];
+  Float turn[kBodies];
+  Mask far = Float(Real(1)) < Float(Real(0));
+  for (int i = 0; i < kBodies; ++i) {
+    const Mat3 r = matrix(q[i]);
+    const Vec3 w = mul_transposed(r, omega[i]);
+    const Vec3 l{w.x * moments[i].inertia.x, w.y * moments[i].inertia.y,
+                 w.z * moments[i].inertia.z};
+    top[i] = {l, q[i]};
+    l_world[i] = mul(r, l);
+    rate_half[i] = moments[i].inverse * Float(dt * Real(0.5));
+    // |L| / I_min bounds the rate about every axis.
+    const Float inv_min =
+        max(max(moments[i].inverse.x, moments[i].inverse.y), moments[i].inverse.z);
+    turn[i] = sqrt(dot(l, l)) * inv_min * Float(dt);
+    far = far | (Float(kMaxTurn) < turn[i]);
+  }
+  if (!any(far)) {
+    split_turn<kBodies>(rate_half, top);
+  } else {
+    for (int i = 0; i < kBodies; ++i) split_fast(turn[i], rate_half[i], top[i]);
+  }
+  for (int i = 0; i < kBodies; ++i) {
+    q[i] = normalize(top[i].q);
+    // From the world's L, which does not change: rounding of the splitting leaves no trace in it.
+    const Mat3 end = matrix(q[i]);
+    const Vec3 l = mul_transposed(end, l_world[i]);
+    omega[i] = mul(end, {l.x * moments[i].inverse.x, l.y * moments[i].inverse.y,
+                         l.z * moments[i].inverse.z});
+  }
 }
 
 // One implicit Newton step of I w' + h w' x I w' = I w, body axes; returns the new world omega.

@@ -11,4 +11,9 @@ FillSolver fill_solver_planar_dense, fill_solver_planar_rows;
 FillSolver fill_solver_isotropic_dense, fill_solver_isotropic_rows;
 FillSolver fill_solver_tensor_dense, fill_solver_tensor_rows;
 
+using FillCollide = void(kernels::Stage<Real>* collide);
+FillCollide fill_collide_planar_dense, fill_collide_planar_rows;
+FillCollide fill_collide_isotropic_dense, fill_collide_isotropic_rows;
+FillCollide fill_collide_tensor_dense, fill_collide_tensor_rows;
+
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

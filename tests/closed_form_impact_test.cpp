@@ -197,10 +197,10 @@ TEST_CASE("a bouncing ball keeps e^2 of its energy at each rebound", "[fast][clo
   };
   for (Space space : {Space::planar, Space::spatial}) {
     for (bool on_block : {false, true}) {
-      // Impacts faster than the threshold of 1 m/s: ten from 5 m, and from 1 m as many as there are.
-      for (const Drop& drop :
-           {Drop{5, 0.9, 10, 10}, Drop{1, 0.5, 9.81, 3}, Drop{1, 0.8, 9.81, 6},
-            Drop{1, 0.9, 9.81, 10}, Drop{5, 1.0, 10, 10}}) {
+      // Impacts faster than the threshold of 1 m/s: ten from 5 m, and from 1 m as many as there
+      // are.
+      for (const Drop& drop : {Drop{5, 0.9, 10, 10}, Drop{1, 0.5, 9.81, 3}, Drop{1, 0.8, 9.81, 6},
+                               Drop{1, 0.9, 9.81, 10}, Drop{5, 1.0, 10, 10}}) {
         Scene scene = empty_scene(space, drop.gravity);
         const Geometry floor = on_block ? cube_of(space, 2) : ground_of(space);
         scene.add(body_of(shape_of(floor), (on_block ? -2.0 : 0.0) * up_of(space), Motion::fixed));
@@ -219,8 +219,7 @@ TEST_CASE("a bouncing ball keeps e^2 of its energy at each rebound", "[fast][clo
                   (0.5 * v * v) / drop.gravity + position(batch, 0, 0).dot(up_of(space)) - 0.5;
               INFO(name(table) << " e " << drop.e << " rebound " << rebounds << " energy ratio "
                                << energy / (drop.height * std::pow(drop.e, 2 * rebounds)));
-              CHECK(energy ==
-                    Approx(drop.height * std::pow(drop.e, 2 * rebounds)).epsilon(0.01));
+              CHECK(energy == Approx(drop.height * std::pow(drop.e, 2 * rebounds)).epsilon(0.01));
             }
             before = v;
           }

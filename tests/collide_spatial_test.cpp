@@ -38,11 +38,12 @@ void check(Maker first, Motion first_motion, Maker second, const PairPromise& pr
   }
 }
 
-// A box prefers a face to an edge that is shallower by up to 5 % of the face's depth, and one
-// face to another by a small length (box_box_axes.hpp).
+// A box prefers a face of A to one of B that is shallower by up to half a slop, and a face to an
+// edge that is shallower by half a slop and 5 % of the face's depth (box_box_axes.hpp).
 PairPromise box_box_promise() {
   PairPromise p;
-  p.bias = 0.006 * 0.6;
+  const double half_slop = 0.5 * Options{}.slop;
+  p.bias = half_slop / 0.95 + half_slop;
   p.bias_relative = 0.05 / 0.95;
   p.reach = 1.5;
   p.max_points = 4;

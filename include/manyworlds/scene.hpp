@@ -20,7 +20,9 @@ namespace manyworlds {
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-using Quat = Eigen::Quaterniond;  // Eigen's constructor order: (w, x, y, z)
+// Eigen's constructor order: (w, x, y, z). Unaligned, so that structs have the same layout whatever
+// instruction set the user compiles for.
+using Quat = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 enum class Space { planar, spatial };
 

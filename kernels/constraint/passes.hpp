@@ -4,7 +4,6 @@
 
 #include <type_traits>
 
-#include "kernels/collide/narrow_phase.hpp"
 #include "kernels/constraint/contact_cache.hpp"
 #include "kernels/constraint/restitution.hpp"
 #include "kernels/finish.hpp"
@@ -106,7 +105,6 @@ struct Passes {
     out.restitute = restitute;
     out.store = store;
     out.leave = leave;
-    fill_narrow_phase<S, kDense>(out.collide);
     return out;
   }
 };

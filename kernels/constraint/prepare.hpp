@@ -3,7 +3,8 @@
 // and only here.
 #pragma once
 
-#include "kernels/constraint/slot.hpp"
+#include "kernels/constraint/body_rows.hpp"
+#include "kernels/constraint/stored_impulses.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -12,115 +13,6 @@ struct SlotBodies {
   alignas(64) std::int32_t a[kLanes], b[kLanes];  // bodies; the dummy in inactive lanes
   alignas(64) std::int32_t offset_a[kLanes], offset_b[kLanes];  // into body_rows
 };
-
-template <class S>
-struct BodyRow {
-  Float inv_mass;
-  typename S::Inertia inertia;
-  typename S::Vec centre;  // of mass, world; only when asked for
-};
-
-MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
-                             BodyRow<Planar>& r) {
-  (void)t;
-  load_rows4(w.body_rows, o, r.inv_mass, r.inertia, r.centre.x, r.centre.y);
-}
-MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
-                             BodyRow<Isotropic>& r) {
-  Float unused0, unused1;
-  load_rows4(w.body_rows, o, r.inv_mass, r.inertia, unused0, unused1);
-  if (!t.collider_is_body) {
-    load_rows4(w.body_rows + 4, o, r.centre.x, r.centre.y, r.centre.z, unused0);
-  }
-}
-MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
-                             BodyRow<Tensor>& r) {
-  Float unused;
-  load_rows4(w.body_rows, o, r.inertia.xx, r.inertia.xy, r.inertia.xz, r.inertia.yy);
-  load_rows4(w.body_rows + 4, o, r.inertia.yz, r.inertia.zz, r.inv_mass, unused);
-  if (!t.collider_is_body) {
-    load_rows4(w.body_rows + 8, o, r.centre.x, r.centre.y, r.centre.z, unused);
-  }
-}
-
-template <class S, bool kDense>
-MW_INLINE Velocity<S> load_velocity(const Work& w, const std::int32_t* offset, int body) {
-  if constexpr (kDense) {
-    return load_velocity_dense<S>(w.velocity + body * (S::kDim + S::kAng) * kLanes);
-  } else {
-    return load_velocity_row(S{}, w.velocity, offset);
-  }
-}
-
-MW_INLINE Float gather(const Real* table, const std::int32_t* index) {
-  alignas(64) Real x[kLanes];
-  for (int l = 0; l < kLanes; ++l) x[l] = table[index[l]];
-  return Float::load(x);
-}
-
-// Acceleration of the bodies of the lanes along n, from gravity.
-template <class S>
-MW_INLINE Float gravity_along(const Tables& t, const std::int32_t* body, typename S::Vec n) {
-  typename S::Vec g;
-  if (t.uniform_gravity) {
-    g.x = t.body[0].acceleration[0];
-    g.y = t.body[0].acceleration[1];
-    if constexpr (S::kDim == 3) g.z = t.body[0].acceleration[2];
-  } else {
-    alignas(64) Real x[3][kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      for (int c = 0; c < 3; ++c) x[c][l] = t.body[body[l]].acceleration[c];
-    }
-    g.x = Float::load(x[0]), g.y = Float::load(x[1]);
-    if constexpr (S::kDim == 3) g.z = Float::load(x[2]);
-  }
-  return dot(g, n);
-}
-
-template <class T>
-MW_INLINE T zero_of();
-template <>
-MW_INLINE Vec2 zero_of<Vec2>() {
-  return {Real(0), Real(0)};
-}
-template <>
-MW_INLINE Vec3 zero_of<Vec3>() {
-  return {Real(0), Real(0), Real(0)};
-}
-
-// Offsets of the cache rows that hold the impulses of the lanes' keys; the zero row if none does.
-// Keys ascend in the cache and from slot to slot, so each lane's cursor only moves forward.
-inline void find_stored(const Tables& t, const Group& g, Work& w, ListId list, std::uint32_t mask,
-                        const std::int32_t* key, std::int32_t* offset) {
-  const int id = static_cast<int>(list);
-  const int capacity = t.capacity[id];
-  const int row = kernels::cache_row_size(t.dimension, list);
-  for (int l = 0; l < kLanes; ++l) {
-    int found = capacity;
-    if ((mask >> l) & 1u) {
-      const std::int32_t* keys = g.cache[id].keys + l * (capacity + 1);
-      std::int32_t at = w.cursor[id][l];
-      while (keys[at] < key[l]) ++at;
-      w.cursor[id][l] = at;
-      if (keys[at] == key[l]) found = at;
-    }
-    offset[l] = (l * (capacity + 2) + found) * row;
-  }
-}
-
-// Drops the lanes whose list is full and counts the others.
-inline std::uint32_t claim_capacity(const Tables& t, Work& w, ListId list, std::uint32_t mask) {
-  std::int32_t* count = w.lane_count[static_cast<int>(list)];
-  const int capacity = t.capacity[static_cast<int>(list)];
-  for (int l = 0; l < kLanes; ++l) {
-    if (((mask >> l) & 1u) && count[l] >= capacity) {
-      mask &= ~(1u << l);
-      w.overflow |= 1u << l;
-    }
-    count[l] += static_cast<std::int32_t>((mask >> l) & 1u);
-  }
-  return mask;
-}
 
 // Writes the points of the recorder's lane.
 template <class S, int N>

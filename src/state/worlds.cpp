@@ -26,8 +26,8 @@ Worlds<Real>::Worlds(Plan plan, int worlds, int first, std::uint64_t seed, int l
     const int capacity = t.capacity[l];
     if (capacity == 0) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
-    cache_rows_[l] = AlignedBuffer<Real>(slots * static_cast<std::size_t>((capacity + 2) * row));
-    cache_keys_[l] = AlignedBuffer<std::int32_t>(slots * static_cast<std::size_t>(capacity + 1));
+    cache_rows_[l] = AlignedBuffer<Real>(slots * static_cast<std::size_t>(capacity + 2) * static_cast<std::size_t>(row));
+    cache_keys_[l] = AlignedBuffer<std::int32_t>(slots * (static_cast<std::size_t>(capacity) + 1));
   }
   restart();
 }
@@ -43,9 +43,10 @@ kernels::GroupView<Real> Worlds<Real>::group(int index) const {
     if (cache_keys_[l].empty()) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
     view.cache[l].rows =
-        cache_rows_[l].data() + g * lanes * static_cast<std::size_t>((t.capacity[l] + 2) * row);
+        cache_rows_[l].data() + g * lanes * static_cast<std::size_t>(t.capacity[l] + 2) *
+                             static_cast<std::size_t>(row);
     view.cache[l].keys =
-        cache_keys_[l].data() + g * lanes * static_cast<std::size_t>(t.capacity[l] + 1);
+        cache_keys_[l].data() + g * lanes * (static_cast<std::size_t>(t.capacity[l]) + 1);
   }
   if (forced_) view.force = force_.data() + g * lanes * static_cast<std::size_t>(t.bodies) * 6;
   return view;
@@ -77,7 +78,7 @@ void Worlds<Real>::clear_contacts(int world) {
   const auto w = static_cast<std::size_t>(world);  // lanes of a group lie one after the other
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
-    const auto stride = static_cast<std::size_t>(t.capacity[l] + 1);
+    const auto stride = (static_cast<std::size_t>(t.capacity[l]) + 1);
     cache_keys_[l][w * stride] = kernels::kEndOfKeys;
   }
 }

@@ -1,0 +1,9 @@
+// Narrow phase of the Planar space in the dense layout.
+#include "kernels/collide/narrow_phase.hpp"
+#include "kernels/solver_tables.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+void fill_collide_planar_dense(kernels::Stage<Real>* collide) { fill_narrow_phase<Planar, true>(collide); }
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
