@@ -99,8 +99,9 @@ void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
     const Float hx(c.half[0]), hy(c.half[1]);
     store_rows4(w.pose_rows, o, p.x, p.y, q.c, q.s);
     store_rows4(w.pose_rows + 4, o, hx, hy, Real(0), Real(0));
-    put_bounds(w, index, p,
-               {fma(abs(q.s), hy, abs(q.c) * hx) + margin, fma(abs(q.c), hy, abs(q.s) * hx) + margin});
+    put_bounds(
+        w, index, p,
+        {fma(abs(q.s), hy, abs(q.c) * hx) + margin, fma(abs(q.c), hy, abs(q.s) * hx) + margin});
   } else {
     store_rows4(w.pose_rows, o, p.x, p.y, static_cast<Real>(c.vertex_count), c.radius);
     Vec2 low{Real(1e30), Real(1e30)}, high{Real(-1e30), Real(-1e30)};
@@ -124,7 +125,9 @@ void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
   }
 }
 
-void body_rows(const Tables& t, const Group& g, Work& w) {
+}  // namespace
+
+void turn_body_rows(const Tables& t, const Group& g, Work& w) {
   if (t.inertia_kind != kernels::InertiaKind::tensor && t.collider_is_body) return;  // constant
   const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
   for (int b = 0; b < t.bodies; ++b) {
@@ -139,8 +142,8 @@ void body_rows(const Tables& t, const Group& g, Work& w) {
     }
     if (t.inertia_kind == kernels::InertiaKind::tensor) {
       const Mat3 r = matrix(load_quat(state + at.orientation * kLanes));
-      const Sym3 s = rotate_diagonal(
-          r, {body.inv_inertia[0], body.inv_inertia[1], body.inv_inertia[2]});
+      const Sym3 s =
+          rotate_diagonal(r, {body.inv_inertia[0], body.inv_inertia[1], body.inv_inertia[2]});
       store_rows4(w.body_rows, o, s.xx, s.xy, s.xz, s.yy);
       store_rows4(w.body_rows + 4, o, s.yz, s.zz, body.inv_mass, Real(0));
     }
@@ -152,8 +155,6 @@ void body_rows(const Tables& t, const Group& g, Work& w) {
   }
 }
 
-}  // namespace
-
 void begin(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   for (int i = 0; i < t.colliders; ++i) {
@@ -163,7 +164,7 @@ void begin(const Tables& t, const Group& g, kernels::Scratch* scratch) {
       planar_collider(t, g, w, i);
     }
   }
-  body_rows(t, g, w);
+  turn_body_rows(t, g, w);
   for (int b = 0; b <= t.bodies; ++b) w.touched[b] = 0;
   for (int list = 0; list < kLists; ++list) {
     w.slots[list].count = 0;

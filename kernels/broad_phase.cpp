@@ -56,12 +56,13 @@ MW_INLINE Mask fixed_overlap(const Tables& t, const Work& w, int fixed, int b) {
       const Float half = Float::load(p + (dim + c) * kLanes);
       height = fma(Float(n), Float::load(p + c * kLanes) - (n > 0 ? half : -half), height);
     }
-    return height < Float(Real(0));
+    return height < Float(t.half_margin);
   }
   Mask m = mask_from_bits(kAllLanes);
   for (int c = 0; c < dim; ++c) {
     const Float x = Float::load(p + c * kLanes), half = Float::load(p + (dim + c) * kLanes);
-    m = m & (x - half < Float(f.high[c])) & (Float(f.low[c]) < x + half);
+    m = m & (x - half < Float(f.high[c] + t.half_margin)) &
+        (Float(f.low[c] - t.half_margin) < x + half);
   }
   return m;
 }
@@ -96,14 +97,14 @@ template <class Allowed>
 void test_pairs(const Tables& t, Work& w, int at, Allowed allowed) {
   const auto& c = t.pair_class[at];
   if (is_fixed(c.list)) {
-    test_class(w, c, at, c.count,
-               [&](int a, int b) { return fixed_overlap(t, w, a, b); }, allowed);
+    test_class(
+        w, c, at, c.count, [&](int a, int b) { return fixed_overlap(t, w, a, b); }, allowed);
   } else if (is_round(c.kind)) {
-    test_class(w, c, at, c.count,
-               [&](int a, int b) { return round_overlap(t, w, a, b); }, allowed);
+    test_class(
+        w, c, at, c.count, [&](int a, int b) { return round_overlap(t, w, a, b); }, allowed);
   } else {
-    test_class(w, c, at, c.count,
-               [&](int a, int b) { return bounds_overlap(t, w, a, b); }, allowed);
+    test_class(
+        w, c, at, c.count, [&](int a, int b) { return bounds_overlap(t, w, a, b); }, allowed);
   }
 }
 

@@ -7,7 +7,8 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
 
-// Above this share of active lanes dense slots are faster than rows (measured, docs/architecture.md).
+// Above this share of active lanes dense slots are faster than rows (measured,
+// docs/architecture.md).
 #if defined(MW_ISA_AVX512)
 constexpr float kDenseOccupancy = 0.45f;
 #else
@@ -52,11 +53,34 @@ class RowPacker {
 
 }  // namespace
 
+namespace {
+
+// Drops the last candidates of lanes that have too many: the same ones in both layouts.
+void limit_candidates(const Tables& t, Work& w, int at) {
+  const auto& pairs = t.pair_class[at];
+  const int limit = candidate_limit(t, pairs), hits = w.hit_count[at];
+  if (hits <= limit) return;
+  std::uint32_t* masks = w.hit_masks + pairs.first_key;
+  int count[kLanes] = {};
+  for (int i = 0; i < hits; ++i) {
+    for (std::uint32_t m = masks[i]; m != 0; m &= m - 1) {
+      const int lane = __builtin_ctz(m);
+      if (++count[lane] > limit) {
+        masks[i] &= ~(1u << lane);
+        w.overflow |= 1u << lane;
+      }
+    }
+  }
+}
+
+}  // namespace
+
 kernels::Layout choose_layout(const Tables& t, const Group&, kernels::Scratch* scratch,
                               kernels::Layout wish) {
   Work& w = work_of(scratch);
   unsigned slots[kLists] = {}, all = 0, active = 0;
   for (int c = 0; c < t.classes; ++c) {
+    limit_candidates(t, w, c);
     const auto& pairs = t.pair_class[c];
     const int hits = w.hit_count[c];
     const std::uint32_t* masks = w.hit_masks + pairs.first_key;
@@ -67,7 +91,9 @@ kernels::Layout choose_layout(const Tables& t, const Group&, kernels::Scratch* s
   w.counters.dense_slots = all;
   w.counters.active = active;
   bool fits = true;
-  for (int l = 0; l < kLists; ++l) fits = fits && static_cast<int>(slots[l]) <= w.slots[l].max_slots;
+  for (int l = 0; l < kLists; ++l) {
+    fits = fits && static_cast<int>(slots[l]) < w.slots[l].max_slots;
+  }
   w.dense = wish == kernels::Layout::dense;
   if (wish == kernels::Layout::automatic) {
     w.dense = static_cast<float>(active) >= kDenseOccupancy * static_cast<float>(all * kLanes);

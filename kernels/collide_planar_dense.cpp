@@ -4,6 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_collide_planar_dense(kernels::Stage<Real>* collide) { fill_narrow_phase<Planar, true>(collide); }
+void fill_collide_planar_dense(kernels::Stage<Real>* collide) {
+  fill_narrow_phase<Planar, true>(collide);
+}
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -4,6 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_collide_planar_rows(kernels::Stage<Real>* collide) { fill_narrow_phase<Planar, false>(collide); }
+void fill_collide_planar_rows(kernels::Stage<Real>* collide) {
+  fill_narrow_phase<Planar, false>(collide);
+}
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -4,6 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_collide_tensor_dense(kernels::Stage<Real>* collide) { fill_narrow_phase<Tensor, true>(collide); }
+void fill_collide_tensor_dense(kernels::Stage<Real>* collide) {
+  fill_narrow_phase<Tensor, true>(collide);
+}
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

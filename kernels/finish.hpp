@@ -5,12 +5,14 @@
 
 #include "kernels/cast.hpp"
 #include "kernels/integrate.hpp"
+#include "kernels/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr Real kMaxPosition = Real(1e10);  // m
 inline constexpr Real kMaxSpeed = Real(1e5);      // m/s
 inline constexpr Real kMaxSpin = Real(1e6);       // rad/s
+inline constexpr Real kMaxOrientation = Real(1e3);
 inline constexpr Real kMaxFinite = sizeof(Real) == 4 ? Real(3.4028234e38) : Real(1.79769e308);
 
 // Bits of the public Status (include/manyworlds/batch.hpp).
@@ -29,12 +31,22 @@ struct LaneCheck {
   Mask finite = mask_from_bits(kAllLanes);
 
   template <class S>
-  MW_INLINE void add(typename S::Vec x, const Velocity<S>& v) {
-    const Mask ok = in_range(x, kMaxPosition) & in_range(v.v, kMaxSpeed) & in_range(v.w, kMaxSpin);
+  MW_INLINE void add(const Tables& t, const Group& g, int body, typename S::Vec step,
+                     const Velocity<S>& v) {
+    const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
+    const auto x = load_as<typename S::Vec>(state_of(t, g, body, at.position)) + step;
+    Mask ok = in_range(x, kMaxPosition) & in_range(v.v, kMaxSpeed) & in_range(v.w, kMaxSpin);
+    Float turned(Real(0));
+    if (t.has_orientation) {  // only a written value can be bad: steps normalise
+      for (int c = 0; c < (S::kDim == 2 ? 2 : 4); ++c) {
+        turned = turned + abs(Float::load(state_of(t, g, body, at.orientation + c)));
+      }
+      ok = ok & in_range(turned, kMaxOrientation);
+    }
     good = good & ok;
     if (!all(ok)) {
       finite = finite & in_range(x, kMaxFinite) & in_range(v.v, kMaxFinite) &
-               in_range(v.w, kMaxFinite);
+               in_range(v.w, kMaxFinite) & in_range(turned, kMaxFinite);
     }
   }
 };
@@ -106,10 +118,12 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
     // A kinematic body has no moments; any isotropic ones turn it about its fixed axis.
     const bool kinematic = b.inv_inertia[0] == Real(0);
     for (int c = 0; c < 3; ++c) {
-      Float& inertia = c == 0 ? moments[i].inertia.x : c == 1 ? moments[i].inertia.y
-                                                              : moments[i].inertia.z;
-      Float& inverse = c == 0 ? moments[i].inverse.x : c == 1 ? moments[i].inverse.y
-                                                              : moments[i].inverse.z;
+      Float& inertia = c == 0   ? moments[i].inertia.x
+                       : c == 1 ? moments[i].inertia.y
+                                : moments[i].inertia.z;
+      Float& inverse = c == 0   ? moments[i].inverse.x
+                       : c == 1 ? moments[i].inverse.y
+                                : moments[i].inverse.z;
       inertia = kinematic ? Real(1) : b.inertia[c];
       inverse = kinematic ? Real(1) : b.inv_inertia[c];
     }
@@ -190,11 +204,9 @@ inline void report_overflow(const Group& g, const Work& w) {
 
 template <class S, bool kDense>
 void leave_state(const Tables& t, const Group& g, Work& w) {
-  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
   LaneCheck check;
   for (int b = 0; b < t.bodies; ++b) {
-    const Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
-    check.add<S>(load_as<typename S::Vec>(state_of(t, g, b, at.position)) + moved.v,
+    check.add<S>(t, g, b, get_velocity<S, kDense>(w, w.displacement, b).v,
                  get_velocity<S, kDense>(w, w.velocity, b));
   }
   commit_bodies<S, kDense>(t, g, w, judge_lanes(g, check));
@@ -208,6 +220,7 @@ void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
   w.push = g.force ? w.push_storage : nullptr;
   for (int step = 0; step < steps; ++step) {
     LaneCheck check;
+    if (w.push) turn_body_rows(t, g, w);
     for (int b = 0; b < t.bodies; ++b) {
       Velocity<S> v{load_as<typename S::Vec>(state_of(t, g, b, at.linear)),
                     load_as<typename S::Ang>(state_of(t, g, b, at.angular))};
@@ -232,7 +245,7 @@ void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
       }
       put_velocity<S, true>(w, w.velocity, b, v);
       put_velocity<S, true>(w, w.displacement, b, moved);
-      check.add<S>(load_as<typename S::Vec>(state_of(t, g, b, at.position)) + moved.v, v);
+      check.add<S>(t, g, b, moved.v, v);
     }
     commit_bodies<S, true>(t, g, w, judge_lanes(g, check));
   }

@@ -9,23 +9,23 @@ inline constexpr int kEndOfKeys = 0x7fffffff;
 
 template <class Real>
 struct ContactCache {
-  Real* rows;          // [lane][capacity + 2][cache row]; row `capacity` stays zero, the last is spill
+  Real* rows;  // [lane][capacity + 2][cache row]; row `capacity` stays zero, the last is spill
   std::int32_t* keys;  // [lane][capacity + 1], ascending, closed by kEndOfKeys
 };
 
 template <class Real>
 struct GroupView {
-  Real* state;                      // [body][component][lane]
+  Real* state;  // [body][component][lane]
   ContactCache<Real> cache[kLists];
-  std::uint32_t* status;            // [lane], bits of Status
-  const Real* force;                // [body][force 3, torque 3][lane], or nullptr
+  std::uint32_t* status;  // [lane], bits of Status
+  const Real* force;      // [body][force 3, torque 3][lane], or nullptr
 };
 
 // What a group's step counted; the pipeline adds it up per thread.
 struct GroupCounters {
-  std::uint32_t dense_slots = 0;    // slots that the dense layout needs (or would need)
-  std::uint32_t active = 0;         // active lanes in them
-  std::uint32_t points = 0;         // contact points within 4 slop
+  std::uint32_t dense_slots = 0;  // slots that the dense layout needs (or would need)
+  std::uint32_t active = 0;       // active lanes in them
+  std::uint32_t points = 0;       // contact points within 4 slop
   std::uint32_t manifolds = 0;
 };
 

@@ -2,9 +2,10 @@
 //
 // Free bodies: DLM splitting (Dullweber, Leimkuhler, McLachlan 1997). The angular momentum L stays
 // put in the world; in the body frame it is turned about x, y, z, y, x by half, half, full, half,
-// half of dt L_k / I_k, and the orientation turns against it. Symplectic, |L| exact, energy bounded.
-// Bodies in contact: one Newton step of the implicit gyroscopic equation in the body frame (Catto
-// 2015), which loses energy but cannot gain it, since splitting would spoil solved contact speeds.
+// half of dt L_k / I_k, and the orientation turns against it. Symplectic, |L| exact, energy
+// bounded. Bodies in contact: one Newton step of the implicit gyroscopic equation in the body frame
+// (Catto 2015), which loses energy but cannot gain it, since splitting would spoil solved contact
+// speeds.
 #pragma once
 
 #include "kernels/lane/algebra.hpp"
@@ -27,10 +28,17 @@ MW_INLINE Turn turn_by(Float angle) {
     p = fma(x2, Real(1.0 / 120.0), Real(-1.0 / 6.0));
     q = fma(x2, fma(x2, Real(-1.0 / 720.0), Real(1.0 / 24.0)), Real(-0.5));
   } else {
-    p = fma(x2, fma(x2, fma(x2, fma(x2, Real(-1.0 / 39916800.0), Real(1.0 / 362880.0)),
-                            Real(-1.0 / 5040.0)), Real(1.0 / 120.0)), Real(-1.0 / 6.0));
-    q = fma(x2, fma(x2, fma(x2, fma(x2, Real(-1.0 / 3628800.0), Real(1.0 / 40320.0)),
-                            Real(-1.0 / 720.0)), Real(1.0 / 24.0)), Real(-0.5));
+    p = fma(
+        x2,
+        fma(x2,
+            fma(x2, fma(x2, Real(-1.0 / 39916800.0), Real(1.0 / 362880.0)), Real(-1.0 / 5040.0)),
+            Real(1.0 / 120.0)),
+        Real(-1.0 / 6.0));
+    q = fma(
+        x2,
+        fma(x2, fma(x2, fma(x2, Real(-1.0 / 3628800.0), Real(1.0 / 40320.0)), Real(-1.0 / 720.0)),
+            Real(1.0 / 24.0)),
+        Real(-0.5));
   }
   const Float sh = fma(p * x2, x, x), ch = fma(q, x2, Real(1));
   const Float twice = sh + sh;
@@ -142,8 +150,8 @@ MW_INLINE void rotate_free(Real dt, const Moments* moments, Vec3* omega, Quat* q
     // From the world's L, which does not change: rounding of the splitting leaves no trace in it.
     const Mat3 end = matrix(q[i]);
     const Vec3 l = mul_transposed(end, l_world[i]);
-    omega[i] = mul(end, {l.x * moments[i].inverse.x, l.y * moments[i].inverse.y,
-                         l.z * moments[i].inverse.z});
+    omega[i] = mul(
+        end, {l.x * moments[i].inverse.x, l.y * moments[i].inverse.y, l.z * moments[i].inverse.z});
   }
 }
 
@@ -156,8 +164,7 @@ MW_INLINE Vec3 implicit_gyroscopic(Real dt, Vec3 inertia, const Mat3& r, Vec3 om
   const Vec3 f = cross(w, l) * h;
   // Columns of J.
   const Vec3 jx{inertia.x, h * fms(w.z, inertia.x, l.z), h * fms(l.y, Real(1), w.y * inertia.x)};
-  const Vec3 jy{h * fms(l.z, Real(1), w.z * inertia.y), inertia.y,
-                h * fms(w.x, inertia.y, l.x)};
+  const Vec3 jy{h * fms(l.z, Real(1), w.z * inertia.y), inertia.y, h * fms(w.x, inertia.y, l.x)};
   const Vec3 jz{h * fms(w.y, inertia.z, l.y), h * fms(l.x, Real(1), w.x * inertia.z), inertia.z};
   const Vec3 yz = cross(jy, jz);
   const Float scale = Float(Real(1)) / dot(jx, yz);

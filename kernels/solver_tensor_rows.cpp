@@ -4,7 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_solver_tensor_rows(kernels::SolverTable<Real>& with, kernels::SolverTable<Real>& without) {
+void fill_solver_tensor_rows(kernels::SolverTable<Real>& with,
+                             kernels::SolverTable<Real>& without) {
   with = Passes<Tensor, false, true>::table();
   without = Passes<Tensor, false, false>::table();
   fill_collide_tensor_rows(with.collide);

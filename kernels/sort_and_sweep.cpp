@@ -38,7 +38,8 @@ void sort_lanes(Real* sorted, int n) {
     for (int k = p; k >= 1; k /= 2) {
       for (int j = k % p; j + k < n; j += 2 * k) {
         for (int i = 0; i < k && i + j + k < n; ++i) {
-          if ((i + j) / (2 * p) == (i + j + k) / (2 * p)) compare_exchange(sorted, i + j, i + j + k);
+          if ((i + j) / (2 * p) == (i + j + k) / (2 * p))
+            compare_exchange(sorted, i + j, i + j + k);
         }
       }
     }

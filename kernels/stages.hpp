@@ -10,7 +10,14 @@ void broad_phase(const Tables& t, const Group& g, kernels::Scratch* scratch);
 kernels::Layout choose_layout(const Tables& t, const Group& g, kernels::Scratch* scratch,
                               kernels::Layout wish);
 
+// Inverse inertias in world axes and centres of mass, for the current orientations.
+void turn_body_rows(const Tables& t, const Group& g, Work& w);
 void sort_and_sweep(const Tables& t, Work& w);
+
+// Most candidates of a class that a lane may have: twice the manifolds that it can keep.
+MW_INLINE int candidate_limit(const Tables& t, const kernels::PairClass<Real>& c) {
+  return 2 * t.capacity[static_cast<int>(c.list)];
+}
 
 // Fills w.candidates with the hits of the class at work.
 void list_candidates(const Tables& t, Work& w);

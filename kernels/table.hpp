@@ -25,15 +25,15 @@ struct SolverTable {
   Stage<Real> relax;       // normal rows without bias, then friction
   Stage<Real> next;        // push and warm start of the next substep
   Stage<Real> restitute;
-  Stage<Real> store;       // impulses into the cache
-  Stage<Real> leave;       // commit positions, orientations, velocities
+  Stage<Real> store;                // impulses into the cache
+  Stage<Real> leave;                // commit positions, orientations, velocities
   Stage<Real> collide[kPairKinds];  // narrow phase and rows of one class (Scratch::class_index)
 };
 
 template <class Real>
 struct ContactPoint {
-  std::int32_t list, key;      // key identifies class and candidate
-  Real normal[3], point[3];    // point relative to nothing: world, m
+  std::int32_t list, key;    // key identifies class and candidate
+  Real normal[3], point[3];  // point relative to nothing: world, m
   Real separation;
   Real impulse;
   std::int32_t feature;
@@ -63,6 +63,7 @@ struct KernelTable {
   int (*record)(Scratch*, int lane, ContactPoint<Real>* out, int max);
 };
 
-// Every kernel library defines manyworlds::<isa>_<precision>::fill_kernel_table(KernelTable<Real>&).
+// Every kernel library defines
+// manyworlds::<isa>_<precision>::fill_kernel_table(KernelTable<Real>&).
 
 }  // namespace manyworlds::kernels

@@ -35,6 +35,11 @@ enum class PairKind : int {
   circle_polygon,    // fixed circle
 };
 inline constexpr int kPairKinds = 16;
+inline constexpr bool is_plane(PairKind kind) {
+  return kind == PairKind::plane_sphere || kind == PairKind::plane_box ||
+         kind == PairKind::plane_circle || kind == PairKind::plane_rectangle ||
+         kind == PairKind::plane_polygon;
+}
 
 // Contacts of a world live in four lists, solved in this order.
 enum class ListId : int { pair_multi, pair_single, fixed_multi, fixed_single };
@@ -51,8 +56,8 @@ inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of po
 //   sphere, circle        x y z radius                       (4; z unused in the plane)
 //   box                   Rx p.x | Ry p.y | Rz p.z | hx hy hz margin, columns of the rotation (16)
 //   rectangle             x y c s | hx hy 0 0                (8)
-//   polygon               x y count radius | 8 vertices | 8 normals, relative to x y, world axes (36)
-//   plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
+//   polygon               x y count radius | 8 vertices | 8 normals, relative to x y, world axes
+//   (36) plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
 inline constexpr int pose_row_size(ShapeKind kind) {
   switch (kind) {
     case ShapeKind::box: return 16;
@@ -66,13 +71,13 @@ inline constexpr int pose_row_size(ShapeKind kind) {
 template <class Real>
 struct BodyTable {
   Real inv_mass;
-  Real inertia[3];      // principal, kg m^2 (planar: [2])
-  Real inv_inertia[3];  // 0 for kinematic bodies
+  Real inertia[3];       // principal, kg m^2 (planar: [2])
+  Real inv_inertia[3];   // 0 for kinematic bodies
   Real acceleration[3];  // gravity times gravity scale, m/s^2; 0 for kinematic bodies
-  Real linear_factor;   // 1 / (1 + h c), per substep
+  Real linear_factor;    // 1 / (1 + h c), per substep
   Real angular_factor;
-  Real radius;          // of the bounding sphere about the centre of mass, m
-  Real core_radius;     // of a sphere inside the body about its centre of mass, m; 0: none
+  Real radius;       // of the bounding sphere about the centre of mass, m
+  Real core_radius;  // of a sphere inside the body about its centre of mass, m; 0: none
 };
 
 template <class Real>
@@ -93,7 +98,7 @@ struct ColliderTable {
 template <class Real>
 struct FixedTable {
   ShapeKind kind;
-  std::int32_t row;  // offset of its pose row in WorldTables::fixed_rows
+  std::int32_t row;      // offset of its pose row in WorldTables::fixed_rows
   Real low[3], high[3];  // bounding box (not for planes)
   Real plane[4];         // normal, offset
 };
@@ -104,11 +109,11 @@ struct PairClass {
   PairKind kind;
   ListId list;
   std::int32_t count;
-  std::int32_t first_key;       // keys of the class are first_key + 0 .. count - 1
-  const std::int32_t* a;        // [count] collider, or fixed shape
-  const std::int32_t* b;        // [count] collider
-  const Real* friction;         // [count]
-  const Real* restitution;      // [count]
+  std::int32_t first_key;   // keys of the class are first_key + 0 .. count - 1
+  const std::int32_t* a;    // [count] collider, or fixed shape
+  const std::int32_t* b;    // [count] collider
+  const Real* friction;     // [count]
+  const Real* restitution;  // [count]
 };
 
 template <class Real>
@@ -127,11 +132,11 @@ struct WorldTables {
   std::int32_t substeps;
   std::int32_t restitution_sweeps;
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
-  bool collider_is_body;   // collider i is the only shape of body i, centred and aligned
+  bool collider_is_body;  // collider i is the only shape of body i, centred and aligned
   bool friction_in_bias;
-  bool uniform_gravity;    // every body has the acceleration of body 0
-  bool sweep;              // sort and sweep instead of masked all-pairs
-  bool cast;               // cast fast bodies against fixed shapes
+  bool uniform_gravity;  // every body has the acceleration of body 0
+  bool sweep;            // sort and sweep instead of masked all-pairs
+  bool cast;             // cast fast bodies against fixed shapes
   bool has_bounds;
 
   const BodyTable<Real>* body;
@@ -156,11 +161,11 @@ struct WorldTables {
   Real dt, h, inv_h;
   Softness<Real> soft_pair, soft_fixed;
   Real push_out_speed;
-  Real margin;          // 4 slop, m
+  Real margin;  // 4 slop, m
   Real half_margin;
   Real restitution_threshold;
   Real bounds_low[3], bounds_high[3];  // of body positions, m
-  Real face_bias;       // m, preference of the previous kind of axis in separating-axis tests
+  Real face_bias;  // m, preference of the previous kind of axis in separating-axis tests
 };
 
 // State block of one body: components in this order, each kLanes wide. The orientation block is

@@ -1,6 +1,6 @@
 // Lays out a thread's scratch: measures it, then carves it out of one block.
-#include <initializer_list>
 #include "kernels/work.hpp"
+#include <initializer_list>
 
 #include "kernels/constraint/slot.hpp"
 #include "kernels/stages.hpp"
@@ -34,14 +34,14 @@ void size_slots(Work& w) {
   }
 }
 
-// Slots of a list: in rows every class needs at most as many as a lane may have, and classes
-// follow one another.
+// Slots of a list: classes follow one another, and each has no more candidates in a lane than
+// candidate_limit allows. One more, since a slot is written before it is known to have a point.
 int slots_needed(const Tables& t, int list) {
-  int slots = 0;
+  int slots = 1;
   for (int c = 0; c < t.classes; ++c) {
     if (static_cast<int>(t.pair_class[c].list) != list) continue;
-    const int most = t.pair_class[c].count;
-    slots += most < t.capacity[list] ? most : t.capacity[list];
+    const int most = t.pair_class[c].count, limit = candidate_limit(t, t.pair_class[c]);
+    slots += most < limit ? most : limit;
   }
   return slots;
 }
@@ -68,9 +68,9 @@ void carve(const Tables& t, Work& w, Carver& c) {
   c.take(w.displacement, velocities);
   c.take(w.push_storage, velocities);
   c.take(w.touched, count(t.bodies + 1));
-  if (!t.has_contacts) return;
   const int body_row = body_row_size(t.inertia_kind);
   c.take(w.body_rows, count((t.bodies + 1) * body_row * lanes));
+  if (!t.has_contacts) return;
   c.take(w.pose_rows, count(t.row_block * lanes));
   c.take(w.bounds, count(t.colliders * 2 * dim * lanes));
   c.take(w.beyond, count(t.colliders * lanes));
@@ -113,12 +113,7 @@ void fill_constants(const Tables& t, Work& w) {
     w.pose_base[l] = l * t.row_block;
     w.body_base[l] = l * (t.bodies + 1) * body_row;
   }
-  if (!t.has_contacts) return;
   for (int l = 0; l < kLanes; ++l) {
-    Real* dummy = w.pose_rows + w.pose_base[l] + t.row_block - kernels::kDummyRow;
-    for (int i = 0; i < kernels::kDummyRow; ++i) dummy[i] = Real(0);
-    dummy[0] = dummy[5] = dummy[10] = Real(1);  // as a box: unit axes
-    dummy[12] = dummy[13] = dummy[14] = Real(0.5);
     for (int b = 0; b <= t.bodies; ++b) {
       Real* r = w.body_rows + w.body_base[l] + b * body_row;
       for (int i = 0; i < body_row; ++i) r[i] = Real(0);
@@ -126,6 +121,13 @@ void fill_constants(const Tables& t, Work& w) {
       r[0] = t.body[b].inv_mass;
       r[1] = t.body[b].inv_inertia[2];
     }
+  }
+  if (!t.has_contacts) return;
+  for (int l = 0; l < kLanes; ++l) {
+    Real* dummy = w.pose_rows + w.pose_base[l] + t.row_block - kernels::kDummyRow;
+    for (int i = 0; i < kernels::kDummyRow; ++i) dummy[i] = Real(0);
+    dummy[0] = dummy[5] = dummy[10] = Real(1);  // as a box: unit axes
+    dummy[12] = dummy[13] = dummy[14] = Real(0.5);
   }
 }
 

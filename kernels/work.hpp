@@ -43,19 +43,19 @@ struct Work {
   Real* bounds;     // [collider][centre dim, half extent dim][lane], margin included
   Real* beyond;     // [collider][lane], how much farther its body may move than the margin's cap
   // broad phase
-  std::int32_t* hits;         // [key] candidate index within its class, compacted per class
-  std::uint32_t* hit_masks;   // [key]
-  std::int32_t* hit_count;    // [class]
-  std::uint32_t* marks;       // [key], sort and sweep
-  Real* sorted;               // [collider][low, high, index][lane], sort and sweep
+  std::int32_t* hits;        // [key] candidate index within its class, compacted per class
+  std::uint32_t* hit_masks;  // [key]
+  std::int32_t* hit_count;   // [class]
+  std::uint32_t* marks;      // [key], sort and sweep
+  Real* sorted;              // [collider][low, high, index][lane], sort and sweep
   // narrow phase
-  CandidateList candidates;   // of the class at work
-  CandidateList found;        // box pairs: after the separating-axis test
-  std::uint32_t* keep;        // [slot], lanes that passed it
+  CandidateList candidates;  // of the class at work
+  CandidateList found;       // box pairs: after the separating-axis test
+  std::uint32_t* keep;       // [slot], lanes that passed it
   SlotList slots[kLists];
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
   std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
-  std::uint32_t overflow;     // lanes that dropped a contact in this step
+  std::uint32_t overflow;                   // lanes that dropped a contact in this step
   int class_index;
   bool dense;
   int substep;
@@ -65,8 +65,8 @@ struct Work {
   Real* impulse_part;  // what warm starting adds to the velocity of the next substep
   Real* displacement;
   Real* push_storage;
-  Real* push;          // h times acceleration of every lane when there are forces, else nullptr
-  int rows_per_lane;   // bodies + dummy + padding
+  Real* push;         // h times acceleration of every lane when there are forces, else nullptr
+  int rows_per_lane;  // bodies + dummy + padding
   alignas(64) std::int32_t velocity_base[kLanes];  // offset of a lane's velocity rows
   alignas(64) std::int32_t pose_base[kLanes];
   alignas(64) std::int32_t body_base[kLanes];
@@ -81,8 +81,9 @@ struct Work {
 //   isotropic   1/m 1/I 0 0 | x y z 0
 //   tensor      Ixx Ixy Ixz Iyy | Iyz Izz 1/m 0 | x y z 0    (inverse, world axes)
 inline constexpr int body_row_size(kernels::InertiaKind kind) {
-  return kind == kernels::InertiaKind::planar ? 4
-         : kind == kernels::InertiaKind::isotropic ? 8 : 12;
+  return kind == kernels::InertiaKind::planar      ? 4
+         : kind == kernels::InertiaKind::isotropic ? 8
+                                                   : 12;
 }
 
 MW_INLINE Work& work_of(kernels::Scratch* s) { return *reinterpret_cast<Work*>(s); }

@@ -2,7 +2,8 @@
 //
 // One SIMD lane holds one world; groups of worlds spread over threads. A world's bits after n
 // steps depend on its Plan, its initial state and its inputs, on nothing else: not on its lane,
-// the batch size, the thread count, the contact layout or the instruction set (docs/determinism.md).
+// the batch size, the thread count, the contact layout or the instruction set
+// (docs/determinism.md).
 //
 // A Batch is not thread safe: one thread calls it at a time. Different Batches share nothing.
 #pragma once
@@ -55,9 +56,7 @@ inline constexpr Status operator|(Status a, Status b) {
 inline constexpr bool has(Status set, Status bit) {
   return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(bit)) != 0;
 }
-inline constexpr bool frozen(Status s) {
-  return has(s, Status::non_finite | Status::out_of_range);
-}
+inline constexpr bool frozen(Status s) { return has(s, Status::non_finite | Status::out_of_range); }
 inline constexpr bool lost(Status s) { return frozen(s) || has(s, Status::out_of_bounds); }
 std::string to_string(Status status);  // "ok", "non_finite", "out_of_bounds|contact_overflow"
 
@@ -69,10 +68,10 @@ struct Energy {
 
 // What the contacts of the last step looked like, over all worlds (see Batch::measure_contacts).
 struct ContactSummary {
-  double points_per_world = 0;     // points closer than 4 slop
+  double points_per_world = 0;  // points closer than 4 slop
   double manifolds_per_world = 0;
-  double max_penetration = 0;      // m, measured from the shapes at the current state
-  double mean_occupancy = 0;       // active lanes / lanes of the dense pair slots, last step
+  double max_penetration = 0;  // m, measured from the shapes at the current state
+  double mean_occupancy = 0;   // active lanes / lanes of the dense pair slots, last step
 };
 
 // One contact point at the current state, as the next step would see it.
@@ -119,9 +118,9 @@ class Batch {
   Isa isa() const;
   Precision precision() const;
   int lanes() const;
-  std::string kernel_table() const;        // "avx2 f32 x8"
-  std::size_t bytes_per_world() const;     // persistent state, mean over worlds
-  std::size_t scratch_bytes() const;       // per thread
+  std::string kernel_table() const;     // "avx2 f32 x8"
+  std::size_t bytes_per_world() const;  // persistent state, mean over worlds
+  std::size_t scratch_bytes() const;    // per thread
 
   // -- stepping. Allocates nothing, throws nothing (after the constructor, reset and the first
   // force call).
@@ -130,8 +129,8 @@ class Batch {
   // rounding step) and returns how many. `max_steps` keeps a stalled host from spiralling: time
   // beyond it is dropped. For real-time hosts.
   int step_to(double clock, int max_steps = 8);
-  double time() const;          // s, simulated since construction or reset of the whole batch
-  std::int64_t steps() const;   // taken since construction or reset of the whole batch
+  double time() const;         // s, simulated since construction or reset of the whole batch
+  std::int64_t steps() const;  // taken since construction or reset of the whole batch
 
   // -- state, canonical order [world][body][component], for all worlds or one.
   // Sizes must match exactly; throws std::invalid_argument otherwise.

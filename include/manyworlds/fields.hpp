@@ -7,11 +7,11 @@
 namespace manyworlds {
 
 // X(name, planar components, spatial components, unit, frame and meaning, written by)
-#define MW_STATE_FIELDS(X)                                                                       \
-  X(position, 2, 3, "m", "body origin, world", "finish")                                          \
-  X(orientation, 2, 4, "1", "body frame in world; planar (cos, sin), spatial (w, x, y, z)",       \
-    "finish")                                                                                     \
-  X(linear_velocity, 2, 3, "m/s", "centre of mass, world", "forces, solve, restitution")          \
+#define MW_STATE_FIELDS(X)                                                                  \
+  X(position, 2, 3, "m", "body origin, world", "finish")                                    \
+  X(orientation, 2, 4, "1", "body frame in world; planar (cos, sin), spatial (w, x, y, z)", \
+    "finish")                                                                               \
+  X(linear_velocity, 2, 3, "m/s", "centre of mass, world", "forces, solve, restitution")    \
   X(angular_velocity, 1, 3, "rad/s", "world", "forces, solve, restitution")
 
 enum class Field {

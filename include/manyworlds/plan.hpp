@@ -58,16 +58,16 @@ struct PlanReport {
   };
   struct Array {
     std::string name;
-    std::string shape;             // "[body][3]"
+    std::string shape;  // "[body][3]"
     std::size_t bytes_per_world = 0;
   };
   std::vector<Item> features;
-  std::vector<Item> stages;       // in the order of the step
+  std::vector<Item> stages;  // in the order of the step
   std::vector<PairClass> pairs;
-  std::vector<Array> arrays;      // persistent, float32
+  std::vector<Array> arrays;  // persistent, float32
   BroadPhase broad_phase = BroadPhase::all_pairs;
-  int pair_capacity = 0;          // manifolds per world between moving bodies
-  int fixed_capacity = 0;         // manifolds per world against fixed shapes
+  int pair_capacity = 0;   // manifolds per world between moving bodies
+  int fixed_capacity = 0;  // manifolds per world against fixed shapes
   std::size_t bytes_per_world = 0;
 };
 

@@ -28,20 +28,20 @@ enum class Space { planar, spatial };
 
 // ---- shapes --------------------------------------------------------------------------------
 
-struct Sphere {  // spatial
+struct Sphere {         // spatial
   double radius = 0.5;  // m
 };
-struct Box {  // spatial, centred on the shape frame
+struct Box {                         // spatial, centred on the shape frame
   Vec3 half_extents{0.5, 0.5, 0.5};  // m
 };
 struct Plane {  // spatial, fixed bodies only: all points p with normal . p <= offset are solid
   Vec3 normal{0, 0, 1};  // unit, body frame, pointing out of the solid
   double offset = 0;     // m
 };
-struct Circle {  // planar
+struct Circle {         // planar
   double radius = 0.5;  // m
 };
-struct Polygon {  // planar, convex, 3 to 8 vertices
+struct Polygon {               // planar, convex, 3 to 8 vertices
   std::vector<Vec2> vertices;  // m, shape frame, counter-clockwise
 
   // Rectangle of half extents (half_x, half_y) centred on the shape frame.
@@ -49,7 +49,7 @@ struct Polygon {  // planar, convex, 3 to 8 vertices
     return {{{-half_x, -half_y}, {half_x, -half_y}, {half_x, half_y}, {-half_x, half_y}}};
   }
 };
-struct HalfPlane {  // planar, fixed bodies only: all points p with normal . p <= offset are solid
+struct HalfPlane {    // planar, fixed bodies only: all points p with normal . p <= offset are solid
   Vec2 normal{0, 1};  // unit, body frame
   double offset = 0;  // m
 };
@@ -69,9 +69,9 @@ struct Filter {
 
 struct Shape {
   Geometry geometry = Sphere{};
-  Vec3 position = Vec3::Zero();         // m, of the shape frame in the body frame
-  Quat rotation = Quat::Identity();     // of the shape frame in the body frame; need not be unit
-  std::optional<double> density;        // kg/m^3 (kg/m^2 planar); default Options::density
+  Vec3 position = Vec3::Zero();      // m, of the shape frame in the body frame
+  Quat rotation = Quat::Identity();  // of the shape frame in the body frame; need not be unit
+  std::optional<double> density;     // kg/m^3 (kg/m^2 planar); default Options::density
   Material material;
   Filter filter;
   std::string name;
@@ -87,8 +87,8 @@ enum class Motion {
 
 // Mass, centre and inertia of a body. In a planar scene only inertia(2,2) is used.
 struct MassProperties {
-  double mass = 1;              // kg
-  Vec3 center = Vec3::Zero();   // m, centre of mass in the body frame
+  double mass = 1;                  // kg
+  Vec3 center = Vec3::Zero();       // m, centre of mass in the body frame
   Mat3 inertia = Mat3::Identity();  // kg m^2 about the centre of mass, body axes
 };
 
@@ -119,21 +119,21 @@ struct Body {
 // ---- options -------------------------------------------------------------------------------
 
 struct Options {
-  double dt = 1.0 / 60.0;  // s, one step
-  int substeps = 4;        // contact substeps per step
+  double dt = 1.0 / 60.0;   // s, one step
+  int substeps = 4;         // contact substeps per step
   Vec3 gravity{0, 0, -10};  // m/s^2 (planar scenes: set {0, -10, 0})
-  double density = 1000;   // kg/m^3 or kg/m^2, for shapes that give none
+  double density = 1000;    // kg/m^3 or kg/m^2, for shapes that give none
   // Size of a typical body, m. Scales slop, margins and speed limits of the contact model.
   double length_unit = 1;
 
-  double contact_frequency = 50;     // Hz, of the soft contact; doubled against fixed shapes
+  double contact_frequency = 60;  // Hz, of the soft contact; doubled against fixed shapes
   double contact_damping_ratio = 10;
-  double push_out_speed = 3;         // m/s per length_unit: cap on the speed that removes overlap
-  double slop = 0.005;               // m per length_unit: contact margin is 4 slop
-  double restitution_threshold = 1;  // m/s per length_unit: slower impacts do not bounce
-  int restitution_sweeps = 16;       // most repeats of the restitution pass
+  double push_out_speed = 2;          // m/s per length_unit: cap on the speed that removes overlap
+  double slop = 0.005;                // m per length_unit: contact margin is 4 slop
+  double restitution_threshold = 1;   // m/s per length_unit: slower impacts do not bounce
+  int restitution_sweeps = 16;        // most repeats of the restitution pass
   bool friction_in_bias_pass = true;  // much less sway of tall stacks; off is a little faster
-  bool cast_against_fixed = true;      // stop fast bodies at thin fixed shapes
+  bool cast_against_fixed = true;     // stop fast bodies at thin fixed shapes
 
   // A world is lost when a body's position leaves this box. Default: no bounds.
   std::optional<Eigen::AlignedBox3d> bounds;

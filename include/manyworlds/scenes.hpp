@@ -11,13 +11,13 @@ namespace manyworlds::scenes {
 
 struct Entry {
   const char* name;
-  const char* summary;    // one line
-  bool standard;          // one of the standard benchmark scenes
+  const char* summary;  // one line
+  bool standard;        // one of the standard benchmark scenes
   Scene (*make)();
 };
 
-const std::vector<Entry>& all();                 // in the order they are listed to people
-const Entry* find(std::string_view name);        // nullptr when unknown
-std::string nearest(std::string_view name);      // the known name with the smallest edit distance
+const std::vector<Entry>& all();             // in the order they are listed to people
+const Entry* find(std::string_view name);    // nullptr when unknown
+std::string nearest(std::string_view name);  // the known name with the smallest edit distance
 
 }  // namespace manyworlds::scenes

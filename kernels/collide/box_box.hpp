@@ -29,7 +29,7 @@ MW_INLINE Float safe_divisor(Float a) {
 // c, e1, e2: centre and half edges of the incident face in the reference frame (x, y, z).
 MW_INLINE void clip_face(Vec3 c, Vec3 e1, Vec3 e2, Float half_x, Float half_y, ClipPoints& out) {
   const Float zero(Real(0)), one(Real(1)), two(Real(2)), out_of_reach(kOutOfReach);
-  const Float inside(Real(0.9999));  // a corner of both faces counts once
+  const Float inside(Real(1.00005));  // corners on the very edge count
   const Vec3 corner[4] = {c + e1 + e2, c - e1 + e2, c - e1 - e2, c + e1 - e2};
   const Float inv_1x = one / safe_divisor(e1.x * -two), inv_1y = one / safe_divisor(e1.y * -two);
   const Float inv_2x = one / safe_divisor(e2.x * -two), inv_2y = one / safe_divisor(e2.y * -two);
@@ -48,11 +48,9 @@ MW_INLINE void clip_face(Vec3 c, Vec3 e1, Vec3 e2, Float half_x, Float half_y, C
     out.x[2 * i] = fma(step.x, enter, corner[i].x);
     out.y[2 * i] = fma(step.y, enter, corner[i].y);
     out.z[2 * i] = select(crosses, fma(step.z, enter, corner[i].z), out_of_reach);
-    // Leaving at the end of the edge is the next edge's entry.
-    const Mask cut = crosses & (leave < inside);
     out.x[2 * i + 1] = fma(step.x, leave, corner[i].x);
     out.y[2 * i + 1] = fma(step.y, leave, corner[i].y);
-    out.z[2 * i + 1] = select(cut, fma(step.z, leave, corner[i].z), out_of_reach);
+    out.z[2 * i + 1] = select(crosses, fma(step.z, leave, corner[i].z), out_of_reach);
   }
   const Float inv_det = one / safe_divisor(fms(e1.x, e2.y, e1.y * e2.x));
   for (int i = 0; i < 4; ++i) {
@@ -120,7 +118,9 @@ MW_INLINE void keep_four(ClipPoints& p, Float margin, KeptPoints& out) {
 
 MW_INLINE BoxPose select(Mask m, const BoxPose& a, const BoxPose& b) {
   return {{select(m, a.r.x, b.r.x), select(m, a.r.y, b.r.y), select(m, a.r.z, b.r.z)},
-          select(m, a.p, b.p), select(m, a.half, b.half), select(m, a.margin, b.margin)};
+          select(m, a.p, b.p),
+          select(m, a.half, b.half),
+          select(m, a.margin, b.margin)};
 }
 
 // Face of the box at +sign along `axis`, as a frame: n outward, u and v spanning it.
@@ -134,7 +134,9 @@ MW_INLINE FaceFrame face_frame(const BoxPose& box, Float axis, Vec3 towards) {
   const Float axis_v = select(axis == zero, two, axis - one);
   const Vec3 along = pick(axis, box.r);
   const Float sign = copysign(one, dot(along, towards));
-  return {along * sign, pick(axis_u, box.r), pick(axis_v, box.r),
+  return {along * sign,
+          pick(axis_u, box.r),
+          pick(axis_v, box.r),
           pick(axis, box.half.x, box.half.y, box.half.z),
           pick(axis_u, box.half.x, box.half.y, box.half.z),
           pick(axis_v, box.half.x, box.half.y, box.half.z)};
@@ -170,10 +172,13 @@ MW_INLINE void edge_contact(const BoxPose& a, const BoxPose& b, Vec3 d, Float ax
   const Vec3 xb = fma(along_b, fma(cosine, wa, wb) * inv, pb);
   m.normal = select(use, n, m.normal);
   m.tangent = select(use, along_a, m.tangent);
+  // Apart, each body keeps its own point; in overlap they share the middle.
+  const Float gap = dot(n, w);
   const Vec3 middle = (xa + xb) * Float(Real(0.5));
-  m.point_a[0] = select(use, middle, m.point_a[0]);
-  m.point_b[0] = select(use, middle - d, m.point_b[0]);
-  m.separation[0] = select(use, dot(n, w), m.separation[0]);
+  const Mask apart = zero < gap;
+  m.point_a[0] = select(use, select(apart, xa, middle), m.point_a[0]);
+  m.point_b[0] = select(use, select(apart, xb, middle) - d, m.point_b[0]);
+  m.separation[0] = select(use, gap, m.separation[0]);
   m.valid[0] = m.valid[0] | use;
   m.code = select(use, axis * Float(Real(8)), m.code);
   for (int k = 0; k < 4; ++k) {
@@ -190,7 +195,7 @@ struct BoxBox {
   static constexpr int kPoints = 4;
   static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float axis,
                                 Manifold<S, 4>& m) {
-    const Float half(Real(0.5)), two(Real(2)), five(Real(5));
+    const Float zero(Real(0)), half(Real(0.5)), two(Real(2)), five(Real(5));
     const Vec3 d = b.p - a.p;
     const Mask edge = five < axis;
     const Mask from_b = (two < axis) & !edge;
@@ -202,24 +207,29 @@ struct BoxBox {
     const BoxFace other = opposed_face(inc, f.n);
     const Vec3 c = d_r + other.centre;
     ClipPoints clipped;
+    // A little wider than the face, so that corners on its very edge are inside whatever rounding
+    // says.
+    const Float slack(Real(1.0001));
     clip_face({dot(f.u, c), dot(f.v, c), dot(f.n, c) - f.height},
               {dot(f.u, other.edge1), dot(f.v, other.edge1), dot(f.n, other.edge1)},
-              {dot(f.u, other.edge2), dot(f.v, other.edge2), dot(f.n, other.edge2)}, f.half_u,
-              f.half_v, clipped);
+              {dot(f.u, other.edge2), dot(f.v, other.edge2), dot(f.n, other.edge2)},
+              f.half_u * slack, f.half_v * slack, clipped);
     KeptPoints kept;
     keep_four(clipped, Float(t.margin), kept);
     m.normal = select(from_b, -f.n, f.n);
     m.tangent = f.u;
     for (int i = 0; i < 4; ++i) {
       const Float z = min(kept.z[i], Real(1e3));
-      const Vec3 on_ref =
-          fma(f.n, fma(z, half, f.height), fma(f.v, kept.y[i], f.u * kept.x[i]));
-      const Vec3 on_inc = on_ref - d_r;
+      const Float x = clamp(kept.x[i], -f.half_u, f.half_u);
+      const Float y = clamp(kept.y[i], -f.half_v, f.half_v);
+      const Vec3 base = fma(f.v, y, f.u * x);
+      const Vec3 on_ref = fma(f.n, fma(min(z, zero), half, f.height), base);
+      const Vec3 on_inc = fma(f.n, max(z, z * half) + f.height, base) - d_r;
       m.point_a[i] = select(from_b, on_inc, on_ref);
       m.point_b[i] = select(from_b, on_ref, on_inc);
       m.separation[i] = z;
-      m.feature_x[i] = kept.x[i];
-      m.feature_y[i] = kept.y[i];
+      m.feature_x[i] = x;
+      m.feature_y[i] = y;
       m.valid[i] = kept.valid[i];
     }
     m.code = fma(axis, Real(8), other.code);

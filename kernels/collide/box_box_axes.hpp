@@ -58,8 +58,8 @@ MW_INLINE BoxAxes find_box_axes(const Tables& t, const BoxPose& a, const BoxPose
     for (int j = 0; j < 3; ++j) {
       const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
       const Float along = abs(fms(p[i2], c[i1][j], p[i1] * c[i2][j]));
-      const Float s = along - fma(hb[j2], q[i][j1], fma(hb[j1], q[i][j2],
-                                  fma(ha[i2], q[i1][j], ha[i1] * q[i2][j])));
+      const Float s = along - fma(hb[j2], q[i][j1],
+                                  fma(hb[j1], q[i][j2], fma(ha[i2], q[i1][j], ha[i1] * q[i2][j])));
       const Float l2 = fnma(c[i][j], c[i][j], one);
       const Mask usable = parallel < l2;
       const Float s2 = select(usable, s * abs(s), Real(-1e12));

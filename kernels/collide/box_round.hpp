@@ -37,8 +37,8 @@ struct BoxSphere {
     m.normal = n;
     m.tangent = any_tangent(n);
     m.separation[0] = separation;
-    m.point_b[0] = n * -fma(separation, Real(0.5), b.radius);
-    m.point_a[0] = m.point_b[0] + d;
+    m.point_b[0] = n * -fma(min(separation, zero), Real(0.5), b.radius);
+    m.point_a[0] = fma(n, -max(separation, zero), m.point_b[0] + d);
     m.feature_x[0] = m.feature_y[0] = zero;
     m.code = zero;
     m.match_distance2 = zero;
@@ -62,14 +62,14 @@ struct RectangleCircle {
     const Float length = sqrt(d2);
     const Float inv = one / select(outside, length, one);
     const Float gx = abs(local.x) - a.half.x, gy = abs(local.y) - a.half.y;
-    const Vec2 face = select(gx < gy, Vec2{zero, copysign(one, local.y)},
-                             Vec2{copysign(one, local.x), zero});
+    const Vec2 face =
+        select(gx < gy, Vec2{zero, copysign(one, local.y)}, Vec2{copysign(one, local.x), zero});
     const Vec2 n = rotate(a.q, select(outside, out * inv, face));
     const Float separation = select(outside, length, max(gx, gy)) - b.radius;
     m.normal = n;
     m.separation[0] = separation;
-    m.point_b[0] = n * -fma(separation, Real(0.5), b.radius);
-    m.point_a[0] = m.point_b[0] + d;
+    m.point_b[0] = n * -fma(min(separation, zero), Real(0.5), b.radius);
+    m.point_a[0] = fma(n, -max(separation, zero), m.point_b[0] + d);
     m.feature_x[0] = m.feature_y[0] = zero;
     m.code = zero;
     m.match_distance2 = zero;

@@ -14,10 +14,10 @@ MW_INLINE Float match_distance2(Float extent) { return square(extent * Float(kMa
 // its normal, and the two half edges that span it.
 struct BoxFace {
   Float axis, sign;
-  Vec3 centre;      // from the box's centre, world axes
+  Vec3 centre;  // from the box's centre, world axes
   Vec3 edge1, edge2;
   Float half1, half2;
-  Float code;       // 2 axis + (sign > 0)
+  Float code;  // 2 axis + (sign > 0)
 };
 
 MW_INLINE BoxFace opposed_face(const BoxPose& box, Vec3 n) {
@@ -61,7 +61,7 @@ struct PlaneBox {
     m.tangent = a.tangent;
     for (int i = 0; i < 4; ++i) {
       m.separation[i] = height + dot(a.normal, corner[i]);
-      m.point_b[i] = fma(a.normal, m.separation[i] * Float(Real(-0.5)), corner[i]);
+      m.point_b[i] = fma(a.normal, min(m.separation[i], Real(0)) * Float(Real(-0.5)), corner[i]);
       m.point_a[i] = m.point_b[i];
       m.feature_x[i] = x[i];
       m.feature_y[i] = y[i];
@@ -93,7 +93,7 @@ struct PlaneRectangle {
     m.normal = n;
     for (int i = 0; i < 2; ++i) {
       m.separation[i] = height + dot(n, corner[i]);
-      m.point_b[i] = fma(n, m.separation[i] * Float(Real(-0.5)), corner[i]);
+      m.point_b[i] = fma(n, min(m.separation[i], Real(0)) * Float(Real(-0.5)), corner[i]);
       m.point_a[i] = m.point_b[i];
       m.feature_x[i] = i == 0 ? -half_t : half_t;
       m.feature_y[i] = zero;

@@ -26,8 +26,7 @@ struct PolygonEdge {
   Vec2 normal, from, to;
   Float value, index;
 };
-MW_INLINE void take_edge(Mask better, const PolygonCorners& c, int i, Float value,
-                         PolygonEdge& e) {
+MW_INLINE void take_edge(Mask better, const PolygonCorners& c, int i, Float value, PolygonEdge& e) {
   e.normal = select(better, c.normal[i], e.normal);
   e.from = select(better, c.vertex[i], e.from);
   e.to = select(better, c.vertex[(i + 1) % kernels::kMaxVertices], e.to);
@@ -75,8 +74,7 @@ struct PolygonPolygon {
   using A = PolygonPose;
   using B = PolygonPose;
   static constexpr int kPoints = 2;
-  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float,
-                                Manifold<S, 2>& m) {
+  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float, Manifold<S, 2>& m) {
     const Float half(Real(0.5)), zero(Real(0));
     const PolygonCorners ca = load_corners(a), cb = load_corners(b);
     const Vec2 d = b.p - a.p;
@@ -117,8 +115,7 @@ struct PolygonCircle {
     // Outside, the nearest point lies on the farthest edge, between its ends.
     const Vec2 along = best.to - best.from;
     const Float length2 = dot(along, along);
-    const Float place =
-        clamp(dot(along, d - best.from) / max(length2, Real(1e-20)), zero, one);
+    const Float place = clamp(dot(along, d - best.from) / max(length2, Real(1e-20)), zero, one);
     const Vec2 out = d - fma(along, place, best.from);
     const Float d2 = dot(out, out);
     const Mask outside = (zero < best.value) & (Float(kTinyDistance2) < d2);
@@ -128,8 +125,8 @@ struct PolygonCircle {
     const Float separation = select(outside, length, best.value) - b.radius;
     m.normal = n;
     m.separation[0] = separation;
-    m.point_b[0] = n * -fma(separation, Real(0.5), b.radius);
-    m.point_a[0] = m.point_b[0] + d;
+    m.point_b[0] = n * -fma(min(separation, zero), Real(0.5), b.radius);
+    m.point_a[0] = fma(n, -max(separation, zero), m.point_b[0] + d);
     m.feature_x[0] = m.feature_y[0] = zero;
     m.code = zero;
     m.match_distance2 = zero;
@@ -152,7 +149,7 @@ struct PlanePolygon {
     m.normal = n;
     for (int i = 0; i < 2; ++i) {
       m.separation[i] = height + dot(n, corner[i]);
-      m.point_b[i] = fma(n, m.separation[i] * Float(Real(-0.5)), corner[i]);
+      m.point_b[i] = fma(n, min(m.separation[i], Real(0)) * Float(Real(-0.5)), corner[i]);
       m.point_a[i] = m.point_b[i];
       m.feature_x[i] = i == 0 ? -half : half;
       m.feature_y[i] = Real(0);

@@ -25,8 +25,8 @@ struct RectanglePose {
 };
 struct PolygonPose {
   Vec2 p;
-  Float radius;                         // of the bounding circle about p
-  const Real* base;                     // vertices and normals stay in their rows
+  Float radius;      // of the bounding circle about p
+  const Real* base;  // vertices and normals stay in their rows
   const std::int32_t* offset;
 };
 struct PlanePose {  // origin at the point of the plane nearest to the world's origin

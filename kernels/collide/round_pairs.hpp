@@ -9,14 +9,16 @@ MW_INLINE Vec3 up_vector(Vec3) { return {Real(0), Real(0), Real(1)}; }
 MW_INLINE Vec2 up_vector(Vec2) { return {Real(0), Real(1)}; }
 inline constexpr Real kTinyDistance2 = sizeof(Real) == 4 ? Real(1e-20) : Real(1e-40);
 
-// A point half way between two surfaces along `normal`, `reach` from A's origin to A's surface.
+// A point on the line of centres along `normal`; `reach` is from A's origin to A's surface. Apart,
+// each body's anchor is on its own surface; in overlap they share the middle.
 template <class S>
 MW_INLINE void put_point(Manifold<S, 1>& m, typename S::Vec normal, Float separation, Float reach,
                          typename S::Vec d) {
   m.normal = normal;
   m.separation[0] = separation;
-  m.point_a[0] = normal * fma(separation, Real(0.5), reach);
-  m.point_b[0] = m.point_a[0] - d;
+  const Float half(Real(0.5)), zero(Real(0));
+  m.point_a[0] = normal * fma(min(separation, zero), half, reach);
+  m.point_b[0] = normal * (reach + max(separation, separation * half)) - d;
   if constexpr (S::kDim == 3) m.tangent = any_tangent(normal);
   m.feature_x[0] = m.feature_y[0] = Real(0);
   m.code = Real(0);
@@ -80,7 +82,7 @@ MW_INLINE void plane_round(Manifold<S, 1>& m, Vec normal, Vec tangent, Float off
   m.normal = normal;
   if constexpr (S::kDim == 3) m.tangent = tangent;
   m.separation[0] = separation;
-  m.point_b[0] = normal * -fma(separation, Real(0.5), radius);
+  m.point_b[0] = normal * -fma(min(separation, Real(0)), Real(0.5), radius);
   m.point_a[0] = m.point_b[0];
   m.feature_x[0] = m.feature_y[0] = Real(0);
   m.code = Real(0);

@@ -27,24 +27,29 @@ MW_INLINE void clip_edges(const EdgePair& e, Float margin, Manifold<S, 2>& m) {
   const Float least(sizeof(Real) == 4 ? Real(1e-6) : Real(1e-12));
   const Float inv = one / copysign(max(abs(dx), least), dx);
   const Float middle = -(x * inv), span = abs(e.half * inv);
-  const Float enter = max(-one, middle - span), leave = min(one, middle + span);
+  Float enter = max(-one, middle - span), leave = min(one, middle + span);
+  // Beside the reference edge altogether: the deepest end of the incident edge is what touches.
+  const Mask beside = leave < enter;
+  const Float deepest = copysign(one, -dz);
+  enter = select(beside, deepest, enter);
+  leave = select(beside, deepest, leave);
   const Float at[2] = {enter, leave};
   Float separation[2];
   for (int i = 0; i < 2; ++i) separation[i] = fma(dz, at[i], z);
   const Float limit = margin + max(min(separation[0], separation[1]), Real(0));
-  const Mask crosses = enter <= leave;
   m.normal = select(e.flip, -e.normal, e.normal);
   for (int i = 0; i < 2; ++i) {
-    const Float place = fma(dx, at[i], x);
-    const Vec2 on_ref =
-        fma(e.normal, separation[i] * half, fma(along, place, e.middle));
-    // on_ref is from the reference's origin; the other origin is d away.
-    m.point_a[i] = select(e.flip, on_ref + e.d, on_ref);
-    m.point_b[i] = select(e.flip, on_ref, on_ref - e.d);
+    const Float place = fma(dx, at[i], x), gap = separation[i];
+    const Vec2 base = fma(along, place, e.middle);
+    // Both from the reference's origin; the other origin is d away.
+    const Vec2 on_ref = fma(e.normal, min(gap, Real(0)) * half, base);
+    const Vec2 on_inc = fma(e.normal, max(gap, gap * half), base);
+    m.point_a[i] = select(e.flip, on_inc + e.d, on_ref);
+    m.point_b[i] = select(e.flip, on_ref, on_inc - e.d);
     m.separation[i] = separation[i];
     m.feature_x[i] = place;
     m.feature_y[i] = Real(0);
-    m.valid[i] = crosses & (separation[i] < limit);
+    m.valid[i] = separation[i] < limit;
   }
   // One point of contact when the two ends coincide.
   m.valid[1] = m.valid[1] & (enter < leave);

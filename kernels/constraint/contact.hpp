@@ -6,7 +6,8 @@
 //   s <= 0: bias = max(a r s, -c), soft gains a, r, i (tables.hpp, Softness), c the push-out speed
 // The points of a manifold are solved in row space: their velocities are read once, each row's
 // change updates the others through K's off-diagonal entries, and the sum is applied once.
-// Friction: |tangent impulse| <= mu * sum(lambda), a circle; twist: |.| <= mu * sum(lambda_i arm_i).
+// Friction: |tangent impulse| <= mu * sum(lambda), a circle; twist: |.| <= mu * sum(lambda_i
+// arm_i).
 #pragma once
 
 #include "kernels/constraint/slot.hpp"

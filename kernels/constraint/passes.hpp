@@ -66,8 +66,7 @@ struct Passes {
     }
     for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
       constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-      finish_impact<S, N, decltype(pair)::value, kDense, kFriction>(w, s,
-                                                                    bounce_at<S, N>(list, i));
+      finish_impact<S, N, decltype(pair)::value, kDense, kFriction>(w, s, bounce_at<S, N>(list, i));
     });
   }
 

@@ -27,7 +27,8 @@ void record_points(Work& w, ListId list, const Manifold<S, N>& m, const std::int
   for (int i = 0; i < N && r.count < r.max; ++i) {
     if (!((bits(m.valid[i]) >> r.lane) & 1u)) continue;
     auto& out = r.out[r.count++];
-    const typename S::Vec p = origin + m.point_b[i];
+    const Float to_middle = max(m.separation[i], Real(0)) * Float(Real(-0.5));
+    const typename S::Vec p = fma(m.normal, to_middle, origin + m.point_b[i]);
     out.list = static_cast<std::int32_t>(list);
     out.key = key[r.lane];
     out.normal[0] = lane_of(m.normal.x), out.normal[1] = lane_of(m.normal.y);
@@ -45,9 +46,10 @@ void record_points(Work& w, ListId list, const Manifold<S, N>& m, const std::int
 // Not inlined: every shape pair shares these few instantiations.
 template <class S, int N, bool kPair, bool kDense>
 __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w, ListId list,
-                        const kernels::PairClass<Real>& pair_class, Manifold<S, N>& m, Mask active,
-                        const std::int32_t* code, const std::int32_t* key, typename S::Vec pose_a,
-                        typename S::Vec pose_b) {
+                                        const kernels::PairClass<Real>& pair_class,
+                                        Manifold<S, N>& m, Mask active, const std::int32_t* code,
+                                        const std::int32_t* key, typename S::Vec pose_a,
+                                        typename S::Vec pose_b) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
   const Float zero(Real(0)), one(Real(1));
@@ -98,6 +100,18 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
   }
 
   const Float dt(t.dt), margin(t.margin);
+  // A body fast enough for a cast needs no speculation against a fixed shape, which could stop one
+  // that only passes by. Half spaces cannot be passed by.
+  Float speculation(Real(1));
+  if (!kPair && t.cast && !is_plane(pair_class.kind)) {
+    alignas(64) Real core[kLanes];
+    for (int l = 0; l < kLanes; ++l) {
+      core[l] = who.b[l] < t.bodies ? t.body[who.b[l]].core_radius : Real(0);
+    }
+    const Float travel2 = dot(velocity_b.v, velocity_b.v) * (dt * dt);
+    const Mask cast = (zero < Float::load(core)) & (square(Float::load(core)) < travel2);
+    speculation = select(cast, zero, one);
+  }
   const Float inv_mass = kPair ? body_a.inv_mass + body_b.inv_mass : body_b.inv_mass;
   Ang arm_a[N], arm_b[N], turned_a[N], turned_b[N];
   Float speed[N];
@@ -113,7 +127,7 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
     }
     speed[i] = v;
     const Float end_speed = fma(dt, pull, v);
-    const Float travel = dt * min(min(v, end_speed), zero);
+    const Float travel = dt * min(min(v, end_speed), zero) * speculation;
     m.valid[i] = m.valid[i] & active & (m.separation[i] + travel < margin);
     any_valid = any_valid | m.valid[i];
     touches = touches | (m.valid[i] & (m.separation[i] + travel < zero));
@@ -163,8 +177,8 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
     count = count + weight;
     centre_b = fma(m.point_b[i], weight, centre_b);
     if constexpr (kPair) centre_a = fma(m.point_a[i], weight, centre_a);
-    w.counters.points += static_cast<unsigned>(
-        __builtin_popcount(bits(m.valid[i] & (m.separation[i] < margin))));
+    w.counters.points +=
+        static_cast<unsigned>(__builtin_popcount(bits(m.valid[i] & (m.separation[i] < margin))));
   }
   if constexpr (N > 1) {
     int at = 0;

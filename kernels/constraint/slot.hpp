@@ -16,7 +16,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 struct alignas(64) SlotHeader {
   std::int32_t offset_a[kLanes], offset_b[kLanes];  // velocity rows; dummy in inactive lanes
   std::int32_t key[kLanes];
-  std::uint32_t mask;          // active lanes
+  std::uint32_t mask;           // active lanes
   std::int32_t body_a, body_b;  // dense layout: the bodies of every lane
 };
 
@@ -32,19 +32,19 @@ struct alignas(64) Slot : SlotHeader {
   Real inv_mass_a[kLanes], inv_mass_b[kLanes];
   Real inertia_a[S::kInertia][kLanes], inertia_b[S::kInertia][kLanes];  // inverse
   Real arm_a[N][S::kAng][kLanes], arm_b[N][S::kAng][kLanes];            // r x n
-  Real cross_k[kCross][kLanes];     // off-diagonal entries of K, (0,1) (0,2) (0,3) (1,2) ...
-  Real mass[N][kLanes];             // effective; 0 for points that are not there
-  Real separation[N][kLanes];       // m, at the start of the step
-  Real gap[N][kLanes];              // m, at the start of the substep
-  Real impulse[N][kLanes];          // N s, accumulated, >= 0
+  Real cross_k[kCross][kLanes];  // off-diagonal entries of K, (0,1) (0,2) (0,3) (1,2) ...
+  Real mass[N][kLanes];          // effective; 0 for points that are not there
+  Real separation[N][kLanes];    // m, at the start of the step
+  Real gap[N][kLanes];           // m, at the start of the substep
+  Real impulse[N][kLanes];       // N s, accumulated, >= 0
   Real centre_a[S::kDim][kLanes], centre_b[S::kDim][kLanes];  // friction centre from the bodies
   Real tangent_mass[kTangentMass][kLanes];                    // inverse of the 2x2, or 1x1
   Real tangent_impulse[S::kTangents][kLanes];
   Real friction[kLanes];
   Real twist_mass[kLanes], twist_impulse[kLanes];
-  Real twist_arm[N][kLanes];        // distance of each point from the friction centre
+  Real twist_arm[N][kLanes];  // distance of each point from the friction centre
   Real feature_x[N][kLanes], feature_y[N][kLanes];  // place on the reference feature, m
-  Real code[kLanes];                // which features touch
+  Real code[kLanes];                                // which features touch
 };
 
 // Restitution rows, kept beside the slots only when the plan has restitution.
@@ -73,8 +73,8 @@ MW_INLINE Bounce<S, N>& bounce_at(const SlotList& list, int i) {
 // found are not valid; separations of invalid points are still finite.
 template <class S, int N>
 struct Manifold {
-  typename S::Vec normal;    // unit, from A to B, world
-  typename S::Vec tangent;   // unit, along a feature of the reference shape (spatial)
+  typename S::Vec normal;      // unit, from A to B, world
+  typename S::Vec tangent;     // unit, along a feature of the reference shape (spatial)
   typename S::Vec point_a[N];  // from the shape origin of A, world axes, m
   typename S::Vec point_b[N];  // from the shape origin of B
   Float separation[N];

@@ -165,12 +165,8 @@ MW_INLINE Float fms(Float a, Float b, Float c) {
 }
 MW_INLINE Float min(Float a, Float b) { return Batch(raw::min(a.v.data, b.v.data)); }
 MW_INLINE Float max(Float a, Float b) { return Batch(raw::max(a.v.data, b.v.data)); }
-MW_INLINE Float operator-(Float a) {
-  return Batch(raw::bit_xor(a.v.data, Batch(Real(-0.0)).data));
-}
-MW_INLINE Float abs(Float a) {
-  return Batch(raw::bit_andnot(Batch(Real(-0.0)).data, a.v.data));
-}
+MW_INLINE Float operator-(Float a) { return Batch(raw::bit_xor(a.v.data, Batch(Real(-0.0)).data)); }
+MW_INLINE Float abs(Float a) { return Batch(raw::bit_andnot(Batch(Real(-0.0)).data, a.v.data)); }
 MW_INLINE Float copysign(Float a, Float s) {
   const auto sign = Batch(Real(-0.0)).data;
   return Batch(raw::bit_or(raw::bit_andnot(sign, a.v.data), raw::bit_and(sign, s.v.data)));

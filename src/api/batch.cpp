@@ -34,7 +34,7 @@ struct Batch::Impl {
   std::unique_ptr<BatchCore> core;
   std::int64_t steps = 0;
   double dt = 0;
-  double clock = 0;  // of step_to
+  double clock = 0;                     // of step_to
   std::vector<std::size_t> first_body;  // of each kind, counted over all worlds before it
 
   Impl(std::vector<Kind> all, const BatchOptions& o) : kinds(std::move(all)), options(o) {
@@ -284,8 +284,7 @@ ContactSummary Batch::measure_contacts() const {
       out.max_penetration = std::max(out.max_penetration, -c.separation);
     }
     std::sort(pairs.begin(), pairs.end());
-    manifolds +=
-        static_cast<double>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
+    manifolds += static_cast<double>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
   }
   out.points_per_world = points / worlds();
   out.manifolds_per_world = manifolds / worlds();

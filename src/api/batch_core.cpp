@@ -27,8 +27,8 @@ class CoreOf final : public BatchCore {
     }
     int first = 0, groups = 0;
     for (const auto& kind : kinds) {
-      worlds_.push_back(std::make_unique<Worlds<Real>>(kind.plan, kind.worlds, first,
-                                                       options.seed, kernels_.lanes));
+      worlds_.push_back(std::make_unique<Worlds<Real>>(kind.plan, kind.worlds, first, options.seed,
+                                                       kernels_.lanes));
       first += kind.worlds;
       first_group_.push_back(groups);
       groups += worlds_.back()->groups();
@@ -38,8 +38,7 @@ class CoreOf final : public BatchCore {
       auto& scratch = scratch_.emplace_back();
       for (const auto& w : worlds_) {
         scratch.memory.emplace_back(kernels_.scratch_bytes(w->tables()));
-        scratch.views.push_back(
-            kernels_.make_scratch(w->tables(), scratch.memory.back().data()));
+        scratch.views.push_back(kernels_.make_scratch(w->tables(), scratch.memory.back().data()));
       }
     }
     clocks_.resize(static_cast<std::size_t>(threads));
@@ -158,8 +157,7 @@ std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
   std::vector<Contact> out;
   for (const auto& p : points) {
     const auto c = std::find_if(plan.classes.begin(), plan.classes.end(), [&](const auto& pairs) {
-      return p.key >= pairs.first_key &&
-             p.key < pairs.first_key + static_cast<int>(pairs.a.size());
+      return p.key >= pairs.first_key && p.key < pairs.first_key + static_cast<int>(pairs.a.size());
     });
     const auto index = static_cast<std::size_t>(p.key - c->first_key);
     const auto& b = plan.colliders[static_cast<std::size_t>(c->b[index])];

@@ -6,9 +6,9 @@
 
 namespace manyworlds {
 
-#define MW_DECLARE(name, Real)                                \
-  namespace name {                                            \
-  void fill_kernel_table(kernels::KernelTable<Real>& out);    \
+#define MW_DECLARE(name, Real)                             \
+  namespace name {                                         \
+  void fill_kernel_table(kernels::KernelTable<Real>& out); \
   }
 MW_DECLARE(scalar_f32, float)
 MW_DECLARE(scalar_f64, double)

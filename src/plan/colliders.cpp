@@ -66,8 +66,9 @@ PlanCollider local_collider(const Shape& shape, bool rectangles) {
       c.half = {edge.norm() / 2, (v[2] - v[1]).norm() / 2, 0};
       if (!middle.isZero(0)) c.offset += c.rotation * Vec3(middle.x(), middle.y(), 0);
       if (edge.y() != 0 || edge.x() < 0) {
-        c.rotation = c.rotation * Eigen::AngleAxisd(std::atan2(edge.y(), edge.x()),
-                                                    Vec3::UnitZ()).toRotationMatrix();
+        c.rotation =
+            c.rotation *
+            Eigen::AngleAxisd(std::atan2(edge.y(), edge.x()), Vec3::UnitZ()).toRotationMatrix();
       }
       c.radius = c.half.norm();
       c.inner_radius = std::min(c.half.x(), c.half.y());
@@ -152,7 +153,8 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles) {
       for (const auto& list : {v, edge_normals(v)}) {
         for (int i = 0; i < kernels::kMaxVertices; ++i) {
           const Vec2& p = static_cast<std::size_t>(i) < list.size()
-                              ? list[static_cast<std::size_t>(i)] : list[0];
+                              ? list[static_cast<std::size_t>(i)]
+                              : list[0];
           f.row.insert(f.row.end(), {p.x(), p.y()});
         }
       }

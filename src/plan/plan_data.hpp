@@ -14,15 +14,15 @@ namespace manyworlds {
 // position and orientation differs by a fixed transform.
 struct PlanBody {
   int scene_body = -1;
-  double inv_mass = 0;               // 0: kinematic
-  double mass = 0;                   // kg; 0 for kinematic bodies
-  Vec3 inertia = Vec3::Zero();       // principal; planar: z
+  double inv_mass = 0;          // 0: kinematic
+  double mass = 0;              // kg; 0 for kinematic bodies
+  Vec3 inertia = Vec3::Zero();  // principal; planar: z
   Vec3 inv_inertia = Vec3::Zero();
-  Vec3 center = Vec3::Zero();        // of mass, in the user's body frame
+  Vec3 center = Vec3::Zero();         // of mass, in the user's body frame
   Quat principal = Quat::Identity();  // principal axes in the user's body frame
-  bool aligned = true;               // both are trivial: reading and writing copies bits
-  double radius = 0;                 // bounding sphere about the centre of mass
-  double core_radius = 0;            // inner sphere about the centre of mass
+  bool aligned = true;                // both are trivial: reading and writing copies bits
+  double radius = 0;                  // bounding sphere about the centre of mass
+  double core_radius = 0;             // inner sphere about the centre of mass
 };
 
 struct PlanCollider {
@@ -75,16 +75,15 @@ struct PlanData {
 
   bool has(Feature f) const { return in[static_cast<std::size_t>(f)]; }
   kernels::Dimension dimension() const {
-    return scene.space == Space::planar ? kernels::Dimension::planar
-                                        : kernels::Dimension::spatial;
+    return scene.space == Space::planar ? kernels::Dimension::planar : kernels::Dimension::spatial;
   }
 };
 
 // The steps of compile(), in order.
-void collect_bodies(PlanData& plan);     // bodies.cpp
-void collect_colliders(PlanData& plan);  // colliders.cpp
-void collect_pairs(PlanData& plan);      // pairs.cpp
-void choose_features(PlanData& plan);    // features.cpp
+void collect_bodies(PlanData& plan);        // bodies.cpp
+void collect_colliders(PlanData& plan);     // colliders.cpp
+void collect_pairs(PlanData& plan);         // pairs.cpp
+void choose_features(PlanData& plan);       // features.cpp
 PlanReport describe(const PlanData& plan);  // report.cpp
 
 }  // namespace manyworlds

@@ -8,10 +8,10 @@ namespace {
 
 const char* name(kernels::PairKind kind) {
   static constexpr const char* kNames[kernels::kPairKinds] = {
-      "sphere-sphere", "box-sphere", "box-box", "plane-sphere", "plane-box", "circle-circle",
-      "rectangle-circle", "rectangle-rectangle", "polygon-circle", "polygon-polygon",
-      "halfplane-circle", "halfplane-rectangle", "halfplane-polygon", "sphere-box",
-      "circle-rectangle", "circle-polygon"};
+      "sphere-sphere",     "box-sphere",      "box-box",          "plane-sphere",
+      "plane-box",         "circle-circle",   "rectangle-circle", "rectangle-rectangle",
+      "polygon-circle",    "polygon-polygon", "halfplane-circle", "halfplane-rectangle",
+      "halfplane-polygon", "sphere-box",      "circle-rectangle", "circle-polygon"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -26,21 +26,20 @@ PlanReport describe(const PlanData& plan) {
   const auto why = [&](Feature f) { return plan.why[static_cast<std::size_t>(f)]; };
   const bool contacts = plan.has(Feature::contacts), bounce = plan.has(Feature::restitution);
   const std::string touch = why(Feature::contacts);
-  out.stages = {
-      {"free_motion", !contacts, contacts ? "contacts need the substep loop" : touch},
-      {"begin", contacts, touch},
-      {"broad_phase", contacts, plan.sweep ? "sort and sweep" : "masked all-pairs"},
-      {"collide", contacts, touch},
-      {"warm_start", contacts, touch},
-      {"bias", contacts, "soft normal rows, every substep"},
-      {"advance", contacts, "displacement, every substep"},
-      {"relax", contacts,
-       plan.has(Feature::friction) ? "normal rows and friction, every substep"
-                                   : "normal rows, every substep"},
-      {"restitute", contacts && bounce, why(Feature::restitution)},
-      {"store", contacts, "impulses for the next step's warm start"},
-      {"finish", true,
-       plan.cast && contacts ? "commit, with casts against fixed shapes" : "commit"}};
+  out.stages = {{"free_motion", !contacts, contacts ? "contacts need the substep loop" : touch},
+                {"begin", contacts, touch},
+                {"broad_phase", contacts, plan.sweep ? "sort and sweep" : "masked all-pairs"},
+                {"collide", contacts, touch},
+                {"warm_start", contacts, touch},
+                {"bias", contacts, "soft normal rows, every substep"},
+                {"advance", contacts, "displacement, every substep"},
+                {"relax", contacts,
+                 plan.has(Feature::friction) ? "normal rows and friction, every substep"
+                                             : "normal rows, every substep"},
+                {"restitute", contacts && bounce, why(Feature::restitution)},
+                {"store", contacts, "impulses for the next step's warm start"},
+                {"finish", true,
+                 plan.cast && contacts ? "commit, with casts against fixed shapes" : "commit"}};
 
   for (const PlanClass& c : plan.classes) {
     out.pairs.push_back({name(c.kind), is_fixed(c.list) ? "fixed" : "pairs",
@@ -56,10 +55,9 @@ PlanReport describe(const PlanData& plan) {
   if (plan.has(Feature::orientation)) field(Field::orientation);
   field(Field::linear_velocity);
   field(Field::angular_velocity);
-  static constexpr const char* kLists[] = {"impulses of pairs, several points",
-                                           "impulses of pairs, one point",
-                                           "impulses against fixed, several points",
-                                           "impulses against fixed, one point"};
+  static constexpr const char* kLists[] = {
+      "impulses of pairs, several points", "impulses of pairs, one point",
+      "impulses against fixed, several points", "impulses against fixed, one point"};
   for (int l = 0; contacts && l < kernels::kLists; ++l) {
     const int capacity = plan.capacity[static_cast<std::size_t>(l)];
     if (capacity == 0) continue;

@@ -142,12 +142,12 @@ void Worlds<Real>::write(Field field, int world, const In* in) {
   }
 }
 
-#define MW_INSTANTIATE(Real)                                                    \
-  template void Worlds<Real>::read<float>(Field, int, float*) const;            \
-  template void Worlds<Real>::read<double>(Field, int, double*) const;          \
-  template void Worlds<Real>::write<float>(Field, int, const float*);           \
-  template void Worlds<Real>::write<double>(Field, int, const double*);         \
-  template Quat Worlds<Real>::internal_rotation(int, int) const;                \
+#define MW_INSTANTIATE(Real)                                            \
+  template void Worlds<Real>::read<float>(Field, int, float*) const;    \
+  template void Worlds<Real>::read<double>(Field, int, double*) const;  \
+  template void Worlds<Real>::write<float>(Field, int, const float*);   \
+  template void Worlds<Real>::write<double>(Field, int, const double*); \
+  template Quat Worlds<Real>::internal_rotation(int, int) const;        \
   template void Worlds<Real>::set_rotation(int, int, const Quat&);
 MW_INSTANTIATE(float)
 MW_INSTANTIATE(double)

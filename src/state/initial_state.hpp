@@ -37,8 +37,8 @@ inline InitialState draw_initial_state(const Body& body, int index, const Draws&
     s.rotation = Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())) * s.rotation;
   }
   if (j.any_orientation) {
-    s.rotation = uniform_rotation(draws.uniform(base + 7), draws.uniform(base + 8),
-                                  draws.uniform(base + 9));
+    s.rotation =
+        uniform_rotation(draws.uniform(base + 7), draws.uniform(base + 8), draws.uniform(base + 9));
   }
   return s;
 }

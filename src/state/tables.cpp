@@ -130,10 +130,9 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
     out.radius = static_cast<Real>(c.radius);
     // A speculative row holds along one normal, which is good as long as the gap is not large
     // against the shape. Round shapes keep their normals better.
-    const bool round =
-        c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;
-    out.margin_cap = static_cast<Real>(
-        std::max(least_margin, round ? 2 * c.radius : c.inner_radius));
+    const bool round = c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;
+    out.margin_cap =
+        static_cast<Real>(std::max(least_margin, round ? 2 * c.radius : c.inner_radius));
     out.vertex_count = static_cast<std::int32_t>(c.vertices.size());
     for (std::size_t i = 0; i < kernels::kMaxVertices && !c.vertices.empty(); ++i) {
       const std::size_t n = c.vertices.size(), at = i < n ? i : 0;

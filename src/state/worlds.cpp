@@ -26,7 +26,8 @@ Worlds<Real>::Worlds(Plan plan, int worlds, int first, std::uint64_t seed, int l
     const int capacity = t.capacity[l];
     if (capacity == 0) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
-    cache_rows_[l] = AlignedBuffer<Real>(slots * static_cast<std::size_t>(capacity + 2) * static_cast<std::size_t>(row));
+    cache_rows_[l] = AlignedBuffer<Real>(slots * static_cast<std::size_t>(capacity + 2) *
+                                         static_cast<std::size_t>(row));
     cache_keys_[l] = AlignedBuffer<std::int32_t>(slots * (static_cast<std::size_t>(capacity) + 1));
   }
   restart();
@@ -42,9 +43,9 @@ kernels::GroupView<Real> Worlds<Real>::group(int index) const {
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
-    view.cache[l].rows =
-        cache_rows_[l].data() + g * lanes * static_cast<std::size_t>(t.capacity[l] + 2) *
-                             static_cast<std::size_t>(row);
+    view.cache[l].rows = cache_rows_[l].data() + g * lanes *
+                                                     static_cast<std::size_t>(t.capacity[l] + 2) *
+                                                     static_cast<std::size_t>(row);
     view.cache[l].keys =
         cache_keys_[l].data() + g * lanes * (static_cast<std::size_t>(t.capacity[l]) + 1);
   }
@@ -101,8 +102,7 @@ void Worlds<Real>::initialise(int world) {
       *component(world, i, at.linear + c) = static_cast<Real>(s.linear_velocity[c]);
     }
     for (int c = 0; c < (planar ? 1 : 3); ++c) {
-      *component(world, i, at.angular + c) =
-          static_cast<Real>(s.angular_velocity[planar ? 2 : c]);
+      *component(world, i, at.angular + c) = static_cast<Real>(s.angular_velocity[planar ? 2 : c]);
     }
     if (tables().has_orientation) set_rotation(world, i, s.rotation * body.principal);
   }

@@ -30,7 +30,7 @@ class Worlds {
   kernels::GroupView<Real> group(int index) const;
   std::size_t bytes() const;  // of persistent state
 
-  void restart();  // all worlds, first episode
+  void restart();         // all worlds, first episode
   void reset(int world);  // next episode
 
   // One world, canonical [body][component].

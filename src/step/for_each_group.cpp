@@ -13,8 +13,12 @@
 #include <vector>
 #else
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <optional>
 #endif
 
 namespace manyworlds {
@@ -42,9 +46,8 @@ struct Executor::Pool {
   static void run(int threads, int groups, Task task, void* context) {
     std::vector<std::thread> crew;
     for (int t = 0; t < threads; ++t) {
-      crew.emplace_back([=] {
-        run_range(groups * t / threads, groups * (t + 1) / threads, t, task, context);
-      });
+      crew.emplace_back(
+          [=] { run_range(groups * t / threads, groups * (t + 1) / threads, t, task, context); });
     }
     for (auto& member : crew) member.join();
   }
@@ -53,7 +56,14 @@ struct Executor::Pool {
 #else
 
 struct Executor::Pool {
-  explicit Pool(int threads) : arena(threads) {}
+  explicit Pool(int threads) : arena(threads) {
+    // More threads than cores only when a Batch asked for them: the limit is the whole process's,
+    // so it is not touched otherwise.
+    if (threads > tbb::info::default_concurrency()) {
+      workers.emplace(tbb::global_control::max_allowed_parallelism,
+                      static_cast<std::size_t>(threads));
+    }
+  }
   void run(int threads, int groups, Task task, void* context) {
     // A few chunks per thread even out groups of different cost.
     const int grain = std::max(1, groups / (threads * 8));
@@ -67,6 +77,7 @@ struct Executor::Pool {
           tbb::simple_partitioner());
     });
   }
+  std::optional<tbb::global_control> workers;
   tbb::task_arena arena;
 };
 

@@ -5,8 +5,17 @@ namespace manyworlds {
 namespace {
 
 enum StageIndex {
-  kFreeMotion, kBegin, kBroadPhase, kCollide, kWarmStart, kBias, kAdvance, kRelax, kRestitute,
-  kStore, kFinish
+  kFreeMotion,
+  kBegin,
+  kBroadPhase,
+  kCollide,
+  kWarmStart,
+  kBias,
+  kAdvance,
+  kRelax,
+  kRestitute,
+  kStore,
+  kFinish
 };
 
 template <class Real>
@@ -70,8 +79,7 @@ void step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                 kernels::Scratch* scratch, int steps, StageClock* clock) {
   if (clock) clock->start();
   if (!p.tables.has_contacts) {
-    p.kernels.free_motion[static_cast<int>(p.tables.inertia_kind)](p.tables, group, scratch,
-                                                                   steps);
+    p.kernels.free_motion[static_cast<int>(p.tables.inertia_kind)](p.tables, group, scratch, steps);
     if (clock) clock->lap(kFreeMotion);
     return;
   }

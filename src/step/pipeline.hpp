@@ -13,8 +13,8 @@ class StageClock {
  public:
   static constexpr int kStages = 11;
   static constexpr std::array<const char*, kStages> kNames = {
-      "free_motion", "begin",   "broad_phase", "collide",   "warm_start", "bias",
-      "advance",     "relax", "restitute",   "store", "finish"};
+      "free_motion", "begin", "broad_phase", "collide", "warm_start", "bias",
+      "advance",     "relax", "restitute",   "store",   "finish"};
 
   void start() { last_ = Clock::now(); }
   void lap(int stage) {

@@ -138,9 +138,9 @@ class Judge {
     if (!(std::abs(c.normal.norm() - 1) < tight_)) deviation("normal not unit", c.normal.norm());
     if (scene_.space == Space::planar && (c.normal.z() != 0 || c.point.z() != 0))
       deviation("leaves the plane", c.normal.z());
-    // Half way between the surfaces along the normal. Apart, the surfaces' nearest points may be
-    // off to the side by up to their distance.
-    const double half = std::max(0.5 * std::abs(c.separation), truth_) + 2 * tight_;
+    // Half way between the surfaces along the normal. Apart, the nearest points of two edges' lines
+    // may lie beyond the edges' ends.
+    const double half = std::max(0.5 * std::abs(c.separation), 1.5 * truth_) + 2 * tight_;
     const double in_a = signed_distance(a, c.point), in_b = signed_distance(b, c.point);
     if (!(in_a < half && in_b < half)) deviation("point off the shapes", std::max(in_a, in_b));
   }

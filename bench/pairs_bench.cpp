@@ -1,0 +1,92 @@
+// Narrow phase and contact rows of one shape pair at a time: the collide stage with the tables cut
+// down to one class of pairs. The scene is the first that has such a class.
+#include <set>
+#include <string>
+#include <utility>
+
+#include "bench/report.hpp"
+#include "src/base/denormals.hpp"
+#include "src/dispatch/kernels.hpp"
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds::bench {
+namespace {
+
+using kernels::PairKind;
+
+const char* name_of(PairKind kind) {
+  static constexpr const char* kNames[kernels::kPairKinds] = {
+      "sphere_sphere",  "box_sphere",      "box_box",          "plane_sphere",
+      "plane_box",      "circle_circle",   "rectangle_circle", "rectangle_rectangle",
+      "polygon_circle", "polygon_polygon", "plane_circle",     "plane_rectangle",
+      "plane_polygon",  "sphere_box",      "circle_rectangle", "circle_polygon"};
+  return kNames[static_cast<int>(kind)];
+}
+
+// Kinds whose first shape may move.
+bool may_move(PairKind kind) {
+  return kind < PairKind::plane_sphere ||
+         (kind >= PairKind::circle_circle && kind <= PairKind::polygon_polygon);
+}
+
+void time_pair(benchmark::State& state, const Scenario& scenario, Isa isa, int class_index,
+               kernels::Layout layout) {
+  TypicalWorlds& worlds = typical_worlds(scenario, isa);
+  Tables tables = worlds.tables();
+  tables.pair_class += class_index;
+  tables.classes = 1;
+  StageRunner runner(worlds.kernels(), tables, worlds.scratch(), layout);
+  const FlushDenormals flush;
+  ContactCounts counts;
+  for (int g = 0; g < worlds.groups(); ++g) {
+    worlds.restore(g);
+    runner.run_before(Stage::warm_start, worlds.group(g));
+    if (runner.layout() != layout) return state.SkipWithError("too many slots for this layout");
+    counts.add(runner.counters());
+  }
+  for ([[maybe_unused]] const auto _ : state) {
+    double seconds = 0;
+    for (int g = 0; g < worlds.groups(); ++g) {
+      const Group group = worlds.group(g);
+      worlds.restore(g);
+      runner.run_before(Stage::collide, group);
+      seconds += seconds_of([&] { runner.run(Stage::collide, group); });
+    }
+    state.SetIterationTime(seconds);
+  }
+  report(state, worlds, counts);
+  state.counters["per_candidate"] = time_of_one(counts.candidates);
+  state.SetLabel(scenario.name);
+  if (counts.candidates == 0) state.SkipWithError("no candidates in the typical state");
+  const std::string wrong = worlds.check(layout);
+  if (!wrong.empty()) state.SkipWithError(wrong.c_str());
+}
+
+}  // namespace
+
+void register_pairs() {
+  using Kind = std::pair<PairKind, bool>;  // against fixed shapes?
+  std::set<Kind> seen;
+  for (const Scenario& s : scenarios_of_pairs()) {
+    const Plan plan = compile(s.make());
+    const auto& classes = plan.data().classes;
+    for (std::size_t c = 0; c < classes.size(); ++c) {
+      const bool fixed = is_fixed(classes[c].list);
+      if (!seen.insert({classes[c].kind, fixed}).second) continue;
+      for (const Isa isa : available_isas()) {
+        if (!find_kernels<float>(isa)) continue;
+        for (const auto layout : {kernels::Layout::rows, kernels::Layout::dense}) {
+          const std::string name =
+              std::string("collide/") + (fixed && may_move(classes[c].kind) ? "fixed_" : "") +
+              name_of(classes[c].kind) + "/" + manyworlds::to_string(isa) + "/" + to_string(layout);
+          const int index = static_cast<int>(c);
+          benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+            time_pair(state, s, isa, index, layout);
+          })->UseManualTime();
+        }
+      }
+    }
+  }
+}
+
+}  // namespace manyworlds::bench
