@@ -56,7 +56,7 @@ const std::vector<Scenario>& scenarios() {
       {"bin2d", named<"bin2d">, 120},
       {"pyramid2d", named<"pyramid2d">, 120},
       {"mixed-pile2d", named<"mixed-pile2d">, 120},
-      {"billiards", named<"billiards">, 60},
+      {"billiards", named<"billiards">, 38},
       {"newton-cradle", named<"newton-cradle">, 60},
       {"ball2d", named<"ball2d">, 60},
   };

@@ -46,7 +46,13 @@ TEST_CASE("towers of 10 and 20 boxes settle, stand and carry their weight", "[sl
   constexpr int kWorlds = 8;
   for (Space space : {Space::planar, Space::spatial}) {
     for (int boxes : {10, 20}) {
-      const Scene scene = tower(space, boxes);
+      Scene scene = tower(space, boxes);
+      if (space == Space::spatial && boxes == 20) {
+        // A column of soft contacts buckles under its own weight when it is too tall for their
+        // stiffness; 20 cubes need more of it than 4 substeps carry.
+        scene.options.substeps = 8;
+        scene.options.contact_frequency = 90;
+      }
       const Plan plan = compile(scene);
       for (const Table& table : widest_tables()) {
         Batch batch(plan, options_of(table, kWorlds));
