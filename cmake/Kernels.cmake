@@ -17,7 +17,7 @@ set(mw_flags_avx2 -mavx2 -mfma -mbmi2)
 set(mw_flags_avx512 -mavx512f -mavx512vl -mavx512dq -mavx512bw -mavx2 -mfma -mbmi2
     -mprefer-vector-width=512)
 # GCC 12's AVX-512 header warns about the undefined operand of its own intrinsics.
-set(mw_quiet_avx512 $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+set(mw_quiet_avx512 $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized>)
 # GCC copies structs of registers in 16-byte pieces unless told otherwise, and the whole-register
 # load that follows then waits for the stores (measured: up to 2x on free motion).
 set(mw_moves_avx2 $<$<CXX_COMPILER_ID:GNU>:-mmove-max=256;-mstore-max=256>)
