@@ -32,7 +32,7 @@ list(FILTER mw_test_sources EXCLUDE REGEX "/tests/mjcf/")
 mw_test_program(manyworlds_tests ${mw_test_sources})
 if(MW_MJCF AND mw_mjcf_test_sources)
   mw_test_program(manyworlds_mjcf_tests ${mw_mjcf_test_sources})
-  target_link_libraries(manyworlds_mjcf_tests PRIVATE manyworlds_mjcf)
+  target_link_libraries(manyworlds_mjcf_tests PRIVATE manyworlds_mjcf MuJoCo::MuJoCo)
 endif()
 
 # The fast tests with each instruction set forced; one that the CPU lacks is skipped by name.

@@ -56,8 +56,8 @@ inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of po
 //   sphere, circle        x y z radius                       (4; z unused in the plane)
 //   box                   Rx p.x | Ry p.y | Rz p.z | hx hy hz margin, columns of the rotation (16)
 //   rectangle             x y c s | hx hy 0 0                (8)
-//   polygon               x y count radius | 8 vertices | 8 normals, relative to x y, world axes
-//   (36) plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
+//   polygon               x y count radius | 8 vertices | 8 normals, about x y     (36)
+//   plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
 inline constexpr int pose_row_size(ShapeKind kind) {
   switch (kind) {
     case ShapeKind::box: return 16;
