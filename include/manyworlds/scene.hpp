@@ -128,7 +128,7 @@ struct Options {
 
   double contact_frequency = 60;  // Hz, of the soft contact; doubled against fixed shapes
   double contact_damping_ratio = 10;
-  double push_out_speed = 2;          // m/s per length_unit: cap on the speed that removes overlap
+  double push_out_speed = 1.5;        // m/s per length_unit: cap on the speed that removes overlap
   double slop = 0.005;                // m per length_unit: contact margin is 4 slop
   double restitution_threshold = 1;   // m/s per length_unit: slower impacts do not bounce
   int restitution_sweeps = 16;        // most repeats of the restitution pass

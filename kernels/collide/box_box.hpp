@@ -13,6 +13,9 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr Real kOutOfReach = Real(1e6);
+// Share of an edge by which a corner may be outside and still count, so that rounding does not lose
+// the corners of faces that coincide.
+inline constexpr Real kEdgeSlack = sizeof(Real) == 4 ? Real(1e-5) : Real(1e-9);
 
 // Candidate points over the reference face: x, y in it, z the height above it.
 struct ClipPoints {
@@ -29,7 +32,7 @@ MW_INLINE Float safe_divisor(Float a) {
 // c, e1, e2: centre and half edges of the incident face in the reference frame (x, y, z).
 MW_INLINE void clip_face(Vec3 c, Vec3 e1, Vec3 e2, Float half_x, Float half_y, ClipPoints& out) {
   const Float zero(Real(0)), one(Real(1)), two(Real(2)), out_of_reach(kOutOfReach);
-  const Float inside(Real(1.00005));  // corners on the very edge count
+  const Float inside = Real(1) + kEdgeSlack;  // corners on the very edge count
   const Vec3 corner[4] = {c + e1 + e2, c - e1 + e2, c - e1 - e2, c + e1 - e2};
   const Float inv_1x = one / safe_divisor(e1.x * -two), inv_1y = one / safe_divisor(e1.y * -two);
   const Float inv_2x = one / safe_divisor(e2.x * -two), inv_2y = one / safe_divisor(e2.y * -two);
@@ -71,9 +74,14 @@ struct KeptPoints {
 
 MW_INLINE void keep_four(ClipPoints& p, Float margin, KeptPoints& out) {
   const Float zero(Real(0));
+  // Among equally deep points one far out: a corner rather than the middle of an edge.
+  const Float outward(Real(-1e-5));
   Float x = p.x[0], y = p.y[0], z = p.z[0];
+  Float least_key = fma(abs(x) + abs(y), outward, z);
   for (int i = 1; i < ClipPoints::kCount; ++i) {
-    const Mask deeper = p.z[i] < z;
+    const Float key = fma(abs(p.x[i]) + abs(p.y[i]), outward, p.z[i]);
+    const Mask deeper = key < least_key;
+    least_key = min(key, least_key);
     x = select(deeper, p.x[i], x), y = select(deeper, p.y[i], y), z = select(deeper, p.z[i], z);
   }
   // What is as near as the deepest point, or within the margin, may push.
@@ -209,7 +217,7 @@ struct BoxBox {
     ClipPoints clipped;
     // A little wider than the face, so that corners on its very edge are inside whatever rounding
     // says.
-    const Float slack(Real(1.0001));
+    const Float slack = Real(1) + kEdgeSlack;
     clip_face({dot(f.u, c), dot(f.v, c), dot(f.n, c) - f.height},
               {dot(f.u, other.edge1), dot(f.v, other.edge1), dot(f.n, other.edge1)},
               {dot(f.u, other.edge2), dot(f.v, other.edge2), dot(f.n, other.edge2)},
@@ -220,8 +228,7 @@ struct BoxBox {
     m.tangent = f.u;
     for (int i = 0; i < 4; ++i) {
       const Float z = min(kept.z[i], Real(1e3));
-      const Float x = clamp(kept.x[i], -f.half_u, f.half_u);
-      const Float y = clamp(kept.y[i], -f.half_v, f.half_v);
+      const Float x = kept.x[i], y = kept.y[i];
       const Vec3 base = fma(f.v, y, f.u * x);
       const Vec3 on_ref = fma(f.n, fma(min(z, zero), half, f.height), base);
       const Vec3 on_inc = fma(f.n, max(z, z * half) + f.height, base) - d_r;

@@ -45,7 +45,7 @@ MW_INLINE BoxAxes find_box_axes(const Tables& t, const BoxPose& a, const BoxPose
     axis_b = select(better, Float(static_cast<Real>(3 + j)), axis_b);
   }
   const Float bias(t.face_bias);
-  const Mask face_b = best_a + bias < best_b;
+  const Mask face_b = (best_a + bias < best_b) | (max(best_a, zero) < best_b);
   const Float face = select(face_b, best_b, best_a);
   Float axis = select(face_b, axis_b, axis_a);
 

@@ -1,5 +1,5 @@
-// Rectangle against rectangle: four axes, then edge against edge. A's faces win near ties by
-// face_bias.
+// Rectangle against rectangle: four axes, then edge against edge. In overlap A's faces win near
+// ties by face_bias.
 #pragma once
 
 #include "kernels/collide/segments.hpp"
@@ -22,7 +22,8 @@ struct RectangleRectangle {
     const Float bx = abs(in_b.x) - b.half.x - fma(a.half.x, c, a.half.y * s);
     const Float by = abs(in_b.y) - b.half.y - fma(a.half.x, s, a.half.y * c);
     const Mask a_uses_y = ax < ay, b_uses_y = bx < by;
-    const Mask from_b = max(ax, ay) + Float(t.face_bias) < max(bx, by);
+    const Float best_a = max(ax, ay), best_b = max(bx, by);
+    const Mask from_b = (best_a + Float(t.face_bias) < best_b) | (max(best_a, zero) < best_b);
 
     const Rot2 ref_q = select(from_b, b.q, a.q), inc_q = select(from_b, a.q, b.q);
     const Vec2 ref_half = select(from_b, b.half, a.half), inc_half = select(from_b, a.half, b.half);

@@ -49,7 +49,7 @@ MW_INLINE void clip_edges(const EdgePair& e, Float margin, Manifold<S, 2>& m) {
     m.separation[i] = separation[i];
     m.feature_x[i] = place;
     m.feature_y[i] = Real(0);
-    m.valid[i] = separation[i] < limit;
+    m.valid[i] = (separation[i] < limit) & (!beside | (separation[i] < Float(Real(0))));
   }
   // One point of contact when the two ends coincide.
   m.valid[1] = m.valid[1] & (enter < leave);

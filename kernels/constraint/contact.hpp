@@ -14,6 +14,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+inline constexpr Real kUnlimited = Real(1e30);  // N s
+
 enum class Pass { warm_start, bias, relax };
 
 // The two bodies of a slot, loaded once and stored once.
@@ -227,7 +229,7 @@ MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
     Float speed[N];
     normal_speeds(s, v, speed);
     const Float zero(Real(0)), one(Real(1)), inv_h(t.inv_h);
-    Float bias[N], scale[N], keep[N];
+    Float bias[N], scale[N], keep[N], most[N];
     if constexpr (kPass == Pass::bias) {
       const auto& soft = kPair ? t.soft_pair : t.soft_fixed;
       const Float rate(soft.bias_rate * soft.mass_scale), cap(-t.push_out_speed);
@@ -245,11 +247,14 @@ MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
         keep[i] = select(apart, zero, soft.impulse_scale);
       }
     } else {
-      // The substep has moved the bodies; now remove the speed that pushing out has added.
-      const Float h(t.h);
+      // The substep has moved the bodies; now remove the speed that pushing out has added. A point
+      // that is still apart gets no more impulse: whether it will touch is the next substep's, or
+      // the next step's, business.
+      const Float h(t.h), touch(t.margin * Real(1.0 / 1024));
       for (int i = 0; i < N; ++i) {
         const Float gap = fma(h, speed[i], Float::load(s.gap[i]));
         bias[i] = max(gap, zero) * inv_h;
+        most[i] = select(touch < gap, impulse[i], kUnlimited);
       }
     }
     for (int i = 0; i < N; ++i) {
@@ -260,7 +265,8 @@ MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
       } else {
         x = fnma(mass, speed[i] + bias[i], impulse[i]);
       }
-      const Float total = max(x, zero);
+      Float total = max(x, zero);
+      if constexpr (kPass == Pass::relax) total = min(total, most[i]);
       d[i] = total - impulse[i];
       impulse[i] = total;
       total.store(s.impulse[i]);
