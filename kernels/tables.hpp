@@ -165,6 +165,7 @@ struct WorldTables {
   Real half_margin;
   Real restitution_threshold;
   Real bounds_low[3], bounds_high[3];  // of body positions, m
+  Real face_tie;                       // m, a face of A wins over one of B by this
   Real face_bias;  // m, preference of the previous kind of axis in separating-axis tests
 };
 

@@ -15,7 +15,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 inline constexpr Real kOutOfReach = Real(1e6);
 // Share of an edge by which a corner may be outside and still count, so that rounding does not lose
 // the corners of faces that coincide.
-inline constexpr Real kEdgeSlack = sizeof(Real) == 4 ? Real(1e-5) : Real(1e-9);
+inline constexpr Real kEdgeSlack = sizeof(Real) == 4 ? Real(2e-6) : Real(1e-9);
 
 // Candidate points over the reference face: x, y in it, z the height above it.
 struct ClipPoints {
@@ -45,8 +45,9 @@ MW_INLINE void clip_face(Vec3 c, Vec3 e1, Vec3 e2, Float half_x, Float half_y, C
     // |corner.x + t step.x| <= half_x, the same in y.
     const Float mid_x = -(corner[i].x * inv_x), mid_y = -(corner[i].y * inv_y);
     const Float span_x = abs(half_x * inv_x), span_y = abs(half_y * inv_y);
-    const Float enter = max(zero, max(mid_x - span_x, mid_y - span_y));
-    const Float leave = min(one, min(mid_x + span_x, mid_y + span_y));
+    // Clamped to the edge, so that candidates that do not exist have harmless places.
+    const Float enter = min(max(zero, max(mid_x - span_x, mid_y - span_y)), one);
+    const Float leave = max(min(one, min(mid_x + span_x, mid_y + span_y)), zero);
     const Mask crosses = enter < leave;
     out.x[2 * i] = fma(step.x, enter, corner[i].x);
     out.y[2 * i] = fma(step.y, enter, corner[i].y);

@@ -1,7 +1,7 @@
 // Box against box, first half: the separating-axis test over 3 + 3 face normals and 9 edge
 // products. Returns the largest separation and the axis that has it:
 //   0..2 face of A, 3..5 face of B, 6 + 3 i + j edge i of A x edge j of B
-// Faces win near ties: a face of A over one of B by face_bias, a face over an edge by 5 % of the
+// Faces win near ties: a face of A over one of B by face_tie, a face over an edge by 5 % of the
 // depth and face_bias, so that resting contacts do not flicker between descriptions.
 #pragma once
 
@@ -45,7 +45,7 @@ MW_INLINE BoxAxes find_box_axes(const Tables& t, const BoxPose& a, const BoxPose
     axis_b = select(better, Float(static_cast<Real>(3 + j)), axis_b);
   }
   const Float bias(t.face_bias);
-  const Mask face_b = (best_a + bias < best_b) | (max(best_a, zero) < best_b);
+  const Mask face_b = (best_a + Float(t.face_tie) < best_b) | (max(best_a, zero) < best_b);
   const Float face = select(face_b, best_b, best_a);
   Float axis = select(face_b, axis_b, axis_a);
 

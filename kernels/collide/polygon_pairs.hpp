@@ -79,7 +79,7 @@ struct PolygonPolygon {
     const PolygonCorners ca = load_corners(a), cb = load_corners(b);
     const Vec2 d = b.p - a.p;
     const PolygonEdge edge_a = farthest_edge(ca, cb, d), edge_b = farthest_edge(cb, ca, -d);
-    const Mask from_b = (edge_a.value + Float(t.face_bias) < edge_b.value) |
+    const Mask from_b = (edge_a.value + Float(t.face_tie) < edge_b.value) |
                         (max(edge_a.value, zero) < edge_b.value);
     const PolygonEdge ref = select(from_b, edge_b, edge_a);
     const PolygonEdge inc =

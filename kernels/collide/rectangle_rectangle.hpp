@@ -1,5 +1,5 @@
 // Rectangle against rectangle: four axes, then edge against edge. In overlap A's faces win near
-// ties by face_bias.
+// ties by face_tie.
 #pragma once
 
 #include "kernels/collide/segments.hpp"
@@ -23,7 +23,7 @@ struct RectangleRectangle {
     const Float by = abs(in_b.y) - b.half.y - fma(a.half.x, s, a.half.y * c);
     const Mask a_uses_y = ax < ay, b_uses_y = bx < by;
     const Float best_a = max(ax, ay), best_b = max(bx, by);
-    const Mask from_b = (best_a + Float(t.face_bias) < best_b) | (max(best_a, zero) < best_b);
+    const Mask from_b = (best_a + Float(t.face_tie) < best_b) | (max(best_a, zero) < best_b);
 
     const Rot2 ref_q = select(from_b, b.q, a.q), inc_q = select(from_b, a.q, b.q);
     const Vec2 ref_half = select(from_b, b.half, a.half), inc_half = select(from_b, a.half, b.half);

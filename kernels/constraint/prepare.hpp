@@ -24,6 +24,14 @@ void record_points(Work& w, ListId list, const Manifold<S, N>& m, const std::int
     x.store(all);
     return all[r.lane];
   };
+  // Points of a manifold are told apart by their quarter about its middle: stable when they move.
+  Real middle_x = 0, middle_y = 0, points = 0;
+  for (int i = 0; i < N; ++i) {
+    if (!((bits(m.valid[i]) >> r.lane) & 1u)) continue;
+    middle_x += lane_of(m.feature_x[i]);
+    middle_y += lane_of(m.feature_y[i]);
+    points += 1;
+  }
   for (int i = 0; i < N && r.count < r.max; ++i) {
     if (!((bits(m.valid[i]) >> r.lane) & 1u)) continue;
     auto& out = r.out[r.count++];
@@ -37,7 +45,9 @@ void record_points(Work& w, ListId list, const Manifold<S, N>& m, const std::int
     if constexpr (S::kDim == 3) out.normal[2] = lane_of(m.normal.z), out.point[2] = lane_of(p.z);
     out.separation = lane_of(m.separation[i]);
     out.impulse = lane_of(impulse[i]);
-    out.feature = static_cast<std::int32_t>(lane_of(m.code)) * 4 + i;
+    const bool right = lane_of(m.feature_x[i]) * points > middle_x;
+    const bool far = lane_of(m.feature_y[i]) * points > middle_y;
+    out.feature = static_cast<std::int32_t>(lane_of(m.code)) * 4 + (right ? 1 : 0) + (far ? 2 : 0);
   }
 }
 

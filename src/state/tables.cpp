@@ -68,6 +68,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.half_margin = static_cast<Real>(2 * o.slop * o.length_unit);
   t.restitution_threshold = static_cast<Real>(o.restitution_threshold * o.length_unit);
   t.face_bias = static_cast<Real>(0.5 * o.slop * o.length_unit);
+  t.face_tie = static_cast<Real>(0.02 * o.slop * o.length_unit);
   const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
   t.state_stride = at.components;
   t.bodies = static_cast<std::int32_t>(plan.bodies.size());
