@@ -7,6 +7,9 @@
 
 namespace manyworlds::kernels {
 
+// Functions here are static: every kernel library includes this header with flags of its own, and a
+// shared inline function could put one library's instructions into another's calls.
+
 enum class Dimension : int { planar, spatial };
 
 // How a body's inertia enters the rows: a scalar in the plane or when isotropic, else a tensor.
@@ -35,7 +38,7 @@ enum class PairKind : int {
   circle_polygon,    // fixed circle
 };
 inline constexpr int kPairKinds = 16;
-inline constexpr bool is_plane(PairKind kind) {
+static inline constexpr bool is_plane(PairKind kind) {
   return kind == PairKind::plane_sphere || kind == PairKind::plane_box ||
          kind == PairKind::plane_circle || kind == PairKind::plane_rectangle ||
          kind == PairKind::plane_polygon;
@@ -44,8 +47,8 @@ inline constexpr bool is_plane(PairKind kind) {
 // Contacts of a world live in four lists, solved in this order.
 enum class ListId : int { pair_multi, pair_single, fixed_multi, fixed_single };
 inline constexpr int kLists = 4;
-inline constexpr bool is_fixed(ListId id) { return id >= ListId::fixed_multi; }
-inline constexpr bool is_multi(ListId id) {
+static inline constexpr bool is_fixed(ListId id) { return id >= ListId::fixed_multi; }
+static inline constexpr bool is_multi(ListId id) {
   return id == ListId::pair_multi || id == ListId::fixed_multi;
 }
 
@@ -58,7 +61,7 @@ inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of po
 //   rectangle             x y c s | hx hy 0 0                (8)
 //   polygon               x y count radius | 8 vertices | 8 normals, about x y     (36)
 //   plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
-inline constexpr int pose_row_size(ShapeKind kind) {
+static inline constexpr int pose_row_size(ShapeKind kind) {
   switch (kind) {
     case ShapeKind::box: return 16;
     case ShapeKind::rectangle:
@@ -174,14 +177,14 @@ struct WorldTables {
 struct StateOffsets {
   int position, linear, angular, orientation, components;
 };
-inline constexpr StateOffsets state_offsets(Dimension d, bool orientation) {
+static inline constexpr StateOffsets state_offsets(Dimension d, bool orientation) {
   return d == Dimension::planar ? StateOffsets{0, 2, 4, 5, orientation ? 7 : 5}
                                 : StateOffsets{0, 3, 6, 9, orientation ? 13 : 9};
 }
-inline constexpr int velocity_row_size(Dimension d) { return d == Dimension::planar ? 4 : 8; }
+static inline constexpr int velocity_row_size(Dimension d) { return d == Dimension::planar ? 4 : 8; }
 
 // Stored impulses of one manifold (see constraint/contact_cache.hpp).
-inline constexpr int cache_row_size(Dimension d, ListId list) {
+static inline constexpr int cache_row_size(Dimension d, ListId list) {
   return !is_multi(list) ? 4 : d == Dimension::planar ? 8 : 16;
 }
 
