@@ -32,7 +32,7 @@ SANITIZER = re.compile(r"__odr_asan")
 # and what would make the symbol another set's.
 XSIMD_TAGS = {
     "avx2": (re.compile(r"[34]avx2?(?!\d)"), re.compile(r"\davx512")),
-    "avx512": (re.compile(r"\davx512"), None),
+    "avx512": (re.compile(r"(\d|simd_)avx512"), None),
 }
 
 
