@@ -181,7 +181,9 @@ static inline constexpr StateOffsets state_offsets(Dimension d, bool orientation
   return d == Dimension::planar ? StateOffsets{0, 2, 4, 5, orientation ? 7 : 5}
                                 : StateOffsets{0, 3, 6, 9, orientation ? 13 : 9};
 }
-static inline constexpr int velocity_row_size(Dimension d) { return d == Dimension::planar ? 4 : 8; }
+static inline constexpr int velocity_row_size(Dimension d) {
+  return d == Dimension::planar ? 4 : 8;
+}
 
 // Stored impulses of one manifold (see constraint/contact_cache.hpp).
 static inline constexpr int cache_row_size(Dimension d, ListId list) {
