@@ -19,11 +19,18 @@ inline constexpr Real kMaxFinite = sizeof(Real) == 4 ? Real(3.4028234e38) : Real
 inline constexpr std::uint32_t kNonFinite = 1, kOutOfRange = 2, kOutOfBounds = 4, kOverflow = 8;
 inline constexpr std::uint32_t kFrozen = kNonFinite | kOutOfRange;
 
-// NaN fails every comparison, so it is out of any range.
-MW_INLINE Mask in_range(Float a, Real limit) { return abs(a) <= Float(limit); }
-MW_INLINE Mask in_range(Vec2 a, Real limit) { return in_range(a.x, limit) & in_range(a.y, limit); }
-MW_INLINE Mask in_range(Vec3 a, Real limit) {
-  return in_range(a.x, limit) & in_range(a.y, limit) & in_range(a.z, limit);
+// Is a . a <= limit^2? NaN fails every comparison, so it is out of any range.
+template <class A>
+MW_INLINE Mask in_range(A a, Real limit) {
+  return dot(a, a) <= Float(limit * limit);
+}
+// The same without squares, for limits whose squares are not finite.
+MW_INLINE Mask is_finite(Float a) { return abs(a) <= Float(kMaxFinite); }
+MW_INLINE Mask is_finite(Vec2 a) { return is_finite(a.x) & is_finite(a.y); }
+MW_INLINE Mask is_finite(Vec3 a) { return is_finite(a.x) & is_finite(a.y) & is_finite(a.z); }
+MW_INLINE Mask is_finite(Rot2 q) { return is_finite(q.c) & is_finite(q.s); }
+MW_INLINE Mask is_finite(Quat q) {
+  return is_finite(q.w) & is_finite(q.x) & is_finite(q.y) & is_finite(q.z);
 }
 
 struct LaneCheck {
@@ -33,23 +40,26 @@ struct LaneCheck {
   template <class S>
   MW_INLINE void add(const Tables& t, const Group& g, int body, typename S::Vec step,
                      const Velocity<S>& v) {
-    const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
-    const auto x = load_as<typename S::Vec>(state_of(t, g, body, at.position)) + step;
+    const auto x = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.position)) + step;
     Mask ok = in_range(x, kMaxPosition) & in_range(v.v, kMaxSpeed) & in_range(v.w, kMaxSpin);
-    Float turned(Real(0));
+    typename S::Orientation q;
     if (t.has_orientation) {  // only a written value can be bad: steps normalise
-      for (int c = 0; c < (S::kDim == 2 ? 2 : 4); ++c) {
-        turned = turned + abs(Float::load(state_of(t, g, body, at.orientation + c)));
-      }
-      ok = ok & in_range(turned, kMaxOrientation);
+      q = load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation));
+      ok = ok & in_range(q, kMaxOrientation);
     }
     good = good & ok;
     if (!all(ok)) {
-      finite = finite & in_range(x, kMaxFinite) & in_range(v.v, kMaxFinite) &
-               in_range(v.w, kMaxFinite) & in_range(turned, kMaxFinite);
+      finite = finite & is_finite(x) & is_finite(v.v) & is_finite(v.w);
+      if (t.has_orientation) finite = finite & is_finite(q);
     }
   }
 };
+
+inline bool has_frozen_lane(const Group& g) {
+  std::uint32_t status = 0;
+  for (int l = 0; l < kLanes; ++l) status |= g.status[l];
+  return (status & kFrozen) != 0;
+}
 
 // Flags lanes that went bad in this step; returns those that may be committed.
 inline std::uint32_t judge_lanes(const Group& g, const LaneCheck& check) {
@@ -63,6 +73,12 @@ inline std::uint32_t judge_lanes(const Group& g, const LaneCheck& check) {
     }
   }
   return commit;
+}
+
+inline void flag_outside(const Group& g, std::uint32_t lanes) {
+  for (int l = 0; lanes != 0 && l < kLanes; ++l) {
+    if ((lanes >> l) & 1u) g.status[l] |= kOutOfBounds;
+  }
 }
 
 // Half of dt times the push of a substep: what symplectic substeps fall too far.
@@ -96,8 +112,7 @@ struct SomeLanes {
 template <class S, class Keep>
 MW_INLINE void turn_body(const Tables& t, const Group& g, int body, typename S::Ang turn,
                          Keep keep) {
-  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
-  Real* p = state_of(t, g, body, at.orientation);
+  Real* p = state_of(t, g, body, kState<S>.orientation);
   if constexpr (S::kDim == 2) {
     store(p, keep(rotate_by(load_rot2(p), turn), p));
   } else {
@@ -105,34 +120,25 @@ MW_INLINE void turn_body(const Tables& t, const Group& g, int body, typename S::
   }
 }
 
+MW_INLINE bool is_kinematic(const Tables& t, int body) {
+  return t.body[body].inv_inertia[0] == Real(0);
+}
+
 // Orientations and angular velocities of kBodies bodies from `first` whose inertia is a tensor:
 // free lanes tumble exactly, lanes in contact turn by the angle that the substeps swept.
 template <bool kDense, int kBodies, class Keep>
 MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first, Keep keep) {
-  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
-  Moments moments[kBodies];
+  const Top* tops[kBodies];
   Vec3 omega[kBodies], tumbled[kBodies];
   Quat q[kBodies], old[kBodies];
   for (int i = 0; i < kBodies; ++i) {
-    const auto& b = t.body[first + i];
-    // A kinematic body has no moments; any isotropic ones turn it about its fixed axis.
-    const bool kinematic = b.inv_inertia[0] == Real(0);
-    for (int c = 0; c < 3; ++c) {
-      Float& inertia = c == 0   ? moments[i].inertia.x
-                       : c == 1 ? moments[i].inertia.y
-                                : moments[i].inertia.z;
-      Float& inverse = c == 0   ? moments[i].inverse.x
-                       : c == 1 ? moments[i].inverse.y
-                                : moments[i].inverse.z;
-      inertia = kinematic ? Real(1) : b.inertia[c];
-      inverse = kinematic ? Real(1) : b.inv_inertia[c];
-    }
+    tops[i] = &t.body[first + i].top;
     omega[i] = tumbled[i] = get_velocity<Tensor, kDense>(w, w.velocity, first + i).w;
-    q[i] = old[i] = load_quat(state_of(t, g, first + i, at.orientation));
+    q[i] = old[i] = load_quat(state_of(t, g, first + i, kState<Tensor>.orientation));
   }
   std::uint32_t held_everywhere = kAllLanes;
   for (int i = 0; i < kBodies; ++i) held_everywhere &= w.touched[first + i];
-  if (held_everywhere != kAllLanes) rotate_free<kBodies>(t.dt, moments, tumbled, q);
+  if (held_everywhere != kAllLanes) rotate_free<kBodies>(tops, tumbled, q);
   for (int i = 0; i < kBodies; ++i) {
     const std::uint32_t touched = w.touched[first + i];
     Vec3 spin = tumbled[i];
@@ -142,23 +148,22 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
       q[i] = select(held, rotate_by(old[i], swept), q[i]);
       spin = select(held, omega[i], spin);
     }
-    if (t.body[first + i].inv_inertia[0] == Real(0)) spin = omega[i];
-    Real* p = state_of(t, g, first + i, at.orientation);
+    if (is_kinematic(t, first + i)) spin = omega[i];
+    Real* p = state_of(t, g, first + i, kState<Tensor>.orientation);
     store(p, keep(q[i], p));
-    Real* p_angular = state_of(t, g, first + i, at.angular);
+    Real* p_angular = state_of(t, g, first + i, kState<Tensor>.angular);
     store(p_angular, keep(spin, p_angular));
   }
 }
 
 template <class S, bool kDense, class Keep>
 void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits, Keep keep) {
-  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
   Mask inside = mask_from_bits(kAllLanes);
   for (int b = 0; b < t.bodies; ++b) {
     const Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
     const Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
     const Mask free = mask_from_bits(~w.touched[b] & kAllLanes);
-    Real* p = state_of(t, g, b, at.position);
+    Real* p = state_of(t, g, b, kState<S>.position);
     const auto old = load_as<typename S::Vec>(p);
     auto step = moved.v;
     if (t.has_gravity || w.push) {
@@ -168,10 +173,10 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     const auto x = keep(old + step, p);
     store(p, x);
     if (t.has_bounds) inside = inside & within_bounds(t, x);
-    Real* p_linear = state_of(t, g, b, at.linear);
+    Real* p_linear = state_of(t, g, b, kState<S>.linear);
     store(p_linear, keep(v.v, p_linear));
     if constexpr (!std::is_same_v<S, Tensor>) {
-      Real* p_angular = state_of(t, g, b, at.angular);
+      Real* p_angular = state_of(t, g, b, kState<S>.angular);
       store(p_angular, keep(v.w, p_angular));
       if (t.has_orientation) turn_body<S>(t, g, b, moved.w, keep);
     }
@@ -181,10 +186,7 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     for (; b + 1 < t.bodies; b += 2) turn_tensors<kDense, 2>(t, g, w, b, keep);
     if (b < t.bodies) turn_tensors<kDense, 1>(t, g, w, b, keep);
   }
-  const std::uint32_t outside = ~bits(inside) & commit_bits;
-  for (int l = 0; outside != 0 && l < kLanes; ++l) {
-    if ((outside >> l) & 1u) g.status[l] |= kOutOfBounds;
-  }
+  flag_outside(g, ~bits(inside) & commit_bits);
 }
 
 template <class S, bool kDense>
@@ -210,45 +212,6 @@ void leave_state(const Tables& t, const Group& g, Work& w) {
                  get_velocity<S, kDense>(w, w.velocity, b));
   }
   commit_bodies<S, kDense>(t, g, w, judge_lanes(g, check));
-}
-
-// Plans without contacts: whole steps, the group's state staying in the cache.
-template <class S>
-void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
-  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
-  const Float h(t.h);
-  w.push = g.force ? w.push_storage : nullptr;
-  for (int step = 0; step < steps; ++step) {
-    LaneCheck check;
-    if (w.push) turn_body_rows(t, g, w);
-    for (int b = 0; b < t.bodies; ++b) {
-      Velocity<S> v{load_as<typename S::Vec>(state_of(t, g, b, at.linear)),
-                    load_as<typename S::Ang>(state_of(t, g, b, at.angular))};
-      Velocity<S> push;
-      if (w.push) {
-        push = push_of_body<S>(t, g, w, b);
-        put_velocity<S, true>(w, w.push, b, push);
-      }
-      const Real* gravity = t.push_rows + b * S::kRow;
-      const Real* factor = t.factor_rows + b * S::kRow;
-      Velocity<S> moved{v.v - v.v, v.w - v.w};
-      for (int k = 0; k < t.substeps; ++k) {
-        if (w.push) {
-          v = {v.v + push.v, v.w + push.w};
-        } else if (t.has_gravity) {
-          v.v.x = v.v.x + gravity[0];
-          v.v.y = v.v.y + gravity[1];
-          if constexpr (S::kDim == 3) v.v.z = v.v.z + gravity[2];
-        }
-        if (t.has_drag) v = {v.v * Float(factor[0]), v.w * Float(factor[S::kDim])};
-        moved = {fma(v.v, h, moved.v), fma(v.w, h, moved.w)};
-      }
-      put_velocity<S, true>(w, w.velocity, b, v);
-      put_velocity<S, true>(w, w.displacement, b, moved);
-      check.add<S>(t, g, b, moved.v, v);
-    }
-    commit_bodies<S, true>(t, g, w, judge_lanes(g, check));
-  }
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

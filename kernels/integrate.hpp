@@ -36,6 +36,11 @@ MW_INLINE void for_each_register(const Tables& t, const Work& w, Update update) 
   }
 }
 
+// Where the parts of a body's state are. Only its length depends on has_orientation.
+template <class S>
+inline constexpr kernels::StateOffsets kState = kernels::state_offsets(
+    S::kDim == 2 ? kernels::Dimension::planar : kernels::Dimension::spatial, true);
+
 MW_INLINE Real* state_of(const Tables& t, const Group& g, int body, int component) {
   return g.state + (body * t.state_stride + component) * kLanes;
 }
@@ -90,11 +95,10 @@ MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& 
 
 template <class S, bool kDense>
 void enter_velocities(const Tables& t, const Group& g, Work& w) {
-  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
   const Float zero(Real(0));
   for (int b = 0; b < t.bodies; ++b) {
-    const Velocity<S> v{load_as<typename S::Vec>(state_of(t, g, b, at.linear)),
-                        load_as<typename S::Ang>(state_of(t, g, b, at.angular))};
+    const Velocity<S> v{load_as<typename S::Vec>(state_of(t, g, b, kState<S>.linear)),
+                        load_as<typename S::Ang>(state_of(t, g, b, kState<S>.angular))};
     put_velocity<S, kDense>(w, w.velocity, b, v);
   }
   w.push = g.force ? w.push_storage : nullptr;
@@ -127,8 +131,7 @@ void first_push(const Tables& t, const Group& g, Work& w) {
     for (int b = 0; b < t.bodies; ++b) {
       if (w.touched[b] == 0) continue;
       const auto& body = t.body[b];
-      const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
-      const Quat q = load_quat(state_of(t, g, b, at.orientation));
+      const Quat q = load_quat(state_of(t, g, b, kState<S>.orientation));
       Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
       const Vec3 turned = implicit_gyroscopic(
           t.dt, {body.inertia[0], body.inertia[1], body.inertia[2]}, matrix(q), v.w);

@@ -1,11 +1,11 @@
 // Free rotation of bodies whose inertia is not isotropic.
 //
-// Free bodies: DLM splitting (Dullweber, Leimkuhler, McLachlan 1997). The angular momentum L stays
-// put in the world; in the body frame it is turned about x, y, z, y, x by half, half, full, half,
-// half of dt L_k / I_k, and the orientation turns against it. Symplectic, |L| exact, energy
-// bounded. Bodies in contact: one Newton step of the implicit gyroscopic equation in the body frame
-// (Catto 2015), which loses energy but cannot gain it, since splitting would spoil solved contact
-// speeds.
+// Free bodies: DLM splitting (Dullweber, Leimkuhler, McLachlan 1997). In the body frame the angular
+// momentum L is turned about x, y, z, y, x by half, half, full, half, half of dt L_k / I_k, and the
+// orientation turns against it, so that L stays put in the world. Symplectic, |L| kept to rounding,
+// energy bounded. Bodies in contact: one Newton step of the implicit gyroscopic equation in the
+// body frame (Catto 2015), which loses energy but cannot gain it, since splitting would spoil
+// solved contact speeds.
 #pragma once
 
 #include "kernels/lane/algebra.hpp"
@@ -15,143 +15,141 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 inline constexpr Real kMaxTurn = Real(0.5);  // rad per splitting step, about one axis
 inline constexpr int kMaxSplits = 64;
 
-// A rotation by an angle: half-angle cosine and sine for the quaternion, whole-angle for vectors.
-struct Turn {
-  Float ch, sh, c, s;
+// sin a = a + a^3 P(a^2) and tan(a/2) = a/2 + a^3 Q(a^2) for |a| <= kMaxTurn, lowest power first.
+// float: least-maximum fits, 2e-9 relative; double: Taylor's sine, fitted tangent, 2e-17.
+template <class T>
+struct TurnSeries;
+template <>
+struct TurnSeries<float> {
+  static constexpr float kSine[] = {-0.16666666f, 0.0083331424f, -0.00019709355f};
+  static constexpr float kTangent[] = {0.041666796f, 0.0041635458f, 0.00044289024f};
 };
-// By Taylor series: |angle| / 2 <= 0.25, where the terms kept here are exact to rounding.
-MW_INLINE Turn turn_by(Float angle) {
-  const Float x = clamp(angle * Float(Real(0.5)), kMaxTurn * Real(-0.5), kMaxTurn * Real(0.5));
-  const Float x2 = x * x;
-  Float p, q;
-  if constexpr (sizeof(Real) == 4) {
-    p = fma(x2, Real(1.0 / 120.0), Real(-1.0 / 6.0));
-    q = fma(x2, fma(x2, Real(-1.0 / 720.0), Real(1.0 / 24.0)), Real(-0.5));
-  } else {
-    p = fma(
-        x2,
-        fma(x2,
-            fma(x2, fma(x2, Real(-1.0 / 39916800.0), Real(1.0 / 362880.0)), Real(-1.0 / 5040.0)),
-            Real(1.0 / 120.0)),
-        Real(-1.0 / 6.0));
-    q = fma(
-        x2,
-        fma(x2, fma(x2, fma(x2, Real(-1.0 / 3628800.0), Real(1.0 / 40320.0)), Real(-1.0 / 720.0)),
-            Real(1.0 / 24.0)),
-        Real(-0.5));
-  }
-  const Float sh = fma(p * x2, x, x), ch = fma(q, x2, Real(1));
-  const Float twice = sh + sh;
-  return {ch, sh, fnma(twice, sh, Real(1)), twice * ch};
+template <>
+struct TurnSeries<double> {
+  static constexpr double kSine[] = {
+      -1.0 / 6,        1.0 / 120,        -1.0 / 5040,         1.0 / 362880,
+      -1.0 / 39916800, 1.0 / 6227020800, -1.0 / 1307674368000};
+  static constexpr double kTangent[] = {
+      0.04166666666666689,   0.004166666666627725,   0.00042162698611403215, 4.271380547529701e-05,
+      4.328129663073992e-06, 4.3659999157553586e-07, 4.9151856211937116e-08};
+};
+template <int kTerms>
+MW_INLINE Float polynomial(const Real (&c)[kTerms], Float x) {
+  Float sum(c[kTerms - 1]);
+  for (int i = kTerms - 2; i >= 0; --i) sum = fma(sum, x, c[i]);
+  return sum;
 }
 
-// L in body axes and the orientation of a body, while it is split.
-struct FreeTop {
+// A rotation by an angle: the sine for vectors, the tangent of the half angle for quaternions too.
+struct Turn {
+  Float sine, tangent;
+};
+MW_INLINE Turn turn_by(Float a) {
+  const Float a2 = a * a, a3 = a2 * a;
+  return {fma(a3, polynomial(TurnSeries<Real>::kSine, a2), a),
+          fma(a3, polynomial(TurnSeries<Real>::kTangent, a2), a * Float(Real(0.5)))};
+}
+// (y, z) <- (c y + s z, c z - s y), from s and the tangent alone: c = 1 - s t.
+MW_INLINE void turn_back(Turn u, Float& y, Float& z) {
+  const Float dy = fms(u.tangent, y, z), dz = fma(u.tangent, z, y);
+  y = fnma(u.sine, dy, y);
+  z = fnma(u.sine, dz, z);
+}
+
+using Top = kernels::TopTable<Real>;
+
+// A body while it is split: L in body axes, and the orientation.
+struct Spin {
   Vec3 l;
   Quat q;
 };
 
+// About axis k: l turns by -a and q <- q (1, t e_k), whose length grows, by at most 1.04, until the
+// caller normalises it.
+MW_INLINE void turn_x(Float a, Spin& o) {
+  const Turn u = turn_by(a);
+  turn_back(u, o.l.y, o.l.z);
+  const Float t = u.tangent;
+  o.q = {fnma(t, o.q.x, o.q.w), fma(t, o.q.w, o.q.x), fma(t, o.q.z, o.q.y), fnma(t, o.q.y, o.q.z)};
+}
+MW_INLINE void turn_y(Float a, Spin& o) {
+  const Turn u = turn_by(a);
+  turn_back(u, o.l.z, o.l.x);
+  const Float t = u.tangent;
+  o.q = {fnma(t, o.q.y, o.q.w), fnma(t, o.q.z, o.q.x), fma(t, o.q.w, o.q.y), fma(t, o.q.x, o.q.z)};
+}
+MW_INLINE void turn_z(Float a, Spin& o) {
+  const Turn u = turn_by(a);
+  turn_back(u, o.l.x, o.l.y);
+  const Float t = u.tangent;
+  o.q = {fnma(t, o.q.z, o.q.w), fma(t, o.q.y, o.q.x), fnma(t, o.q.x, o.q.y), fma(t, o.q.w, o.q.z)};
+}
+
 // One splitting step of kBodies bodies side by side: each rotation waits for the one before it, so
-// a second body fills the gaps. rate_half = dt / (2 I). About axis k: l turns by -a and
-// q <- q (ch, sh e_k).
+// the others fill the gaps.
 template <int kBodies>
-MW_INLINE void split_turn(const Vec3* rate_half, FreeTop* top) {
-  const auto about_x = [&]() __attribute__((always_inline)) {
-    for (int i = 0; i < kBodies; ++i) {
-      Vec3& l = top[i].l;
-      Quat& q = top[i].q;
-      const Turn u = turn_by(rate_half[i].x * l.x);
-      const Float y = fma(u.c, l.y, u.s * l.z), z = fms(u.c, l.z, u.s * l.y);
-      l.y = y, l.z = z;
-      q = {fms(q.w, u.ch, q.x * u.sh), fma(q.w, u.sh, q.x * u.ch), fma(q.z, u.sh, q.y * u.ch),
-           fms(q.z, u.ch, q.y * u.sh)};
-    }
-  };
-  const auto about_y = [&]() __attribute__((always_inline)) {
-    for (int i = 0; i < kBodies; ++i) {
-      Vec3& l = top[i].l;
-      Quat& q = top[i].q;
-      const Turn u = turn_by(rate_half[i].y * l.y);
-      const Float z = fma(u.c, l.z, u.s * l.x), x = fms(u.c, l.x, u.s * l.z);
-      l.z = z, l.x = x;
-      q = {fms(q.w, u.ch, q.y * u.sh), fms(q.x, u.ch, q.z * u.sh), fma(q.w, u.sh, q.y * u.ch),
-           fma(q.x, u.sh, q.z * u.ch)};
-    }
-  };
-  about_x();
-  about_y();
-  for (int i = 0; i < kBodies; ++i) {
-    Vec3& l = top[i].l;
-    Quat& q = top[i].q;
-    const Turn u = turn_by((rate_half[i].z + rate_half[i].z) * l.z);
-    const Float x = fma(u.c, l.x, u.s * l.y), y = fms(u.c, l.y, u.s * l.x);
-    l.x = x, l.y = y;
-    q = {fms(q.w, u.ch, q.z * u.sh), fma(q.y, u.sh, q.x * u.ch), fms(q.y, u.ch, q.x * u.sh),
-         fma(q.w, u.sh, q.z * u.ch)};
-  }
-  about_y();
-  about_x();
+MW_INLINE void split_turn(const Top* const* top, Spin* o) {
+  for (int i = 0; i < kBodies; ++i) turn_x(o[i].l.x * top[i]->rate[0], o[i]);
+  for (int i = 0; i < kBodies; ++i) turn_y(o[i].l.y * top[i]->rate[1], o[i]);
+  for (int i = 0; i < kBodies; ++i) turn_z(o[i].l.z * top[i]->rate[2], o[i]);
+  for (int i = 0; i < kBodies; ++i) turn_y(o[i].l.y * top[i]->rate[1], o[i]);
+  for (int i = 0; i < kBodies; ++i) turn_x(o[i].l.x * top[i]->rate[0], o[i]);
+}
+
+// Square of a bound of the turn about every axis in one step.
+MW_INLINE Float turn2(const Top& top, const Spin& o) {
+  return dot(o.l, o.l) * (top.turn_bound * top.turn_bound);
 }
 
 // Lanes that would turn too far in one splitting step take a power of two of shorter ones; lanes
-// that are done keep their bits.
-inline void split_fast(Float turn, Vec3 rate_half, FreeTop& top) {
+// that are done keep their bits. Those that turn too fast even for kMaxSplits turn by less.
+inline void split_fast(const Top& top, Spin& o) {
+  const Float far = turn2(top, o);
   Float splits(Real(1));
   int most = 1;
   while (most < kMaxSplits) {
-    const Mask more = splits * Float(kMaxTurn) < turn;
+    const Mask more = splits * splits * Float(kMaxTurn * kMaxTurn) < far;
     if (!any(more)) break;
     splits = select(more, splits + splits, splits);
     most *= 2;
   }
-  const Vec3 part = rate_half * (Float(Real(1)) / splits);
+  const Float part = Float(Real(1)) / splits;
+  const auto angle = [part](Float l, Real rate) __attribute__((always_inline)) {
+    constexpr Real kBound = 2 * kMaxTurn;  // no lane that has enough splits reaches it
+    return clamp(l * rate * part, -kBound, kBound);
+  };
   for (int i = 0; i < most; ++i) {
     const Mask running = Float(static_cast<Real>(i)) < splits;
-    FreeTop next = top;
-    split_turn<1>(&part, &next);
-    top.l = select(running, next.l, top.l);
-    top.q = select(running, next.q, top.q);
+    Spin next = o;
+    turn_x(angle(o.l.x, top.rate[0]), next);
+    turn_y(angle(next.l.y, top.rate[1]), next);
+    turn_z(angle(next.l.z, top.rate[2]), next);
+    turn_y(angle(next.l.y, top.rate[1]), next);
+    turn_x(angle(next.l.x, top.rate[0]), next);
+    o.l = select(running, next.l, o.l);
+    o.q = select(running, next.q, o.q);
   }
 }
 
-// Moments of inertia of a body, shared by all lanes.
-struct Moments {
-  Vec3 inertia, inverse;
-};
+MW_INLINE Vec3 times(Vec3 v, const Real (&c)[3]) { return {v.x * c[0], v.y * c[1], v.z * c[2]}; }
 
 // Free rotation over dt of kBodies bodies. omega (world) and q become those at the end.
 template <int kBodies>
-MW_INLINE void rotate_free(Real dt, const Moments* moments, Vec3* omega, Quat* q) {
-  FreeTop top[kBodies];
-  Vec3 l_world[kBodies], rate_half[kBodies];
-  Float turn[kBodies];
+MW_INLINE void rotate_free(const Top* const* tops, Vec3* omega, Quat* q) {
+  Spin spin[kBodies];
   Mask far = Float(Real(1)) < Float(Real(0));
   for (int i = 0; i < kBodies; ++i) {
-    const Mat3 r = matrix(q[i]);
-    const Vec3 w = mul_transposed(r, omega[i]);
-    const Vec3 l{w.x * moments[i].inertia.x, w.y * moments[i].inertia.y,
-                 w.z * moments[i].inertia.z};
-    top[i] = {l, q[i]};
-    l_world[i] = mul(r, l);
-    rate_half[i] = moments[i].inverse * Float(dt * Real(0.5));
-    // |L| / I_min bounds the rate about every axis.
-    const Float inv_min =
-        max(max(moments[i].inverse.x, moments[i].inverse.y), moments[i].inverse.z);
-    turn[i] = sqrt(dot(l, l)) * inv_min * Float(dt);
-    far = far | (Float(kMaxTurn) < turn[i]);
+    spin[i] = {times(rotate_back(q[i], omega[i]), tops[i]->inertia), q[i]};
+    far = far | (Float(kMaxTurn * kMaxTurn) < turn2(*tops[i], spin[i]));
   }
   if (!any(far)) {
-    split_turn<kBodies>(rate_half, top);
+    split_turn<kBodies>(tops, spin);
   } else {
-    for (int i = 0; i < kBodies; ++i) split_fast(turn[i], rate_half[i], top[i]);
+    for (int i = 0; i < kBodies; ++i) split_fast(*tops[i], spin[i]);
   }
   for (int i = 0; i < kBodies; ++i) {
-    q[i] = normalize(top[i].q);
-    // From the world's L, which does not change: rounding of the splitting leaves no trace in it.
-    const Mat3 end = matrix(q[i]);
-    const Vec3 l = mul_transposed(end, l_world[i]);
-    omega[i] = mul(
-        end, {l.x * moments[i].inverse.x, l.y * moments[i].inverse.y, l.z * moments[i].inverse.z});
+    q[i] = normalize(spin[i].q);
+    omega[i] = rotate(q[i], times(spin[i].l, tops[i]->inverse));
   }
 }
 

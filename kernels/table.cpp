@@ -1,7 +1,7 @@
 // The kernel table of this instruction set and precision.
 #include "kernels/table.hpp"
 
-#include "kernels/finish.hpp"
+#include "kernels/free_motion.hpp"
 #include "kernels/solver_tables.hpp"
 #include "kernels/stages.hpp"
 

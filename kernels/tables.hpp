@@ -71,6 +71,15 @@ static inline constexpr int pose_row_size(ShapeKind kind) {
   }
 }
 
+// Free rotation of a body about its principal axes (kernels/rotate.hpp). A kinematic body has equal
+// moments of 1, which turn it about its fixed axis.
+template <class Real>
+struct TopTable {
+  Real inertia[3], inverse[3];
+  Real rate[3];     // dt / (2 I_x), dt / (2 I_y), dt / I_z
+  Real turn_bound;  // dt / I_min: times |L|, a bound of the turn about every axis, rad
+};
+
 template <class Real>
 struct BodyTable {
   Real inv_mass;
@@ -79,6 +88,7 @@ struct BodyTable {
   Real acceleration[3];  // gravity times gravity scale, m/s^2; 0 for kinematic bodies
   Real linear_factor;    // 1 / (1 + h c), per substep
   Real angular_factor;
+  TopTable<Real> top;
   Real radius;       // of the bounding sphere about the centre of mass, m
   Real core_radius;  // of a sphere inside the body about its centre of mass, m; 0: none
 };

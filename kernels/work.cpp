@@ -62,15 +62,18 @@ void carve(const Tables& t, Work& w, Carver& c) {
   while (rows * row % kLanes != 0) ++rows;
   w.rows_per_lane = rows;
   const std::size_t velocities = count(rows * row * lanes);
+  const int body_row = body_row_size(t.inertia_kind);
+  c.take(w.body_rows, count((t.bodies + 1) * body_row * lanes));
+  c.take(w.push_storage, velocities);
+  if (!t.has_contacts) {
+    c.take(w.before, count(t.bodies * t.state_stride * lanes));
+    return;
+  }
   c.take(w.velocity, velocities);
   c.take(w.warmed, velocities);
   c.take(w.impulse_part, velocities);
   c.take(w.displacement, velocities);
-  c.take(w.push_storage, velocities);
   c.take(w.touched, count(t.bodies + 1));
-  const int body_row = body_row_size(t.inertia_kind);
-  c.take(w.body_rows, count((t.bodies + 1) * body_row * lanes));
-  if (!t.has_contacts) return;
   c.take(w.pose_rows, count(t.row_block * lanes));
   c.take(w.bounds, count(t.colliders * 2 * dim * lanes));
   c.take(w.beyond, count(t.colliders * lanes));

@@ -37,6 +37,7 @@ struct Recorder {
 };
 
 struct Work {
+  Real* before;  // the group's state before the step (plans without contacts only)
   // begin
   Real* pose_rows;  // [lane][row_block], the last kDummyRow of a block are the dummy's
   Real* body_rows;  // [lane][bodies + 1][body_row], see body_row_size

@@ -14,6 +14,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 struct Planar {
   using Vec = Vec2;
   using Ang = Float;
+  using Orientation = Rot2;
   using Inertia = Float;
   static constexpr int kDim = 2, kAng = 1, kTangents = 1, kRow = 4, kInertia = 1, kMulti = 2;
   static constexpr auto kKind = kernels::InertiaKind::planar;
@@ -21,6 +22,7 @@ struct Planar {
 struct Isotropic {
   using Vec = Vec3;
   using Ang = Vec3;
+  using Orientation = Quat;
   using Inertia = Float;
   static constexpr int kDim = 3, kAng = 3, kTangents = 2, kRow = 8, kInertia = 1, kMulti = 4;
   static constexpr auto kKind = kernels::InertiaKind::isotropic;
@@ -28,6 +30,7 @@ struct Isotropic {
 struct Tensor {
   using Vec = Vec3;
   using Ang = Vec3;
+  using Orientation = Quat;
   using Inertia = Sym3;
   static constexpr int kDim = 3, kAng = 3, kTangents = 2, kRow = 8, kInertia = 6, kMulti = 4;
   static constexpr auto kKind = kernels::InertiaKind::tensor;

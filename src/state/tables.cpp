@@ -23,6 +23,19 @@ void copy(const Vec3& from, Real* to) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<Real>(from[c]);
 }
 
+template <class Real>
+kernels::TopTable<Real> top_of(const PlanBody& body, double dt) {
+  const bool tumbles = body.inv_inertia.z() > 0;
+  const Vec3 inertia = tumbles ? body.inertia : Vec3::Ones();
+  const Vec3 inverse = tumbles ? body.inv_inertia : Vec3::Ones();
+  kernels::TopTable<Real> out{};
+  copy(inertia, out.inertia);
+  copy(inverse, out.inverse);
+  copy(Vec3(inverse.cwiseProduct(Vec3(dt / 2, dt / 2, dt))), out.rate);
+  out.turn_bound = static_cast<Real>(dt * inverse.maxCoeff());
+  return out;
+}
+
 }  // namespace
 
 template <class Real>
@@ -92,6 +105,7 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
     out.inv_mass = static_cast<Real>(b.inv_mass);
     copy(b.inertia, out.inertia);
     copy(b.inv_inertia, out.inv_inertia);
+    out.top = top_of<Real>(b, plan.scene.options.dt);
     out.radius = static_cast<Real>(b.radius);
     out.core_radius = static_cast<Real>(b.core_radius);
     out.linear_factor = out.angular_factor = 1;
