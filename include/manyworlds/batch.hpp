@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "manyworlds/executor.hpp"
 #include "manyworlds/fields.hpp"
 #include "manyworlds/plan.hpp"
 
@@ -40,6 +41,7 @@ struct BatchOptions {
   Precision precision = Precision::f32;
   std::optional<Isa> isa = std::nullopt;  // default_isa()
   ContactLayout layout = ContactLayout::automatic;
+  std::shared_ptr<Executor> executor = nullptr;  // step on these threads; threads must then be 0
 };
 
 // Why a world is lost or what went wrong in it; a set of bits.
@@ -92,8 +94,8 @@ struct StageTime {
 
 class Batch {
  public:
-  // Throws std::invalid_argument for options that make no sense (worlds < 1, threads < 0, an ISA
-  // that is not available).
+  // Throws std::invalid_argument for options that make no sense (worlds < 1, threads < 0 or given
+  // beside an executor, an ISA that is not available).
   explicit Batch(Plan plan, const BatchOptions& options = {});
 
   // Several kinds of world: `worlds` of each plan, in this order. options.worlds is ignored.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "manyworlds/batch.hpp"
+#include "manyworlds/executor.hpp"
 #include "manyworlds/fields.hpp"
 #include "manyworlds/plan.hpp"
 #include "manyworlds/scene.hpp"

@@ -30,7 +30,7 @@ struct Batch::Impl {
   std::vector<Kind> kinds;
   std::vector<int> first_world;  // of each kind, and the total
   BatchOptions options;
-  Executor executor{1};
+  std::shared_ptr<Executor> executor;
   std::unique_ptr<BatchCore> core;
   std::int64_t steps = 0;
   double dt = 0;
@@ -41,6 +41,10 @@ struct Batch::Impl {
     if (kinds.empty()) reject("a batch needs at least one kind of world");
     if (options.threads < 0) {
       reject("threads is " + std::to_string(options.threads) + ", must be >= 0");
+    }
+    if (options.threads != 0 && options.executor) {
+      reject("threads is " + std::to_string(options.threads) +
+             ", must be 0 where an executor brings its own");
     }
     int worlds = 0;
     std::size_t bodies = 0;
@@ -60,8 +64,11 @@ struct Batch::Impl {
     first_world.push_back(worlds);
     first_body.push_back(bodies);
     dt = kinds.front().plan.scene().options.dt;
-    executor = Executor(options.threads);
-    core = make_core(kinds, options, checked_isa(options), executor.threads());
+    executor = options.executor ? options.executor : make_executor(options.threads);
+    if (executor->threads() < 1) {
+      reject("the executor has " + std::to_string(executor->threads()) + " threads, must be >= 1");
+    }
+    core = make_core(kinds, options, checked_isa(options), executor->threads());
   }
 
   struct Place {
@@ -124,7 +131,7 @@ const Plan& Batch::plan(int kind) const {
 }
 int Batch::kind_of(int world) const { return impl_->find(world).kind; }
 int Batch::bodies(int world) const { return impl_->plan(kind_of(world)).bodies(); }
-int Batch::threads() const { return impl_->executor.threads(); }
+int Batch::threads() const { return impl_->executor->threads(); }
 Isa Batch::isa() const { return impl_->core->isa(); }
 Precision Batch::precision() const { return impl_->options.precision; }
 int Batch::lanes() const { return impl_->core->lanes(); }
@@ -139,7 +146,7 @@ std::size_t Batch::scratch_bytes() const { return impl_->core->scratch_bytes(); 
 
 void Batch::step(int n) {
   if (n <= 0) return;
-  impl_->core->step(impl_->executor, n);
+  impl_->core->step(*impl_->executor, n);
   impl_->steps += n;
 }
 

@@ -120,6 +120,7 @@ class CoreOf final : public BatchCore {
   Worlds<Real>& at(int kind) const { return *worlds_[static_cast<std::size_t>(kind)]; }
 
   void run(int group, int slot) {
+    const FlushDenormals flush;  // whatever thread this is
     std::size_t kind = 0;
     while (group >= first_group_[kind + 1]) ++kind;
     const auto& w = *worlds_[kind];

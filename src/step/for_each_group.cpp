@@ -6,8 +6,6 @@
 
 #include <algorithm>
 
-#include "src/base/denormals.hpp"
-
 #if defined(MW_EXECUTOR_THREADS)
 #include <thread>
 #include <vector>
@@ -33,41 +31,54 @@ int allowed_threads() {
 }
 
 void run_range(int begin, int end, int slot, Executor::Task task, void* context) {
-  const FlushDenormals flush;
   for (int g = begin; g < end; ++g) task(context, g, slot);
 }
 
-}  // namespace
+class CallingThread final : public Executor {
+ public:
+  int threads() const override { return 1; }
+  void run(int groups, Task task, void* context) override {
+    run_range(0, groups, 0, task, context);
+  }
+};
 
 #if defined(MW_EXECUTOR_THREADS)
 
-struct Executor::Pool {
-  explicit Pool(int) {}
-  static void run(int threads, int groups, Task task, void* context) {
+class Crew final : public Executor {
+ public:
+  explicit Crew(int threads) : threads_(threads) {}
+  int threads() const override { return threads_; }
+  void run(int groups, Task task, void* context) override {
     std::vector<std::thread> crew;
-    for (int t = 0; t < threads; ++t) {
-      crew.emplace_back(
-          [=] { run_range(groups * t / threads, groups * (t + 1) / threads, t, task, context); });
+    for (int t = 0; t < threads_; ++t) {
+      const int begin = groups * t / threads_, end = groups * (t + 1) / threads_;
+      crew.emplace_back([=] { run_range(begin, end, t, task, context); });
     }
     for (auto& member : crew) member.join();
   }
+
+ private:
+  int threads_;
 };
 
 #else
 
-struct Executor::Pool {
-  explicit Pool(int threads) : arena(threads) {
+class Crew final : public Executor {
+ public:
+  explicit Crew(int threads) : threads_(threads), arena_(threads) {
     // More threads than cores only when a Batch asked for them: the limit is the whole process's,
     // so it is not touched otherwise.
     if (threads > tbb::info::default_concurrency()) {
-      workers.emplace(tbb::global_control::max_allowed_parallelism,
-                      static_cast<std::size_t>(threads));
+      workers_.emplace(tbb::global_control::max_allowed_parallelism,
+                       static_cast<std::size_t>(threads));
     }
   }
-  void run(int threads, int groups, Task task, void* context) {
+  int threads() const override { return threads_; }
+  void run(int groups, Task task, void* context) override {
+    if (groups <= 1) return run_range(0, groups, 0, task, context);
     // A few chunks per thread even out groups of different cost.
-    const int grain = std::max(1, groups / (threads * 8));
-    arena.execute([&] {
+    const int grain = std::max(1, groups / (threads_ * 8));
+    arena_.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<int>(0, groups, static_cast<std::size_t>(grain)),
           [&](const tbb::blocked_range<int>& range) {
@@ -77,25 +88,21 @@ struct Executor::Pool {
           tbb::simple_partitioner());
     });
   }
-  std::optional<tbb::global_control> workers;
-  tbb::task_arena arena;
+
+ private:
+  int threads_;
+  std::optional<tbb::global_control> workers_;
+  tbb::task_arena arena_;
 };
 
 #endif
 
-Executor::Executor(int threads) : threads_(threads > 0 ? threads : allowed_threads()) {
-  if (threads_ > 1) pool_ = std::make_unique<Pool>(threads_);
-}
-Executor::~Executor() = default;
-Executor::Executor(Executor&&) noexcept = default;
-Executor& Executor::operator=(Executor&&) noexcept = default;
+}  // namespace
 
-void Executor::run(int groups, Task task, void* context) {
-  if (threads_ == 1 || groups <= 1) {
-    run_range(0, groups, 0, task, context);
-  } else {
-    pool_->run(threads_, groups, task, context);
-  }
+std::shared_ptr<Executor> make_executor(int threads) {
+  if (threads == 0) threads = allowed_threads();
+  if (threads == 1) return std::make_shared<CallingThread>();
+  return std::make_shared<Crew>(threads);
 }
 
 }  // namespace manyworlds

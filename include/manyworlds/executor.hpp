@@ -1,0 +1,28 @@
+// Executor: the threads on which a Batch steps its groups of worlds. By default a Batch brings its
+// own; derive from this to step on yours instead (a TBB arena, a job system, a thread pool).
+#pragma once
+
+namespace manyworlds {
+
+class Executor {
+ public:
+  using Task = void (*)(void* context, int group, int slot);
+
+  virtual ~Executor() = default;
+
+  // Most tasks that run at the same time, at least 1. A Batch keeps scratch memory for each, so
+  // the number must not change while a Batch uses the executor.
+  virtual int threads() const = 0;
+
+  // Calls task(context, group, slot) once for every group from 0 to groups - 1, in any order and on
+  // any threads, and returns when all calls have. 0 <= slot < threads(), and calls that overlap in
+  // time have different slots. Tasks neither throw nor wait for each other.
+  virtual void run(int groups, Task task, void* context) = 0;
+
+ protected:
+  Executor() = default;
+  Executor(const Executor&) = default;
+  Executor& operator=(const Executor&) = default;
+};
+
+}  // namespace manyworlds
