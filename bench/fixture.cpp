@@ -142,6 +142,12 @@ std::string TypicalWorlds::check(kernels::Layout layout) {
   return current_hash() == hash_ ? "" : "the stages gave other bits than the whole step";
 }
 
+std::vector<Isa> benched_isas() {
+  std::vector<Isa> isas = available_isas();
+  std::erase_if(isas, [](Isa isa) { return find_kernels<float>(isa) == nullptr; });
+  return isas;
+}
+
 TypicalWorlds& typical_worlds(const Scenario& scenario, Isa isa, BroadPhase broad_phase) {
   using Key = std::tuple<std::string, Isa, BroadPhase>;
   static std::map<Key, std::unique_ptr<TypicalWorlds>> made;

@@ -108,6 +108,9 @@ class TypicalWorlds {
   std::uint64_t hash_ = 0;
 };
 
+// The instruction sets that this CPU and this build have float32 kernels for.
+std::vector<Isa> benched_isas();
+
 // The worlds of a scenario, made at the first call and kept.
 TypicalWorlds& typical_worlds(const Scenario& scenario, Isa isa,
                               BroadPhase broad_phase = BroadPhase::automatic);

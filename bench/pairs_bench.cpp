@@ -14,15 +14,6 @@ namespace {
 
 using kernels::PairKind;
 
-const char* name_of(PairKind kind) {
-  static constexpr const char* kNames[kernels::kPairKinds] = {
-      "sphere_sphere",  "box_sphere",      "box_box",          "plane_sphere",
-      "plane_box",      "circle_circle",   "rectangle_circle", "rectangle_rectangle",
-      "polygon_circle", "polygon_polygon", "plane_circle",     "plane_rectangle",
-      "plane_polygon",  "sphere_box",      "circle_rectangle", "circle_polygon"};
-  return kNames[static_cast<int>(kind)];
-}
-
 // Kinds whose first shape may move.
 bool may_move(PairKind kind) {
   return kind < PairKind::plane_sphere ||
@@ -73,12 +64,12 @@ void register_pairs() {
     for (std::size_t c = 0; c < classes.size(); ++c) {
       const bool fixed = is_fixed(classes[c].list);
       if (!seen.insert({classes[c].kind, fixed}).second) continue;
-      for (const Isa isa : available_isas()) {
-        if (!find_kernels<float>(isa)) continue;
+      for (const Isa isa : benched_isas()) {
         for (const auto layout : {kernels::Layout::rows, kernels::Layout::dense}) {
-          const std::string name =
-              std::string("collide/") + (fixed && may_move(classes[c].kind) ? "fixed_" : "") +
-              name_of(classes[c].kind) + "/" + manyworlds::to_string(isa) + "/" + to_string(layout);
+          const std::string name = std::string("collide/") +
+                                   (fixed && may_move(classes[c].kind) ? "fixed_" : "") +
+                                   manyworlds::to_string(classes[c].kind) + "/" +
+                                   manyworlds::to_string(isa) + "/" + to_string(layout);
           const int index = static_cast<int>(c);
           benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
             time_pair(state, s, isa, index, layout);

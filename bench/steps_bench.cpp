@@ -41,8 +41,7 @@ void time_steps(benchmark::State& state, const Scenario& scenario, Isa isa) {
 
 void register_steps() {
   for (const Scenario& s : scenarios()) {
-    for (const Isa isa : available_isas()) {
-      if (!find_kernels<float>(isa)) continue;
+    for (const Isa isa : benched_isas()) {
       const std::string name = "step/" + s.name + "/" + manyworlds::to_string(isa);
       benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
         time_steps(state, s, isa);

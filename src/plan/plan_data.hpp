@@ -85,5 +85,6 @@ void collect_colliders(PlanData& plan);     // colliders.cpp
 void collect_pairs(PlanData& plan);         // pairs.cpp
 void choose_features(PlanData& plan);       // features.cpp
 PlanReport describe(const PlanData& plan);  // report.cpp
+const char* to_string(kernels::PairKind kind);
 
 }  // namespace manyworlds

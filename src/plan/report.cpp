@@ -4,9 +4,7 @@
 
 namespace manyworlds {
 
-namespace {
-
-const char* name(kernels::PairKind kind) {
+const char* to_string(kernels::PairKind kind) {
   static constexpr const char* kNames[kernels::kPairKinds] = {
       "sphere-sphere",     "box-sphere",      "box-box",          "plane-sphere",
       "plane-box",         "circle-circle",   "rectangle-circle", "rectangle-rectangle",
@@ -14,8 +12,6 @@ const char* name(kernels::PairKind kind) {
       "halfplane-polygon", "sphere-box",      "circle-rectangle", "circle-polygon"};
   return kNames[static_cast<int>(kind)];
 }
-
-}  // namespace
 
 PlanReport describe(const PlanData& plan) {
   PlanReport out;
@@ -42,7 +38,7 @@ PlanReport describe(const PlanData& plan) {
                  plan.cast && contacts ? "commit, with casts against fixed shapes" : "commit"}};
 
   for (const PlanClass& c : plan.classes) {
-    out.pairs.push_back({name(c.kind), is_fixed(c.list) ? "fixed" : "pairs",
+    out.pairs.push_back({to_string(c.kind), is_fixed(c.list) ? "fixed" : "pairs",
                          static_cast<int>(c.a.size()), c.culled});
   }
 
