@@ -1,4 +1,4 @@
-# Shared by tools/run and tools/test: sourced, not run. Brings a Debian 12 machine (root, or a user
+# Shared by tools/run, tools/test and tools/emulate_avx512: sourced, not run. Brings a Debian 12 machine (root, or a user
 # with sudo) from nothing to a configured build/release. Speaks on standard error only.
 
 set -euo pipefail
@@ -20,13 +20,13 @@ fail() {
   exit 3
 }
 
-# Installs the packages that are missing; touches the network only then.
+# install_packages PACKAGE...: those that are missing; touches the network only then.
 install_packages() {
   command -v dpkg-query >/dev/null ||
-    fail "this is not Debian; install by hand what corresponds to: ${packages[*]}"
+    fail "this is not Debian; install by hand what corresponds to: $*"
   local missing=() installed package
-  installed=" $(dpkg-query -W -f '${db:Status-Status}:${Package} ' "${packages[@]}" 2>/dev/null || true)"
-  for package in "${packages[@]}"; do
+  installed=" $(dpkg-query -W -f '${db:Status-Status}:${Package} ' "$@" 2>/dev/null || true)"
+  for package in "$@"; do
     [[ $installed == *" installed:$package "* ]] || missing+=("$package")
   done
   ((${#missing[@]} == 0)) && return
@@ -70,7 +70,7 @@ configure() {
 build() {
   local target=$1 mjcf=${MW_MJCF:-ON}
   [[ $mjcf == ON || $mjcf == OFF ]] || fail "MW_MJCF is '$mjcf', must be ON or OFF"
-  install_packages
+  install_packages "${packages[@]}"
   mkdir -p "$root/build"
   exec 9>"$root/build/release.lock"
   flock 9
