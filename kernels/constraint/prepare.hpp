@@ -103,10 +103,16 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
   }
   Float normal_speed = dot(m.normal, velocity_b.v);
   if constexpr (kPair) normal_speed = dot(m.normal, velocity_b.v - velocity_a.v);
-  Float pull = zero;  // of gravity along n
-  if (t.has_gravity && !(kPair && t.uniform_gravity)) {
-    pull = gravity_along<S>(t, who.b, m.normal);
-    if constexpr (kPair) pull = pull - gravity_along<S>(t, who.a, m.normal);
+  // Of gravity along n: relative, and the most that closes the gap when something holds A or B.
+  Float pull = zero, closing_pull = zero;
+  if (t.has_gravity) {
+    const Float pull_b = gravity_along<S>(t, who.b, m.normal);
+    pull = closing_pull = pull_b;
+    if constexpr (kPair) {
+      const Float pull_a = t.uniform_gravity ? pull_b : gravity_along<S>(t, who.a, m.normal);
+      pull = pull_b - pull_a;
+      closing_pull = min(pull, min(pull_b, -pull_a));
+    }
   }
 
   const Float dt(t.dt), margin(t.margin);
@@ -140,7 +146,8 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
     const Float travel = dt * min(min(v, end_speed), zero) * speculation;
     m.valid[i] = m.valid[i] & active & (m.separation[i] + travel < margin);
     any_valid = any_valid | m.valid[i];
-    touches = touches | (m.valid[i] & (m.separation[i] + travel < zero));
+    const Float fall = dt * min(min(v, fma(dt, closing_pull, v)), zero) * speculation;
+    touches = touches | (m.valid[i] & (m.separation[i] + fall < zero));
   }
   std::uint32_t mask = bits(any_valid);
   if (mask == 0) return;
