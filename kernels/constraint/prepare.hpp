@@ -243,10 +243,14 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
     const Mask same = code_before == m.code;
     Float sum = zero;
     for (int i = 0; i < N; ++i) {
-      Float x = zero;
+      // From the nearest; the first of several in one place, since points that a manifold does not
+      // have repeat its first with no impulse.
+      Float x = zero, nearest = m.match_distance2;
       for (int j = 0; j < N; ++j) {
         const Float dx = old_x[j] - m.feature_x[i], dy = old_y[j] - m.feature_y[i];
-        x = select(fma(dx, dx, dy * dy) < m.match_distance2, old[j], x);
+        const Float distance2 = fma(dx, dx, dy * dy);
+        x = select(distance2 < nearest, old[j], x);
+        nearest = min(distance2, nearest);
       }
       impulse[i] = select(same & m.valid[i], x, zero);
       sum = sum + impulse[i];
