@@ -57,13 +57,45 @@ TEST_CASE("heaps of boxes come to rest", "[slow][stability]") {
   }
 }
 
+// The gates of 20 s for the standard stacks, in every one of 1024 worlds.
+TEST_CASE("stack10 and pyramid2d stand and their tops stay", "[slow][stability]") {
+  constexpr int kWorlds = 1024;
+  for (const char* scene : {"stack10", "pyramid2d"}) {
+    const Plan plan = compile(scenes::find(scene)->make());
+    const bool planar = plan.scene().space == Space::planar;
+    for (const Table& table : widest_tables()) {
+      Batch batch(plan, options_of(table, kWorlds, 2));
+      INFO(scene << ' ' << name(table));
+      const int top = batch.bodies(0) - 1;
+      std::vector<Vec3> start;
+      for (int w = 0; w < kWorlds; ++w) start.push_back(position(batch, w, top));
+      batch.step(1200);
+      double sum = 0, most = 0, lowest = 0, deepest = 0;
+      for (int w = 0; w < kWorlds; ++w) {
+        const Vec3 moved = position(batch, w, top) - start[static_cast<std::size_t>(w)];
+        const double drift = planar ? std::abs(moved.x()) : moved.head<2>().norm();
+        sum += drift;
+        most = std::max(most, drift);
+        lowest = std::min(lowest, planar ? moved.y() : moved.z());
+        deepest = std::max(deepest, max_penetration(batch, w));
+      }
+      CHECK(sum / kWorlds < 0.02);
+      CHECK(most < 0.1);
+      CHECK(lowest > -0.3);  // a top that fell came down by half a box at least
+      CHECK(deepest < 0.006);
+      CHECK(batch.lost_worlds() == 0);
+    }
+  }
+}
+
 // The second box is held by the first, which the ground holds: it does not fall freely, although
-// the two have the same acceleration of gravity.
+// the two have the same acceleration of gravity. (Taken for falling, it crept by 5 mm/s at 5
+// degrees and a yaw of pi / 6.)
 TEST_CASE("a box on a box stays where it is on a slope", "[fast][stability]") {
   for (const double slope : {5.0, 15.0, 25.0}) {
-    for (const double yaw : {0.0, 0.3, 0.7}) {
+    for (const double yaw : {0.0, kPi / 6, kPi / 4}) {
       Scene scene = empty_scene(Space::spatial);
-      const double angle = slope * 3.14159265358979323846 / 180;
+      const double angle = slope * kPi / 180;
       scene.options.gravity = 9.81 * Vec3(std::sin(angle), 0, -std::cos(angle));
       scene.add(ground(Space::spatial, 0.6));
       for (int i = 0; i < 2; ++i) {

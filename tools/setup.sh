@@ -1,5 +1,6 @@
-# Shared by tools/run, tools/test and tools/emulate_avx512: sourced, not run. Brings a Debian 12 machine (root, or a user
-# with sudo) from nothing to a configured build/release. Speaks on standard error only.
+# Shared by tools/run, tools/test and tools/emulate_avx512: sourced, not run. Brings a Debian 12
+# machine (root, or a user with sudo) from nothing to a configured build/release. Speaks on standard
+# error only.
 
 set -euo pipefail
 
