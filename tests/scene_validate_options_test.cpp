@@ -52,6 +52,9 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
       {"restitution_sweeps", "is 0, must be between 1 and 64",
        [](Scene& s) { s.options.restitution_sweeps = 0; }},
       {"restitution_sweeps", "is 65", [](Scene& s) { s.options.restitution_sweeps = 65; }},
+      {"contact_capacity", "is 0, must be between 1 and 65536",
+       [](Scene& s) { s.options.contact_capacity = 0; }},
+      {"contact_capacity", "is 65537", [](Scene& s) { s.options.contact_capacity = 65537; }},
       {"gravity.x", "is nan m/s^2", [](Scene& s) { s.options.gravity.x() = kNan; }},
       {"gravity.y", "is inf m/s^2", [](Scene& s) { s.options.gravity.y() = kInf; }}};
   check_each(spatial(), "options.", cases);

@@ -128,12 +128,19 @@ struct Options {
 
   double contact_frequency = 60;  // Hz, of the soft contact; doubled against fixed shapes
   double contact_damping_ratio = 10;
-  double push_out_speed = 1.5;        // m/s per length_unit: cap on the speed that removes overlap
+  // m/s per length_unit: cap on the speed at which a pair's overlap is removed. Speeds of bodies
+  // add up along a row: a row of n that overlap deeply can part at n / 4 times as much.
+  double push_out_speed = 1.5;
   double slop = 0.005;                // m per length_unit: contact margin is 4 slop
   double restitution_threshold = 1;   // m/s per length_unit: slower impacts do not bounce
   int restitution_sweeps = 16;        // most repeats of the restitution pass
   bool friction_in_bias_pass = true;  // much less sway of tall stacks; off is a little faster
   bool cast_against_fixed = true;     // stop fast bodies at thin fixed shapes
+
+  // Manifolds between moving bodies that a world has room for, of each kind (of several points, of
+  // one). Default: 4 per shape (planar: 3) and 8 more. What exceeds it is left out of the step and
+  // flagged (Status::contact_overflow).
+  std::optional<int> contact_capacity;
 
   // A world is lost when a body's position leaves this box. Default: no bounds.
   std::optional<Eigen::AlignedBox3d> bounds;

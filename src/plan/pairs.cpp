@@ -165,7 +165,8 @@ void collect_pairs(PlanData& plan) {
   for (const PlanClass& c : plan.classes) {
     candidates[static_cast<std::size_t>(c.list)] += static_cast<int>(c.a.size());
   }
-  const int pairs = (plan.scene.space == Space::spatial ? 4 : 3) * n + 8;
+  const int pairs = plan.scene.options.contact_capacity.value_or(
+      (plan.scene.space == Space::spatial ? 4 : 3) * n + 8);
   const int fixed = 2 * n + 8 + static_cast<int>(plan.fixed.size());
   for (int l = 0; l < kernels::kLists; ++l) {
     const int limit = is_fixed(static_cast<ListId>(l)) ? fixed : pairs;

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kMostSubsteps = 64;
 constexpr int kMostRestitutionSweeps = 64;
+constexpr int kMostManifolds = 1 << 16;
 
 void check_bounds(Checker& checker, const Eigen::AlignedBox3d& bounds) {
   constexpr char kAxis[] = {'x', 'y', 'z'};
@@ -46,6 +47,9 @@ void check_options(Checker checker, const Options& options) {
   checker.not_negative("options.restitution_threshold", options.restitution_threshold, "m/s");
   checker.between("options.restitution_sweeps", options.restitution_sweeps, 1,
                   kMostRestitutionSweeps);
+  if (options.contact_capacity) {
+    checker.between("options.contact_capacity", *options.contact_capacity, 1, kMostManifolds);
+  }
   if (options.bounds) check_bounds(checker, *options.bounds);
 }
 
