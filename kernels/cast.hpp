@@ -1,11 +1,15 @@
 // cast: a body that moves more than half its extent in a step is swept against the fixed shapes
-// that are not planes, and stops where its core first touches one. Planes need no cast: contacts
-// with a speculative margin hold at any speed against a half space.
+// that are not planes, and on request against moving shapes, and stops where its core first touches
+// one. Planes need no cast: contacts with a speculative margin hold at any speed against a half
+// space.
 //
 // The core is a sphere inside the body about its centre of mass, smaller than the body, so that
 // passing an edge closely is not an impact. The time of touch is found by conservative
 // advancement: the core may always move by its distance to the shape. The rest of the step's
 // motion is dropped; the velocity stays, and the next step's contact deals with it.
+//
+// A moving shape is taken to shift without turning while the step lasts: what it turns matters
+// little to a body that crosses its own size meanwhile.
 #pragma once
 
 #include "kernels/lane/space.hpp"
@@ -24,73 +28,116 @@ MW_INLINE Mask within_bounds(const Tables& t, Vec3 x) {
          (x.z <= Float(t.bounds_high[2]));
 }
 
-// Distance from a point to a fixed shape; 0 or less inside.
-MW_INLINE Float distance_to_fixed(const Tables& t, const kernels::FixedTable<Real>& shape, Vec3 p) {
-  const Real* r = t.fixed_rows + shape.row;
-  const Float zero(Real(0));
-  if (shape.kind == kernels::ShapeKind::sphere) {
-    const Vec3 d = p - Vec3{r[0], r[1], r[2]};
-    return sqrt(dot(d, d)) - Float(r[3]);
+// Does any shape of the body collide with this one, by their filters?
+MW_INLINE bool may_collide(const Tables& t, int body, const kernels::ColliderTable<Real>& other) {
+  for (int i = 0; i < t.colliders; ++i) {
+    const auto& own = t.collider[i];
+    if (own.body == body && (own.category & other.mask) != 0 && (other.category & own.mask) != 0) {
+      return true;
+    }
   }
-  const Vec3 d = p - Vec3{r[3], r[7], r[11]};
-  const Vec3 local{dot(d, Vec3{r[0], r[1], r[2]}), dot(d, Vec3{r[4], r[5], r[6]}),
-                   dot(d, Vec3{r[8], r[9], r[10]})};
-  const Vec3 out{max(abs(local.x) - Float(r[12]), zero), max(abs(local.y) - Float(r[13]), zero),
-                 max(abs(local.z) - Float(r[14]), zero)};
+  return false;
+}
+
+// Distance from a point to a shape; 0 or less inside. `row(i)` is number i of its pose row.
+template <class Row>
+MW_INLINE Float distance_to_shape(kernels::ShapeKind kind, Row row, Vec3 p) {
+  const Float zero(Real(0));
+  if (kind == kernels::ShapeKind::sphere) {
+    const Vec3 d = p - Vec3{row(0), row(1), row(2)};
+    return sqrt(dot(d, d)) - row(3);
+  }
+  const Vec3 d = p - Vec3{row(3), row(7), row(11)};
+  const Vec3 local{dot(d, Vec3{row(0), row(1), row(2)}), dot(d, Vec3{row(4), row(5), row(6)}),
+                   dot(d, Vec3{row(8), row(9), row(10)})};
+  const Vec3 out{max(abs(local.x) - row(12), zero), max(abs(local.y) - row(13), zero),
+                 max(abs(local.z) - row(14), zero)};
   return sqrt(dot(out, out));
 }
-MW_INLINE Float distance_to_fixed(const Tables& t, const kernels::FixedTable<Real>& shape, Vec2 p) {
-  const Real* r = t.fixed_rows + shape.row;
+template <class Row>
+MW_INLINE Float distance_to_shape(kernels::ShapeKind kind, Row row, Vec2 p) {
   const Float zero(Real(0));
-  const Vec2 d = p - Vec2{r[0], r[1]};
-  if (shape.kind == kernels::ShapeKind::circle) return sqrt(dot(d, d)) - Float(r[2]);
-  if (shape.kind == kernels::ShapeKind::rectangle) {
-    const Vec2 local = rotate_inverse({r[2], r[3]}, d);
-    const Vec2 out{max(abs(local.x) - Float(r[4]), zero), max(abs(local.y) - Float(r[5]), zero)};
+  const Vec2 d = p - Vec2{row(0), row(1)};
+  if (kind == kernels::ShapeKind::circle) {
+    return sqrt(dot(d, d)) - row(2);
+  }
+  if (kind == kernels::ShapeKind::rectangle) {
+    const Vec2 local = rotate_inverse({row(2), row(3)}, d);
+    const Vec2 out{max(abs(local.x) - row(4), zero), max(abs(local.y) - row(5), zero)};
     return sqrt(dot(out, out));
   }
   // Convex polygon: the largest distance to an edge line is a lower bound, which is all that
   // conservative advancement needs; it is exact where it matters, in front of a face.
   Float far = Real(-1e30);
   for (int i = 0; i < kernels::kMaxVertices; ++i) {
-    const Vec2 vertex{r[4 + 2 * i], r[5 + 2 * i]};
-    const Vec2 normal{r[20 + 2 * i], r[21 + 2 * i]};
+    const Vec2 vertex{row(4 + 2 * i), row(5 + 2 * i)};
+    const Vec2 normal{row(20 + 2 * i), row(21 + 2 * i)};
     far = max(far, dot(normal, d - vertex));
   }
   return far;
 }
 
-template <class S>
-MW_INLINE typename S::Vec cast_against_fixed(const Tables& t, int body, typename S::Vec start,
-                                             typename S::Vec step) {
+// The share of `step` that the core may go from `start` before it touches the shape; 1 when it
+// does not, and where it begins inside: that is the contact's business.
+template <class Vec, class Row>
+MW_INLINE Float free_share(kernels::ShapeKind kind, Row row, Vec start, Vec step, Float core,
+                           Mask fast) {
+  const Float zero(Real(0)), one(Real(1));
+  const Float inv_length = one / max(sqrt(dot(step, step)), Real(1e-20));
+  Float share = zero;
+  Mask moving = fast & (core < distance_to_shape(kind, row, start));
+  const Mask outside = moving;
+  for (int round = 0; round < kCastRounds && any(moving); ++round) {
+    const Float gap = distance_to_shape(kind, row, fma(step, share, start)) - core;
+    const Mask close = gap < core * Float(Real(0.01));
+    const Float next = fma(gap, inv_length, share);
+    moving = moving & !close;
+    share = select(moving, min(next, one), share);
+    moving = moving & (share < one);
+  }
+  return select(outside, share, one);
+}
+
+template <class Vec>
+MW_INLINE Vec cast_against_fixed(const Tables& t, int body, Vec start, Vec step) {
   const auto& b = t.body[body];
   if (b.core_radius <= Real(0)) return step;
-  const Float length = sqrt(dot(step, step));
-  const Mask fast = Float(b.core_radius) < length;
+  const Mask fast = Float(b.core_radius) < sqrt(dot(step, step));
   if (!any(fast)) return step;
-  const Float zero(Real(0)), one(Real(1));
   // The core is half the inner sphere, so a body sunk into a face still counts as outside of it.
   const Float core(b.core_radius * Real(0.5));
-  const Float inv_length = one / max(length, Real(1e-20));
-  Float least = one;
+  Float least = Real(1);
   for (int f = 0; f < t.fixed_shapes; ++f) {
-    const auto& shape = t.fixed[f];
-    if (shape.kind == kernels::ShapeKind::plane) continue;
-    Float fraction = zero;
-    // Bodies that begin inside are the contact's business.
-    Mask moving = fast & (core < distance_to_fixed(t, shape, start));
-    const Mask candidate = moving;
-    for (int round = 0; round < kCastRounds && any(moving); ++round) {
-      const Float gap = distance_to_fixed(t, shape, fma(step, fraction, start)) - core;
-      const Mask close = gap < core * Float(Real(0.01));
-      const Float next = fma(gap, inv_length, fraction);
-      moving = moving & !close;
-      fraction = select(moving, min(next, one), fraction);
-      moving = moving & (fraction < one);
-    }
-    least = select(candidate, min(least, fraction), least);
+    if (t.fixed[f].kind == kernels::ShapeKind::plane) continue;
+    const Real* r = t.fixed_rows + t.fixed[f].row;
+    const auto row = [r](int i) { return Float(r[i]); };
+    least = min(least, free_share(t.fixed[f].kind, row, start, step, core, fast));
   }
-  return select(least < one, step * least, step);
+  return select(least < Float(Real(1)), step * least, step);
+}
+
+// `moved(other)` is how far another body goes in this step. Not inlined: scenes seldom want it.
+template <class Vec, class Moved>
+__attribute__((noinline)) Vec cast_against_moving(const Tables& t, const Work& w, int body,
+                                                  Vec start, Vec step, Moved moved) {
+  const auto& b = t.body[body];
+  if (b.core_radius <= Real(0)) return step;
+  const Float core_radius(b.core_radius), core(b.core_radius * Real(0.5));
+  Float least = Real(1);
+  for (int i = 0; i < t.colliders; ++i) {
+    const auto& c = t.collider[i];
+    if (c.body == body || !may_collide(t, body, c)) continue;
+    const Vec relative = step - moved(c.body);
+    const Mask fast = core_radius < sqrt(dot(relative, relative));
+    if (!any(fast)) continue;
+    const auto row = [&](int k) {
+      alignas(64) Real values[kLanes];
+      for (int l = 0; l < kLanes; ++l) values[l] = w.pose_rows[w.pose_base[l] + c.row + k];
+      return Float::load(values);
+    };
+    least = min(least, free_share(c.kind, row, start, relative, core, fast));
+  }
+  return select(least < Float(Real(1)), step * least, step);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -169,7 +169,12 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     if (t.has_gravity || w.push) {
       step = select(free, step - drift_excess<S, kDense>(t, w, b), step);
     }
-    if (t.cast) step = cast_against_fixed<S>(t, b, old, step);
+    if (t.cast) step = cast_against_fixed(t, b, old, step);
+    if (t.cast_moving) {
+      step = cast_against_moving(t, w, b, old, step, [&](int other) {
+        return get_velocity<S, kDense>(w, w.displacement, other).v;
+      });
+    }
     const auto x = keep(old + step, p);
     store(p, x);
     if (t.has_bounds) inside = inside & within_bounds(t, x);

@@ -90,7 +90,7 @@ struct BodyTable {
   Real angular_factor;
   TopTable<Real> top;
   Real radius;       // of the bounding sphere about the centre of mass, m
-  Real core_radius;  // of a sphere inside the body about its centre of mass, m; 0: none
+  Real core_radius;  // of a sphere inside the body about its centre of mass, m; 0: never cast
 };
 
 template <class Real>
@@ -102,7 +102,8 @@ struct ColliderTable {
   Real rotation[9];  // shape axes in principal axes, columns; planar: [0] cos, [1] sin
   Real half[3];      // half extents (box, rectangle)
   Real radius;       // sphere, circle; else of the bounding sphere about the shape origin
-  Real margin_cap;   // most that the speculative margin of this shape may grow to, m
+  std::uint32_t category, mask;  // collision filter
+  Real margin_cap;               // most that the speculative margin of this shape may grow to, m
   std::int32_t vertex_count;
   Real vertices[2 * kMaxVertices];  // polygon, padded by repeating the first
   Real normals[2 * kMaxVertices];
@@ -150,6 +151,7 @@ struct WorldTables {
   bool uniform_gravity;  // every body has the acceleration of body 0
   bool sweep;            // sort and sweep instead of masked all-pairs
   bool cast;             // cast fast bodies against fixed shapes
+  bool cast_moving;      // cast fast bodies against moving shapes
   bool has_bounds;
 
   const BodyTable<Real>* body;

@@ -92,6 +92,64 @@ TEST_CASE("a body that passes an edge at 200 m/s is not stopped", "[slow][stabil
   }
 }
 
+// A bullet and something that moves towards it, at a random distance and with a random offset
+// across. How many worlds end with the bullet before it?
+enum class Target { wall, bullet };
+struct Volley {
+  Target target = Target::wall;
+  bool box = false, cast = true, collides = true;
+};
+
+int stopped_bullets(Space space, const Table& table, const Volley& volley) {
+  Scene scene = empty_scene(space, 0);
+  scene.options.cast_between_moving = volley.cast;
+  const Geometry ball = volley.box ? cube_of(space, 0.1) : round_of(space, 0.1);
+  Body bullet = body_of(shape_of(ball), Vec3(-10, 0, 0));
+  bullet.linear_velocity = Vec3(200, 0, 0);
+  if (!volley.collides) bullet.shapes[0].filter.mask = 0;
+  bullet.jitter.position = 3 * Vec3::UnitX();
+  Body target = body_of(shape_of(ball), Vec3::Zero());
+  target.linear_velocity = Vec3(-150, 0, 0);
+  if (volley.target == Target::wall) {
+    const Geometry wall =
+        box_of(space, space == Space::planar ? Vec3(0.05, 5, 0) : Vec3(0.05, 5, 5));
+    target.shapes[0] = shape_of(wall);
+    target.shapes[0].density = 1e6;
+    target.linear_velocity = Vec3(-2, 0, 0);
+    bullet.jitter.position += up_of(space);
+  }
+  // Off the bullet's axis in the batch's order, too: each must see the other.
+  scene.add(volley.box ? bullet : target);
+  scene.add(volley.box ? target : bullet);
+  const int shot = volley.box ? 0 : 1, hit = volley.box ? 1 : 0;
+  Batch batch(compile(scene), options_of(table, kPhases));
+  batch.step(20);
+  int stopped = 0;
+  for (int w = 0; w < kPhases; ++w) {
+    const bool before = position(batch, w, shot).x() < position(batch, w, hit).x();
+    const bool slowed = velocity(batch, w, shot).x() < velocity(batch, w, hit).x() + 1;
+    if (before && slowed) ++stopped;
+  }
+  return stopped;
+}
+
+TEST_CASE("bodies that may be cast at each other meet at 200 m/s", "[slow][stability]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (const Table& table : widest_tables()) {
+      for (Target target : {Target::wall, Target::bullet}) {
+        for (bool box : {false, true}) {
+          INFO(name(table) << (space == Space::planar ? " planar" : " spatial")
+                           << (target == Target::wall ? " wall" : " bullet")
+                           << (box ? " box" : ""));
+          CHECK(stopped_bullets(space, table, {target, box, true, true}) == kPhases);
+          CHECK(stopped_bullets(space, table, {target, box, false, true}) < kPhases / 2);
+          CHECK(stopped_bullets(space, table, {target, box, true, false}) == 0);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("an elastic ball stays in its house for a minute", "[slow][stability]") {
   for (Space space : {Space::planar, Space::spatial}) {
     Scene scene = empty_scene(space, 0);

@@ -136,6 +136,7 @@ struct Options {
   int restitution_sweeps = 16;        // most repeats of the restitution pass
   bool friction_in_bias_pass = true;  // much less sway of tall stacks; off is a little faster
   bool cast_against_fixed = true;     // stop fast bodies at thin fixed shapes
+  bool cast_between_moving = false;   // and at moving ones; for bullets
 
   // Manifolds between moving bodies that a world has room for, of each kind (of several points, of
   // one). Default: 4 per shape (planar: 3) and 8 more. What exceeds it is left out of the step and

@@ -21,6 +21,7 @@ PlanReport describe(const PlanData& plan) {
   }
   const auto why = [&](Feature f) { return plan.why[static_cast<std::size_t>(f)]; };
   const bool contacts = plan.has(Feature::contacts), bounce = plan.has(Feature::restitution);
+  const bool moving_casts = plan.scene.options.cast_between_moving;
   const std::string touch = why(Feature::contacts);
   out.stages = {{"free_motion", !contacts, contacts ? "contacts need the substep loop" : touch},
                 {"begin", contacts, touch},
@@ -35,7 +36,10 @@ PlanReport describe(const PlanData& plan) {
                 {"restitute", contacts && bounce, why(Feature::restitution)},
                 {"store", contacts, "impulses for the next step's warm start"},
                 {"finish", true,
-                 plan.cast && contacts ? "commit, with casts against fixed shapes" : "commit"}};
+                 !contacts || !(plan.cast || moving_casts) ? "commit"
+                 : !moving_casts ? "commit, with casts against fixed shapes"
+                 : !plan.cast    ? "commit, with casts between moving shapes"
+                                 : "commit, with casts against fixed and moving shapes"}};
 
   for (const PlanClass& c : plan.classes) {
     out.pairs.push_back({to_string(c.kind), is_fixed(c.list) ? "fixed" : "pairs",

@@ -65,6 +65,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.uniform_gravity = plan.uniform_gravity;
   t.sweep = plan.sweep;
   t.cast = plan.cast && t.has_contacts;
+  t.cast_moving = o.cast_between_moving && t.has_contacts;
   t.has_bounds = o.bounds.has_value();
   if (o.bounds) {
     copy(o.bounds->min(), t.bounds_low);
@@ -107,7 +108,7 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
     copy(b.inv_inertia, out.inv_inertia);
     out.top = top_of<Real>(b, plan.scene.options.dt);
     out.radius = static_cast<Real>(b.radius);
-    out.core_radius = static_cast<Real>(b.core_radius);
+    out.core_radius = static_cast<Real>(b.inv_mass > 0 ? b.core_radius : 0);
     out.linear_factor = out.angular_factor = 1;
     if (b.inv_mass > 0) {
       const Vec3 g = plan.scene.options.gravity * body.gravity_scale;
@@ -139,6 +140,11 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
     out.kind = c.kind;
     out.body = c.body;
     out.row = c.row;
+    const Filter& filter = plan.scene.bodies[static_cast<std::size_t>(c.scene_body)]
+                               .shapes[static_cast<std::size_t>(c.shape)]
+                               .filter;
+    out.category = filter.category;
+    out.mask = filter.mask;
     copy(c.offset, out.offset);
     for (int k = 0; k < 9; ++k) out.rotation[k] = static_cast<Real>(c.rotation(k % 3, k / 3));
     copy(c.half, out.half);
