@@ -170,7 +170,7 @@ void begin(const Tables& t, const Group& g, kernels::Scratch* scratch) {
     w.slots[list].count = 0;
     for (int l = 0; l < kLanes; ++l) w.lane_count[list][l] = w.cursor[list][l] = 0;
   }
-  w.overflow = 0;
+  w.overflow = w.untouched = w.partly_asleep = 0;
   w.counters = {};
 }
 

@@ -3,73 +3,13 @@
 // Masked all-pairs tests every candidate of the plan in every lane. Sort and sweep orders each
 // lane's shapes along x by a sorting network and tests only those that overlap there; what it
 // finds passes the same test, so both give the same masks.
+#include "kernels/overlap.hpp"
+#include "kernels/sleep.hpp"
 #include "kernels/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
-
-using kernels::PairKind;
-
-MW_INLINE Mask bounds_overlap(const Tables& t, const Work& w, int a, int b) {
-  if (t.dimension == kernels::Dimension::spatial) {
-    const Real* pa = w.bounds + a * 6 * kLanes;
-    const Real* pb = w.bounds + b * 6 * kLanes;
-    const Vec3 d = load_vec3(pa) - load_vec3(pb);
-    const Vec3 e = load_vec3(pa + 3 * kLanes) + load_vec3(pb + 3 * kLanes);
-    return max(max(abs(d.x) - e.x, abs(d.y) - e.y), abs(d.z) - e.z) < Float(Real(0));
-  }
-  const Real* pa = w.bounds + a * 4 * kLanes;
-  const Real* pb = w.bounds + b * 4 * kLanes;
-  const Vec2 d = load_vec2(pa) - load_vec2(pb);
-  const Vec2 e = load_vec2(pa + 2 * kLanes) + load_vec2(pb + 2 * kLanes);
-  return max(abs(d.x) - e.x, abs(d.y) - e.y) < Float(Real(0));
-}
-
-// Spheres and circles: their bounds' half extent is radius plus margin, so this test is exact.
-MW_INLINE Mask round_overlap(const Tables& t, const Work& w, int a, int b) {
-  if (t.dimension == kernels::Dimension::spatial) {
-    const Real* pa = w.bounds + a * 6 * kLanes;
-    const Real* pb = w.bounds + b * 6 * kLanes;
-    const Vec3 d = load_vec3(pa) - load_vec3(pb);
-    const Float reach = Float::load(pa + 3 * kLanes) + Float::load(pb + 3 * kLanes);
-    return dot(d, d) < reach * reach;
-  }
-  const Real* pa = w.bounds + a * 4 * kLanes;
-  const Real* pb = w.bounds + b * 4 * kLanes;
-  const Vec2 d = load_vec2(pa) - load_vec2(pb);
-  const Float reach = Float::load(pa + 2 * kLanes) + Float::load(pb + 2 * kLanes);
-  return dot(d, d) < reach * reach;
-}
-
-MW_INLINE Mask fixed_overlap(const Tables& t, const Work& w, int fixed, int b) {
-  const auto& f = t.fixed[fixed];
-  const bool spatial = t.dimension == kernels::Dimension::spatial;
-  const int dim = spatial ? 3 : 2;
-  const Real* p = w.bounds + b * 2 * dim * kLanes;
-  if (f.kind == kernels::ShapeKind::plane) {
-    // Lowest point of the bounds along the normal.
-    Float height = Float(-f.plane[3]) - Float::load(w.beyond + b * kLanes);
-    for (int c = 0; c < dim; ++c) {
-      const Real n = f.plane[c];
-      if (n == Real(0)) continue;
-      const Float half = Float::load(p + (dim + c) * kLanes);
-      height = fma(Float(n), Float::load(p + c * kLanes) - (n > 0 ? half : -half), height);
-    }
-    return height < Float(t.half_margin);
-  }
-  Mask m = mask_from_bits(kAllLanes);
-  for (int c = 0; c < dim; ++c) {
-    const Float x = Float::load(p + c * kLanes), half = Float::load(p + (dim + c) * kLanes);
-    m = m & (x - half < Float(f.high[c] + t.half_margin)) &
-        (Float(f.low[c] - t.half_margin) < x + half);
-  }
-  return m;
-}
-
-MW_INLINE bool is_round(PairKind kind) {
-  return kind == PairKind::sphere_sphere || kind == PairKind::circle_circle;
-}
 
 // Tests `count` candidates of a class; `index(k)` names the k-th, `allowed(k)` its lanes.
 template <class Overlap, class Allowed>
@@ -108,18 +48,36 @@ void test_pairs(const Tables& t, Work& w, int at, Allowed allowed) {
   }
 }
 
+// The same, leaving out lanes in which neither body of a pair can push the other.
+template <class Allowed>
+void test_live_pairs(const Tables& t, const Group& g, Work& w, int at, Allowed allowed) {
+  if (!has_idle_bodies(g)) return test_pairs(t, w, at, allowed);
+  const auto& c = t.pair_class[at];
+  const std::int32_t* body = t.collider_body;
+  if (is_fixed(c.list)) {
+    test_pairs(t, w, at, [&](int k) { return allowed(k) & ~idle_lanes(g, body[c.b[k]]); });
+  } else {
+    test_pairs(t, w, at,
+               [&](int k) { return allowed(k) & live_lanes(g, body[c.a[k]], body[c.b[k]]); });
+  }
+}
+
 }  // namespace
 
-void broad_phase(const Tables& t, const Group&, kernels::Scratch* scratch) {
+void broad_phase(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   if (t.sweep) sort_and_sweep(t, w);
+  if (t.has_sleep && has_idle_bodies(g)) {
+    wake_touched(t, g, w);
+    keep_sleeping_contacts(t, g, w);
+  }
   for (int i = 0; i < t.classes; ++i) {
     const auto& c = t.pair_class[i];
     if (t.sweep && !is_fixed(c.list)) {
       const std::uint32_t* marks = w.marks + c.first_key;
-      test_pairs(t, w, i, [marks](int k) { return marks[k]; });
+      test_live_pairs(t, g, w, i, [marks](int k) { return marks[k]; });
     } else {
-      test_pairs(t, w, i, AllLanesAllowed{});
+      test_live_pairs(t, g, w, i, AllLanesAllowed{});
     }
   }
 }

@@ -12,8 +12,8 @@
 // little to a body that crosses its own size meanwhile.
 #pragma once
 
+#include "kernels/activity.hpp"
 #include "kernels/lane/space.hpp"
-#include "kernels/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -118,8 +118,8 @@ MW_INLINE Vec cast_against_fixed(const Tables& t, int body, Vec start, Vec step)
 
 // `moved(other)` is how far another body goes in this step. Not inlined: scenes seldom want it.
 template <class Vec, class Moved>
-__attribute__((noinline)) Vec cast_against_moving(const Tables& t, const Work& w, int body,
-                                                  Vec start, Vec step, Moved moved) {
+__attribute__((noinline)) Vec cast_against_moving(const Tables& t, const Group& g, const Work& w,
+                                                  int body, Vec start, Vec step, Moved moved) {
   const auto& b = t.body[body];
   if (b.core_radius <= Real(0)) return step;
   const Float core_radius(b.core_radius), core(b.core_radius * Real(0.5));
@@ -128,7 +128,7 @@ __attribute__((noinline)) Vec cast_against_moving(const Tables& t, const Work& w
     const auto& c = t.collider[i];
     if (c.body == body || !may_collide(t, body, c)) continue;
     const Vec relative = step - moved(c.body);
-    const Mask fast = core_radius < sqrt(dot(relative, relative));
+    const Mask fast = (core_radius < sqrt(dot(relative, relative))) & !absent_lanes(g, c.body);
     if (!any(fast)) continue;
     const auto row = [&](int k) {
       alignas(64) Real values[kLanes];

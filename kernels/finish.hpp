@@ -3,6 +3,7 @@
 // beside it are committed as if it were not there.
 #pragma once
 
+#include "kernels/activity.hpp"
 #include "kernels/cast.hpp"
 #include "kernels/integrate.hpp"
 #include "kernels/stages.hpp"
@@ -47,6 +48,8 @@ struct LaneCheck {
       q = load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation));
       ok = ok & in_range(q, kMaxOrientation);
     }
+    if (has_idle_bodies(g))
+      ok = ok | mask_from_bits(idle_lanes(g, body) & kAllLanes);  // not committed
     good = good & ok;
     if (!all(ok)) {
       finite = finite & is_finite(x) & is_finite(v.v) & is_finite(v.w);
@@ -93,8 +96,10 @@ MW_INLINE typename S::Vec drift_excess(const Tables& t, const Work& w, int body)
   return push * scale;
 }
 
-// What may be written: everything, or the lanes of a mask.
+// What may be written of a body: everything, the lanes of a mask, or those of them that are not
+// idle. `of(body)` is the writer of that body.
 struct AllLanes {
+  MW_INLINE const AllLanes& of(int) const { return *this; }
   template <class T>
   MW_INLINE T operator()(const T& fresh, const Real*) const {
     return fresh;
@@ -102,10 +107,17 @@ struct AllLanes {
 };
 struct SomeLanes {
   Mask mask;
+  MW_INLINE const SomeLanes& of(int) const { return *this; }
   template <class T>
   MW_INLINE T operator()(const T& fresh, const Real* old) const {
     return select(mask, fresh, load_as<T>(old));
   }
+};
+
+struct LiveLanes {
+  const Group& g;
+  std::uint32_t lanes;
+  MW_INLINE SomeLanes of(int body) const { return {mask_from_bits(lanes & ~idle_lanes(g, body))}; }
 };
 
 // Orientations of bodies whose inertia is a scalar: by the angle that the substeps swept.
@@ -150,9 +162,10 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
     }
     if (is_kinematic(t, first + i)) spin = omega[i];
     Real* p = state_of(t, g, first + i, kState<Tensor>.orientation);
-    store(p, keep(q[i], p));
+    const auto& keep_body = keep.of(first + i);
+    store(p, keep_body(q[i], p));
     Real* p_angular = state_of(t, g, first + i, kState<Tensor>.angular);
-    store(p_angular, keep(spin, p_angular));
+    store(p_angular, keep_body(spin, p_angular));
   }
 }
 
@@ -160,6 +173,7 @@ template <class S, bool kDense, class Keep>
 void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits, Keep keep) {
   Mask inside = mask_from_bits(kAllLanes);
   for (int b = 0; b < t.bodies; ++b) {
+    const auto& keep_body = keep.of(b);
     const Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
     const Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
     const Mask free = mask_from_bits(~w.touched[b] & kAllLanes);
@@ -171,19 +185,21 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     }
     if (t.cast) step = cast_against_fixed(t, b, old, step);
     if (t.cast_moving) {
-      step = cast_against_moving(t, w, b, old, step, [&](int other) {
-        return get_velocity<S, kDense>(w, w.displacement, other).v;
+      step = cast_against_moving(t, g, w, b, old, step, [&](int other) {
+        const auto way = get_velocity<S, kDense>(w, w.displacement, other).v;
+        if (!has_idle_bodies(g)) return way;
+        return select(mask_from_bits(idle_lanes(g, other) & kAllLanes), way - way, way);
       });
     }
-    const auto x = keep(old + step, p);
+    const auto x = keep_body(old + step, p);
     store(p, x);
-    if (t.has_bounds) inside = inside & within_bounds(t, x);
+    if (t.has_bounds) inside = inside & (within_bounds(t, x) | absent_lanes(g, b));
     Real* p_linear = state_of(t, g, b, kState<S>.linear);
-    store(p_linear, keep(v.v, p_linear));
+    store(p_linear, keep_body(v.v, p_linear));
     if constexpr (!std::is_same_v<S, Tensor>) {
       Real* p_angular = state_of(t, g, b, kState<S>.angular);
-      store(p_angular, keep(v.w, p_angular));
-      if (t.has_orientation) turn_body<S>(t, g, b, moved.w, keep);
+      store(p_angular, keep_body(v.w, p_angular));
+      if (t.has_orientation) turn_body<S>(t, g, b, moved.w, keep_body);
     }
   }
   if constexpr (std::is_same_v<S, Tensor>) {
@@ -196,7 +212,9 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
 
 template <class S, bool kDense>
 void commit_bodies(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits) {
-  if (commit_bits == kAllLanes) {
+  if (has_idle_bodies(g)) {
+    commit_lanes<S, kDense>(t, g, w, commit_bits, LiveLanes{g, commit_bits});
+  } else if (commit_bits == kAllLanes) {
     commit_lanes<S, kDense>(t, g, w, commit_bits, AllLanes{});
   } else {
     commit_lanes<S, kDense>(t, g, w, commit_bits, SomeLanes{mask_from_bits(commit_bits)});

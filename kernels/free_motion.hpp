@@ -64,7 +64,7 @@ MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int fi
     Real* p = state_of(t, g, b, kState<S>.position);
     const auto x = load_as<typename S::Vec>(p) + flight[i].moved.v;
     store(p, x);
-    if (t.has_bounds) outcome.inside = outcome.inside & within_bounds(t, x);
+    if (t.has_bounds) outcome.inside = outcome.inside & (within_bounds(t, x) | absent_lanes(g, b));
     store(state_of(t, g, b, kState<S>.linear), flight[i].v.v);
   }
   if constexpr (std::is_same_v<S, Tensor>) {
@@ -107,14 +107,15 @@ MW_INLINE void copy_state(Real* to, const Real* from, int size) {
 }
 
 // The steps of one call. As long as every lane is good, one copy of the state at their start is
-// enough; a group with a bad lane goes through them again with a copy for each.
+// enough; a group with a bad lane goes through them again with a copy for each. Disabled bodies get
+// their state back in every step, too.
 template <class S>
 void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
   const int size = t.bodies * t.state_stride * kLanes;
   w.push = g.force ? w.push_storage : nullptr;
   copy_state(w.before, g.state, size);
   std::uint32_t outside = 0;
-  bool good = !has_frozen_lane(g);
+  bool good = !has_frozen_lane(g) && !has_idle_bodies(g);
   for (int step = 0; good && step < steps; ++step) {
     const Outcome outcome = fly_group<S>(t, g, w);
     good = all(outcome.check.good);
@@ -129,9 +130,12 @@ void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
     copy_state(w.before, g.state, size);
     const Outcome outcome = fly_group<S>(t, g, w);
     const std::uint32_t commit = judge_lanes(g, outcome.check);
-    const Mask keep = mask_from_bits(commit);
-    for (int i = 0; i < size; i += kLanes) {
-      select(keep, Float::load(g.state + i), Float::load(w.before + i)).store(g.state + i);
+    const int block = t.state_stride * kLanes;
+    for (int b = 0; b < t.bodies; ++b) {
+      const Mask keep = mask_from_bits(commit & ~(has_idle_bodies(g) ? idle_lanes(g, b) : 0));
+      for (int i = b * block; i < (b + 1) * block; i += kLanes) {
+        select(keep, Float::load(g.state + i), Float::load(w.before + i)).store(g.state + i);
+      }
     }
     flag_outside(g, ~bits(outcome.inside) & commit);
   }

@@ -19,6 +19,15 @@ struct GroupView {
   ContactCache<Real> cache[kLists];
   std::uint32_t* status;  // [lane], bits of Status
   const Real* force;      // [body][force 3, torque 3][lane], or nullptr
+
+  // Which bodies take part, as lanes of each body; nullptr: all do. Sleep needs all of them,
+  // disabled bodies the first three.
+  std::uint32_t* asleep;        // [body]
+  const std::uint32_t* absent;  // [body], disabled
+  std::uint32_t* idle;          // [1], not 0 when some body is asleep or absent in some lane
+  Real* rest_time;              // [body][lane], s
+  std::int32_t* island;         // [body][lane], label of the island that fell asleep together
+  std::uint32_t* resting;       // [1], lanes in which nothing can move until the world is woken
 };
 
 // What a group's step counted; the pipeline adds it up per thread.

@@ -2,6 +2,7 @@
 #include "kernels/table.hpp"
 
 #include "kernels/free_motion.hpp"
+#include "kernels/sleep.hpp"
 #include "kernels/solver_tables.hpp"
 #include "kernels/stages.hpp"
 
@@ -62,6 +63,7 @@ kernels::KernelTable<Real> make_table() {
   out.free_motion[static_cast<int>(InertiaKind::planar)] = free_motion<Planar>;
   out.free_motion[static_cast<int>(InertiaKind::isotropic)] = free_motion<Isotropic>;
   out.free_motion[static_cast<int>(InertiaKind::tensor)] = free_motion<Tensor>;
+  out.settle = settle;
   out.set_class = set_class;
   out.counters = counters;
   out.record = record;

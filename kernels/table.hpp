@@ -56,6 +56,8 @@ struct KernelTable {
   void (*free_motion[kInertiaKinds])(const WorldTables<Real>&, const GroupView<Real>&, Scratch*,
                                      int steps);
 
+  Stage<Real> settle;  // after the step: bodies at rest fall asleep (plans of batches with sleep)
+
   void (*set_class)(Scratch*, int class_index);  // which class collide works on
   const GroupCounters& (*counters)(Scratch*);    // of the last step
   // While set, collide writes the contact points of `lane` to out; returns their number when

@@ -153,6 +153,7 @@ struct WorldTables {
   bool cast;             // cast fast bodies against fixed shapes
   bool cast_moving;      // cast fast bodies against moving shapes
   bool has_bounds;
+  bool has_sleep;
 
   const BodyTable<Real>* body;
   const ColliderTable<Real>* collider;
@@ -179,10 +180,22 @@ struct WorldTables {
   Real margin;  // 4 slop, m
   Real half_margin;
   Real restitution_threshold;
+  Real sleep_speed, sleep_time;        // a body is at rest below; an island sleeps after
   Real bounds_low[3], bounds_high[3];  // of body positions, m
   Real face_tie;                       // m, a face of A wins over one of B by this
   Real face_bias;  // m, preference of the previous kind of axis in separating-axis tests
 };
+
+// The shapes of a candidate pair: colliders, or a fixed shape and a collider.
+struct PairOfKey {
+  std::int32_t a, b;
+};
+template <class Real>
+static inline PairOfKey pair_of_key(const WorldTables<Real>& t, std::int32_t key) {
+  const PairClass<Real>* c = t.pair_class;
+  while (key >= c->first_key + c->count) ++c;  // keys ascend from class to class
+  return {c->a[key - c->first_key], c->b[key - c->first_key]};
+}
 
 // State block of one body: components in this order, each kLanes wide. The orientation block is
 // absent when the plan has no orientation.

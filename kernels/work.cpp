@@ -84,6 +84,16 @@ void carve(const Tables& t, Work& w, Carver& c) {
     c.take(w.marks, count(keys));
     c.take(w.sorted, count(t.colliders * 3 * lanes));
   }
+  if (t.has_sleep) {
+    c.take(w.ready, count(t.bodies));
+    c.take(w.parent, count(t.bodies));
+    c.take(w.restless, count(t.bodies));
+    for (int l = 0; l < kLists; ++l) {
+      const int cached = kernels::cache_row_size(t.dimension, static_cast<ListId>(l));
+      c.take(w.kept_keys[l], count(lanes * t.capacity[l]));
+      c.take(w.kept_rows[l], count(lanes * t.capacity[l] * cached));
+    }
+  }
   for (CandidateList* list : {&w.candidates, &w.found}) {
     c.take(list->code, count(longest * lanes));
     c.take(list->key, count(longest * lanes));

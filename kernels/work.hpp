@@ -56,7 +56,16 @@ struct Work {
   SlotList slots[kLists];
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
   std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
-  std::uint32_t overflow;                   // lanes that dropped a contact in this step
+  // sleep
+  std::uint32_t untouched;      // lanes in which no body is awake: their cache stays as it is
+  std::uint32_t partly_asleep;  // lanes whose cache keeps the impulses of sleeping pairs:
+  std::int32_t kept[kLists][kLanes];
+  std::int32_t* kept_keys[kLists];  // [lane][capacity]
+  Real* kept_rows[kLists];          // [lane][capacity][cache row]
+  std::uint32_t* ready;             // [body], lanes in which it has rested long enough
+  std::int32_t* parent;             // [body] of islands
+  std::int32_t* restless;           // [body] 1: its island has a body that is not ready
+  std::uint32_t overflow;           // lanes that dropped a contact in this step
   int class_index;
   bool dense;
   int substep;

@@ -41,6 +41,9 @@ struct BatchOptions {
   Precision precision = Precision::f32;
   std::optional<Isa> isa = std::nullopt;  // default_isa()
   ContactLayout layout = ContactLayout::automatic;
+  // Bodies at rest fall asleep, island by island (Options::sleep_speed), and cost little until
+  // something wakes them; worlds in which everything sleeps cost nothing.
+  bool sleep = false;
   std::shared_ptr<Executor> executor = nullptr;  // step on these threads; threads must then be 0
 };
 
@@ -61,6 +64,14 @@ inline constexpr bool has(Status set, Status bit) {
 inline constexpr bool frozen(Status s) { return has(s, Status::non_finite | Status::out_of_range); }
 inline constexpr bool lost(Status s) { return frozen(s) || has(s, Status::out_of_bounds); }
 std::string to_string(Status status);  // "ok", "non_finite", "out_of_bounds|contact_overflow"
+
+// Where a body is and how it moves, in the frames of Body.
+struct BodyState {
+  Vec3 position = Vec3::Zero();          // m
+  Quat rotation = Quat::Identity();      // need not be unit
+  Vec3 linear_velocity = Vec3::Zero();   // m/s, of the centre of mass
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s
+};
 
 // Energy of one world at its current state, J. Potential energy is zero at the world's origin.
 struct Energy {
@@ -153,6 +164,22 @@ class Batch {
   void add_impulse(int world, int body, const Vec3& impulse);
   void add_angular_impulse(int world, int body, const Vec3& impulse);
   void add_impulse_at(int world, int body, const Vec3& impulse, const Vec3& point_world);
+
+  // -- bodies that come and go. A disabled body takes no part in the step: nothing touches it, it
+  // keeps its state, and the others have the bits that they would have without it. It costs nothing
+  // where it is disabled in all worlds of a group. The first call allocates.
+  void set_enabled(int world, int body, bool enabled);
+  bool enabled(int world, int body) const;
+  void spawn(int world, int body, const BodyState& state);  // enabled, with this state
+
+  // -- sleep (BatchOptions::sleep). A body wakes in the very step in which an awake one comes near
+  // it, and at once by a force, an impulse, a written state, or when a body that it slept with is
+  // disabled. Sleeping changes nothing that awake bodies compute.
+  bool asleep(int world, int body) const;  // false for kinematic bodies
+  bool asleep(int world) const;            // nothing in it moves: it costs nothing
+  void wake(int world);
+  double awake_fraction() const;     // of worlds
+  std::int64_t group_steps() const;  // executed since construction: what a step costs
 
   // -- reset: initial state with a new draw of the scene's jitter. mask has one byte per world,
   // nonzero = reset. An episode counter per world makes each draw new; reset() of all restarts

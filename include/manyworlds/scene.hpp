@@ -104,6 +104,7 @@ struct Jitter {
 struct Body {
   std::string name;
   Motion motion = Motion::dynamic;
+  bool enabled = true;  // false: not there until a Batch enables or spawns it; not for fixed bodies
   Vec3 position = Vec3::Zero();          // m, of the body frame in the world
   Quat rotation = Quat::Identity();      // of the body frame in the world; need not be unit
   Vec3 linear_velocity = Vec3::Zero();   // m/s, of the centre of mass, world
@@ -137,6 +138,12 @@ struct Options {
   bool friction_in_bias_pass = true;  // much less sway of tall stacks; off is a little faster
   bool cast_against_fixed = true;     // stop fast bodies at thin fixed shapes
   bool cast_between_moving = false;   // and at moving ones; for bullets
+
+  // A body is at rest while |v| + |w| radius of its bounding sphere stays below sleep_speed; an
+  // island all of whose bodies have been at rest for time_to_sleep falls asleep
+  // (BatchOptions::sleep).
+  double sleep_speed = 0.05;   // m/s per length_unit
+  double time_to_sleep = 0.5;  // s
 
   // Manifolds between moving bodies that a world has room for, of each kind (of several points, of
   // one). Default: 4 per shape (planar: 3) and 8 more. What exceeds it is left out of the step and

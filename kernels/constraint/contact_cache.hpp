@@ -12,7 +12,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class CacheWriter {
  public:
-  CacheWriter(const Tables& t, const Group& g) : t_(t), g_(g) {
+  CacheWriter(const Tables& t, const Group& g, const Work& w) : t_(t), g_(g), w_(w) {
     for (auto& list : count_) {
       for (auto& n : list) n = 0;
     }
@@ -35,18 +35,39 @@ class CacheWriter {
     write(s, g_.cache[id].rows, o);
   }
 
-  // Ends every lane's keys.
+  // Ends every lane's keys, after merging in those of sleeping pairs.
   void close() {
     for (int id = 0; id < kLists; ++id) {
       const int capacity = t_.capacity[id];
       if (capacity == 0) continue;
       for (int l = 0; l < kLanes; ++l) {
+        if ((w_.untouched >> l) & 1u) continue;
+        if ((w_.partly_asleep >> l) & 1u) merge_kept(id, l);
         g_.cache[id].keys[l * (capacity + 1) + count_[id][l]] = kernels::kEndOfKeys;
       }
     }
   }
 
  private:
+  // Two ascending lists into one, from the back, in the place of the first.
+  void merge_kept(int id, int l) {
+    const int capacity = t_.capacity[id];
+    const int row = kernels::cache_row_size(t_.dimension, static_cast<ListId>(id));
+    std::int32_t* keys = g_.cache[id].keys + l * (capacity + 1);
+    Real* rows = g_.cache[id].rows + l * (capacity + 2) * row;
+    const std::int32_t* kept_keys = w_.kept_keys[id] + l * capacity;
+    const Real* kept_rows = w_.kept_rows[id] + l * capacity * row;
+    int fresh = count_[id][l], kept = w_.kept[id][l];
+    count_[id][l] = fresh + kept;
+    while (kept > 0) {
+      const bool from_fresh = fresh > 0 && keys[fresh - 1] > kept_keys[kept - 1];
+      const int to = fresh + kept - 1;
+      const Real* from = from_fresh ? rows + --fresh * row : kept_rows + --kept * row;
+      keys[to] = from_fresh ? keys[fresh] : kept_keys[kept];
+      for (int i = 0; i < row; ++i) rows[to * row + i] = from[i];
+    }
+  }
+
   template <class S>
   void write(const Slot<S, 1>& s, Real* rows, const std::int32_t* o) {
     const auto t = load_as<typename S::Vec>(s.tangent[0]);
@@ -86,6 +107,7 @@ class CacheWriter {
 
   const Tables& t_;
   const Group& g_;
+  const Work& w_;
   std::int32_t count_[kLists][kLanes];
 };
 

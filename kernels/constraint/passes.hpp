@@ -72,7 +72,7 @@ struct Passes {
 
   static void store(const Tables& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    CacheWriter writer(t, g);
+    CacheWriter writer(t, g, w);
     for_each_slot<S>(w, [&](auto& s, int, SlotList& list, auto) {
       writer.put(s, static_cast<ListId>(&list - w.slots));
     });

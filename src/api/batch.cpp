@@ -233,6 +233,42 @@ void Batch::add_impulse_at(int world, int body, const Vec3& impulse, const Vec3&
   impl_->core->add_impulse(p.kind, p.world, body, impulse, arm.cross(impulse));
 }
 
+void Batch::set_enabled(int world, int body, bool enabled) {
+  const auto p = impl_->find_body(world, body);
+  impl_->core->set_enabled(p.kind, p.world, body, enabled);
+}
+bool Batch::enabled(int world, int body) const {
+  const auto p = impl_->find_body(world, body);
+  return impl_->core->enabled(p.kind, p.world, body);
+}
+void Batch::spawn(int world, int body, const BodyState& state) {
+  const auto p = impl_->find_body(world, body);
+  const double norm = state.rotation.norm();
+  if (!(norm > 0) || !std::isfinite(norm)) {
+    reject("spawn: the rotation has length " + std::to_string(norm) + ", must be > 0");
+  }
+  impl_->core->spawn(p.kind, p.world, body, state);
+}
+
+bool Batch::asleep(int world, int body) const {
+  const auto p = impl_->find_body(world, body);
+  return impl_->core->asleep(p.kind, p.world, body);
+}
+bool Batch::asleep(int world) const {
+  const auto p = impl_->find(world);
+  return impl_->core->resting(p.kind, p.world);
+}
+void Batch::wake(int world) {
+  const auto p = impl_->find(world);
+  impl_->core->wake(p.kind, p.world);
+}
+double Batch::awake_fraction() const {
+  int awake = 0;
+  for (int w = 0; w < worlds(); ++w) awake += asleep(w) ? 0 : 1;
+  return static_cast<double>(awake) / worlds();
+}
+std::int64_t Batch::group_steps() const { return impl_->core->group_steps(); }
+
 void Batch::reset() {
   impl_->core->restart();
   impl_->steps = 0;

@@ -27,11 +27,11 @@ class CoreOf final : public BatchCore {
     }
     int first = 0, groups = 0;
     for (const auto& kind : kinds) {
-      worlds_.push_back(std::make_unique<Worlds<Real>>(kind.plan, kind.worlds, first, options.seed,
-                                                       kernels_.lanes));
+      worlds_.push_back(
+          std::make_unique<Worlds<Real>>(kind.plan, kind.worlds, first, options, kernels_.lanes));
       first += kind.worlds;
       first_group_.push_back(groups);
-      groups += worlds_.back()->groups();
+      groups += worlds_.back()->storage().groups();
     }
     first_group_.push_back(groups);
     for (int slot = 0; slot < threads; ++slot) {
@@ -41,11 +41,12 @@ class CoreOf final : public BatchCore {
         scratch.views.push_back(kernels_.make_scratch(w->tables(), scratch.memory.back().data()));
       }
     }
-    clocks_.resize(static_cast<std::size_t>(threads));
+    counters_.resize(static_cast<std::size_t>(threads));
   }
 
   void step(Executor& executor, int n) override {
     steps_ = n;
+    for (auto& w : worlds_) w->pack();
     // A kind without contacts keeps its group in the cache for all n steps; so does one with
     // contacts, since groups do not know of each other.
     executor.run(
@@ -80,6 +81,23 @@ class CoreOf final : public BatchCore {
   Vec3 center_of_mass(int kind, int world, int body) const override {
     return at(kind).center_of_mass(world, body);
   }
+  void set_enabled(int kind, int world, int body, bool enabled) override {
+    at(kind).set_enabled(world, body, enabled);
+  }
+  bool enabled(int kind, int world, int body) const override {
+    return at(kind).enabled(world, body);
+  }
+  void spawn(int kind, int world, int body, const BodyState& state) override {
+    at(kind).spawn(world, body, state);
+  }
+  bool asleep(int kind, int world, int body) const override { return at(kind).asleep(world, body); }
+  bool resting(int kind, int world) const override { return at(kind).resting(world); }
+  void wake(int kind, int world) override { at(kind).wake(world); }
+  std::int64_t group_steps() const override {
+    std::int64_t sum = 0;
+    for (const auto& c : counters_) sum += c.group_steps;
+    return sum;
+  }
   Status status(int kind, int world) const override { return at(kind).status(world); }
   std::uint64_t hash(int kind, int world) const override { return at(kind).hash(world); }
   Energy energy(int kind, int world) const override { return at(kind).energy(world); }
@@ -89,7 +107,7 @@ class CoreOf final : public BatchCore {
 
   std::size_t bytes() const override {
     std::size_t total = 0;
-    for (const auto& w : worlds_) total += w->bytes();
+    for (const auto& w : worlds_) total += w->storage().bytes();
     return total;
   }
   std::size_t scratch_bytes() const override {
@@ -105,7 +123,7 @@ class CoreOf final : public BatchCore {
     std::vector<StageTime> out;
     for (std::size_t s = 0; s < StageClock::kStages; ++s) {
       double sum = 0;
-      for (auto& clock : clocks_) sum += std::exchange(clock.seconds()[s], 0.0);
+      for (auto& c : counters_) sum += std::exchange(c.clock.seconds()[s], 0.0);
       if (sum > 0) out.push_back({StageClock::kNames[s], sum});
     }
     return out;
@@ -117,6 +135,21 @@ class CoreOf final : public BatchCore {
     std::vector<kernels::Scratch*> views;
   };
 
+  struct alignas(64) ThreadCounters {  // no two threads on one cache line
+    std::int64_t group_steps = 0;
+    StageClock clock;
+  };
+
+  // Looking at contacts looks at all of them, asleep or not.
+  static kernels::GroupView<Real> awake_view(kernels::GroupView<Real> view,
+                                             const kernels::WorldTables<Real>& tables,
+                                             std::vector<std::uint32_t>& nobody) {
+    if (!view.asleep) return view;
+    nobody.assign(static_cast<std::size_t>(tables.bodies), 0);
+    view.asleep = nobody.data();
+    return view;
+  }
+
   Worlds<Real>& at(int kind) const { return *worlds_[static_cast<std::size_t>(kind)]; }
 
   void run(int group, int slot) {
@@ -125,8 +158,10 @@ class CoreOf final : public BatchCore {
     while (group >= first_group_[kind + 1]) ++kind;
     const auto& w = *worlds_[kind];
     const auto s = static_cast<std::size_t>(slot);
-    step_group<Real>({kernels_, w.tables(), layout_}, w.group(group - first_group_[kind]),
-                     scratch_[s].views[kind], steps_, profiling_ ? &clocks_[s] : nullptr);
+    ThreadCounters& counters = counters_[s];
+    counters.group_steps += step_group<Real>(
+        {kernels_, w.tables(), layout_}, w.storage().group(group - first_group_[kind]),
+        scratch_[s].views[kind], steps_, profiling_ ? &counters.clock : nullptr);
   }
 
   const kernels::KernelTable<Real>& kernels_;
@@ -136,7 +171,7 @@ class CoreOf final : public BatchCore {
   std::vector<std::unique_ptr<Worlds<Real>>> worlds_;
   std::vector<int> first_group_;
   std::vector<ThreadScratch> scratch_;
-  std::vector<StageClock> clocks_;
+  std::vector<ThreadCounters> counters_;
   bool profiling_ = false;
 };
 
@@ -150,8 +185,11 @@ std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
   std::vector<kernels::ContactPoint<Real>> points(static_cast<std::size_t>(capacity) * 4);
   kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
   const FlushDenormals flush;
-  kernels_.record(scratch, world % kernels_.lanes, points.data(), static_cast<int>(points.size()));
-  collide_group<Real>({kernels_, t, layout_}, w.group(world / kernels_.lanes), scratch);
+  const int slot = w.slot_of(world);
+  std::vector<std::uint32_t> nobody;
+  kernels_.record(scratch, slot % kernels_.lanes, points.data(), static_cast<int>(points.size()));
+  collide_group<Real>({kernels_, t, layout_},
+                      awake_view(w.storage().group(slot / kernels_.lanes), t, nobody), scratch);
   points.resize(static_cast<std::size_t>(kernels_.record(scratch, 0, nullptr, 0)));
 
   const PlanData& plan = w.data();
@@ -190,8 +228,10 @@ double CoreOf<Real>::occupancy(int kind) const {
   const FlushDenormals flush;
   kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
   double active = 0, slots = 0;
-  for (int g = 0; g < w.groups(); ++g) {
-    collide_group<Real>({kernels_, w.tables(), layout_}, w.group(g), scratch);
+  std::vector<std::uint32_t> nobody;
+  for (int g = 0; g < w.storage().groups(); ++g) {
+    collide_group<Real>({kernels_, w.tables(), layout_},
+                        awake_view(w.storage().group(g), w.tables(), nobody), scratch);
     active += kernels_.counters(scratch).active;
     slots += kernels_.counters(scratch).dense_slots * static_cast<double>(kernels_.lanes);
   }

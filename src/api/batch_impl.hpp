@@ -25,6 +25,13 @@ class BatchCore {
   virtual void add_force(int kind, int world, int body, const Vec3& f, const Vec3& torque) = 0;
   virtual void add_impulse(int kind, int world, int body, const Vec3& p, const Vec3& l) = 0;
   virtual Vec3 center_of_mass(int kind, int world, int body) const = 0;
+  virtual void set_enabled(int kind, int world, int body, bool enabled) = 0;
+  virtual bool enabled(int kind, int world, int body) const = 0;
+  virtual void spawn(int kind, int world, int body, const BodyState& state) = 0;
+  virtual bool asleep(int kind, int world, int body) const = 0;
+  virtual bool resting(int kind, int world) const = 0;
+  virtual void wake(int kind, int world) = 0;
+  virtual std::int64_t group_steps() const = 0;
   virtual Status status(int kind, int world) const = 0;
   virtual std::uint64_t hash(int kind, int world) const = 0;
   virtual Energy energy(int kind, int world) const = 0;

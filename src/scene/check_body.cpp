@@ -109,6 +109,9 @@ void check_fixed(Checker& checker, const Body& body) {
   if (!body.angular_velocity.isZero(0)) {
     checker.add("angular_velocity", std::string("is set") + expected);
   }
+  if (!body.enabled) {
+    checker.add("enabled", "is false on a fixed body, must be true (or the body kinematic)");
+  }
   const Jitter& jitter = body.jitter;
   if (!jitter.position.isZero(0) || !jitter.linear_velocity.isZero(0) || jitter.angle != 0 ||
       jitter.any_orientation) {

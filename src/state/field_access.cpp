@@ -21,7 +21,7 @@ Quat Worlds<Real>::internal_rotation(int world, int body) const {
     return Quat::Identity();
   }
   const auto value = [&](int c) {
-    return static_cast<double>(*component(world, body, at.orientation + c));
+    return static_cast<double>(component(world, body, at.orientation + c));
   };
   if (plan_.scene().space == Space::planar) {
     return Quat(Eigen::AngleAxisd(std::atan2(value(1), value(0)), Vec3::UnitZ()));
@@ -33,7 +33,7 @@ template <class Real>
 void Worlds<Real>::set_rotation(int world, int body, const Quat& rotation) {
   const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
   const auto put = [&](int c, double x) {
-    *component(world, body, at.orientation + c) = static_cast<Real>(x);
+    component(world, body, at.orientation + c) = static_cast<Real>(x);
   };
   if (plan_.scene().space == Space::planar) {
     const Mat3 r = rotation.toRotationMatrix();
@@ -57,7 +57,7 @@ void Worlds<Real>::read(Field field, int world, Out* out) const {
     const int body = static_cast<int>(i);
     Out* to = out + i * static_cast<std::size_t>(n);
     const auto copy = [&](int from) {
-      for (int c = 0; c < n; ++c) to[c] = static_cast<Out>(*component(world, body, from + c));
+      for (int c = 0; c < n; ++c) to[c] = static_cast<Out>(component(world, body, from + c));
     };
     switch (field) {
       case Field::linear_velocity: copy(at.linear); break;
@@ -92,18 +92,20 @@ void Worlds<Real>::write(Field field, int world, const In* in) {
   const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
   const int n = components(field, plan_.scene().space);
   // Impulses of the old pose would push at the new one.
-  if (field == Field::position || field == Field::orientation) clear_contacts(world);
+  const bool moves = field == Field::position || field == Field::orientation;
+  if (moves) storage_.clear_contacts(slot_of(world));
+  storage_.wake(slot_of(world));
   for (std::size_t i = 0; i < data().bodies.size(); ++i) {
     const PlanBody& b = data().bodies[i];
     const int body = static_cast<int>(i);
     const In* from = in + i * static_cast<std::size_t>(n);
     const auto copy = [&](int to) {
-      for (int c = 0; c < n; ++c) *component(world, body, to + c) = static_cast<Real>(from[c]);
+      for (int c = 0; c < n; ++c) component(world, body, to + c) = static_cast<Real>(from[c]);
     };
     const auto place_origin = [&](const Vec3& origin, const Quat& q) {
       const Vec3 x = origin + q * b.center;
       for (int c = 0; c < planar_or_spatial(plan_, 2, 3); ++c) {
-        *component(world, body, at.position + c) = static_cast<Real>(x[c]);
+        component(world, body, at.position + c) = static_cast<Real>(x[c]);
       }
     };
     switch (field) {

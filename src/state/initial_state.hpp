@@ -3,15 +3,10 @@
 
 #include <cmath>
 
-#include "manyworlds/scene.hpp"
+#include "manyworlds/batch.hpp"
 #include "src/base/random.hpp"
 
 namespace manyworlds {
-
-struct InitialState {
-  Vec3 position, linear_velocity, angular_velocity;
-  Quat rotation;
-};
 
 // A rotation uniform over all rotations from three numbers in [0, 1) (Shoemake 1992).
 inline Quat uniform_rotation(double u1, double u2, double u3) {
@@ -21,12 +16,12 @@ inline Quat uniform_rotation(double u1, double u2, double u3) {
               b * std::sin(kTurn * u3));
 }
 
-inline InitialState draw_initial_state(const Body& body, int index, const Draws& draws) {
+inline BodyState draw_initial_state(const Body& body, int index, const Draws& draws) {
   constexpr std::uint64_t kDrawsPerBody = 16;
   const std::uint64_t base = static_cast<std::uint64_t>(index) * kDrawsPerBody;
   const Jitter& j = body.jitter;
-  InitialState s{body.position, body.linear_velocity, body.angular_velocity,
-                 body.rotation.normalized()};
+  BodyState s{body.position, body.rotation.normalized(), body.linear_velocity,
+              body.angular_velocity};
   for (int c = 0; c < 3; ++c) {
     const auto k = static_cast<std::uint64_t>(c);
     s.position[c] += j.position[c] * draws.symmetric(base + k);

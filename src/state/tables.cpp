@@ -39,8 +39,10 @@ kernels::TopTable<Real> top_of(const PlanBody& body, double dt) {
 }  // namespace
 
 template <class Real>
-TablesOf<Real>::TablesOf(const PlanData& plan) {
+TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep) {
   add_options(plan);
+  // Without contacts nothing comes to rest.
+  tables_.has_sleep = sleep && tables_.has_contacts;
   add_bodies(plan);
   add_shapes(plan);
   add_pairs(plan);
@@ -81,6 +83,8 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.margin = static_cast<Real>(4 * o.slop * o.length_unit);
   t.half_margin = static_cast<Real>(2 * o.slop * o.length_unit);
   t.restitution_threshold = static_cast<Real>(o.restitution_threshold * o.length_unit);
+  t.sleep_speed = static_cast<Real>(o.sleep_speed * o.length_unit);
+  t.sleep_time = static_cast<Real>(o.time_to_sleep);
   t.face_bias = static_cast<Real>(0.5 * o.slop * o.length_unit);
   t.face_tie = static_cast<Real>(0.02 * o.slop * o.length_unit);
   const auto at = kernels::state_offsets(t.dimension, t.has_orientation);

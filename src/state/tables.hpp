@@ -12,7 +12,7 @@ namespace manyworlds {
 template <class Real>
 class TablesOf {
  public:
-  explicit TablesOf(const PlanData& plan);
+  TablesOf(const PlanData& plan, bool sleep);
   TablesOf(const TablesOf&) = delete;
   TablesOf& operator=(const TablesOf&) = delete;
   const kernels::WorldTables<Real>& get() const { return tables_; }

@@ -1,168 +1,127 @@
-// Storage, reset and the results of single worlds; fields are read and written in field_access.cpp.
+// How worlds begin, inputs and the results of single worlds; fields are read and written in
+// field_access.cpp, worlds move in packing.cpp.
 #include "src/state/worlds.hpp"
 
 #include <algorithm>
 
 #include "src/base/hash.hpp"
-#include "src/state/initial_state.hpp"
 
 namespace manyworlds {
 
 template <class Real>
-Worlds<Real>::Worlds(Plan plan, int worlds, int first, std::uint64_t seed, int lanes)
+Worlds<Real>::Worlds(Plan plan, int worlds, int first, const BatchOptions& options, int lanes)
     : plan_(std::move(plan)),
-      tables_(std::make_unique<TablesOf<Real>>(plan_.data())),
+      tables_(std::make_unique<TablesOf<Real>>(plan_.data(), options.sleep)),
+      storage_(tables(), (worlds + lanes - 1) / lanes, lanes),
       worlds_(worlds),
       first_(first),
-      lanes_(lanes),
-      groups_((worlds + lanes - 1) / lanes),
-      seed_(seed),
-      episode_(static_cast<std::size_t>(worlds), 0) {
-  const auto& t = tables();
-  const auto slots = static_cast<std::size_t>(groups_) * static_cast<std::size_t>(lanes_);
-  state_ = AlignedBuffer<Real>(slots * static_cast<std::size_t>(t.state_size));
-  status_ = AlignedBuffer<std::uint32_t>(slots);
-  for (std::size_t l = 0; t.has_contacts && l < kernels::kLists; ++l) {
-    const int capacity = t.capacity[l];
-    if (capacity == 0) continue;
-    const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
-    cache_rows_[l] = AlignedBuffer<Real>(slots * static_cast<std::size_t>(capacity + 2) *
-                                         static_cast<std::size_t>(row));
-    cache_keys_[l] = AlignedBuffer<std::int32_t>(slots * (static_cast<std::size_t>(capacity) + 1));
+      seed_(options.seed),
+      episode_(static_cast<std::size_t>(worlds), 0),
+      world_in_(static_cast<std::size_t>(storage_.slots()), -1),
+      by_count_(static_cast<std::size_t>(storage_.groups())) {
+  for (int w = 0; w < worlds_; ++w) {
+    slot_of_.push_back(w);
+    world_in_[static_cast<std::size_t>(w)] = w;
+  }
+  const auto& bodies = plan_.scene().bodies;
+  if (std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return !b.enabled; })) {
+    storage_.make_activity();
   }
   restart();
 }
 
+// Puts a body where the user wants it; what the kernels hold is its centre of mass and its
+// principal axes.
 template <class Real>
-kernels::GroupView<Real> Worlds<Real>::group(int index) const {
-  const auto& t = tables();
-  const auto lanes = static_cast<std::size_t>(lanes_), g = static_cast<std::size_t>(index);
-  kernels::GroupView<Real> view{};
-  view.state = state_.data() + g * lanes * static_cast<std::size_t>(t.state_size);
-  view.status = status_.data() + g * lanes;
-  for (std::size_t l = 0; l < kernels::kLists; ++l) {
-    if (cache_keys_[l].empty()) continue;
-    const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
-    view.cache[l].rows = cache_rows_[l].data() + g * lanes *
-                                                     static_cast<std::size_t>(t.capacity[l] + 2) *
-                                                     static_cast<std::size_t>(row);
-    view.cache[l].keys =
-        cache_keys_[l].data() + g * lanes * (static_cast<std::size_t>(t.capacity[l]) + 1);
+void Worlds<Real>::place(int world, int body, const BodyState& s) {
+  const PlanBody& b = data().bodies[static_cast<std::size_t>(body)];
+  const bool planar = plan_.scene().space == Space::planar;
+  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
+  const Vec3 x = s.position + s.rotation * b.center;
+  for (int c = 0; c < (planar ? 2 : 3); ++c) {
+    component(world, body, at.position + c) = static_cast<Real>(x[c]);
+    component(world, body, at.linear + c) = static_cast<Real>(s.linear_velocity[c]);
   }
-  if (forced_) view.force = force_.data() + g * lanes * static_cast<std::size_t>(t.bodies) * 6;
-  return view;
-}
-
-template <class Real>
-std::size_t Worlds<Real>::bytes() const {
-  std::size_t total = state_.size() * sizeof(Real) + status_.size() * sizeof(std::uint32_t);
-  for (std::size_t l = 0; l < kernels::kLists; ++l) {
-    total += cache_rows_[l].size() * sizeof(Real) + cache_keys_[l].size() * sizeof(std::int32_t);
+  for (int c = 0; c < (planar ? 1 : 3); ++c) {
+    component(world, body, at.angular + c) = static_cast<Real>(s.angular_velocity[planar ? 2 : c]);
   }
-  return total;
-}
-
-template <class Real>
-Real* Worlds<Real>::component(int world, int body, int component) const {
-  const auto& t = tables();
-  const auto group = static_cast<std::size_t>(world / lanes_);
-  const auto lane = static_cast<std::size_t>(world % lanes_);
-  const auto at = static_cast<std::size_t>(body * t.state_stride + component);
-  return state_.data() +
-         (group * static_cast<std::size_t>(t.state_size) + at) * static_cast<std::size_t>(lanes_) +
-         lane;
-}
-
-template <class Real>
-void Worlds<Real>::clear_contacts(int world) {
-  const auto& t = tables();
-  const auto w = static_cast<std::size_t>(world);  // lanes of a group lie one after the other
-  for (std::size_t l = 0; l < kernels::kLists; ++l) {
-    if (cache_keys_[l].empty()) continue;
-    const auto stride = (static_cast<std::size_t>(t.capacity[l]) + 1);
-    cache_keys_[l][w * stride] = kernels::kEndOfKeys;
-  }
+  if (tables().has_orientation) set_rotation(world, body, s.rotation * b.principal);
 }
 
 template <class Real>
 void Worlds<Real>::initialise(int world) {
-  const Draws draws(seed_ + static_cast<std::uint64_t>(first_ + std::min(world, worlds_ - 1)),
-                    episode_[static_cast<std::size_t>(std::min(world, worlds_ - 1))]);
-  const Scene& scene = plan_.scene();
-  const bool planar = scene.space == Space::planar;
-  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
+  const Draws draws(seed_ + static_cast<std::uint64_t>(first_ + world),
+                    episode_[static_cast<std::size_t>(world)]);
+  const int slot = slot_of(world);
   for (std::size_t b = 0; b < data().bodies.size(); ++b) {
-    const PlanBody& body = data().bodies[b];
-    const InitialState s = draw_initial_state(
-        scene.bodies[static_cast<std::size_t>(body.scene_body)], body.scene_body, draws);
-    const int i = static_cast<int>(b), dim = planar ? 2 : 3;
-    const Vec3 x = s.position + s.rotation * body.center;
-    for (int c = 0; c < dim; ++c) {
-      *component(world, i, at.position + c) = static_cast<Real>(x[c]);
-      *component(world, i, at.linear + c) = static_cast<Real>(s.linear_velocity[c]);
-    }
-    for (int c = 0; c < (planar ? 1 : 3); ++c) {
-      *component(world, i, at.angular + c) = static_cast<Real>(s.angular_velocity[planar ? 2 : c]);
-    }
-    if (tables().has_orientation) set_rotation(world, i, s.rotation * body.principal);
+    const int scene_body = data().bodies[b].scene_body, body = static_cast<int>(b);
+    const Body& described = plan_.scene().bodies[static_cast<std::size_t>(scene_body)];
+    place(world, body, draw_initial_state(described, scene_body, draws));
+    if (storage_.has_activity()) storage_.set_absent(slot, body, !described.enabled);
   }
-  status_[static_cast<std::size_t>(world)] = 0;
-  clear_contacts(world);
-}
-
-// The lanes after the last world.
-template <class Real>
-void Worlds<Real>::fill_padding(int world) {
-  if (world != worlds_ - 1) return;
-  for (int w = worlds_; w < groups_ * lanes_; ++w) initialise(w);
+  storage_.status(slot) = 0;
+  storage_.clear_contacts(slot);
+  storage_.wake(slot);
 }
 
 template <class Real>
 void Worlds<Real>::restart() {
   std::fill(episode_.begin(), episode_.end(), 0u);
-  for (int w = 0; w < worlds_; ++w) initialise(w);
-  fill_padding(worlds_ - 1);
   clear_forces();
+  for (int w = 0; w < worlds_; ++w) initialise(w);
+  // Lanes without a world repeat the last one.
+  for (int slot = 0; slot < storage_.slots(); ++slot) {
+    if (world_in_[static_cast<std::size_t>(slot)] >= 0) continue;
+    storage_.copy(slot_of(worlds_ - 1), slot);
+    storage_.rest(slot);
+  }
 }
 
 template <class Real>
 void Worlds<Real>::reset(int world) {
   ++episode_[static_cast<std::size_t>(world)];
   initialise(world);
-  fill_padding(world);
 }
 
 template <class Real>
 void Worlds<Real>::add_force(int world, int body, const Vec3& force, const Vec3& torque) {
-  const auto& t = tables();
-  const auto lanes = static_cast<std::size_t>(lanes_);
-  if (force_.empty()) {
-    force_ = AlignedBuffer<Real>(static_cast<std::size_t>(groups_) * lanes *
-                                 static_cast<std::size_t>(t.bodies) * 6);
-  }
-  forced_ = true;
-  const auto group = static_cast<std::size_t>(world / lanes_);
-  const auto block = (group * static_cast<std::size_t>(t.bodies) + static_cast<std::size_t>(body));
-  Real* p = force_.data() + block * 6 * lanes + static_cast<std::size_t>(world % lanes_);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto row = static_cast<Eigen::Index>(c);
-    p[c * lanes] += static_cast<Real>(force[row]);
-    p[(c + 3) * lanes] += static_cast<Real>(torque[row]);
-  }
+  const bool moves = data().bodies[static_cast<std::size_t>(body)].inv_mass > 0;
+  if (moves && !(force.isZero(0) && torque.isZero(0))) storage_.wake_island(slot_of(world), body);
+  storage_.add_force(slot_of(world), body, force, torque);
 }
 
 template <class Real>
-void Worlds<Real>::clear_forces() {
-  if (!forced_) return;
-  std::fill(force_.data(), force_.data() + force_.size(), Real(0));
-  forced_ = false;
+void Worlds<Real>::set_enabled(int world, int body, bool enabled) {
+  const int slot = slot_of(world);
+  storage_.make_activity();
+  if (storage_.absent(slot, body) != enabled) return;
+  // Whoever lies on a kinematic body does not share its island.
+  const bool kinematic = data().bodies[static_cast<std::size_t>(body)].inv_mass == 0;
+  kinematic ? storage_.wake(slot) : storage_.wake_island(slot, body);
+  if (!enabled) storage_.drop_contacts(slot, body);
+  storage_.set_absent(slot, body, !enabled);
+}
+
+template <class Real>
+void Worlds<Real>::spawn(int world, int body, const BodyState& state) {
+  set_enabled(world, body, false);
+  BodyState s = state;
+  s.rotation.normalize();
+  place(world, body, s);
+  set_enabled(world, body, true);
+}
+
+template <class Real>
+bool Worlds<Real>::asleep(int world, int body) const {
+  const bool kinematic = data().bodies[static_cast<std::size_t>(body)].inv_mass == 0;
+  return !kinematic && storage_.asleep(slot_of(world), body);
 }
 
 template <class Real>
 Vec3 Worlds<Real>::center_of_mass(int world, int body) const {
   Vec3 x = Vec3::Zero();
   const int dim = plan_.scene().space == Space::planar ? 2 : 3;
-  for (int c = 0; c < dim; ++c) x[c] = static_cast<double>(*component(world, body, c));
+  for (int c = 0; c < dim; ++c) x[c] = static_cast<double>(component(world, body, c));
   return x;
 }
 
@@ -170,10 +129,11 @@ template <class Real>
 void Worlds<Real>::add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular) {
   const PlanBody& b = data().bodies[static_cast<std::size_t>(body)];
   if (b.inv_mass == 0) return;
+  if (!(impulse.isZero(0) && angular.isZero(0))) storage_.wake_island(slot_of(world), body);
   const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
   const auto add = [&](int c, double x) {
-    Real* p = component(world, body, c);
-    *p = static_cast<Real>(static_cast<double>(*p) + x);
+    Real& value = component(world, body, c);
+    value = static_cast<Real>(static_cast<double>(value) + x);
   };
   if (plan_.scene().space == Space::planar) {
     for (int c = 0; c < 2; ++c) add(at.linear + c, impulse[c] * b.inv_mass);
@@ -190,7 +150,7 @@ void Worlds<Real>::add_impulse(int world, int body, const Vec3& impulse, const V
 
 template <class Real>
 Status Worlds<Real>::status(int world) const {
-  return static_cast<Status>(status_[static_cast<std::size_t>(world)]);
+  return static_cast<Status>(storage_.status(slot_of(world)));
 }
 
 template <class Real>
@@ -198,7 +158,7 @@ std::uint64_t Worlds<Real>::hash(int world) const {
   Hasher hasher;
   const auto& t = tables();
   for (int b = 0; b < t.bodies; ++b) {
-    for (int c = 0; c < t.state_stride; ++c) hasher.add(*component(world, b, c));
+    for (int c = 0; c < t.state_stride; ++c) hasher.add(component(world, b, c));
   }
   return hasher.value();
 }
@@ -211,9 +171,9 @@ Energy Worlds<Real>::energy(int world) const {
   Energy e;
   for (std::size_t i = 0; i < data().bodies.size(); ++i) {
     const PlanBody& b = data().bodies[i];
-    if (b.inv_mass == 0) continue;
     const int body = static_cast<int>(i);
-    const auto value = [&](int c) { return static_cast<double>(*component(world, body, c)); };
+    if (b.inv_mass == 0 || !enabled(world, body)) continue;
+    const auto value = [&](int c) { return static_cast<double>(component(world, body, c)); };
     Vec3 v = Vec3::Zero(), w = Vec3::Zero();
     for (int c = 0; c < (planar ? 2 : 3); ++c) v[c] = value(at.linear + c);
     if (planar) {

@@ -1,16 +1,17 @@
-// Worlds: the state of all worlds of one kind (one Plan), in groups of one lane per world.
-//   state  [group][body][component][lane]
-//   cache  [group][lane][manifold][row], keys beside
-// Lanes beyond the last world repeat the last world. World indices here are local to the kind.
+// Worlds: all worlds of one kind (one Plan). It knows which slot of the storage a world lives in,
+// how worlds begin, and what a user reads and writes. World indices here are local to the kind.
+//
+// With sleep, worlds that move are packed into as few groups as they fill, so where a world lives
+// changes; nothing that it computes does.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "kernels/group.hpp"
 #include "manyworlds/batch.hpp"
+#include "src/state/initial_state.hpp"
+#include "src/state/storage.hpp"
 #include "src/state/tables.hpp"
 
 namespace manyworlds {
@@ -19,16 +20,14 @@ template <class Real>
 class Worlds {
  public:
   // `first` is the index of the first of these worlds in the batch: world seeds follow it.
-  Worlds(Plan plan, int worlds, int first, std::uint64_t seed, int lanes);
+  Worlds(Plan plan, int worlds, int first, const BatchOptions& options, int lanes);
 
   const Plan& plan() const { return plan_; }
   const PlanData& data() const { return plan_.data(); }
   const kernels::WorldTables<Real>& tables() const { return tables_->get(); }
+  const Storage<Real>& storage() const { return storage_; }
   int count() const { return worlds_; }
-  int groups() const { return groups_; }
-  int lanes() const { return lanes_; }
-  kernels::GroupView<Real> group(int index) const;
-  std::size_t bytes() const;  // of persistent state
+  int slot_of(int world) const { return slot_of_[static_cast<std::size_t>(world)]; }
 
   void restart();         // all worlds, first episode
   void reset(int world);  // next episode
@@ -40,33 +39,43 @@ class Worlds {
   void write(Field field, int world, const In* in);
 
   void add_force(int world, int body, const Vec3& force, const Vec3& torque);
-  void clear_forces();
+  void clear_forces() { storage_.clear_forces(); }
   void add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular);
   Vec3 center_of_mass(int world, int body) const;
+
+  bool enabled(int world, int body) const { return !storage_.absent(slot_of(world), body); }
+  void set_enabled(int world, int body, bool enabled);
+  void spawn(int world, int body, const BodyState& state);
+
+  bool asleep(int world, int body) const;
+  bool resting(int world) const { return storage_.resting(slot_of(world)); }
+  void wake(int world) { storage_.wake(slot_of(world)); }
+  // Moves worlds so that those in which something moves fill as few groups as possible.
+  void pack();
 
   Status status(int world) const;
   std::uint64_t hash(int world) const;
   Energy energy(int world) const;
 
  private:
-  Real* component(int world, int body, int component) const;
+  Real& component(int world, int body, int component) const {
+    return storage_.component(slot_of(world), body, component);
+  }
   void initialise(int world);
-  void fill_padding(int world);
-  void clear_contacts(int world);
+  void place(int world, int body, const BodyState& state);
   Quat internal_rotation(int world, int body) const;
   void set_rotation(int world, int body, const Quat& rotation);
+  void move(int from_slot, int to_slot);
 
   Plan plan_;
   std::unique_ptr<TablesOf<Real>> tables_;
-  int worlds_, first_, lanes_, groups_;
+  Storage<Real> storage_;
+  int worlds_, first_;
   std::uint64_t seed_;
-  mutable AlignedBuffer<Real> state_;
-  mutable std::array<AlignedBuffer<Real>, kernels::kLists> cache_rows_;
-  mutable std::array<AlignedBuffer<std::int32_t>, kernels::kLists> cache_keys_;
-  mutable AlignedBuffer<std::uint32_t> status_;
-  AlignedBuffer<Real> force_;  // [group][body][force 3, torque 3][lane], made at the first force
-  bool forced_ = false;
   std::vector<std::uint32_t> episode_;
+  std::vector<int> slot_of_;   // [world]
+  std::vector<int> world_in_;  // [slot], -1: none
+  std::vector<int> by_count_;  // [group] scratch of pack()
 };
 
 }  // namespace manyworlds

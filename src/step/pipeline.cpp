@@ -15,7 +15,8 @@ enum StageIndex {
   kRelax,
   kRestitute,
   kStore,
-  kFinish
+  kFinish,
+  kSettle
 };
 
 template <class Real>
@@ -70,20 +71,31 @@ void contact_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& grou
   lap(kStore);
   solver.leave(t, group, scratch);
   lap(kFinish);
+  if (t.has_sleep) {
+    p.kernels.settle(t, group, scratch);
+    lap(kSettle);
+  }
+}
+
+template <class Real>
+bool at_rest(const GroupStep<Real>& p, const kernels::GroupView<Real>& group) {
+  return p.tables.has_sleep && *group.resting == (1u << p.kernels.lanes) - 1;
 }
 
 }  // namespace
 
 template <class Real>
-void step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
-                kernels::Scratch* scratch, int steps, StageClock* clock) {
+int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
+               kernels::Scratch* scratch, int steps, StageClock* clock) {
   if (clock) clock->start();
   if (!p.tables.has_contacts) {
     p.kernels.free_motion[static_cast<int>(p.tables.inertia_kind)](p.tables, group, scratch, steps);
     if (clock) clock->lap(kFreeMotion);
-    return;
+    return steps;
   }
-  for (int i = 0; i < steps; ++i) contact_step(p, group, scratch, clock);
+  int taken = 0;
+  for (; taken < steps && !at_rest(p, group); ++taken) contact_step(p, group, scratch, clock);
+  return taken;
 }
 
 template <class Real>
@@ -92,10 +104,10 @@ void collide_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& gro
   if (p.tables.has_contacts) find_contacts<Real>(p, group, scratch, nullptr);
 }
 
-template void step_group<float>(const GroupStep<float>&, const kernels::GroupView<float>&,
+template int step_group<float>(const GroupStep<float>&, const kernels::GroupView<float>&,
+                               kernels::Scratch*, int, StageClock*);
+template int step_group<double>(const GroupStep<double>&, const kernels::GroupView<double>&,
                                 kernels::Scratch*, int, StageClock*);
-template void step_group<double>(const GroupStep<double>&, const kernels::GroupView<double>&,
-                                 kernels::Scratch*, int, StageClock*);
 template void collide_group<float>(const GroupStep<float>&, const kernels::GroupView<float>&,
                                    kernels::Scratch*);
 template void collide_group<double>(const GroupStep<double>&, const kernels::GroupView<double>&,

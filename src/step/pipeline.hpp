@@ -11,10 +11,10 @@ namespace manyworlds {
 // Where a step's time goes; off unless somebody asked.
 class StageClock {
  public:
-  static constexpr int kStages = 11;
+  static constexpr int kStages = 12;
   static constexpr std::array<const char*, kStages> kNames = {
       "free_motion", "begin", "broad_phase", "collide", "warm_start", "bias",
-      "advance",     "relax", "restitute",   "store",   "finish"};
+      "advance",     "relax", "restitute",   "store",   "finish",     "settle"};
 
   void start() { last_ = Clock::now(); }
   void lap(int stage) {
@@ -37,10 +37,11 @@ struct GroupStep {
   kernels::Layout layout;
 };
 
-// `steps` whole steps of one group. clock may be nullptr.
+// `steps` whole steps of one group, fewer when all its worlds come to rest; returns how many.
+// clock may be nullptr.
 template <class Real>
-void step_group(const GroupStep<Real>& plan, const kernels::GroupView<Real>& group,
-                kernels::Scratch* scratch, int steps, StageClock* clock);
+int step_group(const GroupStep<Real>& plan, const kernels::GroupView<Real>& group,
+               kernels::Scratch* scratch, int steps, StageClock* clock);
 
 // The stages up to the narrow phase, without effect on the group.
 template <class Real>

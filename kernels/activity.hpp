@@ -1,0 +1,25 @@
+// Which lanes of a body take part in the step. Groups in which all bodies do never look at masks.
+#pragma once
+
+#include "kernels/work.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+MW_INLINE bool has_idle_bodies(const Group& g) { return g.asleep && *g.idle != 0; }
+
+// Lanes in which the body keeps its state.
+MW_INLINE std::uint32_t idle_lanes(const Group& g, int body) {
+  return g.asleep[body] | g.absent[body];
+}
+
+// Lanes in which two bodies can push each other: both are there and one at least is awake.
+MW_INLINE std::uint32_t live_lanes(const Group& g, int a, int b) {
+  return ~(g.absent[a] | g.absent[b] | (g.asleep[a] & g.asleep[b]));
+}
+
+// Lanes in which the body is disabled, in any group.
+MW_INLINE Mask absent_lanes(const Group& g, int body) {
+  return mask_from_bits(has_idle_bodies(g) ? g.absent[body] & kAllLanes : 0);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,24 @@
+// sleep: bodies that have been at rest for a while stop to take part in the step, island by island,
+// and go on from their stored bits when something touches them.
+//
+// An island is what hangs together by the broad phase: bodies whose bounds, grown by the way they
+// go in a step, overlap. So a body wakes before it can be touched, and what an awake body sees is
+// never a sleeping one. Kinematic bodies without velocity count as asleep, but wake nobody and are
+// in no island.
+#pragma once
+
+#include "kernels/activity.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// Wakes the islands that an awake body has come close to.
+void wake_touched(const Tables& t, const Group& g, Work& w);
+
+// Takes the stored impulses of sleeping pairs out of the caches of lanes that are partly asleep,
+// to be merged with the new ones when the step stores those.
+void keep_sleeping_contacts(const Tables& t, const Group& g, Work& w);
+
+// After the step: measures how long each body has been at rest and puts islands to sleep.
+void settle(const Tables& t, const Group& g, kernels::Scratch* scratch);
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

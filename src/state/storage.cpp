@@ -1,0 +1,265 @@
+#include "src/state/storage.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace manyworlds {
+
+namespace {
+
+void put_bit(std::uint32_t& word, std::size_t lane, bool value) {
+  word = (word & ~(1u << lane)) | (static_cast<std::uint32_t>(value) << lane);
+}
+bool get_bit(std::uint32_t word, std::size_t lane) { return ((word >> lane) & 1u) != 0; }
+
+}  // namespace
+
+template <class Real>
+Storage<Real>::Storage(const kernels::WorldTables<Real>& tables, int groups, int lanes)
+    : tables_(tables), groups_(groups), lanes_(lanes) {
+  const auto& t = tables_;
+  state_ = AlignedBuffer<Real>(index(slots()) * index(t.state_size));
+  status_ = AlignedBuffer<std::uint32_t>(index(slots()));
+  for (std::size_t l = 0; t.has_contacts && l < kernels::kLists; ++l) {
+    const std::size_t capacity = index(t.capacity[l]);
+    if (capacity == 0) continue;
+    const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
+    cache_rows_[l] = AlignedBuffer<Real>(index(slots()) * (capacity + 2) * index(row));
+    cache_keys_[l] = AlignedBuffer<std::int32_t>(index(slots()) * (capacity + 1));
+  }
+  if (t.has_sleep) make_activity();
+}
+
+template <class Real>
+kernels::GroupView<Real> Storage<Real>::group(int g) const {
+  const auto& t = tables_;
+  const std::size_t lanes = index(lanes_), at = index(g);
+  kernels::GroupView<Real> view{};
+  view.state = state_.data() + at * lanes * index(t.state_size);
+  view.status = status_.data() + at * lanes;
+  for (std::size_t l = 0; l < kernels::kLists; ++l) {
+    if (cache_keys_[l].empty()) continue;
+    const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
+    view.cache[l].rows = cache_rows_[l].data() + at * lanes * index(t.capacity[l] + 2) * index(row);
+    view.cache[l].keys = cache_keys_[l].data() + at * lanes * index(t.capacity[l] + 1);
+  }
+  if (forced_) view.force = force_.data() + at * lanes * index(t.bodies) * 6;
+  if (has_activity()) {
+    const std::size_t bodies = index(t.bodies);
+    view.asleep = asleep_.data() + at * bodies;
+    view.absent = absent_.data() + at * bodies;
+    view.idle = idle_.data() + at;
+    if (t.has_sleep) {
+      view.rest_time = rest_time_.data() + at * bodies * lanes;
+      view.island = island_.data() + at * bodies * lanes;
+      view.resting = resting_.data() + at;
+    }
+  }
+  return view;
+}
+
+template <class Real>
+std::size_t Storage<Real>::bytes() const {
+  std::size_t total =
+      (state_.size() + rest_time_.size()) * sizeof(Real) +
+      (status_.size() + asleep_.size() + absent_.size() + resting_.size() + island_.size()) *
+          sizeof(std::uint32_t);
+  for (std::size_t l = 0; l < kernels::kLists; ++l) {
+    total += cache_rows_[l].size() * sizeof(Real) + cache_keys_[l].size() * sizeof(std::int32_t);
+  }
+  return total;
+}
+
+template <class Real>
+Real& Storage<Real>::component(int slot, int body, int component) const {
+  const auto& t = tables_;
+  const std::size_t at = index(body * t.state_stride + component);
+  return state_[(group_of(slot) * index(t.state_size) + at) * index(lanes_) + lane_of(slot)];
+}
+
+template <class Real>
+void Storage<Real>::clear_contacts(int slot) {
+  for (std::size_t l = 0; l < kernels::kLists; ++l) {
+    if (cache_keys_[l].empty()) continue;
+    cache_keys_[l][index(slot) * index(tables_.capacity[l] + 1)] = kernels::kEndOfKeys;
+  }
+}
+
+template <class Real>
+template <class Keep>
+void Storage<Real>::keep_contacts(int slot, Keep keep) {
+  const auto& t = tables_;
+  for (std::size_t l = 0; l < kernels::kLists; ++l) {
+    if (cache_keys_[l].empty()) continue;
+    const auto list = static_cast<kernels::ListId>(l);
+    const std::size_t capacity = index(t.capacity[l]);
+    const std::size_t row = index(kernels::cache_row_size(t.dimension, list));
+    std::int32_t* keys = cache_keys_[l].data() + index(slot) * (capacity + 1);
+    Real* rows = cache_rows_[l].data() + index(slot) * (capacity + 2) * row;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; keys[i] != kernels::kEndOfKeys; ++i) {
+      const kernels::PairOfKey pair = kernels::pair_of_key(t, keys[i]);
+      const int a = is_fixed(list) ? -1 : t.collider_body[pair.a];
+      if (!keep(a, t.collider_body[pair.b])) continue;
+      std::copy_n(rows + i * row, row, rows + kept * row);
+      keys[kept++] = keys[i];
+    }
+    keys[kept] = kernels::kEndOfKeys;
+  }
+}
+
+template <class Real>
+void Storage<Real>::drop_contacts(int slot, int body) {
+  std::fill(reached_.begin(), reached_.end(), false);
+  reached_[index(body)] = true;
+  for (bool grows = true; grows;) {
+    grows = false;
+    keep_contacts(slot, [&](int a, int b) {
+      if (a >= 0 && reached_[index(a)] != reached_[index(b)]) {
+        reached_[index(a)] = reached_[index(b)] = grows = true;
+      }
+      return true;
+    });
+  }
+  keep_contacts(slot, [&](int, int b) { return !reached_[index(b)]; });
+}
+
+template <class Real>
+void Storage<Real>::add_force(int slot, int body, const Vec3& force, const Vec3& torque) {
+  const std::size_t lanes = index(lanes_);
+  if (force_.empty()) force_ = AlignedBuffer<Real>(index(slots()) * index(tables_.bodies) * 6);
+  forced_ = true;
+  Real* p = force_.data() + body_at(slot, body) * 6 * lanes + lane_of(slot);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto row = static_cast<Eigen::Index>(c);
+    p[c * lanes] += static_cast<Real>(force[row]);
+    p[(c + 3) * lanes] += static_cast<Real>(torque[row]);
+  }
+}
+
+template <class Real>
+void Storage<Real>::clear_forces() {
+  if (!forced_) return;
+  std::fill(force_.data(), force_.data() + force_.size(), Real(0));
+  forced_ = false;
+}
+
+template <class Real>
+void Storage<Real>::make_activity() {
+  if (has_activity()) return;
+  const std::size_t bodies = index(tables_.bodies);
+  asleep_ = AlignedBuffer<std::uint32_t>(index(groups_) * bodies);
+  absent_ = AlignedBuffer<std::uint32_t>(index(groups_) * bodies);
+  idle_ = AlignedBuffer<std::uint32_t>(index(groups_));
+  reached_.resize(bodies);
+  if (!tables_.has_sleep) return;
+  resting_ = AlignedBuffer<std::uint32_t>(index(groups_));
+  rest_time_ = AlignedBuffer<Real>(index(slots()) * bodies);
+  island_ = AlignedBuffer<std::int32_t>(index(slots()) * bodies);
+}
+
+template <class Real>
+void Storage<Real>::set_absent(int slot, int body, bool absent) {
+  put_bit(absent_[body_at(slot, body)], lane_of(slot), absent);
+  find_idle(group_of(slot));
+}
+
+template <class Real>
+void Storage<Real>::find_idle(std::size_t group) {
+  const std::size_t bodies = index(tables_.bodies);
+  idle_[group] = 0;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    idle_[group] |= asleep_[group * bodies + b] | absent_[group * bodies + b];
+  }
+}
+
+template <class Real>
+void Storage<Real>::wake(int slot) {
+  if (!tables_.has_sleep) return;
+  const std::size_t lanes = index(lanes_);
+  for (int b = 0; b < tables_.bodies; ++b) {
+    put_bit(asleep_[body_at(slot, b)], lane_of(slot), false);
+    rest_time_[body_at(slot, b) * lanes + lane_of(slot)] = Real(0);
+  }
+  put_bit(resting_[group_of(slot)], lane_of(slot), false);
+}
+
+template <class Real>
+void Storage<Real>::wake_island(int slot, int body) {
+  if (!tables_.has_sleep) return;
+  const std::size_t lanes = index(lanes_), lane = lane_of(slot);
+  const bool slept = asleep(slot, body);
+  const std::int32_t label = island_[body_at(slot, body) * lanes + lane];
+  for (int b = 0; b < tables_.bodies; ++b) {
+    const std::size_t at = body_at(slot, b);
+    const bool together = slept && asleep(slot, b) && island_[at * lanes + lane] == label &&
+                          tables_.body[b].inv_mass > 0;
+    if (b != body && !together) continue;
+    put_bit(asleep_[at], lane, false);
+    rest_time_[at * lanes + lane] = Real(0);
+  }
+  put_bit(resting_[group_of(slot)], lane, false);
+}
+
+template <class Real>
+void Storage<Real>::rest(int slot) {
+  if (!tables_.has_sleep) return;
+  for (int b = 0; b < tables_.bodies; ++b) {
+    put_bit(asleep_[body_at(slot, b)], lane_of(slot), true);
+  }
+  put_bit(resting_[group_of(slot)], lane_of(slot), true);
+  find_idle(group_of(slot));
+}
+
+template <class Real>
+std::uint32_t Storage<Real>::moving_lanes(int group) const {
+  const std::uint32_t all = (1u << lanes_) - 1;
+  return tables_.has_sleep ? ~resting_[index(group)] & all : all;
+}
+
+namespace {
+
+struct Swap {
+  template <class T>
+  void numbers(T* a, T* b, std::size_t count, std::size_t stride) const {
+    for (std::size_t i = 0; i < count; ++i) std::swap(a[i * stride], b[i * stride]);
+  }
+  void bit(std::uint32_t& a, std::size_t lane_a, std::uint32_t& b, std::size_t lane_b) const {
+    const bool value = get_bit(a, lane_a);
+    put_bit(a, lane_a, get_bit(b, lane_b));
+    put_bit(b, lane_b, value);
+  }
+};
+
+struct Copy {
+  template <class T>
+  void numbers(const T* from, T* to, std::size_t count, std::size_t stride) const {
+    for (std::size_t i = 0; i < count; ++i) to[i * stride] = from[i * stride];
+  }
+  void bit(std::uint32_t from, std::size_t from_lane, std::uint32_t& to, std::size_t lane) const {
+    put_bit(to, lane, get_bit(from, from_lane));
+  }
+};
+
+}  // namespace
+
+template <class Real>
+void Storage<Real>::swap(int slot_a, int slot_b) {
+  if (slot_a == slot_b) return;
+  for_each_part(slot_a, slot_b, Swap{});
+  if (!has_activity()) return;
+  find_idle(group_of(slot_a));
+  find_idle(group_of(slot_b));
+}
+
+template <class Real>
+void Storage<Real>::copy(int from, int to) {
+  if (from == to) return;
+  for_each_part(from, to, Copy{});
+  if (has_activity()) find_idle(group_of(to));
+}
+
+template class Storage<float>;
+template class Storage<double>;
+
+}  // namespace manyworlds

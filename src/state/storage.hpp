@@ -1,0 +1,131 @@
+// Storage: the numbers of all worlds of one kind, in groups of one lane per world. It knows places,
+// not worlds: slot s is lane s % lanes of group s / lanes, and which world lives there is its
+// owner's business.
+//   state     [group][body][component][lane]
+//   cache     [group][lane][manifold][row], keys beside
+//   activity  [group][body] lane masks of sleeping and disabled bodies, made when first needed
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/group.hpp"
+#include "manyworlds/scene.hpp"
+#include "src/base/aligned_buffer.hpp"
+
+namespace manyworlds {
+
+template <class Real>
+class Storage {
+ public:
+  Storage(const kernels::WorldTables<Real>& tables, int groups, int lanes);
+
+  int lanes() const { return lanes_; }
+  int groups() const { return groups_; }
+  int slots() const { return groups_ * lanes_; }
+  kernels::GroupView<Real> group(int index) const;
+  std::size_t bytes() const;  // of persistent state
+
+  Real& component(int slot, int body, int component) const;
+  std::uint32_t& status(int slot) const { return status_[static_cast<std::size_t>(slot)]; }
+  void clear_contacts(int slot);
+  // Those of the body and of everybody that it is in touch with, directly or not: impulses that
+  // carried what is gone would push up what carried it.
+  void drop_contacts(int slot, int body);
+
+  void add_force(int slot, int body, const Vec3& force, const Vec3& torque);
+  void clear_forces();
+
+  // Sleeping and disabled bodies. Without masks every body is there and awake.
+  bool has_activity() const { return !asleep_.empty(); }
+  void make_activity();
+  bool asleep(int slot, int body) const { return is_set(asleep_, body_at(slot, body), slot); }
+  bool absent(int slot, int body) const { return is_set(absent_, body_at(slot, body), slot); }
+  bool resting(int slot) const { return is_set(resting_, group_of(slot), slot); }
+  void set_absent(int slot, int body, bool absent);
+  void wake(int slot);                   // every body
+  void wake_island(int slot, int body);  // those that fell asleep together with it
+  void rest(int slot);                   // a lane without a world: nothing in it ever moves
+  // Lanes of a group in which something may move.
+  std::uint32_t moving_lanes(int group) const;
+
+  // Every number of a world, in a fixed order that does not depend on the lane, to what lies in
+  // another slot in the same place: visit.numbers(a, b, count, stride), visit.bit(word of a, lane
+  // of a, word of b, lane of b).
+  template <class Visit>
+  void for_each_part(int slot_a, int slot_b, Visit&& visit) const;
+  void swap(int slot_a, int slot_b);
+  void copy(int from, int to);
+
+ private:
+  static constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  std::size_t group_of(int slot) const { return index(slot / lanes_); }
+  std::size_t lane_of(int slot) const { return index(slot % lanes_); }
+  std::size_t body_at(int slot, int body) const {
+    return group_of(slot) * index(tables_.bodies) + index(body);
+  }
+  bool is_set(const AlignedBuffer<std::uint32_t>& masks, std::size_t at, int slot) const {
+    return !masks.empty() && ((masks[at] >> lane_of(slot)) & 1u) != 0;
+  }
+
+  void find_idle(std::size_t group);
+  template <class Keep>
+  void keep_contacts(int slot, Keep keep);  // keep(body a or -1, body b)
+
+  const kernels::WorldTables<Real>& tables_;
+  int groups_, lanes_;
+  // Views hand out pointers that the step writes through.
+  mutable AlignedBuffer<Real> state_;
+  mutable std::array<AlignedBuffer<Real>, kernels::kLists> cache_rows_;
+  mutable std::array<AlignedBuffer<std::int32_t>, kernels::kLists> cache_keys_;
+  mutable AlignedBuffer<std::uint32_t> status_;
+  mutable AlignedBuffer<Real> force_;  // [group][body][force 3, torque 3][lane]
+  bool forced_ = false;
+  mutable AlignedBuffer<std::uint32_t> asleep_, absent_;  // [group][body]
+  mutable AlignedBuffer<std::uint32_t> idle_, resting_;   // [group]
+  mutable AlignedBuffer<Real> rest_time_;                 // [group][body][lane]
+  mutable AlignedBuffer<std::int32_t> island_;            // [group][body][lane]
+  std::vector<char> reached_;                             // [body] scratch of drop_contacts
+};
+
+template <class Real>
+template <class Visit>
+void Storage<Real>::for_each_part(int slot_a, int slot_b, Visit&& visit) const {
+  const auto& t = tables_;
+  const std::size_t lanes = index(lanes_);
+  const auto in_lanes = [&](auto& buffer, std::size_t per_world) {
+    if (buffer.empty()) return;
+    const auto at = [&](int slot) {
+      return buffer.data() + group_of(slot) * per_world * lanes + lane_of(slot);
+    };
+    visit.numbers(at(slot_a), at(slot_b), per_world, lanes);
+  };
+  const auto in_row = [&](auto& buffer, std::size_t stride, std::size_t count) {
+    if (buffer.empty()) return;
+    visit.numbers(buffer.data() + index(slot_a) * stride, buffer.data() + index(slot_b) * stride,
+                  count, std::size_t{1});
+  };
+  in_lanes(state_, index(t.state_size));
+  in_row(status_, 1, 1);
+  for (std::size_t l = 0; l < kernels::kLists; ++l) {
+    const std::size_t capacity = index(t.capacity[l]);
+    const std::size_t row =
+        index(kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l)));
+    in_row(cache_keys_[l], capacity + 1, capacity + 1);
+    in_row(cache_rows_[l], (capacity + 2) * row, capacity * row);
+  }
+  if (forced_) in_lanes(force_, index(t.bodies) * 6);
+  in_lanes(rest_time_, index(t.bodies));
+  in_lanes(island_, index(t.bodies));
+  const auto bit = [&](AlignedBuffer<std::uint32_t>& masks, std::size_t a, std::size_t b) {
+    if (!masks.empty()) visit.bit(masks[a], lane_of(slot_a), masks[b], lane_of(slot_b));
+  };
+  for (int body = 0; body < t.bodies; ++body) {
+    bit(asleep_, body_at(slot_a, body), body_at(slot_b, body));
+    bit(absent_, body_at(slot_a, body), body_at(slot_b, body));
+  }
+  bit(resting_, group_of(slot_a), group_of(slot_b));
+}
+
+}  // namespace manyworlds
