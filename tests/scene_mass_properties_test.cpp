@@ -2,10 +2,15 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "manyworlds/scene.hpp"
+#include "tests/support/mass.hpp"
 
 namespace manyworlds {
 namespace {
+
+using test::body_of;
+using test::check_equal;
+using test::shape;
+using test::turn;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -17,31 +22,6 @@ Scene scene_of(Space space, double density) {
 }
 const Scene kSpatial = scene_of(Space::spatial, 1000);
 const Scene kPlanar = scene_of(Space::planar, 2);
-
-Shape shape(Geometry geometry, const Vec3& position = Vec3::Zero(),
-            const Quat& rotation = Quat::Identity()) {
-  Shape result;
-  result.geometry = std::move(geometry);
-  result.position = position;
-  result.rotation = rotation;
-  return result;
-}
-Body body_of(std::vector<Shape> shapes) {
-  Body body;
-  body.shapes = std::move(shapes);
-  return body;
-}
-Quat turn(double angle, const Vec3& axis) {
-  return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
-}
-
-// Relative to mass, size and largest moment. 1e-13: some hundred roundings of double precision.
-void check_equal(const MassProperties& a, const MassProperties& b, double size = 1,
-                 double tolerance = 1e-13) {
-  CHECK(std::abs(a.mass - b.mass) <= tolerance * b.mass);
-  CHECK((a.center - b.center).norm() <= tolerance * size);
-  CHECK((a.inertia - b.inertia).norm() <= tolerance * b.inertia.norm());
-}
 
 }  // namespace
 

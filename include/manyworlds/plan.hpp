@@ -11,10 +11,13 @@
 
 namespace manyworlds {
 
-// Thrown by compile(): carries every issue of the scene; what() lists them one per line.
+// Thrown by compile(), and for meshes (mesh.hpp): carries every issue of the scene or the mesh;
+// what() lists them one per line.
 class SceneError : public std::invalid_argument {
  public:
   explicit SceneError(std::vector<Issue> issues);
+  // `subject`: what has the issues, in what(); "mesh".
+  SceneError(const char* subject, std::vector<Issue> issues);
   const std::vector<Issue>& issues() const { return issues_; }
 
  private:

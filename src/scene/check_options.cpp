@@ -36,8 +36,7 @@ void check_options(Checker checker, const Options& options) {
   checker.positive("options.dt", options.dt, "s", kSmallestTime, kLargestFinite);
   checker.between("options.substeps", options.substeps, 1, kMostSubsteps);
   checker.finite("options.gravity", options.gravity, "m/s^2");
-  checker.positive("options.density", options.density, checker.planar() ? "kg/m^2" : "kg/m^3",
-                   kSmallestMass, kLargestMass);
+  checker.density("options.density", options.density);
   checker.size("options.length_unit", options.length_unit);
 
   checker.not_negative("options.contact_frequency", options.contact_frequency, "Hz");

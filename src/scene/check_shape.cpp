@@ -22,7 +22,7 @@ constexpr double kSmallestArea = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-std::string vertex_name(std::size_t i) { return "vertices[" + std::to_string(i) + "]"; }
+std::string vertex_name(std::size_t i) { return element_name("vertices", i); }
 
 // |value| <= kLargestSize; for offsets and coordinates, which may have any sign.
 bool check_coordinate(Checker& checker, std::string_view field, double value) {
@@ -176,10 +176,7 @@ void check_shape(Checker checker, const Body& body, const Shape& shape) {
     }
   }
   checker.rotation("rotation", shape.rotation);
-  if (shape.density) {
-    checker.positive("density", *shape.density, checker.planar() ? "kg/m^2" : "kg/m^3",
-                     kSmallestMass, kLargestMass);
-  }
+  if (shape.density) checker.density("density", *shape.density);
   checker.not_negative("material.friction", shape.material.friction, "");
   checker.between("material.restitution", shape.material.restitution, 0, 1);
 }

@@ -33,6 +33,10 @@ std::string vector_text(const Vec2& value) {
   return "(" + number_text(value.x()) + ", " + number_text(value.y()) + ")";
 }
 
+std::string element_name(std::string_view field, std::size_t index) {
+  return std::string(field) + "[" + std::to_string(index) + "]";
+}
+
 Checker Checker::at(const std::string& part) const {
   return {*issues_, space_, part_.empty() ? part : part_ + ", " + part};
 }

@@ -30,7 +30,8 @@ inline constexpr int kMostShapes = 32767;
 
 // Shortest text that reads back as the same number, in any locale; "nan" without a sign.
 std::string number_text(double value);
-std::string vector_text(const Vec2& value);  // "(1, 2)"
+std::string vector_text(const Vec2& value);                           // "(1, 2)"
+std::string element_name(std::string_view field, std::size_t index);  // "vertices[3]"
 
 // Appends issues of one part of a scene, such as "body 3 'crate', shape 1" (empty: of the scene).
 // The check functions add at most one issue per number and tell whether all was well.
@@ -55,6 +56,9 @@ class Checker {
                 double largest);
   bool size(std::string_view field, double value) {
     return positive(field, value, "m", kSmallestSize, kLargestSize);
+  }
+  bool density(std::string_view field, double value) {
+    return positive(field, value, planar() ? "kg/m^2" : "kg/m^3", kSmallestMass, kLargestMass);
   }
   bool between(std::string_view field, double value, double low, double high);
 
