@@ -38,7 +38,8 @@ struct LaneCheck {
   Mask good = mask_from_bits(kAllLanes);
   Mask finite = mask_from_bits(kAllLanes);
 
-  template <class S>
+  // kIdle: some bodies do not take part; what they would do is not committed.
+  template <class S, bool kIdle>
   MW_INLINE void add(const Tables& t, const Group& g, int body, typename S::Vec step,
                      const Velocity<S>& v) {
     const auto x = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.position)) + step;
@@ -48,8 +49,7 @@ struct LaneCheck {
       q = load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation));
       ok = ok & in_range(q, kMaxOrientation);
     }
-    if (has_idle_bodies(g))
-      ok = ok | mask_from_bits(idle_lanes(g, body) & kAllLanes);  // not committed
+    if constexpr (kIdle) ok = ok | mask_from_bits(idle_lanes(g, body) & kAllLanes);
     good = good & ok;
     if (!all(ok)) {
       finite = finite & is_finite(x) & is_finite(v.v) & is_finite(v.w);
@@ -171,6 +171,7 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
 
 template <class S, bool kDense, class Keep>
 void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits, Keep keep) {
+  constexpr bool kIdle = std::is_same_v<Keep, LiveLanes>;
   Mask inside = mask_from_bits(kAllLanes);
   for (int b = 0; b < t.bodies; ++b) {
     const auto& keep_body = keep.of(b);
@@ -187,13 +188,17 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     if (t.cast_moving) {
       step = cast_against_moving(t, g, w, b, old, step, [&](int other) {
         const auto way = get_velocity<S, kDense>(w, w.displacement, other).v;
-        if (!has_idle_bodies(g)) return way;
+        if constexpr (!kIdle) return way;
         return select(mask_from_bits(idle_lanes(g, other) & kAllLanes), way - way, way);
       });
     }
     const auto x = keep_body(old + step, p);
     store(p, x);
-    if (t.has_bounds) inside = inside & (within_bounds(t, x) | absent_lanes(g, b));
+    if (t.has_bounds) {
+      Mask in = within_bounds(t, x);
+      if constexpr (kIdle) in = in | absent_lanes(g, b);
+      inside = inside & in;
+    }
     Real* p_linear = state_of(t, g, b, kState<S>.linear);
     store(p_linear, keep_body(v.v, p_linear));
     if constexpr (!std::is_same_v<S, Tensor>) {
@@ -210,31 +215,35 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
   flag_outside(g, ~bits(inside) & commit_bits);
 }
 
-template <class S, bool kDense>
-void commit_bodies(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits) {
-  if (has_idle_bodies(g)) {
-    commit_lanes<S, kDense>(t, g, w, commit_bits, LiveLanes{g, commit_bits});
-  } else if (commit_bits == kAllLanes) {
-    commit_lanes<S, kDense>(t, g, w, commit_bits, AllLanes{});
-  } else {
-    commit_lanes<S, kDense>(t, g, w, commit_bits, SomeLanes{mask_from_bits(commit_bits)});
-  }
-}
-
 inline void report_overflow(const Group& g, const Work& w) {
   for (int l = 0; w.overflow != 0 && l < kLanes; ++l) {
     if ((w.overflow >> l) & 1u) g.status[l] |= kOverflow;
   }
 }
 
-template <class S, bool kDense>
-void leave_state(const Tables& t, const Group& g, Work& w) {
+template <class S, bool kDense, bool kIdle>
+std::uint32_t judge_bodies(const Tables& t, const Group& g, const Work& w) {
   LaneCheck check;
   for (int b = 0; b < t.bodies; ++b) {
-    check.add<S>(t, g, b, get_velocity<S, kDense>(w, w.displacement, b).v,
-                 get_velocity<S, kDense>(w, w.velocity, b));
+    check.add<S, kIdle>(t, g, b, get_velocity<S, kDense>(w, w.displacement, b).v,
+                        get_velocity<S, kDense>(w, w.velocity, b));
   }
-  commit_bodies<S, kDense>(t, g, w, judge_lanes(g, check));
+  return judge_lanes(g, check);
+}
+
+template <class S, bool kDense>
+void leave_state(const Tables& t, const Group& g, Work& w) {
+  if (has_idle_bodies(g)) {
+    const std::uint32_t commit = judge_bodies<S, kDense, true>(t, g, w);
+    commit_lanes<S, kDense>(t, g, w, commit, LiveLanes{g, commit});
+    return;
+  }
+  const std::uint32_t commit = judge_bodies<S, kDense, false>(t, g, w);
+  if (commit == kAllLanes) {
+    commit_lanes<S, kDense>(t, g, w, commit, AllLanes{});
+  } else {
+    commit_lanes<S, kDense>(t, g, w, commit, SomeLanes{mask_from_bits(commit)});
+  }
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -53,18 +53,22 @@ struct Outcome {
   Mask inside = mask_from_bits(kAllLanes);
 };
 
-template <class S, int kBodies>
+template <class S, int kBodies, bool kIdle>
 MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int first,
                           Outcome& outcome) {
   Flight<S> flight[kBodies];
   for (int i = 0; i < kBodies; ++i) {
     const int b = first + i;
     flight[i] = fly<S>(t, g, w, b);
-    outcome.check.add<S>(t, g, b, flight[i].moved.v, flight[i].v);
+    outcome.check.add<S, kIdle>(t, g, b, flight[i].moved.v, flight[i].v);
     Real* p = state_of(t, g, b, kState<S>.position);
     const auto x = load_as<typename S::Vec>(p) + flight[i].moved.v;
     store(p, x);
-    if (t.has_bounds) outcome.inside = outcome.inside & (within_bounds(t, x) | absent_lanes(g, b));
+    if (t.has_bounds) {
+      Mask in = within_bounds(t, x);
+      if constexpr (kIdle) in = in | absent_lanes(g, b);
+      outcome.inside = outcome.inside & in;
+    }
     store(state_of(t, g, b, kState<S>.linear), flight[i].v.v);
   }
   if constexpr (std::is_same_v<S, Tensor>) {
@@ -90,15 +94,16 @@ MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int fi
   }
 }
 
-template <class S>
+template <class S, bool kIdle>
 Outcome fly_group(const Tables& t, const Group& g, Work& w) {
   // Bodies side by side hide the latency of the tumbling; the others have none to hide.
   constexpr int kTogether = std::is_same_v<S, Tensor> ? 4 : 1;
   if (w.push) turn_body_rows(t, g, w);
   Outcome outcome;
   int b = 0;
-  for (; b + kTogether <= t.bodies; b += kTogether) fly_bodies<S, kTogether>(t, g, w, b, outcome);
-  for (; b < t.bodies; ++b) fly_bodies<S, 1>(t, g, w, b, outcome);
+  for (; b + kTogether <= t.bodies; b += kTogether)
+    fly_bodies<S, kTogether, kIdle>(t, g, w, b, outcome);
+  for (; b < t.bodies; ++b) fly_bodies<S, 1, kIdle>(t, g, w, b, outcome);
   return outcome;
 }
 
@@ -115,9 +120,10 @@ void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
   w.push = g.force ? w.push_storage : nullptr;
   copy_state(w.before, g.state, size);
   std::uint32_t outside = 0;
-  bool good = !has_frozen_lane(g) && !has_idle_bodies(g);
+  const bool idle = has_idle_bodies(g);
+  bool good = !has_frozen_lane(g) && !idle;
   for (int step = 0; good && step < steps; ++step) {
-    const Outcome outcome = fly_group<S>(t, g, w);
+    const Outcome outcome = fly_group<S, false>(t, g, w);
     good = all(outcome.check.good);
     outside |= ~bits(outcome.inside);
   }
@@ -128,11 +134,11 @@ void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
   copy_state(g.state, w.before, size);
   for (int step = 0; step < steps; ++step) {
     copy_state(w.before, g.state, size);
-    const Outcome outcome = fly_group<S>(t, g, w);
+    const Outcome outcome = idle ? fly_group<S, true>(t, g, w) : fly_group<S, false>(t, g, w);
     const std::uint32_t commit = judge_lanes(g, outcome.check);
     const int block = t.state_stride * kLanes;
     for (int b = 0; b < t.bodies; ++b) {
-      const Mask keep = mask_from_bits(commit & ~(has_idle_bodies(g) ? idle_lanes(g, b) : 0));
+      const Mask keep = mask_from_bits(commit & ~(idle ? idle_lanes(g, b) : 0));
       for (int i = b * block; i < (b + 1) * block; i += kLanes) {
         select(keep, Float::load(g.state + i), Float::load(w.before + i)).store(g.state + i);
       }

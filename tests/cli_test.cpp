@@ -94,6 +94,7 @@ const std::set<std::string>& report_keys() {
                                               "dt",
                                               "substeps",
                                               "sleep",
+                                              "awake_fraction",
                                               "world_steps_per_s",
                                               "body_steps_per_s",
                                               "contacts_per_world",
@@ -245,6 +246,26 @@ TEST_CASE("run --json prints exactly the documented keys", "[cli]") {
   for (const auto& share : json["stage_split"]) shares += share.get<double>();
   CHECK(shares == Approx(1.0));
   CHECK(json["hash"] == library_hash("ball3d", 64, 30, 5));
+}
+
+TEST_CASE("run and bench let worlds fall asleep on request", "[cli]") {
+  const Json slept =
+      Json::parse(run("run pyramid2d --worlds 16 --seconds 4 --sleep on --json").out);
+  CHECK(slept["sleep"] == true);
+  CHECK(slept["awake_fraction"] == 0.0);
+  CHECK(contains(run("run pyramid2d --worlds 16 --seconds 4 --sleep on").out, "0.0 % of worlds"));
+  const Json both =
+      Json::parse(run("bench --scenes pyramid2d --worlds 16 --steps 240 --repeats 1 --threads 1 "
+                      "--steps-per-call 1 --sleep both --json")
+                      .out);
+  REQUIRE(both.size() == 2);
+  CHECK(both[0]["sleep"] == false);
+  CHECK(both[0]["awake_fraction"] == 1.0);
+  CHECK(both[1]["sleep"] == true);
+  CHECK(both[1]["awake_fraction"] == 0.0);
+  const Outcome bad = run("run pyramid2d --sleep maybe");
+  CHECK(bad.code == 2);
+  CHECK(contains(bad.err, "--sleep: must be off or on, is 'maybe'"));
 }
 
 TEST_CASE("how a job is cut into calls, threads and layouts does not change its hash", "[cli]") {

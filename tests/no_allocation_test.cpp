@@ -150,6 +150,27 @@ TEST_CASE("stepping allocates nothing", "[slow][allocation]") {
   }
 }
 
+TEST_CASE("falling asleep, packing, waking and disabling allocate nothing", "[fast][allocation]") {
+  Scene scene = crowd(Space::planar);
+  scene.options.time_to_sleep = 0.1;
+  scene.options.sleep_speed = 0.5;
+  for (const Table& table : widest_tables()) {
+    BatchOptions options = options_of(table, 40);
+    options.sleep = true;
+    Batch batch(compile(scene), options);
+    batch.add_force(0, 0, Vec3(1, 0, 0));
+    batch.step();
+    CHECK(calls_during([&] {
+            for (int i = 0; i < 200; ++i) {
+              batch.step();
+              if (i % 20 == 0) batch.add_impulse(i % 40, 0, Vec3(100, 0, 0));
+              if (i % 30 == 0) batch.set_enabled(i % 40, 1, i % 60 == 0);
+            }
+          }) == 0);
+    CHECK(batch.awake_fraction() < 1);
+  }
+}
+
 TEST_CASE("stepping a crowd allocates nothing", "[fast][allocation]") {
   check_scene(crowd(Space::planar));
   check_scene(crowd(Space::spatial));

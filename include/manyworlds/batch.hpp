@@ -175,6 +175,7 @@ class Batch {
   // -- sleep (BatchOptions::sleep). A body wakes in the very step in which an awake one comes near
   // it, and at once by a force, an impulse, a written state, or when a body that it slept with is
   // disabled. Sleeping changes nothing that awake bodies compute.
+  bool sleeps() const;                     // BatchOptions::sleep
   bool asleep(int world, int body) const;  // false for kinematic bodies
   bool asleep(int world) const;            // nothing in it moves: it costs nothing
   void wake(int world);

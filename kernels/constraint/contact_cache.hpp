@@ -40,15 +40,25 @@ class CacheWriter {
     for (int id = 0; id < kLists; ++id) {
       const int capacity = t_.capacity[id];
       if (capacity == 0) continue;
+      if ((w_.partly_asleep | w_.untouched) != 0) {
+        close_sleeping_lanes(id);
+        continue;
+      }
       for (int l = 0; l < kLanes; ++l) {
-        if ((w_.untouched >> l) & 1u) continue;
-        if ((w_.partly_asleep >> l) & 1u) merge_kept(id, l);
         g_.cache[id].keys[l * (capacity + 1) + count_[id][l]] = kernels::kEndOfKeys;
       }
     }
   }
 
  private:
+  void close_sleeping_lanes(int id) {
+    for (int l = 0; l < kLanes; ++l) {
+      if ((w_.untouched >> l) & 1u) continue;
+      if ((w_.partly_asleep >> l) & 1u) merge_kept(id, l);
+      g_.cache[id].keys[l * (t_.capacity[id] + 1) + count_[id][l]] = kernels::kEndOfKeys;
+    }
+  }
+
   // Two ascending lists into one, from the back, in the place of the first.
   void merge_kept(int id, int l) {
     const int capacity = t_.capacity[id];

@@ -250,6 +250,7 @@ void Batch::spawn(int world, int body, const BodyState& state) {
   impl_->core->spawn(p.kind, p.world, body, state);
 }
 
+bool Batch::sleeps() const { return impl_->options.sleep; }
 bool Batch::asleep(int world, int body) const {
   const auto p = impl_->find_body(world, body);
   return impl_->core->asleep(p.kind, p.world, body);

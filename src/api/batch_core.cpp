@@ -21,7 +21,9 @@ template <class Real>
 class CoreOf final : public BatchCore {
  public:
   CoreOf(const std::vector<Batch::Kind>& kinds, const BatchOptions& options, Isa isa, int threads)
-      : kernels_(kernels_for<Real>(isa)), layout_(layout_of(options.layout)) {
+      : kernels_(kernels_for<Real>(isa)),
+        layout_(layout_of(options.layout)),
+        packs_(options.sleep) {
     for (const Isa i : {Isa::scalar, Isa::avx2, Isa::avx512}) {
       if (std::string(kernels_.isa) == to_string(i)) isa_ = i;
     }
@@ -34,6 +36,7 @@ class CoreOf final : public BatchCore {
       groups += worlds_.back()->storage().groups();
     }
     first_group_.push_back(groups);
+    active_.reserve(static_cast<std::size_t>(groups));
     for (int slot = 0; slot < threads; ++slot) {
       auto& scratch = scratch_.emplace_back();
       for (const auto& w : worlds_) {
@@ -46,13 +49,19 @@ class CoreOf final : public BatchCore {
 
   void step(Executor& executor, int n) override {
     steps_ = n;
-    for (auto& w : worlds_) w->pack();
+    find_active();
+    if (!active_.empty() && packs_) {
+      for (auto& w : worlds_) w->pack();
+      find_active();
+    }
     // A kind without contacts keeps its group in the cache for all n steps; so does one with
     // contacts, since groups do not know of each other.
-    executor.run(
-        first_group_.back(),
-        [](void* self, int group, int slot) { static_cast<CoreOf*>(self)->run(group, slot); },
-        this);
+    if (!active_.empty()) {
+      executor.run(
+          static_cast<int>(active_.size()),
+          [](void* self, int index, int slot) { static_cast<CoreOf*>(self)->run(index, slot); },
+          this);
+    }
     for (auto& w : worlds_) w->clear_forces();
   }
 
@@ -152,8 +161,19 @@ class CoreOf final : public BatchCore {
 
   Worlds<Real>& at(int kind) const { return *worlds_[static_cast<std::size_t>(kind)]; }
 
-  void run(int group, int slot) {
+  void find_active() {
+    active_.clear();
+    for (std::size_t k = 0; k < worlds_.size(); ++k) {
+      const Storage<Real>& storage = worlds_[k]->storage();
+      for (int g = 0; g < storage.groups(); ++g) {
+        if (storage.moving_lanes(g) != 0) active_.push_back(first_group_[k] + g);
+      }
+    }
+  }
+
+  void run(int index, int slot) {
     const FlushDenormals flush;  // whatever thread this is
+    const int group = active_[static_cast<std::size_t>(index)];
     std::size_t kind = 0;
     while (group >= first_group_[kind + 1]) ++kind;
     const auto& w = *worlds_[kind];
@@ -170,9 +190,11 @@ class CoreOf final : public BatchCore {
   int steps_ = 0;
   std::vector<std::unique_ptr<Worlds<Real>>> worlds_;
   std::vector<int> first_group_;
+  std::vector<int> active_;  // groups in which something moves
   std::vector<ThreadScratch> scratch_;
   std::vector<ThreadCounters> counters_;
   bool profiling_ = false;
+  bool packs_;  // worlds may sleep
 };
 
 template <class Real>

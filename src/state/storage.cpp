@@ -211,12 +211,6 @@ void Storage<Real>::rest(int slot) {
   find_idle(group_of(slot));
 }
 
-template <class Real>
-std::uint32_t Storage<Real>::moving_lanes(int group) const {
-  const std::uint32_t all = (1u << lanes_) - 1;
-  return tables_.has_sleep ? ~resting_[index(group)] & all : all;
-}
-
 namespace {
 
 struct Swap {

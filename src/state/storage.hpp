@@ -48,7 +48,10 @@ class Storage {
   void wake_island(int slot, int body);  // those that fell asleep together with it
   void rest(int slot);                   // a lane without a world: nothing in it ever moves
   // Lanes of a group in which something may move.
-  std::uint32_t moving_lanes(int group) const;
+  std::uint32_t moving_lanes(int group) const {
+    const std::uint32_t all = (1u << lanes_) - 1;
+    return resting_.empty() ? all : ~resting_[index(group)] & all;
+  }
 
   // Every number of a world, in a fixed order that does not depend on the lane, to what lies in
   // another slot in the same place: visit.numbers(a, b, count, stride), visit.bit(word of a, lane

@@ -104,20 +104,22 @@ class SceneBench {
 
 void print_head(const BenchOptions& options, const Batch& batch) {
   const std::string calls = fmt::format("step({})", options.job.steps_per_call);
-  fmt::print("{}, {} of warm-up, {} timed, median of {}; {}, sleep off\n\n",
+  fmt::print("{}, {} of warm-up, {} timed, median of {}; {}\n\n",
              counted(options.job.worlds, "world"), counted(options.warm_up, "step"),
              options.job.steps, counted(options.repeats, "run"), batch.kernel_table());
-  fmt::print("{:<15}{:>8}{:>22}{:>14}{:>10}{:>12}{:>8}  {:<16}\n", "", "", "world-steps/s",
-             "body-steps/s", "contacts", "deepest", "lost", "");
-  fmt::print("{:<15}{:>8}{:>11}{:>11}{:>14}{:>10}{:>12}{:>8}  {:<16}\n", "scene", "threads",
-             "step(1)", calls, calls, "/world", "overlap", "worlds", "hash");
+  fmt::print("{:<15}{:>8}{:>7}{:>22}{:>14}{:>10}{:>12}{:>8}{:>8}  {:<16}\n", "", "", "",
+             "world-steps/s", "body-steps/s", "contacts", "deepest", "lost", "worlds", "");
+  fmt::print("{:<15}{:>8}{:>7}{:>11}{:>11}{:>14}{:>10}{:>12}{:>8}{:>8}  {:<16}\n", "scene",
+             "threads", "sleep", "step(1)", calls, calls, "/world", "overlap", "worlds", "awake",
+             "hash");
 }
 
 void print_row(const Report& single, const Report& multiple) {
-  fmt::print("{:<15}{:>8}{:>11}{:>11}{:>14}{:>10.1f}{:>12}{:>8}  {:<16}\n", single.scene,
-             single.threads, with_prefix(single.world_steps_per_s),
-             with_prefix(multiple.world_steps_per_s), with_prefix(multiple.body_steps_per_s),
-             single.contacts_per_world, length(single.max_penetration), single.lost_worlds,
+  fmt::print("{:<15}{:>8}{:>7}{:>11}{:>11}{:>14}{:>10.1f}{:>12}{:>8}{:>7.1f}%  {:<16}\n",
+             single.scene, single.threads, single.sleep ? "on" : "off",
+             with_prefix(single.world_steps_per_s), with_prefix(multiple.world_steps_per_s),
+             with_prefix(multiple.body_steps_per_s), single.contacts_per_world,
+             length(single.max_penetration), single.lost_worlds, 100 * single.awake_fraction,
              hex(single.hash));
   std::fflush(stdout);
 }
@@ -133,53 +135,65 @@ std::vector<Job> prepare_all(const BenchOptions& options) {
   return jobs;
 }
 
+// One scene, with sleep or without: a row for 1 thread and one for all. Throws HashMismatch.
+// Returns whether a world was lost.
+bool bench_scene(const BenchOptions& options, const Job& job, Progress& progress, bool& head,
+                 nlohmann::ordered_json& list) {
+  const JobOptions& job_options = options.job;
+  SceneBench bench(options, job, progress);
+  int last_threads = 0;
+  for (const int threads : {1, job_options.threads}) {
+    Batch batch =
+        make_batch(job, job_options, job_options.worlds, job_options.seed.value_or(0), threads);
+    if (batch.threads() == last_threads) continue;  // a machine with one core
+    last_threads = batch.threads();
+    if (std::exchange(head, false)) print_head(options, batch);
+    const Report single = bench.time(batch, 1);
+    list.push_back(to_json(single));
+    Report multiple = single;
+    if (job_options.steps_per_call > 1) {
+      multiple = bench.time(batch, job_options.steps_per_call);
+      list.push_back(to_json(multiple));
+    }
+    progress.erase();
+    if (!job_options.json) print_row(single, multiple);
+  }
+  JobOptions reproduce = job_options;
+  reproduce.scene = job.scene;
+  print_lost(bench.lost(), reproduce, options.warm_up + job.steps, kLostShown);
+  return !bench.lost().lost().empty();
+}
+
 }  // namespace
 
 int bench_command(const BenchOptions& options) {
   const std::vector<Job> jobs = prepare_all(options);  // every name is checked before the first run
-  const JobOptions& job_options = options.job;
-  const std::uint64_t seed = job_options.seed.value_or(0);
 
   // Steps of all runs: two thread counts, two kinds of call.
-  const std::int64_t runs = 2 * 2 * static_cast<std::int64_t>(options.repeats);
+  const std::int64_t runs = 2 * 2 * static_cast<std::int64_t>(options.repeats) *
+                            static_cast<std::int64_t>(options.sleep.size());
   std::int64_t work = 0;
   for (const Job& job : jobs) work += runs * (job.steps + options.warm_up);
   Progress progress("bench", work);
 
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   bool any_lost = false;
-  bool head = !job_options.json;
-  for (const Job& job : jobs) {
-    SceneBench bench(options, job, progress);
-    int last_threads = 0;
-    for (const int threads : {1, job_options.threads}) {
-      Batch batch = make_batch(job, job_options, job_options.worlds, seed, threads);
-      if (batch.threads() == last_threads) continue;  // a machine with one core
-      last_threads = batch.threads();
-      if (std::exchange(head, false)) print_head(options, batch);
-      try {
-        const Report single = bench.time(batch, 1);
-        list.push_back(to_json(single));
-        Report multiple = single;
-        if (job_options.steps_per_call > 1) {
-          multiple = bench.time(batch, job_options.steps_per_call);
-          list.push_back(to_json(multiple));
-        }
-        progress.erase();
-        if (!job_options.json) print_row(single, multiple);
-      } catch (const HashMismatch& mismatch) {
-        progress.erase();
-        fmt::print(stderr, "manyworlds: {}\n", mismatch.what());
-        return kWorldLost;
+  bool head = !options.job.json;
+  try {
+    for (const Job& job : jobs) {
+      for (const bool sleep : options.sleep) {
+        BenchOptions one = options;
+        one.job.sleep = sleep;
+        any_lost = bench_scene(one, job, progress, head, list) || any_lost;
       }
     }
-    JobOptions reproduce = job_options;
-    reproduce.scene = job.scene;
-    print_lost(bench.lost(), reproduce, options.warm_up + job.steps, kLostShown);
-    any_lost = any_lost || !bench.lost().lost().empty();
+  } catch (const HashMismatch& mismatch) {
+    progress.erase();
+    fmt::print(stderr, "manyworlds: {}\n", mismatch.what());
+    return kWorldLost;
   }
   progress.erase();
-  if (job_options.json) fmt::print("{}\n", list.dump(2));
+  if (options.job.json) fmt::print("{}\n", list.dump(2));
   return any_lost ? kWorldLost : kOk;
 }
 

@@ -67,6 +67,7 @@ Batch make_batch(const Job& job, const JobOptions& options, int worlds, std::uin
   batch_options.precision = options.precision;
   batch_options.isa = options.isa;
   batch_options.layout = options.layout;
+  batch_options.sleep = options.sleep;
   return Batch(job.plan, batch_options);
 }
 

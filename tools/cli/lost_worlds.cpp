@@ -40,6 +40,7 @@ std::string reproduce_command(const JobOptions& options, int steps, std::uint64_
                                     quoted(options.scene), seed, steps);
   if (options.dt) command += fmt::format(" --dt {}", *options.dt);
   if (options.substeps) command += fmt::format(" --substeps {}", *options.substeps);
+  if (options.sleep) command += " --sleep on";
   if (options.precision != Precision::f32) {
     command += fmt::format(" --precision {}", to_string(options.precision));
   }

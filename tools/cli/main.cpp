@@ -50,6 +50,7 @@ void add_run(CLI::App& app, AllOptions& all, int& code) {
   add_batch_options(*command, all.run);
   add_length_options(*command, all.run);
   add_count(*command, "--steps-per-call", all.run.steps_per_call, 1, "n of each step(n) call");
+  add_sleep_option(*command, all.run.sleep);
   add_plan_options(*command, all.run);
   add_seed(*command, all.run.seed, "world i draws from seed + i (default: 0)");
   add_json_option(*command, all.run);
@@ -58,6 +59,7 @@ void add_run(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds run bin-boxes --worlds 4096 --seconds 5\n"
       "  manyworlds run pile.xml --dt 0.005 --substeps 2 --threads 1 --json\n"
       "  manyworlds run stack10 --precision f64 --worlds 1 --seed 17\n"
+      "  manyworlds run bin-boxes --seconds 20 --sleep on\n"
       "\n"
       "Contacts, penetration, energy, lost worlds and hash are of the state after the last\n"
       "step. The stage split is measured afterwards, in a few more steps.");
@@ -86,6 +88,7 @@ void add_bench(CLI::App& app, AllOptions& all, int& code) {
   add_count(*command, "--warm-up", all.bench.warm_up, 0, "steps before the clock starts");
   add_count(*command, "--repeats", all.bench.repeats, 1, "runs; the median counts");
   add_count(*command, "--steps-per-call", job.steps_per_call, 1, "k of the step(k) column");
+  add_sleep_options(*command, all.bench.sleep);
   add_plan_options(*command, job);
   add_seed(*command, job.seed, "world i draws from seed + i (default: 0)");
   add_json_option(*command, job);
@@ -94,6 +97,7 @@ void add_bench(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds bench\n"
       "  manyworlds bench --scenes bin-spheres,bin-boxes --steps 600 --repeats 5\n"
       "  manyworlds bench --threads 2 --json\n"
+      "  manyworlds bench --sleep both --steps 1200\n"
       "\n"
       "Each scene is measured with 1 thread and with --threads (default: all), by step(1)\n"
       "calls and by step(k) calls. All runs of a scene must end in the same hash.");
@@ -124,6 +128,7 @@ void add_soak(CLI::App& app, AllOptions& all, int& code) {
   add_scene_argument(*command, all.soak);
   add_batch_options(*command, all.soak);
   add_length_options(*command, all.soak);
+  add_sleep_option(*command, all.soak.sleep);
   add_plan_options(*command, all.soak);
   add_seed(*command, all.soak.seed, "world i draws from seed + i (default: random, printed)");
   command->footer(

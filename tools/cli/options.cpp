@@ -199,6 +199,19 @@ void add_length_options(CLI::App& app, JobOptions& options) {
       ->excludes(steps);
 }
 
+void add_sleep_option(CLI::App& app, bool& sleep) {
+  add_choice<bool>(
+      app, "--sleep", {{"off", false}, {"on", true}}, [&sleep](bool value) { sleep = value; },
+      "let bodies at rest fall asleep (default: off)");
+}
+
+void add_sleep_options(CLI::App& app, std::vector<bool>& sleep) {
+  add_choice<std::vector<bool>>(
+      app, "--sleep", {{"off", {false}}, {"on", {true}}, {"both", {false, true}}},
+      [&sleep](const std::vector<bool>& value) { sleep = value; },
+      "let bodies at rest fall asleep, or not, or one after the other (default: off)");
+}
+
 void add_json_option(CLI::App& app, JobOptions& options) {
   app.add_flag("--json", options.json, "print JSON instead of text");
 }

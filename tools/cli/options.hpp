@@ -43,6 +43,7 @@ struct JobOptions {
   std::optional<std::uint64_t> seed;  // world i draws from seed + i
   std::optional<Isa> isa;
   ContactLayout layout = ContactLayout::automatic;
+  bool sleep = false;
 
   // The length of the job.
   int steps = 300;
@@ -57,6 +58,7 @@ struct BenchOptions {
   std::vector<std::string> scenes;  // empty: the standard ones
   int warm_up = 60;                 // steps before the clock starts
   int repeats = 3;                  // timed runs; the median counts
+  std::vector<bool> sleep = {false};
 };
 
 struct VerifyOptions {
@@ -71,6 +73,8 @@ void add_scene_argument(CLI::App& app, JobOptions& options);
 void add_plan_options(CLI::App& app, JobOptions& options);
 void add_batch_options(CLI::App& app, JobOptions& options);
 void add_length_options(CLI::App& app, JobOptions& options);
+void add_sleep_option(CLI::App& app, bool& sleep);
+void add_sleep_options(CLI::App& app, std::vector<bool>& sleep);  // or both
 void add_json_option(CLI::App& app, JobOptions& options);
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes);
 // A whole number of at least `least`.

@@ -47,6 +47,8 @@ Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call
   report.max_penetration = contacts.max_penetration;
   report.mean_energy = mean_energy(batch);
   report.bytes_per_world = batch.bytes_per_world();
+  report.sleep = batch.sleeps();
+  report.awake_fraction = batch.awake_fraction();
   report.lost_worlds = batch.lost_worlds();
   report.hash = batch.hash();
   return report;
@@ -81,7 +83,7 @@ nlohmann::ordered_json to_json(const Report& report) {
       {"solver", "tgs-soft"},
       {"dt", report.dt},
       {"substeps", report.substeps},
-      {"sleep", false},
+      {"sleep", report.sleep},
       {"world_steps_per_s", report.world_steps_per_s},
       {"body_steps_per_s", report.body_steps_per_s},
       {"contacts_per_world", report.contacts_per_world},
@@ -89,6 +91,7 @@ nlohmann::ordered_json to_json(const Report& report) {
       {"max_joint_gap_m", 0.0},  // no scene has joints
       {"energy_j", report.mean_energy.kinetic + report.mean_energy.potential},
       {"bytes_per_world", report.bytes_per_world},
+      {"awake_fraction", report.awake_fraction},
       {"lost_worlds", report.lost_worlds},
       {"stage_split", stages},
       {"hash", hex(report.hash)},

@@ -29,6 +29,7 @@ struct Report {
   Precision precision = Precision::f32;
   double dt = 0;  // s
   int substeps = 0;
+  bool sleep = false;
   double world_steps_per_s = 0;
   double body_steps_per_s = 0;
   // All of the following describe the state after the last timed step.
@@ -37,6 +38,7 @@ struct Report {
   double max_penetration = 0;  // m
   Energy mean_energy;          // J, over worlds
   std::size_t bytes_per_world = 0;
+  double awake_fraction = 1;  // of worlds
   int lost_worlds = 0;
   std::uint64_t hash = 0;
   std::vector<StageShare> stage_split;

@@ -62,6 +62,7 @@ void print_summary(const Report& report, const LostWorlds& worlds, const Batch& 
       fmt::format("{:.2f} kB per world", static_cast<double>(report.bytes_per_world) / 1e3));
   row("contacts", fmt::format("{:.1f} points in {:.1f} manifolds per world",
                               report.contacts_per_world, report.manifolds_per_world));
+  if (report.sleep) row("awake", fmt::format("{:.1f} % of worlds", 100 * report.awake_fraction));
   row("penetration", fmt::format("{} at most", length(report.max_penetration)));
   row("energy", fmt::format("{:.6g} J per world ({:.6g} kinetic, {:.6g} potential)",
                             report.mean_energy.kinetic + report.mean_energy.potential,
