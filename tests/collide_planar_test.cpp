@@ -16,6 +16,7 @@ using Maker = Geometry (*)(Random&);
 Geometry any_circle(Random& r) { return Circle{r.uniform(0.1, 0.6)}; }
 Geometry any_polygon(Random& r) { return random_polygon(r, r.integer(3, 8)); }
 Geometry any_rectangle(Random& r) { return Polygon::box(r.uniform(0.1, 0.6), r.uniform(0.1, 0.6)); }
+Geometry any_capsule(Random& r) { return random_capsule(r); }
 Geometry any_line(Random& r) {
   const Vec3 n = r.planar_direction();
   return HalfPlane{Vec2(n.x(), n.y()), r.uniform(-0.5, 0.5)};
@@ -83,6 +84,40 @@ TEST_CASE("rectangle-rectangle agrees with its twin", "[slow][collide]") {
 }
 TEST_CASE("polygon against a fixed polygon agrees with its twin", "[slow][collide]") {
   check(any_polygon, Motion::fixed, any_polygon, 2);
+}
+
+TEST_CASE("capsule-circle agrees with its planar twin", "[slow][collide]") {
+  check(any_capsule, Motion::dynamic, any_circle, 1);
+}
+TEST_CASE("circle against a fixed capsule agrees with its planar twin", "[slow][collide]") {
+  check(any_capsule, Motion::fixed, any_circle, 1);
+}
+TEST_CASE("capsule against a fixed circle agrees with its planar twin", "[slow][collide]") {
+  check(any_circle, Motion::fixed, any_capsule, 1);
+}
+TEST_CASE("capsule-halfplane agrees with its twin", "[slow][collide]") {
+  check(any_line, Motion::fixed, any_capsule, 2);
+}
+TEST_CASE("capsule-capsule agrees with its planar twin", "[slow][collide]") {
+  check(any_capsule, Motion::dynamic, any_capsule, 2);
+}
+TEST_CASE("capsule against a fixed capsule agrees with its planar twin", "[slow][collide]") {
+  check(any_capsule, Motion::fixed, any_capsule, 2);
+}
+TEST_CASE("rectangle-capsule agrees with its twin", "[slow][collide]") {
+  check(any_rectangle, Motion::dynamic, any_capsule, 2);
+}
+TEST_CASE("polygon-capsule agrees with its twin", "[slow][collide]") {
+  check(any_polygon, Motion::dynamic, any_capsule, 2);
+}
+TEST_CASE("capsule against a fixed polygon agrees with its twin", "[slow][collide]") {
+  check(any_polygon, Motion::fixed, any_capsule, 2);
+}
+TEST_CASE("rectangle against a fixed capsule agrees with its twin", "[slow][collide]") {
+  check(any_capsule, Motion::fixed, any_rectangle, 2);
+}
+TEST_CASE("polygon against a fixed capsule agrees with its twin", "[slow][collide]") {
+  check(any_capsule, Motion::fixed, any_polygon, 2);
 }
 
 }  // namespace manyworlds::test

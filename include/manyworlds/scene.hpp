@@ -38,6 +38,12 @@ struct Plane {  // spatial, fixed bodies only: all points p with normal . p <= o
   Vec3 normal{0, 0, 1};  // unit, body frame, pointing out of the solid
   double offset = 0;     // m
 };
+// All points no farther than the radius from a straight line of length 2 half_length, centred on
+// the shape frame: along z in a spatial scene, along y in a planar one.
+struct Capsule {
+  double radius = 0.25;      // m
+  double half_length = 0.5;  // m, without the round ends
+};
 struct Circle {         // planar
   double radius = 0.5;  // m
 };
@@ -53,7 +59,7 @@ struct HalfPlane {    // planar, fixed bodies only: all points p with normal . p
   Vec2 normal{0, 1};  // unit, body frame
   double offset = 0;  // m
 };
-using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane>;
+using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Capsule>;
 
 struct Material {
   double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean of its two

@@ -141,6 +141,10 @@ struct GeometryCheck {
     in_space(Space::planar, "polygon");
     check_polygon(checker, polygon);
   }
+  void operator()(const Capsule& capsule) const {
+    checker.size("radius", capsule.radius);
+    checker.size("half_length", capsule.half_length);
+  }
   void operator()(const HalfPlane& plane) const {
     in_space(Space::planar, "half-plane");
     on_fixed_body("half-plane");
@@ -153,10 +157,11 @@ struct GeometryCheck {
  private:
   void in_space(Space space, const std::string& kind) const {
     if (space == checker.space()) return;
-    checker.add("geometry",
-                "is a " + kind +
-                    (checker.planar() ? ", a planar scene takes circle, polygon and half-plane"
-                                      : ", a spatial scene takes sphere, box and plane"));
+    checker.add(
+        "geometry",
+        "is a " + kind +
+            (checker.planar() ? ", a planar scene takes circle, polygon, capsule and half-plane"
+                              : ", a spatial scene takes sphere, box, capsule and plane"));
   }
   void on_fixed_body(const std::string& kind) const {
     if (body.motion == Motion::fixed) return;

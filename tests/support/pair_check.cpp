@@ -17,6 +17,7 @@ double reach(const Shape& shape) {  // no point of the shape is farther from the
   if (const auto* s = std::get_if<Sphere>(&shape.geometry)) r = s->radius;
   if (const auto* c = std::get_if<Circle>(&shape.geometry)) r = c->radius;
   if (const auto* b = std::get_if<Box>(&shape.geometry)) r = b->half_extents.norm();
+  if (const auto* c = std::get_if<Capsule>(&shape.geometry)) r = c->radius + c->half_length;
   if (const auto* p = std::get_if<Polygon>(&shape.geometry))
     for (const Vec2& v : p->vertices) r = std::max(r, v.norm());
   return r + shape.position.norm();
@@ -47,7 +48,7 @@ void place(const Scene& scene, std::vector<Pose>& pose, Random& random) {
   const std::size_t base = 1 - mover;
   const Shape& fixed_shape = scene.bodies[base].shapes[0];
   const Shape& moved_shape = scene.bodies[mover].shapes[0];
-  const Solid still = make_solid(fixed_shape, pose[base]);
+  const Solid still = make_solid(fixed_shape, pose[base], scene.space);
   const Vec3 ray = still.kind == Solid::Kind::half_space
                        ? still.normal
                        : (planar ? random.planar_direction() : random.direction());
@@ -67,7 +68,8 @@ void place(const Scene& scene, std::vector<Pose>& pose, Random& random) {
   double low = still.kind == Solid::Kind::half_space ? -far : 0, high = far;
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
-    (separation(still, make_solid(moved_shape, at(middle))) < wanted ? low : high) = middle;
+    (separation(still, make_solid(moved_shape, at(middle), scene.space)) < wanted ? low : high) =
+        middle;
   }
   pose[mover] = at(high);
 }
@@ -102,8 +104,8 @@ class Judge {
     pose_ = &pose;
     contacts_ = &contacts;
     const double margin = 4 * scene_.options.slop * scene_.options.length_unit;
-    const Solid first = make_solid(scene_.bodies[0].shapes[0], pose[0]);
-    const Solid second = make_solid(scene_.bodies[1].shapes[0], pose[1]);
+    const Solid first = make_solid(scene_.bodies[0].shapes[0], pose[0], scene_.space);
+    const Solid second = make_solid(scene_.bodies[1].shapes[0], pose[1], scene_.space);
     truth_ = separation(first, second);
     ++result_.poses;
     if (truth_ < 0) ++result_.overlapping;
@@ -190,6 +192,8 @@ class Judge {
       s << " box " << box->half_extents.transpose();
     if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) s << " r " << sphere->radius;
     if (const auto* circle = std::get_if<Circle>(&shape.geometry)) s << " r " << circle->radius;
+    if (const auto* capsule = std::get_if<Capsule>(&shape.geometry))
+      s << " r " << capsule->radius << " half " << capsule->half_length;
     if (const auto* polygon = std::get_if<Polygon>(&shape.geometry))
       for (const Vec2& v : polygon->vertices) s << " (" << v.x() << ", " << v.y() << ")";
     s << "\n";
@@ -252,6 +256,10 @@ Polygon random_polygon(Random& random, int vertices) {
 
 Box random_box(Random& random) {
   return {{random.uniform(0.1, 0.6), random.uniform(0.1, 0.6), random.uniform(0.1, 0.6)}};
+}
+
+Capsule random_capsule(Random& random) {
+  return {random.uniform(0.1, 0.4), random.uniform(0.05, 0.6)};
 }
 
 Body random_body(Geometry geometry, Motion motion, bool offset, Space space, Random& random) {
