@@ -99,12 +99,14 @@ MW_INLINE Float free_share(kernels::ShapeKind kind, Row row, Vec start, Vec step
   const Float zero(Real(0)), one(Real(1));
   const Float inv_length = one / max(sqrt(dot(step, step)), Real(1e-20));
   Float share = zero;
-  Mask moving = fast & (core < distance_to_shape(kind, row, start));
+  // As near as a cast may end, so that one who stopped there can go away again.
+  const Float touching = core * Float(Real(1.01));
+  Mask moving = fast & (touching < distance_to_shape(kind, row, start));
   const Mask outside = moving;
   for (int round = 0; round < kCastRounds && any(moving); ++round) {
-    const Float gap = distance_to_shape(kind, row, fma(step, share, start)) - core;
-    const Mask close = gap < core * Float(Real(0.01));
-    const Float next = fma(gap, inv_length, share);
+    const Float distance = distance_to_shape(kind, row, fma(step, share, start));
+    const Mask close = distance < touching;
+    const Float next = fma(distance - core, inv_length, share);
     moving = moving & !close;
     share = select(moving, min(next, one), share);
     moving = moving & (share < one);
