@@ -75,6 +75,11 @@ MW_INLINE Float distance_to_shape(kernels::ShapeKind kind, Row row, Vec2 p) {
   if (kind == kernels::ShapeKind::capsule) {
     return distance_to_capsule(d, Vec2{row(4), row(5)}, row(3), row(7));
   }
+  if (kind == kernels::ShapeKind::link) {  // nothing for what comes from behind
+    const Vec2 axis{row(2), row(3)};
+    const Float distance = distance_to_capsule(d, axis, zero, row(4));
+    return select(cross(axis, d) < zero, zero, distance);
+  }
   if (kind == kernels::ShapeKind::rectangle) {
     const Vec2 local = rotate_inverse({row(2), row(3)}, d);
     const Vec2 out{max(abs(local.x) - row(4), zero), max(abs(local.y) - row(5), zero)};

@@ -16,7 +16,7 @@ enum class Dimension : int { planar, spatial };
 enum class InertiaKind : int { planar, isotropic, tensor };
 inline constexpr int kInertiaKinds = 3;
 
-enum class ShapeKind : int { sphere, box, circle, rectangle, polygon, plane, capsule };
+enum class ShapeKind : int { sphere, box, circle, rectangle, polygon, plane, capsule, link };
 
 // Shape pairs; the first shape is A. Planes and other fixed shapes are always A. Capsules have the
 // same names in the plane and in space.
@@ -49,8 +49,12 @@ enum class PairKind : int {
   capsule_box,        // fixed capsule
   capsule_rectangle,  // fixed capsule
   capsule_polygon,    // fixed capsule
+  link_circle,
+  link_rectangle,
+  link_polygon,
+  link_capsule,
 };
-inline constexpr int kPairKinds = 28;
+inline constexpr int kPairKinds = 32;
 static inline constexpr bool is_plane(PairKind kind) {
   return kind == PairKind::plane_sphere || kind == PairKind::plane_box ||
          kind == PairKind::plane_circle || kind == PairKind::plane_rectangle ||
@@ -75,12 +79,15 @@ inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of po
 //   polygon               x y count radius | 8 vertices | 8 normals, about x y     (36)
 //   plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
 //   capsule               x y z radius | a.x a.y a.z half, a: the axis (8; a.z unused in the plane)
+//   link                  x y a.x a.y | half low high index | b.x b.y c.x c.y, a: the axis; low and
+//                         high: reach along it; b, c: last normals at its ends (12)
 static inline constexpr int pose_row_size(ShapeKind kind) {
   switch (kind) {
     case ShapeKind::box: return 16;
     case ShapeKind::rectangle:
     case ShapeKind::plane:
     case ShapeKind::capsule: return 8;
+    case ShapeKind::link: return 12;
     case ShapeKind::polygon: return 4 + 4 * kMaxVertices;
     default: return 4;
   }

@@ -5,7 +5,7 @@
 #include "kernels/collide/box_box.hpp"
 #include "kernels/collide/box_capsule.hpp"
 #include "kernels/collide/box_round.hpp"
-#include "kernels/collide/planar_capsule.hpp"
+#include "kernels/collide/link_pairs.hpp"
 #include "kernels/collide/polygon_pairs.hpp"
 #include "kernels/collide/rectangle_rectangle.hpp"
 #include "kernels/stages.hpp"
@@ -77,7 +77,8 @@ void find_axes(const Tables& t, Work& w) {
 
 // Shape pairs whose A is always fixed.
 template <class Pair>
-inline constexpr bool kOnlyFixed = std::is_same_v<typename Pair::A, PlanePose>;
+inline constexpr bool kOnlyFixed =
+    std::is_same_v<typename Pair::A, PlanePose> || std::is_same_v<typename Pair::A, LinkPose>;
 template <class S, class Reverse>
 inline constexpr bool kOnlyFixed<Reversed<S, Reverse>> = true;
 
@@ -139,6 +140,10 @@ void fill_narrow_phase(kernels::Stage<Real>* out) {
     at(PairKind::circle_capsule) = collide<S, Reversed<S, CapsuleCircle>, kDense>;
     at(PairKind::capsule_rectangle) = collide<S, Reversed<S, RectangleCapsule>, kDense>;
     at(PairKind::capsule_polygon) = collide<S, Reversed<S, PolygonCapsule>, kDense>;
+    at(PairKind::link_circle) = collide<S, LinkCircle<S>, kDense>;
+    at(PairKind::link_rectangle) = collide<S, LinkEdges<S, RectanglePose>, kDense>;
+    at(PairKind::link_polygon) = collide<S, LinkEdges<S, PolygonPose>, kDense>;
+    at(PairKind::link_capsule) = collide<S, LinkEdges<S, CapsulePose<Vec2>>, kDense>;
   }
 }
 

@@ -34,7 +34,7 @@ MW_INLINE NearestCorner nearest_corner(const Corners<N>& a, const CapsulePose<Ve
 template <class S>
 MW_INLINE void put_corner(Mask use, const NearestCorner& near, Float radius_a, Float radius_b,
                           Vec2 d, Manifold<S, 2>& m) {
-  const Float zero(Real(0)), one(Real(1)), sixty_four(Real(64));
+  const Float zero(Real(0)), one(Real(1)), corners(Real(128));
   const Float distance = sqrt(select(use, near.way2, one));
   Manifold<S, 2> corner;
   corner.normal = near.way * (one / distance);
@@ -46,7 +46,7 @@ MW_INLINE void put_corner(Mask use, const NearestCorner& near, Float radius_a, F
   m.feature_x[0] = select(use, zero, m.feature_x[0]);
   m.valid[0] = m.valid[0] | use;
   m.valid[1] = m.valid[1] & !use;
-  m.code = select(use, near.index + sixty_four, m.code);
+  m.code = select(use, near.index + corners, m.code);
 }
 
 // The edges of a capsule's outline against another's: ref is the one with the larger separation.

@@ -34,6 +34,11 @@ struct CapsulePose {
   Vec p, axis;
   Float radius, half;  // half length without the round ends
 };
+struct LinkPose {  // p: its middle
+  Vec2 p, axis;
+  Float half, low, high, index;  // contacts from low to high along the axis
+  Vec2 before, after;            // last normals at either end
+};
 struct PlanePose {  // origin at the point of the plane nearest to the world's origin
   Vec3 normal, tangent;
   Float offset;
@@ -77,6 +82,12 @@ MW_INLINE void load_pose(const Real* base, const std::int32_t* o, CapsulePose<Ve
   Float unused;
   load_rows4(base, o, c.p.x, c.p.y, unused, c.radius);
   load_rows4(base + 4, o, c.axis.x, c.axis.y, unused, c.half);
+}
+
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, LinkPose& l) {
+  load_rows4(base, o, l.p.x, l.p.y, l.axis.x, l.axis.y);
+  load_rows4(base + 4, o, l.half, l.low, l.high, l.index);
+  load_rows4(base + 8, o, l.before.x, l.before.y, l.after.x, l.after.y);
 }
 
 // Two vertices (or with k >= kMaxVertices normals) of the polygons of the lanes.

@@ -61,6 +61,16 @@ PlanCollider local_collider(const Shape& shape, bool rectangles) {
     c.half.x() = capsule->half_length;
     c.thickness = c.inner_radius = capsule->radius;
     c.radius = capsule->half_length + capsule->radius;
+  } else if (const auto* segment = std::get_if<Segment>(&shape.geometry)) {
+    // A capsule without thickness.
+    c.kind = ShapeKind::capsule;
+    const Vec2 middle = (segment->a + segment->b) / 2, span = segment->b - segment->a;
+    const Vec2 along = span.normalized();
+    Mat3 turn = Mat3::Identity();
+    turn.topLeftCorner<2, 2>() << along.y(), along.x(), -along.x(), along.y();
+    c.offset += c.rotation * Vec3(middle.x(), middle.y(), 0);
+    c.rotation = c.rotation * turn;
+    c.half.x() = c.radius = span.norm() / 2;
   } else if (const auto* polygon = std::get_if<Polygon>(&shape.geometry)) {
     const auto& v = polygon->vertices;
     Vec2 middle = Vec2::Zero();
@@ -185,9 +195,15 @@ void collect_colliders(PlanData& plan) {
     const int state = plan.state_body[i];
     for (std::size_t k = 0; k < body.shapes.size(); ++k) {
       if (body.motion == Motion::fixed) {
-        PlanFixed f = fixed_shape(body, body.shapes[k], rectangles, planar);
-        f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
-        plan.fixed.push_back(std::move(f));
+        const Shape& shape = body.shapes[k];
+        std::vector<PlanFixed> parts =
+            std::holds_alternative<Terrain>(shape.geometry)
+                ? terrain_links(body, shape)
+                : std::vector{fixed_shape(body, shape, rectangles, planar)};
+        for (PlanFixed& f : parts) {
+          f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
+          plan.fixed.push_back(std::move(f));
+        }
         continue;
       }
       PlanBody& owner = plan.bodies[static_cast<std::size_t>(state)];

@@ -42,6 +42,10 @@ Match match(ShapeKind a, ShapeKind b) {
       {{ShapeKind::rectangle, ShapeKind::capsule}, PairKind::rectangle_capsule},
       {{ShapeKind::polygon, ShapeKind::capsule}, PairKind::polygon_capsule},
       {{ShapeKind::plane, ShapeKind::capsule}, PairKind::plane_capsule},
+      {{ShapeKind::link, ShapeKind::circle}, PairKind::link_circle},
+      {{ShapeKind::link, ShapeKind::rectangle}, PairKind::link_rectangle},
+      {{ShapeKind::link, ShapeKind::polygon}, PairKind::link_polygon},
+      {{ShapeKind::link, ShapeKind::capsule}, PairKind::link_capsule},
   };
   const auto straight = kKernels.find({a, b});
   if (straight != kKernels.end()) return {straight->second, false};
@@ -79,7 +83,8 @@ bool is_single(PairKind kind) {
     case PairKind::capsule_sphere:
     case PairKind::capsule_circle:
     case PairKind::sphere_capsule:
-    case PairKind::circle_capsule: return true;
+    case PairKind::circle_capsule:
+    case PairKind::link_circle: return true;
     default: return false;
   }
 }

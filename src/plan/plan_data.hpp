@@ -81,6 +81,8 @@ struct PlanData {
   }
 };
 
+std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // terrain.cpp
+
 // The steps of compile(), in order.
 void collect_bodies(PlanData& plan);        // bodies.cpp
 void collect_colliders(PlanData& plan);     // colliders.cpp

@@ -5,7 +5,7 @@
 //   I = sum_k R_k I_k R_k^T + m_k (d_k^2 1 - d_k d_k^T),   d_k = c_k - c,   c = sum m_k c_k / m.
 // The centre is found first and the inertia summed about it: summing about the origin and
 // subtracting m c^2 would lose digits when shapes are far from the origin of their body.
-// Shapes that overlap simply add. Planes have no mass.
+// Shapes that overlap simply add. Planes and lines have no mass.
 #include <type_traits>
 #include <vector>
 
@@ -86,6 +86,9 @@ MassProperties of(const Polygon& polygon, double density) {
 MassProperties of(const Plane&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
 MassProperties of(const HalfPlane&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
 
+MassProperties of(const Segment&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
+MassProperties of(const Terrain&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
+
 // In the body frame.
 MassProperties of(const Shape& shape, const Scene& scene) {
   const double density = shape.density.value_or(scene.options.density);
@@ -118,7 +121,7 @@ MassProperties mass_properties(const Scene& scene, const Body& body) {
     parts.push_back(of(shape, scene));
     total.mass += parts.back().mass;
   }
-  if (total.mass == 0) return total;  // no shapes, or only planes
+  if (total.mass == 0) return total;  // no shapes, or only planes and lines
 
   // Relative to the first part, for the same reason as above.
   for (const MassProperties& part : parts) {

@@ -216,6 +216,24 @@ Solid make_solid(const Shape& shape, const Pose& body, Space space) {
       s.vertices.push_back(pose.position + s.axes * Vec3(v.x(), v.y(), 0));
       s.center += s.vertices.back() / static_cast<double>(polygon->vertices.size());
     }
+  } else if (const auto* terrain = std::get_if<Terrain>(&shape.geometry)) {
+    // Clockwise around what is solid, or straight.
+    s.planar = true;
+    s.kind = terrain->loop ? Solid::Kind::polygon : Solid::Kind::half_space;
+    s.center.setZero();
+    for (auto p = terrain->points.rbegin(); p != terrain->points.rend(); ++p) {
+      s.vertices.push_back(pose.position + s.axes * Vec3(p->x(), p->y(), 0));
+      s.center += s.vertices.back() / static_cast<double>(terrain->points.size());
+    }
+    const Vec3 back = s.vertices.back() - s.vertices.front();
+    s.normal = Vec3(back.y(), -back.x(), 0).normalized();
+    s.offset = s.normal.dot(s.vertices.front());
+  } else if (const auto* segment = std::get_if<Segment>(&shape.geometry)) {
+    s.kind = Solid::Kind::capsule;
+    s.planar = true;
+    for (const Vec2& p : {segment->a, segment->b})
+      s.vertices.push_back(pose.position + s.axes * Vec3(p.x(), p.y(), 0));
+    s.center = 0.5 * (s.vertices[0] + s.vertices[1]);
   } else {
     s.kind = Solid::Kind::half_space;
     const auto* plane = std::get_if<Plane>(&shape.geometry);
