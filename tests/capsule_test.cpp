@@ -45,6 +45,32 @@ TEST_CASE("a lying capsule rests on two points", "[fast][collide]") {
   }
 }
 
+TEST_CASE("a rolling capsule keeps its points' features", "[fast][collide]") {
+  for (const Geometry& below : {Geometry(Plane{}), Geometry(Box{{3, 3, 1}})}) {
+    const double top = std::holds_alternative<Plane>(below) ? 0 : 1;
+    Scene scene = capsule_on(Space::spatial, below, top + 0.2, lying(Space::spatial));
+    scene.bodies[1].linear_velocity = Vec3(0, 1, 0);
+    scene.bodies[1].angular_velocity = Vec3(-5, 0, 0);
+    for (const Table& table : widest_tables()) {
+      Batch batch(compile(scene), options_of(table));
+      batch.step(5);
+      const auto first = batch.contacts(0);
+      REQUIRE(first.size() == 2);
+      CHECK(first[0].feature != first[1].feature);
+      for (int i = 0; i < 60; ++i) {
+        batch.step();
+        const auto now = batch.contacts(0);
+        REQUIRE(now.size() == 2);
+        for (std::size_t k = 0; k < 2; ++k) {
+          CHECK(now[k].feature == first[k].feature);
+          CHECK(now[k].normal_impulse > 0);  // carried on
+        }
+      }
+      CHECK(velocity(batch, 0, 0).y() == Approx(1).epsilon(1e-3));
+    }
+  }
+}
+
 TEST_CASE("a capsule on its end stays balanced", "[fast][collide]") {
   for (Space space : {Space::planar, Space::spatial}) {
     const Scene scene = capsule_on(space, ground_of(space), 0.7, Quat::Identity());
