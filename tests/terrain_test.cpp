@@ -134,6 +134,22 @@ TEST_CASE("boxes come to rest in and on a rough terrain", "[slow][terrain]") {
   }
 }
 
+TEST_CASE("a long terrain takes no more room than the shapes on it need", "[fast][terrain]") {
+  // Two bodies on 2000 links, one of them over 50 at once.
+  Scene scene = terrain_scene(flat(-100, 100, 0.1), false, 0.6);
+  scene.add(body_of(shape_of(Polygon::box(2.5, 0.2)), Vec3(0, 0.2, 0)));
+  scene.add(body_of(shape_of(Circle{0.2}), Vec3(5, 0.2, 0)));
+  const Plan plan = compile(scene);
+  CHECK(plan.report().fixed_capacity < 500);
+  for (const Table& table : widest_tables()) {
+    Batch batch(plan, options_of(table));
+    batch.step(120);
+    CHECK(batch.status(0) == Status::ok);
+    CHECK(max_speed(batch, 0) < 1e-3);
+    CHECK(std::abs(position(batch, 0, 0).y() - 0.2) < 2e-3);
+  }
+}
+
 TEST_CASE("a ball rolls off the end of a terrain", "[fast][terrain]") {
   Scene scene = terrain_scene({{-5, 0}, {0, 0}}, false, 0.6);
   scene.add(body_of(shape_of(Circle{0.3}), Vec3(-1, 0.3, 0)));

@@ -2,6 +2,7 @@
 // will see them.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "src/plan/plan_data.hpp"
@@ -157,6 +158,22 @@ class Collector {
   std::map<std::pair<int, int>, PlanClass> classes_;
 };
 
+// One for each fixed shape; of a terrain's links as many as the shapes can lie over, with their
+// speculative margins, were all links as short as the shortest, and twice that for rough ground.
+int fixed_manifolds(const PlanData& plan) {
+  double shortest = std::numeric_limits<double>::max();
+  int links = 0;
+  for (const PlanFixed& f : plan.fixed) {
+    if (f.kind != ShapeKind::link) continue;
+    ++links;
+    shortest = std::min(shortest, f.length);
+  }
+  double near = 0;
+  for (const PlanCollider& c : plan.colliders) near += 2 * (4 * c.radius / shortest + 4);
+  const int others = static_cast<int>(plan.fixed.size()) - links;
+  return others + static_cast<int>(std::min(near, static_cast<double>(links)));
+}
+
 }  // namespace
 
 void collect_pairs(PlanData& plan) {
@@ -186,7 +203,7 @@ void collect_pairs(PlanData& plan) {
   }
   const int pairs = plan.scene.options.contact_capacity.value_or(
       (plan.scene.space == Space::spatial ? 4 : 3) * n + 8);
-  const int fixed = 2 * n + 8 + static_cast<int>(plan.fixed.size());
+  const int fixed = 2 * n + 8 + fixed_manifolds(plan);
   for (int l = 0; l < kernels::kLists; ++l) {
     const int limit = is_fixed(static_cast<ListId>(l)) ? fixed : pairs;
     plan.capacity[static_cast<std::size_t>(l)] =

@@ -45,6 +45,7 @@ struct PlanFixed {
   std::vector<double> row;  // pose row
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::array<double, 4> plane{};
+  double length = 0;  // of a link
   int row_offset = 0;
 };
 

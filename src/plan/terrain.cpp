@@ -56,6 +56,7 @@ std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape) {
     const Vec2 middle = (from + to) / 2;
     PlanFixed f;
     f.kind = kernels::ShapeKind::link;
+    f.length = 2 * half;
     f.row = {middle.x(),
              middle.y(),
              axis.x(),
