@@ -2,7 +2,7 @@
 // down to one class of pairs. The scene is the first that has such a class.
 #include <set>
 #include <string>
-#include <utility>
+#include <tuple>
 
 #include "bench/report.hpp"
 #include "src/base/denormals.hpp"
@@ -16,8 +16,21 @@ using kernels::PairKind;
 
 // Kinds whose first shape may move.
 bool may_move(PairKind kind) {
-  return kind < PairKind::plane_sphere ||
-         (kind >= PairKind::circle_circle && kind <= PairKind::polygon_polygon);
+  switch (kind) {
+    case PairKind::sphere_box:
+    case PairKind::circle_rectangle:
+    case PairKind::circle_polygon:
+    case PairKind::sphere_capsule:
+    case PairKind::circle_capsule:
+    case PairKind::capsule_box:
+    case PairKind::capsule_rectangle:
+    case PairKind::capsule_polygon:
+    case PairKind::link_circle:
+    case PairKind::link_rectangle:
+    case PairKind::link_polygon:
+    case PairKind::link_capsule: return false;
+    default: return !is_plane(kind);
+  }
 }
 
 void time_pair(benchmark::State& state, const Scenario& scenario, Isa isa, int class_index,
@@ -56,17 +69,19 @@ void time_pair(benchmark::State& state, const Scenario& scenario, Isa isa, int c
 }  // namespace
 
 void register_pairs() {
-  using Kind = std::pair<PairKind, bool>;  // against fixed shapes?
+  using Kind = std::tuple<PairKind, bool, bool>;  // against fixed shapes? planar?
   std::set<Kind> seen;
   for (const Scenario& s : scenarios_of_pairs()) {
     const Plan plan = compile(s.make());
     const auto& classes = plan.data().classes;
+    const bool planar = plan.scene().space == Space::planar;
     for (std::size_t c = 0; c < classes.size(); ++c) {
       const bool fixed = is_fixed(classes[c].list);
-      if (!seen.insert({classes[c].kind, fixed}).second) continue;
+      if (!seen.insert({classes[c].kind, fixed, planar}).second) continue;
+      const bool other_space = planar && seen.count({classes[c].kind, fixed, false}) != 0;
       for (const Isa isa : benched_isas()) {
         for (const auto layout : {kernels::Layout::rows, kernels::Layout::dense}) {
-          const std::string name = std::string("collide/") +
+          const std::string name = std::string("collide/") + (other_space ? "planar_" : "") +
                                    (fixed && may_move(classes[c].kind) ? "fixed_" : "") +
                                    manyworlds::to_string(classes[c].kind) + "/" +
                                    manyworlds::to_string(isa) + "/" + to_string(layout);

@@ -42,6 +42,52 @@ Scene with_obstacles() {
   return scene;
 }
 
+// Every third moving body a capsule.
+void make_capsules(Scene& scene) {
+  int moving = 0;
+  for (Body& body : scene.bodies) {
+    if (body.motion != Motion::dynamic || moving++ % 3 != 0) continue;
+    body.mass_properties.reset();
+    body.shapes.resize(1);
+    body.shapes[0].geometry = Capsule{0.2, 0.2};
+  }
+}
+
+// And some fixed ones between the obstacles.
+template <SceneName kName>
+Scene with_capsules() {
+  Scene scene = with_obstacles<kName>();
+  make_capsules(scene);
+  const auto add = [&scene](Geometry geometry, const Vec3& at) {
+    Body body;
+    body.motion = Motion::fixed;
+    body.position = at;
+    body.shapes.emplace_back().geometry = std::move(geometry);
+    scene.add(std::move(body));
+  };
+  if (scene.space == Space::spatial) {
+    add(Capsule{0.3, 0.4}, {0, 1, 0});
+    add(Box{{1.5, 0.3, 0.3}}, {0, -0.6, 0});
+  } else {
+    for (const double x : {-2.5, -0.5, 1.5}) add(Capsule{0.2, 0.2}, {x, 0.3, 0});
+  }
+  return scene;
+}
+
+// A planar scene on a rough floor.
+template <SceneName kName>
+Scene with_terrain() {
+  Scene scene = named<kName>();
+  make_capsules(scene);
+  Terrain terrain;
+  for (int i = 0; i <= 20; ++i) terrain.points.emplace_back(-5 + 0.5 * i, i % 2 == 0 ? 0.1 : 0.2);
+  Body floor;
+  floor.motion = Motion::fixed;
+  floor.shapes.emplace_back().geometry = std::move(terrain);
+  scene.add(std::move(floor));
+  return scene;
+}
+
 }  // namespace
 
 const std::vector<Scenario>& scenarios() {
@@ -69,6 +115,11 @@ const std::vector<Scenario>& scenarios_of_pairs() {
     all.push_back({"mixed-pile+obstacles", with_obstacles<"mixed-pile">, 120});
     all.push_back({"bin2d+obstacles", with_obstacles<"bin2d">, 120});
     all.push_back({"mixed-pile2d+obstacles", with_obstacles<"mixed-pile2d">, 120});
+    all.push_back({"mixed-pile+capsules", with_capsules<"mixed-pile">, 120});
+    all.push_back({"bin2d+capsules", with_capsules<"bin2d">, 120});
+    all.push_back({"mixed-pile2d+capsules", with_capsules<"mixed-pile2d">, 120});
+    all.push_back({"bin2d+terrain", with_terrain<"bin2d">, 120});
+    all.push_back({"mixed-pile2d+terrain", with_terrain<"mixed-pile2d">, 120});
     return all;
   }();
   return kAll;

@@ -57,6 +57,15 @@ void spatial_collider(const Tables& t, const Group& g, Work& w, int index) {
     put_bounds(w, index, p, {reach, reach, reach});
     return;
   }
+  if (c.kind == ShapeKind::capsule) {
+    const Float half(c.half[0]), reach = margin + Float(c.radius);
+    store_rows4(w.pose_rows, o, p.x, p.y, p.z, c.radius);
+    store_rows4(w.pose_rows + 4, o, r.z.x, r.z.y, r.z.z, half);
+    put_bounds(
+        w, index, p,
+        {fma(abs(r.z.x), half, reach), fma(abs(r.z.y), half, reach), fma(abs(r.z.z), half, reach)});
+    return;
+  }
   const Float hx(c.half[0]), hy(c.half[1]), hz(c.half[2]);
   store_rows4(w.pose_rows, o, r.x.x, r.x.y, r.x.z, p.x);
   store_rows4(w.pose_rows + 4, o, r.y.x, r.y.y, r.y.z, p.y);
@@ -95,6 +104,11 @@ void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
     store_rows4(w.pose_rows, o, p.x, p.y, c.radius, Real(0));
     const Float reach = margin + Float(c.radius);
     put_bounds(w, index, p, {reach, reach});
+  } else if (c.kind == ShapeKind::capsule) {
+    const Float half(c.half[0]), reach = margin + Float(c.radius);
+    store_rows4(w.pose_rows, o, p.x, p.y, Real(0), c.radius);
+    store_rows4(w.pose_rows + 4, o, -q.s, q.c, Real(0), half);
+    put_bounds(w, index, p, {fma(abs(q.s), half, reach), fma(abs(q.c), half, reach)});
   } else if (c.kind == ShapeKind::rectangle) {
     const Float hx(c.half[0]), hy(c.half[1]);
     store_rows4(w.pose_rows, o, p.x, p.y, q.c, q.s);

@@ -39,6 +39,13 @@ MW_INLINE bool may_collide(const Tables& t, int body, const kernels::ColliderTab
   return false;
 }
 
+// From a capsule, given the point from its origin.
+template <class Vec>
+MW_INLINE Float distance_to_capsule(Vec d, Vec axis, Float radius, Float half) {
+  const Vec out = fnma(axis, clamp(dot(axis, d), -half, half), d);
+  return sqrt(dot(out, out)) - radius;
+}
+
 // Distance from a point to a shape; 0 or less inside. `row(i)` is number i of its pose row.
 template <class Row>
 MW_INLINE Float distance_to_shape(kernels::ShapeKind kind, Row row, Vec3 p) {
@@ -46,6 +53,10 @@ MW_INLINE Float distance_to_shape(kernels::ShapeKind kind, Row row, Vec3 p) {
   if (kind == kernels::ShapeKind::sphere) {
     const Vec3 d = p - Vec3{row(0), row(1), row(2)};
     return sqrt(dot(d, d)) - row(3);
+  }
+  if (kind == kernels::ShapeKind::capsule) {
+    const Vec3 from = p - Vec3{row(0), row(1), row(2)};
+    return distance_to_capsule(from, Vec3{row(4), row(5), row(6)}, row(3), row(7));
   }
   const Vec3 d = p - Vec3{row(3), row(7), row(11)};
   const Vec3 local{dot(d, Vec3{row(0), row(1), row(2)}), dot(d, Vec3{row(4), row(5), row(6)}),
@@ -60,6 +71,14 @@ MW_INLINE Float distance_to_shape(kernels::ShapeKind kind, Row row, Vec2 p) {
   const Vec2 d = p - Vec2{row(0), row(1)};
   if (kind == kernels::ShapeKind::circle) {
     return sqrt(dot(d, d)) - row(2);
+  }
+  if (kind == kernels::ShapeKind::capsule) {
+    return distance_to_capsule(d, Vec2{row(4), row(5)}, row(3), row(7));
+  }
+  if (kind == kernels::ShapeKind::link) {  // nothing for what comes from behind
+    const Vec2 axis{row(2), row(3)};
+    const Float distance = distance_to_capsule(d, axis, zero, row(4));
+    return select(cross(axis, d) < zero, zero, distance);
   }
   if (kind == kernels::ShapeKind::rectangle) {
     const Vec2 local = rotate_inverse({row(2), row(3)}, d);
@@ -85,12 +104,14 @@ MW_INLINE Float free_share(kernels::ShapeKind kind, Row row, Vec start, Vec step
   const Float zero(Real(0)), one(Real(1));
   const Float inv_length = one / max(sqrt(dot(step, step)), Real(1e-20));
   Float share = zero;
-  Mask moving = fast & (core < distance_to_shape(kind, row, start));
+  // As near as a cast may end, so that one who stopped there can go away again.
+  const Float touching = core * Float(Real(1.01));
+  Mask moving = fast & (touching < distance_to_shape(kind, row, start));
   const Mask outside = moving;
   for (int round = 0; round < kCastRounds && any(moving); ++round) {
-    const Float gap = distance_to_shape(kind, row, fma(step, share, start)) - core;
-    const Mask close = gap < core * Float(Real(0.01));
-    const Float next = fma(gap, inv_length, share);
+    const Float distance = distance_to_shape(kind, row, fma(step, share, start));
+    const Mask close = distance < touching;
+    const Float next = fma(distance - core, inv_length, share);
     moving = moving & !close;
     share = select(moving, min(next, one), share);
     moving = moving & (share < one);

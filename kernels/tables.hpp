@@ -16,9 +16,10 @@ enum class Dimension : int { planar, spatial };
 enum class InertiaKind : int { planar, isotropic, tensor };
 inline constexpr int kInertiaKinds = 3;
 
-enum class ShapeKind : int { sphere, box, circle, rectangle, polygon, plane };
+enum class ShapeKind : int { sphere, box, circle, rectangle, polygon, plane, capsule, link };
 
-// Shape pairs; the first shape is A. Planes and other fixed shapes are always A.
+// Shape pairs; the first shape is A. Planes and other fixed shapes are always A. Capsules have the
+// same names in the plane and in space.
 enum class PairKind : int {
   sphere_sphere,
   box_sphere,
@@ -36,12 +37,28 @@ enum class PairKind : int {
   sphere_box,        // fixed sphere
   circle_rectangle,  // fixed circle
   circle_polygon,    // fixed circle
+  capsule_sphere,
+  capsule_circle,
+  capsule_capsule,
+  box_capsule,
+  rectangle_capsule,
+  polygon_capsule,
+  plane_capsule,
+  sphere_capsule,     // fixed sphere
+  circle_capsule,     // fixed circle
+  capsule_box,        // fixed capsule
+  capsule_rectangle,  // fixed capsule
+  capsule_polygon,    // fixed capsule
+  link_circle,
+  link_rectangle,
+  link_polygon,
+  link_capsule,
 };
-inline constexpr int kPairKinds = 16;
+inline constexpr int kPairKinds = 32;
 static inline constexpr bool is_plane(PairKind kind) {
   return kind == PairKind::plane_sphere || kind == PairKind::plane_box ||
          kind == PairKind::plane_circle || kind == PairKind::plane_rectangle ||
-         kind == PairKind::plane_polygon;
+         kind == PairKind::plane_polygon || kind == PairKind::plane_capsule;
 }
 
 // Contacts of a world live in four lists, solved in this order.
@@ -61,11 +78,16 @@ inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of po
 //   rectangle             x y c s | hx hy 0 0                (8)
 //   polygon               x y count radius | 8 vertices | 8 normals, about x y     (36)
 //   plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
+//   capsule               x y z radius | a.x a.y a.z half, a: the axis (8; a.z unused in the plane)
+//   link                  x y a.x a.y | half low high index | b.x b.y c.x c.y, a: the axis; low and
+//                         high: reach along it; b, c: last normals at its ends (12)
 static inline constexpr int pose_row_size(ShapeKind kind) {
   switch (kind) {
     case ShapeKind::box: return 16;
     case ShapeKind::rectangle:
-    case ShapeKind::plane: return 8;
+    case ShapeKind::plane:
+    case ShapeKind::capsule: return 8;
+    case ShapeKind::link: return 12;
     case ShapeKind::polygon: return 4 + 4 * kMaxVertices;
     default: return 4;
   }
@@ -100,8 +122,8 @@ struct ColliderTable {
   std::int32_t row;  // offset of its pose row in a lane's block
   Real offset[3];    // shape origin from the centre of mass, principal axes, m
   Real rotation[9];  // shape axes in principal axes, columns; planar: [0] cos, [1] sin
-  Real half[3];      // half extents (box, rectangle)
-  Real radius;       // sphere, circle; else of the bounding sphere about the shape origin
+  Real half[3];      // half extents (box, rectangle); capsule: [0] half length
+  Real radius;       // sphere, circle, capsule; else of the bounding sphere about the shape origin
   std::uint32_t category, mask;  // collision filter
   Real margin_cap;               // most that the speculative margin of this shape may grow to, m
   std::int32_t vertex_count;

@@ -100,10 +100,11 @@ TEST_CASE("bits do not depend on the number of threads", "[fast][bits]") {
 
 TEST_CASE("bits do not depend on the instruction set, the layout or the broad phase",
           "[fast][bits]") {
-  for (Space space : {Space::planar, Space::spatial}) {
-    Scene scene = crowd(space, 12);
+  for (Scene scene :
+       {crowd(Space::planar, 12), crowd(Space::spatial, 12), capsule_crowd(Space::planar),
+        capsule_crowd(Space::planar, true), capsule_crowd(Space::spatial)}) {
     scene.options.cast_between_moving = true;  // the tenth body is fast enough for it
-    scene.bodies[11].linear_velocity = Vec3(-80, 0, 0) - 20 * up_of(space);
+    scene.bodies[11].linear_velocity = Vec3(-80, 0, 0) - 20 * up_of(scene.space);
     for (Precision precision : {Precision::f32, Precision::f64}) {
       std::vector<std::uint64_t> reference;
       for (BroadPhase broad :
@@ -119,8 +120,7 @@ TEST_CASE("bits do not depend on the instruction set, the layout or the broad ph
             const auto result = run(plan, options, 25);
             if (reference.empty()) reference = result;
             INFO(to_string(isa) << ' ' << to_string(precision) << ' ' << to_string(layout) << ' '
-                                << to_string(broad)
-                                << (space == Space::planar ? " planar" : " spatial"));
+                                << to_string(broad) << ' ' << scene.name);
             CHECK(result == reference);
           }
         }

@@ -15,6 +15,7 @@ using Maker = Geometry (*)(Random&);
 
 Geometry any_sphere(Random& r) { return Sphere{r.uniform(0.1, 0.6)}; }
 Geometry any_box(Random& r) { return random_box(r); }
+Geometry any_capsule(Random& r) { return random_capsule(r); }
 Geometry any_plane(Random& r) { return Plane{r.direction(), r.uniform(-0.5, 0.5)}; }
 
 void check(Maker first, Motion first_motion, Maker second, const PairPromise& promise) {
@@ -55,6 +56,13 @@ PairPromise points(int n) {
   return p;
 }
 
+// A box prefers a face to an edge that is shallower by half a slop (box_capsule.hpp).
+PairPromise box_capsule_promise() {
+  PairPromise p = points(2);
+  p.bias = 0.5 * Options{}.slop;
+  return p;
+}
+
 }  // namespace
 
 TEST_CASE("sphere-sphere agrees with its twin", "[slow][collide]") {
@@ -83,6 +91,34 @@ TEST_CASE("box-box agrees with its twin", "[slow][collide]") {
 }
 TEST_CASE("box against a fixed box agrees with its twin", "[slow][collide]") {
   check(any_box, Motion::fixed, any_box, box_box_promise());
+}
+
+TEST_CASE("capsule-sphere agrees with its twin", "[slow][collide]") {
+  check(any_capsule, Motion::dynamic, any_sphere, points(1));
+}
+TEST_CASE("sphere against a fixed capsule agrees with its twin", "[slow][collide]") {
+  check(any_capsule, Motion::fixed, any_sphere, points(1));
+}
+TEST_CASE("capsule against a fixed sphere agrees with its twin", "[slow][collide]") {
+  check(any_sphere, Motion::fixed, any_capsule, points(1));
+}
+TEST_CASE("capsule-plane agrees with its twin", "[slow][collide]") {
+  check(any_plane, Motion::fixed, any_capsule, points(2));
+}
+TEST_CASE("capsule-capsule agrees with its twin", "[slow][collide]") {
+  check(any_capsule, Motion::dynamic, any_capsule, points(2));
+}
+TEST_CASE("capsule against a fixed capsule agrees with its twin", "[slow][collide]") {
+  check(any_capsule, Motion::fixed, any_capsule, points(2));
+}
+TEST_CASE("box-capsule agrees with its twin", "[slow][collide]") {
+  check(any_box, Motion::dynamic, any_capsule, box_capsule_promise());
+}
+TEST_CASE("capsule against a fixed box agrees with its twin", "[slow][collide]") {
+  check(any_box, Motion::fixed, any_capsule, box_capsule_promise());
+}
+TEST_CASE("box against a fixed capsule agrees with its twin", "[slow][collide]") {
+  check(any_capsule, Motion::fixed, any_box, box_capsule_promise());
 }
 
 }  // namespace manyworlds::test

@@ -31,6 +31,31 @@ TEST_CASE("a sphere has 4/3 pi r^3 and 2/5 m r^2", "[fast][scene]") {
   check_equal(got, {mass, Vec3::Zero(), 0.4 * mass * 0.09 * Mat3::Identity()});
 }
 
+TEST_CASE("a capsule has a cylinder's and two half balls' mass and moments", "[fast][scene]") {
+  const double r = 0.3, h = 0.7;
+  const double cylinder = 1000 * kPi * r * r * 2 * h, ball = 1000 * 4.0 / 3.0 * kPi * r * r * r;
+  const double along = cylinder * r * r / 2 + ball * 2 / 5 * r * r;
+  // Half balls about their own centres of mass, 3/8 r beyond the ends of the cylinder.
+  const double beyond = h + 3.0 / 8 * r;
+  const double own = ball * (2.0 / 5 * r * r - 9.0 / 64 * r * r);
+  const double across = cylinder * (3 * r * r + 4 * h * h) / 12 + own + ball * beyond * beyond;
+  const MassProperties got = mass_properties(kSpatial, body_of({shape(Capsule{r, h})}));
+  check_equal(got, {cylinder + ball, Vec3::Zero(), Vec3(across, across, along).asDiagonal()});
+  // A very short one is a ball.
+  check_equal(mass_properties(kSpatial, body_of({shape(Capsule{r, 1e-9})})),
+              mass_properties(kSpatial, body_of({shape(Sphere{r})})), 1, 1e-8);
+}
+
+TEST_CASE("a planar capsule has a rectangle's and two half discs' area and moment",
+          "[fast][scene]") {
+  const double r = 0.3, h = 0.7;
+  const double rectangle = 2 * 4 * r * h, disc = 2 * kPi * r * r, beyond = 4 * r / (3 * kPi);
+  const double moment = rectangle * (4 * r * r + 4 * h * h) / 12 +
+                        disc * (r * r / 2 - beyond * beyond + (h + beyond) * (h + beyond));
+  check_equal(mass_properties(kPlanar, body_of({shape(Capsule{r, h})})),
+              {rectangle + disc, Vec3::Zero(), moment * Mat3::Identity()});
+}
+
 TEST_CASE("a box has 8abc and m/3 (b^2 + c^2)", "[fast][scene]") {
   const MassProperties got = mass_properties(kSpatial, body_of({shape(Box{{1, 2, 3}})}));
   CHECK(got.mass == 48000);

@@ -37,7 +37,65 @@ G& geometry(Scene& scene, std::size_t body = 1) {
 
 const char* const kShape = "body 1 'crate', shape 0 'hull': ";
 
+// Body 0, shape 0 is what the cases change.
+Scene ground_scene(Geometry ground) {
+  return test::scene_with(Space::planar, std::move(ground), Circle{0.5});
+}
+const char* const kGround = "body 0 'ground', shape 0: ";
+
 }  // namespace
+
+TEST_CASE("bad capsules are named with their value", "[fast][scene]") {
+  for (const Scene& scene :
+       {test::spatial_scene_with(Capsule{0.5, 1}), test::planar_scene_with(Capsule{0.5, 1})}) {
+    const auto capsule = [](Scene& s) -> Capsule& { return geometry<Capsule>(s); };
+    check_each(
+        scene, kShape,
+        {{"radius", "is 0 m, must be > 0", [&](Scene& s) { capsule(s).radius = 0; }},
+         {"radius", "is nan m", [&](Scene& s) { capsule(s).radius = kNan; }},
+         {"half_length", "is -1 m, must be > 0", [&](Scene& s) { capsule(s).half_length = -1; }},
+         {"half_length", "is inf m", [&](Scene& s) { capsule(s).half_length = kInf; }},
+         {"half_length", "is 1e+09 m", [&](Scene& s) { capsule(s).half_length = 1e9; }}});
+  }
+}
+
+TEST_CASE("bad segments and terrains are named with their value", "[fast][scene]") {
+  const auto segment = [](Scene& s) -> Segment& { return geometry<Segment>(s, 0); };
+  check_each(ground_scene(Segment{{0, 0}, {1, 0}}), kGround,
+             {{"a.x", "is nan m", [&](Scene& s) { segment(s).a.x() = kNan; }},
+              {"b.y", "is 1e+09 m", [&](Scene& s) { segment(s).b.y() = 1e9; }},
+              {"b", "the same as a", [&](Scene& s) { segment(s).b = segment(s).a; }}});
+  const auto points = [](Scene& s) -> std::vector<Vec2>& { return geometry<Terrain>(s, 0).points; };
+  const Scene open = ground_scene(Terrain{{{0, 0}, {1, 0}, {2, 1}}});
+  check_each(open, kGround,
+             {{"points", "are 1, must be at least 2", [&](Scene& s) { points(s).resize(1); }},
+              {"points[1].x", "is inf m", [&](Scene& s) { points(s)[1].x() = kInf; }},
+              {"points[2]", "the same as points[1]",
+               [&](Scene& s) {
+                 points(s)[2] = {1, 0};
+               }},
+              {"points[1]", "folds back", [&](Scene& s) {
+                 points(s)[2] = {-1, 0};
+               }}});
+  const Scene loop = ground_scene(Terrain{{{0, 0}, {1, 1}, {2, 0}}, true});
+  check_each(
+      loop, kGround,
+      {{"points", "at least 3 in a loop", [&](Scene& s) { points(s).resize(2); }},
+       {"points[0]", "the same as points[3]", [&](Scene& s) { points(s).emplace_back(0, 0); }}});
+}
+
+TEST_CASE("segments and terrains belong to fixed bodies of planar scenes", "[fast][scene]") {
+  for (const Geometry& line : {Geometry(Segment{}), Geometry(Terrain{{{0, 0}, {1, 0}}})}) {
+    const char* const kFixed = "on a body that can move, must be on a fixed body";
+    const std::vector<Issue> moving = validate(test::planar_scene_with(line));
+    REQUIRE(!moving.empty());
+    CHECK_THAT(moving.front().message, Catch::Contains(kFixed));
+    const std::vector<Issue> spatial =
+        validate(test::scene_with(Space::spatial, line, Sphere{0.5}));
+    REQUIRE(spatial.size() == 1);
+    CHECK_THAT(spatial.front().message, Catch::Contains("a spatial scene takes"));
+  }
+}
 
 TEST_CASE("bad radii and half extents are named with their value", "[fast][scene]") {
   const auto radius = [](Scene& s, double r) { geometry<Sphere>(s).radius = r; };

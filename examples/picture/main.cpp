@@ -52,12 +52,37 @@ struct View {
   double height() const { return high.y() - low.y(); }
 };
 
+void draw_line(std::ofstream& svg, const mw::Shape& shape, const Pose& pose,
+               std::vector<mw::Vec2> points, bool closed) {
+  if (closed) points.push_back(points.front());
+  svg << "<polyline points='";
+  for (const mw::Vec2& point : points) {
+    const mw::Vec2 x = pose(in_body(shape, point));
+    svg << x.x() << ',' << x.y() << ' ';
+  }
+  svg << "'/>\n";
+}
+
 void draw_shape(std::ofstream& svg, const mw::Shape& shape, const Pose& pose, const View& view) {
   if (const auto* circle = std::get_if<mw::Circle>(&shape.geometry)) {
     const mw::Vec2 x = pose(in_body(shape, {0, 0})),
                    rim = pose(in_body(shape, {circle->radius, 0}));
     svg << "<circle cx='" << x.x() << "' cy='" << x.y() << "' r='" << circle->radius << "'/>"
         << "<path d='M" << x.x() << ' ' << x.y() << 'L' << rim.x() << ' ' << rim.y() << "'/>\n";
+  } else if (const auto* capsule = std::get_if<mw::Capsule>(&shape.geometry)) {
+    // Up one side, around the end, down the other side and around the other end.
+    const double r = capsule->radius, h = capsule->half_length;
+    const auto at = [&](double x, double y) {
+      const mw::Vec2 p = pose(in_body(shape, {x, y}));
+      return std::to_string(p.x()) + ' ' + std::to_string(p.y());
+    };
+    const std::string around = 'A' + std::to_string(r) + ' ' + std::to_string(r) + " 0 0 1 ";
+    svg << "<path d='M" << at(r, -h) << 'L' << at(r, h) << around << at(-r, h) << 'L' << at(-r, -h)
+        << around << at(r, -h) << "Z'/>\n";
+  } else if (const auto* segment = std::get_if<mw::Segment>(&shape.geometry)) {
+    draw_line(svg, shape, pose, {segment->a, segment->b}, false);
+  } else if (const auto* terrain = std::get_if<mw::Terrain>(&shape.geometry)) {
+    draw_line(svg, shape, pose, terrain->points, terrain->loop);
   } else if (const auto* polygon = std::get_if<mw::Polygon>(&shape.geometry)) {
     svg << "<polygon points='";
     for (const mw::Vec2& vertex : polygon->vertices) {
@@ -95,6 +120,12 @@ View find_view(const mw::Batch& batch, const std::vector<Pose>& poses) {
       } else if (const auto* circle = std::get_if<mw::Circle>(&shape.geometry)) {
         const mw::Vec2 x = poses[i](in_body(shape, {0, 0})), r(circle->radius, circle->radius);
         corners = {x - r, x + r};
+      } else if (const auto* capsule = std::get_if<mw::Capsule>(&shape.geometry)) {
+        const mw::Vec2 r(capsule->radius, capsule->radius);
+        for (const double end : {-capsule->half_length, capsule->half_length}) {
+          const mw::Vec2 x = poses[i](in_body(shape, {0, end}));
+          corners.insert(corners.end(), {x - r, x + r});
+        }
       }
       for (const mw::Vec2& x : corners) {
         view.low = view.low.cwiseMin(x), view.high = view.high.cwiseMax(x);
@@ -145,6 +176,7 @@ int main(int argc, char** argv) {
   svg << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " << width << ' ' << height
       << "' width='1000' height='" << 1000 * height / width << "'>\n"
       << "<style>circle,polygon,path{stroke:#1d1f2a;stroke-width:.03}"
+      << "polyline{fill:none;stroke:#1d1f2a;stroke-width:.06}"
       << ".ground{fill:#8d99ae;stroke:none}.sky{fill:#f4f1ea}</style>\n"
       << "<clipPath id='view'><rect x='" << view.low.x() << "' y='" << view.low.y() << "' width='"
       << view.width() << "' height='" << view.height() << "'/></clipPath>\n";

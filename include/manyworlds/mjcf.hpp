@@ -2,10 +2,10 @@
 // link manyworlds::mjcf.
 //
 // What is read: worlds of free bodies (a free joint on a top-level body) and static geoms, made of
-// spheres, boxes and planes. Poses, masses and inertias are those that MuJoCo's compiler computes.
-// Whatever would change the motion and is not simulated here is an error; what only shapes MuJoCo's
-// contact softness or its solver is a warning; what is only seen (lights, cameras, materials,
-// textures, sites) is ignored.
+// spheres, capsules, boxes and planes. Poses, masses and inertias are those that MuJoCo's compiler
+// computes. Whatever would change the motion and is not simulated here is an error; what only
+// shapes MuJoCo's contact softness or its solver is a warning; what is only seen (lights, cameras,
+// materials, textures, sites) is ignored.
 #pragma once
 
 #include <filesystem>

@@ -38,6 +38,12 @@ struct Plane {  // spatial, fixed bodies only: all points p with normal . p <= o
   Vec3 normal{0, 0, 1};  // unit, body frame, pointing out of the solid
   double offset = 0;     // m
 };
+// All points no farther than the radius from a straight line of length 2 half_length, centred on
+// the shape frame: along z in a spatial scene, along y in a planar one.
+struct Capsule {
+  double radius = 0.25;      // m
+  double half_length = 0.5;  // m, without the round ends
+};
 struct Circle {         // planar
   double radius = 0.5;  // m
 };
@@ -53,7 +59,18 @@ struct HalfPlane {    // planar, fixed bodies only: all points p with normal . p
   Vec2 normal{0, 1};  // unit, body frame
   double offset = 0;  // m
 };
-using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane>;
+struct Segment {               // planar, fixed bodies only: a line that is solid from either side
+  Vec2 a{-0.5, 0}, b{0.5, 0};  // m, shape frame
+};
+// Planar, fixed bodies only: a chain of segments, solid on the right of somebody who walks along
+// the points (so hills run from left to right), free on the left. Bodies slide over its vertices as
+// over one smooth ground. At the ends of an open chain the solid falls off at a right angle.
+struct Terrain {
+  std::vector<Vec2> points;  // m, shape frame; 2 or more, of a loop 3 or more
+  bool loop = false;         // the last point is joined to the first
+};
+using Geometry =
+    std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Capsule, Segment, Terrain>;
 
 struct Material {
   double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean of its two

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "kernels/collide/box_box.hpp"
+#include "kernels/collide/box_capsule.hpp"
 #include "kernels/collide/box_round.hpp"
+#include "kernels/collide/link_pairs.hpp"
 #include "kernels/collide/polygon_pairs.hpp"
 #include "kernels/collide/rectangle_rectangle.hpp"
 #include "kernels/stages.hpp"
@@ -75,7 +77,8 @@ void find_axes(const Tables& t, Work& w) {
 
 // Shape pairs whose A is always fixed.
 template <class Pair>
-inline constexpr bool kOnlyFixed = std::is_same_v<typename Pair::A, PlanePose>;
+inline constexpr bool kOnlyFixed =
+    std::is_same_v<typename Pair::A, PlanePose> || std::is_same_v<typename Pair::A, LinkPose>;
 template <class S, class Reverse>
 inline constexpr bool kOnlyFixed<Reversed<S, Reverse>> = true;
 
@@ -102,6 +105,7 @@ void fill_narrow_phase(kernels::Stage<Real>* out) {
   const auto at = [out](PairKind kind) -> kernels::Stage<Real>& {
     return out[static_cast<int>(kind)];
   };
+  at(PairKind::plane_capsule) = collide<S, PlaneCapsule<S>, kDense>;
   if constexpr (S::kDim == 3) {
     at(PairKind::sphere_sphere) = collide<S, SphereSphere<S>, kDense>;
     at(PairKind::box_sphere) = collide<S, BoxSphere<S>, kDense>;
@@ -109,6 +113,12 @@ void fill_narrow_phase(kernels::Stage<Real>* out) {
     at(PairKind::plane_sphere) = collide<S, PlaneSphere<S>, kDense>;
     at(PairKind::plane_box) = collide<S, PlaneBox<S>, kDense>;
     at(PairKind::sphere_box) = collide<S, Reversed<S, BoxSphere<S>>, kDense>;
+    using CapsuleSphere = CapsuleRound<S, SpherePose>;
+    at(PairKind::capsule_sphere) = collide<S, CapsuleSphere, kDense>;
+    at(PairKind::capsule_capsule) = collide<S, CapsuleCapsule<S>, kDense>;
+    at(PairKind::box_capsule) = collide<S, BoxCapsule<S>, kDense>;
+    at(PairKind::sphere_capsule) = collide<S, Reversed<S, CapsuleSphere>, kDense>;
+    at(PairKind::capsule_box) = collide<S, Reversed<S, BoxCapsule<S>>, kDense>;
   } else {
     at(PairKind::circle_circle) = collide<S, CircleCircle<S>, kDense>;
     at(PairKind::rectangle_circle) = collide<S, RectangleCircle<S>, kDense>;
@@ -120,6 +130,20 @@ void fill_narrow_phase(kernels::Stage<Real>* out) {
     at(PairKind::plane_polygon) = collide<S, PlanePolygon<S>, kDense>;
     at(PairKind::circle_rectangle) = collide<S, Reversed<S, RectangleCircle<S>>, kDense>;
     at(PairKind::circle_polygon) = collide<S, Reversed<S, PolygonCircle<S>>, kDense>;
+    using CapsuleCircle = CapsuleRound<S, CirclePose>;
+    using RectangleCapsule = EdgesCapsule<S, RectanglePose>;
+    using PolygonCapsule = EdgesCapsule<S, PolygonPose>;
+    at(PairKind::capsule_circle) = collide<S, CapsuleCircle, kDense>;
+    at(PairKind::capsule_capsule) = collide<S, EdgesCapsule<S, CapsulePose<Vec2>>, kDense>;
+    at(PairKind::rectangle_capsule) = collide<S, RectangleCapsule, kDense>;
+    at(PairKind::polygon_capsule) = collide<S, PolygonCapsule, kDense>;
+    at(PairKind::circle_capsule) = collide<S, Reversed<S, CapsuleCircle>, kDense>;
+    at(PairKind::capsule_rectangle) = collide<S, Reversed<S, RectangleCapsule>, kDense>;
+    at(PairKind::capsule_polygon) = collide<S, Reversed<S, PolygonCapsule>, kDense>;
+    at(PairKind::link_circle) = collide<S, LinkCircle<S>, kDense>;
+    at(PairKind::link_rectangle) = collide<S, LinkEdges<S, RectanglePose>, kDense>;
+    at(PairKind::link_polygon) = collide<S, LinkEdges<S, PolygonPose>, kDense>;
+    at(PairKind::link_capsule) = collide<S, LinkEdges<S, CapsulePose<Vec2>>, kDense>;
   }
 }
 

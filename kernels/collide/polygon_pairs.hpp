@@ -1,73 +1,12 @@
 // Convex polygons of 3 to 8 vertices against each other, circles and half-planes. Loops run over
-// kMaxVertices in every lane; unused places repeat vertex and normal 0, which never win a
-// strict comparison against the first.
+// kMaxVertices in every lane.
 #pragma once
 
+#include "kernels/collide/corners.hpp"
 #include "kernels/collide/round_pairs.hpp"
 #include "kernels/collide/segments.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
-
-struct PolygonCorners {
-  Vec2 vertex[kernels::kMaxVertices], normal[kernels::kMaxVertices];
-};
-
-MW_INLINE PolygonCorners load_corners(const PolygonPose& p) {
-  PolygonCorners c;
-  for (int i = 0; i < kernels::kMaxVertices; i += 2) {
-    load_vertex_pair(p, i, c.vertex[i], c.vertex[i + 1]);
-    load_vertex_pair(p, kernels::kMaxVertices + i, c.normal[i], c.normal[i + 1]);
-  }
-  return c;
-}
-
-// An edge chosen per lane: the running winner of a loop over all edges.
-struct PolygonEdge {
-  Vec2 normal, from, to;
-  Float value, index;
-};
-MW_INLINE void take_edge(Mask better, const PolygonCorners& c, int i, Float value, PolygonEdge& e) {
-  e.normal = select(better, c.normal[i], e.normal);
-  e.from = select(better, c.vertex[i], e.from);
-  e.to = select(better, c.vertex[(i + 1) % kernels::kMaxVertices], e.to);
-  e.value = select(better, value, e.value);
-  e.index = select(better, Float(static_cast<Real>(i)), e.index);
-}
-MW_INLINE PolygonEdge first_edge(const PolygonCorners& c, Float value) {
-  return {c.normal[0], c.vertex[0], c.vertex[1], value, Real(0)};
-}
-
-// The edge of `ref` with the largest separation from `other`, whose origin is d away.
-MW_INLINE PolygonEdge farthest_edge(const PolygonCorners& ref, const PolygonCorners& other,
-                                    Vec2 d) {
-  PolygonEdge best = first_edge(ref, Real(-1e30));
-  for (int i = 0; i < kernels::kMaxVertices; ++i) {
-    const Vec2 shift = d - ref.vertex[i];
-    Float nearest = dot(ref.normal[i], other.vertex[0]);
-    for (int j = 1; j < kernels::kMaxVertices; ++j) {
-      nearest = min(dot(ref.normal[i], other.vertex[j]), nearest);
-    }
-    const Float s = nearest + dot(ref.normal[i], shift);
-    take_edge(best.value < s, ref, i, s, best);
-  }
-  return best;
-}
-
-// The edge of `other` most opposed to n.
-MW_INLINE PolygonEdge opposed_edge(const PolygonCorners& other, Vec2 n) {
-  const Float tie(Real(1e-3));
-  PolygonEdge best = first_edge(other, dot(other.normal[0], n));
-  for (int i = 1; i < kernels::kMaxVertices; ++i) {
-    const Float along = dot(other.normal[i], n);
-    take_edge(along + tie < best.value, other, i, along, best);
-  }
-  return best;
-}
-
-MW_INLINE PolygonEdge select(Mask m, const PolygonEdge& a, const PolygonEdge& b) {
-  return {select(m, a.normal, b.normal), select(m, a.from, b.from), select(m, a.to, b.to),
-          select(m, a.value, b.value), select(m, a.index, b.index)};
-}
 
 template <class S>
 struct PolygonPolygon {

@@ -29,6 +29,16 @@ struct PolygonPose {
   const Real* base;  // vertices and normals stay in their rows
   const std::int32_t* offset;
 };
+template <class Vec>
+struct CapsulePose {
+  Vec p, axis;
+  Float radius, half;  // half length without the round ends
+};
+struct LinkPose {  // p: its middle
+  Vec2 p, axis;
+  Float half, low, high, index;  // contacts from low to high along the axis
+  Vec2 before, after;            // last normals at either end
+};
 struct PlanePose {  // origin at the point of the plane nearest to the world's origin
   Vec3 normal, tangent;
   Float offset;
@@ -64,6 +74,22 @@ MW_INLINE void load_pose(const Real* base, const std::int32_t* o, PlanePose& p) 
   load_rows4(base + 4, o, p.tangent.x, p.tangent.y, p.tangent.z, unused);
 }
 
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, CapsulePose<Vec3>& c) {
+  load_rows4(base, o, c.p.x, c.p.y, c.p.z, c.radius);
+  load_rows4(base + 4, o, c.axis.x, c.axis.y, c.axis.z, c.half);
+}
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, CapsulePose<Vec2>& c) {
+  Float unused;
+  load_rows4(base, o, c.p.x, c.p.y, unused, c.radius);
+  load_rows4(base + 4, o, c.axis.x, c.axis.y, unused, c.half);
+}
+
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, LinkPose& l) {
+  load_rows4(base, o, l.p.x, l.p.y, l.axis.x, l.axis.y);
+  load_rows4(base + 4, o, l.half, l.low, l.high, l.index);
+  load_rows4(base + 8, o, l.before.x, l.before.y, l.after.x, l.after.y);
+}
+
 // Two vertices (or with k >= kMaxVertices normals) of the polygons of the lanes.
 MW_INLINE void load_vertex_pair(const PolygonPose& p, int k, Vec2& a, Vec2& b) {
   load_rows4(p.base + 4 + 2 * k, p.offset, a.x, a.y, b.x, b.y);
@@ -76,6 +102,19 @@ MW_INLINE Vec3 any_tangent(Vec3 n) {
   const Float a = -(one / (sign + n.z));
   const Float b = n.x * n.y * a;
   return {fma(sign * n.x * n.x, a, one), sign * b, -(sign * n.x)};
+}
+
+// A unit vector across a unit vector.
+MW_INLINE Vec3 across(Vec3 a) { return any_tangent(a); }
+MW_INLINE Vec2 across(Vec2 a) { return {-a.y, a.x}; }
+
+// A unit tangent to n that follows `axis` where it can, so that it turns with the body.
+MW_INLINE Vec3 tangent_along(Vec3 axis, Vec3 n) {
+  const Vec3 t = fnma(n, dot(n, axis), axis);
+  const Float l2 = dot(t, t);
+  const Mask usable = Float(Real(0.01)) < l2;
+  return select(usable, t * (Float(Real(1)) / sqrt(select(usable, l2, Float(Real(1))))),
+                any_tangent(n));
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

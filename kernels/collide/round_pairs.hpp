@@ -26,14 +26,14 @@ MW_INLINE void put_point(Manifold<S, 1>& m, typename S::Vec normal, Float separa
   m.valid[0] = mask_from_bits(kAllLanes);
 }
 
-// Coincident centres push apart along world up.
+// Coincident centres push apart along `fallback`.
 template <class S, class Vec>
-MW_INLINE void round_round(Manifold<S, 1>& m, Vec d, Float radius_a, Float radius_b) {
+MW_INLINE void round_round(Manifold<S, 1>& m, Vec d, Float radius_a, Float radius_b, Vec fallback) {
   const Float d2 = dot(d, d);
   const Mask apart = Float(kTinyDistance2) < d2;
   const Float distance = sqrt(d2);
   const Float inv = Float(Real(1)) / select(apart, distance, Real(1));
-  const Vec normal = select(apart, d * inv, up_vector(d));
+  const Vec normal = select(apart, d * inv, fallback);
   const Float length = select(apart, distance, Real(0));
   put_point<S>(m, normal, length - radius_a - radius_b, radius_a, d);
 }
@@ -44,7 +44,7 @@ struct SphereSphere {
   using B = SpherePose;
   static constexpr int kPoints = 1;
   static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
-    round_round<S>(m, b.p - a.p, a.radius, b.radius);
+    round_round<S>(m, b.p - a.p, a.radius, b.radius, up_vector(b.p));
   }
 };
 
@@ -54,23 +54,25 @@ struct CircleCircle {
   using B = CirclePose;
   static constexpr int kPoints = 1;
   static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
-    round_round<S>(m, b.p - a.p, a.radius, b.radius);
+    round_round<S>(m, b.p - a.p, a.radius, b.radius, up_vector(b.p));
   }
 };
 
-// A fixed round shape under a moving one: the kernel of the reverse order, turned round.
+// A fixed shape that would be the kernel's B: the kernel of the reverse order, turned round.
 template <class S, class Reverse>
 struct Reversed {
   using A = typename Reverse::B;
   using B = typename Reverse::A;
-  static constexpr int kPoints = 1;
+  static constexpr int kPoints = Reverse::kPoints;
   static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float axis,
-                                Manifold<S, 1>& m) {
+                                Manifold<S, kPoints>& m) {
     Reverse::collide(t, b, a, axis, m);
     m.normal = -m.normal;
-    const auto point = m.point_a[0];
-    m.point_a[0] = m.point_b[0];
-    m.point_b[0] = point;
+    for (int i = 0; i < kPoints; ++i) {
+      const auto point = m.point_a[i];
+      m.point_a[i] = m.point_b[i];
+      m.point_b[i] = point;
+    }
   }
 };
 

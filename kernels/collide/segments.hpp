@@ -1,6 +1,8 @@
-// Planar manifolds: an incident edge clipped against a reference edge. Shared by rectangles and
-// polygons.
+// Planar manifolds: an incident edge clipped against a reference edge. Shared by rectangles,
+// polygons and capsules.
 #pragma once
+
+#include <type_traits>
 
 #include "kernels/collide/plane_box.hpp"
 
@@ -16,9 +18,17 @@ struct EdgePair {
   Vec2 d;  // B's origin from A's
 };
 
-// The part of the incident edge over the reference edge, at most two points.
-template <class S>
-MW_INLINE void clip_edges(const EdgePair& e, Float margin, Manifold<S, 2>& m) {
+// The same with a radius around each edge.
+struct RoundEdgePair : EdgePair {
+  Float radius, incident_radius;
+};
+
+// The part of the incident edge over the reference edge, at most two points. Returns the nearer
+// one's separation, or out of reach if no part is over it. What is sharp touches beside the
+// reference edge only in overlap.
+template <class S, class Edges>
+MW_INLINE Float clip_edges(const Edges& e, Float margin, Manifold<S, 2>& m) {
+  constexpr bool kRound = std::is_same_v<Edges, RoundEdgePair>;
   const Float one(Real(1)), half(Real(0.5));
   const Vec2 along{-e.normal.y, e.normal.x};
   const Vec2 c = e.incident_middle - e.middle;
@@ -35,25 +45,32 @@ MW_INLINE void clip_edges(const EdgePair& e, Float margin, Manifold<S, 2>& m) {
   leave = select(beside, deepest, leave);
   const Float at[2] = {enter, leave};
   Float separation[2];
-  for (int i = 0; i < 2; ++i) separation[i] = fma(dz, at[i], z);
+  for (int i = 0; i < 2; ++i) {
+    separation[i] = fma(dz, at[i], z);
+    if constexpr (kRound) separation[i] = separation[i] - (e.radius + e.incident_radius);
+  }
   const Float limit = margin + max(min(separation[0], separation[1]), Real(0));
   m.normal = select(e.flip, -e.normal, e.normal);
   for (int i = 0; i < 2; ++i) {
     const Float place = fma(dx, at[i], x), gap = separation[i];
     const Vec2 base = fma(along, place, e.middle);
     // Both from the reference's origin; the other origin is d away.
-    const Vec2 on_ref = fma(e.normal, min(gap, Real(0)) * half, base);
-    const Vec2 on_inc = fma(e.normal, max(gap, gap * half), base);
+    Float to_ref = min(gap, Real(0)) * half, to_inc = max(gap, gap * half);
+    if constexpr (kRound) to_ref = to_ref + e.radius, to_inc = to_inc + e.radius;
+    const Vec2 on_ref = fma(e.normal, to_ref, base);
+    const Vec2 on_inc = fma(e.normal, to_inc, base);
     m.point_a[i] = select(e.flip, on_inc + e.d, on_ref);
     m.point_b[i] = select(e.flip, on_ref, on_inc - e.d);
     m.separation[i] = separation[i];
     m.feature_x[i] = place;
     m.feature_y[i] = Real(0);
-    m.valid[i] = (separation[i] < limit) & (!beside | (separation[i] < Float(Real(0))));
+    m.valid[i] = separation[i] < limit;
+    if constexpr (!kRound) m.valid[i] = m.valid[i] & (!beside | (separation[i] < Float(Real(0))));
   }
   // One point of contact when the two ends coincide.
   m.valid[1] = m.valid[1] & (enter < leave);
   m.match_distance2 = match_distance2(e.half);
+  return select(beside, Float(Real(1e6)), min(separation[0], separation[1]));
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

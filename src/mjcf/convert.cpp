@@ -91,6 +91,7 @@ std::optional<Shape> shape_of(const Model& model, int geom, const Pose& body) {
   shape.name = model.name(mjOBJ_GEOM, geom);
   switch (m.geom_type[geom]) {
     case mjGEOM_SPHERE: shape.geometry = Sphere{size[0]}; break;
+    case mjGEOM_CAPSULE: shape.geometry = Capsule{size[0], size[1]}; break;  // both along z
     case mjGEOM_BOX: shape.geometry = Box{vec3(size)}; break;
     case mjGEOM_PLANE: {
       // Solid below the geom's xy plane, without end: MuJoCo's sizes are for rendering only.
@@ -121,6 +122,8 @@ double typical_size(const Scene& scene) {
         diameters.push_back(2 * sphere->radius);
       } else if (const auto* box = std::get_if<Box>(&shape.geometry)) {
         diameters.push_back(2 * box->half_extents.norm());
+      } else if (const auto* capsule = std::get_if<Capsule>(&shape.geometry)) {
+        diameters.push_back(2 * (capsule->radius + capsule->half_length));
       }
     }
   }

@@ -82,11 +82,12 @@ void check_geoms(const Model& model, std::vector<std::string>& problems) {
   for (int g = 0; g < m.ngeom; ++g) {
     const int type = m.geom_type[g];
     const std::string kind = geom_type_name(type);
-    if (type != mjGEOM_SPHERE && type != mjGEOM_BOX && type != mjGEOM_PLANE) {
+    if (type != mjGEOM_SPHERE && type != mjGEOM_CAPSULE && type != mjGEOM_BOX &&
+        type != mjGEOM_PLANE) {
       if (model.collides(g)) {
         problems.push_back(model.geom_place(g) + ": is a " + kind +
                            " that can collide, which is not simulated yet; expected a sphere, a "
-                           "box or a plane, or contype and conaffinity 0");
+                           "capsule, a box or a plane, or contype and conaffinity 0");
       } else if (gives_mass(model, g)) {
         problems.push_back(model.geom_place(g) + ": is a " + kind +
                            " that does not collide but gives its body mass, which is not "

@@ -47,15 +47,30 @@ PlanCollider local_collider(const Shape& shape, bool rectangles) {
   if (shape.rotation.vec().isZero(0)) c.rotation.setIdentity();
   if (const auto* s = std::get_if<Sphere>(&shape.geometry)) {
     c.kind = ShapeKind::sphere;
-    c.radius = c.inner_radius = s->radius;
+    c.radius = c.thickness = c.inner_radius = s->radius;
   } else if (const auto* circle = std::get_if<Circle>(&shape.geometry)) {
     c.kind = ShapeKind::circle;
-    c.radius = c.inner_radius = circle->radius;
+    c.radius = c.thickness = c.inner_radius = circle->radius;
   } else if (const auto* box = std::get_if<Box>(&shape.geometry)) {
     c.kind = ShapeKind::box;
     c.half = box->half_extents;
     c.radius = c.half.norm();
     c.inner_radius = c.half.minCoeff();
+  } else if (const auto* capsule = std::get_if<Capsule>(&shape.geometry)) {
+    c.kind = ShapeKind::capsule;
+    c.half.x() = capsule->half_length;
+    c.thickness = c.inner_radius = capsule->radius;
+    c.radius = capsule->half_length + capsule->radius;
+  } else if (const auto* segment = std::get_if<Segment>(&shape.geometry)) {
+    // A capsule without thickness.
+    c.kind = ShapeKind::capsule;
+    const Vec2 middle = (segment->a + segment->b) / 2, span = segment->b - segment->a;
+    const Vec2 along = span.normalized();
+    Mat3 turn = Mat3::Identity();
+    turn.topLeftCorner<2, 2>() << along.y(), along.x(), -along.x(), along.y();
+    c.offset += c.rotation * Vec3(middle.x(), middle.y(), 0);
+    c.rotation = c.rotation * turn;
+    c.half.x() = c.radius = span.norm() / 2;
   } else if (const auto* polygon = std::get_if<Polygon>(&shape.geometry)) {
     const auto& v = polygon->vertices;
     Vec2 middle = Vec2::Zero();
@@ -91,7 +106,7 @@ PlanCollider local_collider(const Shape& shape, bool rectangles) {
 }
 
 // The pose row of a fixed shape, and its bounds.
-PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles) {
+PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, bool planar) {
   PlanFixed f;
   const Mat3 body_rotation = body.rotation.normalized().toRotationMatrix();
   const auto plane = [&](const Vec3& normal, double offset) {
@@ -134,6 +149,13 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles) {
       f.low = x - e, f.high = x + e;
       break;
     }
+    case ShapeKind::capsule: {
+      const Vec3 axis = r.col(planar ? 1 : 2);
+      f.row = {x.x(), x.y(), x.z(), c.thickness, axis.x(), axis.y(), axis.z(), c.half.x()};
+      const Vec3 e = axis.cwiseAbs() * c.half.x() + Vec3::Constant(c.thickness);
+      f.low = x - e, f.high = x + e;
+      break;
+    }
     case ShapeKind::rectangle: {
       f.row = {x.x(), x.y(), r(0, 0), r(1, 0), c.half.x(), c.half.y(), 0, 0};
       const Vec3 e = r.cwiseAbs() * c.half;
@@ -167,15 +189,21 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles) {
 
 void collect_colliders(PlanData& plan) {
   const Scene& scene = plan.scene;
-  const bool rectangles = all_rectangles(scene);
+  const bool rectangles = all_rectangles(scene), planar = scene.space == Space::planar;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     const int state = plan.state_body[i];
     for (std::size_t k = 0; k < body.shapes.size(); ++k) {
       if (body.motion == Motion::fixed) {
-        PlanFixed f = fixed_shape(body, body.shapes[k], rectangles);
-        f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
-        plan.fixed.push_back(std::move(f));
+        const Shape& shape = body.shapes[k];
+        std::vector<PlanFixed> parts =
+            std::holds_alternative<Terrain>(shape.geometry)
+                ? terrain_links(body, shape)
+                : std::vector{fixed_shape(body, shape, rectangles, planar)};
+        for (PlanFixed& f : parts) {
+          f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
+          plan.fixed.push_back(std::move(f));
+        }
         continue;
       }
       PlanBody& owner = plan.bodies[static_cast<std::size_t>(state)];

@@ -2,6 +2,7 @@
 // will see them.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "src/plan/plan_data.hpp"
@@ -35,10 +36,37 @@ Match match(ShapeKind a, ShapeKind b) {
       {{ShapeKind::plane, ShapeKind::circle}, PairKind::plane_circle},
       {{ShapeKind::plane, ShapeKind::rectangle}, PairKind::plane_rectangle},
       {{ShapeKind::plane, ShapeKind::polygon}, PairKind::plane_polygon},
+      {{ShapeKind::capsule, ShapeKind::sphere}, PairKind::capsule_sphere},
+      {{ShapeKind::capsule, ShapeKind::circle}, PairKind::capsule_circle},
+      {{ShapeKind::capsule, ShapeKind::capsule}, PairKind::capsule_capsule},
+      {{ShapeKind::box, ShapeKind::capsule}, PairKind::box_capsule},
+      {{ShapeKind::rectangle, ShapeKind::capsule}, PairKind::rectangle_capsule},
+      {{ShapeKind::polygon, ShapeKind::capsule}, PairKind::polygon_capsule},
+      {{ShapeKind::plane, ShapeKind::capsule}, PairKind::plane_capsule},
+      {{ShapeKind::link, ShapeKind::circle}, PairKind::link_circle},
+      {{ShapeKind::link, ShapeKind::rectangle}, PairKind::link_rectangle},
+      {{ShapeKind::link, ShapeKind::polygon}, PairKind::link_polygon},
+      {{ShapeKind::link, ShapeKind::capsule}, PairKind::link_capsule},
   };
   const auto straight = kKernels.find({a, b});
   if (straight != kKernels.end()) return {straight->second, false};
   return {kKernels.at({b, a}), true};
+}
+
+// A fixed sphere under a moving box: the kernel wants the box as A, but the fixed shape must be A.
+// Such pairs have kernels of their own order.
+PairKind reversed(PairKind kind) {
+  switch (kind) {
+    case PairKind::box_sphere: return PairKind::sphere_box;
+    case PairKind::rectangle_circle: return PairKind::circle_rectangle;
+    case PairKind::polygon_circle: return PairKind::circle_polygon;
+    case PairKind::capsule_sphere: return PairKind::sphere_capsule;
+    case PairKind::capsule_circle: return PairKind::circle_capsule;
+    case PairKind::box_capsule: return PairKind::capsule_box;
+    case PairKind::rectangle_capsule: return PairKind::capsule_rectangle;
+    case PairKind::polygon_capsule: return PairKind::capsule_polygon;
+    default: return kind;
+  }
 }
 
 bool is_single(PairKind kind) {
@@ -52,7 +80,12 @@ bool is_single(PairKind kind) {
     case PairKind::plane_circle:
     case PairKind::sphere_box:
     case PairKind::circle_rectangle:
-    case PairKind::circle_polygon: return true;
+    case PairKind::circle_polygon:
+    case PairKind::capsule_sphere:
+    case PairKind::capsule_circle:
+    case PairKind::sphere_capsule:
+    case PairKind::circle_capsule:
+    case PairKind::link_circle: return true;
     default: return false;
   }
 }
@@ -79,8 +112,7 @@ class Collector {
     const PlanFixed& a = plan_.fixed[static_cast<std::size_t>(f)];
     const PlanCollider& b = plan_.colliders[static_cast<std::size_t>(j)];
     const Match m = match(a.kind, b.kind);
-    if (m.swapped) return add_swapped_fixed(f, j);
-    add(m.kind, true, f, j, shape(a), shape(b),
+    add(m.swapped ? reversed(m.kind) : m.kind, true, f, j, shape(a), shape(b),
         plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0);
   }
 
@@ -103,18 +135,6 @@ class Collector {
     return plan_.scene.bodies[static_cast<std::size_t>(f.scene_body)]
         .shapes[static_cast<std::size_t>(f.shape)];
   }
-  // A fixed sphere under a moving box: the kernel wants the box as A, but the fixed shape must be
-  // A. Such pairs have kernels of their own order.
-  void add_swapped_fixed(int f, int j) {
-    const PlanFixed& a = plan_.fixed[static_cast<std::size_t>(f)];
-    const PlanCollider& b = plan_.colliders[static_cast<std::size_t>(j)];
-    const PairKind kind = b.kind == ShapeKind::box         ? PairKind::sphere_box
-                          : b.kind == ShapeKind::rectangle ? PairKind::circle_rectangle
-                                                           : PairKind::circle_polygon;
-    add(kind, true, f, j, shape(a), shape(b),
-        plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0);
-  }
-
   void add(PairKind kind, bool fixed, int a, int b, const Shape& shape_a, const Shape& shape_b,
            bool dynamic) {
     const bool single = is_single(kind);
@@ -137,6 +157,22 @@ class Collector {
   PlanData& plan_;
   std::map<std::pair<int, int>, PlanClass> classes_;
 };
+
+// One for each fixed shape; of a terrain's links as many as the shapes can lie over, with their
+// speculative margins, were all links as short as the shortest, and twice that for rough ground.
+int fixed_manifolds(const PlanData& plan) {
+  double shortest = std::numeric_limits<double>::max();
+  int links = 0;
+  for (const PlanFixed& f : plan.fixed) {
+    if (f.kind != ShapeKind::link) continue;
+    ++links;
+    shortest = std::min(shortest, f.length);
+  }
+  double near = 0;
+  for (const PlanCollider& c : plan.colliders) near += 2 * (4 * c.radius / shortest + 4);
+  const int others = static_cast<int>(plan.fixed.size()) - links;
+  return others + static_cast<int>(std::min(near, static_cast<double>(links)));
+}
 
 }  // namespace
 
@@ -167,7 +203,7 @@ void collect_pairs(PlanData& plan) {
   }
   const int pairs = plan.scene.options.contact_capacity.value_or(
       (plan.scene.space == Space::spatial ? 4 : 3) * n + 8);
-  const int fixed = 2 * n + 8 + static_cast<int>(plan.fixed.size());
+  const int fixed = 2 * n + 8 + fixed_manifolds(plan);
   for (int l = 0; l < kernels::kLists; ++l) {
     const int limit = is_fixed(static_cast<ListId>(l)) ? fixed : pairs;
     plan.capacity[static_cast<std::size_t>(l)] =

@@ -31,8 +31,10 @@ struct PlanCollider {
   int scene_body = -1, shape = -1;
   Vec3 offset = Vec3::Zero();  // from the centre of mass, principal axes
   Mat3 rotation = Mat3::Identity();
-  Vec3 half = Vec3::Zero();
-  double radius = 0, inner_radius = 0;
+  Vec3 half = Vec3::Zero();    // half extents; capsule: x is half its length
+  double thickness = 0;        // radius of what is round: sphere, circle, capsule
+  double radius = 0;           // of the bounding sphere
+  double inner_radius = 0;     // of a sphere inside
   std::vector<Vec2> vertices;  // about the shape's origin
   int row = 0;
 };
@@ -43,6 +45,7 @@ struct PlanFixed {
   std::vector<double> row;  // pose row
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::array<double, 4> plane{};
+  double length = 0;  // of a link
   int row_offset = 0;
 };
 
@@ -78,6 +81,8 @@ struct PlanData {
     return scene.space == Space::planar ? kernels::Dimension::planar : kernels::Dimension::spatial;
   }
 };
+
+std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // terrain.cpp
 
 // The steps of compile(), in order.
 void collect_bodies(PlanData& plan);        // bodies.cpp

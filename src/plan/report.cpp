@@ -6,10 +6,14 @@ namespace manyworlds {
 
 const char* to_string(kernels::PairKind kind) {
   static constexpr const char* kNames[kernels::kPairKinds] = {
-      "sphere-sphere",     "box-sphere",      "box-box",          "plane-sphere",
-      "plane-box",         "circle-circle",   "rectangle-circle", "rectangle-rectangle",
-      "polygon-circle",    "polygon-polygon", "halfplane-circle", "halfplane-rectangle",
-      "halfplane-polygon", "sphere-box",      "circle-rectangle", "circle-polygon"};
+      "sphere-sphere",     "box-sphere",        "box-box",           "plane-sphere",
+      "plane-box",         "circle-circle",     "rectangle-circle",  "rectangle-rectangle",
+      "polygon-circle",    "polygon-polygon",   "halfplane-circle",  "halfplane-rectangle",
+      "halfplane-polygon", "sphere-box",        "circle-rectangle",  "circle-polygon",
+      "capsule-sphere",    "capsule-circle",    "capsule-capsule",   "box-capsule",
+      "rectangle-capsule", "polygon-capsule",   "plane-capsule",     "sphere-capsule",
+      "circle-capsule",    "capsule-box",       "capsule-rectangle", "capsule-polygon",
+      "terrain-circle",    "terrain-rectangle", "terrain-polygon",   "terrain-capsule"};
   return kNames[static_cast<int>(kind)];
 }
 

@@ -104,6 +104,51 @@ void check_polygon(Checker& checker, const Polygon& polygon) {
   check_corners(checker, vertices, area < 0 ? -1 : 1);
 }
 
+bool check_point(Checker& checker, const std::string& field, const Vec2& point) {
+  const bool good = check_coordinate(checker, field + ".x", point.x());
+  return check_coordinate(checker, field + ".y", point.y()) && good;
+}
+
+void check_segment(Checker& checker, const Segment& segment) {
+  const bool good = check_point(checker, "a", segment.a);
+  if (!check_point(checker, "b", segment.b) || !good) return;
+  if ((segment.b - segment.a).norm() >= kSmallestSize) return;
+  checker.add("b", "is " + vector_text(segment.b) + " m, the same as a; must be apart from it");
+}
+
+void check_terrain(Checker& checker, const Terrain& terrain) {
+  const std::vector<Vec2>& points = terrain.points;
+  const std::size_t n = points.size(), fewest = terrain.loop ? 3 : 2;
+  if (n < fewest) {
+    checker.add("points", "are " + std::to_string(n) + ", must be at least " +
+                              std::to_string(fewest) + (terrain.loop ? " in a loop" : ""));
+    return;
+  }
+  const auto name = [](std::size_t i) { return "points[" + std::to_string(i) + "]"; };
+  bool good = true;
+  for (std::size_t i = 0; i < n; ++i) good &= check_point(checker, name(i), points[i]);
+  if (!good) return;
+
+  double extent = 0;  // m, farthest point from point 0
+  for (const Vec2& p : points) extent = std::max(extent, (p - points[0]).norm());
+  const double least = std::max(kSameVertex * extent, kSmallestSize);
+  for (std::size_t i = terrain.loop ? 0 : 1; i < n; ++i) {
+    const std::size_t before = (i + n - 1) % n;
+    if ((points[i] - points[before]).norm() > least) continue;
+    checker.add(name(i), "is " + vector_text(points[i]) + " m, the same as " + name(before) +
+                             "; neighbours must be apart");
+    good = false;
+  }
+  if (!good) return;
+  // A spike without width has no outside.
+  for (std::size_t i = terrain.loop ? 0 : 1; i + (terrain.loop ? 0 : 1) < n; ++i) {
+    const Vec2 before = (points[i] - points[(i + n - 1) % n]).normalized();
+    const Vec2 after = (points[(i + 1) % n] - points[i]).normalized();
+    if (before.dot(after) > 0 || std::abs(cross(before, after)) > kSmallestTurn) continue;
+    checker.add(name(i), "at " + vector_text(points[i]) + " m folds back, must turn by less");
+  }
+}
+
 void check_normal_length(Checker& checker, double length) {
   if (std::abs(length - 1) <= kInputTolerance) return;
   checker.add("normal", "has length " + number_text(length) + ", must be 1 (within " +
@@ -141,6 +186,20 @@ struct GeometryCheck {
     in_space(Space::planar, "polygon");
     check_polygon(checker, polygon);
   }
+  void operator()(const Capsule& capsule) const {
+    checker.size("radius", capsule.radius);
+    checker.size("half_length", capsule.half_length);
+  }
+  void operator()(const Segment& segment) const {
+    in_space(Space::planar, "segment");
+    on_fixed_body("segment");
+    check_segment(checker, segment);
+  }
+  void operator()(const Terrain& terrain) const {
+    in_space(Space::planar, "terrain");
+    on_fixed_body("terrain");
+    check_terrain(checker, terrain);
+  }
   void operator()(const HalfPlane& plane) const {
     in_space(Space::planar, "half-plane");
     on_fixed_body("half-plane");
@@ -153,10 +212,13 @@ struct GeometryCheck {
  private:
   void in_space(Space space, const std::string& kind) const {
     if (space == checker.space()) return;
-    checker.add("geometry",
-                "is a " + kind +
-                    (checker.planar() ? ", a planar scene takes circle, polygon and half-plane"
-                                      : ", a spatial scene takes sphere, box and plane"));
+    checker.add(
+        "geometry",
+        "is a " + kind +
+            (checker.planar()
+                 ? ", a planar scene takes circle, polygon, capsule, half-plane, segment and "
+                   "terrain"
+                 : ", a spatial scene takes sphere, box, capsule and plane"));
   }
   void on_fixed_body(const std::string& kind) const {
     if (body.motion == Motion::fixed) return;

@@ -5,7 +5,8 @@
 //   I = sum_k R_k I_k R_k^T + m_k (d_k^2 1 - d_k d_k^T),   d_k = c_k - c,   c = sum m_k c_k / m.
 // The centre is found first and the inertia summed about it: summing about the origin and
 // subtracting m c^2 would lose digits when shapes are far from the origin of their body.
-// Shapes that overlap simply add. Planes have no mass.
+// Shapes that overlap simply add. Planes and lines have no mass.
+#include <type_traits>
 #include <vector>
 
 #include "manyworlds/scene.hpp"
@@ -39,6 +40,28 @@ MassProperties of(const Circle& circle, double density) {
   return {mass, Vec3::Zero(), planar_inertia(0.5 * mass * r * r)};
 }
 
+// A cylinder and two half balls, whose centres of mass are 3/8 r beyond its ends: about the middle,
+// across the axis, a pair of them of mass m has m (2/5 r^2 + h^2 + 3/4 h r).
+MassProperties capsule_in_space(const Capsule& capsule, double density) {
+  const double r = capsule.radius, h = capsule.half_length;
+  const double cylinder = density * 2 * kPi * r * r * h;
+  const double ends = density * 4.0 / 3.0 * kPi * r * r * r;
+  const double along = cylinder * r * r / 2 + ends * 0.4 * r * r;
+  const double across =
+      cylinder * (r * r / 4 + h * h / 3) + ends * (0.4 * r * r + h * h + 0.75 * h * r);
+  return {cylinder + ends, Vec3::Zero(), Vec3(across, across, along).asDiagonal()};
+}
+
+// A rectangle and two half discs, whose centres of mass are 4 r / (3 pi) beyond its ends.
+MassProperties capsule_in_plane(const Capsule& capsule, double density) {
+  const double r = capsule.radius, h = capsule.half_length;
+  const double rectangle = density * 4 * r * h;
+  const double ends = density * kPi * r * r;
+  const double moment =
+      rectangle * (r * r + h * h) / 3 + ends * (r * r / 2 + h * h + 8 * r * h / (3 * kPi));
+  return {rectangle + ends, Vec3::Zero(), planar_inertia(moment)};
+}
+
 // A fan of triangles (0, a, b) from vertex 0, with twice the signed area D = a x b each:
 //   area += D / 2,  centre moment += D (a + b) / 6,  polar moment += D (a.a + a.b + b.b) / 12.
 MassProperties of(const Polygon& polygon, double density) {
@@ -63,11 +86,21 @@ MassProperties of(const Polygon& polygon, double density) {
 MassProperties of(const Plane&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
 MassProperties of(const HalfPlane&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
 
+MassProperties of(const Segment&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
+MassProperties of(const Terrain&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
+
 // In the body frame.
-MassProperties of(const Shape& shape, double default_density) {
-  const double density = shape.density.value_or(default_density);
-  MassProperties part =
-      std::visit([&](const auto& geometry) { return of(geometry, density); }, shape.geometry);
+MassProperties of(const Shape& shape, const Scene& scene) {
+  const double density = shape.density.value_or(scene.options.density);
+  const bool planar = scene.space == Space::planar;
+  const auto in_shape_frame = [&](const auto& geometry) {
+    if constexpr (std::is_same_v<decltype(geometry), const Capsule&>) {
+      return planar ? capsule_in_plane(geometry, density) : capsule_in_space(geometry, density);
+    } else {
+      return of(geometry, density);
+    }
+  };
+  MassProperties part = std::visit(in_shape_frame, shape.geometry);
   const Mat3 rotation = shape.rotation.normalized().toRotationMatrix();
   part.center = shape.position + rotation * part.center;
   // Isotropic tensors look the same in every frame: rounding must not make them differ.
@@ -85,10 +118,10 @@ MassProperties mass_properties(const Scene& scene, const Body& body) {
   std::vector<MassProperties> parts;
   MassProperties total{0, Vec3::Zero(), Mat3::Zero()};
   for (const Shape& shape : body.shapes) {
-    parts.push_back(of(shape, scene.options.density));
+    parts.push_back(of(shape, scene));
     total.mass += parts.back().mass;
   }
-  if (total.mass == 0) return total;  // no shapes, or only planes
+  if (total.mass == 0) return total;  // no shapes, or only planes and lines
 
   // Relative to the first part, for the same reason as above.
   for (const MassProperties& part : parts) {

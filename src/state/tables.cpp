@@ -152,7 +152,7 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
     copy(c.offset, out.offset);
     for (int k = 0; k < 9; ++k) out.rotation[k] = static_cast<Real>(c.rotation(k % 3, k / 3));
     copy(c.half, out.half);
-    out.radius = static_cast<Real>(c.radius);
+    out.radius = static_cast<Real>(c.thickness > 0 ? c.thickness : c.radius);
     // A speculative row holds along one normal, which is good as long as the gap is not large
     // against the shape. Round shapes keep their normals better.
     const bool round = c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;

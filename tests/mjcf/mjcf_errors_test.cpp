@@ -98,8 +98,6 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
        world("<body name='b'>" + kFree +
              "<body name='c' gravcomp='1'><geom size='.1'/></body></body>"),
        "body 'c'", "gravcomp"},
-      {"capsule", free_body("type='capsule' fromto='0 0 0 0 0 1'"), "geom 'g' of body 'b'",
-       "capsule that can collide"},
       {"cylinder", free_body("type='cylinder' fromto='0 0 0 0 0 1'"), "geom 'g' of body 'b'",
        "cylinder that can collide"},
       {"ellipsoid", world("<geom name='g' type='ellipsoid' size='1 2 3'/>"), "geom 'g'",
@@ -112,8 +110,8 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
        "<mujoco><asset><hfield name='h' nrow='2' ncol='2' size='1 1 1 1'/></asset>"
        "<worldbody><geom name='g' type='hfield' hfield='h'/></worldbody></mujoco>",
        "geom 'g'", "hfield that can collide"},
-      {"seen capsule that weighs",
-       free_body("type='capsule' fromto='0 0 0 0 0 1' contype='0' conaffinity='0'"),
+      {"seen cylinder that weighs",
+       free_body("type='cylinder' fromto='0 0 0 0 0 1' contype='0' conaffinity='0'"),
        "geom 'g' of body 'b'", "gives its body mass"},
       {"surface velocity", free_body("surfacevel='1 0 0 0 0 0'"), "geom 'g'", "surfacevel"},
       {"adhesion", free_body("adhesion='1'"), "geom 'g'", "adhesion"},
@@ -149,7 +147,7 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
   }
   // What neither collides nor weighs is left out instead.
   const std::string seen =
-      "<geom type='capsule' fromto='0 0 0 0 0 1' size='.1' contype='0' "
+      "<geom type='cylinder' fromto='0 0 0 0 0 1' size='.1' contype='0' "
       "conaffinity='0'/>";
   CHECK(problems_of(world(inertial + seen + "</body>")).empty());
   CHECK(problems_of(world(seen)).empty());
@@ -158,7 +156,7 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
 TEST_CASE("all problems of a file are listed, one per line, with its name", "[mjcf][fast]") {
   const TemporaryFile file("manyworlds_two_problems.xml",
                            world("<body name='b'><joint name='j' type='hinge'/>"
-                                 "<geom name='g' type='capsule' size='.1 .1'/></body>"));
+                                 "<geom name='g' type='cylinder' size='.1 .1'/></body>"));
   std::string text;
   try {
     load_mjcf(file.path);

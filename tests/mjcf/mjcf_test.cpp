@@ -136,6 +136,35 @@ TEST_CASE("a plane's normal is the z axis of its geom", "[mjcf][fast]") {
   CHECK(plane.offset == Approx(-0.3).epsilon(1e-12));
 }
 
+TEST_CASE("capsules keep MuJoCo's size, axis and mass", "[mjcf][fast]") {
+  // Both ways to say it: size with a pose, and end points.
+  for (const std::string geom :
+       {"size='.1 .25' pos='.25 0 0' zaxis='1 0 0'", "size='.1' fromto='0 0 0 .5 0 0'"}) {
+    const Scene scene =
+        load_mjcf_string(world("<body name='b'><freejoint/><geom type='capsule' density='500' " +
+                               geom + "/></body>"))
+            .scene;
+    const Body& body = find_body(scene, "b");
+    REQUIRE(body.shapes.size() == 1);
+    const Shape& shape = body.shapes[0];
+    const auto& capsule = std::get<Capsule>(shape.geometry);
+    CHECK(capsule.radius == Approx(0.1));
+    CHECK(capsule.half_length == Approx(0.25));
+    CHECK((shape.position - Vec3(0.25, 0, 0)).norm() < 1e-12);
+    CHECK(std::abs((shape.rotation * Vec3::UnitZ()).x()) == Approx(1));
+    // MuJoCo's compiler and ours agree on mass and moments.
+    Body own = body;
+    own.mass_properties.reset();
+    own.shapes[0].density = 500;
+    const MassProperties given = mass_properties(scene, body),
+                         derived = mass_properties(scene, own);
+    CHECK(derived.mass == Approx(given.mass).epsilon(1e-12));
+    CHECK((derived.center - given.center).norm() < 1e-12);
+    CHECK((derived.inertia - given.inertia).norm() < 1e-9 * given.inertia.norm());
+    CHECK(scene.options.length_unit == Approx(0.7));
+  }
+}
+
 TEST_CASE("option gives time step and gravity, and flags can switch things off", "[mjcf][fast]") {
   const std::string ball =
       "<worldbody><body><freejoint/><geom size='0.0317' friction='0.3'/></body></worldbody>";

@@ -1,5 +1,5 @@
-// A small scene in which every kind of pair meets within a few steps and differently in each
-// world: what the tests of equal bits run on.
+// Small scenes in which every kind of pair meets within a few steps and differently in each world:
+// what the tests of equal bits run on.
 #pragma once
 
 #include "tests/support/scenes.hpp"
@@ -30,6 +30,29 @@ inline Scene crowd(Space space, int bodies = 8) {
     body.linear_drag = i == 1 ? 0.1 : 0;
     body.angular_drag = i == 2 ? 0.2 : 0;
     scene.add(body);
+  }
+  return scene;
+}
+
+// The same with capsules among the bodies and fixed, in the plane over a terrain and a segment;
+// with polygons instead of rectangles if wished.
+inline Scene capsule_crowd(Space space, bool polygons = false) {
+  const bool planar = space == Space::planar;
+  Scene scene = crowd(space, 12);
+  scene.name += "-capsules";
+  for (std::size_t i = 2; i < scene.bodies.size(); i += 3)
+    scene.bodies[i].shapes[0].geometry = Capsule{0.25, 0.3};
+  scene.add(
+      body_of(shape_of(Capsule{0.2, 0.4}, 0.4), Vec3(1, 0, 0) + 0.2 * up_of(space), Motion::fixed));
+  scene.add(body_of(shape_of(round_of(space, 0.3), 0.4), Vec3(-1, 0, 0), Motion::fixed));
+  if (!planar) return scene;
+  scene.add(body_of(shape_of(Segment{{-2, 0.6}, {-1, 0.1}}, 0.4), Vec3::Zero(), Motion::fixed));
+  scene.add(body_of(shape_of(Terrain{{{-4, 1}, {-2, 0.1}, {-1, 0.2}, {0, 0.1}, {2, 0.1}, {4, 1}}}),
+                    Vec3::Zero(), Motion::fixed));
+  if (polygons) {
+    for (std::size_t i = 3; i < scene.bodies.size(); i += 3)
+      if (scene.bodies[i].motion == Motion::dynamic)
+        scene.bodies[i].shapes[0].geometry = Polygon{{{-0.4, -0.3}, {0.4, -0.3}, {0, 0.4}}};
   }
   return scene;
 }

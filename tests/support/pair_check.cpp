@@ -17,6 +17,10 @@ double reach(const Shape& shape) {  // no point of the shape is farther from the
   if (const auto* s = std::get_if<Sphere>(&shape.geometry)) r = s->radius;
   if (const auto* c = std::get_if<Circle>(&shape.geometry)) r = c->radius;
   if (const auto* b = std::get_if<Box>(&shape.geometry)) r = b->half_extents.norm();
+  if (const auto* c = std::get_if<Capsule>(&shape.geometry)) r = c->radius + c->half_length;
+  if (const auto* s = std::get_if<Segment>(&shape.geometry)) r = std::max(s->a.norm(), s->b.norm());
+  if (const auto* t = std::get_if<Terrain>(&shape.geometry))
+    for (const Vec2& v : t->points) r = std::max(r, v.norm());
   if (const auto* p = std::get_if<Polygon>(&shape.geometry))
     for (const Vec2& v : p->vertices) r = std::max(r, v.norm());
   return r + shape.position.norm();
@@ -47,7 +51,7 @@ void place(const Scene& scene, std::vector<Pose>& pose, Random& random) {
   const std::size_t base = 1 - mover;
   const Shape& fixed_shape = scene.bodies[base].shapes[0];
   const Shape& moved_shape = scene.bodies[mover].shapes[0];
-  const Solid still = make_solid(fixed_shape, pose[base]);
+  const Solid still = make_solid(fixed_shape, pose[base], scene.space);
   const Vec3 ray = still.kind == Solid::Kind::half_space
                        ? still.normal
                        : (planar ? random.planar_direction() : random.direction());
@@ -67,7 +71,8 @@ void place(const Scene& scene, std::vector<Pose>& pose, Random& random) {
   double low = still.kind == Solid::Kind::half_space ? -far : 0, high = far;
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
-    (separation(still, make_solid(moved_shape, at(middle))) < wanted ? low : high) = middle;
+    (separation(still, make_solid(moved_shape, at(middle), scene.space)) < wanted ? low : high) =
+        middle;
   }
   pose[mover] = at(high);
 }
@@ -102,10 +107,11 @@ class Judge {
     pose_ = &pose;
     contacts_ = &contacts;
     const double margin = 4 * scene_.options.slop * scene_.options.length_unit;
-    const Solid first = make_solid(scene_.bodies[0].shapes[0], pose[0]);
-    const Solid second = make_solid(scene_.bodies[1].shapes[0], pose[1]);
+    const Solid first = make_solid(scene_.bodies[0].shapes[0], pose[0], scene_.space);
+    const Solid second = make_solid(scene_.bodies[1].shapes[0], pose[1], scene_.space);
     truth_ = separation(first, second);
     ++result_.poses;
+    if (is_behind(0, first, second) || is_behind(1, second, first)) return;
     if (truth_ < 0) ++result_.overlapping;
     if (!contacts.empty()) ++result_.with_contacts;
 
@@ -119,15 +125,27 @@ class Judge {
     const bool in_order = contacts[0].body_a == 0;
     const Solid& a = in_order ? first : second;
     const Solid& b = in_order ? second : first;
-    double deepest = contacts[0].separation;
+    double depth = 1e9;  // of the manifold that comes closest
     for (const Contact& c : contacts) {
-      deepest = std::min(deepest, c.separation);
+      const double own = deepest_along(c.normal);
+      if (std::abs(own - truth_) < std::abs(depth - truth_)) depth = own;
       check_point(a, b, c);
+      // No point can be deeper than the shapes overlap along its normal.
+      const double along = separation_along(a, b, c.normal.normalized());
+      if (!(c.separation > along - 2 * tight_))
+        deviation("deeper than along its normal", c.separation - along);
     }
-    check_depth(a, b, deepest);
+    check_depth(a, b, depth);
   }
 
  private:
+  // A shape whose middle is behind a terrain is not touched, and a capsule whose axis is may see
+  // more of one link than of another.
+  bool is_behind(std::size_t ground, const Solid& terrain, const Solid& other) const {
+    return std::holds_alternative<Terrain>(scene_.bodies[ground].shapes[0].geometry) &&
+           (signed_distance(terrain, other.center) < tight_ ||
+            (other.kind == Solid::Kind::capsule && truth_ < tight_ - other.radius));
+  }
   void check_point(const Solid& a, const Solid& b, const Contact& c) {
     if (c.body_a + c.body_b != 1 || c.shape_a != 0 || c.shape_b != 0)
       deviation("wrong bodies", c.body_a);
@@ -145,8 +163,16 @@ class Judge {
     if (!(in_a < half && in_b < half)) deviation("point off the shapes", std::max(in_a, in_b));
   }
 
+  // A terrain has a manifold for each link, with a normal of its own; each sees what is over its
+  // link, and overlaps along other normals are deeper.
+  double deepest_along(const Vec3& normal) const {
+    double deepest = 1e9;
+    for (const Contact& c : *contacts_)
+      if (c.normal == normal) deepest = std::min(deepest, c.separation);
+    return deepest;
+  }
+
   void check_depth(const Solid& a, const Solid& b, double deepest) {
-    const Vec3& n = (*contacts_)[0].normal;
     const double allowed = promise_.bias + promise_.bias_relative * std::abs(truth_);
     if (truth_ < -tight_) {
       if (!(std::abs(deepest - truth_) < allowed + tight_)) deviation("wrong depth", deepest);
@@ -154,15 +180,14 @@ class Judge {
       // A separating axis gives at most the distance, and never an overlap.
       if (!(deepest > -2 * tight_)) deviation("disjoint shapes reported as overlapping", deepest);
     }
-    // No point can be deeper than the shapes overlap along the reported normal.
-    const double along = separation_along(a, b, n.normalized());
-    if (!(deepest > along - 2 * tight_)) deviation("deeper than along its normal", deepest - along);
     if (const auto exact = exact_normal(a, b)) {
       ++result_.normals_checked;
       // 1e-3 is exact_normal's clearance: rounding of positions turns a normal by up to
       // rounding / clearance.
-      if (!((n - *exact).norm() < tight_ / 1e-3 * 0.2))
-        deviation("wrong normal", (n - *exact).norm());
+      for (const Contact& c : *contacts_) {
+        if (!((c.normal - *exact).norm() < tight_ / 1e-3 * 0.2))
+          deviation("wrong normal", (c.normal - *exact).norm());
+      }
       if (!(std::abs(deepest - truth_) < 2 * tight_)) deviation("wrong separation", deepest);
     }
   }
@@ -190,6 +215,8 @@ class Judge {
       s << " box " << box->half_extents.transpose();
     if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) s << " r " << sphere->radius;
     if (const auto* circle = std::get_if<Circle>(&shape.geometry)) s << " r " << circle->radius;
+    if (const auto* capsule = std::get_if<Capsule>(&shape.geometry))
+      s << " r " << capsule->radius << " half " << capsule->half_length;
     if (const auto* polygon = std::get_if<Polygon>(&shape.geometry))
       for (const Vec2& v : polygon->vertices) s << " (" << v.x() << ", " << v.y() << ")";
     s << "\n";
@@ -252,6 +279,10 @@ Polygon random_polygon(Random& random, int vertices) {
 
 Box random_box(Random& random) {
   return {{random.uniform(0.1, 0.6), random.uniform(0.1, 0.6), random.uniform(0.1, 0.6)}};
+}
+
+Capsule random_capsule(Random& random) {
+  return {random.uniform(0.1, 0.4), random.uniform(0.05, 0.6)};
 }
 
 Body random_body(Geometry geometry, Motion motion, bool offset, Space space, Random& random) {

@@ -41,6 +41,7 @@ void merge(PairResult& sum, const PairResult& more);
 // Random shapes for check_pair, 0.1 to 0.6 m in half extent.
 Polygon random_polygon(Random& random, int vertices);
 Box random_box(Random& random);
+Capsule random_capsule(Random& random);
 // A body with this shape, placed off its body frame by a random pose when `offset` is set.
 Body random_body(Geometry geometry, Motion motion, bool offset, Space space, Random& random);
 

@@ -16,8 +16,8 @@ Vec3 corner_sign(int i) { return {i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 
 
 std::vector<std::pair<Vec3, Vec3>> edges(const Solid& s) {
   std::vector<std::pair<Vec3, Vec3>> result;
-  if (s.kind == Solid::Kind::polygon) {
-    const std::size_t n = s.vertices.size();
+  if (s.kind == Solid::Kind::polygon || s.kind == Solid::Kind::capsule) {
+    const std::size_t n = s.vertices.size();  // a capsule's axis is an edge to either side
     for (std::size_t i = 0; i < n; ++i) result.emplace_back(s.vertices[i], s.vertices[(i + 1) % n]);
   } else {
     for (int i = 0; i < 8; ++i) {
@@ -63,20 +63,28 @@ std::vector<Vec3> edge_normals(const Solid& s) {
   return result;
 }
 
+// Directions of the edges of a spatial solid.
+std::vector<Vec3> directions(const Solid& s) {
+  if (s.kind == Solid::Kind::capsule) return {(s.vertices[1] - s.vertices[0]).normalized()};
+  return {s.axes.col(0), s.axes.col(1), s.axes.col(2)};
+}
+
 // Every normal that a facet of the Minkowski difference can have: the penetration depth of two
-// overlapping polytopes is attained at one of them.
+// overlapping polytopes is attained at one of them. Of capsules, the axes are looked at.
 std::vector<Vec3> facet_normals(const Solid& a, const Solid& b) {
   std::vector<Vec3> result;
-  if (a.kind == Solid::Kind::polygon) {
+  if (a.planar) {
     for (const Vec3& n : edge_normals(a)) result.push_back(n);
     for (const Vec3& n : edge_normals(b)) result.push_back(-n);
     return result;
   }
-  for (int i = 0; i < 3; ++i) {
-    result.push_back(a.axes.col(i));
-    result.push_back(b.axes.col(i));
-    for (int j = 0; j < 3; ++j) {
-      const Vec3 n = a.axes.col(i).cross(b.axes.col(j));
+  for (const Solid* s : {&a, &b}) {
+    if (s->kind == Solid::Kind::capsule) continue;
+    for (const Vec3& n : directions(*s)) result.push_back(n);
+  }
+  for (const Vec3& u : directions(a)) {
+    for (const Vec3& v : directions(b)) {
+      const Vec3 n = u.cross(v);
       if (n.norm() > 1e-7) result.push_back(n.normalized());
     }
   }
@@ -85,7 +93,9 @@ std::vector<Vec3> facet_normals(const Solid& a, const Solid& b) {
   return result;
 }
 
-double polytope_separation(const Solid& a, const Solid& b) {
+// Capsules are their axes here; separation() takes off the radii.
+double polytope_separation(Solid a, Solid b) {
+  a.radius = b.radius = 0;
   double depth_axis = -kInfinity;
   for (const Vec3& n : facet_normals(a, b))
     depth_axis = std::max(depth_axis, separation_along(a, b, n));
@@ -107,7 +117,7 @@ std::pair<double, double> extent(const Solid& s, const Vec3& d) {
     low = std::min(low, v.dot(d));
     high = std::max(high, v.dot(d));
   }
-  return {low, high};
+  return {low - s.radius, high + s.radius};
 }
 
 // Gradient of the signed distance at a point, when it is unique by a clear margin.
@@ -132,6 +142,13 @@ std::optional<Vec3> outward(const Solid& s, const Vec3& p) {
         if (i != face && inside(i) < inside(face) + kClear) return std::nullopt;
       if (std::abs(local(face)) < kClear) return std::nullopt;
       return s.axes.col(face) * (local(face) > 0 ? 1.0 : -1.0);
+    }
+    case Solid::Kind::capsule: {
+      const Vec3 along = s.vertices[1] - s.vertices[0];
+      const double place = (p - s.vertices[0]).dot(along) / along.squaredNorm();
+      const Vec3 d = p - s.vertices[0] - std::clamp(place, 0.0, 1.0) * along;
+      if (d.norm() < kClear) return std::nullopt;
+      return d.normalized();
     }
     case Solid::Kind::polygon: {
       if (signed_distance(s, p) > 0) {
@@ -171,7 +188,7 @@ Pose operator*(const Pose& outer, const Pose& inner) {
   return {outer.position + q * inner.position, q * inner.rotation.normalized()};
 }
 
-Solid make_solid(const Shape& shape, const Pose& body) {
+Solid make_solid(const Shape& shape, const Pose& body, Space space) {
   const Pose pose = body * Pose{shape.position, shape.rotation};
   Solid s;
   s.center = pose.position;
@@ -185,13 +202,38 @@ Solid make_solid(const Shape& shape, const Pose& body) {
     s.half_extents = box->half_extents;
     for (int i = 0; i < 8; ++i)
       s.vertices.push_back(s.center + s.axes * corner_sign(i).cwiseProduct(s.half_extents));
+  } else if (const auto* capsule = std::get_if<Capsule>(&shape.geometry)) {
+    s.kind = Solid::Kind::capsule;
+    s.planar = space == Space::planar;
+    s.radius = capsule->radius;
+    const Vec3 end = capsule->half_length * s.axes.col(s.planar ? 1 : 2);
+    s.vertices = {s.center - end, s.center + end};
   } else if (const auto* polygon = std::get_if<Polygon>(&shape.geometry)) {
     s.kind = Solid::Kind::polygon;
+    s.planar = true;
     s.center.setZero();
     for (const Vec2& v : polygon->vertices) {
       s.vertices.push_back(pose.position + s.axes * Vec3(v.x(), v.y(), 0));
       s.center += s.vertices.back() / static_cast<double>(polygon->vertices.size());
     }
+  } else if (const auto* terrain = std::get_if<Terrain>(&shape.geometry)) {
+    // Clockwise around what is solid, or straight.
+    s.planar = true;
+    s.kind = terrain->loop ? Solid::Kind::polygon : Solid::Kind::half_space;
+    s.center.setZero();
+    for (auto p = terrain->points.rbegin(); p != terrain->points.rend(); ++p) {
+      s.vertices.push_back(pose.position + s.axes * Vec3(p->x(), p->y(), 0));
+      s.center += s.vertices.back() / static_cast<double>(terrain->points.size());
+    }
+    const Vec3 back = s.vertices.back() - s.vertices.front();
+    s.normal = Vec3(back.y(), -back.x(), 0).normalized();
+    s.offset = s.normal.dot(s.vertices.front());
+  } else if (const auto* segment = std::get_if<Segment>(&shape.geometry)) {
+    s.kind = Solid::Kind::capsule;
+    s.planar = true;
+    for (const Vec2& p : {segment->a, segment->b})
+      s.vertices.push_back(pose.position + s.axes * Vec3(p.x(), p.y(), 0));
+    s.center = 0.5 * (s.vertices[0] + s.vertices[1]);
   } else {
     s.kind = Solid::Kind::half_space;
     const auto* plane = std::get_if<Plane>(&shape.geometry);
@@ -212,6 +254,7 @@ double signed_distance(const Solid& s, const Vec3& p) {
       const Vec3 q = (s.axes.transpose() * (p - s.center)).cwiseAbs() - s.half_extents;
       return q.maxCoeff() > 0 ? q.cwiseMax(0.0).norm() : q.maxCoeff();
     }
+    case Solid::Kind::capsule: return point_segment(p, s.vertices[0], s.vertices[1]) - s.radius;
     case Solid::Kind::polygon: {
       const auto sides = edges(s);
       const auto normals = edge_normals(s);
@@ -240,7 +283,7 @@ double separation(const Solid& a, const Solid& b) {
   if (b.kind == Solid::Kind::half_space) return separation_along(a, b, -b.normal);
   if (a.kind == Solid::Kind::round) return signed_distance(b, a.center) - a.radius;
   if (b.kind == Solid::Kind::round) return signed_distance(a, b.center) - b.radius;
-  return polytope_separation(a, b);
+  return polytope_separation(a, b) - a.radius - b.radius;
 }
 
 std::optional<Vec3> exact_normal(const Solid& a, const Solid& b) {

@@ -21,19 +21,20 @@ Pose operator*(const Pose& outer, const Pose& inner);
 
 // One shape placed in the world. Planar shapes lie in z = 0.
 struct Solid {
-  enum class Kind { round, box, polygon, half_space };
+  enum class Kind { round, box, polygon, half_space, capsule };
   Kind kind = Kind::round;
 
-  Vec3 center = Vec3::Zero();        // round, box; polygon: mean of the vertices
-  double radius = 0;                 // round
+  Vec3 center = Vec3::Zero();        // round, box; else mean of the vertices
+  double radius = 0;                 // round, capsule
   Mat3 axes = Mat3::Identity();      // box: columns are the face normals
   Vec3 half_extents = Vec3::Zero();  // box
-  std::vector<Vec3> vertices;        // box: all 8; polygon: counter-clockwise
+  std::vector<Vec3> vertices;        // box: all 8; polygon: counter-clockwise; capsule: 2 ends
+  bool planar = false;               // polygon, capsule
   Vec3 normal = Vec3::Zero();        // half space: normal . p <= offset is solid
   double offset = 0;
 };
 
-Solid make_solid(const Shape& shape, const Pose& body);
+Solid make_solid(const Shape& shape, const Pose& body, Space space = Space::spatial);
 
 // m; negative when the shapes overlap. At most one of the two is a half space.
 double separation(const Solid& a, const Solid& b);

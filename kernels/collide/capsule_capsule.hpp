@@ -1,0 +1,63 @@
+// Capsule against capsule in space: one point, between the nearest places of the two axes, or two
+// where the axes are parallel within kParallel and lie side by side: at the ends of the stretch
+// that they share. Two points are told apart by their place along A's axis.
+#pragma once
+
+#include "kernels/collide/capsule_pairs.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// Square of the sine of the angle below which two axes count as parallel.
+inline constexpr Real kParallel2 = Real(4e-4);
+
+template <class S>
+struct CapsuleCapsule {
+  using A = CapsulePose<Vec3>;
+  using B = CapsulePose<Vec3>;
+  static constexpr int kPoints = 4;
+  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 4>& m) {
+    const Float zero(Real(0)), one(Real(1));
+    const Vec3 d = b.p - a.p;
+    const Float cosine = dot(a.axis, b.axis), da = dot(a.axis, d), db = dot(b.axis, d);
+    const Vec3 product = cross(a.axis, b.axis);
+    const Float sine2 = dot(product, product);
+
+    // Nearest places s on A's axis and t on B's: on the lines first, then each clamped to its own
+    // axis for the other. Of parallel lines any s will do.
+    Float s = clamp(fnma(cosine, db, da) / max(sine2, Real(1e-12)), -a.half, a.half);
+    const Float t = clamp(fms(cosine, s, db), -b.half, b.half);
+    s = clamp(fma(cosine, t, da), -a.half, a.half);
+    const Vec3 gap = fma(b.axis, t, d) - a.axis * s;
+    const Float gap2 = dot(gap, gap);
+    const Mask apart = Float(kTinyDistance2) < gap2;
+    // Axes that cross part along their common perpendicular.
+    const Mask crossed = Float(Real(1e-12)) < sine2;
+    const Vec3 perpendicular = select(crossed, product, across(a.axis));
+    const Vec3 fallback =
+        perpendicular * (copysign(one, dot(perpendicular, d)) /
+                         sqrt(max(dot(perpendicular, perpendicular), Real(1e-12))));
+    m.normal = select(apart, gap * (one / sqrt(select(apart, gap2, one))), fallback);
+    m.tangent = tangent_along(a.axis, m.normal);
+
+    const Float low = max(-a.half, da - b.half), high = min(a.half, da + b.half);
+    const Mask beside = (sine2 < Float(kParallel2)) & (low < high);
+    const Float place[2] = {select(beside, low, s), select(beside, high, s)};
+    for (int i = 0; i < 2; ++i) {
+      const Vec3 base = a.axis * place[i];
+      const Float opposite = select(beside, clamp(fms(cosine, place[i], db), -b.half, b.half), t);
+      const Vec3 across_gap = fma(b.axis, opposite, d) - base;
+      put_point(m, i, base, a.radius, dot(m.normal, across_gap) - a.radius - b.radius, d);
+      m.feature_x[i] = place[i];
+      m.feature_y[i] = zero;
+    }
+    m.valid[0] = mask_from_bits(kAllLanes);
+    leave_out_points(m, 2);
+    m.valid[1] = beside;
+    m.code = select(beside, one, zero);
+    // A single point may wander along the axis as the bodies roll over each other.
+    const Float extent = min(a.half, b.half);
+    m.match_distance2 = select(beside, match_distance2(extent), square(a.half + a.half));
+  }
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
