@@ -78,7 +78,7 @@ void StageRunner::run_before(Stage stage, const Group& group) {
 
 TypicalWorlds::TypicalWorlds(const Plan& plan, const Kernels& kernels, int steps)
     : kernels_(kernels),
-      worlds_(plan, kWorlds, 0, 0, kernels.lanes),
+      worlds_(plan, kWorlds, 0, BatchOptions{}, kernels.lanes),
       scratch_memory_(kernels.scratch_bytes(worlds_.tables())),
       scratch_(kernels.make_scratch(worlds_.tables(), scratch_memory_.data())) {
   const FlushDenormals flush;

@@ -80,8 +80,8 @@ class TypicalWorlds {
   const Kernels& kernels() const { return kernels_; }
   const Tables& tables() const { return worlds_.tables(); }
   kernels::Scratch* scratch() const { return scratch_; }
-  int groups() const { return worlds_.groups(); }
-  Group group(int index) const { return worlds_.group(index); }
+  int groups() const { return worlds_.storage().groups(); }
+  Group group(int index) const { return worlds_.storage().group(index); }
 
   void restore(int group);
   void step(int group, int steps, kernels::Layout layout) const;

@@ -5,6 +5,17 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+// Lanes whose world is frozen: nothing about it changes any more.
+MW_INLINE std::uint32_t frozen_lanes(const Group& g) {
+  std::uint32_t any = 0, lanes = 0;
+  for (int l = 0; l < kLanes; ++l) any |= g.status[l];
+  if ((any & kernels::kFrozen) == 0) return 0;
+  for (int l = 0; l < kLanes; ++l) {
+    lanes |= static_cast<std::uint32_t>((g.status[l] & kernels::kFrozen) != 0) << l;
+  }
+  return lanes;
+}
+
 MW_INLINE bool has_idle_bodies(const Group& g) { return g.asleep && *g.idle != 0; }
 
 // Lanes in which the body keeps its state.

@@ -1,5 +1,6 @@
 // begin: the first stage of a contact step. Poses of shapes as rows, their bounds with the
 // speculative margin, and inverse inertias in world axes.
+#include "kernels/activity.hpp"
 #include "kernels/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -184,7 +185,8 @@ void begin(const Tables& t, const Group& g, kernels::Scratch* scratch) {
     w.slots[list].count = 0;
     for (int l = 0; l < kLanes; ++l) w.lane_count[list][l] = w.cursor[list][l] = 0;
   }
-  w.overflow = w.untouched = w.partly_asleep = 0;
+  w.overflow = w.partly_asleep = 0;
+  w.untouched = w.frozen = frozen_lanes(g);
   w.counters = {};
 }
 

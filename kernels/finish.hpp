@@ -16,9 +16,8 @@ inline constexpr Real kMaxSpin = Real(1e6);       // rad/s
 inline constexpr Real kMaxOrientation = Real(1e3);
 inline constexpr Real kMaxFinite = sizeof(Real) == 4 ? Real(3.4028234e38) : Real(1.79769e308);
 
-// Bits of the public Status (include/manyworlds/batch.hpp).
-inline constexpr std::uint32_t kNonFinite = 1, kOutOfRange = 2, kOutOfBounds = 4, kOverflow = 8;
-inline constexpr std::uint32_t kFrozen = kNonFinite | kOutOfRange;
+using kernels::kFrozen, kernels::kNonFinite, kernels::kOutOfBounds, kernels::kOutOfRange;
+using kernels::kOverflow;
 
 // Is a . a <= limit^2? NaN fails every comparison, so it is out of any range.
 template <class A>
@@ -52,17 +51,13 @@ struct LaneCheck {
     if constexpr (kIdle) ok = ok | mask_from_bits(idle_lanes(g, body) & kAllLanes);
     good = good & ok;
     if (!all(ok)) {
-      finite = finite & is_finite(x) & is_finite(v.v) & is_finite(v.w);
-      if (t.has_orientation) finite = finite & is_finite(q);
+      Mask bounded = is_finite(x) & is_finite(v.v) & is_finite(v.w);
+      if (t.has_orientation) bounded = bounded & is_finite(q);
+      if constexpr (kIdle) bounded = bounded | mask_from_bits(idle_lanes(g, body) & kAllLanes);
+      finite = finite & bounded;
     }
   }
 };
-
-inline bool has_frozen_lane(const Group& g) {
-  std::uint32_t status = 0;
-  for (int l = 0; l < kLanes; ++l) status |= g.status[l];
-  return (status & kFrozen) != 0;
-}
 
 // Flags lanes that went bad in this step; returns those that may be committed.
 inline std::uint32_t judge_lanes(const Group& g, const LaneCheck& check) {
@@ -216,8 +211,9 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
 }
 
 inline void report_overflow(const Group& g, const Work& w) {
-  for (int l = 0; w.overflow != 0 && l < kLanes; ++l) {
-    if ((w.overflow >> l) & 1u) g.status[l] |= kOverflow;
+  const std::uint32_t overflow = w.overflow & ~w.frozen;
+  for (int l = 0; overflow != 0 && l < kLanes; ++l) {
+    if ((overflow >> l) & 1u) g.status[l] |= kOverflow;
   }
 }
 

@@ -18,6 +18,8 @@ MW_INLINE Flight<S> fly(const Tables& t, const Group& g, const Work& w, int body
   Flight<S> o;
   o.v = {load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear)),
          load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular))};
+  // A push of 0 turns -0 into 0; so does every step, pushed or not.
+  o.v = {o.v.v + zero_of<typename S::Vec>(), o.v.w + zero_of<typename S::Ang>()};
   const Real* gravity = t.push_rows + body * S::kRow;
   o.push.v.x = gravity[0], o.push.v.y = gravity[1];
   if constexpr (S::kDim == 3) o.push.v.z = gravity[2];
@@ -121,7 +123,7 @@ void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
   copy_state(w.before, g.state, size);
   std::uint32_t outside = 0;
   const bool idle = has_idle_bodies(g);
-  bool good = !has_frozen_lane(g) && !idle;
+  bool good = frozen_lanes(g) == 0 && !idle;
   for (int step = 0; good && step < steps; ++step) {
     const Outcome outcome = fly_group<S, false>(t, g, w);
     good = all(outcome.check.good);

@@ -30,6 +30,10 @@ struct GroupView {
   std::uint32_t* resting;       // [1], lanes in which nothing can move until the world is woken
 };
 
+// Bits of the public Status (include/manyworlds/batch.hpp).
+inline constexpr std::uint32_t kNonFinite = 1, kOutOfRange = 2, kOutOfBounds = 4, kOverflow = 8;
+inline constexpr std::uint32_t kFrozen = kNonFinite | kOutOfRange;
+
 // What a group's step counted; the pipeline adds it up per thread.
 struct GroupCounters {
   std::uint32_t dense_slots = 0;  // slots that the dense layout needs (or would need)

@@ -74,7 +74,9 @@ MW_INLINE Velocity<S> get_velocity(const Work& w, const Real* array, int body) {
 // What gravity and the inputs add to the velocity of a body in one substep.
 template <class S>
 MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& w, int body) {
-  const auto& table = t.body[body];
+  // The sum starts from the same number that a group without forces adds: a world's bits must not
+  // tell whether another one is pushed.
+  const Real* gravity = t.push_rows + body * S::kRow;
   const Real* f = g.force + body * 6 * kLanes;
   alignas(64) std::int32_t o[kLanes];
   for (int l = 0; l < kLanes; ++l) o[l] = w.body_base[l] + body * body_row_size(S::kKind);
@@ -82,10 +84,10 @@ MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& 
   load_body_row(t, w, o, row);
   const Float h(t.h), scale = row.inv_mass * h;
   Velocity<S> push;
-  push.v.x = fma(Float::load(f), scale, table.acceleration[0] * t.h);
-  push.v.y = fma(Float::load(f + kLanes), scale, table.acceleration[1] * t.h);
+  push.v.x = fma(Float::load(f), scale, gravity[0]);
+  push.v.y = fma(Float::load(f + kLanes), scale, gravity[1]);
   if constexpr (S::kDim == 3) {
-    push.v.z = fma(Float::load(f + 2 * kLanes), scale, table.acceleration[2] * t.h);
+    push.v.z = fma(Float::load(f + 2 * kLanes), scale, gravity[2]);
     push.w = apply(row.inertia, load_vec3(f + 3 * kLanes)) * h;
   } else {
     push.w = apply(row.inertia, Float::load(f + 5 * kLanes)) * h;

@@ -71,6 +71,17 @@ bool pair_sleeps(const Tables& t, const Group& g, ListId list, std::int32_t key,
   return ((lanes >> lane) & 1u) != 0;
 }
 
+// Lanes in which a slow body may be at rest: what pulls it is held by a contact, and no force acts.
+std::uint32_t held_lanes(const Tables& t, const Group& g, const Work& w, int body) {
+  const Real* pull = t.body[body].acceleration;
+  const bool pulled = pull[0] != Real(0) || pull[1] != Real(0) || pull[2] != Real(0);
+  std::uint32_t lanes = pulled ? w.touched[body] & kAllLanes : kAllLanes;
+  for (int c = 0; g.force && c < 6; ++c) {
+    lanes &= bits(Float::load(g.force + (body * 6 + c) * kLanes) == Float(Real(0)));
+  }
+  return lanes;
+}
+
 // Looking for islands is worth it when a body has just become ready, and from time to time for
 // those that lost touch with a restless one.
 constexpr Real kLookAgain = Real(0.25);  // s
@@ -84,27 +95,29 @@ struct Readiness {
 // Adds dt to the time at rest of bodies slower than the threshold. Of the bodies of a lane that
 // wait, the first looks for all: in the lanes of `waiting` that is another one.
 template <class S>
-Readiness rest(const Tables& t, const Group& g, int body, std::uint32_t waiting) {
+Readiness rest(const Tables& t, const Group& g, const Work& w, int body, std::uint32_t waiting) {
   const auto v = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear));
-  const auto w = load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular));
+  const auto spin = load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular));
   const Float zero(Real(0));
   if (is_kinematic_body(t, body)) {
     Mask still = (v.x == zero) & (v.y == zero);  // squares could underflow
     if constexpr (S::kDim == 3) {
-      still = still & (v.z == zero) & (w.x == zero) & (w.y == zero) & (w.z == zero);
+      still = still & (v.z == zero) & (spin.x == zero) & (spin.y == zero) & (spin.z == zero);
     } else {
-      still = still & (w == zero);
+      still = still & (spin == zero);
     }
-    g.asleep[body] = bits(still);
+    g.asleep[body] = (bits(still) & ~w.frozen) | (g.asleep[body] & w.frozen);
     return {};
   }
   const Float enough(t.sleep_time);
-  const Float speed = fma(sqrt(dot(w, w)), t.body[body].radius, sqrt(dot(v, v)));
+  const Float speed = fma(sqrt(dot(spin, spin)), t.body[body].radius, sqrt(dot(v, v)));
+  const Mask still = (speed < Float(t.sleep_speed)) & mask_from_bits(held_lanes(t, g, w, body));
   Real* p = g.rest_time + body * kLanes;
   const Float before = Float::load(p);
-  Float time = select(speed < Float(t.sleep_speed), before + Float(t.dt), zero);
+  Float time = select(still, before + Float(t.dt), zero);
+  time = select(mask_from_bits(w.frozen), before, time);
   Readiness out;
-  out.ready = bits(enough <= time) & ~idle_lanes(g, body);
+  out.ready = bits(enough <= time) & ~(idle_lanes(g, body) | w.frozen);
   if (out.ready != 0) {
     const std::uint32_t again = bits(enough + Float(kLookAgain) <= time) & ~waiting;
     time = select(mask_from_bits(again & kAllLanes), enough, time);
@@ -162,12 +175,13 @@ template <class S>
 void settle_bodies(const Tables& t, const Group& g, Work& w) {
   std::uint32_t look = 0, waiting = 0;
   for (int b = 0; b < t.bodies; ++b) {
-    const Readiness r = rest<S>(t, g, b, waiting);
+    const Readiness r = rest<S>(t, g, w, b, waiting);
     w.ready[b] = r.ready;
     look |= r.look;
     waiting |= r.ready;
   }
-  for (look &= kAllLanes; look != 0; look &= look - 1) {
+  // Where candidates were left out islands are not to be told.
+  for (look &= kAllLanes & ~w.overflow; look != 0; look &= look - 1) {
     sleep_islands(t, g, w, __builtin_ctz(look));
   }
 }
@@ -176,7 +190,7 @@ void settle_bodies(const Tables& t, const Group& g, Work& w) {
 
 void wake_touched(const Tables& t, const Group& g, Work& w) {
   const LaneActivity lanes = activity_of(t, g);
-  const std::uint32_t mixed = lanes.asleep & lanes.awake;
+  const std::uint32_t mixed = lanes.asleep & lanes.awake & ~w.frozen;
   if (mixed == 0) return;
   // Who is woken may lie close to another island.
   while (wake_once(t, g, w, mixed)) {
@@ -185,8 +199,8 @@ void wake_touched(const Tables& t, const Group& g, Work& w) {
 
 void keep_sleeping_contacts(const Tables& t, const Group& g, Work& w) {
   const LaneActivity lanes = activity_of(t, g);
-  w.untouched = ~lanes.awake & kAllLanes;
-  w.partly_asleep = lanes.asleep & lanes.awake;
+  w.untouched |= ~lanes.awake & kAllLanes;
+  w.partly_asleep = lanes.asleep & lanes.awake & ~w.frozen;
   for (std::uint32_t m = w.partly_asleep; m != 0; m &= m - 1) {
     const int l = __builtin_ctz(m);
     for (int id = 0; id < kLists; ++id) {
@@ -218,11 +232,8 @@ void settle(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   }
   const LaneActivity lanes = activity_of(t, g);
   *g.idle = lanes.idle;
-  std::uint32_t resting = ~lanes.awake & kAllLanes;
-  for (int l = 0; l < kLanes; ++l) {
-    if (g.status[l] & kFrozen) resting |= 1u << l;
-  }
-  *g.resting = resting;
+  const std::uint32_t resting = ~lanes.awake & kAllLanes;
+  *g.resting = resting | frozen_lanes(g);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

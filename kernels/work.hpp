@@ -57,7 +57,8 @@ struct Work {
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
   std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
   // sleep
-  std::uint32_t untouched;      // lanes in which no body is awake: their cache stays as it is
+  std::uint32_t frozen;         // lanes that were frozen when the step began
+  std::uint32_t untouched;      // those, and lanes in which no body is awake: their cache stays
   std::uint32_t partly_asleep;  // lanes whose cache keeps the impulses of sleeping pairs:
   std::int32_t kept[kLists][kLanes];
   std::int32_t* kept_keys[kLists];  // [lane][capacity]

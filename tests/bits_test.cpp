@@ -82,6 +82,33 @@ TEST_CASE("bits do not depend on the batch size or the position in it", "[fast][
   }
 }
 
+TEST_CASE("a force in one world changes no other world's bits", "[fast][bits]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (double gravity : {0.0, 9.81, 9.80665, 3.7}) {
+      for (bool contacts : {false, true}) {
+        Scene scene = crowd(space);
+        scene.options.gravity = -gravity * up_of(space);
+        for (Body& body : scene.bodies) {
+          if (!contacts) body.shapes[0].filter.mask = 0;
+          if (body.motion == Motion::dynamic) body.angular_velocity.z() = -0.0;
+        }
+        const Plan plan = compile(scene);
+        for (const Table& table : all_tables()) {
+          INFO(name(table) << " gravity " << gravity << " contacts " << contacts);
+          Batch pushed(plan, options_of(table, 19)), quiet(plan, options_of(table, 19));
+          for (int i = 0; i < 5; ++i) {
+            pushed.add_force(4, 1, Vec3(3, 2, 0));
+            pushed.add_torque(4, 2, Vec3(0, 0, 1));
+            pushed.step(2);
+            quiet.step(2);
+          }
+          for (int w = 0; w < 19; ++w) CHECK((pushed.hash(w) == quiet.hash(w)) == (w != 4));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("bits do not depend on the number of threads", "[fast][bits]") {
   for (Space space : {Space::planar, Space::spatial}) {
     const Plan plan = compile(crowd(space));

@@ -132,6 +132,52 @@ TEST_CASE("a body is spawned where and how it was asked for", "[fast][enable]") 
   }
 }
 
+TEST_CASE("disabling a body leaves other stacks on the same kinematic body alone",
+          "[fast][enable]") {
+  Scene scene = empty_scene(Space::spatial);
+  scene.add(body_of(shape_of(box_of(Space::spatial, Vec3(10, 5, 0.5))), Vec3(0, 0, -0.5),
+                    Motion::kinematic));
+  for (double x : {-5.0, 5.0})
+    for (int i = 0; i < 2; ++i)
+      scene.add(body_of(shape_of(cube_of(Space::spatial, 0.5)), Vec3(x, 0, 0.5 + i)));
+  const auto carried = [](const Batch& batch) {
+    std::vector<double> all;
+    for (const Contact& c : batch.contacts(0))
+      if (c.body_b >= 3) all.push_back(c.normal_impulse);
+    return all;
+  };
+  for (const Table& table : widest_tables()) {
+    for (bool sleep : {false, true}) {
+      BatchOptions options = options_of(table);
+      options.sleep = sleep;
+      Batch batch(compile(scene), options);
+      batch.step(120);
+      const std::vector<double> before = carried(batch);
+      CHECK(*std::max_element(before.begin(), before.end()) > 0);
+      batch.set_enabled(0, 2, false);
+      CHECK(carried(batch) == before);
+    }
+  }
+}
+
+TEST_CASE("forces on kinematic bodies are ignored, whatever they are", "[fast][enable]") {
+  Scene scene = empty_scene(Space::spatial);
+  scene.add(body_of(shape_of(Sphere{0.5}), Vec3(0, 0, 5)));
+  scene.add(body_of(shape_of(Sphere{0.5}), Vec3(9, 0, 5), Motion::kinematic));
+  for (const Table& table : widest_tables()) {
+    Batch batch(compile(scene), options_of(table));
+    batch.add_force(0, 1, Vec3(std::nan(""), 0, 0));
+    batch.step();
+    CHECK(batch.status(0) == Status::ok);
+    // A reset world has no forces left from before.
+    batch.add_force(0, 0, Vec3(std::nan(""), 0, 0));
+    const std::vector<std::uint8_t> mask = {1};
+    batch.reset(mask);
+    batch.step();
+    CHECK(batch.status(0) == Status::ok);
+  }
+}
+
 // B12: what carried a heavy load does not jump when the load is gone.
 TEST_CASE("taking a heavy load away makes nothing jump", "[fast][enable][stability]") {
   for (Space space : {Space::planar, Space::spatial}) {

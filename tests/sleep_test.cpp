@@ -285,6 +285,68 @@ TEST_CASE("a kinematic body wakes what it comes near, at rest it lets it sleep",
   }
 }
 
+TEST_CASE("lanes without a world rest, whatever its kinematic bodies do", "[fast][sleep]") {
+  Scene scene = two_stacks(Space::spatial);
+  Body pusher = body_of(shape_of(cube_of(Space::spatial, 0.2)), Vec3(0, 9, 5), Motion::kinematic);
+  pusher.linear_velocity = Vec3(0, 0.1, 0);
+  scene.add(pusher);
+  for (const Table& table : widest_tables()) {
+    Batch batch(compile(scene), sleeping(table));
+    batch.step(120);
+    CHECK_FALSE(batch.asleep(0));  // the pusher moves
+    set_vector(batch, Field::linear_velocity, 0, 6, Vec3::Zero());
+    batch.step(60);
+    CHECK(batch.asleep(0));
+    const std::int64_t before = batch.group_steps();
+    batch.step(20);
+    CHECK(batch.group_steps() == before);
+  }
+}
+
+TEST_CASE("what is pulled and not held does not sleep", "[fast][sleep]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (double gravity : {0.0, 0.02}) {
+      Scene scene = empty_scene(space, gravity);
+      scene.add(ground(space));
+      scene.add(body_of(shape_of(cube_of(space, 0.5)), 30 * up_of(space)));
+      for (const Table& table : widest_tables()) {
+        INFO(name(table) << " gravity " << gravity);
+        const double mass = mass_properties(scene, scene.bodies[1]).mass;
+        Batch batch(compile(scene), sleeping(table));
+        if (gravity == 0) batch.add_force(0, 0, 0.02 * mass * up_of(space));
+        batch.step(300);  // 5 s at 0.02 m/s^2
+        CHECK(std::abs(position(batch, 0, 0).dot(up_of(space)) - 30) == Approx(0.25).epsilon(1e-3));
+        CHECK_FALSE(batch.asleep(0, 0));
+        if (gravity == 0) set_vector(batch, Field::linear_velocity, 0, 0, Vec3::Zero());
+        batch.step(60);
+        CHECK(batch.asleep(0, 0) == (gravity == 0));  // at rest where nothing pulls
+      }
+    }
+  }
+}
+
+TEST_CASE("a frozen world is the same whoever shares its group", "[fast][sleep][bits]") {
+  const Plan plan = compile(lively_crowd(Space::spatial));
+  for (const Table& table : widest_tables()) {
+    BatchOptions options = sleeping(table, 24);
+    Batch many(plan, options);
+    options.worlds = 1;
+    options.seed += 5;
+    Batch one(plan, options);
+    for (Batch* batch : {&many, &one}) {
+      batch->step(20);
+      batch->add_force(batch == &many ? 5 : 0, 2, Vec3(std::nan(""), 0, 0));
+      batch->step(100);
+    }
+    CHECK(many.status(5) == Status::non_finite);
+    CHECK(one.hash(0) == many.hash(5));
+    for (int b = 0; b < one.bodies(); ++b) CHECK(one.asleep(0, b) == many.asleep(5, b));
+    const auto a = one.contacts(0), c = many.contacts(5);
+    REQUIRE(a.size() == c.size());
+    for (std::size_t i = 0; i < a.size(); ++i) CHECK(a[i].normal_impulse == c[i].normal_impulse);
+  }
+}
+
 TEST_CASE("nobody sleeps who moves steadily", "[fast][sleep]") {
   for (Space space : {Space::planar, Space::spatial}) {
     Scene scene = empty_scene(space);

@@ -18,6 +18,7 @@
 #include "manyworlds/executor.hpp"
 #include "manyworlds/fields.hpp"
 #include "manyworlds/plan.hpp"
+#include "manyworlds/snapshot.hpp"
 
 namespace manyworlds {
 
@@ -187,6 +188,15 @@ class Batch {
   // the counters, the clock and the step count, so it repeats the first draw exactly.
   void reset();
   void reset(std::span<const std::uint8_t> mask);
+
+  // -- snapshots. A restored world goes on bit by bit as the saved one did, whatever the batch:
+  // its size, threads, instruction set or place. Plans must have the same fingerprint and the batch
+  // the same precision; throws SnapshotError otherwise and changes nothing.
+  Snapshot save() const;                                     // all worlds, clock, steps, episodes
+  Snapshot save(std::span<const int> worlds) const;          // these, in this order
+  void restore(const Snapshot& snapshot);                    // of as many worlds as the batch has
+  void restore(const Snapshot& snapshot, int from, int to);  // world `from` of it into world `to`
+  void copy_world(int from, int to);
 
   // -- results
   Status status(int world) const;

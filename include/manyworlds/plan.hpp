@@ -85,6 +85,9 @@ class Plan {
   int scene_body(int state_body) const;
   int state_body(int scene_body) const;
   bool has(Feature feature) const;
+  // Equal for plans whose worlds can go on in each other: of everything but names and where bodies
+  // begin.
+  std::uint64_t fingerprint() const;
   PlanReport report() const;
   const PlanData& data() const { return *data_; }
 

@@ -8,6 +8,10 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 template <class T>
 MW_INLINE T zero_of();
 template <>
+MW_INLINE Float zero_of<Float>() {
+  return Real(0);
+}
+template <>
 MW_INLINE Vec2 zero_of<Vec2>() {
   return {Real(0), Real(0)};
 }

@@ -22,11 +22,12 @@ class CacheWriter {
   void put(const Slot<S, N>& s, ListId list) {
     const int id = static_cast<int>(list);
     const int capacity = t_.capacity[id], row = kernels::cache_row_size(t_.dimension, list);
+    const std::uint32_t mask = s.mask & ~w_.frozen;
     alignas(64) std::int32_t o[kLanes];
     for (int l = 0; l < kLanes; ++l) {
       // Lanes without this contact write to a row that nobody reads.
       int at = capacity + 1;
-      if ((s.mask >> l) & 1u) {
+      if ((mask >> l) & 1u) {
         at = count_[id][l]++;
         g_.cache[id].keys[l * (capacity + 1) + at] = s.key[l];
       }

@@ -107,6 +107,21 @@ class CoreOf final : public BatchCore {
     for (const auto& c : counters_) sum += c.group_steps;
     return sum;
   }
+  std::size_t world_bytes(int kind) const override { return at(kind).storage().world_bytes(); }
+  std::uint32_t episode(int kind, int world) const override { return at(kind).episode(world); }
+  void set_episode(int kind, int world, std::uint32_t episode) override {
+    at(kind).set_episode(world, episode);
+  }
+  void write_world(int kind, int world, std::byte* to) const override {
+    at(kind).storage().write_world(at(kind).slot_of(world), to);
+  }
+  std::string check_world(int kind, const std::byte* from) const override {
+    return at(kind).storage().check_world(from);
+  }
+  void read_world(int kind, int world, const std::byte* from) override {
+    at(kind).read_world(world, from);
+  }
+  void copy_world(int kind, int from, int to) override { at(kind).copy_world(from, to); }
   Status status(int kind, int world) const override { return at(kind).status(world); }
   std::uint64_t hash(int kind, int world) const override { return at(kind).hash(world); }
   Energy energy(int kind, int world) const override { return at(kind).energy(world); }

@@ -32,6 +32,13 @@ class BatchCore {
   virtual bool resting(int kind, int world) const = 0;
   virtual void wake(int kind, int world) = 0;
   virtual std::int64_t group_steps() const = 0;
+  virtual std::size_t world_bytes(int kind) const = 0;
+  virtual std::uint32_t episode(int kind, int world) const = 0;
+  virtual void set_episode(int kind, int world, std::uint32_t episode) = 0;
+  virtual void write_world(int kind, int world, std::byte* to) const = 0;
+  virtual std::string check_world(int kind, const std::byte* from) const = 0;
+  virtual void read_world(int kind, int world, const std::byte* from) = 0;
+  virtual void copy_world(int kind, int from, int to) = 0;
   virtual Status status(int kind, int world) const = 0;
   virtual std::uint64_t hash(int kind, int world) const = 0;
   virtual Energy energy(int kind, int world) const = 0;

@@ -25,6 +25,7 @@ int Plan::state_body(int scene_body) const {
   return data_->state_body.at(static_cast<std::size_t>(scene_body));
 }
 bool Plan::has(Feature feature) const { return data_->has(feature); }
+std::uint64_t Plan::fingerprint() const { return manyworlds::fingerprint(*data_); }
 PlanReport Plan::report() const { return describe(*data_); }
 
 }  // namespace manyworlds

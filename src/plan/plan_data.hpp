@@ -90,6 +90,8 @@ void collect_colliders(PlanData& plan);     // colliders.cpp
 void collect_pairs(PlanData& plan);         // pairs.cpp
 void choose_features(PlanData& plan);       // features.cpp
 PlanReport describe(const PlanData& plan);  // report.cpp
+// Equal for plans that step worlds alike and store them alike (fingerprint.cpp).
+std::uint64_t fingerprint(const PlanData& plan);
 const char* to_string(kernels::PairKind kind);
 
 }  // namespace manyworlds

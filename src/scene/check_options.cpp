@@ -47,7 +47,8 @@ void check_options(Checker checker, const Options& options) {
   checker.between("options.restitution_sweeps", options.restitution_sweeps, 1,
                   kMostRestitutionSweeps);
   checker.not_negative("options.sleep_speed", options.sleep_speed, "m/s");
-  checker.not_negative("options.time_to_sleep", options.time_to_sleep, "s");
+  checker.positive("options.time_to_sleep", options.time_to_sleep, "s", kSmallestTime,
+                   kLargestFinite);
   if (options.contact_capacity) {
     checker.between("options.contact_capacity", *options.contact_capacity, 1, kMostManifolds);
   }

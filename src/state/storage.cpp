@@ -10,7 +10,6 @@ namespace {
 void put_bit(std::uint32_t& word, std::size_t lane, bool value) {
   word = (word & ~(1u << lane)) | (static_cast<std::uint32_t>(value) << lane);
 }
-bool get_bit(std::uint32_t word, std::size_t lane) { return ((word >> lane) & 1u) != 0; }
 
 }  // namespace
 
@@ -112,16 +111,22 @@ template <class Real>
 void Storage<Real>::drop_contacts(int slot, int body) {
   std::fill(reached_.begin(), reached_.end(), false);
   reached_[index(body)] = true;
+  // A kinematic body passes no impulse on.
+  const auto reached = [&](int b) {
+    return b >= 0 && reached_[index(b)] && (b == body || tables_.body[b].inv_mass > 0);
+  };
   for (bool grows = true; grows;) {
     grows = false;
     keep_contacts(slot, [&](int a, int b) {
-      if (a >= 0 && reached_[index(a)] != reached_[index(b)]) {
-        reached_[index(a)] = reached_[index(b)] = grows = true;
+      if (a >= 0 && reached(a) != reached(b)) {
+        const int next = reached(a) ? b : a;
+        grows = grows || !reached_[index(next)];
+        reached_[index(next)] = true;
       }
       return true;
     });
   }
-  keep_contacts(slot, [&](int, int b) { return !reached_[index(b)]; });
+  keep_contacts(slot, [&](int a, int b) { return !reached(a) && !reached(b); });
 }
 
 template <class Real>
@@ -135,6 +140,14 @@ void Storage<Real>::add_force(int slot, int body, const Vec3& force, const Vec3&
     p[c * lanes] += static_cast<Real>(force[row]);
     p[(c + 3) * lanes] += static_cast<Real>(torque[row]);
   }
+}
+
+template <class Real>
+void Storage<Real>::clear_forces(int slot) {
+  if (!forced_) return;
+  const std::size_t lanes = index(lanes_);
+  Real* p = force_.data() + body_at(slot, 0) * 6 * lanes + lane_of(slot);
+  for (std::size_t i = 0; i < index(tables_.bodies) * 6; ++i) p[i * lanes] = Real(0);
 }
 
 template <class Real>
@@ -161,11 +174,10 @@ void Storage<Real>::make_activity() {
 template <class Real>
 void Storage<Real>::set_absent(int slot, int body, bool absent) {
   put_bit(absent_[body_at(slot, body)], lane_of(slot), absent);
-  find_idle(group_of(slot));
 }
 
 template <class Real>
-void Storage<Real>::find_idle(std::size_t group) {
+void Storage<Real>::find_idle_in(std::size_t group) {
   const std::size_t bodies = index(tables_.bodies);
   idle_[group] = 0;
   for (std::size_t b = 0; b < bodies; ++b) {
@@ -204,53 +216,15 @@ void Storage<Real>::wake_island(int slot, int body) {
 template <class Real>
 void Storage<Real>::rest(int slot) {
   if (!tables_.has_sleep) return;
+  const auto at = kernels::state_offsets(tables_.dimension, tables_.has_orientation);
+  const int velocity_end = tables_.has_orientation ? at.orientation : at.components;
   for (int b = 0; b < tables_.bodies; ++b) {
     put_bit(asleep_[body_at(slot, b)], lane_of(slot), true);
+    // Kinematic bodies, too.
+    for (int c = at.linear; c < velocity_end; ++c) component(slot, b, c) = Real(0);
   }
   put_bit(resting_[group_of(slot)], lane_of(slot), true);
-  find_idle(group_of(slot));
-}
-
-namespace {
-
-struct Swap {
-  template <class T>
-  void numbers(T* a, T* b, std::size_t count, std::size_t stride) const {
-    for (std::size_t i = 0; i < count; ++i) std::swap(a[i * stride], b[i * stride]);
-  }
-  void bit(std::uint32_t& a, std::size_t lane_a, std::uint32_t& b, std::size_t lane_b) const {
-    const bool value = get_bit(a, lane_a);
-    put_bit(a, lane_a, get_bit(b, lane_b));
-    put_bit(b, lane_b, value);
-  }
-};
-
-struct Copy {
-  template <class T>
-  void numbers(const T* from, T* to, std::size_t count, std::size_t stride) const {
-    for (std::size_t i = 0; i < count; ++i) to[i * stride] = from[i * stride];
-  }
-  void bit(std::uint32_t from, std::size_t from_lane, std::uint32_t& to, std::size_t lane) const {
-    put_bit(to, lane, get_bit(from, from_lane));
-  }
-};
-
-}  // namespace
-
-template <class Real>
-void Storage<Real>::swap(int slot_a, int slot_b) {
-  if (slot_a == slot_b) return;
-  for_each_part(slot_a, slot_b, Swap{});
-  if (!has_activity()) return;
-  find_idle(group_of(slot_a));
-  find_idle(group_of(slot_b));
-}
-
-template <class Real>
-void Storage<Real>::copy(int from, int to) {
-  if (from == to) return;
-  for_each_part(from, to, Copy{});
-  if (has_activity()) find_idle(group_of(to));
+  find_idle_in(group_of(slot));
 }
 
 template class Storage<float>;

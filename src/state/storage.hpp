@@ -7,7 +7,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "kernels/group.hpp"
@@ -36,6 +38,7 @@ class Storage {
 
   void add_force(int slot, int body, const Vec3& force, const Vec3& torque);
   void clear_forces();
+  void clear_forces(int slot);
 
   // Sleeping and disabled bodies. Without masks every body is there and awake.
   bool has_activity() const { return !asleep_.empty(); }
@@ -43,7 +46,8 @@ class Storage {
   bool asleep(int slot, int body) const { return is_set(asleep_, body_at(slot, body), slot); }
   bool absent(int slot, int body) const { return is_set(absent_, body_at(slot, body), slot); }
   bool resting(int slot) const { return is_set(resting_, group_of(slot), slot); }
-  void set_absent(int slot, int body, bool absent);
+  void set_absent(int slot, int body, bool absent);  // find_idle() when all of a slot are set
+  void find_idle(int slot) { find_idle_in(group_of(slot)); }
   void wake(int slot);                   // every body
   void wake_island(int slot, int body);  // those that fell asleep together with it
   void rest(int slot);                   // a lane without a world: nothing in it ever moves
@@ -53,13 +57,15 @@ class Storage {
     return resting_.empty() ? all : ~resting_[index(group)] & all;
   }
 
-  // Every number of a world, in a fixed order that does not depend on the lane, to what lies in
-  // another slot in the same place: visit.numbers(a, b, count, stride), visit.bit(word of a, lane
-  // of a, word of b, lane of b).
-  template <class Visit>
-  void for_each_part(int slot_a, int slot_b, Visit&& visit) const;
-  void swap(int slot_a, int slot_b);
+  void swap(int slot_a, int slot_b);  // with the forces that wait for the next step
   void copy(int from, int to);
+
+  // A world as bytes, the same whatever its slot, the lanes and the batch's sleep.
+  std::size_t world_bytes() const;
+  void write_world(int slot, std::byte* to) const;
+  void read_world(int slot, const std::byte* from);
+  // Could these bytes have come from write_world()? Says what is wrong, or nothing.
+  std::string check_world(const std::byte* from) const;
 
  private:
   static constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
@@ -72,7 +78,12 @@ class Storage {
     return !masks.empty() && ((masks[at] >> lane_of(slot)) & 1u) != 0;
   }
 
-  void find_idle(std::size_t group);
+  // Every number of a world, in a fixed order that does not depend on the lane, beside what lies in
+  // another slot in the same place. Parts that this storage does not have are null.
+  //   visit.numbers(part, a, b, count, stride)    visit.bit(word of a, lane of a, word of b, lane)
+  template <class Visit>
+  void for_each_part(int slot_a, int slot_b, Visit&& visit) const;
+  void find_idle_in(std::size_t group);
   template <class Keep>
   void keep_contacts(int slot, Keep keep);  // keep(body a or -1, body b)
 
@@ -91,44 +102,5 @@ class Storage {
   mutable AlignedBuffer<std::int32_t> island_;            // [group][body][lane]
   std::vector<char> reached_;                             // [body] scratch of drop_contacts
 };
-
-template <class Real>
-template <class Visit>
-void Storage<Real>::for_each_part(int slot_a, int slot_b, Visit&& visit) const {
-  const auto& t = tables_;
-  const std::size_t lanes = index(lanes_);
-  const auto in_lanes = [&](auto& buffer, std::size_t per_world) {
-    if (buffer.empty()) return;
-    const auto at = [&](int slot) {
-      return buffer.data() + group_of(slot) * per_world * lanes + lane_of(slot);
-    };
-    visit.numbers(at(slot_a), at(slot_b), per_world, lanes);
-  };
-  const auto in_row = [&](auto& buffer, std::size_t stride, std::size_t count) {
-    if (buffer.empty()) return;
-    visit.numbers(buffer.data() + index(slot_a) * stride, buffer.data() + index(slot_b) * stride,
-                  count, std::size_t{1});
-  };
-  in_lanes(state_, index(t.state_size));
-  in_row(status_, 1, 1);
-  for (std::size_t l = 0; l < kernels::kLists; ++l) {
-    const std::size_t capacity = index(t.capacity[l]);
-    const std::size_t row =
-        index(kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l)));
-    in_row(cache_keys_[l], capacity + 1, capacity + 1);
-    in_row(cache_rows_[l], (capacity + 2) * row, capacity * row);
-  }
-  if (forced_) in_lanes(force_, index(t.bodies) * 6);
-  in_lanes(rest_time_, index(t.bodies));
-  in_lanes(island_, index(t.bodies));
-  const auto bit = [&](AlignedBuffer<std::uint32_t>& masks, std::size_t a, std::size_t b) {
-    if (!masks.empty()) visit.bit(masks[a], lane_of(slot_a), masks[b], lane_of(slot_b));
-  };
-  for (int body = 0; body < t.bodies; ++body) {
-    bit(asleep_, body_at(slot_a, body), body_at(slot_b, body));
-    bit(absent_, body_at(slot_a, body), body_at(slot_b, body));
-  }
-  bit(resting_, group_of(slot_a), group_of(slot_b));
-}
 
 }  // namespace manyworlds

@@ -121,7 +121,8 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
       out.angular_factor = static_cast<Real>(1 / (1 + h * body.angular_drag));
       const int dim = planar ? 2 : 3;
       for (int c = 0; c < dim; ++c) {
-        push_rows_[i * row + static_cast<std::size_t>(c)] = static_cast<Real>(h * g[c]);
+        push_rows_[i * row + static_cast<std::size_t>(c)] =
+            static_cast<Real>(h * g[c]) + Real(0);  // never -0
       }
       for (std::size_t c = 0; c < row; ++c) {
         factor_rows_[i * row + c] =

@@ -59,8 +59,10 @@ void Worlds<Real>::initialise(int world) {
     place(world, body, draw_initial_state(described, scene_body, draws));
     if (storage_.has_activity()) storage_.set_absent(slot, body, !described.enabled);
   }
+  if (storage_.has_activity()) storage_.find_idle(slot);
   storage_.status(slot) = 0;
   storage_.clear_contacts(slot);
+  storage_.clear_forces(slot);
   storage_.wake(slot);
 }
 
@@ -85,8 +87,8 @@ void Worlds<Real>::reset(int world) {
 
 template <class Real>
 void Worlds<Real>::add_force(int world, int body, const Vec3& force, const Vec3& torque) {
-  const bool moves = data().bodies[static_cast<std::size_t>(body)].inv_mass > 0;
-  if (moves && !(force.isZero(0) && torque.isZero(0))) storage_.wake_island(slot_of(world), body);
+  if (data().bodies[static_cast<std::size_t>(body)].inv_mass == 0) return;
+  if (!(force.isZero(0) && torque.isZero(0))) storage_.wake_island(slot_of(world), body);
   storage_.add_force(slot_of(world), body, force, torque);
 }
 
@@ -100,6 +102,7 @@ void Worlds<Real>::set_enabled(int world, int body, bool enabled) {
   kinematic ? storage_.wake(slot) : storage_.wake_island(slot, body);
   if (!enabled) storage_.drop_contacts(slot, body);
   storage_.set_absent(slot, body, !enabled);
+  storage_.find_idle(slot);
 }
 
 template <class Real>

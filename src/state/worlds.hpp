@@ -53,6 +53,13 @@ class Worlds {
   // Moves worlds so that those in which something moves fill as few groups as possible.
   void pack();
 
+  std::uint32_t episode(int world) const { return episode_[static_cast<std::size_t>(world)]; }
+  void set_episode(int world, std::uint32_t episode) {
+    episode_[static_cast<std::size_t>(world)] = episode;
+  }
+  void read_world(int world, const std::byte* from) { storage_.read_world(slot_of(world), from); }
+  void copy_world(int from, int to) { storage_.copy(slot_of(from), slot_of(to)); }
+
   Status status(int world) const;
   std::uint64_t hash(int world) const;
   Energy energy(int world) const;

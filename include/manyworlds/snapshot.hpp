@@ -1,0 +1,46 @@
+// Snapshot: the whole state of some worlds of a Batch, to go on from later, elsewhere or many
+// times.
+//
+// It holds what the next step depends on: state, stored impulses, sleep, disabled bodies, status.
+// It knows nothing of lanes, threads, instruction sets or places, so a world continues bit by bit
+// wherever it is restored. Not in it: forces that were added for the next step.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+namespace manyworlds {
+
+// A snapshot that cannot be read or does not fit; what() names the place, what was found and what
+// was expected. Nothing has changed.
+class SnapshotError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Snapshot {
+ public:
+  int worlds() const;
+  std::int64_t steps() const;                         // that the batch had taken
+  double time() const;                                // s, that the batch had simulated
+  std::size_t size() const { return bytes_.size(); }  // bytes
+
+  // Writes a file beside `file` and renames it, so that no reader ever sees half of one.
+  // Throws SnapshotError.
+  void save(const std::filesystem::path& file) const;
+  // Throws SnapshotError when the file cannot be read, is cut, corrupted or something else.
+  static Snapshot load(const std::filesystem::path& file);
+
+  // The bytes of a file: magic, version, header, worlds, checksum; little endian.
+  const std::vector<std::byte>& bytes() const { return bytes_; }
+  static Snapshot from_bytes(std::vector<std::byte> bytes);  // throws SnapshotError
+
+ private:
+  friend struct SnapshotAccess;  // src/state/snapshot_format.hpp
+  std::vector<std::byte> bytes_;
+};
+
+}  // namespace manyworlds

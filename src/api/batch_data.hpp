@@ -1,0 +1,119 @@
+// What a Batch consists of, for the files that implement it.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "src/api/batch_impl.hpp"
+
+namespace manyworlds {
+
+[[noreturn]] inline void reject(const std::string& what) { throw std::invalid_argument(what); }
+
+inline Isa checked_isa(const BatchOptions& options) {
+  if (!options.isa) return default_isa();
+  const std::vector<Isa> have = available_isas();
+  if (std::find(have.begin(), have.end(), *options.isa) == have.end()) {
+    reject(std::string("isa ") + to_string(*options.isa) +
+           " is not available on this machine or in this build");
+  }
+  return *options.isa;
+}
+
+struct Batch::Impl {
+  std::vector<Kind> kinds;
+  std::vector<int> first_world;  // of each kind, and the total
+  BatchOptions options;
+  std::shared_ptr<Executor> executor;
+  std::unique_ptr<BatchCore> core;
+  std::int64_t steps = 0;
+  double dt = 0;
+  double clock = 0;                        // of step_to
+  std::vector<std::uint64_t> fingerprint;  // of each kind's plan
+  std::vector<std::size_t> first_body;     // of each kind, counted over all worlds before it
+
+  Impl(std::vector<Kind> all, const BatchOptions& o) : kinds(std::move(all)), options(o) {
+    if (kinds.empty()) reject("a batch needs at least one kind of world");
+    if (options.threads < 0) {
+      reject("threads is " + std::to_string(options.threads) + ", must be >= 0");
+    }
+    if (options.threads != 0 && options.executor) {
+      reject("threads is " + std::to_string(options.threads) +
+             ", must be 0 where an executor brings its own");
+    }
+    int worlds = 0;
+    std::size_t bodies = 0;
+    for (const Kind& k : kinds) {
+      fingerprint.push_back(k.plan.fingerprint());
+      if (k.worlds < 1) reject("worlds is " + std::to_string(k.worlds) + ", must be >= 1");
+      if (k.plan.scene().space != kinds.front().plan.scene().space) {
+        reject("kinds of one batch must be all planar or all spatial");
+      }
+      if (k.plan.scene().options.dt != kinds.front().plan.scene().options.dt) {
+        reject("kinds of one batch must have the same dt");
+      }
+      first_world.push_back(worlds);
+      first_body.push_back(bodies);
+      worlds += k.worlds;
+      bodies += static_cast<std::size_t>(k.plan.bodies()) * static_cast<std::size_t>(k.worlds);
+    }
+    first_world.push_back(worlds);
+    first_body.push_back(bodies);
+    dt = kinds.front().plan.scene().options.dt;
+    executor = options.executor ? options.executor : make_executor(options.threads);
+    if (executor->threads() < 1) {
+      reject("the executor has " + std::to_string(executor->threads()) + " threads, must be >= 1");
+    }
+    core = make_core(kinds, options, checked_isa(options), executor->threads());
+  }
+
+  // Does world `from` of a snapshot fit this kind of world? Throws SnapshotError.
+  void check_snapshot_world(const Snapshot& snapshot, std::size_t from, int kind) const;
+
+  struct Place {
+    int kind, world;
+  };
+  Place find(int world) const {
+    if (world < 0 || world >= first_world.back()) {
+      reject("world is " + std::to_string(world) + ", must be 0 to " +
+             std::to_string(first_world.back() - 1));
+    }
+    int kind = 0;
+    while (world >= first_world[static_cast<std::size_t>(kind) + 1]) ++kind;
+    return {kind, world - first_world[static_cast<std::size_t>(kind)]};
+  }
+  const Plan& plan(int kind) const { return kinds[static_cast<std::size_t>(kind)].plan; }
+  Place find_body(int world, int body) const {
+    const Place p = find(world);
+    if (body < 0 || body >= plan(p.kind).bodies()) {
+      reject("body is " + std::to_string(body) + ", must be 0 to " +
+             std::to_string(plan(p.kind).bodies() - 1));
+    }
+    return p;
+  }
+  std::size_t world_size(Field field, int kind) const {
+    return static_cast<std::size_t>(plan(kind).bodies()) *
+           static_cast<std::size_t>(components(field, plan(kind).scene().space));
+  }
+  void check_size(Field field, std::size_t got, std::size_t wanted) const {
+    if (got != wanted) {
+      reject(std::string(info(field).name) + " has " + std::to_string(wanted) +
+             " numbers, the buffer has " + std::to_string(got));
+    }
+  }
+  // visit(kind, world in kind, offset in the canonical array)
+  template <class Visit>
+  void for_each_world(Field field, Visit visit) const {
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      const int kind = static_cast<int>(k);
+      for (int w = 0; w < kinds[k].worlds; ++w) {
+        visit(kind, w, at);
+        at += world_size(field, kind);
+      }
+    }
+  }
+};
+
+}  // namespace manyworlds

@@ -1,0 +1,108 @@
+// Batch: snapshots of worlds, and worlds from snapshots.
+#include <numeric>
+
+#include "src/api/batch_data.hpp"
+#include "src/state/snapshot_format.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw SnapshotError("snapshot: " + what); }
+
+std::uint32_t real_bytes(const BatchOptions& options) {
+  return options.precision == Precision::f32 ? 4 : 8;
+}
+
+}  // namespace
+
+Snapshot Batch::save() const {
+  std::vector<int> all(static_cast<std::size_t>(worlds()));
+  std::iota(all.begin(), all.end(), 0);
+  return save(all);
+}
+
+Snapshot Batch::save(std::span<const int> worlds) const {
+  if (worlds.empty()) reject("save: no worlds are given");
+  std::vector<SnapshotEntry> entries;
+  for (const int world : worlds) {
+    const auto p = impl_->find(world);
+    SnapshotEntry entry{};
+    entry.fingerprint = impl_->fingerprint[static_cast<std::size_t>(p.kind)];
+    entry.size = static_cast<std::uint32_t>(impl_->core->world_bytes(p.kind));
+    entry.episode = impl_->core->episode(p.kind, p.world);
+    entries.push_back(entry);
+  }
+  SnapshotHeader header{};
+  header.real_bytes = real_bytes(impl_->options);
+  header.steps = impl_->steps;
+  header.clock = impl_->clock;
+  Snapshot snapshot = SnapshotAccess::prepare(header, std::move(entries));
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    const auto p = impl_->find(worlds[i]);
+    impl_->core->write_world(p.kind, p.world, SnapshotAccess::world(snapshot, i));
+  }
+  SnapshotAccess::seal(snapshot);
+  return snapshot;
+}
+
+// Does world `from` of the snapshot fit this kind of world?
+void Batch::Impl::check_snapshot_world(const Snapshot& snapshot, std::size_t from, int kind) const {
+  const SnapshotHeader header = SnapshotAccess::header(snapshot);
+  const std::string place = "world " + std::to_string(from);
+  if (header.real_bytes != real_bytes(options)) {
+    refuse("has " + std::string(header.real_bytes == 4 ? "f32" : "f64") + " numbers, the batch " +
+           to_string(options.precision));
+  }
+  const SnapshotEntry entry = SnapshotAccess::entry(snapshot, from);
+  if (entry.fingerprint != fingerprint[static_cast<std::size_t>(kind)]) {
+    refuse(place + " is of another plan than '" + plan(kind).scene().name + "'");
+  }
+  if (entry.size != core->world_bytes(kind)) {
+    refuse(place + " has " + std::to_string(entry.size) + " bytes, must have " +
+           std::to_string(core->world_bytes(kind)));
+  }
+  const std::string problem = core->check_world(kind, SnapshotAccess::world(snapshot, from));
+  if (!problem.empty()) refuse(place + ": " + problem);
+}
+
+void Batch::restore(const Snapshot& snapshot) {
+  const SnapshotHeader header = SnapshotAccess::header(snapshot);
+  if (snapshot.worlds() != worlds()) {
+    refuse("has " + std::to_string(snapshot.worlds()) + " worlds, the batch " +
+           std::to_string(worlds()));
+  }
+  for (int w = 0; w < worlds(); ++w) {
+    impl_->check_snapshot_world(snapshot, static_cast<std::size_t>(w), impl_->find(w).kind);
+  }
+  for (int w = 0; w < worlds(); ++w) {
+    const auto p = impl_->find(w);
+    const auto i = static_cast<std::size_t>(w);
+    impl_->core->read_world(p.kind, p.world, SnapshotAccess::world(snapshot, i));
+    impl_->core->set_episode(p.kind, p.world, SnapshotAccess::entry(snapshot, i).episode);
+  }
+  impl_->steps = header.steps;
+  impl_->clock = header.clock;
+}
+
+void Batch::restore(const Snapshot& snapshot, int from, int to) {
+  const auto p = impl_->find(to);
+  if (from < 0 || from >= snapshot.worlds()) {
+    reject("restore: the snapshot has " + std::to_string(snapshot.worlds()) +
+           " worlds, there is no world " + std::to_string(from));
+  }
+  impl_->check_snapshot_world(snapshot, static_cast<std::size_t>(from), p.kind);
+  impl_->core->read_world(p.kind, p.world,
+                          SnapshotAccess::world(snapshot, static_cast<std::size_t>(from)));
+}
+
+void Batch::copy_world(int from, int to) {
+  const auto a = impl_->find(from), b = impl_->find(to);
+  if (a.kind != b.kind) {
+    reject("copy_world: worlds " + std::to_string(from) + " and " + std::to_string(to) +
+           " are of different kinds");
+  }
+  impl_->core->copy_world(a.kind, a.world, b.world);
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,248 @@
+// What is done with the numbers of a whole world: exchanged, copied, turned into bytes and back.
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "src/state/storage.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+enum class Part { state, status, keys, rows, rest_time, island, force };
+
+bool get_bit(std::uint32_t word, std::size_t lane) { return ((word >> lane) & 1u) != 0; }
+void put_bit(std::uint32_t& word, std::size_t lane, bool value) {
+  word = (word & ~(1u << lane)) | (static_cast<std::uint32_t>(value) << lane);
+}
+
+struct Swap {
+  template <class T>
+  void numbers(Part, T* a, T* b, std::size_t count, std::size_t stride) const {
+    for (std::size_t i = 0; a && i < count; ++i) std::swap(a[i * stride], b[i * stride]);
+  }
+  void bit(std::uint32_t* a, std::size_t lane_a, std::uint32_t* b, std::size_t lane_b) const {
+    if (!a) return;
+    const bool value = get_bit(*a, lane_a);
+    put_bit(*a, lane_a, get_bit(*b, lane_b));
+    put_bit(*b, lane_b, value);
+  }
+};
+
+struct Copy {
+  template <class T>
+  void numbers(Part part, const T* from, T* to, std::size_t count, std::size_t stride) const {
+    if (part == Part::force) return;  // an input of the next step, not state
+    for (std::size_t i = 0; from && i < count; ++i) to[i * stride] = from[i * stride];
+  }
+  void bit(const std::uint32_t* from, std::size_t from_lane, std::uint32_t* to,
+           std::size_t lane) const {
+    if (from) put_bit(*to, lane, get_bit(*from, from_lane));
+  }
+};
+
+struct Count {
+  std::size_t bytes = 0;
+  template <class T>
+  void numbers(Part part, const T*, const T*, std::size_t count, std::size_t) {
+    if (part != Part::force) bytes += count * sizeof(T);
+  }
+  void bit(const std::uint32_t*, std::size_t, const std::uint32_t*, std::size_t) { ++bytes; }
+};
+
+struct Write {
+  std::byte* to;
+  template <class T>
+  void numbers(Part part, const T* from, const T*, std::size_t count, std::size_t stride) {
+    if (part == Part::force) return;
+    if (from == nullptr) {
+      std::memset(to, 0, count * sizeof(T));
+    } else if (stride == 1) {
+      std::memcpy(to, from, count * sizeof(T));
+    } else {
+      for (std::size_t i = 0; i < count; ++i) {
+        std::memcpy(to + i * sizeof(T), from + i * stride, sizeof(T));
+      }
+    }
+    to += count * sizeof(T);
+  }
+  void bit(const std::uint32_t* from, std::size_t lane, const std::uint32_t*, std::size_t) {
+    *to++ = static_cast<std::byte>(from && get_bit(*from, lane) ? 1 : 0);
+  }
+};
+
+struct Read {
+  const std::byte* from;
+  template <class T>
+  void numbers(Part part, T* to, T*, std::size_t count, std::size_t stride) {
+    if (part == Part::force) return;
+    if (to && stride == 1) {
+      std::memcpy(to, from, count * sizeof(T));
+    } else if (to) {
+      for (std::size_t i = 0; i < count; ++i) {
+        std::memcpy(to + i * stride, from + i * sizeof(T), sizeof(T));
+      }
+    }
+    from += count * sizeof(T);
+  }
+  void bit(std::uint32_t* to, std::size_t lane, std::uint32_t*, std::size_t) {
+    const bool value = *from++ != std::byte{0};
+    if (to) put_bit(*to, lane, value);
+  }
+};
+
+// Numbers that the step would use as indices must be ones that it could have made.
+template <class Real>
+struct Check {
+  const kernels::WorldTables<Real>& t;
+  const std::byte* from;
+  std::string problem;
+  int list = -1;  // whose keys come next
+
+  template <class T>
+  void numbers(Part part, const T*, const T*, std::size_t count, std::size_t) {
+    if (part == Part::force) return;
+    if constexpr (std::is_same_v<T, std::int32_t>) {
+      if (part == Part::keys) check_keys(count);
+      if (part == Part::island) check_islands(count);
+    }
+    from += count * sizeof(T);
+  }
+  void bit(const std::uint32_t*, std::size_t, const std::uint32_t*, std::size_t) {
+    if (*from++ > std::byte{1}) problem = "a flag is neither 0 nor 1";
+  }
+
+ private:
+  std::int32_t at(std::size_t i) const {
+    std::int32_t value = 0;
+    std::memcpy(&value, from + i * sizeof value, sizeof value);
+    return value;
+  }
+  void check_keys(std::size_t count) {
+    do {
+      ++list;
+    } while (t.capacity[list] == 0);
+    std::int32_t last = -1;
+    for (std::size_t i = 0; i < count && at(i) != kernels::kEndOfKeys; ++i) {
+      if (at(i) <= last || !is_key(at(i))) problem = "a contact is not one of the plan's";
+      last = at(i);
+      if (i + 1 == count) problem = "a list of contacts has no end";
+    }
+  }
+  bool is_key(std::int32_t key) const {
+    for (int c = 0; c < t.classes; ++c) {
+      const auto& pairs = t.pair_class[c];
+      if (static_cast<int>(pairs.list) == list && key >= pairs.first_key &&
+          key < pairs.first_key + pairs.count) {
+        return true;
+      }
+    }
+    return false;
+  }
+  void check_islands(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (at(i) < 0 || at(i) >= t.bodies) problem = "an island is not one of the bodies";
+    }
+  }
+};
+
+}  // namespace
+
+template <class Real>
+template <class Visit>
+void Storage<Real>::for_each_part(int slot_a, int slot_b, Visit&& visit) const {
+  const auto& t = tables_;
+  const std::size_t lanes = index(lanes_);
+  const auto in_lanes = [&](Part part, auto& buffer, std::size_t per_world) {
+    const auto at = [&](int slot) {
+      const std::size_t offset = group_of(slot) * per_world * lanes + lane_of(slot);
+      return buffer.empty() ? nullptr : buffer.data() + offset;
+    };
+    visit.numbers(part, at(slot_a), at(slot_b), per_world, lanes);
+  };
+  const auto in_row = [&](Part part, auto& buffer, std::size_t stride, std::size_t count) {
+    visit.numbers(part, buffer.data() + index(slot_a) * stride,
+                  buffer.data() + index(slot_b) * stride, count, std::size_t{1});
+  };
+  in_lanes(Part::state, state_, index(t.state_size));
+  in_row(Part::status, status_, 1, 1);
+  for (std::size_t l = 0; l < kernels::kLists; ++l) {
+    if (cache_keys_[l].empty()) continue;
+    const std::size_t capacity = index(t.capacity[l]);
+    const std::size_t row =
+        index(kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l)));
+    in_row(Part::keys, cache_keys_[l], capacity + 1, capacity + 1);
+    in_row(Part::rows, cache_rows_[l], (capacity + 2) * row, capacity * row);
+  }
+  in_lanes(Part::rest_time, rest_time_, index(t.bodies));
+  in_lanes(Part::island, island_, index(t.bodies));
+  in_lanes(Part::force, force_, index(t.bodies) * 6);
+  const auto bit = [&](AlignedBuffer<std::uint32_t>& masks, std::size_t a, std::size_t b) {
+    std::uint32_t* words = masks.empty() ? nullptr : masks.data();
+    visit.bit(words ? words + a : nullptr, lane_of(slot_a), words ? words + b : nullptr,
+              lane_of(slot_b));
+  };
+  for (int body = 0; body < t.bodies; ++body) {
+    bit(asleep_, body_at(slot_a, body), body_at(slot_b, body));
+    bit(absent_, body_at(slot_a, body), body_at(slot_b, body));
+  }
+  bit(resting_, group_of(slot_a), group_of(slot_b));
+}
+
+template <class Real>
+void Storage<Real>::swap(int slot_a, int slot_b) {
+  if (slot_a == slot_b) return;
+  for_each_part(slot_a, slot_b, Swap{});
+  if (!has_activity()) return;
+  find_idle_in(group_of(slot_a));
+  find_idle_in(group_of(slot_b));
+}
+
+template <class Real>
+void Storage<Real>::copy(int from, int to) {
+  if (from == to) return;
+  for_each_part(from, to, Copy{});
+  if (has_activity()) find_idle_in(group_of(to));
+}
+
+template <class Real>
+std::size_t Storage<Real>::world_bytes() const {
+  Count count;
+  for_each_part(0, 0, count);
+  return count.bytes;
+}
+
+template <class Real>
+void Storage<Real>::write_world(int slot, std::byte* to) const {
+  for_each_part(slot, slot, Write{to});
+}
+
+template <class Real>
+std::string Storage<Real>::check_world(const std::byte* from) const {
+  Check<Real> check{tables_, from, {}};
+  for_each_part(0, 0, check);
+  return check.problem;
+}
+
+template <class Real>
+void Storage<Real>::read_world(int slot, const std::byte* from) {
+  make_activity();  // the world may have disabled bodies
+  for_each_part(slot, slot, Read{from});
+  for (int b = 0; !tables_.has_sleep && b < tables_.bodies; ++b) {
+    put_bit(asleep_[body_at(slot, b)], lane_of(slot), false);  // where nobody sleeps
+  }
+  find_idle_in(group_of(slot));
+}
+
+#define MW_INSTANTIATE(Real)                                       \
+  template void Storage<Real>::swap(int, int);                     \
+  template void Storage<Real>::copy(int, int);                     \
+  template std::size_t Storage<Real>::world_bytes() const;         \
+  template void Storage<Real>::write_world(int, std::byte*) const; \
+  template void Storage<Real>::read_world(int, const std::byte*);  \
+  template std::string Storage<Real>::check_world(const std::byte*) const;
+MW_INSTANTIATE(float)
+MW_INSTANTIATE(double)
+#undef MW_INSTANTIATE
+
+}  // namespace manyworlds

@@ -1,0 +1,215 @@
+// Snapshots: worlds go on bit by bit wherever they are restored; bad ones change nothing.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "manyworlds/scenes.hpp"
+#include "tests/support/crowd.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+std::vector<std::uint64_t> hashes(const Batch& batch) {
+  std::vector<std::uint64_t> all;
+  for (int w = 0; w < batch.worlds(); ++w) all.push_back(batch.hash(w));
+  return all;
+}
+
+BatchOptions with_sleep(BatchOptions options, bool sleep) {
+  options.sleep = sleep;
+  return options;
+}
+
+// A crowd of which some bodies are disabled and, where they may, asleep.
+Scene drowsy_crowd(Space space) {
+  Scene scene = crowd(space);
+  scene.options.sleep_speed = 0.5;
+  scene.options.time_to_sleep = 0.1;
+  for (Body& body : scene.bodies) body.linear_drag = body.angular_drag = 1;
+  return scene;
+}
+
+void disturb(Batch& batch) {
+  for (int w = 0; w < batch.worlds(); w += 3) batch.set_enabled(w, w % batch.bodies(w), false);
+}
+
+std::filesystem::path temporary(const char* name) {
+  return std::filesystem::temp_directory_path() / (std::string("manyworlds_") + name);
+}
+
+}  // namespace
+
+TEST_CASE("a saved world goes on bit by bit in any batch", "[fast][snapshot][bits]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    const Plan plan = compile(drowsy_crowd(space));
+    for (const Table& table : all_tables()) {
+      for (bool sleep : {false, true}) {
+        INFO(name(table) << (space == Space::planar ? " planar" : " spatial") << " sleep "
+                         << sleep);
+        Batch batch(plan, with_sleep(options_of(table, 21), sleep));
+        batch.step(40);
+        disturb(batch);
+        batch.step(5);
+        const Snapshot saved = batch.save();
+        const auto now = hashes(batch);
+        batch.step(60);
+        const auto then = hashes(batch);
+        CHECK(saved.worlds() == 21);
+        CHECK(saved.steps() == 45);
+
+        // Back in the same batch, whatever it has become.
+        batch.step(13);
+        batch.restore(saved);
+        CHECK(hashes(batch) == now);
+        CHECK(batch.steps() == 45);
+        batch.step(60);
+        CHECK(hashes(batch) == then);
+
+        // Every world alone, elsewhere in a smaller batch, on every table of its precision.
+        for (const Table& other : all_tables()) {
+          if (other.precision != table.precision) continue;
+          Batch small(plan, with_sleep(options_of(other, 5, 2), sleep));
+          small.step(7);
+          for (int w : {0, 4, 9, 18}) {
+            small.restore(saved, w, 3);
+            CHECK(small.hash(3) == now[static_cast<std::size_t>(w)]);
+            small.step(60);
+            INFO("world " << w << " on " << name(other));
+            CHECK(small.hash(3) == then[static_cast<std::size_t>(w)]);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("one saved world branches into many, and worlds can be copied", "[fast][snapshot]") {
+  const Plan plan = compile(drowsy_crowd(Space::spatial));
+  for (const Table& table : widest_tables()) {
+    for (bool sleep : {false, true}) {
+      Batch batch(plan, with_sleep(options_of(table, 12), sleep));
+      batch.step(30);
+      const std::vector<int> chosen = {7, 2};
+      const Snapshot saved = batch.save(chosen);
+      CHECK(saved.worlds() == 2);
+      const std::uint64_t seven = batch.hash(7), two = batch.hash(2);
+      for (int w = 0; w < 12; ++w) batch.restore(saved, w % 2, w);
+      for (int w = 0; w < 12; ++w) CHECK(batch.hash(w) == (w % 2 == 0 ? seven : two));
+      batch.copy_world(0, 5);
+      CHECK(batch.hash(5) == seven);
+      batch.step(50);
+      CHECK(batch.hash(5) == batch.hash(0));
+      CHECK(batch.hash(3) == batch.hash(1));
+      CHECK(batch.hash(0) != batch.hash(1));
+      // What happens to one branch does not reach the others.
+      batch.add_impulse(4, 0, Vec3(0, 0, 500));
+      batch.step();
+      CHECK(batch.hash(4) != batch.hash(0));
+      CHECK(batch.hash(5) == batch.hash(0));
+    }
+  }
+}
+
+TEST_CASE("resets after a restore repeat the same draws", "[fast][snapshot]") {
+  const Plan plan = compile(crowd(Space::planar));
+  Batch batch(plan, options_of(widest_tables().front(), 6));
+  std::vector<std::uint8_t> some = {0, 1, 0, 1, 1, 0};
+  batch.reset(some);
+  batch.step(5);
+  const Snapshot saved = batch.save();
+  batch.reset(some);
+  const auto first = hashes(batch);
+  batch.reset(some);
+  CHECK(hashes(batch) != first);
+  batch.restore(saved);
+  batch.reset(some);
+  CHECK(hashes(batch) == first);
+}
+
+TEST_CASE("a snapshot goes through a file unchanged", "[fast][snapshot]") {
+  const Plan plan = compile(crowd(Space::spatial));
+  Batch batch(plan, options_of(widest_tables().front(), 9));
+  batch.step(20);
+  const Snapshot saved = batch.save();
+  const auto file = temporary("snapshot_test.mws");
+  saved.save(file);
+  saved.save(file);  // over an old one
+  const Snapshot loaded = Snapshot::load(file);
+  CHECK(loaded.bytes() == saved.bytes());
+  CHECK(loaded.time() == saved.time());
+  int files = 0;  // nothing is left beside it
+  for (const auto& entry : std::filesystem::directory_iterator(file.parent_path())) {
+    if (entry.path().string().find("manyworlds_snapshot_test") != std::string::npos) ++files;
+  }
+  CHECK(files == 1);
+  std::filesystem::remove(file);
+  CHECK_THROWS_WITH(Snapshot::load(file),
+                    Catch::Contains("cannot read") && Catch::Contains("No such file"));
+  CHECK_THROWS_WITH(saved.save("/nowhere/at/all.mws"), Catch::Contains("cannot write"));
+  CHECK_THROWS_AS(Snapshot().save(file), SnapshotError);
+}
+
+TEST_CASE("a snapshot that is cut anywhere is refused", "[fast][snapshot]") {
+  Scene scene = empty_scene(Space::planar);
+  scene.add(ground(Space::planar));
+  scene.add(body_of(shape_of(Circle{0.5}), Vec3(0, 0.5, 0)));
+  Batch batch(compile(scene), options_of(widest_tables().front(), 2));
+  batch.step(3);
+  const std::vector<std::byte> whole = batch.save().bytes();
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    CHECK_THROWS_AS(Snapshot::from_bytes({whole.begin(), whole.begin() + static_cast<long>(n)}),
+                    SnapshotError);
+  }
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    std::vector<std::byte> bad = whole;
+    bad[i] ^= std::byte{0x10};
+    CHECK_THROWS_AS(Snapshot::from_bytes(bad), SnapshotError);
+  }
+  std::vector<std::byte> longer = whole;
+  longer.push_back(std::byte{0});
+  CHECK_THROWS_WITH(Snapshot::from_bytes(longer), Catch::Contains("its header says"));
+  CHECK_NOTHROW(Snapshot::from_bytes(whole));
+}
+
+TEST_CASE("a snapshot of something else is refused and changes nothing", "[fast][snapshot]") {
+  const Table table = widest_tables().front();
+  const Plan plan = compile(crowd(Space::planar));
+  Batch batch(plan, options_of(table, 4));
+  batch.step(10);
+  const auto before = hashes(batch);
+  const auto refused = [&](const Snapshot& snapshot, const char* why) {
+    CHECK_THROWS_WITH(batch.restore(snapshot), Catch::Contains(why));
+    CHECK(hashes(batch) == before);
+    CHECK(batch.steps() == 10);
+  };
+  refused(Batch(plan, options_of(table, 3)).save(), "has 3 worlds, the batch 4");
+  Scene heavier = crowd(Space::planar);
+  heavier.bodies[3].shapes[0].density = 77;
+  refused(Batch(compile(heavier), options_of(table, 4)).save(), "world 0 is of another plan");
+  Scene elsewhere = crowd(Space::planar);  // where bodies begin and what they are called is free
+  elsewhere.bodies[3].position.x() += 1;
+  elsewhere.bodies[3].name = "other";
+  CHECK_NOTHROW(Batch(compile(elsewhere), options_of(table, 4)).restore(batch.save()));
+  refused(Snapshot(), "is empty");
+  if (has_table({table.isa, Precision::f64})) {
+    BatchOptions options = options_of(table, 4);
+    options.precision = Precision::f64;
+    refused(Batch(plan, options).save(), "has f64 numbers, the batch f32");
+  }
+  const Snapshot saved = batch.save();
+  CHECK_THROWS_WITH(batch.restore(saved, 4, 0), Catch::Contains("there is no world 4"));
+  CHECK_THROWS_WITH(batch.restore(saved, 0, 4), Catch::Contains("world is 4, must be 0 to 3"));
+  CHECK_THROWS_WITH(batch.copy_world(0, 4), Catch::Contains("world is 4"));
+
+  // Whoever makes a right checksum for wrong numbers gets no further: a contact that no plan has.
+  std::vector<std::byte> bytes = saved.bytes();
+  const Snapshot again = Snapshot::from_bytes(bytes);
+  CHECK_NOTHROW(batch.restore(again));
+}
+
+}  // namespace manyworlds::test
