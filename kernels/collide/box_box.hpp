@@ -73,7 +73,8 @@ struct KeptPoints {
   Mask valid[4];
 };
 
-MW_INLINE void keep_four(ClipPoints& p, Float margin, KeptPoints& out) {
+// extent2: of the smaller of the two faces, m^2; says what counts as a distance or an area.
+MW_INLINE void keep_four(ClipPoints& p, Float margin, Float extent2, KeptPoints& out) {
   const Float zero(Real(0));
   // Among equally deep points one far out: a corner rather than the middle of an edge.
   const Float outward(Real(-1e-5));
@@ -92,7 +93,7 @@ MW_INLINE void keep_four(ClipPoints& p, Float margin, KeptPoints& out) {
   const Float x0 = x, y0 = y;
 
   // From here on x, y are relative to the first point; what does not count collapses onto it.
-  Float best = Real(1e-6), far_x = zero, far_y = zero, far_z = Real(kOutOfReach);
+  Float best = extent2 * Float(Real(2e-6)), far_x = zero, far_y = zero, far_z = Real(kOutOfReach);
   for (int i = 0; i < ClipPoints::kCount; ++i) {
     const Mask near = p.z[i] < limit;
     p.x[i] = select(near, p.x[i], x0) - x0;
@@ -106,7 +107,7 @@ MW_INLINE void keep_four(ClipPoints& p, Float margin, KeptPoints& out) {
   out.x[1] = far_x + x0, out.y[1] = far_y + y0, out.z[1] = far_z;
   out.valid[1] = far_z < limit;
 
-  Float most = Real(1e-5), least = Real(-1e-5);
+  Float most = extent2 * Float(Real(2e-5)), least = -most;
   Float left_x = zero, left_y = zero, left_z = Real(kOutOfReach);
   Float right_x = zero, right_y = zero, right_z = Real(kOutOfReach);
   for (int i = 0; i < ClipPoints::kCount; ++i) {
@@ -224,7 +225,9 @@ struct BoxBox {
               {dot(f.u, other.edge2), dot(f.v, other.edge2), dot(f.n, other.edge2)},
               f.half_u * slack, f.half_v * slack, clipped);
     KeptPoints kept;
-    keep_four(clipped, Float(t.margin), kept);
+    const Float extent2 = min(fma(f.half_u, f.half_u, f.half_v * f.half_v),
+                              dot(other.edge1, other.edge1) + dot(other.edge2, other.edge2));
+    keep_four(clipped, Float(t.margin), extent2, kept);
     m.normal = select(from_b, -f.n, f.n);
     m.tangent = f.u;
     for (int i = 0; i < 4; ++i) {
