@@ -5,14 +5,6 @@
 
 namespace manyworlds {
 
-namespace {
-
-void put_bit(std::uint32_t& word, std::size_t lane, bool value) {
-  word = (word & ~(1u << lane)) | (static_cast<std::uint32_t>(value) << lane);
-}
-
-}  // namespace
-
 template <class Real>
 Storage<Real>::Storage(const kernels::WorldTables<Real>& tables, int groups, int lanes)
     : tables_(tables), groups_(groups), lanes_(lanes) {

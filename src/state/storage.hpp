@@ -15,6 +15,7 @@
 #include "kernels/group.hpp"
 #include "manyworlds/scene.hpp"
 #include "src/base/aligned_buffer.hpp"
+#include "src/base/bits.hpp"
 
 namespace manyworlds {
 
@@ -75,7 +76,7 @@ class Storage {
     return group_of(slot) * index(tables_.bodies) + index(body);
   }
   bool is_set(const AlignedBuffer<std::uint32_t>& masks, std::size_t at, int slot) const {
-    return !masks.empty() && ((masks[at] >> lane_of(slot)) & 1u) != 0;
+    return !masks.empty() && get_bit(masks[at], lane_of(slot));
   }
 
   // Every number of a world, in a fixed order that does not depend on the lane, beside what lies in

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <utility>
 
+#include "src/base/bits.hpp"
 #include "src/state/storage.hpp"
 
 namespace manyworlds {
@@ -10,11 +11,6 @@ namespace manyworlds {
 namespace {
 
 enum class Part { state, status, keys, rows, rest_time, island, force };
-
-bool get_bit(std::uint32_t word, std::size_t lane) { return ((word >> lane) & 1u) != 0; }
-void put_bit(std::uint32_t& word, std::size_t lane, bool value) {
-  word = (word & ~(1u << lane)) | (static_cast<std::uint32_t>(value) << lane);
-}
 
 struct Swap {
   template <class T>

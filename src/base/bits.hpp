@@ -1,0 +1,16 @@
+// Single bits of a word.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace manyworlds {
+
+inline constexpr bool get_bit(std::uint32_t word, std::size_t at) {
+  return ((word >> at) & 1u) != 0;
+}
+inline constexpr void put_bit(std::uint32_t& word, std::size_t at, bool value) {
+  word = (word & ~(1u << at)) | (static_cast<std::uint32_t>(value) << at);
+}
+
+}  // namespace manyworlds
