@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "manyworlds/scenes.hpp"
+#include "src/base/hash.hpp"
+#include "src/state/snapshot_format.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/tables.hpp"
 
@@ -205,11 +207,45 @@ TEST_CASE("a snapshot of something else is refused and changes nothing", "[fast]
   CHECK_THROWS_WITH(batch.restore(saved, 4, 0), Catch::Contains("there is no world 4"));
   CHECK_THROWS_WITH(batch.restore(saved, 0, 4), Catch::Contains("world is 4, must be 0 to 3"));
   CHECK_THROWS_WITH(batch.copy_world(0, 4), Catch::Contains("world is 4"));
+}
 
-  // Whoever makes a right checksum for wrong numbers gets no further: a contact that no plan has.
-  std::vector<std::byte> bytes = saved.bytes();
-  const Snapshot again = Snapshot::from_bytes(bytes);
-  CHECK_NOTHROW(batch.restore(again));
+// A right checksum over wrong numbers: what the step would use as an index is looked at, too.
+TEST_CASE("a forged snapshot is refused and changes nothing", "[fast][snapshot]") {
+  Scene scene = empty_scene(Space::planar);
+  scene.add(ground(Space::planar));
+  scene.add(body_of(shape_of(Circle{0.5}), Vec3(0, 0.5, 0)));
+  const Table table = widest_tables().front();
+  BatchOptions options = options_of(table);
+  options.precision = Precision::f32;
+  Batch batch(compile(scene), options);
+  batch.step(3);
+  const std::vector<std::byte> honest = batch.save().bytes();
+  const std::uint64_t hash = batch.hash();
+  const auto forged = [&](std::size_t at, std::int32_t value) {
+    std::vector<std::byte> bytes = honest;
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    const std::size_t end = bytes.size() - sizeof(std::uint64_t);
+    Hasher hasher;
+    std::size_t i = 0;
+    for (; i + 8 <= end; i += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes.data() + i, 8);
+      hasher.add(word);
+    }
+    for (; i < end; ++i) hasher.add(static_cast<std::uint64_t>(bytes[i]));
+    const std::uint64_t sum = hasher.value();
+    std::memcpy(bytes.data() + end, &sum, sizeof sum);
+    return Snapshot::from_bytes(bytes);
+  };
+  // Header and entry, 5 numbers of state, status; then the one key and the end of the list.
+  constexpr std::size_t kKeys = sizeof(SnapshotHeader) + sizeof(SnapshotEntry) + 5 * 4 + 4;
+  CHECK_NOTHROW(batch.restore(forged(kKeys, 0)));  // it is where this test thinks it is
+  for (const std::int32_t key : {1, -1, 1 << 20}) {
+    CHECK_THROWS_WITH(batch.restore(forged(kKeys, key)),
+                      Catch::Contains("world 0: a contact is not one of the plan's"));
+  }
+  CHECK_THROWS_WITH(batch.restore(forged(kKeys + 4, 5)), Catch::Contains("world 0: a"));
+  CHECK(batch.hash() == hash);
 }
 
 }  // namespace manyworlds::test
