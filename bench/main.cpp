@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   manyworlds::bench::register_steps();
   manyworlds::bench::register_stages();
   manyworlds::bench::register_pairs();
+  manyworlds::bench::register_batch();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;
