@@ -15,6 +15,8 @@
 #include <variant>
 #include <vector>
 
+#include "manyworlds/variation.hpp"
+
 namespace manyworlds {
 
 using Vec2 = Eigen::Vector2d;
@@ -176,6 +178,7 @@ struct Scene {
   Space space = Space::spatial;
   std::vector<Body> bodies;
   Options options;
+  std::vector<Variation> variations;
 
   // Appends and returns the index.
   int add(Body body) {

@@ -35,7 +35,9 @@ std::vector<Issue> validate(const Scene& scene) {
     if (!body.name.empty()) part += " '" + body.name + "'";
     check_body(checker.at(part), scene, body, density_valid);
   }
+  const bool sound = issues.empty() && option_issues.empty();
   issues.insert(issues.end(), option_issues.begin(), option_issues.end());
+  check_variations(checker, scene, sound);
   return issues;
 }
 

@@ -1,0 +1,69 @@
+// Variations: which numbers of a scene may differ from world to world, and within which range. What
+// is not declared here is one number for all worlds and costs nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+namespace manyworlds {
+
+// X(name, what has one, numbers of each, unit, meaning). In the order in which they are applied: a
+// mass is of the body as its sizes and densities have made it.
+#define MW_PARAMETERS(X)                                                                      \
+  X(size, shape, 3, "m",                                                                      \
+    "sphere, circle: radius; capsule: radius, half length; box: half extents; polygon: half " \
+    "extents of its bounding box about the shape frame's axes (it is stretched); others 0")   \
+  X(density, shape, 1, "kg/m^3", "kg/m^2 in the plane")                                       \
+  X(mass, body, 1, "kg", "of a dynamic body; its inertia grows in proportion")                \
+  X(friction, shape, 1, "1", "Coulomb coefficient")                                           \
+  X(restitution, shape, 1, "1", "0 to 1")                                                     \
+  X(gravity, world, 3, "m/s^2", "")                                                           \
+  X(gravity_scale, body, 1, "1", "")                                                          \
+  X(linear_drag, body, 1, "1/s", "")                                                          \
+  X(angular_drag, body, 1, "1/s", "")
+
+enum class Parameter {
+#define MW_PARAMETER_ENUM(name, owner, numbers, unit, meaning) name,
+  MW_PARAMETERS(MW_PARAMETER_ENUM)
+#undef MW_PARAMETER_ENUM
+};
+inline constexpr int kParameterCount = 9;
+
+struct ParameterInfo {
+  enum Owner { world, body, shape };
+  const char* name;
+  Owner owner;
+  int numbers;
+  const char* unit;
+  const char* meaning;
+};
+const ParameterInfo& info(Parameter parameter);
+
+// What a world gets when it begins, at every reset anew.
+enum class Draw {
+  none,         // keeps what it has: the scene's number, until Batch::write
+  uniform,      // between low and high
+  log_uniform,  // its logarithm is uniform; low > 0
+};
+
+struct Variation {
+  Parameter parameter = Parameter::friction;
+  int body = -1;   // scene body; -1: every one that has the parameter
+  int shape = -1;  // of that body; -1: every shape
+  // The range, inclusive, within which the number of every world must lie; [0] alone counts where
+  // the parameter is one number.
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
+  Draw draw = Draw::uniform;
+  bool together = false;  // one draw for all bodies and shapes of it, instead of one for each
+};
+
+// A parameter of one number, of every body or shape.
+inline Variation vary(Parameter parameter, double low, double high, Draw draw = Draw::uniform) {
+  Variation v;
+  v.parameter = parameter;
+  v.low.x() = low, v.high.x() = high;
+  v.draw = draw;
+  return v;
+}
+
+}  // namespace manyworlds
