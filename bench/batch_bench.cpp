@@ -1,6 +1,8 @@
 // What a user does with a whole Batch between and around steps: 1024 worlds of bin-boxes on one
 // thread. docs/batch.md gives these figures.
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "bench/report.hpp"
 #include "manyworlds/scenes.hpp"
@@ -28,6 +30,35 @@ void time_moving_steps(benchmark::State& state, bool sleep) {
   batch.step(120);
   for ([[maybe_unused]] const auto _ : state) batch.step();
   state.SetItemsProcessed(state.iterations() * kManyWorlds);
+}
+
+// The same scene with a friction and a mass of its own in every world: the numbers are the
+// scene's, so that both step the same states.
+void time_varied_steps(benchmark::State& state, bool varied) {
+  Scene scene = bin_boxes();
+  if (varied) {
+    scene.variations = {vary(Parameter::friction, 0, 2, Draw::none),
+                        vary(Parameter::mass, 1e-3, 1e6, Draw::none)};
+  }
+  Batch batch = batch_of(scene, false);
+  batch.step(120);
+  for ([[maybe_unused]] const auto _ : state) batch.step();
+  state.SetItemsProcessed(state.iterations() * kManyWorlds);
+}
+
+// New numbers, and all that follows from them, in every world.
+void time_new_numbers(benchmark::State& state, Parameter parameter) {
+  Scene scene = bin_boxes();
+  scene.variations = {vary(Parameter::friction, 0.1, 2), vary(Parameter::mass, 1, 1000)};
+  Batch batch = batch_of(scene, false);
+  std::vector<double> numbers(batch.size(parameter)), others(numbers.size());
+  batch.read(parameter, numbers);
+  std::reverse_copy(numbers.begin(), numbers.end(), others.begin());
+  for ([[maybe_unused]] const auto _ : state) {
+    batch.write(parameter, others);
+    std::swap(numbers, others);
+  }
+  state.counters["per_world"] = time_of_one(kManyWorlds);
 }
 
 // Every second world is kept awake by small pushes; without sleep they all are.
@@ -61,6 +92,10 @@ void register_batch() {
     benchmark::RegisterBenchmark(("batch/half_awake" + suffix).c_str(), time_half_awake, sleep)
         ->UseManualTime();
   }
+  benchmark::RegisterBenchmark("batch/varied/off", time_varied_steps, false);
+  benchmark::RegisterBenchmark("batch/varied/friction_and_mass", time_varied_steps, true);
+  benchmark::RegisterBenchmark("batch/write/friction", time_new_numbers, Parameter::friction);
+  benchmark::RegisterBenchmark("batch/write/mass", time_new_numbers, Parameter::mass);
   const auto add = [](const char* name, auto work) {
     benchmark::RegisterBenchmark(name,
                                  [work](benchmark::State& state) { time_snapshots(state, work); });

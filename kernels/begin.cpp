@@ -1,6 +1,7 @@
 // begin: the first stage of a contact step. Poses of shapes as rows, their bounds with the
 // speculative margin, and inverse inertias in world axes.
 #include "kernels/activity.hpp"
+#include "kernels/constants.hpp"
 #include "kernels/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -11,12 +12,14 @@ using kernels::ShapeKind;
 
 // How much a shape's bounds grow: half of 4 slop, or as far as its body moves in the step, capped.
 // Planes take what lies beyond the cap too: against a half space a far margin does no harm.
-MW_INLINE Float margin_of(const Tables& t, Work& w, Float speed, int index) {
+MW_INLINE Float margin_of(const Tables& t, const Group& g, Work& w, Float speed, int index) {
   const Float travel = speed * Float(t.dt);
-  const Float margin = clamp(travel, Float(t.half_margin), Float(t.collider[index].margin_cap));
+  const Float margin = clamp(travel, Float(t.half_margin), constants_of_shape(g, index).margin_cap);
   max(travel - margin, Float(Real(0))).store(w.beyond + index * kLanes);
   return margin;
 }
+
+MW_INLINE Vec3 vec3(const LaneNumber* v) { return {v[0], v[1], v[2]}; }
 
 MW_INLINE void put_bounds(Work& w, int collider, Vec3 centre, Vec3 half) {
   store(w.bounds + collider * 6 * kLanes, centre);
@@ -29,6 +32,7 @@ MW_INLINE void put_bounds(Work& w, int collider, Vec2 centre, Vec2 half) {
 
 void spatial_collider(const Tables& t, const Group& g, Work& w, int index) {
   const auto& c = t.collider[index];
+  const auto& numbers = constants_of_shape(g, index);
   const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
   const Real* state = g.state + c.body * t.state_stride * kLanes;
   Vec3 p = load_vec3(state + at.position * kLanes);
@@ -42,32 +46,30 @@ void spatial_collider(const Tables& t, const Group& g, Work& w, int index) {
   if (turned) {
     r = matrix(load_quat(state + at.orientation * kLanes));
     if (!t.collider_is_body) {
-      p = p + mul(r, {c.offset[0], c.offset[1], c.offset[2]});
-      const Vec3 x{c.rotation[0], c.rotation[1], c.rotation[2]};
-      const Vec3 y{c.rotation[3], c.rotation[4], c.rotation[5]};
-      const Vec3 z{c.rotation[6], c.rotation[7], c.rotation[8]};
-      r = {mul(r, x), mul(r, y), mul(r, z)};
+      p = p + mul(r, vec3(numbers.offset));
+      const LaneNumber* axes = numbers.rotation;
+      r = {mul(r, vec3(axes)), mul(r, vec3(axes + 3)), mul(r, vec3(axes + 6))};
     }
     const Vec3 omega = load_vec3(state + at.angular * kLanes);
-    speed = fma(sqrt(dot(omega, omega)), t.body[c.body].radius, speed);
+    speed = fma(sqrt(dot(omega, omega)), constants_of_body(g, c.body).radius, speed);
   }
-  const Float margin = margin_of(t, w, speed, index);
+  const Float margin = margin_of(t, g, w, speed, index);
   if (c.kind == ShapeKind::sphere) {
-    store_rows4(w.pose_rows, o, p.x, p.y, p.z, c.radius);
-    const Float reach = margin + Float(c.radius);
+    store_rows4(w.pose_rows, o, p.x, p.y, p.z, numbers.radius);
+    const Float reach = margin + Float(numbers.radius);
     put_bounds(w, index, p, {reach, reach, reach});
     return;
   }
   if (c.kind == ShapeKind::capsule) {
-    const Float half(c.half[0]), reach = margin + Float(c.radius);
-    store_rows4(w.pose_rows, o, p.x, p.y, p.z, c.radius);
+    const Float half(numbers.half[0]), reach = margin + Float(numbers.radius);
+    store_rows4(w.pose_rows, o, p.x, p.y, p.z, numbers.radius);
     store_rows4(w.pose_rows + 4, o, r.z.x, r.z.y, r.z.z, half);
     put_bounds(
         w, index, p,
         {fma(abs(r.z.x), half, reach), fma(abs(r.z.y), half, reach), fma(abs(r.z.z), half, reach)});
     return;
   }
-  const Float hx(c.half[0]), hy(c.half[1]), hz(c.half[2]);
+  const Float hx(numbers.half[0]), hy(numbers.half[1]), hz(numbers.half[2]);
   store_rows4(w.pose_rows, o, r.x.x, r.x.y, r.x.z, p.x);
   store_rows4(w.pose_rows + 4, o, r.y.x, r.y.y, r.y.z, p.y);
   store_rows4(w.pose_rows + 8, o, r.z.x, r.z.y, r.z.z, p.z);
@@ -80,6 +82,7 @@ void spatial_collider(const Tables& t, const Group& g, Work& w, int index) {
 
 void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
   const auto& c = t.collider[index];
+  const auto& numbers = constants_of_shape(g, index);
   const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
   const Real* state = g.state + c.body * t.state_stride * kLanes;
   Vec2 p = load_vec2(state + at.position * kLanes);
@@ -93,38 +96,39 @@ void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
   if (turned) {
     q = load_rot2(state + at.orientation * kLanes);
     if (!t.collider_is_body) {
-      p = p + rotate(q, {c.offset[0], c.offset[1]});
-      q = {fms(q.c, Float(c.rotation[0]), q.s * Float(c.rotation[1])),
-           fma(q.s, Float(c.rotation[0]), q.c * Float(c.rotation[1]))};
+      p = p + rotate(q, {numbers.offset[0], numbers.offset[1]});
+      q = {fms(q.c, Float(numbers.rotation[0]), q.s * Float(numbers.rotation[1])),
+           fma(q.s, Float(numbers.rotation[0]), q.c * Float(numbers.rotation[1]))};
     }
     const Float omega = Float::load(state + at.angular * kLanes);
-    speed = fma(abs(omega), t.body[c.body].radius, speed);
+    speed = fma(abs(omega), constants_of_body(g, c.body).radius, speed);
   }
-  const Float margin = margin_of(t, w, speed, index);
+  const Float margin = margin_of(t, g, w, speed, index);
   if (c.kind == ShapeKind::circle) {
-    store_rows4(w.pose_rows, o, p.x, p.y, c.radius, Real(0));
-    const Float reach = margin + Float(c.radius);
+    store_rows4(w.pose_rows, o, p.x, p.y, numbers.radius, Real(0));
+    const Float reach = margin + Float(numbers.radius);
     put_bounds(w, index, p, {reach, reach});
   } else if (c.kind == ShapeKind::capsule) {
-    const Float half(c.half[0]), reach = margin + Float(c.radius);
-    store_rows4(w.pose_rows, o, p.x, p.y, Real(0), c.radius);
+    const Float half(numbers.half[0]), reach = margin + Float(numbers.radius);
+    store_rows4(w.pose_rows, o, p.x, p.y, Real(0), numbers.radius);
     store_rows4(w.pose_rows + 4, o, -q.s, q.c, Real(0), half);
     put_bounds(w, index, p, {fma(abs(q.s), half, reach), fma(abs(q.c), half, reach)});
   } else if (c.kind == ShapeKind::rectangle) {
-    const Float hx(c.half[0]), hy(c.half[1]);
+    const Float hx(numbers.half[0]), hy(numbers.half[1]);
     store_rows4(w.pose_rows, o, p.x, p.y, q.c, q.s);
     store_rows4(w.pose_rows + 4, o, hx, hy, Real(0), Real(0));
     put_bounds(
         w, index, p,
         {fma(abs(q.s), hy, abs(q.c) * hx) + margin, fma(abs(q.c), hy, abs(q.s) * hx) + margin});
   } else {
-    store_rows4(w.pose_rows, o, p.x, p.y, static_cast<Real>(c.vertex_count), c.radius);
+    store_rows4(w.pose_rows, o, p.x, p.y, static_cast<Real>(c.vertex_count), numbers.radius);
+    const auto& polygon = constants_of_polygon(g, index);
     Vec2 low{Real(1e30), Real(1e30)}, high{Real(-1e30), Real(-1e30)};
     for (int i = 0; i < kernels::kMaxVertices; i += 2) {
       Vec2 a[2], n[2];
       for (int k = 0; k < 2; ++k) {
-        const Real* vertex = c.vertices + 2 * (i + k);
-        const Real* normal = c.normals + 2 * (i + k);
+        const LaneNumber* vertex = polygon.vertices + 2 * (i + k);
+        const LaneNumber* normal = polygon.normals + 2 * (i + k);
         a[k] = rotate(q, {vertex[0], vertex[1]});
         n[k] = rotate(q, {normal[0], normal[1]});
         low = {min(low.x, a[k].x), min(low.y, a[k].y)};
@@ -143,10 +147,12 @@ void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
 }  // namespace
 
 void turn_body_rows(const Tables& t, const Group& g, Work& w) {
-  if (t.inertia_kind != kernels::InertiaKind::tensor && t.collider_is_body) return;  // constant
+  using kernels::InertiaKind;
+  const bool scalar = t.inertia_kind != InertiaKind::tensor;
+  if (scalar && t.collider_is_body && !t.bodies_vary) return;  // constant
   const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
   for (int b = 0; b < t.bodies; ++b) {
-    const auto& body = t.body[b];
+    const auto& body = constants_of_body(g, b);
     const Real* state = g.state + b * t.state_stride * kLanes;
     alignas(64) std::int32_t o[kLanes];
     for (int l = 0; l < kLanes; ++l) o[l] = w.body_base[l] + b * body_row_size(t.inertia_kind);
@@ -157,10 +163,11 @@ void turn_body_rows(const Tables& t, const Group& g, Work& w) {
     }
     if (t.inertia_kind == kernels::InertiaKind::tensor) {
       const Mat3 r = matrix(load_quat(state + at.orientation * kLanes));
-      const Sym3 s =
-          rotate_diagonal(r, {body.inv_inertia[0], body.inv_inertia[1], body.inv_inertia[2]});
+      const Sym3 s = rotate_diagonal(r, vec3(body.inv_inertia));
       store_rows4(w.body_rows, o, s.xx, s.xy, s.xz, s.yy);
       store_rows4(w.body_rows + 4, o, s.yz, s.zz, body.inv_mass, Real(0));
+    } else if (t.bodies_vary) {
+      store_rows4(w.body_rows, o, body.inv_mass, body.inv_inertia[2], Real(0), Real(0));
     }
     if (!t.collider_is_body) {
       const Vec3 p = load_vec3(state + at.position * kLanes);

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "kernels/activity.hpp"
+#include "kernels/constants.hpp"
 #include "kernels/lane/space.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -29,7 +30,7 @@ MW_INLINE Mask within_bounds(const Tables& t, Vec3 x) {
 }
 
 // Does any shape of the body collide with this one, by their filters?
-MW_INLINE bool may_collide(const Tables& t, int body, const kernels::ColliderTable<Real>& other) {
+MW_INLINE bool may_collide(const Tables& t, int body, const kernels::ColliderTable& other) {
   for (int i = 0; i < t.colliders; ++i) {
     const auto& own = t.collider[i];
     if (own.body == body && (own.category & other.mask) != 0 && (other.category & own.mask) != 0) {
@@ -120,13 +121,12 @@ MW_INLINE Float free_share(kernels::ShapeKind kind, Row row, Vec start, Vec step
 }
 
 template <class Vec>
-MW_INLINE Vec cast_against_fixed(const Tables& t, int body, Vec start, Vec step) {
-  const auto& b = t.body[body];
-  if (b.core_radius <= Real(0)) return step;
-  const Mask fast = Float(b.core_radius) < sqrt(dot(step, step));
+MW_INLINE Vec cast_against_fixed(const Tables& t, const Group& g, int body, Vec start, Vec step) {
+  const Float radius = constants_of_body(g, body).core_radius;
+  const Mask fast = (Float(Real(0)) < radius) & (radius < sqrt(dot(step, step)));
   if (!any(fast)) return step;
   // The core is half the inner sphere, so a body sunk into a face still counts as outside of it.
-  const Float core(b.core_radius * Real(0.5));
+  const Float core = radius * Float(Real(0.5));
   Float least = Real(1);
   for (int f = 0; f < t.fixed_shapes; ++f) {
     if (t.fixed[f].kind == kernels::ShapeKind::plane) continue;
@@ -141,15 +141,17 @@ MW_INLINE Vec cast_against_fixed(const Tables& t, int body, Vec start, Vec step)
 template <class Vec, class Moved>
 __attribute__((noinline)) Vec cast_against_moving(const Tables& t, const Group& g, const Work& w,
                                                   int body, Vec start, Vec step, Moved moved) {
-  const auto& b = t.body[body];
-  if (b.core_radius <= Real(0)) return step;
-  const Float core_radius(b.core_radius), core(b.core_radius * Real(0.5));
+  const Float radius = constants_of_body(g, body).core_radius;
+  const Mask has_core = Float(Real(0)) < radius;
+  if (!any(has_core)) return step;
+  const Float core = radius * Float(Real(0.5));
   Float least = Real(1);
   for (int i = 0; i < t.colliders; ++i) {
     const auto& c = t.collider[i];
     if (c.body == body || !may_collide(t, body, c)) continue;
     const Vec relative = step - moved(c.body);
-    const Mask fast = (core_radius < sqrt(dot(relative, relative))) & !absent_lanes(g, c.body);
+    const Mask fast =
+        has_core & (radius < sqrt(dot(relative, relative))) & !absent_lanes(g, c.body);
     if (!any(fast)) continue;
     const auto row = [&](int k) {
       alignas(64) Real values[kLanes];

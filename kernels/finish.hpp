@@ -127,10 +127,6 @@ MW_INLINE void turn_body(const Tables& t, const Group& g, int body, typename S::
   }
 }
 
-MW_INLINE bool is_kinematic(const Tables& t, int body) {
-  return t.body[body].inv_inertia[0] == Real(0);
-}
-
 // Orientations and angular velocities of kBodies bodies from `first` whose inertia is a tensor:
 // free lanes tumble exactly, lanes in contact turn by the angle that the substeps swept.
 template <bool kDense, int kBodies, class Keep>
@@ -139,7 +135,7 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
   Vec3 omega[kBodies], tumbled[kBodies];
   Quat q[kBodies], old[kBodies];
   for (int i = 0; i < kBodies; ++i) {
-    tops[i] = &t.body[first + i].top;
+    tops[i] = &constants_of_body(g, first + i).top;
     omega[i] = tumbled[i] = get_velocity<Tensor, kDense>(w, w.velocity, first + i).w;
     q[i] = old[i] = load_quat(state_of(t, g, first + i, kState<Tensor>.orientation));
   }
@@ -155,7 +151,7 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
       q[i] = select(held, rotate_by(old[i], swept), q[i]);
       spin = select(held, omega[i], spin);
     }
-    if (is_kinematic(t, first + i)) spin = omega[i];
+    if (t.body[first + i].kinematic) spin = omega[i];
     Real* p = state_of(t, g, first + i, kState<Tensor>.orientation);
     const auto& keep_body = keep.of(first + i);
     store(p, keep_body(q[i], p));
@@ -179,7 +175,7 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     if (t.has_gravity || w.push) {
       step = select(free, step - drift_excess<S, kDense>(t, w, b), step);
     }
-    if (t.cast) step = cast_against_fixed(t, b, old, step);
+    if (t.cast) step = cast_against_fixed(t, g, b, old, step);
     if (t.cast_moving) {
       step = cast_against_moving(t, g, w, b, old, step, [&](int other) {
         const auto way = get_velocity<S, kDense>(w, w.displacement, other).v;

@@ -20,9 +20,9 @@ MW_INLINE Flight<S> fly(const Tables& t, const Group& g, const Work& w, int body
          load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular))};
   // A push of 0 turns -0 into 0; so does every step, pushed or not.
   o.v = {o.v.v + zero_of<typename S::Vec>(), o.v.w + zero_of<typename S::Ang>()};
-  const Real* gravity = t.push_rows + body * S::kRow;
-  o.push.v.x = gravity[0], o.push.v.y = gravity[1];
-  if constexpr (S::kDim == 3) o.push.v.z = gravity[2];
+  const auto& numbers = constants_of_body(g, body);
+  o.push.v.x = numbers.push[0], o.push.v.y = numbers.push[1];
+  if constexpr (S::kDim == 3) o.push.v.z = numbers.push[2];
   if (w.push) o.push = push_of_body<S>(t, g, w, body);
   o.moved = {o.v.v - o.v.v, o.v.w - o.v.w};
   const auto substeps = [&](auto change) __attribute__((always_inline)) {
@@ -32,9 +32,8 @@ MW_INLINE Flight<S> fly(const Tables& t, const Group& g, const Work& w, int body
     }
   };
   if (w.push || t.has_drag) {
-    const Real* factor = t.factor_rows + body * S::kRow;
-    const Float linear(t.has_drag ? factor[0] : Real(1));
-    const Float angular(t.has_drag ? factor[S::kDim] : Real(1));
+    const Float linear = t.has_drag ? Float(numbers.linear_factor) : Float(Real(1));
+    const Float angular = t.has_drag ? Float(numbers.angular_factor) : Float(Real(1));
     if (!w.push) o.push.w = o.v.w - o.v.w;
     substeps([&]() __attribute__((always_inline)) {
       o.v = {(o.v.v + o.push.v) * linear, (o.v.w + o.push.w) * angular};
@@ -78,13 +77,13 @@ MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int fi
     Vec3 omega[kBodies];
     Quat q[kBodies];
     for (int i = 0; i < kBodies; ++i) {
-      tops[i] = &t.body[first + i].top;
+      tops[i] = &constants_of_body(g, first + i).top;
       omega[i] = flight[i].v.w;
       q[i] = load_quat(state_of(t, g, first + i, kState<S>.orientation));
     }
     rotate_free<kBodies>(tops, omega, q);
     for (int i = 0; i < kBodies; ++i) {
-      if (is_kinematic(t, first + i)) omega[i] = flight[i].v.w;
+      if (t.body[first + i].kinematic) omega[i] = flight[i].v.w;
       store(state_of(t, g, first + i, kState<S>.orientation), q[i]);
       store(state_of(t, g, first + i, kState<S>.angular), omega[i]);
     }

@@ -19,6 +19,7 @@ struct GroupView {
   ContactCache<Real> cache[kLists];
   std::uint32_t* status;  // [lane], bits of Status
   const Real* force;      // [body][force 3, torque 3][lane], or nullptr
+  ConstantBlocks<Real> constants;
 
   // Which bodies take part, as lanes of each body; nullptr: all do. Sleep needs all of them,
   // disabled bodies the first three.

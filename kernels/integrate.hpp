@@ -20,8 +20,9 @@ MW_INLINE void for_each_register(const Tables& t, const Work& w, Update update) 
     for (int b = 0; b < t.bodies; ++b) {
       for (int c = 0; c < S::kDim + S::kAng; ++c) {
         const int at = b * kVelocityBlock<S> + c * kLanes;
-        const Float push = w.push ? Float::load(w.push + at) : Float(t.push_rows[b * S::kRow + c]);
-        update(at, push, Float(t.factor_rows[b * S::kRow + c]));
+        const int shared = b * S::kRow + c;
+        update(at, w.push ? Float::load(w.push + at) : Float(t.push_rows[shared]),
+               w.factor ? Float::load(w.factor + at) : Float(t.factor_rows[shared]));
       }
     }
   } else {
@@ -30,7 +31,8 @@ MW_INLINE void for_each_register(const Tables& t, const Work& w, Update update) 
       for (int i = 0; i < block; i += kLanes) {
         const int at = l * block + i;
         const Float push = Float::load((w.push ? w.push + l * block : t.push_rows) + i);
-        update(at, push, Float::load(t.factor_rows + i));
+        const Float factor = Float::load((w.factor ? w.factor + l * block : t.factor_rows) + i);
+        update(at, push, factor);
       }
     }
   }
@@ -76,23 +78,38 @@ template <class S>
 MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& w, int body) {
   // The sum starts from the same number that a group without forces adds: a world's bits must not
   // tell whether another one is pushed.
-  const Real* gravity = t.push_rows + body * S::kRow;
+  const auto& numbers = constants_of_body(g, body);
+  Velocity<S> push;
+  push.v.x = numbers.push[0], push.v.y = numbers.push[1];
+  if constexpr (S::kDim == 3) push.v.z = numbers.push[2];
+  push.w = zero_of<typename S::Ang>();
+  if (!g.force) return push;
   const Real* f = g.force + body * 6 * kLanes;
   alignas(64) std::int32_t o[kLanes];
   for (int l = 0; l < kLanes; ++l) o[l] = w.body_base[l] + body * body_row_size(S::kKind);
   BodyRow<S> row;
   load_body_row(t, w, o, row);
   const Float h(t.h), scale = row.inv_mass * h;
-  Velocity<S> push;
-  push.v.x = fma(Float::load(f), scale, gravity[0]);
-  push.v.y = fma(Float::load(f + kLanes), scale, gravity[1]);
+  push.v.x = fma(Float::load(f), scale, push.v.x);
+  push.v.y = fma(Float::load(f + kLanes), scale, push.v.y);
   if constexpr (S::kDim == 3) {
-    push.v.z = fma(Float::load(f + 2 * kLanes), scale, gravity[2]);
+    push.v.z = fma(Float::load(f + 2 * kLanes), scale, push.v.z);
     push.w = apply(row.inertia, load_vec3(f + 3 * kLanes)) * h;
   } else {
     push.w = apply(row.inertia, Float::load(f + 5 * kLanes)) * h;
   }
   return push;
+}
+
+// The dummy's row and what follows it.
+template <class S, bool kDense>
+MW_INLINE void clear_padding(const Tables& t, const Work& w, Real* array) {
+  if constexpr (!kDense) {
+    const int block = w.rows_per_lane * S::kRow;
+    for (int l = 0; l < kLanes; ++l) {
+      for (int i = t.bodies * S::kRow; i < block; ++i) array[l * block + i] = Real(0);
+    }
+  }
 }
 
 template <class S, bool kDense>
@@ -103,15 +120,14 @@ void enter_velocities(const Tables& t, const Group& g, Work& w) {
                         load_as<typename S::Ang>(state_of(t, g, b, kState<S>.angular))};
     put_velocity<S, kDense>(w, w.velocity, b, v);
   }
-  w.push = g.force ? w.push_storage : nullptr;
+  w.push = g.force || t.push_varies ? w.push_storage : nullptr;
+  w.factor = t.drag_varies ? w.factor_storage : nullptr;
   if constexpr (kDense) {
     for (int i = 0; i < t.bodies * kVelocityBlock<S>; i += kLanes) zero.store(w.displacement + i);
   } else {
     const int block = w.rows_per_lane * S::kRow;
     for (int i = 0; i < kLanes * block; i += kLanes) zero.store(w.displacement + i);
-    for (int l = 0; l < kLanes; ++l) {  // the dummy, and the padding after it
-      for (int i = t.bodies * S::kRow; i < block; ++i) w.velocity[l * block + i] = Real(0);
-    }
+    clear_padding<S, kDense>(t, w, w.velocity);
   }
 }
 
@@ -119,24 +135,32 @@ void enter_velocities(const Tables& t, const Group& g, Work& w) {
 template <class S, bool kDense>
 void first_push(const Tables& t, const Group& g, Work& w) {
   if (w.push) {
-    if constexpr (!kDense) {
-      const int block = w.rows_per_lane * S::kRow;
-      for (int l = 0; l < kLanes; ++l) {
-        for (int i = t.bodies * S::kRow; i < block; ++i) w.push[l * block + i] = Real(0);
-      }
-    }
+    clear_padding<S, kDense>(t, w, w.push);
     for (int b = 0; b < t.bodies; ++b) {
       put_velocity<S, kDense>(w, w.push, b, push_of_body<S>(t, g, w, b));
+    }
+  }
+  if (w.factor) {
+    clear_padding<S, kDense>(t, w, w.factor);
+    for (int b = 0; b < t.bodies; ++b) {
+      const auto& numbers = constants_of_body(g, b);
+      const Float linear = numbers.linear_factor, angular = numbers.angular_factor;
+      if constexpr (S::kDim == 3) {
+        put_velocity<S, kDense>(w, w.factor, b,
+                                {{linear, linear, linear}, {angular, angular, angular}});
+      } else {
+        put_velocity<S, kDense>(w, w.factor, b, {{linear, linear}, angular});
+      }
     }
   }
   if constexpr (std::is_same_v<S, Tensor>) {
     for (int b = 0; b < t.bodies; ++b) {
       if (w.touched[b] == 0) continue;
-      const auto& body = t.body[b];
+      const auto& inertia = constants_of_body(g, b).inertia;
       const Quat q = load_quat(state_of(t, g, b, kState<S>.orientation));
       Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
-      const Vec3 turned = implicit_gyroscopic(
-          t.dt, {body.inertia[0], body.inertia[1], body.inertia[2]}, matrix(q), v.w);
+      const Vec3 turned =
+          implicit_gyroscopic(t.dt, {inertia[0], inertia[1], inertia[2]}, matrix(q), v.w);
       v.w = select(mask_from_bits(w.touched[b]), turned, v.w);
       put_velocity<S, kDense>(w, w.velocity, b, v);
     }

@@ -56,7 +56,7 @@ MW_INLINE void turn_back(Turn u, Float& y, Float& z) {
   z = fnma(u.sine, dz, z);
 }
 
-using Top = kernels::TopTable<Real>;
+using Top = kernels::TopConstants<LaneNumber>;
 
 // A body while it is split: L in body axes, and the orientation.
 struct Spin {
@@ -114,7 +114,7 @@ inline void split_fast(const Top& top, Spin& o) {
     most *= 2;
   }
   const Float part = Float(Real(1)) / splits;
-  const auto angle = [part](Float l, Real rate) __attribute__((always_inline)) {
+  const auto angle = [part](Float l, Float rate) __attribute__((always_inline)) {
     constexpr Real kBound = 2 * kMaxTurn;  // no lane that has enough splits reaches it
     return clamp(l * rate * part, -kBound, kBound);
   };
@@ -131,7 +131,9 @@ inline void split_fast(const Top& top, Spin& o) {
   }
 }
 
-MW_INLINE Vec3 times(Vec3 v, const Real (&c)[3]) { return {v.x * c[0], v.y * c[1], v.z * c[2]}; }
+MW_INLINE Vec3 times(Vec3 v, const LaneNumber (&c)[3]) {
+  return {v.x * c[0], v.y * c[1], v.z * c[2]};
+}
 
 // Free rotation over dt of kBodies bodies. omega (world) and q become those at the end.
 template <int kBodies>

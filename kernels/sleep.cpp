@@ -7,15 +7,11 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
 
-MW_INLINE bool is_kinematic_body(const Tables& t, int body) {
-  return t.body[body].inv_mass == Real(0);
-}
-
 // Wakes the island that the body fell asleep with.
 void wake_island(const Tables& t, const Group& g, int body, int lane) {
   const std::int32_t label = g.island[body * kLanes + lane];
   for (int b = 0; b < t.bodies; ++b) {
-    if (!((g.asleep[b] >> lane) & 1u) || is_kinematic_body(t, b)) continue;
+    if (!((g.asleep[b] >> lane) & 1u) || t.body[b].kinematic) continue;
     if (g.island[b * kLanes + lane] != label) continue;
     g.asleep[b] &= ~(1u << lane);
     g.rest_time[b * kLanes + lane] = Real(0);
@@ -41,7 +37,7 @@ bool wake_once(const Tables& t, const Group& g, Work& w, std::uint32_t mixed) {
       for (; lanes != 0; lanes &= lanes - 1) {
         const int l = __builtin_ctz(lanes);
         const int sleeper = ((g.asleep[a] >> l) & 1u) ? a : b;
-        if (is_kinematic_body(t, sleeper)) continue;
+        if (t.body[sleeper].kinematic) continue;
         wake_island(t, g, sleeper, l);
         woke = true;
       }
@@ -73,9 +69,11 @@ bool pair_sleeps(const Tables& t, const Group& g, ListId list, std::int32_t key,
 
 // Lanes in which a slow body may be at rest: what pulls it is held by a contact, and no force acts.
 std::uint32_t held_lanes(const Tables& t, const Group& g, const Work& w, int body) {
-  const Real* pull = t.body[body].acceleration;
-  const bool pulled = pull[0] != Real(0) || pull[1] != Real(0) || pull[2] != Real(0);
-  std::uint32_t lanes = pulled ? w.touched[body] & kAllLanes : kAllLanes;
+  std::uint32_t lanes = kAllLanes;
+  for (const Float pull : constants_of_body(g, body).acceleration) {
+    lanes &= bits(pull == Float(Real(0)));
+  }
+  lanes |= w.touched[body] & kAllLanes;
   for (int c = 0; g.force && c < 6; ++c) {
     lanes &= bits(Float::load(g.force + (body * 6 + c) * kLanes) == Float(Real(0)));
   }
@@ -99,7 +97,7 @@ Readiness rest(const Tables& t, const Group& g, const Work& w, int body, std::ui
   const auto v = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear));
   const auto spin = load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular));
   const Float zero(Real(0));
-  if (is_kinematic_body(t, body)) {
+  if (t.body[body].kinematic) {
     Mask still = (v.x == zero) & (v.y == zero);  // squares could underflow
     if constexpr (S::kDim == 3) {
       still = still & (v.z == zero) & (spin.x == zero) & (spin.y == zero) & (spin.z == zero);
@@ -110,7 +108,8 @@ Readiness rest(const Tables& t, const Group& g, const Work& w, int body, std::ui
     return {};
   }
   const Float enough(t.sleep_time);
-  const Float speed = fma(sqrt(dot(spin, spin)), t.body[body].radius, sqrt(dot(v, v)));
+  const Float speed =
+      fma(sqrt(dot(spin, spin)), constants_of_body(g, body).radius, sqrt(dot(v, v)));
   const Mask still = (speed < Float(t.sleep_speed)) & mask_from_bits(held_lanes(t, g, w, body));
   Real* p = g.rest_time + body * kLanes;
   const Float before = Float::load(p);

@@ -93,42 +93,71 @@ static inline constexpr int pose_row_size(ShapeKind kind) {
   }
 }
 
+// Numbers that may differ from world to world. T is a number, or one of every lane: what a group
+// sees are blocks of them, [item][member][lane] (kernels/constants.hpp), its own where some differ
+// and one of the whole Plan where none does.
+template <class T>
+struct MaterialOf {
+  T friction, restitution;
+};
+
 // Free rotation of a body about its principal axes (kernels/rotate.hpp). A kinematic body has equal
 // moments of 1, which turn it about its fixed axis.
-template <class Real>
-struct TopTable {
-  Real inertia[3], inverse[3];
-  Real rate[3];     // dt / (2 I_x), dt / (2 I_y), dt / I_z
-  Real turn_bound;  // dt / I_min: times |L|, a bound of the turn about every axis, rad
+template <class T>
+struct TopConstants {
+  T inertia[3], inverse[3];
+  T rate[3];     // dt / (2 I_x), dt / (2 I_y), dt / I_z
+  T turn_bound;  // dt / I_min: times |L|, a bound of the turn about every axis, rad
+};
+
+template <class T>
+struct BodyConstants {
+  T inv_mass;
+  T inertia[3];       // principal, kg m^2 (planar: [2])
+  T inv_inertia[3];   // 0 for kinematic bodies
+  T acceleration[3];  // gravity times gravity scale, m/s^2; 0 for kinematic bodies
+  T push[3];          // h times that; never -0
+  T linear_factor;    // 1 / (1 + h c), per substep
+  T angular_factor;
+  TopConstants<T> top;
+  T radius;       // of the bounding sphere about the centre of mass, m
+  T core_radius;  // of a sphere inside the body about its centre of mass, m; 0: never cast
+};
+
+template <class T>
+struct ShapeConstants {
+  T offset[3];    // shape origin from the centre of mass, principal axes, m
+  T rotation[9];  // shape axes in principal axes, columns; planar: [0] cos, [1] sin
+  T half[3];      // half extents (box, rectangle); capsule: [0] half length
+  T radius;       // sphere, circle, capsule; else of the bounding sphere about the shape origin
+  T margin_cap;   // most that the speculative margin of this shape may grow to, m
+};
+
+template <class T>
+struct PolygonConstants {
+  T vertices[2 * kMaxVertices];  // padded by repeating the first
+  T normals[2 * kMaxVertices];
 };
 
 template <class Real>
+struct ConstantBlocks {
+  const Real* body;      // [body][BodyConstants][lane]
+  const Real* shape;     // [collider][ShapeConstants][lane]
+  const Real* polygon;   // [collider][PolygonConstants][lane]; nullptr without polygons
+  const Real* material;  // [collider, then fixed shape][MaterialOf][lane]
+};
+
+// What is the same in all worlds.
 struct BodyTable {
-  Real inv_mass;
-  Real inertia[3];       // principal, kg m^2 (planar: [2])
-  Real inv_inertia[3];   // 0 for kinematic bodies
-  Real acceleration[3];  // gravity times gravity scale, m/s^2; 0 for kinematic bodies
-  Real linear_factor;    // 1 / (1 + h c), per substep
-  Real angular_factor;
-  TopTable<Real> top;
-  Real radius;       // of the bounding sphere about the centre of mass, m
-  Real core_radius;  // of a sphere inside the body about its centre of mass, m; 0: never cast
+  bool kinematic;
 };
 
-template <class Real>
 struct ColliderTable {
   ShapeKind kind;
   std::int32_t body;
-  std::int32_t row;  // offset of its pose row in a lane's block
-  Real offset[3];    // shape origin from the centre of mass, principal axes, m
-  Real rotation[9];  // shape axes in principal axes, columns; planar: [0] cos, [1] sin
-  Real half[3];      // half extents (box, rectangle); capsule: [0] half length
-  Real radius;       // sphere, circle, capsule; else of the bounding sphere about the shape origin
+  std::int32_t row;              // offset of its pose row in a lane's block
   std::uint32_t category, mask;  // collision filter
-  Real margin_cap;               // most that the speculative margin of this shape may grow to, m
-  std::int32_t vertex_count;
-  Real vertices[2 * kMaxVertices];  // polygon, padded by repeating the first
-  Real normals[2 * kMaxVertices];
+  std::int32_t vertex_count;     // of a polygon
 };
 
 template <class Real>
@@ -145,11 +174,9 @@ struct PairClass {
   PairKind kind;
   ListId list;
   std::int32_t count;
-  std::int32_t first_key;   // keys of the class are first_key + 0 .. count - 1
-  const std::int32_t* a;    // [count] collider, or fixed shape
-  const std::int32_t* b;    // [count] collider
-  const Real* friction;     // [count]
-  const Real* restitution;  // [count]
+  std::int32_t first_key;  // keys of the class are first_key + 0 .. count - 1
+  const std::int32_t* a;   // [count] collider, or fixed shape
+  const std::int32_t* b;   // [count] collider
 };
 
 template <class Real>
@@ -177,8 +204,10 @@ struct WorldTables {
   bool has_bounds;
   bool has_sleep;
 
-  const BodyTable<Real>* body;
-  const ColliderTable<Real>* collider;
+  bool push_varies, drag_varies, bodies_vary;  // from world to world
+
+  const BodyTable* body;
+  const ColliderTable* collider;
   const std::int32_t* collider_row;   // [collider + 1], the last is the dummy's
   const std::int32_t* collider_body;  // [collider + 1]
   const FixedTable<Real>* fixed;
@@ -187,7 +216,10 @@ struct WorldTables {
   // Sort and sweep: key of the candidate pair of colliders (i, j), in either order, or -1.
   const std::int32_t* pair_of;  // [collider][collider]
 
-  // Pushes and factors of one substep in the order of a velocity row: [body + pad][row].
+  // Where no world has its own.
+  ConstantBlocks<Real> constants;
+  // Pushes and factors of one substep in the order of a velocity row, of worlds that have none of
+  // their own: [body + pad][row].
   const Real* push_rows;
   const Real* factor_rows;
 

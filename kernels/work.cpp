@@ -65,6 +65,7 @@ void carve(const Tables& t, Work& w, Carver& c) {
   const int body_row = body_row_size(t.inertia_kind);
   c.take(w.body_rows, count((t.bodies + 1) * body_row * lanes));
   c.take(w.push_storage, velocities);
+  if (t.drag_varies) c.take(w.factor_storage, velocities);
   if (!t.has_contacts) {
     c.take(w.before, count(t.bodies * t.state_stride * lanes));
     return;
@@ -131,8 +132,10 @@ void fill_constants(const Tables& t, Work& w) {
       Real* r = w.body_rows + w.body_base[l] + b * body_row;
       for (int i = 0; i < body_row; ++i) r[i] = Real(0);
       if (b == t.bodies || t.inertia_kind == kernels::InertiaKind::tensor) continue;
-      r[0] = t.body[b].inv_mass;
-      r[1] = t.body[b].inv_inertia[2];
+      const auto* numbers =
+          reinterpret_cast<const kernels::BodyConstants<LaneNumber>*>(t.constants.body);
+      r[0] = numbers[b].inv_mass.lane[l];
+      r[1] = numbers[b].inv_inertia[2].lane[l];
     }
   }
   if (!t.has_contacts) return;

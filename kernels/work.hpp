@@ -76,7 +76,9 @@ struct Work {
   Real* impulse_part;  // what warm starting adds to the velocity of the next substep
   Real* displacement;
   Real* push_storage;
-  Real* push;         // h times acceleration of every lane when there are forces, else nullptr
+  Real* push;  // what each lane adds to velocities in a substep; nullptr: all the same
+  Real* factor_storage;
+  Real* factor;       // what drag leaves of them; nullptr: all the same
   int rows_per_lane;  // bodies + dummy + padding
   alignas(64) std::int32_t velocity_base[kLanes];  // offset of a lane's velocity rows
   alignas(64) std::int32_t pose_base[kLanes];

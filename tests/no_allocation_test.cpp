@@ -174,6 +174,10 @@ TEST_CASE("falling asleep, packing, waking and disabling allocate nothing", "[fa
 TEST_CASE("stepping a crowd allocates nothing", "[fast][allocation]") {
   check_scene(crowd(Space::planar));
   check_scene(crowd(Space::spatial));
+  Scene varied = crowd(Space::spatial);
+  varied.variations = {vary(Parameter::mass, 1, 2), vary(Parameter::friction, 0, 1),
+                       vary(Parameter::linear_drag, 0, 1)};
+  check_scene(varied);
 }
 
 }  // namespace manyworlds::test

@@ -156,6 +156,18 @@ class Batch {
   void read(Field field, int world, std::span<double> out) const;
   void write(Field field, int world, std::span<const double> in);
 
+  // -- numbers of the scene that differ from world to world (Scene::variations), in double and in
+  // canonical order: [world][shape of the scene], [world][state body] or [world], times
+  // info(parameter).numbers. What follows from them (inertia, centre of mass, bounds) is derived
+  // anew; a world that is written wakes. Everything can be read. Numbers outside of their declared
+  // range, and those of what does not vary that are not what read() gives, throw
+  // std::invalid_argument and change nothing.
+  std::size_t size(Parameter parameter) const;
+  void read(Parameter parameter, std::span<double> out) const;
+  void write(Parameter parameter, std::span<const double> in);
+  void read(Parameter parameter, int world, std::span<double> out) const;
+  void write(Parameter parameter, int world, std::span<const double> in);
+
   // -- inputs. Forces and torques (world frame, N, N m; planar torque in z) act on the centre of
   // mass during the next step() call, all its steps, and are cleared after it. Impulses (N s,
   // N m s) change velocities at once. `body` is a state body; kinematic bodies ignore them.
@@ -188,6 +200,9 @@ class Batch {
   // the counters, the clock and the step count, so it repeats the first draw exactly.
   void reset();
   void reset(std::span<const std::uint8_t> mask);
+  // What every reset from now on gives a field, instead of the scene's value and its jitter:
+  // canonical, as write(). Empty: the scene's again. Resets nothing by itself.
+  void set_initial(Field field, std::span<const double> in);
 
   // -- snapshots. A restored world goes on bit by bit as the saved one did, whatever the batch:
   // its size, threads, instruction set or place. Plans must have the same fingerprint and the batch

@@ -1,6 +1,7 @@
 // What rows need to know of bodies: inverse mass and inertia, centre of mass, velocity, gravity.
 #pragma once
 
+#include "kernels/constants.hpp"
 #include "kernels/constraint/slot.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -59,29 +60,24 @@ MW_INLINE Velocity<S> load_velocity(const Work& w, const std::int32_t* offset, i
   }
 }
 
-MW_INLINE Float gather(const Real* table, const std::int32_t* index) {
-  alignas(64) Real x[kLanes];
-  for (int l = 0; l < kLanes; ++l) x[l] = table[index[l]];
-  return Float::load(x);
-}
-
 // Acceleration of the bodies of the lanes along n, from gravity.
 template <class S>
-MW_INLINE Float gravity_along(const Tables& t, const std::int32_t* body, typename S::Vec n) {
-  typename S::Vec g;
-  if (t.uniform_gravity) {
-    g.x = t.body[0].acceleration[0];
-    g.y = t.body[0].acceleration[1];
-    if constexpr (S::kDim == 3) g.z = t.body[0].acceleration[2];
-  } else {
-    alignas(64) Real x[3][kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      for (int c = 0; c < 3; ++c) x[c][l] = t.body[body[l]].acceleration[c];
+MW_INLINE Float gravity_along(const Tables& t, const Group& g, const std::int32_t* body,
+                              typename S::Vec n) {
+  LaneNumber a[S::kDim];
+  for (int c = 0; c < S::kDim; ++c) {
+    if (t.uniform_gravity) {
+      a[c] = constants_of_body(g, 0).acceleration[c];
+    } else {
+      for (int l = 0; l < kLanes; ++l) {
+        a[c].lane[l] = constants_of_body(g, body[l]).acceleration[c].lane[l];
+      }
     }
-    g.x = Float::load(x[0]), g.y = Float::load(x[1]);
-    if constexpr (S::kDim == 3) g.z = Float::load(x[2]);
   }
-  return dot(g, n);
+  typename S::Vec pull;
+  pull.x = a[0], pull.y = a[1];
+  if constexpr (S::kDim == 3) pull.z = a[2];
+  return dot(pull, n);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -51,6 +51,25 @@ void record_points(Work& w, ListId list, const Manifold<S, N>& m, const std::int
   }
 }
 
+// One number of the materials of both shapes of every lane.
+struct MaterialPair {
+  alignas(64) LaneNumber a, b;
+};
+template <bool kPair>
+MW_INLINE MaterialPair load_materials(const Tables& t, const Group& g, const std::int32_t* code,
+                                      std::uint32_t mask, LaneNumber Material::*number) {
+  MaterialPair out;
+  const auto* table = materials(g);
+  for (int l = 0; l < kLanes; ++l) {
+    const bool active = ((mask >> l) & 1u) != 0;
+    const int a = active ? (code[l] & 0xffff) + (kPair ? 0 : t.colliders) : 0;
+    const int b = active ? (code[l] >> 16) & 0xffff : 0;
+    out.a.lane[l] = (table[a].*number).lane[l];
+    out.b.lane[l] = (table[b].*number).lane[l];
+  }
+  return out;
+}
+
 // Adds one slot to `list`. kPair: A moves too. `active` are the lanes that the narrow phase
 // worked on; lanes without a point close enough drop out.
 // Not inlined: every shape pair shares these few instantiations.
@@ -106,10 +125,10 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
   // Of gravity along n: relative, and the most that closes the gap when something holds A or B.
   Float pull = zero, closing_pull = zero;
   if (t.has_gravity) {
-    const Float pull_b = gravity_along<S>(t, who.b, m.normal);
+    const Float pull_b = gravity_along<S>(t, g, who.b, m.normal);
     pull = closing_pull = pull_b;
     if constexpr (kPair) {
-      const Float pull_a = t.uniform_gravity ? pull_b : gravity_along<S>(t, who.a, m.normal);
+      const Float pull_a = t.uniform_gravity ? pull_b : gravity_along<S>(t, g, who.a, m.normal);
       pull = pull_b - pull_a;
       closing_pull = min(pull, min(pull_b, -pull_a));
     }
@@ -120,12 +139,12 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
   // that only passes by. Half spaces cannot be passed by.
   Float speculation(Real(1));
   if (!kPair && t.cast && !is_plane(pair_class.kind)) {
-    alignas(64) Real core[kLanes];
+    alignas(64) LaneNumber core;
     for (int l = 0; l < kLanes; ++l) {
-      core[l] = who.b[l] < t.bodies ? t.body[who.b[l]].core_radius : Real(0);
+      core.lane[l] = who.b[l] < t.bodies ? constants_of_body(g, who.b[l]).core_radius.lane[l] : 0;
     }
     const Float travel2 = dot(velocity_b.v, velocity_b.v) * (dt * dt);
-    const Mask cast = (zero < Float::load(core)) & (square(Float::load(core)) < travel2);
+    const Mask cast = (zero < core) & (square(core) < travel2);
     speculation = select(cast, zero, one);
   }
   const Float inv_mass = kPair ? body_a.inv_mass + body_b.inv_mass : body_b.inv_mass;
@@ -267,11 +286,8 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
 
   // Friction rows.
   if (t.has_friction) {
-    alignas(64) std::int32_t index[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      index[l] = ((mask >> l) & 1u) ? key[l] - pair_class.first_key : 0;
-    }
-    gather(pair_class.friction, index).store(s.friction);
+    const MaterialPair mu = load_materials<kPair>(t, g, code, mask, &Material::friction);
+    sqrt(mu.a * mu.b).store(s.friction);
     const Float share = one / max(count, one);
     centre_b = centre_b * share;
     store(s.centre_b[0], centre_b);
@@ -324,11 +340,8 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
 
   if (t.has_restitution) {
     auto& bounce = bounce_at<S, N>(slots, slots.count - 1);
-    alignas(64) std::int32_t index[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      index[l] = ((mask >> l) & 1u) ? key[l] - pair_class.first_key : 0;
-    }
-    gather(pair_class.restitution, index).store(bounce.restitution);
+    const MaterialPair e = load_materials<kPair>(t, g, code, mask, &Material::restitution);
+    max(e.a, e.b).store(bounce.restitution);
     const Float threshold(t.restitution_threshold);
     for (int i = 0; i < N; ++i) {
       // v^2 = v0^2 - 2 a s: the speed when the gap s that is left has closed.

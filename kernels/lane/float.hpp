@@ -184,6 +184,12 @@ MW_INLINE Mask mask_from_bits(unsigned b) {
 
 #endif
 
+// One number per lane in memory.
+struct LaneNumber {
+  Real lane[kLanes];
+  MW_INLINE operator Float() const { return Float::load(lane); }
+};
+
 MW_INLINE bool any(Mask m) { return bits(m) != 0; }
 MW_INLINE bool all(Mask m) { return bits(m) == kAllLanes; }
 MW_INLINE Float clamp(Float x, Float low, Float high) { return min(max(x, low), high); }

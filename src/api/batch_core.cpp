@@ -81,6 +81,21 @@ class CoreOf final : public BatchCore {
   void write(Field field, int kind, int world, const double* in) override {
     at(kind).write(field, world, in);
   }
+  void set_initial(Field field, int kind, int world, const double* in) override {
+    at(kind).set_initial(field, world, in);
+  }
+  std::size_t parameter_size(Parameter parameter, int kind) const override {
+    return at(kind).parameter_size(parameter);
+  }
+  void read(Parameter parameter, int kind, int world, double* out) const override {
+    at(kind).read(parameter, world, out);
+  }
+  std::string check(Parameter parameter, int kind, int world, const double* in) const override {
+    return at(kind).check(parameter, world, in);
+  }
+  void write(Parameter parameter, int kind, int world, const double* in) override {
+    at(kind).write(parameter, world, in);
+  }
   void add_force(int kind, int world, int body, const Vec3& f, const Vec3& torque) override {
     at(kind).add_force(world, body, f, torque);
   }
@@ -107,16 +122,16 @@ class CoreOf final : public BatchCore {
     for (const auto& c : counters_) sum += c.group_steps;
     return sum;
   }
-  std::size_t world_bytes(int kind) const override { return at(kind).storage().world_bytes(); }
+  std::size_t world_bytes(int kind) const override { return at(kind).world_bytes(); }
   std::uint32_t episode(int kind, int world) const override { return at(kind).episode(world); }
   void set_episode(int kind, int world, std::uint32_t episode) override {
     at(kind).set_episode(world, episode);
   }
   void write_world(int kind, int world, std::byte* to) const override {
-    at(kind).storage().write_world(at(kind).slot_of(world), to);
+    at(kind).write_world(world, to);
   }
   std::string check_world(int kind, const std::byte* from) const override {
-    return at(kind).storage().check_world(from);
+    return at(kind).check_world(from);
   }
   void read_world(int kind, int world, const std::byte* from) override {
     at(kind).read_world(world, from);

@@ -96,21 +96,25 @@ struct Batch::Impl {
     return static_cast<std::size_t>(plan(kind).bodies()) *
            static_cast<std::size_t>(components(field, plan(kind).scene().space));
   }
-  void check_size(Field field, std::size_t got, std::size_t wanted) const {
+  template <class What>
+  void check_size(What what, std::size_t got, std::size_t wanted) const {
     if (got != wanted) {
-      reject(std::string(info(field).name) + " has " + std::to_string(wanted) +
+      reject(std::string(info(what).name) + " has " + std::to_string(wanted) +
              " numbers, the buffer has " + std::to_string(got));
     }
   }
-  // visit(kind, world in kind, offset in the canonical array)
-  template <class Visit>
-  void for_each_world(Field field, Visit visit) const {
+  std::size_t world_size(Parameter parameter, int kind) const {
+    return core->parameter_size(parameter, kind);
+  }
+  // visit(kind, world in kind, offset in the canonical array of a field or a parameter)
+  template <class What, class Visit>
+  void for_each_world(What what, Visit visit) const {
     std::size_t at = 0;
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       const int kind = static_cast<int>(k);
       for (int w = 0; w < kinds[k].worlds; ++w) {
         visit(kind, w, at);
-        at += world_size(field, kind);
+        at += world_size(what, kind);
       }
     }
   }

@@ -22,6 +22,11 @@ class BatchCore {
   virtual void read(Field field, int kind, int world, double* out) const = 0;
   virtual void write(Field field, int kind, int world, const float* in) = 0;
   virtual void write(Field field, int kind, int world, const double* in) = 0;
+  virtual void set_initial(Field field, int kind, int world, const double* in) = 0;
+  virtual std::size_t parameter_size(Parameter parameter, int kind) const = 0;
+  virtual void read(Parameter parameter, int kind, int world, double* out) const = 0;
+  virtual std::string check(Parameter parameter, int kind, int world, const double* in) const = 0;
+  virtual void write(Parameter parameter, int kind, int world, const double* in) = 0;
   virtual void add_force(int kind, int world, int body, const Vec3& f, const Vec3& torque) = 0;
   virtual void add_impulse(int kind, int world, int body, const Vec3& p, const Vec3& l) = 0;
   virtual Vec3 center_of_mass(int kind, int world, int body) const = 0;

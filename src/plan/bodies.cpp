@@ -23,6 +23,16 @@ void principal_axes(const Mat3& inertia, PlanBody& body) {
   body.principal = Quat(axes).normalized();
 }
 
+bool may_be_reshaped(const PlanData& plan, int body) {
+  const std::size_t shapes = plan.scene.bodies[static_cast<std::size_t>(body)].shapes.size();
+  for (const VariedNumber& n : plan.varied) {
+    if (n.body != body) continue;
+    if (n.parameter == Parameter::size) return true;
+    if (n.parameter == Parameter::density && shapes > 1) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void collect_bodies(PlanData& plan) {
@@ -46,7 +56,9 @@ void collect_bodies(PlanData& plan) {
       }
       out.inv_inertia = out.inertia.cwiseInverse();
     }
-    out.aligned = out.center.isZero(0) && out.principal.vec().isZero(0);
+    out.reshaped = may_be_reshaped(plan, static_cast<int>(i));
+    const bool shifts = out.reshaped && body.shapes.size() > 1;
+    out.aligned = !shifts && out.center.isZero(0) && out.principal.vec().isZero(0);
     plan.bodies.push_back(out);
   }
 }

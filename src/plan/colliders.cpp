@@ -20,12 +20,25 @@ bool is_rectangle(const std::vector<Vec2>& v) {
          std::abs(size - (v[3] - v[1]).norm()) <= 1e-12 * size;
 }
 
-bool all_rectangles(const Scene& scene) {
-  for (const Body& body : scene.bodies) {
+// Stretched along the axes of its frame it stays one.
+bool is_upright(const std::vector<Vec2>& v) {
+  const Vec2 edge = v[1] - v[0];
+  return edge.x() == 0 || edge.y() == 0;
+}
+
+bool all_rectangles(const PlanData& plan) {
+  for (const Body& body : plan.scene.bodies) {
     for (const Shape& shape : body.shapes) {
       const auto* polygon = std::get_if<Polygon>(&shape.geometry);
       if (polygon && !is_rectangle(polygon->vertices)) return false;
     }
+  }
+  for (const VariedNumber& n : plan.varied) {
+    if (n.parameter != Parameter::size) continue;
+    const Shape& shape = plan.scene.bodies[static_cast<std::size_t>(n.body)]
+                             .shapes[static_cast<std::size_t>(n.shape)];
+    const auto* polygon = std::get_if<Polygon>(&shape.geometry);
+    if (polygon && !is_upright(polygon->vertices)) return false;
   }
   return true;
 }
@@ -42,6 +55,7 @@ std::vector<Vec2> edge_normals(const std::vector<Vec2>& v) {
 // A shape in its body's frame: origin, axes, sizes.
 PlanCollider local_collider(const Shape& shape, bool rectangles) {
   PlanCollider c;
+  c.material = shape.material;
   c.offset = shape.position;
   c.rotation = shape.rotation.normalized().toRotationMatrix();
   if (shape.rotation.vec().isZero(0)) c.rotation.setIdentity();
@@ -187,28 +201,15 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, boo
 
 }  // namespace
 
+void choose_polygons(PlanData& plan) { plan.rectangles = all_rectangles(plan); }
+
 void collect_colliders(PlanData& plan) {
-  const Scene& scene = plan.scene;
-  const bool rectangles = all_rectangles(scene), planar = scene.space == Space::planar;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Body& body = scene.bodies[i];
-    const int state = plan.state_body[i];
+  for (PlanBody& owner : plan.bodies) {
+    const Body& body = plan.scene.bodies[static_cast<std::size_t>(owner.scene_body)];
     for (std::size_t k = 0; k < body.shapes.size(); ++k) {
-      if (body.motion == Motion::fixed) {
-        const Shape& shape = body.shapes[k];
-        std::vector<PlanFixed> parts =
-            std::holds_alternative<Terrain>(shape.geometry)
-                ? terrain_links(body, shape)
-                : std::vector{fixed_shape(body, shape, rectangles, planar)};
-        for (PlanFixed& f : parts) {
-          f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
-          plan.fixed.push_back(std::move(f));
-        }
-        continue;
-      }
-      PlanBody& owner = plan.bodies[static_cast<std::size_t>(state)];
-      PlanCollider c = local_collider(body.shapes[k], rectangles);
-      c.body = state, c.scene_body = static_cast<int>(i), c.shape = static_cast<int>(k);
+      PlanCollider c = local_collider(body.shapes[k], plan.rectangles);
+      c.body = plan.state_body[static_cast<std::size_t>(owner.scene_body)];
+      c.scene_body = owner.scene_body, c.shape = static_cast<int>(k);
       if (!owner.aligned) {
         const Mat3 to_principal = owner.principal.conjugate().toRotationMatrix();
         c.offset = to_principal * (c.offset - owner.center);
@@ -221,7 +222,28 @@ void collect_colliders(PlanData& plan) {
       plan.colliders.push_back(std::move(c));
     }
   }
+}
 
+void collect_fixed(PlanData& plan) {
+  const bool planar = plan.scene.space == Space::planar;
+  for (std::size_t i = 0; i < plan.scene.bodies.size(); ++i) {
+    const Body& body = plan.scene.bodies[i];
+    for (std::size_t k = 0; body.motion == Motion::fixed && k < body.shapes.size(); ++k) {
+      const Shape& shape = body.shapes[k];
+      std::vector<PlanFixed> parts =
+          std::holds_alternative<Terrain>(shape.geometry)
+              ? terrain_links(body, shape)
+              : std::vector{fixed_shape(body, shape, plan.rectangles, planar)};
+      for (PlanFixed& f : parts) {
+        f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
+        f.material = shape.material;
+        plan.fixed.push_back(std::move(f));
+      }
+    }
+  }
+}
+
+void lay_out_shapes(PlanData& plan) {
   plan.collider_is_body = plan.colliders.size() == plan.bodies.size();
   for (std::size_t i = 0; i < plan.colliders.size(); ++i) {
     PlanCollider& c = plan.colliders[i];
@@ -240,7 +262,7 @@ void collect_colliders(PlanData& plan) {
     offset += static_cast<int>(f.row.size());
     plan.cast = plan.cast || f.kind != ShapeKind::plane;
   }
-  plan.cast = plan.cast && scene.options.cast_against_fixed;
+  plan.cast = plan.cast && plan.scene.options.cast_against_fixed;
 }
 
 }  // namespace manyworlds

@@ -9,8 +9,12 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
   auto plan = std::make_shared<PlanData>();
   plan->scene = scene;
   plan->options = options;
+  collect_variations(*plan);
   collect_bodies(*plan);
+  choose_polygons(*plan);
   collect_colliders(*plan);
+  collect_fixed(*plan);
+  lay_out_shapes(*plan);
   collect_pairs(*plan);
   choose_features(*plan);
   return Plan(std::move(plan));

@@ -27,11 +27,20 @@ bool is_isotropic(const PlanBody& body) {
   return body.inertia.maxCoeff() - body.inertia.minCoeff() <= 1e-9 * body.inertia.maxCoeff();
 }
 
+// test(material of A, material of B), for pairs that can touch.
 template <class Test>
-bool any_pair(const PlanData& plan, Test test) {
+bool any_pair(const PlanData& plan, const Scene& scene, Test test) {
+  const auto material = [&](const auto& shape) -> const Material& {
+    return scene.bodies[static_cast<std::size_t>(shape.scene_body)]
+        .shapes[static_cast<std::size_t>(shape.shape)]
+        .material;
+  };
   for (const PlanClass& c : plan.classes) {
     for (std::size_t i = 0; i < c.a.size(); ++i) {
-      if (test(c, i)) return true;
+      const auto a = static_cast<std::size_t>(c.a[i]), b = static_cast<std::size_t>(c.b[i]);
+      const Material& of_a =
+          is_fixed(c.list) ? material(plan.fixed[a]) : material(plan.colliders[a]);
+      if (test(of_a, material(plan.colliders[b]))) return true;
     }
   }
   return false;
@@ -42,6 +51,9 @@ bool any_pair(const PlanData& plan, Test test) {
 void choose_features(PlanData& plan) {
   const Scene& scene = plan.scene;
   const bool planar = scene.space == Space::planar;
+  // A feature is in when any world may need it.
+  const std::vector<Scene> possible = extremes(plan);
+  const Scene& most = possible.back();
   Chooser choose(plan);
 
   bool round = true, isotropic = true;
@@ -50,7 +62,9 @@ void choose_features(PlanData& plan) {
         c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;
     round = round && is_round && c.offset.isZero(0);
   }
-  for (const PlanBody& b : plan.bodies) isotropic = isotropic && is_isotropic(b);
+  for (const PlanBody& b : plan.bodies) {
+    isotropic = isotropic && is_isotropic(b) && (round || !b.reshaped);
+  }
   // A body without shapes has an orientation that somebody may want to look at.
   round = round && plan.colliders.size() >= plan.bodies.size();
   choose.set(Feature::orientation, !(round && isotropic), "shapes or inertia depend on it",
@@ -66,26 +80,38 @@ void choose_features(PlanData& plan) {
                       : tensor ? kernels::InertiaKind::tensor
                                : kernels::InertiaKind::isotropic;
 
-  const bool contacts = any_pair(plan, [](const PlanClass&, std::size_t) { return true; });
+  const bool contacts = any_pair(plan, most, [](const auto&, const auto&) { return true; });
   choose.set(Feature::contacts, contacts, "some shapes can touch", "no pair of shapes can touch");
-  choose.set(Feature::friction,
-             any_pair(plan, [](const auto& c, std::size_t i) { return c.friction[i] > 0; }),
-             "some pairs have friction", "no pair has friction");
-  choose.set(Feature::restitution,
-             any_pair(plan, [](const auto& c, std::size_t i) { return c.restitution[i] > 0; }),
-             "some pairs bounce", "no pair bounces");
+  choose.set(
+      Feature::friction,
+      any_pair(plan, most,
+               [](const auto& a, const auto& b) { return a.friction > 0 && b.friction > 0; }),
+      "some pairs have friction", "no pair has friction");
+  choose.set(
+      Feature::restitution,
+      any_pair(plan, most,
+               [](const auto& a, const auto& b) { return a.restitution > 0 || b.restitution > 0; }),
+      "some pairs bounce", "no pair bounces");
 
   bool drag = false, gravity = false;
-  Vec3 common = Vec3::Zero();
-  for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
-    const PlanBody& b = plan.bodies[i];
-    const Body& body = scene.bodies[static_cast<std::size_t>(b.scene_body)];
-    drag = drag || (b.inv_mass > 0 && (body.linear_drag > 0 || body.angular_drag > 0));
-    const Vec3 g =
-        b.inv_mass > 0 ? Vec3(scene.options.gravity * body.gravity_scale) : Vec3(Vec3::Zero());
-    gravity = gravity || !g.isZero(0);
-    if (i == 0) common = g;
-    plan.uniform_gravity = plan.uniform_gravity && g == common;
+  for (const Scene& s : possible) {
+    Vec3 common = Vec3::Zero();
+    for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+      const PlanBody& b = plan.bodies[i];
+      if (b.inv_mass > 0) {
+        const Body& body = s.bodies[static_cast<std::size_t>(b.scene_body)];
+        drag = drag || body.linear_drag > 0 || body.angular_drag > 0;
+        const Vec3 g = s.options.gravity * body.gravity_scale;
+        gravity = gravity || !g.isZero(0);
+        if (i == 0) common = g;
+        plan.uniform_gravity = plan.uniform_gravity && g == common;
+      } else {
+        plan.uniform_gravity = plan.uniform_gravity && common.isZero(0);
+      }
+    }
+  }
+  for (const VariedNumber& n : plan.varied) {
+    plan.uniform_gravity = plan.uniform_gravity && n.parameter != Parameter::gravity_scale;
   }
   choose.set(Feature::drag, drag, "some bodies have drag", "no body has drag");
   choose.set(Feature::gravity, gravity, "gravity acts on some bodies", "no gravity");

@@ -66,6 +66,10 @@ class Printer {
     add(o.cast_against_fixed), add(o.cast_between_moving);
     add(o.sleep_speed), add(o.time_to_sleep), add(o.contact_capacity), add(o.bounds);
   }
+  // How a number is drawn does not matter to a world that has it.
+  void add(const VariedNumber& n) {
+    add(n.parameter), add(n.body), add(n.shape), add(n.component), add(n.low), add(n.high);
+  }
   std::uint64_t value() const { return hasher_.value(); }
 
  private:
@@ -79,6 +83,7 @@ std::uint64_t fingerprint(const PlanData& plan) {
   printer.add(plan.scene.space);
   printer.add(plan.scene.bodies);
   printer.add(plan.scene.options);
+  printer.add(plan.varied);
   for (const bool in : plan.in) printer.add(in);
   for (const int capacity : plan.capacity) printer.add(capacity);
   return printer.value();

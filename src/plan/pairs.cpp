@@ -149,9 +149,6 @@ class Collector {
     }
     c.a.push_back(a);
     c.b.push_back(b);
-    const Material &ma = shape_a.material, &mb = shape_b.material;
-    c.friction.push_back(std::sqrt(ma.friction) * std::sqrt(mb.friction));
-    c.restitution.push_back(std::max(ma.restitution, mb.restitution));
   }
 
   PlanData& plan_;

@@ -7,6 +7,7 @@
 
 #include "kernels/tables.hpp"
 #include "manyworlds/plan.hpp"
+#include "src/scene/variations.hpp"
 
 namespace manyworlds {
 
@@ -21,6 +22,7 @@ struct PlanBody {
   Vec3 center = Vec3::Zero();         // of mass, in the user's body frame
   Quat principal = Quat::Identity();  // principal axes in the user's body frame
   bool aligned = true;                // both are trivial: reading and writing copies bits
+  bool reshaped = false;              // its shapes, or how mass is spread over them, may vary
   double radius = 0;                  // bounding sphere about the centre of mass
   double core_radius = 0;             // inner sphere about the centre of mass
 };
@@ -36,6 +38,7 @@ struct PlanCollider {
   double radius = 0;           // of the bounding sphere
   double inner_radius = 0;     // of a sphere inside
   std::vector<Vec2> vertices;  // about the shape's origin
+  Material material;
   int row = 0;
 };
 
@@ -46,6 +49,7 @@ struct PlanFixed {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::array<double, 4> plane{};
   double length = 0;  // of a link
+  Material material;
   int row_offset = 0;
 };
 
@@ -55,12 +59,24 @@ struct PlanClass {
   int first_key = 0;
   int culled = 0;
   std::vector<std::int32_t> a, b;
-  std::vector<double> friction, restitution;
+};
+
+// What differs from world to world.
+struct PlanVaries {
+  bool masses = false;     // and inertias
+  bool shapes = false;     // sizes, and places about the centre of mass
+  bool materials = false;  // friction, restitution
+  bool push = false;       // gravity
+  bool drag = false;
+  bool body_constants() const { return masses || push || drag; }
+  bool any() const { return body_constants() || shapes || materials; }
 };
 
 struct PlanData {
   Scene scene;
   PlanOptions options;
+  std::vector<VariedNumber> varied;
+  PlanVaries varies;
   std::array<bool, kFeatureCount> in{};
   std::array<std::string, kFeatureCount> why;
   kernels::InertiaKind inertia_kind{};
@@ -71,6 +87,7 @@ struct PlanData {
   std::vector<PlanClass> classes;
   std::array<int, kernels::kLists> capacity{};
   bool sweep = false;
+  bool rectangles = true;  // every polygon is one, and stays one
   bool collider_is_body = true;
   bool cast = false;
   bool uniform_gravity = true;
@@ -85,11 +102,22 @@ struct PlanData {
 std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // terrain.cpp
 
 // The steps of compile(), in order.
+void collect_variations(PlanData& plan);    // variations.cpp
 void collect_bodies(PlanData& plan);        // bodies.cpp
+void choose_polygons(PlanData& plan);       // colliders.cpp
 void collect_colliders(PlanData& plan);     // colliders.cpp
+void collect_fixed(PlanData& plan);         // colliders.cpp
+void lay_out_shapes(PlanData& plan);        // colliders.cpp
 void collect_pairs(PlanData& plan);         // pairs.cpp
 void choose_features(PlanData& plan);       // features.cpp
 PlanReport describe(const PlanData& plan);  // report.cpp
+
+// Bodies and shapes of a copy of a plan once more, after its scene was given the numbers of one
+// world (variations.cpp).
+void derive_again(PlanData& plan);
+// The scene as it is described and, where something varies, with all at their lowest and highest.
+std::vector<Scene> extremes(const PlanData& plan);
+
 // Equal for plans that step worlds alike and store them alike (fingerprint.cpp).
 std::uint64_t fingerprint(const PlanData& plan);
 const char* to_string(kernels::PairKind kind);

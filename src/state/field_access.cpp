@@ -1,5 +1,6 @@
 // Reading and writing fields of a world in the user's frame. The kernels hold the centre of mass
 // and the principal axes; for bodies whose own frame is just that, bits are copied.
+#include <algorithm>
 #include <cmath>
 
 #include "src/state/worlds.hpp"
@@ -53,7 +54,7 @@ void Worlds<Real>::read(Field field, int world, Out* out) const {
   const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
   const int n = components(field, plan_.scene().space);
   for (std::size_t i = 0; i < data().bodies.size(); ++i) {
-    const PlanBody& b = data().bodies[i];
+    const PlanBody& b = body_of(world, i);
     const int body = static_cast<int>(i);
     Out* to = out + i * static_cast<std::size_t>(n);
     const auto copy = [&](int from) {
@@ -96,7 +97,7 @@ void Worlds<Real>::write(Field field, int world, const In* in) {
   if (moves) storage_.clear_contacts(slot_of(world));
   storage_.wake(slot_of(world));
   for (std::size_t i = 0; i < data().bodies.size(); ++i) {
-    const PlanBody& b = data().bodies[i];
+    const PlanBody& b = body_of(world, i);
     const int body = static_cast<int>(i);
     const In* from = in + i * static_cast<std::size_t>(n);
     const auto copy = [&](int to) {
@@ -144,11 +145,24 @@ void Worlds<Real>::write(Field field, int world, const In* in) {
   }
 }
 
+template <class Real>
+void Worlds<Real>::set_initial(Field field, int world, const double* in) {
+  auto& values = initial_[static_cast<std::size_t>(field)];
+  if (in == nullptr) return values.clear();
+  const std::size_t numbers =
+      data().bodies.size() * static_cast<std::size_t>(components(field, plan_.scene().space));
+  values.resize(static_cast<std::size_t>(worlds_) * numbers);
+  std::copy_n(
+      in, numbers,
+      values.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(world) * numbers));
+}
+
 #define MW_INSTANTIATE(Real)                                            \
   template void Worlds<Real>::read<float>(Field, int, float*) const;    \
   template void Worlds<Real>::read<double>(Field, int, double*) const;  \
   template void Worlds<Real>::write<float>(Field, int, const float*);   \
   template void Worlds<Real>::write<double>(Field, int, const double*); \
+  template void Worlds<Real>::set_initial(Field, int, const double*);   \
   template Quat Worlds<Real>::internal_rotation(int, int) const;        \
   template void Worlds<Real>::set_rotation(int, int, const Quat&);
 MW_INSTANTIATE(float)

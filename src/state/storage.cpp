@@ -28,6 +28,12 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
   kernels::GroupView<Real> view{};
   view.state = state_.data() + at * lanes * index(t.state_size);
   view.status = status_.data() + at * lanes;
+  view.constants = t.constants;
+  const kernels::ConstantBlocks<Real> own = constants_.group(g);
+  if (own.body) view.constants.body = own.body;
+  if (own.shape) view.constants.shape = own.shape;
+  if (own.polygon) view.constants.polygon = own.polygon;
+  if (own.material) view.constants.material = own.material;
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
@@ -50,9 +56,15 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
 }
 
 template <class Real>
+void Storage<Real>::make_constants(const PlanData& plan) {
+  const PlanVaries& v = plan.varies;
+  constants_ = Constants<Real>(plan, {v.body_constants(), v.shapes, v.materials}, groups_, lanes_);
+}
+
+template <class Real>
 std::size_t Storage<Real>::bytes() const {
   std::size_t total =
-      (state_.size() + rest_time_.size()) * sizeof(Real) +
+      constants_.bytes() + (state_.size() + rest_time_.size()) * sizeof(Real) +
       (status_.size() + asleep_.size() + absent_.size() + resting_.size() + island_.size()) *
           sizeof(std::uint32_t);
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
@@ -105,7 +117,7 @@ void Storage<Real>::drop_contacts(int slot, int body) {
   reached_[index(body)] = true;
   // A kinematic body passes no impulse on.
   const auto reached = [&](int b) {
-    return b >= 0 && reached_[index(b)] && (b == body || tables_.body[b].inv_mass > 0);
+    return b >= 0 && reached_[index(b)] && (b == body || !tables_.body[b].kinematic);
   };
   for (bool grows = true; grows;) {
     grows = false;
@@ -197,7 +209,7 @@ void Storage<Real>::wake_island(int slot, int body) {
   for (int b = 0; b < tables_.bodies; ++b) {
     const std::size_t at = body_at(slot, b);
     const bool together = slept && asleep(slot, b) && island_[at * lanes + lane] == label &&
-                          tables_.body[b].inv_mass > 0;
+                          !tables_.body[b].kinematic;
     if (b != body && !together) continue;
     put_bit(asleep_[at], lane, false);
     rest_time_[at * lanes + lane] = Real(0);

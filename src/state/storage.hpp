@@ -16,6 +16,7 @@
 #include "manyworlds/scene.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/base/bits.hpp"
+#include "src/state/constants.hpp"
 
 namespace manyworlds {
 
@@ -58,6 +59,10 @@ class Storage {
     return resting_.empty() ? all : ~resting_[index(group)] & all;
   }
 
+  // Constants of each world's own, where the plan lets some vary.
+  void make_constants(const PlanData& plan);
+  void set_constants(const PlanData& plan, int slot) { constants_.fill(plan, slot); }
+
   void swap(int slot_a, int slot_b);  // with the forces that wait for the next step
   void copy(int from, int to);
 
@@ -97,6 +102,7 @@ class Storage {
   mutable AlignedBuffer<std::uint32_t> status_;
   mutable AlignedBuffer<Real> force_;  // [group][body][force 3, torque 3][lane]
   bool forced_ = false;
+  Constants<Real> constants_;
   mutable AlignedBuffer<std::uint32_t> asleep_, absent_;  // [group][body]
   mutable AlignedBuffer<std::uint32_t> idle_, resting_;   // [group]
   mutable AlignedBuffer<Real> rest_time_;                 // [group][body][lane]

@@ -23,29 +23,19 @@ void copy(const Vec3& from, Real* to) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<Real>(from[c]);
 }
 
-template <class Real>
-kernels::TopTable<Real> top_of(const PlanBody& body, double dt) {
-  const bool tumbles = body.inv_inertia.z() > 0;
-  const Vec3 inertia = tumbles ? body.inertia : Vec3::Ones();
-  const Vec3 inverse = tumbles ? body.inv_inertia : Vec3::Ones();
-  kernels::TopTable<Real> out{};
-  copy(inertia, out.inertia);
-  copy(inverse, out.inverse);
-  copy(Vec3(inverse.cwiseProduct(Vec3(dt / 2, dt / 2, dt))), out.rate);
-  out.turn_bound = static_cast<Real>(dt * inverse.maxCoeff());
-  return out;
-}
-
 }  // namespace
 
 template <class Real>
-TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep) {
+TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep, int lanes)
+    : constants_(plan, {}, 1, lanes) {
   add_options(plan);
   // Without contacts nothing comes to rest.
   tables_.has_sleep = sleep && tables_.has_contacts;
   add_bodies(plan);
   add_shapes(plan);
   add_pairs(plan);
+  for (int lane = 0; lane < lanes; ++lane) constants_.fill(plan, lane);
+  tables_.constants = constants_.group(0);
 }
 
 template <class Real>
@@ -68,6 +58,9 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.sweep = plan.sweep;
   t.cast = plan.cast && t.has_contacts;
   t.cast_moving = o.cast_between_moving && t.has_contacts;
+  t.push_varies = plan.varies.push;
+  t.drag_varies = plan.varies.drag;
+  t.bodies_vary = plan.varies.masses;
   t.has_bounds = o.bounds.has_value();
   if (o.bounds) {
     copy(o.bounds->min(), t.bounds_low);
@@ -96,8 +89,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
 template <class Real>
 void TablesOf<Real>::add_bodies(const PlanData& plan) {
   auto& t = tables_;
-  const double h = plan.scene.options.dt / plan.scene.options.substeps;
-  const bool planar = t.dimension == kernels::Dimension::planar;
+  const std::size_t dim = plan.scene.space == Space::planar ? 2 : 3;
   const auto row = static_cast<std::size_t>(kernels::velocity_row_size(t.dimension));
   // Padded as the rows of a lane are (kernels/work.cpp): up to one register more.
   push_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 1) * row + 16);
@@ -105,31 +97,12 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
   for (std::size_t i = 0; i < factor_rows_.size(); ++i) factor_rows_[i] = 1;
   for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
     const PlanBody& b = plan.bodies[i];
-    const Body& body = plan.scene.bodies[static_cast<std::size_t>(b.scene_body)];
-    kernels::BodyTable<Real> out{};
-    out.inv_mass = static_cast<Real>(b.inv_mass);
-    copy(b.inertia, out.inertia);
-    copy(b.inv_inertia, out.inv_inertia);
-    out.top = top_of<Real>(b, plan.scene.options.dt);
-    out.radius = static_cast<Real>(b.radius);
-    out.core_radius = static_cast<Real>(b.inv_mass > 0 ? b.core_radius : 0);
-    out.linear_factor = out.angular_factor = 1;
-    if (b.inv_mass > 0) {
-      const Vec3 g = plan.scene.options.gravity * body.gravity_scale;
-      copy(g, out.acceleration);
-      out.linear_factor = static_cast<Real>(1 / (1 + h * body.linear_drag));
-      out.angular_factor = static_cast<Real>(1 / (1 + h * body.angular_drag));
-      const int dim = planar ? 2 : 3;
-      for (int c = 0; c < dim; ++c) {
-        push_rows_[i * row + static_cast<std::size_t>(c)] =
-            static_cast<Real>(h * g[c]) + Real(0);  // never -0
-      }
-      for (std::size_t c = 0; c < row; ++c) {
-        factor_rows_[i * row + c] =
-            c < static_cast<std::size_t>(dim) ? out.linear_factor : out.angular_factor;
-      }
+    bodies_.push_back({b.inv_mass == 0});
+    const auto numbers = body_constants<Real>(plan, b);
+    for (std::size_t c = 0; c < dim; ++c) push_rows_[i * row + c] = numbers.push[c];
+    for (std::size_t c = 0; c < row; ++c) {
+      factor_rows_[i * row + c] = c < dim ? numbers.linear_factor : numbers.angular_factor;
     }
-    bodies_.push_back(out);
   }
   t.body = bodies_.data();
   t.push_rows = push_rows_.data();
@@ -141,36 +114,11 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
   auto& t = tables_;
   const double least_margin = 2 * plan.scene.options.slop * plan.scene.options.length_unit;
   for (const PlanCollider& c : plan.colliders) {
-    kernels::ColliderTable<Real> out{};
-    out.kind = c.kind;
-    out.body = c.body;
-    out.row = c.row;
     const Filter& filter = plan.scene.bodies[static_cast<std::size_t>(c.scene_body)]
                                .shapes[static_cast<std::size_t>(c.shape)]
                                .filter;
-    out.category = filter.category;
-    out.mask = filter.mask;
-    copy(c.offset, out.offset);
-    for (int k = 0; k < 9; ++k) out.rotation[k] = static_cast<Real>(c.rotation(k % 3, k / 3));
-    copy(c.half, out.half);
-    out.radius = static_cast<Real>(c.thickness > 0 ? c.thickness : c.radius);
-    // A speculative row holds along one normal, which is good as long as the gap is not large
-    // against the shape. Round shapes keep their normals better.
-    const bool round = c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;
-    out.margin_cap =
-        static_cast<Real>(std::max(least_margin, round ? 2 * c.radius : c.inner_radius));
-    out.vertex_count = static_cast<std::int32_t>(c.vertices.size());
-    for (std::size_t i = 0; i < kernels::kMaxVertices && !c.vertices.empty(); ++i) {
-      const std::size_t n = c.vertices.size(), at = i < n ? i : 0;
-      const Vec2 edge = c.vertices[(at + 1) % n] - c.vertices[at];
-      const Vec2 normal = Vec2(edge.y(), -edge.x()).normalized();
-      for (std::size_t k = 0; k < 2; ++k) {
-        const auto row = static_cast<Eigen::Index>(k);
-        out.vertices[2 * i + k] = static_cast<Real>(c.vertices[at][row]);
-        out.normals[2 * i + k] = static_cast<Real>(normal[row]);
-      }
-    }
-    colliders_.push_back(out);
+    colliders_.push_back({c.kind, c.body, c.row, filter.category, filter.mask,
+                          static_cast<std::int32_t>(c.vertices.size())});
     collider_row_.push_back(c.row);
     collider_body_.push_back(c.body);
   }
@@ -210,10 +158,6 @@ void TablesOf<Real>::add_pairs(const PlanData& plan) {
   auto& t = tables_;
   const auto n = static_cast<std::size_t>(t.colliders);
   if (plan.sweep) pair_of_.assign(n * n, -1);
-  const auto material = [&](const std::vector<double>& values) {
-    materials_.emplace_back(values.begin(), values.end());
-    return materials_.back().data();
-  };
   for (const PlanClass& c : plan.classes) {
     if (c.a.empty()) continue;
     kernels::PairClass<Real> out{};
@@ -223,8 +167,6 @@ void TablesOf<Real>::add_pairs(const PlanData& plan) {
     out.first_key = c.first_key;
     out.a = c.a.data();
     out.b = c.b.data();
-    out.friction = material(c.friction);
-    out.restitution = material(c.restitution);
     classes_.push_back(out);
     if (!plan.sweep || is_fixed(c.list)) continue;
     for (std::size_t i = 0; i < c.a.size(); ++i) {

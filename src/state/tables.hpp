@@ -6,13 +6,14 @@
 #include "kernels/tables.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/plan/plan_data.hpp"
+#include "src/state/constants.hpp"
 
 namespace manyworlds {
 
 template <class Real>
 class TablesOf {
  public:
-  TablesOf(const PlanData& plan, bool sleep);
+  TablesOf(const PlanData& plan, bool sleep, int lanes);
   TablesOf(const TablesOf&) = delete;
   TablesOf& operator=(const TablesOf&) = delete;
   const kernels::WorldTables<Real>& get() const { return tables_; }
@@ -24,12 +25,12 @@ class TablesOf {
   void add_options(const PlanData& plan);
 
   kernels::WorldTables<Real> tables_{};
-  std::vector<kernels::BodyTable<Real>> bodies_;
-  std::vector<kernels::ColliderTable<Real>> colliders_;
+  Constants<Real> constants_;
+  std::vector<kernels::BodyTable> bodies_;
+  std::vector<kernels::ColliderTable> colliders_;
   std::vector<std::int32_t> collider_row_, collider_body_, pair_of_;
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
-  std::vector<std::vector<Real>> materials_;
   AlignedBuffer<Real> fixed_rows_, push_rows_, factor_rows_;
 };
 

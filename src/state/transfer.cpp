@@ -189,6 +189,7 @@ template <class Real>
 void Storage<Real>::swap(int slot_a, int slot_b) {
   if (slot_a == slot_b) return;
   for_each_part(slot_a, slot_b, Swap{});
+  constants_.swap(slot_a, slot_b);
   if (!has_activity()) return;
   find_idle_in(group_of(slot_a));
   find_idle_in(group_of(slot_b));
@@ -198,6 +199,7 @@ template <class Real>
 void Storage<Real>::copy(int from, int to) {
   if (from == to) return;
   for_each_part(from, to, Copy{});
+  constants_.copy(from, to);
   if (has_activity()) find_idle_in(group_of(to));
 }
 

@@ -11,7 +11,7 @@ namespace manyworlds {
 template <class Real>
 Worlds<Real>::Worlds(Plan plan, int worlds, int first, const BatchOptions& options, int lanes)
     : plan_(std::move(plan)),
-      tables_(std::make_unique<TablesOf<Real>>(plan_.data(), options.sleep)),
+      tables_(std::make_unique<TablesOf<Real>>(plan_.data(), options.sleep, lanes)),
       storage_(tables(), (worlds + lanes - 1) / lanes, lanes),
       worlds_(worlds),
       first_(first),
@@ -27,6 +27,7 @@ Worlds<Real>::Worlds(Plan plan, int worlds, int first, const BatchOptions& optio
   if (std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return !b.enabled; })) {
     storage_.make_activity();
   }
+  make_parameters();
   restart();
 }
 
@@ -34,7 +35,7 @@ Worlds<Real>::Worlds(Plan plan, int worlds, int first, const BatchOptions& optio
 // principal axes.
 template <class Real>
 void Worlds<Real>::place(int world, int body, const BodyState& s) {
-  const PlanBody& b = data().bodies[static_cast<std::size_t>(body)];
+  const PlanBody& b = body_of(world, static_cast<std::size_t>(body));
   const bool planar = plan_.scene().space == Space::planar;
   const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
   const Vec3 x = s.position + s.rotation * b.center;
@@ -53,11 +54,22 @@ void Worlds<Real>::initialise(int world) {
   const Draws draws(seed_ + static_cast<std::uint64_t>(first_ + world),
                     episode_[static_cast<std::size_t>(world)]);
   const int slot = slot_of(world);
+  if (own_) {
+    draw_values(world, draws);
+    apply_values(world);
+  }
   for (std::size_t b = 0; b < data().bodies.size(); ++b) {
     const int scene_body = data().bodies[b].scene_body, body = static_cast<int>(b);
     const Body& described = plan_.scene().bodies[static_cast<std::size_t>(scene_body)];
     place(world, body, draw_initial_state(described, scene_body, draws));
     if (storage_.has_activity()) storage_.set_absent(slot, body, !described.enabled);
+  }
+  // A body turns about its own origin, so orientations come first.
+  for (const Field field :
+       {Field::orientation, Field::position, Field::linear_velocity, Field::angular_velocity}) {
+    const auto& values = initial_[static_cast<std::size_t>(field)];
+    const std::size_t numbers = values.size() / static_cast<std::size_t>(worlds_);
+    if (numbers > 0) write(field, world, values.data() + static_cast<std::size_t>(world) * numbers);
   }
   if (storage_.has_activity()) storage_.find_idle(slot);
   storage_.status(slot) = 0;
@@ -130,7 +142,7 @@ Vec3 Worlds<Real>::center_of_mass(int world, int body) const {
 
 template <class Real>
 void Worlds<Real>::add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular) {
-  const PlanBody& b = data().bodies[static_cast<std::size_t>(body)];
+  const PlanBody& b = body_of(world, static_cast<std::size_t>(body));
   if (b.inv_mass == 0) return;
   if (!(impulse.isZero(0) && angular.isZero(0))) storage_.wake_island(slot_of(world), body);
   const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
@@ -168,12 +180,12 @@ std::uint64_t Worlds<Real>::hash(int world) const {
 
 template <class Real>
 Energy Worlds<Real>::energy(int world) const {
-  const Scene& scene = plan_.scene();
-  const bool planar = scene.space == Space::planar;
+  const bool planar = plan_.scene().space == Space::planar;
   const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
+  const Vec3 g(gravity(world, 0), gravity(world, 1), gravity(world, 2));
   Energy e;
   for (std::size_t i = 0; i < data().bodies.size(); ++i) {
-    const PlanBody& b = data().bodies[i];
+    const PlanBody& b = body_of(world, i);
     const int body = static_cast<int>(i);
     if (b.inv_mass == 0 || !enabled(world, body)) continue;
     const auto value = [&](int c) { return static_cast<double>(component(world, body, c)); };
@@ -186,8 +198,7 @@ Energy Worlds<Real>::energy(int world) const {
       w = internal_rotation(world, body).conjugate() * w;
     }
     e.kinetic += 0.5 * b.mass * v.squaredNorm() + 0.5 * w.dot(b.inertia.cwiseProduct(w));
-    const double scale = scene.bodies[static_cast<std::size_t>(b.scene_body)].gravity_scale;
-    e.potential -= b.mass * scale * scene.options.gravity.dot(center_of_mass(world, body));
+    e.potential -= b.mass * gravity_scale(world, body) * g.dot(center_of_mass(world, body));
   }
   return e;
 }

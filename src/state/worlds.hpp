@@ -5,6 +5,7 @@
 // changes; nothing that it computes does.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -43,6 +44,20 @@ class Worlds {
   void add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular);
   Vec3 center_of_mass(int world, int body) const;
 
+  // Numbers of the scene, one world's, canonical: [scene's shape], [state body] or the world's one,
+  // times the numbers of each.
+  std::size_t parameter_size(Parameter parameter) const {
+    return number_at_[static_cast<std::size_t>(parameter)].size();
+  }
+  void read(Parameter parameter, int world, double* out) const;
+  // What is wrong with these numbers; empty: nothing.
+  std::string check(Parameter parameter, int world, const double* in) const;
+  void write(Parameter parameter, int world, const double* in);
+
+  // Where the world begins from now on, instead of the scene's value and its jitter; canonical. Of
+  // all worlds or of none.
+  void set_initial(Field field, int world, const double* in);
+
   bool enabled(int world, int body) const { return !storage_.absent(slot_of(world), body); }
   void set_enabled(int world, int body, bool enabled);
   void spawn(int world, int body, const BodyState& state);
@@ -57,8 +72,12 @@ class Worlds {
   void set_episode(int world, std::uint32_t episode) {
     episode_[static_cast<std::size_t>(world)] = episode;
   }
-  void read_world(int world, const std::byte* from) { storage_.read_world(slot_of(world), from); }
-  void copy_world(int from, int to) { storage_.copy(slot_of(from), slot_of(to)); }
+  // A world as bytes: the storage's, then its own numbers.
+  std::size_t world_bytes() const;
+  void write_world(int world, std::byte* to) const;
+  void read_world(int world, const std::byte* from);
+  std::string check_world(const std::byte* from) const;
+  void copy_world(int from, int to);
 
   Status status(int world) const;
   std::uint64_t hash(int world) const;
@@ -68,6 +87,25 @@ class Worlds {
   Real& component(int world, int body, int component) const {
     return storage_.component(slot_of(world), body, component);
   }
+  // Bodies as this world's sizes, densities and masses make them.
+  const PlanBody& body_of(int world, std::size_t body) const {
+    return own_bodies_.empty()
+               ? data().bodies[body]
+               : own_bodies_[static_cast<std::size_t>(world) * data().bodies.size() + body];
+  }
+  double* values_of(int world) {
+    return values_.data() + static_cast<std::size_t>(world) * data().varied.size();
+  }
+  const double* values_of(int world) const {
+    return values_.data() + static_cast<std::size_t>(world) * data().varied.size();
+  }
+  void make_parameters();
+  void draw_values(int world, const Draws& draws);
+  // Derives everything from the world's numbers; its bodies stay where they are.
+  void apply_values(int world);
+  double gravity(int world, int component) const;
+  double gravity_scale(int world, int scene_body) const;
+
   void initialise(int world);
   void place(int world, int body, const BodyState& state);
   Quat internal_rotation(int world, int body) const;
@@ -80,9 +118,15 @@ class Worlds {
   int worlds_, first_;
   std::uint64_t seed_;
   std::vector<std::uint32_t> episode_;
-  std::vector<int> slot_of_;   // [world]
-  std::vector<int> world_in_;  // [slot], -1: none
-  std::vector<int> by_count_;  // [group] scratch of pack()
+  std::array<std::vector<double>, kFieldCount> initial_;  // [world][body][component], or empty
+  // What varies (Scene::variations).
+  std::array<std::vector<int>, kParameterCount> number_at_;  // index in PlanData::varied, or -1
+  std::vector<double> values_;                               // [world][PlanData::varied]
+  std::vector<PlanBody> own_bodies_;                         // [world][body], where masses vary
+  std::unique_ptr<PlanData> own_;                            // the plan of the world at work
+  std::vector<int> slot_of_;                                 // [world]
+  std::vector<int> world_in_;                                // [slot], -1: none
+  std::vector<int> by_count_;                                // [group] scratch of pack()
 };
 
 }  // namespace manyworlds

@@ -1,0 +1,59 @@
+// What varies from world to world, and the plan of one world's own numbers.
+#include <algorithm>
+
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+void collect_variations(PlanData& plan) {
+  plan.varied = varied_numbers(plan.scene);
+  PlanVaries& varies = plan.varies;
+  for (const VariedNumber& n : plan.varied) {
+    switch (n.parameter) {
+      case Parameter::size: varies.shapes = varies.masses = true; break;
+      case Parameter::density: {
+        const Body& body = plan.scene.bodies[static_cast<std::size_t>(n.body)];
+        varies.masses = true;
+        varies.shapes = varies.shapes || body.shapes.size() > 1;  // about the centre of mass
+        break;
+      }
+      case Parameter::mass: varies.masses = true; break;
+      case Parameter::friction:
+      case Parameter::restitution: varies.materials = true; break;
+      case Parameter::gravity:
+      case Parameter::gravity_scale: varies.push = true; break;
+      case Parameter::linear_drag:
+      case Parameter::angular_drag: varies.drag = true; break;
+    }
+  }
+}
+
+void derive_again(PlanData& plan) {
+  if (plan.varies.masses || plan.varies.shapes) {
+    plan.bodies.clear();
+    plan.state_body.clear();
+    plan.colliders.clear();
+    collect_bodies(plan);
+    collect_colliders(plan);
+  }
+  const auto material = [&](const auto& shape) {
+    return plan.scene.bodies[static_cast<std::size_t>(shape.scene_body)]
+        .shapes[static_cast<std::size_t>(shape.shape)]
+        .material;
+  };
+  if (!plan.varies.materials) return;
+  for (PlanCollider& c : plan.colliders) c.material = material(c);
+  for (PlanFixed& f : plan.fixed) f.material = material(f);
+}
+
+std::vector<Scene> extremes(const PlanData& plan) {
+  std::vector<Scene> out{plan.scene};
+  if (plan.varied.empty()) return out;
+  for (const bool high : {false, true}) {
+    out.push_back(plan.scene);
+    for (const VariedNumber& n : plan.varied) set_number(out.back(), n, high ? n.high : n.low);
+  }
+  return out;
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,190 @@
+#include "src/state/constants.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace manyworlds {
+
+namespace {
+
+template <class Real>
+void copy_numbers(const Vec3& from, Real* to) {
+  for (int c = 0; c < 3; ++c) to[c] = static_cast<Real>(from[c]);
+}
+
+template <class Real>
+kernels::TopConstants<Real> top_of(const PlanBody& body, double dt) {
+  const bool tumbles = body.inv_inertia.z() > 0;
+  const Vec3 inertia = tumbles ? body.inertia : Vec3::Ones();
+  const Vec3 inverse = tumbles ? body.inv_inertia : Vec3::Ones();
+  kernels::TopConstants<Real> out{};
+  copy_numbers(inertia, out.inertia);
+  copy_numbers(inverse, out.inverse);
+  copy_numbers(Vec3(inverse.cwiseProduct(Vec3(dt / 2, dt / 2, dt))), out.rate);
+  out.turn_bound = static_cast<Real>(dt * inverse.maxCoeff());
+  return out;
+}
+
+bool has_polygons(const PlanData& plan) {
+  return std::any_of(plan.colliders.begin(), plan.colliders.end(),
+                     [](const PlanCollider& c) { return !c.vertices.empty(); });
+}
+
+}  // namespace
+
+template <class Real>
+kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody& b) {
+  const Options& options = plan.scene.options;
+  const Body& body = plan.scene.bodies[static_cast<std::size_t>(b.scene_body)];
+  const double h = options.dt / options.substeps;
+  kernels::BodyConstants<Real> out{};
+  out.inv_mass = static_cast<Real>(b.inv_mass);
+  copy_numbers(b.inertia, out.inertia);
+  copy_numbers(b.inv_inertia, out.inv_inertia);
+  out.top = top_of<Real>(b, options.dt);
+  out.radius = static_cast<Real>(b.radius);
+  out.core_radius = static_cast<Real>(b.inv_mass > 0 ? b.core_radius : 0);
+  out.linear_factor = out.angular_factor = 1;
+  if (b.inv_mass == 0) return out;
+  const Vec3 g = options.gravity * body.gravity_scale;
+  copy_numbers(g, out.acceleration);
+  for (int c = 0; c < (plan.scene.space == Space::planar ? 2 : 3); ++c) {
+    out.push[c] = static_cast<Real>(h * g[c]) + Real(0);  // never -0
+  }
+  out.linear_factor = static_cast<Real>(1 / (1 + h * body.linear_drag));
+  out.angular_factor = static_cast<Real>(1 / (1 + h * body.angular_drag));
+  return out;
+}
+
+template <class Real>
+kernels::ShapeConstants<Real> shape_constants(const PlanData& plan, const PlanCollider& c) {
+  kernels::ShapeConstants<Real> out{};
+  copy_numbers(c.offset, out.offset);
+  for (int k = 0; k < 9; ++k) out.rotation[k] = static_cast<Real>(c.rotation(k % 3, k / 3));
+  copy_numbers(c.half, out.half);
+  out.radius = static_cast<Real>(c.thickness > 0 ? c.thickness : c.radius);
+  // A speculative row holds along one normal, which is good as long as the gap is not large
+  // against the shape. Round shapes keep their normals better.
+  const double least = 2 * plan.scene.options.slop * plan.scene.options.length_unit;
+  const bool round = c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;
+  out.margin_cap = static_cast<Real>(std::max(least, round ? 2 * c.radius : c.inner_radius));
+  return out;
+}
+
+template <class Real>
+kernels::PolygonConstants<Real> polygon_constants(const PlanCollider& c) {
+  kernels::PolygonConstants<Real> out{};
+  for (std::size_t i = 0; i < kernels::kMaxVertices && !c.vertices.empty(); ++i) {
+    const std::size_t n = c.vertices.size(), at = i < n ? i : 0;
+    const Vec2 edge = c.vertices[(at + 1) % n] - c.vertices[at];
+    const Vec2 normal = Vec2(edge.y(), -edge.x()).normalized();
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      out.vertices[2 * i + k] = static_cast<Real>(c.vertices[at][row]);
+      out.normals[2 * i + k] = static_cast<Real>(normal[row]);
+    }
+  }
+  return out;
+}
+
+template <class Real>
+Constants<Real>::Constants(const PlanData& plan, Parts parts, int groups, int lanes)
+    : parts_(parts), lanes_(lanes) {
+  const auto make = [&](Block& block, bool wanted, std::size_t items, std::size_t item_bytes) {
+    if (!wanted) return;
+    block.rows = items * (item_bytes / sizeof(Real));
+    block.numbers = AlignedBuffer<Real>(static_cast<std::size_t>(groups) * block.rows *
+                                        static_cast<std::size_t>(lanes));
+  };
+  // The last body is the dummy, whose numbers stay 0.
+  make(bodies_, parts.bodies, plan.bodies.size() + 1, sizeof(kernels::BodyConstants<Real>));
+  make(shapes_, parts.shapes, plan.colliders.size(), sizeof(kernels::ShapeConstants<Real>));
+  make(polygons_, parts.shapes && has_polygons(plan), plan.colliders.size(),
+       sizeof(kernels::PolygonConstants<Real>));
+  make(materials_, parts.materials, plan.colliders.size() + plan.fixed.size(),
+       sizeof(kernels::MaterialOf<Real>));
+}
+
+template <class Real>
+kernels::ConstantBlocks<Real> Constants<Real>::group(int index) const {
+  const auto at = static_cast<std::size_t>(index), lanes = static_cast<std::size_t>(lanes_);
+  return {bodies_.group(at, lanes), shapes_.group(at, lanes), polygons_.group(at, lanes),
+          materials_.group(at, lanes)};
+}
+
+template <class Real>
+template <class Item>
+void Constants<Real>::put(Block& block, std::size_t item, const Item& value, int slot) {
+  constexpr std::size_t kMembers = sizeof(Item) / sizeof(Real);
+  Real members[kMembers];
+  std::memcpy(members, &value, sizeof value);
+  const auto lanes = static_cast<std::size_t>(lanes_), at = static_cast<std::size_t>(slot);
+  Real* to = block.numbers.data() + ((at / lanes) * block.rows + item * kMembers) * lanes;
+  for (std::size_t m = 0; m < kMembers; ++m) to[m * lanes + at % lanes] = members[m];
+}
+
+template <class Real>
+void Constants<Real>::fill(const PlanData& plan, int slot) {
+  for (std::size_t b = 0; parts_.bodies && b < plan.bodies.size(); ++b) {
+    put(bodies_, b, body_constants<Real>(plan, plan.bodies[b]), slot);
+  }
+  for (std::size_t c = 0; c < plan.colliders.size(); ++c) {
+    const PlanCollider& shape = plan.colliders[c];
+    if (parts_.shapes) put(shapes_, c, shape_constants<Real>(plan, shape), slot);
+    if (!polygons_.numbers.empty()) put(polygons_, c, polygon_constants<Real>(shape), slot);
+  }
+  const auto material = [&](std::size_t item, const Material& m) {
+    const kernels::MaterialOf<Real> value{static_cast<Real>(m.friction),
+                                          static_cast<Real>(m.restitution)};
+    put(materials_, item, value, slot);
+  };
+  if (!parts_.materials) return;
+  for (std::size_t c = 0; c < plan.colliders.size(); ++c) material(c, plan.colliders[c].material);
+  for (std::size_t f = 0; f < plan.fixed.size(); ++f) {
+    material(plan.colliders.size() + f, plan.fixed[f].material);
+  }
+}
+
+template <class Real>
+void Constants<Real>::swap(int slot_a, int slot_b) {
+  const auto lanes = static_cast<std::size_t>(lanes_);
+  const auto a = static_cast<std::size_t>(slot_a), b = static_cast<std::size_t>(slot_b);
+  for_each_block([&](Block& block) {
+    if (block.numbers.empty()) return;
+    Real* in_a = block.numbers.data() + (a / lanes) * block.rows * lanes + a % lanes;
+    Real* in_b = block.numbers.data() + (b / lanes) * block.rows * lanes + b % lanes;
+    for (std::size_t r = 0; r < block.rows; ++r) std::swap(in_a[r * lanes], in_b[r * lanes]);
+  });
+}
+
+template <class Real>
+void Constants<Real>::copy(int from, int to) {
+  const auto lanes = static_cast<std::size_t>(lanes_);
+  const auto a = static_cast<std::size_t>(from), b = static_cast<std::size_t>(to);
+  for_each_block([&](Block& block) {
+    if (block.numbers.empty()) return;
+    const Real* source = block.numbers.data() + (a / lanes) * block.rows * lanes + a % lanes;
+    Real* target = block.numbers.data() + (b / lanes) * block.rows * lanes + b % lanes;
+    for (std::size_t r = 0; r < block.rows; ++r) target[r * lanes] = source[r * lanes];
+  });
+}
+
+template <class Real>
+std::size_t Constants<Real>::bytes() const {
+  return (bodies_.numbers.size() + shapes_.numbers.size() + polygons_.numbers.size() +
+          materials_.numbers.size()) *
+         sizeof(Real);
+}
+
+#define MW_INSTANTIATE(Real)                                                                    \
+  template class Constants<Real>;                                                               \
+  template kernels::BodyConstants<Real> body_constants<Real>(const PlanData&, const PlanBody&); \
+  template kernels::ShapeConstants<Real> shape_constants<Real>(const PlanData&,                 \
+                                                               const PlanCollider&);            \
+  template kernels::PolygonConstants<Real> polygon_constants<Real>(const PlanCollider&);
+MW_INSTANTIATE(float)
+MW_INSTANTIATE(double)
+#undef MW_INSTANTIATE
+
+}  // namespace manyworlds

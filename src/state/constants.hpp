@@ -1,0 +1,61 @@
+// What the kernels know of one world's bodies and shapes, derived from a plan: all worlds' alike
+// where nothing varies, else from a plan of that world's own scene.
+#pragma once
+
+#include <cstddef>
+
+#include "kernels/tables.hpp"
+#include "src/base/aligned_buffer.hpp"
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+template <class Real>
+kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody& body);
+template <class Real>
+kernels::ShapeConstants<Real> shape_constants(const PlanData& plan, const PlanCollider& shape);
+template <class Real>
+kernels::PolygonConstants<Real> polygon_constants(const PlanCollider& shape);
+
+// One group's constants, or all groups': [item][member][lane] for each kind of item.
+template <class Real>
+class Constants {
+ public:
+  // Which kinds of item there are in it; the others' pointers stay null.
+  struct Parts {
+    bool bodies = true, shapes = true, materials = true;
+  };
+
+  Constants() = default;
+  Constants(const PlanData& plan, Parts parts, int groups, int lanes);
+
+  const Parts& parts() const { return parts_; }
+  kernels::ConstantBlocks<Real> group(int index) const;
+  // Writes what `plan` says into a lane.
+  void fill(const PlanData& plan, int slot);
+  void swap(int slot_a, int slot_b);
+  void copy(int from, int to);
+  std::size_t bytes() const;
+
+ private:
+  struct Block {
+    AlignedBuffer<Real> numbers;  // [group][rows][lane]
+    std::size_t rows = 0;
+    const Real* group(std::size_t index, std::size_t lanes) const {
+      return numbers.empty() ? nullptr : numbers.data() + index * rows * lanes;
+    }
+  };
+  template <class Visit>
+  void for_each_block(Visit visit) {
+    for (Block* b : {&bodies_, &shapes_, &polygons_, &materials_}) visit(*b);
+  }
+  // Writes one item of a lane.
+  template <class Item>
+  void put(Block& block, std::size_t item, const Item& value, int slot);
+
+  Parts parts_;
+  int lanes_ = 1;
+  Block bodies_, shapes_, polygons_, materials_;
+};
+
+}  // namespace manyworlds

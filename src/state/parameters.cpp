@@ -1,0 +1,284 @@
+// Numbers of the scene that differ from world to world: drawn or written, and everything that
+// follows from them, derived by the code that derives it for a whole plan.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "src/state/worlds.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+// Draws of variations lie beyond those of the initial state.
+constexpr std::uint64_t kFirstDraw = std::uint64_t{1} << 40;
+
+double drawn(const Variation& v, const VariedNumber& n, double uniform) {
+  double x = v.draw == Draw::uniform ? n.low + (n.high - n.low) * uniform
+                                     : n.low * std::pow(n.high / n.low, uniform);
+  return std::clamp(x, n.low, n.high);
+}
+
+std::string number_text(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", x);
+  return text;
+}
+
+}  // namespace
+
+template <class Real>
+void Worlds<Real>::make_parameters() {
+  const Scene& scene = plan_.scene();
+  const auto& varied = data().varied;
+  const auto find = [&](Parameter parameter, int body, int shape) {
+    auto& list = number_at_[static_cast<std::size_t>(parameter)];
+    for (int c = 0; c < info(parameter).numbers; ++c) list.push_back(-1);
+    const std::size_t first = list.size() - static_cast<std::size_t>(info(parameter).numbers);
+    for (std::size_t i = 0; i < varied.size(); ++i) {
+      const VariedNumber& n = varied[i];
+      if (n.parameter != parameter || n.body != body || n.shape != shape) continue;
+      list[first + static_cast<std::size_t>(n.component)] = static_cast<int>(i);
+    }
+  };
+  for (int p = 0; p < kParameterCount; ++p) {
+    const auto parameter = static_cast<Parameter>(p);
+    const auto owner = info(parameter).owner;
+    if (owner == ParameterInfo::world) find(parameter, -1, -1);
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      const int body = static_cast<int>(b);
+      if (owner == ParameterInfo::body && scene.bodies[b].motion != Motion::fixed) {
+        find(parameter, body, -1);
+      }
+      for (std::size_t s = 0; owner == ParameterInfo::shape && s < scene.bodies[b].shapes.size();
+           ++s) {
+        find(parameter, body, static_cast<int>(s));
+      }
+    }
+  }
+  if (varied.empty()) return;
+  own_ = std::make_unique<PlanData>(data());
+  storage_.make_constants(data());
+  const auto worlds = static_cast<std::size_t>(worlds_);
+  if (data().varies.masses) {
+    for (std::size_t w = 0; w < worlds; ++w) {
+      own_bodies_.insert(own_bodies_.end(), data().bodies.begin(), data().bodies.end());
+    }
+  }
+  for (std::size_t w = 0; w < worlds; ++w) {
+    for (const VariedNumber& n : varied) {
+      const double own = get_number(scene, n.parameter, n.body, n.shape, n.component);
+      values_.push_back(std::clamp(own, n.low, n.high));
+    }
+  }
+}
+
+template <class Real>
+void Worlds<Real>::draw_values(int world, const Draws& draws) {
+  const auto& varied = data().varied;
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    const VariedNumber& n = varied[i];
+    const auto variation = static_cast<std::size_t>(n.variation);
+    const Variation& v = plan_.scene().variations[variation];
+    if (v.draw == Draw::none) continue;
+    const std::uint64_t item = v.together ? static_cast<std::uint64_t>(n.component) : 4 + i;
+    const std::uint64_t index = kFirstDraw + (std::uint64_t{variation} << 24) + item;
+    values_of(world)[i] = drawn(v, n, draws.uniform(index));
+  }
+}
+
+template <class Real>
+void Worlds<Real>::apply_values(int world) {
+  const auto& varied = data().varied;
+  // From the scene as it is described: stretched polygons would add up their rounding, and a mass
+  // that was set before would hide what sizes make.
+  for (const VariedNumber& n : varied) {
+    if (n.body < 0) continue;
+    const auto b = static_cast<std::size_t>(n.body), s = static_cast<std::size_t>(n.shape);
+    const Body& described = plan_.scene().bodies[b];
+    Body& body = own_->scene.bodies[b];
+    if (n.parameter == Parameter::size) body.shapes[s].geometry = described.shapes[s].geometry;
+    if (n.parameter == Parameter::mass) body.mass_properties = described.mass_properties;
+  }
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    set_number(own_->scene, varied[i], values_of(world)[i]);
+  }
+  derive_again(*own_);
+  if (!own_bodies_.empty()) {
+    std::copy(own_->bodies.begin(), own_->bodies.end(),
+              own_bodies_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(world) *
+                                                                own_->bodies.size()));
+  }
+  storage_.set_constants(*own_, slot_of(world));
+}
+
+template <class Real>
+void Worlds<Real>::read(Parameter parameter, int world, double* out) const {
+  const Scene& scene = plan_.scene();
+  const auto& at = number_at_[static_cast<std::size_t>(parameter)];
+  const auto numbers = static_cast<std::size_t>(info(parameter).numbers);
+  std::size_t i = 0;
+  const auto put = [&](int body, int shape) {
+    for (std::size_t c = 0; c < numbers; ++c, ++i) {
+      out[i] = at[i] >= 0 ? values_of(world)[at[i]]
+                          : get_number(scene, parameter, body, shape, static_cast<int>(c));
+    }
+  };
+  const auto owner = info(parameter).owner;
+  if (owner == ParameterInfo::world) return put(-1, -1);
+  if (owner == ParameterInfo::body) {
+    for (std::size_t b = 0; b < data().bodies.size(); ++b) {
+      put(data().bodies[b].scene_body, -1);
+      // Sizes and densities make a mass, too.
+      if (parameter == Parameter::mass) out[b] = body_of(world, b).mass;
+    }
+    return;
+  }
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    for (std::size_t s = 0; s < scene.bodies[b].shapes.size(); ++s) {
+      put(static_cast<int>(b), static_cast<int>(s));
+    }
+  }
+}
+
+template <class Real>
+std::string Worlds<Real>::check(Parameter parameter, int world, const double* in) const {
+  const auto& at = number_at_[static_cast<std::size_t>(parameter)];
+  std::vector<double> now(at.size());
+  read(parameter, world, now.data());
+  const auto numbers = static_cast<std::size_t>(info(parameter).numbers);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    std::string place = std::string(info(parameter).name);
+    const auto owner = info(parameter).owner;
+    if (owner != ParameterInfo::world) {
+      place += owner == ParameterInfo::body ? " of body " : " of shape ";
+      place += std::to_string(i / numbers);
+    }
+    if (numbers > 1) place += ", number " + std::to_string(i % numbers);
+    if (at[i] < 0) {
+      if (in[i] == now[i]) continue;
+      return place + " is " + number_text(in[i]) + ", must be " + number_text(now[i]) +
+             ": it does not vary (Scene::variations)";
+    }
+    const VariedNumber& n = data().varied[static_cast<std::size_t>(at[i])];
+    if (in[i] >= n.low && in[i] <= n.high) continue;
+    return place + " is " + number_text(in[i]) + ", must be between " + number_text(n.low) +
+           " and " + number_text(n.high) + ", its declared range";
+  }
+  return {};
+}
+
+template <class Real>
+void Worlds<Real>::write(Parameter parameter, int world, const double* in) {
+  const auto& at = number_at_[static_cast<std::size_t>(parameter)];
+  bool changed = false;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (at[i] < 0) continue;
+    double& value = values_of(world)[at[i]];
+    changed = changed || value != in[i];
+    value = in[i];
+  }
+  if (!changed) return;
+  const int slot = slot_of(world);
+  const bool moves = parameter == Parameter::size || parameter == Parameter::density;
+  // A body whose centre of mass shifts stays where its own frame is.
+  std::vector<double> positions, orientations;
+  if (moves) {
+    const Space space = plan_.scene().space;
+    positions.resize(data().bodies.size() *
+                     static_cast<std::size_t>(components(Field::position, space)));
+    orientations.resize(data().bodies.size() *
+                        static_cast<std::size_t>(components(Field::orientation, space)));
+    read(Field::position, world, positions.data());
+    read(Field::orientation, world, orientations.data());
+  }
+  apply_values(world);
+  storage_.wake(slot);
+  if (!moves) return;
+  storage_.clear_contacts(slot);
+  const bool shifts = std::any_of(data().bodies.begin(), data().bodies.end(),
+                                  [](const PlanBody& b) { return b.reshaped && !b.aligned; });
+  if (!shifts) return;
+  write(Field::orientation, world, orientations.data());
+  write(Field::position, world, positions.data());
+}
+
+template <class Real>
+double Worlds<Real>::gravity(int world, int component) const {
+  const auto& at = number_at_[static_cast<std::size_t>(Parameter::gravity)];
+  const int i = at[static_cast<std::size_t>(component)];
+  return i >= 0 ? values_of(world)[i] : plan_.scene().options.gravity[component];
+}
+
+template <class Real>
+double Worlds<Real>::gravity_scale(int world, int body) const {
+  const auto& at = number_at_[static_cast<std::size_t>(Parameter::gravity_scale)];
+  const int i = at[static_cast<std::size_t>(body)];
+  const int scene_body = data().bodies[static_cast<std::size_t>(body)].scene_body;
+  return i >= 0 ? values_of(world)[i]
+                : plan_.scene().bodies[static_cast<std::size_t>(scene_body)].gravity_scale;
+}
+
+template <class Real>
+std::size_t Worlds<Real>::world_bytes() const {
+  return storage_.world_bytes() + data().varied.size() * sizeof(double);
+}
+
+template <class Real>
+void Worlds<Real>::write_world(int world, std::byte* to) const {
+  storage_.write_world(slot_of(world), to);
+  if (data().varied.empty()) return;
+  std::memcpy(to + storage_.world_bytes(), values_of(world), data().varied.size() * sizeof(double));
+}
+
+template <class Real>
+std::string Worlds<Real>::check_world(const std::byte* from) const {
+  const std::byte* values = from + storage_.world_bytes();
+  for (std::size_t i = 0; i < data().varied.size(); ++i) {
+    double value = 0;
+    std::memcpy(&value, values + i * sizeof value, sizeof value);
+    const VariedNumber& n = data().varied[i];
+    if (!(value >= n.low && value <= n.high)) {
+      return std::string(info(n.parameter).name) + " is outside of its declared range";
+    }
+  }
+  return storage_.check_world(from);
+}
+
+template <class Real>
+void Worlds<Real>::read_world(int world, const std::byte* from) {
+  storage_.read_world(slot_of(world), from);
+  if (data().varied.empty()) return;
+  std::memcpy(values_of(world), from + storage_.world_bytes(),
+              data().varied.size() * sizeof(double));
+  apply_values(world);
+}
+
+template <class Real>
+void Worlds<Real>::copy_world(int from, int to) {
+  storage_.copy(slot_of(from), slot_of(to));
+  std::copy_n(values_of(from), data().varied.size(), values_of(to));
+  for (std::size_t b = 0; !own_bodies_.empty() && b < data().bodies.size(); ++b) {
+    own_bodies_[static_cast<std::size_t>(to) * data().bodies.size() + b] = body_of(from, b);
+  }
+}
+
+#define MW_INSTANTIATE(Real)                                                     \
+  template void Worlds<Real>::make_parameters();                                 \
+  template void Worlds<Real>::draw_values(int, const Draws&);                    \
+  template void Worlds<Real>::apply_values(int);                                 \
+  template void Worlds<Real>::read(Parameter, int, double*) const;               \
+  template std::string Worlds<Real>::check(Parameter, int, const double*) const; \
+  template void Worlds<Real>::write(Parameter, int, const double*);              \
+  template double Worlds<Real>::gravity(int, int) const;                         \
+  template double Worlds<Real>::gravity_scale(int, int) const;                   \
+  template std::size_t Worlds<Real>::world_bytes() const;                        \
+  template void Worlds<Real>::write_world(int, std::byte*) const;                \
+  template void Worlds<Real>::read_world(int, const std::byte*);                 \
+  template std::string Worlds<Real>::check_world(const std::byte*) const;        \
+  template void Worlds<Real>::copy_world(int, int);
+MW_INSTANTIATE(float)
+MW_INSTANTIATE(double)
+#undef MW_INSTANTIATE
+
+}  // namespace manyworlds
