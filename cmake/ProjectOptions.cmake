@@ -34,6 +34,11 @@ if(MW_SANITIZE)
   endif()
 endif()
 
+if(MW_FUZZ)
+  # Coverage of everything, and no main function but in the targets (Fuzz.cmake).
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+
 if(MW_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(MW_CCACHE_PROGRAM ccache)
   mark_as_advanced(MW_CCACHE_PROGRAM)

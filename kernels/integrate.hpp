@@ -155,7 +155,7 @@ void first_push(const Tables& t, const Group& g, Work& w) {
   }
   if constexpr (std::is_same_v<S, Tensor>) {
     for (int b = 0; b < t.bodies; ++b) {
-      if (w.touched[b] == 0) continue;
+      if (w.touched[b] == 0 || t.body[b].kinematic) continue;  // kinematic: no inertia
       const auto& inertia = constants_of_body(g, b).inertia;
       const Quat q = load_quat(state_of(t, g, b, kState<S>.orientation));
       Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);

@@ -1,0 +1,21 @@
+# The libFuzzer targets: one program per file fuzz/*_fuzz.cpp, and one that makes their seeds.
+
+if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  message(FATAL_ERROR "MW_FUZZ needs clang for libFuzzer, not ${CMAKE_CXX_COMPILER_ID}")
+endif()
+
+add_library(mw_fuzz_support STATIC
+  fuzz/inputs.cpp fuzz/scene_bytes.cpp fuzz/snapshot_batches.cpp)
+target_include_directories(mw_fuzz_support PUBLIC "${PROJECT_SOURCE_DIR}")
+target_link_libraries(mw_fuzz_support PUBLIC manyworlds)
+
+mw_sources(mw_fuzz_targets "fuzz/*_fuzz.cpp")
+foreach(source IN LISTS mw_fuzz_targets)
+  cmake_path(GET source STEM target)
+  add_executable(${target} "${source}")
+  target_link_libraries(${target} PRIVATE mw_fuzz_support)
+  target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+endforeach()
+
+add_executable(make_seeds fuzz/make_seeds.cpp)
+target_link_libraries(make_seeds PRIVATE mw_fuzz_support)
