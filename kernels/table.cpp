@@ -2,6 +2,7 @@
 #include "kernels/table.hpp"
 
 #include "kernels/free_motion.hpp"
+#include "kernels/observe/observe.hpp"
 #include "kernels/sleep.hpp"
 #include "kernels/solver_tables.hpp"
 #include "kernels/stages.hpp"
@@ -26,7 +27,7 @@ const kernels::GroupCounters& counters(kernels::Scratch* scratch) {
 int record(kernels::Scratch* scratch, int lane, kernels::ContactPoint<Real>* out, int max) {
   Work& w = work_of(scratch);
   const int count = w.recorder ? w.recorder->count : 0;
-  w.recorder_storage = {out, max, lane, 0};
+  w.recorder_storage = {out, max, lane, 0, nullptr};
   w.recorder = out ? &w.recorder_storage : nullptr;
   return count;
 }
@@ -67,6 +68,7 @@ kernels::KernelTable<Real> make_table() {
   out.set_class = set_class;
   out.counters = counters;
   out.record = record;
+  out.observer = observer_table();
   return out;
 }
 

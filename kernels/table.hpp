@@ -9,6 +9,8 @@
 namespace manyworlds::kernels {
 
 struct Scratch;  // per-thread work memory; its layout belongs to the kernels
+template <class Real>
+struct ObserverTable;  // kernels/observation.hpp
 
 enum class Layout : int { automatic, dense, rows };
 
@@ -63,6 +65,8 @@ struct KernelTable {
   // While set, collide writes the contact points of `lane` to out; returns their number when
   // called again. Pass nullptr to stop.
   int (*record)(Scratch*, int lane, ContactPoint<Real>* out, int max);
+
+  const ObserverTable<Real>* observer;  // what batches with observers do beside the step
 };
 
 // Every kernel library defines

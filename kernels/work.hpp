@@ -30,10 +30,12 @@ struct SlotList {
   unsigned char* bounces;
 };
 
-// Takes down the contact points of one lane while the collide stages run (KernelTable::record).
+// Takes down contact points while the collide stages run: of one lane (KernelTable::record), or the
+// places of those of all lanes for the observers (kernels/observe/).
 struct Recorder {
   kernels::ContactPoint<Real>* out;
   int max, lane, count;
+  Real* const* places;  // [list], or nullptr
 };
 
 struct Work {

@@ -171,6 +171,32 @@ TEST_CASE("falling asleep, packing, waking and disabling allocate nothing", "[fa
   }
 }
 
+TEST_CASE("observing everything allocates nothing", "[fast][allocation][observe]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    Scene scene = crowd(space);
+    scene.options.time_to_sleep = 0.1;
+    scene.options.sleep_speed = 0.5;
+    for (const Table& table : widest_tables()) {
+      BatchOptions options = options_of(table, 40);
+      options.sleep = true;
+      options.observe.what = {Observer::contacts, Observer::touching, Observer::penetration,
+                              Observer::motion};
+      options.observe.rays.resize(9);
+      std::vector<Ray> rays(9);
+      Batch batch(compile(scene), options);
+      batch.step();
+      CHECK(calls_during([&] {
+              for (int i = 0; i < 100; ++i) {
+                batch.step(1 + i % 3);
+                batch.look();
+                rays[2].origin.x() = 0.1 * i;
+                batch.set_rays(i % 40, rays);
+              }
+            }) == 0);
+    }
+  }
+}
+
 TEST_CASE("stepping a crowd allocates nothing", "[fast][allocation]") {
   check_scene(crowd(Space::planar));
   check_scene(crowd(Space::spatial));

@@ -17,6 +17,7 @@
 
 #include "manyworlds/executor.hpp"
 #include "manyworlds/fields.hpp"
+#include "manyworlds/observe.hpp"
 #include "manyworlds/plan.hpp"
 #include "manyworlds/snapshot.hpp"
 
@@ -45,6 +46,7 @@ struct BatchOptions {
   // Bodies at rest fall asleep, island by island (Options::sleep_speed), and cost little until
   // something wakes them; worlds in which everything sleeps cost nothing.
   bool sleep = false;
+  Observers observe = {};                        // what to watch beside the step (observe.hpp)
   std::shared_ptr<Executor> executor = nullptr;  // step on these threads; threads must then be 0
 };
 
@@ -222,6 +224,25 @@ class Batch {
   // Both run the collision stages once more on the current state: not for hot loops.
   std::vector<Contact> contacts(int world) const;
   ContactSummary measure_contacts() const;
+
+  // -- observers (BatchOptions::observe), as of the last step of the last step() call, in canonical
+  // order. A frozen world has no contacts. A pair that is asleep reports where it touches now, and
+  // as impulses what it will wake with, times the substeps. Reading what is not observed throws
+  // std::invalid_argument.
+  std::size_t size(Observed what) const;
+  void read(Observed what, std::span<float> out) const;
+  void read(Observed what, std::span<double> out) const;
+  void read(Observed what, int world, std::span<double> out) const;
+  std::vector<StepContact> step_contacts(int world) const;
+  bool touching(int world, int body) const;  // a contact pushed this state body
+  // A contact pushed these two scene bodies apart; of those that Observer::contacts had room for.
+  bool touching(int world, int scene_body_a, int scene_body_b) const;
+  std::vector<RayHit> ray_hits(int world) const;
+  // As many as the batch was made with. Of one world, only origin, direction and length change.
+  void set_rays(std::span<const Ray> rays);
+  void set_rays(int world, std::span<const Ray> rays);
+  // Motion and rays at the current state, without a step.
+  void look();
 
   // Time spent per stage since the last call, summed over threads; empty until profile(true).
   void profile(bool on);

@@ -132,7 +132,7 @@ MW_INLINE unsigned play_impact(const Tables& t, Work& w, Slot<S, N>& s, Bounce<S
 // Friction of the impacts, bounded by mu times all normal impulse of the step; and nothing of an
 // impact is carried into the next step's warm start.
 template <class S, int N, bool kPair, bool kDense, bool kFriction>
-MW_INLINE void finish_impact(Work& w, Slot<S, N>& s, const Bounce<S, N>& bounce) {
+MW_INLINE void finish_impact(Work& w, Slot<S, N>& s, Bounce<S, N>& bounce) {
   if (bounce.participants == 0) return;
   const Mask part = mask_from_bits(bounce.participants);
   const Float zero(Real(0));
@@ -148,9 +148,11 @@ MW_INLINE void finish_impact(Work& w, Slot<S, N>& s, const Bounce<S, N>& bounce)
     if constexpr (kPair) v.a = select(part, v.a, before.a);
     v.store(w, s);
     for (int c = 0; c < S::kTangents; ++c) {
+      select(part, after[c], budget.before[c]).store(bounce.total_tangent[c]);
       select(part, zero, Float::load(s.tangent_impulse[c])).store(s.tangent_impulse[c]);
     }
     if constexpr (Slot<S, N>::kTwist) {
+      select(part, twist_after, budget.twist_before).store(bounce.total_twist);
       select(part, zero, Float::load(s.twist_impulse)).store(s.twist_impulse);
     }
   }

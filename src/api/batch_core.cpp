@@ -45,6 +45,10 @@ class CoreOf final : public BatchCore {
       }
     }
     counters_.resize(static_cast<std::size_t>(threads));
+    if (options.observe.what.empty() && options.observe.rays.empty()) return;
+    observations_ = std::make_unique<ObservationsOf<Real>>(worlds_, options.observe, kernels_);
+    for (const auto& scratch : scratch_) observations_->add_thread(scratch.views);
+    look_again();
   }
 
   void step(Executor& executor, int n) override {
@@ -63,7 +67,19 @@ class CoreOf final : public BatchCore {
           this);
     }
     for (auto& w : worlds_) w->clear_forces();
+    all_groups_ = false;
   }
+  void look(Executor& executor) override {
+    steps_ = 0;
+    all_groups_ = true;
+    find_active();
+    executor.run(
+        static_cast<int>(active_.size()),
+        [](void* self, int index, int slot) { static_cast<CoreOf*>(self)->look_at(index, slot); },
+        this);
+  }
+  Observations* observations() override { return observations_.get(); }
+  void look_again() override { all_groups_ = observations_ != nullptr; }
 
   void restart() override {
     for (auto& w : worlds_) w->restart();
@@ -134,9 +150,13 @@ class CoreOf final : public BatchCore {
     return at(kind).check_world(from);
   }
   void read_world(int kind, int world, const std::byte* from) override {
+    look_again();
     at(kind).read_world(world, from);
   }
-  void copy_world(int kind, int from, int to) override { at(kind).copy_world(from, to); }
+  void copy_world(int kind, int from, int to) override {
+    look_again();
+    at(kind).copy_world(from, to);
+  }
   Status status(int kind, int world) const override { return at(kind).status(world); }
   std::uint64_t hash(int kind, int world) const override { return at(kind).hash(world); }
   Energy energy(int kind, int world) const override { return at(kind).energy(world); }
@@ -196,22 +216,41 @@ class CoreOf final : public BatchCore {
     for (std::size_t k = 0; k < worlds_.size(); ++k) {
       const Storage<Real>& storage = worlds_[k]->storage();
       for (int g = 0; g < storage.groups(); ++g) {
-        if (storage.moving_lanes(g) != 0) active_.push_back(first_group_[k] + g);
+        if (all_groups_ || storage.moving_lanes(g) != 0) active_.push_back(first_group_[k] + g);
       }
     }
   }
 
-  void run(int index, int slot) {
+  // Calls work(plan of the step, group, scratch, counters) for a group that is active, and brings
+  // home what it observed.
+  template <class Work>
+  void run_group(int index, int slot, Work work) {
     const FlushDenormals flush;  // whatever thread this is
-    const int group = active_[static_cast<std::size_t>(index)];
+    const int active = active_[static_cast<std::size_t>(index)];
     std::size_t kind = 0;
-    while (group >= first_group_[kind + 1]) ++kind;
+    while (active >= first_group_[kind + 1]) ++kind;
     const auto& w = *worlds_[kind];
     const auto s = static_cast<std::size_t>(slot);
-    ThreadCounters& counters = counters_[s];
-    counters.group_steps += step_group<Real>(
-        {kernels_, w.tables(), layout_}, w.storage().group(group - first_group_[kind]),
-        scratch_[s].views[kind], steps_, profiling_ ? &counters.clock : nullptr);
+    const int group = active - first_group_[kind];
+    GroupStep<Real> plan{kernels_, w.tables(), layout_};
+    if (observations_) {
+      plan.wanted = &observations_->ask(s, kind, group);
+      plan.poses = observations_->poses(s, kind);
+    }
+    work(plan, w.storage().group(group), scratch_[s].views[kind], counters_[s]);
+    if (observations_) observations_->take(s, kind, group);
+  }
+  void run(int index, int slot) {
+    run_group(index, slot,
+              [this](const auto& plan, const auto& group, auto* scratch, auto& counters) {
+                counters.group_steps += step_group<Real>(plan, group, scratch, steps_,
+                                                         profiling_ ? &counters.clock : nullptr);
+              });
+  }
+  void look_at(int index, int slot) {
+    run_group(index, slot, [](const auto& plan, const auto& group, auto* scratch, auto&) {
+      look_at_group<Real>(plan, group, scratch);
+    });
   }
 
   const kernels::KernelTable<Real>& kernels_;
@@ -225,6 +264,8 @@ class CoreOf final : public BatchCore {
   std::vector<ThreadCounters> counters_;
   bool profiling_ = false;
   bool packs_;  // worlds may sleep
+  std::unique_ptr<ObservationsOf<Real>> observations_;
+  bool all_groups_ = false;  // those that rest are to be looked at, too
 };
 
 template <class Real>
@@ -247,20 +288,10 @@ std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
   const PlanData& plan = w.data();
   std::vector<Contact> out;
   for (const auto& p : points) {
-    const auto c = std::find_if(plan.classes.begin(), plan.classes.end(), [&](const auto& pairs) {
-      return p.key >= pairs.first_key && p.key < pairs.first_key + static_cast<int>(pairs.a.size());
-    });
-    const auto index = static_cast<std::size_t>(p.key - c->first_key);
-    const auto& b = plan.colliders[static_cast<std::size_t>(c->b[index])];
+    const PairNames names = names_of(plan, p.key);
     Contact contact;
-    contact.body_b = b.scene_body, contact.shape_b = b.shape;
-    if (is_fixed(c->list)) {
-      const auto& a = plan.fixed[static_cast<std::size_t>(c->a[index])];
-      contact.body_a = a.scene_body, contact.shape_a = a.shape;
-    } else {
-      const auto& a = plan.colliders[static_cast<std::size_t>(c->a[index])];
-      contact.body_a = a.scene_body, contact.shape_a = a.shape;
-    }
+    contact.body_a = names.body_a, contact.shape_a = names.shape_a;
+    contact.body_b = names.body_b, contact.shape_b = names.shape_b;
     for (int k = 0; k < 3; ++k) {
       contact.normal[k] = static_cast<double>(p.normal[k]);
       contact.point[k] = static_cast<double>(p.point[k]);

@@ -42,6 +42,7 @@ struct Batch::Impl {
       reject("threads is " + std::to_string(options.threads) +
              ", must be 0 where an executor brings its own");
     }
+    check_observers(options.observe);
     int worlds = 0;
     std::size_t bodies = 0;
     for (const Kind& k : kinds) {
@@ -53,6 +54,7 @@ struct Batch::Impl {
       if (k.plan.scene().options.dt != kinds.front().plan.scene().options.dt) {
         reject("kinds of one batch must have the same dt");
       }
+      check_rays(options.observe.rays, k.plan.scene().space, k.plan.bodies());
       first_world.push_back(worlds);
       first_body.push_back(bodies);
       worlds += k.worlds;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "src/api/observations.hpp"
 #include "src/dispatch/kernels.hpp"
 #include "src/state/worlds.hpp"
 #include "src/step/for_each_group.hpp"
@@ -48,6 +49,9 @@ class BatchCore {
   virtual std::uint64_t hash(int kind, int world) const = 0;
   virtual Energy energy(int kind, int world) const = 0;
   virtual std::vector<Contact> contacts(int kind, int world) const = 0;
+  virtual Observations* observations() = 0;      // nullptr: nothing is observed
+  virtual void look(Executor& executor) = 0;     // at the current state
+  virtual void look_again() = 0;                 // at the next step also at what rests
   virtual double occupancy(int kind) const = 0;  // of dense slots, over all groups, current state
   virtual std::size_t bytes() const = 0;
   virtual std::size_t scratch_bytes() const = 0;

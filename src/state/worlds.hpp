@@ -29,6 +29,7 @@ class Worlds {
   const Storage<Real>& storage() const { return storage_; }
   int count() const { return worlds_; }
   int slot_of(int world) const { return slot_of_[static_cast<std::size_t>(world)]; }
+  int world_in(int slot) const { return world_in_[static_cast<std::size_t>(slot)]; }  // -1: none
 
   void restart();         // all worlds, first episode
   void reset(int world);  // next episode

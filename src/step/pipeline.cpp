@@ -16,7 +16,8 @@ enum StageIndex {
   kRestitute,
   kStore,
   kFinish,
-  kSettle
+  kSettle,
+  kObserve
 };
 
 template <class Real>
@@ -45,12 +46,16 @@ const kernels::SolverTable<Real>& find_contacts(const GroupStep<Real>& p,
 
 template <class Real>
 void contact_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
-                  kernels::Scratch* scratch, StageClock* clock) {
+                  kernels::Scratch* scratch, StageClock* clock,
+                  const kernels::Observation<Real>* slots) {
   const auto& t = p.tables;
   const auto lap = [clock](StageIndex stage) {
     if (clock) clock->lap(stage);
   };
+  if (slots) p.kernels.observer->watch(scratch, slots->places);
   const auto& solver = find_contacts(p, group, scratch, clock);
+  if (slots) p.kernels.observer->watch(scratch, nullptr);
+  const bool adds_up = slots && slots->totals[0];
   solver.warm_start(t, group, scratch);
   lap(kWarmStart);
   for (int s = 0; s < t.substeps; ++s) {
@@ -60,6 +65,10 @@ void contact_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& grou
     lap(kAdvance);
     solver.relax(t, group, scratch);
     lap(kRelax);
+    if (adds_up) {
+      p.kernels.observer->accumulate[static_cast<int>(t.inertia_kind)](t, group, scratch, *slots);
+      lap(kObserve);
+    }
     if (s + 1 < t.substeps) solver.next(t, group, scratch);
     lap(kAdvance);
   }
@@ -82,19 +91,62 @@ bool at_rest(const GroupStep<Real>& p, const kernels::GroupView<Real>& group) {
   return p.tables.has_sleep && *group.resting == (1u << p.kernels.lanes) - 1;
 }
 
+// What the slots of the last step tell, if it has just been taken, and of pairs that are asleep
+// what waits for them.
+template <class Real>
+void observe_slots(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
+                   kernels::Scratch* scratch, bool taken) {
+  const auto& t = p.tables;
+  const auto& wanted = *p.wanted;
+  const auto& observer = *p.kernels.observer;
+  const int kind = static_cast<int>(t.inertia_kind);
+  observer.clear(t, group, scratch, wanted);
+  if (taken) observer.awake[kind](t, group, scratch, wanted);
+  if (!t.has_sleep || *group.idle == 0) return;
+  kernels::GroupView<Real> all_awake = group;
+  all_awake.asleep = wanted.nobody;
+  observer.watch(scratch, wanted.places);
+  find_contacts<Real>(p, all_awake, scratch, nullptr);
+  observer.watch(scratch, nullptr);
+  observer.asleep[kind](t, group, scratch, wanted);
+}
+
 }  // namespace
+
+template <class Real>
+void look_at_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
+                   kernels::Scratch* scratch) {
+  const auto& t = p.tables;
+  const auto& observer = *p.kernels.observer;
+  if (p.wanted->motion) {
+    observer.motion[static_cast<int>(t.inertia_kind)](t, group, scratch, *p.wanted);
+  }
+  if (p.wanted->rays > 0) {
+    p.kernels.begin(t, group, p.poses);
+    observer.rays(t, group, p.poses, *p.wanted);
+  }
+}
 
 template <class Real>
 int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                kernels::Scratch* scratch, int steps, StageClock* clock) {
   if (clock) clock->start();
-  if (!p.tables.has_contacts) {
+  int taken = 0;
+  if (p.tables.has_contacts) {
+    const auto* slots = p.wanted && p.wanted->slots ? p.wanted : nullptr;
+    for (; taken < steps && !at_rest(p, group); ++taken) {
+      contact_step(p, group, scratch, clock, taken + 1 == steps ? slots : nullptr);
+    }
+    if (slots) observe_slots(p, group, scratch, taken == steps);
+  } else {
     p.kernels.free_motion[static_cast<int>(p.tables.inertia_kind)](p.tables, group, scratch, steps);
     if (clock) clock->lap(kFreeMotion);
-    return steps;
+    taken = steps;
   }
-  int taken = 0;
-  for (; taken < steps && !at_rest(p, group); ++taken) contact_step(p, group, scratch, clock);
+  if (p.wanted) {
+    look_at_group(p, group, scratch);
+    if (clock) clock->lap(kObserve);
+  }
   return taken;
 }
 
@@ -106,6 +158,10 @@ void collide_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& gro
 
 template int step_group<float>(const GroupStep<float>&, const kernels::GroupView<float>&,
                                kernels::Scratch*, int, StageClock*);
+template void look_at_group<float>(const GroupStep<float>&, const kernels::GroupView<float>&,
+                                   kernels::Scratch*);
+template void look_at_group<double>(const GroupStep<double>&, const kernels::GroupView<double>&,
+                                    kernels::Scratch*);
 template int step_group<double>(const GroupStep<double>&, const kernels::GroupView<double>&,
                                 kernels::Scratch*, int, StageClock*);
 template void collide_group<float>(const GroupStep<float>&, const kernels::GroupView<float>&,

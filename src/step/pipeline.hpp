@@ -4,17 +4,17 @@
 #include <array>
 #include <chrono>
 
-#include "kernels/table.hpp"
+#include "kernels/observation.hpp"
 
 namespace manyworlds {
 
 // Where a step's time goes; off unless somebody asked.
 class StageClock {
  public:
-  static constexpr int kStages = 12;
+  static constexpr int kStages = 13;
   static constexpr std::array<const char*, kStages> kNames = {
-      "free_motion", "begin", "broad_phase", "collide", "warm_start", "bias",
-      "advance",     "relax", "restitute",   "store",   "finish",     "settle"};
+      "free_motion", "begin",     "broad_phase", "collide", "warm_start", "bias",   "advance",
+      "relax",       "restitute", "store",       "finish",  "settle",     "observe"};
 
   void start() { last_ = Clock::now(); }
   void lap(int stage) {
@@ -35,6 +35,9 @@ struct GroupStep {
   const kernels::KernelTable<Real>& kernels;
   const kernels::WorldTables<Real>& tables;
   kernels::Layout layout;
+  // What batches with observers want to know after the last step, and scratch for poses of shapes.
+  const kernels::Observation<Real>* wanted = nullptr;
+  kernels::Scratch* poses = nullptr;
 };
 
 // `steps` whole steps of one group, fewer when all its worlds come to rest; returns how many.
@@ -42,6 +45,11 @@ struct GroupStep {
 template <class Real>
 int step_group(const GroupStep<Real>& plan, const kernels::GroupView<Real>& group,
                kernels::Scratch* scratch, int steps, StageClock* clock);
+
+// What the state alone tells an observer: motion and rays, not contacts.
+template <class Real>
+void look_at_group(const GroupStep<Real>& plan, const kernels::GroupView<Real>& group,
+                   kernels::Scratch* scratch);
 
 // The stages up to the narrow phase, without effect on the group.
 template <class Real>

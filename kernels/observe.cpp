@@ -1,0 +1,71 @@
+// The observers' table of this instruction set and precision.
+#include "kernels/observe/observe.hpp"
+
+#include "kernels/observe/motion.hpp"
+#include "kernels/observe/slots.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+namespace {
+
+// Slots of a list times reals of a slot: `several` for those of several points, `one` for the
+// others.
+std::size_t reals(kernels::Scratch* scratch, int list, int several, int one) {
+  const int rows = is_multi(static_cast<ListId>(list)) ? several : one;
+  return static_cast<std::size_t>(work_of(scratch).slots[list].max_slots) *
+         static_cast<std::size_t>(rows * kLanes);
+}
+std::size_t place_reals(const Tables& t, kernels::Scratch* scratch, int list) {
+  return t.dimension == kernels::Dimension::planar
+             ? reals(scratch, list, kPlaces<Planar, 2>, kPlaces<Planar, 1>)
+             : reals(scratch, list, kPlaces<Tensor, 4>, kPlaces<Tensor, 1>);
+}
+std::size_t total_reals(const Tables& t, kernels::Scratch* scratch, int list) {
+  return t.dimension == kernels::Dimension::planar
+             ? reals(scratch, list, kTotals<Planar, 2>, kTotals<Planar, 1>)
+             : reals(scratch, list, kTotals<Tensor, 4>, kTotals<Tensor, 1>);
+}
+
+void watch(kernels::Scratch* scratch, Real* const* places) {
+  Work& w = work_of(scratch);
+  w.recorder_storage = {nullptr, 0, 0, 0, places};
+  w.recorder = places ? &w.recorder_storage : nullptr;
+}
+
+void clear(const Tables& t, const Group&, kernels::Scratch*, const Observation& o) {
+  if (o.penetration) Float(Real(0)).store(o.penetration);
+  for (int b = 0; o.touching && b < t.bodies; ++b) o.touching[b] = 0;
+  for (int l = 0; o.contacts && l < kLanes; ++l) o.count[l] = 0;
+}
+
+template <class S>
+void fill(kernels::ObserverTable<Real>& out) {
+  const int kind = static_cast<int>(S::kKind);
+  out.accumulate[kind] = accumulate_totals<S>;
+  out.awake[kind] = observe_slots<S, false>;
+  out.asleep[kind] = observe_slots<S, true>;
+  out.motion[kind] = observe_motion<S>;
+}
+
+kernels::ObserverTable<Real> make_table() {
+  kernels::ObserverTable<Real> out{};
+  out.place_reals = place_reals;
+  out.total_reals = total_reals;
+  out.watch = watch;
+  out.clear = clear;
+  fill<Planar>(out);
+  fill<Isotropic>(out);
+  fill<Tensor>(out);
+  out.rays = observe_rays;
+  out.cast = cast_one;
+  return out;
+}
+
+}  // namespace
+
+const kernels::ObserverTable<Real>* observer_table() {
+  static const kernels::ObserverTable<Real> kTable = make_table();
+  return &kTable;
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,17 @@
+// What observers do beside the step, as one table.
+#pragma once
+
+#include "kernels/observation.hpp"
+#include "kernels/work.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+using Observation = kernels::Observation<Real>;
+
+const kernels::ObserverTable<Real>* observer_table();
+
+void observe_rays(const Tables& t, const Group& g, kernels::Scratch* scratch, const Observation& o);
+bool cast_one(kernels::Dimension dimension, kernels::ShapeKind kind, const Real* row,
+              const Real* ray, Real* out);
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,217 @@
+// What the solver's slots tell when a step is over: impulses, who touches, how deep.
+//
+// A pair that is asleep has no slot. Its contacts are found again where it sleeps, and each of its
+// impulses is what it will wake with, times the number of substeps: what a step of it would take.
+#pragma once
+
+#include "kernels/activity.hpp"
+#include "kernels/constraint/body_rows.hpp"
+#include "kernels/constraint/slot.hpp"
+#include "kernels/observe/observe.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// Rows of a slot's totals: the points' normal impulses, then friction, then twist.
+template <class S, int N>
+inline constexpr int kTotals = N + S::kTangents + 1;
+template <class S, int N>
+inline constexpr int kPlaces = N* S::kDim + 1;
+
+// visit(slot, index, list) in the order of the solver; inside a lane that is the order of keys,
+// whatever the layout.
+template <class S, class Visit>
+void for_each_observed(Work& w, Visit visit) {
+  for (int id = 0; id < kLists; ++id) {
+    const SlotList& list = w.slots[id];
+    for (int i = 0; i < list.count; ++i) {
+      if (is_multi(static_cast<ListId>(id))) {
+        visit(slot_at<S, S::kMulti>(list, i), i, id);
+      } else {
+        visit(slot_at<S, 1>(list, i), i, id);
+      }
+    }
+  }
+}
+
+template <class S>
+void accumulate_totals(const Tables& t, const Group&, kernels::Scratch* scratch,
+                       const Observation& o) {
+  Work& w = work_of(scratch);
+  for_each_observed<S>(w, [&](auto& s, int index, int id) {
+    constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+    Real* to = o.totals[id] + index * kTotals<S, N> * kLanes;
+    const auto add = [&](const Real* from) {
+      Float x = Float::load(from);
+      if (w.substep > 0) x = x + Float::load(to);
+      x.store(to);
+      to += kLanes;
+    };
+    for (int i = 0; i < N; ++i) add(s.impulse[i]);
+    if (!t.has_friction) return;
+    for (int c = 0; c < S::kTangents; ++c) add(s.tangent_impulse[c]);
+    if constexpr (std::remove_reference_t<decltype(s)>::kTwist) add(s.twist_impulse);
+  });
+}
+
+// Impulses of a slot over a step.
+template <class S, int N>
+struct Totals {
+  Float impulse[N], sum = Float(Real(0));
+  typename S::Vec friction = zero_of<typename S::Vec>();
+  Float twist = Float(Real(0));
+};
+
+template <class S, int N>
+MW_INLINE void set_friction(const Slot<S, N>& s, Float first, Float second, Totals<S, N>& out) {
+  const auto tangent = load_as<typename S::Vec>(s.tangent[0]);
+  out.friction = tangent * first;
+  if constexpr (S::kDim == 3) {
+    out.friction = fma(cross(load_as<Vec3>(s.normal[0]), tangent), second, out.friction);
+  }
+}
+
+template <class S, int N, bool kAsleep>
+MW_INLINE Totals<S, N> totals_of(const Tables& t, const Work& w, const Slot<S, N>& s, int index,
+                                 int id, const Observation& o) {
+  constexpr bool kTwist = Slot<S, N>::kTwist;
+  constexpr int kSecond = S::kTangents - 1;
+  Totals<S, N> out;
+  if constexpr (kAsleep) {
+    const Float substeps(static_cast<Real>(t.substeps));
+    for (int i = 0; i < N; ++i) out.impulse[i] = Float::load(s.impulse[i]) * substeps;
+    if (t.has_friction) {
+      set_friction(s, Float::load(s.tangent_impulse[0]) * substeps,
+                   Float::load(s.tangent_impulse[kSecond]) * substeps, out);
+      if constexpr (kTwist) out.twist = Float::load(s.twist_impulse) * substeps;
+    }
+  } else if (t.has_restitution) {
+    const auto& bounce = bounce_at<S, N>(w.slots[id], index);
+    for (int i = 0; i < N; ++i) out.impulse[i] = Float::load(bounce.total[i]);
+    if (t.has_friction) {
+      set_friction(s, Float::load(bounce.total_tangent[0]),
+                   Float::load(bounce.total_tangent[kSecond]), out);
+      if constexpr (kTwist) out.twist = Float::load(bounce.total_twist);
+    }
+  } else {
+    const Real* from = o.totals[id] + index * kTotals<S, N> * kLanes;
+    for (int i = 0; i < N; ++i) out.impulse[i] = Float::load(from + i * kLanes);
+    if (t.has_friction) {
+      set_friction(s, Float::load(from + N * kLanes), Float::load(from + (N + kSecond) * kLanes),
+                   out);
+      if constexpr (kTwist) out.twist = Float::load(from + (N + S::kTangents) * kLanes);
+    }
+  }
+  for (int i = 0; i < N; ++i) out.sum = i == 0 ? out.impulse[0] : out.sum + out.impulse[i];
+  return out;
+}
+
+// Features of a manifold's points are told apart by their quarter about its middle, as in contacts.
+template <class S, int N>
+std::int32_t feature_of(const Slot<S, N>& s, const Real* codes, int point, int lane) {
+  const std::int32_t code = static_cast<std::int32_t>(codes[lane]) * 4;
+  if constexpr (N == 1) return code;
+  Real x = 0, y = 0, points = 0;
+  for (int i = 0; i < N; ++i) {
+    if (!(Real(0) < s.mass[i][lane])) continue;
+    x += s.feature_x[i][lane], y += s.feature_y[i][lane], points += 1;
+  }
+  return code + (s.feature_x[point][lane] * points > x ? 1 : 0) +
+         (s.feature_y[point][lane] * points > y ? 2 : 0);
+}
+
+// The friction of a manifold acts at its middle; each point reports the share that its normal
+// impulse has.
+template <class S, int N>
+void put_contacts(const Slot<S, N>& s, const Totals<S, N>& total, const Real* places,
+                  std::uint32_t lanes, const Observation& o) {
+  constexpr int kDim = S::kDim;
+  const Float zero(Real(0)), one(Real(1));
+  const Float per_impulse = one / select(zero < total.sum, total.sum, one);
+  alignas(64) Real impulse[N][kLanes], friction[N][kDim][kLanes], twist[N][kLanes];
+  for (int i = 0; i < N; ++i) {
+    const Float share = total.impulse[i] * per_impulse;
+    total.impulse[i].store(impulse[i]);
+    store(friction[i][0], total.friction * share);
+    (total.twist * share).store(twist[i]);
+  }
+  for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
+    const int l = __builtin_ctz(m);
+    for (int i = 0; i < N; ++i) {
+      if (!(Real(0) < s.mass[i][l])) continue;
+      const std::int32_t at = o.count[l]++;
+      if (at >= o.room) continue;
+      auto& out = o.contacts[l * o.room + at];
+      out.key = s.key[l];
+      out.feature = feature_of(s, places + N * kDim * kLanes, i, l);
+      out.normal[2] = out.point[2] = out.friction[2] = Real(0);
+      for (int c = 0; c < kDim; ++c) {
+        out.normal[c] = s.normal[c][l];
+        out.point[c] = places[(i * kDim + c) * kLanes + l];
+        out.friction[c] = friction[i][c][l];
+      }
+      out.separation = s.separation[i][l];
+      out.impulse = impulse[i][l];
+      out.twist = twist[i][l];
+    }
+  }
+}
+
+inline void put_touching(const Tables& t, const std::int32_t* key, int id, std::uint32_t lanes,
+                         const Observation& o) {
+  for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
+    const int l = __builtin_ctz(m);
+    const kernels::PairOfKey pair = kernels::pair_of_key(t, key[l]);
+    o.touching[t.collider_body[pair.b]] |= 1u << l;
+    if (!is_fixed(static_cast<ListId>(id))) o.touching[t.collider_body[pair.a]] |= 1u << l;
+  }
+}
+
+// Lanes of a slot whose pair is asleep: nobody in it is awake.
+inline std::uint32_t sleeping_lanes(const Tables& t, const Group& g, const std::int32_t* key,
+                                    int id, std::uint32_t lanes) {
+  std::uint32_t out = 0;
+  for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
+    const int l = __builtin_ctz(m);
+    const kernels::PairOfKey pair = kernels::pair_of_key(t, key[l]);
+    std::uint32_t asleep = g.asleep[t.collider_body[pair.b]];
+    if (!is_fixed(static_cast<ListId>(id))) asleep &= g.asleep[t.collider_body[pair.a]];
+    out |= asleep & (1u << l);
+  }
+  return out;
+}
+
+template <class S, bool kAsleep>
+void observe_slots(const Tables& t, const Group& g, kernels::Scratch* scratch,
+                   const Observation& o) {
+  Work& w = work_of(scratch);
+  const std::uint32_t live = ~frozen_lanes(g) & kAllLanes;
+  const bool idle = t.has_sleep && has_idle_bodies(g);
+  for_each_observed<S>(w, [&](auto& s, int index, int id) {
+    constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+    std::uint32_t lanes = s.mask & live;
+    if (idle) {
+      const std::uint32_t asleep = sleeping_lanes(t, g, s.key, id, lanes);
+      lanes = kAsleep ? asleep : lanes & ~asleep;
+    }
+    if (lanes == 0) return;
+    if (o.penetration) {
+      Float deepest = Float::load(o.penetration);
+      const Mask there = mask_from_bits(lanes);
+      for (int i = 0; i < N; ++i) {
+        const Mask valid = there & (Float(Real(0)) < Float::load(s.mass[i]));
+        deepest = select(valid, max(deepest, -Float::load(s.separation[i])), deepest);
+      }
+      deepest.store(o.penetration);
+    }
+    if (!o.touching && !o.contacts) return;
+    const auto total = totals_of<S, N, kAsleep>(t, w, s, index, id, o);
+    if (o.touching) {
+      put_touching(t, s.key, id, bits(Float(Real(0)) < total.sum) & lanes, o);
+    }
+    if (o.contacts) {
+      put_contacts(s, total, o.places[id] + index * kPlaces<S, N> * kLanes, lanes, o);
+    }
+  });
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

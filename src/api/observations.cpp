@@ -1,0 +1,204 @@
+#include "src/api/observations.hpp"
+
+#include <algorithm>
+
+namespace manyworlds {
+
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+template <class Real>
+bool ObservationsOf<Real>::has(Observer observer) const {
+  return std::count(observers_.what.begin(), observers_.what.end(), observer) > 0;
+}
+
+template <class Real>
+ObservationsOf<Real>::ObservationsOf(const AllWorlds& worlds, const Observers& observers,
+                                     const kernels::KernelTable<Real>& kernels)
+    : worlds_(worlds), observers_(observers), kernels_(kernels), kinds_(worlds.size()) {
+  for (std::size_t k = 0; k < kinds_.size(); ++k) {
+    Kind& kind = kinds_[k];
+    const auto& w = *worlds_[k];
+    const std::size_t n = at(w.count()), rays = observers_.rays.size();
+    if (has(Observer::motion)) kind.motion.resize(n * kernels::kMotionRows);
+    if (has(Observer::penetration)) kind.penetration.resize(n);
+    if (has(Observer::touching)) kind.touching.resize(n * at(w.tables().bodies));
+    if (has(Observer::contacts)) {
+      kind.room = observers_.contacts_per_world;
+      const int several = w.tables().dimension == kernels::Dimension::planar ? 2 : 4;
+      for (int l = 0; l < kernels::kLists && observers_.contacts_per_world == 0; ++l) {
+        kind.room +=
+            w.tables().capacity[l] * (is_multi(static_cast<kernels::ListId>(l)) ? several : 1);
+      }
+      kind.count.resize(n);
+      kind.contacts.resize(n * at(kind.room));
+    }
+    kind.rays.resize(rays);
+    kind.ray_rows.resize(n * rays * kernels::kRayRows);
+    kind.hit_rows.resize(n * rays * kernels::kHitRows);
+    kind.hit_shape.assign(n * rays, -1);
+    for (const PlanFixed& f : w.data().fixed) {
+      const Body& body = w.plan().scene().bodies[at(f.scene_body)];
+      kind.fixed_category.push_back(body.shapes[at(f.shape)].filter.category);
+    }
+  }
+  set_rays(observers_.rays);
+}
+
+template <class Real>
+void ObservationsOf<Real>::add_thread(std::span<kernels::Scratch* const> scratch) {
+  auto& blocks = blocks_.emplace_back();
+  for (std::size_t k = 0; k < kinds_.size(); ++k) blocks.push_back(make_block(k, scratch[k]));
+}
+
+template <class Real>
+typename ObservationsOf<Real>::Block ObservationsOf<Real>::make_block(
+    std::size_t k, kernels::Scratch* scratch) const {
+  const Kind& kind = kinds_[k];
+  const auto& t = worlds_[k]->tables();
+  const kernels::ObserverTable<Real>& observer = *kernels_.observer;
+  const std::size_t lanes = at(kernels_.lanes), bodies = at(t.bodies), rays = kind.rays.size();
+  Block block;
+  auto& view = block.view;
+  const auto reals = [&](std::size_t count) { return block.reals.emplace_back(count).data(); };
+  const bool impulses = has(Observer::contacts) || has(Observer::touching);
+  view.slots = impulses || has(Observer::penetration);
+  for (int l = 0; t.has_contacts && view.slots && l < kernels::kLists; ++l) {
+    view.places[l] = reals(observer.place_reals(t, scratch, l));
+    if (impulses && !t.has_restitution) {
+      view.totals[l] = reals(observer.total_reals(t, scratch, l));
+    }
+  }
+  if (view.slots) {
+    block.nobody = AlignedBuffer<std::uint32_t>(bodies);
+    view.nobody = block.nobody.data();
+  }
+  if (has(Observer::penetration)) view.penetration = reals(lanes);
+  if (has(Observer::touching)) {
+    block.touching = AlignedBuffer<std::uint32_t>(bodies);
+    view.touching = block.touching.data();
+  }
+  if (has(Observer::contacts)) {
+    block.count = AlignedBuffer<std::int32_t>(lanes);
+    block.contacts = AlignedBuffer<kernels::ContactImpulse<Real>>(lanes * at(kind.room) + 1);
+    view.count = block.count.data();
+    view.contacts = block.contacts.data();
+    view.room = kind.room;
+  }
+  if (has(Observer::motion)) view.motion = reals(kernels::kMotionRows * lanes);
+  if (rays == 0) return block;
+  view.rays = static_cast<std::int32_t>(rays);
+  view.ray = kind.rays.data();
+  view.fixed_category = kind.fixed_category.data();
+  view.ray_rows = block.ray_rows = reals(rays * kernels::kRayRows * lanes);
+  view.hit_rows = reals(rays * kernels::kHitRows * lanes);
+  block.hit_shape = AlignedBuffer<std::int32_t>(rays * lanes);
+  view.hit_shape = block.hit_shape.data();
+  block.poses = scratch;
+  if (!t.has_contacts) {
+    block.tables = std::make_unique<kernels::WorldTables<Real>>(t);
+    block.tables->has_contacts = true;
+    block.pose_memory = AlignedBuffer<unsigned char>(kernels_.scratch_bytes(*block.tables));
+    block.poses = kernels_.make_scratch(*block.tables, block.pose_memory.data());
+  }
+  return block;
+}
+
+template <class Real>
+void ObservationsOf<Real>::put_ray(std::size_t k, int world, std::size_t ray, const Ray& from) {
+  Kind& kind = kinds_[k];
+  const PlanData& plan = worlds_[k]->data();
+  Vec3 origin = from.origin, way = from.direction;
+  if (from.body >= 0) {
+    const PlanBody& body = plan.bodies[at(from.body)];
+    origin = body.principal.conjugate() * (origin - body.center);
+    way = body.principal.conjugate() * way;
+  }
+  if (plan.scene.space == Space::planar) origin.z() = way.z() = 0;
+  way.normalize();
+  Real* rows = kind.ray_rows.data() + (at(world) * kind.rays.size() + ray) * kernels::kRayRows;
+  for (int c = 0; c < 3; ++c) {
+    rows[c] = static_cast<Real>(origin[c]);
+    rows[3 + c] = static_cast<Real>(way[c]);
+  }
+  rows[6] = static_cast<Real>(from.length);
+}
+
+template <class Real>
+void ObservationsOf<Real>::set_rays(std::span<const Ray> rays) {
+  for (std::size_t k = 0; k < kinds_.size(); ++k) {
+    for (std::size_t i = 0; i < rays.size(); ++i) kinds_[k].rays[i] = {rays[i].body, rays[i].mask};
+    for (int w = 0; w < worlds_[k]->count(); ++w) set_rays(static_cast<int>(k), w, rays);
+  }
+  observers_.rays.assign(rays.begin(), rays.end());
+}
+
+template <class Real>
+void ObservationsOf<Real>::set_rays(int kind, int world, std::span<const Ray> rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i) put_ray(at(kind), world, i, rays[i]);
+}
+
+template <class Real>
+kernels::Scratch* ObservationsOf<Real>::poses(std::size_t thread, std::size_t kind) const {
+  return blocks_[thread][kind].poses;
+}
+
+template <class Real>
+const kernels::Observation<Real>& ObservationsOf<Real>::ask(std::size_t thread, std::size_t k,
+                                                            int group) {
+  Block& block = blocks_[thread][k];
+  const Kind& kind = kinds_[k];
+  const std::size_t lanes = at(kernels_.lanes);
+  const std::size_t rows = kind.rays.size() * kernels::kRayRows;
+  if (rows == 0) return block.view;
+  for (std::size_t l = 0; l < lanes; ++l) {
+    const int world =
+        std::max(0, worlds_[k]->world_in(group * kernels_.lanes + static_cast<int>(l)));
+    const Real* from = kind.ray_rows.data() + at(world) * rows;
+    for (std::size_t i = 0; i < rows; ++i) block.ray_rows[i * lanes + l] = from[i];
+  }
+  return block.view;
+}
+
+template <class Real>
+void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group) {
+  const kernels::Observation<Real>& view = blocks_[thread][k].view;
+  Kind& kind = kinds_[k];
+  const std::size_t lanes = at(kernels_.lanes);
+  const auto untangle = [lanes](auto* to, const auto* from, std::size_t rows, std::size_t lane) {
+    for (std::size_t i = 0; i < rows; ++i) to[i] = from[i * lanes + lane];
+  };
+  for (std::size_t l = 0; l < lanes; ++l) {
+    const int in = worlds_[k]->world_in(group * kernels_.lanes + static_cast<int>(l));
+    if (in < 0) continue;
+    const std::size_t w = at(in), rays = kind.rays.size();
+    if (view.motion) {
+      untangle(&kind.motion[w * kernels::kMotionRows], view.motion, kernels::kMotionRows, l);
+    }
+    if (view.penetration) kind.penetration[w] = view.penetration[l];
+    if (view.touching) {
+      const std::size_t bodies = at(worlds_[k]->tables().bodies);
+      for (std::size_t b = 0; b < bodies; ++b) {
+        kind.touching[w * bodies + b] = static_cast<std::uint8_t>((view.touching[b] >> l) & 1u);
+      }
+    }
+    if (view.contacts) {
+      kind.count[w] = view.count[l];
+      std::copy_n(view.contacts + l * at(kind.room), std::min(view.count[l], kind.room),
+                  kind.contacts.data() + w * at(kind.room));
+    }
+    if (rays > 0) {
+      untangle(&kind.hit_rows[w * rays * kernels::kHitRows], view.hit_rows,
+               rays * kernels::kHitRows, l);
+      untangle(&kind.hit_shape[w * rays], view.hit_shape, rays, l);
+    }
+  }
+}
+
+template class ObservationsOf<float>;
+template class ObservationsOf<double>;
+
+}  // namespace manyworlds

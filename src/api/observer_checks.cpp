@@ -1,0 +1,98 @@
+// Observers in words: names, sizes, what is wrong with them.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "src/api/batch_data.hpp"
+#include "src/api/observations.hpp"
+
+namespace manyworlds {
+
+const char* to_string(Observer observer) {
+  switch (observer) {
+    case Observer::contacts: return "contacts";
+    case Observer::touching: return "touching";
+    case Observer::penetration: return "penetration";
+    case Observer::motion: return "motion";
+  }
+  return "?";
+}
+
+const char* to_string(Observed what) {
+  switch (what) {
+    case Observed::kinetic_energy: return "kinetic_energy";
+    case Observed::potential_energy: return "potential_energy";
+    case Observed::mass: return "mass";
+    case Observed::momentum: return "momentum";
+    case Observed::angular_momentum: return "angular_momentum";
+    case Observed::mass_center: return "mass_center";
+    case Observed::penetration: return "penetration";
+    case Observed::contact_count: return "contact_count";
+    case Observed::touching: return "touching";
+    case Observed::ray_distance: return "ray_distance";
+    case Observed::ray_normal: return "ray_normal";
+    case Observed::ray_body: return "ray_body";
+    case Observed::ray_shape: return "ray_shape";
+  }
+  return "?";
+}
+
+std::size_t observed_size(Observed what, Space space, int bodies, std::size_t rays) {
+  const std::size_t dim = space == Space::planar ? 2 : 3;
+  switch (what) {
+    case Observed::momentum:
+    case Observed::mass_center: return dim;
+    case Observed::angular_momentum: return space == Space::planar ? 1 : 3;
+    case Observed::touching: return static_cast<std::size_t>(bodies);
+    case Observed::ray_distance:
+    case Observed::ray_body:
+    case Observed::ray_shape: return rays;
+    case Observed::ray_normal: return rays * dim;
+    default: return 1;
+  }
+}
+
+void check_observers(const Observers& observers) {
+  if (observers.contacts_per_world < 0) {
+    reject("observe.contacts_per_world is " + std::to_string(observers.contacts_per_world) +
+           ", must be >= 0");
+  }
+}
+
+void check_rays(std::span<const Ray> rays, Space space, int bodies) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    const auto wrong = [&](const char* field, const auto& found, const std::string& expected) {
+      std::ostringstream text;
+      text << "rays[" << i << "]." << field << " is " << found << ", must be " << expected;
+      reject(text.str());
+    };
+    Vec3 way = ray.direction;
+    if (space == Space::planar) way.z() = 0;
+    if (!ray.origin.allFinite()) wrong("origin", ray.origin.transpose(), "finite");
+    if (!way.allFinite() || way.isZero(0)) {
+      wrong("direction", ray.direction.transpose(),
+            space == Space::planar ? "finite and not zero in the plane" : "finite and not zero");
+    }
+    if (!(ray.length > 0)) wrong("length", ray.length, "> 0 m");
+    if (ray.body < -1 || ray.body >= bodies) {
+      wrong("body", ray.body, "-1 to " + std::to_string(bodies - 1));
+    }
+  }
+}
+
+PairNames names_of(const PlanData& plan, int key) {
+  const auto c = std::find_if(plan.classes.begin(), plan.classes.end(), [&](const auto& pairs) {
+    return key >= pairs.first_key && key < pairs.first_key + static_cast<int>(pairs.a.size());
+  });
+  const auto index = static_cast<std::size_t>(key - c->first_key);
+  const auto& b = plan.colliders[static_cast<std::size_t>(c->b[index])];
+  if (is_fixed(c->list)) {
+    const auto& a = plan.fixed[static_cast<std::size_t>(c->a[index])];
+    return {a.scene_body, a.shape, b.scene_body, b.shape};
+  }
+  const auto& a = plan.colliders[static_cast<std::size_t>(c->a[index])];
+  return {a.scene_body, a.shape, b.scene_body, b.shape};
+}
+
+}  // namespace manyworlds

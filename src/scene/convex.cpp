@@ -1,0 +1,225 @@
+#include "src/scene/convex.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace manyworlds {
+
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::max();
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+Vec3 across(const Vec3& a) {  // any unit vector across a unit vector
+  return a.unitOrthogonal();
+}
+Vec3 left_of(const Vec3& a) { return {-a.y(), a.x(), 0}; }
+
+struct Nearest {
+  double distance = kFar;
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero();
+  void take(const Vec3& on_a, const Vec3& on_b) {
+    const double d = (on_b - on_a).norm();
+    if (d < distance) distance = d, a = on_a, b = on_b;
+  }
+};
+
+Vec3 nearest_on_segment(const Vec3& p, const Vec3& from, const Vec3& to) {
+  const Vec3 way = to - from;
+  const double length2 = way.squaredNorm();
+  if (length2 == 0) return from;
+  return from + way * std::clamp((p - from).dot(way) / length2, 0.0, 1.0);
+}
+
+// Of the hull's points, to one that is not inside it.
+Vec3 nearest_on_hull(const Convex& c, const Vec3& p) {
+  if (c.directions.size() == 3) {
+    const Vec3 local = c.axes.transpose() * (p - c.center);
+    return c.center + c.axes * local.cwiseMax(-c.half).cwiseMin(c.half);
+  }
+  Nearest best;
+  for (const Vec3& q : c.points) best.take(q, p);
+  for (const auto& e : c.edges) {
+    best.take(nearest_on_segment(p, c.points[at(e[0])], c.points[at(e[1])]), p);
+  }
+  return best.a;
+}
+
+// Where the lines of two edges come nearest, when that is on both of them; ends are looked at as
+// points of the hulls.
+void take_crossing(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, Nearest& best) {
+  const Vec3 u = a1 - a0, v = b1 - b0, r = b0 - a0;
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v);
+  const double det = uu * vv - uv * uv;
+  if (det <= 1e-14 * uu * vv) return;  // parallel
+  const double s = (r.dot(u) * vv - r.dot(v) * uv) / det;
+  const double t = (r.dot(u) * uv - r.dot(v) * uu) / det;
+  if (s < 0 || s > 1 || t < 0 || t > 1) return;
+  best.take(a0 + s * u, b0 + t * v);
+}
+
+// Of hulls that do not overlap by more than a touch.
+Nearest nearest_features(const Convex& a, const Convex& b, const Vec3& shift_b) {
+  Nearest best;
+  for (const Vec3& p : a.points) best.take(p, nearest_on_hull(b, p - shift_b) + shift_b);
+  for (const Vec3& p : b.points) best.take(nearest_on_hull(a, p + shift_b), p + shift_b);
+  for (const auto& e : a.edges) {
+    for (const auto& f : b.edges) {
+      take_crossing(a.points[at(e[0])], a.points[at(e[1])], b.points[at(f[0])] + shift_b,
+                    b.points[at(f[1])] + shift_b, best);
+    }
+  }
+  return best;
+}
+
+// The direction along which the hulls are farthest apart, or overlap least, of all in which that
+// can be: normals of faces, and across two edges.
+struct Widest {
+  double gap = -kFar;
+  Vec3 normal = Vec3::UnitX();
+};
+
+Widest widest_gap(const Convex& a, const Convex& b) {
+  Widest best;
+  const auto look = [&](const Vec3& n) {
+    double low_a = kFar, high_a = -kFar, low_b = kFar, high_b = -kFar;
+    for (const Vec3& p : a.points)
+      low_a = std::min(low_a, n.dot(p)), high_a = std::max(high_a, n.dot(p));
+    for (const Vec3& p : b.points)
+      low_b = std::min(low_b, n.dot(p)), high_b = std::max(high_b, n.dot(p));
+    if (low_b - high_a > best.gap) best = {low_b - high_a, n};
+    if (low_a - high_b > best.gap) best = {low_a - high_b, -n};
+  };
+  for (const Vec3& n : a.normals) look(n);
+  for (const Vec3& n : b.normals) look(n);
+  for (const Vec3& d : a.directions) {
+    for (const Vec3& e : b.directions) {
+      const Vec3 n = d.cross(e);
+      if (n.squaredNorm() > 1e-14) look(n.normalized());
+    }
+  }
+  return best;
+}
+
+Convex segment_of(const Vec3& from, const Vec3& to, double radius, Space space) {
+  Convex c;
+  c.points = {from, to};
+  c.edges = {{0, 1}};
+  c.radius = radius;
+  const Vec3 way = (to - from).normalized();
+  // Besides the sides: along it, for segments in one line.
+  if (space == Space::planar) {
+    c.normals = {left_of(way), way};
+  } else {
+    c.normals = {across(way), way.cross(across(way)), way};
+    c.directions = {way};
+  }
+  return c;
+}
+
+Separation of_half_space(const Convex& plane, const Convex& b) {
+  const Vec3& n = plane.normals[0];
+  const auto lowest =
+      std::min_element(b.points.begin(), b.points.end(),
+                       [&](const Vec3& p, const Vec3& q) { return n.dot(p) < n.dot(q); });
+  Separation s;
+  s.distance = n.dot(*lowest) - plane.offset - b.radius;
+  s.point_b = *lowest - n * b.radius;
+  s.point_a = s.point_b - n * s.distance;
+  s.normal = n;
+  return s;
+}
+
+Separation turned(const Separation& s) { return {s.distance, s.point_b, s.point_a, -s.normal}; }
+
+}  // namespace
+
+std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space space) {
+  const Mat3 outer = pose.rotation.normalized().toRotationMatrix();
+  const Mat3 r = outer * shape.rotation.normalized().toRotationMatrix();
+  const Vec3 x = pose.position + outer * shape.position;
+  const auto place = [&](const Vec2& p) { return Vec3(x + r * Vec3(p.x(), p.y(), 0)); };
+  const auto half_space = [&](const Vec3& normal, double offset) {
+    Convex c;
+    c.half_space = true;
+    c.normals = {(r * normal).normalized()};
+    c.offset = offset + c.normals[0].dot(x);
+    return c;
+  };
+  const auto ball = [&](double radius) {
+    Convex c;
+    c.points = {x};
+    c.normals = {Vec3::UnitX(), Vec3::UnitY()};
+    if (space == Space::spatial) c.normals.push_back(Vec3::UnitZ());
+    c.radius = radius;
+    return c;
+  };
+  if (const auto* s = std::get_if<Sphere>(&shape.geometry)) return {ball(s->radius)};
+  if (const auto* s = std::get_if<Circle>(&shape.geometry)) return {ball(s->radius)};
+  if (const auto* s = std::get_if<Plane>(&shape.geometry))
+    return {half_space(s->normal, s->offset)};
+  if (const auto* s = std::get_if<HalfPlane>(&shape.geometry)) {
+    return {half_space({s->normal.x(), s->normal.y(), 0}, s->offset)};
+  }
+  if (const auto* s = std::get_if<Capsule>(&shape.geometry)) {
+    const Vec3 end = r.col(space == Space::planar ? 1 : 2) * s->half_length;
+    return {segment_of(x - end, x + end, s->radius, space)};
+  }
+  if (const auto* s = std::get_if<Segment>(&shape.geometry)) {
+    return {segment_of(place(s->a), place(s->b), 0, space)};
+  }
+  if (const auto* s = std::get_if<Terrain>(&shape.geometry)) {
+    std::vector<Convex> links;
+    const std::size_t n = s->points.size();
+    for (std::size_t i = 0; i + (s->loop ? 0 : 1) < n; ++i) {
+      links.push_back(segment_of(place(s->points[i]), place(s->points[(i + 1) % n]), 0, space));
+    }
+    return links;
+  }
+  Convex c;
+  if (const auto* s = std::get_if<Box>(&shape.geometry)) {
+    c.axes = r, c.center = x, c.half = s->half_extents;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 sign(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+      c.points.push_back(x + r * sign.cwiseProduct(c.half));
+      for (const int bit : {1, 2, 4}) {
+        if (!(i & bit)) c.edges.push_back({i, i | bit});
+      }
+    }
+    for (int k = 0; k < 3; ++k) c.normals.push_back(r.col(k));
+    c.directions = c.normals;
+    return {c};
+  }
+  for (const Vec2& v : std::get<Polygon>(shape.geometry).vertices) c.points.push_back(place(v));
+  const int n = static_cast<int>(c.points.size());
+  for (int i = 0; i < n; ++i) {
+    c.edges.push_back({i, (i + 1) % n});
+    c.normals.push_back(-left_of((c.points[at((i + 1) % n)] - c.points[at(i)]).normalized()));
+  }
+  return {c};
+}
+
+Separation separation(const Convex& a, const Convex& b) {
+  if (a.half_space) return of_half_space(a, b);
+  if (b.half_space) return turned(of_half_space(b, a));
+  const Widest widest = widest_gap(a, b);
+  // Hulls that overlap: as they are when shifted until they touch.
+  const double overlap = std::min(widest.gap, 0.0);
+  const Vec3 shift = -overlap * widest.normal;
+  const Nearest near = nearest_features(a, b, shift);
+  double distance = overlap;
+  Vec3 normal = widest.normal;
+  if (widest.gap > 0) {
+    distance = near.distance;
+    if (near.distance > 1e-300) normal = (near.b - near.a) / near.distance;
+  }
+  Separation s;
+  s.distance = distance - a.radius - b.radius;
+  s.normal = normal;
+  s.point_a = near.a + normal * a.radius;
+  s.point_b = s.point_a + normal * s.distance;
+  return s;
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,31 @@
+// Convex parts of shapes and how they lie to each other, by closed forms over their features.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "manyworlds/query.hpp"
+
+namespace manyworlds {
+
+// All points no farther than the radius from the hull of `points`; or a half space.
+struct Convex {
+  std::vector<Vec3> points;               // m, world
+  std::vector<std::array<int, 2>> edges;  // of points
+  std::vector<Vec3> normals;              // unit: of faces, and more where they do no harm
+  std::vector<Vec3> directions;           // unit: of edges, in space
+  double radius = 0;                      // m
+  bool solid = false;                     // points may lie inside: boxes and polygons
+  Mat3 axes = Mat3::Identity();           // of a box
+  Vec3 center = Vec3::Zero(), half = Vec3::Zero();
+  bool half_space = false;
+  double offset = 0;  // of a half space: normals[0] . p <= offset is solid
+};
+
+// One part, of a terrain one for each of its segments.
+std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space space);
+
+// At most one of the two is a half space.
+Separation separation(const Convex& a, const Convex& b);
+
+}  // namespace manyworlds
