@@ -15,6 +15,11 @@ if(TARGET manyworlds_mjcf)
           DESTINATION "${mw_package_dir}")
   install(FILES "${PROJECT_SOURCE_DIR}/cmake/FindMuJoCo.cmake" DESTINATION "${mw_package_dir}")
 endif()
+if(TARGET manyworlds_record)
+  install(TARGETS manyworlds_record EXPORT manyworlds-record-targets)
+  install(EXPORT manyworlds-record-targets NAMESPACE manyworlds:: FILE manyworlds-record-targets.cmake
+          DESTINATION "${mw_package_dir}")
+endif()
 
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/manyworlds-config.cmake.in"
   "${PROJECT_BINARY_DIR}/manyworlds-config.cmake" INSTALL_DESTINATION "${mw_package_dir}")

@@ -4,7 +4,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
 
 mw_sources(mw_library_sources "src/*.cpp" "scenes/*.cpp")
-list(FILTER mw_library_sources EXCLUDE REGEX "/src/mjcf/")
+list(FILTER mw_library_sources EXCLUDE REGEX "/src/(mjcf|record)/")
 
 add_library(manyworlds ${mw_library_sources})
 add_library(manyworlds::manyworlds ALIAS manyworlds)

@@ -14,8 +14,9 @@ from pathlib import Path
 
 # A file in src/ includes its own and lower floors.
 SRC_FLOORS = ["base", "scene", "plan", "state", "dispatch", "step", "api"]
-# Off the column: reads models into a Scene and may know nothing below the public headers but these.
-SRC_SIDE = {"mjcf": {"mjcf", "base"}}
+# Off the column: read models into a Scene, record a Batch. They may know nothing below the public
+# headers but these.
+SRC_SIDE = {"mjcf": {"mjcf", "base"}, "record": {"record", "base"}}
 # Floors that may see the kernels' top-level headers (tables and views, no lanes).
 SRC_SEES_KERNELS = {"plan", "state", "dispatch", "step", "api"}
 
@@ -34,6 +35,8 @@ ONE_HOME = {
     r"(oneapi/)?tbb[/.].*": ("src", 1),
     r"xsimd/.*": ("kernels", 1),
     r"mujoco/.*": ("src/mjcf", None),
+    r"hdf5\.h": ("src/record", 1),
+    r"nlohmann/.*": ("src/record", 1),
 }
 # Public headers include the standard library (no dot, no slash), Eigen and each other.
 PUBLIC_SYSTEM = re.compile(r"[a-z_0-9]+|Eigen/\w+")

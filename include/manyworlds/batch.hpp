@@ -17,6 +17,7 @@
 
 #include "manyworlds/executor.hpp"
 #include "manyworlds/fields.hpp"
+#include "manyworlds/listener.hpp"
 #include "manyworlds/observe.hpp"
 #include "manyworlds/plan.hpp"
 #include "manyworlds/snapshot.hpp"
@@ -133,6 +134,7 @@ class Batch {
   int threads() const;
   Isa isa() const;
   Precision precision() const;
+  std::uint64_t seed() const;  // BatchOptions::seed
   int lanes() const;
   std::string kernel_table() const;     // "avx2 f32 x8"
   std::size_t bytes_per_world() const;  // persistent state, mean over worlds
@@ -247,6 +249,11 @@ class Batch {
   // Time spent per stage since the last call, summed over threads; empty until profile(true).
   void profile(bool on);
   std::vector<StageTime> take_stage_times();
+
+  // Tells `listener` of every input and every step() call from now on, for as long as somebody
+  // else holds it. What it does then is no part of the promises of step().
+  void listen(std::weak_ptr<BatchListener> listener);
+  bool forces_pending() const;  // some were added since the last step() call
 
  private:
   struct Impl;

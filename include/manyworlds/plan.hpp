@@ -80,6 +80,7 @@ class Plan {
  public:
   explicit Plan(std::shared_ptr<const PlanData> data) : data_(std::move(data)) {}
   const Scene& scene() const;
+  const PlanOptions& options() const;
   int bodies() const;  // bodies with state: dynamic and kinematic, in scene order
   // Index in the scene of state body i, and the reverse (-1 for fixed bodies).
   int scene_body(int state_body) const;

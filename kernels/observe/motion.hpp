@@ -15,9 +15,9 @@ struct BodyMass {
   Vec3 inertia;          // principal; planar: z
   typename S::Vec pull;  // acceleration by gravity, m/s^2
 
-  MW_INLINE BodyMass(const Tables& t, int body) {
-    const auto& b = t.body[body];
-    mass = Float(Real(1)) / Float(b.inv_mass);
+  MW_INLINE BodyMass(const Group& g, int body) {
+    const auto& b = constants_of_body(g, body);
+    mass = Float(Real(1)) / b.inv_mass;
     inertia = {b.inertia[0], b.inertia[1], b.inertia[2]};
     pull.x = b.acceleration[0], pull.y = b.acceleration[1];
     if constexpr (S::kDim == 3) pull.z = b.acceleration[2];
@@ -56,8 +56,8 @@ void observe_motion(const Tables& t, const Group& g, kernels::Scratch*, const Ob
   Real* rows = o.motion;
   for (int i = 0; i < kernels::kMotionRows; ++i) zero.store(rows + i * kLanes);
   for (int b = 0; b < t.bodies; ++b) {
-    if (t.body[b].inv_mass == Real(0)) continue;
-    const BodyMass<S> m(t, b);
+    if (t.body[b].kinematic) continue;
+    const BodyMass<S> m(g, b);
     const auto x = load_as<typename S::Vec>(state_of(t, g, b, kState<S>.position));
     const auto v = load_as<typename S::Vec>(state_of(t, g, b, kState<S>.linear));
     const auto w = load_as<typename S::Ang>(state_of(t, g, b, kState<S>.angular));

@@ -28,6 +28,7 @@ int Batch::bodies(int world) const { return impl_->plan(kind_of(world)).bodies()
 int Batch::threads() const { return impl_->executor->threads(); }
 Isa Batch::isa() const { return impl_->core->isa(); }
 Precision Batch::precision() const { return impl_->options.precision; }
+std::uint64_t Batch::seed() const { return impl_->options.seed; }
 int Batch::lanes() const { return impl_->core->lanes(); }
 std::string Batch::kernel_table() const {
   return std::string(to_string(isa())) + " " + to_string(precision()) + " x" +
@@ -42,6 +43,7 @@ void Batch::step(int n) {
   if (n <= 0) return;
   impl_->core->step(*impl_->executor, n);
   impl_->steps += n;
+  impl_->tell_step(*this, n);
 }
 
 int Batch::step_to(double clock, int max_steps) {
@@ -82,12 +84,14 @@ void Batch::write(Field field, std::span<const float> in) {
   impl_->for_each_world(field, [&](int kind, int world, std::size_t at) {
     impl_->core->write(field, kind, world, in.data() + at);
   });
+  impl_->tell_write(*this, field, in);
 }
 void Batch::write(Field field, std::span<const double> in) {
   impl_->check_size(field, in.size(), size(field));
   impl_->for_each_world(field, [&](int kind, int world, std::size_t at) {
     impl_->core->write(field, kind, world, in.data() + at);
   });
+  impl_->tell_write(*this, field, in);
 }
 void Batch::read(Field field, int world, std::span<double> out) const {
   const auto p = impl_->find(world);
@@ -98,38 +102,46 @@ void Batch::write(Field field, int world, std::span<const double> in) {
   const auto p = impl_->find(world);
   impl_->check_size(field, in.size(), impl_->world_size(field, p.kind));
   impl_->core->write(field, p.kind, p.world, in.data());
+  impl_->tell_write(*this, field, world, in);
 }
 
 void Batch::add_force(int world, int body, const Vec3& force) {
   const auto p = impl_->find_body(world, body);
   impl_->core->add_force(p.kind, p.world, body, force, Vec3::Zero());
+  impl_->tell(*this, Input::force, world, body, {force});
 }
 void Batch::add_torque(int world, int body, const Vec3& torque) {
   const auto p = impl_->find_body(world, body);
   impl_->core->add_force(p.kind, p.world, body, Vec3::Zero(), torque);
+  impl_->tell(*this, Input::torque, world, body, {torque});
 }
 void Batch::add_force_at(int world, int body, const Vec3& force, const Vec3& point_world) {
   const auto p = impl_->find_body(world, body);
   const Vec3 arm = point_world - impl_->core->center_of_mass(p.kind, p.world, body);
   impl_->core->add_force(p.kind, p.world, body, force, arm.cross(force));
+  impl_->tell(*this, Input::force_at, world, body, {force, point_world});
 }
 void Batch::add_impulse(int world, int body, const Vec3& impulse) {
   const auto p = impl_->find_body(world, body);
   impl_->core->add_impulse(p.kind, p.world, body, impulse, Vec3::Zero());
+  impl_->tell(*this, Input::impulse, world, body, {impulse});
 }
 void Batch::add_angular_impulse(int world, int body, const Vec3& impulse) {
   const auto p = impl_->find_body(world, body);
   impl_->core->add_impulse(p.kind, p.world, body, Vec3::Zero(), impulse);
+  impl_->tell(*this, Input::angular_impulse, world, body, {impulse});
 }
 void Batch::add_impulse_at(int world, int body, const Vec3& impulse, const Vec3& point_world) {
   const auto p = impl_->find_body(world, body);
   const Vec3 arm = point_world - impl_->core->center_of_mass(p.kind, p.world, body);
   impl_->core->add_impulse(p.kind, p.world, body, impulse, arm.cross(impulse));
+  impl_->tell(*this, Input::impulse_at, world, body, {impulse, point_world});
 }
 
 void Batch::set_enabled(int world, int body, bool enabled) {
   const auto p = impl_->find_body(world, body);
   impl_->core->set_enabled(p.kind, p.world, body, enabled);
+  impl_->tell(*this, enabled ? Input::enable : Input::disable, world, body);
 }
 bool Batch::enabled(int world, int body) const {
   const auto p = impl_->find_body(world, body);
@@ -142,6 +154,7 @@ void Batch::spawn(int world, int body, const BodyState& state) {
     reject("spawn: the rotation has length " + std::to_string(norm) + ", must be > 0");
   }
   impl_->core->spawn(p.kind, p.world, body, state);
+  impl_->tell_spawn(*this, world, body, state);
 }
 
 bool Batch::sleeps() const { return impl_->options.sleep; }
@@ -156,6 +169,7 @@ bool Batch::asleep(int world) const {
 void Batch::wake(int world) {
   const auto p = impl_->find(world);
   impl_->core->wake(p.kind, p.world);
+  impl_->tell(*this, Input::wake, world);
 }
 double Batch::awake_fraction() const {
   int awake = 0;
@@ -168,6 +182,7 @@ void Batch::reset() {
   impl_->core->restart();
   impl_->steps = 0;
   impl_->clock = 0;
+  for (int w = 0; w < worlds(); ++w) impl_->tell(*this, Input::reset, w);
 }
 void Batch::reset(std::span<const std::uint8_t> mask) {
   if (mask.size() != static_cast<std::size_t>(worlds())) {
@@ -178,6 +193,7 @@ void Batch::reset(std::span<const std::uint8_t> mask) {
     if (mask[static_cast<std::size_t>(w)] == 0) continue;
     const auto p = impl_->find(w);
     impl_->core->reset(p.kind, p.world);
+    impl_->tell(*this, Input::reset, w);
   }
 }
 
@@ -234,5 +250,6 @@ ContactSummary Batch::measure_contacts() const {
 
 void Batch::profile(bool on) { impl_->core->profile(on); }
 std::vector<StageTime> Batch::take_stage_times() { return impl_->core->take_stage_times(); }
+bool Batch::forces_pending() const { return impl_->core->forced(); }
 
 }  // namespace manyworlds

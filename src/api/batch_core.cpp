@@ -118,6 +118,10 @@ class CoreOf final : public BatchCore {
   void add_impulse(int kind, int world, int body, const Vec3& p, const Vec3& l) override {
     at(kind).add_impulse(world, body, p, l);
   }
+  bool forced() const override {
+    return std::any_of(worlds_.begin(), worlds_.end(),
+                       [](const auto& w) { return w->storage().forced(); });
+  }
   Vec3 center_of_mass(int kind, int world, int body) const override {
     return at(kind).center_of_mass(world, body);
   }

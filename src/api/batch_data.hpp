@@ -32,6 +32,7 @@ struct Batch::Impl {
   double clock = 0;                        // of step_to
   std::vector<std::uint64_t> fingerprint;  // of each kind's plan
   std::vector<std::size_t> first_body;     // of each kind, counted over all worlds before it
+  std::vector<std::weak_ptr<BatchListener>> listeners;
 
   Impl(std::vector<Kind> all, const BatchOptions& o) : kinds(std::move(all)), options(o) {
     if (kinds.empty()) reject("a batch needs at least one kind of world");
@@ -69,6 +70,15 @@ struct Batch::Impl {
     }
     core = make_core(kinds, options, checked_isa(options), executor->threads());
   }
+
+  // Told after the change; see batch_listen.cpp.
+  void tell(const Batch& batch, Input input, int world, int body = -1,
+            std::initializer_list<Vec3> vectors = {}) const;
+  template <class Number>
+  void tell_write(const Batch& batch, Field field, std::span<const Number> in) const;
+  void tell_write(const Batch& batch, Field field, int world, std::span<const double> in) const;
+  void tell_spawn(const Batch& batch, int world, int body, const BodyState& state) const;
+  void tell_step(const Batch& batch, int n) const;
 
   // Does world `from` of a snapshot fit this kind of world? Throws SnapshotError.
   void check_snapshot_world(const Snapshot& snapshot, std::size_t from, int kind) const;

@@ -30,6 +30,7 @@ class BatchCore {
   virtual void write(Parameter parameter, int kind, int world, const double* in) = 0;
   virtual void add_force(int kind, int world, int body, const Vec3& f, const Vec3& torque) = 0;
   virtual void add_impulse(int kind, int world, int body, const Vec3& p, const Vec3& l) = 0;
+  virtual bool forced() const = 0;
   virtual Vec3 center_of_mass(int kind, int world, int body) const = 0;
   virtual void set_enabled(int kind, int world, int body, bool enabled) = 0;
   virtual bool enabled(int kind, int world, int body) const = 0;

@@ -30,6 +30,7 @@ void Batch::write(Parameter parameter, std::span<const double> in) {
   impl_->for_each_world(parameter, [&](int kind, int world, std::size_t at) {
     impl_->core->write(parameter, kind, world, in.data() + at);
   });
+  for (int w = 0; w < worlds(); ++w) impl_->tell(*this, Input::restore, w);
 }
 
 void Batch::read(Parameter parameter, int world, std::span<double> out) const {
@@ -44,6 +45,7 @@ void Batch::write(Parameter parameter, int world, std::span<const double> in) {
   const std::string problem = impl_->core->check(parameter, p.kind, p.world, in.data());
   if (!problem.empty()) reject("world " + std::to_string(world) + ": " + problem);
   impl_->core->write(parameter, p.kind, p.world, in.data());
+  impl_->tell(*this, Input::restore, world);
 }
 
 void Batch::set_initial(Field field, std::span<const double> in) {

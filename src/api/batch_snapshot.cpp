@@ -83,6 +83,7 @@ void Batch::restore(const Snapshot& snapshot) {
   }
   impl_->steps = header.steps;
   impl_->clock = header.clock;
+  for (int w = 0; w < worlds(); ++w) impl_->tell(*this, Input::restore, w);
 }
 
 void Batch::restore(const Snapshot& snapshot, int from, int to) {
@@ -94,6 +95,7 @@ void Batch::restore(const Snapshot& snapshot, int from, int to) {
   impl_->check_snapshot_world(snapshot, static_cast<std::size_t>(from), p.kind);
   impl_->core->read_world(p.kind, p.world,
                           SnapshotAccess::world(snapshot, static_cast<std::size_t>(from)));
+  impl_->tell(*this, Input::restore, to);
 }
 
 void Batch::copy_world(int from, int to) {
@@ -103,6 +105,7 @@ void Batch::copy_world(int from, int to) {
            " are of different kinds");
   }
   impl_->core->copy_world(a.kind, a.world, b.world);
+  impl_->tell(*this, Input::restore, to);
 }
 
 }  // namespace manyworlds

@@ -21,6 +21,7 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
 }
 
 const Scene& Plan::scene() const { return data_->scene; }
+const PlanOptions& Plan::options() const { return data_->options; }
 int Plan::bodies() const { return static_cast<int>(data_->bodies.size()); }
 int Plan::scene_body(int state_body) const {
   return data_->bodies.at(static_cast<std::size_t>(state_body)).scene_body;

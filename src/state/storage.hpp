@@ -40,6 +40,7 @@ class Storage {
 
   void add_force(int slot, int body, const Vec3& force, const Vec3& torque);
   void clear_forces();
+  bool forced() const { return forced_; }  // forces were added since they were all cleared
   void clear_forces(int slot);
 
   // Sleeping and disabled bodies. Without masks every body is there and awake.

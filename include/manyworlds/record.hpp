@@ -1,0 +1,179 @@
+// Recordings: what worlds of a Batch did, in an HDF5 file from which it can be done again, and
+// scenes as JSON. A library of its own, manyworlds::record, because it needs HDF5.
+//
+// A file holds the scenes with all their options, a Snapshot of the worlds at the beginning, every
+// input since then, and every k steps the state fields, hashes and status of each world. Its layout
+// is in docs/batch.md.
+//
+// One thread at a time uses this library, unless the HDF5 library is built thread safe.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "manyworlds/batch.hpp"
+
+namespace manyworlds {
+
+// A file that cannot be written, read or understood; what() has one line per problem: "'run.h5':
+// scene of kind 0, /bodies/3/shapes/0: has no member 'material'".
+class RecordError : public std::runtime_error {
+ public:
+  explicit RecordError(std::vector<std::string> problems);
+  explicit RecordError(const std::string& problem) : RecordError(std::vector{problem}) {}
+  const std::vector<std::string>& problems() const { return problems_; }  // never empty
+
+ private:
+  std::vector<std::string> problems_;
+};
+
+// ---- scenes as JSON ----------------------------------------------------------------------------
+
+// Everything of the scene, every number exactly. Numbers that JSON has no word for are the strings
+// "inf", "-inf" and "nan".
+std::string scene_to_json(const Scene& scene);
+std::string plan_options_to_json(const PlanOptions& options);
+// Throw RecordError with all problems: every member must be there, and no other. Whether the scene
+// makes sense is up to validate().
+Scene scene_from_json(std::string_view json);
+PlanOptions plan_options_from_json(std::string_view json);
+
+// ---- recording ---------------------------------------------------------------------------------
+
+inline constexpr int kMostWorldsByDefault = 64;
+
+struct RecordOptions {
+  std::vector<int> worlds;  // of the batch; empty: the first kMostWorldsByDefault of them
+  // A sample is taken at once, and after the first step() call that ends on or beyond each multiple
+  // of `every` steps. 0: only when sample() says so.
+  int every = 1;
+  std::int64_t first_world = 0;  // what the batch's world 0 is called in the file
+};
+
+// Records from construction to close(): the state of some worlds every few steps, and every input
+// to them. The batch tells it what happens, so nothing needs to go through the Recorder.
+class Recorder {
+ public:
+  // Throws std::invalid_argument for options that do not fit the batch and when forces were added
+  // for the next step already, which no file would know of; RecordError when the file cannot be
+  // written.
+  Recorder(Batch& batch, const std::filesystem::path& file, const RecordOptions& options = {});
+  Recorder(Recorder&&) noexcept;
+  Recorder& operator=(Recorder&&) noexcept;
+  ~Recorder();  // without close() no file is left
+
+  // One more sample, of the batch that is recorded as it is now.
+  void sample(const Batch& batch);
+  // Finishes the file and gives it its name, so that nobody ever sees half of one. Throws
+  // RecordError, also for what failed since the beginning: step() does not throw.
+  void close();
+  std::int64_t samples() const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<Impl> impl_;
+  std::int64_t samples_ = 0;
+};
+
+// Writes small recordings of worlds that get lost: each begins at the last checkpoint before and
+// ends when the world is lost. `checkpoint_steps` steps apart, all worlds are saved in memory (as
+// Batch::save) and earlier inputs are forgotten.
+class LostWorldDumps {
+ public:
+  struct Options {
+    int checkpoint_steps = 600;
+    int most = 16;                 // files; worlds lost after that are only counted
+    std::int64_t first_world = 0;  // what the batch's world 0 is called in the files
+  };
+  // Makes the folder. Throws as Recorder does.
+  LostWorldDumps(Batch& batch, std::filesystem::path folder, const Options& options);
+  LostWorldDumps(Batch& batch, std::filesystem::path folder);
+  LostWorldDumps(LostWorldDumps&&) noexcept;
+  LostWorldDumps& operator=(LostWorldDumps&&) noexcept;
+  ~LostWorldDumps();
+
+  // Writes what has been lost since the last checkpoint and stops watching. Throws RecordError,
+  // also for what failed before. Returns all files, "world_17.h5".
+  std::vector<std::filesystem::path> close();
+
+ private:
+  struct Impl;
+  std::shared_ptr<Impl> impl_;
+};
+
+// ---- replay ------------------------------------------------------------------------------------
+
+// A recording that was opened and checked: every size, index, type and text in it. It holds the
+// inputs in memory, and reads fields from the file as they are asked for.
+class Recording {
+ public:
+  // Both throw RecordError for what is no recording, cut, corrupted or inconsistent.
+  static Recording open(const std::filesystem::path& file);
+  static Recording from_bytes(std::span<const std::byte> bytes);
+  Recording(Recording&&) noexcept;
+  Recording& operator=(Recording&&) noexcept;
+  ~Recording();
+
+  int worlds() const;
+  int kinds() const;
+  const Plan& plan(int kind = 0) const;
+  int worlds_of(int kind) const;          // kinds lie one after the other
+  std::int64_t name_of(int world) const;  // which world of the recorded batch it was
+  std::int64_t samples() const;
+  std::int64_t step(std::int64_t sample) const;  // steps since the recording began
+  std::int64_t inputs() const;
+  Precision precision() const;
+  bool sleep() const;
+  std::uint64_t hash(std::int64_t sample, int world) const;
+  Status status(std::int64_t sample, int world) const;
+  // The field of one world, canonical [body][component].
+  std::vector<double> read(Field field, std::int64_t sample, int world) const;
+  // As it was recorded: program version, instruction set, threads, seed, ...; for people.
+  std::string origin() const;
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  explicit Recording(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+struct ReplayOptions {
+  std::optional<Isa> isa = std::nullopt;
+  int threads = 0;
+  ContactLayout layout = ContactLayout::automatic;
+};
+
+struct Difference {
+  std::int64_t world = 0;  // of the recorded batch (Recording::name_of)
+  std::int64_t step = 0;   // since the recording began
+  int body = -1;           // state body; -1: no field differs, but hash or status does
+  std::string what;        // "position.x is 1.5, recorded 1.25"
+};
+
+struct ReplayResult {
+  int worlds = 0;
+  std::int64_t samples = 0;
+  std::int64_t steps = 0;
+  std::int64_t compared = 0;             // hashes, each with its status and fields
+  std::int64_t different = 0;            // of them
+  std::optional<Difference> difference;  // the first
+  int lost_worlds = 0;                   // at the end
+  std::string kernel_table;
+};
+
+// Simulates a recording again from its first snapshot and its inputs, and compares hash, status
+// and fields at every sample. Throws RecordError when the snapshot does not fit, and what Batch
+// throws for options.
+ReplayResult replay(const Recording& recording, const ReplayOptions& options = {});
+
+}  // namespace manyworlds

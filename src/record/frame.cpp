@@ -1,0 +1,154 @@
+#include "src/record/frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include "manyworlds/record.hpp"
+#include "src/base/hash.hpp"
+
+namespace manyworlds::record {
+
+namespace {
+
+struct Frame {
+  std::array<char, 8> magic = {'M', 'W', 'R', 'E', 'C', 'O', '\r', '\n'};
+  std::uint32_t version = kFormatVersion;
+  std::uint32_t zero = 0;
+  std::uint64_t size = 0;
+  std::uint64_t checksum = 0;
+  std::array<std::byte, 480> rest{};
+};
+static_assert(sizeof(Frame) == 512);
+
+// In pieces whose sizes are multiples of 8, but for the last.
+class Checksum {
+ public:
+  void add(std::span<const std::byte> bytes) {
+    std::size_t at = 0;
+    for (; at + sizeof(std::uint64_t) <= bytes.size(); at += sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes.data() + at, sizeof word);
+      hasher_.add(word);
+    }
+    for (; at < bytes.size(); ++at) hasher_.add(static_cast<std::uint64_t>(bytes[at]));
+  }
+  void add(Frame frame) {
+    frame.checksum = 0;
+    add(std::as_bytes(std::span(&frame, 1)));
+  }
+  std::uint64_t value() const { return hasher_.value(); }
+
+ private:
+  Hasher hasher_;
+};
+
+void check_head(const Frame& frame, std::uint64_t size) {
+  if (frame.magic != Frame().magic) throw RecordError("is no recording of manyworlds");
+  if (frame.version != kFormatVersion) {
+    throw RecordError("has format version " + std::to_string(frame.version) + ", must be " +
+                      std::to_string(kFormatVersion));
+  }
+  if (frame.size != size) {
+    throw RecordError("is " + std::to_string(size) + " bytes long, must be " +
+                      std::to_string(frame.size));
+  }
+}
+
+void require_length(std::uint64_t size) {
+  if (size >= sizeof(Frame)) return;
+  throw RecordError("is " + std::to_string(size) + " bytes long, too short for a recording");
+}
+
+void check_sum(const Frame& frame, std::uint64_t found) {
+  if (frame.checksum != found) {
+    throw RecordError("is corrupted: its checksum does not match");
+  }
+}
+
+[[noreturn]] void fail_to(const char* what) {
+  throw RecordError(std::string("cannot be ") + what + ": " +
+                    std::generic_category().message(errno));
+}
+
+Frame read_frame(std::fstream& in) {
+  Frame frame;
+  in.seekg(0);
+  if (!in.read(reinterpret_cast<char*>(&frame), sizeof frame)) fail_to("read");
+  return frame;
+}
+
+// Of everything, the frame as given.
+std::uint64_t checksum(std::fstream& in, const Frame& frame) {
+  Checksum sum;
+  sum.add(frame);
+  std::vector<std::byte> block(1 << 20);
+  in.seekg(sizeof(Frame));
+  while (in) {
+    in.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(block.size()));
+    sum.add(std::span(block).first(static_cast<std::size_t>(in.gcount())));
+  }
+  if (!in.eof()) fail_to("read");
+  in.clear();
+  return sum.value();
+}
+
+std::uint64_t checksum(std::span<const std::byte> bytes, const Frame& frame) {
+  Checksum sum;
+  sum.add(frame);
+  sum.add(bytes.subspan(sizeof(Frame)));
+  return sum.value();
+}
+
+std::uint64_t size_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error) throw RecordError("cannot be read: " + error.message());
+  return size;
+}
+
+}  // namespace
+
+void seal(const std::filesystem::path& file) {
+  Frame frame;
+  frame.size = size_of(file);
+  std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+  if (!stream) fail_to("opened");
+  frame.checksum = checksum(stream, frame);
+  stream.seekp(0);
+  stream.write(reinterpret_cast<const char*>(&frame), sizeof frame);
+  stream.close();
+  if (!stream) fail_to("written");
+}
+
+void seal(std::span<std::byte> bytes) {
+  require_length(bytes.size());
+  Frame frame;
+  frame.size = bytes.size();
+  frame.checksum = checksum(bytes, frame);
+  std::memcpy(bytes.data(), &frame, sizeof frame);
+}
+
+void check_frame(const std::filesystem::path& file) {
+  const std::uint64_t size = size_of(file);
+  std::fstream stream(file, std::ios::binary | std::ios::in);
+  if (!stream) fail_to("opened");
+  require_length(size);
+  const Frame frame = read_frame(stream);
+  check_head(frame, size);
+  check_sum(frame, checksum(stream, frame));
+}
+
+void check_frame(std::span<const std::byte> bytes) {
+  require_length(bytes.size());
+  Frame frame;
+  std::memcpy(&frame, bytes.data(), sizeof frame);
+  check_head(frame, bytes.size());
+  check_sum(frame, checksum(bytes, frame));
+}
+
+}  // namespace manyworlds::record

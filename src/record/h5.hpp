@@ -1,0 +1,181 @@
+// What we need of HDF5: handles that close themselves, errors that are exceptions, tables that
+// grow.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <hdf5.h>
+
+#include "manyworlds/record.hpp"
+
+namespace manyworlds::record {
+
+// Throws RecordError, naming what was being done and HDF5's own reason.
+[[noreturn]] void fail(const std::string& what);
+
+// HDF5 prints its errors unless told otherwise, for the whole program; so we tell it while we are
+// in it.
+class QuietErrors {
+ public:
+  QuietErrors();
+  ~QuietErrors();
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+class Handle {
+ public:
+  Handle() = default;
+  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
+    if (id < 0) fail(what);
+  }
+  Handle(Handle&& other) noexcept
+      : id_(std::exchange(other.id_, -1)), close_(std::exchange(other.close_, nullptr)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const { return id_; }  // NOLINT: stands for it in calls
+
+ private:
+  hid_t id_ = -1;
+  herr_t (*close_)(hid_t) = nullptr;
+};
+
+inline void check(herr_t result, const std::string& what) {
+  if (result < 0) fail(what);
+}
+
+// How a number is stored, little endian, and what it is in memory.
+template <class T>
+struct NumberType;
+#define MW_NUMBER_TYPE(T, file, memory)         \
+  template <>                                   \
+  struct NumberType<T> {                        \
+    static hid_t in_file() { return file; }     \
+    static hid_t in_memory() { return memory; } \
+    static constexpr const char* kName = #T;    \
+  };
+MW_NUMBER_TYPE(float, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT)
+MW_NUMBER_TYPE(double, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
+MW_NUMBER_TYPE(std::uint8_t, H5T_STD_U8LE, H5T_NATIVE_UINT8)
+MW_NUMBER_TYPE(std::int32_t, H5T_STD_I32LE, H5T_NATIVE_INT32)
+MW_NUMBER_TYPE(std::uint32_t, H5T_STD_U32LE, H5T_NATIVE_UINT32)
+MW_NUMBER_TYPE(std::int64_t, H5T_STD_I64LE, H5T_NATIVE_INT64)
+MW_NUMBER_TYPE(std::uint64_t, H5T_STD_U64LE, H5T_NATIVE_UINT64)
+#undef MW_NUMBER_TYPE
+
+using Dims = std::vector<hsize_t>;
+
+// A file may begin with a block that HDF5 leaves to its users (frame.hpp).
+inline constexpr hsize_t kUserBlock = 512;
+
+Handle create_file(const std::filesystem::path& path);
+Handle open_file(const std::filesystem::path& path);
+Handle open_bytes(std::span<const std::byte> bytes);
+
+Handle create_group(hid_t parent, const std::string& name);
+Handle open_group(hid_t parent, const std::string& name);
+bool has_link(hid_t parent, const std::string& name);
+
+void write_text(hid_t object, const std::string& attribute, const std::string& text);
+std::string read_text(hid_t object, const std::string& attribute);
+template <class T>
+void write_number(hid_t object, const std::string& attribute, T value);
+template <class T>
+T read_number(hid_t object, const std::string& attribute);
+
+// One string as a dataset: attributes hold 64 kB at most.
+void write_text_table(hid_t parent, const std::string& name, const std::string& text);
+std::string read_text_table(hid_t parent, const std::string& name);
+
+// A dataset [row][...] that grows by rows. They are collected and written a chunk at a time.
+class Table {
+ public:
+  Table() = default;
+  // `row`: the dimensions after the first. Chunks have about `chunk_bytes`.
+  template <class T>
+  static Table create(hid_t parent, const std::string& name, const Dims& row,
+                      std::size_t chunk_bytes) {
+    return Table(parent, name, NumberType<T>::in_file(), NumberType<T>::in_memory(), sizeof(T), row,
+                 chunk_bytes);
+  }
+  // Any whole number of rows, of the type that it was made for.
+  template <class T>
+  void add(const std::vector<T>& numbers) {
+    add_bytes(std::as_bytes(std::span(numbers)));
+  }
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void add(T number) { add_bytes(std::as_bytes(std::span(&number, 1))); }
+  void add_bytes(std::span<const std::byte> bytes);  // of whole rows
+  void flush();
+  hsize_t rows() const { return rows_ + buffer_.size() / row_bytes_; }
+  hid_t dataset() const { return dataset_; }
+
+ private:
+  Table(hid_t parent, const std::string& name, hid_t in_file, hid_t in_memory, std::size_t size,
+        const Dims& row, std::size_t chunk_bytes);
+
+  Handle dataset_;
+  hid_t in_memory_ = -1;
+  Dims row_;
+  std::size_t row_bytes_ = 1, chunk_rows_ = 1;
+  hsize_t rows_ = 0;  // written
+  std::vector<std::byte> buffer_;
+  std::string name_;
+};
+
+// A dataset of exactly this type and, but for its first, these dimensions, all of which are there.
+class TableReader {
+ public:
+  TableReader() = default;
+  template <class T>
+  static TableReader open(hid_t parent, const std::string& name, const Dims& row) {
+    return TableReader(parent, name, NumberType<T>::in_file(), NumberType<T>::in_memory(),
+                       NumberType<T>::kName, row);
+  }
+  hsize_t rows() const { return rows_; }
+  void expect_rows(hsize_t rows) const;
+  // Numbers of `count` rows from `first`, the second dimension restricted to one index if
+  // `at` is not negative.
+  template <class T>
+  std::vector<T> read(hsize_t first, hsize_t count, std::int64_t at = -1) const {
+    std::vector<T> out(numbers(count, at));
+    if (!out.empty()) read_into(first, count, at, out.data());
+    return out;
+  }
+  template <class T>
+  std::vector<T> read_all() const {
+    return read<T>(0, rows_);
+  }
+
+ private:
+  TableReader(hid_t parent, const std::string& name, hid_t in_file, hid_t in_memory,
+              const char* type, const Dims& row);
+  std::size_t numbers(hsize_t count, std::int64_t at) const;
+  void read_into(hsize_t first, hsize_t count, std::int64_t at, void* out) const;
+
+  Handle dataset_;
+  hid_t in_memory_ = -1;
+  Dims row_;
+  hsize_t rows_ = 0;
+  std::string name_;
+};
+
+}  // namespace manyworlds::record

@@ -1,0 +1,101 @@
+#include "src/record/inputs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <unordered_set>
+#include <utility>
+
+namespace manyworlds::record {
+
+std::int64_t number_count(Input input, int bodies, Space space) {
+  switch (input) {
+    case Input::force:
+    case Input::torque:
+    case Input::impulse:
+    case Input::angular_impulse: return 3;
+    case Input::force_at:
+    case Input::impulse_at: return 6;
+    case Input::spawn: return 13;
+    default: return is_write(input) ? std::int64_t{bodies} * components(field_of(input), space) : 0;
+  }
+}
+
+void InputLog::add(const Batch& batch, const InputCall& call, int world, std::int64_t step) {
+  InputRow row{step, 0, call.input, world, call.body, 0, 0};
+  if (brings_state(call.input)) {
+    const Snapshot state = batch.save(std::array{call.world});
+    row.begin = static_cast<std::int64_t>(states_.size());
+    row.count = static_cast<std::int64_t>(state.size());
+    for (const std::byte b : state.bytes()) states_.push_back(static_cast<std::uint8_t>(b));
+  } else {
+    row.begin = static_cast<std::int64_t>(values_.size());
+    row.count = static_cast<std::int64_t>(call.values.size());
+    values_.insert(values_.end(), call.values.begin(), call.values.end());
+  }
+  rows_.push_back(row);
+}
+
+void InputLog::stepped(int n) {
+  // From the newest to the oldest: a reset clears the forces that were added before it.
+  std::unordered_set<std::int32_t> reset;
+  for (std::size_t i = rows_.size(); i-- > since_step_;) {
+    InputRow& row = rows_[i];
+    if (row.input == Input::reset) reset.insert(row.world);
+    if (is_force(row.input) && !reset.contains(row.world)) row.call_steps = n;
+  }
+  since_step_ = rows_.size();
+}
+
+void InputLog::clear() {
+  rows_.clear();
+  values_.clear();
+  states_.clear();
+  since_step_ = 0;
+}
+
+void apply(Batch& batch, const InputRow& row, int world, std::span<const double> values,
+           std::span<const std::uint8_t> state) {
+  const auto vector = [&](std::size_t i) { return Vec3(values[i], values[i + 1], values[i + 2]); };
+  const int body = row.body;
+  if (is_force(row.input) && row.call_steps == 0) return;
+  switch (row.input) {
+    case Input::force: batch.add_force(world, body, vector(0)); break;
+    case Input::torque: batch.add_torque(world, body, vector(0)); break;
+    case Input::force_at: batch.add_force_at(world, body, vector(0), vector(3)); break;
+    case Input::impulse: batch.add_impulse(world, body, vector(0)); break;
+    case Input::angular_impulse: batch.add_angular_impulse(world, body, vector(0)); break;
+    case Input::impulse_at: batch.add_impulse_at(world, body, vector(0), vector(3)); break;
+    case Input::enable: batch.set_enabled(world, body, true); break;
+    case Input::disable: batch.set_enabled(world, body, false); break;
+    case Input::spawn:
+      batch.spawn(
+          world, body,
+          {vector(0), Quat(values[3], values[4], values[5], values[6]), vector(7), vector(10)});
+      break;
+    case Input::wake: batch.wake(world); break;
+    case Input::write_position:
+    case Input::write_orientation:
+    case Input::write_linear_velocity:
+    case Input::write_angular_velocity: batch.write(field_of(row.input), world, values); break;
+    case Input::reset:
+    case Input::restore: {
+      std::vector<std::byte> bytes(state.size());
+      std::transform(state.begin(), state.end(), bytes.begin(),
+                     [](auto b) { return std::byte{b}; });
+      batch.restore(Snapshot::from_bytes(std::move(bytes)), 0, world);
+      break;
+    }
+  }
+}
+
+void advance(Batch& batch, std::int64_t& at, std::int64_t step, int& call_steps) {
+  while (at < step) {
+    const std::int64_t most = call_steps > 0 ? call_steps : 1024;
+    const int n = static_cast<int>(std::min(most, step - at));
+    batch.step(n);
+    at += n;
+    call_steps = 0;
+  }
+}
+
+}  // namespace manyworlds::record

@@ -1,0 +1,238 @@
+// Opens recordings: nothing in the file is used before it was checked.
+#include "src/record/recording.hpp"
+
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "src/record/frame.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+using record::TableReader;
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+// Every problem of `error` with `place` in front.
+RecordError placed(const std::string& place, const std::vector<std::string>& problems) {
+  std::vector<std::string> lines;
+  for (const std::string& problem : problems) lines.push_back(place + problem);
+  return RecordError(std::move(lines));
+}
+
+template <class Make>
+auto described(const std::string& place, Make&& make) {
+  try {
+    return make();
+  } catch (const RecordError& error) {
+    throw placed(place, error.problems());
+  } catch (const SceneError& error) {
+    std::vector<std::string> problems;
+    for (const Issue& issue : error.issues()) problems.push_back(to_string(issue));
+    throw placed(place, problems);
+  } catch (const SnapshotError& error) {
+    throw placed(place, {error.what()});
+  } catch (const std::bad_alloc&) {
+    throw placed(place, {"needs more memory than there is"});
+  } catch (const std::length_error&) {
+    throw placed(place, {"needs more memory than there is"});
+  }
+}
+
+std::string label(const std::filesystem::path& file) { return "'" + file.string() + "': "; }
+
+}  // namespace
+
+RecordError::RecordError(std::vector<std::string> problems)
+    : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
+
+Recording::Impl::Impl(record::Handle file) : h5(std::move(file)) {
+  read_head();
+  const record::Handle root = record::open_group(h5, "kinds");
+  H5G_info_t about{};
+  record::check(H5Gget_info(root, &about), "the kinds");
+  if (about.nlinks < 1 || about.nlinks > 4096) {
+    record::fail("has " + std::to_string(about.nlinks) + " kinds, must have 1 to 4096");
+  }
+  read_samples();
+  first_world.push_back(0);
+  for (int k = 0; k < static_cast<int>(about.nlinks); ++k) {
+    described("kind " + std::to_string(k) + ": ", [&] { read_kind(root, k); });
+  }
+  const auto bytes = TableReader::open<std::uint8_t>(h5, "start", {}).read_all<std::uint8_t>();
+  const auto raw = std::as_bytes(std::span(bytes));
+  start = Snapshot::from_bytes({raw.begin(), raw.end()});
+  if (start.worlds() != worlds()) {
+    record::fail("the snapshot has " + std::to_string(start.worlds()) + " worlds, must have " +
+                 std::to_string(worlds()));
+  }
+  read_inputs();
+  check_order();
+}
+
+void Recording::Impl::read_head() {
+  if (record::read_text(h5, "format") != record::kFormat) record::fail("is no recording");
+  const auto version = record::read_number<std::int32_t>(h5, "format_version");
+  if (version != record::kFormatVersion) {
+    record::fail("has format version " + std::to_string(version));
+  }
+  const std::string numbers = record::read_text(h5, "precision");
+  if (numbers != "f32" && numbers != "f64") {
+    record::fail("has precision '" + numbers + "', must be f32 or f64");
+  }
+  precision = numbers == "f32" ? Precision::f32 : Precision::f64;
+  const auto sleeps = record::read_number<std::uint8_t>(h5, "sleep");
+  if (sleeps > 1) record::fail("sleep is " + std::to_string(sleeps) + ", must be 0 or 1");
+  sleep = sleeps == 1;
+  const auto threads = record::read_number<std::int32_t>(h5, "threads");
+  origin = "manyworlds " + record::read_text(h5, "program_version") + ", " +
+           record::read_text(h5, "isa") + " " + numbers + ", " + std::to_string(threads) +
+           (threads == 1 ? " thread" : " threads") + ", seed " +
+           std::to_string(record::read_number<std::uint64_t>(h5, "seed")) + ", sleep " +
+           (sleep ? "on" : "off");
+}
+
+void Recording::Impl::read_samples() {
+  const auto table = TableReader::open<std::int64_t>(h5, "step", {});
+  steps = table.read_all<std::int64_t>();
+  if (steps.empty()) record::fail("has no samples");
+  const auto before = TableReader::open<std::int64_t>(h5, "inputs_before", {});
+  before.expect_rows(table.rows());
+  inputs_before = before.read_all<std::int64_t>();
+  TableReader::open<double>(h5, "time", {}).expect_rows(table.rows());
+}
+
+void Recording::Impl::read_kind(hid_t parent, int index) {
+  const record::Handle group = record::open_group(parent, std::to_string(index));
+  const Scene scene = described(
+      "scene: ", [&] { return scene_from_json(record::read_text_table(group, "scene")); });
+  const PlanOptions options = described("plan_options: ", [&] {
+    return plan_options_from_json(record::read_text_table(group, "plan_options"));
+  });
+  Kind kind{described("scene: ", [&] { return compile(scene, options); }), {}, {}, {}, {}};
+  if (kind.plan.fingerprint() != record::read_number<std::uint64_t>(group, "fingerprint")) {
+    record::fail("this program makes another plan of the scene than the one that recorded it");
+  }
+  const Options& first = kinds.empty() ? scene.options : kinds.front().plan.scene().options;
+  if ((!kinds.empty() && scene.space != space()) || scene.options.dt != first.dt) {
+    record::fail("is of another space or dt than kind 0");
+  }
+  kind.worlds = TableReader::open<std::int64_t>(group, "world", {}).read_all<std::int64_t>();
+  const std::size_t count = kind.worlds.size();
+  const auto room = static_cast<std::size_t>(std::numeric_limits<int>::max() - worlds());
+  if (count == 0 || count > room) {
+    record::fail("has " + std::to_string(count) + " worlds");
+  }
+  const auto hashes = TableReader::open<std::uint64_t>(group, "hash", {count});
+  const auto statuses = TableReader::open<std::uint32_t>(group, "status", {count});
+  hashes.expect_rows(steps.size());
+  statuses.expect_rows(steps.size());
+  kind.hashes = hashes.read_all<std::uint64_t>();
+  kind.statuses = statuses.read_all<std::uint32_t>();
+  const auto bodies = static_cast<hsize_t>(kind.plan.bodies());
+  for (const Field field : record::kFields) {
+    if (bodies == 0) break;
+    const auto width = static_cast<hsize_t>(components(field, scene.space));
+    const record::Dims row = {count, bodies, width};
+    TableReader& table = kind.fields[static_cast<std::size_t>(field)];
+    table = precision == Precision::f32 ? TableReader::open<float>(group, info(field).name, row)
+                                        : TableReader::open<double>(group, info(field).name, row);
+    table.expect_rows(steps.size());
+  }
+  first_world.push_back(worlds() + static_cast<int>(count));
+  kinds.push_back(std::move(kind));
+}
+
+Recording::Impl::Place Recording::Impl::place(int world) const {
+  if (world < 0 || world >= worlds()) {
+    throw std::invalid_argument("world is " + std::to_string(world) + ", must be 0 to " +
+                                std::to_string(worlds() - 1));
+  }
+  std::size_t kind = 0;
+  while (world >= first_world[kind + 1]) ++kind;
+  return {kind, static_cast<std::size_t>(world - first_world[kind])};
+}
+
+std::vector<double> Recording::Impl::read(Field field, std::size_t kind, std::int64_t sample,
+                                          std::int64_t world) const {
+  const Kind& k = kinds[kind];
+  if (k.plan.bodies() == 0) return {};
+  const TableReader& table = k.fields[static_cast<std::size_t>(field)];
+  const auto row = static_cast<hsize_t>(sample);
+  if (precision == Precision::f64) return table.read<double>(row, 1, world);
+  const std::vector<float> values = table.read<float>(row, 1, world);
+  return {values.begin(), values.end()};
+}
+
+// ---- the public face ---------------------------------------------------------------------------
+
+Recording::Recording(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Recording::Recording(Recording&&) noexcept = default;
+Recording& Recording::operator=(Recording&&) noexcept = default;
+Recording::~Recording() = default;
+
+Recording Recording::open(const std::filesystem::path& file) {
+  const record::QuietErrors quiet;
+  return described(label(file), [&] {
+    if (std::filesystem::is_directory(file)) throw RecordError("is a directory");
+    record::check_frame(file);
+    return Recording(std::make_unique<Impl>(record::open_file(file)));
+  });
+}
+
+Recording Recording::from_bytes(std::span<const std::byte> bytes) {
+  const record::QuietErrors quiet;
+  return described("recording: ", [&] {
+    record::check_frame(bytes);
+    return Recording(std::make_unique<Impl>(record::open_bytes(bytes)));
+  });
+}
+
+int Recording::worlds() const { return impl_->worlds(); }
+int Recording::kinds() const { return static_cast<int>(impl_->kinds.size()); }
+const Plan& Recording::plan(int kind) const {
+  return impl_->kinds.at(static_cast<std::size_t>(kind)).plan;
+}
+int Recording::worlds_of(int kind) const {
+  return static_cast<int>(impl_->kinds.at(static_cast<std::size_t>(kind)).worlds.size());
+}
+std::int64_t Recording::name_of(int world) const {
+  const auto p = impl_->place(world);
+  return impl_->kinds[p.kind].worlds[p.world];
+}
+std::int64_t Recording::samples() const { return static_cast<std::int64_t>(impl_->steps.size()); }
+std::int64_t Recording::step(std::int64_t sample) const {
+  return impl_->steps.at(static_cast<std::size_t>(sample));
+}
+std::int64_t Recording::inputs() const { return static_cast<std::int64_t>(impl_->inputs.size()); }
+Precision Recording::precision() const { return impl_->precision; }
+bool Recording::sleep() const { return impl_->sleep; }
+std::uint64_t Recording::hash(std::int64_t sample, int world) const {
+  const auto p = impl_->place(world);
+  const auto& kind = impl_->kinds[p.kind];
+  return kind.hashes.at(static_cast<std::size_t>(sample) * kind.worlds.size() + p.world);
+}
+Status Recording::status(std::int64_t sample, int world) const {
+  const auto p = impl_->place(world);
+  const auto& kind = impl_->kinds[p.kind];
+  const std::size_t at = static_cast<std::size_t>(sample) * kind.worlds.size() + p.world;
+  return static_cast<Status>(kind.statuses.at(at));
+}
+std::vector<double> Recording::read(Field field, std::int64_t sample, int world) const {
+  if (sample < 0 || sample >= samples()) {
+    throw std::invalid_argument("sample is " + std::to_string(sample) + ", must be 0 to " +
+                                std::to_string(samples() - 1));
+  }
+  const record::QuietErrors quiet;
+  const auto p = impl_->place(world);
+  return impl_->read(field, p.kind, sample, static_cast<std::int64_t>(p.world));
+}
+std::string Recording::origin() const { return impl_->origin; }
+
+}  // namespace manyworlds

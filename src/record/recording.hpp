@@ -1,0 +1,60 @@
+// What an open recording consists of.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "manyworlds/record.hpp"
+#include "src/record/h5.hpp"
+#include "src/record/inputs.hpp"
+#include "src/record/layout.hpp"
+
+namespace manyworlds {
+
+struct Recording::Impl {
+  struct Kind {
+    Plan plan;
+    std::vector<std::int64_t> worlds;   // what they were called
+    std::vector<std::uint64_t> hashes;  // [sample][world]
+    std::vector<std::uint32_t> statuses;
+    std::array<record::TableReader, kFieldCount> fields;  // left out where nothing has a state
+  };
+  struct Place {
+    std::size_t kind, world;
+  };
+
+  // Checks everything; throws RecordError, SceneError and SnapshotError.
+  explicit Impl(record::Handle file);
+
+  Place place(int world) const;  // throws std::invalid_argument
+  Space space() const { return kinds.front().plan.scene().space; }
+  int worlds() const { return first_world.back(); }
+  // Of one input, as apply() takes them.
+  std::span<const double> values(const record::InputRow& row) const;
+  std::span<const std::uint8_t> state(const record::InputRow& row) const;
+  // One sample of a field of a kind, [world][body][component], or of one world of it.
+  std::vector<double> read(Field field, std::size_t kind, std::int64_t sample,
+                           std::int64_t world = -1) const;
+
+  record::Handle h5;
+  Precision precision = Precision::f32;
+  bool sleep = false;
+  std::string origin;
+  std::vector<Kind> kinds;
+  std::vector<int> first_world;  // of each kind, and the total
+  Snapshot start;
+  std::vector<std::int64_t> steps, inputs_before;  // [sample]
+  std::vector<record::InputRow> inputs;
+  std::vector<double> input_values;
+  std::vector<std::uint8_t> input_states;
+
+ private:
+  void read_head();
+  void read_kind(hid_t parent, int index);
+  void read_samples();
+  void read_inputs();
+  void check_input(std::size_t index, std::int64_t values, std::int64_t states) const;
+  void check_order() const;
+};
+
+}  // namespace manyworlds

@@ -1,0 +1,154 @@
+// Simulates a recording again and compares.
+#include <bit>
+#include <cstdio>
+
+#include "src/record/recording.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+// Room that a batch takes per byte of its snapshot, at most: a file that asks for more lies.
+constexpr std::size_t kMostBytesPerByte = 64;
+constexpr std::size_t kFreeBytes = std::size_t{1} << 26;
+
+Batch make_batch(const Recording::Impl& recording, const ReplayOptions& options) {
+  std::vector<Batch::Kind> kinds;
+  std::size_t bytes = 0;
+  for (const auto& kind : recording.kinds) {
+    kinds.push_back({kind.plan, static_cast<int>(kind.worlds.size())});
+    bytes += kind.plan.report().bytes_per_world * kind.worlds.size();
+  }
+  if (bytes > kFreeBytes && bytes / kMostBytesPerByte > recording.start.size()) {
+    throw RecordError("the snapshot has " + std::to_string(recording.start.size()) +
+                      " bytes, its worlds need some " + std::to_string(bytes));
+  }
+  BatchOptions batch;
+  batch.threads = options.threads;
+  batch.isa = options.isa;
+  batch.layout = options.layout;
+  batch.precision = recording.precision;
+  batch.sleep = recording.sleep;
+  return Batch(std::move(kinds), batch);
+}
+
+class Comparison {
+ public:
+  Comparison(const Recording& recording, const Batch& batch, ReplayResult& result)
+      : recording_(recording), all_(recording.impl()), batch_(batch), result_(result) {}
+
+  void compare(std::int64_t sample) {
+    for (std::size_t k = 0; k < all_.kinds.size(); ++k) {
+      std::array<std::vector<double>, kFieldCount> fields;
+      for (const Field field : record::kFields) {
+        fields[static_cast<std::size_t>(field)] = all_.read(field, k, sample);
+      }
+      const int count = static_cast<int>(all_.kinds[k].worlds.size());
+      for (int i = 0; i < count; ++i) compare(sample, k, i, all_.first_world[k] + i, fields);
+    }
+  }
+
+ private:
+  void compare(std::int64_t sample, std::size_t kind, int in_kind, int world,
+               const std::array<std::vector<double>, kFieldCount>& fields) {
+    ++result_.compared;
+    const Plan& plan = all_.kinds[kind].plan;
+    int first_body = -1;
+    std::string what;
+    for (const Field field : record::kFields) {
+      const auto width = static_cast<std::size_t>(components(field, all_.space()));
+      found_.resize(static_cast<std::size_t>(plan.bodies()) * width);
+      batch_.read(field, world, found_);
+      const double* recorded = fields[static_cast<std::size_t>(field)].data() +
+                               found_.size() * static_cast<std::size_t>(in_kind);
+      for (std::size_t i = 0; i < found_.size(); ++i) {
+        if (equal(found_[i], recorded[i])) continue;
+        const int body = static_cast<int>(i / width);
+        if (first_body >= 0 && body >= first_body) break;
+        first_body = body;
+        what = describe(field, i % width, found_[i], recorded[i]);
+        break;
+      }
+    }
+    const std::uint64_t hash = batch_.hash(world), recorded_hash = recording_.hash(sample, world);
+    const Status status = batch_.status(world), recorded_status = recording_.status(sample, world);
+    if (what.empty() && status != recorded_status) {
+      what = "status is " + to_string(status) + ", recorded " + to_string(recorded_status);
+    }
+    if (what.empty() && hash != recorded_hash) {
+      what = "hash is " + hex(hash) + ", recorded " + hex(recorded_hash);
+    }
+    if (what.empty()) return;
+    if (result_.different++ > 0) return;
+    result_.difference =
+        Difference{recording_.name_of(world), recording_.step(sample), first_body, what};
+  }
+
+  // Bits, in the number type of the recording: NaN equals itself, and 0 is not -0.
+  bool equal(double a, double b) const {
+    if (all_.precision == Precision::f64) {
+      return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+    }
+    return std::bit_cast<std::uint32_t>(static_cast<float>(a)) ==
+           std::bit_cast<std::uint32_t>(static_cast<float>(b));
+  }
+  static std::string hex(std::uint64_t hash) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+  }
+  std::string describe(Field field, std::size_t component, double found, double recorded) const {
+    std::string names = record::component_names(field, all_.space());
+    for (; component > 0; --component) names.erase(0, names.find(' ') + 1);
+    const std::string name = std::string(info(field).name) + "." + names.substr(0, names.find(' '));
+    char text[128];
+    std::snprintf(text, sizeof text, "%s is %.9g, recorded %.9g", name.c_str(), found, recorded);
+    return text;
+  }
+
+  const Recording& recording_;
+  const Recording::Impl& all_;
+  const Batch& batch_;
+  ReplayResult& result_;
+  std::vector<double> found_;
+};
+
+}  // namespace
+
+ReplayResult replay(const Recording& recording, const ReplayOptions& options) {
+  const record::QuietErrors quiet;
+  const Recording::Impl& all = recording.impl();
+  Batch batch = make_batch(all, options);
+  ReplayResult result;
+  result.worlds = all.worlds();
+  result.kernel_table = batch.kernel_table();
+  Comparison comparison(recording, batch, result);
+  std::int64_t at = 0;
+  int call_steps = 0;
+  std::size_t next = 0;
+  try {
+    batch.restore(all.start);
+    for (std::int64_t sample = 0; sample < recording.samples(); ++sample) {
+      const auto before =
+          static_cast<std::size_t>(all.inputs_before[static_cast<std::size_t>(sample)]);
+      for (; next < before; ++next) {
+        const record::InputRow& row = all.inputs[next];
+        record::advance(batch, at, row.step, call_steps);
+        record::apply(batch, row, row.world, all.values(row), all.state(row));
+        if (row.call_steps > 0) call_steps = row.call_steps;
+      }
+      record::advance(batch, at, recording.step(sample), call_steps);
+      comparison.compare(sample);
+      ++result.samples;
+    }
+  } catch (const SnapshotError& error) {
+    throw RecordError(error.what());
+  } catch (const std::invalid_argument& error) {
+    throw RecordError("input " + std::to_string(next) + ": " + error.what());
+  }
+  result.steps = at;
+  result.lost_worlds = batch.lost_worlds();
+  return result;
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,190 @@
+// Scenes and plan options as JSON. A member that is added to a struct and not here does not
+// compile.
+#include "manyworlds/record.hpp"
+#include "src/record/json.hpp"
+
+namespace manyworlds::record {
+
+template <>
+struct Words<Space> {
+  static constexpr const char* list[] = {"planar", "spatial"};
+};
+template <>
+struct Words<Motion> {
+  static constexpr const char* list[] = {"dynamic", "kinematic", "fixed"};
+};
+template <>
+struct Words<BroadPhase> {
+  static constexpr const char* list[] = {"automatic", "all-pairs", "sort-and-sweep"};
+};
+template <>
+struct Words<Feature> {
+  static constexpr const char* list[] = {"orientation", "inertia", "friction", "restitution",
+                                         "contacts",    "drag",    "gravity"};
+};
+static_assert(std::size(Words<Feature>::list) == kFeatureCount);
+template <>
+struct Words<Geometry> {
+  static constexpr const char* list[] = {"sphere",     "box",     "plane",   "circle", "polygon",
+                                         "half_plane", "capsule", "segment", "terrain"};
+};
+static_assert(std::size(Words<Geometry>::list) == std::variant_size_v<Geometry>);
+
+template <>
+struct Words<Parameter> {
+  static constexpr const char* list[] = {
+#define MW_PARAMETER_WORD(name, owner, numbers, unit, meaning) #name,
+      MW_PARAMETERS(MW_PARAMETER_WORD)
+#undef MW_PARAMETER_WORD
+  };
+};
+template <>
+struct Words<Draw> {
+  static constexpr const char* list[] = {"none", "uniform", "log_uniform"};
+};
+
+#define MW_MEMBERS(Struct) \
+  template <class Visit>   \
+  void members(Visit& visit, Struct& value)
+
+MW_MEMBERS(Sphere) {
+  auto& [radius] = value;
+  visit("radius", radius);
+}
+MW_MEMBERS(Box) {
+  auto& [half_extents] = value;
+  visit("half_extents", half_extents);
+}
+MW_MEMBERS(Plane) {
+  auto& [normal, offset] = value;
+  visit("normal", normal), visit("offset", offset);
+}
+MW_MEMBERS(Capsule) {
+  auto& [radius, half_length] = value;
+  visit("radius", radius), visit("half_length", half_length);
+}
+MW_MEMBERS(Circle) {
+  auto& [radius] = value;
+  visit("radius", radius);
+}
+MW_MEMBERS(Polygon) {
+  auto& [vertices] = value;
+  visit("vertices", vertices);
+}
+MW_MEMBERS(HalfPlane) {
+  auto& [normal, offset] = value;
+  visit("normal", normal), visit("offset", offset);
+}
+MW_MEMBERS(Segment) {
+  auto& [a, b] = value;
+  visit("a", a), visit("b", b);
+}
+MW_MEMBERS(Terrain) {
+  auto& [points, loop] = value;
+  visit("points", points), visit("loop", loop);
+}
+MW_MEMBERS(Material) {
+  auto& [friction, restitution] = value;
+  visit("friction", friction), visit("restitution", restitution);
+}
+MW_MEMBERS(Filter) {
+  auto& [category, mask] = value;
+  visit("category", category), visit("mask", mask);
+}
+MW_MEMBERS(Shape) {
+  auto& [geometry, position, rotation, density, material, filter, name] = value;
+  visit("geometry", geometry), visit("position", position), visit("rotation", rotation);
+  visit("density", density), visit("material", material), visit("filter", filter);
+  visit("name", name);
+}
+MW_MEMBERS(MassProperties) {
+  auto& [mass, center, inertia] = value;
+  visit("mass", mass), visit("center", center), visit("inertia", inertia);
+}
+MW_MEMBERS(Jitter) {
+  auto& [position, linear_velocity, angle, any_orientation] = value;
+  visit("position", position), visit("linear_velocity", linear_velocity);
+  visit("angle", angle), visit("any_orientation", any_orientation);
+}
+MW_MEMBERS(Body) {
+  auto& [name, motion, enabled, position, rotation, linear_velocity, angular_velocity, shapes,
+         mass_properties, gravity_scale, linear_drag, angular_drag, jitter] = value;
+  visit("name", name), visit("motion", motion), visit("enabled", enabled);
+  visit("position", position), visit("rotation", rotation);
+  visit("linear_velocity", linear_velocity), visit("angular_velocity", angular_velocity);
+  visit("shapes", shapes), visit("mass_properties", mass_properties);
+  visit("gravity_scale", gravity_scale);
+  visit("linear_drag", linear_drag), visit("angular_drag", angular_drag);
+  visit("jitter", jitter);
+}
+// The corners are all that a box has.
+MW_MEMBERS(Eigen::AlignedBox3d) { visit("min", value.min()), visit("max", value.max()); }
+MW_MEMBERS(Options) {
+  auto& [dt, substeps, gravity, density, length_unit, contact_frequency, contact_damping_ratio,
+         push_out_speed, slop, restitution_threshold, restitution_sweeps, friction_in_bias_pass,
+         cast_against_fixed, cast_between_moving, sleep_speed, time_to_sleep, contact_capacity,
+         bounds] = value;
+  visit("dt", dt), visit("substeps", substeps), visit("gravity", gravity);
+  visit("density", density), visit("length_unit", length_unit);
+  visit("contact_frequency", contact_frequency);
+  visit("contact_damping_ratio", contact_damping_ratio);
+  visit("push_out_speed", push_out_speed), visit("slop", slop);
+  visit("restitution_threshold", restitution_threshold);
+  visit("restitution_sweeps", restitution_sweeps);
+  visit("friction_in_bias_pass", friction_in_bias_pass);
+  visit("cast_against_fixed", cast_against_fixed);
+  visit("cast_between_moving", cast_between_moving);
+  visit("sleep_speed", sleep_speed), visit("time_to_sleep", time_to_sleep);
+  visit("contact_capacity", contact_capacity), visit("bounds", bounds);
+}
+MW_MEMBERS(Variation) {
+  auto& [parameter, body, shape, low, high, draw, together] = value;
+  visit("parameter", parameter), visit("body", body), visit("shape", shape);
+  visit("low", low), visit("high", high), visit("draw", draw), visit("together", together);
+}
+MW_MEMBERS(Scene) {
+  auto& [name, space, bodies, options, variations] = value;
+  visit("name", name), visit("space", space), visit("options", options), visit("bodies", bodies);
+  visit("variations", variations);
+}
+MW_MEMBERS(PlanOptions) {
+  auto& [broad_phase, keep] = value;
+  visit("broad_phase", broad_phase), visit("keep", keep);
+}
+#undef MW_MEMBERS
+
+}  // namespace manyworlds::record
+
+namespace manyworlds {
+namespace {
+
+template <class Struct>
+std::string to_json(Struct value) {
+  record::Json json;
+  record::JsonWriter::put(json, value);
+  return json.dump(-1, ' ', false, record::Json::error_handler_t::replace);
+}
+
+template <class Struct>
+Struct from_json(std::string_view text) {
+  record::Json json;
+  try {
+    json = record::Json::parse(text);
+  } catch (const nlohmann::json::exception& error) {
+    throw RecordError(std::string("is not JSON: ") + error.what());
+  }
+  std::vector<std::string> problems;
+  Struct value;
+  record::JsonReader(problems, json, "").get(json, value, "");
+  if (!problems.empty()) throw RecordError(std::move(problems));
+  return value;
+}
+
+}  // namespace
+
+std::string scene_to_json(const Scene& scene) { return to_json(scene); }
+std::string plan_options_to_json(const PlanOptions& options) { return to_json(options); }
+Scene scene_from_json(std::string_view json) { return from_json<Scene>(json); }
+PlanOptions plan_options_from_json(std::string_view json) { return from_json<PlanOptions>(json); }
+
+}  // namespace manyworlds
