@@ -1,11 +1,14 @@
 // Any bytes as a snapshot: refused, and nothing has changed, or taken, and the batch steps on.
 #include <array>
+#include <cstddef>
 #include <cstring>
+#include <limits>
 #include <optional>
 
 #include "fuzz/check.hpp"
 #include "fuzz/inputs.hpp"
 #include "fuzz/snapshot_batches.hpp"
+#include "src/state/snapshot_format.hpp"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
@@ -82,8 +85,17 @@ std::vector<std::byte> snapshot_of(const std::uint8_t* data, std::size_t size) {
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned seed) {
   size = LLVMFuzzerMutate(data, size, most);
-  if (size < 2 || seed % 8 == 0) return size;
+  if (size < 2 || seed % 8 == 7) return size;  // now and then the frame is wrong, too
   auto bytes = manyworlds::fuzz::snapshot_of(data + 1, size - 1);
+  if (bytes.size() >= sizeof(manyworlds::SnapshotHeader) && seed % 32 < 2) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::int64_t last = std::numeric_limits<std::int64_t>::max();
+    if (seed % 32 == 0) {
+      std::memcpy(bytes.data() + offsetof(manyworlds::SnapshotHeader, clock), &nan, sizeof nan);
+    } else {
+      std::memcpy(bytes.data() + offsetof(manyworlds::SnapshotHeader, steps), &last, sizeof last);
+    }
+  }
   manyworlds::fuzz::frame(bytes);
   std::memcpy(data + 1, bytes.data(), bytes.size());
   return size;

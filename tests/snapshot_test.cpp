@@ -2,9 +2,12 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <vector>
 
 #include "manyworlds/scenes.hpp"
@@ -221,7 +224,7 @@ TEST_CASE("a forged snapshot is refused and changes nothing", "[fast][snapshot]"
   batch.step(3);
   const std::vector<std::byte> honest = batch.save().bytes();
   const std::uint64_t hash = batch.hash();
-  const auto forged = [&](std::size_t at, std::int32_t value) {
+  const auto forged = [&](std::size_t at, auto value) {
     std::vector<std::byte> bytes = honest;
     std::memcpy(bytes.data() + at, &value, sizeof value);
     const std::size_t end = bytes.size() - sizeof(std::uint64_t);
@@ -245,6 +248,14 @@ TEST_CASE("a forged snapshot is refused and changes nothing", "[fast][snapshot]"
                       Catch::Contains("world 0: a contact is not one of the plan's"));
   }
   CHECK_THROWS_WITH(batch.restore(forged(kKeys + 4, 5)), Catch::Contains("world 0: a"));
+  constexpr std::size_t kSteps = offsetof(SnapshotHeader, steps);
+  for (const std::int64_t steps : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()}) {
+    CHECK_THROWS_WITH(forged(kSteps, steps), Catch::Contains("steps, must be 0 to"));
+  }
+  constexpr std::size_t kClock = offsetof(SnapshotHeader, clock);
+  for (const double clock : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    CHECK_THROWS_WITH(forged(kClock, clock), Catch::Contains("clock that is not finite"));
+  }
   CHECK(batch.hash() == hash);
 }
 

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -76,6 +77,15 @@ void check(const std::vector<std::byte>& bytes) {
   }
   if (header.real_bytes != 4 && header.real_bytes != 8) {
     refuse("has numbers of " + std::to_string(header.real_bytes) + " bytes, must be 4 or 8");
+  }
+  if (!std::isfinite(header.clock)) {
+    refuse("has a clock that is not finite");
+  }
+  // Beyond it, time is no longer told apart step by step.
+  constexpr std::int64_t kMostSteps = std::int64_t{1} << 53;
+  if (header.steps < 0 || header.steps > kMostSteps) {
+    refuse("has taken " + std::to_string(header.steps) + " steps, must be 0 to " +
+           std::to_string(kMostSteps));
   }
   const std::size_t room = size - sizeof(SnapshotHeader) - kChecksum;
   if (header.worlds == 0 || header.worlds > room / sizeof(SnapshotEntry) ||
