@@ -124,7 +124,8 @@ TEST_CASE("the program explains itself and lists every scene", "[cli]") {
   const Outcome help = run("--help");
   CHECK(help.code == 0);
   CHECK(help.err.empty());
-  for (const char* command : {"scenes", "run", "plan", "bench", "verify", "soak", "info"}) {
+  for (const char* command :
+       {"scenes", "run", "plan", "bench", "verify", "soak", "replay", "info"}) {
     CHECK(contains(help.out, command));
     const Outcome detail = run(std::string(command) + " --help");
     CHECK(detail.code == 0);
@@ -386,7 +387,8 @@ TEST_CASE("a lost world ends with exit code 1 and the command that shows it agai
 TEST_CASE("info names the machine and the build", "[cli]") {
   const Outcome outcome = run("info");
   CHECK(outcome.code == 0);
-  for (const char* row : {"manyworlds", "compiler", "cpu", "threads", "isa", "precision", "mjcf"}) {
+  for (const char* row :
+       {"manyworlds", "compiler", "cpu", "threads", "isa", "precision", "mjcf", "recordings"}) {
     CHECK(contains("\n" + outcome.out, std::string("\n") + row));
   }
   CHECK(contains(outcome.out, to_string(default_isa())));

@@ -11,7 +11,7 @@ mujoco_dir="$root/.deps/mujoco"
 
 packages=(
   ca-certificates ccache cmake g++ ninja-build python3 python3-pip
-  catch2 libbenchmark-dev libcli11-dev libeigen3-dev libfmt-dev libtbb-dev libxsimd-dev
+  catch2 libbenchmark-dev libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libtbb-dev libxsimd-dev
   nlohmann-json3-dev
 )
 
@@ -54,8 +54,9 @@ fetch_mujoco() {
 # Configures build/release when it was not, or when the presets changed. Ninja itself reconfigures
 # when a CMake file or the list of sources changed.
 configure() {
-  local mjcf=$1
-  local arguments=(--preset release -D "MW_MJCF=$mjcf" -D "MW_MUJOCO_DIR=$mujoco_dir")
+  local mjcf=$1 record=$2
+  local arguments=(--preset release -D "MW_MJCF=$mjcf" -D "MW_MUJOCO_DIR=$mujoco_dir"
+    -D "MW_RECORD=$record")
   local stamp="$build_dir/configured_with"
   if [[ -f $build_dir/build.ninja && $stamp -nt $root/CMakePresets.json &&
     $(<"$stamp") == "${arguments[*]}" ]]; then
@@ -69,14 +70,15 @@ configure() {
 # build TARGET: everything up to an up-to-date TARGET in build/release. Two at a time wait for one
 # another.
 build() {
-  local target=$1 mjcf=${MW_MJCF:-ON}
+  local target=$1 mjcf=${MW_MJCF:-ON} record=${MW_RECORD:-ON}
   [[ $mjcf == ON || $mjcf == OFF ]] || fail "MW_MJCF is '$mjcf', must be ON or OFF"
+  [[ $record == ON || $record == OFF ]] || fail "MW_RECORD is '$record', must be ON or OFF"
   install_packages "${packages[@]}"
   mkdir -p "$root/build"
   exec 9>"$root/build/release.lock"
   flock 9
   [[ $mjcf == OFF ]] || fetch_mujoco
-  configure "$mjcf"
+  configure "$mjcf" "$record"
   cmake --build "$build_dir" --target "$target" --parallel "$(nproc)" >&2 9>&- ||
     fail "the build failed"
   exec 9>&-

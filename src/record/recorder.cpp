@@ -21,7 +21,8 @@ using record::Table;
 
 constexpr std::size_t kFieldChunk = std::size_t{1} << 16;  // bytes
 constexpr std::size_t kStartChunk = std::size_t{1} << 20;
-constexpr std::size_t kColumnChunk = std::size_t{1} << 12;  // bytes; small recordings stay small
+constexpr std::size_t kColumnChunk = std::size_t{1} << 12;  // bytes
+constexpr std::size_t kSmallChunk = 256;                    // bytes; where there are few samples
 constexpr std::size_t kRowsInMemory = 4096;                 // of inputs
 
 std::vector<int> checked_worlds(const Batch& batch, const RecordOptions& options) {
@@ -190,9 +191,10 @@ void Recorder::Impl::make_kind(const Batch& batch, int index, std::vector<int> w
 }
 
 void Recorder::Impl::make_inputs() {
-  step_ = Table::create<std::int64_t>(h5_, "step", {}, kColumnChunk);
-  time_ = Table::create<double>(h5_, "time", {}, kColumnChunk);
-  inputs_before_ = Table::create<std::int64_t>(h5_, "inputs_before", {}, kColumnChunk);
+  const std::size_t chunk = options_.every == 0 ? kSmallChunk : kColumnChunk;
+  step_ = Table::create<std::int64_t>(h5_, "step", {}, chunk);
+  time_ = Table::create<double>(h5_, "time", {}, chunk);
+  inputs_before_ = Table::create<std::int64_t>(h5_, "inputs_before", {}, chunk);
   record::write_text(time_.dataset(), "unit", "s");
   root_inputs_ = record::create_group(h5_, "inputs");
   std::string words;
@@ -200,7 +202,7 @@ void Recorder::Impl::make_inputs() {
     words += (i > 0 ? " " : "") + std::string(to_string(static_cast<Input>(i)));
   }
   const auto column = [&]<class T>(T, const char* name) {
-    return Table::create<T>(root_inputs_, name, {}, kColumnChunk);
+    return Table::create<T>(root_inputs_, name, {}, chunk);
   };
   columns_ = {column(std::int64_t{}, "step"),  column(std::int32_t{}, "call_steps"),
               column(std::uint8_t{}, "input"), column(std::int32_t{}, "world"),

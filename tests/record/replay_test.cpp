@@ -78,6 +78,25 @@ TEST_CASE("inputs of every kind are repeated, whatever replays them", "[fast][re
   }
 }
 
+TEST_CASE("a world that is woken in a recording wakes in the replay", "[fast][record]") {
+  const Folder folder;
+  Scene scene = crowd(Space::spatial);
+  scene.options.sleep_speed = 0.5;
+  scene.options.time_to_sleep = 0.1;
+  for (Body& body : scene.bodies) body.linear_drag = body.angular_drag = 1;
+  Batch batch(compile(scene), batch_options(widest_tables().front(), 3, true));
+  batch.step(400);
+  REQUIRE(batch.asleep(1));
+  Recorder recorder(batch, folder / "run.h5");
+  batch.step(3);
+  const std::uint64_t asleep = batch.hash(1);
+  batch.wake(1);
+  batch.step(3);
+  CHECK(batch.hash(1) != asleep);
+  recorder.close();
+  check_equal(replay(Recording::open(folder / "run.h5")));
+}
+
 TEST_CASE("chosen worlds of several kinds are replayed by themselves", "[fast][record]") {
   const Folder folder;
   const Plan crowd_plan = compile(crowd(Space::spatial));

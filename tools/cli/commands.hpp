@@ -13,6 +13,7 @@ int plan_command(const JobOptions& options);
 int bench_command(const BenchOptions& options);
 int verify_command(const VerifyOptions& options);
 int soak_command(const JobOptions& options);
+int replay_command(const ReplayArguments& arguments);
 int info_command();
 
 }  // namespace manyworlds::cli

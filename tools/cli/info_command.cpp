@@ -12,6 +12,7 @@
 #include "manyworlds/batch.hpp"
 
 #include "commands.hpp"
+#include "recording.hpp"
 #include "scene_source.hpp"
 #include "version.hpp"
 
@@ -62,6 +63,7 @@ int info_command() {
   row("isa in use", to_string(in_use));
   row("precision", fmt::format("{}, {}", to_string(Precision::f32), to_string(Precision::f64)));
   row("mjcf", reads_mjcf() ? "yes" : "no");
+  row("recordings", writes_recordings() ? "yes" : "no");
   return kOk;
 }
 

@@ -5,20 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "text.hpp"
+
 namespace manyworlds::cli {
-namespace {
-
-// As a POSIX shell takes it: file names may hold blanks and quotes.
-std::string quoted(const std::string& word) {
-  constexpr const char* kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
-}  // namespace
 
 void LostWorlds::collect(const Batch& batch, std::int64_t first, std::uint64_t seed) {
   for (int world = 0; world < batch.worlds(); ++world) {
@@ -37,7 +26,7 @@ std::map<std::string, std::int64_t> LostWorlds::by_reason() const {
 
 std::string reproduce_command(const JobOptions& options, int steps, std::uint64_t seed) {
   std::string command = fmt::format("manyworlds run {} --worlds 1 --seed {} --steps {}",
-                                    quoted(options.scene), seed, steps);
+                                    shell_word(options.scene), seed, steps);
   if (options.dt) command += fmt::format(" --dt {}", *options.dt);
   if (options.substeps) command += fmt::format(" --substeps {}", *options.substeps);
   if (options.sleep) command += " --sleep on";

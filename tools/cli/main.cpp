@@ -26,6 +26,7 @@ struct AllOptions {
   VerifyOptions verify;
   std::optional<std::uint64_t> verify_seed;
   JobOptions soak;
+  ReplayArguments replay;
 };
 
 constexpr const char* kAppFooter =
@@ -53,6 +54,8 @@ void add_run(CLI::App& app, AllOptions& all, int& code) {
   add_sleep_option(*command, all.run.sleep);
   add_plan_options(*command, all.run);
   add_seed(*command, all.run.seed, "world i draws from seed + i (default: 0)");
+  add_record_options(*command, all.run);
+  add_dump_option(*command, all.run);
   add_json_option(*command, all.run);
   command->footer(
       "Examples:\n"
@@ -60,9 +63,11 @@ void add_run(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds run pile.xml --dt 0.005 --substeps 2 --threads 1 --json\n"
       "  manyworlds run stack10 --precision f64 --worlds 1 --seed 17\n"
       "  manyworlds run bin-boxes --seconds 20 --sleep on\n"
+      "  manyworlds run stack10 --record stack.h5 --record-worlds 0,10-19 --record-every 6\n"
       "\n"
       "Contacts, penetration, energy, lost worlds and hash are of the state after the last\n"
-      "step. The stage split is measured afterwards, in a few more steps.");
+      "step. The stage split is measured afterwards, in a few more steps. The speed is with\n"
+      "--record, where it is given; calls then end where samples are due.");
   command->callback([&] { code = run_command(all.run); });
 }
 
@@ -131,11 +136,30 @@ void add_soak(CLI::App& app, AllOptions& all, int& code) {
   add_sleep_option(*command, all.soak.sleep);
   add_plan_options(*command, all.soak);
   add_seed(*command, all.soak.seed, "world i draws from seed + i (default: random, printed)");
+  add_dump_option(*command, all.soak);
   command->footer(
       "Examples:\n"
       "  manyworlds soak bin-boxes\n"
-      "  manyworlds soak mixed-pile --worlds 100000 --seconds 60");
+      "  manyworlds soak mixed-pile --worlds 100000 --seconds 60\n"
+      "  manyworlds soak mixed-pile --dump-lost lost");
   command->callback([&] { code = soak_command(all.soak); });
+}
+
+void add_replay(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command =
+      app.add_subcommand("replay", "Simulate a recording again and compare every sample");
+  command->add_option("file", all.replay.file, "recording of --record or --dump-lost")
+      ->required()
+      ->type_name("FILE.h5");
+  add_kernel_options(*command, all.replay.job);
+  add_json_option(*command, all.replay.job);
+  command->footer(
+      "Examples:\n"
+      "  manyworlds replay stack.h5\n"
+      "  manyworlds replay lost/world_17.h5 --isa scalar --json\n"
+      "\n"
+      "Exit codes: 0 all equal, 1 something differs, 2 the file cannot be read.");
+  command->callback([&] { code = replay_command(all.replay); });
 }
 
 void add_info(CLI::App& app, int& code) {
@@ -187,6 +211,7 @@ int run_program(int argc, char** argv) {
   add_bench(app, all, code);
   add_verify(app, all, code);
   add_soak(app, all, code);
+  add_replay(app, all, code);
   add_info(app, code);
   try {
     app.parse(argc, argv);  // runs the subcommand's callback

@@ -167,15 +167,19 @@ void add_plan_options(CLI::App& app, JobOptions& options) {
 
 void add_batch_options(CLI::App& app, JobOptions& options) {
   add_count(app, "--worlds", options.worlds, 1, "number of worlds");
-  app.add_option("--threads", options.threads, "threads; 0: all that the process may use")
-      ->check(whole_number(0, 1024))
-      ->type_name("N")
-      ->capture_default_str();
   add_choice<Precision>(
       app, "--precision",
       {{to_string(Precision::f32), Precision::f32}, {to_string(Precision::f64), Precision::f64}},
       [&options](Precision value) { options.precision = value; },
       "arithmetic of the step (default: f32)");
+  add_kernel_options(app, options);
+}
+
+void add_kernel_options(CLI::App& app, JobOptions& options) {
+  app.add_option("--threads", options.threads, "threads; 0: all that the process may use")
+      ->check(whole_number(0, 1024))
+      ->type_name("N")
+      ->capture_default_str();
   add_choice<Isa>(
       app, "--isa",
       {{to_string(Isa::scalar), Isa::scalar},
@@ -214,6 +218,27 @@ void add_sleep_options(CLI::App& app, std::vector<bool>& sleep) {
 
 void add_json_option(CLI::App& app, JobOptions& options) {
   app.add_flag("--json", options.json, "print JSON instead of text");
+}
+
+void add_record_options(CLI::App& app, JobOptions& options) {
+  CLI::Option* file =
+      app.add_option("--record", options.record, "record worlds in this file, for 'replay'")
+          ->type_name("FILE.h5");
+  app.add_option("--record-worlds", options.record_worlds,
+                 "which, as 0,5,10-20 (default: the first 64)")
+      ->type_name("LIST")
+      ->needs(file);
+  app.add_option("--record-every", options.record_every, "steps from one sample to the next")
+      ->check(whole_number(1, std::numeric_limits<int>::max()))
+      ->type_name("K")
+      ->capture_default_str()
+      ->needs(file);
+}
+
+void add_dump_option(CLI::App& app, JobOptions& options) {
+  app.add_option("--dump-lost", options.dump_lost,
+                 "record how worlds are lost, for 'replay': DIR/world_N.h5, the first 16 of them")
+      ->type_name("DIR");
 }
 
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes) {

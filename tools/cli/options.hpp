@@ -51,6 +51,12 @@ struct JobOptions {
   int steps_per_call = 16;        // n of each step(n) call
 
   bool json = false;
+
+  // Recordings (recording.hpp); empty: none.
+  std::string record;         // file
+  std::string record_worlds;  // "0,5,10-20"; empty: the first few
+  int record_every = 1;       // steps
+  std::string dump_lost;      // folder
 };
 
 struct BenchOptions {
@@ -67,15 +73,23 @@ struct VerifyOptions {
   bool quick = false;
 };
 
+struct ReplayArguments {
+  std::string file;
+  JobOptions job;  // threads, isa, layout and json of it
+};
+
 // Each adds one group of options to a subcommand; values that fail their check make CLI11's parse
 // throw with the option's name in front. The options must outlive the parse.
 void add_scene_argument(CLI::App& app, JobOptions& options);
 void add_plan_options(CLI::App& app, JobOptions& options);
 void add_batch_options(CLI::App& app, JobOptions& options);
+void add_kernel_options(CLI::App& app, JobOptions& options);  // those that do not change a bit
 void add_length_options(CLI::App& app, JobOptions& options);
 void add_sleep_option(CLI::App& app, bool& sleep);
 void add_sleep_options(CLI::App& app, std::vector<bool>& sleep);  // or both
 void add_json_option(CLI::App& app, JobOptions& options);
+void add_record_options(CLI::App& app, JobOptions& options);
+void add_dump_option(CLI::App& app, JobOptions& options);
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes);
 // A whole number of at least `least`.
 void add_count(CLI::App& app, const std::string& flag, int& value, int least,

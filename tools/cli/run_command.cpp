@@ -9,6 +9,7 @@
 #include "job.hpp"
 #include "lost_worlds.hpp"
 #include "progress.hpp"
+#include "recording.hpp"
 #include "report.hpp"
 #include "text.hpp"
 
@@ -78,12 +79,18 @@ int run_command(const JobOptions& options) {
   const std::uint64_t seed = options.seed.value_or(0);
   Batch batch = make_batch(job, options, options.worlds, seed, options.threads);
 
+  const int call = steps_per_call(options);
+  JobRecorder recorder(batch, options);
+  LostDumps dumps(options);
+  dumps.watch(batch, 0);
   double seconds = 0;
   {
     Progress progress(options.scene, job.steps);
-    seconds = timed_steps(batch, job.steps, options.steps_per_call, &progress);
+    seconds = timed_steps(batch, job.steps, call, &progress);
   }
-  Report report = measure(batch, job, job.steps, options.steps_per_call, seconds);
+  dumps.finish();
+  const std::string recorded = recorder.finish(batch);
+  Report report = measure(batch, job, job.steps, call, seconds);
   LostWorlds worlds;
   worlds.collect(batch, 0, seed);
   report.stage_split =
@@ -93,6 +100,7 @@ int run_command(const JobOptions& options) {
     fmt::print("{}\n", to_json(report).dump(2));
   } else {
     print_summary(report, worlds, batch, seconds);
+    if (!recorded.empty()) fmt::print("  {:<13}{}\n", "recorded", recorded);
   }
   std::fflush(stdout);  // the lines below come after it on a terminal and in a log
   if (worlds.overflowed() > 0) {
@@ -100,6 +108,7 @@ int run_command(const JobOptions& options) {
                counted(worlds.overflowed(), "world"));
   }
   print_lost(worlds, options, job.steps, kLostShown);
+  dumps.print();
   return worlds.lost().empty() ? kOk : kWorldLost;
 }
 

@@ -9,6 +9,7 @@
 #include "job.hpp"
 #include "lost_worlds.hpp"
 #include "progress.hpp"
+#include "recording.hpp"
 #include "text.hpp"
 
 namespace manyworlds::cli {
@@ -26,6 +27,7 @@ int soak_command(const JobOptions& options) {
   const std::uint64_t seed = options.seed ? *options.seed : std::random_device{}();
 
   LostWorlds worlds;
+  LostDumps dumps(options);
   double deepest = 0;
   double seconds = 0;
   {
@@ -42,7 +44,9 @@ int soak_command(const JobOptions& options) {
                    batch.kernel_table(), counted(batch.threads(), "thread"));
         std::fflush(stdout);
       }
+      dumps.watch(batch, first);
       seconds += timed_steps(batch, job.steps, options.steps_per_call, &progress);
+      dumps.finish();
       worlds.collect(batch, first, batch_seed);
       deepest = std::max(deepest, batch.measure_contacts().max_penetration);
     }
@@ -57,6 +61,7 @@ int soak_command(const JobOptions& options) {
   }
   std::fflush(stdout);
   print_lost(worlds, options, job.steps, kLostShown);
+  dumps.print();
   return worlds.lost().empty() ? kOk : kWorldLost;
 }
 

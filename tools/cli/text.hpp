@@ -15,6 +15,9 @@ std::string hex(std::uint64_t hash);
 // "4.20 mm", "0.613 m": lengths of overlaps.
 std::string length(double meters);
 
+// As a POSIX shell takes it: file names may hold blanks and quotes.
+std::string shell_word(const std::string& word);
+
 // "1 world", "3 worlds"
 std::string counted(long long count, const std::string& noun);
 

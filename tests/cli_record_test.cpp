@@ -1,0 +1,162 @@
+// The program's recordings as its users see them; and without HDF5, how to get them.
+#ifdef MW_CLI_PATH
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+namespace manyworlds {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+// A folder that the program runs in, gone with the object.
+class Folder {
+ public:
+  Folder()
+      : path_(fs::temp_directory_path() / ("manyworlds_cli_record_" + std::to_string(getpid()))) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command =
+        "cd '" + path_.string() + "' && '" MW_CLI_PATH "' " + arguments + " >out 2>err </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content("out"), content("err")};
+  }
+
+ private:
+  std::string content(const char* name) const {
+    std::ifstream file(path_ / name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  fs::path path_;
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+void check_bad(const Outcome& outcome, const char* message) {
+  CHECK(outcome.code == 2);
+  CHECK(outcome.out.empty());
+  INFO(outcome.err);
+  CHECK(contains(outcome.err, message));
+  CHECK(outcome.err.rfind("manyworlds: ", 0) == 0);
+  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+}
+
+bool records(const Folder& folder) { return contains(folder.run("info").out, "recordings   yes"); }
+
+}  // namespace
+
+TEST_CASE("without recordings the program says how to get them", "[cli]") {
+  const Folder folder;
+  if (records(folder)) return;
+  check_bad(folder.run("run ball3d --steps 2 --record run.h5"), "cmake -D MW_RECORD=ON");
+  check_bad(folder.run("soak ball3d --steps 2 --dump-lost lost"), "cmake -D MW_RECORD=ON");
+  check_bad(folder.run("replay run.h5"), "cmake -D MW_RECORD=ON");
+}
+
+TEST_CASE("run --record and replay end in the same bits", "[cli]") {
+  const Folder folder;
+  if (!records(folder)) return;
+  const std::string job = "run mixed-pile2d --worlds 40 --steps 60 --seed 3 ";
+  const Outcome plain = folder.run(job + "--json");
+  const Outcome run =
+      folder.run(job + "--json --record run.h5 --record-worlds 20-22,5,7 --record-every 10");
+  REQUIRE(run.code == 0);
+  CHECK(Json::parse(run.out)["hash"] == Json::parse(plain.out)["hash"]);
+  CHECK(Json::parse(run.out)["steps_per_call"] == 10);
+  for (const char* how : {"", " --isa scalar --threads 2", " --layout dense"}) {
+    const Outcome replay = folder.run(std::string("replay run.h5 --json") + how);
+    CHECK(replay.code == 0);
+    const Json json = Json::parse(replay.out);
+    CHECK(json["worlds"] == 5);
+    CHECK(json["samples"] == 7);
+    CHECK(json["steps"] == 60);
+    CHECK(json["compared"] == 35);
+    CHECK(json["different"] == 0);
+    CHECK(json["difference"].is_null());
+  }
+  const Outcome text = folder.run("replay run.h5");
+  CHECK(contains(text.out, "run.h5: 5 worlds of mixed-pile2d, 60 steps"));
+  CHECK(contains(text.out, "different    none"));
+
+  const Outcome all = folder.run("run ball3d --worlds 100 --steps 4 --record all.h5 --sleep on");
+  CHECK(contains(all.out, "recorded     64 of 100 worlds, 5 samples every 1 step, "));
+  CHECK(folder.run("replay all.h5").code == 0);
+}
+
+TEST_CASE("what cannot be recorded or replayed is bad input", "[cli]") {
+  const Folder folder;
+  if (!records(folder)) return;
+  const std::string run = "run ball3d --worlds 8 --steps 2 ";
+  const auto bad = [&](const std::string& arguments, const char* message) {
+    INFO(arguments);
+    check_bad(folder.run(arguments), message);
+  };
+  for (const char* list : {"x", "1-", "3-1", "1,,2", "1,", "1 2", "99999999999"}) {
+    bad(run + "--record a.h5 --record-worlds '" + list + "'", "--record-worlds");
+  }
+  bad(run + "--record a.h5 --record-worlds 2-8", "there is no world 8, --worlds is 8");
+  bad(run + "--record a.h5 --record-every 0", "--record-every: must be at least 1");
+  bad(run + "--record-every 3", "--record");
+  bad(run + "--record no/such/folder/a.h5", "no/such/folder/a.h5");
+  CHECK_FALSE(fs::exists(folder / "a.h5"));
+  bad("replay absent.h5", "'absent.h5': cannot be read");
+  bad("replay .", "'.': is a directory");
+  std::ofstream(folder / "foreign.h5") << std::string(5000, 'x');
+  bad("replay foreign.h5", "'foreign.h5': is no recording of manyworlds");
+  REQUIRE(folder.run(run + "--record a.h5").code == 0);
+  fs::resize_file(folder / "a.h5", fs::file_size(folder / "a.h5") - 1);
+  bad("replay a.h5", "'a.h5': is ");
+}
+
+TEST_CASE("lost worlds are dumped, and a replay loses them again", "[cli]") {
+  const Folder folder;
+  if (!records(folder)) return;
+  // Bodies that fly at about 1 m/s leave the range of 1e10 m in one such step.
+  const Outcome run =
+      folder.run("run free-flight --steps 2 --dt 1e12 --worlds 20 --dump-lost lost");
+  CHECK(run.code == 1);
+  CHECK(contains(run.err, "manyworlds: dumped: manyworlds replay lost/world_15.h5\n"));
+  CHECK_FALSE(contains(run.err, "lost/world_16.h5"));
+  const Outcome replay = folder.run("replay lost/world_15.h5 --json");
+  CHECK(replay.code == 0);
+  CHECK(Json::parse(replay.out)["lost_worlds"] == 1);
+  CHECK(Json::parse(replay.out)["different"] == 0);
+
+  CHECK(folder.run("soak free-flight --steps 2 --dt 1e12 --worlds 3 --dump-lost s").code == 1);
+  CHECK(folder.run("replay s/world_2.h5").code == 0);
+  check_bad(folder.run("soak ball3d --steps 2 --worlds 2 --seed 1 --dump-lost out"), "'out'");
+}
+
+}  // namespace manyworlds
+
+#endif  // MW_CLI_PATH

@@ -1,0 +1,174 @@
+#include "recording.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "text.hpp"
+
+#ifdef MW_HAVE_RECORD
+#include "manyworlds/record.hpp"
+#endif
+
+namespace manyworlds::cli {
+namespace {
+
+constexpr std::size_t kMostLines = 1000000;  // worlds in one list
+
+// A whole number at the front of `text`, which it takes off.
+std::optional<int> take_number(std::string_view& text) {
+  int value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || value < 0) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
+  return value;
+}
+
+}  // namespace
+
+std::vector<int> parse_worlds(const std::string& list, int worlds) {
+  std::set<int> chosen;
+  std::string_view rest = list;
+  for (bool more = true; more;) {
+    const std::optional<int> first = take_number(rest);
+    std::optional<int> last = first;
+    if (first && !rest.empty() && rest.front() == '-') {
+      rest.remove_prefix(1);
+      last = take_number(rest);
+    }
+    more = !rest.empty() && rest.front() == ',';
+    if (more) rest.remove_prefix(1);
+    if (!first || !last || *last < *first || (!more && !rest.empty())) {
+      throw InputError(fmt::format("--record-worlds: must be like 0,5,10-20, is '{}'", list));
+    }
+    if (*last >= worlds) {
+      throw InputError(
+          fmt::format("--record-worlds: there is no world {}, --worlds is {}", *last, worlds));
+    }
+    for (int world = *first; world <= *last && chosen.size() < kMostLines; ++world) {
+      chosen.insert(world);
+    }
+  }
+  return {chosen.begin(), chosen.end()};
+}
+
+int steps_per_call(const JobOptions& options) {
+  if (options.record.empty()) return options.steps_per_call;
+  int n = std::min(options.steps_per_call, options.record_every);
+  while (options.record_every % n != 0) --n;
+  return n;
+}
+
+#ifdef MW_HAVE_RECORD
+
+bool writes_recordings() { return true; }
+
+struct JobRecorder::Impl {
+  Recorder recorder;
+  std::filesystem::path file;
+  std::size_t worlds;
+  int all, every;
+};
+
+JobRecorder::JobRecorder(Batch& batch, const JobOptions& options) {
+  if (options.record.empty()) return;
+  RecordOptions record;
+  if (!options.record_worlds.empty()) {
+    record.worlds = parse_worlds(options.record_worlds, batch.worlds());
+  }
+  record.every = options.record_every;
+  const std::size_t worlds =
+      record.worlds.empty()
+          ? static_cast<std::size_t>(std::min(batch.worlds(), kMostWorldsByDefault))
+          : record.worlds.size();
+  impl_ = std::make_unique<Impl>(Impl{Recorder(batch, options.record, record), options.record,
+                                      worlds, batch.worlds(), record.every});
+}
+JobRecorder::~JobRecorder() = default;
+
+std::string JobRecorder::finish(const Batch& batch) {
+  if (!impl_) return {};
+  impl_->recorder.sample(batch);
+  impl_->recorder.close();
+  const double bytes = static_cast<double>(std::filesystem::file_size(impl_->file));
+  return fmt::format("{} of {}, {} samples every {}, {}B in {}", impl_->worlds,
+                     counted(impl_->all, "world"), impl_->recorder.samples(),
+                     counted(impl_->every, "step"), with_prefix(bytes), impl_->file.string());
+}
+
+struct LostDumps::Impl {
+  std::filesystem::path folder;
+  std::optional<LostWorldDumps> dumps;
+  std::vector<std::filesystem::path> files;
+};
+
+LostDumps::LostDumps(const JobOptions& options) {
+  if (options.dump_lost.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(options.dump_lost, error);
+  if (!std::filesystem::is_directory(options.dump_lost)) {
+    throw InputError(fmt::format("--dump-lost: cannot make the folder '{}'", options.dump_lost));
+  }
+  impl_ = std::make_unique<Impl>(Impl{options.dump_lost, {}, {}});
+}
+LostDumps::~LostDumps() = default;
+
+void LostDumps::watch(Batch& batch, std::int64_t first) {
+  if (!impl_) return;
+  LostWorldDumps::Options options;
+  options.most -= static_cast<int>(impl_->files.size());
+  options.first_world = first;
+  impl_->dumps.emplace(batch, impl_->folder, options);
+}
+void LostDumps::finish() {
+  if (!impl_ || !impl_->dumps) return;
+  for (auto& file : impl_->dumps->close()) impl_->files.push_back(std::move(file));
+  impl_->dumps.reset();
+}
+void LostDumps::print() const {
+  if (!impl_) return;
+  for (const auto& file : impl_->files) {
+    fmt::print(stderr, "manyworlds: dumped: manyworlds replay {}\n", shell_word(file.string()));
+  }
+}
+
+#else
+
+namespace {
+
+constexpr const char* kHow =
+    "this program was built without recordings; cmake -D MW_RECORD=ON builds it with them, and "
+    "needs the HDF5 library";
+
+}  // namespace
+
+bool writes_recordings() { return false; }
+
+struct JobRecorder::Impl {};
+JobRecorder::JobRecorder(Batch&, const JobOptions& options) {
+  if (!options.record.empty()) throw InputError(fmt::format("--record: {}", kHow));
+}
+JobRecorder::~JobRecorder() = default;
+std::string JobRecorder::finish(const Batch&) { return {}; }
+
+struct LostDumps::Impl {};
+LostDumps::LostDumps(const JobOptions& options) {
+  if (!options.dump_lost.empty()) throw InputError(fmt::format("--dump-lost: {}", kHow));
+}
+LostDumps::~LostDumps() = default;
+void LostDumps::watch(Batch&, std::int64_t) {}
+void LostDumps::finish() {}
+void LostDumps::print() const {}
+
+#endif
+
+}  // namespace manyworlds::cli
