@@ -212,6 +212,28 @@ Options SceneBytes::options() {
   return o;
 }
 
+Variation SceneBytes::variation(int bodies) {
+  Variation out;
+  out.parameter = static_cast<Parameter>(integer(0, kParameterCount - 1));
+  const auto owner = info(out.parameter).owner;
+  if (rarely() || (owner != ParameterInfo::world && byte() > 128)) out.body = integer(0, bodies);
+  if (rarely() || (owner == ParameterInfo::shape && out.body >= 0 && byte() > 128)) {
+    out.shape = integer(0, 2);
+  }
+  const bool gravity = out.parameter == Parameter::gravity;
+  out.low = gravity ? planar_vector(10) : Vec3::Constant(number(0.05, 0.5));
+  out.high =
+      out.low + (gravity ? planar_vector(1).cwiseAbs().eval() : Vec3::Constant(number(0, 0.5)));
+  out.draw = static_cast<Draw>(rarely() ? 0 : integer(gravity ? 1 : 0, gravity ? 1 : 2));
+  if (out.draw == Draw::none) {  // the scene's own number must be within
+    out.low = rarely() ? out.low : Vec3::Constant(1e-6);
+    out.high = Vec3::Constant(1e6);
+    if (out.parameter == Parameter::restitution) out.low.setZero(), out.high.setOnes();
+  }
+  out.together = byte() > 128;
+  return out;
+}
+
 Scene SceneBytes::scene() {
   Scene out;
   planar_ = byte() > 128;
@@ -220,6 +242,9 @@ Scene SceneBytes::scene() {
   const int most = rarely() ? 60 : 8;
   for (int i = 0; i < most && !done(); ++i) out.add(body(i));
   if (rarely()) out.name = name();
+  for (int n = byte() > 128 ? integer(1, 4) : 0; n > 0 && !out.bodies.empty(); --n) {
+    out.variations.push_back(variation(static_cast<int>(out.bodies.size()) - (rarely() ? 0 : 1)));
+  }
   return out;
 }
 

@@ -41,6 +41,7 @@ class SceneBytes {
   MassProperties mass_properties();
   Body body(int index);
   Options options();
+  Variation variation(int bodies);
 
   FuzzedDataProvider bytes_;
   std::uint8_t wildness_;  // of 256 numbers, how many are anything
