@@ -16,7 +16,7 @@ Input input(SceneBytes& bytes);
 // The same for every batch of the same worlds and bodies.
 void apply(const Input& input, Batch& batch);
 
-// Steps, then looks at everything that can be asked of a batch: worlds that are not frozen must be
+// Steps, then looks at everything that can be asked of a batch: worlds that step must be
 // finite.
 void step_and_look(Batch& batch, int steps);
 
