@@ -52,6 +52,7 @@ struct Observation {
   const RayTable* ray;                  // [ray]
   const std::uint32_t* fixed_category;  // [fixed shape]
   const Real* ray_rows;                 // [ray][row][lane]
+  Real* placed;                         // [ray][origin, direction][lane], in the world
   Real* hit_rows;                       // [ray][row][lane]
   std::int32_t* hit_shape;  // [ray][lane]: fixed shape, or fixed shapes + collider; -1: none
 };

@@ -11,31 +11,26 @@ namespace {
 
 using kernels::ShapeKind;
 
-template <class Pose, class Vec>
-MW_INLINE RayHit<Vec> cast_pose(const Real* base, const std::int32_t* o, const RayOf<Vec>& ray) {
+// Calls visit(pose) with the pose of a shape of this kind.
+template <class Pose, class Visit>
+MW_INLINE void visit_pose(const Real* base, const std::int32_t* o, Visit& visit) {
   Pose pose;
   load_pose(base, o, pose);
-  return cast(ray, pose);
+  visit(pose);
 }
-
-RayHit<Vec3> cast_shape(ShapeKind kind, const Real* base, const std::int32_t* o,
-                        const RayOf<Vec3>& ray) {
-  switch (kind) {
-    case ShapeKind::sphere: return cast_pose<SpherePose>(base, o, ray);
-    case ShapeKind::box: return cast_pose<BoxPose>(base, o, ray);
-    case ShapeKind::capsule: return cast_pose<CapsulePose<Vec3>>(base, o, ray);
-    default: return cast_pose<PlanePose>(base, o, ray);
-  }
-}
-RayHit<Vec2> cast_shape(ShapeKind kind, const Real* base, const std::int32_t* o,
-                        const RayOf<Vec2>& ray) {
-  switch (kind) {
-    case ShapeKind::circle: return cast_pose<CirclePose>(base, o, ray);
-    case ShapeKind::rectangle: return cast_pose<RectanglePose>(base, o, ray);
-    case ShapeKind::polygon: return cast_pose<PolygonPose>(base, o, ray);
-    case ShapeKind::capsule: return cast_pose<CapsulePose<Vec2>>(base, o, ray);
-    case ShapeKind::link: return cast_pose<LinkPose>(base, o, ray);
-    default: return cast_pose<PlanePose>(base, o, ray);
+template <class S, class Visit>
+MW_INLINE void with_pose(ShapeKind kind, const Real* base, const std::int32_t* o, Visit visit) {
+  using Capsule = CapsulePose<typename S::Vec>;
+  if (kind == ShapeKind::capsule) return visit_pose<Capsule>(base, o, visit);
+  if (kind == ShapeKind::plane) return visit_pose<PlanePose>(base, o, visit);
+  if constexpr (S::kDim == 3) {
+    if (kind == ShapeKind::sphere) return visit_pose<SpherePose>(base, o, visit);
+    visit_pose<BoxPose>(base, o, visit);
+  } else {
+    if (kind == ShapeKind::circle) return visit_pose<CirclePose>(base, o, visit);
+    if (kind == ShapeKind::rectangle) return visit_pose<RectanglePose>(base, o, visit);
+    if (kind == ShapeKind::link) return visit_pose<LinkPose>(base, o, visit);
+    visit_pose<PolygonPose>(base, o, visit);
   }
 }
 
@@ -55,44 +50,64 @@ RayOf<typename S::Vec> place_ray(const Tables& t, const Group& g, int body, cons
   return ray;
 }
 
+// A shape of all lanes, as rays see it.
+struct Target {
+  ShapeKind kind;
+  const Real* base;  // of its pose rows
+  const std::int32_t* offset;
+  int body;  // -1: fixed
+  std::uint32_t category, lanes;
+  int index;
+};
+
+// One shape against all rays; nearer hits replace those found so far.
+template <class S>
+void cast_at(const Observation& o, const Target& target) {
+  using Vec = typename S::Vec;
+  const Mask there = mask_from_bits(target.lanes);
+  with_pose<S>(target.kind, target.base, target.offset, [&](const auto& pose) {
+    for (int i = 0; i < o.rays; ++i) {
+      const kernels::RayTable& shared = o.ray[i];
+      const bool own = target.body >= 0 && target.body == shared.body;
+      if (own || (target.category & shared.mask) == 0) continue;
+      const Real* rows = o.placed + i * 6 * kLanes;
+      Real* hit = o.hit_rows + i * kernels::kHitRows * kLanes;
+      const RayOf<Vec> ray{load_as<Vec>(rows), load_as<Vec>(rows + 3 * kLanes)};
+      const RayHit<Vec> h = cast(ray, pose);
+      const Float best = Float::load(hit);
+      const Mask nearest = there & h.hit & (h.distance < best);
+      std::uint32_t m = bits(nearest);
+      if (m == 0) continue;
+      select(nearest, h.distance, best).store(hit);
+      store(hit + kLanes, select(nearest, h.normal, load_as<Vec>(hit + kLanes)));
+      for (; m != 0; m &= m - 1) o.hit_shape[i * kLanes + __builtin_ctz(m)] = target.index;
+    }
+  });
+}
+
 template <class S>
 void cast_rays(const Tables& t, const Group& g, const Work& w, const Observation& o) {
-  using Vec = typename S::Vec;
   for (int i = 0; i < o.rays; ++i) {
     const Real* rows = o.ray_rows + i * kernels::kRayRows * kLanes;
-    const kernels::RayTable& shared = o.ray[i];
-    const RayOf<Vec> ray = place_ray<S>(t, g, shared.body, rows);
-    Float best = Float::load(rows + 6 * kLanes), shape(Real(-1));
-    Vec normal = zero_of<Vec>();
-    const auto take = [&](const RayHit<Vec>& h, Mask seen, int index) {
-      const Mask nearest =
-          seen & h.hit & ((h.distance < best) | ((h.distance == best) & (shape < Float(Real(0)))));
-      best = select(nearest, h.distance, best);
-      normal = select(nearest, h.normal, normal);
-      shape = select(nearest, Float(static_cast<Real>(index)), shape);
-    };
-    alignas(64) std::int32_t at[kLanes];
-    for (int f = 0; f < t.fixed_shapes; ++f) {
-      if ((o.fixed_category[f] & shared.mask) == 0) continue;
-      for (int l = 0; l < kLanes; ++l) at[l] = t.fixed[f].row;
-      take(cast_shape(t.fixed[f].kind, t.fixed_rows, at, ray), mask_from_bits(kAllLanes), f);
-    }
-    for (int c = 0; c < t.colliders; ++c) {
-      const auto& collider = t.collider[c];
-      if ((collider.category & shared.mask) == 0 || collider.body == shared.body) continue;
-      for (int l = 0; l < kLanes; ++l) at[l] = w.pose_base[l] + collider.row;
-      take(cast_shape(collider.kind, w.pose_rows, at, ray), !absent_lanes(g, collider.body),
-           t.fixed_shapes + c);
-    }
+    const auto ray = place_ray<S>(t, g, o.ray[i].body, rows);
+    store(o.placed + i * 6 * kLanes, ray.from);
+    store(o.placed + (i * 6 + 3) * kLanes, ray.way);
     Real* hit = o.hit_rows + i * kernels::kHitRows * kLanes;
-    best.store(hit);
-    if constexpr (S::kDim == 2) Float(Real(0)).store(hit + 3 * kLanes);
-    store(hit + kLanes, normal);
-    alignas(64) Real index[kLanes];
-    shape.store(index);
-    for (int l = 0; l < kLanes; ++l) {
-      o.hit_shape[i * kLanes + l] = static_cast<std::int32_t>(index[l]);
-    }
+    Float::load(rows + 6 * kLanes).store(hit);
+    for (int c = 1; c < kernels::kHitRows; ++c) Float(Real(0)).store(hit + c * kLanes);
+    for (int l = 0; l < kLanes; ++l) o.hit_shape[i * kLanes + l] = -1;
+  }
+  alignas(64) std::int32_t at[kLanes];
+  for (int f = 0; f < t.fixed_shapes; ++f) {
+    for (int l = 0; l < kLanes; ++l) at[l] = t.fixed[f].row;
+    cast_at<S>(o, {t.fixed[f].kind, t.fixed_rows, at, -1, o.fixed_category[f], kAllLanes, f});
+  }
+  for (int c = 0; c < t.colliders; ++c) {
+    const auto& shape = t.collider[c];
+    for (int l = 0; l < kLanes; ++l) at[l] = w.pose_base[l] + shape.row;
+    const std::uint32_t lanes = kAllLanes & ~bits(absent_lanes(g, shape.body));
+    cast_at<S>(
+        o, {shape.kind, w.pose_rows, at, shape.body, shape.category, lanes, t.fixed_shapes + c});
   }
 }
 
@@ -104,12 +119,13 @@ bool cast_one_in(ShapeKind kind, const Real* row, const Real* rows, Real* out) {
   const RayOf<Vec> ray{load_as<Vec>(numbers[0]), load_as<Vec>(numbers[3])};
   alignas(64) std::int32_t at[kLanes];
   for (int l = 0; l < kLanes; ++l) at[l] = 0;
-  const RayHit<Vec> h = cast_shape(kind, row, at, ray);
+  RayHit<Vec> h{};
+  with_pose<S>(kind, row, at, [&](const auto& pose) { h = cast(ray, pose); });
   h.distance.store(numbers[0]);
   Float(Real(0)).store(numbers[3]);
   store(numbers[1], h.normal);
   for (int i = 0; i < kernels::kHitRows; ++i) out[i] = numbers[i][0];
-  return (bits(h.hit) & 1u) != 0 && out[0] <= rows[6];
+  return (bits(h.hit) & 1u) != 0 && out[0] < rows[6];
 }
 
 }  // namespace

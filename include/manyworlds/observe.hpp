@@ -24,7 +24,7 @@ enum class Observer {
 struct Ray {
   Vec3 origin = Vec3::Zero();  // m, in the world or, with a body, in that body's frame
   Vec3 direction{1, 0, 0};     // need not be unit
-  double length = std::numeric_limits<double>::infinity();  // m, how far it reaches
+  double length = std::numeric_limits<double>::infinity();  // m: it sees what is nearer
   int body = -1;                     // state body that it moves and turns with; -1: none
   std::uint32_t mask = 0xffffffffu;  // of Filter::category
 };

@@ -92,10 +92,16 @@ MW_INLINE RayHit<Vec> clipped(const RayOf<Vec>& ray, const Clip& clip, Vec norma
 // Adds the two faces across an axis to a clip, and their outward normal where it is the last.
 template <class Vec>
 MW_INLINE void clip_slab(Clip& clip, Vec axis, Float place, Float way, Float half, Vec& normal) {
-  const Mask top = clip.add(place - half, -way);
-  normal = select(top, axis, normal);
-  const Mask bottom = clip.add(-place - half, way);
-  normal = select(bottom, -axis, normal);
+  const Float zero(Real(0)), one(Real(1)), far(kRayFar);
+  const Mask crosses = (way < zero) | (zero < way);
+  const Float inv = one / select(crosses, way, one), front = copysign(half, way);
+  // Along both faces: the ray is between them or misses.
+  const Float beside = select(abs(place) <= half, -far, far);
+  const Float in = select(crosses, (-front - place) * inv, beside);
+  const Float out = select(crosses, (front - place) * inv, far);
+  normal = select(clip.enter < in, axis * copysign(one, -way), normal);
+  clip.enter = max(in, clip.enter);
+  clip.leave = min(out, clip.leave);
 }
 
 MW_INLINE RayHit<Vec3> cast(const RayOf<Vec3>& ray, const SpherePose& s) {

@@ -94,6 +94,7 @@ typename ObservationsOf<Real>::Block ObservationsOf<Real>::make_block(
   view.ray = kind.rays.data();
   view.fixed_category = kind.fixed_category.data();
   view.ray_rows = block.ray_rows = reals(rays * kernels::kRayRows * lanes);
+  view.placed = reals(rays * 6 * lanes);
   view.hit_rows = reals(rays * kernels::kHitRows * lanes);
   block.hit_shape = AlignedBuffer<std::int32_t>(rays * lanes);
   view.hit_shape = block.hit_shape.data();
