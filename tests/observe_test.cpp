@@ -273,6 +273,36 @@ TEST_CASE("a pair asleep reports what it will wake with", "[fast][observe]") {
   }
 }
 
+TEST_CASE("of two stacks one sleeps: every contact is reported once", "[fast][observe]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    Scene scene = empty_scene(space);
+    scene.add(ground(space));
+    for (double x : {-3.0, 3.0}) {
+      for (int i = 0; i < 2; ++i) {
+        scene.add(
+            body_of(shape_of(cube_of(space, 0.5)), Vec3(x, 0, 0) + (0.5 + 1.0 * i) * up_of(space)));
+      }
+    }
+    const std::size_t all = space == Space::planar ? 8 : 16;
+    for (const Table& table : all_tables()) {
+      INFO(name(table));
+      BatchOptions options = observing(table, kEverything, 3);
+      options.sleep = true;
+      Batch batch(compile(scene), options);
+      batch.step(300);
+      REQUIRE(batch.asleep(0));
+      for (int i = 0; i < 5; ++i) {
+        batch.add_impulse(1, 3, 100 * up_of(space));  // keeps its stack awake
+        batch.step();
+        REQUIRE(batch.asleep(1, 0));
+        REQUIRE_FALSE(batch.asleep(1, 3));
+        for (int w = 0; w < 3; ++w) CHECK(batch.step_contacts(w).size() == all);
+      }
+      CHECK(number(batch, Observed::contact_count, 1) == static_cast<double>(all));
+    }
+  }
+}
+
 TEST_CASE("a frozen world touches nothing, a disabled body nobody", "[fast][observe]") {
   const Space space = Space::planar;
   Scene scene = empty_scene(space);

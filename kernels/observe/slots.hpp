@@ -107,17 +107,27 @@ MW_INLINE Totals<S, N> totals_of(const Tables& t, const Work& w, const Slot<S, N
 
 // Features of a manifold's points are told apart by their quarter about its middle, as in contacts.
 template <class S, int N>
-std::int32_t feature_of(const Slot<S, N>& s, const Real* codes, int point, int lane) {
-  const std::int32_t code = static_cast<std::int32_t>(codes[lane]) * 4;
-  if constexpr (N == 1) return code;
-  Real x = 0, y = 0, points = 0;
-  for (int i = 0; i < N; ++i) {
-    if (!(Real(0) < s.mass[i][lane])) continue;
-    x += s.feature_x[i][lane], y += s.feature_y[i][lane], points += 1;
+class Features {
+ public:
+  Features(const Slot<S, N>& s, const Real* codes, int lane)
+      : s_(s), lane_(lane), code_(static_cast<std::int32_t>(codes[lane]) * 4) {
+    for (int i = 0; N > 1 && i < N; ++i) {
+      if (!(Real(0) < s.mass[i][lane])) continue;
+      x_ += s.feature_x[i][lane], y_ += s.feature_y[i][lane], points_ += 1;
+    }
   }
-  return code + (s.feature_x[point][lane] * points > x ? 1 : 0) +
-         (s.feature_y[point][lane] * points > y ? 2 : 0);
-}
+  std::int32_t of(int point) const {
+    if constexpr (N == 1) return code_;
+    return code_ + (s_.feature_x[point][lane_] * points_ > x_ ? 1 : 0) +
+           (s_.feature_y[point][lane_] * points_ > y_ ? 2 : 0);
+  }
+
+ private:
+  const Slot<S, N>& s_;
+  int lane_;
+  std::int32_t code_;
+  Real x_ = 0, y_ = 0, points_ = 0;
+};
 
 // The friction of a manifold acts at its middle; each point reports the share that its normal
 // impulse has.
@@ -136,13 +146,14 @@ void put_contacts(const Slot<S, N>& s, const Totals<S, N>& total, const Real* pl
   }
   for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
     const int l = __builtin_ctz(m);
+    const Features<S, N> features(s, places + N * kDim * kLanes, l);
     for (int i = 0; i < N; ++i) {
       if (!(Real(0) < s.mass[i][l])) continue;
       const std::int32_t at = o.count[l]++;
       if (at >= o.room) continue;
       auto& out = o.contacts[l * o.room + at];
       out.key = s.key[l];
-      out.feature = feature_of(s, places + N * kDim * kLanes, i, l);
+      out.feature = features.of(i);
       out.normal[2] = out.point[2] = out.friction[2] = Real(0);
       for (int c = 0; c < kDim; ++c) {
         out.normal[c] = s.normal[c][l];
