@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <numeric>
 #include <system_error>
 #include <utility>
@@ -110,7 +111,8 @@ struct Recorder::Impl final : BatchListener {
 Recorder::Impl::Impl(const Batch& batch, std::filesystem::path path, const RecordOptions& options)
     : file_(std::move(path)), part_(file_), options_(options) {
   options_.worlds = checked_worlds(batch, options);
-  part_ += ".part" + std::to_string(getpid());
+  static std::atomic<std::uint64_t> count = 0;  // two at a time may write the same file
+  part_ += ".part" + std::to_string(getpid()) + "_" + std::to_string(count++);
   const record::QuietErrors quiet;
   try {
     h5_ = record::create_file(part_);

@@ -179,6 +179,11 @@ TEST_CASE("a recording begins in the middle of a run, and ends with its Recorder
   moved.step(2);
   second.close();
   first.close();  // nothing happens
+  {
+    Recorder again(moved, folder / "first.h5"), twice(moved, folder / "first.h5");
+    CHECK(folder.files().size() == 4);
+    CHECK(Recording::open(folder / "first.h5").samples() > 0);
+  }
   moved.step();
   CHECK(folder.files().size() == 2);
   const Recording one = Recording::open(folder / "first.h5");
