@@ -131,8 +131,8 @@ void first_push(const Tables& t, const Group& g, Work& w) {
   }
   if constexpr (std::is_same_v<S, Tensor>) {
     for (int b = 0; b < t.bodies; ++b) {
-      if (w.touched[b] == 0) continue;
       const auto& body = t.body[b];
+      if (w.touched[b] == 0 || body.inv_mass == Real(0)) continue;  // kinematic: no inertia
       const Quat q = load_quat(state_of(t, g, b, kState<S>.orientation));
       Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
       const Vec3 turned = implicit_gyroscopic(
