@@ -65,6 +65,30 @@ MW_INLINE Float gather(const Real* table, const std::int32_t* index) {
   return Float::load(x);
 }
 
+// Of the two shapes of each lane's code. kPair: A moves.
+template <bool kPair>
+MW_INLINE Float pair_friction(const Tables& t, std::uint32_t mask, const std::int32_t* code) {
+  alignas(64) Real x[kLanes];
+  for (int l = 0; l < kLanes; ++l) {
+    const int a = (code[l] & 0xffff) + (kPair ? 0 : t.colliders), b = (code[l] >> 16) & 0xffff;
+    const bool there = ((mask >> l) & 1u) != 0;
+    x[l] = there ? static_cast<Real>(t.friction_root[a] * t.friction_root[b]) : Real(0);
+  }
+  return Float::load(x);
+}
+template <bool kPair>
+MW_INLINE Float pair_restitution(const Tables& t, std::uint32_t mask, const std::int32_t* code) {
+  alignas(64) Real x[kLanes];
+  for (int l = 0; l < kLanes; ++l) {
+    const int a = (code[l] & 0xffff) + (kPair ? 0 : t.colliders), b = (code[l] >> 16) & 0xffff;
+    const bool there = ((mask >> l) & 1u) != 0;
+    x[l] = !there                                ? Real(0)
+           : t.restitution[a] > t.restitution[b] ? t.restitution[a]
+                                                 : t.restitution[b];
+  }
+  return Float::load(x);
+}
+
 // Acceleration of the bodies of the lanes along n, from gravity.
 template <class S>
 MW_INLINE Float gravity_along(const Tables& t, const std::int32_t* body, typename S::Vec n) {

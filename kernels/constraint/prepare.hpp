@@ -267,11 +267,7 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
 
   // Friction rows.
   if (t.has_friction) {
-    alignas(64) std::int32_t index[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      index[l] = ((mask >> l) & 1u) ? key[l] - pair_class.first_key : 0;
-    }
-    gather(pair_class.friction, index).store(s.friction);
+    pair_friction<kPair>(t, mask, code).store(s.friction);
     const Float share = one / max(count, one);
     centre_b = centre_b * share;
     store(s.centre_b[0], centre_b);
@@ -324,11 +320,7 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
 
   if (t.has_restitution) {
     auto& bounce = bounce_at<S, N>(slots, slots.count - 1);
-    alignas(64) std::int32_t index[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      index[l] = ((mask >> l) & 1u) ? key[l] - pair_class.first_key : 0;
-    }
-    gather(pair_class.restitution, index).store(bounce.restitution);
+    pair_restitution<kPair>(t, mask, code).store(bounce.restitution);
     const Float threshold(t.restitution_threshold);
     for (int i = 0; i < N; ++i) {
       // v^2 = v0^2 - 2 a s: the speed when the gap s that is left has closed.

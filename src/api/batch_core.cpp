@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "kernels/pair_keys.hpp"
 #include "src/api/batch_impl.hpp"
 #include "src/base/denormals.hpp"
 
@@ -232,18 +233,15 @@ std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
   const PlanData& plan = w.data();
   std::vector<Contact> out;
   for (const auto& p : points) {
-    const auto c = std::find_if(plan.classes.begin(), plan.classes.end(), [&](const auto& pairs) {
-      return p.key >= pairs.first_key && p.key < pairs.first_key + static_cast<int>(pairs.a.size());
-    });
-    const auto index = static_cast<std::size_t>(p.key - c->first_key);
-    const auto& b = plan.colliders[static_cast<std::size_t>(c->b[index])];
+    const kernels::PairOfKey pair = kernels::pair_of_key(t, p.key);
+    const auto& b = plan.colliders[static_cast<std::size_t>(pair.b)];
     Contact contact;
     contact.body_b = b.scene_body, contact.shape_b = b.shape;
-    if (is_fixed(c->list)) {
-      const auto& a = plan.fixed[static_cast<std::size_t>(c->a[index])];
+    if (is_fixed(static_cast<kernels::ListId>(p.list))) {
+      const auto& a = plan.fixed[static_cast<std::size_t>(pair.a)];
       contact.body_a = a.scene_body, contact.shape_a = a.shape;
     } else {
-      const auto& a = plan.colliders[static_cast<std::size_t>(c->a[index])];
+      const auto& a = plan.colliders[static_cast<std::size_t>(pair.a)];
       contact.body_a = a.scene_body, contact.shape_a = a.shape;
     }
     for (int k = 0; k < 3; ++k) {

@@ -42,6 +42,7 @@ std::vector<Vec2> edge_normals(const std::vector<Vec2>& v) {
 // A shape in its body's frame: origin, axes, sizes.
 PlanCollider local_collider(const Shape& shape, bool rectangles) {
   PlanCollider c;
+  c.material = shape.material;
   c.offset = shape.position;
   c.rotation = shape.rotation.normalized().toRotationMatrix();
   if (shape.rotation.vec().isZero(0)) c.rotation.setIdentity();
@@ -202,6 +203,7 @@ void collect_colliders(PlanData& plan) {
                 : std::vector{fixed_shape(body, shape, rectangles, planar)};
         for (PlanFixed& f : parts) {
           f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
+          f.material = body.shapes[k].material;
           plan.fixed.push_back(std::move(f));
         }
         continue;

@@ -27,11 +27,14 @@ bool is_isotropic(const PlanBody& body) {
   return body.inertia.maxCoeff() - body.inertia.minCoeff() <= 1e-9 * body.inertia.maxCoeff();
 }
 
+// test(material of A, material of B)
 template <class Test>
 bool any_pair(const PlanData& plan, Test test) {
   for (const PlanClass& c : plan.classes) {
     for (std::size_t i = 0; i < c.a.size(); ++i) {
-      if (test(c, i)) return true;
+      const auto a = static_cast<std::size_t>(c.a[i]), b = static_cast<std::size_t>(c.b[i]);
+      const Material& of_a = is_fixed(c.list) ? plan.fixed[a].material : plan.colliders[a].material;
+      if (test(of_a, plan.colliders[b].material)) return true;
     }
   }
   return false;
@@ -66,14 +69,17 @@ void choose_features(PlanData& plan) {
                       : tensor ? kernels::InertiaKind::tensor
                                : kernels::InertiaKind::isotropic;
 
-  const bool contacts = any_pair(plan, [](const PlanClass&, std::size_t) { return true; });
+  const bool contacts = any_pair(plan, [](const Material&, const Material&) { return true; });
   choose.set(Feature::contacts, contacts, "some shapes can touch", "no pair of shapes can touch");
   choose.set(Feature::friction,
-             any_pair(plan, [](const auto& c, std::size_t i) { return c.friction[i] > 0; }),
+             any_pair(plan, [](const Material& a,
+                               const Material& b) { return a.friction > 0 && b.friction > 0; }),
              "some pairs have friction", "no pair has friction");
-  choose.set(Feature::restitution,
-             any_pair(plan, [](const auto& c, std::size_t i) { return c.restitution[i] > 0; }),
-             "some pairs bounce", "no pair bounces");
+  choose.set(
+      Feature::restitution,
+      any_pair(plan, [](const Material& a,
+                        const Material& b) { return a.restitution > 0 || b.restitution > 0; }),
+      "some pairs bounce", "no pair bounces");
 
   bool drag = false, gravity = false;
   Vec3 common = Vec3::Zero();

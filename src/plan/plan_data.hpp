@@ -36,6 +36,7 @@ struct PlanCollider {
   double radius = 0;           // of the bounding sphere
   double inner_radius = 0;     // of a sphere inside
   std::vector<Vec2> vertices;  // about the shape's origin
+  Material material;
   int row = 0;
 };
 
@@ -46,6 +47,7 @@ struct PlanFixed {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::array<double, 4> plane{};
   double length = 0;  // of a link
+  Material material;
   int row_offset = 0;
 };
 
@@ -53,9 +55,10 @@ struct PlanClass {
   kernels::PairKind kind{};
   kernels::ListId list{};
   int first_key = 0;
+  int keys = 0;
+  int candidates = 0;  // pairs that may touch; a sparse plan has keys for the others, too
   int culled = 0;
-  std::vector<std::int32_t> a, b;
-  std::vector<double> friction, restitution;
+  std::vector<std::int32_t> a, b;  // the candidates; of a sparse plan examples of all materials
 };
 
 struct PlanData {
@@ -71,6 +74,7 @@ struct PlanData {
   std::vector<PlanClass> classes;
   std::array<int, kernels::kLists> capacity{};
   bool sweep = false;
+  bool sparse = false;  // no tables of pairs
   bool collider_is_body = true;
   bool cast = false;
   bool uniform_gravity = true;
@@ -87,7 +91,7 @@ std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // 
 // The steps of compile(), in order.
 void collect_bodies(PlanData& plan);        // bodies.cpp
 void collect_colliders(PlanData& plan);     // colliders.cpp
-void collect_pairs(PlanData& plan);         // pairs.cpp
+void collect_pairs(PlanData& plan);         // pairs.cpp, sparse_pairs.cpp
 void choose_features(PlanData& plan);       // features.cpp
 PlanReport describe(const PlanData& plan);  // report.cpp
 // Equal for plans that step worlds alike and store them alike (fingerprint.cpp).

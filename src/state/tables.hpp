@@ -21,15 +21,17 @@ class TablesOf {
   void add_bodies(const PlanData& plan);
   void add_shapes(const PlanData& plan);
   void add_pairs(const PlanData& plan);
+  void add_pair_classes(const PlanData& plan);
   void add_options(const PlanData& plan);
 
   kernels::WorldTables<Real> tables_{};
   std::vector<kernels::BodyTable<Real>> bodies_;
   std::vector<kernels::ColliderTable<Real>> colliders_;
-  std::vector<std::int32_t> collider_row_, collider_body_, pair_of_;
+  std::vector<std::int32_t> collider_row_, collider_body_, first_collider_, pair_of_;
+  std::vector<double> friction_roots_;
+  std::vector<Real> restitutions_;
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
-  std::vector<std::vector<Real>> materials_;
   AlignedBuffer<Real> fixed_rows_, push_rows_, factor_rows_;
 };
 
