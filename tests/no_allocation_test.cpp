@@ -174,6 +174,7 @@ TEST_CASE("falling asleep, packing, waking and disabling allocate nothing", "[fa
 TEST_CASE("stepping a crowd allocates nothing", "[fast][allocation]") {
   check_scene(crowd(Space::planar));
   check_scene(crowd(Space::spatial));
+  check_scene(crowd(Space::planar, 70));  // without a table of pairs
 }
 
 }  // namespace manyworlds::test
