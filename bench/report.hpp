@@ -11,6 +11,7 @@ void register_stages();
 void register_pairs();
 void register_steps();
 void register_batch();
+void register_sizes();
 
 // Prints as a time: `per_iteration` things are done in each iteration, this is the time of one.
 inline benchmark::Counter time_of_one(double per_iteration) {
