@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   manyworlds::bench::register_pairs();
   manyworlds::bench::register_batch();
   manyworlds::bench::register_observers();
+  manyworlds::bench::register_sizes();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

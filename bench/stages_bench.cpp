@@ -76,9 +76,11 @@ void register_scenario(const Scenario& s, Isa isa) {
     return;
   }
   add(s, isa, Stage::begin, Layout::rows, BroadPhase::automatic, "");
-  for (const auto b : {BroadPhase::all_pairs, BroadPhase::sort_and_sweep}) {
+  for (const auto b : {BroadPhase::all_pairs, BroadPhase::sort_and_sweep, BroadPhase::sparse}) {
     add(s, isa, Stage::broad_phase, Layout::rows, b,
-        b == BroadPhase::all_pairs ? "all_pairs" : "sort_and_sweep");
+        b == BroadPhase::all_pairs        ? "all_pairs"
+        : b == BroadPhase::sort_and_sweep ? "sort_and_sweep"
+                                          : "sparse");
   }
   add(s, isa, Stage::choose_layout, Layout::rows, BroadPhase::automatic, "");
   for (const auto stage :

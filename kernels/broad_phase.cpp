@@ -2,7 +2,8 @@
 //
 // Masked all-pairs tests every candidate of the plan in every lane. Sort and sweep orders each
 // lane's shapes along x by a sorting network and tests only those that overlap there; what it
-// finds passes the same test, so both give the same masks.
+// finds passes the same test, so both give the same masks. Sparse plans have a broad phase of their
+// own (kernels/sparse_pairs.cpp).
 #include "kernels/overlap.hpp"
 #include "kernels/sleep.hpp"
 #include "kernels/stages.hpp"
@@ -66,6 +67,7 @@ void test_live_pairs(const Tables& t, const Group& g, Work& w, int at, Allowed a
 
 void broad_phase(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
+  if (t.sparse) return find_sparse_pairs(t, g, w);
   if (t.sweep) sort_and_sweep(t, w);
   if (t.has_sleep && has_idle_bodies(g)) {
     wake_touched(t, g, w);

@@ -59,7 +59,7 @@ namespace {
 void limit_candidates(const Tables& t, Work& w, int at) {
   const auto& pairs = t.pair_class[at];
   const int limit = candidate_limit(t, pairs), hits = w.hit_count[at];
-  if (hits <= limit) return;
+  if (t.sparse || hits <= limit) return;
   std::uint32_t* masks = w.hit_masks + pairs.first_key;
   int count[kLanes] = {};
   for (int i = 0; i < hits; ++i) {
@@ -83,7 +83,7 @@ kernels::Layout choose_layout(const Tables& t, const Group&, kernels::Scratch* s
     limit_candidates(t, w, c);
     const auto& pairs = t.pair_class[c];
     const int hits = w.hit_count[c];
-    const std::uint32_t* masks = w.hit_masks + pairs.first_key;
+    const std::uint32_t* masks = w.hit_masks + first_hit(t, w, c);
     for (int i = 0; i < hits; ++i) active += static_cast<unsigned>(__builtin_popcount(masks[i]));
     slots[static_cast<int>(pairs.list)] += static_cast<unsigned>(hits);
     all += static_cast<unsigned>(hits);
@@ -104,13 +104,14 @@ kernels::Layout choose_layout(const Tables& t, const Group&, kernels::Scratch* s
 
 void list_candidates(const Tables& t, Work& w) {
   const auto& pairs = t.pair_class[w.class_index];
-  const std::int32_t* hits = w.hits + pairs.first_key;
-  const std::uint32_t* masks = w.hit_masks + pairs.first_key;
+  const int first = first_hit(t, w, w.class_index);
+  const std::int32_t* hits = w.hits + first;
+  const std::uint32_t* masks = w.hit_masks + first;
   const int n = w.hit_count[w.class_index];
   CandidateList& to = w.candidates;
   if (w.dense) {
     for (int i = 0; i < n; ++i) {
-      const std::int32_t code = pairs.a[hits[i]] | (pairs.b[hits[i]] << 16);
+      const std::int32_t code = code_of_hit(t, w, w.class_index, i);
       const std::int32_t key = pairs.first_key + hits[i];
       for (int l = 0; l < kLanes; ++l) {
         to.code[i * kLanes + l] = code;
@@ -124,7 +125,7 @@ void list_candidates(const Tables& t, Work& w) {
   }
   RowPacker packer(to, dummy_code(t, is_fixed(pairs.list)));
   for (int i = 0; i < n; ++i) {
-    const std::int32_t code = pairs.a[hits[i]] | (pairs.b[hits[i]] << 16);
+    const std::int32_t code = code_of_hit(t, w, w.class_index, i);
     const std::int32_t key = pairs.first_key + hits[i];
     for (std::uint32_t m = masks[i]; m != 0; m &= m - 1) {
       packer.add(__builtin_ctz(m), code, key, Real(0));

@@ -31,11 +31,9 @@ MW_INLINE Mask within_bounds(const Tables& t, Vec3 x) {
 
 // Does any shape of the body collide with this one, by their filters?
 MW_INLINE bool may_collide(const Tables& t, int body, const kernels::ColliderTable& other) {
-  for (int i = 0; i < t.colliders; ++i) {
+  for (int i = t.first_collider[body]; i < t.first_collider[body + 1]; ++i) {
     const auto& own = t.collider[i];
-    if (own.body == body && (own.category & other.mask) != 0 && (other.category & own.mask) != 0) {
-      return true;
-    }
+    if ((own.category & other.mask) != 0 && (other.category & own.mask) != 0) return true;
   }
   return false;
 }
@@ -137,7 +135,20 @@ MW_INLINE Vec cast_against_fixed(const Tables& t, const Group& g, int body, Vec 
   return select(least < Float(Real(1)), step * least, step);
 }
 
-// `moved(other)` is how far another body goes in this step. Not inlined: scenes seldom want it.
+// Takes down the shapes of bodies that go so far in this step that others may have to be cast
+// against them, whatever those do.
+template <class Moved>
+void find_swift(const Tables& t, Work& w, Moved moved) {
+  w.swift_count = 0;
+  for (int i = 0; i < t.colliders; ++i) {
+    const auto way = moved(t.collider_body[i]);
+    if (all(dot(way, way) < Float(w.swift_from * w.swift_from))) continue;
+    w.swift[w.swift_count++] = i;
+  }
+}
+
+// `moved(other)` is how far another body goes in this step. Who goes less than half its core meets
+// only the swift ones at speed. Not inlined: scenes seldom want it.
 template <class Vec, class Moved>
 __attribute__((noinline)) Vec cast_against_moving(const Tables& t, const Group& g, const Work& w,
                                                   int body, Vec start, Vec step, Moved moved) {
@@ -146,16 +157,19 @@ __attribute__((noinline)) Vec cast_against_moving(const Tables& t, const Group& 
   if (!any(has_core)) return step;
   const Float core = radius * Float(Real(0.5));
   Float least = Real(1);
-  for (int i = 0; i < t.colliders; ++i) {
+  const bool slow = all(dot(step, step) < square(core));
+  const int others = slow ? w.swift_count : t.colliders;
+  for (int k = 0; k < others; ++k) {
+    const int i = slow ? w.swift[k] : k;
     const auto& c = t.collider[i];
     if (c.body == body || !may_collide(t, body, c)) continue;
     const Vec relative = step - moved(c.body);
     const Mask fast =
         has_core & (radius < sqrt(dot(relative, relative))) & !absent_lanes(g, c.body);
     if (!any(fast)) continue;
-    const auto row = [&](int k) {
+    const auto row = [&](int number) {
       alignas(64) Real values[kLanes];
-      for (int l = 0; l < kLanes; ++l) values[l] = w.pose_rows[w.pose_base[l] + c.row + k];
+      for (int l = 0; l < kLanes; ++l) values[l] = w.pose_rows[w.pose_base[l] + c.row + number];
       return Float::load(values);
     };
     least = min(least, free_share(c.kind, row, start, relative, core, fast));

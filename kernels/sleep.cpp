@@ -2,21 +2,11 @@
 
 #include "kernels/finish.hpp"
 #include "kernels/overlap.hpp"
+#include "kernels/pair_keys.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
-
-// Wakes the island that the body fell asleep with.
-void wake_island(const Tables& t, const Group& g, int body, int lane) {
-  const std::int32_t label = g.island[body * kLanes + lane];
-  for (int b = 0; b < t.bodies; ++b) {
-    if (!((g.asleep[b] >> lane) & 1u) || t.body[b].kinematic) continue;
-    if (g.island[b * kLanes + lane] != label) continue;
-    g.asleep[b] &= ~(1u << lane);
-    g.rest_time[b * kLanes + lane] = Real(0);
-  }
-}
 
 MW_INLINE Mask pair_overlap(const Tables& t, const Work& w, kernels::PairKind kind, int a, int b) {
   return is_round(kind) ? round_overlap(t, w, a, b) : bounds_overlap(t, w, a, b);
@@ -44,19 +34,6 @@ bool wake_once(const Tables& t, const Group& g, Work& w, std::uint32_t mixed) {
     }
   }
   return woke;
-}
-
-struct LaneActivity {
-  std::uint32_t asleep = 0, awake = 0, idle = 0;  // lanes in which some body is
-};
-LaneActivity activity_of(const Tables& t, const Group& g) {
-  LaneActivity out;
-  for (int b = 0; b < t.bodies; ++b) {
-    out.asleep |= g.asleep[b] & ~g.absent[b];
-    out.awake |= ~idle_lanes(g, b) & kAllLanes;
-    out.idle |= idle_lanes(g, b);
-  }
-  return out;
 }
 
 // Does the stored manifold of this key stay as it is, because nobody in it is awake?
@@ -140,11 +117,11 @@ void find_islands(const Tables& t, const Group& g, Work& w, int lane) {
   for (int i = 0; i < t.classes; ++i) {
     const auto& c = t.pair_class[i];
     if (is_fixed(c.list)) continue;
-    const std::int32_t* hits = w.hits + c.first_key;
-    const std::uint32_t* masks = w.hit_masks + c.first_key;
+    const std::uint32_t* masks = w.hit_masks + first_hit(t, w, i);
     for (int k = 0; k < w.hit_count[i]; ++k) {
       if (!((masks[k] >> lane) & 1u)) continue;
-      const int a = t.collider_body[c.a[hits[k]]], b = t.collider_body[c.b[hits[k]]];
+      const std::int32_t code = code_of_hit(t, w, i, k);
+      const int a = t.collider_body[code & 0xffff], b = t.collider_body[(code >> 16) & 0xffff];
       if ((((g.asleep[a] | g.asleep[b]) >> lane) & 1u) != 0) continue;  // a kinematic at rest
       const int root_a = root_of(w.parent, a), root_b = root_of(w.parent, b);
       w.parent[root_a < root_b ? root_b : root_a] = root_a < root_b ? root_a : root_b;
@@ -186,6 +163,26 @@ void settle_bodies(const Tables& t, const Group& g, Work& w) {
 }
 
 }  // namespace
+
+LaneActivity activity_of(const Tables& t, const Group& g) {
+  LaneActivity out;
+  for (int b = 0; b < t.bodies; ++b) {
+    out.asleep |= g.asleep[b] & ~g.absent[b];
+    out.awake |= ~idle_lanes(g, b) & kAllLanes;
+    out.idle |= idle_lanes(g, b);
+  }
+  return out;
+}
+
+void wake_island(const Tables& t, const Group& g, int body, int lane) {
+  const std::int32_t label = g.island[body * kLanes + lane];
+  for (int b = 0; b < t.bodies; ++b) {
+    if (!((g.asleep[b] >> lane) & 1u) || t.body[b].kinematic) continue;
+    if (g.island[b * kLanes + lane] != label) continue;
+    g.asleep[b] &= ~(1u << lane);
+    g.rest_time[b * kLanes + lane] = Real(0);
+  }
+}
 
 void wake_touched(const Tables& t, const Group& g, Work& w) {
   const LaneActivity lanes = activity_of(t, g);

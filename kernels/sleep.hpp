@@ -11,6 +11,14 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+struct LaneActivity {
+  std::uint32_t asleep = 0, awake = 0, idle = 0;  // lanes in which some body is
+};
+LaneActivity activity_of(const Tables& t, const Group& g);
+
+// Wakes the island that the body fell asleep with.
+void wake_island(const Tables& t, const Group& g, int body, int lane);
+
 // Wakes the islands that an awake body has come close to.
 void wake_touched(const Tables& t, const Group& g, Work& w);
 

@@ -17,6 +17,7 @@ enum class InertiaKind : int { planar, isotropic, tensor };
 inline constexpr int kInertiaKinds = 3;
 
 enum class ShapeKind : int { sphere, box, circle, rectangle, polygon, plane, capsule, link };
+inline constexpr int kShapeKinds = 8;
 
 // Shape pairs; the first shape is A. Planes and other fixed shapes are always A. Capsules have the
 // same names in the plane and in space.
@@ -166,9 +167,11 @@ struct FixedTable {
   std::int32_t row;      // offset of its pose row in WorldTables::fixed_rows
   Real low[3], high[3];  // bounding box (not for planes)
   Real plane[4];         // normal, offset
+  std::uint32_t category, mask;
 };
 
-// Candidate pairs of one shape pair kind, all against fixed shapes or all between moving ones.
+// Candidate pairs of one shape pair kind, all against fixed shapes or all between moving ones. In
+// sparse plans count is that of the keys, and there are no arrays (kernels/pair_keys.hpp).
 template <class Real>
 struct PairClass {
   PairKind kind;
@@ -199,6 +202,7 @@ struct WorldTables {
   bool friction_in_bias;
   bool uniform_gravity;  // every body has the acceleration of body 0
   bool sweep;            // sort and sweep instead of masked all-pairs
+  bool sparse;           // pairs are found lane by lane, there are no tables of them
   bool cast;             // cast fast bodies against fixed shapes
   bool cast_moving;      // cast fast bodies against moving shapes
   bool has_bounds;
@@ -208,13 +212,17 @@ struct WorldTables {
 
   const BodyTable* body;
   const ColliderTable* collider;
-  const std::int32_t* collider_row;   // [collider + 1], the last is the dummy's
-  const std::int32_t* collider_body;  // [collider + 1]
+  const std::int32_t* collider_row;    // [collider + 1], the last is the dummy's
+  const std::int32_t* collider_body;   // [collider + 1]
+  const std::int32_t* first_collider;  // [body + 1], those of a body follow one another
   const FixedTable<Real>* fixed;
   const Real* fixed_rows;
   const PairClass<Real>* pair_class;
   // Sort and sweep: key of the candidate pair of colliders (i, j), in either order, or -1.
   const std::int32_t* pair_of;  // [collider][collider]
+  // Sparse: class of two kinds of shape, in moving_class twice that, and 1 more where the second is
+  // A; -2 and -1: none.
+  std::int32_t moving_class[kShapeKinds][kShapeKinds], fixed_class[kShapeKinds][kShapeKinds];
 
   // Where no world has its own.
   ConstantBlocks<Real> constants;
@@ -239,17 +247,6 @@ struct WorldTables {
   Real face_tie;                       // m, a face of A wins over one of B by this
   Real face_bias;  // m, preference of the previous kind of axis in separating-axis tests
 };
-
-// The shapes of a candidate pair: colliders, or a fixed shape and a collider.
-struct PairOfKey {
-  std::int32_t a, b;
-};
-template <class Real>
-static inline PairOfKey pair_of_key(const WorldTables<Real>& t, std::int32_t key) {
-  const PairClass<Real>* c = t.pair_class;
-  while (key >= c->first_key + c->count) ++c;  // keys ascend from class to class
-  return {c->a[key - c->first_key], c->b[key - c->first_key]};
-}
 
 // State block of one body: components in this order, each kLanes wide. The orientation block is
 // absent when the plan has no orientation.

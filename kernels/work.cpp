@@ -40,20 +40,59 @@ int slots_needed(const Tables& t, int list) {
   int slots = 1;
   for (int c = 0; c < t.classes; ++c) {
     if (static_cast<int>(t.pair_class[c].list) != list) continue;
-    const int most = t.pair_class[c].count, limit = candidate_limit(t, t.pair_class[c]);
-    slots += most < limit ? most : limit;
+    slots += most_candidates(t, t.pair_class[c]);
   }
   return slots;
 }
 
-void carve(const Tables& t, Work& w, Carver& c) {
-  const int lanes = kLanes;
-  int keys = 1, longest = 1;
+// Room for hits, and for the candidates of the longest class.
+struct HitRoom {
+  int hits = 1, longest = 1;
+};
+HitRoom room_of_tables(const Tables& t) {
+  HitRoom room;
   for (int i = 0; i < t.classes; ++i) {
     const int end = t.pair_class[i].first_key + t.pair_class[i].count;
-    keys = end > keys ? end : keys;
-    longest = t.pair_class[i].count > longest ? t.pair_class[i].count : longest;
+    room.hits = end > room.hits ? end : room.hits;
+    room.longest = t.pair_class[i].count > room.longest ? t.pair_class[i].count : room.longest;
   }
+  return room;
+}
+// Hits of a class are those of all lanes. Listed are either those of one lane, or dense ones, if
+// they fit the slots.
+HitRoom room_of_sparse(const Tables& t) {
+  HitRoom room;
+  for (int i = 0; i < t.classes; ++i) room.hits += kLanes * most_candidates(t, t.pair_class[i]);
+  for (int l = 0; l < kLists; ++l) {
+    const int slots = slots_needed(t, l);
+    room.longest = slots > room.longest ? slots : room.longest;
+  }
+  return room;
+}
+
+void carve_sparse(const Tables& t, SparseWork& s, Carver& c, int hits) {
+  const int dim = t.dimension == kernels::Dimension::spatial ? 3 : 2;
+  s.shapes = t.colliders + t.fixed_shapes;
+  s.lane_room = 0;
+  for (int i = 0; i < t.classes; ++i) s.lane_room += most_candidates(t, t.pair_class[i]);
+  s.room = 2 * s.lane_room + 1024;
+  const auto count = [](int n) { return static_cast<std::size_t>(n); };
+  c.take(s.hit_start, count(t.classes));
+  c.take(s.hit_code, count(hits));
+  c.take(s.name, count(s.shapes));
+  c.take(s.bounds, count(s.shapes * 2 * dim));
+  c.take(s.sorted, count(s.shapes * 2 * dim * kCopies));
+  c.take(s.shape, count(s.shapes * kCopies));
+  c.take(s.first_strip, count(s.shapes * kCopies));
+  c.take(s.order, count(s.shapes));
+  c.take(s.order_spare, count(s.shapes));
+  c.take(s.found, count(s.room));
+  c.take(s.found_spare, count(s.room));
+  c.take(s.pairs, count(s.lane_room * kLanes));
+}
+
+void carve(const Tables& t, Work& w, Carver& c) {
+  const int lanes = kLanes;
   const auto count = [](int n) { return static_cast<std::size_t>(n); };
   const int dim = t.dimension == kernels::Dimension::spatial ? 3 : 2;
   const int row = kernels::velocity_row_size(t.dimension);
@@ -75,14 +114,17 @@ void carve(const Tables& t, Work& w, Carver& c) {
   c.take(w.impulse_part, velocities);
   c.take(w.displacement, velocities);
   c.take(w.touched, count(t.bodies + 1));
+  if (t.cast_moving) c.take(w.swift, count(t.colliders));
   c.take(w.pose_rows, count(t.row_block * lanes));
   c.take(w.bounds, count(t.colliders * 2 * dim * lanes));
   c.take(w.beyond, count(t.colliders * lanes));
-  c.take(w.hits, count(keys));
-  c.take(w.hit_masks, count(keys));
+  const auto [hits, longest] = t.sparse ? room_of_sparse(t) : room_of_tables(t);
+  c.take(w.hits, count(hits));
+  c.take(w.hit_masks, count(hits));
   c.take(w.hit_count, count(t.classes));
+  if (t.sparse) carve_sparse(t, w.sparse, c, hits);
   if (t.sweep) {
-    c.take(w.marks, count(keys));
+    c.take(w.marks, count(hits));
     c.take(w.sorted, count(t.colliders * 3 * lanes));
   }
   if (t.has_sleep) {
@@ -139,6 +181,16 @@ void fill_constants(const Tables& t, Work& w) {
     }
   }
   if (!t.has_contacts) return;
+  w.swift_from = Real(1e18);
+  for (int b = 0; b < t.bodies; ++b) {
+    const Real from = t.body[b].core_radius * Real(0.49);
+    if (from > Real(0) && from < w.swift_from) w.swift_from = from;
+  }
+  int start = 0;
+  for (int i = 0; t.sparse && i < t.classes; ++i) {
+    w.sparse.hit_start[i] = start;
+    start += kLanes * most_candidates(t, t.pair_class[i]);
+  }
   for (int l = 0; l < kLanes; ++l) {
     Real* dummy = w.pose_rows + w.pose_base[l] + t.row_block - kernels::kDummyRow;
     for (int i = 0; i < kernels::kDummyRow; ++i) dummy[i] = Real(0);

@@ -38,6 +38,25 @@ struct Recorder {
   Real* const* places;  // [list], or nullptr
 };
 
+// Sparse plans: where pairs are looked for, one lane after the other (kernels/sparse_pairs.cpp).
+// The shapes are the colliders, then the fixed shapes. Those that are there are cut into strips; on
+// the average a shape lies in no more than kCopies of them.
+inline constexpr int kMostStrips = 256, kCopies = 3;
+struct SparseWork {
+  std::int32_t* hit_start;             // [class], of its hits
+  std::int32_t* hit_code;              // [hit]
+  std::int32_t* name;                  // [shape that is there]
+  float* bounds;                       // [axis][low, high][shape that is there]
+  std::uint64_t *order, *order_spare;  // [shape that is there]: lower bound, which
+  float* sorted;                       // [axis][low, high][place], strip by strip
+  std::int32_t *shape, *first_strip;   // [place]
+  std::int32_t strip_start[kMostStrips + 2];
+  std::uint64_t *found, *found_spare;  // [room]: key, code
+  std::uint64_t* pairs;                // [lane][lane_room]: key, code; ascending
+  std::int32_t shapes, room, lane_room;
+  std::int32_t count[kLanes];  // of pairs
+};
+
 struct Work {
   Real* before;  // the group's state before the step (plans without contacts only)
   // begin
@@ -51,6 +70,7 @@ struct Work {
   std::int32_t* hit_count;   // [class]
   std::uint32_t* marks;      // [key], sort and sweep
   Real* sorted;              // [collider][low, high, index][lane], sort and sweep
+  SparseWork sparse;
   // narrow phase
   CandidateList candidates;  // of the class at work
   CandidateList found;       // box pairs: after the separating-axis test
@@ -85,6 +105,9 @@ struct Work {
   alignas(64) std::int32_t velocity_base[kLanes];  // offset of a lane's velocity rows
   alignas(64) std::int32_t pose_base[kLanes];
   alignas(64) std::int32_t body_base[kLanes];
+  std::int32_t* swift;  // colliders that go far in this step (casts between moving shapes)
+  std::int32_t swift_count;
+  Real swift_from;         // m, a little less than half of the smallest core
   std::uint32_t* touched;  // [body] lanes in which a contact may push the body in this step
   Recorder* recorder;      // nullptr but while contacts are recorded
   Recorder recorder_storage;

@@ -3,6 +3,7 @@
 
 #include "scenes/makers.hpp"
 #include "scenes/parts.hpp"
+#include "scenes/sized.hpp"
 
 namespace manyworlds::scenes {
 
@@ -27,25 +28,7 @@ Scene bin2d() {
   return scene;
 }
 
-// Rows of 5, 4, 3, 2 and 1 unit squares.
-Scene pyramid2d() {
-  constexpr double kHalfGround = 20;
-  constexpr int kRows = 5;
-  Scene scene = planar_scene("pyramid2d");
-  scene.options.bounds = planar_bounds(kHalfGround);
-  scene.add(planar_ground());
-  for (int row = 0; row < kRows; ++row) {
-    for (int k = 0; k < kRows - row; ++k) {
-      Body box;
-      box.name = "box" + std::to_string(row) + "." + std::to_string(k);
-      box.position = {(k - (4 - row) / 2.0) * 1.1, 0.5 + row, 0};
-      box.shapes.push_back(shape_of(Polygon::box(0.5, 0.5)));
-      box.jitter.position = {0.01, 0, 0};
-      scene.add(box);
-    }
-  }
-  return scene;
-}
+Scene pyramid2d() { return pyramid(5); }
 
 Scene ball2d() {
   Scene scene = planar_scene("ball2d");

@@ -114,12 +114,15 @@ TEST_CASE("kinematic bodies ignore forces and keep their velocity", "[fast][batc
 }
 
 TEST_CASE("a kinematic platform carries a box", "[fast][batch]") {
-  for (Space space : {Space::planar, Space::spatial}) {
+  // A cube, and what is not one: its inertia is a tensor, and a kinematic body has none.
+  for (const auto& [space, half] : {std::pair(Space::planar, Vec3(0.25, 0.25, 0)),
+                                    std::pair(Space::spatial, Vec3(0.25, 0.25, 0.25)),
+                                    std::pair(Space::spatial, Vec3(0.3, 0.2, 0.25))}) {
     Scene scene = empty_scene(space);
     const Geometry platform = slab_of(space, 1, 0.1);
     scene.add(body_of(shape_of(platform), -0.1 * up_of(space), Motion::kinematic));
     scene.bodies[0].linear_velocity = Vec3(0.5, 0, 0) + 0.3 * up_of(space);
-    scene.add(body_of(shape_of(cube_of(space, 0.25)), 0.25 * up_of(space)));
+    scene.add(body_of(shape_of(box_of(space, half)), 0.25 * up_of(space)));
     for (const Table& table : all_tables()) {
       INFO(name(table));
       Batch batch(compile(scene), options_of(table));

@@ -135,7 +135,7 @@ TEST_CASE("bits do not depend on the instruction set, the layout or the broad ph
     for (Precision precision : {Precision::f32, Precision::f64}) {
       std::vector<std::uint64_t> reference;
       for (BroadPhase broad :
-           {BroadPhase::automatic, BroadPhase::all_pairs, BroadPhase::sort_and_sweep}) {
+           {BroadPhase::all_pairs, BroadPhase::sort_and_sweep, BroadPhase::sparse}) {
         PlanOptions plan_options;
         plan_options.broad_phase = broad;
         const Plan plan = compile(scene, plan_options);
@@ -162,7 +162,8 @@ TEST_CASE("every named scene has the same bits on every table, layout and broad 
     const Scene scene = entry.make();
     for (Precision precision : {Precision::f32, Precision::f64}) {
       std::vector<std::uint64_t> reference;
-      for (BroadPhase broad : {BroadPhase::all_pairs, BroadPhase::sort_and_sweep}) {
+      for (BroadPhase broad :
+           {BroadPhase::all_pairs, BroadPhase::sort_and_sweep, BroadPhase::sparse}) {
         PlanOptions plan_options;
         plan_options.broad_phase = broad;
         const Plan plan = compile(scene, plan_options);

@@ -204,6 +204,7 @@ TEST_CASE("stepping a crowd allocates nothing", "[fast][allocation]") {
   varied.variations = {vary(Parameter::mass, 1, 2), vary(Parameter::friction, 0, 1),
                        vary(Parameter::linear_drag, 0, 1)};
   check_scene(varied);
+  check_scene(crowd(Space::planar, 70));  // without a table of pairs
 }
 
 }  // namespace manyworlds::test

@@ -20,6 +20,7 @@ TEST_CASE("features and broad phases have their names", "[fast][scene]") {
   CHECK(std::string(to_string(BroadPhase::automatic)) == "automatic");
   CHECK(std::string(to_string(BroadPhase::all_pairs)) == "all-pairs");
   CHECK(std::string(to_string(BroadPhase::sort_and_sweep)) == "sort-and-sweep");
+  CHECK(std::string(to_string(BroadPhase::sparse)) == "sparse");
 }
 
 TEST_CASE("field descriptions follow the list of fields", "[fast][scene]") {

@@ -120,7 +120,8 @@ TEST_CASE("with sleep, bits do not depend on the instruction set, the layout or 
   for (Space space : {Space::planar, Space::spatial}) {
     for (Precision precision : {Precision::f32, Precision::f64}) {
       std::vector<Result> results;
-      for (BroadPhase broad : {BroadPhase::all_pairs, BroadPhase::sort_and_sweep}) {
+      for (BroadPhase broad :
+           {BroadPhase::all_pairs, BroadPhase::sort_and_sweep, BroadPhase::sparse}) {
         PlanOptions plan_options;
         plan_options.broad_phase = broad;
         const Plan plan = compile(lively_crowd(space), plan_options);

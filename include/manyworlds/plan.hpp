@@ -38,7 +38,11 @@ enum class Feature {
 inline constexpr int kFeatureCount = 7;
 const char* to_string(Feature feature);
 
-enum class BroadPhase { automatic, all_pairs, sort_and_sweep };
+// How pairs of shapes that come close are found; all ways find the same in the same order. The
+// first two list all pairs in the plan, so that its memory grows with the square of the shapes;
+// sparse lists none. Automatic takes it above 64 moving shapes, or 32,768 pairs of moving shapes
+// with fixed ones that are not planes.
+enum class BroadPhase { automatic, all_pairs, sort_and_sweep, sparse };
 const char* to_string(BroadPhase broad_phase);
 
 struct PlanOptions {

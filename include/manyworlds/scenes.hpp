@@ -1,6 +1,7 @@
 // Named scenes shared by tests, benchmarks, the program and the docs.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,8 +17,12 @@ struct Entry {
   Scene (*make)();
 };
 
-const std::vector<Entry>& all();             // in the order they are listed to people
-const Entry* find(std::string_view name);    // nullptr when unknown
+const std::vector<Entry>& all();           // in the order they are listed to people
+const Entry* find(std::string_view name);  // nullptr when unknown
+// "pyramid2d:100" (boxes in the lowest row), "bin-spheres:1000" and "bin-boxes:1000" (bodies):
+// standard scenes in other sizes. Nothing for other names; throws std::invalid_argument for a size
+// that is none.
+std::optional<Scene> sized(std::string_view name);
 std::string nearest(std::string_view name);  // the known name with the smallest edit distance
 
 }  // namespace manyworlds::scenes

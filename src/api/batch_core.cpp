@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "kernels/pair_keys.hpp"
 #include "src/api/batch_impl.hpp"
 #include "src/base/denormals.hpp"
 
@@ -292,7 +293,7 @@ std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
   const PlanData& plan = w.data();
   std::vector<Contact> out;
   for (const auto& p : points) {
-    const PairNames names = names_of(plan, p.key);
+    const PairNames names = names_of(plan, t, p.key);
     Contact contact;
     contact.body_a = names.body_a, contact.shape_a = names.shape_a;
     contact.body_b = names.body_b, contact.shape_b = names.shape_b;

@@ -113,7 +113,7 @@ void ObservationsOf<Real>::put_ray(std::size_t k, int world, std::size_t ray, co
   Kind& kind = kinds_[k];
   const PlanData& plan = worlds_[k]->data();
   Vec3 origin = from.origin, way = from.direction;
-  if (from.body >= 0) {
+  if (from.body >= 0 && !plan.varies.shapes) {
     const PlanBody& body = plan.bodies[at(from.body)];
     origin = body.principal.conjugate() * (origin - body.center);
     way = body.principal.conjugate() * way;
@@ -160,6 +160,23 @@ const kernels::Observation<Real>& ObservationsOf<Real>::ask(std::size_t thread, 
         std::max(0, worlds_[k]->world_in(group * kernels_.lanes + static_cast<int>(l)));
     const Real* from = kind.ray_rows.data() + at(world) * rows;
     for (std::size_t i = 0; i < rows; ++i) block.ray_rows[i * lanes + l] = from[i];
+    // Where a body's centre of mass and principal axes are now, if sizes vary.
+    for (std::size_t i = 0; worlds_[k]->data().varies.shapes && i < kind.rays.size(); ++i) {
+      if (kind.rays[i].body < 0) continue;
+      const PlanBody& body = worlds_[k]->body_of(world, at(kind.rays[i].body));
+      const Real* ray = from + i * kernels::kRayRows;
+      const auto vector = [ray](int c) {
+        return Vec3(static_cast<double>(ray[c]), static_cast<double>(ray[c + 1]),
+                    static_cast<double>(ray[c + 2]));
+      };
+      const Vec3 origin = body.principal.conjugate() * (vector(0) - body.center);
+      const Vec3 way = body.principal.conjugate() * vector(3);
+      Real* to = block.ray_rows + i * kernels::kRayRows * lanes + l;
+      for (std::size_t c = 0; c < 3; ++c) {
+        to[c * lanes] = static_cast<Real>(origin[static_cast<Eigen::Index>(c)]);
+        to[(3 + c) * lanes] = static_cast<Real>(way[static_cast<Eigen::Index>(c)]);
+      }
+    }
   }
   return block.view;
 }

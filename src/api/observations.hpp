@@ -15,7 +15,9 @@ namespace manyworlds {
 struct PairNames {
   int body_a, shape_a, body_b, shape_b;
 };
-PairNames names_of(const PlanData& plan, int key);
+template <class Real>
+PairNames names_of(const PlanData& plan, const kernels::WorldTables<Real>& tables,
+                   std::int32_t key);
 
 // Numbers of one world: what Observed says, for `bodies` and `rays`.
 std::size_t observed_size(Observed what, Space space, int bodies, std::size_t rays);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "kernels/pair_keys.hpp"
 #include "src/api/batch_data.hpp"
 #include "src/api/observations.hpp"
 
@@ -81,18 +82,18 @@ void check_rays(std::span<const Ray> rays, Space space, int bodies) {
   }
 }
 
-PairNames names_of(const PlanData& plan, int key) {
-  const auto c = std::find_if(plan.classes.begin(), plan.classes.end(), [&](const auto& pairs) {
-    return key >= pairs.first_key && key < pairs.first_key + static_cast<int>(pairs.a.size());
-  });
-  const auto index = static_cast<std::size_t>(key - c->first_key);
-  const auto& b = plan.colliders[static_cast<std::size_t>(c->b[index])];
-  if (is_fixed(c->list)) {
-    const auto& a = plan.fixed[static_cast<std::size_t>(c->a[index])];
-    return {a.scene_body, a.shape, b.scene_body, b.shape};
-  }
-  const auto& a = plan.colliders[static_cast<std::size_t>(c->a[index])];
-  return {a.scene_body, a.shape, b.scene_body, b.shape};
+template <class Real>
+PairNames names_of(const PlanData& plan, const kernels::WorldTables<Real>& t, std::int32_t key) {
+  const kernels::PairOfKey pair = kernels::pair_of_key(t, key);
+  const auto named = [&](const auto& a) {
+    const PlanCollider& b = plan.colliders[static_cast<std::size_t>(pair.b)];
+    return PairNames{a.scene_body, a.shape, b.scene_body, b.shape};
+  };
+  const auto a = static_cast<std::size_t>(pair.a);
+  const bool fixed = is_fixed(t.pair_class[kernels::class_of_key(t, key)].list);
+  return fixed ? named(plan.fixed[a]) : named(plan.colliders[a]);
 }
+template PairNames names_of(const PlanData&, const kernels::WorldTables<float>&, std::int32_t);
+template PairNames names_of(const PlanData&, const kernels::WorldTables<double>&, std::int32_t);
 
 }  // namespace manyworlds

@@ -91,7 +91,7 @@ std::vector<StepContact> ObservationsOf<Real>::contacts(int k, int world) const 
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto& from = kind.contacts[w * at(kind.room) + i];
     StepContact& to = out[i];
-    const PairNames names = names_of(worlds_[at(k)]->data(), from.key);
+    const PairNames names = names_of(worlds_[at(k)]->data(), worlds_[at(k)]->tables(), from.key);
     to.body_a = names.body_a, to.shape_a = names.shape_a;
     to.body_b = names.body_b, to.shape_b = names.shape_b;
     for (int c = 0; c < 3; ++c) {

@@ -86,6 +86,7 @@ std::uint64_t fingerprint(const PlanData& plan) {
   printer.add(plan.varied);
   for (const bool in : plan.in) printer.add(in);
   for (const int capacity : plan.capacity) printer.add(capacity);
+  if (plan.sparse) printer.add(plan.sparse);  // keys of contacts mean something else
   return printer.value();
 }
 

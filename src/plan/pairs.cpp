@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "src/plan/plan_data.hpp"
+#include "src/plan/pair_kinds.hpp"
 
 namespace manyworlds {
 
@@ -90,6 +90,12 @@ bool is_single(PairKind kind) {
   }
 }
 
+ListId list_of(PairKind kind, bool fixed) {
+  const bool single = is_single(kind);
+  return fixed ? (single ? ListId::fixed_single : ListId::fixed_multi)
+               : (single ? ListId::pair_single : ListId::pair_multi);
+}
+
 bool filters_agree(const Filter& a, const Filter& b) {
   return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
@@ -121,7 +127,8 @@ class Collector {
     for (auto& [id, c] : classes_) {
       if (c.a.empty() && c.culled == 0) continue;
       c.first_key = key;
-      key += static_cast<int>(c.a.size());
+      c.keys = c.candidates = static_cast<int>(c.a.size());
+      key += c.keys;
       plan_.classes.push_back(std::move(c));
     }
   }
@@ -137,9 +144,7 @@ class Collector {
   }
   void add(PairKind kind, bool fixed, int a, int b, const Shape& shape_a, const Shape& shape_b,
            bool dynamic) {
-    const bool single = is_single(kind);
-    const ListId list = fixed ? (single ? ListId::fixed_single : ListId::fixed_multi)
-                              : (single ? ListId::pair_single : ListId::pair_multi);
+    const ListId list = list_of(kind, fixed);
     PlanClass& c = classes_[{static_cast<int>(list), static_cast<int>(kind)}];
     c.kind = kind;
     c.list = list;
@@ -173,7 +178,15 @@ int fixed_manifolds(const PlanData& plan) {
 
 }  // namespace
 
-void collect_pairs(PlanData& plan) {
+KindOfPair kind_of_pair(ShapeKind a, ShapeKind b, bool fixed) {
+  const Match m = match(a, b);
+  const PairKind kind = fixed && m.swapped ? reversed(m.kind) : m.kind;
+  return {kind, list_of(kind, fixed), m.swapped};
+}
+
+namespace {
+
+void list_pairs(PlanData& plan) {
   Collector collector(plan);
   const int n = static_cast<int>(plan.colliders.size());
   // A tournament (circle method): pairs of a round share no shape, so neighbouring rows of the
@@ -191,13 +204,34 @@ void collect_pairs(PlanData& plan) {
     for (int j = 0; j < n; ++j) collector.fixed(f, j);
   }
   collector.finish();
+}
+
+// Moving shapes up to which there are tables of pairs, and pairs with fixed shapes that are not
+// planes: a table is faster than a search as long as it is short.
+constexpr int kMostInTables = 64;
+constexpr int kMostPairsWithFixed = 1 << 15;
+
+bool is_large(const PlanData& plan) {
+  std::int64_t fixed = 0;
+  for (const PlanFixed& f : plan.fixed) fixed += f.kind != ShapeKind::plane ? 1 : 0;
+  const auto moving = static_cast<std::int64_t>(plan.colliders.size());
+  return moving > kMostInTables || moving * fixed > kMostPairsWithFixed;
+}
+
+}  // namespace
+
+void collect_pairs(PlanData& plan) {
+  const BroadPhase wish = plan.options.broad_phase;
+  plan.sparse = wish == BroadPhase::sparse || (wish == BroadPhase::automatic && is_large(plan));
+  plan.sparse ? count_pairs(plan) : list_pairs(plan);
 
   // Manifolds per world. Equal spheres can touch 12 neighbours and equal circles 6, each pair
   // shared by two; piles of mixed sizes stay well below.
   std::array<int, kernels::kLists> candidates{};
   for (const PlanClass& c : plan.classes) {
-    candidates[static_cast<std::size_t>(c.list)] += static_cast<int>(c.a.size());
+    candidates[static_cast<std::size_t>(c.list)] += c.candidates;
   }
+  const int n = static_cast<int>(plan.colliders.size());
   const int pairs = plan.scene.options.contact_capacity.value_or(
       (plan.scene.space == Space::spatial ? 4 : 3) * n + 8);
   const int fixed = 2 * n + 8 + fixed_manifolds(plan);
@@ -210,8 +244,9 @@ void collect_pairs(PlanData& plan) {
   // Shapes from which sort and sweep is the default. Up to 512 balls the two are within 11 % of
   // each other (docs/architecture.md), but the sweep's cost grows more slowly.
   constexpr int kSweepFrom = 48;
-  plan.sweep = plan.options.broad_phase == BroadPhase::sort_and_sweep ||
-               (plan.options.broad_phase == BroadPhase::automatic && n >= kSweepFrom);
+  plan.sweep =
+      plan.options.broad_phase == BroadPhase::sort_and_sweep ||
+      (plan.options.broad_phase == BroadPhase::automatic && !plan.sparse && n >= kSweepFrom);
 }
 
 }  // namespace manyworlds

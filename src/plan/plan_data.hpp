@@ -57,8 +57,10 @@ struct PlanClass {
   kernels::PairKind kind{};
   kernels::ListId list{};
   int first_key = 0;
+  int keys = 0;
+  int candidates = 0;  // pairs that may touch; a sparse plan has keys for the others, too
   int culled = 0;
-  std::vector<std::int32_t> a, b;
+  std::vector<std::int32_t> a, b;  // the candidates; of a sparse plan examples of all materials
 };
 
 // What differs from world to world.
@@ -88,6 +90,7 @@ struct PlanData {
   std::array<int, kernels::kLists> capacity{};
   bool sweep = false;
   bool rectangles = true;  // every polygon is one, and stays one
+  bool sparse = false;     // no tables of pairs
   bool collider_is_body = true;
   bool cast = false;
   bool uniform_gravity = true;
@@ -108,7 +111,7 @@ void choose_polygons(PlanData& plan);       // colliders.cpp
 void collect_colliders(PlanData& plan);     // colliders.cpp
 void collect_fixed(PlanData& plan);         // colliders.cpp
 void lay_out_shapes(PlanData& plan);        // colliders.cpp
-void collect_pairs(PlanData& plan);         // pairs.cpp
+void collect_pairs(PlanData& plan);         // pairs.cpp, sparse_pairs.cpp
 void choose_features(PlanData& plan);       // features.cpp
 PlanReport describe(const PlanData& plan);  // report.cpp
 

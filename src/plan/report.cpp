@@ -29,7 +29,10 @@ PlanReport describe(const PlanData& plan) {
   const std::string touch = why(Feature::contacts);
   out.stages = {{"free_motion", !contacts, contacts ? "contacts need the substep loop" : touch},
                 {"begin", contacts, touch},
-                {"broad_phase", contacts, plan.sweep ? "sort and sweep" : "masked all-pairs"},
+                {"broad_phase", contacts,
+                 plan.sparse  ? "sort and sweep, no table of pairs"
+                 : plan.sweep ? "sort and sweep"
+                              : "masked all-pairs"},
                 {"collide", contacts, touch},
                 {"warm_start", contacts, touch},
                 {"bias", contacts, "soft normal rows, every substep"},
@@ -46,8 +49,8 @@ PlanReport describe(const PlanData& plan) {
                                  : "commit, with casts against fixed and moving shapes"}};
 
   for (const PlanClass& c : plan.classes) {
-    out.pairs.push_back({to_string(c.kind), is_fixed(c.list) ? "fixed" : "pairs",
-                         static_cast<int>(c.a.size()), c.culled});
+    out.pairs.push_back(
+        {to_string(c.kind), is_fixed(c.list) ? "fixed" : "pairs", c.candidates, c.culled});
   }
 
   const std::size_t bodies = plan.bodies.size();
@@ -75,7 +78,9 @@ PlanReport describe(const PlanData& plan) {
   }
   out.arrays.push_back({"status", "[1]", 4});
   for (const auto& a : out.arrays) out.bytes_per_world += a.bytes_per_world;
-  out.broad_phase = plan.sweep ? BroadPhase::sort_and_sweep : BroadPhase::all_pairs;
+  out.broad_phase = plan.sparse  ? BroadPhase::sparse
+                    : plan.sweep ? BroadPhase::sort_and_sweep
+                                 : BroadPhase::all_pairs;
   return out;
 }
 

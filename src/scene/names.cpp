@@ -21,6 +21,7 @@ const char* to_string(BroadPhase broad_phase) {
     case BroadPhase::automatic: return "automatic";
     case BroadPhase::all_pairs: return "all-pairs";
     case BroadPhase::sort_and_sweep: return "sort-and-sweep";
+    case BroadPhase::sparse: return "sparse";
   }
   return "unknown";
 }

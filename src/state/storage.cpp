@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "kernels/pair_keys.hpp"
+
 namespace manyworlds {
 
 template <class Real>

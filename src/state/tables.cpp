@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+
+#include "src/plan/pair_kinds.hpp"
 
 namespace manyworlds {
 
@@ -21,6 +24,13 @@ kernels::Softness<Real> softness(double frequency, double damping_ratio, double 
 template <class Real>
 void copy(const Vec3& from, Real* to) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<Real>(from[c]);
+}
+
+template <class Planned>
+const Filter& filter_of(const PlanData& plan, const Planned& s) {
+  return plan.scene.bodies[static_cast<std::size_t>(s.scene_body)]
+      .shapes[static_cast<std::size_t>(s.shape)]
+      .filter;
 }
 
 }  // namespace
@@ -56,6 +66,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.friction_in_bias = o.friction_in_bias_pass;
   t.uniform_gravity = plan.uniform_gravity;
   t.sweep = plan.sweep;
+  t.sparse = plan.sparse;
   t.cast = plan.cast && t.has_contacts;
   t.cast_moving = o.cast_between_moving && t.has_contacts;
   t.push_varies = plan.varies.push;
@@ -114,9 +125,7 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
   auto& t = tables_;
   const double least_margin = 2 * plan.scene.options.slop * plan.scene.options.length_unit;
   for (const PlanCollider& c : plan.colliders) {
-    const Filter& filter = plan.scene.bodies[static_cast<std::size_t>(c.scene_body)]
-                               .shapes[static_cast<std::size_t>(c.shape)]
-                               .filter;
+    const Filter& filter = filter_of(plan, c);
     colliders_.push_back({c.kind, c.body, c.row, filter.category, filter.mask,
                           static_cast<std::int32_t>(c.vertices.size())});
     collider_row_.push_back(c.row);
@@ -124,6 +133,12 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
   }
   collider_row_.push_back(plan.row_block - kernels::kDummyRow);
   collider_body_.push_back(t.bodies);
+  for (int body = 0, i = 0; body <= t.bodies; ++body) {
+    while (i < static_cast<int>(colliders_.size()) &&
+           collider_body_[static_cast<std::size_t>(i)] < body)
+      ++i;
+    first_collider_.push_back(i);
+  }
 
   std::size_t rows = 0;
   for (const PlanFixed& f : plan.fixed) rows += f.row.size();
@@ -132,6 +147,9 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
     kernels::FixedTable<Real> out{};
     out.kind = f.kind;
     out.row = f.row_offset;
+    const Filter& filter = filter_of(plan, f);
+    out.category = filter.category;
+    out.mask = filter.mask;
     copy(f.low, out.low);
     copy(f.high, out.high);
     for (std::size_t k = 0; k < 4; ++k) out.plane[k] = static_cast<Real>(f.plane[k]);
@@ -148,6 +166,7 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
   t.collider = colliders_.data();
   t.collider_row = collider_row_.data();
   t.collider_body = collider_body_.data();
+  t.first_collider = first_collider_.data();
   t.fixed = fixed_.data();
   t.fixed_rows = fixed_rows_.data();
   t.row_block = plan.row_block;
@@ -159,15 +178,16 @@ void TablesOf<Real>::add_pairs(const PlanData& plan) {
   const auto n = static_cast<std::size_t>(t.colliders);
   if (plan.sweep) pair_of_.assign(n * n, -1);
   for (const PlanClass& c : plan.classes) {
-    if (c.a.empty()) continue;
+    if (c.candidates == 0) continue;
     kernels::PairClass<Real> out{};
     out.kind = c.kind;
     out.list = c.list;
-    out.count = static_cast<std::int32_t>(c.a.size());
+    out.count = c.keys;
     out.first_key = c.first_key;
-    out.a = c.a.data();
-    out.b = c.b.data();
     classes_.push_back(out);
+    if (plan.sparse) continue;
+    classes_.back().a = c.a.data();
+    classes_.back().b = c.b.data();
     if (!plan.sweep || is_fixed(c.list)) continue;
     for (std::size_t i = 0; i < c.a.size(); ++i) {
       const auto a = static_cast<std::size_t>(c.a[i]), b = static_cast<std::size_t>(c.b[i]);
@@ -177,7 +197,35 @@ void TablesOf<Real>::add_pairs(const PlanData& plan) {
   t.classes = static_cast<std::int32_t>(classes_.size());
   t.pair_class = classes_.data();
   t.pair_of = pair_of_.data();
+  if (plan.sparse) add_pair_classes(plan);
   for (std::size_t l = 0; l < kernels::kLists; ++l) t.capacity[l] = plan.capacity[l];
+}
+
+// Which class the kinds of two shapes lead to.
+template <class Real>
+void TablesOf<Real>::add_pair_classes(const PlanData& plan) {
+  const auto at = [](kernels::ShapeKind kind) { return static_cast<std::size_t>(kind); };
+  const auto class_of = [&](const KindOfPair& wanted) {
+    for (int i = 0; i < tables_.classes; ++i) {
+      const auto& c = tables_.pair_class[i];
+      if (c.kind == wanted.kind && c.list == wanted.list) return i;
+    }
+    return -1;
+  };
+  for (auto& row : tables_.moving_class) std::fill(std::begin(row), std::end(row), -2);
+  for (auto& row : tables_.fixed_class) std::fill(std::begin(row), std::end(row), -1);
+  std::set<kernels::ShapeKind> moving, fixed;
+  for (const PlanCollider& c : plan.colliders) moving.insert(c.kind);
+  for (const PlanFixed& f : plan.fixed) fixed.insert(f.kind);
+  for (const auto b : moving) {
+    for (const auto a : moving) {
+      const KindOfPair kind = kind_of_pair(a, b, false);
+      tables_.moving_class[at(a)][at(b)] = 2 * class_of(kind) + (kind.swapped ? 1 : 0);
+    }
+    for (const auto a : fixed) {
+      tables_.fixed_class[at(a)][at(b)] = class_of(kind_of_pair(a, b, true));
+    }
+  }
 }
 
 template class TablesOf<float>;

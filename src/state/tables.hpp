@@ -22,13 +22,14 @@ class TablesOf {
   void add_bodies(const PlanData& plan);
   void add_shapes(const PlanData& plan);
   void add_pairs(const PlanData& plan);
+  void add_pair_classes(const PlanData& plan);
   void add_options(const PlanData& plan);
 
   kernels::WorldTables<Real> tables_{};
   Constants<Real> constants_;
   std::vector<kernels::BodyTable> bodies_;
   std::vector<kernels::ColliderTable> colliders_;
-  std::vector<std::int32_t> collider_row_, collider_body_, pair_of_;
+  std::vector<std::int32_t> collider_row_, collider_body_, first_collider_, pair_of_;
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
   AlignedBuffer<Real> fixed_rows_, push_rows_, factor_rows_;

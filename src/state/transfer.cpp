@@ -3,6 +3,7 @@
 #include <cstring>
 #include <utility>
 
+#include "kernels/pair_keys.hpp"
 #include "src/base/bits.hpp"
 #include "src/state/storage.hpp"
 
@@ -120,20 +121,11 @@ struct Check {
     } while (t.capacity[list] == 0);
     std::int32_t last = -1;
     for (std::size_t i = 0; i < count && at(i) != kernels::kEndOfKeys; ++i) {
-      if (at(i) <= last || !is_key(at(i))) problem = "a contact is not one of the plan's";
+      if (at(i) <= last || !is_key(t, static_cast<kernels::ListId>(list), at(i)))
+        problem = "a contact is not one of the plan's";
       last = at(i);
       if (i + 1 == count) problem = "a list of contacts has no end";
     }
-  }
-  bool is_key(std::int32_t key) const {
-    for (int c = 0; c < t.classes; ++c) {
-      const auto& pairs = t.pair_class[c];
-      if (static_cast<int>(pairs.list) == list && key >= pairs.first_key &&
-          key < pairs.first_key + pairs.count) {
-        return true;
-      }
-    }
-    return false;
   }
   void check_islands(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {

@@ -83,10 +83,14 @@ void Worlds<Real>::restart() {
   std::fill(episode_.begin(), episode_.end(), 0u);
   clear_forces();
   for (int w = 0; w < worlds_; ++w) initialise(w);
-  // Lanes without a world repeat the last one.
+  // Lanes without a world repeat the last one; where looking for pairs goes lane by lane, nothing
+  // is there in them.
   for (int slot = 0; slot < storage_.slots(); ++slot) {
     if (world_in_[static_cast<std::size_t>(slot)] >= 0) continue;
+    if (tables().sparse) storage_.make_activity();
     storage_.copy(slot_of(worlds_ - 1), slot);
+    for (int b = 0; tables().sparse && b < tables().bodies; ++b) storage_.set_absent(slot, b, true);
+    if (tables().sparse) storage_.find_idle(slot);
     storage_.rest(slot);
   }
 }

@@ -55,6 +55,13 @@ class Worlds {
   std::string check(Parameter parameter, int world, const double* in) const;
   void write(Parameter parameter, int world, const double* in);
 
+  // Bodies as this world's sizes, densities and masses make them.
+  const PlanBody& body_of(int world, std::size_t body) const {
+    return own_bodies_.empty()
+               ? data().bodies[body]
+               : own_bodies_[static_cast<std::size_t>(world) * data().bodies.size() + body];
+  }
+
   // Where the world begins from now on, instead of the scene's value and its jitter; canonical. Of
   // all worlds or of none.
   void set_initial(Field field, int world, const double* in);
@@ -87,12 +94,6 @@ class Worlds {
  private:
   Real& component(int world, int body, int component) const {
     return storage_.component(slot_of(world), body, component);
-  }
-  // Bodies as this world's sizes, densities and masses make them.
-  const PlanBody& body_of(int world, std::size_t body) const {
-    return own_bodies_.empty()
-               ? data().bodies[body]
-               : own_bodies_[static_cast<std::size_t>(world) * data().bodies.size() + body];
   }
   double* values_of(int world) {
     return values_.data() + static_cast<std::size_t>(world) * data().varied.size();

@@ -64,7 +64,8 @@ using Choices = std::vector<std::pair<std::string, Value>>;
 const Choices<BroadPhase>& broad_phases() {
   static const Choices<BroadPhase> choices = {{"auto", BroadPhase::automatic},
                                               {"all-pairs", BroadPhase::all_pairs},
-                                              {"sort-and-sweep", BroadPhase::sort_and_sweep}};
+                                              {"sort-and-sweep", BroadPhase::sort_and_sweep},
+                                              {"sparse", BroadPhase::sparse}};
   return choices;
 }
 

@@ -68,6 +68,11 @@ bool reads_mjcf() {
 
 Scene load_scene(const std::string& name_or_file) {
   if (const scenes::Entry* entry = scenes::find(name_or_file)) return entry->make();
+  try {
+    if (std::optional<Scene> scene = scenes::sized(name_or_file)) return std::move(*scene);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(error.what());
+  }
   if (looks_like_a_file(name_or_file)) {
     require_readable(name_or_file);
     return load_file(name_or_file);

@@ -114,7 +114,7 @@ class Verifier {
     for (const auto layout :
          {ContactLayout::automatic, ContactLayout::dense, ContactLayout::rows}) {
       for (const auto broad_phase :
-           {BroadPhase::automatic, BroadPhase::all_pairs, BroadPhase::sort_and_sweep}) {
+           {BroadPhase::all_pairs, BroadPhase::sort_and_sweep, BroadPhase::sparse}) {
         options.layout = layout;
         options.broad_phase = broad_phase;
         run(kKernels, options, kWorlds, 0, 1);
@@ -197,8 +197,8 @@ void print_head(const VerifyOptions& options) {
   fmt::print("  size      batches of {}\n", options.quick ? "1, 4, ... 40" : "1, 2, ... 40");
   fmt::print("  threads   1, 2, 3 and 4\n");
   fmt::print(
-      "  kernels   layouts auto, dense, rows x broad phases auto, all-pairs, "
-      "sort-and-sweep\n");
+      "  kernels   layouts auto, dense, rows x broad phases all-pairs, "
+      "sort-and-sweep, sparse\n");
   fmt::print("  calls     step(7) and one call for all steps\n");
   fmt::print("  reset     after a third of the run, and all over\n");
   fmt::print("  frozen    beside a world that a NaN force froze half way\n");
