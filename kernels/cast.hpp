@@ -138,11 +138,17 @@ MW_INLINE Vec cast_against_fixed(const Tables& t, const Group& g, int body, Vec 
 // Takes down the shapes of bodies that go so far in this step that others may have to be cast
 // against them, whatever those do.
 template <class Moved>
-void find_swift(const Tables& t, Work& w, Moved moved) {
+void find_swift(const Tables& t, const Group& g, Work& w, Moved moved) {
+  Float core = Real(1e18);  // the smallest
+  for (int b = 0; b < t.bodies; ++b) {
+    const Float radius = constants_of_body(g, b).core_radius;
+    core = select(Float(Real(0)) < radius, min(radius, core), core);
+  }
+  const Float far = core * Float(Real(0.49));  // a little less than half of it
   w.swift_count = 0;
   for (int i = 0; i < t.colliders; ++i) {
     const auto way = moved(t.collider_body[i]);
-    if (all(dot(way, way) < Float(w.swift_from * w.swift_from))) continue;
+    if (all(dot(way, way) < square(far))) continue;
     w.swift[w.swift_count++] = i;
   }
 }

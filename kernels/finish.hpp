@@ -165,7 +165,7 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
   constexpr bool kIdle = std::is_same_v<Keep, LiveLanes>;
   Mask inside = mask_from_bits(kAllLanes);
   if (t.cast_moving) {
-    find_swift(t, w, [&](int b) { return get_velocity<S, kDense>(w, w.displacement, b).v; });
+    find_swift(t, g, w, [&](int b) { return get_velocity<S, kDense>(w, w.displacement, b).v; });
   }
   for (int b = 0; b < t.bodies; ++b) {
     const auto& keep_body = keep.of(b);

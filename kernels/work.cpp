@@ -181,11 +181,6 @@ void fill_constants(const Tables& t, Work& w) {
     }
   }
   if (!t.has_contacts) return;
-  w.swift_from = Real(1e18);
-  for (int b = 0; b < t.bodies; ++b) {
-    const Real from = t.body[b].core_radius * Real(0.49);
-    if (from > Real(0) && from < w.swift_from) w.swift_from = from;
-  }
   int start = 0;
   for (int i = 0; t.sparse && i < t.classes; ++i) {
     w.sparse.hit_start[i] = start;

@@ -107,7 +107,6 @@ struct Work {
   alignas(64) std::int32_t body_base[kLanes];
   std::int32_t* swift;  // colliders that go far in this step (casts between moving shapes)
   std::int32_t swift_count;
-  Real swift_from;         // m, a little less than half of the smallest core
   std::uint32_t* touched;  // [body] lanes in which a contact may push the body in this step
   Recorder* recorder;      // nullptr but while contacts are recorded
   Recorder recorder_storage;

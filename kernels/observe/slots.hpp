@@ -8,6 +8,7 @@
 #include "kernels/constraint/body_rows.hpp"
 #include "kernels/constraint/slot.hpp"
 #include "kernels/observe/observe.hpp"
+#include "kernels/pair_keys.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
