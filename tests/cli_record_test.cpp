@@ -1,19 +1,15 @@
 // The program's recordings as its users see them; and without HDF5, how to get them.
 #ifdef MW_CLI_PATH
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
-#include <system_error>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+
+#include "tests/support/program.hpp"
 
 namespace manyworlds {
 namespace {
@@ -21,46 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
+using test::contains, test::Outcome;
 
-// A folder that the program runs in, gone with the object.
-class Folder {
- public:
-  Folder()
-      : path_(fs::temp_directory_path() / ("manyworlds_cli_record_" + std::to_string(getpid()))) {
-    fs::remove_all(path_);
-    fs::create_directories(path_);
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
+// A folder that the program runs in.
+struct Folder : test::ScratchFolder {
   Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + path_.string() + "' && '" MW_CLI_PATH "' " + arguments + " >out 2>err </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content("out"), content("err")};
+    return test::run_program(MW_CLI_PATH, *this, arguments);
   }
-
- private:
-  std::string content(const char* name) const {
-    std::ifstream file(path_ / name);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  fs::path path_;
 };
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 void check_bad(const Outcome& outcome, const char* message) {
   CHECK(outcome.code == 2);

@@ -1,20 +1,14 @@
 // The program manyworlds, run as its users run it: exit codes, what goes to which stream, JSON.
 #ifdef MW_CLI_PATH
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <regex>
 #include <set>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -22,6 +16,7 @@
 
 #include "manyworlds/batch.hpp"
 #include "manyworlds/scenes.hpp"
+#include "tests/support/program.hpp"
 
 namespace manyworlds {
 namespace {
@@ -29,51 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// A folder of its own, gone with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    static int count = 0;
-    path_ = fs::temp_directory_path() /
-            ("manyworlds_cli_test_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-    fs::create_directories(path_);
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  fs::path operator/(const char* name) const { return path_ / name; }
+using test::contains, test::content, test::Outcome, test::ScratchFolder;
 
- private:
-  fs::path path_;
-};
-
-std::string content(const fs::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
-// `arguments` as a shell takes them; `environment` is put in front of the command.
 Outcome run(const std::string& arguments, const std::string& environment = "") {
-  const ScratchFolder folder;
-  const fs::path out = folder / "out";
-  const fs::path err = folder / "err";
-  const std::string command = environment + " '" MW_CLI_PATH "' " + arguments + " >'" +
-                              out.string() + "' 2>'" + err.string() + "' </dev/null";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
+  return test::run_program(MW_CLI_PATH, ScratchFolder(), arguments, environment);
 }
 
 std::set<std::string> keys(const Json& object) {

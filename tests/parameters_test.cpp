@@ -3,166 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
-#include "tests/support/crowd.hpp"
 #include "tests/support/tables.hpp"
+#include "tests/support/varied.hpp"
 
 namespace manyworlds::test {
-namespace {
-
-std::vector<double> numbers(const Batch& batch, Parameter parameter, int world) {
-  std::vector<double> v(batch.size(parameter) / static_cast<std::size_t>(batch.worlds()));
-  batch.read(parameter, world, v);
-  return v;
-}
-
-Variation gravity_between(const Vec3& low, const Vec3& high, Draw draw = Draw::uniform) {
-  Variation v;
-  v.parameter = Parameter::gravity;
-  v.low = low, v.high = high, v.draw = draw;
-  return v;
-}
-
-// Bodies of every kind, one of them of several shapes, everything of which varies.
-Scene varied_crowd(Space space, bool polygons = false) {
-  Scene scene = capsule_crowd(space, polygons);
-  Body two = body_of(shape_of(cube_of(space, 0.25)), Vec3(0.3, 0, 0) + 4 * up_of(space));
-  two.shapes.push_back(shape_of(round_of(space, 0.3)));
-  two.shapes[1].position = Vec3(0.4, 0.1, 0);
-  two.jitter.angle = 1;
-  scene.add(two);
-  Variation size;
-  size.parameter = Parameter::size;
-  size.low.setConstant(0.15), size.high.setConstant(0.45);
-  scene.variations = {size,
-                      vary(Parameter::density, 200, 2000, Draw::log_uniform),
-                      vary(Parameter::friction, 0.1, 0.9),
-                      vary(Parameter::restitution, 0, 0.6),
-                      gravity_between(-11 * up_of(space), -9 * up_of(space)),
-                      vary(Parameter::gravity_scale, 0.8, 1.2),
-                      vary(Parameter::linear_drag, 0, 0.3),
-                      vary(Parameter::angular_drag, 0, 0.3)};
-  for (int body : {2, 5}) {
-    Variation mass = vary(Parameter::mass, 50, 500);
-    mass.body = body;
-    scene.variations.push_back(mass);
-  }
-  return scene;
-}
-
-// The scene with the numbers of one world of a batch written into it.
-Scene scene_of(const Batch& batch, int world) {
-  Scene scene = batch.plan(0).scene();
-  scene.variations.clear();
-  const auto all = [&](Parameter p) { return numbers(batch, p, world); };
-  const auto size = all(Parameter::size), density = all(Parameter::density),
-             friction = all(Parameter::friction), restitution = all(Parameter::restitution),
-             mass = all(Parameter::mass), scale = all(Parameter::gravity_scale),
-             linear = all(Parameter::linear_drag), angular = all(Parameter::angular_drag),
-             gravity = all(Parameter::gravity);
-  scene.options.gravity = Vec3(gravity[0], gravity[1], gravity[2]);
-  std::size_t shape = 0, state_body = 0;
-  for (Body& body : scene.bodies) {
-    for (Shape& s : body.shapes) {
-      const double* extent = &size[3 * shape];
-      if (auto* round = std::get_if<Sphere>(&s.geometry)) round->radius = extent[0];
-      if (auto* round = std::get_if<Circle>(&s.geometry)) round->radius = extent[0];
-      if (auto* box = std::get_if<Box>(&s.geometry)) {
-        box->half_extents = Vec3(extent[0], extent[1], extent[2]);
-      }
-      if (auto* capsule = std::get_if<Capsule>(&s.geometry)) *capsule = {extent[0], extent[1]};
-      if (auto* polygon = std::get_if<Polygon>(&s.geometry)) {
-        Vec2 low(1e9, 1e9), high(-1e9, -1e9);
-        for (const Vec2& v : polygon->vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
-        for (Vec2& v : polygon->vertices) {
-          for (int c = 0; c < 2; ++c) v[c] *= extent[c] / ((high[c] - low[c]) / 2);
-        }
-      }
-      s.density = density[shape];
-      s.material = {friction[shape], restitution[shape]};
-      ++shape;
-    }
-    if (body.motion == Motion::fixed) continue;
-    body.gravity_scale = scale[state_body];
-    body.linear_drag = linear[state_body], body.angular_drag = angular[state_body];
-    const MassProperties own = mass_properties(scene, body);
-    // Only of those whose mass is drawn, and not what their sizes and densities make.
-    if (own.mass != mass[state_body]) {
-      body.mass_properties = own;
-      body.mass_properties->inertia *= mass[state_body] / own.mass;
-      body.mass_properties->mass = mass[state_body];
-    }
-    ++state_body;
-  }
-  return scene;
-}
-
-}  // namespace
-
-TEST_CASE("a world with numbers of its own is one of the scene that has them, bit for bit",
-          "[fast][parameters][bits]") {
-  for (Space space : {Space::planar, Space::spatial}) {
-    for (bool polygons : {false, true}) {
-      if (polygons && space == Space::spatial) continue;
-      const Scene scene = varied_crowd(space, polygons);
-      for (const Table& table : all_tables()) {
-        BatchOptions options = options_of(table, 11);
-        options.seed = 5;
-        Batch batch(compile(scene), options);
-        std::vector<Batch> alone;
-        for (int w = 0; w < batch.worlds(); ++w) {
-          BatchOptions one = options_of(table, 1);
-          one.seed = 5 + static_cast<std::uint64_t>(w);
-          alone.emplace_back(compile(scene_of(batch, w)), one);
-        }
-        batch.step(60);
-        for (int w = 0; w < batch.worlds(); ++w) {
-          alone[static_cast<std::size_t>(w)].step(60);
-          INFO(name(table) << " world " << w << " polygons " << polygons);
-          CHECK(batch.status(w) == Status::ok);
-          CHECK(state(batch, w) == state(alone[static_cast<std::size_t>(w)], 0));
-          const Energy e = batch.energy(w), f = alone[static_cast<std::size_t>(w)].energy(0);
-          CHECK(e.kinetic == f.kinetic);
-          CHECK(e.potential == f.potential);
-        }
-      }
-    }
-  }
-}
-
-TEST_CASE("bits do not depend on instruction set, batch, threads, layout or sleep's packing",
-          "[fast][parameters][bits]") {
-  for (Space space : {Space::planar, Space::spatial}) {
-    Scene scene = varied_crowd(space);
-    scene.options.time_to_sleep = 0.1;
-    scene.options.sleep_speed = 1;
-    for (Precision precision : {Precision::f32, Precision::f64}) {
-      std::vector<std::uint64_t> expected[2];
-      for (const Table& table : all_tables()) {
-        if (table.precision != precision) continue;
-        for (bool sleep : {false, true}) {
-          for (int threads : {1, 3}) {
-            BatchOptions options = options_of(table, 21, threads);
-            options.sleep = sleep;
-            options.layout = threads == 1 ? ContactLayout::dense : ContactLayout::rows;
-            Batch batch(compile(scene), options);
-            for (int i = 0; i < 25; ++i) {
-              batch.step(4);
-              if (i == 12) batch.add_impulse(3, 1, Vec3(100, 0, 0));
-            }
-            std::vector<std::uint64_t> hashes;
-            for (int w = 0; w < batch.worlds(); ++w) hashes.push_back(batch.hash(w));
-            if (expected[sleep].empty()) expected[sleep] = hashes;
-            INFO(name(table) << " sleep " << sleep << " threads " << threads);
-            CHECK(hashes == expected[sleep]);
-          }
-        }
-      }
-    }
-  }
-}
 
 TEST_CASE(
     "every world falls by its own gravity, slides by its own friction, bounces by its own "
@@ -342,31 +188,6 @@ TEST_CASE("a body keeps its place when its sizes shift its centre of mass", "[fa
       CHECK(spin(batch, 1, 0).norm() < 1e-12);
     }
   }
-}
-
-TEST_CASE("snapshots and copies take a world's numbers along", "[fast][parameters][snapshot]") {
-  Scene scene = varied_crowd(Space::spatial);
-  const Plan plan = compile(scene);
-  Batch batch(plan, {.worlds = 12, .threads = 1, .seed = 1});
-  batch.step(20);
-  const Snapshot saved = batch.save();
-  batch.step(20);
-  const auto expected = state(batch, 4);
-
-  Batch other(plan, {.worlds = 5, .threads = 1, .seed = 77, .isa = Isa::scalar});
-  other.restore(saved, 4, 2);
-  CHECK(numbers(other, Parameter::mass, 2) == numbers(batch, Parameter::mass, 4));
-  other.copy_world(2, 0);
-  CHECK(numbers(other, Parameter::size, 0) == numbers(batch, Parameter::size, 4));
-  other.step(20);
-  CHECK(state(other, 2) == expected);
-  CHECK(state(other, 0) == expected);
-  CHECK(state(other, 1) != expected);
-
-  // What this scene lets vary otherwise is another plan.
-  scene.variations[2].high.x() = 0.95;
-  Batch foreign(compile(scene), {.worlds = 12, .threads = 1});
-  CHECK_THROWS_AS(foreign.restore(saved), SnapshotError);
 }
 
 TEST_CASE("a written number wakes its world", "[fast][parameters][sleep]") {
