@@ -22,5 +22,13 @@ foreach(source IN LISTS mw_fuzz_targets)
   target_link_options(${target} PRIVATE -fsanitize=fuzzer)
 endforeach()
 
+# Recordings are changed through HDF5, which no other target needs.
+if(NOT MW_RECORD)
+  message(FATAL_ERROR "MW_FUZZ needs MW_RECORD: recording_fuzz reads recordings")
+endif()
+target_sources(recording_fuzz PRIVATE
+  fuzz/file_image.cpp fuzz/json_edit.cpp fuzz/recording_edit.cpp fuzz/recordings.cpp)
+target_link_libraries(recording_fuzz PRIVATE manyworlds_record HDF5::HDF5)
+
 add_executable(make_seeds fuzz/make_seeds.cpp)
 target_link_libraries(make_seeds PRIVATE mw_fuzz_support)

@@ -47,7 +47,8 @@ void apply(const Input& in, Batch& batch) {
     case 9:
     case 10: {
       const auto field = static_cast<Field>(in.body % kFieldCount);
-      std::vector<double> values(batch.size(field) / static_cast<std::size_t>(batch.worlds()));
+      const int count = batch.bodies(world) * components(field, batch.plan().scene().space);
+      std::vector<double> values(static_cast<std::size_t>(count));
       batch.read(field, world, values);
       const auto at = static_cast<std::size_t>(in.body) % values.size();
       values[at] = in.kind == 9 ? in.number : in.value.x();

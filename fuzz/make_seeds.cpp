@@ -21,15 +21,29 @@ void write(const std::filesystem::path& folder, int number, const Bytes& bytes) 
   if (!out) throw std::runtime_error("cannot write to " + folder.string());
 }
 
+Bytes any_bytes(int seed, int count) {
+  const Draws draws(static_cast<std::uint64_t>(seed), 0);
+  Bytes bytes(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<char>(static_cast<int>(256 * draws.uniform(i)));
+  }
+  return bytes;
+}
+
 // Any bytes make a scene; these are of many lengths. The last byte says how wild it is.
 void scenes(const std::filesystem::path& folder) {
   for (int n = 0; n < 200; ++n) {
-    const Draws draws(static_cast<std::uint64_t>(n), 0);
-    Bytes bytes(static_cast<std::size_t>(64 + 16 * n));
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-      bytes[i] = static_cast<char>(static_cast<int>(256 * draws.uniform(i)));
-    }
+    Bytes bytes = any_bytes(n, 64 + 16 * n);
     if (n % 4 != 0) bytes.back() = 0;
+    write(folder, n, bytes);
+  }
+}
+
+// Any bytes are changes of a recording, some five bytes each. The last byte chooses the recording.
+void recordings(const std::filesystem::path& folder) {
+  for (int n = 0; n < 300; ++n) {
+    Bytes bytes = any_bytes(1000 + n, n < 5 ? 1 : 4 + n / 10);
+    bytes.back() = static_cast<char>(n % 5);
     write(folder, n, bytes);
   }
 }
@@ -63,4 +77,5 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   manyworlds::fuzz::scenes(folder / "scene_fuzz");
   manyworlds::fuzz::snapshots(folder / "snapshot_fuzz");
+  manyworlds::fuzz::recordings(folder / "recording_fuzz");
 }
