@@ -127,9 +127,9 @@ void carve(const Tables& t, Work& w, Carver& c) {
     c.take(w.marks, count(hits));
     c.take(w.sorted, count(t.colliders * 3 * lanes));
   }
+  if (t.has_sleep || t.has_restitution) c.take(w.parent, count(t.bodies));
   if (t.has_sleep) {
     c.take(w.ready, count(t.bodies));
-    c.take(w.parent, count(t.bodies));
     c.take(w.restless, count(t.bodies));
     for (int l = 0; l < kLists; ++l) {
       const int cached = kernels::cache_row_size(t.dimension, static_cast<ListId>(l));

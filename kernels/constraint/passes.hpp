@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "kernels/constraint/contact_cache.hpp"
-#include "kernels/constraint/restitution.hpp"
+#include "kernels/constraint/energy.hpp"
 #include "kernels/finish.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -47,14 +47,21 @@ struct Passes {
     begin_substeps<S, kDense>(t, w);
   }
 
-  static void restitute(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void restitute(const Tables& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     unsigned active = 0;
-    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto) {
       constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
       auto& bounce = bounce_at<S, N>(list, i);
-      take_back<S, N, decltype(pair)::value, kDense>(t, w, s, bounce);
+      find_participants(t, s, bounce);
       active |= bounce.participants;
+    });
+    if (active == 0) return;
+    for_each_register<S, kDense>(
+        t, w, [&](int at, Float, Float) { Float::load(w.velocity + at).store(w.warmed + at); });
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      take_back<S, N, decltype(pair)::value, kDense>(w, s, bounce_at<S, N>(list, i));
     });
     for (int sweep = 0; sweep < t.restitution_sweeps && active != 0; ++sweep) {
       active = 0;
@@ -67,6 +74,41 @@ struct Passes {
     for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
       constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
       finish_impact<S, N, decltype(pair)::value, kDense, kFriction>(w, s, bounce_at<S, N>(list, i));
+    });
+    balance(t, g, w);
+  }
+
+  // No island keeps more energy than it had (energy.hpp).
+  static void balance(const Tables& t, const Group& g, Work& w) {
+    weigh_bodies<S, kDense>(t, g, w);
+    bool driven = false;
+    for (int b = 0; b < t.bodies; ++b) driven |= t.body[b].kinematic;
+    if (driven) {
+      for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+        constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+        if constexpr (decltype(pair)::value) {
+          credit_driver<S, N, kDense, kFriction>(t, w, s, bounce_at<S, N>(list, i));
+        }
+      });
+    }
+    const unsigned gained = lanes_that_gained(t, w);
+    if (gained == 0) return;
+    for (int l = 0; l < kLanes; ++l) {
+      if (!((gained >> l) & 1u)) {
+        for (int b = 0; b < t.bodies; ++b) account(w, b, kShare)[l] = Real(1);
+        continue;
+      }
+      for (int b = 0; b < t.bodies; ++b) w.parent[b] = b;
+      for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+        constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+        if constexpr (decltype(pair)::value) join_bodies(t, w, s, bounce_at<S, N>(list, i), l);
+      });
+      share_out(t, w, l);
+    }
+    keep_share_of_bodies<S, kDense>(t, w);
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      keep_share_of_slot<S, N, decltype(pair)::value, kFriction>(t, w, s, bounce_at<S, N>(list, i));
     });
   }
 

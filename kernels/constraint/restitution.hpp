@@ -42,24 +42,38 @@ MW_INLINE void accumulate_bounce(const Slot<S, N>& s, Bounce<S, N>& bounce, bool
   }
 }
 
-// Lanes of a slot that took part in an impact; takes their normal impulses back.
-template <class S, int N, bool kPair, bool kDense>
-MW_INLINE void take_back(const Tables& t, Work& w, Slot<S, N>& s, Bounce<S, N>& bounce) {
+// Finds the lanes of a slot that took part in an impact.
+template <class S, int N>
+MW_INLINE void find_participants(const Tables& t, const Slot<S, N>& s, Bounce<S, N>& bounce) {
   const Float zero(Real(0)), threshold(t.restitution_threshold);
   const Float substeps(static_cast<Real>(t.substeps));
   Mask part = zero < zero;
-  Float d[N];
   for (int i = 0; i < N; ++i) {
     const Float total = Float::load(bounce.total[i]);
     // More impulse than resting takes, by what changes the speed by the threshold.
     const Float extra = fnma(substeps, Float::load(bounce.carried[i]), total);
     part = part | (Float::load(s.mass[i]) * threshold < extra) |
            ((zero < Float::load(bounce.impact[i])) & (zero < total));
-    d[i] = -total;
   }
   part = part & (zero < Float::load(bounce.restitution)) & mask_from_bits(s.mask);
   bounce.participants = bits(part);
+}
+
+// Takes their normal impulses back, and keeps what the substeps found.
+template <class S, int N, bool kPair, bool kDense>
+MW_INLINE void take_back(Work& w, Slot<S, N>& s, Bounce<S, N>& bounce) {
+  Float d[N];
+  for (int i = 0; i < N; ++i) {
+    const Float total = Float::load(bounce.total[i]);
+    total.store(bounce.found[i]);
+    d[i] = -total;
+  }
+  for (int c = 0; c < S::kTangents; ++c) {
+    Float::load(bounce.total_tangent[c]).store(bounce.found_tangent[c]);
+  }
+  Float::load(bounce.total_twist).store(bounce.found_twist);
   if (bounce.participants == 0) return;
+  const Mask part = mask_from_bits(bounce.participants);
   SlotVelocities<S, N, kPair, kDense> v(w, s), before = v;
   apply_normal(s, d, v);
   v.b = select(part, v.b, before.b);

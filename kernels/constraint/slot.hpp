@@ -56,6 +56,8 @@ struct alignas(64) Bounce {
   Real total[N][kLanes];    // impulse over all substeps
   Real total_tangent[S::kTangents][kLanes];
   Real total_twist[kLanes];
+  // The same before restitution, in steps that have any (energy.hpp).
+  Real found[N][kLanes], found_tangent[S::kTangents][kLanes], found_twist[kLanes];
   std::uint32_t participants;  // lanes that took part in an impact
 };
 

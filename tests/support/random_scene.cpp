@@ -54,7 +54,7 @@ class Maker {
     for (int i = 0; i < bodies; ++i) add_body(i);
     RandomScene out;
     out.unit = unit_;
-    out.passive = !crowded_ && !driven_ && !bounces_;
+    out.passive = !crowded_ && !driven_;
     out.rough = rough_;
     const double height = (bodies / (planar_ ? 3 : 4) + 2) * cell_;
     out.top_speed = 4 * (fastest_ + std::sqrt(2 * 1.5 * scene_.options.gravity.norm() * height)) +

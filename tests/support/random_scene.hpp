@@ -10,8 +10,7 @@ namespace manyworlds::test {
 
 struct RandomScene {
   Scene scene;
-  // Nothing overlaps at first, no kinematic body moves and nothing bounces: mechanical energy can
-  // only fall. Restitution may add to it where several bodies meet at once (docs/architecture.md).
+  // Nothing overlaps at first and no kinematic body moves: mechanical energy can only fall.
   bool passive = true;
   // Bodies may move farther in a step than they are long, and weigh a hundred times as much as
   // those that they land on: soft contacts then give way, and energy and walls are not to be
