@@ -10,8 +10,6 @@
 // leave momentum as it was. At x = 1, nearly always, nothing is touched.
 #pragma once
 
-#include <cmath>
-
 #include "kernels/constraint/restitution.hpp"
 #include "kernels/finish.hpp"
 
@@ -197,12 +195,14 @@ MW_INLINE void credit_driver(const Tables& t, Work& w, const Slot<S, N>& s,
 }
 
 // The largest x up to 1 with found + 2 x cross + x^2 change <= allowed.
-inline Real affordable_share(Real allowed, Real found, Real cross, Real change) {
-  if (!(allowed < found + (cross + cross) + change)) return Real(1);
-  const Real spare = allowed > found ? allowed - found : Real(0);
-  const Real root = std::sqrt(cross * cross + change * spare);
-  const Real x = cross > 0 ? spare / (cross + root) : (root - cross) / change;
-  return x < Real(1) ? x : Real(1);  // change is 0 where restitution has changed nothing
+MW_INLINE Float affordable_share(Float allowed, Float found, Float cross, Float change) {
+  const Float zero(Real(0)), one(Real(1));
+  const Float spare = max(allowed - found, zero);
+  const Float root = sqrt(fma(change, spare, cross * cross));
+  const Float x = select(zero < cross, spare / (cross + root), (root - cross) / change);
+  // change is 0 where restitution has changed nothing, and x then not a number
+  const Mask less = (allowed < found + (cross + cross) + change) & (x < one);
+  return select(less, x, one);
 }
 
 // Turns the accounts of a lane, whose islands are joined, into the share of each body.
@@ -214,10 +214,13 @@ inline void share_out(const Tables& t, const Work& w, int lane) {
   }
   for (int b = 0; b < t.bodies; ++b) {
     const int root = root_of(w.parent, b);
-    account(w, b, kShare)[lane] =
-        root == b ? affordable_share(account(w, b, kAllowed)[lane], account(w, b, kFound)[lane],
-                                     account(w, b, kCross)[lane], account(w, b, kChange)[lane])
-                  : account(w, root, kShare)[lane];
+    alignas(64) LaneNumber x{};
+    const auto sum = [&](Account which) { return Float::load(account(w, root, which)); };
+    // The roots come before their bodies.
+    if (root == b) {
+      affordable_share(sum(kAllowed), sum(kFound), sum(kCross), sum(kChange)).store(x.lane);
+    }
+    account(w, b, kShare)[lane] = root == b ? x.lane[lane] : account(w, root, kShare)[lane];
   }
 }
 
