@@ -42,7 +42,7 @@ TEST_CASE("a light body between a bouncing one and the ground gains no energy",
             batch.step();
             INFO(name(table) << " mass ratio " << mass_ratio << " e " << e << " step " << step
                              << " energy ratio " << kinetic_energy(batch, 0) / energy);
-            CHECK(kinetic_energy(batch, 0) < 1.01 * energy);
+            CHECK(kinetic_energy(batch, 0) < (1 + 1e-4) * energy);
             // The ground is smooth.
             CHECK(momenta(batch, 0).linear.x() ==
                   Approx(along).margin(pick(table, 1e-5, 1e-12) * 3 * mass));

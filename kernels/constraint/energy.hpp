@@ -92,9 +92,9 @@ void weigh_bodies(const Tables& t, const Group& g, const Work& w) {
     const Velocity<S> found = form.own(get_velocity<S, kDense>(w, w.warmed, b));
     const Velocity<S> after = form.own(get_velocity<S, kDense>(w, w.velocity, b));
     const Velocity<S> change{after.v - found.v, after.w - found.w};
-    const Float rounding = slack * fma(form.mass, least, form(after, after));
-    const Float work = work_of_pushes<S, kDense>(t, w, form, b);
-    (form(start, start) + work + rounding).store(account(w, b, kAllowed));
+    const Float before = form(start, start), work = work_of_pushes<S, kDense>(t, w, form, b);
+    const Float rounding = slack * fma(form.mass, least, before);
+    (before + work + rounding).store(account(w, b, kAllowed));
     form(found, found).store(account(w, b, kFound));
     form(found, change).store(account(w, b, kCross));
     form(change, change).store(account(w, b, kChange));
