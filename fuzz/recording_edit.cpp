@@ -247,10 +247,11 @@ void RecordingEdit::remake(const Target& target, FuzzedDataProvider& in) {
   } else if (in.ConsumeIntegralInRange(0, 7) == 7) {
     type = Handle(H5Tvlen_create(type), H5Tclose, kWhat);
   }
-  const int rank = in.ConsumeIntegralInRange(0, 4);
+  // An attribute of any size is HDF5's to make in one piece.
+  const int rank = in.ConsumeIntegralInRange(0, target.attribute.empty() ? 4 : 1);
   hsize_t dims[4] = {}, most[4] = {};
   for (int i = 0; i < rank; ++i) {
-    dims[i] = in.ConsumeIntegralInRange<hsize_t>(0, 40);
+    dims[i] = in.ConsumeIntegralInRange<hsize_t>(0, rank == 1 ? 40 : 5);
     most[i] = H5S_UNLIMITED;
   }
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, kWhat);

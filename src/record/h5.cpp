@@ -49,9 +49,15 @@ Handle open_attribute(hid_t object, const std::string& name) {
   return attribute;
 }
 
-Handle open_dataset(hid_t parent, const std::string& name) {
-  if (!has_link(parent, name)) fail("has no '" + name + "'");
-  return {H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "cannot open '" + name + "'"};
+herr_t refuse_link(const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) {
+  return -1;
+}
+
+// How to open what is in this file: a link to another one is not followed.
+Handle inside_only(hid_t sort) {
+  Handle access(H5Pcreate(sort), H5Pclose, "access properties");
+  check(H5Pset_elink_cb(access, refuse_link, nullptr), "access properties");
+  return access;
 }
 
 }  // namespace
@@ -102,7 +108,19 @@ bool has_link(hid_t parent, const std::string& name) {
 }
 Handle open_group(hid_t parent, const std::string& name) {
   if (!has_link(parent, name)) fail("has no '" + name + "'");
-  return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "cannot open '" + name + "'"};
+  return {H5Gopen2(parent, name.c_str(), inside_only(H5P_GROUP_ACCESS)), H5Gclose,
+          "cannot open '" + name + "'"};
+}
+Handle open_dataset(hid_t parent, const std::string& name) {
+  if (!has_link(parent, name)) fail("has no '" + name + "'");
+  Handle dataset(H5Dopen2(parent, name.c_str(), inside_only(H5P_DATASET_ACCESS)), H5Dclose,
+                 "cannot open '" + name + "'");
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, name);
+  if (H5Pget_layout(creation) == H5D_VIRTUAL || H5Pget_nfilters(creation) != 0 ||
+      H5Pget_external_count(creation) != 0) {
+    fail("'" + name + "' is compressed or lies outside of the file");
+  }
+  return dataset;
 }
 
 void write_text(hid_t object, const std::string& name, const std::string& text) {

@@ -90,6 +90,9 @@ Handle open_file(const std::filesystem::path& path);
 Handle open_bytes(std::span<const std::byte> bytes);
 
 Handle create_group(hid_t parent, const std::string& name);
+// Of what lies in this file, as it is: not behind a link to another file or in raw data elsewhere,
+// and not compressed, so that what is there says how much is there.
+Handle open_dataset(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);
 bool has_link(hid_t parent, const std::string& name);
 

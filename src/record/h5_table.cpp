@@ -71,9 +71,7 @@ void Table::flush() {
 TableReader::TableReader(hid_t parent, const std::string& name, hid_t in_file, hid_t in_memory,
                          const char* type, const Dims& row)
     : in_memory_(in_memory), row_(row), name_(name) {
-  if (!has_link(parent, name)) fail("has no '" + name + "'");
-  dataset_ =
-      Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "cannot open '" + name + "'");
+  dataset_ = open_dataset(parent, name);
   const Handle found(H5Dget_type(dataset_), H5Tclose, name);
   if (H5Tequal(found, in_file) <= 0) fail("'" + name + "' is not of type " + type);
   const Handle space(H5Dget_space(dataset_), H5Sclose, name);
@@ -90,10 +88,6 @@ TableReader::TableReader(hid_t parent, const std::string& name, hid_t in_file, h
          text(row));
   }
   // Numbers that were never written would be made up: a few bytes could ask for any memory.
-  const Handle creation(H5Dget_create_plist(dataset_), H5Pclose, name);
-  if (H5Pget_nfilters(creation) != 0 || H5Pget_external_count(creation) != 0) {
-    fail("'" + name + "' is compressed or lies outside of the file");
-  }
   hsize_t bytes = H5Tget_size(found);
   const hsize_t present = H5Dget_storage_size(dataset_);
   for (const hsize_t n : dims) {

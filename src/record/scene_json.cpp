@@ -165,11 +165,19 @@ std::string to_json(Struct value) {
   return json.dump(-1, ' ', false, record::Json::error_handler_t::replace);
 }
 
+// What we write is not half as deep; to print what is wrong takes a call per level.
+constexpr int kMostLevels = 64;
+
+bool shallow(int depth, record::Json::parse_event_t, record::Json&) {
+  if (depth <= kMostLevels) return true;
+  throw RecordError("is nested deeper than " + std::to_string(kMostLevels) + " levels");
+}
+
 template <class Struct>
 Struct from_json(std::string_view text) {
   record::Json json;
   try {
-    json = record::Json::parse(text);
+    json = record::Json::parse(text, shallow);
   } catch (const nlohmann::json::exception& error) {
     throw RecordError(std::string("is not JSON: ") + error.what());
   }

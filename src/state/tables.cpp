@@ -39,9 +39,9 @@ template <class Real>
 TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep, int lanes)
     : constants_(plan, {}, 1, lanes) {
   add_options(plan);
-  // Without contacts nothing comes to rest.
-  tables_.has_sleep = sleep && tables_.has_contacts;
   add_bodies(plan);
+  // Without contacts nothing comes to rest, and without bodies nothing is there to.
+  tables_.has_sleep = sleep && tables_.has_contacts && tables_.bodies > 0;
   add_shapes(plan);
   add_pairs(plan);
   for (int lane = 0; lane < lanes; ++lane) constants_.fill(plan, lane);

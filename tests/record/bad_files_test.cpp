@@ -209,6 +209,31 @@ TEST_CASE("a recording of another make is refused", "[fast][record]") {
             H5Dclose(data);
           }),
           "'step' is not all there");
+  // What lies in another file is not looked for.
+  const Folder folder;
+  const std::string other = folder / "other.h5";
+  write_file(other, honest());
+  refused(rebuilt([&](hid_t h5) {
+            H5Ldelete(h5, "step", H5P_DEFAULT);
+            H5Lcreate_external(other.c_str(), "step", h5, "step", H5P_DEFAULT, H5P_DEFAULT);
+          }),
+          "cannot open 'step'");
+  refused(rebuilt([&](hid_t h5) {
+            H5Ldelete(h5, "kinds", H5P_DEFAULT);
+            H5Lcreate_external(other.c_str(), "kinds", h5, "kinds", H5P_DEFAULT, H5P_DEFAULT);
+          }),
+          "cannot open 'kinds'");
+  refused(rebuilt([&](hid_t h5) {
+            H5Ldelete(h5, "kinds/0/scene", H5P_DEFAULT);
+            const hid_t creation = H5Pcreate(H5P_DATASET_CREATE), type = H5Tcopy(H5T_C_S1);
+            H5Tset_size(type, 100);
+            H5Pset_external(creation, other.c_str(), 0, 100);
+            const hid_t space = H5Screate(H5S_SCALAR);
+            const hid_t data =
+                H5Dcreate2(h5, "kinds/0/scene", type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+            H5Dclose(data), H5Sclose(space), H5Tclose(type), H5Pclose(creation);
+          }),
+          "'scene' is compressed or lies outside of the file");
   // Another scene than the one whose plan was recorded.
   Bytes heavier = honest();
   const std::size_t at = find(heavier, bytes_of_text("\"density\":1000.0"));

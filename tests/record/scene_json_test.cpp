@@ -136,6 +136,9 @@ TEST_CASE("JSON that is no scene names every problem and its place", "[fast][rec
   CHECK_THROWS_WITH(scene_from_json("{\"name\": "), Catch::Contains("is not JSON"));
   CHECK_THROWS_WITH(scene_from_json("[]"), Catch::Contains("/: is [], must be an object"));
   CHECK_THROWS_WITH(scene_from_json(""), Catch::Contains("is not JSON"));
+  const std::string deep = std::string(1 << 20, '[') + std::string(1 << 20, ']');
+  CHECK_THROWS_WITH(scene_from_json("{\"name\":" + deep + "}"),
+                    Catch::Contains("is nested deeper than 64 levels"));
   CHECK_THROWS_WITH(plan_options_from_json("{\"broad_phase\":\"tree\",\"keep\":[\"dark\"]}"),
                     Catch::Contains("/broad_phase: is \"tree\"") &&
                         Catch::Contains("/keep/0: is \"dark\", must be orientation"));
