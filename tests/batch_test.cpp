@@ -283,6 +283,22 @@ TEST_CASE("the clock takes whole steps and drops what a stalled host cannot catc
   CHECK(taken == 1000);  // ten seconds, no drift
 }
 
+TEST_CASE("a world without bodies steps with sleep on", "[fast][batch][sleep]") {
+  PlanOptions options;
+  options.keep = {Feature::contacts};
+  for (const Table& table : widest_tables()) {
+    Scene scene = empty_scene(Space::planar);
+    scene.add(ground(Space::planar));
+    BatchOptions three = options_of(table, 3);
+    three.sleep = true;
+    Batch batch(compile(scene, options), three);
+    batch.step(2);
+    CHECK(batch.bodies() == 0);
+    CHECK(batch.status(0) == Status::ok);
+    CHECK(batch.time() > 0);
+  }
+}
+
 TEST_CASE("a batch can be moved", "[fast][batch]") {
   Batch a(compile(crowd(Space::spatial)), {.worlds = 3});
   a.step(3);

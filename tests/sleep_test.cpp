@@ -304,20 +304,6 @@ TEST_CASE("lanes without a world rest, whatever its kinematic bodies do", "[fast
   }
 }
 
-TEST_CASE("a world without bodies steps with sleep on", "[fast][sleep]") {
-  PlanOptions options;
-  options.keep = {Feature::contacts};
-  for (const Table& table : widest_tables()) {
-    Scene scene = empty_scene(Space::planar);
-    scene.add(ground(Space::planar));
-    Batch batch(compile(scene, options), sleeping(table, 3));
-    batch.step(2);
-    CHECK(batch.bodies() == 0);
-    CHECK(batch.status(0) == Status::ok);
-    CHECK(batch.time() > 0);
-  }
-}
-
 TEST_CASE("what is pulled and not held does not sleep", "[fast][sleep]") {
   for (Space space : {Space::planar, Space::spatial}) {
     for (double gravity : {0.0, 0.02}) {
