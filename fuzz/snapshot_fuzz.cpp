@@ -74,9 +74,8 @@ void run(int index, std::vector<std::byte> bytes) {
 
 // The first byte chooses the batch, the rest is the snapshot.
 std::vector<std::byte> snapshot_of(const std::uint8_t* data, std::size_t size) {
-  std::vector<std::byte> bytes(size);
-  std::memcpy(bytes.data(), data, size);
-  return bytes;
+  const auto* first = reinterpret_cast<const std::byte*>(data);
+  return {first, first + size};
 }
 
 }  // namespace

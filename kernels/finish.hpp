@@ -13,6 +13,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 inline constexpr Real kMaxPosition = Real(1e10);  // m
 inline constexpr Real kMaxSpeed = Real(1e5);      // m/s
 inline constexpr Real kMaxSpin = Real(1e6);       // rad/s
+inline constexpr Real kMaxSweep = Real(1e6);      // rad, in a step
 inline constexpr Real kMaxOrientation = Real(1e3);
 inline constexpr Real kMaxFinite = sizeof(Real) == 4 ? Real(3.4028234e38) : Real(1.79769e308);
 
@@ -39,20 +40,21 @@ struct LaneCheck {
 
   // kIdle: some bodies do not take part; what they would do is not committed.
   template <class S, bool kIdle>
-  MW_INLINE void add(const Tables& t, const Group& g, int body, typename S::Vec step,
+  MW_INLINE void add(const Tables& t, const Group& g, int body, const Velocity<S>& moved,
                      const Velocity<S>& v) {
-    const auto x = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.position)) + step;
+    const auto x = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.position)) + moved.v;
     Mask ok = in_range(x, kMaxPosition) & in_range(v.v, kMaxSpeed) & in_range(v.w, kMaxSpin);
     typename S::Orientation q;
     if (t.has_orientation) {  // only a written value can be bad: steps normalise
       q = load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation));
-      ok = ok & in_range(q, kMaxOrientation);
+      // Passes that push out may turn a body far that ends up slow.
+      ok = ok & in_range(q, kMaxOrientation) & in_range(moved.w, kMaxSweep);
     }
     if constexpr (kIdle) ok = ok | mask_from_bits(idle_lanes(g, body) & kAllLanes);
     good = good & ok;
     if (!all(ok)) {
       Mask bounded = is_finite(x) & is_finite(v.v) & is_finite(v.w);
-      if (t.has_orientation) bounded = bounded & is_finite(q);
+      if (t.has_orientation) bounded = bounded & is_finite(q) & is_finite(moved.w);
       if constexpr (kIdle) bounded = bounded | mask_from_bits(idle_lanes(g, body) & kAllLanes);
       finite = finite & bounded;
     }
@@ -220,7 +222,7 @@ template <class S, bool kDense, bool kIdle>
 std::uint32_t judge_bodies(const Tables& t, const Group& g, const Work& w) {
   LaneCheck check;
   for (int b = 0; b < t.bodies; ++b) {
-    check.add<S, kIdle>(t, g, b, get_velocity<S, kDense>(w, w.displacement, b).v,
+    check.add<S, kIdle>(t, g, b, get_velocity<S, kDense>(w, w.displacement, b),
                         get_velocity<S, kDense>(w, w.velocity, b));
   }
   return judge_lanes(g, check);

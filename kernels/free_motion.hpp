@@ -61,7 +61,7 @@ MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int fi
   for (int i = 0; i < kBodies; ++i) {
     const int b = first + i;
     flight[i] = fly<S>(t, g, w, b);
-    outcome.check.add<S, kIdle>(t, g, b, flight[i].moved.v, flight[i].v);
+    outcome.check.add<S, kIdle>(t, g, b, flight[i].moved, flight[i].v);
     Real* p = state_of(t, g, b, kState<S>.position);
     const auto x = load_as<typename S::Vec>(p) + flight[i].moved.v;
     store(p, x);
