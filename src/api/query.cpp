@@ -162,8 +162,8 @@ std::optional<RayHit> ray_cast(const Shape& shape, const Pose& pose, const Ray& 
     no_answer(
         "ray_cast: origin and direction must be finite, the direction not zero, the length > 0");
   }
-  collect_bodies(plan);
-  collect_colliders(plan);
+  choose_polygons(plan);
+  collect_fixed(plan);
   if (const auto* kernels = find_kernels<double>(Isa::scalar))
     return cast(*kernels, plan, in_space);
   return cast(kernels_for<float>(Isa::scalar), plan, in_space);
