@@ -190,6 +190,35 @@ TEST_CASE("a body keeps its place when its sizes shift its centre of mass", "[fa
   }
 }
 
+TEST_CASE("a ray goes with its body wherever sizes put the centre of mass",
+          "[fast][parameters][observe]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    Scene scene = empty_scene(space);
+    scene.add(
+        body_of(shape_of(cube_of(space, 1)), 5 * Vec3::UnitX() + 3 * up_of(space), Motion::fixed));
+    Body two = body_of(shape_of(cube_of(space, 0.25)), 3 * up_of(space));
+    two.shapes.push_back(shape_of(round_of(space, 0.3)));
+    two.shapes[1].position = Vec3(0.5, 0, 0);
+    scene.add(two);
+    Variation size;
+    size.parameter = Parameter::size;
+    size.body = 1, size.shape = 1;
+    size.low.setConstant(0.1), size.high.setConstant(0.9);
+    scene.variations = {size};
+    for (const Table& table : all_tables()) {
+      BatchOptions options = options_of(table, 9);
+      options.observe.rays = {{.origin = Vec3(0.1, 0, 0), .direction = Vec3::UnitX(), .body = 0}};
+      Batch batch(compile(scene), options);
+      batch.look();
+      for (int w = 0; w < 9; ++w) {
+        REQUIRE(batch.ray_hits(w).size() == 1);
+        CHECK(batch.ray_hits(w)[0].distance == Approx(3.9).epsilon(pick(table, 1e-5, 1e-12)));
+        CHECK(batch.ray_hits(w)[0].body == 0);
+      }
+    }
+  }
+}
+
 TEST_CASE("a written number wakes its world", "[fast][parameters][sleep]") {
   Scene scene = empty_scene(Space::spatial);
   scene.add(ground(Space::spatial));
