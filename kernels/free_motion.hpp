@@ -61,7 +61,10 @@ MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int fi
   for (int i = 0; i < kBodies; ++i) {
     const int b = first + i;
     flight[i] = fly<S>(t, g, w, b);
-    outcome.check.add<S, kIdle>(t, g, b, flight[i].moved, flight[i].v);
+    Velocity<S> moved = flight[i].moved;
+    // A tensor turns by its own rule, which has a bound.
+    if constexpr (std::is_same_v<S, Tensor>) moved.w = zero_of<typename S::Ang>();
+    outcome.check.add<S, kIdle>(t, g, b, moved, flight[i].v);
     Real* p = state_of(t, g, b, kState<S>.position);
     const auto x = load_as<typename S::Vec>(p) + flight[i].moved.v;
     store(p, x);
