@@ -1,5 +1,5 @@
 // Checks that validate() is made of: a collector of issues with the place they belong to, and one
-// function per part of a scene. Used only inside src/scene.
+// function per part of a scene. Outside of src/scene only the texts of numbers are of use.
 #pragma once
 
 #include <cstddef>

@@ -4,25 +4,22 @@
 #include <cmath>
 #include <cstring>
 
+#include "src/scene/checks.hpp"
 #include "src/state/worlds.hpp"
 
 namespace manyworlds {
 
 namespace {
 
+using detail::number_text;
+
 // Draws of variations lie beyond those of the initial state.
 constexpr std::uint64_t kFirstDraw = std::uint64_t{1} << 40;
 
 double drawn(const Variation& v, const VariedNumber& n, double uniform) {
-  double x = v.draw == Draw::uniform ? n.low + (n.high - n.low) * uniform
-                                     : n.low * std::pow(n.high / n.low, uniform);
+  const double x = v.draw == Draw::uniform ? n.low + (n.high - n.low) * uniform
+                                           : n.low * std::pow(n.high / n.low, uniform);
   return std::clamp(x, n.low, n.high);
-}
-
-std::string number_text(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", x);
-  return text;
 }
 
 }  // namespace
