@@ -113,11 +113,6 @@ void ObservationsOf<Real>::put_ray(std::size_t k, int world, std::size_t ray, co
   Kind& kind = kinds_[k];
   const PlanData& plan = worlds_[k]->data();
   Vec3 origin = from.origin, way = from.direction;
-  if (from.body >= 0 && !plan.varies.shapes) {
-    const PlanBody& body = plan.bodies[at(from.body)];
-    origin = body.principal.conjugate() * (origin - body.center);
-    way = body.principal.conjugate() * way;
-  }
   if (plan.scene.space == Space::planar) origin.z() = way.z() = 0;
   way.normalize();
   Real* rows = kind.ray_rows.data() + (at(world) * kind.rays.size() + ray) * kernels::kRayRows;
@@ -160,10 +155,11 @@ const kernels::Observation<Real>& ObservationsOf<Real>::ask(std::size_t thread, 
         std::max(0, worlds_[k]->world_in(group * kernels_.lanes + static_cast<int>(l)));
     const Real* from = kind.ray_rows.data() + at(world) * rows;
     for (std::size_t i = 0; i < rows; ++i) block.ray_rows[i * lanes + l] = from[i];
-    // Where a body's centre of mass and principal axes are now, if sizes vary.
-    for (std::size_t i = 0; worlds_[k]->data().varies.shapes && i < kind.rays.size(); ++i) {
+    // From the user's frame to the centre of mass and principal axes that the body now has.
+    for (std::size_t i = 0; i < kind.rays.size(); ++i) {
       if (kind.rays[i].body < 0) continue;
       const PlanBody& body = worlds_[k]->body_of(world, at(kind.rays[i].body));
+      if (body.aligned) continue;
       const Real* ray = from + i * kernels::kRayRows;
       const auto vector = [ray](int c) {
         return Vec3(static_cast<double>(ray[c]), static_cast<double>(ray[c + 1]),

@@ -58,8 +58,8 @@ class ObservationsOf final : public Observations {
   kernels::Scratch* poses(std::size_t thread, std::size_t kind) const;
 
  private:
-  struct Kind {  // [world]...
-    std::vector<Real> motion, penetration, ray_rows, hit_rows;
+  struct Kind {                                                 // [world]...
+    std::vector<Real> motion, penetration, ray_rows, hit_rows;  // rays in the user's frames
     std::vector<std::uint8_t> touching;
     std::vector<std::int32_t> count, hit_shape;
     std::vector<kernels::ContactImpulse<Real>> contacts;
