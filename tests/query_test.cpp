@@ -3,11 +3,13 @@
 // tried separates them more.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "manyworlds/query.hpp"
 #include "tests/support/pair_check.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -43,6 +45,9 @@ Place random_pose(Random& random, Space space) {
 Solid solid_of(const Shape& shape, const Place& pose, Space space) {
   return make_solid(shape, {pose.position, pose.rotation}, space);
 }
+
+// m, what manifolds and rays may round off: a library without float64 kernels has float32 ones.
+double rounding() { return has_table({Isa::scalar, Precision::f64}) ? 1e-12 : 2e-6; }
 
 }  // namespace
 
@@ -145,7 +150,7 @@ TEST_CASE("manifolds of known pairs", "[fast][query]") {
   CHECK(manifold(cube, at(0, 0), cube, at(0, 0, 3), 2.5).size() == 4);
   const auto balls = manifold(shape_of(Sphere{}), at(0, 0), shape_of(Sphere{}), at(0.9, 0));
   REQUIRE(balls.size() == 1);
-  CHECK((balls[0].point - Vec3(0.45, 0, 0)).norm() < 1e-12);
+  CHECK((balls[0].point - Vec3(0.45, 0, 0)).norm() < rounding());
   const auto squares = manifold(shape_of(Polygon::box(0.5, 0.5)), at(0, 0),
                                 shape_of(Polygon::box(0.5, 0.5)), at(0.2, 0.99));
   REQUIRE(squares.size() == 2);
@@ -177,7 +182,7 @@ TEST_CASE("manifolds go with distances and turn with their order", "[fast][query
               ->separation;
         };
         // Box-box prefers faces a little to the least overlap.
-        CHECK(deepest(points) < s.distance + 1e-9);
+        CHECK(deepest(points) < s.distance + std::max(1e-9, rounding()));
         CHECK(deepest(points) > s.distance - 0.01 - 0.1 * std::abs(s.distance));
         CHECK(deepest(turned) == Approx(deepest(points)).margin(1e-3));
         CHECK(points[0].normal.norm() == Approx(1));
@@ -206,7 +211,7 @@ TEST_CASE("a ray against a single shape", "[fast][query]") {
   const auto ground = ray_cast(shape_of(Terrain{{{-1, -1}, {0, -1}, {4, 3}}}), at(0, 0), ray);
   REQUIRE(ground);
   CHECK(ground->distance == Approx(4));
-  CHECK((ground->normal - Vec3(-1, 1, 0).normalized()).norm() < 1e-12);
+  CHECK((ground->normal - Vec3(-1, 1, 0).normalized()).norm() < rounding());
 }
 
 }  // namespace manyworlds::test

@@ -1,5 +1,6 @@
 // Queries on single shapes, outside of any Batch: do two shapes overlap, how far are they apart,
-// where would they touch, where does a ray hit. In double precision.
+// where would they touch, where does a ray hit. In double precision (manifolds and rays in float32
+// when the library was built without float64 kernels).
 //
 // `pose` places the body that the shape belongs to; Shape::position and rotation count as well, its
 // material, filter and density do not. A shape that is neither of space nor of the plane alone (a
