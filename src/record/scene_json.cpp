@@ -15,8 +15,9 @@ struct Words<Motion> {
 };
 template <>
 struct Words<BroadPhase> {
-  static constexpr const char* list[] = {"automatic", "all-pairs", "sort-and-sweep"};
+  static constexpr const char* list[] = {"automatic", "all-pairs", "sort-and-sweep", "sparse"};
 };
+static_assert(std::size(Words<BroadPhase>::list) == static_cast<int>(BroadPhase::sparse) + 1);
 template <>
 struct Words<Feature> {
   static constexpr const char* list[] = {"orientation", "inertia", "friction", "restitution",
