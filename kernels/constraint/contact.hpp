@@ -10,7 +10,7 @@
 // arm_i).
 #pragma once
 
-#include "kernels/constraint/slot.hpp"
+#include "kernels/constraint/velocities.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -18,43 +18,8 @@ inline constexpr Real kUnlimited = Real(1e30);  // N s
 
 enum class Pass { warm_start, bias, relax };
 
-// The two bodies of a slot, loaded once and stored once.
 template <class S, int N, bool kPair, bool kDense>
-struct SlotVelocities {
-  Velocity<S> a, b;
-
-  MW_INLINE SlotVelocities(const Work& w, const Slot<S, N>& s) {
-    constexpr int kBlock = (S::kDim + S::kAng) * kLanes;
-    if constexpr (kDense) {
-      b = load_velocity_dense<S>(w.velocity + s.body_b * kBlock);
-      if constexpr (kPair) a = load_velocity_dense<S>(w.velocity + s.body_a * kBlock);
-    } else {
-      b = load_velocity_row(S{}, w.velocity, s.offset_b);
-      if constexpr (kPair) a = load_velocity_row(S{}, w.velocity, s.offset_a);
-    }
-  }
-  // In the dense layout a lane without this contact keeps its bits; in rows it moves the dummy.
-  MW_INLINE void store(Work& w, const Slot<S, N>& s) const {
-    constexpr int kBlock = (S::kDim + S::kAng) * kLanes;
-    if constexpr (kDense) {
-      Real* to_b = w.velocity + s.body_b * kBlock;
-      Real* to_a = w.velocity + s.body_a * kBlock;
-      if (s.mask == kAllLanes) {
-        store_velocity_dense(to_b, b);
-        if constexpr (kPair) store_velocity_dense(to_a, a);
-      } else {
-        const Mask active = mask_from_bits(s.mask);
-        store_velocity_dense(to_b, select(active, b, load_velocity_dense<S>(to_b)));
-        if constexpr (kPair) {
-          store_velocity_dense(to_a, select(active, a, load_velocity_dense<S>(to_a)));
-        }
-      }
-    } else {
-      store_velocity_row(S{}, w.velocity, s.offset_b, b);
-      if constexpr (kPair) store_velocity_row(S{}, w.velocity, s.offset_a, a);
-    }
-  }
-};
+using SlotVelocities = TwoVelocities<S, kPair, kDense>;
 
 // Applies normal impulses d[i] at all points.
 template <class S, int N, bool kPair, bool kDense>
@@ -98,15 +63,7 @@ MW_INLINE void normal_speeds(const Slot<S, N>& s, const SlotVelocities<S, N, kPa
 template <class S, int N, bool kPair, bool kDense>
 MW_INLINE void moved_apart(const Work& w, const Slot<S, N>& s, Float* gaps) {
   using Ang = typename S::Ang;
-  constexpr int kBlock = (S::kDim + S::kAng) * kLanes;
-  Velocity<S> a, b;
-  if constexpr (kDense) {
-    b = load_velocity_dense<S>(w.displacement + s.body_b * kBlock);
-    if constexpr (kPair) a = load_velocity_dense<S>(w.displacement + s.body_a * kBlock);
-  } else {
-    b = load_velocity_row(S{}, w.displacement, s.offset_b);
-    if constexpr (kPair) a = load_velocity_row(S{}, w.displacement, s.offset_a);
-  }
+  const auto [a, b] = load_two<S, kPair, kDense>(w.displacement, s);
   const auto n = load_as<typename S::Vec>(s.normal[0]);
   Float along = dot(n, b.v);
   if constexpr (kPair) along = dot(n, b.v - a.v);

@@ -9,7 +9,7 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Which bodies the lanes of a slot are about.
-struct SlotBodies {
+struct LaneBodies {
   alignas(64) std::int32_t a[kLanes], b[kLanes];  // bodies; the dummy in inactive lanes
   alignas(64) std::int32_t offset_a[kLanes], offset_b[kLanes];  // into body_rows
 };
@@ -100,7 +100,7 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
   SlotList& slots = w.slots[static_cast<int>(list)];
   auto& s = slot_at<S, N>(slots, slots.count);
 
-  SlotBodies who;
+  LaneBodies who;
   for (int l = 0; l < kLanes; ++l) {
     who.b[l] = t.collider_body[(code[l] >> 16) & 0xffff];
     who.a[l] = kPair ? t.collider_body[code[l] & 0xffff] : t.bodies;

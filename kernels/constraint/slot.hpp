@@ -13,11 +13,14 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-struct alignas(64) SlotHeader {
+// Whose velocities rows act on.
+struct alignas(64) SlotBodies {
   std::int32_t offset_a[kLanes], offset_b[kLanes];  // velocity rows; dummy in inactive lanes
+  std::uint32_t mask;                               // active lanes
+  std::int32_t body_a, body_b;                      // dense layout: the bodies of every lane
+};
+struct alignas(64) SlotHeader : SlotBodies {
   std::int32_t key[kLanes];
-  std::uint32_t mask;           // active lanes
-  std::int32_t body_a, body_b;  // dense layout: the bodies of every lane
 };
 
 template <class S, int N>
