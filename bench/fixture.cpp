@@ -58,7 +58,10 @@ void StageRunner::run(Stage stage, const Group& group) {
         solver.collide[static_cast<int>(tables_.pair_class[c].kind)](tables_, group, scratch_);
       }
       return;
-    case Stage::warm_start: return solver.warm_start(tables_, group, scratch_);
+    case Stage::warm_start:
+      solver.push(tables_, group, scratch_);
+      solver.warm_start(tables_, group, scratch_);
+      return solver.open(tables_, group, scratch_);
     case Stage::bias: return solver.bias(tables_, group, scratch_);
     case Stage::advance: return solver.advance(tables_, group, scratch_);
     case Stage::relax: return solver.relax(tables_, group, scratch_);

@@ -202,6 +202,9 @@ Options SceneBytes::options() {
   flip(o.friction_in_bias_pass);
   flip(o.cast_against_fixed);
   flip(o.cast_between_moving);
+  if (byte() > 200) o.joint_frequency = number(0, 300);
+  sometimes(o.joint_damping_ratio, 0, 5);
+  sometimes(o.joint_pull_speed, 0, 20);
   sometimes(o.sleep_speed, 0, 1);
   sometimes(o.time_to_sleep, 0.01, 1);
   if (byte() > 200) o.contact_capacity = rarely() ? integer(-1, 70000) : integer(1, 20);
@@ -210,6 +213,68 @@ Options SceneBytes::options() {
     o.bounds = Eigen::AlignedBox3d(low, low + (rarely() ? size : size.cwiseAbs().eval()));
   }
   return o;
+}
+
+Spring SceneBytes::spring() {
+  Spring out;
+  if (byte() > 128) {
+    out.frequency = number(0.1, 60), out.damping_ratio = number(0, 3);
+  } else {
+    out.stiffness = number(1, 1e4), out.damping = number(0, 100);
+  }
+  return out;
+}
+std::optional<Limit> SceneBytes::limit() {
+  if (byte() > 128) return std::nullopt;
+  Limit out{number(-1, 0), number(0, 1), std::nullopt};
+  if (rarely()) out.spring = spring();
+  return out;
+}
+std::optional<Drive> SceneBytes::drive() {
+  if (byte() > 128) return std::nullopt;
+  Drive out;
+  out.target_position = number(-1, 1), out.target_speed = number(-5, 5);
+  if (byte() > 128) out.spring = spring();
+  if (byte() > 128) out.max_force = number(0, 1000);
+  return out;
+}
+
+JointType SceneBytes::joint_type() {
+  switch (integer(0, 7)) {
+    case 0: {
+      if (planar_ && !rarely()) return HingeJoint{};
+      BallJoint ball;
+      if (byte() > 128) ball.cone = number(0, 3);
+      ball.twist = limit();
+      return ball;
+    }
+    case 1: return HingeJoint{limit(), drive()};
+    case 2: return SliderJoint{limit(), drive()};
+    case 3: return FixedJoint{};
+    case 4: {
+      DistanceJoint distance{std::nullopt, limit(), std::nullopt};
+      if (byte() > 128) distance.length = number(0, 3);
+      if (byte() > 128) distance.spring = spring();
+      return distance;
+    }
+    case 5: return WheelJoint{spring(), limit(), drive()};
+    case 6: {
+      const Vec3 a = planar_vector(3);
+      return PulleyJoint{a, planar_vector(3), number(0.1, 3), std::nullopt};
+    }
+    default: return TargetJoint{spring(), number(0, 1e4)};
+  }
+}
+
+Joint SceneBytes::joint(int bodies) {
+  Joint out;
+  out.type = joint_type();
+  out.body_a = integer(-1, bodies - (rarely() ? 0 : 1));
+  out.body_b = integer(0, bodies - (rarely() ? 0 : 1));
+  out.frame_a.position = planar_vector(1), out.frame_b.position = planar_vector(1);
+  out.frame_a.rotation = rotation(), out.frame_b.rotation = rotation();
+  out.collide = byte() > 200;
+  return out;
 }
 
 Variation SceneBytes::variation(int bodies) {
@@ -242,6 +307,9 @@ Scene SceneBytes::scene() {
   const int most = rarely() ? 60 : 8;
   for (int i = 0; i < most && !done(); ++i) out.add(body(i));
   if (rarely()) out.name = name();
+  for (int n = byte() > 128 ? integer(1, 6) : 0; n > 0 && !out.bodies.empty(); --n) {
+    out.add(joint(static_cast<int>(out.bodies.size())));
+  }
   for (int n = byte() > 128 ? integer(1, 4) : 0; n > 0 && !out.bodies.empty(); --n) {
     out.variations.push_back(variation(static_cast<int>(out.bodies.size()) - (rarely() ? 0 : 1)));
   }
@@ -250,7 +318,7 @@ Scene SceneBytes::scene() {
 
 PlanOptions SceneBytes::plan_options() {
   PlanOptions out;
-  out.broad_phase = static_cast<BroadPhase>(integer(0, 2));
+  out.broad_phase = static_cast<BroadPhase>(integer(0, 3));
   for (int f = 0; f < kFeatureCount; ++f) {
     if (byte() > 200) out.keep.push_back(static_cast<Feature>(f));
   }

@@ -41,6 +41,11 @@ class SceneBytes {
   MassProperties mass_properties();
   Body body(int index);
   Options options();
+  Spring spring();
+  std::optional<Limit> limit();
+  std::optional<Drive> drive();
+  JointType joint_type();
+  Joint joint(int bodies);
   Variation variation(int bodies);
 
   FuzzedDataProvider bytes_;

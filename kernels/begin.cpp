@@ -2,6 +2,7 @@
 // speculative margin, and inverse inertias in world axes.
 #include "kernels/activity.hpp"
 #include "kernels/constants.hpp"
+#include "kernels/sleep.hpp"
 #include "kernels/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -179,7 +180,7 @@ void turn_body_rows(const Tables& t, const Group& g, Work& w) {
 
 void begin(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
-  for (int i = 0; i < t.colliders; ++i) {
+  for (int i = 0; w.pose_rows && i < t.colliders; ++i) {
     if (t.dimension == kernels::Dimension::spatial) {
       spatial_collider(t, g, w, i);
     } else {
@@ -194,6 +195,7 @@ void begin(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   }
   w.overflow = w.partly_asleep = 0;
   w.untouched = w.frozen = frozen_lanes(g);
+  if (t.has_sleep && t.has_joints && has_idle_bodies(g)) wake_joined(t, g, w);
   w.counters = {};
 }
 

@@ -124,6 +124,10 @@ void enter_velocities(const Tables& t, const Group& g, Work& w) {
   w.factor = t.drag_varies ? w.factor_storage : nullptr;
   if constexpr (kDense) {
     for (int i = 0; i < t.bodies * kVelocityBlock<S>; i += kLanes) zero.store(w.displacement + i);
+    for (int i = 0; t.has_joints && i < kVelocityBlock<S>; i += kLanes) {
+      const int at = world_body(t) * kVelocityBlock<S> + i;
+      zero.store(w.velocity + at), zero.store(w.displacement + at);
+    }
   } else {
     const int block = w.rows_per_lane * S::kRow;
     for (int i = 0; i < kLanes * block; i += kLanes) zero.store(w.displacement + i);
@@ -179,6 +183,23 @@ void begin_substeps(const Tables& t, Work& w) {
   for_each_register<S, kDense>(t, w, [&](int at, Float, Float) {
     const Float v = Float::load(w.velocity + at);
     (v - Float::load(w.impulse_part + at)).store(w.impulse_part + at);
+    v.store(w.warmed + at);
+  });
+}
+
+// Joints warm start by themselves, since their Jacobians change from substep to substep: what they
+// have done before is left out of impulse_part.
+template <class S, bool kDense>
+void mark_velocities(const Tables& t, Work& w) {
+  for_each_register<S, kDense>(
+      t, w, [&](int at, Float, Float) { Float::load(w.velocity + at).store(w.warmed + at); });
+}
+template <class S, bool kDense>
+void gather_impulses(const Tables& t, Work& w) {
+  for_each_register<S, kDense>(t, w, [&](int at, Float, Float) {
+    const Float v = Float::load(w.velocity + at);
+    (Float::load(w.impulse_part + at) + (v - Float::load(w.warmed + at)))
+        .store(w.impulse_part + at);
     v.store(w.warmed + at);
   });
 }

@@ -70,18 +70,29 @@ static inline constexpr bool filters_agree(std::uint32_t category_a, std::uint32
   return (category_a & mask_b) != 0 && (category_b & mask_a) != 0;
 }
 
+// Does a joint keep the shapes of this body and that one from colliding?
+template <class Real>
+static inline bool joined(const WorldTables<Real>& t, std::int32_t body, std::int32_t other) {
+  if (!t.joined) return false;
+  for (std::int32_t i = t.first_joined[body]; i < t.first_joined[body + 1]; ++i) {
+    if (t.joined[i] == other) return true;
+  }
+  return false;
+}
+
 // Can these shapes ever touch? What a plan with tables culls when it is made.
 template <class Real>
 static inline bool may_touch(const WorldTables<Real>& t, std::int32_t i, std::int32_t j) {
   const auto &a = t.collider[i], &b = t.collider[j];
   return a.body != b.body && filters_agree(a.category, a.mask, b.category, b.mask) &&
-         !(t.body[a.body].kinematic && t.body[b.body].kinematic);
+         !(t.body[a.body].kinematic && t.body[b.body].kinematic) && !joined(t, a.body, b.body);
 }
 template <class Real>
 static inline bool may_touch_fixed(const WorldTables<Real>& t, std::int32_t fixed, std::int32_t j) {
   const auto& a = t.fixed[fixed];
   const auto& b = t.collider[j];
-  return filters_agree(a.category, a.mask, b.category, b.mask) && !t.body[b.body].kinematic;
+  return filters_agree(a.category, a.mask, b.category, b.mask) && !t.body[b.body].kinematic &&
+         !joined(t, b.body, a.body);
 }
 
 // Which class a key belongs to; keys outside of all give t.classes.

@@ -36,6 +36,13 @@ bool wake_once(const Tables& t, const Group& g, Work& w, std::uint32_t mixed) {
   return woke;
 }
 
+// Lanes in which a part holds two moving bodies together.
+std::uint32_t joined_lanes(const Tables& t, const Group& g, const kernels::JointPart& part) {
+  if (part.body_a == t.bodies) return 0;
+  const std::uint32_t off = g.joint_off ? g.joint_off[part.joint] : 0;
+  return kAllLanes & ~(off | g.absent[part.body_a] | g.absent[part.body_b]);
+}
+
 // Does the stored manifold of this key stay as it is, because nobody in it is awake?
 bool pair_sleeps(const Tables& t, const Group& g, ListId list, std::int32_t key, int lane) {
   const kernels::PairOfKey pair = kernels::pair_of_key(t, key);
@@ -127,6 +134,14 @@ void find_islands(const Tables& t, const Group& g, Work& w, int lane) {
       w.parent[root_a < root_b ? root_b : root_a] = root_a < root_b ? root_a : root_b;
     }
   }
+  for (int i = 0; i < t.parts; ++i) {
+    const kernels::JointPart& part = t.part[i];
+    const int a = part.body_a, b = part.body_b;
+    const std::uint32_t awake = joined_lanes(t, g, part) & ~(a < t.bodies ? g.asleep[a] : 0);
+    if (!(((awake & ~g.asleep[b]) >> lane) & 1u)) continue;
+    const int root_a = root_of(w.parent, a), root_b = root_of(w.parent, b);
+    w.parent[root_a < root_b ? root_b : root_a] = root_a < root_b ? root_a : root_b;
+  }
 }
 
 // Puts to sleep the islands of a lane whose bodies are all ready.
@@ -190,6 +205,24 @@ void wake_touched(const Tables& t, const Group& g, Work& w) {
   if (mixed == 0) return;
   // Who is woken may lie close to another island.
   while (wake_once(t, g, w, mixed)) {
+  }
+}
+
+void wake_joined(const Tables& t, const Group& g, const Work& w) {
+  for (bool woke = true; woke;) {
+    woke = false;
+    for (int i = 0; i < t.parts; ++i) {
+      const kernels::JointPart& part = t.part[i];
+      std::uint32_t lanes = joined_lanes(t, g, part) & ~w.frozen;
+      if (lanes != 0) lanes &= g.asleep[part.body_a] ^ g.asleep[part.body_b];
+      for (; lanes != 0; lanes &= lanes - 1) {
+        const int l = __builtin_ctz(lanes);
+        const int sleeper = ((g.asleep[part.body_a] >> l) & 1u) ? part.body_a : part.body_b;
+        if (t.body[sleeper].kinematic) continue;
+        wake_island(t, g, sleeper, l);
+        woke = true;
+      }
+    }
   }
 }
 

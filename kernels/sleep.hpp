@@ -22,6 +22,9 @@ void wake_island(const Tables& t, const Group& g, int body, int lane);
 // Wakes the islands that an awake body has come close to.
 void wake_touched(const Tables& t, const Group& g, Work& w);
 
+// Wakes the islands that a joint holds to an awake body.
+void wake_joined(const Tables& t, const Group& g, const Work& w);
+
 // Takes the stored impulses of sleeping pairs out of the caches of lanes that are partly asleep,
 // to be merged with the new ones when the step stores those.
 void keep_sleeping_contacts(const Tables& t, const Group& g, Work& w);

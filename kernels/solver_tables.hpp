@@ -11,6 +11,12 @@ FillSolver fill_solver_planar_dense, fill_solver_planar_rows;
 FillSolver fill_solver_isotropic_dense, fill_solver_isotropic_rows;
 FillSolver fill_solver_tensor_dense, fill_solver_tensor_rows;
 
+using FillJoints = void(kernels::JointSolver<Real>& dense, kernels::JointSolver<Real>& rows);
+FillJoints fill_joints_planar, fill_joints_tensor;
+// Bytes of the rows of a part.
+std::size_t part_bytes(Planar);
+std::size_t part_bytes(Tensor);
+
 using FillCollide = void(kernels::Stage<Real>* collide);
 FillCollide fill_collide_planar_dense, fill_collide_planar_rows;
 FillCollide fill_collide_isotropic_dense, fill_collide_isotropic_rows;

@@ -61,6 +61,10 @@ kernels::KernelTable<Real> make_table() {
   fill_solver_isotropic_rows(isotropic[1][1], isotropic[0][1]);
   fill_solver_tensor_dense(tensor[1][0], tensor[0][0]);
   fill_solver_tensor_rows(tensor[1][1], tensor[0][1]);
+  auto& flat = out.joints[static_cast<int>(InertiaKind::planar)];
+  auto& turning = out.joints[static_cast<int>(InertiaKind::tensor)];
+  fill_joints_planar(flat[0], flat[1]);
+  fill_joints_tensor(turning[0], turning[1]);
   out.free_motion[static_cast<int>(InertiaKind::planar)] = free_motion<Planar>;
   out.free_motion[static_cast<int>(InertiaKind::isotropic)] = free_motion<Isotropic>;
   out.free_motion[static_cast<int>(InertiaKind::tensor)] = free_motion<Tensor>;

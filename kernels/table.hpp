@@ -21,15 +21,31 @@ using Stage = void (*)(const WorldTables<Real>&, const GroupView<Real>&, Scratch
 template <class Real>
 struct SolverTable {
   Stage<Real> enter;       // velocities into the solver's layout
-  Stage<Real> warm_start;  // first push, then the stored impulses
-  Stage<Real> bias;        // soft normal rows
-  Stage<Real> advance;     // displacement of the substep
-  Stage<Real> relax;       // normal rows without bias, then friction
-  Stage<Real> next;        // push and warm start of the next substep
+  Stage<Real> push;        // first push of gravity and inputs
+  Stage<Real> warm_start;  // the stored impulses
+  Stage<Real> open;        // what warm starting has added is known, the first substep begins
+  // Around the passes of contacts, in plans with joints: their impulses alone are carried over to
+  // the next substep as velocities.
+  Stage<Real> mark;
+  Stage<Real> gather;
+  Stage<Real> bias;     // soft normal rows
+  Stage<Real> advance;  // displacement of the substep
+  Stage<Real> relax;    // normal rows without bias, then friction
+  Stage<Real> next;     // push and warm start of the next substep
   Stage<Real> restitute;
   Stage<Real> store;                // impulses into the cache
   Stage<Real> leave;                // commit positions, orientations, velocities
   Stage<Real> collide[kPairKinds];  // narrow phase and rows of one class (Scratch::class_index)
+};
+
+// The passes over joints, for one inertia kind and layout; nothing of contacts in them.
+template <class Real>
+struct JointSolver {
+  Stage<Real> prepare;     // rows at the start of the step; after SolverTable::enter
+  Stage<Real> warm_start;  // the impulses so far, in every substep
+  Stage<Real> bias;
+  Stage<Real> relax;
+  Stage<Real> store;
 };
 
 template <class Real>
@@ -54,7 +70,8 @@ struct KernelTable {
   // Dense or rows for this group: by occupancy, or as wished if the slots fit.
   Layout (*choose_layout)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, Layout);
   SolverTable<Real> solver[kInertiaKinds][2][2];  // [inertia][friction][layout: dense, rows]
-  // Plans without contacts: n whole steps of free motion.
+  JointSolver<Real> joints[kInertiaKinds][2];     // [inertia: planar, tensor][layout: dense, rows]
+  // Plans without contacts and joints: n whole steps of free motion.
   void (*free_motion[kInertiaKinds])(const WorldTables<Real>&, const GroupView<Real>&, Scratch*,
                                      int steps);
 

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "kernels/joint_tables.hpp"
+
 namespace manyworlds::kernels {
 
 // Functions here are static: every kernel library includes this header with flags of its own, and a
@@ -146,6 +148,7 @@ struct ConstantBlocks {
   const Real* shape;     // [collider][ShapeConstants][lane]
   const Real* polygon;   // [collider][PolygonConstants][lane]; nullptr without polygons
   const Real* material;  // [collider, then fixed shape][MaterialOf][lane]
+  const Real* joint;     // [part][JointConstants][lane]
 };
 
 // What is the same in all worlds.
@@ -168,6 +171,7 @@ struct FixedTable {
   Real low[3], high[3];  // bounding box (not for planes)
   Real plane[4];         // normal, offset
   std::uint32_t category, mask;
+  std::int32_t body;  // its place in WorldTables::joined, beyond those of moving bodies
 };
 
 // Candidate pairs of one shape pair kind, all against fixed shapes or all between moving ones. In
@@ -195,9 +199,11 @@ struct WorldTables {
   std::int32_t colliders;
   std::int32_t fixed_shapes;
   std::int32_t classes;
+  std::int32_t parts;  // of joints
   std::int32_t substeps;
   std::int32_t restitution_sweeps;
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
+  bool has_joints;
   bool collider_is_body;  // collider i is the only shape of body i, centred and aligned
   bool friction_in_bias;
   bool uniform_gravity;  // every body has the acceleration of body 0
@@ -218,6 +224,11 @@ struct WorldTables {
   const FixedTable<Real>* fixed;
   const Real* fixed_rows;
   const PairClass<Real>* pair_class;
+  const JointPart* part;
+  // Bodies that a body does not collide with, because of a joint: [first_joined[body] ...);
+  // nullptr: there are none.
+  const std::int32_t* joined;
+  const std::int32_t* first_joined;  // [body + 1]
   // Sort and sweep: key of the candidate pair of colliders (i, j), in either order, or -1.
   const std::int32_t* pair_of;  // [collider][collider]
   // Sparse: class of two kinds of shape, in moving_class twice that, and 1 more where the second is

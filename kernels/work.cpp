@@ -3,6 +3,7 @@
 #include <initializer_list>
 
 #include "kernels/constraint/slot.hpp"
+#include "kernels/solver_tables.hpp"
 #include "kernels/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -97,7 +98,7 @@ void carve(const Tables& t, Work& w, Carver& c) {
   const int dim = t.dimension == kernels::Dimension::spatial ? 3 : 2;
   const int row = kernels::velocity_row_size(t.dimension);
   // A lane's rows fill whole registers, so that they can be swept without regard to bodies.
-  int rows = t.bodies + 1;
+  int rows = t.bodies + (t.has_joints ? 2 : 1);
   while (rows * row % kLanes != 0) ++rows;
   w.rows_per_lane = rows;
   const std::size_t velocities = count(rows * row * lanes);
@@ -105,7 +106,7 @@ void carve(const Tables& t, Work& w, Carver& c) {
   c.take(w.body_rows, count((t.bodies + 1) * body_row * lanes));
   c.take(w.push_storage, velocities);
   if (t.drag_varies) c.take(w.factor_storage, velocities);
-  if (!t.has_contacts) {
+  if (!t.has_contacts && !t.has_joints) {
     c.take(w.before, count(t.bodies * t.state_stride * lanes));
     return;
   }
@@ -114,6 +115,17 @@ void carve(const Tables& t, Work& w, Carver& c) {
   c.take(w.impulse_part, velocities);
   c.take(w.displacement, velocities);
   c.take(w.touched, count(t.bodies + 1));
+  if (t.has_joints) {
+    const std::size_t bytes =
+        t.dimension == kernels::Dimension::planar ? part_bytes(Planar{}) : part_bytes(Tensor{});
+    c.take(w.parts, count(t.parts) * bytes);
+  }
+  if (t.has_sleep || t.has_restitution) c.take(w.parent, count(t.bodies));
+  if (t.has_sleep) {
+    c.take(w.ready, count(t.bodies));
+    c.take(w.restless, count(t.bodies));
+  }
+  if (!t.has_contacts) return;
   if (t.cast_moving) c.take(w.swift, count(t.colliders));
   c.take(w.pose_rows, count(t.row_block * lanes));
   c.take(w.bounds, count(t.colliders * 2 * dim * lanes));
@@ -127,10 +139,7 @@ void carve(const Tables& t, Work& w, Carver& c) {
     c.take(w.marks, count(hits));
     c.take(w.sorted, count(t.colliders * 3 * lanes));
   }
-  if (t.has_sleep || t.has_restitution) c.take(w.parent, count(t.bodies));
   if (t.has_sleep) {
-    c.take(w.ready, count(t.bodies));
-    c.take(w.restless, count(t.bodies));
     for (int l = 0; l < kLists; ++l) {
       const int cached = kernels::cache_row_size(t.dimension, static_cast<ListId>(l));
       c.take(w.kept_keys[l], count(lanes * t.capacity[l]));

@@ -76,6 +76,7 @@ struct Work {
   CandidateList found;       // box pairs: after the separating-axis test
   std::uint32_t* keep;       // [slot], lanes that passed it
   SlotList slots[kLists];
+  unsigned char* parts;                     // rows of joints (kernels/joint/)
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
   std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
   // sleep
@@ -101,7 +102,7 @@ struct Work {
   Real* push;  // what each lane adds to velocities in a substep; nullptr: all the same
   Real* factor_storage;
   Real* factor;       // what drag leaves of them; nullptr: all the same
-  int rows_per_lane;  // bodies + dummy + padding
+  int rows_per_lane;  // bodies + dummy + world + padding
   alignas(64) std::int32_t velocity_base[kLanes];  // offset of a lane's velocity rows
   alignas(64) std::int32_t pose_base[kLanes];
   alignas(64) std::int32_t body_base[kLanes];
@@ -112,6 +113,10 @@ struct Work {
   Recorder recorder_storage;
   kernels::GroupCounters counters;
 };
+
+// Place of the world among velocities, for joints that hold to it. Not the dummy's, to which idle
+// lanes of contacts write.
+MW_INLINE int world_body(const Tables& t) { return t.bodies + 1; }
 
 // Inverse mass and inertia of a body, and its centre of mass (for shapes that are off it):
 //   planar      1/m 1/I x y

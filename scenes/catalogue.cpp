@@ -36,10 +36,12 @@ const std::vector<Entry>& all() {
   static const std::vector<Entry> entries = {
       {"bin2d", "2D: 20 circles and 20 boxes dropped into a bin 10 m wide", true, bin2d},
       {"pyramid2d", "2D: pyramid of 15 boxes", true, pyramid2d},
+      {"chain2d", "2D: chain of 10 hinged links", true, chain2d},
       {"ball2d", "2D: one bouncing ball", true, ball2d},
       {"bin-spheres", "3D: 20 spheres dropped into a 4 x 4 m bin", true, bin_spheres},
       {"bin-boxes", "3D: 20 boxes dropped into a 4 x 4 m bin", true, bin_boxes},
       {"stack10", "3D: stack of 10 unit boxes", true, stack10},
+      {"chain3d", "3D: chain of 10 links on ball joints", true, chain3d},
       {"ball3d", "3D: one bouncing ball", true, ball3d},
       {"free-flight", "3D: 20 tumbling boxes without gravity or contacts", false, free_flight},
       {"billiards", "2D: break of 15 balls on a table seen from above", false, billiards},

@@ -16,6 +16,10 @@ Scene bin_boxes();
 Scene stack10();
 Scene ball3d();
 
+// chains.cpp
+Scene chain2d();
+Scene chain3d();
+
 // one file each
 Scene free_flight();
 Scene billiards();

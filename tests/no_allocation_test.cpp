@@ -143,7 +143,8 @@ TEST_CASE("the counter counts", "[fast][allocation]") {
 }
 
 TEST_CASE("stepping allocates nothing", "[slow][allocation]") {
-  for (const char* scene : {"bin-boxes", "bin2d", "mixed-pile", "ball3d", "free-flight"}) {
+  for (const char* scene :
+       {"bin-boxes", "bin2d", "mixed-pile", "ball3d", "chain2d", "chain3d", "free-flight"}) {
     const scenes::Entry* entry = scenes::find(scene);
     REQUIRE(entry != nullptr);
     check_scene(entry->make());

@@ -62,7 +62,7 @@ TEST_CASE("every scene of the catalogue is valid and named as listed", "[fast][s
     for (const Body& body : scene.bodies) CHECK(bodies.insert(body.name).second);
   }
   CHECK(std::count_if(scenes::all().begin(), scenes::all().end(),
-                      [](const scenes::Entry& entry) { return entry.standard; }) == 7);
+                      [](const scenes::Entry& entry) { return entry.standard; }) == 9);
 }
 
 TEST_CASE("bodies start inside the bounds however they are drawn", "[fast][scene]") {
@@ -107,6 +107,32 @@ TEST_CASE("standard scenes share gravity, density, friction and step", "[fast][s
         CHECK(shape.material.restitution == (ball && body.motion == Motion::dynamic ? 0.9 : 0.0));
         CHECK_FALSE(shape.density.has_value());
       }
+    }
+  }
+}
+
+TEST_CASE("chains have ten links of 1 m, joined at their ends", "[fast][scene][joint]") {
+  for (const char* name : {"chain2d", "chain3d"}) {
+    CAPTURE(name);
+    const Scene scene = make(name);
+    REQUIRE(scene.bodies.size() == 10);
+    REQUIRE(scene.joints.size() == 10);
+    for (int i = 0; i < 10; ++i) {
+      const Body& link = scene.bodies[static_cast<std::size_t>(i)];
+      const Capsule& capsule = std::get<Capsule>(link.shapes[0].geometry);
+      CHECK(capsule.radius == 0.1);
+      CHECK(capsule.half_length == 0.4);
+      const Vec3 along = scene.space == Space::planar ? Vec3::UnitY() : Vec3::UnitZ();
+      CHECK((link.shapes[0].rotation * along).cross(Vec3::UnitX()).norm() < 1e-15);
+      CHECK(link.position == Vec3(i + 0.5, 0, 0));
+      CHECK(link.jitter.linear_velocity ==
+            (scene.space == Space::planar ? Vec3(0, 0.1, 0) : Vec3(0.1, 0.1, 0.1)));
+      CHECK(link.shapes[0].filter.mask == 0);
+      const Joint& joint = scene.joints[static_cast<std::size_t>(i)];
+      CHECK(joint.body_a == i - 1);
+      CHECK(joint.body_b == i);
+      CHECK(joint.frame_a.position == Vec3(i == 0 ? 0 : 0.5, 0, 0));
+      CHECK(joint.frame_b.position == Vec3(-0.5, 0, 0));
     }
   }
 }

@@ -34,8 +34,9 @@ enum class Feature {
   contacts,     // everything about contacts (left out when no pair can ever touch)
   drag,         // drag factors
   gravity,      // gravity and its drift term
+  joints,       // joints
 };
-inline constexpr int kFeatureCount = 7;
+inline constexpr int kFeatureCount = 8;
 const char* to_string(Feature feature);
 
 // How pairs of shapes that come close are found; all ways find the same in the same order. The

@@ -10,11 +10,13 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "manyworlds/joint.hpp"
 #include "manyworlds/variation.hpp"
 
 namespace manyworlds {
@@ -158,6 +160,14 @@ struct Options {
   bool cast_against_fixed = true;     // stop fast bodies at thin fixed shapes
   bool cast_between_moving = false;   // and at moving ones; for bullets
 
+  // What joints hold together is pulled back as by a spring and damper of this frequency and
+  // damping ratio. Not capped: stiffer than the default may ring.
+  std::optional<double> joint_frequency;  // Hz; default a quarter per substep
+  double joint_damping_ratio = 2;
+  // m/s per length_unit, and rad/s: cap on the speed at which a joint closes what has come apart.
+  // For scenes whose joints begin far apart; under heavy loads a low one lets chains stretch.
+  double joint_pull_speed = std::numeric_limits<double>::infinity();
+
   // A body is at rest while |v| + |w| radius of its bounding sphere stays below sleep_speed; an
   // island all of whose bodies have been at rest for time_to_sleep falls asleep
   // (BatchOptions::sleep).
@@ -177,6 +187,7 @@ struct Scene {
   std::string name;
   Space space = Space::spatial;
   std::vector<Body> bodies;
+  std::vector<Joint> joints;
   Options options;
   std::vector<Variation> variations;
 
@@ -184,6 +195,10 @@ struct Scene {
   int add(Body body) {
     bodies.push_back(std::move(body));
     return static_cast<int>(bodies.size()) - 1;
+  }
+  int add(Joint joint) {
+    joints.push_back(std::move(joint));
+    return static_cast<int>(joints.size()) - 1;
   }
 };
 
@@ -199,6 +214,10 @@ std::string to_string(const Issue& issue);
 
 // Every issue at once, in the order of the scene; empty means that compile() will succeed.
 std::vector<Issue> validate(const Scene& scene);
+
+// A joint of two bodies (-1: the world) with both frames where `frame` is in the world as the
+// bodies begin.
+Joint joint_at(const Scene& scene, int body_a, int body_b, const Frame& frame, JointType type);
 
 // Mass properties of a body: what the user gave, or the sum over its shapes by closed forms and
 // the parallel-axis theorem. Precondition: the body passes validate().

@@ -40,11 +40,18 @@ struct Passes {
   }
 
   // Velocities after the first push are the base of warm starting.
-  static void warm_start(const Tables& t, const Group& g, kernels::Scratch* scratch) {
-    Work& w = work_of(scratch);
-    first_push<S, kDense>(t, g, w);
-    solve<Pass::warm_start>(t, g, scratch);
-    begin_substeps<S, kDense>(t, w);
+  static void push(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    first_push<S, kDense>(t, g, work_of(scratch));
+  }
+  static void open(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    begin_substeps<S, kDense>(t, work_of(scratch));
+  }
+
+  static void mark(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    mark_velocities<S, kDense>(t, work_of(scratch));
+  }
+  static void gather(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    gather_impulses<S, kDense>(t, work_of(scratch));
   }
 
   static void restitute(const Tables& t, const Group& g, kernels::Scratch* scratch) {
@@ -138,7 +145,11 @@ struct Passes {
   static kernels::SolverTable<Real> table() {
     kernels::SolverTable<Real> out{};
     out.enter = enter;
-    out.warm_start = warm_start;
+    out.push = push;
+    out.warm_start = solve<Pass::warm_start>;
+    out.open = open;
+    out.mark = mark;
+    out.gather = gather;
     out.bias = solve<Pass::bias>;
     out.advance = advance;
     out.relax = solve<Pass::relax>;

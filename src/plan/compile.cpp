@@ -15,6 +15,7 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
   collect_colliders(*plan);
   collect_fixed(*plan);
   lay_out_shapes(*plan);
+  collect_joints(*plan);
   collect_pairs(*plan);
   choose_features(*plan);
   return Plan(std::move(plan));

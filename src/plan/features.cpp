@@ -65,11 +65,15 @@ void choose_features(PlanData& plan) {
   for (const PlanBody& b : plan.bodies) {
     isotropic = isotropic && is_isotropic(b) && (round || !b.reshaped);
   }
+  const bool joints = !scene.joints.empty();
   // A body without shapes has an orientation that somebody may want to look at.
   round = round && plan.colliders.size() >= plan.bodies.size();
-  choose.set(Feature::orientation, !(round && isotropic), "shapes or inertia depend on it",
+  choose.set(Feature::orientation, !(round && isotropic) || joints,
+             joints ? "joints turn with it" : "shapes or inertia depend on it",
              "every moving body is a centred ball");
-  choose.set(Feature::inertia, !planar && !isotropic, "some moments of inertia differ",
+  // Joints are solved with full tensors only: few jointed bodies are isotropic.
+  choose.set(Feature::inertia, !planar && (!isotropic || joints),
+             isotropic ? "joints are solved with it" : "some moments of inertia differ",
              planar ? "the plane has one moment per body" : "every moment of inertia is isotropic");
   // A kept tensor needs the orientation that turns it.
   if (plan.has(Feature::inertia) && !plan.has(Feature::orientation)) {
@@ -80,6 +84,7 @@ void choose_features(PlanData& plan) {
                       : tensor ? kernels::InertiaKind::tensor
                                : kernels::InertiaKind::isotropic;
 
+  choose.set(Feature::joints, joints, "bodies are joined", "no joints");
   const bool contacts = any_pair(plan, most, [](const auto&, const auto&) { return true; });
   choose.set(Feature::contacts, contacts, "some shapes can touch", "no pair of shapes can touch");
   choose.set(

@@ -64,7 +64,29 @@ class Printer {
     add(o.contact_frequency), add(o.contact_damping_ratio), add(o.push_out_speed), add(o.slop);
     add(o.restitution_threshold), add(o.restitution_sweeps), add(o.friction_in_bias_pass);
     add(o.cast_against_fixed), add(o.cast_between_moving);
+    add(o.joint_frequency), add(o.joint_damping_ratio), add(o.joint_pull_speed);
     add(o.sleep_speed), add(o.time_to_sleep), add(o.contact_capacity), add(o.bounds);
+  }
+  void add(const Frame& f) { add(f.position), add(f.rotation); }
+  void add(const Spring& s) {
+    add(s.stiffness), add(s.damping), add(s.frequency), add(s.damping_ratio);
+  }
+  void add(const Limit& l) { add(l.low), add(l.high), add(l.spring); }
+  void add(const Drive& d) {
+    add(d.target_position), add(d.target_speed), add(d.spring), add(d.max_force);
+  }
+  void add(const BallJoint& j) { add(j.cone), add(j.twist); }
+  void add(const HingeJoint& j) { add(j.limit), add(j.drive); }
+  void add(const SliderJoint& j) { add(j.limit), add(j.drive); }
+  void add(const FixedJoint&) {}
+  void add(const DistanceJoint& j) { add(j.length), add(j.limit), add(j.spring); }
+  void add(const WheelJoint& j) { add(j.suspension), add(j.travel), add(j.drive); }
+  void add(const PulleyJoint& j) { add(j.ground_a), add(j.ground_b), add(j.ratio), add(j.length); }
+  void add(const TargetJoint& j) { add(j.spring), add(j.max_force); }
+  void add(const Joint& j) {
+    add(static_cast<int>(j.type.index()));
+    std::visit([this](const auto& type) { add(type); }, j.type);
+    add(j.body_a), add(j.body_b), add(j.frame_a), add(j.frame_b), add(j.collide);
   }
   // How a number is drawn does not matter to a world that has it.
   void add(const VariedNumber& n) {
@@ -82,6 +104,7 @@ std::uint64_t fingerprint(const PlanData& plan) {
   Printer printer;
   printer.add(plan.scene.space);
   printer.add(plan.scene.bodies);
+  printer.add(plan.scene.joints);
   printer.add(plan.scene.options);
   printer.add(plan.varied);
   for (const bool in : plan.in) printer.add(in);

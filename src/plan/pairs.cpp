@@ -102,24 +102,26 @@ bool filters_agree(const Filter& a, const Filter& b) {
 
 class Collector {
  public:
-  explicit Collector(PlanData& plan) : plan_(plan) {}
+  explicit Collector(PlanData& plan) : plan_(plan), joined_(joined_bodies(plan.scene)) {}
 
   void moving(int i, int j) {
     const PlanCollider& a = plan_.colliders[static_cast<std::size_t>(i)];
     const PlanCollider& b = plan_.colliders[static_cast<std::size_t>(j)];
     if (a.body == b.body) return;
     const Match m = match(a.kind, b.kind);
-    const bool dynamic = plan_.bodies[static_cast<std::size_t>(a.body)].inv_mass > 0 ||
-                         plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0;
-    m.swapped ? add(m.kind, false, j, i, shape(b), shape(a), dynamic)
-              : add(m.kind, false, i, j, shape(a), shape(b), dynamic);
+    const bool apart = !joined_.count(std::minmax(a.scene_body, b.scene_body));
+    const bool may_touch = apart && (plan_.bodies[static_cast<std::size_t>(a.body)].inv_mass > 0 ||
+                                     plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0);
+    m.swapped ? add(m.kind, false, j, i, shape(b), shape(a), may_touch)
+              : add(m.kind, false, i, j, shape(a), shape(b), may_touch);
   }
   void fixed(int f, int j) {
     const PlanFixed& a = plan_.fixed[static_cast<std::size_t>(f)];
     const PlanCollider& b = plan_.colliders[static_cast<std::size_t>(j)];
     const Match m = match(a.kind, b.kind);
     add(m.swapped ? reversed(m.kind) : m.kind, true, f, j, shape(a), shape(b),
-        plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0);
+        !joined_.count(std::minmax(a.scene_body, b.scene_body)) &&
+            plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0);
   }
 
   void finish() {
@@ -143,12 +145,12 @@ class Collector {
         .shapes[static_cast<std::size_t>(f.shape)];
   }
   void add(PairKind kind, bool fixed, int a, int b, const Shape& shape_a, const Shape& shape_b,
-           bool dynamic) {
+           bool may_touch) {
     const ListId list = list_of(kind, fixed);
     PlanClass& c = classes_[{static_cast<int>(list), static_cast<int>(kind)}];
     c.kind = kind;
     c.list = list;
-    if (!dynamic || !filters_agree(shape_a.filter, shape_b.filter)) {
+    if (!may_touch || !filters_agree(shape_a.filter, shape_b.filter)) {
       ++c.culled;
       return;
     }
@@ -157,6 +159,7 @@ class Collector {
   }
 
   PlanData& plan_;
+  std::set<std::pair<int, int>> joined_;
   std::map<std::pair<int, int>, PlanClass> classes_;
 };
 

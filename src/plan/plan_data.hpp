@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "kernels/tables.hpp"
@@ -53,6 +55,12 @@ struct PlanFixed {
   int row_offset = 0;
 };
 
+// Part of a joint, and its numbers.
+struct PlanPart {
+  kernels::JointPart what{};
+  kernels::JointConstants<double> numbers{};
+};
+
 struct PlanClass {
   kernels::PairKind kind{};
   kernels::ListId list{};
@@ -87,6 +95,7 @@ struct PlanData {
   std::vector<PlanCollider> colliders;
   std::vector<PlanFixed> fixed;
   std::vector<PlanClass> classes;
+  std::vector<PlanPart> parts;  // of joints, in their order
   std::array<int, kernels::kLists> capacity{};
   bool sweep = false;
   bool rectangles = true;  // every polygon is one, and stays one
@@ -102,6 +111,9 @@ struct PlanData {
   }
 };
 
+// Scene bodies, the lower one first, that joints keep from colliding (joints.cpp).
+std::set<std::pair<int, int>> joined_bodies(const Scene& scene);
+
 std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // terrain.cpp
 
 // The steps of compile(), in order.
@@ -110,6 +122,7 @@ void collect_bodies(PlanData& plan);        // bodies.cpp
 void choose_polygons(PlanData& plan);       // colliders.cpp
 void collect_colliders(PlanData& plan);     // colliders.cpp
 void collect_fixed(PlanData& plan);         // colliders.cpp
+void collect_joints(PlanData& plan);        // joints.cpp
 void lay_out_shapes(PlanData& plan);        // colliders.cpp
 void collect_pairs(PlanData& plan);         // pairs.cpp, sparse_pairs.cpp
 void choose_features(PlanData& plan);       // features.cpp

@@ -27,16 +27,19 @@ PlanReport describe(const PlanData& plan) {
   const bool contacts = plan.has(Feature::contacts), bounce = plan.has(Feature::restitution);
   const bool moving_casts = plan.scene.options.cast_between_moving;
   const std::string touch = why(Feature::contacts);
-  out.stages = {{"free_motion", !contacts, contacts ? "contacts need the substep loop" : touch},
-                {"begin", contacts, touch},
+  const bool joints = plan.has(Feature::joints), rows = contacts || joints;
+  const std::string some = contacts ? touch : why(Feature::joints);
+  out.stages = {{"free_motion", !rows, rows ? "rows need the substep loop" : touch},
+                {"begin", rows, some},
                 {"broad_phase", contacts,
                  plan.sparse  ? "sort and sweep, no table of pairs"
                  : plan.sweep ? "sort and sweep"
                               : "masked all-pairs"},
                 {"collide", contacts, touch},
-                {"warm_start", contacts, touch},
+                {"joints", joints, why(Feature::joints)},
+                {"warm_start", rows, some},
                 {"bias", contacts, "soft normal rows, every substep"},
-                {"advance", contacts, "displacement, every substep"},
+                {"advance", rows, "displacement, every substep"},
                 {"relax", contacts,
                  plan.has(Feature::friction) ? "normal rows and friction, every substep"
                                              : "normal rows, every substep"},
@@ -75,6 +78,10 @@ PlanReport describe(const PlanData& plan) {
                           static_cast<std::size_t>(bytes)});
     (is_fixed(static_cast<kernels::ListId>(l)) ? out.fixed_capacity : out.pair_capacity) +=
         capacity;
+  }
+  if (!plan.parts.empty()) {
+    out.arrays.push_back({"impulses of joints", "[" + std::to_string(plan.parts.size()) + "][3]",
+                          plan.parts.size() * kernels::kPartImpulses * 4});
   }
   out.arrays.push_back({"status", "[1]", 4});
   for (const auto& a : out.arrays) out.bytes_per_world += a.bytes_per_world;

@@ -35,6 +35,7 @@ void derive_again(PlanData& plan) {
     plan.colliders.clear();
     collect_bodies(plan);
     collect_colliders(plan);
+    collect_joints(plan);
   }
   const auto material = [&](const auto& shape) {
     return plan.scene.bodies[static_cast<std::size_t>(shape.scene_body)]

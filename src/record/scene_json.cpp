@@ -21,7 +21,7 @@ static_assert(std::size(Words<BroadPhase>::list) == static_cast<int>(BroadPhase:
 template <>
 struct Words<Feature> {
   static constexpr const char* list[] = {"orientation", "inertia", "friction", "restitution",
-                                         "contacts",    "drag",    "gravity"};
+                                         "contacts",    "drag",    "gravity",  "joints"};
 };
 static_assert(std::size(Words<Feature>::list) == kFeatureCount);
 template <>
@@ -30,6 +30,13 @@ struct Words<Geometry> {
                                          "half_plane", "capsule", "segment", "terrain"};
 };
 static_assert(std::size(Words<Geometry>::list) == std::variant_size_v<Geometry>);
+
+template <>
+struct Words<JointType> {
+  static constexpr const char* list[] = {"ball",     "hinge", "slider", "fixed",
+                                         "distance", "wheel", "pulley", "target"};
+};
+static_assert(std::size(Words<JointType>::list) == std::variant_size_v<JointType>);
 
 template <>
 struct Words<Parameter> {
@@ -123,8 +130,8 @@ MW_MEMBERS(Eigen::AlignedBox3d) { visit("min", value.min()), visit("max", value.
 MW_MEMBERS(Options) {
   auto& [dt, substeps, gravity, density, length_unit, contact_frequency, contact_damping_ratio,
          push_out_speed, slop, restitution_threshold, restitution_sweeps, friction_in_bias_pass,
-         cast_against_fixed, cast_between_moving, sleep_speed, time_to_sleep, contact_capacity,
-         bounds] = value;
+         cast_against_fixed, cast_between_moving, joint_frequency, joint_damping_ratio,
+         joint_pull_speed, sleep_speed, time_to_sleep, contact_capacity, bounds] = value;
   visit("dt", dt), visit("substeps", substeps), visit("gravity", gravity);
   visit("density", density), visit("length_unit", length_unit);
   visit("contact_frequency", contact_frequency);
@@ -135,8 +142,63 @@ MW_MEMBERS(Options) {
   visit("friction_in_bias_pass", friction_in_bias_pass);
   visit("cast_against_fixed", cast_against_fixed);
   visit("cast_between_moving", cast_between_moving);
+  visit("joint_frequency", joint_frequency), visit("joint_damping_ratio", joint_damping_ratio);
+  visit("joint_pull_speed", joint_pull_speed);
   visit("sleep_speed", sleep_speed), visit("time_to_sleep", time_to_sleep);
   visit("contact_capacity", contact_capacity), visit("bounds", bounds);
+}
+MW_MEMBERS(Frame) {
+  auto& [position, rotation] = value;
+  visit("position", position), visit("rotation", rotation);
+}
+MW_MEMBERS(Spring) {
+  auto& [stiffness, damping, frequency, damping_ratio] = value;
+  visit("stiffness", stiffness), visit("damping", damping);
+  visit("frequency", frequency), visit("damping_ratio", damping_ratio);
+}
+MW_MEMBERS(Limit) {
+  auto& [low, high, spring] = value;
+  visit("low", low), visit("high", high), visit("spring", spring);
+}
+MW_MEMBERS(Drive) {
+  auto& [target_position, target_speed, spring, max_force] = value;
+  visit("target_position", target_position), visit("target_speed", target_speed);
+  visit("spring", spring), visit("max_force", max_force);
+}
+MW_MEMBERS(BallJoint) {
+  auto& [cone, twist] = value;
+  visit("cone", cone), visit("twist", twist);
+}
+MW_MEMBERS(HingeJoint) {
+  auto& [limit, drive] = value;
+  visit("limit", limit), visit("drive", drive);
+}
+MW_MEMBERS(SliderJoint) {
+  auto& [limit, drive] = value;
+  visit("limit", limit), visit("drive", drive);
+}
+MW_MEMBERS(FixedJoint) { static_cast<void>(visit), static_cast<void>(value); }
+MW_MEMBERS(DistanceJoint) {
+  auto& [length, limit, spring] = value;
+  visit("length", length), visit("limit", limit), visit("spring", spring);
+}
+MW_MEMBERS(WheelJoint) {
+  auto& [suspension, travel, drive] = value;
+  visit("suspension", suspension), visit("travel", travel), visit("drive", drive);
+}
+MW_MEMBERS(PulleyJoint) {
+  auto& [ground_a, ground_b, ratio, length] = value;
+  visit("ground_a", ground_a), visit("ground_b", ground_b), visit("ratio", ratio);
+  visit("length", length);
+}
+MW_MEMBERS(TargetJoint) {
+  auto& [spring, max_force] = value;
+  visit("spring", spring), visit("max_force", max_force);
+}
+MW_MEMBERS(Joint) {
+  auto& [name, type, body_a, body_b, frame_a, frame_b, collide] = value;
+  visit("name", name), visit("type", type), visit("body_a", body_a), visit("body_b", body_b);
+  visit("frame_a", frame_a), visit("frame_b", frame_b), visit("collide", collide);
 }
 MW_MEMBERS(Variation) {
   auto& [parameter, body, shape, low, high, draw, together] = value;
@@ -144,8 +206,9 @@ MW_MEMBERS(Variation) {
   visit("low", low), visit("high", high), visit("draw", draw), visit("together", together);
 }
 MW_MEMBERS(Scene) {
-  auto& [name, space, bodies, options, variations] = value;
+  auto& [name, space, bodies, joints, options, variations] = value;
   visit("name", name), visit("space", space), visit("options", options), visit("bodies", bodies);
+  visit("joints", joints);
   visit("variations", variations);
 }
 MW_MEMBERS(PlanOptions) {

@@ -46,6 +46,14 @@ void check_options(Checker checker, const Options& options) {
   checker.not_negative("options.restitution_threshold", options.restitution_threshold, "m/s");
   checker.between("options.restitution_sweeps", options.restitution_sweeps, 1,
                   kMostRestitutionSweeps);
+  if (options.joint_frequency) {
+    checker.not_negative("options.joint_frequency", *options.joint_frequency, "Hz");
+  }
+  checker.not_negative("options.joint_damping_ratio", options.joint_damping_ratio, "");
+  if (!(options.joint_pull_speed >= 0)) {
+    checker.add("options.joint_pull_speed",
+                "is " + number_text(options.joint_pull_speed) + " m/s, must be >= 0");
+  }
   checker.not_negative("options.sleep_speed", options.sleep_speed, "m/s");
   checker.positive("options.time_to_sleep", options.time_to_sleep, "s", kSmallestTime,
                    kLargestFinite);

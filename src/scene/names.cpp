@@ -12,6 +12,7 @@ const char* to_string(Feature feature) {
     case Feature::contacts: return "contacts";
     case Feature::drag: return "drag";
     case Feature::gravity: return "gravity";
+    case Feature::joints: return "joints";
   }
   return "unknown";
 }

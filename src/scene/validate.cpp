@@ -22,6 +22,7 @@ std::vector<Issue> validate(const Scene& scene) {
   }
   check_count("bodies", scene.bodies.size(), detail::kMostBodies);
   check_count("shapes", shapes, detail::kMostShapes);
+  check_count("joints", scene.joints.size(), detail::kMostBodies);
 
   // Needed before the bodies, whose masses depend on the default density, but listed after them.
   std::vector<Issue> option_issues;
@@ -34,6 +35,12 @@ std::vector<Issue> validate(const Scene& scene) {
     std::string part = "body " + std::to_string(i);
     if (!body.name.empty()) part += " '" + body.name + "'";
     check_body(checker.at(part), scene, body, density_valid);
+  }
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    const Joint& joint = scene.joints[i];
+    std::string part = "joint " + std::to_string(i);
+    if (!joint.name.empty()) part += " '" + joint.name + "'";
+    check_joint(checker.at(part), scene, joint);
   }
   const bool sound = issues.empty() && option_issues.empty();
   issues.insert(issues.end(), option_issues.begin(), option_issues.end());

@@ -88,6 +88,20 @@ kernels::PolygonConstants<Real> polygon_constants(const PlanCollider& c) {
   return out;
 }
 
+// Every member is a number.
+template <class Real>
+kernels::JointConstants<Real> joint_constants(const PlanPart& part) {
+  constexpr std::size_t kNumbers = sizeof(part.numbers) / sizeof(double);
+  double from[kNumbers];
+  Real to[kNumbers];
+  std::memcpy(from, &part.numbers, sizeof part.numbers);
+  for (std::size_t i = 0; i < kNumbers; ++i) to[i] = static_cast<Real>(from[i]);
+  kernels::JointConstants<Real> out;
+  static_assert(sizeof out == sizeof to);
+  std::memcpy(&out, to, sizeof out);
+  return out;
+}
+
 template <class Real>
 Constants<Real>::Constants(const PlanData& plan, Parts parts, int groups, int lanes)
     : parts_(parts), lanes_(lanes) {
@@ -104,13 +118,15 @@ Constants<Real>::Constants(const PlanData& plan, Parts parts, int groups, int la
        sizeof(kernels::PolygonConstants<Real>));
   make(materials_, parts.materials, plan.colliders.size() + plan.fixed.size(),
        sizeof(kernels::MaterialOf<Real>));
+  make(joints_, parts.joints && !plan.parts.empty(), plan.parts.size(),
+       sizeof(kernels::JointConstants<Real>));
 }
 
 template <class Real>
 kernels::ConstantBlocks<Real> Constants<Real>::group(int index) const {
   const auto at = static_cast<std::size_t>(index), lanes = static_cast<std::size_t>(lanes_);
   return {bodies_.group(at, lanes), shapes_.group(at, lanes), polygons_.group(at, lanes),
-          materials_.group(at, lanes)};
+          materials_.group(at, lanes), joints_.group(at, lanes)};
 }
 
 template <class Real>
@@ -133,6 +149,9 @@ void Constants<Real>::fill(const PlanData& plan, int slot) {
     const PlanCollider& shape = plan.colliders[c];
     if (parts_.shapes) put(shapes_, c, shape_constants<Real>(plan, shape), slot);
     if (!polygons_.numbers.empty()) put(polygons_, c, polygon_constants<Real>(shape), slot);
+  }
+  for (std::size_t p = 0; !joints_.numbers.empty() && p < plan.parts.size(); ++p) {
+    put(joints_, p, joint_constants<Real>(plan.parts[p]), slot);
   }
   const auto material = [&](std::size_t item, const Material& m) {
     const kernels::MaterialOf<Real> value{static_cast<Real>(m.friction),
@@ -173,7 +192,7 @@ void Constants<Real>::copy(int from, int to) {
 template <class Real>
 std::size_t Constants<Real>::bytes() const {
   return (bodies_.numbers.size() + shapes_.numbers.size() + polygons_.numbers.size() +
-          materials_.numbers.size()) *
+          materials_.numbers.size() + joints_.numbers.size()) *
          sizeof(Real);
 }
 

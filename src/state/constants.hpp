@@ -23,7 +23,7 @@ class Constants {
  public:
   // Which kinds of item there are in it; the others' pointers stay null.
   struct Parts {
-    bool bodies = true, shapes = true, materials = true;
+    bool bodies = true, shapes = true, materials = true, joints = true;
   };
 
   Constants() = default;
@@ -47,7 +47,7 @@ class Constants {
   };
   template <class Visit>
   void for_each_block(Visit visit) {
-    for (Block* b : {&bodies_, &shapes_, &polygons_, &materials_}) visit(*b);
+    for (Block* b : {&bodies_, &shapes_, &polygons_, &materials_, &joints_}) visit(*b);
   }
   // Writes one item of a lane.
   template <class Item>
@@ -55,7 +55,7 @@ class Constants {
 
   Parts parts_;
   int lanes_ = 1;
-  Block bodies_, shapes_, polygons_, materials_;
+  Block bodies_, shapes_, polygons_, materials_, joints_;
 };
 
 }  // namespace manyworlds

@@ -95,6 +95,7 @@ void Worlds<Real>::write(Field field, int world, const In* in) {
   // Impulses of the old pose would push at the new one.
   const bool moves = field == Field::position || field == Field::orientation;
   if (moves) storage_.clear_contacts(slot_of(world));
+  if (moves) storage_.clear_joints(slot_of(world));
   storage_.wake(slot_of(world));
   for (std::size_t i = 0; i < data().bodies.size(); ++i) {
     const PlanBody& b = body_of(world, i);

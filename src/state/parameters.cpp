@@ -193,6 +193,7 @@ void Worlds<Real>::write(Parameter parameter, int world, const double* in) {
   storage_.wake(slot);
   if (!moves) return;
   storage_.clear_contacts(slot);
+  storage_.clear_joints(slot);
   const bool shifts = std::any_of(data().bodies.begin(), data().bodies.end(),
                                   [](const PlanBody& b) { return b.reshaped && !b.aligned; });
   if (!shifts) return;

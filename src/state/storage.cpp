@@ -20,6 +20,9 @@ Storage<Real>::Storage(const kernels::WorldTables<Real>& tables, int groups, int
     cache_rows_[l] = AlignedBuffer<Real>(index(slots()) * (capacity + 2) * index(row));
     cache_keys_[l] = AlignedBuffer<std::int32_t>(index(slots()) * (capacity + 1));
   }
+  if (t.has_joints) {
+    joint_impulse_ = AlignedBuffer<Real>(index(slots()) * index(t.parts) * kernels::kPartImpulses);
+  }
   if (t.has_sleep) make_activity();
 }
 
@@ -36,6 +39,11 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
   if (own.shape) view.constants.shape = own.shape;
   if (own.polygon) view.constants.polygon = own.polygon;
   if (own.material) view.constants.material = own.material;
+  if (own.joint) view.constants.joint = own.joint;
+  if (t.has_joints) {
+    view.joint_impulse =
+        joint_impulse_.data() + at * lanes * index(t.parts) * kernels::kPartImpulses;
+  }
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
@@ -60,13 +68,15 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
 template <class Real>
 void Storage<Real>::make_constants(const PlanData& plan) {
   const PlanVaries& v = plan.varies;
-  constants_ = Constants<Real>(plan, {v.body_constants(), v.shapes, v.materials}, groups_, lanes_);
+  constants_ =
+      Constants<Real>(plan, {v.body_constants(), v.shapes, v.materials, v.shapes}, groups_, lanes_);
 }
 
 template <class Real>
 std::size_t Storage<Real>::bytes() const {
   std::size_t total =
-      constants_.bytes() + (state_.size() + rest_time_.size()) * sizeof(Real) +
+      constants_.bytes() +
+      (state_.size() + joint_impulse_.size() + rest_time_.size()) * sizeof(Real) +
       (status_.size() + asleep_.size() + absent_.size() + resting_.size() + island_.size()) *
           sizeof(std::uint32_t);
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
@@ -88,6 +98,13 @@ void Storage<Real>::clear_contacts(int slot) {
     if (cache_keys_[l].empty()) continue;
     cache_keys_[l][index(slot) * index(tables_.capacity[l] + 1)] = kernels::kEndOfKeys;
   }
+}
+
+template <class Real>
+void Storage<Real>::clear_joints(int slot) {
+  const std::size_t lanes = index(lanes_), numbers = index(tables_.parts) * kernels::kPartImpulses;
+  Real* p = joint_impulse_.data() + group_of(slot) * numbers * lanes + lane_of(slot);
+  for (std::size_t i = 0; !joint_impulse_.empty() && i < numbers; ++i) p[i * lanes] = Real(0);
 }
 
 template <class Real>

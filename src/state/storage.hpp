@@ -3,6 +3,7 @@
 // owner's business.
 //   state     [group][body][component][lane]
 //   cache     [group][lane][manifold][row], keys beside
+//   joints    [group][part][impulses][lane]
 //   activity  [group][body] lane masks of sleeping and disabled bodies, made when first needed
 #pragma once
 
@@ -34,6 +35,7 @@ class Storage {
   Real& component(int slot, int body, int component) const;
   std::uint32_t& status(int slot) const { return status_[static_cast<std::size_t>(slot)]; }
   void clear_contacts(int slot);
+  void clear_joints(int slot);  // their impulses
   // Those of the body and of everybody that it is in touch with, directly or not: impulses that
   // carried what is gone would push up what carried it.
   void drop_contacts(int slot, int body);
@@ -101,7 +103,8 @@ class Storage {
   mutable std::array<AlignedBuffer<Real>, kernels::kLists> cache_rows_;
   mutable std::array<AlignedBuffer<std::int32_t>, kernels::kLists> cache_keys_;
   mutable AlignedBuffer<std::uint32_t> status_;
-  mutable AlignedBuffer<Real> force_;  // [group][body][force 3, torque 3][lane]
+  mutable AlignedBuffer<Real> joint_impulse_;  // [group][part][3][lane]
+  mutable AlignedBuffer<Real> force_;          // [group][body][force 3, torque 3][lane]
   bool forced_ = false;
   Constants<Real> constants_;
   mutable AlignedBuffer<std::uint32_t> asleep_, absent_;  // [group][body]

@@ -40,9 +40,10 @@ TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep, int lanes)
     : constants_(plan, {}, 1, lanes) {
   add_options(plan);
   add_bodies(plan);
-  // Without contacts nothing comes to rest, and without bodies nothing is there to.
-  tables_.has_sleep = sleep && tables_.has_contacts && tables_.bodies > 0;
+  // Without contacts and joints nothing comes to rest, and without bodies nothing is there to.
+  tables_.has_sleep = sleep && (tables_.has_contacts || !plan.parts.empty()) && tables_.bodies > 0;
   add_shapes(plan);
+  add_joints(plan);
   add_pairs(plan);
   for (int lane = 0; lane < lanes; ++lane) constants_.fill(plan, lane);
   tables_.constants = constants_.group(0);
@@ -60,6 +61,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.has_friction = plan.has(Feature::friction);
   t.has_restitution = plan.has(Feature::restitution);
   t.has_contacts = plan.has(Feature::contacts);
+  t.has_joints = !plan.parts.empty();
   t.has_drag = plan.has(Feature::drag);
   t.has_gravity = plan.has(Feature::gravity);
   t.collider_is_body = plan.collider_is_body;
@@ -103,8 +105,8 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
   const std::size_t dim = plan.scene.space == Space::planar ? 2 : 3;
   const auto row = static_cast<std::size_t>(kernels::velocity_row_size(t.dimension));
   // Padded as the rows of a lane are (kernels/work.cpp): up to one register more.
-  push_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 1) * row + 16);
-  factor_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 1) * row + 16);
+  push_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 2) * row + 16);
+  factor_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 2) * row + 16);
   for (std::size_t i = 0; i < factor_rows_.size(); ++i) factor_rows_[i] = 1;
   for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
     const PlanBody& b = plan.bodies[i];
@@ -148,6 +150,7 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
     out.kind = f.kind;
     out.row = f.row_offset;
     const Filter& filter = filter_of(plan, f);
+    out.body = t.bodies + 1 + f.scene_body;
     out.category = filter.category;
     out.mask = filter.mask;
     copy(f.low, out.low);
@@ -170,6 +173,31 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
   t.fixed = fixed_.data();
   t.fixed_rows = fixed_rows_.data();
   t.row_block = plan.row_block;
+}
+
+template <class Real>
+void TablesOf<Real>::add_joints(const PlanData& plan) {
+  auto& t = tables_;
+  for (const PlanPart& p : plan.parts) parts_.push_back(p.what);
+  t.parts = static_cast<std::int32_t>(parts_.size());
+  t.part = parts_.data();
+  const auto name = [&](int scene_body) {
+    const int state_body = plan.state_body[static_cast<std::size_t>(scene_body)];
+    return state_body >= 0 ? state_body : t.bodies + 1 + scene_body;
+  };
+  std::vector<std::vector<std::int32_t>> others(plan.bodies.size());
+  for (const auto& [a, b] : joined_bodies(plan.scene)) {
+    for (const auto& [one, other] : {std::pair(name(a), name(b)), std::pair(name(b), name(a))}) {
+      if (one < t.bodies) others[static_cast<std::size_t>(one)].push_back(other);
+    }
+  }
+  for (const auto& list : others) {
+    first_joined_.push_back(static_cast<std::int32_t>(joined_.size()));
+    joined_.insert(joined_.end(), list.begin(), list.end());
+  }
+  first_joined_.push_back(static_cast<std::int32_t>(joined_.size()));
+  t.joined = joined_.empty() ? nullptr : joined_.data();
+  t.first_joined = first_joined_.data();
 }
 
 template <class Real>

@@ -23,6 +23,7 @@ class TablesOf {
   void add_shapes(const PlanData& plan);
   void add_pairs(const PlanData& plan);
   void add_pair_classes(const PlanData& plan);
+  void add_joints(const PlanData& plan);
   void add_options(const PlanData& plan);
 
   kernels::WorldTables<Real> tables_{};
@@ -32,6 +33,8 @@ class TablesOf {
   std::vector<std::int32_t> collider_row_, collider_body_, first_collider_, pair_of_;
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
+  std::vector<kernels::JointPart> parts_;
+  std::vector<std::int32_t> joined_, first_joined_;
   AlignedBuffer<Real> fixed_rows_, push_rows_, factor_rows_;
 };
 

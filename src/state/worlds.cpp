@@ -74,6 +74,7 @@ void Worlds<Real>::initialise(int world) {
   if (storage_.has_activity()) storage_.find_idle(slot);
   storage_.status(slot) = 0;
   storage_.clear_contacts(slot);
+  storage_.clear_joints(slot);
   storage_.clear_forces(slot);
   storage_.wake(slot);
 }

@@ -17,66 +17,104 @@ enum StageIndex {
   kStore,
   kFinish,
   kSettle,
-  kObserve
+  kObserve,
+  kJoints
 };
 
 template <class Real>
-const kernels::SolverTable<Real>& find_contacts(const GroupStep<Real>& p,
-                                                const kernels::GroupView<Real>& group,
-                                                kernels::Scratch* scratch, StageClock* clock) {
+const kernels::SolverTable<Real>& solver_of(const GroupStep<Real>& p, kernels::Layout layout) {
+  const auto& t = p.tables;
+  return p.kernels.solver[static_cast<int>(t.inertia_kind)][t.has_friction ? 1 : 0]
+                         [layout == kernels::Layout::dense ? 0 : 1];
+}
+template <class Real>
+const kernels::JointSolver<Real>& joints_of(const GroupStep<Real>& p, kernels::Layout layout) {
+  return p.kernels
+      .joints[static_cast<int>(p.tables.inertia_kind)][layout == kernels::Layout::dense ? 0 : 1];
+}
+
+// Poses, and the rows of all contacts; velocities are then in the layout of the group.
+template <class Real>
+kernels::Layout find_rows(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
+                          kernels::Scratch* scratch, StageClock* clock) {
   const auto& t = p.tables;
   const auto lap = [clock](StageIndex stage) {
     if (clock) clock->lap(stage);
   };
   p.kernels.begin(t, group, scratch);
   lap(kBegin);
-  p.kernels.broad_phase(t, group, scratch);
-  const kernels::Layout layout = p.kernels.choose_layout(t, group, scratch, p.layout);
-  lap(kBroadPhase);
-  const auto& solver = p.kernels.solver[static_cast<int>(t.inertia_kind)][t.has_friction ? 1 : 0]
-                                       [layout == kernels::Layout::dense ? 0 : 1];
+  kernels::Layout layout = kernels::Layout::dense;
+  if (t.has_contacts) {
+    p.kernels.broad_phase(t, group, scratch);
+    layout = p.kernels.choose_layout(t, group, scratch, p.layout);
+    lap(kBroadPhase);
+  }
+  const auto& solver = solver_of(p, layout);
   solver.enter(t, group, scratch);
   for (int c = 0; c < t.classes; ++c) {
     p.kernels.set_class(scratch, c);
     solver.collide[static_cast<int>(t.pair_class[c].kind)](t, group, scratch);
   }
   lap(kCollide);
-  return solver;
+  return layout;
 }
 
+// Contacts and joints: soft rows in substeps.
 template <class Real>
-void contact_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
-                  kernels::Scratch* scratch, StageClock* clock,
-                  const kernels::Observation<Real>* slots) {
+void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
+                 kernels::Scratch* scratch, StageClock* clock,
+                 const kernels::Observation<Real>* slots) {
   const auto& t = p.tables;
   const auto lap = [clock](StageIndex stage) {
     if (clock) clock->lap(stage);
   };
   if (slots) p.kernels.observer->watch(scratch, slots->places);
-  const auto& solver = find_contacts(p, group, scratch, clock);
+  const kernels::Layout layout = find_rows(p, group, scratch, clock);
   if (slots) p.kernels.observer->watch(scratch, nullptr);
   const bool adds_up = slots && slots->totals[0];
+  const auto& solver = solver_of(p, layout);
+  const auto& joints = joints_of(p, layout);
+  const auto with_joints = [&](kernels::Stage<Real> stage) {
+    if (!t.has_joints) return;
+    stage(t, group, scratch);
+    lap(kJoints);
+  };
+  const auto contacts = [&](kernels::Stage<Real> pass) {
+    if (t.has_joints && t.has_contacts) solver.mark(t, group, scratch);
+    pass(t, group, scratch);
+    if (t.has_joints && t.has_contacts) solver.gather(t, group, scratch);
+  };
+  with_joints(joints.prepare);
+  solver.push(t, group, scratch);
   solver.warm_start(t, group, scratch);
+  solver.open(t, group, scratch);
   lap(kWarmStart);
+  with_joints(joints.warm_start);
   for (int s = 0; s < t.substeps; ++s) {
-    solver.bias(t, group, scratch);
+    with_joints(joints.bias);
+    contacts(solver.bias);
     lap(kBias);
     solver.advance(t, group, scratch);
     lap(kAdvance);
-    solver.relax(t, group, scratch);
+    with_joints(joints.relax);
+    contacts(solver.relax);
     lap(kRelax);
     if (adds_up) {
       p.kernels.observer->accumulate[static_cast<int>(t.inertia_kind)](t, group, scratch, *slots);
       lap(kObserve);
     }
-    if (s + 1 < t.substeps) solver.next(t, group, scratch);
+    if (s + 1 == t.substeps) break;
+    if (!t.has_contacts) solver.mark(t, group, scratch);
+    solver.next(t, group, scratch);
     lap(kAdvance);
+    with_joints(joints.warm_start);
   }
+  with_joints(joints.store);
   if (t.has_restitution) {
     solver.restitute(t, group, scratch);
     lap(kRestitute);
   }
-  solver.store(t, group, scratch);
+  if (t.has_contacts) solver.store(t, group, scratch);
   lap(kStore);
   solver.leave(t, group, scratch);
   lap(kFinish);
@@ -106,7 +144,7 @@ void observe_slots(const GroupStep<Real>& p, const kernels::GroupView<Real>& gro
   kernels::GroupView<Real> all_awake = group;
   all_awake.asleep = wanted.nobody;
   observer.watch(scratch, wanted.places);
-  find_contacts<Real>(p, all_awake, scratch, nullptr);
+  find_rows<Real>(p, all_awake, scratch, nullptr);
   observer.watch(scratch, nullptr);
   observer.asleep[kind](t, group, scratch, wanted);
 }
@@ -132,10 +170,10 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                kernels::Scratch* scratch, int steps, StageClock* clock) {
   if (clock) clock->start();
   int taken = 0;
-  if (p.tables.has_contacts) {
+  if (p.tables.has_contacts || p.tables.has_joints) {
     const auto* slots = p.wanted && p.wanted->slots ? p.wanted : nullptr;
     for (; taken < steps && !at_rest(p, group); ++taken) {
-      contact_step(p, group, scratch, clock, taken + 1 == steps ? slots : nullptr);
+      solver_step(p, group, scratch, clock, taken + 1 == steps ? slots : nullptr);
     }
     if (slots) observe_slots(p, group, scratch, taken == steps);
   } else {
@@ -153,7 +191,7 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
 template <class Real>
 void collide_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                    kernels::Scratch* scratch) {
-  if (p.tables.has_contacts) find_contacts<Real>(p, group, scratch, nullptr);
+  if (p.tables.has_contacts) find_rows<Real>(p, group, scratch, nullptr);
 }
 
 template int step_group<float>(const GroupStep<float>&, const kernels::GroupView<float>&,

@@ -38,6 +38,25 @@ Scene awkward_scene() {
   body.shapes[0].density = 1.0 / 7;
   body.shapes[0].filter = {0x80000001u, 0xfffffffeu};
   body.shapes[0].name = "hull";
+  scene.options.joint_frequency = 100.0 / 3;
+  const Spring spring{1.0 / 7, 0.3, 0, 0};
+  const Limit limit{-1.0 / 3, std::numeric_limits<double>::infinity(), spring};
+  const Drive drive{0.1, -0.2, spring, 1e3};
+  const JointType types[] = {BallJoint{0.7, limit},
+                             HingeJoint{limit, drive},
+                             SliderJoint{limit, drive},
+                             FixedJoint{},
+                             DistanceJoint{1.1, limit, spring},
+                             WheelJoint{spring, limit, drive},
+                             PulleyJoint{Vec3(1, 2, 3), Vec3(4, 5, 6), 1.0 / 3, 7.7},
+                             TargetJoint{spring, 12}};
+  scene.bodies[4].motion = Motion::dynamic;
+  for (const JointType& type : types) {
+    Joint joint = joint_at(scene, 3, 4, {Vec3(0.1, 0.2, 0.3), Quat(1, 0.1, 0.2, 0.3)}, type);
+    joint.name = "joint";
+    joint.collide = true;
+    scene.add(joint);
+  }
   return scene;
 }
 
@@ -98,7 +117,7 @@ TEST_CASE("every member and every bit of a scene goes through JSON", "[fast][rec
   CHECK(odd.options.density == planar.options.density);
   CHECK(std::isnan(odd.options.dt));
 
-  PlanOptions options{BroadPhase::sort_and_sweep, {Feature::gravity, Feature::friction}};
+  PlanOptions options{BroadPhase::sparse, {Feature::gravity, Feature::joints}};
   const PlanOptions options_back = plan_options_from_json(plan_options_to_json(options));
   CHECK(options_back.broad_phase == options.broad_phase);
   CHECK(options_back.keep == options.keep);

@@ -34,8 +34,8 @@ struct Tally {
 std::vector<std::string> chosen_scenes(const VerifyOptions& options) {
   if (!options.scenes.empty()) return options.scenes;
   if (options.quick) return {"bin-spheres", "bin-boxes", "bin2d"};
-  return {"bin-spheres",  "bin-boxes", "bin2d",      "mixed-pile",
-          "mixed-pile2d", "ball3d",    "free-flight"};
+  return {"bin-spheres", "bin-boxes",   "bin2d",   "mixed-pile", "mixed-pile2d",
+          "ball3d",      "free-flight", "chain2d", "chain3d"};
 }
 
 bool available(Isa isa) {

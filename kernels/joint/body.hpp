@@ -1,0 +1,175 @@
+// The bodies of a part: their masses, where they were when the step began, and how far the substeps
+// have moved them since.
+#pragma once
+
+#include "kernels/constraint/body_rows.hpp"
+#include "kernels/constraint/velocities.hpp"
+#include "kernels/integrate.hpp"
+#include "kernels/lane/solve.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+using Joint = kernels::JointConstants<LaneNumber>;
+using kernels::JointPart, kernels::PartKind;
+
+MW_INLINE const Joint& constants_of_part(const Group& g, int part) {
+  return reinterpret_cast<const Joint*>(g.constants.joint)[part];
+}
+
+// What all parts have. The world is a body that has no velocity and infinite mass.
+template <class S>
+struct alignas(64) PartBodies : SlotBodies {
+  Real inv_mass_a[kLanes], inv_mass_b[kLanes];
+  Real inertia_a[S::kInertia][kLanes], inertia_b[S::kInertia][kLanes];  // inverse
+  Real impulse[kernels::kPartImpulses][kLanes];
+};
+
+template <class S, bool kDense>
+using PartVelocities = TwoVelocities<S, true, kDense>;
+
+MW_INLINE Vec2 vector_of(Planar, const LaneNumber* v) { return {v[0], v[1]}; }
+template <class S>
+MW_INLINE Vec3 vector_of(S, const LaneNumber* v) {
+  return {v[0], v[1], v[2]};
+}
+MW_INLINE Rot2 frame_of(Planar, const LaneNumber* q) { return {q[0], q[1]}; }
+template <class S>
+MW_INLINE Quat frame_of(S, const LaneNumber* q) {
+  return {q[0], q[1], q[2], q[3]};
+}
+
+MW_INLINE Rot2 compose(Rot2 a, Rot2 b) {
+  return {fms(a.c, b.c, a.s * b.s), fma(a.s, b.c, a.c * b.s)};
+}
+MW_INLINE Quat compose(Quat a, Quat b) {
+  return {fnma(a.z, b.z, fnma(a.y, b.y, fnma(a.x, b.x, a.w * b.w))),
+          fnma(a.z, b.y, fma(a.y, b.z, fma(a.x, b.w, a.w * b.x))),
+          fnma(a.x, b.z, fma(a.z, b.x, fma(a.y, b.w, a.w * b.y))),
+          fnma(a.y, b.x, fma(a.x, b.y, fma(a.z, b.w, a.w * b.z)))};
+}
+MW_INLINE Rot2 inverse(Rot2 q) { return {q.c, -q.s}; }
+MW_INLINE Quat inverse(Quat q) { return {q.w, -q.x, -q.y, -q.z}; }
+
+template <class S>
+struct Place {
+  typename S::Vec position;
+  typename S::Orientation orientation;
+};
+template <class S>
+MW_INLINE Place<S> place_of(const Tables& t, const Group& g, int body) {
+  return {load_as<typename S::Vec>(state_of(t, g, body, kState<S>.position)),
+          load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation))};
+}
+
+// Anchors from the centres of mass, and how far B's lies from A's. A part on the world has its
+// anchor and its frame there.
+template <class S>
+struct Anchors {
+  typename S::Vec arm_a, arm_b, gap;
+};
+template <class S>
+MW_INLINE Anchors<S> anchors_of(const Tables& t, const Group& g, const JointPart& part,
+                                const Joint& numbers) {
+  Anchors<S> out;
+  const Place<S> b = place_of<S>(t, g, part.body_b);
+  out.arm_b = rotate(b.orientation, vector_of(S{}, numbers.anchor_b));
+  const auto anchor_a = vector_of(S{}, numbers.anchor_a);
+  if (part.body_a == t.bodies) {
+    out.arm_a = zero_of<typename S::Vec>();
+    out.gap = (b.position - anchor_a) + out.arm_b;
+  } else {
+    const Place<S> a = place_of<S>(t, g, part.body_a);
+    out.arm_a = rotate(a.orientation, anchor_a);
+    out.gap = (b.position - a.position) + (out.arm_b - out.arm_a);
+  }
+  return out;
+}
+template <class S>
+struct Frames {
+  typename S::Orientation a, b;  // in the world
+};
+template <class S>
+MW_INLINE Frames<S> frames_of(const Tables& t, const Group& g, const JointPart& part,
+                              const Joint& numbers) {
+  Frames<S> out;
+  out.b = compose(place_of<S>(t, g, part.body_b).orientation, frame_of(S{}, numbers.frame_b));
+  out.a = frame_of(S{}, numbers.frame_a);
+  if (part.body_a != t.bodies) {
+    out.a = compose(place_of<S>(t, g, part.body_a).orientation, out.a);
+  }
+  return out;
+}
+
+// What the substeps so far have turned a body by, as finish will (rotate_by): R r - r of a vector.
+template <class S>
+struct Turned {
+  typename S::Ang u;
+  Float scale;
+  MW_INLINE explicit Turned(typename S::Ang swept) {
+    u = swept * half_tangent_ratio(dot(swept, swept));
+    scale = Float(Real(2)) / (Float(Real(1)) + dot(u, u));
+  }
+  MW_INLINE Vec3 change(Vec3 r) const {
+    const Vec3 across = cross(u, r);
+    return (across + cross(u, across)) * scale;
+  }
+  MW_INLINE Vec2 change(Vec2 r) const {
+    const Vec2 across = cross(u, r);
+    return (across + cross(u, across)) * scale;
+  }
+};
+
+// The speed at which an error is corrected, capped by length: what is far apart closes steadily.
+MW_INLINE Float pull_of(Float error, Float rate, Float cap) {
+  return clamp(error * rate, -cap, cap);
+}
+template <class V>
+MW_INLINE V pull_of(V error, Float rate, Float cap) {
+  const V pull = error * rate;
+  const Float length = sqrt(dot(pull, pull));
+  return pull * (cap / max(length, cap));
+}
+
+// Gives B a push at its anchor, and A the opposite one at its own.
+template <class S, bool kDense>
+MW_INLINE void push_apart(const PartBodies<S>& s, typename S::Vec p, typename S::Vec arm_a,
+                          typename S::Vec arm_b, PartVelocities<S, kDense>& v) {
+  using Inertia = typename S::Inertia;
+  v.b.v = fma(p, Float::load(s.inv_mass_b), v.b.v);
+  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), cross(arm_b, p));
+  v.a.v = fnma(p, Float::load(s.inv_mass_a), v.a.v);
+  v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), cross(arm_a, p));
+}
+template <class S, bool kDense>
+MW_INLINE void turn_apart(const PartBodies<S>& s, typename S::Ang l, PartVelocities<S, kDense>& v) {
+  using Inertia = typename S::Inertia;
+  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), l);
+  v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), l);
+}
+
+// Inverse mass of a point at `arm` from the centre, as a matrix.
+MW_INLINE void add_point_mass(Float inv_mass, Float inertia, Vec2 r, Sym2& k) {
+  k.xx = k.xx + fma(r.y * r.y, inertia, inv_mass);
+  k.xy = fnma(r.x * r.y, inertia, k.xy);
+  k.yy = k.yy + fma(r.x * r.x, inertia, inv_mass);
+}
+MW_INLINE void add_point_mass(Float inv_mass, const Sym3& inertia, Vec3 r, Sym3& k) {
+  const Float zero(Real(0));
+  const Vec3 x = mul(inertia, Vec3{zero, r.z, -r.y}), y = mul(inertia, Vec3{-r.z, zero, r.x}),
+             z = mul(inertia, Vec3{r.y, -r.x, zero});
+  k.xx = k.xx + (inv_mass + fms(x.y, r.z, x.z * r.y));
+  k.xy = k.xy + fms(y.y, r.z, y.z * r.y);
+  k.xz = k.xz + fms(z.y, r.z, z.z * r.y);
+  k.yy = k.yy + (inv_mass + fms(y.z, r.x, y.x * r.z));
+  k.yz = k.yz + fms(z.z, r.x, z.x * r.z);
+  k.zz = k.zz + (inv_mass + fms(z.x, r.y, z.y * r.x));
+}
+
+// Speed of B's anchor against A's.
+template <class S, bool kDense>
+MW_INLINE typename S::Vec anchor_speed(const PartVelocities<S, kDense>& v, typename S::Vec arm_a,
+                                       typename S::Vec arm_b) {
+  return (v.b.v - v.a.v) + (cross(v.b.w, arm_b) - cross(v.a.w, arm_a));
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,135 @@
+// The coordinates that rows act along: their values and Jacobians, at the start of the step and in
+// every substep.
+#pragma once
+
+#include "kernels/joint/row.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// v / |v| and |v|; along the last axis where v is all but zero.
+MW_INLINE Vec2 direction_of(Vec2 v, Float& length) {
+  length = sqrt(dot(v, v));
+  const Mask there = Float(Real(1e-12)) < length;
+  const Float f = Float(Real(1)) / select(there, length, Real(1)), zero(Real(0));
+  return select(there, v * f, {zero, Real(1)});
+}
+MW_INLINE Vec3 direction_of(Vec3 v, Float& length) {
+  length = sqrt(dot(v, v));
+  const Mask there = Float(Real(1e-12)) < length;
+  const Float f = Float(Real(1)) / select(there, length, Real(1)), zero(Real(0));
+  return select(there, v * f, {zero, zero, Real(1)});
+}
+
+// Twist about z that takes A's frame to B's.
+MW_INLINE Float twist_between(const Frames<Planar>& f) { return error_between(f); }
+template <class S>
+MW_INLINE Float twist_between(const Frames<S>& f) {
+  const Quat q = compose(inverse(f.a), f.b);
+  const Float half = arc_tangent(copysign(Real(1), q.w) * q.z, abs(q.w));
+  return half + half;
+}
+
+template <class S>
+void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+             Row<S, true>& s) {
+  using Vec = typename S::Vec;
+  const Anchors<S> at = anchors_of<S>(t, g, part, numbers);
+  store(s.start_a[0], at.arm_a), store(s.start_b[0], at.arm_b), store(s.start_gap[0], at.gap);
+  if (part.kind == PartKind::slide) {
+    store(s.start_axis[0], axis_x(frames_of<S>(t, g, part, numbers).a));
+  } else if (part.kind == PartKind::pulley) {
+    const Vec a = place_of<S>(t, g, part.body_a).position + at.arm_a,
+              b = place_of<S>(t, g, part.body_b).position + at.arm_b;
+    store(s.start_gap[0], a - vector_of(S{}, numbers.ground_a));
+    store(s.start_axis[0], b - vector_of(S{}, numbers.ground_b));
+  }
+}
+
+template <class S>
+void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+             Row<S, false>& s) {
+  const Frames<S> f = frames_of<S>(t, g, part, numbers);
+  if constexpr (S::kDim == 3) {
+    store(s.start_axis[0], axis_z(f.a)), store(s.start_axis_b[0], axis_z(f.b));
+  }
+  if (part.kind == PartKind::turn) twist_between(f).store(s.start_value);
+}
+
+template <class S, bool kDense, bool kMoved>
+MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& numbers,
+                       Row<S, true>& s) {
+  using Vec = typename S::Vec;
+  auto arm_a = load_as<Vec>(s.start_a[0]), arm_b = load_as<Vec>(s.start_b[0]),
+       gap = load_as<Vec>(s.start_gap[0]), axis = load_as<Vec>(s.start_axis[0]);
+  if constexpr (kMoved) {
+    const auto moved = load_two<S, true, kDense>(w.displacement, s);
+    const Turned<S> turn_a(moved.a.w), turn_b(moved.b.w);
+    const Vec change_a = turn_a.change(arm_a), change_b = turn_b.change(arm_b);
+    arm_a = arm_a + change_a, arm_b = arm_b + change_b;
+    const Vec of_a = moved.a.v + change_a, of_b = moved.b.v + change_b;
+    if (part.kind == PartKind::pulley) {
+      gap = gap + of_a, axis = axis + of_b;
+    } else {
+      gap = gap + (of_b - of_a);
+    }
+    if (part.kind == PartKind::slide) axis = axis + turn_a.change(axis);
+  }
+  Vec push_a = axis, push_b = axis;
+  Float value;
+  if (part.kind == PartKind::slide) {
+    arm_a = arm_a + gap;
+    value = dot(axis, gap);
+  } else if (part.kind == PartKind::distance) {
+    push_a = push_b = direction_of(gap, value);
+  } else {
+    Float rope_a, rope_b;
+    const Float ratio = numbers.ratio;
+    push_a = -direction_of(gap, rope_a);
+    push_b = direction_of(axis, rope_b) * ratio;
+    value = fma(rope_b, ratio, rope_a);
+  }
+  store(s.push_a[0], push_a), store(s.push_b[0], push_b);
+  store(s.arm_a[0], cross(arm_a, push_a)), store(s.arm_b[0], cross(arm_b, push_b));
+  value.store(s.value);
+  weigh_row(s);
+}
+
+template <class S, bool kDense, bool kMoved>
+MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, Row<S, false>& s) {
+  const auto moved = load_two<S, true, kDense>(w.displacement, s);
+  if constexpr (S::kDim == 2) {
+    const Float one(Real(1)), value = Float::load(s.start_value);
+    (kMoved ? value + (moved.b.w - moved.a.w) : value).store(s.value);
+    one.store(s.arm_a[0]), one.store(s.arm_b[0]);
+  } else {
+    auto z_a = load_as<Vec3>(s.start_axis[0]), z_b = load_as<Vec3>(s.start_axis_b[0]);
+    if constexpr (kMoved) {
+      z_a = z_a + Turned<S>(moved.a.w).change(z_a);
+      z_b = z_b + Turned<S>(moved.b.w).change(z_b);
+    }
+    Vec3 n;
+    Float value = Float::load(s.start_value), length;
+    if (part.kind == PartKind::turn) {
+      n = direction_of(z_a + z_b, length);
+      if constexpr (kMoved) value = value + dot(n, moved.b.w - moved.a.w);
+    } else {
+      const Vec3 lean = cross(z_a, z_b);
+      n = direction_of(lean, length);
+      n = select(Float(Real(1e-6)) < length, n, across(z_a));
+      value = arc_tangent(length, dot(z_a, z_b));
+    }
+    store(s.arm_a[0], n), store(s.arm_b[0], n);
+    value.store(s.value);
+  }
+  weigh_row(s);
+}
+
+template <class S, bool kLinear, bool kDense, Pass kPass>
+MW_INLINE void solve(const Tables& t, const Group& g, const Work& w, const JointPart& part,
+                     int index, const Joint& numbers, Row<S, kLinear>& s,
+                     PartVelocities<S, kDense>& v) {
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
+  solve_row<S, kLinear, kDense, kPass>(t, g, part, index, numbers, s, v);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

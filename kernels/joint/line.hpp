@@ -1,0 +1,118 @@
+// line: B's anchor lies on the x axis of A's frame. 1 row in the plane, 2 in space, along
+// directions d across x that turn with A. With u from A's anchor to B's:
+//   C = d . u,  C' = d . (v_B + w_B x r_B - v_A - w_A x (r_A + u))
+#pragma once
+
+#include "kernels/joint/swing.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S>
+struct alignas(64) LineRows : PartBodies<S> {
+  static constexpr int kRows = S::kDim - 1;
+  Real start_a[S::kDim][kLanes], start_b[S::kDim][kLanes], start_gap[S::kDim][kLanes];
+  Real start_axis[S::kDim][kLanes];
+  // Of the substep. arm_a reaches B's anchor.
+  Real arm_a[S::kDim][kLanes], arm_b[S::kDim][kLanes];
+  Real direction[kRows][S::kDim][kLanes];
+  Real error[kRows][kLanes];
+  Real mass[3][kLanes];
+};
+
+template <class S>
+void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+             LineRows<S>& s) {
+  const Anchors<S> at = anchors_of<S>(t, g, part, numbers);
+  store(s.start_a[0], at.arm_a), store(s.start_b[0], at.arm_b), store(s.start_gap[0], at.gap);
+  store(s.start_axis[0], axis_x(frames_of<S>(t, g, part, numbers).a));
+}
+
+// How a unit push along d at both anchors changes the speed along e.
+template <class S>
+MW_INLINE Float coupling(const PartBodies<S>& s, typename S::Vec arm_a, typename S::Vec arm_b,
+                         typename S::Vec d, typename S::Vec e) {
+  using Inertia = typename S::Inertia;
+  const Float linear = dot(d, e) * (Float::load(s.inv_mass_a) + Float::load(s.inv_mass_b));
+  const Float of_a = dot(cross(arm_a, d), apply(load_as<Inertia>(s.inertia_a[0]), cross(arm_a, e)));
+  const Float of_b = dot(cross(arm_b, d), apply(load_as<Inertia>(s.inertia_b[0]), cross(arm_b, e)));
+  return linear + (of_a + of_b);
+}
+
+template <class S, bool kDense, bool kMoved>
+MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, LineRows<S>& s) {
+  using Vec = typename S::Vec;
+  auto arm_a = load_as<Vec>(s.start_a[0]), arm_b = load_as<Vec>(s.start_b[0]),
+       gap = load_as<Vec>(s.start_gap[0]), axis = load_as<Vec>(s.start_axis[0]);
+  if constexpr (kMoved) {
+    const auto moved = load_two<S, true, kDense>(w.displacement, s);
+    const Turned<S> turn_a(moved.a.w), turn_b(moved.b.w);
+    const Vec change_a = turn_a.change(arm_a), change_b = turn_b.change(arm_b);
+    arm_a = arm_a + change_a, arm_b = arm_b + change_b;
+    gap = gap + ((moved.b.v - moved.a.v) + (change_b - change_a));
+    axis = axis + turn_a.change(axis);
+  }
+  const Vec reach = arm_a + gap;
+  store(s.arm_a[0], reach), store(s.arm_b[0], arm_b);
+  if constexpr (S::kDim == 2) {
+    const Vec d{-axis.y, axis.x};
+    store(s.direction[0][0], d);
+    dot(d, gap).store(s.error[0]);
+    inverse_or_zero(coupling<S>(s, reach, arm_b, d, d)).store(s.mass[0]);
+  } else {
+    const Vec d = across(axis), e = cross(axis, d);
+    store(s.direction[0][0], d), store(s.direction[1][0], e);
+    dot(d, gap).store(s.error[0]), dot(e, gap).store(s.error[1]);
+    store(s.mass[0],
+          inverse(Sym2{coupling<S>(s, reach, arm_b, d, d), coupling<S>(s, reach, arm_b, d, e),
+                       coupling<S>(s, reach, arm_b, e, e)}));
+  }
+}
+
+template <class S, bool kDense, Pass kPass>
+MW_INLINE void solve(const Work& w, const JointPart& part, const Joint& numbers, LineRows<S>& s,
+                     PartVelocities<S, kDense>& v) {
+  using Vec = typename S::Vec;
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
+  const auto arm_a = load_as<Vec>(s.arm_a[0]), arm_b = load_as<Vec>(s.arm_b[0]),
+             d = load_as<Vec>(s.direction[0][0]);
+  const Float rho = numbers.soft.rho, rate = numbers.soft.bias_rate;
+  const Float scale = Float(Real(1)) / (rho + Float(Real(1)));
+  if constexpr (S::kDim == 2) {
+    const Float before = dot(d, load_as<Vec>(s.impulse[0]));
+    if constexpr (kPass == Pass::warm_start) {
+      push_apart<S, kDense>(s, d * before, arm_a, arm_b, v);
+      return;
+    }
+    Float x = dot(d, anchor_speed<S, kDense>(v, arm_a, arm_b));
+    const Float mass = Float::load(s.mass[0]);
+    if constexpr (kPass == Pass::bias) {
+      x = fma(mass, x + pull_of(Float::load(s.error[0]), rate, numbers.pull), before * rho) * scale;
+    } else {
+      x = mass * x;
+    }
+    store(s.impulse[0], d * (before - x));
+    push_apart<S, kDense>(s, d * (-x), arm_a, arm_b, v);
+  } else {
+    const auto e = load_as<Vec>(s.direction[1][0]);
+    const auto stored = load_as<Vec>(s.impulse[0]);
+    const Vec2 before{dot(d, stored), dot(e, stored)};
+    if constexpr (kPass == Pass::warm_start) {
+      push_apart<S, kDense>(s, fma(e, before.y, d * before.x), arm_a, arm_b, v);
+      return;
+    }
+    const Vec speed = anchor_speed<S, kDense>(v, arm_a, arm_b);
+    const auto mass = load_as<Sym2>(s.mass[0]);
+    Vec2 x{dot(d, speed), dot(e, speed)};
+    if constexpr (kPass == Pass::bias) {
+      x = x + pull_of(load_as<Vec2>(s.error[0]), rate, numbers.pull);
+      x = fma(before, rho, mul(mass, x)) * scale;
+    } else {
+      x = mul(mass, x);
+    }
+    const Vec2 after = before - x;
+    store(s.impulse[0], fma(e, after.y, d * after.x));
+    push_apart<S, kDense>(s, fma(e, -x.y, d * (-x.x)), arm_a, arm_b, v);
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,143 @@
+// The passes over all parts of a group, in the order of the joints. One instantiation per space and
+// layout fills a JointSolver.
+#pragma once
+
+#include <initializer_list>
+
+#include "kernels/activity.hpp"
+#include "kernels/joint/coordinates.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S>
+inline constexpr std::size_t kPartBytes = [] {
+  std::size_t most = sizeof(PointRows<S>);
+  for (const std::size_t n :
+       {sizeof(LockRows<S>), sizeof(LineRows<S>), sizeof(Row<S, true>), sizeof(Row<S, false>)}) {
+    most = n > most ? n : most;
+  }
+  if constexpr (S::kDim == 3) most = sizeof(SwingRows<S>) > most ? sizeof(SwingRows<S>) : most;
+  return most;
+}();
+
+// Calls visit(rows of the part, part, index) for every part.
+template <class S, class Visit>
+MW_INLINE void for_each_part(const Tables& t, Work& w, Visit visit) {
+  for (int i = 0; i < t.parts; ++i) {
+    const JointPart& part = t.part[i];
+    unsigned char* at = w.parts + static_cast<std::size_t>(i) * kPartBytes<S>;
+    switch (part.kind) {
+      case PartKind::point: visit(*reinterpret_cast<PointRows<S>*>(at), part, i); break;
+      case PartKind::lock: visit(*reinterpret_cast<LockRows<S>*>(at), part, i); break;
+      case PartKind::line: visit(*reinterpret_cast<LineRows<S>*>(at), part, i); break;
+      case PartKind::swing:
+        if constexpr (S::kDim == 3) visit(*reinterpret_cast<SwingRows<S>*>(at), part, i);
+        break;
+      case PartKind::turn:
+      case PartKind::cone: visit(*reinterpret_cast<Row<S, false>*>(at), part, i); break;
+      default: visit(*reinterpret_cast<Row<S, true>*>(at), part, i);
+    }
+  }
+}
+
+template <class S, bool kDense, Pass kPass, class Rows>
+MW_INLINE void solve_part(const Tables&, const Group&, const Work& w, const JointPart& part, int,
+                          const Joint& numbers, Rows& s, PartVelocities<S, kDense>& v) {
+  solve<S, kDense, kPass>(w, part, numbers, s, v);
+}
+template <class S, bool kDense, Pass kPass, bool kLinear>
+MW_INLINE void solve_part(const Tables& t, const Group& g, const Work& w, const JointPart& part,
+                          int index, const Joint& numbers, Row<S, kLinear>& s,
+                          PartVelocities<S, kDense>& v) {
+  solve<S, kLinear, kDense, kPass>(t, g, w, part, index, numbers, s, v);
+}
+
+template <class S, bool kDense>
+MW_INLINE void refresh_first(const Work&, const JointPart&, const Joint&, LockRows<S>&) {}
+template <class S, bool kDense, class Rows>
+MW_INLINE void refresh_first(const Work& w, const JointPart& part, const Joint& numbers, Rows& s) {
+  refresh<S, kDense, false>(w, part, numbers, s);
+}
+
+template <class S, bool kDense>
+struct JointPasses {
+  // Lanes in which a part acts: its joint is there, so are its bodies, and one of them is awake.
+  static std::uint32_t active_lanes(const Tables& t, const Group& g, const JointPart& part) {
+    std::uint32_t lanes = kAllLanes;
+    if (g.joint_off) lanes &= ~g.joint_off[part.joint];
+    if (!has_idle_bodies(g)) return lanes;
+    std::uint32_t idle = idle_lanes(g, part.body_b);
+    lanes &= ~g.absent[part.body_b];
+    if (part.body_a != t.bodies) {
+      idle &= idle_lanes(g, part.body_a);
+      lanes &= ~g.absent[part.body_a];
+    }
+    return lanes & ~idle;
+  }
+
+  static void prepare_bodies(const Tables& t, const Group& g, Work& w, const JointPart& part,
+                             int index, PartBodies<S>& s) {
+    s.mask = active_lanes(t, g, part);
+    const int body_a = part.body_a == t.bodies ? world_body(t) : part.body_a;
+    s.body_a = body_a, s.body_b = part.body_b;
+    alignas(64) std::int32_t at_a[kLanes], at_b[kLanes];
+    for (int l = 0; l < kLanes; ++l) {
+      const bool active = ((s.mask >> l) & 1u) != 0;
+      s.offset_a[l] = w.velocity_base[l] + (active ? body_a : t.bodies) * S::kRow;
+      s.offset_b[l] = w.velocity_base[l] + (active ? part.body_b : t.bodies) * S::kRow;
+      at_a[l] = w.body_base[l] + part.body_a * body_row_size(S::kKind);
+      at_b[l] = w.body_base[l] + part.body_b * body_row_size(S::kKind);
+    }
+    BodyRow<S> a, b;
+    load_body_row(t, w, at_a, a);
+    load_body_row(t, w, at_b, b);
+    a.inv_mass.store(s.inv_mass_a), b.inv_mass.store(s.inv_mass_b);
+    store(s.inertia_a[0], a.inertia), store(s.inertia_b[0], b.inertia);
+    const Real* from = g.joint_impulse + index * kernels::kPartImpulses * kLanes;
+    for (int i = 0; i < kernels::kPartImpulses; ++i) {
+      Float::load(from + i * kLanes).store(s.impulse[i]);
+    }
+    w.touched[part.body_a] |= s.mask;
+    w.touched[part.body_b] |= s.mask;
+  }
+
+  // Rows at the start of the step, with the impulses of the last one.
+  static void prepare_parts(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
+      const Joint& numbers = constants_of_part(g, i);
+      prepare_bodies(t, g, w, part, i, s);
+      prepare(t, g, part, numbers, s);
+      refresh_first<S, kDense>(w, part, numbers, s);
+    });
+  }
+
+  template <Pass kPass>
+  static void pass(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
+      if (s.mask == 0) return;
+      PartVelocities<S, kDense> v(w, s);
+      solve_part<S, kDense, kPass>(t, g, w, part, i, constants_of_part(g, i), s, v);
+      v.store(w, s);
+    });
+  }
+
+  static void keep(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for_each_part<S>(t, w, [&](auto& s, const JointPart&, int i) {
+      const Mask lanes = mask_from_bits(s.mask & ~w.frozen);
+      Real* to = g.joint_impulse + i * kernels::kPartImpulses * kLanes;
+      for (int k = 0; k < kernels::kPartImpulses; ++k) {
+        select(lanes, Float::load(s.impulse[k]), Float::load(to + k * kLanes))
+            .store(to + k * kLanes);
+      }
+    });
+  }
+
+  static kernels::JointSolver<Real> table() {
+    return {prepare_parts, pass<Pass::warm_start>, pass<Pass::bias>, pass<Pass::relax>, keep};
+  }
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

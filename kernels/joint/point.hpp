@@ -1,0 +1,122 @@
+// point: two anchors coincide. 2 rows in the plane, 3 in space, solved together:
+//   C = x_B + r_B - x_A - r_A,  C' = v_B + w_B x r_B - v_A - w_A x r_A
+//   K = (1/m_A + 1/m_B) E - [r_A] I_A^-1 [r_A] - [r_B] I_B^-1 [r_B]
+// C, the arms r and K follow the bodies in every substep, before the relax pass: velocities that
+// are solved for the arms which the substep began with gain energy from the impulses that turn them
+// (as much as explicit Euler). With a spring the anchor of B is drawn to
+// that of A by no more than a given force.
+#pragma once
+
+#include "kernels/constraint/contact.hpp"
+#include "kernels/joint/body.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S>
+struct PointMass {
+  using Type = Sym3;
+};
+template <>
+struct PointMass<Planar> {
+  using Type = Sym2;
+};
+MW_INLINE void store(Real* p, const Sym2& a) {
+  a.xx.store(p), a.xy.store(p + kLanes), a.yy.store(p + 2 * kLanes);
+}
+MW_INLINE void load(const Real* p, Sym2& a) {
+  a = {Float::load(p), Float::load(p + kLanes), Float::load(p + 2 * kLanes)};
+}
+// (1 + rho) k + gamma E
+MW_INLINE Sym2 soften(const Sym2& k, Float rho, Float gamma) {
+  return {fma(k.xx, rho, k.xx) + gamma, fma(k.xy, rho, k.xy), fma(k.yy, rho, k.yy) + gamma};
+}
+MW_INLINE Sym3 soften(const Sym3& k, Float rho, Float gamma) {
+  return {fma(k.xx, rho, k.xx) + gamma, fma(k.xy, rho, k.xy), fma(k.xz, rho, k.xz),
+          fma(k.yy, rho, k.yy) + gamma, fma(k.yz, rho, k.yz), fma(k.zz, rho, k.zz) + gamma};
+}
+
+template <class S>
+struct alignas(64) PointRows : PartBodies<S> {
+  // At the start of the step: anchors from the centres, and their gap.
+  Real start_a[S::kDim][kLanes], start_b[S::kDim][kLanes], start_gap[S::kDim][kLanes];
+  // Of the substep.
+  Real arm_a[S::kDim][kLanes], arm_b[S::kDim][kLanes], gap[S::kDim][kLanes];
+  Real mass[S::kDim * (S::kDim + 1) / 2][kLanes];  // K^-1; of a spring K' - K
+  // Of a spring: K'^-1, and the gap of the bias pass.
+  Real soft_mass[S::kDim * (S::kDim + 1) / 2][kLanes];
+  Real drawn[S::kDim][kLanes];
+};
+
+template <class S>
+void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+             PointRows<S>& s) {
+  const Anchors<S> at = anchors_of<S>(t, g, part, numbers);
+  store(s.start_a[0], at.arm_a), store(s.start_b[0], at.arm_b), store(s.start_gap[0], at.gap);
+}
+
+// kMoved: the substeps have displaced the bodies.
+template <class S, bool kDense, bool kMoved>
+MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& numbers,
+                       PointRows<S>& s) {
+  using Vec = typename S::Vec;
+  auto arm_a = load_as<Vec>(s.start_a[0]), arm_b = load_as<Vec>(s.start_b[0]),
+       gap = load_as<Vec>(s.start_gap[0]);
+  if constexpr (kMoved) {
+    const auto moved = load_two<S, true, kDense>(w.displacement, s);
+    const Vec change_a = Turned<S>(moved.a.w).change(arm_a),
+              change_b = Turned<S>(moved.b.w).change(arm_b);
+    arm_a = arm_a + change_a, arm_b = arm_b + change_b;
+    gap = gap + ((moved.b.v - moved.a.v) + (change_b - change_a));
+  }
+  store(s.arm_a[0], arm_a), store(s.arm_b[0], arm_b), store(s.gap[0], gap);
+  typename PointMass<S>::Type k{};
+  using Inertia = typename S::Inertia;
+  add_point_mass(Float::load(s.inv_mass_a), load_as<Inertia>(s.inertia_a[0]), arm_a, k);
+  add_point_mass(Float::load(s.inv_mass_b), load_as<Inertia>(s.inertia_b[0]), arm_b, k);
+  if (part.spring) {
+    const Float rho = numbers.soft.rho, gamma = numbers.soft.gamma;
+    store(s.soft_mass[0], inverse(soften(k, rho, gamma)));
+    store(s.mass[0], soften(k, rho - Float(Real(1)), gamma));
+  } else {
+    store(s.mass[0], inverse(k));
+  }
+}
+
+template <class S>
+MW_INLINE typename S::Vec limit_length(typename S::Vec p, Float most) {
+  const Float length = sqrt(dot(p, p));
+  return p * (most / max(length, max(most, Real(1e-30))));
+}
+
+template <class S, bool kDense, Pass kPass>
+MW_INLINE void solve(const Work& w, const JointPart& part, const Joint& numbers, PointRows<S>& s,
+                     PartVelocities<S, kDense>& v) {
+  using Vec = typename S::Vec;
+  using Mass = typename PointMass<S>::Type;
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
+  if constexpr (kPass == Pass::warm_start) {
+    push_apart<S, kDense>(s, load_as<Vec>(s.impulse[0]), load_as<Vec>(s.arm_a[0]),
+                          load_as<Vec>(s.arm_b[0]), v);
+    return;
+  }
+  const auto arm_a = load_as<Vec>(s.arm_a[0]), arm_b = load_as<Vec>(s.arm_b[0]);
+  const auto before = load_as<Vec>(s.impulse[0]);
+  const auto mass = load_as<Mass>(s.mass[0]);
+  Vec rate = anchor_speed<S, kDense>(v, arm_a, arm_b), after;
+  if (part.spring) {  // its equation is the same in both passes
+    if constexpr (kPass == Pass::bias) store(s.drawn[0], load_as<Vec>(s.gap[0]));
+    rate = fma(load_as<Vec>(s.drawn[0]), numbers.soft.bias_rate, rate) + mul(mass, before);
+    after = limit_length<S>(before - mul(load_as<Mass>(s.soft_mass[0]), rate), numbers.most);
+  } else if (kPass == Pass::bias) {
+    // (1 + rho)^-1 of the hard row's answer, as K' is (1 + rho) K.
+    rate = rate + pull_of(load_as<Vec>(s.gap[0]), numbers.soft.bias_rate, numbers.pull);
+    const Float rho = numbers.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
+    after = before - (mul(mass, rate) + before * rho) * scale;
+  } else {
+    after = before - mul(mass, rate);
+  }
+  store(s.impulse[0], after);
+  push_apart<S, kDense>(s, after - before, arm_a, arm_b, v);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,140 @@
+// A single row of a joint along a coordinate x with speed v = J (velocities): held at a value,
+// driven, limited, or some of these. Its Jacobian is [-push_a, -arm_a, push_b, arm_b] (no pushes
+// for rows about an axis), K = J M^-1 J^T.
+//   held     C = x - rest, soft in the bias pass
+//   driven   force = k (target - x) + c (target speed - v), implicit; |impulse| <= most
+//   limited  C = x - low or high - x, lambda >= 0; speculative while C > 0, else soft
+#pragma once
+
+#include "kernels/joint/line.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S, bool kLinear>
+struct alignas(64) Row : PartBodies<S> {
+  // At the start of the step.
+  Real start_a[S::kDim][kLanes], start_b[S::kDim][kLanes], start_gap[S::kDim][kLanes];
+  Real start_axis[3][kLanes], start_axis_b[3][kLanes];
+  Real start_value[kLanes];
+  // Of the substep.
+  Real push_a[S::kDim][kLanes], push_b[S::kDim][kLanes];
+  Real arm_a[S::kAng][kLanes], arm_b[S::kAng][kLanes];
+  Real value[kLanes];
+  Real driven[kLanes];  // the value of the bias pass
+  Real k[kLanes];
+};
+
+template <class S, bool kLinear, bool kDense>
+MW_INLINE Float speed_of(const Row<S, kLinear>& s, const PartVelocities<S, kDense>& v) {
+  using Vec = typename S::Vec;
+  using Ang = typename S::Ang;
+  Float x = dot(load_as<Ang>(s.arm_b[0]), v.b.w) - dot(load_as<Ang>(s.arm_a[0]), v.a.w);
+  if constexpr (kLinear) {
+    x = x + (dot(load_as<Vec>(s.push_b[0]), v.b.v) - dot(load_as<Vec>(s.push_a[0]), v.a.v));
+  }
+  return x;
+}
+template <class S, bool kLinear, bool kDense>
+MW_INLINE void apply_row(const Row<S, kLinear>& s, Float p, PartVelocities<S, kDense>& v) {
+  using Vec = typename S::Vec;
+  using Ang = typename S::Ang;
+  using Inertia = typename S::Inertia;
+  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), load_as<Ang>(s.arm_b[0]) * p);
+  v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), load_as<Ang>(s.arm_a[0]) * p);
+  if constexpr (kLinear) {
+    v.b.v = fma(load_as<Vec>(s.push_b[0]), p * Float::load(s.inv_mass_b), v.b.v);
+    v.a.v = fnma(load_as<Vec>(s.push_a[0]), p * Float::load(s.inv_mass_a), v.a.v);
+  }
+}
+template <class S, bool kLinear>
+MW_INLINE void weigh_row(Row<S, kLinear>& s) {
+  using Vec = typename S::Vec;
+  using Ang = typename S::Ang;
+  using Inertia = typename S::Inertia;
+  const Ang a = load_as<Ang>(s.arm_a[0]), b = load_as<Ang>(s.arm_b[0]);
+  Float k = dot(a, apply(load_as<Inertia>(s.inertia_a[0]), a)) +
+            dot(b, apply(load_as<Inertia>(s.inertia_b[0]), b));
+  if constexpr (kLinear) {
+    const Vec push_a = load_as<Vec>(s.push_a[0]), push_b = load_as<Vec>(s.push_b[0]);
+    k = k + fma(dot(push_a, push_a), Float::load(s.inv_mass_a),
+                dot(push_b, push_b) * Float::load(s.inv_mass_b));
+  }
+  k.store(s.k);
+}
+
+// lambda' - lambda of a soft row that is to have a speed of 0, before any clamp.
+MW_INLINE Float soften_row(const kernels::RowSoftness<LaneNumber>& soft, Float k, Float speed,
+                           Float before) {
+  const Float softer = fma(k, soft.rho, k) + Float(soft.gamma);
+  return -(fma(softer - k, before, speed) * inverse_or_zero(softer));
+}
+// The same where the row is `error` off.
+MW_INLINE Float soften_row(const kernels::RowSoftness<LaneNumber>& soft, Float k, Float speed,
+                           Float error, Float before) {
+  return soften_row(soft, k, fma(error, soft.bias_rate, speed), before);
+}
+
+// The change of a limit's impulse; `gap` >= 0 while the coordinate is within it.
+template <Pass kPass>
+MW_INLINE Float solve_limit(const Tables& t, const Joint& numbers, Float k, Float speed, Float gap,
+                            Real* stored) {
+  const Float zero(Real(0)), before = Float::load(stored);
+  const Float ahead = fma(max(gap, zero), Float(t.inv_h), speed);
+  const Float hard = -(ahead * inverse_or_zero(k));
+  Float change = hard;
+  if (kPass == Pass::bias) {
+    change = select(zero < gap, hard, soften_row(numbers.limit_soft, k, speed, gap, before));
+  }
+  const Float after = max(before + change, zero);
+  after.store(stored);
+  return after - before;
+}
+
+template <class S, bool kLinear, bool kDense, Pass kPass>
+MW_INLINE void solve_row(const Tables& t, const Group& g, const JointPart& part, int index,
+                         const Joint& numbers, Row<S, kLinear>& s, PartVelocities<S, kDense>& v) {
+  if constexpr (kPass == Pass::warm_start) {
+    const Float low = Float::load(s.impulse[1]), high = Float::load(s.impulse[2]);
+    apply_row<S, kLinear, kDense>(s, Float::load(s.impulse[0]) + (low - high), v);
+    return;
+  }
+  const Float k = Float::load(s.k), value = Float::load(s.value);
+  if constexpr (kPass == Pass::bias) value.store(s.driven);
+  if (part.equality || part.drive) {
+    const Float before = Float::load(s.impulse[0]), speed = speed_of<S, kLinear, kDense>(s, v);
+    Float after;
+    if (part.drive) {  // its equation is the same in both passes
+      Float target = numbers.target_position, target_speed = numbers.target_speed;
+      if (g.target) {
+        const Real* own = g.target + index * 2 * kLanes;
+        target = Float::load(own), target_speed = Float::load(own + kLanes);
+      }
+      const Float most = numbers.most;
+      after =
+          before + soften_row(numbers.drive_soft, k, fnma(target_speed, numbers.speed_share, speed),
+                              Float::load(s.driven) - target, before);
+      after = clamp(after, -most, most);
+    } else if (kPass == Pass::bias) {
+      const Float pull = pull_of(value - Float(numbers.rest), numbers.soft.bias_rate, numbers.pull);
+      after = before + soften_row(numbers.soft, k, speed + pull, before);
+    } else {
+      after = fnma(speed, inverse_or_zero(k), before);
+    }
+    after.store(s.impulse[0]);
+    apply_row<S, kLinear, kDense>(s, after - before, v);
+  }
+  if (part.low) {
+    const Float gap = value - Float(numbers.low);
+    const Float speed = speed_of<S, kLinear, kDense>(s, v);
+    apply_row<S, kLinear, kDense>(s, solve_limit<kPass>(t, numbers, k, speed, gap, s.impulse[1]),
+                                  v);
+  }
+  if (part.high) {
+    const Float gap = Float(numbers.high) - value;
+    const Float speed = -speed_of<S, kLinear, kDense>(s, v);
+    apply_row<S, kLinear, kDense>(s, -solve_limit<kPass>(t, numbers, k, speed, gap, s.impulse[2]),
+                                  v);
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

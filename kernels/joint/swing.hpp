@@ -1,0 +1,86 @@
+// swing: the z axes of two frames are parallel. 2 rows, space only. With b, c across z_A, all of
+// the substep:
+//   C = (b, c) . (z_A x z_B),  C' = (b, c) . (w_B - w_A),  K = (b, c)^T (I_A^-1 + I_B^-1) (b, c)
+#pragma once
+
+#include "kernels/joint/lock.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// A unit vector across the unit vector n (Duff et al. 2017).
+MW_INLINE Vec3 across(Vec3 n) {
+  const Float sign = copysign(Real(1), n.z), one(Real(1));
+  const Float a = -(one / (sign + n.z)), b = n.x * n.y * a;
+  return {fma(sign * n.x * n.x, a, one), sign * b, -(sign * n.x)};
+}
+MW_INLINE Vec3 axis_x(Quat q) {
+  const Float y2 = q.y + q.y, z2 = q.z + q.z;
+  return {fnma(q.z, z2, fnma(q.y, y2, Real(1))), fma(q.x, y2, q.w * z2), fms(q.x, z2, q.w * y2)};
+}
+MW_INLINE Vec3 axis_z(Quat q) {
+  const Float x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+  return {fma(q.x, z2, q.w * y2), fms(q.y, z2, q.w * x2), fnma(q.y, y2, fnma(q.x, x2, Real(1)))};
+}
+MW_INLINE Vec2 axis_x(Rot2 q) { return {q.c, q.s}; }
+
+template <class S>
+struct alignas(64) SwingRows : PartBodies<S> {
+  Real start_a[3][kLanes], start_b[3][kLanes];  // z axes at the start of the step
+  // Of the substep.
+  Real b[3][kLanes], c[3][kLanes];
+  Real error[2][kLanes];
+  Real mass[3][kLanes];
+};
+
+template <class S>
+void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+             SwingRows<S>& s) {
+  const Frames<S> f = frames_of<S>(t, g, part, numbers);
+  store(s.start_a[0], axis_z(f.a)), store(s.start_b[0], axis_z(f.b));
+}
+
+template <class S, bool kDense, bool kMoved>
+MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, SwingRows<S>& s) {
+  auto z_a = load_as<Vec3>(s.start_a[0]), z_b = load_as<Vec3>(s.start_b[0]);
+  if constexpr (kMoved) {
+    const auto moved = load_two<S, true, kDense>(w.displacement, s);
+    z_a = z_a + Turned<S>(moved.a.w).change(z_a);
+    z_b = z_b + Turned<S>(moved.b.w).change(z_b);
+  }
+  const Vec3 b = across(z_a), c = cross(z_a, b), lean = cross(z_a, z_b);
+  store(s.b[0], b), store(s.c[0], c);
+  dot(b, lean).store(s.error[0]), dot(c, lean).store(s.error[1]);
+  using Inertia = typename S::Inertia;
+  const Inertia inertia =
+      sum_of(load_as<Inertia>(s.inertia_a[0]), load_as<Inertia>(s.inertia_b[0]));
+  const Vec3 of_b = apply(inertia, b), of_c = apply(inertia, c);
+  store(s.mass[0], inverse(Sym2{dot(b, of_b), dot(b, of_c), dot(c, of_c)}));
+}
+
+template <class S, bool kDense, Pass kPass>
+MW_INLINE void solve(const Work& w, const JointPart& part, const Joint& numbers, SwingRows<S>& s,
+                     PartVelocities<S, kDense>& v) {
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
+  const auto b = load_as<Vec3>(s.b[0]), c = load_as<Vec3>(s.c[0]),
+             stored = load_as<Vec3>(s.impulse[0]);
+  const Vec2 before{dot(b, stored), dot(c, stored)};
+  if constexpr (kPass == Pass::warm_start) {
+    turn_apart<S, kDense>(s, fma(c, before.y, b * before.x), v);
+    return;
+  }
+  const auto mass = load_as<Sym2>(s.mass[0]);
+  const Vec3 spin = v.b.w - v.a.w;
+  Vec2 rate{dot(b, spin), dot(c, spin)}, after;
+  if constexpr (kPass == Pass::bias) {
+    rate = rate + pull_of(load_as<Vec2>(s.error[0]), numbers.soft.bias_rate, numbers.turn_pull);
+    const Float rho = numbers.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
+    after = before - (mul(mass, rate) + before * rho) * scale;
+  } else {
+    after = before - mul(mass, rate);
+  }
+  store(s.impulse[0], fma(c, after.y, b * after.x));
+  const Vec2 d = after - before;
+  turn_apart<S, kDense>(s, fma(c, d.y, b * d.x), v);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,61 @@
+// What the kernels know of joints. A joint is one part or several that are solved one after the
+// other, such as a swing (two axes stay parallel) and a point (two anchors coincide) for a hinge.
+// All lanes have the same parts between the same bodies.
+#pragma once
+
+#include <cstdint>
+
+namespace manyworlds::kernels {
+
+// A and B are the bodies, z and x the axes of the joint's frames on them.
+enum class PartKind : std::int32_t {
+  point,     // the anchors coincide
+  lock,      // the frames have the same axes
+  swing,     // the z axes are parallel (space)
+  line,      // B's anchor lies on the x axis of A
+  slide,     // row along x of A
+  turn,      // row about z
+  cone,      // row for the angle between the z axes (space)
+  distance,  // row between the anchors
+  pulley,    // row for the length of the rope
+};
+// Stored per part: the impulse on B as a world vector, or of a row what holds or drives it, of its
+// lower and of its upper limit.
+inline constexpr int kPartImpulses = 3;
+
+// Softness of a row with effective mass m = 1 / K, gap or error C and speed v:
+//   lambda' = lambda - m' (v + bias_rate C + (K' - K) lambda),  m' = 1 / K',  K' = (1 + rho) K +
+//   gamma
+// rho comes from a frequency and damping ratio, gamma from a stiffness k and damping c: 1 / (h (c +
+// h k)).
+template <class T>
+struct RowSoftness {
+  T bias_rate, rho, gamma;
+};
+
+template <class T>
+struct JointConstants {
+  T anchor_a[3], anchor_b[3];  // from the centre of mass, principal axes, m; A the world: world
+  T frame_a[4], frame_b[4];    // in principal axes; planar: cos, sin
+  RowSoftness<T> soft;         // of what the part holds together
+  T pull, turn_pull;           // most speed at which it corrects errors, m/s and rad/s
+  T rest;                      // value that an equality row is held at
+  RowSoftness<T> drive_soft;
+  T target_position, target_speed;
+  T speed_share;  // of the target speed: c / (c + h k)
+  T most;         // of the drive or of a soft point, N s or N m s in a substep
+  RowSoftness<T> limit_soft;
+  T low, high;
+  T ground_a[3], ground_b[3], ratio;  // of a pulley
+};
+
+struct JointPart {
+  PartKind kind;
+  std::int32_t joint;           // of the plan
+  std::int32_t body_a, body_b;  // state bodies; WorldTables::bodies: the world
+  bool equality;                // a row held at its rest
+  bool drive, low, high;        // what else a row has
+  bool spring;                  // a point that is drawn with limited force
+};
+
+}  // namespace manyworlds::kernels

@@ -1,0 +1,241 @@
+// Joints as parts, and their numbers.
+#include <algorithm>
+#include <cmath>
+
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+using kernels::PartKind;
+using kernels::RowSoftness;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kUnlimited = 1e30;  // N s
+
+// Where a joint's frame is on one side, as the kernels see it.
+struct Side {
+  int body = 0;  // state body, or the number of them: the world
+  Vec3 anchor = Vec3::Zero();
+  Quat frame = Quat::Identity();
+};
+
+Side side_of(const PlanData& plan, int scene_body, const Frame& frame) {
+  Side out;
+  out.body = static_cast<int>(plan.bodies.size());
+  out.anchor = frame.position;
+  out.frame = frame.rotation.normalized();
+  if (scene_body < 0) return out;
+  const int state_body = plan.state_body[static_cast<std::size_t>(scene_body)];
+  if (state_body >= 0) {
+    const PlanBody& b = plan.bodies[static_cast<std::size_t>(state_body)];
+    out.body = state_body;
+    out.anchor = b.principal.conjugate() * (frame.position - b.center);
+    out.frame = b.principal.conjugate() * out.frame;
+  } else {
+    const Body& b = plan.scene.bodies[static_cast<std::size_t>(scene_body)];
+    const Quat rotation = b.rotation.normalized();
+    out.anchor = b.position + rotation * frame.position;
+    out.frame = rotation * out.frame;
+  }
+  return out;
+}
+
+Vec3 in_world(const Scene& scene, int body, const Vec3& point) {
+  if (body < 0) return point;
+  const Body& b = scene.bodies[static_cast<std::size_t>(body)];
+  return b.position + b.rotation.normalized() * point;
+}
+
+class Builder {
+ public:
+  Builder(PlanData& plan, int index)
+      : plan_(plan),
+        joint_(plan.scene.joints[static_cast<std::size_t>(index)]),
+        index_(index),
+        h_(plan.scene.options.dt / plan.scene.options.substeps) {}
+
+  void build() {
+    std::visit([this](const auto& type) { add(type); }, joint_.type);
+  }
+
+ private:
+  bool spatial() const { return plan_.scene.space == Space::spatial; }
+
+  RowSoftness<double> soft(double frequency, double damping_ratio) const {
+    if (frequency == 0) return {0, 0, 0};
+    const double omega = 2 * kPi * frequency;
+    const double a1 = 2 * damping_ratio + h_ * omega;
+    return {omega / a1, 1 / (h_ * omega * a1), 0};
+  }
+  RowSoftness<double> hard() const {
+    const Options& o = plan_.scene.options;
+    return soft(o.joint_frequency.value_or(0.25 / h_), o.joint_damping_ratio);
+  }
+  RowSoftness<double> soft(const Spring& s) const {
+    if (s.frequency > 0) return soft(s.frequency, s.damping_ratio);
+    const double damping = s.damping + h_ * s.stiffness;
+    return {s.stiffness / damping, 0, 1 / (h_ * damping)};
+  }
+  // How much of a target speed a spring and damper follow in a substep.
+  double speed_share(const Spring& s) const {
+    if (s.frequency > 0) {
+      return 2 * s.damping_ratio / (2 * s.damping_ratio + h_ * 2 * kPi * s.frequency);
+    }
+    return s.damping / (s.damping + h_ * s.stiffness);
+  }
+
+  PlanPart& part(PartKind kind) {
+    PlanPart& out = plan_.parts.emplace_back();
+    const Side a = side_of(plan_, joint_.body_a, joint_.frame_a),
+               b = side_of(plan_, joint_.body_b, joint_.frame_b);
+    out.what.kind = kind;
+    out.what.joint = index_;
+    out.what.body_a = a.body;
+    out.what.body_b = b.body;
+    put(a.anchor, out.numbers.anchor_a);
+    put(b.anchor, out.numbers.anchor_b);
+    put(a.frame, out.numbers.frame_a);
+    put(b.frame, out.numbers.frame_b);
+    out.numbers.soft = hard();
+    const Options& o = plan_.scene.options;
+    out.numbers.pull = std::min(o.joint_pull_speed * o.length_unit, kUnlimited);
+    out.numbers.turn_pull = std::min(o.joint_pull_speed, kUnlimited);
+    out.numbers.limit_soft = hard();
+    out.numbers.most = kUnlimited;
+    out.numbers.ratio = 1;
+    return out;
+  }
+  static void put(const Vec3& from, double* to) { std::copy_n(from.data(), 3, to); }
+  void put(const Quat& q, double* to) const {
+    if (spatial()) {
+      to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
+    } else {
+      const double angle = 2 * std::atan2(q.z(), q.w());
+      to[0] = std::cos(angle), to[1] = std::sin(angle);
+    }
+  }
+
+  void limit(PlanPart& p, const std::optional<Limit>& limit) const {
+    if (!limit) return;
+    p.what.low = std::isfinite(limit->low);
+    p.what.high = std::isfinite(limit->high);
+    if (p.what.low) p.numbers.low = limit->low;
+    if (p.what.high) p.numbers.high = limit->high;
+    if (limit->spring) p.numbers.limit_soft = soft(*limit->spring);
+  }
+  void drive(PlanPart& p, const std::optional<Drive>& drive) const {
+    if (!drive) return;
+    p.what.drive = true;
+    p.numbers.target_position = drive->target_position;
+    p.numbers.target_speed = drive->target_speed;
+    p.numbers.speed_share = 1;
+    if (drive->spring) {
+      p.numbers.drive_soft = soft(*drive->spring);
+      p.numbers.speed_share = speed_share(*drive->spring);
+    }
+    p.numbers.most = std::min(h_ * drive->max_force, kUnlimited);
+  }
+
+  void add(const BallJoint& j) {
+    if (j.cone && spatial()) {
+      PlanPart& p = part(PartKind::cone);
+      limit(p, Limit{-std::numeric_limits<double>::infinity(), *j.cone, std::nullopt});
+    }
+    if (j.twist) limit(part(PartKind::turn), j.twist);
+    part(PartKind::point);
+  }
+  void add(const HingeJoint& j) {
+    if (j.limit || j.drive) {
+      PlanPart& p = part(PartKind::turn);
+      limit(p, j.limit), drive(p, j.drive);
+    }
+    if (spatial()) part(PartKind::swing);
+    part(PartKind::point);
+  }
+  void add(const SliderJoint& j) {
+    if (j.limit || j.drive) {
+      PlanPart& p = part(PartKind::slide);
+      limit(p, j.limit), drive(p, j.drive);
+    }
+    part(PartKind::lock);
+    part(PartKind::line);
+  }
+  void add(const FixedJoint&) {
+    part(PartKind::lock);
+    part(PartKind::point);
+  }
+  void add(const DistanceJoint& j) {
+    const double length =
+        j.length.value_or((in_world(plan_.scene, joint_.body_a, joint_.frame_a.position) -
+                           in_world(plan_.scene, joint_.body_b, joint_.frame_b.position))
+                              .norm());
+    PlanPart& p = part(PartKind::distance);
+    p.what.equality = !j.limit && !j.spring;
+    p.numbers.rest = length;
+    if (j.spring) drive(p, Drive{length, 0, j.spring});
+    limit(p, j.limit);
+  }
+  void add(const WheelJoint& j) {
+    PlanPart& s = part(PartKind::slide);
+    drive(s, Drive{0, 0, j.suspension}), limit(s, j.travel);
+    if (j.drive) drive(part(PartKind::turn), j.drive);
+    if (spatial()) part(PartKind::swing);
+    part(PartKind::line);
+  }
+  void add(const PulleyJoint& j) {
+    const Vec3 a = in_world(plan_.scene, joint_.body_a, joint_.frame_a.position),
+               b = in_world(plan_.scene, joint_.body_b, joint_.frame_b.position);
+    PlanPart& p = part(PartKind::pulley);
+    p.what.equality = true;
+    put(j.ground_a, p.numbers.ground_a);
+    put(j.ground_b, p.numbers.ground_b);
+    p.numbers.ratio = j.ratio;
+    p.numbers.rest = j.length.value_or((a - j.ground_a).norm() + j.ratio * (b - j.ground_b).norm());
+  }
+  void add(const TargetJoint& j) {
+    PlanPart& p = part(PartKind::point);
+    p.what.spring = true;
+    p.numbers.soft = soft(j.spring);
+    p.numbers.most = std::min(h_ * j.max_force, kUnlimited);
+  }
+
+  PlanData& plan_;
+  const Joint& joint_;
+  int index_;
+  double h_;
+};
+
+}  // namespace
+
+void collect_joints(PlanData& plan) {
+  plan.parts.clear();
+  for (std::size_t i = 0; i < plan.scene.joints.size(); ++i) {
+    Builder(plan, static_cast<int>(i)).build();
+  }
+}
+
+std::set<std::pair<int, int>> joined_bodies(const Scene& scene) {
+  std::set<std::pair<int, int>> out;
+  for (const Joint& j : scene.joints) {
+    if (!j.collide && j.body_a >= 0) out.insert(std::minmax(j.body_a, j.body_b));
+  }
+  return out;
+}
+
+Joint joint_at(const Scene& scene, int body_a, int body_b, const Frame& frame, JointType type) {
+  const auto on = [&](int body) {
+    if (body < 0) return frame;
+    const Body& b = scene.bodies.at(static_cast<std::size_t>(body));
+    const Quat back = b.rotation.normalized().conjugate();
+    return Frame{back * (frame.position - b.position), back * frame.rotation};
+  };
+  Joint out;
+  out.type = std::move(type);
+  out.body_a = body_a, out.body_b = body_b;
+  out.frame_a = on(body_a), out.frame_b = on(body_b);
+  return out;
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,207 @@
+// Joints and the laws: the same bits whatever the lane, threads, instruction set and layout, after
+// snapshots, beside worlds that go wrong, and when asleep.
+#include <catch2/catch.hpp>
+
+#include <limits>
+
+#include "tests/support/joints.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+constexpr Space kSpaces[] = {Space::planar, Space::spatial};
+
+// Every type of joint, over a ground that some of the bodies fall on.
+Scene contraption(Space space) {
+  Scene scene = empty_scene(space, 9.81);
+  scene.add(ground(space));
+  const Vec3 up = up_of(space);
+  const auto add = [&](const Vec3& place) {
+    Body body = body_of(shape_of(box_of(space, {0.3, 0.2, 0.1})), place);
+    body.jitter.position = Vec3::UnitX() * 0.05;
+    body.jitter.angle = 0.1;
+    return scene.add(body);
+  };
+  const auto join = [&](int a, int b, const Vec3& where, JointType type) {
+    scene.add(joint_at(scene, a, b, at(where, hinge_axes(space)), std::move(type)));
+  };
+  const Spring spring{0, 0, 4, 0.5};
+  int last = -1;
+  const JointType types[] = {
+      HingeJoint{Limit{-1, 1, std::nullopt}, std::nullopt},
+      HingeJoint{std::nullopt, Drive{0.5, 0, spring, 100}},
+      SliderJoint{Limit{-0.2, 0.2, spring}, Drive{0, 1, std::nullopt, 50}},
+      FixedJoint{},
+      DistanceJoint{std::nullopt, std::nullopt, spring},
+      WheelJoint{spring, Limit{-0.1, 0.1, std::nullopt}, Drive{0, 10, std::nullopt, 20}},
+      TargetJoint{spring, 1e3},
+      DistanceJoint{},
+  };
+  for (std::size_t i = 0; i < std::size(types); ++i) {
+    const double x = 0.7 * static_cast<double>(i);
+    const int body = add(Vec3(x, 0, 0) + 1.5 * up);
+    join(last, body, Vec3(x - 0.35, 0, 0) + 1.5 * up, types[i]);
+    last = body;
+  }
+  if (space == Space::spatial) {
+    const int ball = add({2, 2, 3});
+    join(-1, ball, {1.5, 2, 3}, BallJoint{0.6, Limit{-0.2, 0.2, std::nullopt}});
+  }
+  const int a = add(Vec3(-3, 0, 0) + 2 * up), b = add(Vec3(-2, 0, 0) + 2 * up);
+  Joint rope;
+  rope.body_a = a, rope.body_b = b;
+  rope.type = PulleyJoint{Vec3(-3, 0, 0) + 5 * up, Vec3(-2, 0, 0) + 5 * up, 1.5, std::nullopt};
+  scene.add(rope);
+  return scene;
+}
+
+std::vector<std::uint64_t> hashes_after(const Plan& plan, const BatchOptions& options, int steps) {
+  Batch batch(plan, options);
+  batch.step(steps);
+  std::vector<std::uint64_t> out;
+  for (int w = 0; w < batch.worlds(); ++w) out.push_back(batch.hash(w));
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("joints have the same bits on every instruction set, layout and thread count",
+          "[fast][bits][joint]") {
+  for (Space space : kSpaces) {
+    const Plan plan = compile(contraption(space));
+    for (Precision precision : {Precision::f32, Precision::f64}) {
+      std::vector<std::uint64_t> reference;
+      for (const Table& table : all_tables()) {
+        if (table.precision != precision) continue;
+        for (ContactLayout layout : {ContactLayout::dense, ContactLayout::rows}) {
+          for (int threads : {1, 3}) {
+            BatchOptions options = options_of(table, 21, threads);
+            options.layout = layout;
+            options.seed = 5;
+            INFO(name(table) << " threads " << threads);
+            const auto hashes = hashes_after(plan, options, 40);
+            if (reference.empty()) reference = hashes;
+            CHECK(hashes == reference);
+          }
+        }
+      }
+      if (reference.empty()) continue;
+      CHECK(reference[0] != reference[1]);
+    }
+  }
+}
+
+TEST_CASE("a jointed world has its bits wherever it is in a batch", "[fast][bits][joint]") {
+  for (Space space : kSpaces) {
+    const Plan plan = compile(contraption(space));
+    const Table table = widest_tables().front();
+    BatchOptions options = options_of(table, 20);
+    const auto reference = hashes_after(plan, options, 30);
+    for (int first = 0; first < 20; ++first) {
+      options.worlds = 1 + first % 3;
+      options.seed = static_cast<std::uint64_t>(first);
+      CHECK(hashes_after(plan, options, 30)[0] == reference[static_cast<std::size_t>(first)]);
+    }
+  }
+}
+
+TEST_CASE("jointed worlds go on from snapshots and copies bit by bit", "[fast][bits][joint]") {
+  for (Space space : kSpaces) {
+    for (const bool sleep : {false, true}) {
+      const Plan plan = compile(contraption(space));
+      INFO((space == Space::planar ? "planar" : "spatial") << " sleep " << sleep);
+      BatchOptions options = options_of(widest_tables().front(), 11);
+      options.sleep = sleep;
+      Batch batch(plan, options);
+      batch.step(50);
+      const Snapshot saved = batch.save();
+      batch.copy_world(3, 8);
+      batch.step(50);
+      CHECK(batch.hash(3) == batch.hash(8));
+      const std::uint64_t hash = batch.hash(5);
+      batch.restore(saved);
+      batch.step(50);
+      CHECK(batch.hash(5) == hash);
+      Batch scalar(plan, [&] {
+        BatchOptions o = options;
+        o.isa = Isa::scalar;
+        return o;
+      }());
+      scalar.restore(saved);
+      scalar.step(50);
+      CHECK(scalar.hash() == batch.hash());
+    }
+  }
+}
+
+TEST_CASE("a jointed world that goes wrong leaves its neighbours alone", "[fast][bits][joint]") {
+  for (Space space : kSpaces) {
+    const Plan plan = compile(contraption(space));
+    for (const Table& table : all_tables()) {
+      INFO(name(table));
+      Batch spoilt(plan, options_of(table, 9)), sound(plan, options_of(table, 9));
+      spoilt.step(5), sound.step(5);
+      std::vector<double> v = values(spoilt, Field::linear_velocity, 4);
+      v[3] = std::numeric_limits<double>::quiet_NaN();
+      spoilt.write(Field::linear_velocity, 4, v);
+      spoilt.step(30), sound.step(30);
+      CHECK(frozen(spoilt.status(4)));
+      for (int w = 0; w < 9; ++w) {
+        if (w != 4) CHECK(spoilt.hash(w) == sound.hash(w));
+      }
+    }
+  }
+}
+
+TEST_CASE("a disabled body lets go of its joints", "[fast][joint]") {
+  for (Space space : kSpaces) {
+    Scene scene = empty_scene(space, 10);
+    for (int i = 0; i < 2; ++i) {
+      scene.add(uniform_rod(space, 1, 1, Vec3(0.5 + i, 0, 0)));
+      scene.add(joint_at(scene, i - 1, i, at({static_cast<double>(i), 0, 0}, hinge_axes(space)),
+                         HingeJoint{}));
+    }
+    const Plan plan = compile(scene);
+    for (const Table& table : widest_tables()) {
+      Batch batch(plan, options_of(table, 3));
+      batch.set_enabled(1, 0, false);
+      batch.step(60);
+      INFO(name(table));
+      CHECK(velocity(batch, 1, 1).dot(up_of(space)) == Approx(-10).epsilon(1e-5));
+      CHECK(std::abs(velocity(batch, 0, 1).dot(up_of(space)) + 10) > 0.1);
+      CHECK(batch.hash(0) == batch.hash(2));
+    }
+  }
+}
+
+TEST_CASE("jointed bodies fall asleep and wake together", "[fast][sleep][joint]") {
+  for (Space space : kSpaces) {
+    for (const bool contacts : {false, true}) {
+      Scene scene = empty_scene(space, 10);
+      if (contacts) scene.add(ground(space));
+      for (int i = 0; i < 3; ++i) {
+        Body link = uniform_rod(space, 1, 1, 6 * up_of(space) - (i + 0.5) * up_of(space));
+        link.angular_drag = link.linear_drag = 2;
+        const int body = scene.add(link);
+        scene.add(joint_at(scene, i == 0 ? -1 : body - 1, body,
+                           at((6.0 - i) * up_of(space), hinge_axes(space)), HingeJoint{}));
+      }
+      BatchOptions options = options_of(widest_tables().front(), 2);
+      options.sleep = true;
+      Batch batch(compile(scene), options);
+      batch.step(300);
+      CHECK(batch.asleep(0));
+      const std::uint64_t at_rest = batch.hash(0);
+      batch.step(60);
+      CHECK(batch.hash(0) == at_rest);
+      batch.add_impulse(0, 2, Vec3(1, 0, 0));
+      batch.step(20);
+      CHECK(std::abs(spin(batch, 0, 0).norm()) > 1e-3);
+      CHECK(batch.asleep(1));
+      CHECK(batch.hash(1) == at_rest);
+    }
+  }
+}
+
+}  // namespace manyworlds::test

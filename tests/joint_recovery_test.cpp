@@ -1,0 +1,139 @@
+// Joints that begin far apart, carry far more than they weigh, or are shaken.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "tests/support/joints.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+constexpr Space kSpaces[] = {Space::planar, Space::spatial};
+
+// A circle or sphere of 0.2 m that collides with nothing.
+int add_bead(Scene& scene, const Vec3& position) {
+  Body bead = body_of(shape_of(round_of(scene.space, 0.2)), position);
+  bead.shapes[0].filter.mask = 0;
+  return scene.add(bead);
+}
+JointType free_joint(Space space) {
+  return space == Space::planar ? JointType(HingeJoint{}) : JointType(BallJoint{});
+}
+
+}  // namespace
+
+TEST_CASE("a chain whose joints begin a metre apart contracts gently", "[fast][joint]") {
+  for (Space space : kSpaces) {
+    // Without gravity: a hanging one lashes faster than it contracts.
+    Scene scene = empty_scene(space, 0);
+    scene.options.joint_pull_speed = 1;
+    scene.options.substeps = 8;
+    for (int i = 0; i < 40; ++i) {
+      const int bead = add_bead(scene, {2.0 * i, 0, 0});
+      Joint joint;
+      joint.type = free_joint(space);
+      joint.body_a = bead - 1, joint.body_b = bead;
+      joint.frame_a.position = {bead == 0 ? -0.5 : 0.5, 0, 0};
+      joint.frame_b.position = {-0.5, 0, 0};
+      scene.add(joint);
+    }
+    const Plan plan = compile(scene);
+    for (const Table& table : widest_tables()) {
+      Batch batch(plan, options_of(table));
+      INFO(name(table) << (space == Space::planar ? " planar" : " spatial"));
+      double fastest = 0;
+      for (int i = 0; i < 180; ++i) {
+        batch.step();
+        fastest = std::max(fastest, max_speed(batch, 0));
+      }
+      CHECK(fastest < 50);
+      CHECK(worst_gap(batch, 0) < 1e-2);
+    }
+  }
+}
+
+TEST_CASE("a ball of 672 links' mass swings on its chain", "[joint]") {
+  Scene scene = empty_scene(Space::planar, 10);
+  scene.options.density = 20;
+  scene.options.substeps = 12;  // 4 let its links come 0.24 m apart, 8 0.06 m
+  constexpr int kLinks = 40;
+  const Quat along_x(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
+  for (int i = 0; i <= kLinks; ++i) {
+    const bool ball = i == kLinks;
+    Body link = body_of(shape_of(ball ? Geometry(Circle{8}) : Geometry(Capsule{0.125, 0.5})),
+                        Vec3(ball ? kLinks + 8 : i + 0.5, 0, 0));
+    if (!ball) link.shapes[0].rotation = along_x;
+    link.shapes[0].filter.mask = 0;
+    link.linear_drag = link.angular_drag = 0.1;
+    const int body = scene.add(link);
+    scene.add(joint_at(scene, body - 1, body, at({static_cast<double>(i), 0, 0}), HingeJoint{}));
+  }
+  const Plan plan = compile(scene);
+  for (const Table& table : widest_tables()) {
+    Batch batch(plan, options_of(table));
+    INFO(name(table));
+    double worst = 0, fastest = 0;
+    for (int i = 0; i < 600; ++i) {
+      batch.step();
+      worst = std::max(worst, worst_gap(batch, 0));
+      fastest = std::max(fastest, max_speed(batch, 0));
+    }
+    CHECK(worst < 0.05);
+    CHECK(fastest < 60);  // free fall from 48 m: 31 m/s, and the lashing tail
+  }
+}
+
+TEST_CASE("every joint lives through half a minute of shaking", "[joint]") {
+  for (Space space : kSpaces) {
+    std::vector<JointType> types = {
+        HingeJoint{},
+        HingeJoint{Limit{-0.5, 0.5, std::nullopt}, Drive{0.3, 0, Spring{100, 5, 0, 0}, 50}},
+        SliderJoint{Limit{-0.5, 0.5, std::nullopt}, std::nullopt},
+        FixedJoint{},
+        DistanceJoint{},
+        DistanceJoint{1.0, Limit{0.5, 1.5, std::nullopt}, Spring{0, 0, 3, 0.5}},
+        WheelJoint{Spring{0, 0, 3, 0.5}, Limit{-0.3, 0.3, std::nullopt},
+                   Drive{0, 5, std::nullopt, 10}},
+        TargetJoint{Spring{0, 0, 5, 1}, 1e4},
+    };
+    if (space == Space::spatial) types.push_back(BallJoint{0.5, Limit{-0.3, 0.3, std::nullopt}});
+    for (std::size_t k = 0; k < types.size(); ++k) {
+      Scene scene = empty_scene(space, 10);
+      for (int i = 0; i < 3; ++i) {
+        scene.add(rod_of(space, 1, {0.1, 0.15, 0.2}, {static_cast<double>(i), 0, 0}));
+        scene.add(joint_at(scene, i - 1, i, at({i - 0.5, 0, 0}), types[k]));
+        if (std::holds_alternative<DistanceJoint>(types[k])) {
+          scene.joints.back().frame_b.position = {0.5, 0, 0};
+        }
+      }
+      const Plan plan = compile(scene);
+      for (const Table& table : widest_tables()) {
+        Batch batch(plan, options_of(table));
+        INFO(name(table) << (space == Space::planar ? " planar" : " spatial") << " type " << k);
+        Random random(7);
+        double fastest = 0;
+        for (int i = 0; i < 1800; ++i) {
+          for (int b = 0; b < 3; ++b) {
+            Vec3 force = random.in_cube(100);
+            if (space == Space::planar) force.z() = 0;
+            batch.add_force(0, b, force);
+            batch.add_torque(0, b, Vec3(0, 0, random.uniform(-10, 10)));
+          }
+          batch.step();
+          fastest = std::max(fastest, max_speed(batch, 0));
+        }
+        CHECK(batch.status(0) == Status::ok);
+        CHECK(fastest < 100);
+        batch.step(5);
+        const bool holds = std::holds_alternative<HingeJoint>(types[k]) ||
+                           std::holds_alternative<FixedJoint>(types[k]) ||
+                           std::holds_alternative<BallJoint>(types[k]);
+        if (holds) CHECK(worst_gap(batch, 0) < 0.02);
+      }
+    }
+  }
+}
+
+}  // namespace manyworlds::test

@@ -1,0 +1,69 @@
+// Jointed scenes, and what their joints do.
+#pragma once
+
+#include "tests/support/scenes.hpp"
+
+namespace manyworlds::test {
+
+// A body whose mass properties are given and whose shapes touch nothing.
+inline Body rod_of(Space space, double mass, const Vec3& inertia, const Vec3& position) {
+  Body body = body_of(shape_of(cube_of(space, 0.1)), position);
+  body.shapes[0].filter.mask = 0;
+  MassProperties m;
+  m.mass = mass;
+  m.inertia = inertia.asDiagonal();
+  body.mass_properties = m;
+  return body;
+}
+// A uniform rod along x, thin but for what keeps its inertia sound.
+inline Body uniform_rod(Space space, double mass, double length, const Vec3& position) {
+  const double across = mass * length * length / 12;
+  return rod_of(space, mass, {across * 1e-3, across, across}, position);
+}
+
+inline Frame at(const Vec3& position, const Quat& rotation = Quat::Identity()) {
+  return {position, rotation};
+}
+// Turns z to y: a hinge about y, for spatial scenes that swing in the plane of x and z.
+inline Quat z_to_y() { return Quat(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX())); }
+inline Quat hinge_axes(Space space) {
+  return space == Space::planar ? Quat(Quat::Identity()) : z_to_y();
+}
+
+// Frame of a scene body in the world, now; -1: the world.
+inline Frame frame_now(const Batch& batch, int world, int scene_body, const Frame& frame) {
+  if (scene_body < 0) return frame;
+  const Plan& plan = batch.plan(batch.kind_of(world));
+  const int b = plan.state_body(scene_body);
+  Vec3 x;
+  Quat q;
+  if (b < 0) {
+    const Body& body = plan.scene().bodies[static_cast<std::size_t>(scene_body)];
+    x = body.position, q = body.rotation.normalized();
+  } else {
+    x = position(batch, world, b), q = rotation(batch, world, b);
+  }
+  return {x + q * frame.position, q * frame.rotation};
+}
+// How far the anchors of a joint lie apart, m.
+inline double anchor_gap(const Batch& batch, int world, int joint) {
+  const Scene& scene = batch.plan(batch.kind_of(world)).scene();
+  const Joint& j = scene.joints[static_cast<std::size_t>(joint)];
+  return (frame_now(batch, world, j.body_a, j.frame_a).position -
+          frame_now(batch, world, j.body_b, j.frame_b).position)
+      .norm();
+}
+inline double worst_gap(const Batch& batch, int world) {
+  double worst = 0;
+  const auto joints = static_cast<int>(batch.plan(batch.kind_of(world)).scene().joints.size());
+  for (int j = 0; j < joints; ++j) worst = std::max(worst, anchor_gap(batch, world, j));
+  return worst;
+}
+
+// Kinetic and potential energy under the scene's gravity, J.
+inline double energy_of(const Batch& batch, int world) {
+  const Energy e = batch.energy(world);
+  return e.kinetic + e.potential;
+}
+
+}  // namespace manyworlds::test
