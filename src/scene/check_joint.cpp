@@ -16,8 +16,8 @@ class JointChecker {
       : check_(std::move(checker)), scene_(scene), joint_(joint) {}
 
   void run() {
-    const bool frames =
-        check_frame("frame_a", joint_.frame_a) & check_frame("frame_b", joint_.frame_b);
+    bool frames = check_frame("frame_a", joint_.frame_a);
+    frames &= check_frame("frame_b", joint_.frame_b);
     const bool bodies = check_bodies();
     std::visit([this](const auto& type) { check(type); }, joint_.type);
     if (bodies && frames && joins_anchors()) check_gap();
@@ -25,8 +25,9 @@ class JointChecker {
 
  private:
   bool check_frame(const std::string& name, const Frame& frame) {
-    return check_.finite(name + ".position", frame.position, "m") &
-           check_.rotation(name + ".rotation", frame.rotation);
+    bool good = check_.finite(name + ".position", frame.position, "m");
+    good &= check_.rotation(name + ".rotation", frame.rotation);
+    return good;
   }
 
   const Body* body(int index) const {
