@@ -54,9 +54,9 @@ fetch_mujoco() {
 # Configures build/release when it was not, or when the presets changed. Ninja itself reconfigures
 # when a CMake file or the list of sources changed.
 configure() {
-  local mjcf=$1 record=$2 ccache=$3
+  local mjcf=$1 record=$2
   local arguments=(--preset release -D "MW_MJCF=$mjcf" -D "MW_MUJOCO_DIR=$mujoco_dir"
-    -D "MW_RECORD=$record" -D "MW_CCACHE=$ccache")
+    -D "MW_RECORD=$record")
   local stamp="$build_dir/configured_with"
   if [[ -f $build_dir/build.ninja && $stamp -nt $root/CMakePresets.json &&
     $(<"$stamp") == "${arguments[*]}" ]]; then
@@ -70,16 +70,15 @@ configure() {
 # build TARGET: everything up to an up-to-date TARGET in build/release. Two at a time wait for one
 # another.
 build() {
-  local target=$1 mjcf=${MW_MJCF:-ON} record=${MW_RECORD:-ON} ccache=${MW_CCACHE:-ON}
+  local target=$1 mjcf=${MW_MJCF:-ON} record=${MW_RECORD:-ON}
   [[ $mjcf == ON || $mjcf == OFF ]] || fail "MW_MJCF is '$mjcf', must be ON or OFF"
   [[ $record == ON || $record == OFF ]] || fail "MW_RECORD is '$record', must be ON or OFF"
-  [[ $ccache == ON || $ccache == OFF ]] || fail "MW_CCACHE is '$ccache', must be ON or OFF"
   install_packages "${packages[@]}"
   mkdir -p "$root/build"
   exec 9>"$root/build/release.lock"
   flock 9
   [[ $mjcf == OFF ]] || fetch_mujoco
-  configure "$mjcf" "$record" "$ccache"
+  configure "$mjcf" "$record"
   cmake --build "$build_dir" --target "$target" --parallel "$(nproc)" >&2 9>&- ||
     fail "the build failed"
   exec 9>&-
