@@ -14,7 +14,7 @@ inline constexpr Real kMaxPosition = Real(1e10);  // m
 inline constexpr Real kMaxSpeed = Real(1e5);      // m/s
 inline constexpr Real kMaxSpin = Real(1e6);       // rad/s
 inline constexpr Real kMaxSweep = Real(1e6);      // rad, in a step
-inline constexpr Real kMaxOrientation = Real(1e3);
+inline constexpr Real kMinOrientation = Real(1e-3), kMaxOrientation = Real(1e3);
 inline constexpr Real kMaxFinite = sizeof(Real) == 4 ? Real(3.4028234e38) : Real(1.79769e308);
 
 using kernels::kFrozen, kernels::kNonFinite, kernels::kOutOfBounds, kernels::kOutOfRange;
@@ -48,7 +48,9 @@ struct LaneCheck {
     if (t.has_orientation) {  // only a written value can be bad: steps normalise
       q = load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation));
       // Passes that push out may turn a body far that ends up slow.
-      ok = ok & in_range(q, kMaxOrientation) & in_range(moved.w, kMaxSweep);
+      // One without a length has no direction to normalise.
+      ok = ok & in_range(q, kMaxOrientation) & in_range(moved.w, kMaxSweep) &
+           (Float(kMinOrientation * kMinOrientation) <= dot(q, q));
     }
     if constexpr (kIdle) ok = ok | mask_from_bits(idle_lanes(g, body) & kAllLanes);
     good = good & ok;

@@ -281,6 +281,29 @@ TEST_CASE("busy neighbours leave negative zeros alone", "[fast][bits]") {
   }
 }
 
+TEST_CASE("a body without an orientation freezes its world", "[fast][bits]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (const bool contacts : {false, true}) {
+      Scene scene = crowd(space);
+      for (Body& body : scene.bodies) {
+        if (!contacts) body.shapes[0].filter.mask = 0;
+      }
+      const Plan plan = compile(scene);
+      for (const Table& table : all_tables()) {
+        INFO(name(table) << " contacts " << contacts);
+        Batch spoilt(plan, options_of(table, 9)), sound(plan, options_of(table, 9));
+        std::vector<double> q = values(spoilt, Field::orientation, 4);
+        const auto n = static_cast<std::size_t>(components(Field::orientation, space));
+        std::fill_n(q.begin() + static_cast<std::ptrdiff_t>(n), n, 0.0);
+        spoilt.write(Field::orientation, 4, q);
+        spoilt.step(3), sound.step(3);
+        CHECK(has(spoilt.status(4), Status::out_of_range));
+        for (int w = 0; w < 9; ++w) CHECK((spoilt.hash(w) == sound.hash(w)) == (w != 4));
+      }
+    }
+  }
+}
+
 TEST_CASE("a world with a NaN is frozen and flagged, the others keep their bits", "[fast][bits]") {
   for (Space space : {Space::planar, Space::spatial}) {
     const Plan plan = compile(crowd(space));
