@@ -161,7 +161,10 @@ class JointChecker {
     check_.finite("ground_b", j.ground_b, "m");
     check_.size("ratio", j.ratio);
     if (j.length) check_.not_negative("length", *j.length, "m");
-    if (joint_.body_a < 0) check_.add("body_a", "is the world, must be a body of a pulley");
+    const Body* a = body(joint_.body_a);
+    if (joint_.body_a == -1 || (a && a->motion == Motion::fixed)) {
+      check_.add("body_a", "does not move, must be a body that hangs on the rope");
+    }
   }
   void check(const TargetJoint& j) {
     check(j.spring, "spring");
