@@ -20,9 +20,7 @@ struct GroupView {
   std::uint32_t* status;  // [lane], bits of Status
   const Real* force;      // [body][force 3, torque 3][lane], or nullptr
   ConstantBlocks<Real> constants;
-  Real* joint_impulse;             // [part][kPartImpulses][lane]
-  const std::uint32_t* joint_off;  // [joint], lanes in which it does not act; nullptr: none
-  const Real* target;              // [part][position, speed][lane], or nullptr: the Plan's
+  Real* joint_impulse;  // [part][kPartImpulses][lane]
 
   // Which bodies take part, as lanes of each body; nullptr: all do. Sleep needs all of them,
   // disabled bodies the first three.

@@ -51,7 +51,6 @@ struct JointConstants {
 
 struct JointPart {
   PartKind kind;
-  std::int32_t joint;           // of the plan
   std::int32_t body_a, body_b;  // state bodies; WorldTables::bodies: the world
   bool equality;                // a row held at its rest
   bool drive, low, high;        // what else a row has

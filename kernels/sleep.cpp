@@ -39,8 +39,7 @@ bool wake_once(const Tables& t, const Group& g, Work& w, std::uint32_t mixed) {
 // Lanes in which a part holds two moving bodies together.
 std::uint32_t joined_lanes(const Tables& t, const Group& g, const kernels::JointPart& part) {
   if (part.body_a == t.bodies) return 0;
-  const std::uint32_t off = g.joint_off ? g.joint_off[part.joint] : 0;
-  return kAllLanes & ~(off | g.absent[part.body_a] | g.absent[part.body_b]);
+  return kAllLanes & ~(g.absent[part.body_a] | g.absent[part.body_b]);
 }
 
 // Does the stored manifold of this key stay as it is, because nobody in it is awake?

@@ -40,9 +40,13 @@ void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint
         inverse(sum_of(load_as<Inertia>(s.inertia_a[0]), load_as<Inertia>(s.inertia_b[0]))));
 }
 
+// Its Jacobian stays what it is.
+template <class S, bool kDense, bool kMoved>
+MW_INLINE void refresh(const Work&, const JointPart&, const Joint&, LockRows<S>&) {}
+
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Work& w, const JointPart&, const Joint& numbers, LockRows<S>& s,
-                     PartVelocities<S, kDense>& v) {
+MW_INLINE void solve(const Tables&, const Work& w, const JointPart&, const Joint& numbers,
+                     LockRows<S>& s, PartVelocities<S, kDense>& v) {
   using Ang = typename S::Ang;
   const auto before = load_as<Ang>(s.impulse[0]);
   if constexpr (kPass == Pass::warm_start) {

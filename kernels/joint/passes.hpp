@@ -40,39 +40,13 @@ MW_INLINE void for_each_part(const Tables& t, Work& w, Visit visit) {
   }
 }
 
-template <class S, bool kDense, Pass kPass, class Rows>
-MW_INLINE void solve_part(const Tables&, const Group&, const Work& w, const JointPart& part, int,
-                          const Joint& numbers, Rows& s, PartVelocities<S, kDense>& v) {
-  solve<S, kDense, kPass>(w, part, numbers, s, v);
-}
-template <class S, bool kDense, Pass kPass, bool kLinear>
-MW_INLINE void solve_part(const Tables& t, const Group& g, const Work& w, const JointPart& part,
-                          int index, const Joint& numbers, Row<S, kLinear>& s,
-                          PartVelocities<S, kDense>& v) {
-  solve<S, kLinear, kDense, kPass>(t, g, w, part, index, numbers, s, v);
-}
-
-template <class S, bool kDense>
-MW_INLINE void refresh_first(const Work&, const JointPart&, const Joint&, LockRows<S>&) {}
-template <class S, bool kDense, class Rows>
-MW_INLINE void refresh_first(const Work& w, const JointPart& part, const Joint& numbers, Rows& s) {
-  refresh<S, kDense, false>(w, part, numbers, s);
-}
-
 template <class S, bool kDense>
 struct JointPasses {
-  // Lanes in which a part acts: its joint is there, so are its bodies, and one of them is awake.
+  // Lanes in which a part acts: its bodies are there, and one of them is awake.
   static std::uint32_t active_lanes(const Tables& t, const Group& g, const JointPart& part) {
-    std::uint32_t lanes = kAllLanes;
-    if (g.joint_off) lanes &= ~g.joint_off[part.joint];
-    if (!has_idle_bodies(g)) return lanes;
-    std::uint32_t idle = idle_lanes(g, part.body_b);
-    lanes &= ~g.absent[part.body_b];
-    if (part.body_a != t.bodies) {
-      idle &= idle_lanes(g, part.body_a);
-      lanes &= ~g.absent[part.body_a];
-    }
-    return lanes & ~idle;
+    if (!has_idle_bodies(g)) return kAllLanes;
+    if (part.body_a == t.bodies) return kAllLanes & ~idle_lanes(g, part.body_b);
+    return kAllLanes & live_lanes(g, part.body_a, part.body_b);
   }
 
   static void prepare_bodies(const Tables& t, const Group& g, Work& w, const JointPart& part,
@@ -108,7 +82,7 @@ struct JointPasses {
       const Joint& numbers = constants_of_part(g, i);
       prepare_bodies(t, g, w, part, i, s);
       prepare(t, g, part, numbers, s);
-      refresh_first<S, kDense>(w, part, numbers, s);
+      refresh<S, kDense, false>(w, part, numbers, s);
     });
   }
 
@@ -118,7 +92,7 @@ struct JointPasses {
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       if (s.mask == 0) return;
       PartVelocities<S, kDense> v(w, s);
-      solve_part<S, kDense, kPass>(t, g, w, part, i, constants_of_part(g, i), s, v);
+      solve<S, kDense, kPass>(t, w, part, constants_of_part(g, i), s, v);
       v.store(w, s);
     });
   }

@@ -53,7 +53,6 @@ class Builder {
   Builder(PlanData& plan, int index)
       : plan_(plan),
         joint_(plan.scene.joints[static_cast<std::size_t>(index)]),
-        index_(index),
         h_(plan.scene.options.dt / plan.scene.options.substeps) {}
 
   void build() {
@@ -91,7 +90,6 @@ class Builder {
     const Side a = side_of(plan_, joint_.body_a, joint_.frame_a),
                b = side_of(plan_, joint_.body_b, joint_.frame_b);
     out.what.kind = kind;
-    out.what.joint = index_;
     out.what.body_a = a.body;
     out.what.body_b = b.body;
     put(a.anchor, out.numbers.anchor_a);
@@ -203,7 +201,6 @@ class Builder {
 
   PlanData& plan_;
   const Joint& joint_;
-  int index_;
   double h_;
 };
 
