@@ -119,6 +119,47 @@ struct Turned {
   }
 };
 
+// Rows between two anchors: from the centres, and their gap, when the step began.
+template <class S>
+struct alignas(64) AnchoredRows : PartBodies<S> {
+  Real start_a[S::kDim][kLanes], start_b[S::kDim][kLanes], start_gap[S::kDim][kLanes];
+};
+template <class S>
+MW_INLINE void start_anchors(const Anchors<S>& at, AnchoredRows<S>& s) {
+  store(s.start_a[0], at.arm_a), store(s.start_b[0], at.arm_b), store(s.start_gap[0], at.gap);
+}
+
+// Where the substeps have taken the anchors.
+template <class S>
+struct MovedAnchors : Anchors<S> {
+  typename S::Vec moved_a, moved_b;  // since the step began
+};
+// kMoved: the substeps have displaced the bodies. `axis` turns with A.
+template <class S, bool kDense, bool kMoved>
+MW_INLINE MovedAnchors<S> anchors_now(const Work& w, const AnchoredRows<S>& s,
+                                      typename S::Vec& axis) {
+  using Vec = typename S::Vec;
+  MovedAnchors<S> out;
+  out.arm_a = load_as<Vec>(s.start_a[0]), out.arm_b = load_as<Vec>(s.start_b[0]);
+  out.gap = load_as<Vec>(s.start_gap[0]);
+  out.moved_a = out.moved_b = zero_of<Vec>();
+  if constexpr (kMoved) {
+    const auto moved = load_two<S, true, kDense>(w.displacement, s);
+    const Turned<S> turn_a(moved.a.w), turn_b(moved.b.w);
+    const Vec change_a = turn_a.change(out.arm_a), change_b = turn_b.change(out.arm_b);
+    out.arm_a = out.arm_a + change_a, out.arm_b = out.arm_b + change_b;
+    out.moved_a = moved.a.v + change_a, out.moved_b = moved.b.v + change_b;
+    out.gap = out.gap + (out.moved_b - out.moved_a);
+    axis = axis + turn_a.change(axis);
+  }
+  return out;
+}
+template <class S, bool kDense, bool kMoved>
+MW_INLINE MovedAnchors<S> anchors_now(const Work& w, const AnchoredRows<S>& s) {
+  auto none = zero_of<typename S::Vec>();
+  return anchors_now<S, kDense, kMoved>(w, s, none);
+}
+
 // The speed at which an error is corrected, capped by length: what is far apart closes steadily.
 MW_INLINE Float pull_of(Float error, Float rate, Float cap) {
   return clamp(error * rate, -cap, cap);

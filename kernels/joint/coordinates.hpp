@@ -34,14 +34,14 @@ void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint
              Row<S, true>& s) {
   using Vec = typename S::Vec;
   const Anchors<S> at = anchors_of<S>(t, g, part, numbers);
-  store(s.start_a[0], at.arm_a), store(s.start_b[0], at.arm_b), store(s.start_gap[0], at.gap);
+  start_anchors(at, s);
   if (part.kind == PartKind::slide) {
     store(s.start_axis[0], axis_x(frames_of<S>(t, g, part, numbers).a));
   } else if (part.kind == PartKind::pulley) {
     const Vec a = place_of<S>(t, g, part.body_a).position + at.arm_a,
               b = place_of<S>(t, g, part.body_b).position + at.arm_b;
-    store(s.start_gap[0], a - vector_of(S{}, numbers.ground_a));
-    store(s.start_axis[0], b - vector_of(S{}, numbers.ground_b));
+    store(s.start_rope_a[0], a - vector_of(S{}, numbers.ground_a));
+    store(s.start_rope_b[0], b - vector_of(S{}, numbers.ground_b));
   }
 }
 
@@ -59,37 +59,25 @@ template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& numbers,
                        Row<S, true>& s) {
   using Vec = typename S::Vec;
-  auto arm_a = load_as<Vec>(s.start_a[0]), arm_b = load_as<Vec>(s.start_b[0]),
-       gap = load_as<Vec>(s.start_gap[0]), axis = load_as<Vec>(s.start_axis[0]);
-  if constexpr (kMoved) {
-    const auto moved = load_two<S, true, kDense>(w.displacement, s);
-    const Turned<S> turn_a(moved.a.w), turn_b(moved.b.w);
-    const Vec change_a = turn_a.change(arm_a), change_b = turn_b.change(arm_b);
-    arm_a = arm_a + change_a, arm_b = arm_b + change_b;
-    const Vec of_a = moved.a.v + change_a, of_b = moved.b.v + change_b;
-    if (part.kind == PartKind::pulley) {
-      gap = gap + of_a, axis = axis + of_b;
-    } else {
-      gap = gap + (of_b - of_a);
-    }
-    if (part.kind == PartKind::slide) axis = axis + turn_a.change(axis);
-  }
-  Vec push_a = axis, push_b = axis;
+  auto axis = load_as<Vec>(s.start_axis[0]);
+  MovedAnchors<S> now = anchors_now<S, kDense, kMoved>(w, s, axis);
+  Vec push_a, push_b;
   Float value;
   if (part.kind == PartKind::slide) {
-    arm_a = arm_a + gap;
-    value = dot(axis, gap);
+    push_a = push_b = axis;
+    now.arm_a = now.arm_a + now.gap;
+    value = dot(axis, now.gap);
   } else if (part.kind == PartKind::distance) {
-    push_a = push_b = direction_of(gap, value);
+    push_a = push_b = direction_of(now.gap, value);
   } else {
     Float rope_a, rope_b;
     const Float ratio = numbers.ratio;
-    push_a = -direction_of(gap, rope_a);
-    push_b = direction_of(axis, rope_b) * ratio;
+    push_a = -direction_of(load_as<Vec>(s.start_rope_a[0]) + now.moved_a, rope_a);
+    push_b = direction_of(load_as<Vec>(s.start_rope_b[0]) + now.moved_b, rope_b) * ratio;
     value = fma(rope_b, ratio, rope_a);
   }
   store(s.push_a[0], push_a), store(s.push_b[0], push_b);
-  store(s.arm_a[0], cross(arm_a, push_a)), store(s.arm_b[0], cross(arm_b, push_b));
+  store(s.arm_a[0], cross(now.arm_a, push_a)), store(s.arm_b[0], cross(now.arm_b, push_b));
   value.store(s.value);
   weigh_row(s);
 }

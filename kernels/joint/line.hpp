@@ -8,9 +8,8 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 template <class S>
-struct alignas(64) LineRows : PartBodies<S> {
+struct alignas(64) LineRows : AnchoredRows<S> {
   static constexpr int kRows = S::kDim - 1;
-  Real start_a[S::kDim][kLanes], start_b[S::kDim][kLanes], start_gap[S::kDim][kLanes];
   Real start_axis[S::kDim][kLanes];
   // Of the substep. arm_a reaches B's anchor.
   Real arm_a[S::kDim][kLanes], arm_b[S::kDim][kLanes];
@@ -22,8 +21,7 @@ struct alignas(64) LineRows : PartBodies<S> {
 template <class S>
 void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
              LineRows<S>& s) {
-  const Anchors<S> at = anchors_of<S>(t, g, part, numbers);
-  store(s.start_a[0], at.arm_a), store(s.start_b[0], at.arm_b), store(s.start_gap[0], at.gap);
+  start_anchors(anchors_of<S>(t, g, part, numbers), s);
   store(s.start_axis[0], axis_x(frames_of<S>(t, g, part, numbers).a));
 }
 
@@ -41,17 +39,9 @@ MW_INLINE Float coupling(const PartBodies<S>& s, typename S::Vec arm_a, typename
 template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, LineRows<S>& s) {
   using Vec = typename S::Vec;
-  auto arm_a = load_as<Vec>(s.start_a[0]), arm_b = load_as<Vec>(s.start_b[0]),
-       gap = load_as<Vec>(s.start_gap[0]), axis = load_as<Vec>(s.start_axis[0]);
-  if constexpr (kMoved) {
-    const auto moved = load_two<S, true, kDense>(w.displacement, s);
-    const Turned<S> turn_a(moved.a.w), turn_b(moved.b.w);
-    const Vec change_a = turn_a.change(arm_a), change_b = turn_b.change(arm_b);
-    arm_a = arm_a + change_a, arm_b = arm_b + change_b;
-    gap = gap + ((moved.b.v - moved.a.v) + (change_b - change_a));
-    axis = axis + turn_a.change(axis);
-  }
-  const Vec reach = arm_a + gap;
+  auto axis = load_as<Vec>(s.start_axis[0]);
+  const MovedAnchors<S> now = anchors_now<S, kDense, kMoved>(w, s, axis);
+  const Vec reach = now.arm_a + now.gap, arm_b = now.arm_b, gap = now.gap;
   store(s.arm_a[0], reach), store(s.arm_b[0], arm_b);
   if constexpr (S::kDim == 2) {
     const Vec d{-axis.y, axis.x};

@@ -3,8 +3,8 @@
 //   K = (1/m_A + 1/m_B) E - [r_A] I_A^-1 [r_A] - [r_B] I_B^-1 [r_B]
 // C, the arms r and K follow the bodies in every substep, before the relax pass: velocities that
 // are solved for the arms which the substep began with gain energy from the impulses that turn them
-// (as much as explicit Euler). With a spring the anchor of B is drawn to
-// that of A by no more than a given force.
+// (as much as explicit Euler). With a spring the anchor of B is drawn to that of A by no more than
+// a given force.
 #pragma once
 
 #include "kernels/constraint/contact.hpp"
@@ -36,9 +36,7 @@ MW_INLINE Sym3 soften(const Sym3& k, Float rho, Float gamma) {
 }
 
 template <class S>
-struct alignas(64) PointRows : PartBodies<S> {
-  // At the start of the step: anchors from the centres, and their gap.
-  Real start_a[S::kDim][kLanes], start_b[S::kDim][kLanes], start_gap[S::kDim][kLanes];
+struct alignas(64) PointRows : AnchoredRows<S> {
   // Of the substep.
   Real arm_a[S::kDim][kLanes], arm_b[S::kDim][kLanes], gap[S::kDim][kLanes];
   Real mass[S::kDim * (S::kDim + 1) / 2][kLanes];  // K^-1; of a spring K' - K
@@ -50,29 +48,18 @@ struct alignas(64) PointRows : PartBodies<S> {
 template <class S>
 void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
              PointRows<S>& s) {
-  const Anchors<S> at = anchors_of<S>(t, g, part, numbers);
-  store(s.start_a[0], at.arm_a), store(s.start_b[0], at.arm_b), store(s.start_gap[0], at.gap);
+  start_anchors(anchors_of<S>(t, g, part, numbers), s);
 }
 
-// kMoved: the substeps have displaced the bodies.
 template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& numbers,
                        PointRows<S>& s) {
-  using Vec = typename S::Vec;
-  auto arm_a = load_as<Vec>(s.start_a[0]), arm_b = load_as<Vec>(s.start_b[0]),
-       gap = load_as<Vec>(s.start_gap[0]);
-  if constexpr (kMoved) {
-    const auto moved = load_two<S, true, kDense>(w.displacement, s);
-    const Vec change_a = Turned<S>(moved.a.w).change(arm_a),
-              change_b = Turned<S>(moved.b.w).change(arm_b);
-    arm_a = arm_a + change_a, arm_b = arm_b + change_b;
-    gap = gap + ((moved.b.v - moved.a.v) + (change_b - change_a));
-  }
-  store(s.arm_a[0], arm_a), store(s.arm_b[0], arm_b), store(s.gap[0], gap);
+  const auto now = anchors_now<S, kDense, kMoved>(w, s);
+  store(s.arm_a[0], now.arm_a), store(s.arm_b[0], now.arm_b), store(s.gap[0], now.gap);
   typename PointMass<S>::Type k{};
   using Inertia = typename S::Inertia;
-  add_point_mass(Float::load(s.inv_mass_a), load_as<Inertia>(s.inertia_a[0]), arm_a, k);
-  add_point_mass(Float::load(s.inv_mass_b), load_as<Inertia>(s.inertia_b[0]), arm_b, k);
+  add_point_mass(Float::load(s.inv_mass_a), load_as<Inertia>(s.inertia_a[0]), now.arm_a, k);
+  add_point_mass(Float::load(s.inv_mass_b), load_as<Inertia>(s.inertia_b[0]), now.arm_b, k);
   if (part.spring) {
     const Float rho = numbers.soft.rho, gamma = numbers.soft.gamma;
     store(s.soft_mass[0], inverse(soften(k, rho, gamma)));

@@ -11,10 +11,10 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 template <class S, bool kLinear>
-struct alignas(64) Row : PartBodies<S> {
+struct alignas(64) Row : AnchoredRows<S> {
   // At the start of the step.
-  Real start_a[S::kDim][kLanes], start_b[S::kDim][kLanes], start_gap[S::kDim][kLanes];
   Real start_axis[3][kLanes], start_axis_b[3][kLanes];
+  Real start_rope_a[S::kDim][kLanes], start_rope_b[S::kDim][kLanes];  // of a pulley
   Real start_value[kLanes];
   // Of the substep.
   Real push_a[S::kDim][kLanes], push_b[S::kDim][kLanes];
