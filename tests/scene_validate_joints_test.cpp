@@ -84,7 +84,7 @@ TEST_CASE("each type of joint has checks of its own", "[fast][validate][joint]")
   CHECK(places(jointed(Space::planar, BallJoint{})) == std::vector<std::string>{kElbow + "type"});
   check_each(
       jointed(Space::spatial, PulleyJoint{}), kElbow,
-      {{"ratio", "is 0 m, must be > 0", [](Scene& s) { type_of<PulleyJoint>(s).ratio = 0; }},
+      {{"ratio", "is 0, must be > 0", [](Scene& s) { type_of<PulleyJoint>(s).ratio = 0; }},
        {"ground_b.y", "is nan m", [](Scene& s) { type_of<PulleyJoint>(s).ground_b.y() = kNan; }},
        {"body_a", "does not move, must be a body that hangs on the rope",
         [](Scene& s) { s.joints[0].body_a = -1; }},

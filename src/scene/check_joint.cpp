@@ -159,7 +159,7 @@ class JointChecker {
   void check(const PulleyJoint& j) {
     check_.finite("ground_a", j.ground_a, "m");
     check_.finite("ground_b", j.ground_b, "m");
-    check_.size("ratio", j.ratio);
+    check_.positive("ratio", j.ratio, "", kSmallestSize, kLargestSize);
     if (j.length) check_.not_negative("length", *j.length, "m");
     const Body* a = body(joint_.body_a);
     if (joint_.body_a == -1 || (a && a->motion == Motion::fixed)) {
