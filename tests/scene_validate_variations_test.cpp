@@ -70,6 +70,9 @@ TEST_CASE("ranges must be such as a scene may have", "[fast][scene][parameters]"
   CHECK(only_issue(scene_with(vary(Parameter::friction, 0, 0.2, Draw::none))) ==
         "variation 0: draw is none, but the scene's friction of body 0, shape 0, 0.6, is not "
         "within low and high");
+  CHECK(only_issue(scene_with(of(vary(Parameter::mass, 1, 2, Draw::none), 1))) ==
+        "variation 0: draw is none, but the scene's mass of body 1, 1000, is not within low and "
+        "high");
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(only_issue(scene_with(vary(Parameter::mass, nan, 2))) ==
         "variation 0: low is nan kg, must be > 0");
@@ -79,6 +82,11 @@ TEST_CASE("ranges must be such as a scene may have", "[fast][scene][parameters]"
   gravity.low.z() = -10;
   planar.variations = {gravity};
   CHECK(only_issue(planar) == "variation 0: high[2] must be 0 in a planar scene, as low[2]");
+
+  // A body that has no mass: its shape is the issue.
+  planar.bodies[0].shapes[0].geometry = Polygon{};
+  planar.variations = {vary(Parameter::mass, 1, 2, Draw::none)};
+  CHECK(only_issue(planar) == "body 0, shape 0: vertices are 0, must be 3 to 8");
 }
 
 TEST_CASE("a number varies once, and at both ends the scene must be valid",

@@ -59,7 +59,9 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
 }
 
 // Every number of the scene that it is about: its range, and the scene's own where nothing draws.
-void check_range(Checker& checker, const Scene& scene, const Variation& v, const VariedNumber& n) {
+// Masses follow from shapes, which have to be sound for it.
+void check_range(Checker& checker, const Scene& scene, bool sound, const Variation& v,
+                 const VariedNumber& n) {
   std::string low = "low", high = "high";
   if (info(v.parameter).numbers > 1) {
     low = element_name(low, static_cast<std::size_t>(n.component));
@@ -77,7 +79,7 @@ void check_range(Checker& checker, const Scene& scene, const Variation& v, const
                          number_text(n.high));
   } else if (v.draw == Draw::log_uniform && n.low <= 0) {
     checker.add(low, "is " + number_text(n.low) + ", must be > 0 for a logarithmic draw");
-  } else if (v.draw == Draw::none) {
+  } else if (v.draw == Draw::none && (sound || v.parameter != Parameter::mass)) {
     const double own = get_number(scene, n.parameter, n.body, n.shape, n.component);
     if (own >= n.low && own <= n.high) return;
     std::string place;
@@ -112,7 +114,7 @@ void check_variations(Checker checker, const Scene& scene, bool sound) {
     if (issues[v] > 0) continue;  // the same again for every body
     const std::size_t count = checker.count();
     if (fresh) {
-      check_range(part, scene, scene.variations[v], n);
+      check_range(part, scene, sound, scene.variations[v], n);
     } else {
       part.add(info(n.parameter).name, "varies already, by variation " +
                                            std::to_string(other->second) + " (body " +
