@@ -175,6 +175,31 @@ TEST_CASE("a disabled body lets go of its joints", "[fast][joint]") {
   }
 }
 
+TEST_CASE("what hung on a disabled body's joint is not thrown up", "[fast][joint]") {
+  for (Space space : kSpaces) {
+    Scene scene = empty_scene(space, 10);
+    const Vec3 up = up_of(space);
+    for (int i = 0; i < 2; ++i) {  // a light rod, and a weight of 1 t on it
+      Body rod = uniform_rod(space, i == 0 ? 1 : 1000, 1, (-0.5 - i) * up);
+      rod.rotation = Quat::FromTwoVectors(Vec3::UnitX(), up);
+      scene.add(rod);
+      scene.add(joint_at(scene, i - 1, i, at(-static_cast<double>(i) * up, hinge_axes(space)),
+                         HingeJoint{}));
+    }
+    const Plan plan = compile(scene);
+    for (const Table& table : widest_tables()) {
+      INFO(name(table));
+      Batch batch(plan, options_of(table));
+      batch.step(60);
+      batch.set_enabled(0, 1, false);
+      for (int i = 0; i < 30; ++i) {
+        batch.step();
+        CHECK(velocity(batch, 0, 0).norm() < 0.05);
+      }
+    }
+  }
+}
+
 TEST_CASE("jointed bodies fall asleep and wake together", "[fast][sleep][joint]") {
   for (Space space : kSpaces) {
     for (const bool contacts : {false, true}) {

@@ -102,9 +102,14 @@ void Storage<Real>::clear_contacts(int slot) {
 
 template <class Real>
 void Storage<Real>::clear_joints(int slot) {
-  const std::size_t lanes = index(lanes_), numbers = index(tables_.parts) * kernels::kPartImpulses;
-  Real* p = joint_impulse_.data() + group_of(slot) * numbers * lanes + lane_of(slot);
-  for (std::size_t i = 0; !joint_impulse_.empty() && i < numbers; ++i) p[i * lanes] = Real(0);
+  for (int i = 0; i < tables_.parts; ++i) clear_part(slot, i);
+}
+
+template <class Real>
+void Storage<Real>::clear_part(int slot, int part) {
+  const std::size_t lanes = index(lanes_), at = group_of(slot) * index(tables_.parts) + index(part);
+  Real* p = joint_impulse_.data() + at * kernels::kPartImpulses * lanes + lane_of(slot);
+  for (std::size_t i = 0; i < kernels::kPartImpulses; ++i) p[i * lanes] = Real(0);
 }
 
 template <class Real>
@@ -131,25 +136,34 @@ void Storage<Real>::keep_contacts(int slot, Keep keep) {
 }
 
 template <class Real>
-void Storage<Real>::drop_contacts(int slot, int body) {
+void Storage<Real>::drop_impulses(int slot, int body) {
   std::fill(reached_.begin(), reached_.end(), false);
   reached_[index(body)] = true;
   // A kinematic body passes no impulse on.
   const auto reached = [&](int b) {
     return b >= 0 && reached_[index(b)] && (b == body || !tables_.body[b].kinematic);
   };
+  const auto moving_a = [&](int part) {  // -1: the world
+    const int a = tables_.part[part].body_a;
+    return a == tables_.bodies ? -1 : a;
+  };
   for (bool grows = true; grows;) {
     grows = false;
-    keep_contacts(slot, [&](int a, int b) {
+    const auto reach_on = [&](int a, int b) {
       if (a >= 0 && reached(a) != reached(b)) {
         const int next = reached(a) ? b : a;
         grows = grows || !reached_[index(next)];
         reached_[index(next)] = true;
       }
       return true;
-    });
+    };
+    keep_contacts(slot, reach_on);
+    for (int i = 0; i < tables_.parts; ++i) reach_on(moving_a(i), tables_.part[i].body_b);
   }
   keep_contacts(slot, [&](int a, int b) { return !reached(a) && !reached(b); });
+  for (int i = 0; i < tables_.parts; ++i) {
+    if (reached(moving_a(i)) || reached(tables_.part[i].body_b)) clear_part(slot, i);
+  }
 }
 
 template <class Real>

@@ -36,9 +36,9 @@ class Storage {
   std::uint32_t& status(int slot) const { return status_[static_cast<std::size_t>(slot)]; }
   void clear_contacts(int slot);
   void clear_joints(int slot);  // their impulses
-  // Those of the body and of everybody that it is in touch with, directly or not: impulses that
-  // carried what is gone would push up what carried it.
-  void drop_contacts(int slot, int body);
+  // Impulses of contacts and joints of the body and of everybody that it is in touch with or joined
+  // to, directly or not: what carried what is gone would be pushed up.
+  void drop_impulses(int slot, int body);
 
   void add_force(int slot, int body, const Vec3& force, const Vec3& torque);
   void clear_forces();
@@ -93,6 +93,7 @@ class Storage {
   template <class Visit>
   void for_each_part(int slot_a, int slot_b, Visit&& visit) const;
   void find_idle_in(std::size_t group);
+  void clear_part(int slot, int part);  // of a joint, its impulses
   template <class Keep>
   void keep_contacts(int slot, Keep keep);  // keep(body a or -1, body b)
 
@@ -111,7 +112,7 @@ class Storage {
   mutable AlignedBuffer<std::uint32_t> idle_, resting_;   // [group]
   mutable AlignedBuffer<Real> rest_time_;                 // [group][body][lane]
   mutable AlignedBuffer<std::int32_t> island_;            // [group][body][lane]
-  std::vector<char> reached_;                             // [body] scratch of drop_contacts
+  std::vector<char> reached_;                             // [body] scratch of drop_impulses
 };
 
 }  // namespace manyworlds

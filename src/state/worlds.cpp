@@ -117,7 +117,7 @@ void Worlds<Real>::set_enabled(int world, int body, bool enabled) {
   // Whoever lies on a kinematic body does not share its island.
   const bool kinematic = data().bodies[static_cast<std::size_t>(body)].inv_mass == 0;
   kinematic ? storage_.wake(slot) : storage_.wake_island(slot, body);
-  if (!enabled) storage_.drop_contacts(slot, body);
+  if (!enabled) storage_.drop_impulses(slot, body);
   storage_.set_absent(slot, body, !enabled);
   storage_.find_idle(slot);
 }
