@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "manyworlds/scenes.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/tables.hpp"
 
@@ -46,6 +47,28 @@ Sum sum_of(const std::vector<StepContact>& contacts) {
 }
 
 }  // namespace
+
+TEST_CASE("where nothing can touch, joints are no contacts", "[fast][observe][joint]") {
+  for (const char* scene : {"chain2d", "chain3d"}) {
+    const Plan plan = compile(scenes::find(scene)->make());
+    for (const Table& table : all_tables()) {
+      INFO(scene << " " << name(table));
+      BatchOptions options = observing(table, kEverything, 3);
+      options.observe.rays = {Ray{Vec3(0.5, 5, 0), {0, -1, 0}}};
+      Batch batch(plan, options);
+      batch.step(30);
+      for (int w = 0; w < batch.worlds(); ++w) {
+        CHECK(number(batch, Observed::contact_count, w) == 0);
+        CHECK(number(batch, Observed::penetration, w) == 0);
+        CHECK(number(batch, Observed::kinetic_energy, w) > 0);
+        std::vector<double> touching(plan.scene().bodies.size());
+        batch.read(Observed::touching, w, touching);
+        CHECK(std::count(touching.begin(), touching.end(), 0.0) ==
+              static_cast<std::ptrdiff_t>(touching.size()));
+      }
+    }
+  }
+}
 
 TEST_CASE("a box at rest: the impulses of a step are its weight times dt", "[fast][observe]") {
   for (Space space : {Space::planar, Space::spatial}) {

@@ -171,7 +171,8 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
   if (clock) clock->start();
   int taken = 0;
   if (p.tables.has_contacts || p.tables.has_joints) {
-    const auto* slots = p.wanted && p.wanted->slots ? p.wanted : nullptr;
+    const bool observed = p.wanted && p.wanted->slots && p.tables.has_contacts;
+    const auto* slots = observed ? p.wanted : nullptr;
     for (; taken < steps && !at_rest(p, group); ++taken) {
       solver_step(p, group, scratch, clock, taken + 1 == steps ? slots : nullptr);
     }
