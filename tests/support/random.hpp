@@ -39,7 +39,9 @@ class Random {
   }
   Quat rotation() {  // uniform over all rotations, by rejection in the 4-ball
     for (;;) {
-      const Quat q(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      // One by one: the order of arguments is the compiler's.
+      const double z = uniform(-1, 1), y = uniform(-1, 1), x = uniform(-1, 1), w = uniform(-1, 1);
+      const Quat q(w, x, y, z);
       if (q.squaredNorm() > 0.01 && q.squaredNorm() < 1) return q.normalized();
     }
   }
