@@ -9,6 +9,12 @@
 #include <cstdlib>
 #include <new>
 
+#if defined(__has_feature)  // clang's way of saying what GCC says by a macro
+#if __has_feature(address_sanitizer)
+#define __SANITIZE_ADDRESS__ 1
+#endif
+#endif
+
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 // GCC installs the function but not the header, sanitizer/allocator_interface.h.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*,
