@@ -1,6 +1,6 @@
 // Any scene: validate() lists what is wrong with it, compile() throws exactly then, and what
-// compiles steps, whatever the numbers, the same in another layout and broad phase, and goes on
-// from a snapshot.
+// compiles steps, whatever the numbers, the same in another layout, broad phase and instruction
+// set, and goes on from a snapshot.
 #include <optional>
 
 #include "fuzz/check.hpp"
@@ -60,6 +60,7 @@ void run(SceneBytes& bytes) {
 
   Batch batch(*plan, options);
   options.layout = other(options.layout);
+  options.isa = Isa::scalar;
   Batch twin(compile(scene, plan_options), options);
   compare(batch, twin, "at the start");
   for (const Input& in : inputs) {
@@ -67,12 +68,12 @@ void run(SceneBytes& bytes) {
     apply(in, twin);
     step_and_look(batch, 1);
     twin.step();
-    compare(batch, twin, "in another layout and broad phase");
+    compare(batch, twin, "in another layout, broad phase and instruction set");
   }
   const Snapshot saved = Snapshot::from_bytes(batch.save().bytes());
   step_and_look(batch, 3);
   twin.step(3);
-  compare(batch, twin, "in another layout and broad phase");
+  compare(batch, twin, "in another layout, broad phase and instruction set");
   batch.restore(saved);
   batch.step(3);
   compare(batch, twin, "from a snapshot");
