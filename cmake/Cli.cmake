@@ -13,6 +13,7 @@ target_compile_options(manyworlds_cli PRIVATE -O1)
 target_compile_definitions(manyworlds_cli PRIVATE MW_VERSION="${PROJECT_VERSION}")
 target_link_libraries(manyworlds_cli PRIVATE
   manyworlds CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
+mw_precompile(manyworlds_cli <fmt/format.h>)
 if(MW_MJCF)
   target_compile_definitions(manyworlds_cli PRIVATE MW_HAVE_MJCF=1)
   target_link_libraries(manyworlds_cli PRIVATE manyworlds_mjcf)

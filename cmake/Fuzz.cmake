@@ -4,9 +4,16 @@ if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
   message(FATAL_ERROR "MW_FUZZ needs clang for libFuzzer, not ${CMAKE_CXX_COMPILER_ID}")
 endif()
 
-# Under UBSan a kernel takes twice as long to compile; the preset asan has it there, ASan stays here.
-foreach(name IN LISTS MW_KERNEL_SETS)
-  target_compile_options(mw_kernels_${name} PRIVATE -fno-sanitize=undefined)
+# Recordings are changed through HDF5, which no other target needs.
+if(NOT MW_RECORD)
+  message(FATAL_ERROR "MW_FUZZ needs MW_RECORD: recording_fuzz reads recordings")
+endif()
+
+# Coverage of what is looked for faults in.
+set(mw_covered ${MW_KERNEL_SETS})
+list(TRANSFORM mw_covered PREPEND mw_kernels_)
+foreach(target IN LISTS mw_covered ITEMS manyworlds manyworlds_record)
+  target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
 endforeach()
 
 add_library(mw_fuzz_support STATIC
@@ -14,21 +21,21 @@ add_library(mw_fuzz_support STATIC
 target_include_directories(mw_fuzz_support PUBLIC "${PROJECT_SOURCE_DIR}")
 target_link_libraries(mw_fuzz_support PUBLIC manyworlds)
 
+add_custom_target(fuzz_targets)
+
 mw_sources(mw_fuzz_targets "fuzz/*_fuzz.cpp")
 foreach(source IN LISTS mw_fuzz_targets)
   cmake_path(GET source STEM target)
   add_executable(${target} "${source}")
   target_link_libraries(${target} PRIVATE mw_fuzz_support)
   target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+  add_dependencies(fuzz_targets ${target})
 endforeach()
 
-# Recordings are changed through HDF5, which no other target needs.
-if(NOT MW_RECORD)
-  message(FATAL_ERROR "MW_FUZZ needs MW_RECORD: recording_fuzz reads recordings")
-endif()
 target_sources(recording_fuzz PRIVATE
   fuzz/file_image.cpp fuzz/json_edit.cpp fuzz/recording_edit.cpp fuzz/recordings.cpp)
 target_link_libraries(recording_fuzz PRIVATE manyworlds_record HDF5::HDF5)
 
 add_executable(make_seeds fuzz/make_seeds.cpp)
+add_dependencies(fuzz_targets make_seeds)
 target_link_libraries(make_seeds PRIVATE mw_fuzz_support)

@@ -17,6 +17,7 @@ target_link_libraries(manyworlds PUBLIC Eigen3::Eigen PRIVATE Threads::Threads)
 set_target_properties(manyworlds PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 target_compile_definitions(manyworlds PRIVATE MW_VERSION="${PROJECT_VERSION}")
+mw_precompile(manyworlds)
 
 if(MW_EXECUTOR STREQUAL tbb)
   find_package(TBB 2021 REQUIRED CONFIG)

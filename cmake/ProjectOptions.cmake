@@ -34,18 +34,20 @@ if(MW_SANITIZE)
   endif()
 endif()
 
-if(MW_FUZZ)
-  # Coverage of everything, and no main function but in the targets (Fuzz.cmake).
-  add_compile_options(-fsanitize=fuzzer-no-link)
+if(MW_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  find_program(MW_CCACHE_PROGRAM ccache REQUIRED)
+  mark_as_advanced(MW_CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${MW_CCACHE_PROGRAM}")
 endif()
 
-if(MW_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  find_program(MW_CCACHE_PROGRAM ccache)
-  mark_as_advanced(MW_CCACHE_PROGRAM)
-  if(MW_CCACHE_PROGRAM)
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${MW_CCACHE_PROGRAM}")
+# mw_precompile(TARGET [HEADER...]): reads once what most files of a target include: these headers,
+# Eigen and parts of the standard library. A cache of single files, ccache, has to do without.
+function(mw_precompile target)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    target_precompile_headers(${target} PRIVATE <Eigen/Geometry> <algorithm> <functional> <map>
+      <memory> <optional> <string> <utility> <variant> <vector> ${ARGN})
   endif()
-endif()
+endfunction()
 
 # mw_sources(VARIABLE PATTERN...): the source files that match, relative to the project.
 function(mw_sources variable)

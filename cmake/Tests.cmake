@@ -25,13 +25,8 @@ function(mw_test_program target)
     target_compile_definitions(${target} PRIVATE MW_CLI_PATH="$<TARGET_FILE:manyworlds_cli>")
     add_dependencies(${target} manyworlds_cli)
   endif()
-  # What all of them include is read once; ccache keeps files one by one, and does without.
-  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    target_precompile_headers(${target} PRIVATE
-      <catch2/catch.hpp> <Eigen/Geometry> <map> <memory> <string> <vector>)
-    set_property(SOURCE "${PROJECT_SOURCE_DIR}/tests/main.cpp" PROPERTY
-      SKIP_PRECOMPILE_HEADERS ON)
-  endif()
+  mw_precompile(${target} <catch2/catch.hpp>)
+  set_property(SOURCE "${PROJECT_SOURCE_DIR}/tests/main.cpp" PROPERTY SKIP_PRECOMPILE_HEADERS ON)
   catch_discover_tests(${target} TEST_SPEC ${MW_TEST_FILTER} PROPERTIES TIMEOUT 900)
 endfunction()
 

@@ -10,7 +10,7 @@ build_dir="$root/build/release"
 mujoco_dir="$root/.deps/mujoco"
 
 packages=(
-  ca-certificates ccache cmake g++ ninja-build python3 python3-pip
+  ca-certificates cmake g++ ninja-build python3 python3-pip
   catch2 libbenchmark-dev libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libtbb-dev libxsimd-dev
   nlohmann-json3-dev
 )
@@ -57,6 +57,7 @@ configure() {
   local mjcf=$1 record=$2
   local arguments=(--preset release -D "MW_MJCF=$mjcf" -D "MW_MUJOCO_DIR=$mujoco_dir"
     -D "MW_RECORD=$record")
+  if [[ -n ${MW_ISAS-} ]]; then arguments+=(-D "MW_ISAS=$MW_ISAS"); else arguments+=(-U MW_ISAS); fi
   local stamp="$build_dir/configured_with"
   if [[ -f $build_dir/build.ninja && $stamp -nt $root/CMakePresets.json &&
     $(<"$stamp") == "${arguments[*]}" ]]; then
@@ -68,7 +69,7 @@ configure() {
 }
 
 # build TARGET: everything up to an up-to-date TARGET in build/release. Two at a time wait for one
-# another.
+# another. MW_MJCF=OFF, MW_RECORD=OFF and MW_ISAS="scalar;avx2", in the environment, leave things out.
 build() {
   local target=$1 mjcf=${MW_MJCF:-ON} record=${MW_RECORD:-ON}
   [[ $mjcf == ON || $mjcf == OFF ]] || fail "MW_MJCF is '$mjcf', must be ON or OFF"
