@@ -102,12 +102,12 @@ void check_jitter(Checker& checker, const Jitter& jitter) {
 
 // What would be dropped without a word: a fixed body has no state, and no world has its own.
 void check_fixed(Checker& checker, const Body& body) {
-  const char* const expected = " on a fixed body, must be 0 (or the body kinematic)";
+  const std::string set = "is set on a fixed body, must be 0 (or the body kinematic)";
   if (!body.linear_velocity.isZero(0)) {
-    checker.add("linear_velocity", std::string("is set") + expected);
+    checker.add("linear_velocity", set);
   }
   if (!body.angular_velocity.isZero(0)) {
-    checker.add("angular_velocity", std::string("is set") + expected);
+    checker.add("angular_velocity", set);
   }
   if (!body.enabled) {
     checker.add("enabled", "is false on a fixed body, must be true (or the body kinematic)");
@@ -115,7 +115,7 @@ void check_fixed(Checker& checker, const Body& body) {
   const Jitter& jitter = body.jitter;
   if (!jitter.position.isZero(0) || !jitter.linear_velocity.isZero(0) || jitter.angle != 0 ||
       jitter.any_orientation) {
-    checker.add("jitter", std::string("is set") + expected);
+    checker.add("jitter", set);
   }
 }
 
