@@ -166,6 +166,7 @@ Body SceneBytes::body(int index) {
       out.jitter.linear_velocity = planar_vector(1).cwiseAbs();
       out.jitter.angle = number(0, 3);
       out.jitter.any_orientation = !planar_ && byte() > 128;
+      if (rarely()) out.jitter.with = integer(-2, 4);
     }
   }
   out.position = planar_vector(3);

@@ -54,7 +54,12 @@ TEST_CASE("bad body states are named", "[fast][scene]") {
       {"jitter.position.y", "is nan m", [](Scene& s) { crate(s).jitter.position.y() = kNan; }},
       {"jitter.linear_velocity.x", "is inf m/s",
        [](Scene& s) { crate(s).jitter.linear_velocity.x() = kInf; }},
-      {"jitter.angle", "is -0.1 rad", [](Scene& s) { crate(s).jitter.angle = -0.1; }}};
+      {"jitter.angle", "is -0.1 rad", [](Scene& s) { crate(s).jitter.angle = -0.1; }},
+      {"jitter.with", "is 99, must be -1 or another body",
+       [](Scene& s) { crate(s).jitter.with = 99; }},
+      {"jitter.with", "is 0, must be -1 or another body that is not fixed",
+       [](Scene& s) { crate(s).jitter.with = 0; }},
+      {"jitter.with", "is -2", [](Scene& s) { crate(s).jitter.with = -2; }}};
   check_each(spatial(), kBody, common);
   check_each(planar(), kBody, common);
 }
@@ -197,6 +202,7 @@ TEST_CASE("what a fixed body would ignore is refused", "[fast][scene]") {
               {"angular_velocity", "is set", [&](Scene& s) { ground(s).angular_velocity.x() = 1; }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.position.x() = 1; }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.angle = 1; }},
+              {"jitter", "is set", [&](Scene& s) { ground(s).jitter.with = 1; }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.any_orientation = true; }}});
 }
 

@@ -120,6 +120,9 @@ struct Jitter {
   Vec3 linear_velocity = Vec3::Zero();  // m/s
   double angle = 0;                     // rad, about z
   bool any_orientation = false;         // spatial: orientation uniform over all rotations
+  // A scene body, -1: none. What is drawn for it moves this body, too, as one rigid piece with it
+  // and with its change of velocity, before anything of its own: for assemblies on joints.
+  int with = -1;
 };
 
 struct Body {

@@ -110,9 +110,9 @@ MW_MEMBERS(MassProperties) {
   visit("mass", mass), visit("center", center), visit("inertia", inertia);
 }
 MW_MEMBERS(Jitter) {
-  auto& [position, linear_velocity, angle, any_orientation] = value;
+  auto& [position, linear_velocity, angle, any_orientation, with] = value;
   visit("position", position), visit("linear_velocity", linear_velocity);
-  visit("angle", angle), visit("any_orientation", any_orientation);
+  visit("angle", angle), visit("any_orientation", any_orientation), visit("with", with);
 }
 MW_MEMBERS(Body) {
   auto& [name, motion, enabled, position, rotation, linear_velocity, angular_velocity, shapes,

@@ -91,12 +91,22 @@ void check_derived_mass(Checker& checker, const Scene& scene, const Body& body) 
   }
 }
 
-void check_jitter(Checker& checker, const Jitter& jitter) {
+void check_jitter(Checker& checker, const Scene& scene, const Body& body) {
+  const Jitter& jitter = body.jitter;
   checker.not_negative("jitter.position", jitter.position, "m");
   checker.not_negative("jitter.linear_velocity", jitter.linear_velocity, "m/s");
   checker.not_negative("jitter.angle", jitter.angle, "rad");
   if (checker.planar() && jitter.any_orientation) {
     checker.add("jitter.any_orientation", "is true, must be false in a planar scene (set angle)");
+  }
+  if (jitter.with == -1) return;
+  const auto with = static_cast<std::size_t>(jitter.with);
+  const Body* leader = with < scene.bodies.size() ? &scene.bodies[with] : nullptr;
+  if (leader == nullptr || leader == &body || leader->motion == Motion::fixed ||
+      leader->jitter.with != -1) {
+    checker.add("jitter.with", "is " + std::to_string(jitter.with) +
+                                   ", must be -1 or another body that is not fixed and whose own "
+                                   "jitter.with is -1");
   }
 }
 
@@ -114,7 +124,7 @@ void check_fixed(Checker& checker, const Body& body) {
   }
   const Jitter& jitter = body.jitter;
   if (!jitter.position.isZero(0) || !jitter.linear_velocity.isZero(0) || jitter.angle != 0 ||
-      jitter.any_orientation) {
+      jitter.any_orientation || jitter.with != -1) {
     checker.add("jitter", set);
   }
 }
@@ -146,7 +156,7 @@ void check_body(Checker checker, const Scene& scene, const Body& body, bool dens
   checker.finite("gravity_scale", body.gravity_scale, "");
   checker.not_negative("linear_drag", body.linear_drag, "1/s");
   checker.not_negative("angular_drag", body.angular_drag, "1/s");
-  check_jitter(checker, body.jitter);
+  check_jitter(checker, scene, body);
   if (body.motion == Motion::fixed && checker.count() == before) check_fixed(checker, body);
 }
 

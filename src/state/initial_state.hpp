@@ -16,12 +16,13 @@ inline Quat uniform_rotation(double u1, double u2, double u3) {
               b * std::sin(kTurn * u3));
 }
 
-inline BodyState draw_initial_state(const Body& body, int index, const Draws& draws) {
+inline BodyState described_state(const Body& body) {
+  return {body.position, body.rotation.normalized(), body.linear_velocity, body.angular_velocity};
+}
+
+inline void add_jitter(const Jitter& j, int index, const Draws& draws, BodyState& s) {
   constexpr std::uint64_t kDrawsPerBody = 16;
   const std::uint64_t base = static_cast<std::uint64_t>(index) * kDrawsPerBody;
-  const Jitter& j = body.jitter;
-  BodyState s{body.position, body.rotation.normalized(), body.linear_velocity,
-              body.angular_velocity};
   for (int c = 0; c < 3; ++c) {
     const auto k = static_cast<std::uint64_t>(c);
     s.position[c] += j.position[c] * draws.symmetric(base + k);
@@ -35,6 +36,22 @@ inline BodyState draw_initial_state(const Body& body, int index, const Draws& dr
     s.rotation =
         uniform_rotation(draws.uniform(base + 7), draws.uniform(base + 8), draws.uniform(base + 9));
   }
+}
+
+inline BodyState draw_initial_state(const Scene& scene, int index, const Draws& draws) {
+  const Body& body = scene.bodies[static_cast<std::size_t>(index)];
+  BodyState s = described_state(body);
+  if (body.jitter.with >= 0) {
+    const Body& leader = scene.bodies[static_cast<std::size_t>(body.jitter.with)];
+    const BodyState from = described_state(leader);
+    BodyState to = from;
+    add_jitter(leader.jitter, body.jitter.with, draws, to);
+    const Quat turn = to.rotation * from.rotation.conjugate();
+    s.position = to.position + turn * (s.position - from.position);
+    s.rotation = turn * s.rotation;
+    s.linear_velocity += to.linear_velocity - from.linear_velocity;
+  }
+  add_jitter(body.jitter, index, draws, s);
   return s;
 }
 

@@ -61,7 +61,7 @@ void Worlds<Real>::initialise(int world) {
   for (std::size_t b = 0; b < data().bodies.size(); ++b) {
     const int scene_body = data().bodies[b].scene_body, body = static_cast<int>(b);
     const Body& described = plan_.scene().bodies[static_cast<std::size_t>(scene_body)];
-    place(world, body, draw_initial_state(described, scene_body, draws));
+    place(world, body, draw_initial_state(plan_.scene(), scene_body, draws));
     if (storage_.has_activity()) storage_.set_absent(slot, body, !described.enabled);
   }
   // A body turns about its own origin, so orientations come first.
