@@ -10,7 +10,7 @@ namespace manyworlds::fuzz {
 
 Input input(SceneBytes& bytes) {
   Input out;
-  out.kind = bytes.integer(0, 13);
+  out.kind = bytes.integer(0, 14);
   out.world = bytes.integer(0, 7);
   out.body = bytes.integer(0, 7);
   out.value = bytes.vector(100);
@@ -27,6 +27,11 @@ void apply(const Input& in, Batch& batch) {
     std::vector<std::uint8_t> mask(static_cast<std::size_t>(batch.worlds()), 0);
     mask[static_cast<std::size_t>(world)] = 1;
     return batch.reset(mask);
+  }
+  if (in.kind == 14) {
+    std::vector<double> controls(static_cast<std::size_t>(batch.controls(world)));
+    for (std::size_t i = 0; i < controls.size(); ++i) controls[i] = in.value[i % 3];
+    return batch.set_controls(world, controls);
   }
   if (batch.bodies(world) == 0) return;
   const int body = in.body % batch.bodies(world);

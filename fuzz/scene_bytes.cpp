@@ -278,6 +278,22 @@ Joint SceneBytes::joint(int bodies) {
   return out;
 }
 
+Control SceneBytes::control(int bodies, int joints) {
+  Control out;
+  out.kind = static_cast<ControlKind>(integer(0, 3));
+  out.joint = integer(-1, joints - (rarely() ? 0 : 1));
+  out.body = integer(0, bodies - (rarely() ? 0 : 1));
+  out.point = planar_vector(1);
+  if (out.kind == ControlKind::torque && planar_) {
+    out.direction = Vec3::UnitZ();
+  } else if (byte() > 128) {
+    out.direction = planar_vector(1);
+  }
+  out.low = number(-100, 0), out.high = number(0, 100);
+  if (byte() > 128) out.initial = number(out.low, out.high);
+  return out;
+}
+
 Variation SceneBytes::variation(int bodies) {
   Variation out;
   out.parameter = static_cast<Parameter>(integer(0, kParameterCount - 1));
@@ -310,6 +326,10 @@ Scene SceneBytes::scene() {
   if (rarely()) out.name = name();
   for (int n = byte() > 128 ? integer(1, 6) : 0; n > 0 && !out.bodies.empty(); --n) {
     out.add(joint(static_cast<int>(out.bodies.size())));
+  }
+  for (int n = byte() > 128 ? integer(1, 4) : 0; n > 0 && !out.bodies.empty(); --n) {
+    out.controls.push_back(
+        control(static_cast<int>(out.bodies.size()), static_cast<int>(out.joints.size())));
   }
   for (int n = byte() > 128 ? integer(1, 4) : 0; n > 0 && !out.bodies.empty(); --n) {
     out.variations.push_back(variation(static_cast<int>(out.bodies.size()) - (rarely() ? 0 : 1)));

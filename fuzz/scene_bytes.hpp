@@ -46,6 +46,7 @@ class SceneBytes {
   std::optional<Drive> drive();
   JointType joint_type();
   Joint joint(int bodies);
+  Control control(int bodies, int joints);
   Variation variation(int bodies);
 
   FuzzedDataProvider bytes_;

@@ -21,6 +21,7 @@ struct GroupView {
   const Real* force;      // [body][force 3, torque 3][lane], or nullptr
   ConstantBlocks<Real> constants;
   Real* joint_impulse;  // [part][kPartImpulses][lane]
+  const Real* control;  // [control][lane]
 
   // Which bodies take part, as lanes of each body; nullptr: all do. Sleep needs all of them,
   // disabled bodies the first three.

@@ -73,6 +73,54 @@ MW_INLINE Velocity<S> get_velocity(const Work& w, const Real* array, int body) {
   }
 }
 
+// Does a control push or turn this body?
+MW_INLINE bool is_thrust(const Tables& t, int body) {
+  return t.first_thrust && t.first_thrust[body] != t.first_thrust[body + 1];
+}
+
+// Force, N, and torque about the centre of mass, N m, of the inputs and the controls.
+template <class S>
+struct Load {
+  typename S::Vec force;
+  typename S::Ang torque;
+};
+template <class S>
+MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body) {
+  using Vec = typename S::Vec;
+  Load<S> out{zero_of<Vec>(), zero_of<typename S::Ang>()};
+  if (g.force) {
+    const Real* f = g.force + body * 6 * kLanes;
+    out.force = load_as<Vec>(f);
+    out.torque = load_as<typename S::Ang>(f + (S::kDim == 3 ? 3 : 5) * kLanes);
+  }
+  if (!is_thrust(t, body)) return out;
+  const auto q = load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation));
+  for (int i = t.first_thrust[body]; i < t.first_thrust[body + 1]; ++i) {
+    const auto& numbers =
+        reinterpret_cast<const kernels::ThrustConstants<LaneNumber>*>(g.constants.thrust)[i];
+    const Float control = Float::load(g.control + t.thrust[i].control * kLanes);
+    if constexpr (S::kDim == 2) {
+      if (t.thrust[i].torque) {
+        out.torque = fma(Float(numbers.direction[2]), control, out.torque);
+        continue;
+      }
+      const Vec push = rotate(q, {numbers.direction[0], numbers.direction[1]}) * control;
+      out.force = out.force + push;
+      out.torque = out.torque + cross(rotate(q, {numbers.point[0], numbers.point[1]}), push);
+    } else {
+      const LaneNumber *d = numbers.direction, *p = numbers.point;
+      const Vec push = rotate(q, Vec{d[0], d[1], d[2]}) * control;
+      if (t.thrust[i].torque) {
+        out.torque = out.torque + push;
+        continue;
+      }
+      out.force = out.force + push;
+      out.torque = out.torque + cross(rotate(q, Vec{p[0], p[1], p[2]}), push);
+    }
+  }
+  return out;
+}
+
 // What gravity and the inputs add to the velocity of a body in one substep.
 template <class S>
 MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& w, int body) {
@@ -83,21 +131,15 @@ MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& 
   push.v.x = numbers.push[0], push.v.y = numbers.push[1];
   if constexpr (S::kDim == 3) push.v.z = numbers.push[2];
   push.w = zero_of<typename S::Ang>();
-  if (!g.force) return push;
-  const Real* f = g.force + body * 6 * kLanes;
+  if (!g.force && !is_thrust(t, body)) return push;
+  const Load<S> load = load_of_body<S>(t, g, body);
   alignas(64) std::int32_t o[kLanes];
   for (int l = 0; l < kLanes; ++l) o[l] = w.body_base[l] + body * body_row_size(S::kKind);
   BodyRow<S> row;
   load_body_row(t, w, o, row);
   const Float h(t.h), scale = row.inv_mass * h;
-  push.v.x = fma(Float::load(f), scale, push.v.x);
-  push.v.y = fma(Float::load(f + kLanes), scale, push.v.y);
-  if constexpr (S::kDim == 3) {
-    push.v.z = fma(Float::load(f + 2 * kLanes), scale, push.v.z);
-    push.w = apply(row.inertia, load_vec3(f + 3 * kLanes)) * h;
-  } else {
-    push.w = apply(row.inertia, Float::load(f + 5 * kLanes)) * h;
-  }
+  push.v = fma(load.force, scale, push.v);
+  push.w = apply(row.inertia, load.torque) * h;
   return push;
 }
 
@@ -120,7 +162,7 @@ void enter_velocities(const Tables& t, const Group& g, Work& w) {
                         load_as<typename S::Ang>(state_of(t, g, b, kState<S>.angular))};
     put_velocity<S, kDense>(w, w.velocity, b, v);
   }
-  w.push = g.force || t.push_varies ? w.push_storage : nullptr;
+  w.push = g.force || t.push_varies || t.first_thrust ? w.push_storage : nullptr;
   w.factor = t.drag_varies ? w.factor_storage : nullptr;
   if constexpr (kDense) {
     for (int i = 0; i < t.bodies * kVelocityBlock<S>; i += kLanes) zero.store(w.displacement + i);

@@ -49,12 +49,24 @@ struct JointConstants {
   T ground_a[3], ground_b[3], ratio;  // of a pulley
 };
 
+// Thrust or torque of a control on a body.
+template <class T>
+struct ThrustConstants {
+  T point[3];      // from the centre of mass, principal axes, m
+  T direction[3];  // unit, principal axes
+};
+struct ThrustTable {
+  std::int32_t body, control;
+  bool torque;
+};
+
 struct JointPart {
   PartKind kind;
-  std::int32_t body_a, body_b;  // state bodies; WorldTables::bodies: the world
-  bool equality;                // a row held at its rest
-  bool drive, low, high;        // what else a row has
-  bool spring;                  // a point that is drawn with limited force
+  std::int32_t body_a, body_b;                   // state bodies; WorldTables::bodies: the world
+  bool equality;                                 // a row held at its rest
+  bool drive, low, high;                         // what else a row has
+  bool spring;                                   // a point that is drawn with limited force
+  std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
 
 }  // namespace manyworlds::kernels

@@ -51,12 +51,16 @@ bool pair_sleeps(const Tables& t, const Group& g, ListId list, std::int32_t key,
 }
 
 // Lanes in which a slow body may be at rest: what pulls it is held by a contact, and no force acts.
-std::uint32_t held_lanes(const Group& g, const Work& w, int body) {
+std::uint32_t held_lanes(const Tables& t, const Group& g, const Work& w, int body) {
   std::uint32_t lanes = kAllLanes;
   for (const Float pull : constants_of_body(g, body).acceleration) {
     lanes &= bits(pull == Float(Real(0)));
   }
   lanes |= w.touched[body] & kAllLanes;
+  const int thrusts = t.first_thrust ? t.first_thrust[body + 1] : 0;
+  for (int i = t.first_thrust ? t.first_thrust[body] : 0; i < thrusts; ++i) {
+    lanes &= bits(Float::load(g.control + t.thrust[i].control * kLanes) == Float(Real(0)));
+  }
   for (int c = 0; g.force && c < 6; ++c) {
     lanes &= bits(Float::load(g.force + (body * 6 + c) * kLanes) == Float(Real(0)));
   }
@@ -93,7 +97,7 @@ Readiness rest(const Tables& t, const Group& g, const Work& w, int body, std::ui
   const Float enough(t.sleep_time);
   const Float speed =
       fma(sqrt(dot(spin, spin)), constants_of_body(g, body).radius, sqrt(dot(v, v)));
-  const Mask still = (speed < Float(t.sleep_speed)) & mask_from_bits(held_lanes(g, w, body));
+  const Mask still = (speed < Float(t.sleep_speed)) & mask_from_bits(held_lanes(t, g, w, body));
   Real* p = g.rest_time + body * kLanes;
   const Float before = Float::load(p);
   Float time = select(still, before + Float(t.dt), zero);

@@ -149,6 +149,7 @@ struct ConstantBlocks {
   const Real* polygon;   // [collider][PolygonConstants][lane]; nullptr without polygons
   const Real* material;  // [collider, then fixed shape][MaterialOf][lane]
   const Real* joint;     // [part][JointConstants][lane]
+  const Real* thrust;    // [thrust][ThrustConstants][lane]
 };
 
 // What is the same in all worlds.
@@ -200,10 +201,12 @@ struct WorldTables {
   std::int32_t fixed_shapes;
   std::int32_t classes;
   std::int32_t parts;  // of joints
+  std::int32_t controls;
   std::int32_t substeps;
   std::int32_t restitution_sweeps;
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
   bool has_joints;
+  bool has_substeps;      // contacts, joints or thrust: not free motion
   bool collider_is_body;  // collider i is the only shape of body i, centred and aligned
   bool friction_in_bias;
   bool uniform_gravity;  // every body has the acceleration of body 0
@@ -225,6 +228,8 @@ struct WorldTables {
   const Real* fixed_rows;
   const PairClass<Real>* pair_class;
   const JointPart* part;
+  const ThrustTable* thrust;         // ordered by body
+  const std::int32_t* first_thrust;  // [body + 1]; nullptr: there is none
   // Bodies that a body does not collide with, because of a joint: [first_joined[body] ...);
   // nullptr: there are none.
   const std::int32_t* joined;

@@ -106,7 +106,7 @@ void carve(const Tables& t, Work& w, Carver& c) {
   c.take(w.body_rows, count((t.bodies + 1) * body_row * lanes));
   c.take(w.push_storage, velocities);
   if (t.drag_varies) c.take(w.factor_storage, velocities);
-  if (!t.has_contacts && !t.has_joints) {
+  if (!t.has_substeps) {
     c.take(w.before, count(t.bodies * t.state_stride * lanes));
     return;
   }

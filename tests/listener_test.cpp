@@ -90,6 +90,9 @@ TEST_CASE("a listener hears of every input and step call", "[fast][listener]") {
   batch.reset();
   heard({"reset 0 -1", "reset 1 -1", "reset 2 -1"}, 2);
 
+  batch.set_controls(std::vector<float>{});
+  heard({"set_controls 0 -1", "set_controls 1 -1", "set_controls 2 -1"}, 2);
+
   // What is refused did not happen, and reading is no input.
   CHECK_THROWS(batch.add_force(3, 0, Vec3::Zero()));
   CHECK_THROWS(batch.spawn(0, 0, {.rotation = Quat(0, 0, 0, 0)}));

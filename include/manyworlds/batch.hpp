@@ -182,6 +182,17 @@ class Batch {
   void add_angular_impulse(int world, int body, const Vec3& impulse);
   void add_impulse_at(int world, int body, const Vec3& impulse, const Vec3& point_world);
 
+  // -- controls (Scene::controls), [world][control]. They act in every step until they are set
+  // anew; beyond its range a value counts as the end of the range, and one that is not a number
+  // freezes its world (Status::non_finite). A world whose controls change wakes. Buffers of the
+  // wrong size throw.
+  int controls(int world = 0) const;
+  void set_controls(std::span<const float> in);
+  void set_controls(std::span<const double> in);
+  void set_controls(int world, std::span<const double> in);
+  void read_controls(std::span<float> out) const;
+  void read_controls(std::span<double> out) const;
+
   // -- bodies that come and go. A disabled body takes no part in the step: nothing touches it, it
   // keeps its state, and the others have the bits that they would have without it. It costs nothing
   // where it is disabled in all worlds of a group. The first call allocates.

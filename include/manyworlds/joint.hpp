@@ -41,7 +41,7 @@ struct Limit {
 // Pulls a coordinate x with speed v by
 //   spring stiffness (target_position - x) + spring damping (target_speed - v), |.| <= max_force.
 // Without a spring it is a motor: it holds target_speed with whatever that takes up to max_force.
-// Targets are the same in all worlds.
+// Controls (control.hpp) give each world targets of its own.
 struct Drive {
   double target_position = 0;  // m or rad
   double target_speed = 0;     // m/s or rad/s

@@ -27,8 +27,9 @@ enum class Input : std::uint8_t {
   write_angular_velocity,  // canonical
   reset,                   // the world has a new state and no pending forces (0)
   restore,                 // the world has a new state: restored, copied, or other parameters (0)
+  set_controls,            // of the whole world, [control]
 };
-inline constexpr int kInputCount = 16;
+inline constexpr int kInputCount = 17;
 const char* to_string(Input input);  // "force", "write_position"
 
 struct InputCall {

@@ -16,6 +16,7 @@
 #include <variant>
 #include <vector>
 
+#include "manyworlds/control.hpp"
 #include "manyworlds/joint.hpp"
 #include "manyworlds/variation.hpp"
 
@@ -191,6 +192,7 @@ struct Scene {
   Space space = Space::spatial;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
+  std::vector<Control> controls;
   Options options;
   std::vector<Variation> variations;
 

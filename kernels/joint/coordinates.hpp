@@ -113,10 +113,10 @@ MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, Row<S
 }
 
 template <class S, bool kDense, Pass kPass, bool kLinear>
-MW_INLINE void solve(const Tables& t, const Work& w, const JointPart& part, const Joint& numbers,
-                     Row<S, kLinear>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve(const Tables& t, const Group& g, const Work& w, const JointPart& part,
+                     const Joint& numbers, Row<S, kLinear>& s, PartVelocities<S, kDense>& v) {
   if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
-  solve_row<S, kLinear, kDense, kPass>(t, part, numbers, s, v);
+  solve_row<S, kLinear, kDense, kPass>(t, g, part, numbers, s, v);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

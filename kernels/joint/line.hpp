@@ -59,8 +59,8 @@ MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, LineRows<S
 }
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Tables&, const Work& w, const JointPart& part, const Joint& numbers,
-                     LineRows<S>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart& part,
+                     const Joint& numbers, LineRows<S>& s, PartVelocities<S, kDense>& v) {
   using Vec = typename S::Vec;
   if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
   const auto arm_a = load_as<Vec>(s.arm_a[0]), arm_b = load_as<Vec>(s.arm_b[0]),

@@ -45,8 +45,8 @@ template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work&, const JointPart&, const Joint&, LockRows<S>&) {}
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Tables&, const Work& w, const JointPart&, const Joint& numbers,
-                     LockRows<S>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart&,
+                     const Joint& numbers, LockRows<S>& s, PartVelocities<S, kDense>& v) {
   using Ang = typename S::Ang;
   const auto before = load_as<Ang>(s.impulse[0]);
   if constexpr (kPass == Pass::warm_start) {

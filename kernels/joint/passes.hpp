@@ -92,7 +92,7 @@ struct JointPasses {
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       if (s.mask == 0) return;
       PartVelocities<S, kDense> v(w, s);
-      solve<S, kDense, kPass>(t, w, part, constants_of_part(g, i), s, v);
+      solve<S, kDense, kPass>(t, g, w, part, constants_of_part(g, i), s, v);
       v.store(w, s);
     });
   }

@@ -76,8 +76,8 @@ MW_INLINE typename S::Vec limit_length(typename S::Vec p, Float most) {
 }
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Tables&, const Work& w, const JointPart& part, const Joint& numbers,
-                     PointRows<S>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart& part,
+                     const Joint& numbers, PointRows<S>& s, PartVelocities<S, kDense>& v) {
   using Vec = typename S::Vec;
   using Mass = typename PointMass<S>::Type;
   if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);

@@ -91,8 +91,8 @@ MW_INLINE Float solve_limit(const Tables& t, const Joint& numbers, Float k, Floa
 }
 
 template <class S, bool kLinear, bool kDense, Pass kPass>
-MW_INLINE void solve_row(const Tables& t, const JointPart& part, const Joint& numbers,
-                         Row<S, kLinear>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve_row(const Tables& t, const Group& g, const JointPart& part,
+                         const Joint& numbers, Row<S, kLinear>& s, PartVelocities<S, kDense>& v) {
   if constexpr (kPass == Pass::warm_start) {
     const Float low = Float::load(s.impulse[1]), high = Float::load(s.impulse[2]);
     apply_row<S, kLinear, kDense>(s, Float::load(s.impulse[0]) + (low - high), v);
@@ -104,9 +104,16 @@ MW_INLINE void solve_row(const Tables& t, const JointPart& part, const Joint& nu
     const Float before = Float::load(s.impulse[0]), speed = speed_of<S, kLinear, kDense>(s, v);
     Float after;
     if (part.drive) {  // its equation is the same in both passes
+      Float target = numbers.target_position, target_speed = numbers.target_speed;
+      if (part.position_control >= 0) {
+        target = Float::load(g.control + part.position_control * kLanes);
+      }
+      if (part.speed_control >= 0) {
+        target_speed = Float::load(g.control + part.speed_control * kLanes);
+      }
       const Float most = numbers.most;
-      const Float lag = fnma(numbers.target_speed, numbers.speed_share, speed);
-      const Float error = Float::load(s.driven) - Float(numbers.target_position);
+      const Float lag = fnma(target_speed, numbers.speed_share, speed);
+      const Float error = Float::load(s.driven) - target;
       after = before + soften_row(numbers.drive_soft, k, lag, error, before);
       after = clamp(after, -most, most);
     } else if (kPass == Pass::bias) {

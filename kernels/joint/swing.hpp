@@ -58,8 +58,8 @@ MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, SwingRows<
 }
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Tables&, const Work& w, const JointPart& part, const Joint& numbers,
-                     SwingRows<S>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart& part,
+                     const Joint& numbers, SwingRows<S>& s, PartVelocities<S, kDense>& v) {
   if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
   const auto b = load_as<Vec3>(s.b[0]), c = load_as<Vec3>(s.c[0]),
              stored = load_as<Vec3>(s.impulse[0]);

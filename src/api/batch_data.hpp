@@ -78,7 +78,11 @@ struct Batch::Impl {
   void tell_write(const Batch& batch, Field field, std::span<const Number> in) const;
   void tell_write(const Batch& batch, Field field, int world, std::span<const double> in) const;
   void tell_spawn(const Batch& batch, int world, int body, const BodyState& state) const;
+  void tell_controls(const Batch& batch, int world, std::span<const double> in) const;
   void tell_step(const Batch& batch, int n) const;
+
+  template <class Number>
+  void set_controls(const Batch& batch, std::span<const Number> in);
 
   // Does world `from` of a snapshot fit this kind of world? Throws SnapshotError.
   void check_snapshot_world(const Snapshot& snapshot, std::size_t from, int kind) const;

@@ -64,6 +64,10 @@ void Batch::Impl::tell_spawn(const Batch& batch, int world, int body,
   call(listeners, batch, {Input::spawn, world, body, values});
 }
 
+void Batch::Impl::tell_controls(const Batch& batch, int world, std::span<const double> in) const {
+  call(listeners, batch, {Input::set_controls, world, -1, in});
+}
+
 void Batch::Impl::tell_step(const Batch& batch, int n) const {
   for (const auto& weak : listeners) {
     if (const auto listener = weak.lock()) listener->on_step(batch, n);
@@ -86,7 +90,8 @@ const char* to_string(Input input) {
                                                "write_linear_velocity",
                                                "write_angular_velocity",
                                                "reset",
-                                               "restore"};
+                                               "restore",
+                                               "set_controls"};
   const auto i = static_cast<std::size_t>(input);
   return i < kInputCount ? kNames[i] : "unknown";
 }

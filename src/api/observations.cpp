@@ -101,7 +101,7 @@ typename ObservationsOf<Real>::Block ObservationsOf<Real>::make_block(
   block.poses = scratch;
   if (!t.has_contacts) {
     block.tables = std::make_unique<kernels::WorldTables<Real>>(t);
-    block.tables->has_contacts = true;
+    block.tables->has_contacts = block.tables->has_substeps = true;
     block.pose_memory = AlignedBuffer<unsigned char>(kernels_.scratch_bytes(*block.tables));
     block.poses = kernels_.make_scratch(*block.tables, block.pose_memory.data());
   }

@@ -68,8 +68,11 @@ void choose_features(PlanData& plan) {
   const bool joints = !scene.joints.empty();
   // A body without shapes has an orientation that somebody may want to look at.
   round = round && plan.colliders.size() >= plan.bodies.size();
-  choose.set(Feature::orientation, !(round && isotropic) || joints,
-             joints ? "joints turn with it" : "shapes or inertia depend on it",
+  const bool thrust = !plan.thrusts.empty();
+  choose.set(Feature::orientation, !(round && isotropic) || joints || thrust,
+             joints   ? "joints turn with it"
+             : thrust ? "thrust turns with it"
+                      : "shapes or inertia depend on it",
              "every moving body is a centred ball");
   // Joints are solved with full tensors only: few jointed bodies are isotropic.
   choose.set(Feature::inertia, !planar && (!isotropic || joints),

@@ -88,6 +88,10 @@ class Printer {
     std::visit([this](const auto& type) { add(type); }, j.type);
     add(j.body_a), add(j.body_b), add(j.frame_a), add(j.frame_b), add(j.collide);
   }
+  // What a world begins with does not matter to one that has begun.
+  void add(const Control& c) {
+    add(c.kind), add(c.joint), add(c.body), add(c.point), add(c.direction), add(c.low), add(c.high);
+  }
   // How a number is drawn does not matter to a world that has it.
   void add(const VariedNumber& n) {
     add(n.parameter), add(n.body), add(n.shape), add(n.component), add(n.low), add(n.high);
@@ -105,6 +109,7 @@ std::uint64_t fingerprint(const PlanData& plan) {
   printer.add(plan.scene.space);
   printer.add(plan.scene.bodies);
   printer.add(plan.scene.joints);
+  printer.add(plan.scene.controls);
   printer.add(plan.scene.options);
   printer.add(plan.varied);
   for (const bool in : plan.in) printer.add(in);

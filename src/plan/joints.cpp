@@ -52,6 +52,7 @@ class Builder {
  public:
   Builder(PlanData& plan, int index)
       : plan_(plan),
+        index_(index),
         joint_(plan.scene.joints[static_cast<std::size_t>(index)]),
         h_(plan.scene.options.dt / plan.scene.options.substeps) {}
 
@@ -89,7 +90,9 @@ class Builder {
     PlanPart& out = plan_.parts.emplace_back();
     const Side a = side_of(plan_, joint_.body_a, joint_.frame_a),
                b = side_of(plan_, joint_.body_b, joint_.frame_b);
+    out.joint = index_;
     out.what.kind = kind;
+    out.what.position_control = out.what.speed_control = -1;
     out.what.body_a = a.body;
     out.what.body_b = b.body;
     put(a.anchor, out.numbers.anchor_a);
@@ -200,6 +203,7 @@ class Builder {
   }
 
   PlanData& plan_;
+  int index_;
   const Joint& joint_;
   double h_;
 };

@@ -57,8 +57,16 @@ struct PlanFixed {
 
 // Part of a joint, and its numbers.
 struct PlanPart {
+  int joint = -1;  // of the scene
   kernels::JointPart what{};
   kernels::JointConstants<double> numbers{};
+};
+
+// Thrust or torque of a control.
+struct PlanThrust {
+  kernels::ThrustTable what{};
+  Vec3 point = Vec3::Zero();      // from the centre of mass, principal axes
+  Vec3 direction = Vec3::Zero();  // principal axes
 };
 
 struct PlanClass {
@@ -95,7 +103,8 @@ struct PlanData {
   std::vector<PlanCollider> colliders;
   std::vector<PlanFixed> fixed;
   std::vector<PlanClass> classes;
-  std::vector<PlanPart> parts;  // of joints, in their order
+  std::vector<PlanPart> parts;      // of joints, in their order
+  std::vector<PlanThrust> thrusts;  // by body
   std::array<int, kernels::kLists> capacity{};
   bool sweep = false;
   bool rectangles = true;  // every polygon is one, and stays one
@@ -123,6 +132,7 @@ void choose_polygons(PlanData& plan);       // colliders.cpp
 void collect_colliders(PlanData& plan);     // colliders.cpp
 void collect_fixed(PlanData& plan);         // colliders.cpp
 void collect_joints(PlanData& plan);        // joints.cpp
+void collect_controls(PlanData& plan);      // controls.cpp
 void lay_out_shapes(PlanData& plan);        // colliders.cpp
 void collect_pairs(PlanData& plan);         // pairs.cpp, sparse_pairs.cpp
 void choose_features(PlanData& plan);       // features.cpp

@@ -36,6 +36,7 @@ void derive_again(PlanData& plan) {
     collect_bodies(plan);
     collect_colliders(plan);
     collect_joints(plan);
+    collect_controls(plan);
   }
   const auto material = [&](const auto& shape) {
     return plan.scene.bodies[static_cast<std::size_t>(shape.scene_body)]

@@ -7,7 +7,7 @@
 
 namespace manyworlds::record {
 
-std::int64_t number_count(Input input, int bodies, Space space) {
+std::int64_t number_count(Input input, int bodies, const Scene& scene) {
   switch (input) {
     case Input::force:
     case Input::torque:
@@ -16,7 +16,9 @@ std::int64_t number_count(Input input, int bodies, Space space) {
     case Input::force_at:
     case Input::impulse_at: return 6;
     case Input::spawn: return 13;
-    default: return is_write(input) ? std::int64_t{bodies} * components(field_of(input), space) : 0;
+    case Input::set_controls: return static_cast<std::int64_t>(scene.controls.size());
+    default:
+      return is_write(input) ? std::int64_t{bodies} * components(field_of(input), scene.space) : 0;
   }
 }
 
@@ -73,6 +75,7 @@ void apply(Batch& batch, const InputRow& row, int world, std::span<const double>
           {vector(0), Quat(values[3], values[4], values[5], values[6]), vector(7), vector(10)});
       break;
     case Input::wake: batch.wake(world); break;
+    case Input::set_controls: batch.set_controls(world, values); break;
     case Input::write_position:
     case Input::write_orientation:
     case Input::write_linear_velocity:

@@ -30,8 +30,8 @@ inline bool is_write(Input input) {
 inline Field field_of(Input write) {
   return static_cast<Field>(static_cast<int>(write) - static_cast<int>(Input::write_position));
 }
-// How many numbers come with it; bodies are those of its world.
-std::int64_t number_count(Input input, int bodies, Space space);
+// How many numbers come with it, for a world of this scene.
+std::int64_t number_count(Input input, int bodies, const Scene& scene);
 
 class InputLog {
  public:

@@ -43,8 +43,8 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
   if (static_cast<int>(row.input) >= kInputCount) {
     refuse("is of unknown kind " + std::to_string(static_cast<int>(row.input)));
   }
-  const bool whole_world =
-      row.input == Input::wake || record::is_write(row.input) || record::brings_state(row.input);
+  const bool whole_world = row.input == Input::wake || row.input == Input::set_controls ||
+                           record::is_write(row.input) || record::brings_state(row.input);
   if (row.world < 0 || row.world >= worlds()) {
     refuse("is for world " + std::to_string(row.world) + " of " + std::to_string(worlds()));
   }
@@ -60,7 +60,9 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
   if (row.begin < 0 || row.count < 0 || row.count > most || row.begin > most - row.count) {
     refuse("has its numbers outside of what is there");
   }
-  const std::int64_t wanted = brings ? row.count : record::number_count(row.input, bodies, space());
+  const std::int64_t wanted =
+      brings ? row.count
+             : record::number_count(row.input, bodies, kinds[place(row.world).kind].plan.scene());
   if (row.count != wanted) {
     refuse("has " + std::to_string(row.count) + " numbers, must have " + std::to_string(wanted));
   }

@@ -39,6 +39,11 @@ struct Words<JointType> {
 static_assert(std::size(Words<JointType>::list) == std::variant_size_v<JointType>);
 
 template <>
+struct Words<ControlKind> {
+  static constexpr const char* list[] = {"target_position", "target_speed", "thrust", "torque"};
+};
+
+template <>
 struct Words<Parameter> {
   static constexpr const char* list[] = {
 #define MW_PARAMETER_WORD(name, owner, numbers, unit, meaning) #name,
@@ -200,15 +205,21 @@ MW_MEMBERS(Joint) {
   visit("name", name), visit("type", type), visit("body_a", body_a), visit("body_b", body_b);
   visit("frame_a", frame_a), visit("frame_b", frame_b), visit("collide", collide);
 }
+MW_MEMBERS(Control) {
+  auto& [name, kind, joint, body, point, direction, low, high, initial] = value;
+  visit("name", name), visit("kind", kind), visit("joint", joint), visit("body", body);
+  visit("point", point), visit("direction", direction);
+  visit("low", low), visit("high", high), visit("initial", initial);
+}
 MW_MEMBERS(Variation) {
   auto& [parameter, body, shape, low, high, draw, together] = value;
   visit("parameter", parameter), visit("body", body), visit("shape", shape);
   visit("low", low), visit("high", high), visit("draw", draw), visit("together", together);
 }
 MW_MEMBERS(Scene) {
-  auto& [name, space, bodies, joints, options, variations] = value;
+  auto& [name, space, bodies, joints, controls, options, variations] = value;
   visit("name", name), visit("space", space), visit("options", options), visit("bodies", bodies);
-  visit("joints", joints);
+  visit("joints", joints), visit("controls", controls);
   visit("variations", variations);
 }
 MW_MEMBERS(PlanOptions) {

@@ -83,6 +83,7 @@ void check_shape(Checker checker, const Body& body, const Shape& shape);
 void check_body(Checker checker, const Scene& scene, const Body& body, bool density_valid);
 void check_options(Checker checker, const Options& options);
 void check_joint(Checker checker, const Scene& scene, const Joint& joint);
+void check_control(Checker checker, const Scene& scene, std::size_t index);
 // `sound`: whether the scene has no other issue. Only then are its extremes looked at.
 void check_variations(Checker checker, const Scene& scene, bool sound);
 

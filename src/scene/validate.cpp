@@ -23,6 +23,7 @@ std::vector<Issue> validate(const Scene& scene) {
   check_count("bodies", scene.bodies.size(), detail::kMostBodies);
   check_count("shapes", shapes, detail::kMostShapes);
   check_count("joints", scene.joints.size(), detail::kMostBodies);
+  check_count("controls", scene.controls.size(), detail::kMostBodies);
 
   // Needed before the bodies, whose masses depend on the default density, but listed after them.
   std::vector<Issue> option_issues;
@@ -41,6 +42,12 @@ std::vector<Issue> validate(const Scene& scene) {
     std::string part = "joint " + std::to_string(i);
     if (!joint.name.empty()) part += " '" + joint.name + "'";
     check_joint(checker.at(part), scene, joint);
+  }
+  for (std::size_t i = 0; i < scene.controls.size(); ++i) {
+    const Control& control = scene.controls[i];
+    std::string part = "control " + std::to_string(i);
+    if (!control.name.empty()) part += " '" + control.name + "'";
+    check_control(checker.at(part), scene, i);
   }
   const bool sound = issues.empty() && option_issues.empty();
   issues.insert(issues.end(), option_issues.begin(), option_issues.end());

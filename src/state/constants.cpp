@@ -120,13 +120,15 @@ Constants<Real>::Constants(const PlanData& plan, Parts parts, int groups, int la
        sizeof(kernels::MaterialOf<Real>));
   make(joints_, parts.joints && !plan.parts.empty(), plan.parts.size(),
        sizeof(kernels::JointConstants<Real>));
+  make(thrusts_, parts.joints && !plan.thrusts.empty(), plan.thrusts.size(),
+       sizeof(kernels::ThrustConstants<Real>));
 }
 
 template <class Real>
 kernels::ConstantBlocks<Real> Constants<Real>::group(int index) const {
   const auto at = static_cast<std::size_t>(index), lanes = static_cast<std::size_t>(lanes_);
-  return {bodies_.group(at, lanes), shapes_.group(at, lanes), polygons_.group(at, lanes),
-          materials_.group(at, lanes), joints_.group(at, lanes)};
+  return {bodies_.group(at, lanes),    shapes_.group(at, lanes), polygons_.group(at, lanes),
+          materials_.group(at, lanes), joints_.group(at, lanes), thrusts_.group(at, lanes)};
 }
 
 template <class Real>
@@ -152,6 +154,12 @@ void Constants<Real>::fill(const PlanData& plan, int slot) {
   }
   for (std::size_t p = 0; !joints_.numbers.empty() && p < plan.parts.size(); ++p) {
     put(joints_, p, joint_constants<Real>(plan.parts[p]), slot);
+  }
+  for (std::size_t i = 0; !thrusts_.numbers.empty() && i < plan.thrusts.size(); ++i) {
+    kernels::ThrustConstants<Real> value{};
+    copy_numbers(plan.thrusts[i].point, value.point);
+    copy_numbers(plan.thrusts[i].direction, value.direction);
+    put(thrusts_, i, value, slot);
   }
   const auto material = [&](std::size_t item, const Material& m) {
     const kernels::MaterialOf<Real> value{static_cast<Real>(m.friction),
@@ -192,7 +200,7 @@ void Constants<Real>::copy(int from, int to) {
 template <class Real>
 std::size_t Constants<Real>::bytes() const {
   return (bodies_.numbers.size() + shapes_.numbers.size() + polygons_.numbers.size() +
-          materials_.numbers.size() + joints_.numbers.size()) *
+          materials_.numbers.size() + joints_.numbers.size() + thrusts_.numbers.size()) *
          sizeof(Real);
 }
 

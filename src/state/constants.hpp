@@ -47,7 +47,7 @@ class Constants {
   };
   template <class Visit>
   void for_each_block(Visit visit) {
-    for (Block* b : {&bodies_, &shapes_, &polygons_, &materials_, &joints_}) visit(*b);
+    for (Block* b : {&bodies_, &shapes_, &polygons_, &materials_, &joints_, &thrusts_}) visit(*b);
   }
   // Writes one item of a lane.
   template <class Item>
@@ -55,7 +55,7 @@ class Constants {
 
   Parts parts_;
   int lanes_ = 1;
-  Block bodies_, shapes_, polygons_, materials_, joints_;
+  Block bodies_, shapes_, polygons_, materials_, joints_, thrusts_;
 };
 
 }  // namespace manyworlds

@@ -23,6 +23,9 @@ Storage<Real>::Storage(const kernels::WorldTables<Real>& tables, int groups, int
   if (t.has_joints) {
     joint_impulse_ = AlignedBuffer<Real>(index(slots()) * index(t.parts) * kernels::kPartImpulses);
   }
+  if (t.controls > 0) {
+    control_ = AlignedBuffer<Real>(index(slots()) * index(t.controls));
+  }
   if (t.has_sleep) make_activity();
 }
 
@@ -40,6 +43,8 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
   if (own.polygon) view.constants.polygon = own.polygon;
   if (own.material) view.constants.material = own.material;
   if (own.joint) view.constants.joint = own.joint;
+  if (own.thrust) view.constants.thrust = own.thrust;
+  if (t.controls > 0) view.control = control_.data() + at * lanes * index(t.controls);
   if (t.has_joints) {
     view.joint_impulse =
         joint_impulse_.data() + at * lanes * index(t.parts) * kernels::kPartImpulses;
@@ -76,7 +81,7 @@ template <class Real>
 std::size_t Storage<Real>::bytes() const {
   std::size_t total =
       constants_.bytes() +
-      (state_.size() + joint_impulse_.size() + rest_time_.size()) * sizeof(Real) +
+      (state_.size() + joint_impulse_.size() + control_.size() + rest_time_.size()) * sizeof(Real) +
       (status_.size() + asleep_.size() + absent_.size() + resting_.size() + island_.size()) *
           sizeof(std::uint32_t);
   for (std::size_t l = 0; l < kernels::kLists; ++l) {

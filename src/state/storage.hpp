@@ -3,6 +3,7 @@
 // owner's business.
 //   state     [group][body][component][lane]
 //   cache     [group][lane][manifold][row], keys beside
+//   controls  [group][control][lane]
 //   joints    [group][part][impulses][lane]
 //   activity  [group][body] lane masks of sleeping and disabled bodies, made when first needed
 #pragma once
@@ -39,6 +40,11 @@ class Storage {
   // Impulses of contacts and joints of the body and of everybody that it is in touch with or joined
   // to, directly or not: what carried what is gone would be pushed up.
   void drop_impulses(int slot, int body);
+
+  Real& control(int slot, int which) const {
+    return control_[(group_of(slot) * index(tables_.controls) + index(which)) * index(lanes_) +
+                    lane_of(slot)];
+  }
 
   void add_force(int slot, int body, const Vec3& force, const Vec3& torque);
   void clear_forces();
@@ -105,6 +111,7 @@ class Storage {
   mutable std::array<AlignedBuffer<std::int32_t>, kernels::kLists> cache_keys_;
   mutable AlignedBuffer<std::uint32_t> status_;
   mutable AlignedBuffer<Real> joint_impulse_;  // [group][part][3][lane]
+  mutable AlignedBuffer<Real> control_;        // [group][control][lane]
   mutable AlignedBuffer<Real> force_;          // [group][body][force 3, torque 3][lane]
   bool forced_ = false;
   Constants<Real> constants_;

@@ -62,6 +62,8 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.has_restitution = plan.has(Feature::restitution);
   t.has_contacts = plan.has(Feature::contacts);
   t.has_joints = !plan.parts.empty();
+  t.has_substeps = t.has_contacts || t.has_joints || !plan.thrusts.empty();
+  t.controls = static_cast<std::int32_t>(plan.scene.controls.size());
   t.has_drag = plan.has(Feature::drag);
   t.has_gravity = plan.has(Feature::gravity);
   t.collider_is_body = plan.collider_is_body;
@@ -181,6 +183,15 @@ void TablesOf<Real>::add_joints(const PlanData& plan) {
   for (const PlanPart& p : plan.parts) parts_.push_back(p.what);
   t.parts = static_cast<std::int32_t>(parts_.size());
   t.part = parts_.data();
+  for (const PlanThrust& p : plan.thrusts) thrusts_.push_back(p.what);
+  for (int body = 0, i = 0; !thrusts_.empty() && body <= t.bodies; ++body) {
+    while (i < static_cast<int>(thrusts_.size()) &&
+           thrusts_[static_cast<std::size_t>(i)].body < body)
+      ++i;
+    first_thrust_.push_back(i);
+  }
+  t.thrust = thrusts_.data();
+  t.first_thrust = first_thrust_.empty() ? nullptr : first_thrust_.data();
   const auto name = [&](int scene_body) {
     const int state_body = plan.state_body[static_cast<std::size_t>(scene_body)];
     return state_body >= 0 ? state_body : t.bodies + 1 + scene_body;

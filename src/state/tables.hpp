@@ -34,6 +34,8 @@ class TablesOf {
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
   std::vector<kernels::JointPart> parts_;
+  std::vector<kernels::ThrustTable> thrusts_;
+  std::vector<std::int32_t> first_thrust_;
   std::vector<std::int32_t> joined_, first_joined_;
   AlignedBuffer<Real> fixed_rows_, push_rows_, factor_rows_;
 };

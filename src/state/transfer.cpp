@@ -11,7 +11,7 @@ namespace manyworlds {
 
 namespace {
 
-enum class Part { state, status, keys, rows, joints, rest_time, island, force };
+enum class Part { state, status, keys, rows, joints, controls, rest_time, island, force };
 
 struct Swap {
   template <class T>
@@ -163,6 +163,7 @@ void Storage<Real>::for_each_part(int slot_a, int slot_b, Visit&& visit) const {
     in_row(Part::rows, cache_rows_[l], (capacity + 2) * row, capacity * row);
   }
   in_lanes(Part::joints, joint_impulse_, index(t.parts) * kernels::kPartImpulses);
+  in_lanes(Part::controls, control_, index(t.controls));
   in_lanes(Part::rest_time, rest_time_, index(t.bodies));
   in_lanes(Part::island, island_, index(t.bodies));
   in_lanes(Part::force, force_, index(t.bodies) * 6);

@@ -75,6 +75,10 @@ void Worlds<Real>::initialise(int world) {
   storage_.status(slot) = 0;
   storage_.clear_contacts(slot);
   storage_.clear_joints(slot);
+  for (std::size_t i = 0; i < plan_.scene().controls.size(); ++i) {
+    storage_.control(slot, static_cast<int>(i)) =
+        static_cast<Real>(plan_.scene().controls[i].initial);
+  }
   storage_.clear_forces(slot);
   storage_.wake(slot);
 }

@@ -62,6 +62,12 @@ class Worlds {
                : own_bodies_[static_cast<std::size_t>(world) * data().bodies.size() + body];
   }
 
+  // What a control is set to counts within its range.
+  template <class In>
+  void set_controls(int world, const In* in);
+  template <class Out>
+  void read_controls(int world, Out* out) const;
+
   // Where the world begins from now on, instead of the scene's value and its jitter; canonical. Of
   // all worlds or of none.
   void set_initial(Field field, int world, const double* in);

@@ -170,7 +170,7 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                kernels::Scratch* scratch, int steps, StageClock* clock) {
   if (clock) clock->start();
   int taken = 0;
-  if (p.tables.has_contacts || p.tables.has_joints) {
+  if (p.tables.has_substeps) {
     const bool observed = p.wanted && p.wanted->slots && p.tables.has_contacts;
     const auto* slots = observed ? p.wanted : nullptr;
     for (; taken < steps && !at_rest(p, group); ++taken) {

@@ -171,7 +171,8 @@ TEST_CASE("a forged recording is refused", "[fast][record]") {
   refused(forged("inputs/call_steps", 0, 5), "must be at 5 or later");
   refused(forged("inputs/call_steps", 1, 1), "input 1: acts for 1 steps");
   refused(forged("inputs/call_steps", 0, -4), "input 0: acts for -4 steps");
-  refused(forged("inputs/input", 0, 16), "input 0: is of unknown kind 16");
+  refused(forged("inputs/input", 0, kInputCount),
+          ("input 0: is of unknown kind " + std::to_string(kInputCount)).c_str());
   refused(forged("inputs/input", 0, 2), "input 0: has 3 numbers, must have 6");
   refused(forged("inputs/world", 1, 2), "input 1: is for world 2 of 2");
   refused(forged("inputs/body", 1, 1), "input 1: is for body 1 of 1");

@@ -49,7 +49,10 @@ TEST_CASE("every named scene is recorded and replayed", "[fast][record]") {
 TEST_CASE("inputs of every kind are repeated, whatever replays them", "[fast][record][bits]") {
   const Folder folder;
   for (const Space space : {Space::planar, Space::spatial}) {
-    const Plan plan = compile(crowd(space));
+    Scene scene = crowd(space);
+    scene.controls = {
+        {"jet", ControlKind::thrust, -1, 3, Vec3(0.1, 0, 0), Vec3(1, 2, 0), 0, 1e3, 0}};
+    const Plan plan = compile(scene);
     for (const Table& table : all_tables()) {
       for (const bool sleep : {false, true}) {
         INFO(name(table) << (space == Space::planar ? " planar" : " spatial") << " sleep "

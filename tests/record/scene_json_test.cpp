@@ -57,6 +57,9 @@ Scene awkward_scene() {
     joint.collide = true;
     scene.add(joint);
   }
+  scene.controls = {
+      {"knee", ControlKind::target_position, 1, -1, Vec3::Zero(), Vec3::UnitX(), -1.0 / 3, 2, 0.1},
+      {"jet", ControlKind::thrust, -1, 4, Vec3(0.1, 0.2, 0.3), Vec3(1, -0.0, 1e-310), 0, 1e3, 7}};
   return scene;
 }
 
@@ -98,6 +101,10 @@ TEST_CASE("every member and every bit of a scene goes through JSON", "[fast][rec
   CHECK(b.shapes[0].density == a.shapes[0].density);
   CHECK(b.shapes[0].filter.category == 0x80000001u);
   CHECK(b.shapes[0].name == "hull");
+  REQUIRE(back.controls.size() == 2);
+  CHECK(back.controls[0].name == "knee");
+  CHECK(back.controls[0].initial == 0.1);
+  CHECK(back.controls[1].direction == scene.controls[1].direction);
   CHECK(back.options.dt == scene.options.dt);
   CHECK(back.options.contact_capacity == 77);
   REQUIRE(back.options.bounds);

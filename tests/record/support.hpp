@@ -72,7 +72,12 @@ inline void disturb(Batch& batch, int turn) {
   const Vec3 at = position(batch, world, body) + 0.1 * Vec3(1, 1, planar ? 0 : 1);
   int other = (world + 1) % worlds;
   if (batch.kind_of(other) != batch.kind_of(world)) other = world;
-  switch (turn % 16) {
+  switch (turn % 17) {
+    case 16: {
+      const std::vector<double> controls(static_cast<std::size_t>(batch.controls(world)), 300.0);
+      batch.set_controls(world, controls);
+      break;
+    }
     case 0: batch.add_force(world, body, 20 * push); break;
     case 1: batch.add_torque(world, body, 20 * turn_by); break;
     case 2: batch.add_force_at(world, body, 20 * push, at); break;

@@ -1,0 +1,85 @@
+// Checks of one control.
+#include "src/scene/checks.hpp"
+
+namespace manyworlds::detail {
+namespace {
+
+const Drive* drive_of(const JointType& type) {
+  const auto find = [](const auto& joint) -> const Drive* {
+    if constexpr (requires { joint.drive; }) {
+      return joint.drive ? &*joint.drive : nullptr;
+    } else {
+      return nullptr;
+    }
+  };
+  return std::visit(find, type);
+}
+
+std::string index_text(int index, std::size_t count, const char* what) {
+  std::string text = "is " + std::to_string(index) + ", must be a " + what;
+  if (count > 0) return text + ", 0 to " + std::to_string(count - 1);
+  return text + ", and there is none";
+}
+
+bool in(int index, std::size_t count) {
+  return index >= 0 && static_cast<std::size_t>(index) < count;
+}
+
+void check_thrust(Checker& checker, const Scene& scene, const Control& control) {
+  if (!in(control.body, scene.bodies.size())) {
+    checker.add("body", index_text(control.body, scene.bodies.size(), "body"));
+  } else if (scene.bodies[static_cast<std::size_t>(control.body)].motion != Motion::dynamic) {
+    checker.add("body", "is " + std::to_string(control.body) + ", must be a dynamic body");
+  }
+  const bool axial = control.kind == ControlKind::torque;
+  if (!axial) checker.finite("point", control.point, "m");
+  const bool good = axial ? checker.finite_axial("direction", control.direction, "")
+                          : checker.finite("direction", control.direction, "");
+  if (good && !(control.direction.norm() > 1e-12)) {
+    checker.add("direction", "is zero, must have a length");
+  }
+}
+
+void check_target(Checker& checker, const Scene& scene, std::size_t index) {
+  const Control& control = scene.controls[index];
+  if (!in(control.joint, scene.joints.size())) {
+    checker.add("joint", index_text(control.joint, scene.joints.size(), "joint"));
+    return;
+  }
+  const std::string is = "is " + std::to_string(control.joint) + ", ";
+  const Drive* drive = drive_of(scene.joints[static_cast<std::size_t>(control.joint)].type);
+  if (drive == nullptr) {
+    checker.add("joint", is + "must be one that has a drive");
+  } else if (control.kind == ControlKind::target_position && !drive->spring) {
+    checker.add("joint", is + "must be one whose drive has a spring: a motor holds no position");
+  }
+  for (std::size_t i = 0; i < index; ++i) {
+    const Control& other = scene.controls[i];
+    if (other.kind != control.kind || other.joint != control.joint) continue;
+    checker.add("joint",
+                is + "must be one whose target is not control " + std::to_string(i) + "'s already");
+    break;
+  }
+}
+
+}  // namespace
+
+void check_control(Checker checker, const Scene& scene, std::size_t index) {
+  const Control& control = scene.controls[index];
+  if (control.kind == ControlKind::thrust || control.kind == ControlKind::torque) {
+    check_thrust(checker, scene, control);
+  } else {
+    check_target(checker, scene, index);
+  }
+  bool range = checker.finite("low", control.low, "");
+  range &= checker.finite("high", control.high, "");
+  if (!range) return;
+  if (control.low > control.high) {
+    checker.add("low", "is " + number_text(control.low) + ", must not be above high, which is " +
+                           number_text(control.high));
+  } else {
+    checker.between("initial", control.initial, control.low, control.high);
+  }
+}
+
+}  // namespace manyworlds::detail
