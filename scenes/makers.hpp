@@ -20,7 +20,21 @@ Scene ball3d();
 Scene chain2d();
 Scene chain3d();
 
+// hanging.cpp
+Scene bridge();
+Scene ball_and_chain();
+Scene joint_grid();
+
+// machines.cpp
+Scene pulley();
+Scene elevator();
+Scene windmill();
+Scene four_bar();
+
 // one file each
+Scene car2d();
+Scene lunar_lander();
+Scene ragdoll();
 Scene free_flight();
 Scene billiards();
 Scene domino();

@@ -80,4 +80,14 @@ Eigen::AlignedBox3d spatial_bounds(double half_width) {
   return {Vec3(-wall, -wall, -kWallMargin), Vec3(wall, wall, kCeiling)};
 }
 
+int add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry) {
+  Body body;
+  body.name = std::move(name);
+  body.position = position;
+  body.shapes.push_back(shape_of(std::move(geometry)));
+  return scene.add(std::move(body));
+}
+
+Frame frame_at(double x, double y) { return {Vec3(x, y, 0), Quat::Identity()}; }
+
 }  // namespace manyworlds::scenes

@@ -29,4 +29,10 @@ Eigen::AlignedBox3d spatial_bounds(double half_width);
 // A shape at the body frame with the default material.
 Shape shape_of(Geometry geometry);
 
+// Adds a dynamic body of one shape; returns its index.
+int add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry);
+
+// A frame at a point of the plane, its axes the world's.
+Frame frame_at(double x, double y);
+
 }  // namespace manyworlds::scenes

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "manyworlds/scenes.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/tables.hpp"
@@ -131,6 +132,34 @@ TEST_CASE("every joint lives through half a minute of shaking", "[joint]") {
                            std::holds_alternative<FixedJoint>(types[k]) ||
                            std::holds_alternative<BallJoint>(types[k]);
         if (holds) CHECK(worst_gap(batch, 0) < 0.02);
+      }
+    }
+  }
+}
+
+TEST_CASE("bodies that begin with another keep their places on it", "[fast][batch][joint]") {
+  for (const char* name : {"car2d", "lunar-lander", "ragdoll"}) {
+    const Plan plan = compile(scenes::find(name)->make());
+    const Scene& scene = plan.scene();
+    Batch batch(plan, options_of(widest_tables().front(), 20));
+    const int leader = scene.bodies.back().jitter.with;
+    REQUIRE(leader >= 0);
+    const Body& first = scene.bodies[static_cast<std::size_t>(leader)];
+    const int b = plan.state_body(leader);
+    CHECK((position(batch, 3, b) - position(batch, 4, b)).norm() > 0.01);
+    for (int w = 0; w < batch.worlds(); ++w) {
+      INFO(name << " world " << w);
+      CHECK(worst_gap(batch, w) < 1e-5);
+      for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+        const Body& body = scene.bodies[static_cast<std::size_t>(i)];
+        if (body.jitter.with != leader) continue;
+        const int s = plan.state_body(i);
+        const Vec3 held =
+            rotation(batch, w, b).conjugate() * (position(batch, w, s) - position(batch, w, b));
+        CHECK((held - (body.position - first.position)).norm() < 1e-5);
+        CHECK((velocity(batch, w, s) - body.linear_velocity -
+               (velocity(batch, w, b) - first.linear_velocity))
+                  .norm() < 1e-5);
       }
     }
   }
