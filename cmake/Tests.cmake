@@ -101,13 +101,16 @@ if(MW_CLANG_FORMAT)
   endif()
 endif()
 
-# A user's project, against the installed package.
+# Users' projects, against the installed package.
 if(MW_INSTALL)
-  add_test(NAME embed
-    COMMAND ${CMAKE_COMMAND}
-            -D BUILD_DIR=${PROJECT_BINARY_DIR} -D SOURCE_DIR=${PROJECT_SOURCE_DIR}/examples/embed
-            -D COMPILER=${CMAKE_CXX_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
-            -D LIBDIR=${CMAKE_INSTALL_LIBDIR}
-            -P "${PROJECT_SOURCE_DIR}/cmake/TestEmbed.cmake")
-  set_tests_properties(embed PROPERTIES TIMEOUT 300)
+  foreach(example IN ITEMS embed lander)
+    add_test(NAME ${example}
+      COMMAND ${CMAKE_COMMAND}
+              -D BUILD_DIR=${PROJECT_BINARY_DIR}
+              -D SOURCE_DIR=${PROJECT_SOURCE_DIR}/examples/${example}
+              -D COMPILER=${CMAKE_CXX_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
+              -D LIBDIR=${CMAKE_INSTALL_LIBDIR}
+              -P "${PROJECT_SOURCE_DIR}/cmake/TestEmbed.cmake")
+    set_tests_properties(${example} PROPERTIES TIMEOUT 300)
+  endforeach()
 endif()
