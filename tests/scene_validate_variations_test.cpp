@@ -85,8 +85,11 @@ TEST_CASE("ranges must be such as a scene may have", "[fast][scene][parameters]"
 
   // A body that has no mass: its shape is the issue.
   planar.bodies[0].shapes[0].geometry = Polygon{};
-  planar.variations = {vary(Parameter::mass, 1, 2, Draw::none)};
-  CHECK(only_issue(planar) == "body 0, shape 0: vertices are 0, must be 3 to 8");
+  for (const Parameter parameter : {Parameter::mass, Parameter::size}) {
+    planar.variations = {vary(parameter, 1, 2, Draw::none)};
+    planar.variations[0].low.setOnes(), planar.variations[0].high.setOnes();
+    CHECK(only_issue(planar) == "body 0, shape 0: vertices are 0, must be 3 to 8");
+  }
 }
 
 TEST_CASE("a number varies once, and at both ends the scene must be valid",

@@ -58,8 +58,12 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
   return true;
 }
 
+// Numbers that are worked out from shapes, which have to be sound for it.
+bool is_of_shapes(Parameter parameter) {
+  return parameter == Parameter::mass || parameter == Parameter::size;
+}
+
 // Every number of the scene that it is about: its range, and the scene's own where nothing draws.
-// Masses follow from shapes, which have to be sound for it.
 void check_range(Checker& checker, const Scene& scene, bool sound, const Variation& v,
                  const VariedNumber& n) {
   std::string low = "low", high = "high";
@@ -79,7 +83,7 @@ void check_range(Checker& checker, const Scene& scene, bool sound, const Variati
                          number_text(n.high));
   } else if (v.draw == Draw::log_uniform && n.low <= 0) {
     checker.add(low, "is " + number_text(n.low) + ", must be > 0 for a logarithmic draw");
-  } else if (v.draw == Draw::none && (sound || v.parameter != Parameter::mass)) {
+  } else if (v.draw == Draw::none && (sound || !is_of_shapes(v.parameter))) {
     const double own = get_number(scene, n.parameter, n.body, n.shape, n.component);
     if (own >= n.low && own <= n.high) return;
     std::string place;
