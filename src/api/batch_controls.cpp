@@ -5,24 +5,23 @@ namespace manyworlds {
 
 namespace {
 
-// Calls visit(kind, world in kind, where its controls begin in the canonical array).
+// Calls visit(kind, where its worlds' controls begin in the canonical array, numbers of a world).
 template <class Impl, class Visit>
 void visit_controls(const Impl& impl, std::size_t numbers, Visit visit) {
+  const auto of_world = [&](std::size_t k) { return impl.kinds[k].plan.scene().controls.size(); };
+  const auto of_kind = [&](std::size_t k) {
+    return of_world(k) * static_cast<std::size_t>(impl.kinds[k].worlds);
+  };
   std::size_t total = 0;
-  for (std::size_t k = 0; k < impl.kinds.size(); ++k) {
-    total +=
-        impl.kinds[k].plan.scene().controls.size() * static_cast<std::size_t>(impl.kinds[k].worlds);
-  }
+  for (std::size_t k = 0; k < impl.kinds.size(); ++k) total += of_kind(k);
   if (numbers != total) {
     reject("controls are " + std::to_string(total) + " numbers, the buffer has " +
            std::to_string(numbers));
   }
   std::size_t at = 0;
   for (std::size_t k = 0; k < impl.kinds.size(); ++k) {
-    for (int w = 0; w < impl.kinds[k].worlds; ++w) {
-      visit(static_cast<int>(k), w, at);
-      at += impl.kinds[k].plan.scene().controls.size();
-    }
+    visit(static_cast<int>(k), at, of_world(k));
+    at += of_kind(k);
   }
 }
 
@@ -34,15 +33,17 @@ int Batch::controls(int world) const {
 
 template <class Number>
 void Batch::Impl::set_controls(const Batch& batch, std::span<const Number> in) {
-  visit_controls(*this, in.size(), [&](int kind, int world, std::size_t at) {
-    core->set_controls(kind, world, in.data() + at);
+  const auto worlds_of = [&](int kind) { return kinds[static_cast<std::size_t>(kind)].worlds; };
+  visit_controls(*this, in.size(), [&](int kind, std::size_t at, std::size_t) {
+    core->set_controls(kind, 0, worlds_of(kind), in.data() + at);
   });
   if (listeners.empty()) return;
-  visit_controls(*this, in.size(), [&](int kind, int world, std::size_t at) {
-    const auto n = static_cast<std::ptrdiff_t>(plan(kind).scene().controls.size());
-    const auto begin = in.begin() + static_cast<std::ptrdiff_t>(at);
-    const std::vector<double> values(begin, begin + n);
-    tell_controls(batch, first_world[static_cast<std::size_t>(kind)] + world, values);
+  visit_controls(*this, in.size(), [&](int kind, std::size_t at, std::size_t of_world) {
+    for (int w = 0; w < worlds_of(kind); ++w) {
+      const auto own = in.subspan(at + static_cast<std::size_t>(w) * of_world, of_world);
+      tell_controls(batch, first_world[static_cast<std::size_t>(kind)] + w,
+                    std::vector<double>(own.begin(), own.end()));
+    }
   });
 }
 void Batch::set_controls(std::span<const float> in) { impl_->set_controls(*this, in); }
@@ -55,19 +56,17 @@ void Batch::set_controls(int world, std::span<const double> in) {
     reject("controls of a world are " + std::to_string(wanted) + " numbers, the buffer has " +
            std::to_string(in.size()));
   }
-  impl_->core->set_controls(p.kind, p.world, in.data());
+  impl_->core->set_controls(p.kind, p.world, 1, in.data());
   impl_->tell_controls(*this, world, in);
 }
 
-void Batch::read_controls(std::span<float> out) const {
-  visit_controls(*impl_, out.size(), [&](int kind, int world, std::size_t at) {
-    impl_->core->read_controls(kind, world, out.data() + at);
+template <class Number>
+void Batch::Impl::read_controls(std::span<Number> out) const {
+  visit_controls(*this, out.size(), [&](int kind, std::size_t at, std::size_t) {
+    core->read_controls(kind, 0, kinds[static_cast<std::size_t>(kind)].worlds, out.data() + at);
   });
 }
-void Batch::read_controls(std::span<double> out) const {
-  visit_controls(*impl_, out.size(), [&](int kind, int world, std::size_t at) {
-    impl_->core->read_controls(kind, world, out.data() + at);
-  });
-}
+void Batch::read_controls(std::span<float> out) const { impl_->read_controls(out); }
+void Batch::read_controls(std::span<double> out) const { impl_->read_controls(out); }
 
 }  // namespace manyworlds

@@ -113,17 +113,17 @@ class CoreOf final : public BatchCore {
   void write(Parameter parameter, int kind, int world, const double* in) override {
     at(kind).write(parameter, world, in);
   }
-  void set_controls(int kind, int world, const float* in) override {
-    at(kind).set_controls(world, in);
+  void set_controls(int kind, int first, int count, const float* in) override {
+    at(kind).set_controls(first, count, in);
   }
-  void set_controls(int kind, int world, const double* in) override {
-    at(kind).set_controls(world, in);
+  void set_controls(int kind, int first, int count, const double* in) override {
+    at(kind).set_controls(first, count, in);
   }
-  void read_controls(int kind, int world, float* out) const override {
-    at(kind).read_controls(world, out);
+  void read_controls(int kind, int first, int count, float* out) const override {
+    at(kind).read_controls(first, count, out);
   }
-  void read_controls(int kind, int world, double* out) const override {
-    at(kind).read_controls(world, out);
+  void read_controls(int kind, int first, int count, double* out) const override {
+    at(kind).read_controls(first, count, out);
   }
   void add_force(int kind, int world, int body, const Vec3& f, const Vec3& torque) override {
     at(kind).add_force(world, body, f, torque);

@@ -28,10 +28,10 @@ class BatchCore {
   virtual void read(Parameter parameter, int kind, int world, double* out) const = 0;
   virtual std::string check(Parameter parameter, int kind, int world, const double* in) const = 0;
   virtual void write(Parameter parameter, int kind, int world, const double* in) = 0;
-  virtual void set_controls(int kind, int world, const float* in) = 0;
-  virtual void set_controls(int kind, int world, const double* in) = 0;
-  virtual void read_controls(int kind, int world, float* out) const = 0;
-  virtual void read_controls(int kind, int world, double* out) const = 0;
+  virtual void set_controls(int kind, int first, int count, const float* in) = 0;
+  virtual void set_controls(int kind, int first, int count, const double* in) = 0;
+  virtual void read_controls(int kind, int first, int count, float* out) const = 0;
+  virtual void read_controls(int kind, int first, int count, double* out) const = 0;
   virtual void add_force(int kind, int world, int body, const Vec3& f, const Vec3& torque) = 0;
   virtual void add_impulse(int kind, int world, int body, const Vec3& p, const Vec3& l) = 0;
   virtual bool forced() const = 0;

@@ -21,10 +21,12 @@ bool has_drive_of(const PlanPart& part, const Joint& joint) {
 
 void collect_controls(PlanData& plan) {
   plan.thrusts.clear();
+  plan.control_range.clear();
   const std::vector<Control>& controls = plan.scene.controls;
   for (std::size_t i = 0; i < controls.size(); ++i) {
     const Control& c = controls[i];
     const int index = static_cast<int>(i);
+    plan.control_range.push_back({c.low, c.high});
     if (is_thrust(c)) {
       const int body = plan.state_body[static_cast<std::size_t>(c.body)];
       const PlanBody& b = plan.bodies[static_cast<std::size_t>(body)];

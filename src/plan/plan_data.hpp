@@ -105,6 +105,7 @@ struct PlanData {
   std::vector<PlanClass> classes;
   std::vector<PlanPart> parts;      // of joints, in their order
   std::vector<PlanThrust> thrusts;  // by body
+  std::vector<std::array<double, 2>> control_range;  // [control] low, high
   std::array<int, kernels::kLists> capacity{};
   bool sweep = false;
   bool rectangles = true;  // every polygon is one, and stays one

@@ -1,4 +1,4 @@
-// Controls of a world.
+// Controls of worlds.
 #include <algorithm>
 #include <cmath>
 
@@ -8,37 +8,41 @@ namespace manyworlds {
 
 template <class Real>
 template <class In>
-void Worlds<Real>::set_controls(int world, const In* in) {
-  const std::vector<Control>& controls = plan_.scene().controls;
-  const int slot = slot_of(world);
-  bool changed = false;
-  for (std::size_t i = 0; i < controls.size(); ++i) {
-    const Real low = static_cast<Real>(controls[i].low), high = static_cast<Real>(controls[i].high);
-    if (std::isnan(in[i])) {
-      storage_.status(slot) |= kernels::kNonFinite;
-      continue;
+void Worlds<Real>::set_controls(int first, int count, const In* in) {
+  const auto& ranges = data().control_range;
+  for (int world = first; world < first + count; ++world) {
+    const int slot = slot_of(world);
+    bool changed = false;
+    for (std::size_t i = 0; i < ranges.size(); ++i, ++in) {
+      if (std::isnan(*in)) {
+        storage_.status(slot) |= kernels::kNonFinite;
+        continue;
+      }
+      const Real value = std::clamp(static_cast<Real>(*in), static_cast<Real>(ranges[i][0]),
+                                    static_cast<Real>(ranges[i][1]));
+      Real& stored = storage_.control(slot, static_cast<int>(i));
+      changed = changed || stored != value;
+      stored = value;
     }
-    const Real value = std::clamp(static_cast<Real>(in[i]), low, high);
-    Real& stored = storage_.control(slot, static_cast<int>(i));
-    changed = changed || !(stored == value);
-    stored = value;
+    if (changed) storage_.wake(slot);
   }
-  if (changed) storage_.wake(slot);
 }
 
 template <class Real>
 template <class Out>
-void Worlds<Real>::read_controls(int world, Out* out) const {
-  for (int i = 0; i < tables().controls; ++i) {
-    out[i] = static_cast<Out>(storage_.control(slot_of(world), i));
+void Worlds<Real>::read_controls(int first, int count, Out* out) const {
+  for (int world = first; world < first + count; ++world) {
+    for (int i = 0; i < tables().controls; ++i) {
+      *out++ = static_cast<Out>(storage_.control(slot_of(world), i));
+    }
   }
 }
 
-#define MW_INSTANTIATE(Real)                                            \
-  template void Worlds<Real>::set_controls<float>(int, const float*);   \
-  template void Worlds<Real>::set_controls<double>(int, const double*); \
-  template void Worlds<Real>::read_controls<float>(int, float*) const;  \
-  template void Worlds<Real>::read_controls<double>(int, double*) const;
+#define MW_INSTANTIATE(Real)                                                 \
+  template void Worlds<Real>::set_controls<float>(int, int, const float*);   \
+  template void Worlds<Real>::set_controls<double>(int, int, const double*); \
+  template void Worlds<Real>::read_controls<float>(int, int, float*) const;  \
+  template void Worlds<Real>::read_controls<double>(int, int, double*) const;
 MW_INSTANTIATE(float)
 MW_INSTANTIATE(double)
 #undef MW_INSTANTIATE

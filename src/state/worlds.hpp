@@ -64,9 +64,9 @@ class Worlds {
 
   // What a control is set to counts within its range.
   template <class In>
-  void set_controls(int world, const In* in);
+  void set_controls(int first, int count, const In* in);
   template <class Out>
-  void read_controls(int world, Out* out) const;
+  void read_controls(int first, int count, Out* out) const;
 
   // Where the world begins from now on, instead of the scene's value and its jitter; canonical. Of
   // all worlds or of none.
