@@ -69,4 +69,10 @@ struct JointPart {
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
 
+// A coordinate of a joint, for observers. Its frames are those of any part of the joint.
+struct JointCoordinate {
+  JointPart what;
+  std::int32_t part;
+};
+
 }  // namespace manyworlds::kernels

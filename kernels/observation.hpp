@@ -32,6 +32,9 @@ struct RayTable {
 // of mass. Rows of a hit: distance (the length for a miss), normal.
 inline constexpr int kRayRows = 7, kHitRows = 4;
 
+// Rows of a coordinate: value, speed. Rows of a joint: force and torque on B.
+inline constexpr int kCoordinateRows = 2, kJointRows = 6;
+
 template <class Real>
 struct Observation {
   // Beside the slots of each list: places and features of their points, impulses of the step.
@@ -47,6 +50,12 @@ struct Observation {
   std::int32_t room;
 
   Real* motion;  // [row][lane]
+
+  std::int32_t coordinates, joints;
+  const JointCoordinate* coordinate;  // [coordinate]
+  const std::int32_t* joint_of_part;  // [part]
+  Real* coordinate_rows;              // [coordinate][row][lane]
+  Real* joint_rows;                   // [joint][row][lane]
 
   std::int32_t rays;
   const RayTable* ray;                  // [ray]
@@ -74,6 +83,7 @@ struct ObserverTable {
   // again, what the stored impulses tell of pairs that are asleep.
   Observe<Real> awake[kInertiaKinds], asleep[kInertiaKinds];
   Observe<Real> motion[kInertiaKinds];
+  Observe<Real> joints[kInertiaKinds], joint_loads[kInertiaKinds];
   Observe<Real> rays;  // after begin: pose rows at the current state
   // One ray against one fixed pose row (64-byte aligned); whether it hits. out: a hit's rows.
   bool (*cast)(Dimension, ShapeKind, const Real* row, const Real* ray, Real* out);

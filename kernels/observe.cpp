@@ -1,6 +1,7 @@
 // The observers' table of this instruction set and precision.
 #include "kernels/observe/observe.hpp"
 
+#include "kernels/observe/joints.hpp"
 #include "kernels/observe/motion.hpp"
 #include "kernels/observe/slots.hpp"
 
@@ -47,6 +48,13 @@ void fill(kernels::ObserverTable<Real>& out) {
   out.motion[kind] = observe_motion<S>;
 }
 
+// Plans with joints have full tensors.
+template <class S>
+void fill_joints(kernels::ObserverTable<Real>& out) {
+  out.joints[static_cast<int>(S::kKind)] = observe_joints<S>;
+  out.joint_loads[static_cast<int>(S::kKind)] = observe_loads<S>;
+}
+
 kernels::ObserverTable<Real> make_table() {
   kernels::ObserverTable<Real> out{};
   out.place_reals = place_reals;
@@ -56,6 +64,8 @@ kernels::ObserverTable<Real> make_table() {
   fill<Planar>(out);
   fill<Isotropic>(out);
   fill<Tensor>(out);
+  fill_joints<Planar>(out);
+  fill_joints<Tensor>(out);
   out.rays = observe_rays;
   out.cast = cast_one;
   return out;

@@ -181,13 +181,14 @@ TEST_CASE("falling asleep, packing, waking and disabling allocate nothing", "[fa
 TEST_CASE("observing everything allocates nothing", "[fast][allocation][observe]") {
   for (Space space : {Space::planar, Space::spatial}) {
     Scene scene = crowd(space);
+    scene.add(joint_at(scene, 2, 3, {}, HingeJoint{}));
     scene.options.time_to_sleep = 0.1;
     scene.options.sleep_speed = 0.5;
     for (const Table& table : widest_tables()) {
       BatchOptions options = options_of(table, 40);
       options.sleep = true;
       options.observe.what = {Observer::contacts, Observer::touching, Observer::penetration,
-                              Observer::motion};
+                              Observer::motion,   Observer::joints,   Observer::joint_loads};
       options.observe.rays.resize(9);
       std::vector<Ray> rays(9);
       Batch batch(compile(scene), options);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <vector>
 
+#include "manyworlds/scenes.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/tables.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 Observers everything(Space space) {
   Observers observers;
   observers.what = {Observer::contacts, Observer::touching, Observer::penetration,
-                    Observer::motion};
+                    Observer::motion,   Observer::joints,   Observer::joint_loads};
   for (int i = 0; i < 12; ++i) {
     Ray ray;
     const double angle = 2 * kPi * i / 12;
@@ -71,6 +72,7 @@ std::vector<Scene> scenes() {
                             capsule_crowd(Space::planar, true), capsule_crowd(Space::spatial)};
   all.push_back(crowd(Space::spatial));
   for (Body& body : all.back().bodies) body.shapes[0].material.restitution = 0;
+  for (const char* name : {"lunar-lander", "ragdoll"}) all.push_back(scenes::find(name)->make());
   return all;
 }
 

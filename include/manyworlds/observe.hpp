@@ -17,6 +17,8 @@ enum class Observer {
   touching,     // which bodies a contact pushed in the last step
   penetration,  // the deepest overlap that the last step began with
   motion,       // energies, momenta, mass centre
+  joints,       // their coordinates and speeds
+  joint_loads,  // the forces and torques in them
 };
 
 // A ray that every world casts against all of its shapes. Shapes of its own body, disabled bodies
@@ -47,9 +49,19 @@ struct Observers {
 //   penetration                       m, 0 if none          Observer::penetration
 //   contact_count                     points, all of them   Observer::contacts
 //   touching                          [body] 0 or 1         Observer::touching
+//   joint_position, joint_speed       [coordinate]          Observer::joints
+//   joint_force                       [joint][2 or 3] N     Observer::joint_loads
+//   joint_torque                      [joint][1 or 3] N m   Observer::joint_loads
 //   ray_distance                      [ray] m               Observers::rays
 //   ray_normal                        [ray][2 or 3]         Observers::rays
 //   ray_body, ray_shape               [ray] scene body and index in Body::shapes, -1: no hit
+//
+// The coordinates of a joint follow one another, the joints are in their order (Plan::coordinates):
+//   ball      cone and twist, rad        hinge  angle, rad      slider  travel, m
+//   distance  length, m                  wheel  travel, m, and angle, rad
+//   pulley    |rope at A| + ratio |rope at B|, m                fixed, target  none
+// with angles in (-pi, pi], and their speeds in m/s and rad/s. Force and torque are what B gets
+// from the joint, the torque about B's anchor, world axes; those of the last substep.
 enum class Observed {
   kinetic_energy,
   potential_energy,
@@ -60,12 +72,16 @@ enum class Observed {
   penetration,
   contact_count,
   touching,
+  joint_position,
+  joint_speed,
+  joint_force,
+  joint_torque,
   ray_distance,
   ray_normal,
   ray_body,
   ray_shape,
 };
-inline constexpr int kObservedCount = 13;
+inline constexpr int kObservedCount = 17;
 const char* to_string(Observer observer);
 const char* to_string(Observed what);
 

@@ -24,8 +24,8 @@ struct alignas(64) Row : AnchoredRows<S> {
   Real k[kLanes];
 };
 
-template <class S, bool kLinear, bool kDense>
-MW_INLINE Float speed_of(const Row<S, kLinear>& s, const PartVelocities<S, kDense>& v) {
+template <class S, bool kLinear, class Velocities>
+MW_INLINE Float speed_of(const Row<S, kLinear>& s, const Velocities& v) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
   Float x = dot(load_as<Ang>(s.arm_b[0]), v.b.w) - dot(load_as<Ang>(s.arm_a[0]), v.a.w);
@@ -101,7 +101,7 @@ MW_INLINE void solve_row(const Tables& t, const Group& g, const JointPart& part,
   const Float k = Float::load(s.k), value = Float::load(s.value);
   if constexpr (kPass == Pass::bias) value.store(s.driven);
   if (part.equality || part.drive) {
-    const Float before = Float::load(s.impulse[0]), speed = speed_of<S, kLinear, kDense>(s, v);
+    const Float before = Float::load(s.impulse[0]), speed = speed_of(s, v);
     Float after;
     if (part.drive) {  // its equation is the same in both passes
       Float target = numbers.target_position, target_speed = numbers.target_speed;
@@ -127,13 +127,13 @@ MW_INLINE void solve_row(const Tables& t, const Group& g, const JointPart& part,
   }
   if (part.low) {
     const Float gap = value - Float(numbers.low);
-    const Float speed = speed_of<S, kLinear, kDense>(s, v);
+    const Float speed = speed_of(s, v);
     apply_row<S, kLinear, kDense>(s, solve_limit<kPass>(t, numbers, k, speed, gap, s.impulse[1]),
                                   v);
   }
   if (part.high) {
     const Float gap = Float(numbers.high) - value;
-    const Float speed = -speed_of<S, kLinear, kDense>(s, v);
+    const Float speed = -speed_of(s, v);
     apply_row<S, kLinear, kDense>(s, -solve_limit<kPass>(t, numbers, k, speed, gap, s.impulse[2]),
                                   v);
   }

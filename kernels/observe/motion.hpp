@@ -40,16 +40,6 @@ MW_INLINE void spin_of(const Tables& t, const Group& g, int body, const BodyMass
   }
 }
 
-MW_INLINE void add_to(Real* rows, int row, Float x) {
-  (Float::load(rows + row * kLanes) + x).store(rows + row * kLanes);
-}
-MW_INLINE void add_to(Real* rows, int row, Vec2 x) {
-  add_to(rows, row, x.x), add_to(rows, row + 1, x.y);
-}
-MW_INLINE void add_to(Real* rows, int row, Vec3 x) {
-  add_to(rows, row, x.x), add_to(rows, row + 1, x.y), add_to(rows, row + 2, x.z);
-}
-
 template <class S>
 void observe_motion(const Tables& t, const Group& g, kernels::Scratch*, const Observation& o) {
   const Float zero(Real(0)), half(Real(0.5));

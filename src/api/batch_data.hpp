@@ -85,6 +85,8 @@ struct Batch::Impl {
   void set_controls(const Batch& batch, std::span<const Number> in);
   template <class Number>
   void read_controls(std::span<Number> out) const;
+  template <class Number>
+  void read_observed(Observed what, std::size_t wanted, std::span<Number> out) const;
 
   // Does world `from` of a snapshot fit this kind of world? Throws SnapshotError.
   void check_snapshot_world(const Snapshot& snapshot, std::size_t from, int kind) const;

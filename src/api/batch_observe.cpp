@@ -32,8 +32,7 @@ void check_count(std::size_t got, std::size_t wanted) {
 std::size_t Batch::size(Observed what) const {
   std::size_t sum = 0;
   for (const Kind& kind : impl_->kinds) {
-    sum += observed_size(what, kind.plan.scene().space, kind.plan.bodies(),
-                         impl_->options.observe.rays.size()) *
+    sum += observed_size(what, kind.plan.data(), impl_->options.observe.rays.size()) *
            static_cast<std::size_t>(kind.worlds);
   }
   return sum;
@@ -42,29 +41,28 @@ std::size_t Batch::size(Observed what) const {
 void Batch::read(Observed what, int world, std::span<double> out) const {
   const auto p = impl_->find(world);
   const Plan& plan = impl_->plan(p.kind);
-  check_observed_size(
-      what, out.size(),
-      observed_size(what, plan.scene().space, plan.bodies(), impl_->options.observe.rays.size()));
-  observations_of(*impl_->core).read(what, p.kind, p.world, out.data());
+  check_observed_size(what, out.size(),
+                      observed_size(what, plan.data(), impl_->options.observe.rays.size()));
+  observations_of(*impl_->core).read(what, p.kind, p.world, 1, out.data());
 }
 
-void Batch::read(Observed what, std::span<double> out) const {
-  check_observed_size(what, out.size(), size(what));
+template <class Number>
+void Batch::Impl::read_observed(Observed what, std::size_t wanted, std::span<Number> out) const {
+  check_observed_size(what, out.size(), wanted);
+  const Observations& observations = observations_of(*core);
   std::size_t at = 0;
-  for (int w = 0; w < worlds(); ++w) {
-    const std::size_t count =
-        observed_size(what, plan().scene().space, bodies(w), impl_->options.observe.rays.size());
-    read(what, w, out.subspan(at, count));
-    at += count;
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    const int count = kinds[k].worlds;
+    observations.read(what, static_cast<int>(k), 0, count, out.data() + at);
+    at += observed_size(what, kinds[k].plan.data(), options.observe.rays.size()) *
+          static_cast<std::size_t>(count);
   }
 }
-
+void Batch::read(Observed what, std::span<double> out) const {
+  impl_->read_observed(what, size(what), out);
+}
 void Batch::read(Observed what, std::span<float> out) const {
-  check_observed_size(what, out.size(), size(what));
-  std::vector<double> all(out.size());
-  read(what, std::span<double>(all));
-  std::transform(all.begin(), all.end(), out.begin(),
-                 [](double x) { return static_cast<float>(x); });
+  impl_->read_observed(what, size(what), out);
 }
 
 std::vector<StepContact> Batch::step_contacts(int world) const {

@@ -25,6 +25,14 @@ ObservationsOf<Real>::ObservationsOf(const AllWorlds& worlds, const Observers& o
     const std::size_t n = at(w.count()), rays = observers_.rays.size();
     if (has(Observer::motion)) kind.motion.resize(n * kernels::kMotionRows);
     if (has(Observer::penetration)) kind.penetration.resize(n);
+    const PlanData& plan = w.data();
+    if (has(Observer::joints)) {
+      kind.coordinate_rows.resize(n * plan.coordinates.size() * kernels::kCoordinateRows);
+    }
+    if (has(Observer::joint_loads)) {
+      kind.joint_rows.resize(n * plan.scene.joints.size() * kernels::kJointRows);
+      for (const PlanPart& part : plan.parts) kind.joint_of_part.push_back(part.joint);
+    }
     if (has(Observer::touching)) kind.touching.resize(n * at(w.tables().bodies));
     if (has(Observer::contacts)) {
       kind.room = observers_.contacts_per_world;
@@ -40,7 +48,7 @@ ObservationsOf<Real>::ObservationsOf(const AllWorlds& worlds, const Observers& o
     kind.ray_rows.resize(n * rays * kernels::kRayRows);
     kind.hit_rows.resize(n * rays * kernels::kHitRows);
     kind.hit_shape.assign(n * rays, -1);
-    for (const PlanFixed& f : w.data().fixed) {
+    for (const PlanFixed& f : plan.fixed) {
       const Body& body = w.plan().scene().bodies[at(f.scene_body)];
       kind.fixed_category.push_back(body.shapes[at(f.shape)].filter.category);
     }
@@ -89,6 +97,17 @@ typename ObservationsOf<Real>::Block ObservationsOf<Real>::make_block(
     view.room = kind.room;
   }
   if (has(Observer::motion)) view.motion = reals(kernels::kMotionRows * lanes);
+  const PlanData& plan = worlds_[k]->data();
+  if (has(Observer::joints)) {
+    view.coordinates = static_cast<std::int32_t>(plan.coordinates.size());
+    view.coordinate = plan.coordinates.data();
+    view.coordinate_rows = reals(plan.coordinates.size() * kernels::kCoordinateRows * lanes);
+  }
+  if (has(Observer::joint_loads)) {
+    view.joints = static_cast<std::int32_t>(plan.scene.joints.size());
+    view.joint_of_part = kind.joint_of_part.data();
+    view.joint_rows = reals(plan.scene.joints.size() * kernels::kJointRows * lanes);
+  }
   if (rays == 0) return block;
   view.rays = static_cast<std::int32_t>(rays);
   view.ray = kind.rays.data();
@@ -193,6 +212,10 @@ void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group) {
       untangle(&kind.motion[w * kernels::kMotionRows], view.motion, kernels::kMotionRows, l);
     }
     if (view.penetration) kind.penetration[w] = view.penetration[l];
+    const std::size_t coordinates = at(view.coordinates) * kernels::kCoordinateRows,
+                      loads = at(view.joints) * kernels::kJointRows;
+    untangle(kind.coordinate_rows.data() + w * coordinates, view.coordinate_rows, coordinates, l);
+    untangle(kind.joint_rows.data() + w * loads, view.joint_rows, loads, l);
     if (view.touching) {
       const std::size_t bodies = at(worlds_[k]->tables().bodies);
       for (std::size_t b = 0; b < bodies; ++b) {

@@ -19,8 +19,8 @@ template <class Real>
 PairNames names_of(const PlanData& plan, const kernels::WorldTables<Real>& tables,
                    std::int32_t key);
 
-// Numbers of one world: what Observed says, for `bodies` and `rays`.
-std::size_t observed_size(Observed what, Space space, int bodies, std::size_t rays);
+// Numbers of one world: what Observed says, for a plan and `rays`.
+std::size_t observed_size(Observed what, const PlanData& plan, std::size_t rays);
 // Throws std::invalid_argument for what makes no sense in a plan with so many bodies.
 void check_rays(std::span<const Ray> rays, Space space, int bodies);
 void check_observers(const Observers& observers);
@@ -29,7 +29,9 @@ void check_observers(const Observers& observers);
 class Observations {
  public:
   virtual ~Observations() = default;
-  virtual void read(Observed what, int kind, int world, double* out) const = 0;
+  // Of `count` worlds, one after the other.
+  virtual void read(Observed what, int kind, int first, int count, float* out) const = 0;
+  virtual void read(Observed what, int kind, int first, int count, double* out) const = 0;
   virtual std::vector<StepContact> contacts(int kind, int world) const = 0;
   virtual void set_rays(std::span<const Ray> rays) = 0;  // of all worlds
   virtual void set_rays(int kind, int world, std::span<const Ray> rays) = 0;
@@ -45,7 +47,8 @@ class ObservationsOf final : public Observations {
   // Memory of one more thread; `scratch` is that of its steps, per kind.
   void add_thread(std::span<kernels::Scratch* const> scratch);
 
-  void read(Observed what, int kind, int world, double* out) const override;
+  void read(Observed what, int kind, int first, int count, float* out) const override;
+  void read(Observed what, int kind, int first, int count, double* out) const override;
   std::vector<StepContact> contacts(int kind, int world) const override;
   void set_rays(std::span<const Ray> rays) override;
   void set_rays(int kind, int world, std::span<const Ray> rays) override;
@@ -60,10 +63,12 @@ class ObservationsOf final : public Observations {
  private:
   struct Kind {                                                 // [world]...
     std::vector<Real> motion, penetration, ray_rows, hit_rows;  // rays in the user's frames
+    std::vector<Real> coordinate_rows, joint_rows;
     std::vector<std::uint8_t> touching;
     std::vector<std::int32_t> count, hit_shape;
     std::vector<kernels::ContactImpulse<Real>> contacts;
     std::vector<kernels::RayTable> rays;
+    std::vector<std::int32_t> joint_of_part;
     std::vector<std::uint32_t> fixed_category;
     int room = 0;
   };
@@ -80,6 +85,11 @@ class ObservationsOf final : public Observations {
   };
 
   bool has(Observer observer) const;
+  template <class Out>
+  void read_world(Observed what, int kind, int world, Out* out) const;
+  template <class Out>
+  static void read_joints(Observed what, const Kind& kind, const PlanData& plan, std::size_t world,
+                          Out* out);
   Block make_block(std::size_t kind, kernels::Scratch* scratch) const;
   void put_ray(std::size_t kind, int world, std::size_t ray, const Ray& from);
 

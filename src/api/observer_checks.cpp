@@ -15,6 +15,8 @@ const char* to_string(Observer observer) {
     case Observer::touching: return "touching";
     case Observer::penetration: return "penetration";
     case Observer::motion: return "motion";
+    case Observer::joints: return "joints";
+    case Observer::joint_loads: return "joint_loads";
   }
   return "?";
 }
@@ -30,6 +32,10 @@ const char* to_string(Observed what) {
     case Observed::penetration: return "penetration";
     case Observed::contact_count: return "contact_count";
     case Observed::touching: return "touching";
+    case Observed::joint_position: return "joint_position";
+    case Observed::joint_speed: return "joint_speed";
+    case Observed::joint_force: return "joint_force";
+    case Observed::joint_torque: return "joint_torque";
     case Observed::ray_distance: return "ray_distance";
     case Observed::ray_normal: return "ray_normal";
     case Observed::ray_body: return "ray_body";
@@ -38,13 +44,18 @@ const char* to_string(Observed what) {
   return "?";
 }
 
-std::size_t observed_size(Observed what, Space space, int bodies, std::size_t rays) {
-  const std::size_t dim = space == Space::planar ? 2 : 3;
+std::size_t observed_size(Observed what, const PlanData& plan, std::size_t rays) {
+  const bool planar = plan.scene.space == Space::planar;
+  const std::size_t dim = planar ? 2 : 3, spins = planar ? 1 : 3;
   switch (what) {
     case Observed::momentum:
     case Observed::mass_center: return dim;
-    case Observed::angular_momentum: return space == Space::planar ? 1 : 3;
-    case Observed::touching: return static_cast<std::size_t>(bodies);
+    case Observed::angular_momentum: return spins;
+    case Observed::touching: return plan.bodies.size();
+    case Observed::joint_position:
+    case Observed::joint_speed: return plan.coordinates.size();
+    case Observed::joint_force: return plan.scene.joints.size() * dim;
+    case Observed::joint_torque: return plan.scene.joints.size() * spins;
     case Observed::ray_distance:
     case Observed::ray_body:
     case Observed::ray_shape: return rays;

@@ -43,15 +43,38 @@ ShapeName shape_name(const PlanData& plan, int shape) {
 }  // namespace
 
 template <class Real>
-void ObservationsOf<Real>::read(Observed what, int k, int world, double* out) const {
+template <class Out>
+void ObservationsOf<Real>::read_joints(Observed what, const Kind& kind, const PlanData& plan,
+                                       std::size_t world, Out* out) {
+  if (what == Observed::joint_position || what == Observed::joint_speed) {
+    const std::size_t count = plan.coordinates.size(), speed = what == Observed::joint_speed;
+    const Real* from = kind.coordinate_rows.data() + world * count * kernels::kCoordinateRows;
+    for (std::size_t i = 0; i < count; ++i) {
+      out[i] = static_cast<Out>(from[i * kernels::kCoordinateRows + speed]);
+    }
+    return;
+  }
+  const bool planar = plan.scene.space == Space::planar, torque = what == Observed::joint_torque;
+  const std::size_t joints = plan.scene.joints.size();
+  const std::size_t first = torque ? (planar ? 5 : 3) : 0, dim = planar ? (torque ? 1 : 2) : 3;
+  const Real* from = kind.joint_rows.data() + world * joints * kernels::kJointRows + first;
+  for (std::size_t i = 0; i < joints; ++i) {
+    for (std::size_t c = 0; c < dim; ++c) {
+      out[i * dim + c] = static_cast<Out>(from[i * kernels::kJointRows + c]);
+    }
+  }
+}
+
+template <class Real>
+template <class Out>
+void ObservationsOf<Real>::read_world(Observed what, int k, int world, Out* out) const {
   const Kind& kind = kinds_[at(k)];
   const PlanData& plan = worlds_[at(k)]->data();
   const bool planar = plan.scene.space == Space::planar;
   const std::size_t w = at(world), rays = kind.rays.size();
-  const std::size_t size =
-      observed_size(what, plan.scene.space, worlds_[at(k)]->tables().bodies, rays);
+  const std::size_t size = observed_size(what, plan, rays);
   const auto copy = [&](const auto* from) {
-    for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<double>(from[i]);
+    for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<Out>(from[i]);
   };
   const auto need = [&](Observer observer) {
     if (!has(observer)) not_observed(what, std::string("Observer::") + to_string(observer));
@@ -60,6 +83,14 @@ void ObservationsOf<Real>::read(Observed what, int k, int world, double* out) co
     case Observed::penetration: need(Observer::penetration); return copy(&kind.penetration[w]);
     case Observed::contact_count: need(Observer::contacts); return copy(&kind.count[w]);
     case Observed::touching: need(Observer::touching); return copy(kind.touching.data() + w * size);
+    case Observed::joint_position:
+    case Observed::joint_speed:
+      need(Observer::joints);
+      return read_joints(what, kind, plan, w, out);
+    case Observed::joint_force:
+    case Observed::joint_torque:
+      need(Observer::joint_loads);
+      return read_joints(what, kind, plan, w, out);
     case Observed::ray_distance:
     case Observed::ray_normal:
     case Observed::ray_body:
@@ -73,13 +104,24 @@ void ObservationsOf<Real>::read(Observed what, int k, int world, double* out) co
   for (std::size_t i = 0; i < rays; ++i) {
     const Real* hit = &kind.hit_rows[(w * rays + i) * kernels::kHitRows];
     const ShapeName name = shape_name(plan, kind.hit_shape[w * rays + i]);
-    if (what == Observed::ray_distance) out[i] = static_cast<double>(hit[0]);
-    if (what == Observed::ray_body) out[i] = name.body;
-    if (what == Observed::ray_shape) out[i] = name.shape;
+    if (what == Observed::ray_distance) out[i] = static_cast<Out>(hit[0]);
+    if (what == Observed::ray_body) out[i] = static_cast<Out>(name.body);
+    if (what == Observed::ray_shape) out[i] = static_cast<Out>(name.shape);
     for (std::size_t c = 0; what == Observed::ray_normal && c < dim; ++c) {
-      out[i * dim + c] = static_cast<double>(hit[1 + c]);
+      out[i * dim + c] = static_cast<Out>(hit[1 + c]);
     }
   }
+}
+
+template <class Real>
+void ObservationsOf<Real>::read(Observed what, int k, int first, int count, float* out) const {
+  const std::size_t size = observed_size(what, worlds_[at(k)]->data(), kinds_[at(k)].rays.size());
+  for (int w = first; w < first + count; ++w, out += size) read_world(what, k, w, out);
+}
+template <class Real>
+void ObservationsOf<Real>::read(Observed what, int k, int first, int count, double* out) const {
+  const std::size_t size = observed_size(what, worlds_[at(k)]->data(), kinds_[at(k)].rays.size());
+  for (int w = first; w < first + count; ++w, out += size) read_world(what, k, w, out);
 }
 
 template <class Real>
@@ -107,8 +149,9 @@ std::vector<StepContact> ObservationsOf<Real>::contacts(int k, int world) const 
   return out;
 }
 
-#define MW_INSTANTIATE(Real)                                                   \
-  template void ObservationsOf<Real>::read(Observed, int, int, double*) const; \
+#define MW_INSTANTIATE(Real)                                                        \
+  template void ObservationsOf<Real>::read(Observed, int, int, int, float*) const;  \
+  template void ObservationsOf<Real>::read(Observed, int, int, int, double*) const; \
   template std::vector<StepContact> ObservationsOf<Real>::contacts(int, int) const;
 MW_INSTANTIATE(float)
 MW_INSTANTIATE(double)

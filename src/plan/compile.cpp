@@ -16,6 +16,7 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
   collect_fixed(*plan);
   lay_out_shapes(*plan);
   collect_joints(*plan);
+  collect_coordinates(*plan);
   collect_controls(*plan);
   collect_pairs(*plan);
   choose_features(*plan);

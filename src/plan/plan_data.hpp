@@ -103,9 +103,11 @@ struct PlanData {
   std::vector<PlanCollider> colliders;
   std::vector<PlanFixed> fixed;
   std::vector<PlanClass> classes;
-  std::vector<PlanPart> parts;      // of joints, in their order
-  std::vector<PlanThrust> thrusts;  // by body
+  std::vector<PlanPart> parts;                       // of joints, in their order
+  std::vector<PlanThrust> thrusts;                   // by body
   std::vector<std::array<double, 2>> control_range;  // [control] low, high
+  std::vector<kernels::JointCoordinate> coordinates;
+  std::vector<int> first_coordinate;  // [joint + 1]
   std::array<int, kernels::kLists> capacity{};
   bool sweep = false;
   bool rectangles = true;  // every polygon is one, and stays one
@@ -134,6 +136,7 @@ void collect_colliders(PlanData& plan);     // colliders.cpp
 void collect_fixed(PlanData& plan);         // colliders.cpp
 void collect_joints(PlanData& plan);        // joints.cpp
 void collect_controls(PlanData& plan);      // controls.cpp
+void collect_coordinates(PlanData& plan);   // coordinates.cpp
 void lay_out_shapes(PlanData& plan);        // colliders.cpp
 void collect_pairs(PlanData& plan);         // pairs.cpp, sparse_pairs.cpp
 void choose_features(PlanData& plan);       // features.cpp

@@ -159,6 +159,12 @@ void look_at_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& gro
   if (p.wanted->motion) {
     observer.motion[static_cast<int>(t.inertia_kind)](t, group, scratch, *p.wanted);
   }
+  if (p.wanted->coordinates > 0) {
+    observer.joints[static_cast<int>(t.inertia_kind)](t, group, scratch, *p.wanted);
+  }
+  if (p.wanted->joints > 0) {
+    observer.joint_loads[static_cast<int>(t.inertia_kind)](t, group, scratch, *p.wanted);
+  }
   if (p.wanted->rays > 0) {
     p.kernels.begin(t, group, p.poses);
     observer.rays(t, group, p.poses, *p.wanted);

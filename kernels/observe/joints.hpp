@@ -1,0 +1,106 @@
+// Joints after the step: coordinates and their speeds from the state, forces from the impulses that
+// the last substep ended with.
+#pragma once
+
+#include "kernels/joint/coordinates.hpp"
+#include "kernels/observe/observe.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// A row at the present state. Its bodies weigh nothing: nobody solves it.
+template <class S, bool kLinear>
+MW_INLINE void row_now(const Tables& t, const Group& g, const Work& w, const JointPart& part,
+                       const Joint& numbers, Row<S, kLinear>& s) {
+  const Float zero(Real(0));
+  zero.store(s.inv_mass_a), zero.store(s.inv_mass_b), zero.store(s.start_value);
+  for (int i = 0; i < S::kInertia; ++i) zero.store(s.inertia_a[i]), zero.store(s.inertia_b[i]);
+  for (int i = 0; i < 3; ++i) zero.store(s.start_axis[i]), zero.store(s.start_axis_b[i]);
+  prepare(t, g, part, numbers, s);
+  refresh<S, true, false>(w, part, numbers, s);
+}
+
+template <class S>
+struct TwoBodies {
+  Velocity<S> a, b;
+};
+template <class S>
+MW_INLINE Velocity<S> velocity_of(const Tables& t, const Group& g, int body) {
+  if (body == t.bodies) return {zero_of<typename S::Vec>(), zero_of<typename S::Ang>()};
+  return {load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear)),
+          load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular))};
+}
+
+template <class S, bool kLinear>
+MW_INLINE void observe_coordinate(const Tables& t, const Group& g, const Work& w,
+                                  const kernels::JointCoordinate& c, Real* rows) {
+  Row<S, kLinear> s;
+  row_now(t, g, w, c.what, constants_of_part(g, c.part), s);
+  const TwoBodies<S> v{velocity_of<S>(t, g, c.what.body_a), velocity_of<S>(t, g, c.what.body_b)};
+  Float::load(s.value).store(rows);
+  speed_of(s, v).store(rows + kLanes);
+}
+
+MW_INLINE bool is_linear(PartKind kind) {
+  return kind == PartKind::slide || kind == PartKind::distance || kind == PartKind::pulley;
+}
+
+// Torques of the plane are about z, the last of three rows.
+MW_INLINE void add_torque(Real* rows, Float l) { add_to(rows, 5, l); }
+MW_INLINE void add_torque(Real* rows, Vec3 l) { add_to(rows, 3, l); }
+
+template <class S>
+MW_INLINE void observe_load(const Tables& t, const Group& g, const Work& w, int part, Real* rows) {
+  using Vec = typename S::Vec;
+  using Ang = typename S::Ang;
+  const JointPart& what = t.part[part];
+  const Real* stored = g.joint_impulse + part * kernels::kPartImpulses * kLanes;
+  const Float inv_h(t.inv_h);
+  const Float along =
+      (Float::load(stored) + (Float::load(stored + kLanes) - Float::load(stored + 2 * kLanes))) *
+      inv_h;
+  switch (what.kind) {
+    case PartKind::point:
+    case PartKind::line: return add_to(rows, 0, load_as<Vec>(stored) * inv_h);
+    case PartKind::lock:
+    case PartKind::swing: return add_torque(rows, load_as<Ang>(stored) * inv_h);
+    case PartKind::turn:
+    case PartKind::cone: {
+      Row<S, false> s;
+      row_now(t, g, w, what, constants_of_part(g, part), s);
+      return add_torque(rows, load_as<Ang>(s.arm_b[0]) * along);
+    }
+    default: {
+      Row<S, true> s;
+      row_now(t, g, w, what, constants_of_part(g, part), s);
+      return add_to(rows, 0, load_as<Vec>(s.push_b[0]) * along);
+    }
+  }
+}
+
+template <class S>
+void observe_joints(const Tables& t, const Group& g, kernels::Scratch* scratch,
+                    const Observation& o) {
+  const Work& w = work_of(scratch);
+  for (int i = 0; i < o.coordinates; ++i) {
+    const kernels::JointCoordinate& c = o.coordinate[i];
+    Real* rows = o.coordinate_rows + i * kernels::kCoordinateRows * kLanes;
+    if (is_linear(c.what.kind)) {
+      observe_coordinate<S, true>(t, g, w, c, rows);
+    } else {
+      observe_coordinate<S, false>(t, g, w, c, rows);
+    }
+  }
+}
+
+template <class S>
+void observe_loads(const Tables& t, const Group& g, kernels::Scratch* scratch,
+                   const Observation& o) {
+  const Work& w = work_of(scratch);
+  const Float zero(Real(0));
+  for (int i = 0; i < o.joints * kernels::kJointRows; ++i) zero.store(o.joint_rows + i * kLanes);
+  for (int i = 0; i < t.parts; ++i) {
+    observe_load<S>(t, g, w, i, o.joint_rows + o.joint_of_part[i] * kernels::kJointRows * kLanes);
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

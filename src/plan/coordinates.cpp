@@ -1,0 +1,45 @@
+// The coordinates of joints, for observers.
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+using kernels::PartKind;
+
+std::vector<PartKind> kinds(const BallJoint&) { return {PartKind::cone, PartKind::turn}; }
+std::vector<PartKind> kinds(const HingeJoint&) { return {PartKind::turn}; }
+std::vector<PartKind> kinds(const SliderJoint&) { return {PartKind::slide}; }
+std::vector<PartKind> kinds(const FixedJoint&) { return {}; }
+std::vector<PartKind> kinds(const DistanceJoint&) { return {PartKind::distance}; }
+std::vector<PartKind> kinds(const WheelJoint&) { return {PartKind::slide, PartKind::turn}; }
+std::vector<PartKind> kinds(const PulleyJoint&) { return {PartKind::pulley}; }
+std::vector<PartKind> kinds(const TargetJoint&) { return {}; }
+
+}  // namespace
+
+void collect_coordinates(PlanData& plan) {
+  plan.coordinates.clear();
+  plan.first_coordinate.clear();
+  std::size_t part = 0;  // the first of the joint
+  for (std::size_t i = 0; i < plan.scene.joints.size(); ++i) {
+    while (plan.parts[part].joint < static_cast<int>(i)) ++part;
+    plan.first_coordinate.push_back(static_cast<int>(plan.coordinates.size()));
+    const auto of = [](const auto& type) { return kinds(type); };
+    for (const PartKind kind : std::visit(of, plan.scene.joints[i].type)) {
+      kernels::JointCoordinate& out = plan.coordinates.emplace_back();
+      out.what.kind = kind;
+      out.what.body_a = plan.parts[part].what.body_a;
+      out.what.body_b = plan.parts[part].what.body_b;
+      out.part = static_cast<std::int32_t>(part);
+    }
+  }
+  plan.first_coordinate.push_back(static_cast<int>(plan.coordinates.size()));
+}
+
+int Plan::coordinates(int joint) const {
+  return data_->first_coordinate.at(static_cast<std::size_t>(joint));
+}
+int Plan::coordinates() const { return static_cast<int>(data_->coordinates.size()); }
+
+}  // namespace manyworlds
