@@ -84,22 +84,27 @@ MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& number
 
 template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, Row<S, false>& s) {
-  const auto moved = load_two<S, true, kDense>(w.displacement, s);
+  using Ang = typename S::Ang;
+  Ang turn_a = zero_of<Ang>(), turn_b = turn_a;
+  if constexpr (kMoved) {
+    const auto moved = load_two<S, true, kDense>(w.displacement, s);
+    turn_a = moved.a.w, turn_b = moved.b.w;
+  }
   if constexpr (S::kDim == 2) {
     const Float one(Real(1)), value = Float::load(s.start_value);
-    (kMoved ? value + (moved.b.w - moved.a.w) : value).store(s.value);
+    (kMoved ? value + (turn_b - turn_a) : value).store(s.value);
     one.store(s.arm_a[0]), one.store(s.arm_b[0]);
   } else {
     auto z_a = load_as<Vec3>(s.start_axis[0]), z_b = load_as<Vec3>(s.start_axis_b[0]);
     if constexpr (kMoved) {
-      z_a = z_a + Turned<S>(moved.a.w).change(z_a);
-      z_b = z_b + Turned<S>(moved.b.w).change(z_b);
+      z_a = z_a + Turned<S>(turn_a).change(z_a);
+      z_b = z_b + Turned<S>(turn_b).change(z_b);
     }
     Vec3 n;
     Float value = Float::load(s.start_value), length;
     if (part.kind == PartKind::turn) {
       n = direction_of(z_a + z_b, length);
-      if constexpr (kMoved) value = value + dot(n, moved.b.w - moved.a.w);
+      if constexpr (kMoved) value = value + dot(n, turn_b - turn_a);
     } else {
       const Vec3 lean = cross(z_a, z_b);
       n = direction_of(lean, length);

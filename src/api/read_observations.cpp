@@ -56,6 +56,7 @@ void ObservationsOf<Real>::read_joints(Observed what, const Kind& kind, const Pl
   }
   const bool planar = plan.scene.space == Space::planar, torque = what == Observed::joint_torque;
   const std::size_t joints = plan.scene.joints.size();
+  if (joints == 0) return;
   const std::size_t first = torque ? (planar ? 5 : 3) : 0, dim = planar ? (torque ? 1 : 2) : 3;
   const Real* from = kind.joint_rows.data() + world * joints * kernels::kJointRows + first;
   for (std::size_t i = 0; i < joints; ++i) {
