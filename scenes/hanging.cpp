@@ -6,6 +6,7 @@
 #include "scenes/parts.hpp"
 
 namespace manyworlds::scenes {
+
 // 16 planks between two banks, and boxes that fall on them.
 Scene bridge() {
   constexpr int kPlanks = 16, kBoxes = 6;
@@ -39,7 +40,7 @@ Scene bridge() {
   return scene;
 }
 
-// 20 links of 5 kg and a ball 60 times as heavy. Such ratios need more substeps.
+// 20 links of 5 kg and a ball 50 times as heavy. Such ratios need more substeps.
 Scene ball_and_chain() {
   constexpr int kLinks = 20;
   constexpr double kHeight = 25;  // m, of the chain's end
