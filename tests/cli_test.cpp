@@ -177,6 +177,16 @@ TEST_CASE("a cut XML file is bad input", "[cli]") {
   CHECK(contains(outcome.err, "built without MJCF") == !reads_mjcf);
 }
 
+TEST_CASE("run tells how far joints have come apart", "[cli]") {
+  for (const char* scene : {"chain2d", "chain3d", "car2d"}) {
+    const std::string job = std::string("run ") + scene + " --worlds 8 --steps 60 --threads 1";
+    const Json json = Json::parse(run(job + " --json").out);
+    CHECK(json["max_joint_gap_m"].get<double>() > 1e-6);
+    CHECK(json["max_joint_gap_m"].get<double>() < 0.05);
+    CHECK(run(job).out.find("joint gap") != std::string::npos);
+  }
+}
+
 TEST_CASE("run --json prints exactly the documented keys", "[cli]") {
   const Outcome outcome = run("run ball3d --worlds 64 --steps 30 --seed 5 --threads 1 --json");
   REQUIRE(outcome.code == 0);

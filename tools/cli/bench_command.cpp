@@ -107,20 +107,21 @@ void print_head(const BenchOptions& options, const Batch& batch) {
   fmt::print("{}, {} of warm-up, {} timed, median of {}; {}\n\n",
              counted(options.job.worlds, "world"), counted(options.warm_up, "step"),
              options.job.steps, counted(options.repeats, "run"), batch.kernel_table());
-  fmt::print("{:<15}{:>8}{:>7}{:>22}{:>14}{:>10}{:>12}{:>8}{:>8}  {:<16}\n", "", "", "",
-             "world-steps/s", "body-steps/s", "contacts", "deepest", "lost", "worlds", "");
-  fmt::print("{:<15}{:>8}{:>7}{:>11}{:>11}{:>14}{:>10}{:>12}{:>8}{:>8}  {:<16}\n", "scene",
-             "threads", "sleep", "step(1)", calls, calls, "/world", "overlap", "worlds", "awake",
-             "hash");
+  fmt::print("{:<15}{:>8}{:>7}{:>22}{:>14}{:>10}{:>12}{:>12}{:>8}{:>8}  {:<16}\n", "", "", "",
+             "world-steps/s", "body-steps/s", "contacts", "deepest", "widest", "lost", "worlds",
+             "");
+  fmt::print("{:<15}{:>8}{:>7}{:>11}{:>11}{:>14}{:>10}{:>12}{:>12}{:>8}{:>8}  {:<16}\n", "scene",
+             "threads", "sleep", "step(1)", calls, calls, "/world", "overlap", "joint gap",
+             "worlds", "awake", "hash");
 }
 
 void print_row(const Report& single, const Report& multiple) {
-  fmt::print("{:<15}{:>8}{:>7}{:>11}{:>11}{:>14}{:>10.1f}{:>12}{:>8}{:>7.1f}%  {:<16}\n",
+  fmt::print("{:<15}{:>8}{:>7}{:>11}{:>11}{:>14}{:>10.1f}{:>12}{:>12}{:>8}{:>7.1f}%  {:<16}\n",
              single.scene, single.threads, single.sleep ? "on" : "off",
              with_prefix(single.world_steps_per_s), with_prefix(multiple.world_steps_per_s),
              with_prefix(multiple.body_steps_per_s), single.contacts_per_world,
-             length(single.max_penetration), single.lost_worlds, 100 * single.awake_fraction,
-             hex(single.hash));
+             length(single.max_penetration), length(single.max_joint_gap), single.lost_worlds,
+             100 * single.awake_fraction, hex(single.hash));
   std::fflush(stdout);
 }
 

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "joint_gap.hpp"
 #include "text.hpp"
 
 namespace manyworlds::cli {
@@ -45,6 +46,7 @@ Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call
   report.contacts_per_world = contacts.points_per_world;
   report.manifolds_per_world = contacts.manifolds_per_world;
   report.max_penetration = contacts.max_penetration;
+  report.max_joint_gap = max_joint_gap(batch);
   report.mean_energy = mean_energy(batch);
   report.bytes_per_world = batch.bytes_per_world();
   report.sleep = batch.sleeps();
@@ -88,7 +90,7 @@ nlohmann::ordered_json to_json(const Report& report) {
       {"body_steps_per_s", report.body_steps_per_s},
       {"contacts_per_world", report.contacts_per_world},
       {"max_penetration_m", report.max_penetration},
-      {"max_joint_gap_m", 0.0},  // no scene has joints
+      {"max_joint_gap_m", report.max_joint_gap},
       {"energy_j", report.mean_energy.kinetic + report.mean_energy.potential},
       {"bytes_per_world", report.bytes_per_world},
       {"awake_fraction", report.awake_fraction},

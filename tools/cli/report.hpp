@@ -36,6 +36,7 @@ struct Report {
   double contacts_per_world = 0;  // points
   double manifolds_per_world = 0;
   double max_penetration = 0;  // m
+  double max_joint_gap = 0;    // m
   Energy mean_energy;          // J, over worlds
   std::size_t bytes_per_world = 0;
   double awake_fraction = 1;  // of worlds

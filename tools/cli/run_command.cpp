@@ -65,6 +65,9 @@ void print_summary(const Report& report, const LostWorlds& worlds, const Batch& 
                               report.contacts_per_world, report.manifolds_per_world));
   if (report.sleep) row("awake", fmt::format("{:.1f} % of worlds", 100 * report.awake_fraction));
   row("penetration", fmt::format("{} at most", length(report.max_penetration)));
+  if (report.max_joint_gap > 0) {
+    row("joint gap", fmt::format("{} at most", length(report.max_joint_gap)));
+  }
   row("energy", fmt::format("{:.6g} J per world ({:.6g} kinetic, {:.6g} potential)",
                             report.mean_energy.kinetic + report.mean_energy.potential,
                             report.mean_energy.kinetic, report.mean_energy.potential));
