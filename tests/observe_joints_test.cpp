@@ -119,9 +119,9 @@ TEST_CASE("sliders, wheels, springs and ropes tell where they are", "[fast][obse
     scene.add(rope);
     const Plan plan = compile(scene);
     REQUIRE(plan.coordinates() == 5);
-    CHECK(plan.coordinates(1) == 1);
-    CHECK(plan.coordinates(2) == 3);
-    CHECK(plan.coordinates(3) == 4);
+    CHECK(plan.first_coordinate(1) == 1);
+    CHECK(plan.first_coordinate(2) == 3);
+    CHECK(plan.first_coordinate(3) == 4);
     for (const Table& table : all_tables()) {
       INFO(name(table));
       Batch batch(plan, observing(table));

@@ -233,7 +233,7 @@ class Batch {
   int lost_worlds() const;
   std::uint64_t hash(int world) const;  // of the state fields in canonical order
   std::uint64_t hash() const;           // of all worlds' hashes in order
-  Energy energy(int world) const;
+  Energy energy(int world) const;       // without what springs of joints hold
   // Both run the collision stages once more on the current state: not for hot loops.
   std::vector<Contact> contacts(int world) const;
   ContactSummary measure_contacts() const;

@@ -56,7 +56,8 @@ struct Observers {
 //   ray_normal                        [ray][2 or 3]         Observers::rays
 //   ray_body, ray_shape               [ray] scene body and index in Body::shapes, -1: no hit
 //
-// The coordinates of a joint follow one another, the joints are in their order (Plan::coordinates):
+// The coordinates of a joint follow one another, the joints are in their order
+// (Plan::first_coordinate):
 //   ball      cone and twist, rad        hinge  angle, rad      slider  travel, m
 //   distance  length, m                  wheel  travel, m, and angle, rad
 //   pulley    |rope at A| + ratio |rope at B|, m                fixed, target  none

@@ -90,10 +90,8 @@ class Plan {
   // Index in the scene of state body i, and the reverse (-1 for fixed bodies).
   int scene_body(int state_body) const;
   int state_body(int scene_body) const;
-  // Coordinates of the first `joint` joints of the scene (observe.hpp), so where those of joint
-  // `joint` begin; of all of them.
-  int coordinates(int joint) const;
-  int coordinates() const;
+  int coordinates() const;                // of all joints of the scene (observe.hpp)
+  int first_coordinate(int joint) const;  // where those of a joint of the scene begin
   bool has(Feature feature) const;
   // Equal for plans whose worlds can go on in each other: of everything but names and where bodies
   // begin.
