@@ -28,7 +28,14 @@ bool may_move(PairKind kind) {
     case PairKind::link_circle:
     case PairKind::link_rectangle:
     case PairKind::link_polygon:
-    case PairKind::link_capsule: return false;
+    case PairKind::link_capsule:
+    case PairKind::sphere_cylinder:
+    case PairKind::capsule_cylinder:
+    case PairKind::cylinder_box:
+    case PairKind::sphere_hull:
+    case PairKind::capsule_hull:
+    case PairKind::box_hull:
+    case PairKind::cylinder_hull: return false;
     default: return !is_plane(kind);
   }
 }

@@ -74,6 +74,33 @@ Scene with_capsules() {
   return scene;
 }
 
+// Every other moving body a cylinder or a hull, and some fixed ones.
+Scene with_convex() {
+  Scene scene = with_capsules<"mixed-pile">();
+  const Hull wedge{{{-0.3, -0.2, -0.2},
+                    {0.3, -0.2, -0.2},
+                    {0, 0.3, -0.2},
+                    {-0.2, -0.1, 0.3},
+                    {0.2, -0.2, 0.3},
+                    {0, 0.2, 0.2}}};
+  int moving = 0;
+  for (Body& body : scene.bodies) {
+    if (body.motion != Motion::dynamic || moving++ % 2 != 0) continue;
+    body.mass_properties.reset();
+    body.shapes.resize(1);
+    body.shapes[0].geometry = Cylinder{0.2, 0.25};
+    if (moving % 4 == 1) body.shapes[0].geometry = wedge;
+  }
+  for (const Geometry& geometry : {Geometry(Cylinder{0.4, 0.3}), Geometry(wedge)}) {
+    Body body;
+    body.motion = Motion::fixed;
+    body.position = {geometry.index() % 2 == 0 ? -1.5 : 1.5, -1, 0.2};
+    body.shapes.emplace_back().geometry = geometry;
+    scene.add(std::move(body));
+  }
+  return scene;
+}
+
 // A planar scene on a rough floor.
 template <SceneName kName>
 Scene with_terrain() {
@@ -116,6 +143,7 @@ const std::vector<Scenario>& scenarios_of_pairs() {
     all.push_back({"bin2d+obstacles", with_obstacles<"bin2d">, 120});
     all.push_back({"mixed-pile2d+obstacles", with_obstacles<"mixed-pile2d">, 120});
     all.push_back({"mixed-pile+capsules", with_capsules<"mixed-pile">, 120});
+    all.push_back({"mixed-pile+convex", with_convex, 120});
     all.push_back({"bin2d+capsules", with_capsules<"bin2d">, 120});
     all.push_back({"mixed-pile2d+capsules", with_capsules<"mixed-pile2d">, 120});
     all.push_back({"bin2d+terrain", with_terrain<"bin2d">, 120});

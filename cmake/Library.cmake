@@ -2,6 +2,7 @@
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
+find_package(Qhull REQUIRED CONFIG)
 
 mw_sources(mw_library_sources "src/*.cpp" "scenes/*.cpp")
 list(FILTER mw_library_sources EXCLUDE REGEX "/src/(mjcf|record)/")
@@ -13,7 +14,7 @@ target_include_directories(manyworlds
   PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
          "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>"
   PRIVATE "${PROJECT_SOURCE_DIR}")
-target_link_libraries(manyworlds PUBLIC Eigen3::Eigen PRIVATE Threads::Threads)
+target_link_libraries(manyworlds PUBLIC Eigen3::Eigen PRIVATE Threads::Threads Qhull::qhull_r)
 set_target_properties(manyworlds PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 target_compile_definitions(manyworlds PRIVATE MW_VERSION="${PROJECT_VERSION}")

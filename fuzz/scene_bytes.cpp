@@ -83,6 +83,16 @@ Polygon SceneBytes::polygon() {
   return out;
 }
 
+Hull SceneBytes::hull() {
+  Hull out;
+  const int n = rarely() ? integer(0, 70) : integer(4, 12);
+  for (int i = 0; i < n; ++i) {
+    const Vec3 v = vector(1);
+    out.vertices.push_back(byte() > 200 && i > 0 ? Vec3(v.x(), v.y(), out.vertices[0].z()) : v);
+  }
+  return out;
+}
+
 Terrain SceneBytes::terrain() {
   Terrain out;
   out.loop = byte() > 200;
@@ -99,7 +109,8 @@ Terrain SceneBytes::terrain() {
 Geometry SceneBytes::geometry(bool fixed) {
   // Of the right space and motion, but for a few.
   const bool planar = rarely() ? !planar_ : planar_;
-  const int kinds = fixed || rarely() ? 6 : 3;
+  const int moving = planar ? 3 : 5;
+  const int kinds = fixed || rarely() ? moving + 3 : moving;
   const int kind = integer(0, kinds - 1);
   const double a = number(0.05, 1), b = number(0.05, 1);
   if (planar) {
@@ -116,8 +127,10 @@ Geometry SceneBytes::geometry(bool fixed) {
     case 0: return Sphere{a};
     case 1: return Box{Vec3(a, b, number(0.05, 1))};
     case 2: return Capsule{a, b};
-    case 3: return Plane{rarely() ? vector(2) : Vec3(0, 0, 1), a - 1};
-    case 4: return Plane{vector(1).normalized(), -b};
+    case 3: return Cylinder{a, b};
+    case 4: return hull();
+    case 5: return Plane{rarely() ? vector(2) : Vec3(0, 0, 1), a - 1};
+    case 6: return Plane{vector(1).normalized(), -b};
     default: return Box{Vec3(3 * a, 3 * b, 0.1)};
   }
 }

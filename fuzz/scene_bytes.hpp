@@ -35,6 +35,7 @@ class SceneBytes {
   Quat rotation();
   std::string name();
   Polygon polygon();
+  Hull hull();
   Terrain terrain();
   Geometry geometry(bool fixed);
   Shape shape(bool fixed);

@@ -75,6 +75,17 @@ void spatial_collider(const Tables& t, const Group& g, Work& w, int index) {
   store_rows4(w.pose_rows + 4, o, r.y.x, r.y.y, r.y.z, p.y);
   store_rows4(w.pose_rows + 8, o, r.z.x, r.z.y, r.z.z, p.z);
   store_rows4(w.pose_rows + 12, o, hx, hy, hz, margin);
+  if (c.kind == ShapeKind::cylinder) {
+    const auto half_of = [&](Float along) {
+      const Float rim2 = max(fnma(along, along, Float(Real(1))), Real(0));
+      return fma(sqrt(rim2), hx, fma(abs(along), hz, margin));
+    };
+    return put_bounds(w, index, p, {half_of(r.z.x), half_of(r.z.y), half_of(r.z.z)});
+  }
+  if (c.kind == ShapeKind::hull) {
+    store_rows4(w.pose_rows + 16, o, static_cast<Real>(c.hull), static_cast<Real>(c.vertex_count),
+                static_cast<Real>(c.face_count), Real(0));
+  }
   put_bounds(w, index, p,
              {fma(abs(r.z.x), hz, fma(abs(r.y.x), hy, abs(r.x.x) * hx)) + margin,
               fma(abs(r.z.y), hz, fma(abs(r.y.y), hy, abs(r.x.y) * hx)) + margin,

@@ -45,6 +45,26 @@ MW_INLINE Float distance_to_capsule(Vec d, Vec axis, Float radius, Float half) {
   return sqrt(dot(out, out)) - radius;
 }
 
+// As for polygons below: the largest distance to a face's plane. All lanes see the same hull, one
+// number after another: row(20) is the first of its corners.
+template <class Row>
+__attribute__((noinline)) Float distance_to_hull(Row row, Vec3 local) {
+  const auto count = [&](int number) {
+    alignas(64) Real all[kLanes];
+    Float(row(number)).store(all);
+    return static_cast<int>(all[0]);
+  };
+  const int faces = 20 + 4 * count(17), end = faces + 8 * count(18);
+  const Float one(Real(1));
+  const Vec3 inverse{one / row(12), one / row(13), one / row(14)};
+  Float far = Real(-1e30);
+  for (int i = faces; i < end; i += 8) {
+    const Vec3 m{row(i) * inverse.x, row(i + 1) * inverse.y, row(i + 2) * inverse.z};
+    far = max(far, (dot(m, local) - row(i + 3)) / sqrt(dot(m, m)));
+  }
+  return far;
+}
+
 // Distance from a point to a shape; 0 or less inside. `row(i)` is number i of its pose row.
 template <class Row>
 MW_INLINE Float distance_to_shape(kernels::ShapeKind kind, Row row, Vec3 p) {
@@ -60,8 +80,13 @@ MW_INLINE Float distance_to_shape(kernels::ShapeKind kind, Row row, Vec3 p) {
   const Vec3 d = p - Vec3{row(3), row(7), row(11)};
   const Vec3 local{dot(d, Vec3{row(0), row(1), row(2)}), dot(d, Vec3{row(4), row(5), row(6)}),
                    dot(d, Vec3{row(8), row(9), row(10)})};
+  if (kind == kernels::ShapeKind::hull) return distance_to_hull(row, local);
   const Vec3 out{max(abs(local.x) - row(12), zero), max(abs(local.y) - row(13), zero),
                  max(abs(local.z) - row(14), zero)};
+  if (kind == kernels::ShapeKind::cylinder) {
+    const Float rim = max(sqrt(fma(local.x, local.x, local.y * local.y)) - row(12), zero);
+    return sqrt(fma(rim, rim, out.z * out.z));
+  }
   return sqrt(dot(out, out));
 }
 template <class Row>
@@ -174,6 +199,9 @@ __attribute__((noinline)) Vec cast_against_moving(const Tables& t, const Group& 
         has_core & (radius < sqrt(dot(relative, relative))) & !absent_lanes(g, c.body);
     if (!any(fast)) continue;
     const auto row = [&](int number) {
+      if (c.kind == kernels::ShapeKind::hull && number >= 20) {
+        return Float(t.hulls[4 * c.hull + number - 20]);
+      }
       alignas(64) Real values[kLanes];
       for (int l = 0; l < kLanes; ++l) values[l] = w.pose_rows[w.pose_base[l] + c.row + number];
       return Float::load(values);

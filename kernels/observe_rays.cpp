@@ -18,13 +18,21 @@ MW_INLINE void visit_pose(const Real* base, const std::int32_t* o, Visit& visit)
   load_pose(base, o, pose);
   visit(pose);
 }
+// `hulls`: where the corners of hulls are; nullptr: behind the pose row.
 template <class S, class Visit>
-MW_INLINE void with_pose(ShapeKind kind, const Real* base, const std::int32_t* o, Visit visit) {
+MW_INLINE void with_pose(ShapeKind kind, const Real* base, const std::int32_t* o, const Real* hulls,
+                         Visit visit) {
   using Capsule = CapsulePose<typename S::Vec>;
   if (kind == ShapeKind::capsule) return visit_pose<Capsule>(base, o, visit);
   if (kind == ShapeKind::plane) return visit_pose<PlanePose>(base, o, visit);
   if constexpr (S::kDim == 3) {
     if (kind == ShapeKind::sphere) return visit_pose<SpherePose>(base, o, visit);
+    if (kind == ShapeKind::cylinder) return visit_pose<CylinderPose>(base, o, visit);
+    if (kind == ShapeKind::hull) {
+      HullPose pose;
+      load_hull(base, o, hulls, pose);
+      return visit(pose);
+    }
     visit_pose<BoxPose>(base, o, visit);
   } else {
     if (kind == ShapeKind::circle) return visit_pose<CirclePose>(base, o, visit);
@@ -58,6 +66,7 @@ struct Target {
   int body;  // -1: fixed
   std::uint32_t category, lanes;
   int index;
+  const Real* hulls;
 };
 
 // One shape against all rays; nearer hits replace those found so far.
@@ -65,7 +74,7 @@ template <class S>
 void cast_at(const Observation& o, const Target& target) {
   using Vec = typename S::Vec;
   const Mask there = mask_from_bits(target.lanes);
-  with_pose<S>(target.kind, target.base, target.offset, [&](const auto& pose) {
+  with_pose<S>(target.kind, target.base, target.offset, target.hulls, [&](const auto& pose) {
     for (int i = 0; i < o.rays; ++i) {
       const kernels::RayTable& shared = o.ray[i];
       const bool own = target.body >= 0 && target.body == shared.body;
@@ -100,14 +109,15 @@ void cast_rays(const Tables& t, const Group& g, const Work& w, const Observation
   alignas(64) std::int32_t at[kLanes];
   for (int f = 0; f < t.fixed_shapes; ++f) {
     for (int l = 0; l < kLanes; ++l) at[l] = t.fixed[f].row;
-    cast_at<S>(o, {t.fixed[f].kind, t.fixed_rows, at, -1, o.fixed_category[f], kAllLanes, f});
+    cast_at<S>(o,
+               {t.fixed[f].kind, t.fixed_rows, at, -1, o.fixed_category[f], kAllLanes, f, nullptr});
   }
   for (int c = 0; c < t.colliders; ++c) {
     const auto& shape = t.collider[c];
     for (int l = 0; l < kLanes; ++l) at[l] = w.pose_base[l] + shape.row;
     const std::uint32_t lanes = kAllLanes & ~bits(absent_lanes(g, shape.body));
-    cast_at<S>(
-        o, {shape.kind, w.pose_rows, at, shape.body, shape.category, lanes, t.fixed_shapes + c});
+    cast_at<S>(o, {shape.kind, w.pose_rows, at, shape.body, shape.category, lanes,
+                   t.fixed_shapes + c, t.hulls});
   }
 }
 
@@ -120,7 +130,7 @@ bool cast_one_in(ShapeKind kind, const Real* row, const Real* rows, Real* out) {
   alignas(64) std::int32_t at[kLanes];
   for (int l = 0; l < kLanes; ++l) at[l] = 0;
   RayHit<Vec> h{};
-  with_pose<S>(kind, row, at, [&](const auto& pose) { h = cast(ray, pose); });
+  with_pose<S>(kind, row, at, nullptr, [&](const auto& pose) { h = cast(ray, pose); });
   h.distance.store(numbers[0]);
   Float(Real(0)).store(numbers[3]);
   store(numbers[1], h.normal);

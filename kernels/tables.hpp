@@ -18,8 +18,19 @@ enum class Dimension : int { planar, spatial };
 enum class InertiaKind : int { planar, isotropic, tensor };
 inline constexpr int kInertiaKinds = 3;
 
-enum class ShapeKind : int { sphere, box, circle, rectangle, polygon, plane, capsule, link };
-inline constexpr int kShapeKinds = 8;
+enum class ShapeKind : int {
+  sphere,
+  box,
+  circle,
+  rectangle,
+  polygon,
+  plane,
+  capsule,
+  link,
+  cylinder,
+  hull,
+};
+inline constexpr int kShapeKinds = 10;
 
 // Shape pairs; the first shape is A. Planes and other fixed shapes are always A. Capsules have the
 // same names in the plane and in space.
@@ -56,12 +67,31 @@ enum class PairKind : int {
   link_rectangle,
   link_polygon,
   link_capsule,
+  plane_cylinder,
+  plane_hull,
+  cylinder_sphere,
+  cylinder_capsule,
+  box_cylinder,
+  cylinder_cylinder,
+  hull_sphere,
+  hull_capsule,
+  hull_box,
+  hull_cylinder,
+  hull_hull,
+  sphere_cylinder,  // fixed sphere, and so on
+  capsule_cylinder,
+  cylinder_box,
+  sphere_hull,
+  capsule_hull,
+  box_hull,
+  cylinder_hull,
 };
-inline constexpr int kPairKinds = 32;
+inline constexpr int kPairKinds = 50;
 static inline constexpr bool is_plane(PairKind kind) {
   return kind == PairKind::plane_sphere || kind == PairKind::plane_box ||
          kind == PairKind::plane_circle || kind == PairKind::plane_rectangle ||
-         kind == PairKind::plane_polygon || kind == PairKind::plane_capsule;
+         kind == PairKind::plane_polygon || kind == PairKind::plane_capsule ||
+         kind == PairKind::plane_cylinder || kind == PairKind::plane_hull;
 }
 
 // Contacts of a world live in four lists, solved in this order.
@@ -73,6 +103,7 @@ static inline constexpr bool is_multi(ListId id) {
 }
 
 inline constexpr int kMaxVertices = 8;
+inline constexpr int kMaxHullVertices = 64;
 inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of pose row
 
 // A pose row describes one shape of one world to the narrow phase:
@@ -84,9 +115,21 @@ inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of po
 //   capsule               x y z radius | a.x a.y a.z half, a: the axis (8; a.z unused in the plane)
 //   link                  x y a.x a.y | half low high index | b.x b.y c.x c.y, a: the axis; low and
 //                         high: reach along it; b, c: last normals at its ends (12)
+//   cylinder              as box, half extents radius, radius, half length (16)
+//   hull                  as box | at vertices faces 0; a fixed one is followed by its corners (20)
+//
+// Corners of a hull, in units of its half extents, so that one that is stretched has the same:
+//   vertices              x y z 0 of each
+//   faces                 m.x m.y m.z c | first count 0 0 of each: m . x <= c is the hull's side of
+//                         it, not unit; its outline has `count` vertices from row 4 `first` on
+//   outlines              x y z 0 of each vertex, counter-clockwise seen from outside
+// A pose row says where they are: 4 `at` numbers from WorldTables::hulls on, or for a fixed one
+// from its own row.
 static inline constexpr int pose_row_size(ShapeKind kind) {
   switch (kind) {
-    case ShapeKind::box: return 16;
+    case ShapeKind::box:
+    case ShapeKind::cylinder: return 16;
+    case ShapeKind::hull: return 20;
     case ShapeKind::rectangle:
     case ShapeKind::plane:
     case ShapeKind::capsule: return 8;
@@ -131,7 +174,7 @@ template <class T>
 struct ShapeConstants {
   T offset[3];    // shape origin from the centre of mass, principal axes, m
   T rotation[9];  // shape axes in principal axes, columns; planar: [0] cos, [1] sin
-  T half[3];      // half extents (box, rectangle); capsule: [0] half length
+  T half[3];      // half extents (box, rectangle, cylinder, hull); capsule: [0] half length
   T radius;       // sphere, circle, capsule; else of the bounding sphere about the shape origin
   T margin_cap;   // most that the speculative margin of this shape may grow to, m
 };
@@ -162,7 +205,9 @@ struct ColliderTable {
   std::int32_t body;
   std::int32_t row;              // offset of its pose row in a lane's block
   std::uint32_t category, mask;  // collision filter
-  std::int32_t vertex_count;     // of a polygon
+  std::int32_t vertex_count;     // of a polygon or hull
+  std::int32_t face_count;       // of a hull
+  std::int32_t hull;             // where its corners are, in fours, in WorldTables::hulls
 };
 
 template <class Real>
@@ -226,6 +271,7 @@ struct WorldTables {
   const std::int32_t* first_collider;  // [body + 1], those of a body follow one another
   const FixedTable<Real>* fixed;
   const Real* fixed_rows;
+  const Real* hulls;  // corners of hulls that move
   const PairClass<Real>* pair_class;
   const JointPart* part;
   const ThrustTable* thrust;         // ordered by body

@@ -140,6 +140,45 @@ TEST_CASE("rays against capsules", "[fast][observe]") {
   }
 }
 
+TEST_CASE("rays against cylinders", "[fast][observe]") {
+  check_cases(Space::spatial, Cylinder{0.5, 0.3},
+              {{ray_of(-2 * kX, kX), 1.5, -kX},
+               {ray_of(2 * kY, -kY), 1.5, kY},
+               {ray_of(2 * kX, kX), kInfinite},
+               {ray_of(2 * kZ, -kZ), 1.7, kZ},
+               {ray_of(-2 * kZ, kZ), 1.7, -kZ},
+               {ray_of(Vec3(-2, 0.3, 0.29), kX), 1.6, Vec3(-0.8, 0.6, 0)},
+               {ray_of(Vec3(-2, 0, 0.31), kX), kInfinite},
+               {ray_of(Vec3(-2, 0.51, 0), kX), kInfinite},
+               {ray_of(Vec3(0.4, 0.2, 0), kX), 0, -kX},
+               {ray_of(Vec3(0.3, 0.3, 2), -kZ), 1.7, kZ},
+               {ray_of(Vec3(0.4, 0.4, 2), -kZ), kInfinite},
+               {ray_of(Vec3(0, 0, 1.3), Vec3(0.4, 0, -1)), std::sqrt(1.16), kZ},
+               {ray_of(Vec3(-1.5, 0, 0.9), Vec3(1, 0, -0.8)), std::sqrt(1.64), -kX}});
+}
+
+TEST_CASE("rays against hulls", "[fast][observe]") {
+  Hull brick;
+  for (int i = 0; i < 8; ++i)
+    brick.vertices.emplace_back(i & 1 ? 0.5 : -0.5, i & 2 ? 0.3 : -0.3, i & 4 ? 0.2 : -0.2);
+  check_cases(Space::spatial, brick,
+              {{ray_of(-2 * kX, kX), 1.5, -kX},
+               {ray_of(2 * kX, -kX), 1.5, kX},
+               {ray_of(2 * kX, kX), kInfinite},
+               {ray_of(2 * kY, -kY), 1.7, kY},
+               {ray_of(Vec3(-2, 0.29, 0), kX), 1.5, -kX},
+               {ray_of(Vec3(-2, 0.31, 0), kX), kInfinite},
+               {ray_of(Vec3(0.4, 0.2, 0), kX), 0, -kX},
+               {ray_of(Vec3(0, 1.3, 0), Vec3(0.4, -1, 0)), std::sqrt(1.16), kY},
+               {ray_of(Vec3(0, 1.3, 0), Vec3(0.6, -1, 0)), kInfinite}});
+  // A corner of a cube, cut off.
+  check_cases(
+      Space::spatial, Hull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+      {{ray_of(Vec3(1, 1, 1), Vec3(-1, -1, -1)), 2 / std::sqrt(3.0), Vec3(1, 1, 1).normalized()},
+       {ray_of(Vec3(0.2, 0.2, -1), kZ), 1, -kZ},
+       {ray_of(Vec3(0.6, 0.6, -1), kZ), kInfinite}});
+}
+
 TEST_CASE("rays against planes, segments and terrains", "[fast][observe]") {
   const auto kFixed = std::vector<Motion>{Motion::fixed};
   for (Space space : {Space::planar, Space::spatial}) {

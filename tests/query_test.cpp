@@ -87,6 +87,42 @@ TEST_CASE("distances prove themselves", "[fast][query]") {
   }
 }
 
+TEST_CASE("distances of cylinders and hulls prove themselves", "[fast][query]") {
+  Random random(4);
+  for (int kinds = 0; kinds < 8; ++kinds) {
+    int overlapping = 0;
+    for (int round = 0; round < 60; ++round) {
+      Shape a = random_shape(random, Space::spatial, kinds / 2 % 4);
+      Shape b = random_shape(random, Space::spatial, 0);
+      if (kinds >= 6) a.geometry = random_hull(random, 9);
+      b.geometry = random_cylinder(random);
+      if (kinds % 2 == 1) b.geometry = random_hull(random, 9);
+      const Place pose_a = random_pose(random, Space::spatial);
+      const Place pose_b = random_pose(random, Space::spatial);
+      const Separation s = distance(a, pose_a, b, pose_b);
+      const Solid solid_a = solid_of(a, pose_a, Space::spatial);
+      const Solid solid_b = solid_of(b, pose_b, Space::spatial);
+      INFO("kinds " << kinds << " round " << round << " distance " << s.distance);
+      CHECK(s.normal.norm() == Approx(1));
+      CHECK((s.point_b - s.point_a - s.distance * s.normal).norm() < 1e-12);
+      CHECK(separation_along(solid_a, solid_b, s.normal) == Approx(s.distance).margin(1e-9));
+      // Where rounds meet, the search gets near.
+      CHECK(std::abs(signed_distance(solid_a, s.point_a)) < 1e-6);
+      CHECK(std::abs(signed_distance(solid_b, s.point_b)) < 1e-6);
+      CHECK(separation(solid_a, solid_b) == Approx(s.distance).margin(1e-6));
+      if (s.distance < 0) {
+        ++overlapping;
+        for (int i = 0; i < 50; ++i)
+          CHECK(separation_along(solid_a, solid_b, random.direction()) < s.distance + 1e-9);
+      }
+      const Separation turned = distance(b, pose_b, a, pose_a);
+      CHECK(turned.distance == Approx(s.distance).margin(1e-9));
+    }
+    CHECK(overlapping > 5);
+    CHECK(overlapping < 57);
+  }
+}
+
 TEST_CASE("distances from planes, segments and terrains", "[fast][query]") {
   const Shape box = shape_of(Box{Vec3(0.5, 0.3, 0.2)}), ball = shape_of(Sphere{0.5});
   Separation s = distance(shape_of(Plane{}), at(0, 0, 1), box, at(4, 5, 3));

@@ -37,6 +37,7 @@ ONE_HOME = {
     r"xsimd/.*": ("kernels", 1),
     r"mujoco/.*": ("src/mjcf", None),
     r"hdf5\.h": ("src/record", 1),
+    r"libqhull_r/.*": ("src/scene", 1),
     r"nlohmann/.*": ("src/record", 1),
 }
 # Public headers include the standard library (no dot, no slash), Eigen and each other.

@@ -11,8 +11,8 @@ mujoco_dir="$root/.deps/mujoco"
 
 packages=(
   ca-certificates cmake g++ ninja-build python3 python3-pip
-  catch2 libbenchmark-dev libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libtbb-dev libxsimd-dev
-  nlohmann-json3-dev
+  catch2 libbenchmark-dev libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libqhull-dev libtbb-dev
+  libxsimd-dev nlohmann-json3-dev
 )
 
 say() { printf '%s: %s\n' "$program" "$*" >&2; }

@@ -4,6 +4,7 @@
 #include "manyworlds/batch.hpp"
 #include "manyworlds/executor.hpp"
 #include "manyworlds/fields.hpp"
+#include "manyworlds/hull.hpp"
 #include "manyworlds/listener.hpp"
 #include "manyworlds/mesh.hpp"
 #include "manyworlds/plan.hpp"

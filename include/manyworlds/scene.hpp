@@ -49,6 +49,17 @@ struct Capsule {
   double radius = 0.25;      // m
   double half_length = 0.5;  // m, without the round ends
 };
+// Spatial: all points within the radius of the z axis of the shape frame and no farther than
+// half_length from its origin along it.
+struct Cylinder {
+  double radius = 0.5;       // m
+  double half_length = 0.5;  // m
+};
+// Spatial, a convex polyhedron: the smallest convex solid around its vertices, 4 to 64 of them.
+// make_hull (hull.hpp) finds those of a cloud of points. Faces that lie in one plane are one.
+struct Hull {
+  std::vector<Vec3> vertices;  // m, shape frame, in any order
+};
 struct Circle {         // planar
   double radius = 0.5;  // m
 };
@@ -74,8 +85,8 @@ struct Terrain {
   std::vector<Vec2> points;  // m, shape frame; 2 or more, of a loop 3 or more
   bool loop = false;         // the last point is joined to the first
 };
-using Geometry =
-    std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Capsule, Segment, Terrain>;
+using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Capsule, Segment,
+                              Terrain, Cylinder, Hull>;
 
 struct Material {
   double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean of its two

@@ -20,6 +20,7 @@ inline constexpr Real kEdgeSlack = sizeof(Real) == 4 ? Real(2e-6) : Real(1e-9);
 // Candidate points over the reference face: x, y in it, z the height above it.
 struct ClipPoints {
   static constexpr int kCount = 12;
+  static constexpr int count() { return kCount; }
   Float x[kCount], y[kCount], z[kCount];
 };
 
@@ -74,13 +75,14 @@ struct KeptPoints {
 };
 
 // extent2: of the smaller of the two faces, m^2; says what counts as a distance or an area.
-MW_INLINE void keep_four(ClipPoints& p, Float margin, Float extent2, KeptPoints& out) {
+template <class Points>
+MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out) {
   const Float zero(Real(0));
   // Among equally deep points one far out: a corner rather than the middle of an edge.
   const Float outward(Real(-1e-5));
   Float x = p.x[0], y = p.y[0], z = p.z[0];
   Float least_key = fma(abs(x) + abs(y), outward, z);
-  for (int i = 1; i < ClipPoints::kCount; ++i) {
+  for (int i = 1; i < p.count(); ++i) {
     const Float key = fma(abs(p.x[i]) + abs(p.y[i]), outward, p.z[i]);
     const Mask deeper = key < least_key;
     least_key = min(key, least_key);
@@ -94,7 +96,7 @@ MW_INLINE void keep_four(ClipPoints& p, Float margin, Float extent2, KeptPoints&
 
   // From here on x, y are relative to the first point; what does not count collapses onto it.
   Float best = extent2 * Float(Real(2e-6)), far_x = zero, far_y = zero, far_z = Real(kOutOfReach);
-  for (int i = 0; i < ClipPoints::kCount; ++i) {
+  for (int i = 0; i < p.count(); ++i) {
     const Mask near = p.z[i] < limit;
     p.x[i] = select(near, p.x[i], x0) - x0;
     p.y[i] = select(near, p.y[i], y0) - y0;
@@ -110,7 +112,7 @@ MW_INLINE void keep_four(ClipPoints& p, Float margin, Float extent2, KeptPoints&
   Float most = extent2 * Float(Real(2e-5)), least = -most;
   Float left_x = zero, left_y = zero, left_z = Real(kOutOfReach);
   Float right_x = zero, right_y = zero, right_z = Real(kOutOfReach);
-  for (int i = 0; i < ClipPoints::kCount; ++i) {
+  for (int i = 0; i < p.count(); ++i) {
     const Float area = fms(far_x, p.y[i], far_y * p.x[i]);
     const Mask is_left = most < area, is_right = area < least;
     most = max(area, most);

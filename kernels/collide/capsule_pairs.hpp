@@ -2,6 +2,7 @@
 // that is within its radius of its axis, a line from -half to +half about its origin.
 #pragma once
 
+#include "kernels/collide/plane_box.hpp"
 #include "kernels/collide/round_pairs.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {

@@ -5,6 +5,7 @@
 #include "kernels/collide/box_box.hpp"
 #include "kernels/collide/box_capsule.hpp"
 #include "kernels/collide/box_round.hpp"
+#include "kernels/collide/convex.hpp"
 #include "kernels/collide/link_pairs.hpp"
 #include "kernels/collide/polygon_pairs.hpp"
 #include "kernels/collide/rectangle_rectangle.hpp"
@@ -99,6 +100,115 @@ void collide(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   }
 }
 
+// ---- pairs of the general method
+// -----------------------------------------------------------------
+
+struct ConvexKinds {
+  kernels::ShapeKind a, b;
+};
+inline constexpr ConvexKinds convex_kinds(kernels::PairKind pair) {
+  using kernels::PairKind, kernels::ShapeKind;
+  switch (pair) {
+    case PairKind::plane_cylinder: return {ShapeKind::plane, ShapeKind::cylinder};
+    case PairKind::plane_hull: return {ShapeKind::plane, ShapeKind::hull};
+    case PairKind::cylinder_sphere: return {ShapeKind::cylinder, ShapeKind::sphere};
+    case PairKind::cylinder_capsule: return {ShapeKind::cylinder, ShapeKind::capsule};
+    case PairKind::box_cylinder: return {ShapeKind::box, ShapeKind::cylinder};
+    case PairKind::cylinder_cylinder: return {ShapeKind::cylinder, ShapeKind::cylinder};
+    case PairKind::hull_sphere: return {ShapeKind::hull, ShapeKind::sphere};
+    case PairKind::hull_capsule: return {ShapeKind::hull, ShapeKind::capsule};
+    case PairKind::hull_box: return {ShapeKind::hull, ShapeKind::box};
+    case PairKind::hull_cylinder: return {ShapeKind::hull, ShapeKind::cylinder};
+    case PairKind::hull_hull: return {ShapeKind::hull, ShapeKind::hull};
+    case PairKind::sphere_cylinder: return {ShapeKind::sphere, ShapeKind::cylinder};
+    case PairKind::capsule_cylinder: return {ShapeKind::capsule, ShapeKind::cylinder};
+    case PairKind::cylinder_box: return {ShapeKind::cylinder, ShapeKind::box};
+    case PairKind::sphere_hull: return {ShapeKind::sphere, ShapeKind::hull};
+    case PairKind::capsule_hull: return {ShapeKind::capsule, ShapeKind::hull};
+    case PairKind::box_hull: return {ShapeKind::box, ShapeKind::hull};
+    default: return {ShapeKind::cylinder, ShapeKind::hull};
+  }
+}
+inline constexpr bool is_round(kernels::ShapeKind kind) {
+  return kind == kernels::ShapeKind::sphere || kind == kernels::ShapeKind::capsule;
+}
+
+template <class S, int N>
+MW_INLINE void turn_round(Manifold<S, N>& m) {
+  m.normal = -m.normal;
+  for (int i = 0; i < N; ++i) {
+    const auto point = m.point_a[i];
+    m.point_a[i] = m.point_b[i];
+    m.point_b[i] = point;
+  }
+}
+
+// Tensor and Isotropic have the same vectors.
+template <class S, int N>
+MW_INLINE void copy_manifold(const Manifold<Isotropic, N>& from, Manifold<S, N>& to) {
+  to.normal = from.normal, to.tangent = from.tangent;
+  for (int i = 0; i < N; ++i) {
+    to.point_a[i] = from.point_a[i], to.point_b[i] = from.point_b[i];
+    to.separation[i] = from.separation[i];
+    to.feature_x[i] = from.feature_x[i], to.feature_y[i] = from.feature_y[i];
+    to.valid[i] = from.valid[i];
+  }
+  to.code = from.code, to.match_distance2 = from.match_distance2;
+}
+
+template <class S, int N, bool kPair, bool kDense>
+void collide_convex_list(const Tables& t, const Group& g, Work& w) {
+  using kernels::ShapeKind;
+  const auto& pairs = t.pair_class[w.class_index];
+  const ConvexKinds kinds = convex_kinds(pairs.kind);
+  const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
+  const CandidateList& list = w.candidates;
+  const bool turned = is_round(kinds.a);  // the method wants what is round as B
+  ConvexShape a, b;
+  for (int i = 0; i < list.count; ++i) {
+    const std::int32_t* code = list.code + i * kLanes;
+    const PoseOffsets o = pose_offsets<kPair>(t, w, code);
+    const Mask active = mask_from_bits(list.mask[i]);
+    load_convex(t.hulls, kinds.b, w.pose_rows, o.b, b);
+    Manifold<Isotropic, N> m;
+    Vec3 origin_a;
+    if (N > 1 && kinds.a == ShapeKind::plane) {
+      PlanePose plane;
+      load_pose(base_a, o.a, plane);
+      origin_a = zero_of<Vec3>();
+      if constexpr (N > 1) collide_plane_convex(t, plane, b, m);
+    } else {
+      load_convex(kPair ? t.hulls : nullptr, kinds.a, base_a, o.a, a);
+      origin_a = a.p;
+      const ConvexShape &first = turned ? b : a, &second = turned ? a : b;
+      if constexpr (N == 1) {
+        collide_convex_sphere(t, first, second, active, m);
+      } else {
+        collide_convex_pair(t, first, second, active, m);
+      }
+      if (turned) turn_round(m);
+    }
+    Manifold<S, N> out;
+    copy_manifold(m, out);
+    add_slot<S, N, kPair, kDense>(t, g, w, pairs.list, pairs, out, active, code,
+                                  list.key + i * kLanes, origin_a, b.p);
+  }
+}
+
+template <class S, bool kDense>
+void collide_convex(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  Work& w = work_of(scratch);
+  const ListId list = t.pair_class[w.class_index].list;
+  list_candidates(t, w);
+  if (is_multi(list)) {
+    is_fixed(list) ? collide_convex_list<S, 4, false, kDense>(t, g, w)
+                   : collide_convex_list<S, 4, true, kDense>(t, g, w);
+  } else {
+    is_fixed(list) ? collide_convex_list<S, 1, false, kDense>(t, g, w)
+                   : collide_convex_list<S, 1, true, kDense>(t, g, w);
+  }
+}
+
 template <class S, bool kDense>
 void fill_narrow_phase(kernels::Stage<Real>* out) {
   using kernels::PairKind;
@@ -119,6 +229,9 @@ void fill_narrow_phase(kernels::Stage<Real>* out) {
     at(PairKind::box_capsule) = collide<S, BoxCapsule<S>, kDense>;
     at(PairKind::sphere_capsule) = collide<S, Reversed<S, CapsuleSphere>, kDense>;
     at(PairKind::capsule_box) = collide<S, Reversed<S, BoxCapsule<S>>, kDense>;
+    for (int i = static_cast<int>(PairKind::plane_cylinder); i < kernels::kPairKinds; ++i) {
+      out[i] = collide_convex<S, kDense>;
+    }
   } else {
     at(PairKind::circle_circle) = collide<S, CircleCircle<S>, kDense>;
     at(PairKind::rectangle_circle) = collide<S, RectangleCircle<S>, kDense>;

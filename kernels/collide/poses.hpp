@@ -14,6 +14,20 @@ struct BoxPose {
   Vec3 p, half;
   Float margin;  // how far this box's bounds reach beyond it, m
 };
+struct CylinderPose {  // along z
+  Mat3 r;
+  Vec3 p;
+  Float radius, half;
+};
+// Every lane's hull at a place of its own: its faces, for rays (collide/convex.hpp for the rest).
+struct HullPose {
+  Mat3 r;
+  Vec3 p, half;
+  Float margin;
+  const Real* corners;
+  alignas(64) std::int32_t at[kLanes], faces[kLanes];  // of the first face
+  int most_faces;
+};
 struct CirclePose {
   Vec2 p;
   Float radius;
@@ -53,6 +67,61 @@ MW_INLINE void load_pose(const Real* base, const std::int32_t* o, BoxPose& b) {
   load_rows4(base + 8, o, b.r.z.x, b.r.z.y, b.r.z.z, b.p.z);
   load_rows4(base + 12, o, b.half.x, b.half.y, b.half.z, b.margin);
 }
+MW_INLINE void load_pose(const Real* base, const std::int32_t* o, CylinderPose& c) {
+  BoxPose box;
+  load_pose(base, o, box);
+  c = {box.r, box.p, box.half.x, box.half.z};
+}
+// `hulls`: where the corners are; nullptr: behind the row.
+MW_INLINE void load_hull(const Real* base, const std::int32_t* o, const Real* hulls, HullPose& h) {
+  BoxPose box;
+  load_pose(base, o, box);
+  // The dummy has no size.
+  const Float least(Real(1e-12));
+  h.r = box.r, h.p = box.p, h.margin = box.margin;
+  h.half = {max(box.half.x, least), max(box.half.y, least), max(box.half.z, least)};
+  h.corners = hulls ? hulls : base;
+  h.most_faces = 0;
+  for (int l = 0; l < kLanes; ++l) {
+    const Real* row = base + o[l] + 16;
+    h.at[l] = (hulls ? 4 * static_cast<std::int32_t>(row[0]) : o[l] + 20) +
+              4 * static_cast<std::int32_t>(row[1]);
+    h.faces[l] = static_cast<std::int32_t>(row[2]);
+    h.most_faces = h.faces[l] > h.most_faces ? h.faces[l] : h.most_faces;
+  }
+}
+MW_INLINE Vec3 inverse_of(Vec3 half) {
+  const Float one(Real(1));
+  return {one / half.x, one / half.y, one / half.z};
+}
+
+// Row k of each lane's corners, `width` quads wide; a lane that has fewer than that repeats its
+// last.
+MW_INLINE void corner_offsets(const std::int32_t* first, const std::int32_t* count, int k,
+                              int width, std::int32_t* out) {
+  for (int l = 0; l < kLanes; ++l) {
+    const int last = count[l] > 0 ? count[l] - 1 : 0;
+    out[l] = first[l] + 4 * width * (k < last ? k : last);
+  }
+}
+
+// Face i of each lane's hull: unit normal in world axes, how far the hull reaches along it from p.
+struct HullFace {
+  Vec3 normal;
+  Float reach;
+};
+MW_INLINE HullFace hull_face(const HullPose& h, Vec3 inverse_half, int i) {
+  alignas(64) std::int32_t o[kLanes];
+  corner_offsets(h.at, h.faces, i, 2, o);
+  Vec3 m;
+  Float c;
+  load_rows4(h.corners, o, m.x, m.y, m.z, c);
+  const Vec3 local{m.x * inverse_half.x, m.y * inverse_half.y, m.z * inverse_half.z};
+  // The dummy's has no length.
+  const Float inv = Float(Real(1)) / sqrt(max(dot(local, local), Real(1e-30)));
+  return {mul(h.r, local * inv), c * inv};
+}
+
 MW_INLINE void load_pose(const Real* base, const std::int32_t* o, CirclePose& c) {
   Float unused;
   load_rows4(base, o, c.p.x, c.p.y, c.radius, unused);

@@ -196,6 +196,44 @@ MW_INLINE RayHit<Vec> cast(const RayOf<Vec>& ray, const CapsulePose<Vec>& c) {
                       nearer(ends, cast_side(ray, to, c)));
 }
 
+// Between its caps and within its round side.
+MW_INLINE RayHit<Vec3> cast(const RayOf<Vec3>& ray, const CylinderPose& c) {
+  const Float zero(Real(0)), one(Real(1)), far(kRayFar);
+  const Vec3 from = ray.from - c.p;
+  const Float place = dot(c.r.z, from), slope = dot(c.r.z, ray.way);
+  const Vec3 from_axis = fnma(c.r.z, place, from), way = fnma(c.r.z, slope, ray.way);
+  Clip clip;
+  Vec3 normal = c.r.z;
+  clip_slab(clip, c.r.z, place, slope, c.half, normal);
+  const Float a = dot(way, way);
+  const Mask crosses = Float(Real(1e-12)) < a;
+  const Float inv = one / select(crosses, a, one), nearest = -(dot(from_axis, way) * inv);
+  const Vec3 aside = fma(way, nearest, from_axis);
+  const Float rest = fnma(c.radius, c.radius, dot(aside, aside));
+  const Float half = sqrt(max(-rest, zero) * inv);
+  const Mask misses =
+      zero < select(crosses, rest, fnma(c.radius, c.radius, dot(from_axis, from_axis)));
+  const Float in = select(misses, far, select(crosses, nearest - half, -far));
+  const Float out = select(crosses, nearest + half, far);
+  const Mask last = clip.enter < in;
+  const Vec3 rim = fma(way, in, from_axis);
+  normal = select(last & crosses & !misses, rim * (one / c.radius), normal);
+  clip.enter = max(in, clip.enter);
+  clip.leave = min(out, clip.leave);
+  return clipped(ray, clip, normal);
+}
+MW_INLINE RayHit<Vec3> cast(const RayOf<Vec3>& ray, const HullPose& h) {
+  const Vec3 from = ray.from - h.p, inverse = inverse_of(h.half);
+  Clip clip;
+  Vec3 normal = -ray.way;
+  for (int i = 0; i < h.most_faces; ++i) {
+    const HullFace face = hull_face(h, inverse, i);
+    const Mask last = clip.add(dot(face.normal, from) - face.reach, -dot(face.normal, ray.way));
+    normal = select(last, face.normal, normal);
+  }
+  return clipped(ray, clip, normal);
+}
+
 // From the front only: what is behind a link is solid, and not its business.
 MW_INLINE RayHit<Vec2> cast(const RayOf<Vec2>& ray, const LinkPose& l) {
   const Float zero(Real(0)), one(Real(1));

@@ -75,6 +75,11 @@ PlanCollider local_collider(const Shape& shape, bool rectangles) {
     c.half.x() = capsule->half_length;
     c.thickness = c.inner_radius = capsule->radius;
     c.radius = capsule->half_length + capsule->radius;
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
+    c.kind = ShapeKind::cylinder;
+    c.half = {cylinder->radius, cylinder->radius, cylinder->half_length};
+    c.radius = std::hypot(cylinder->radius, cylinder->half_length);
+    c.inner_radius = std::min(cylinder->radius, cylinder->half_length);
   } else if (const auto* segment = std::get_if<Segment>(&shape.geometry)) {
     // A capsule without thickness.
     c.kind = ShapeKind::capsule;
@@ -119,6 +124,15 @@ PlanCollider local_collider(const Shape& shape, bool rectangles) {
   return c;
 }
 
+void set_hull(const HullCorners& corners, PlanCollider& c) {
+  c.kind = ShapeKind::hull;
+  c.half = corners.half;
+  if (!corners.middle.isZero(0)) c.offset += c.rotation * corners.middle;
+  c.radius = corners.radius;
+  c.inner_radius = corners.inner_radius;
+  c.hull_vertices = corners.vertices, c.hull_faces = corners.faces;
+}
+
 // The pose row of a fixed shape, and its bounds.
 PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, bool planar) {
   PlanFixed f;
@@ -141,7 +155,12 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, boo
     plane({n.x(), n.y(), 0}, p->offset);
     return f;
   }
-  const PlanCollider c = local_collider(shape, rectangles);
+  PlanCollider c = local_collider(shape, rectangles);
+  HullCorners corners;
+  if (const auto* hull = std::get_if<Hull>(&shape.geometry)) {
+    corners = hull_corners(*hull);
+    set_hull(corners, c);
+  }
   const Vec3 x = body.position + body_rotation * c.offset;
   const Mat3 r = body_rotation * c.rotation;
   f.kind = c.kind;
@@ -154,13 +173,20 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, boo
       f.row = {x.x(), x.y(), c.radius, 0};
       f.low = x.array() - c.radius, f.high = x.array() + c.radius;
       break;
-    case ShapeKind::box: {
+    case ShapeKind::box:
+    case ShapeKind::cylinder:
+    case ShapeKind::hull: {
       for (int k = 0; k < 3; ++k) {
         f.row.insert(f.row.end(), {r(0, k), r(1, k), r(2, k), x[k]});
       }
       f.row.insert(f.row.end(), {c.half.x(), c.half.y(), c.half.z(), 0});
       const Vec3 e = r.cwiseAbs() * c.half;
       f.low = x - e, f.high = x + e;
+      if (c.kind == ShapeKind::hull) {
+        f.row.insert(f.row.end(), {0, static_cast<double>(corners.vertices),
+                                   static_cast<double>(corners.faces), 0});
+        f.row.insert(f.row.end(), corners.rows.begin(), corners.rows.end());
+      }
       break;
     }
     case ShapeKind::capsule: {
@@ -204,10 +230,16 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, boo
 void choose_polygons(PlanData& plan) { plan.rectangles = all_rectangles(plan); }
 
 void collect_colliders(PlanData& plan) {
+  plan.hulls.clear();
   for (PlanBody& owner : plan.bodies) {
     const Body& body = plan.scene.bodies[static_cast<std::size_t>(owner.scene_body)];
     for (std::size_t k = 0; k < body.shapes.size(); ++k) {
       PlanCollider c = local_collider(body.shapes[k], plan.rectangles);
+      if (const auto* hull = std::get_if<Hull>(&body.shapes[k].geometry)) {
+        const HullCorners corners = hull_corners(*hull);
+        set_hull(corners, c);
+        c.hull = put_corners(plan, corners);
+      }
       c.body = plan.state_body[static_cast<std::size_t>(owner.scene_body)];
       c.scene_body = owner.scene_body, c.shape = static_cast<int>(k);
       if (!owner.aligned) {

@@ -43,6 +43,8 @@ class Printer {
   void add(const Polygon& p) { add(p.vertices); }
   void add(const HalfPlane& p) { add(p.normal), add(p.offset); }
   void add(const Capsule& c) { add(c.radius), add(c.half_length); }
+  void add(const Cylinder& c) { add(c.radius), add(c.half_length); }
+  void add(const Hull& h) { add(h.vertices); }
   void add(const Segment& s) { add(s.a), add(s.b); }
   void add(const Terrain& t) { add(t.points), add(t.loop); }
   void add(const Shape& s) {

@@ -47,6 +47,17 @@ Match match(ShapeKind a, ShapeKind b) {
       {{ShapeKind::link, ShapeKind::rectangle}, PairKind::link_rectangle},
       {{ShapeKind::link, ShapeKind::polygon}, PairKind::link_polygon},
       {{ShapeKind::link, ShapeKind::capsule}, PairKind::link_capsule},
+      {{ShapeKind::plane, ShapeKind::cylinder}, PairKind::plane_cylinder},
+      {{ShapeKind::plane, ShapeKind::hull}, PairKind::plane_hull},
+      {{ShapeKind::cylinder, ShapeKind::sphere}, PairKind::cylinder_sphere},
+      {{ShapeKind::cylinder, ShapeKind::capsule}, PairKind::cylinder_capsule},
+      {{ShapeKind::box, ShapeKind::cylinder}, PairKind::box_cylinder},
+      {{ShapeKind::cylinder, ShapeKind::cylinder}, PairKind::cylinder_cylinder},
+      {{ShapeKind::hull, ShapeKind::sphere}, PairKind::hull_sphere},
+      {{ShapeKind::hull, ShapeKind::capsule}, PairKind::hull_capsule},
+      {{ShapeKind::hull, ShapeKind::box}, PairKind::hull_box},
+      {{ShapeKind::hull, ShapeKind::cylinder}, PairKind::hull_cylinder},
+      {{ShapeKind::hull, ShapeKind::hull}, PairKind::hull_hull},
   };
   const auto straight = kKernels.find({a, b});
   if (straight != kKernels.end()) return {straight->second, false};
@@ -65,6 +76,13 @@ PairKind reversed(PairKind kind) {
     case PairKind::box_capsule: return PairKind::capsule_box;
     case PairKind::rectangle_capsule: return PairKind::capsule_rectangle;
     case PairKind::polygon_capsule: return PairKind::capsule_polygon;
+    case PairKind::cylinder_sphere: return PairKind::sphere_cylinder;
+    case PairKind::cylinder_capsule: return PairKind::capsule_cylinder;
+    case PairKind::box_cylinder: return PairKind::cylinder_box;
+    case PairKind::hull_sphere: return PairKind::sphere_hull;
+    case PairKind::hull_capsule: return PairKind::capsule_hull;
+    case PairKind::hull_box: return PairKind::box_hull;
+    case PairKind::hull_cylinder: return PairKind::cylinder_hull;
     default: return kind;
   }
 }
@@ -85,7 +103,11 @@ bool is_single(PairKind kind) {
     case PairKind::capsule_circle:
     case PairKind::sphere_capsule:
     case PairKind::circle_capsule:
-    case PairKind::link_circle: return true;
+    case PairKind::link_circle:
+    case PairKind::cylinder_sphere:
+    case PairKind::hull_sphere:
+    case PairKind::sphere_cylinder:
+    case PairKind::sphere_hull: return true;
     default: return false;
   }
 }

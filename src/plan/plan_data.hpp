@@ -35,11 +35,12 @@ struct PlanCollider {
   int scene_body = -1, shape = -1;
   Vec3 offset = Vec3::Zero();  // from the centre of mass, principal axes
   Mat3 rotation = Mat3::Identity();
-  Vec3 half = Vec3::Zero();    // half extents; capsule: x is half its length
-  double thickness = 0;        // radius of what is round: sphere, circle, capsule
-  double radius = 0;           // of the bounding sphere
-  double inner_radius = 0;     // of a sphere inside
-  std::vector<Vec2> vertices;  // about the shape's origin
+  Vec3 half = Vec3::Zero();  // half extents; capsule: x is half its length
+  double thickness = 0;      // radius of what is round: sphere, circle, capsule
+  double radius = 0;         // of the bounding sphere
+  double inner_radius = 0;   // of a sphere inside
+  int hull = 0, hull_vertices = 0, hull_faces = 0;  // of a hull: where its corners are, in fours
+  std::vector<Vec2> vertices;                       // about the shape's origin
   Material material;
   int row = 0;
 };
@@ -102,6 +103,7 @@ struct PlanData {
   std::vector<int> state_body;  // per scene body
   std::vector<PlanCollider> colliders;
   std::vector<PlanFixed> fixed;
+  std::vector<double> hulls;  // corners of hulls that move (kernels/tables.hpp)
   std::vector<PlanClass> classes;
   std::vector<PlanPart> parts;                       // of joints, in their order
   std::vector<PlanThrust> thrusts;                   // by body
@@ -127,6 +129,18 @@ struct PlanData {
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene);
 
 std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // terrain.cpp
+
+// A hull as the kernels want it: about the middle of its bounding box, in units of half its
+// extents.
+struct HullCorners {
+  Vec3 middle, half;                    // m, of the bounding box, shape frame
+  double radius = 0, inner_radius = 0;  // about the middle, m
+  int vertices = 0, faces = 0;
+  std::vector<double> rows;  // kernels/tables.hpp
+};
+HullCorners hull_corners(const Hull& hull);  // hulls.cpp
+// Puts them with the plan's, unless they are there already; returns where, in fours.
+int put_corners(PlanData& plan, const HullCorners& corners);  // hulls.cpp
 
 // The steps of compile(), in order.
 void collect_variations(PlanData& plan);    // variations.cpp

@@ -13,7 +13,12 @@ const char* to_string(kernels::PairKind kind) {
       "capsule-sphere",    "capsule-circle",    "capsule-capsule",   "box-capsule",
       "rectangle-capsule", "polygon-capsule",   "plane-capsule",     "sphere-capsule",
       "circle-capsule",    "capsule-box",       "capsule-rectangle", "capsule-polygon",
-      "terrain-circle",    "terrain-rectangle", "terrain-polygon",   "terrain-capsule"};
+      "terrain-circle",    "terrain-rectangle", "terrain-polygon",   "terrain-capsule",
+      "plane-cylinder",    "plane-hull",        "cylinder-sphere",   "cylinder-capsule",
+      "box-cylinder",      "cylinder-cylinder", "hull-sphere",       "hull-capsule",
+      "hull-box",          "hull-cylinder",     "hull-hull",         "sphere-cylinder",
+      "capsule-cylinder",  "cylinder-box",      "sphere-hull",       "capsule-hull",
+      "box-hull",          "cylinder-hull"};
   return kNames[static_cast<int>(kind)];
 }
 

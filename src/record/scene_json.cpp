@@ -26,8 +26,9 @@ struct Words<Feature> {
 static_assert(std::size(Words<Feature>::list) == kFeatureCount);
 template <>
 struct Words<Geometry> {
-  static constexpr const char* list[] = {"sphere",     "box",     "plane",   "circle", "polygon",
-                                         "half_plane", "capsule", "segment", "terrain"};
+  static constexpr const char* list[] = {"sphere",  "box",        "plane",   "circle",
+                                         "polygon", "half_plane", "capsule", "segment",
+                                         "terrain", "cylinder",   "hull"};
 };
 static_assert(std::size(Words<Geometry>::list) == std::variant_size_v<Geometry>);
 
@@ -75,6 +76,14 @@ MW_MEMBERS(Plane) {
 MW_MEMBERS(Capsule) {
   auto& [radius, half_length] = value;
   visit("radius", radius), visit("half_length", half_length);
+}
+MW_MEMBERS(Cylinder) {
+  auto& [radius, half_length] = value;
+  visit("radius", radius), visit("half_length", half_length);
+}
+MW_MEMBERS(Hull) {
+  auto& [vertices] = value;
+  visit("vertices", vertices);
 }
 MW_MEMBERS(Circle) {
   auto& [radius] = value;

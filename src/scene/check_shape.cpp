@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "src/scene/checks.hpp"
+#include "src/scene/convex_hull.hpp"
 
 namespace manyworlds::detail {
 namespace {
@@ -33,7 +34,8 @@ bool check_coordinate(Checker& checker, std::string_view field, double value) {
   return false;
 }
 
-bool check_distinct(Checker& checker, const std::vector<Vec2>& vertices, double extent) {
+template <class Vec>
+bool check_distinct(Checker& checker, const std::vector<Vec>& vertices, double extent) {
   bool good = true;
   for (std::size_t i = 1; i < vertices.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -155,6 +157,36 @@ void check_normal_length(Checker& checker, double length) {
                             number_text(kInputTolerance) + ")");
 }
 
+void check_hull(Checker& checker, const Hull& hull) {
+  const std::vector<Vec3>& vertices = hull.vertices;
+  if (vertices.size() < kFewestHullVertices || vertices.size() > kMostHullVertices) {
+    checker.add("vertices", "are " + std::to_string(vertices.size()) + ", must be 4 to 64");
+    return;
+  }
+  bool good = true;
+  double extent = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    good &= check_coordinate(checker, vertex_name(i) + ".x", vertices[i].x());
+    good &= check_coordinate(checker, vertex_name(i) + ".y", vertices[i].y());
+    good &= check_coordinate(checker, vertex_name(i) + ".z", vertices[i].z());
+    extent = std::max(extent, (vertices[i] - vertices[0]).norm());
+  }
+  if (!good || !check_distinct(checker, vertices, extent)) return;
+  const ConvexHull solid = convex_hull(vertices);
+  if (solid.flat()) {
+    checker.add("vertices", "lie in a plane, must enclose a volume");
+    return;
+  }
+  for (const HullFace& f : solid.faces) {
+    double low = f.offset;
+    for (const Vec3& v : vertices) low = std::min(low, f.normal.dot(v));
+    if (f.offset - low >= kSmallestSize) continue;
+    checker.add("vertices", "are " + number_text(f.offset - low) + " m thick, must be at least " +
+                                number_text(kSmallestSize));
+    return;
+  }
+}
+
 struct GeometryCheck {
   Checker& checker;
   const Body& body;
@@ -190,6 +222,15 @@ struct GeometryCheck {
     checker.size("radius", capsule.radius);
     checker.size("half_length", capsule.half_length);
   }
+  void operator()(const Cylinder& cylinder) const {
+    in_space(Space::spatial, "cylinder");
+    checker.size("radius", cylinder.radius);
+    checker.size("half_length", cylinder.half_length);
+  }
+  void operator()(const Hull& hull) const {
+    in_space(Space::spatial, "hull");
+    check_hull(checker, hull);
+  }
   void operator()(const Segment& segment) const {
     in_space(Space::planar, "segment");
     on_fixed_body("segment");
@@ -218,7 +259,7 @@ struct GeometryCheck {
             (checker.planar()
                  ? ", a planar scene takes circle, polygon, capsule, half-plane, segment and "
                    "terrain"
-                 : ", a spatial scene takes sphere, box, capsule and plane"));
+                 : ", a spatial scene takes sphere, box, capsule, cylinder, hull and plane"));
   }
   void on_fixed_body(const std::string& kind) const {
     if (body.motion == Motion::fixed) return;

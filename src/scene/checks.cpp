@@ -33,6 +33,11 @@ std::string vector_text(const Vec2& value) {
   return "(" + number_text(value.x()) + ", " + number_text(value.y()) + ")";
 }
 
+std::string vector_text(const Vec3& value) {
+  return "(" + number_text(value.x()) + ", " + number_text(value.y()) + ", " +
+         number_text(value.z()) + ")";
+}
+
 std::string element_name(std::string_view field, std::size_t index) {
   return std::string(field) + "[" + std::to_string(index) + "]";
 }

@@ -31,6 +31,7 @@ inline constexpr int kMostShapes = 32767;
 // Shortest text that reads back as the same number, in any locale; "nan" without a sign.
 std::string number_text(double value);
 std::string vector_text(const Vec2& value);                           // "(1, 2)"
+std::string vector_text(const Vec3& value);                           // "(1, 2, 3)"
 std::string element_name(std::string_view field, std::size_t index);  // "vertices[3]"
 
 // Appends issues of one part of a scene, such as "body 3 'crate', shape 1" (empty: of the scene).

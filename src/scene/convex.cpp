@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "src/scene/convex_hull.hpp"
+#include "src/scene/convex_search.hpp"
+
 namespace manyworlds {
 
 namespace {
@@ -34,11 +37,25 @@ Vec3 nearest_on_segment(const Vec3& p, const Vec3& from, const Vec3& to) {
 
 // Of the hull's points, to one that is not inside it.
 Vec3 nearest_on_hull(const Convex& c, const Vec3& p) {
-  if (c.directions.size() == 3) {
+  if (c.half.x() > 0) {
     const Vec3 local = c.axes.transpose() * (p - c.center);
     return c.center + c.axes * local.cwiseMax(-c.half).cwiseMin(c.half);
   }
   Nearest best;
+  // Over a face, it is the one whose plane is farthest below p.
+  if (!c.reach.empty()) {
+    std::size_t face = 0;
+    const auto height = [&](std::size_t i, const Vec3& x) {
+      return c.normals[i].dot(x) - c.reach[i];
+    };
+    for (std::size_t i = 1; i < c.reach.size(); ++i) {
+      if (height(i, p) > height(face, p)) face = i;
+    }
+    const Vec3 foot = p - height(face, p) * c.normals[face];
+    bool inside = true;
+    for (std::size_t i = 0; i < c.reach.size(); ++i) inside &= i == face || height(i, foot) <= 0;
+    if (inside) return foot;
+  }
   for (const Vec3& q : c.points) best.take(q, p);
   for (const auto& e : c.edges) {
     best.take(nearest_on_segment(p, c.points[at(e[0])], c.points[at(e[1])]), p);
@@ -118,14 +135,29 @@ Convex segment_of(const Vec3& from, const Vec3& to, double radius, Space space) 
   return c;
 }
 
+Convex hull_of(const Hull& hull, const Vec3& x, const Mat3& r) {
+  const detail::ConvexHull solid = detail::convex_hull(hull.vertices);
+  Convex c;
+  for (const Vec3& v : solid.vertices) c.points.push_back(x + r * v);
+  for (const detail::HullFace& f : solid.faces) {
+    c.normals.push_back(r * f.normal);
+    c.reach.push_back(f.offset + c.normals.back().dot(x));
+    for (std::size_t i = 0; i < f.outline.size(); ++i) {
+      const int from = f.outline[i], to = f.outline[(i + 1) % f.outline.size()];
+      if (from > to) continue;  // once from either face
+      c.edges.push_back({from, to});
+      c.directions.push_back((c.points[at(to)] - c.points[at(from)]).normalized());
+    }
+  }
+  return c;
+}
+
 Separation of_half_space(const Convex& plane, const Convex& b) {
   const Vec3& n = plane.normals[0];
-  const auto lowest =
-      std::min_element(b.points.begin(), b.points.end(),
-                       [&](const Vec3& p, const Vec3& q) { return n.dot(p) < n.dot(q); });
+  const Vec3 lowest = b.support(-n);
   Separation s;
-  s.distance = n.dot(*lowest) - plane.offset - b.radius;
-  s.point_b = *lowest - n * b.radius;
+  s.distance = n.dot(lowest) - plane.offset - b.radius;
+  s.point_b = lowest - n * b.radius;
   s.point_a = s.point_b - n * s.distance;
   s.normal = n;
   return s;
@@ -134,6 +166,17 @@ Separation of_half_space(const Convex& plane, const Convex& b) {
 Separation turned(const Separation& s) { return {s.distance, s.point_b, s.point_a, -s.normal}; }
 
 }  // namespace
+
+Vec3 Convex::support(const Vec3& n) const {
+  Vec3 best = points[0];
+  for (const Vec3& p : points) {
+    if (n.dot(p) > n.dot(best)) best = p;
+  }
+  // In the disc's own axes, so that it stays in the disc however little n points out of the axis.
+  const Vec2 out(n.dot(axes.col(0)), n.dot(axes.col(1)));
+  if (disc == 0 || out.isZero(0)) return best;
+  return best + axes.leftCols<2>() * (disc * out.normalized());
+}
 
 std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space space) {
   const Mat3 outer = pose.rotation.normalized().toRotationMatrix();
@@ -177,6 +220,14 @@ std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space spa
     }
     return links;
   }
+  if (const auto* s = std::get_if<Cylinder>(&shape.geometry)) {
+    const Vec3 end = r.col(2) * s->half_length;
+    Convex c = segment_of(x - end, x + end, 0, space);
+    c.axes = r;
+    c.disc = s->radius;
+    return {c};
+  }
+  if (const auto* s = std::get_if<Hull>(&shape.geometry)) return {hull_of(*s, x, r)};
   Convex c;
   if (const auto* s = std::get_if<Box>(&shape.geometry)) {
     c.axes = r, c.center = x, c.half = s->half_extents;
@@ -203,6 +254,7 @@ std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space spa
 Separation separation(const Convex& a, const Convex& b) {
   if (a.half_space) return of_half_space(a, b);
   if (b.half_space) return turned(of_half_space(b, a));
+  if (a.disc > 0 || b.disc > 0) return search_separation(a, b);
   const Widest widest = widest_gap(a, b);
   // Hulls that overlap: as they are when shifted until they touch.
   const double overlap = std::min(widest.gap, 0.0);

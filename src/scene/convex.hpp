@@ -20,6 +20,13 @@ struct Convex {
   Vec3 center = Vec3::Zero(), half = Vec3::Zero();
   bool half_space = false;
   double offset = 0;  // of a half space: normals[0] . p <= offset is solid
+  // Of a cylinder: each point stands for a disc of this radius, m, across an axis, axes.col(2).
+  double disc = 0;
+  // Of a hull in space: the normals of its faces are all its normals; normals[i] . p <= reach[i].
+  std::vector<double> reach;
+
+  // The point that lies farthest along n, without the radius.
+  Vec3 support(const Vec3& n) const;
 };
 
 // One part, of a terrain one for each of its segments.

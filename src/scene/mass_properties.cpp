@@ -6,10 +6,12 @@
 // The centre is found first and the inertia summed about it: summing about the origin and
 // subtracting m c^2 would lose digits when shapes are far from the origin of their body.
 // Shapes that overlap simply add. Planes and lines have no mass.
+#include <cmath>
 #include <type_traits>
 #include <vector>
 
-#include "manyworlds/scene.hpp"
+#include "src/scene/convex_hull.hpp"
+#include "src/scene/mesh_moments.hpp"
 
 namespace manyworlds {
 namespace {
@@ -81,6 +83,28 @@ MassProperties of(const Polygon& polygon, double density) {
   const Vec2 center = origin + offset;
   const double moment = density * (second - area * offset.squaredNorm());
   return {density * area, {center.x(), center.y(), 0}, planar_inertia(moment)};
+}
+
+MassProperties of(const Cylinder& cylinder, double density) {
+  const double r = cylinder.radius, h = cylinder.half_length;
+  const double mass = density * 2 * kPi * r * r * h;
+  const double across = mass * (r * r / 4 + h * h / 3);
+  return {mass, Vec3::Zero(), Vec3(across, across, mass * r * r / 2).asDiagonal()};
+}
+MassProperties of(const Hull& hull, double density) {
+  const TriangleMesh mesh = detail::surface(detail::convex_hull(hull.vertices));
+  const Vec3 middle = detail::mesh_middle(mesh);
+  const detail::MeshMoments about_middle = detail::mesh_moments(mesh, middle);
+  // The centre of a symmetric hull comes out of sums: what is only rounding is zero.
+  Vec3 offset = about_middle.first / about_middle.volume;
+  const double size = (mesh.vertices[0] - middle).norm();
+  for (int c = 0; c < 3; ++c) {
+    if (std::abs(offset[c]) <= 1e-14 * size) offset[c] = 0;
+  }
+  const Vec3 center = middle + offset;
+  const detail::MeshMoments about_center = detail::mesh_moments(mesh, center);
+  const Mat3 spread = density * about_center.second;
+  return {density * about_middle.volume, center, spread.trace() * Mat3::Identity() - spread};
 }
 
 MassProperties of(const Plane&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }

@@ -23,17 +23,24 @@ const Shape& shape_of(const Scene& scene, int body, int shape) {
 int sizes_of(const Geometry& geometry) {
   if (std::holds_alternative<Sphere>(geometry) || std::holds_alternative<Circle>(geometry))
     return 1;
-  if (std::holds_alternative<Capsule>(geometry) || std::holds_alternative<Polygon>(geometry)) {
+  if (std::holds_alternative<Capsule>(geometry) || std::holds_alternative<Polygon>(geometry) ||
+      std::holds_alternative<Cylinder>(geometry)) {
     return 2;
   }
-  return std::holds_alternative<Box>(geometry) ? 3 : 0;
+  return std::holds_alternative<Box>(geometry) || std::holds_alternative<Hull>(geometry) ? 3 : 0;
 }
 
-double half_extent(const Polygon& polygon, int axis) {
-  const auto less = [axis](const Vec2& a, const Vec2& b) { return a[axis] < b[axis]; };
-  const auto [low, high] =
-      std::minmax_element(polygon.vertices.begin(), polygon.vertices.end(), less);
+template <class Vertices>
+double half_extent(const Vertices& vertices, int axis) {
+  const auto less = [axis](const auto& a, const auto& b) { return a[axis] < b[axis]; };
+  const auto [low, high] = std::minmax_element(vertices.begin(), vertices.end(), less);
   return ((*high)[axis] - (*low)[axis]) / 2;
+}
+template <class Vertices>
+void stretch(Vertices& vertices, int axis, double value) {
+  const double before = half_extent(vertices, axis);
+  if (value == before) return;
+  for (auto& v : vertices) v[axis] *= value / before;
 }
 
 double get_size(const Geometry& geometry, int component) {
@@ -41,7 +48,11 @@ double get_size(const Geometry& geometry, int component) {
   if (const auto* circle = std::get_if<Circle>(&geometry)) return circle->radius;
   if (const auto* box = std::get_if<Box>(&geometry)) return box->half_extents[component];
   if (const auto* polygon = std::get_if<Polygon>(&geometry))
-    return half_extent(*polygon, component);
+    return half_extent(polygon->vertices, component);
+  if (const auto* hull = std::get_if<Hull>(&geometry))
+    return half_extent(hull->vertices, component);
+  if (const auto* cylinder = std::get_if<Cylinder>(&geometry))
+    return component == 0 ? cylinder->radius : cylinder->half_length;
   const auto& capsule = std::get<Capsule>(geometry);
   return component == 0 ? capsule.radius : capsule.half_length;
 }
@@ -54,9 +65,11 @@ void set_size(Geometry& geometry, int component, double value) {
   } else if (auto* box = std::get_if<Box>(&geometry)) {
     box->half_extents[component] = value;
   } else if (auto* polygon = std::get_if<Polygon>(&geometry)) {
-    const double before = half_extent(*polygon, component);
-    if (value == before) return;
-    for (Vec2& v : polygon->vertices) v[component] *= value / before;
+    stretch(polygon->vertices, component, value);
+  } else if (auto* hull = std::get_if<Hull>(&geometry)) {
+    stretch(hull->vertices, component, value);
+  } else if (auto* cylinder = std::get_if<Cylinder>(&geometry)) {
+    (component == 0 ? cylinder->radius : cylinder->half_length) = value;
   } else {
     auto& capsule = std::get<Capsule>(geometry);
     (component == 0 ? capsule.radius : capsule.half_length) = value;

@@ -130,8 +130,9 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
   const double least_margin = 2 * plan.scene.options.slop * plan.scene.options.length_unit;
   for (const PlanCollider& c : plan.colliders) {
     const Filter& filter = filter_of(plan, c);
+    const auto vertices = static_cast<std::int32_t>(c.vertices.size());
     colliders_.push_back({c.kind, c.body, c.row, filter.category, filter.mask,
-                          static_cast<std::int32_t>(c.vertices.size())});
+                          c.hull_vertices > 0 ? c.hull_vertices : vertices, c.hull_faces, c.hull});
     collider_row_.push_back(c.row);
     collider_body_.push_back(c.body);
   }
@@ -161,7 +162,8 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
     for (std::size_t k = 0; k < f.row.size(); ++k) {
       fixed_rows_[static_cast<std::size_t>(f.row_offset) + k] = static_cast<Real>(f.row[k]);
     }
-    if (f.kind == kernels::ShapeKind::box) {
+    if (f.kind == kernels::ShapeKind::box || f.kind == kernels::ShapeKind::cylinder ||
+        f.kind == kernels::ShapeKind::hull) {
       fixed_rows_[static_cast<std::size_t>(f.row_offset) + 15] = static_cast<Real>(least_margin);
     }
     fixed_.push_back(out);
@@ -174,6 +176,11 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
   t.first_collider = first_collider_.data();
   t.fixed = fixed_.data();
   t.fixed_rows = fixed_rows_.data();
+  hulls_ = AlignedBuffer<Real>(plan.hulls.size());
+  for (std::size_t i = 0; i < plan.hulls.size(); ++i) {
+    hulls_[i] = static_cast<Real>(plan.hulls[i]);
+  }
+  t.hulls = hulls_.data();
   t.row_block = plan.row_block;
 }
 

@@ -37,7 +37,7 @@ class TablesOf {
   std::vector<kernels::ThrustTable> thrusts_;
   std::vector<std::int32_t> first_thrust_;
   std::vector<std::int32_t> joined_, first_joined_;
-  AlignedBuffer<Real> fixed_rows_, push_rows_, factor_rows_;
+  AlignedBuffer<Real> fixed_rows_, hulls_, push_rows_, factor_rows_;
 };
 
 }  // namespace manyworlds

@@ -34,8 +34,14 @@ inline Scene crowd(Space space, int bodies = 8) {
   return scene;
 }
 
+// Six corners, none of them opposite to another.
+inline Hull wedge_hull(double size) {
+  return {{size * Vec3(-1, -0.8, -0.6), size * Vec3(1, -0.9, -0.7), size * Vec3(0.1, 1, -0.6),
+           size * Vec3(-0.7, -0.5, 0.8), size * Vec3(0.6, -0.6, 0.9), size * Vec3(0, 0.7, 0.7)}};
+}
+
 // The same with capsules among the bodies and fixed, in the plane over a terrain and a segment;
-// with polygons instead of rectangles if wished.
+// with polygons instead of rectangles if wished, in space with cylinders and hulls.
 inline Scene capsule_crowd(Space space, bool polygons = false) {
   const bool planar = space == Space::planar;
   Scene scene = crowd(space, 12);
@@ -45,7 +51,16 @@ inline Scene capsule_crowd(Space space, bool polygons = false) {
   scene.add(
       body_of(shape_of(Capsule{0.2, 0.4}, 0.4), Vec3(1, 0, 0) + 0.2 * up_of(space), Motion::fixed));
   scene.add(body_of(shape_of(round_of(space, 0.3), 0.4), Vec3(-1, 0, 0), Motion::fixed));
-  if (!planar) return scene;
+  if (!planar) {
+    // Cylinders and hulls in the other places, of all kinds.
+    if (!polygons) return scene;
+    for (std::size_t i = 3; i < 14; i += 3)
+      scene.bodies[i].shapes[0].geometry = Cylinder{0.35, 0.3};
+    for (std::size_t i = 4; i < 14; i += 3) scene.bodies[i].shapes[0].geometry = wedge_hull(0.4);
+    scene.add(body_of(shape_of(Cylinder{0.3, 0.3}, 0.4), Vec3(0, 1, 0.1), Motion::fixed));
+    scene.add(body_of(shape_of(wedge_hull(0.4), 0.4), Vec3(0, -1, 0.1), Motion::fixed));
+    return scene;
+  }
   scene.add(body_of(shape_of(Segment{{-2, 0.6}, {-1, 0.1}}, 0.4), Vec3::Zero(), Motion::fixed));
   scene.add(body_of(shape_of(Terrain{{{-4, 1}, {-2, 0.1}, {-1, 0.2}, {0, 0.1}, {2, 0.1}, {4, 1}}}),
                     Vec3::Zero(), Motion::fixed));

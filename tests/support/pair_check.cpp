@@ -18,6 +18,10 @@ double reach(const Shape& shape) {  // no point of the shape is farther from the
   if (const auto* c = std::get_if<Circle>(&shape.geometry)) r = c->radius;
   if (const auto* b = std::get_if<Box>(&shape.geometry)) r = b->half_extents.norm();
   if (const auto* c = std::get_if<Capsule>(&shape.geometry)) r = c->radius + c->half_length;
+  if (const auto* c = std::get_if<Cylinder>(&shape.geometry))
+    r = std::hypot(c->radius, c->half_length);
+  if (const auto* h = std::get_if<Hull>(&shape.geometry))
+    for (const Vec3& v : h->vertices) r = std::max(r, v.norm());
   if (const auto* s = std::get_if<Segment>(&shape.geometry)) r = std::max(s->a.norm(), s->b.norm());
   if (const auto* t = std::get_if<Terrain>(&shape.geometry))
     for (const Vec2& v : t->points) r = std::max(r, v.norm());
@@ -101,7 +105,10 @@ void write_poses(Batch& batch, const std::vector<std::vector<Pose>>& poses) {
 class Judge {
  public:
   Judge(const Scene& scene, const Table& table, const PairPromise& promise, PairResult& result)
-      : scene_(scene), promise_(promise), result_(result), tight_(pick(table, 2e-5, 1e-9)) {}
+      : scene_(scene),
+        promise_(promise),
+        result_(result),
+        tight_(pick(table, 2e-5, 1e-9) + promise.twin) {}
 
   void judge(const std::vector<Pose>& pose, const std::vector<Contact>& contacts) {
     pose_ = &pose;
@@ -175,7 +182,12 @@ class Judge {
   void check_depth(const Solid& a, const Solid& b, double deepest) {
     const double allowed = promise_.bias + promise_.bias_relative * std::abs(truth_);
     if (truth_ < -tight_) {
-      if (!(std::abs(deepest - truth_) < allowed + tight_)) deviation("wrong depth", deepest);
+      if (promise_.local_below > 0 && truth_ < -promise_.local_below &&
+          deepest < truth_ - allowed - tight_) {
+        ++result_.local;
+      } else if (!(std::abs(deepest - truth_) < allowed + tight_)) {
+        deviation("wrong depth", deepest);
+      }
     } else {
       // A separating axis gives at most the distance, and never an overlap.
       if (!(deepest > -2 * tight_)) deviation("disjoint shapes reported as overlapping", deepest);
@@ -188,7 +200,8 @@ class Judge {
         if (!((c.normal - *exact).norm() < tight_ / 1e-3 * 0.2))
           deviation("wrong normal", (c.normal - *exact).norm());
       }
-      if (!(std::abs(deepest - truth_) < 2 * tight_)) deviation("wrong separation", deepest);
+      if (!(std::abs(deepest - truth_) < 2 * tight_ + promise_.left_out))
+        deviation("wrong separation", deepest);
     }
   }
 
@@ -217,6 +230,10 @@ class Judge {
     if (const auto* circle = std::get_if<Circle>(&shape.geometry)) s << " r " << circle->radius;
     if (const auto* capsule = std::get_if<Capsule>(&shape.geometry))
       s << " r " << capsule->radius << " half " << capsule->half_length;
+    if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry))
+      s << " disc " << cylinder->radius << " half " << cylinder->half_length;
+    if (const auto* hull = std::get_if<Hull>(&shape.geometry))
+      for (const Vec3& v : hull->vertices) s << " (" << v.transpose() << ")";
     if (const auto* polygon = std::get_if<Polygon>(&shape.geometry))
       for (const Vec2& v : polygon->vertices) s << " (" << v.x() << ", " << v.y() << ")";
     s << "\n";
@@ -260,6 +277,7 @@ void merge(PairResult& sum, const PairResult& more) {
   sum.overlapping += more.overlapping;
   sum.with_contacts += more.with_contacts;
   sum.normals_checked += more.normals_checked;
+  sum.local += more.local;
   sum.deviations += more.deviations;
   if (sum.report.size() < 3000) sum.report += more.report;
 }
@@ -283,6 +301,24 @@ Box random_box(Random& random) {
 
 Capsule random_capsule(Random& random) {
   return {random.uniform(0.1, 0.4), random.uniform(0.05, 0.6)};
+}
+
+Cylinder random_cylinder(Random& random) {
+  return {random.uniform(0.1, 0.5), random.uniform(0.1, 0.6)};
+}
+
+// Points of an ellipsoid are corners of their hull, all of them.
+Hull random_hull(Random& random, int vertices) {
+  const Vec3 radii(random.uniform(0.2, 0.6), random.uniform(0.2, 0.6), random.uniform(0.2, 0.6));
+  const Vec3 center = random.in_cube(0.1);
+  Hull hull;
+  while (static_cast<int>(hull.vertices.size()) < vertices) {
+    const Vec3 v = center + radii.cwiseProduct(random.direction());
+    bool apart = true;
+    for (const Vec3& w : hull.vertices) apart &= (v - w).norm() > 0.08;
+    if (apart) hull.vertices.push_back(v);
+  }
+  return hull;
 }
 
 Body random_body(Geometry geometry, Motion motion, bool offset, Space space, Random& random) {

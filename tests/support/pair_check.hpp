@@ -20,6 +20,11 @@ struct PairPromise {
   // farther away than the margin by this factor.
   double reach = 1;
   int max_points = 1;
+  // Deeper than this the normal may be one that only its neighbours are worse than; 0: never. Then
+  // PairResult::local counts it.
+  double local_below = 0;  // m
+  double left_out = 0;     // m, how much deeper a point may be that is left out
+  double twin = 0;         // m, what the twin's own answer may be wrong by
 };
 
 // Counts, and the first few deviations in words with every number needed to see them again.
@@ -28,6 +33,7 @@ struct PairResult {
   int overlapping = 0;
   int with_contacts = 0;
   int normals_checked = 0;  // against exact_normal()
+  int local = 0;
   int deviations = 0;
   std::string report;
 };
@@ -42,6 +48,8 @@ void merge(PairResult& sum, const PairResult& more);
 Polygon random_polygon(Random& random, int vertices);
 Box random_box(Random& random);
 Capsule random_capsule(Random& random);
+Cylinder random_cylinder(Random& random);
+Hull random_hull(Random& random, int vertices);
 // A body with this shape, placed off its body frame by a random pose when `offset` is set.
 Body random_body(Geometry geometry, Motion motion, bool offset, Space space, Random& random);
 

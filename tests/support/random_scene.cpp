@@ -141,25 +141,50 @@ class Maker {
       Vec3 at = vector(dice, wall_ - unit_);
       (planar_ ? at.y() : at.z()) = 0;
       const Quat turn = rotation(dice);
-      switch (dice.below(planar_ ? 5 : 3)) {
+      switch (dice.below(5)) {
         case 0: add_fixed(dice, round_of(scene_.space, a), at, turn); break;
         case 1: add_fixed(dice, box_of(scene_.space, Vec3(b, a, b)), at, turn); break;
         case 2: add_fixed(dice, Capsule{b, a}, at, turn); break;
-        case 3: add_fixed(dice, Segment{{-a, 0.1 * a}, {a, b}}, at, turn); break;
-        default: add_fixed(dice, Polygon{{{-a, -b}, {a, -b}, {0, b}}}, at, turn);
+        case 3: {
+          Geometry ramp = Segment{{-a, 0.1 * a}, {a, b}};
+          if (!planar_) ramp = Cylinder{a, b};
+          add_fixed(dice, ramp, at, turn);
+          break;
+        }
+        default: {
+          Geometry wedge = Polygon{{{-a, -b}, {a, -b}, {0, b}}};
+          if (!planar_) wedge = hull(dice, a);
+          add_fixed(dice, wedge, at, turn);
+        }
       }
     }
   }
 
+  // Corners near those of a cube, on a ball.
+  Hull hull(Dice& dice, double radius) {
+    Hull out;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 corner(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+      out.vertices.push_back(radius * (corner + 0.4 * vector(dice, 1)).normalized());
+    }
+    return out;
+  }
+
   Geometry moving_geometry(Dice& dice, double radius) {
     const double thin = dice.between(0.3, 0.6) * radius;
-    switch (dice.below(planar_ ? 4 : 3)) {
+    switch (dice.below(planar_ ? 4 : 5)) {
       case 0: return round_of(scene_.space, radius);
       case 1: {
         const Vec3 half(dice.between(0.3, 1), dice.between(0.3, 1), dice.between(0.3, 1));
         return box_of(scene_.space, radius * half / std::sqrt(planar_ ? 2.0 : 3.0));
       }
       case 2: return Capsule{thin, radius - thin};
+      case 3: {
+        if (planar_) break;
+        const double angle = dice.between(0.4, 1.2);
+        return Cylinder{radius * std::sin(angle), radius * std::cos(angle)};
+      }
+      case 4: return hull(dice, radius);
       default: break;
     }
     Polygon polygon;

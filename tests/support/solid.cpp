@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "tests/support/solid_convex.hpp"
+
 namespace manyworlds::test {
 namespace {
 
@@ -15,6 +17,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 Vec3 corner_sign(int i) { return {i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0}; }
 
 std::vector<std::pair<Vec3, Vec3>> edges(const Solid& s) {
+  if (s.kind == Solid::Kind::hull) return s.rims;
   std::vector<std::pair<Vec3, Vec3>> result;
   if (s.kind == Solid::Kind::polygon || s.kind == Solid::Kind::capsule) {
     const std::size_t n = s.vertices.size();  // a capsule's axis is an edge to either side
@@ -29,12 +32,6 @@ std::vector<std::pair<Vec3, Vec3>> edges(const Solid& s) {
     }
   }
   return result;
-}
-
-double point_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a;
-  const double t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-  return (p - a - t * d).norm();
 }
 
 // The distance of two segments is at an end of one of them, or at the common perpendicular.
@@ -65,7 +62,13 @@ std::vector<Vec3> edge_normals(const Solid& s) {
 
 // Directions of the edges of a spatial solid.
 std::vector<Vec3> directions(const Solid& s) {
-  if (s.kind == Solid::Kind::capsule) return {(s.vertices[1] - s.vertices[0]).normalized()};
+  if (s.kind == Solid::Kind::capsule || s.kind == Solid::Kind::cylinder)
+    return {(s.vertices[1] - s.vertices[0]).normalized()};
+  if (s.kind == Solid::Kind::hull) {
+    std::vector<Vec3> result;
+    for (const auto& [a, b] : s.rims) result.push_back((b - a).normalized());
+    return result;
+  }
   return {s.axes.col(0), s.axes.col(1), s.axes.col(2)};
 }
 
@@ -80,6 +83,10 @@ std::vector<Vec3> facet_normals(const Solid& a, const Solid& b) {
   }
   for (const Solid* s : {&a, &b}) {
     if (s->kind == Solid::Kind::capsule) continue;
+    if (s->kind == Solid::Kind::hull) {
+      for (const auto& [point, n] : s->sides) result.push_back(n);
+      continue;
+    }
     for (const Vec3& n : directions(*s)) result.push_back(n);
   }
   for (const Vec3& u : directions(a)) {
@@ -117,7 +124,12 @@ std::pair<double, double> extent(const Solid& s, const Vec3& d) {
     low = std::min(low, v.dot(d));
     high = std::max(high, v.dot(d));
   }
-  return {low - s.radius, high + s.radius};
+  double rim = 0;
+  if (s.kind == Solid::Kind::cylinder) {
+    const Vec3 axis = s.axes.col(2);
+    rim = s.disc * (d - axis * axis.dot(d)).norm();
+  }
+  return {low - s.radius - rim, high + s.radius + rim};
 }
 
 // Gradient of the signed distance at a point, when it is unique by a clear margin.
@@ -150,6 +162,8 @@ std::optional<Vec3> outward(const Solid& s, const Vec3& p) {
       if (d.norm() < kClear) return std::nullopt;
       return d.normalized();
     }
+    case Solid::Kind::cylinder: return outward_of_cylinder(s, p, kClear);
+    case Solid::Kind::hull: return outward_of_hull(s, p, kClear);
     case Solid::Kind::polygon: {
       if (signed_distance(s, p) > 0) {
         double best = kInfinity;
@@ -208,6 +222,19 @@ Solid make_solid(const Shape& shape, const Pose& body, Space space) {
     s.radius = capsule->radius;
     const Vec3 end = capsule->half_length * s.axes.col(s.planar ? 1 : 2);
     s.vertices = {s.center - end, s.center + end};
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
+    s.kind = Solid::Kind::cylinder;
+    s.disc = cylinder->radius;
+    const Vec3 end = cylinder->half_length * s.axes.col(2);
+    s.vertices = {s.center - end, s.center + end};
+  } else if (const auto* hull = std::get_if<Hull>(&shape.geometry)) {
+    s.kind = Solid::Kind::hull;
+    s.center.setZero();
+    for (const Vec3& v : hull->vertices) {
+      s.vertices.push_back(pose.position + s.axes * v);
+      s.center += s.vertices.back() / static_cast<double>(hull->vertices.size());
+    }
+    add_features(s);
   } else if (const auto* polygon = std::get_if<Polygon>(&shape.geometry)) {
     s.kind = Solid::Kind::polygon;
     s.planar = true;
@@ -255,6 +282,8 @@ double signed_distance(const Solid& s, const Vec3& p) {
       return q.maxCoeff() > 0 ? q.cwiseMax(0.0).norm() : q.maxCoeff();
     }
     case Solid::Kind::capsule: return point_segment(p, s.vertices[0], s.vertices[1]) - s.radius;
+    case Solid::Kind::cylinder: return distance_to_cylinder(s, p);
+    case Solid::Kind::hull: return distance_to_hull(s, p);
     case Solid::Kind::polygon: {
       const auto sides = edges(s);
       const auto normals = edge_normals(s);
@@ -283,6 +312,8 @@ double separation(const Solid& a, const Solid& b) {
   if (b.kind == Solid::Kind::half_space) return separation_along(a, b, -b.normal);
   if (a.kind == Solid::Kind::round) return signed_distance(b, a.center) - a.radius;
   if (b.kind == Solid::Kind::round) return signed_distance(a, b.center) - b.radius;
+  if (a.kind == Solid::Kind::cylinder || b.kind == Solid::Kind::cylinder)
+    return searched_separation(a, b, facet_normals(a, b));
   return polytope_separation(a, b) - a.radius - b.radius;
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "manyworlds/scene.hpp"
@@ -21,16 +22,19 @@ Pose operator*(const Pose& outer, const Pose& inner);
 
 // One shape placed in the world. Planar shapes lie in z = 0.
 struct Solid {
-  enum class Kind { round, box, polygon, half_space, capsule };
+  enum class Kind { round, box, polygon, half_space, capsule, cylinder, hull };
   Kind kind = Kind::round;
 
   Vec3 center = Vec3::Zero();        // round, box; else mean of the vertices
   double radius = 0;                 // round, capsule
   Mat3 axes = Mat3::Identity();      // box: columns are the face normals
   Vec3 half_extents = Vec3::Zero();  // box
-  std::vector<Vec3> vertices;        // box: all 8; polygon: counter-clockwise; capsule: 2 ends
+  std::vector<Vec3> vertices;        // box, hull: all; polygon: counter-clockwise; capsule: 2 ends
   bool planar = false;               // polygon, capsule
-  Vec3 normal = Vec3::Zero();        // half space: normal . p <= offset is solid
+  double disc = 0;                   // cylinder: its radius; vertices are the ends of its axis
+  std::vector<std::pair<Vec3, Vec3>> sides;  // hull: a point of each face, its outward normal
+  std::vector<std::pair<Vec3, Vec3>> rims;   // hull: its edges
+  Vec3 normal = Vec3::Zero();                // half space: normal . p <= offset is solid
   double offset = 0;
 };
 

@@ -1,0 +1,168 @@
+// Convex hulls by Qhull (Barber, Dobkin and Huhdanpaa, "The Quickhull algorithm for convex hulls",
+// 1996), the only file that includes it. Qhull merges facets that are coplanar within what it is
+// told; here a millionth of the extent, which is what float32 tells apart.
+#include "src/scene/convex_hull.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "manyworlds/hull.hpp"
+#include "manyworlds/plan.hpp"
+#include "src/scene/checks.hpp"
+
+extern "C" {
+#include <libqhull_r/qhull_ra.h>
+}
+
+namespace manyworlds {
+namespace detail {
+namespace {
+
+constexpr double kCoplanar = 1e-6;  // of the extent: facets this near to one plane are merged
+constexpr double kThinnest = 1e-5;  // of the extent: less is flat
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+double extent_of(const std::vector<Vec3>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) box.extend(p);
+  return box.diagonal().norm();
+}
+
+// Facets as indices of points, in order around, and their outward normals.
+struct Facet {
+  std::vector<int> outline;
+  Vec3 normal;
+};
+
+std::vector<Facet> facets_of(const std::vector<Vec3>& points, double extent) {
+  // About their middle, so that a hull far from its origin loses no digits.
+  const Vec3 middle = points[0];
+  std::vector<double> numbers;
+  for (const Vec3& p : points) {
+    for (int c = 0; c < 3; ++c) numbers.push_back((p[c] - middle[c]) / extent);
+  }
+  // Qhull complains to a file; what we say instead is in our own words.
+  const std::unique_ptr<std::FILE, Close> silence(std::fopen("/dev/null", "w"));
+  std::string command = "qhull Pp C-" + number_text(kCoplanar);
+  qhT state;
+  qh_zero(&state, silence.get());
+  std::vector<Facet> out;
+  if (qh_new_qhull(&state, 3, static_cast<int>(points.size()), numbers.data(), False,
+                   command.data(), nullptr, silence.get()) == 0) {
+    for (facetT* f = state.facet_list; f != nullptr && f->next != nullptr; f = f->next) {
+      Facet facet;
+      facet.normal = {f->normal[0], f->normal[1], f->normal[2]};
+      setT* around = qh_facet3vertex(&state, f);
+      for (void** at = &around->e[0].p; *at != nullptr; ++at) {
+        facet.outline.push_back(qh_pointid(&state, static_cast<vertexT*>(*at)->point));
+      }
+      qh_settempfree(&state, &around);
+      out.push_back(std::move(facet));
+    }
+  }
+  qh_freeqhull(&state, qh_ALL);
+  int chunks = 0, bytes = 0;
+  qh_memfreeshort(&state, &chunks, &bytes);
+  return out;
+}
+
+// Twice the area times the normal, of an outline that need not be flat (Newell).
+Vec3 area_of(const std::vector<Vec3>& points, const std::vector<int>& outline) {
+  Vec3 area = Vec3::Zero();
+  const auto at = [&](std::size_t i) {
+    return Vec3(points[static_cast<std::size_t>(outline[i % outline.size()])] -
+                points[static_cast<std::size_t>(outline[0])]);
+  };
+  for (std::size_t i = 1; i + 1 < outline.size(); ++i) area += at(i).cross(at(i + 1));
+  return area;
+}
+
+}  // namespace
+
+ConvexHull convex_hull(const std::vector<Vec3>& points) {
+  ConvexHull out;
+  const double extent = extent_of(points);
+  if (!(extent > 0)) return out;
+  std::map<int, int> corner;  // of points
+  std::vector<Facet> facets = facets_of(points, extent);
+  for (const Facet& f : facets) {
+    for (const int i : f.outline) corner[i] = 0;
+  }
+  for (auto& [point, index] : corner) {
+    index = static_cast<int>(out.vertices.size());
+    out.vertices.push_back(points[static_cast<std::size_t>(point)]);
+  }
+  for (Facet& f : facets) {
+    HullFace face;
+    for (const int i : f.outline) face.outline.push_back(corner[i]);
+    Vec3 area = area_of(out.vertices, face.outline);
+    if (area.dot(f.normal) < 0) {
+      std::reverse(face.outline.begin(), face.outline.end());
+      area = -area;
+    }
+    if (face.outline.size() < 3 || area.isZero(0)) continue;
+    face.normal = area.normalized();
+    double low = std::numeric_limits<double>::max();
+    face.offset = -low;
+    for (const Vec3& v : out.vertices) {
+      const double height = face.normal.dot(v);
+      low = std::min(low, height);
+      face.offset = std::max(face.offset, height);
+    }
+    if (face.offset - low < kThinnest * extent) return {};  // flat
+    // Qhull's order depends on coordinates, ours on that of the points alone.
+    std::vector<int>& around = face.outline;
+    std::rotate(around.begin(), std::min_element(around.begin(), around.end()), around.end());
+    out.faces.push_back(std::move(face));
+  }
+  std::sort(out.faces.begin(), out.faces.end(),
+            [](const HullFace& a, const HullFace& b) { return a.outline < b.outline; });
+  if (out.faces.size() < 4) out.faces.clear();
+  return out;
+}
+
+TriangleMesh surface(const ConvexHull& hull) {
+  TriangleMesh mesh;
+  mesh.vertices = hull.vertices;
+  for (const HullFace& f : hull.faces) {
+    for (std::size_t i = 1; i + 1 < f.outline.size(); ++i) {
+      mesh.triangles.push_back({f.outline[0], f.outline[i], f.outline[i + 1]});
+    }
+  }
+  return mesh;
+}
+
+}  // namespace detail
+
+Hull make_hull(const std::vector<Vec3>& points) {
+  std::vector<Issue> issues;
+  detail::Checker checker(issues, Space::spatial);
+  if (points.size() < detail::kFewestHullVertices) {
+    checker.add("points", "are " + std::to_string(points.size()) + ", must be at least 4");
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    checker.finite(detail::element_name("points", i), points[i], "m");
+  }
+  Hull out;
+  if (issues.empty()) {
+    const detail::ConvexHull hull = detail::convex_hull(points);
+    if (hull.flat()) {
+      checker.add("points", "lie in a plane, must enclose a volume");
+    } else if (hull.vertices.size() > detail::kMostHullVertices) {
+      checker.add("vertices", "are " + std::to_string(hull.vertices.size()) + ", must be at most " +
+                                  std::to_string(detail::kMostHullVertices));
+    }
+    out.vertices = hull.vertices;
+  }
+  if (!issues.empty()) throw SceneError("hull", std::move(issues));
+  return out;
+}
+
+}  // namespace manyworlds
