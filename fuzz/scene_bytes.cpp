@@ -69,6 +69,7 @@ Polygon SceneBytes::polygon() {
     return Polygon::box(half, number(0.1, 1));
   }
   Polygon out;
+  if (byte() > 192) out.radius = number(0.01, 0.5);
   const int n = kind < 224 ? integer(3, 8) : integer(0, 12);
   const double radius = number(0.1, 1), from = number(0, 7);
   for (int i = 0; i < n; ++i) {

@@ -151,8 +151,9 @@ void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
                   n[1].y);
     }
     const Float half(Real(0.5));
+    const Float reach = c.kind == ShapeKind::rounded ? margin + Float(numbers.radius) : margin;
     put_bounds(w, index, p + (low + high) * half,
-               {fma(high.x - low.x, half, margin), fma(high.y - low.y, half, margin)});
+               {fma(high.x - low.x, half, reach), fma(high.y - low.y, half, reach)});
   }
 }
 

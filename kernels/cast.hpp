@@ -117,6 +117,7 @@ MW_INLINE Float distance_to_shape(kernels::ShapeKind kind, Row row, Vec2 p) {
     const Vec2 normal{row(20 + 2 * i), row(21 + 2 * i)};
     far = max(far, dot(normal, d - vertex));
   }
+  if (kind == kernels::ShapeKind::rounded) far = far - row(3);
   return far;
 }
 

@@ -38,6 +38,7 @@ MW_INLINE void with_pose(ShapeKind kind, const Real* base, const std::int32_t* o
     if (kind == ShapeKind::circle) return visit_pose<CirclePose>(base, o, visit);
     if (kind == ShapeKind::rectangle) return visit_pose<RectanglePose>(base, o, visit);
     if (kind == ShapeKind::link) return visit_pose<LinkPose>(base, o, visit);
+    if (kind == ShapeKind::rounded) return visit_pose<RoundedPose>(base, o, visit);
     visit_pose<PolygonPose>(base, o, visit);
   }
 }

@@ -29,8 +29,9 @@ enum class ShapeKind : int {
   link,
   cylinder,
   hull,
+  rounded,  // polygon
 };
-inline constexpr int kShapeKinds = 10;
+inline constexpr int kShapeKinds = 11;
 
 // Shape pairs; the first shape is A. Planes and other fixed shapes are always A. Capsules have the
 // same names in the plane and in space.
@@ -85,13 +86,21 @@ enum class PairKind : int {
   capsule_hull,
   box_hull,
   cylinder_hull,
+  plane_rounded,
+  rounded_circle,
+  rounded_rounded,
+  rounded_capsule,
+  circle_rounded,   // fixed circle
+  capsule_rounded,  // fixed capsule
+  link_rounded,
 };
-inline constexpr int kPairKinds = 50;
+inline constexpr int kPairKinds = 57;
 static inline constexpr bool is_plane(PairKind kind) {
   return kind == PairKind::plane_sphere || kind == PairKind::plane_box ||
          kind == PairKind::plane_circle || kind == PairKind::plane_rectangle ||
          kind == PairKind::plane_polygon || kind == PairKind::plane_capsule ||
-         kind == PairKind::plane_cylinder || kind == PairKind::plane_hull;
+         kind == PairKind::plane_cylinder || kind == PairKind::plane_hull ||
+         kind == PairKind::plane_rounded;
 }
 
 // Contacts of a world live in four lists, solved in this order.
@@ -111,6 +120,7 @@ inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of po
 //   box                   Rx p.x | Ry p.y | Rz p.z | hx hy hz margin, columns of the rotation (16)
 //   rectangle             x y c s | hx hy 0 0                (8)
 //   polygon               x y count radius | 8 vertices | 8 normals, about x y     (36)
+//   rounded               as polygon; the radius is that of its rounding
 //   plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
 //   capsule               x y z radius | a.x a.y a.z half, a: the axis (8; a.z unused in the plane)
 //   link                  x y a.x a.y | half low high index | b.x b.y c.x c.y, a: the axis; low and
@@ -134,6 +144,7 @@ static inline constexpr int pose_row_size(ShapeKind kind) {
     case ShapeKind::plane:
     case ShapeKind::capsule: return 8;
     case ShapeKind::link: return 12;
+    case ShapeKind::rounded:
     case ShapeKind::polygon: return 4 + 4 * kMaxVertices;
     default: return 4;
   }
@@ -175,8 +186,8 @@ struct ShapeConstants {
   T offset[3];    // shape origin from the centre of mass, principal axes, m
   T rotation[9];  // shape axes in principal axes, columns; planar: [0] cos, [1] sin
   T half[3];      // half extents (box, rectangle, cylinder, hull); capsule: [0] half length
-  T radius;       // sphere, circle, capsule; else of the bounding sphere about the shape origin
-  T margin_cap;   // most that the speculative margin of this shape may grow to, m
+  T radius;  // sphere, circle, capsule, rounded; else of the bounding sphere about the shape origin
+  T margin_cap;  // most that the speculative margin of this shape may grow to, m
 };
 
 template <class T>

@@ -20,6 +20,11 @@ Geometry any_circle(Random& r) { return Circle{r.uniform(0.1, 0.6)}; }
 Geometry any_polygon(Random& r) { return random_polygon(r, r.integer(3, 8)); }
 Geometry any_rectangle(Random& r) { return Polygon::box(r.uniform(0.1, 0.6), r.uniform(0.1, 0.6)); }
 Geometry any_capsule(Random& r) { return random_capsule(r); }
+Geometry any_rounded(Random& r) {
+  Polygon polygon = random_polygon(r, r.integer(3, 8));
+  polygon.radius = r.uniform(0.02, 0.3);
+  return polygon;
+}
 Geometry any_line(Random& r) {
   const Vec3 n = r.planar_direction();
   return HalfPlane{Vec2(n.x(), n.y()), r.uniform(-0.5, 0.5)};
@@ -58,6 +63,12 @@ Geometry plump_polygon(Random& r) {
   return p;
 }
 Geometry plump_capsule(Random& r) { return Capsule{r.uniform(0.15, 0.4), r.uniform(0.05, 0.6)}; }
+
+Geometry plump_rounded(Random& r) {
+  Polygon polygon = std::get<Polygon>(plump_polygon(r));
+  polygon.radius = r.uniform(0.05, 0.2);
+  return polygon;
+}
 
 void check(Maker first, Motion first_motion, Maker second, int max_points) {
   PairPromise promise;
@@ -170,6 +181,34 @@ TEST_CASE("capsule-segment agrees with its twin", "[slow][collide]") {
   check(any_segment, Motion::fixed, any_capsule, 2);
 }
 
+TEST_CASE("rounded polygon-circle agrees with its twin", "[slow][collide]") {
+  check(any_rounded, Motion::dynamic, any_circle, 1);
+}
+TEST_CASE("rounded polygon against a fixed circle agrees with its twin", "[slow][collide]") {
+  check(any_circle, Motion::fixed, any_rounded, 1);
+}
+TEST_CASE("rounded polygon-halfplane agrees with its twin", "[slow][collide]") {
+  check(any_line, Motion::fixed, any_rounded, 2);
+}
+TEST_CASE("rounded polygons agree with their twin", "[slow][collide]") {
+  check(any_rounded, Motion::dynamic, any_rounded, 2);
+}
+TEST_CASE("rounded polygon against a fixed one agrees with its twin", "[slow][collide]") {
+  check(any_rounded, Motion::fixed, any_rounded, 2);
+}
+TEST_CASE("rounded polygon-sharp polygon agrees with its twin", "[slow][collide]") {
+  check(any_rounded, Motion::dynamic, any_polygon, 2);
+}
+TEST_CASE("rounded polygon-capsule agrees with its twin", "[slow][collide]") {
+  check(any_rounded, Motion::dynamic, any_capsule, 2);
+}
+TEST_CASE("rounded polygon against a fixed capsule agrees with its twin", "[slow][collide]") {
+  check(any_capsule, Motion::fixed, any_rounded, 2);
+}
+TEST_CASE("rounded polygon-segment agrees with its twin", "[slow][collide]") {
+  check(any_segment, Motion::fixed, any_rounded, 2);
+}
+
 // A terrain gives points for every link that a shape is near.
 constexpr int kAnyNumber = 100;
 
@@ -184,6 +223,9 @@ TEST_CASE("a straight terrain is a half-plane to polygons", "[slow][collide]") {
 }
 TEST_CASE("a straight terrain is a half-plane to capsules", "[slow][collide]") {
   check(any_flat_terrain, Motion::fixed, plump_capsule, kAnyNumber);
+}
+TEST_CASE("a straight terrain is a half-plane to rounded polygons", "[slow][collide]") {
+  check(any_flat_terrain, Motion::fixed, plump_rounded, kAnyNumber);
 }
 TEST_CASE("a convex loop of terrain is a polygon to circles", "[slow][collide]") {
   check(any_hill, Motion::fixed, plump_circle, kAnyNumber);

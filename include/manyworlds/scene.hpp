@@ -65,10 +65,11 @@ struct Circle {         // planar
 };
 struct Polygon {               // planar, convex, 3 to 8 vertices
   std::vector<Vec2> vertices;  // m, shape frame, counter-clockwise
+  double radius = 0;           // m, the solid is all points no farther than that from the polygon
 
   // Rectangle of half extents (half_x, half_y) centred on the shape frame.
   static Polygon box(double half_x, double half_y) {
-    return {{{-half_x, -half_y}, {half_x, -half_y}, {half_x, half_y}, {-half_x, half_y}}};
+    return {{{-half_x, -half_y}, {half_x, -half_y}, {half_x, half_y}, {-half_x, half_y}}, 0};
   }
 };
 struct HalfPlane {    // planar, fixed bodies only: all points p with normal . p <= offset are solid

@@ -35,6 +35,7 @@ MW_INLINE Corners<2> load_corners(const CapsulePose<Vec2>& c) {
 }
 
 MW_INLINE Float radius_of(const PolygonPose&) { return Real(0); }
+MW_INLINE Float radius_of(const RoundedPose& p) { return p.radius; }
 MW_INLINE Float radius_of(const RectanglePose&) { return Real(0); }
 MW_INLINE Float radius_of(const CapsulePose<Vec2>& c) { return c.radius; }
 

@@ -229,9 +229,9 @@ void fill_narrow_phase(kernels::Stage<Real>* out) {
     at(PairKind::box_capsule) = collide<S, BoxCapsule<S>, kDense>;
     at(PairKind::sphere_capsule) = collide<S, Reversed<S, CapsuleSphere>, kDense>;
     at(PairKind::capsule_box) = collide<S, Reversed<S, BoxCapsule<S>>, kDense>;
-    for (int i = static_cast<int>(PairKind::plane_cylinder); i < kernels::kPairKinds; ++i) {
-      out[i] = collide_convex<S, kDense>;
-    }
+    constexpr int kFirst = static_cast<int>(PairKind::plane_cylinder);
+    constexpr int kLast = static_cast<int>(PairKind::cylinder_hull);
+    for (int i = kFirst; i <= kLast; ++i) out[i] = collide_convex<S, kDense>;
   } else {
     at(PairKind::circle_circle) = collide<S, CircleCircle<S>, kDense>;
     at(PairKind::rectangle_circle) = collide<S, RectangleCircle<S>, kDense>;
@@ -253,6 +253,14 @@ void fill_narrow_phase(kernels::Stage<Real>* out) {
     at(PairKind::circle_capsule) = collide<S, Reversed<S, CapsuleCircle>, kDense>;
     at(PairKind::capsule_rectangle) = collide<S, Reversed<S, RectangleCapsule>, kDense>;
     at(PairKind::capsule_polygon) = collide<S, Reversed<S, PolygonCapsule>, kDense>;
+    using RoundedCapsule = EdgesCapsule<S, RoundedPose>;
+    at(PairKind::plane_rounded) = collide<S, PlaneOutline<S, RoundedPose>, kDense>;
+    at(PairKind::rounded_circle) = collide<S, RoundedCircle<S>, kDense>;
+    at(PairKind::rounded_rounded) = collide<S, RoundEdges<S, RoundedPose, RoundedPose>, kDense>;
+    at(PairKind::rounded_capsule) = collide<S, RoundedCapsule, kDense>;
+    at(PairKind::circle_rounded) = collide<S, Reversed<S, RoundedCircle<S>>, kDense>;
+    at(PairKind::capsule_rounded) = collide<S, Reversed<S, RoundedCapsule>, kDense>;
+    at(PairKind::link_rounded) = collide<S, LinkEdges<S, RoundedPose>, kDense>;
     at(PairKind::link_circle) = collide<S, LinkCircle<S>, kDense>;
     at(PairKind::link_rectangle) = collide<S, LinkEdges<S, RectanglePose>, kDense>;
     at(PairKind::link_polygon) = collide<S, LinkEdges<S, PolygonPose>, kDense>;

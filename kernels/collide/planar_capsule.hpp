@@ -1,6 +1,7 @@
-// Rectangle, polygon or capsule against capsule in the plane: all of them convex outlines of edges
-// with a radius. Edge against edge along the best separating axis, as for polygons; but where two
-// corners are nearest, one point on the line between them, since round ends show there.
+// Rectangle, polygon, rounded polygon or capsule against capsule in the plane, and rounded polygons
+// against each other: all of them convex outlines of edges with a radius. Edge against edge along
+// the best separating axis, as for polygons; but where two corners are nearest, one point on the
+// line between them, since round ends show there.
 #pragma once
 
 #include "kernels/collide/capsule_pairs.hpp"
@@ -28,6 +29,35 @@ MW_INLINE NearestCorner nearest_corner(const Corners<N>& a, const CapsulePose<Ve
     best.index = select(nearer, Float(static_cast<Real>(i)), best.index);
   }
   return best;
+}
+
+// The same for two outlines' corners. Where a corner and an edge are nearest, no corner is asked
+// for.
+template <int N, int M>
+MW_INLINE NearestCorner nearest_corner(const Corners<N>& a, const Corners<M>& b, Vec2 d) {
+  NearestCorner best{a.vertex[0], d, Real(1e30), Real(0)};
+  for (int i = 0; i < N; ++i) {
+    const Vec2 from = d - a.vertex[i];
+    for (int j = 0; j < M; ++j) {
+      const Vec2 way = from + b.vertex[j];
+      const Float way2 = dot(way, way);
+      const Mask nearer = way2 < best.way2;
+      best.corner = select(nearer, a.vertex[i], best.corner);
+      best.way = select(nearer, way, best.way);
+      best.way2 = select(nearer, way2, best.way2);
+      best.index = select(nearer, Float(static_cast<Real>(i)), best.index);
+    }
+  }
+  return best;
+}
+template <class PoseB, int N, int M>
+MW_INLINE NearestCorner nearest_corner_to(const PoseB& b, const Corners<N>& a, const Corners<M>& cb,
+                                          Vec2 d) {
+  if constexpr (std::is_same_v<PoseB, CapsulePose<Vec2>>) {
+    return nearest_corner(a, b, d);
+  } else {
+    return nearest_corner(a, cb, d);
+  }
 }
 
 // Puts the one point between A's corner and the capsule into the lanes of `use`.
@@ -67,16 +97,16 @@ MW_INLINE RoundEdgePair edge_pair(const PolygonEdge& ref, const PolygonEdge& inc
   return e;
 }
 
-template <class S, class PoseA>
-struct EdgesCapsule {
+template <class S, class PoseA, class PoseB>
+struct RoundEdges {
   using A = PoseA;
-  using B = CapsulePose<Vec2>;
+  using B = PoseB;
   static constexpr int kPoints = 2;
   static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float, Manifold<S, 2>& m) {
     const Float zero(Real(0)), tie(t.face_tie);
     const auto ca = load_corners(a);
     const auto cb = load_corners(b);
-    const Float radius_a = radius_of(a), radii = radius_a + b.radius;
+    const Float radius_a = radius_of(a), radius_b = radius_of(b), radii = radius_a + radius_b;
     const Vec2 d = b.p - a.p;
     const PolygonEdge edge_a = farthest_edge(ca, cb, d), edge_b = farthest_edge(cb, ca, -d);
     const Mask from_b = edge_a.value + tie < edge_b.value;
@@ -84,12 +114,14 @@ struct EdgesCapsule {
     const PolygonEdge inc =
         select(from_b, opposed_edge(ca, edge_b.normal), opposed_edge(cb, edge_a.normal));
     const Float nearest =
-        clip_edges(edge_pair(ref, inc, from_b, d, radius_a, b.radius), Float(t.margin), m);
+        clip_edges(edge_pair(ref, inc, from_b, d, radius_a, radius_b), Float(t.margin), m);
     m.code = fma(ref.index, Real(16), inc.index) + select(from_b, Float(Real(8)), zero);
     // Faces that do not lie above one another are nearest at corners, unless the axes cross.
     const Mask corner = (zero < ref.value) & (ref.value - radii + tie < nearest);
-    put_corner(corner, nearest_corner(ca, b, d), radius_a, b.radius, d, m);
+    put_corner(corner, nearest_corner_to(b, ca, cb, d), radius_a, radius_b, d, m);
   }
 };
+template <class S, class PoseA>
+using EdgesCapsule = RoundEdges<S, PoseA, CapsulePose<Vec2>>;
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -74,10 +74,24 @@ struct PolygonCircle {
   }
 };
 
+// With a radius around the polygon: as if it were the circle's, but for the points.
 template <class S>
-struct PlanePolygon {
+struct RoundedCircle {
+  using A = RoundedPose;
+  using B = CirclePose;
+  static constexpr int kPoints = 1;
+  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float axis,
+                                Manifold<S, 1>& m) {
+    PolygonCircle<S>::collide(t, a, {b.p, b.radius + a.radius}, axis, m);
+    m.point_a[0] = fma(m.normal, a.radius, m.point_a[0]);
+    m.point_b[0] = fma(m.normal, a.radius, m.point_b[0]);
+  }
+};
+
+template <class S, class PoseB>
+struct PlaneOutline {
   using A = PlanePose;
-  using B = PolygonPose;
+  using B = PoseB;
   static constexpr int kPoints = 2;
   static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 2>& m) {
     const Vec2 n{a.normal.x, a.normal.y};
@@ -89,7 +103,12 @@ struct PlanePolygon {
     m.normal = n;
     for (int i = 0; i < 2; ++i) {
       m.separation[i] = height + dot(n, corner[i]);
-      m.point_b[i] = fma(n, min(m.separation[i], Real(0)) * Float(Real(-0.5)), corner[i]);
+      Vec2 lowest = corner[i];
+      if constexpr (std::is_same_v<PoseB, RoundedPose>) {
+        m.separation[i] = m.separation[i] - b.radius;
+        lowest = fnma(n, b.radius, lowest);
+      }
+      m.point_b[i] = fma(n, min(m.separation[i], Real(0)) * Float(Real(-0.5)), lowest);
       m.point_a[i] = m.point_b[i];
       m.feature_x[i] = i == 0 ? -half : half;
       m.feature_y[i] = Real(0);
@@ -99,5 +118,7 @@ struct PlanePolygon {
     m.match_distance2 = match_distance2(half);
   }
 };
+template <class S>
+using PlanePolygon = PlaneOutline<S, PolygonPose>;
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

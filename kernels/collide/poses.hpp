@@ -43,6 +43,7 @@ struct PolygonPose {
   const Real* base;  // vertices and normals stay in their rows
   const std::int32_t* offset;
 };
+struct RoundedPose : PolygonPose {};  // radius: of its rounding
 template <class Vec>
 struct CapsulePose {
   Vec p, axis;

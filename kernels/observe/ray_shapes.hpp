@@ -2,7 +2,7 @@
 // distance 0, with the normal against the ray. A ray that only grazes a surface hits it.
 #pragma once
 
-#include "kernels/collide/poses.hpp"
+#include "kernels/collide/corners.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -149,6 +149,34 @@ MW_INLINE RayHit<Vec2> cast(const RayOf<Vec2>& ray, const PolygonPose& p) {
     }
   }
   return clipped(ray, clip, normal);
+}
+
+// Round corners, and edges moved out between them.
+MW_INLINE RayHit<Vec2> cast(const RayOf<Vec2>& ray, const RoundedPose& p) {
+  const Float zero(Real(0)), one(Real(1));
+  const PolygonCorners c = load_corners(p);
+  const Vec2 from = ray.from - p.p;
+  RayHit<Vec2> best{Float(kRayFar), -ray.way, zero < zero};
+  Float height = Real(-1e30), nearest2 = Real(1e30);
+  for (int i = 0; i < kernels::kMaxVertices; ++i) {
+    best = nearer(best, cast_round(ray, c.vertex[i] - from, p.radius));
+    const Vec2 edge = c.vertex[(i + 1) % kernels::kMaxVertices] - c.vertex[i];
+    const Vec2 place = from - c.vertex[i];
+    const Float above = dot(c.normal[i], place), fall = -dot(c.normal[i], ray.way);
+    const Mask toward = zero < fall;
+    RayHit<Vec2> side;
+    side.distance = (above - p.radius) / select(toward, fall, one);
+    side.normal = c.normal[i];
+    const Float along = dot(edge, fma(ray.way, side.distance, place)), length2 = dot(edge, edge);
+    side.hit =
+        toward & (zero <= side.distance) & (zero <= along) & (along <= length2) & (zero < length2);
+    best = nearer(best, side);
+    height = max(above, height);
+    const Vec2 out =
+        fnma(edge, clamp(dot(edge, place) / max(length2, Real(1e-20)), zero, one), place);
+    nearest2 = min(dot(out, out), nearest2);
+  }
+  return begin_inside(ray, (height <= zero) | (nearest2 <= p.radius * p.radius), best);
 }
 
 // The side of a capsule: in space a cylinder, in the plane the two lines along it. `to`: its middle

@@ -30,7 +30,7 @@ bool all_rectangles(const PlanData& plan) {
   for (const Body& body : plan.scene.bodies) {
     for (const Shape& shape : body.shapes) {
       const auto* polygon = std::get_if<Polygon>(&shape.geometry);
-      if (polygon && !is_rectangle(polygon->vertices)) return false;
+      if (polygon && (!is_rectangle(polygon->vertices) || polygon->radius > 0)) return false;
     }
   }
   for (const VariedNumber& n : plan.varied) {
@@ -43,6 +43,16 @@ bool all_rectangles(const PlanData& plan) {
   return true;
 }
 
+bool any_rounded(const PlanData& plan) {
+  for (const Body& body : plan.scene.bodies) {
+    for (const Shape& shape : body.shapes) {
+      const auto* polygon = std::get_if<Polygon>(&shape.geometry);
+      if (polygon && polygon->radius > 0) return true;
+    }
+  }
+  return false;
+}
+
 std::vector<Vec2> edge_normals(const std::vector<Vec2>& v) {
   std::vector<Vec2> out;
   for (std::size_t i = 0; i < v.size(); ++i) {
@@ -53,7 +63,7 @@ std::vector<Vec2> edge_normals(const std::vector<Vec2>& v) {
 }
 
 // A shape in its body's frame: origin, axes, sizes.
-PlanCollider local_collider(const Shape& shape, bool rectangles) {
+PlanCollider local_collider(const Shape& shape, const PlanData& plan) {
   PlanCollider c;
   c.material = shape.material;
   c.offset = shape.position;
@@ -94,7 +104,7 @@ PlanCollider local_collider(const Shape& shape, bool rectangles) {
     const auto& v = polygon->vertices;
     Vec2 middle = Vec2::Zero();
     for (const Vec2& p : v) middle += p / static_cast<double>(v.size());
-    if (rectangles) {
+    if (plan.rectangles) {
       c.kind = ShapeKind::rectangle;
       const Vec2 edge = v[1] - v[0];
       c.half = {edge.norm() / 2, (v[2] - v[1]).norm() / 2, 0};
@@ -107,7 +117,8 @@ PlanCollider local_collider(const Shape& shape, bool rectangles) {
       c.radius = c.half.norm();
       c.inner_radius = std::min(c.half.x(), c.half.y());
     } else {
-      c.kind = ShapeKind::polygon;
+      c.kind = plan.rounded ? ShapeKind::rounded : ShapeKind::polygon;
+      c.thickness = polygon->radius;
       // Vertices about their own middle, so that rows hold small numbers.
       c.offset += c.rotation * Vec3(middle.x(), middle.y(), 0);
       c.inner_radius = std::numeric_limits<double>::max();
@@ -117,6 +128,7 @@ PlanCollider local_collider(const Shape& shape, bool rectangles) {
         c.radius = std::max(c.radius, c.vertices[i].norm());
         c.inner_radius = std::min(c.inner_radius, normals[i].dot(c.vertices[i]));
       }
+      c.radius += polygon->radius, c.inner_radius += polygon->radius;
     }
   } else {
     c.kind = ShapeKind::plane;
@@ -134,7 +146,8 @@ void set_hull(const HullCorners& corners, PlanCollider& c) {
 }
 
 // The pose row of a fixed shape, and its bounds.
-PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, bool planar) {
+PlanFixed fixed_shape(const Body& body, const Shape& shape, const PlanData& plan) {
+  const bool planar = plan.scene.space == Space::planar;
   PlanFixed f;
   const Mat3 body_rotation = body.rotation.normalized().toRotationMatrix();
   const auto plane = [&](const Vec3& normal, double offset) {
@@ -155,7 +168,7 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, boo
     plane({n.x(), n.y(), 0}, p->offset);
     return f;
   }
-  PlanCollider c = local_collider(shape, rectangles);
+  PlanCollider c = local_collider(shape, plan);
   HullCorners corners;
   if (const auto* hull = std::get_if<Hull>(&shape.geometry)) {
     corners = hull_corners(*hull);
@@ -203,7 +216,9 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, boo
       break;
     }
     default: {
-      f.row = {x.x(), x.y(), static_cast<double>(c.vertices.size()), c.radius};
+      const bool rounded = c.kind == ShapeKind::rounded;
+      f.row = {x.x(), x.y(), static_cast<double>(c.vertices.size()),
+               rounded ? c.thickness : c.radius};
       std::vector<Vec2> v;
       f.low.setConstant(std::numeric_limits<double>::max());
       f.high = -f.low;
@@ -212,6 +227,7 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, boo
         const Vec3 at = x + Vec3(v.back().x(), v.back().y(), 0);
         f.low = f.low.cwiseMin(at), f.high = f.high.cwiseMax(at);
       }
+      f.low.array() -= c.thickness, f.high.array() += c.thickness;
       for (const auto& list : {v, edge_normals(v)}) {
         for (int i = 0; i < kernels::kMaxVertices; ++i) {
           const Vec2& p = static_cast<std::size_t>(i) < list.size()
@@ -227,14 +243,17 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, bool rectangles, boo
 
 }  // namespace
 
-void choose_polygons(PlanData& plan) { plan.rectangles = all_rectangles(plan); }
+void choose_polygons(PlanData& plan) {
+  plan.rectangles = all_rectangles(plan);
+  plan.rounded = any_rounded(plan);
+}
 
 void collect_colliders(PlanData& plan) {
   plan.hulls.clear();
   for (PlanBody& owner : plan.bodies) {
     const Body& body = plan.scene.bodies[static_cast<std::size_t>(owner.scene_body)];
     for (std::size_t k = 0; k < body.shapes.size(); ++k) {
-      PlanCollider c = local_collider(body.shapes[k], plan.rectangles);
+      PlanCollider c = local_collider(body.shapes[k], plan);
       if (const auto* hull = std::get_if<Hull>(&body.shapes[k].geometry)) {
         const HullCorners corners = hull_corners(*hull);
         set_hull(corners, c);
@@ -257,15 +276,13 @@ void collect_colliders(PlanData& plan) {
 }
 
 void collect_fixed(PlanData& plan) {
-  const bool planar = plan.scene.space == Space::planar;
   for (std::size_t i = 0; i < plan.scene.bodies.size(); ++i) {
     const Body& body = plan.scene.bodies[i];
     for (std::size_t k = 0; body.motion == Motion::fixed && k < body.shapes.size(); ++k) {
       const Shape& shape = body.shapes[k];
-      std::vector<PlanFixed> parts =
-          std::holds_alternative<Terrain>(shape.geometry)
-              ? terrain_links(body, shape)
-              : std::vector{fixed_shape(body, shape, plan.rectangles, planar)};
+      std::vector<PlanFixed> parts = std::holds_alternative<Terrain>(shape.geometry)
+                                         ? terrain_links(body, shape)
+                                         : std::vector{fixed_shape(body, shape, plan)};
       for (PlanFixed& f : parts) {
         f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
         f.material = shape.material;

@@ -40,7 +40,10 @@ class Printer {
   void add(const Box& b) { add(b.half_extents); }
   void add(const Plane& p) { add(p.normal), add(p.offset); }
   void add(const Circle& c) { add(c.radius); }
-  void add(const Polygon& p) { add(p.vertices); }
+  void add(const Polygon& p) {
+    add(p.vertices);
+    if (p.radius != 0) add(p.radius);
+  }
   void add(const HalfPlane& p) { add(p.normal), add(p.offset); }
   void add(const Capsule& c) { add(c.radius), add(c.half_length); }
   void add(const Cylinder& c) { add(c.radius), add(c.half_length); }

@@ -58,6 +58,11 @@ Match match(ShapeKind a, ShapeKind b) {
       {{ShapeKind::hull, ShapeKind::box}, PairKind::hull_box},
       {{ShapeKind::hull, ShapeKind::cylinder}, PairKind::hull_cylinder},
       {{ShapeKind::hull, ShapeKind::hull}, PairKind::hull_hull},
+      {{ShapeKind::plane, ShapeKind::rounded}, PairKind::plane_rounded},
+      {{ShapeKind::rounded, ShapeKind::circle}, PairKind::rounded_circle},
+      {{ShapeKind::rounded, ShapeKind::rounded}, PairKind::rounded_rounded},
+      {{ShapeKind::rounded, ShapeKind::capsule}, PairKind::rounded_capsule},
+      {{ShapeKind::link, ShapeKind::rounded}, PairKind::link_rounded},
   };
   const auto straight = kKernels.find({a, b});
   if (straight != kKernels.end()) return {straight->second, false};
@@ -80,6 +85,8 @@ PairKind reversed(PairKind kind) {
     case PairKind::cylinder_capsule: return PairKind::capsule_cylinder;
     case PairKind::box_cylinder: return PairKind::cylinder_box;
     case PairKind::hull_sphere: return PairKind::sphere_hull;
+    case PairKind::rounded_circle: return PairKind::circle_rounded;
+    case PairKind::rounded_capsule: return PairKind::capsule_rounded;
     case PairKind::hull_capsule: return PairKind::capsule_hull;
     case PairKind::hull_box: return PairKind::box_hull;
     case PairKind::hull_cylinder: return PairKind::cylinder_hull;
@@ -104,6 +111,8 @@ bool is_single(PairKind kind) {
     case PairKind::sphere_capsule:
     case PairKind::circle_capsule:
     case PairKind::link_circle:
+    case PairKind::rounded_circle:
+    case PairKind::circle_rounded:
     case PairKind::cylinder_sphere:
     case PairKind::hull_sphere:
     case PairKind::sphere_cylinder:

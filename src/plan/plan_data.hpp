@@ -113,6 +113,7 @@ struct PlanData {
   std::array<int, kernels::kLists> capacity{};
   bool sweep = false;
   bool rectangles = true;  // every polygon is one, and stays one
+  bool rounded = false;    // some polygon has a radius; then all are taken to have one
   bool sparse = false;     // no tables of pairs
   bool collider_is_body = true;
   bool cast = false;

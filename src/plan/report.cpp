@@ -18,7 +18,9 @@ const char* to_string(kernels::PairKind kind) {
       "box-cylinder",      "cylinder-cylinder", "hull-sphere",       "hull-capsule",
       "hull-box",          "hull-cylinder",     "hull-hull",         "sphere-cylinder",
       "capsule-cylinder",  "cylinder-box",      "sphere-hull",       "capsule-hull",
-      "box-hull",          "cylinder-hull"};
+      "box-hull",          "cylinder-hull",     "halfplane-rounded", "rounded-circle",
+      "rounded-rounded",   "rounded-capsule",   "circle-rounded",    "capsule-rounded",
+      "terrain-rounded"};
   return kNames[static_cast<int>(kind)];
 }
 

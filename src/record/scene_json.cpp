@@ -90,8 +90,8 @@ MW_MEMBERS(Circle) {
   visit("radius", radius);
 }
 MW_MEMBERS(Polygon) {
-  auto& [vertices] = value;
-  visit("vertices", vertices);
+  auto& [vertices, radius] = value;
+  visit("vertices", vertices), visit("radius", radius);
 }
 MW_MEMBERS(HalfPlane) {
   auto& [normal, offset] = value;

@@ -217,6 +217,7 @@ struct GeometryCheck {
   void operator()(const Polygon& polygon) const {
     in_space(Space::planar, "polygon");
     check_polygon(checker, polygon);
+    if (polygon.radius != 0) checker.size("radius", polygon.radius);
   }
   void operator()(const Capsule& capsule) const {
     checker.size("radius", capsule.radius);

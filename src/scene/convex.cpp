@@ -248,6 +248,7 @@ std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space spa
     c.edges.push_back({i, (i + 1) % n});
     c.normals.push_back(-left_of((c.points[at((i + 1) % n)] - c.points[at(i)]).normalized()));
   }
+  c.radius = std::get<Polygon>(shape.geometry).radius;
   return {c};
 }
 

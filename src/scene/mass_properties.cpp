@@ -64,6 +64,35 @@ MassProperties capsule_in_plane(const Capsule& capsule, double density) {
   return {rectangle + ends, Vec3::Zero(), planar_inertia(moment)};
 }
 
+// What a radius r adds to area, centre moment and polar moment about vertex 0: a rectangle along
+// each edge of length l, with (l^2 + r^2) / 12 about its own centre, and at each corner a sector of
+// the angle a that the outline turns there, whose centre of mass is 4 r sin(a / 2) / (3 a) away
+// from the corner and which has r^2 / 2 about it.
+void add_rounding(const Polygon& polygon, double& area, Vec2& first, double& second) {
+  const std::vector<Vec2>& v = polygon.vertices;
+  const std::size_t n = v.size();
+  const double r = polygon.radius;
+  const auto way = [&](std::size_t i) { return Vec2(v[(i + 1) % n] - v[i % n]); };
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 corner = v[i] - v[0], edge = way(i), before = way(i + n - 1);
+    const double length = edge.norm();
+    const Vec2 normal = Vec2(edge.y(), -edge.x()) / length;
+    const Vec2 middle = corner + edge / 2 + normal * (r / 2);
+    area += length * r;
+    first += length * r * middle;
+    second += length * r * ((length * length + r * r) / 12 + middle.squaredNorm());
+
+    const double turn = std::atan2(before.x() * edge.y() - before.y() * edge.x(), before.dot(edge));
+    const double sector = turn * r * r / 2;
+    const Vec2 out = (normal + Vec2(before.y(), -before.x()).normalized()).normalized();
+    const Vec2 away = out * (4 * r * std::sin(turn / 2) / (3 * turn));
+    area += sector;
+    first += sector * (corner + away);
+    // About the corner, shifted to vertex 0.
+    second += sector * (r * r / 2 + corner.squaredNorm() + 2 * corner.dot(away));
+  }
+}
+
 // A fan of triangles (0, a, b) from vertex 0, with twice the signed area D = a x b each:
 //   area += D / 2,  centre moment += D (a + b) / 6,  polar moment += D (a.a + a.b + b.b) / 12.
 MassProperties of(const Polygon& polygon, double density) {
@@ -79,6 +108,7 @@ MassProperties of(const Polygon& polygon, double density) {
     first += twice_area / 6 * (a + b);
     second += twice_area / 12 * (a.dot(a) + a.dot(b) + b.dot(b));
   }
+  if (polygon.radius > 0) add_rounding(polygon, area, first, second);
   const Vec2 offset = first / area;
   const Vec2 center = origin + offset;
   const double moment = density * (second - area * offset.squaredNorm());

@@ -63,7 +63,8 @@ kernels::ShapeConstants<Real> shape_constants(const PlanData& plan, const PlanCo
   copy_numbers(c.offset, out.offset);
   for (int k = 0; k < 9; ++k) out.rotation[k] = static_cast<Real>(c.rotation(k % 3, k / 3));
   copy_numbers(c.half, out.half);
-  out.radius = static_cast<Real>(c.thickness > 0 ? c.thickness : c.radius);
+  const bool has_thickness = c.thickness > 0 || c.kind == kernels::ShapeKind::rounded;
+  out.radius = static_cast<Real>(has_thickness ? c.thickness : c.radius);
   // A speculative row holds along one normal, which is good as long as the gap is not large
   // against the shape. Round shapes keep their normals better.
   const double least = 2 * plan.scene.options.slop * plan.scene.options.length_unit;

@@ -26,7 +26,7 @@ double reach(const Shape& shape) {  // no point of the shape is farther from the
   if (const auto* t = std::get_if<Terrain>(&shape.geometry))
     for (const Vec2& v : t->points) r = std::max(r, v.norm());
   if (const auto* p = std::get_if<Polygon>(&shape.geometry))
-    for (const Vec2& v : p->vertices) r = std::max(r, v.norm());
+    for (const Vec2& v : p->vertices) r = std::max(r, v.norm() + p->radius);
   return r + shape.position.norm();
 }
 
@@ -235,7 +235,8 @@ class Judge {
     if (const auto* hull = std::get_if<Hull>(&shape.geometry))
       for (const Vec3& v : hull->vertices) s << " (" << v.transpose() << ")";
     if (const auto* polygon = std::get_if<Polygon>(&shape.geometry))
-      for (const Vec2& v : polygon->vertices) s << " (" << v.x() << ", " << v.y() << ")";
+      for (const Vec2& v : polygon->vertices)
+        s << " (" << v.x() << ", " << v.y() << ") r " << polygon->radius;
     s << "\n";
   }
 

@@ -189,11 +189,12 @@ class Maker {
     }
     Polygon polygon;
     const int n = 3 + dice.below(6);
-    const double from = dice.between(0, 7);
+    const double from = dice.between(0, 7), rounding = dice.chance(0.3) ? 0.3 * radius : 0;
     for (int i = 0; i < n; ++i) {
       const double angle = from + 2 * kPi * (i + dice.between(0, 0.4)) / n;
-      polygon.vertices.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
+      polygon.vertices.push_back((radius - rounding) * Vec2(std::cos(angle), std::sin(angle)));
     }
+    polygon.radius = rounding;
     return polygon;
   }
 

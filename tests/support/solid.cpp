@@ -165,7 +165,7 @@ std::optional<Vec3> outward(const Solid& s, const Vec3& p) {
     case Solid::Kind::cylinder: return outward_of_cylinder(s, p, kClear);
     case Solid::Kind::hull: return outward_of_hull(s, p, kClear);
     case Solid::Kind::polygon: {
-      if (signed_distance(s, p) > 0) {
+      if (signed_distance(s, p) > -s.radius) {
         double best = kInfinity;
         Vec3 nearest = p;
         for (const auto& [a, b] : edges(s)) {
@@ -238,6 +238,7 @@ Solid make_solid(const Shape& shape, const Pose& body, Space space) {
   } else if (const auto* polygon = std::get_if<Polygon>(&shape.geometry)) {
     s.kind = Solid::Kind::polygon;
     s.planar = true;
+    s.radius = polygon->radius;
     s.center.setZero();
     for (const Vec2& v : polygon->vertices) {
       s.vertices.push_back(pose.position + s.axes * Vec3(v.x(), v.y(), 0));
@@ -292,7 +293,7 @@ double signed_distance(const Solid& s, const Vec3& p) {
         inside = std::max(inside, normals[i].dot(p - sides[i].first));
         outside = std::min(outside, point_segment(p, sides[i].first, sides[i].second));
       }
-      return inside > 0 ? outside : inside;
+      return (inside > 0 ? outside : inside) - s.radius;
     }
   }
   return 0;

@@ -26,7 +26,7 @@ struct Solid {
   Kind kind = Kind::round;
 
   Vec3 center = Vec3::Zero();        // round, box; else mean of the vertices
-  double radius = 0;                 // round, capsule
+  double radius = 0;                 // round, capsule, polygon: of its rounding
   Mat3 axes = Mat3::Identity();      // box: columns are the face normals
   Vec3 half_extents = Vec3::Zero();  // box
   std::vector<Vec3> vertices;        // box, hull: all; polygon: counter-clockwise; capsule: 2 ends
