@@ -206,6 +206,7 @@ Options SceneBytes::options() {
   sometimes(o.dt, 0.001, 0.1);
   if (byte() > 128) o.substeps = rarely() ? integer(-2, 70) : integer(1, 8);
   if (byte() > 200) o.gravity = planar_vector(20);
+  if (byte() > 200) o.wind = planar_vector(20);
   sometimes(o.density, 1, 5000);
   sometimes(o.length_unit, 0.1, 10);
   sometimes(o.contact_frequency, 0, 300);
@@ -289,6 +290,8 @@ Joint SceneBytes::joint(int bodies) {
   out.frame_a.position = planar_vector(1), out.frame_b.position = planar_vector(1);
   out.frame_a.rotation = rotation(), out.frame_b.rotation = rotation();
   out.collide = byte() > 200;
+  if (byte() > 200) out.break_force = number(1, 1e4);
+  if (byte() > 200) out.break_torque = number(1, 1e4);
   return out;
 }
 
@@ -344,6 +347,9 @@ Scene SceneBytes::scene() {
   for (int n = byte() > 128 ? integer(1, 4) : 0; n > 0 && !out.bodies.empty(); --n) {
     out.controls.push_back(
         control(static_cast<int>(out.bodies.size()), static_cast<int>(out.joints.size())));
+  }
+  for (int n = byte() > 200 ? integer(1, 3) : 0; n > 0; --n) {
+    out.attractors.push_back({planar_vector(5), number(-50, 50), number(0, 1)});
   }
   for (int n = byte() > 128 ? integer(1, 4) : 0; n > 0 && !out.bodies.empty(); --n) {
     out.variations.push_back(variation(static_cast<int>(out.bodies.size()) - (rarely() ? 0 : 1)));

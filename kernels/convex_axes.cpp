@@ -23,7 +23,7 @@ namespace {
 using kernels::ShapeKind;
 
 constexpr int kRounds = 24;
-constexpr Real kDeep = Real(0.01);                                         // of the shapes' size
+constexpr Real kDeep = Real(0.004);                                        // of the shapes' size
 constexpr Real kTolerance = sizeof(Real) == 4 ? Real(2e-6) : Real(1e-12);  // of the shapes' size
 
 MW_INLINE Vec3 normalized(Vec3 v, Float least2, Vec3 otherwise) {
@@ -267,14 +267,17 @@ void find_convex_axis(const Tables& t, const ConvexShape& a, const ConvexShape& 
   // Deep in one another there are several hills.
   const Mask deep = out.near & (best.separation < size * Float(-kDeep));
   if (any(deep)) {
-    const Vec3 starts[4] = {of_a.normal, -of_b.normal,
-                            normalized(of_a.normal - of_b.normal, Real(1e-6), of_a.normal),
-                            normalized(d, Real(1e-20), up)};
-    for (int i = 0; i < 4; ++i) {
-      const Vec3 n = starts[i];
+    const Vec3 line = normalized(d, Real(1e-20), up);
+    const Vec3 starts[] = {line,
+                           of_a.normal,
+                           -of_b.normal,
+                           normalized(of_a.normal - of_b.normal, Real(1e-6), of_a.normal),
+                           normalized(of_a.normal + line, Real(1e-6), line),
+                           normalized(line - of_b.normal, Real(1e-6), line)};
+    for (const Vec3& n : starts) {
       Best other{n, dot(n, corner_along(a, b, d, n).w)};
       Simplex there{};
-      if (i == 3) climb(a, b, d, tolerance, true, deep, other, there);
+      if (&n == starts) climb(a, b, d, tolerance, true, deep, other, there);
       climb(a, b, d, tolerance, false, deep, other, there);
       const Mask better = deep & (best.separation < other.separation);
       best.normal = select(better, other.normal, best.normal);

@@ -121,7 +121,7 @@ MW_INLINE void copy_state(Real* to, const Real* from, int size) {
 template <class S>
 void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
   const int size = t.bodies * t.state_stride * kLanes;
-  w.push = g.force ? w.push_storage : nullptr;
+  w.push = g.force || t.attractors > 0 ? w.push_storage : nullptr;
   copy_state(w.before, g.state, size);
   std::uint32_t outside = 0;
   const bool idle = has_idle_bodies(g);

@@ -22,6 +22,8 @@ struct GroupView {
   ConstantBlocks<Real> constants;
   Real* joint_impulse;  // [part][kPartImpulses][lane]
   const Real* control;  // [control][lane]
+  // [joint of the scene] lanes in which it is broken or disabled; nullptr: all hold in all lanes.
+  std::uint32_t* loose;
 
   // Which bodies take part, as lanes of each body; nullptr: all do. Sleep needs all of them,
   // disabled bodies the first three.
@@ -34,7 +36,8 @@ struct GroupView {
 };
 
 // Bits of the public Status (include/manyworlds/batch.hpp).
-inline constexpr std::uint32_t kNonFinite = 1, kOutOfRange = 2, kOutOfBounds = 4, kOverflow = 8;
+inline constexpr std::uint32_t kNonFinite = 1, kOutOfRange = 2, kOutOfBounds = 4, kOverflow = 8,
+                               kJointBroken = 16;
 inline constexpr std::uint32_t kFrozen = kNonFinite | kOutOfRange;
 
 // What a group's step counted; the pipeline adds it up per thread.

@@ -121,6 +121,36 @@ MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body) {
   return out;
 }
 
+// The pull of a point on a body at x.
+template <class S>
+struct Attraction {
+  typename S::Vec to;        // m
+  Float strength, nearness;  // with the body's gravity scale, m^3/s^2; 1 / softened distance, 1/m
+  MW_INLINE Attraction(const Tables& t, const Group& g, int body, int i, typename S::Vec x) {
+    const kernels::AttractorTable<Real>& point = t.attractor[i];
+    to.x = Float(point.position[0]) - x.x, to.y = Float(point.position[1]) - x.y;
+    if constexpr (S::kDim == 3) to.z = Float(point.position[2]) - x.z;
+    strength = Float(point.strength) * Float(constants_of_body(g, body).gravity_scale);
+    nearness = Float(Real(1)) / sqrt(dot(to, to) + Float(point.softening2));
+  }
+  MW_INLINE typename S::Vec acceleration() const {
+    return (to * nearness) * (strength * (nearness * nearness));
+  }
+};
+// Where the body is half a step on. With what substeps fall too far taken back (finish.hpp) that
+// makes drift, kick, drift: position Verlet, which keeps orbits.
+template <class S>
+MW_INLINE typename S::Vec attraction_of_body(const Tables& t, const Group& g, int body) {
+  using Vec = typename S::Vec;
+  const Vec x = fma(load_as<Vec>(state_of(t, g, body, kState<S>.linear)), Float(t.dt * Real(0.5)),
+                    load_as<Vec>(state_of(t, g, body, kState<S>.position)));
+  Vec out = zero_of<Vec>();
+  for (int i = 0; i < t.attractors; ++i) {
+    out = out + Attraction<S>(t, g, body, i, x).acceleration();
+  }
+  return out;
+}
+
 // What gravity and the inputs add to the velocity of a body in one substep.
 template <class S>
 MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& w, int body) {
@@ -131,6 +161,9 @@ MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& 
   push.v.x = numbers.push[0], push.v.y = numbers.push[1];
   if constexpr (S::kDim == 3) push.v.z = numbers.push[2];
   push.w = zero_of<typename S::Ang>();
+  if (t.attractors > 0 && !t.body[body].kinematic) {
+    push.v = fma(attraction_of_body<S>(t, g, body), Float(t.h), push.v);
+  }
   if (!g.force && !is_thrust(t, body)) return push;
   const Load<S> load = load_of_body<S>(t, g, body);
   alignas(64) std::int32_t o[kLanes];
@@ -162,7 +195,8 @@ void enter_velocities(const Tables& t, const Group& g, Work& w) {
                         load_as<typename S::Ang>(state_of(t, g, b, kState<S>.angular))};
     put_velocity<S, kDense>(w, w.velocity, b, v);
   }
-  w.push = g.force || t.push_varies || t.first_thrust ? w.push_storage : nullptr;
+  const bool own = g.force || t.push_varies || t.first_thrust || t.attractors > 0;
+  w.push = own ? w.push_storage : nullptr;
   w.factor = t.drag_varies ? w.factor_storage : nullptr;
   if constexpr (kDense) {
     for (int i = 0; i < t.bodies * kVelocityBlock<S>; i += kLanes) zero.store(w.displacement + i);

@@ -62,11 +62,19 @@ struct ThrustTable {
 
 struct JointPart {
   PartKind kind;
+  std::int32_t joint;                            // of the scene
   std::int32_t body_a, body_b;                   // state bodies; WorldTables::bodies: the world
   bool equality;                                 // a row held at its rest
   bool drive, low, high;                         // what else a row has
   bool spring;                                   // a point that is drawn with limited force
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
+};
+
+// What a joint that may break bears at most. Its parts follow one another.
+template <class T>
+struct BreakTable {
+  std::int32_t joint, first_part, parts;
+  T most_force, most_torque;  // N s and N m s in a step
 };
 
 // A coordinate of a joint, for observers. Its frames are those of any part of the joint.

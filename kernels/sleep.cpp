@@ -39,7 +39,8 @@ bool wake_once(const Tables& t, const Group& g, Work& w, std::uint32_t mixed) {
 // Lanes in which a part holds two moving bodies together.
 std::uint32_t joined_lanes(const Tables& t, const Group& g, const kernels::JointPart& part) {
   if (part.body_a == t.bodies) return 0;
-  return kAllLanes & ~(g.absent[part.body_a] | g.absent[part.body_b]);
+  const std::uint32_t loose = g.loose ? g.loose[part.joint] : 0u;
+  return kAllLanes & ~(loose | g.absent[part.body_a] | g.absent[part.body_b]);
 }
 
 // Does the stored manifold of this key stay as it is, because nobody in it is awake?
@@ -56,6 +57,7 @@ std::uint32_t held_lanes(const Tables& t, const Group& g, const Work& w, int bod
   for (const Float pull : constants_of_body(g, body).acceleration) {
     lanes &= bits(pull == Float(Real(0)));
   }
+  if (t.attractors > 0) lanes = 0;
   lanes |= w.touched[body] & kAllLanes;
   const int thrusts = t.first_thrust ? t.first_thrust[body + 1] : 0;
   for (int i = t.first_thrust ? t.first_thrust[body] : 0; i < thrusts; ++i) {

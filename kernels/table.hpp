@@ -46,6 +46,9 @@ struct JointSolver {
   Stage<Real> bias;
   Stage<Real> relax;
   Stage<Real> store;
+  // Of plans in which some joint may break: after relax, and at the end of the step.
+  Stage<Real> bear;
+  Stage<Real> break_up;
 };
 
 template <class Real>

@@ -170,9 +170,11 @@ struct TopConstants {
 template <class T>
 struct BodyConstants {
   T inv_mass;
-  T inertia[3];       // principal, kg m^2 (planar: [2])
-  T inv_inertia[3];   // 0 for kinematic bodies
-  T acceleration[3];  // gravity times gravity scale, m/s^2; 0 for kinematic bodies
+  T inertia[3];      // principal, kg m^2 (planar: [2])
+  T inv_inertia[3];  // 0 for kinematic bodies
+  T gravity_scale;
+  T gravity[3];       // times gravity scale, m/s^2; 0 for kinematic bodies
+  T acceleration[3];  // that and what the wind does by drag
   T push[3];          // h times that; never -0
   T linear_factor;    // 1 / (1 + h c), per substep
   T angular_factor;
@@ -248,6 +250,14 @@ struct Softness {  // numerics of the soft constraint: lambda' = lambda - k (m v
   Real bias_rate, mass_scale, impulse_scale;
 };
 
+// Draws all bodies to a point: acceleration strength d / (d^2 + softening^2)^(3/2).
+template <class T>
+struct AttractorTable {
+  T position[3];
+  T strength;    // m^3/s^2
+  T softening2;  // m^2, never 0
+};
+
 template <class Real>
 struct WorldTables {
   Dimension dimension;
@@ -256,8 +266,10 @@ struct WorldTables {
   std::int32_t colliders;
   std::int32_t fixed_shapes;
   std::int32_t classes;
-  std::int32_t parts;  // of joints
+  std::int32_t joints, parts;  // of the scene, and what they are made of
+  std::int32_t breakable;      // of them
   std::int32_t controls;
+  std::int32_t attractors;
   std::int32_t substeps;
   std::int32_t restitution_sweeps;
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
@@ -285,6 +297,8 @@ struct WorldTables {
   const Real* hulls;  // corners of hulls that move
   const PairClass<Real>* pair_class;
   const JointPart* part;
+  const BreakTable<Real>* breaking;  // [breakable]
+  const AttractorTable<Real>* attractor;
   const ThrustTable* thrust;         // ordered by body
   const std::int32_t* first_thrust;  // [body + 1]; nullptr: there is none
   // Bodies that a body does not collide with, because of a joint: [first_joined[body] ...);

@@ -119,6 +119,8 @@ void carve(const Tables& t, Work& w, Carver& c) {
     const std::size_t bytes =
         t.dimension == kernels::Dimension::planar ? part_bytes(Planar{}) : part_bytes(Tensor{});
     c.take(w.parts, count(t.parts) * bytes);
+    c.take(w.borne, count(t.breakable * row * lanes));
+    if (t.breakable > 0) c.take(w.reached, count(t.bodies));
   }
   if (t.has_sleep || t.has_restitution) c.take(w.parent, count(t.bodies));
   if (t.has_sleep) {

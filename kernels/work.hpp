@@ -77,6 +77,8 @@ struct Work {
   std::uint32_t* keep;       // [slot], lanes that passed it
   SlotList slots[kLists];
   unsigned char* parts;                     // rows of joints (kernels/joint/)
+  Real* borne;                              // [breakable joint] impulses of the step so far
+  std::int32_t* reached;                    // [body] by a joint that broke
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
   std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
   // sleep

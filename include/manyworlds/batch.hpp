@@ -58,6 +58,7 @@ enum class Status : std::uint32_t {
   out_of_range = 2,      // frozen: |x| > 1e10 m or |v| > 1e5 m/s
   out_of_bounds = 4,     // a body left Options::bounds; the world still steps
   contact_overflow = 8,  // more contacts than the plan's capacity; the newest were dropped
+  joint_broken = 16,     // a joint bore more than it could (Joint::break_force) since the reset
 };
 inline constexpr Status operator|(Status a, Status b) {
   return static_cast<Status>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
@@ -199,6 +200,12 @@ class Batch {
   void set_enabled(int world, int body, bool enabled);
   bool enabled(int world, int body) const;
   void spawn(int world, int body, const BodyState& state);  // enabled, with this state
+
+  // -- joints that come and go. A disabled joint, or one that broke, holds nothing; enabling it
+  // mends it. Its bodies should then be where it wants them: what is apart is drawn together.
+  // `joint` is one of the scene. Both bodies wake. The first call allocates.
+  void set_joint_enabled(int world, int joint, bool enabled);
+  bool joint_enabled(int world, int joint) const;
 
   // -- sleep (BatchOptions::sleep). A body wakes in the very step in which an awake one comes near
   // it, and at once by a force, an impulse, a written state, or when a body that it slept with is

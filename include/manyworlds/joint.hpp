@@ -103,7 +103,11 @@ struct Joint {
   int body_b = -1;       // scene body
   Frame frame_a;         // in the body frame of A, or in the world
   Frame frame_b;         // in the body frame of B
-  bool collide = false;  // whether shapes of A and B collide with each other
+  bool collide = false;  // whether shapes of A and B collide with each other, also once it broke
+  // What it bears at most, as the mean over a step; then it breaks: Batch::joint_enabled() is false
+  // from then on and Status::joint_broken is set. The torque is that about the frames' origin.
+  double break_force = std::numeric_limits<double>::infinity();   // N
+  double break_torque = std::numeric_limits<double>::infinity();  // N m
 };
 
 }  // namespace manyworlds

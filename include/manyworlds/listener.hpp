@@ -28,14 +28,16 @@ enum class Input : std::uint8_t {
   reset,                   // the world has a new state and no pending forces (0)
   restore,                 // the world has a new state: restored, copied, or other parameters (0)
   set_controls,            // of the whole world, [control]
+  enable_joint,            // (0)
+  disable_joint,           // (0)
 };
-inline constexpr int kInputCount = 17;
+inline constexpr int kInputCount = 19;
 const char* to_string(Input input);  // "force", "write_position"
 
 struct InputCall {
   Input input{};
   int world = 0;
-  int body = -1;                   // state body; -1: the whole world
+  int body = -1;                   // state body, or joint of the scene; -1: the whole world
   std::span<const double> values;  // lives as long as the call
 };
 

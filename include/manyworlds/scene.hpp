@@ -149,7 +149,7 @@ struct Body {
   std::vector<Shape> shapes;
   std::optional<MassProperties> mass_properties;  // default: from shapes and densities
   double gravity_scale = 1;
-  double linear_drag = 0;   // 1/s: v' = v / (1 + h c)
+  double linear_drag = 0;   // 1/s: v' = (v + h c wind) / (1 + h c)
   double angular_drag = 0;  // 1/s
   Jitter jitter;
 };
@@ -160,6 +160,7 @@ struct Options {
   double dt = 1.0 / 60.0;   // s, one step
   int substeps = 4;         // contact substeps per step
   Vec3 gravity{0, 0, -10};  // m/s^2 (planar scenes: set {0, -10, 0})
+  Vec3 wind{0, 0, 0};       // m/s, of the air that Body::linear_drag is against
   double density = 1000;    // kg/m^3 or kg/m^2, for shapes that give none
   // Size of a typical body, m. Scales slop, margins and speed limits of the contact model.
   double length_unit = 1;
@@ -199,12 +200,22 @@ struct Options {
   std::optional<Eigen::AlignedBox3d> bounds;
 };
 
+// A point that draws every dynamic body to it with the acceleration
+//   Body::gravity_scale strength d / (d^2 + softening^2)^(3/2),  d: from the body's centre of mass,
+// or away from it if the strength is negative. A planet: strength G M (Newton).
+struct Attractor {
+  Vec3 position = Vec3::Zero();  // m, world
+  double strength = 0;           // m^3/s^2
+  double softening = 0;          // m
+};
+
 struct Scene {
   std::string name;
   Space space = Space::spatial;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
   std::vector<Control> controls;
+  std::vector<Attractor> attractors;
   Options options;
   std::vector<Variation> variations;
 

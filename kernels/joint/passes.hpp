@@ -4,8 +4,7 @@
 
 #include <initializer_list>
 
-#include "kernels/activity.hpp"
-#include "kernels/joint/coordinates.hpp"
+#include "kernels/joint/breaking.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -22,8 +21,8 @@ inline constexpr std::size_t kPartBytes = [] {
 
 // Calls visit(rows of the part, part, index) for every part.
 template <class S, class Visit>
-MW_INLINE void for_each_part(const Tables& t, Work& w, Visit visit) {
-  for (int i = 0; i < t.parts; ++i) {
+MW_INLINE void for_each_part(const Tables& t, Work& w, int first, int end, Visit visit) {
+  for (int i = first; i < end; ++i) {
     const JointPart& part = t.part[i];
     unsigned char* at = w.parts + static_cast<std::size_t>(i) * kPartBytes<S>;
     switch (part.kind) {
@@ -40,15 +39,13 @@ MW_INLINE void for_each_part(const Tables& t, Work& w, Visit visit) {
   }
 }
 
+template <class S, class Visit>
+MW_INLINE void for_each_part(const Tables& t, Work& w, Visit visit) {
+  for_each_part<S>(t, w, 0, t.parts, visit);
+}
+
 template <class S, bool kDense>
 struct JointPasses {
-  // Lanes in which a part acts: its bodies are there, and one of them is awake.
-  static std::uint32_t active_lanes(const Tables& t, const Group& g, const JointPart& part) {
-    if (!has_idle_bodies(g)) return kAllLanes;
-    if (part.body_a == t.bodies) return kAllLanes & ~idle_lanes(g, part.body_b);
-    return kAllLanes & live_lanes(g, part.body_a, part.body_b);
-  }
-
   static void prepare_bodies(const Tables& t, const Group& g, Work& w, const JointPart& part,
                              int index, PartBodies<S>& s) {
     s.mask = active_lanes(t, g, part);
@@ -109,8 +106,25 @@ struct JointPasses {
     });
   }
 
+  // Adds what the substep made the joints that may break bear.
+  static void bear(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    const Float zero(Real(0));
+    for (int i = 0; i < t.breakable; ++i) {
+      Real* to = w.borne + i * kBorne<S>;
+      for (int k = 0; w.substep == 0 && k < kBorne<S>; k += kLanes) zero.store(to + k);
+      const int first = t.breaking[i].first_part;
+      for_each_part<S>(t, w, first, first + t.breaking[i].parts, [&](auto& s, auto&, int) {
+        const Impulse<S> p = impulse_of(s);
+        add_to(to, 0, p.linear);
+        add_to(to, S::kDim, p.angular);
+      });
+    }
+  }
+
   static kernels::JointSolver<Real> table() {
-    return {prepare_parts, pass<Pass::warm_start>, pass<Pass::bias>, pass<Pass::relax>, keep};
+    return {prepare_parts, pass<Pass::warm_start>, pass<Pass::bias>, pass<Pass::relax>, keep,
+            bear,          break_joints<S>};
   }
 };
 

@@ -57,6 +57,17 @@ MW_INLINE void load(const Real* p, Sym3& a) {
 }
 MW_INLINE void load(const Real* p, Rot2& a) { a = load_rot2(p); }
 MW_INLINE void load(const Real* p, Quat& a) { a = load_quat(p); }
+// Adds to rows of lanes.
+MW_INLINE void add_to(Real* rows, int row, Float x) {
+  (Float::load(rows + row * kLanes) + x).store(rows + row * kLanes);
+}
+MW_INLINE void add_to(Real* rows, int row, Vec2 x) {
+  add_to(rows, row, x.x), add_to(rows, row + 1, x.y);
+}
+MW_INLINE void add_to(Real* rows, int row, Vec3 x) {
+  add_to(rows, row, x.x), add_to(rows, row + 1, x.y), add_to(rows, row + 2, x.z);
+}
+
 MW_INLINE void store(Real* p, Float a) { a.store(p); }
 MW_INLINE void store(Real* p, const Sym3& a) {
   a.xx.store(p), a.xy.store(p + kLanes), a.xz.store(p + 2 * kLanes);

@@ -19,8 +19,8 @@ struct BodyMass {
     const auto& b = constants_of_body(g, body);
     mass = Float(Real(1)) / b.inv_mass;
     inertia = {b.inertia[0], b.inertia[1], b.inertia[2]};
-    pull.x = b.acceleration[0], pull.y = b.acceleration[1];
-    if constexpr (S::kDim == 3) pull.z = b.acceleration[2];
+    pull.x = b.gravity[0], pull.y = b.gravity[1];
+    if constexpr (S::kDim == 3) pull.z = b.gravity[2];
   }
 };
 
@@ -60,7 +60,12 @@ void observe_motion(const Tables& t, const Group& g, kernels::Scratch*, const Ob
     const auto angular = select(there, spin + cross(x, p), zero_of<typename S::Ang>());
     add_to(rows, kernels::kKinetic,
            select(there, half * fma(weight, dot(v, v), spin_energy), zero));
-    add_to(rows, kernels::kPotential, -(weight * dot(m.pull, x)));
+    Float height = dot(m.pull, x);
+    for (int i = 0; i < t.attractors; ++i) {
+      const Attraction<S> at(t, g, b, i, x);
+      height = fma(at.strength, at.nearness, height);
+    }
+    add_to(rows, kernels::kPotential, -(weight * height));
     add_to(rows, kernels::kMass, weight);
     add_to(rows, kernels::kMomentum, p);
     add_to(rows, kernels::kAngular + (S::kDim == 2 ? 2 : 0), angular);

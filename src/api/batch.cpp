@@ -157,6 +157,16 @@ void Batch::spawn(int world, int body, const BodyState& state) {
   impl_->tell_spawn(*this, world, body, state);
 }
 
+void Batch::set_joint_enabled(int world, int joint, bool enabled) {
+  const auto p = impl_->find_joint(world, joint);
+  impl_->core->set_joint_enabled(p.kind, p.world, joint, enabled);
+  impl_->tell(*this, enabled ? Input::enable_joint : Input::disable_joint, world, joint);
+}
+bool Batch::joint_enabled(int world, int joint) const {
+  const auto p = impl_->find_joint(world, joint);
+  return impl_->core->joint_enabled(p.kind, p.world, joint);
+}
+
 bool Batch::sleeps() const { return impl_->options.sleep; }
 bool Batch::asleep(int world, int body) const {
   const auto p = impl_->find_body(world, body);

@@ -144,6 +144,12 @@ class CoreOf final : public BatchCore {
   bool enabled(int kind, int world, int body) const override {
     return at(kind).enabled(world, body);
   }
+  void set_joint_enabled(int kind, int world, int joint, bool enabled) override {
+    at(kind).set_joint_enabled(world, joint, enabled);
+  }
+  bool joint_enabled(int kind, int world, int joint) const override {
+    return at(kind).joint_enabled(world, joint);
+  }
   void spawn(int kind, int world, int body, const BodyState& state) override {
     at(kind).spawn(world, body, state);
   }

@@ -112,6 +112,14 @@ struct Batch::Impl {
     }
     return p;
   }
+  Place find_joint(int world, int joint) const {
+    const Place p = find(world);
+    const int joints = static_cast<int>(plan(p.kind).scene().joints.size());
+    if (joint < 0 || joint >= joints) {
+      reject("joint is " + std::to_string(joint) + ", must be 0 to " + std::to_string(joints - 1));
+    }
+    return p;
+  }
   std::size_t world_size(Field field, int kind) const {
     return static_cast<std::size_t>(plan(kind).bodies()) *
            static_cast<std::size_t>(components(field, plan(kind).scene().space));

@@ -38,6 +38,8 @@ class BatchCore {
   virtual Vec3 center_of_mass(int kind, int world, int body) const = 0;
   virtual void set_enabled(int kind, int world, int body, bool enabled) = 0;
   virtual bool enabled(int kind, int world, int body) const = 0;
+  virtual void set_joint_enabled(int kind, int world, int joint, bool enabled) = 0;
+  virtual bool joint_enabled(int kind, int world, int joint) const = 0;
   virtual void spawn(int kind, int world, int body, const BodyState& state) = 0;
   virtual bool asleep(int kind, int world, int body) const = 0;
   virtual bool resting(int kind, int world) const = 0;

@@ -91,7 +91,9 @@ const char* to_string(Input input) {
                                                "write_angular_velocity",
                                                "reset",
                                                "restore",
-                                               "set_controls"};
+                                               "set_controls",
+                                               "enable_joint",
+                                               "disable_joint"};
   const auto i = static_cast<std::size_t>(input);
   return i < kInputCount ? kNames[i] : "unknown";
 }

@@ -25,6 +25,7 @@ std::string to_string(Status status) {
   add(Status::out_of_range, "out_of_range");
   add(Status::out_of_bounds, "out_of_bounds");
   add(Status::contact_overflow, "contact_overflow");
+  add(Status::joint_broken, "joint_broken");
   return out.empty() ? "ok" : out;
 }
 

@@ -109,7 +109,7 @@ void choose_features(PlanData& plan) {
       if (b.inv_mass > 0) {
         const Body& body = s.bodies[static_cast<std::size_t>(b.scene_body)];
         drag = drag || body.linear_drag > 0 || body.angular_drag > 0;
-        const Vec3 g = s.options.gravity * body.gravity_scale;
+        const Vec3 g = s.options.gravity * body.gravity_scale + body.linear_drag * s.options.wind;
         gravity = gravity || !g.isZero(0);
         if (i == 0) common = g;
         plan.uniform_gravity = plan.uniform_gravity && g == common;
@@ -119,10 +119,13 @@ void choose_features(PlanData& plan) {
     }
   }
   for (const VariedNumber& n : plan.varied) {
-    plan.uniform_gravity = plan.uniform_gravity && n.parameter != Parameter::gravity_scale;
+    const bool of_bodies = n.parameter == Parameter::gravity_scale ||
+                           (n.parameter == Parameter::linear_drag && !scene.options.wind.isZero(0));
+    plan.uniform_gravity = plan.uniform_gravity && !of_bodies;
   }
   choose.set(Feature::drag, drag, "some bodies have drag", "no body has drag");
-  choose.set(Feature::gravity, gravity, "gravity acts on some bodies", "no gravity");
+  choose.set(Feature::gravity, gravity, "gravity or wind acts on some bodies",
+             "no gravity and no wind");
 }
 
 }  // namespace manyworlds

@@ -65,7 +65,7 @@ class Printer {
     if (b.motion == Motion::fixed) add(b.position), add(b.rotation);
   }
   void add(const Options& o) {
-    add(o.dt), add(o.substeps), add(o.gravity), add(o.density), add(o.length_unit);
+    add(o.dt), add(o.substeps), add(o.gravity), add(o.wind), add(o.density), add(o.length_unit);
     add(o.contact_frequency), add(o.contact_damping_ratio), add(o.push_out_speed), add(o.slop);
     add(o.restitution_threshold), add(o.restitution_sweeps), add(o.friction_in_bias_pass);
     add(o.cast_against_fixed), add(o.cast_between_moving);
@@ -92,7 +92,9 @@ class Printer {
     add(static_cast<int>(j.type.index()));
     std::visit([this](const auto& type) { add(type); }, j.type);
     add(j.body_a), add(j.body_b), add(j.frame_a), add(j.frame_b), add(j.collide);
+    add(j.break_force), add(j.break_torque);
   }
+  void add(const Attractor& a) { add(a.position), add(a.strength), add(a.softening); }
   // What a world begins with does not matter to one that has begun.
   void add(const Control& c) {
     add(c.kind), add(c.joint), add(c.body), add(c.point), add(c.direction), add(c.low), add(c.high);
@@ -115,6 +117,7 @@ std::uint64_t fingerprint(const PlanData& plan) {
   printer.add(plan.scene.bodies);
   printer.add(plan.scene.joints);
   printer.add(plan.scene.controls);
+  printer.add(plan.scene.attractors);
   printer.add(plan.scene.options);
   printer.add(plan.varied);
   for (const bool in : plan.in) printer.add(in);

@@ -92,6 +92,7 @@ class Builder {
                b = side_of(plan_, joint_.body_b, joint_.frame_b);
     out.joint = index_;
     out.what.kind = kind;
+    out.what.joint = index_;
     out.what.position_control = out.what.speed_control = -1;
     out.what.body_a = a.body;
     out.what.body_b = b.body;

@@ -23,6 +23,8 @@ void collect_variations(PlanData& plan) {
       case Parameter::gravity:
       case Parameter::gravity_scale: varies.push = true; break;
       case Parameter::linear_drag:
+        varies.push = varies.push || !plan.scene.options.wind.isZero(0);
+        [[fallthrough]];
       case Parameter::angular_drag: varies.drag = true; break;
     }
   }

@@ -69,6 +69,8 @@ void apply(Batch& batch, const InputRow& row, int world, std::span<const double>
     case Input::impulse_at: batch.add_impulse_at(world, body, vector(0), vector(3)); break;
     case Input::enable: batch.set_enabled(world, body, true); break;
     case Input::disable: batch.set_enabled(world, body, false); break;
+    case Input::enable_joint: batch.set_joint_enabled(world, body, true); break;
+    case Input::disable_joint: batch.set_joint_enabled(world, body, false); break;
     case Input::spawn:
       batch.spawn(
           world, body,

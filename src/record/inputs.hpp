@@ -14,7 +14,7 @@ struct InputRow {
   std::int32_t call_steps = 0;  // forces: n of the step(n) call in which they act; 0: they never do
   Input input{};
   std::int32_t world = 0;
-  std::int32_t body = -1;  // state body; -1: the whole world
+  std::int32_t body = -1;  // state body, or joint of the scene; -1: the whole world
   std::int64_t begin = 0;  // first of its numbers, or first byte of its state
   std::int64_t count = 0;  // of them
 };
@@ -29,6 +29,9 @@ inline bool is_write(Input input) {
 }
 inline Field field_of(Input write) {
   return static_cast<Field>(static_cast<int>(write) - static_cast<int>(Input::write_position));
+}
+inline bool is_of_joint(Input input) {
+  return input == Input::enable_joint || input == Input::disable_joint;
 }
 // How many numbers come with it, for a world of this scene.
 std::int64_t number_count(Input input, int bodies, const Scene& scene);

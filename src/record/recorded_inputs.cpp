@@ -48,9 +48,13 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
   if (row.world < 0 || row.world >= worlds()) {
     refuse("is for world " + std::to_string(row.world) + " of " + std::to_string(worlds()));
   }
-  const int bodies = kinds[place(row.world).kind].plan.bodies();
-  if (whole_world ? row.body != -1 : row.body < 0 || row.body >= bodies) {
-    refuse("is for body " + std::to_string(row.body) + " of " + std::to_string(bodies));
+  const Plan& plan = kinds[place(row.world).kind].plan;
+  const int bodies = plan.bodies();
+  const bool of_joint = record::is_of_joint(row.input);
+  const int most_body = of_joint ? static_cast<int>(plan.scene().joints.size()) : bodies;
+  if (whole_world ? row.body != -1 : row.body < 0 || row.body >= most_body) {
+    refuse("is for " + std::string(of_joint ? "joint " : "body ") + std::to_string(row.body) +
+           " of " + std::to_string(most_body));
   }
   if (row.call_steps < 0 || (row.call_steps > 0 && !record::is_force(row.input))) {
     refuse("acts for " + std::to_string(row.call_steps) + " steps");
@@ -61,8 +65,7 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
     refuse("has its numbers outside of what is there");
   }
   const std::int64_t wanted =
-      brings ? row.count
-             : record::number_count(row.input, bodies, kinds[place(row.world).kind].plan.scene());
+      brings ? row.count : record::number_count(row.input, bodies, plan.scene());
   if (row.count != wanted) {
     refuse("has " + std::to_string(row.count) + " numbers, must have " + std::to_string(wanted));
   }

@@ -142,11 +142,12 @@ MW_MEMBERS(Body) {
 // The corners are all that a box has.
 MW_MEMBERS(Eigen::AlignedBox3d) { visit("min", value.min()), visit("max", value.max()); }
 MW_MEMBERS(Options) {
-  auto& [dt, substeps, gravity, density, length_unit, contact_frequency, contact_damping_ratio,
-         push_out_speed, slop, restitution_threshold, restitution_sweeps, friction_in_bias_pass,
-         cast_against_fixed, cast_between_moving, joint_frequency, joint_damping_ratio,
-         joint_pull_speed, sleep_speed, time_to_sleep, contact_capacity, bounds] = value;
-  visit("dt", dt), visit("substeps", substeps), visit("gravity", gravity);
+  auto& [dt, substeps, gravity, wind, density, length_unit, contact_frequency,
+         contact_damping_ratio, push_out_speed, slop, restitution_threshold, restitution_sweeps,
+         friction_in_bias_pass, cast_against_fixed, cast_between_moving, joint_frequency,
+         joint_damping_ratio, joint_pull_speed, sleep_speed, time_to_sleep, contact_capacity,
+         bounds] = value;
+  visit("dt", dt), visit("substeps", substeps), visit("gravity", gravity), visit("wind", wind);
   visit("density", density), visit("length_unit", length_unit);
   visit("contact_frequency", contact_frequency);
   visit("contact_damping_ratio", contact_damping_ratio);
@@ -210,9 +211,14 @@ MW_MEMBERS(TargetJoint) {
   visit("spring", spring), visit("max_force", max_force);
 }
 MW_MEMBERS(Joint) {
-  auto& [name, type, body_a, body_b, frame_a, frame_b, collide] = value;
+  auto& [name, type, body_a, body_b, frame_a, frame_b, collide, break_force, break_torque] = value;
   visit("name", name), visit("type", type), visit("body_a", body_a), visit("body_b", body_b);
   visit("frame_a", frame_a), visit("frame_b", frame_b), visit("collide", collide);
+  visit("break_force", break_force), visit("break_torque", break_torque);
+}
+MW_MEMBERS(Attractor) {
+  auto& [position, strength, softening] = value;
+  visit("position", position), visit("strength", strength), visit("softening", softening);
 }
 MW_MEMBERS(Control) {
   auto& [name, kind, joint, body, point, direction, low, high, initial] = value;
@@ -226,9 +232,9 @@ MW_MEMBERS(Variation) {
   visit("low", low), visit("high", high), visit("draw", draw), visit("together", together);
 }
 MW_MEMBERS(Scene) {
-  auto& [name, space, bodies, joints, controls, options, variations] = value;
+  auto& [name, space, bodies, joints, controls, attractors, options, variations] = value;
   visit("name", name), visit("space", space), visit("options", options), visit("bodies", bodies);
-  visit("joints", joints), visit("controls", controls);
+  visit("joints", joints), visit("controls", controls), visit("attractors", attractors);
   visit("variations", variations);
 }
 MW_MEMBERS(PlanOptions) {

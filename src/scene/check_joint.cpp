@@ -20,6 +20,8 @@ class JointChecker {
     frames &= check_frame("frame_b", joint_.frame_b);
     const bool bodies = check_bodies();
     std::visit([this](const auto& type) { check(type); }, joint_.type);
+    check_strength("break_force", joint_.break_force, "N");
+    check_strength("break_torque", joint_.break_torque, "N m");
     if (bodies && frames && joins_anchors()) check_gap();
   }
 
@@ -28,6 +30,11 @@ class JointChecker {
     bool good = check_.finite(name + ".position", frame.position, "m");
     good &= check_.rotation(name + ".rotation", frame.rotation);
     return good;
+  }
+
+  void check_strength(const std::string& name, double value, const std::string& unit) {
+    if (value > 0) return;
+    check_.add(name, "is " + number_text(value) + " " + unit + ", must be > 0");
   }
 
   const Body* body(int index) const {

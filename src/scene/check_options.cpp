@@ -36,6 +36,7 @@ void check_options(Checker checker, const Options& options) {
   checker.positive("options.dt", options.dt, "s", kSmallestTime, kLargestFinite);
   checker.between("options.substeps", options.substeps, 1, kMostSubsteps);
   checker.finite("options.gravity", options.gravity, "m/s^2");
+  checker.finite("options.wind", options.wind, "m/s");
   checker.density("options.density", options.density);
   checker.size("options.length_unit", options.length_unit);
 

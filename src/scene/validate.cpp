@@ -24,6 +24,7 @@ std::vector<Issue> validate(const Scene& scene) {
   check_count("shapes", shapes, detail::kMostShapes);
   check_count("joints", scene.joints.size(), detail::kMostBodies);
   check_count("controls", scene.controls.size(), detail::kMostBodies);
+  check_count("attractors", scene.attractors.size(), detail::kMostBodies);
 
   // Needed before the bodies, whose masses depend on the default density, but listed after them.
   std::vector<Issue> option_issues;
@@ -48,6 +49,13 @@ std::vector<Issue> validate(const Scene& scene) {
     std::string part = "control " + std::to_string(i);
     if (!control.name.empty()) part += " '" + control.name + "'";
     check_control(checker.at(part), scene, i);
+  }
+  for (std::size_t i = 0; i < scene.attractors.size(); ++i) {
+    const Attractor& attractor = scene.attractors[i];
+    detail::Checker at = checker.at("attractor " + std::to_string(i));
+    at.finite("position", attractor.position, "m");
+    at.finite("strength", attractor.strength, "m^3/s^2");
+    at.not_negative("softening", attractor.softening, "m");
   }
   const bool sound = issues.empty() && option_issues.empty();
   issues.insert(issues.end(), option_issues.begin(), option_issues.end());

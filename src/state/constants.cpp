@@ -47,7 +47,9 @@ kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody
   out.core_radius = static_cast<Real>(b.inv_mass > 0 ? b.core_radius : 0);
   out.linear_factor = out.angular_factor = 1;
   if (b.inv_mass == 0) return out;
-  const Vec3 g = options.gravity * body.gravity_scale;
+  out.gravity_scale = static_cast<Real>(body.gravity_scale);
+  copy_numbers(options.gravity * body.gravity_scale, out.gravity);
+  const Vec3 g = options.gravity * body.gravity_scale + body.linear_drag * options.wind;
   copy_numbers(g, out.acceleration);
   for (int c = 0; c < (plan.scene.space == Space::planar ? 2 : 3); ++c) {
     out.push[c] = static_cast<Real>(h * g[c]) + Real(0);  // never -0

@@ -21,7 +21,7 @@ static_assert(std::endian::native == std::endian::little, "snapshots are little 
 namespace {
 
 constexpr char kMagic[8] = {'M', 'W', 'S', 'N', 'A', 'P', '\r', '\n'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 [[noreturn]] void refuse(const std::string& what) { throw SnapshotError("snapshot: " + what); }

@@ -27,6 +27,8 @@ Storage<Real>::Storage(const kernels::WorldTables<Real>& tables, int groups, int
     control_ = AlignedBuffer<Real>(index(slots()) * index(t.controls));
   }
   if (t.has_sleep) make_activity();
+  if (t.breakable > 0) make_loose();
+  reached_.resize(index(t.bodies));
 }
 
 template <class Real>
@@ -55,6 +57,7 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
     view.cache[l].rows = cache_rows_[l].data() + at * lanes * index(t.capacity[l] + 2) * index(row);
     view.cache[l].keys = cache_keys_[l].data() + at * lanes * index(t.capacity[l] + 1);
   }
+  if (!loose_.empty()) view.loose = loose_.data() + at * index(t.joints);
   if (forced_) view.force = force_.data() + at * lanes * index(t.bodies) * 6;
   if (has_activity()) {
     const std::size_t bodies = index(t.bodies);
@@ -82,7 +85,8 @@ std::size_t Storage<Real>::bytes() const {
   std::size_t total =
       constants_.bytes() +
       (state_.size() + joint_impulse_.size() + control_.size() + rest_time_.size()) * sizeof(Real) +
-      (status_.size() + asleep_.size() + absent_.size() + resting_.size() + island_.size()) *
+      (status_.size() + asleep_.size() + absent_.size() + resting_.size() + island_.size() +
+       loose_.size()) *
           sizeof(std::uint32_t);
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     total += cache_rows_[l].size() * sizeof(Real) + cache_keys_[l].size() * sizeof(std::int32_t);
@@ -163,7 +167,9 @@ void Storage<Real>::drop_impulses(int slot, int body) {
       return true;
     };
     keep_contacts(slot, reach_on);
-    for (int i = 0; i < tables_.parts; ++i) reach_on(moving_a(i), tables_.part[i].body_b);
+    for (int i = 0; i < tables_.parts; ++i) {
+      if (!loose(slot, tables_.part[i].joint)) reach_on(moving_a(i), tables_.part[i].body_b);
+    }
   }
   keep_contacts(slot, [&](int a, int b) { return !reached(a) && !reached(b); });
   for (int i = 0; i < tables_.parts; ++i) {
@@ -206,7 +212,6 @@ void Storage<Real>::make_activity() {
   asleep_ = AlignedBuffer<std::uint32_t>(index(groups_) * bodies);
   absent_ = AlignedBuffer<std::uint32_t>(index(groups_) * bodies);
   idle_ = AlignedBuffer<std::uint32_t>(index(groups_));
-  reached_.resize(bodies);
   if (!tables_.has_sleep) return;
   resting_ = AlignedBuffer<std::uint32_t>(index(groups_));
   rest_time_ = AlignedBuffer<Real>(index(slots()) * bodies);
@@ -216,6 +221,23 @@ void Storage<Real>::make_activity() {
 template <class Real>
 void Storage<Real>::set_absent(int slot, int body, bool absent) {
   put_bit(absent_[body_at(slot, body)], lane_of(slot), absent);
+}
+
+template <class Real>
+void Storage<Real>::make_loose() {
+  if (loose_.empty()) {
+    loose_ = AlignedBuffer<std::uint32_t>(index(groups_) * index(tables_.joints));
+  }
+}
+
+template <class Real>
+void Storage<Real>::set_loose(int slot, int joint, bool loose) {
+  put_bit(loose_[joint_at(slot, joint)], lane_of(slot), loose);
+}
+
+template <class Real>
+void Storage<Real>::clear_loose(int slot) {
+  for (int j = 0; !loose_.empty() && j < tables_.joints; ++j) set_loose(slot, j, false);
 }
 
 template <class Real>

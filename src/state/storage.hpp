@@ -6,6 +6,7 @@
 //   controls  [group][control][lane]
 //   joints    [group][part][impulses][lane]
 //   activity  [group][body] lane masks of sleeping and disabled bodies, made when first needed
+//   loose     [group][joint] lane masks of broken and disabled joints, made when first needed
 #pragma once
 
 #include <array>
@@ -68,6 +69,12 @@ class Storage {
     return resting_.empty() ? all : ~resting_[index(group)] & all;
   }
 
+  // Broken and disabled joints. Without masks every joint holds.
+  void make_loose();
+  bool loose(int slot, int joint) const { return is_set(loose_, joint_at(slot, joint), slot); }
+  void set_loose(int slot, int joint, bool loose);
+  void clear_loose(int slot);
+
   // Constants of each world's own, where the plan lets some vary.
   void make_constants(const PlanData& plan);
   void set_constants(const PlanData& plan, int slot) { constants_.fill(plan, slot); }
@@ -88,6 +95,9 @@ class Storage {
   std::size_t lane_of(int slot) const { return index(slot % lanes_); }
   std::size_t body_at(int slot, int body) const {
     return group_of(slot) * index(tables_.bodies) + index(body);
+  }
+  std::size_t joint_at(int slot, int joint) const {
+    return group_of(slot) * index(tables_.joints) + index(joint);
   }
   bool is_set(const AlignedBuffer<std::uint32_t>& masks, std::size_t at, int slot) const {
     return !masks.empty() && get_bit(masks[at], lane_of(slot));
@@ -117,6 +127,7 @@ class Storage {
   Constants<Real> constants_;
   mutable AlignedBuffer<std::uint32_t> asleep_, absent_;  // [group][body]
   mutable AlignedBuffer<std::uint32_t> idle_, resting_;   // [group]
+  mutable AlignedBuffer<std::uint32_t> loose_;            // [group][joint]
   mutable AlignedBuffer<Real> rest_time_;                 // [group][body][lane]
   mutable AlignedBuffer<std::int32_t> island_;            // [group][body][lane]
   std::vector<char> reached_;                             // [body] scratch of drop_impulses

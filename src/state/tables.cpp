@@ -44,6 +44,7 @@ TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep, int lanes)
   tables_.has_sleep = sleep && (tables_.has_contacts || !plan.parts.empty()) && tables_.bodies > 0;
   add_shapes(plan);
   add_joints(plan);
+  add_attractors(plan);
   add_pairs(plan);
   for (int lane = 0; lane < lanes; ++lane) constants_.fill(plan, lane);
   tables_.constants = constants_.group(0);
@@ -188,6 +189,7 @@ template <class Real>
 void TablesOf<Real>::add_joints(const PlanData& plan) {
   auto& t = tables_;
   for (const PlanPart& p : plan.parts) parts_.push_back(p.what);
+  add_breaking(plan);
   t.parts = static_cast<std::int32_t>(parts_.size());
   t.part = parts_.data();
   for (const PlanThrust& p : plan.thrusts) thrusts_.push_back(p.what);
@@ -216,6 +218,41 @@ void TablesOf<Real>::add_joints(const PlanData& plan) {
   first_joined_.push_back(static_cast<std::int32_t>(joined_.size()));
   t.joined = joined_.empty() ? nullptr : joined_.data();
   t.first_joined = first_joined_.data();
+}
+
+template <class Real>
+void TablesOf<Real>::add_breaking(const PlanData& plan) {
+  auto& t = tables_;
+  const double dt = plan.scene.options.dt;
+  t.joints = static_cast<std::int32_t>(plan.scene.joints.size());
+  for (std::size_t i = 0; i < plan.parts.size(); ++i) {
+    const Joint& joint = plan.scene.joints[static_cast<std::size_t>(plan.parts[i].joint)];
+    if (std::isinf(joint.break_force) && std::isinf(joint.break_torque)) continue;
+    if (breaking_.empty() || breaking_.back().joint != plan.parts[i].joint) {
+      breaking_.push_back({plan.parts[i].joint, static_cast<std::int32_t>(i), 0,
+                           static_cast<Real>(joint.break_force * dt),
+                           static_cast<Real>(joint.break_torque * dt)});
+    }
+    ++breaking_.back().parts;
+  }
+  t.breakable = static_cast<std::int32_t>(breaking_.size());
+  t.breaking = breaking_.data();
+}
+
+// So that the pull of a point on itself is 0, and not 0 / 0, in float.
+constexpr double kLeastSoftening2 = 1e-24;  // m^2
+
+template <class Real>
+void TablesOf<Real>::add_attractors(const PlanData& plan) {
+  for (const Attractor& a : plan.scene.attractors) {
+    kernels::AttractorTable<Real> out{};
+    copy(a.position, out.position);
+    out.strength = static_cast<Real>(a.strength);
+    out.softening2 = static_cast<Real>(std::max(a.softening * a.softening, kLeastSoftening2));
+    attractors_.push_back(out);
+  }
+  tables_.attractors = static_cast<std::int32_t>(attractors_.size());
+  tables_.attractor = attractors_.data();
 }
 
 template <class Real>

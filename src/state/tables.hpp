@@ -24,6 +24,8 @@ class TablesOf {
   void add_pairs(const PlanData& plan);
   void add_pair_classes(const PlanData& plan);
   void add_joints(const PlanData& plan);
+  void add_breaking(const PlanData& plan);
+  void add_attractors(const PlanData& plan);
   void add_options(const PlanData& plan);
 
   kernels::WorldTables<Real> tables_{};
@@ -34,6 +36,8 @@ class TablesOf {
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
   std::vector<kernels::JointPart> parts_;
+  std::vector<kernels::BreakTable<Real>> breaking_;
+  std::vector<kernels::AttractorTable<Real>> attractors_;
   std::vector<kernels::ThrustTable> thrusts_;
   std::vector<std::int32_t> first_thrust_;
   std::vector<std::int32_t> joined_, first_joined_;

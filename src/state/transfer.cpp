@@ -177,6 +177,9 @@ void Storage<Real>::for_each_part(int slot_a, int slot_b, Visit&& visit) const {
     bit(absent_, body_at(slot_a, body), body_at(slot_b, body));
   }
   bit(resting_, group_of(slot_a), group_of(slot_b));
+  for (int joint = 0; joint < t.joints; ++joint) {
+    bit(loose_, joint_at(slot_a, joint), joint_at(slot_b, joint));
+  }
 }
 
 template <class Real>
@@ -219,6 +222,7 @@ std::string Storage<Real>::check_world(const std::byte* from) const {
 template <class Real>
 void Storage<Real>::read_world(int slot, const std::byte* from) {
   make_activity();  // the world may have disabled bodies
+  if (tables_.joints > 0) make_loose();
   for_each_part(slot, slot, Read{from});
   for (int b = 0; !tables_.has_sleep && b < tables_.bodies; ++b) {
     put_bit(asleep_[body_at(slot, b)], lane_of(slot), false);  // where nobody sleeps

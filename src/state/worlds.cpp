@@ -3,6 +3,7 @@
 #include "src/state/worlds.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "src/base/hash.hpp"
 
@@ -75,6 +76,7 @@ void Worlds<Real>::initialise(int world) {
   storage_.status(slot) = 0;
   storage_.clear_contacts(slot);
   storage_.clear_joints(slot);
+  storage_.clear_loose(slot);
   for (std::size_t i = 0; i < plan_.scene().controls.size(); ++i) {
     storage_.control(slot, static_cast<int>(i)) =
         static_cast<Real>(plan_.scene().controls[i].initial);
@@ -124,6 +126,25 @@ void Worlds<Real>::set_enabled(int world, int body, bool enabled) {
   if (!enabled) storage_.drop_impulses(slot, body);
   storage_.set_absent(slot, body, !enabled);
   storage_.find_idle(slot);
+}
+
+template <class Real>
+void Worlds<Real>::set_joint_enabled(int world, int joint, bool enabled) {
+  const int slot = slot_of(world);
+  if (joint_enabled(world, joint) == enabled) return;
+  storage_.make_loose();
+  for (int i = 0; i < tables().parts; ++i) {
+    const kernels::JointPart& part = tables().part[i];
+    if (part.joint != joint) continue;
+    for (const int body : {part.body_a, part.body_b}) {
+      if (body == tables().bodies) continue;
+      // Whoever is joined to a kinematic body does not share its island.
+      tables().body[body].kinematic ? storage_.wake(slot) : storage_.wake_island(slot, body);
+      if (!enabled) storage_.drop_impulses(slot, body);
+    }
+  }
+  storage_.set_loose(slot, joint, !enabled);
+  if (storage_.has_activity()) storage_.find_idle(slot);
 }
 
 template <class Real>
@@ -207,7 +228,12 @@ Energy Worlds<Real>::energy(int world) const {
       w = internal_rotation(world, body).conjugate() * w;
     }
     e.kinetic += 0.5 * b.mass * v.squaredNorm() + 0.5 * w.dot(b.inertia.cwiseProduct(w));
-    e.potential -= b.mass * gravity_scale(world, body) * g.dot(center_of_mass(world, body));
+    const Vec3 x = center_of_mass(world, body);
+    double height = g.dot(x);
+    for (const Attractor& a : plan_.scene().attractors) {
+      height += a.strength / std::hypot((a.position - x).norm(), a.softening);
+    }
+    e.potential -= b.mass * gravity_scale(world, body) * height;
   }
   return e;
 }

@@ -74,6 +74,8 @@ class Worlds {
 
   bool enabled(int world, int body) const { return !storage_.absent(slot_of(world), body); }
   void set_enabled(int world, int body, bool enabled);
+  bool joint_enabled(int world, int joint) const { return !storage_.loose(slot_of(world), joint); }
+  void set_joint_enabled(int world, int joint, bool enabled);
   void spawn(int world, int body, const BodyState& state);
 
   bool asleep(int world, int body) const;

@@ -97,6 +97,7 @@ void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group
     solver.advance(t, group, scratch);
     lap(kAdvance);
     with_joints(joints.relax);
+    if (t.breakable > 0) joints.bear(t, group, scratch);
     contacts(solver.relax);
     lap(kRelax);
     if (adds_up) {
@@ -118,6 +119,7 @@ void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group
   lap(kStore);
   solver.leave(t, group, scratch);
   lap(kFinish);
+  if (t.breakable > 0) joints.break_up(t, group, scratch);
   if (t.has_sleep) {
     p.kernels.settle(t, group, scratch);
     lap(kSettle);
