@@ -40,6 +40,7 @@ Scene billiards();
 Scene domino();
 Scene mixed_pile();
 Scene mixed_pile2d();
+Scene bird_sling();
 Scene cradle_joints();
 Scene crane();
 Scene jenga();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "examples/birds/knocked_out.hpp"
 #include "manyworlds/scenes.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
@@ -47,7 +48,37 @@ double total_energy(const Batch& batch, int world) {
   return energy.kinetic + energy.potential;
 }
 
+// Boxes of bird-sling that each world has lost after 4 s.
+std::vector<int> knocked_out(Batch& batch) {
+  const std::vector<int> boxes = birds::boxes(batch.plan());
+  CHECK(boxes.size() == 14);
+  std::vector<std::vector<double>> began;
+  for (int w = 0; w < kWorlds; ++w) began.push_back(values(batch, Field::position, w));
+  step_seconds(batch, 4);
+  check_ok(batch);
+  std::vector<int> out;
+  for (int w = 0; w < kWorlds; ++w) {
+    out.push_back(birds::knocked_out(boxes, began[static_cast<std::size_t>(w)],
+                                     values(batch, Field::position, w),
+                                     values(batch, Field::orientation, w)));
+  }
+  return out;
+}
+
 }  // namespace
+
+TEST_CASE("the bird knocks boxes out of the pile, which stands without it", "[fast][scene]") {
+  for (const Table& table : widest_tables()) {
+    INFO(name(table));
+    Batch slung = worlds_of("bird-sling", table);
+    for (const int boxes : knocked_out(slung)) CHECK(boxes >= 1);
+    Batch kept = worlds_of("bird-sling", table);
+    for (int w = 0; w < kWorlds; ++w) {
+      set_vector(kept, Field::linear_velocity, w, body_named(kept, "bird"), Vec3::Zero());
+    }
+    for (const int boxes : knocked_out(kept)) CHECK(boxes == 0);
+  }
+}
 
 TEST_CASE("a cradle on rods passes the swing on and gains no energy", "[fast][scene][joint]") {
   for (const Table& table : widest_tables()) {
