@@ -103,7 +103,7 @@ endif()
 
 # Users' projects, against the installed package.
 if(MW_INSTALL)
-  foreach(example IN ITEMS embed lander)
+  foreach(example IN ITEMS embed lander birds arrays)
     add_test(NAME ${example}
       COMMAND ${CMAKE_COMMAND}
               -D BUILD_DIR=${PROJECT_BINARY_DIR}

@@ -59,6 +59,14 @@ const std::vector<Entry>& all() {
       {"elevator", "2D: a driven platform lifts three boxes", false, elevator},
       {"windmill", "2D: a motor's cross stirs 16 balls", false, windmill},
       {"four-bar", "2D: a driven crank, a coupler and a rocker", false, four_bar},
+      {"bird-sling", "2D: a heavy ball is slung over a wall at a pile of 14 boxes", false,
+       bird_sling},
+      {"cradle-joints", "2D: 5 elastic balls on rods, one swings in", false, cradle_joints},
+      {"crane", "2D: a driven trolley, and a load on a rope with a winch", false, crane},
+      {"jenga", "3D: a tower of 30 blocks, one drawn and laid on top", false, jenga},
+      {"car3d", "3D: a car with sprung, driven and steered wheels on rough ground", false, car3d},
+      {"chain-reaction", "2D: ball, dominoes, see-saw gate, marble, bucket, flag", false,
+       chain_reaction},
   };
   return entries;
 }

@@ -6,19 +6,6 @@
 #include "scenes/parts.hpp"
 
 namespace manyworlds::scenes {
-namespace {
-
-Control speed_of(const char* name, int joint, double most, double initial) {
-  Control out;
-  out.name = name;
-  out.kind = ControlKind::target_speed;
-  out.joint = joint;
-  out.low = -most, out.high = most, out.initial = initial;
-  return out;
-}
-
-}  // namespace
-
 // Atwood's machine: 1 kg and 1.2 kg on a rope over two wheels.
 Scene pulley() {
   Scene scene = planar_scene("pulley");

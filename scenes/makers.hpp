@@ -40,5 +40,11 @@ Scene billiards();
 Scene domino();
 Scene mixed_pile();
 Scene mixed_pile2d();
+Scene bird_sling();
+Scene cradle_joints();
+Scene crane();
+Scene jenga();
+Scene car3d();
+Scene chain_reaction();
 
 }  // namespace manyworlds::scenes

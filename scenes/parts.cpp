@@ -90,4 +90,13 @@ int add_body(Scene& scene, std::string name, const Vec3& position, Geometry geom
 
 Frame frame_at(double x, double y) { return {Vec3(x, y, 0), Quat::Identity()}; }
 
+Control speed_of(std::string name, int joint, double most, double initial) {
+  Control out;
+  out.name = std::move(name);
+  out.kind = ControlKind::target_speed;
+  out.joint = joint;
+  out.low = -most, out.high = most, out.initial = initial;
+  return out;
+}
+
 }  // namespace manyworlds::scenes

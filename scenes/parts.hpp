@@ -35,4 +35,7 @@ int add_body(Scene& scene, std::string name, const Vec3& position, Geometry geom
 // A frame at a point of the plane, its axes the world's.
 Frame frame_at(double x, double y);
 
+// The target speed of a joint's drive, from -most to most, m/s or rad/s.
+Control speed_of(std::string name, int joint, double most, double initial);
+
 }  // namespace manyworlds::scenes
