@@ -94,6 +94,15 @@ Hull SceneBytes::hull() {
   return out;
 }
 
+HeightField SceneBytes::height_field() {
+  HeightField out;
+  out.columns = rarely() ? integer(0, 3) : integer(2, 7);
+  const int n = rarely() ? integer(0, 60) : out.columns * integer(2, 7);
+  for (int i = 0; i < n; ++i) out.heights.push_back(number(-0.6, 0.6));
+  out.cell = {number(0.3, 2), number(0.3, 2)};
+  return out;
+}
+
 Terrain SceneBytes::terrain() {
   Terrain out;
   out.loop = byte() > 200;
@@ -111,7 +120,7 @@ Geometry SceneBytes::geometry(bool fixed) {
   // Of the right space and motion, but for a few.
   const bool planar = rarely() ? !planar_ : planar_;
   const int moving = planar ? 3 : 5;
-  const int kinds = fixed || rarely() ? moving + 3 : moving;
+  const int kinds = fixed || rarely() ? moving + (planar ? 3 : 4) : moving;
   const int kind = integer(0, kinds - 1);
   const double a = number(0.05, 1), b = number(0.05, 1);
   if (planar) {
@@ -132,6 +141,7 @@ Geometry SceneBytes::geometry(bool fixed) {
     case 4: return hull();
     case 5: return Plane{rarely() ? vector(2) : Vec3(0, 0, 1), a - 1};
     case 6: return Plane{vector(1).normalized(), -b};
+    case 7: return height_field();
     default: return Box{Vec3(3 * a, 3 * b, 0.1)};
   }
 }

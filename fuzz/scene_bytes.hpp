@@ -36,6 +36,7 @@ class SceneBytes {
   std::string name();
   Polygon polygon();
   Hull hull();
+  HeightField height_field();
   Terrain terrain();
   Geometry geometry(bool fixed);
   Shape shape(bool fixed);

@@ -153,10 +153,12 @@ MW_INLINE Vec cast_against_fixed(const Tables& t, const Group& g, int body, Vec 
   const Float core = radius * Float(Real(0.5));
   Float least = Real(1);
   for (int f = 0; f < t.fixed_shapes; ++f) {
-    if (t.fixed[f].kind == kernels::ShapeKind::plane) continue;
+    const kernels::ShapeKind kind = t.fixed[f].kind;
+    // Who got below a surface that is solid below comes up again.
+    if (kind == kernels::ShapeKind::plane || kind == kernels::ShapeKind::tile) continue;
     const Real* r = t.fixed_rows + t.fixed[f].row;
     const auto row = [r](int i) { return Float(r[i]); };
-    least = min(least, free_share(t.fixed[f].kind, row, start, step, core, fast));
+    least = min(least, free_share(kind, row, start, step, core, fast));
   }
   return select(least < Float(Real(1)), step * least, step);
 }

@@ -7,6 +7,7 @@
 // the one that the search for the normal found.
 #include "kernels/collide/capsule_capsule.hpp"
 #include "kernels/collide/outline.hpp"
+#include "kernels/collide/tile.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -220,17 +221,41 @@ void put_found(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axi
   m.match_distance2 = square(a.half.x + a.half.y + a.half.z);
 }
 
+// Leaves an axis only normals that the tile's surface has; its own where there is another. Returns
+// the lanes in which the point that is then found does not touch the tile.
+Mask keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis& axis) {
+  const Vec3 n = tile.normal;
+  const Vec3 lowest = support(b, -n) + d;
+  const Float separation = dot(n, lowest - tile.vertex[0]);
+  const Mask other = !has_normal(tile, axis.normal);
+  axis.normal = select(other, n, axis.normal);
+  axis.separation = select(other, separation, axis.separation);
+  axis.on_b = select(other, lowest, axis.on_b);
+  axis.on_a = select(other, fnma(n, separation, lowest), axis.on_a);
+  const Mask other_face = axis.face_of_b & !has_normal(tile, axis.face_normal);
+  axis.face_normal = select(other_face, n, axis.face_normal);
+  axis.face_separation = select(other_face, separation, axis.face_separation);
+  axis.face = select(other_face, Float(Real(0)), axis.face);
+  axis.face_of_b = axis.face_of_b & !other_face;
+  return other & !is_over(tile, lowest, Real(0));
+}
+
 }  // namespace
 
-void collide_convex_pair(const Tables& t, const ConvexShape& a, const ConvexShape& b, Mask active,
-                         Manifold<Isotropic, 4>& m) {
+void collide_convex_pair(const Tables& t, const ConvexShape& a, const Tile* tile,
+                         const ConvexShape& b, Mask active, Manifold<Isotropic, 4>& m) {
   const Float zero(Real(0));
   const Vec3 d = b.p - a.p;
   ConvexAxis axis;
   find_convex_axis(t, a, b, active, axis);
+  Mask bare = zero < zero;
+  if (tile) {
+    bare = keep_to_surface(*tile, b, d, axis);
+    axis.near = axis.near & tile->there;
+  }
   put_found(a, b, axis, d, m);
   active = axis.near;
-  m.valid[0] = active;
+  m.valid[0] = active & !bare;
   if (!any(active)) return;
   if (is_line(a.kind) && is_line(b.kind)) put_lines(a, b, axis, d, active, m);
   // Faces win near ties. What is round around its core shows where the core is apart: there only

@@ -57,6 +57,11 @@ void try_faces(const ConvexShape& s, const ConvexShape& other, Vec3 d, BestFace&
     }
     return;
   }
+  if (s.kind == ShapeKind::tile) {
+    const Vec3 n = s.face_normal;
+    best.take(n, dot(n, d - s.vertex[0]) + extent_along(other, n).low, 0);
+    return;
+  }
   const auto both_sides = [&](Vec3 axis, Float half, int i) {
     const Extent e = extent_along(other, axis);
     const Float along = dot(axis, d);

@@ -8,6 +8,10 @@ namespace {
 
 using kernels::ShapeKind;
 
+MW_INLINE bool has_vertices(ShapeKind kind) {
+  return kind == ShapeKind::hull || kind == ShapeKind::tile;
+}
+
 // How far and where to n points out of the axis of a cylinder. In the cap's own axes, so that it
 // lies in the cap however little that is.
 struct Outward {
@@ -116,6 +120,16 @@ void hull_feature(const ConvexShape& s, Vec3 n, Real tie, Feature& f) {
   f.along = select(real, edge * (one / sqrt(select(real, l2, one))), s.r.x);
 }
 
+void tile_feature(const ConvexShape& s, Feature& f) {
+  f.count = 3;
+  for (int i = 0; i < 3; ++i) f.corner[i] = s.vertex[i];
+  f.normal = s.face_normal;
+  const Vec3 edge = s.vertex[1] - s.vertex[0];
+  f.along = edge * (Float(Real(1)) / sqrt(max(dot(edge, edge), Real(1e-30))));
+  f.code = Real(0);
+  f.face = mask_from_bits(kAllLanes);
+}
+
 }  // namespace
 
 void load_convex(const Real* hulls, ShapeKind kind, const Real* base, const std::int32_t* offset,
@@ -153,7 +167,7 @@ void load_convex(const Real* hulls, ShapeKind kind, const Real* base, const std:
 
 Extent extent_along(const ConvexShape& s, Vec3 n) {
   const Float zero(Real(0));
-  if (s.kind == ShapeKind::hull) {
+  if (has_vertices(s.kind)) {
     Float low = dot(s.vertex[0], n), high = low;
     for (int i = 1; i < s.vertices; ++i) {
       const Float x = dot(s.vertex[i], n);
@@ -174,7 +188,7 @@ Extent extent_along(const ConvexShape& s, Vec3 n) {
 Vec3 support(const ConvexShape& s, Vec3 n) {
   const Float zero(Real(0)), one(Real(1));
   if (s.kind == ShapeKind::sphere) return {zero, zero, zero};
-  if (s.kind == ShapeKind::hull) {
+  if (has_vertices(s.kind)) {
     Vec3 best = s.vertex[0];
     Float most = dot(best, n);
     for (int i = 1; i < s.vertices; ++i) {
@@ -199,6 +213,7 @@ void feature_along(const ConvexShape& s, Vec3 n, Real tie, Feature& f) {
   if (s.kind == ShapeKind::box) return box_feature(s, n, f);
   if (s.kind == ShapeKind::cylinder) return cylinder_feature(s, n, f);
   if (s.kind == ShapeKind::hull) return hull_feature(s, n, tie, f);
+  if (s.kind == ShapeKind::tile) return tile_feature(s, f);
   const Vec3 end = s.r.z * s.half.z;
   f.count = 2;
   f.corner[0] = -end, f.corner[1] = end;

@@ -3,7 +3,7 @@
 #include "kernels/activity.hpp"
 #include "kernels/integrate.hpp"
 #include "kernels/observe/observe.hpp"
-#include "kernels/observe/ray_shapes.hpp"
+#include "kernels/observe/ray_field.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -28,6 +28,7 @@ MW_INLINE void with_pose(ShapeKind kind, const Real* base, const std::int32_t* o
   if constexpr (S::kDim == 3) {
     if (kind == ShapeKind::sphere) return visit_pose<SpherePose>(base, o, visit);
     if (kind == ShapeKind::cylinder) return visit_pose<CylinderPose>(base, o, visit);
+    if (kind == ShapeKind::tile) return visit(FieldPose{base, o});
     if (kind == ShapeKind::hull) {
       HullPose pose;
       load_hull(base, o, hulls, pose);

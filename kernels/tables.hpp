@@ -30,8 +30,9 @@ enum class ShapeKind : int {
   cylinder,
   hull,
   rounded,  // polygon
+  tile,     // of a height field
 };
-inline constexpr int kShapeKinds = 11;
+inline constexpr int kShapeKinds = 12;
 
 // Shape pairs; the first shape is A. Planes and other fixed shapes are always A. Capsules have the
 // same names in the plane and in space.
@@ -86,6 +87,11 @@ enum class PairKind : int {
   capsule_hull,
   box_hull,
   cylinder_hull,
+  tile_sphere,
+  tile_capsule,
+  tile_box,
+  tile_cylinder,
+  tile_hull,
   plane_rounded,
   rounded_circle,
   rounded_rounded,
@@ -94,7 +100,7 @@ enum class PairKind : int {
   capsule_rounded,  // fixed capsule
   link_rounded,
 };
-inline constexpr int kPairKinds = 57;
+inline constexpr int kPairKinds = 62;
 static inline constexpr bool is_plane(PairKind kind) {
   return kind == PairKind::plane_sphere || kind == PairKind::plane_box ||
          kind == PairKind::plane_circle || kind == PairKind::plane_rectangle ||

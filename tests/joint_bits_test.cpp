@@ -25,7 +25,8 @@ Scene contraption(Space space) {
   };
   const auto join = [&](int a, int b, const Vec3& where, JointType type) {
     Joint joint = joint_at(scene, a, b, at(where, hinge_axes(space)), std::move(type));
-    joint.break_force = 1500, joint.break_torque = 2500;
+    joint.break_force = space == Space::planar ? 4e4 : 9e3;
+    joint.break_torque = joint.break_force;
     scene.add(joint);
   };
   const Spring spring{0, 0, 4, 0.5};

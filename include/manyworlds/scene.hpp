@@ -86,8 +86,18 @@ struct Terrain {
   std::vector<Vec2> points;  // m, shape frame; 2 or more, of a loop 3 or more
   bool loop = false;         // the last point is joined to the first
 };
+// Spatial, fixed bodies only: everything below a surface of triangles over a grid of points, which
+// is centred on the shape frame. Each cell has two, on either side of the diagonal from its corner
+// of low x and y. Bodies slide and roll over its edges as over one smooth ground; at its border the
+// solid falls off at a right angle. A body that got below the surface is pushed up.
+struct HeightField {
+  std::vector<double> heights;  // m, of the points: x varies fastest
+  int columns = 2;              // points along x, 2 or more; as many rows as that leaves
+  Vec2 cell{1, 1};              // m, between points along x and y
+  int rows() const { return columns > 0 ? static_cast<int>(heights.size()) / columns : 0; }
+};
 using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Capsule, Segment,
-                              Terrain, Cylinder, Hull>;
+                              Terrain, Cylinder, Hull, HeightField>;
 
 struct Material {
   double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean of its two

@@ -16,7 +16,8 @@ struct ConvexShape {
   Float radius;  // around the core: of spheres and capsules
   Float margin;  // how far its bounds reach beyond it, m; spheres and capsules do not tell
   HullPose hull;
-  int vertices;  // of the hull that has most; the other lanes repeat their last
+  Vec3 face_normal;  // of a tile
+  int vertices;      // of the hull that has most; the other lanes repeat their last
   Vec3 vertex[kernels::kMaxHullVertices];  // from p, world axes
 };
 
@@ -62,9 +63,11 @@ struct ConvexAxis {
 void find_convex_axis(const Tables& t, const ConvexShape& a, const ConvexShape& b, Mask active,
                       ConvexAxis& out);
 
-// The manifold of two convex shapes. B is no sphere, and if one has a radius it is B.
-void collide_convex_pair(const Tables& t, const ConvexShape& a, const ConvexShape& b, Mask active,
-                         Manifold<Isotropic, 4>& m);
+// The manifold of two convex shapes. B is no sphere, and if one has a radius it is B. `tile`: A, or
+// nullptr (tile.hpp).
+struct Tile;
+void collide_convex_pair(const Tables& t, const ConvexShape& a, const Tile* tile,
+                         const ConvexShape& b, Mask active, Manifold<Isotropic, 4>& m);
 void collide_plane_convex(const Tables& t, const PlanePose& a, const ConvexShape& b,
                           Manifold<Isotropic, 4>& m);
 // B is a sphere.

@@ -9,6 +9,7 @@
 #include "kernels/collide/link_pairs.hpp"
 #include "kernels/collide/polygon_pairs.hpp"
 #include "kernels/collide/rectangle_rectangle.hpp"
+#include "kernels/collide/tile.hpp"
 #include "kernels/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -126,6 +127,11 @@ inline constexpr ConvexKinds convex_kinds(kernels::PairKind pair) {
     case PairKind::sphere_hull: return {ShapeKind::sphere, ShapeKind::hull};
     case PairKind::capsule_hull: return {ShapeKind::capsule, ShapeKind::hull};
     case PairKind::box_hull: return {ShapeKind::box, ShapeKind::hull};
+    case PairKind::tile_sphere: return {ShapeKind::tile, ShapeKind::sphere};
+    case PairKind::tile_capsule: return {ShapeKind::tile, ShapeKind::capsule};
+    case PairKind::tile_box: return {ShapeKind::tile, ShapeKind::box};
+    case PairKind::tile_cylinder: return {ShapeKind::tile, ShapeKind::cylinder};
+    case PairKind::tile_hull: return {ShapeKind::tile, ShapeKind::hull};
     default: return {ShapeKind::cylinder, ShapeKind::hull};
   }
 }
@@ -156,6 +162,17 @@ MW_INLINE void copy_manifold(const Manifold<Isotropic, N>& from, Manifold<S, N>&
   to.code = from.code, to.match_distance2 = from.match_distance2;
 }
 
+template <int N>
+MW_INLINE void collide_tile(const Tables& t, const ConvexShape& a, const Tile& tile,
+                            const ConvexShape& b, Mask active, Manifold<Isotropic, N>& m) {
+  if constexpr (N == 1) {
+    collide_tile_sphere(a, tile, b, m);
+  } else {
+    collide_convex_pair(t, a, &tile, b, active, m);
+    m.code = fma(tile.code, Float(kTileCodes), m.code);
+  }
+}
+
 template <class S, int N, bool kPair, bool kDense>
 void collide_convex_list(const Tables& t, const Group& g, Work& w) {
   using kernels::ShapeKind;
@@ -177,6 +194,11 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
       load_pose(base_a, o.a, plane);
       origin_a = zero_of<Vec3>();
       if constexpr (N > 1) collide_plane_convex(t, plane, b, m);
+    } else if (!kPair && kinds.a == ShapeKind::tile) {
+      Tile tile;
+      load_tile(base_a, o.a, b, active, tile, a);
+      origin_a = a.p;
+      collide_tile<N>(t, a, tile, b, active, m);
     } else {
       load_convex(kPair ? t.hulls : nullptr, kinds.a, base_a, o.a, a);
       origin_a = a.p;
@@ -184,7 +206,7 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
       if constexpr (N == 1) {
         collide_convex_sphere(t, first, second, active, m);
       } else {
-        collide_convex_pair(t, first, second, active, m);
+        collide_convex_pair(t, first, nullptr, second, active, m);
       }
       if (turned) turn_round(m);
     }
@@ -230,7 +252,7 @@ void fill_narrow_phase(kernels::Stage<Real>* out) {
     at(PairKind::sphere_capsule) = collide<S, Reversed<S, CapsuleSphere>, kDense>;
     at(PairKind::capsule_box) = collide<S, Reversed<S, BoxCapsule<S>>, kDense>;
     constexpr int kFirst = static_cast<int>(PairKind::plane_cylinder);
-    constexpr int kLast = static_cast<int>(PairKind::cylinder_hull);
+    constexpr int kLast = static_cast<int>(PairKind::tile_hull);
     for (int i = kFirst; i <= kLast; ++i) out[i] = collide_convex<S, kDense>;
   } else {
     at(PairKind::circle_circle) = collide<S, CircleCircle<S>, kDense>;

@@ -21,7 +21,9 @@ template <class... Kinds>
 bool is_one_of(const Geometry& g) {
   return (std::holds_alternative<Kinds>(g) || ...);
 }
-bool only_fixed(const Geometry& g) { return is_one_of<Plane, HalfPlane, Segment, Terrain>(g); }
+bool only_fixed(const Geometry& g) {
+  return is_one_of<Plane, HalfPlane, Segment, Terrain, HeightField>(g);
+}
 bool is_half_space(const Geometry& g) { return is_one_of<Plane, HalfPlane>(g); }
 
 Space space_of(const Geometry& a, const Geometry& b, std::optional<Space> given) {

@@ -241,6 +241,14 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, const PlanData& plan
   return f;
 }
 
+std::vector<PlanFixed> parts_of(const Body& body, const Shape& shape, const PlanData& plan) {
+  if (std::holds_alternative<Terrain>(shape.geometry)) return terrain_links(body, shape);
+  if (const auto* field = std::get_if<HeightField>(&shape.geometry)) {
+    return height_field_tiles(body, shape, tiles_of(*field, plan.scene), plan.scene.options);
+  }
+  return {fixed_shape(body, shape, plan)};
+}
+
 }  // namespace
 
 void choose_polygons(PlanData& plan) {
@@ -280,9 +288,7 @@ void collect_fixed(PlanData& plan) {
     const Body& body = plan.scene.bodies[i];
     for (std::size_t k = 0; body.motion == Motion::fixed && k < body.shapes.size(); ++k) {
       const Shape& shape = body.shapes[k];
-      std::vector<PlanFixed> parts = std::holds_alternative<Terrain>(shape.geometry)
-                                         ? terrain_links(body, shape)
-                                         : std::vector{fixed_shape(body, shape, plan)};
+      std::vector<PlanFixed> parts = parts_of(body, shape, plan);
       for (PlanFixed& f : parts) {
         f.scene_body = static_cast<int>(i), f.shape = static_cast<int>(k);
         f.material = shape.material;
@@ -309,7 +315,7 @@ void lay_out_shapes(PlanData& plan) {
   for (PlanFixed& f : plan.fixed) {
     f.row_offset = offset;
     offset += static_cast<int>(f.row.size());
-    plan.cast = plan.cast || f.kind != ShapeKind::plane;
+    plan.cast = plan.cast || (f.kind != ShapeKind::plane && f.kind != ShapeKind::tile);
   }
   plan.cast = plan.cast && plan.scene.options.cast_against_fixed;
 }

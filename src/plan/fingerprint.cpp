@@ -49,6 +49,7 @@ class Printer {
   void add(const Cylinder& c) { add(c.radius), add(c.half_length); }
   void add(const Hull& h) { add(h.vertices); }
   void add(const Segment& s) { add(s.a), add(s.b); }
+  void add(const HeightField& f) { add(f.heights), add(f.columns), add(f.cell); }
   void add(const Terrain& t) { add(t.points), add(t.loop); }
   void add(const Shape& s) {
     add(static_cast<int>(s.geometry.index()));

@@ -58,6 +58,11 @@ Match match(ShapeKind a, ShapeKind b) {
       {{ShapeKind::hull, ShapeKind::box}, PairKind::hull_box},
       {{ShapeKind::hull, ShapeKind::cylinder}, PairKind::hull_cylinder},
       {{ShapeKind::hull, ShapeKind::hull}, PairKind::hull_hull},
+      {{ShapeKind::tile, ShapeKind::sphere}, PairKind::tile_sphere},
+      {{ShapeKind::tile, ShapeKind::capsule}, PairKind::tile_capsule},
+      {{ShapeKind::tile, ShapeKind::box}, PairKind::tile_box},
+      {{ShapeKind::tile, ShapeKind::cylinder}, PairKind::tile_cylinder},
+      {{ShapeKind::tile, ShapeKind::hull}, PairKind::tile_hull},
       {{ShapeKind::plane, ShapeKind::rounded}, PairKind::plane_rounded},
       {{ShapeKind::rounded, ShapeKind::circle}, PairKind::rounded_circle},
       {{ShapeKind::rounded, ShapeKind::rounded}, PairKind::rounded_rounded},
@@ -116,6 +121,7 @@ bool is_single(PairKind kind) {
     case PairKind::cylinder_sphere:
     case PairKind::hull_sphere:
     case PairKind::sphere_cylinder:
+    case PairKind::tile_sphere:
     case PairKind::sphere_hull: return true;
     default: return false;
   }
@@ -206,8 +212,13 @@ int fixed_manifolds(const PlanData& plan) {
   }
   double near = 0;
   for (const PlanCollider& c : plan.colliders) near += 2 * (4 * c.radius / shortest + 4);
-  const int others = static_cast<int>(plan.fixed.size()) - links;
-  return others + static_cast<int>(std::min(near, static_cast<double>(links)));
+  // A shape touches some of the tiles below it, seldom many.
+  const int tiles =
+      static_cast<int>(std::count_if(plan.fixed.begin(), plan.fixed.end(),
+                                     [](const PlanFixed& f) { return f.kind == ShapeKind::tile; }));
+  const int others = static_cast<int>(plan.fixed.size()) - links - tiles;
+  return others + std::min(tiles, 12) * static_cast<int>(plan.colliders.size()) +
+         static_cast<int>(std::min(near, static_cast<double>(links)));
 }
 
 }  // namespace

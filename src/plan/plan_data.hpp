@@ -9,6 +9,7 @@
 
 #include "kernels/tables.hpp"
 #include "manyworlds/plan.hpp"
+#include "src/scene/height_field.hpp"
 #include "src/scene/variations.hpp"
 
 namespace manyworlds {
@@ -130,6 +131,11 @@ struct PlanData {
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene);
 
 std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // terrain.cpp
+
+// The tiles that a height field is made of (kernels/collide/tile.hpp).
+std::vector<PlanFixed> height_field_tiles(const Body& body, const Shape& shape,
+                                          const TileCount& tiles,
+                                          const Options& options);  // height_field.cpp
 
 // A hull as the kernels want it: about the middle of its bounding box, in units of half its
 // extents.

@@ -18,9 +18,11 @@ const char* to_string(kernels::PairKind kind) {
       "box-cylinder",      "cylinder-cylinder", "hull-sphere",       "hull-capsule",
       "hull-box",          "hull-cylinder",     "hull-hull",         "sphere-cylinder",
       "capsule-cylinder",  "cylinder-box",      "sphere-hull",       "capsule-hull",
-      "box-hull",          "cylinder-hull",     "halfplane-rounded", "rounded-circle",
-      "rounded-rounded",   "rounded-capsule",   "circle-rounded",    "capsule-rounded",
-      "terrain-rounded"};
+      "box-hull",          "cylinder-hull",     "field-sphere",      "field-capsule",
+      "field-box",         "field-cylinder",    "field-hull",        "halfplane-rounded",
+      "rounded-circle",    "rounded-rounded",   "rounded-capsule",   "circle-rounded",
+      "capsule-rounded",   "terrain-rounded"};
+  static_assert(kNames[kernels::kPairKinds - 1] != nullptr);
   return kNames[static_cast<int>(kind)];
 }
 

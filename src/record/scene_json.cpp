@@ -28,7 +28,7 @@ template <>
 struct Words<Geometry> {
   static constexpr const char* list[] = {"sphere",  "box",        "plane",   "circle",
                                          "polygon", "half_plane", "capsule", "segment",
-                                         "terrain", "cylinder",   "hull"};
+                                         "terrain", "cylinder",   "hull",    "height_field"};
 };
 static_assert(std::size(Words<Geometry>::list) == std::variant_size_v<Geometry>);
 
@@ -104,6 +104,10 @@ MW_MEMBERS(Segment) {
 MW_MEMBERS(Terrain) {
   auto& [points, loop] = value;
   visit("points", points), visit("loop", loop);
+}
+MW_MEMBERS(HeightField) {
+  auto& [heights, columns, cell] = value;
+  visit("heights", heights), visit("columns", columns), visit("cell", cell);
 }
 MW_MEMBERS(Material) {
   auto& [friction, restitution] = value;

@@ -118,6 +118,27 @@ void check_segment(Checker& checker, const Segment& segment) {
   checker.add("b", "is " + vector_text(segment.b) + " m, the same as a; must be apart from it");
 }
 
+void check_height_field(Checker& checker, const HeightField& field) {
+  constexpr std::size_t kMostPoints = 1000000;
+  const std::size_t n = field.heights.size();
+  checker.size("cell.x", field.cell.x());
+  checker.size("cell.y", field.cell.y());
+  if (field.columns < 2) {
+    checker.add("columns", "is " + std::to_string(field.columns) + ", must be at least 2");
+  } else if (n % static_cast<std::size_t>(field.columns) != 0 || field.rows() < 2) {
+    checker.add("heights", "are " + std::to_string(n) + ", must be two rows or more of " +
+                               std::to_string(field.columns));
+  }
+  if (n > kMostPoints) {
+    checker.add("heights",
+                "are " + std::to_string(n) + ", must be at most " + std::to_string(kMostPoints));
+    return;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    check_coordinate(checker, element_name("heights", i), field.heights[i]);
+  }
+}
+
 void check_terrain(Checker& checker, const Terrain& terrain) {
   const std::vector<Vec2>& points = terrain.points;
   const std::size_t n = points.size(), fewest = terrain.loop ? 3 : 2;
@@ -242,6 +263,11 @@ struct GeometryCheck {
     on_fixed_body("terrain");
     check_terrain(checker, terrain);
   }
+  void operator()(const HeightField& field) const {
+    in_space(Space::spatial, "height field");
+    on_fixed_body("height field");
+    check_height_field(checker, field);
+  }
   void operator()(const HalfPlane& plane) const {
     in_space(Space::planar, "half-plane");
     on_fixed_body("half-plane");
@@ -260,7 +286,8 @@ struct GeometryCheck {
             (checker.planar()
                  ? ", a planar scene takes circle, polygon, capsule, half-plane, segment and "
                    "terrain"
-                 : ", a spatial scene takes sphere, box, capsule, cylinder, hull and plane"));
+                 : ", a spatial scene takes sphere, box, capsule, cylinder, hull, plane "
+                   "and height field"));
   }
   void on_fixed_body(const std::string& kind) const {
     if (body.motion == Motion::fixed) return;

@@ -152,6 +152,33 @@ Convex hull_of(const Hull& hull, const Vec3& x, const Mat3& r) {
   return c;
 }
 
+// What is below each triangle of a surface, down to the size of the field below the lowest point.
+std::vector<Convex> prisms_of(const HeightField& field, const Vec3& x, const Mat3& r) {
+  const int columns = field.columns - 1, rows = field.rows() - 1;
+  const double wide = columns * field.cell.x(), deep = rows * field.cell.y();
+  const double floor =
+      *std::min_element(field.heights.begin(), field.heights.end()) - std::hypot(wide, deep);
+  const auto corner = [&](int i, int j) {
+    const double z = field.heights[static_cast<std::size_t>(i + j * field.columns)];
+    return Vec3(i * field.cell.x() - wide / 2, j * field.cell.y() - deep / 2, z);
+  };
+  std::vector<Convex> out;
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const Vec3 low = corner(i, j), high = corner(i + 1, j + 1);
+      for (const Vec3& other : {corner(i + 1, j), corner(i, j + 1)}) {
+        Hull prism{{low, high, other}};
+        for (int k = 0; k < 3; ++k) {
+          const Vec3& top = prism.vertices[static_cast<std::size_t>(k)];
+          prism.vertices.emplace_back(top.x(), top.y(), floor);
+        }
+        out.push_back(hull_of(prism, x, r));
+      }
+    }
+  }
+  return out;
+}
+
 Separation of_half_space(const Convex& plane, const Convex& b) {
   const Vec3& n = plane.normals[0];
   const Vec3 lowest = b.support(-n);
@@ -220,6 +247,7 @@ std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space spa
     }
     return links;
   }
+  if (const auto* s = std::get_if<HeightField>(&shape.geometry)) return prisms_of(*s, x, r);
   if (const auto* s = std::get_if<Cylinder>(&shape.geometry)) {
     const Vec3 end = r.col(2) * s->half_length;
     Convex c = segment_of(x - end, x + end, 0, space);

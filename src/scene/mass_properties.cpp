@@ -142,6 +142,7 @@ MassProperties of(const HalfPlane&, double) { return {0, Vec3::Zero(), Mat3::Zer
 
 MassProperties of(const Segment&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
 MassProperties of(const Terrain&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
+MassProperties of(const HeightField&, double) { return {0, Vec3::Zero(), Mat3::Zero()}; }
 
 // In the body frame.
 MassProperties of(const Shape& shape, const Scene& scene) {

@@ -1,7 +1,31 @@
 // validate(): every issue of a scene, in the order in which its members are declared.
 #include "src/scene/checks.hpp"
+#include "src/scene/height_field.hpp"
 
 namespace manyworlds {
+
+namespace {
+
+// Shapes that lie over many cells of a height field would meet all of their triangles.
+void check_tiles(detail::Checker& checker, const Scene& scene) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    for (std::size_t k = 0; k < scene.bodies[b].shapes.size(); ++k) {
+      const auto* field = std::get_if<HeightField>(&scene.bodies[b].shapes[k].geometry);
+      if (field == nullptr) continue;
+      const TileCount tiles = tiles_of(*field, scene);
+      if (tiles.count() <= kMostTiles) continue;
+      std::string part = "body " + std::to_string(b);
+      if (!scene.bodies[b].name.empty()) part += " '" + scene.bodies[b].name + "'";
+      checker.at(part + ", shape " + std::to_string(k))
+          .add("cell", "is " + detail::vector_text(field->cell) +
+                           " m: the largest shape that moves can lie over " +
+                           std::to_string(tiles.count()) + " triangles, must be at most " +
+                           std::to_string(kMostTiles));
+    }
+  }
+}
+
+}  // namespace
 
 std::string to_string(const Issue& issue) { return issue.place + " " + issue.message; }
 
@@ -17,7 +41,10 @@ std::vector<Issue> validate(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     for (const Shape& shape : body.shapes) {
       const auto* terrain = std::get_if<Terrain>(&shape.geometry);
-      shapes += terrain != nullptr ? terrain->points.size() : 1;  // a collider for every segment
+      // A collider for every segment or tile.
+      shapes += terrain != nullptr                                    ? terrain->points.size()
+                : std::holds_alternative<HeightField>(shape.geometry) ? kMostTiles
+                                                                      : 1;
     }
   }
   check_count("bodies", scene.bodies.size(), detail::kMostBodies);
@@ -60,6 +87,7 @@ std::vector<Issue> validate(const Scene& scene) {
   const bool sound = issues.empty() && option_issues.empty();
   issues.insert(issues.end(), option_issues.begin(), option_issues.end());
   check_variations(checker, scene, sound);
+  if (sound && issues.empty()) check_tiles(checker, scene);
   return issues;
 }
 

@@ -164,7 +164,7 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
       fixed_rows_[static_cast<std::size_t>(f.row_offset) + k] = static_cast<Real>(f.row[k]);
     }
     if (f.kind == kernels::ShapeKind::box || f.kind == kernels::ShapeKind::cylinder ||
-        f.kind == kernels::ShapeKind::hull) {
+        f.kind == kernels::ShapeKind::hull || f.kind == kernels::ShapeKind::tile) {
       fixed_rows_[static_cast<std::size_t>(f.row_offset) + 15] = static_cast<Real>(least_margin);
     }
     fixed_.push_back(out);

@@ -1,0 +1,170 @@
+// Tiles of height fields: loading, their surface's normals, spheres (collide/tile.hpp).
+#include "kernels/collide/capsule_capsule.hpp"
+#include "kernels/collide/tile.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+namespace {
+
+// Sine by which a normal may leave the range at an edge that sticks out: bodies at rest on the
+// neighbour lean a little.
+constexpr Real kNormalSlack = Real(1e-3);
+// Edges that turn by less count as flat.
+constexpr Real kFlat = Real(1e-4);
+
+// Corners of the two triangles of a cell, and the third corners of their neighbours.
+constexpr int kCorner[2][6][2] = {{{0, 0}, {1, 0}, {1, 1}, {0, -1}, {2, 1}, {0, 1}},
+                                  {{0, 0}, {1, 1}, {0, 1}, {1, 0}, {1, 2}, {-1, 0}}};
+
+int floor_of(Real x) {
+  const Real most = Real(1e9);
+  if (!(-most < x)) return -1000000000;
+  if (!(x < most)) return 1000000000;
+  const int i = static_cast<int>(x);
+  return static_cast<Real>(i) > x ? i - 1 : i;
+}
+// The first number from `from` on that leaves this remainder.
+int next_with(int from, int remainder, int divisor) {
+  const int off = (remainder - from) % divisor;
+  return from + (off < 0 ? off + divisor : off);
+}
+
+// What a lane sees of its tile: the corners in the field's frame.
+struct Corners {
+  alignas(64) Real x[6][kLanes], y[6][kLanes], z[6][kLanes], code[kLanes];
+  std::uint32_t there = 0;
+};
+void find_corners(const Real* row, int lane, Real low_x, Real low_y, Corners& out) {
+  const auto whole = [row](int at) { return static_cast<int>(row[at]); };
+  const Real cell_x = row[TileRow::cell_x], cell_y = row[TileRow::cell_y];
+  const int columns = whole(TileRow::columns), rows = whole(TileRow::rows);
+  int i = next_with(floor_of(low_x / cell_x), whole(TileRow::column), whole(TileRow::wide));
+  int j = next_with(floor_of(low_y / cell_y), whole(TileRow::row), whole(TileRow::deep));
+  const bool there = 0 <= i && i < columns && 0 <= j && j < rows;
+  if (!there) i = j = 0;
+  out.there |= static_cast<std::uint32_t>(there) << lane;
+  const int half = whole(TileRow::half);
+  // Told apart from cells that are far away in the same tile.
+  out.code[lane] = static_cast<Real>((i + j * columns) & 0xff);
+  const Real* heights = row + whole(TileRow::heights);
+  for (int k = 0; k < 6; ++k) {
+    const int u = i + kCorner[half][k][0], v = j + kCorner[half][k][1];
+    const bool inside = 0 <= u && u <= columns && 0 <= v && v <= rows;
+    if (inside) {
+      out.x[k][lane] = static_cast<Real>(u) * cell_x;
+      out.y[k][lane] = static_cast<Real>(v) * cell_y;
+      out.z[k][lane] = heights[u + v * (columns + 1)];
+    } else {  // the field ends: straight down from the edge
+      out.x[k][lane] = out.x[k - 3][lane];
+      out.y[k][lane] = out.y[k - 3][lane];
+      out.z[k][lane] = out.z[k - 3][lane] - (cell_x + cell_y);
+    }
+  }
+}
+
+MW_INLINE Vec3 unit(Vec3 v) {
+  const Float one(Real(1));
+  return v * (one / sqrt(max(dot(v, v), Real(1e-30))));
+}
+
+}  // namespace
+
+void load_tile(const Real* base, const std::int32_t* offset, const ConvexShape& b, Mask active,
+               Tile& tile, ConvexShape& s) {
+  const std::uint32_t lanes = bits(active) & kAllLanes;
+  // Lanes without a candidate may point at any shape; they look at the tile of another.
+  alignas(64) std::int32_t o[kLanes];
+  const int any_lane = lanes != 0 ? __builtin_ctz(lanes) : -1;
+  for (int l = 0; l < kLanes; ++l) o[l] = ((lanes >> l) & 1u) != 0 ? offset[l] : offset[any_lane];
+  BoxPose frame;
+  load_pose(base, o, frame);
+  alignas(64) Real low_x[kLanes], low_y[kLanes], pad[kLanes];
+  for (int l = 0; l < kLanes; ++l) pad[l] = base[o[l] + TileRow::pad];
+  const Vec3 d = b.p - frame.p;
+  const Float around = b.radius + Float::load(pad);
+  (dot(frame.r.x, d) + extent_along(b, frame.r.x).low - around).store(low_x);
+  (dot(frame.r.y, d) + extent_along(b, frame.r.y).low - around).store(low_y);
+  Corners corners;
+  for (int l = 0; l < kLanes; ++l) find_corners(base + o[l], l, low_x[l], low_y[l], corners);
+  tile.there = mask_from_bits(corners.there & lanes);
+  tile.code = Float::load(corners.code);
+
+  Vec3 at[6];
+  for (int k = 0; k < 6; ++k) {
+    at[k] = {Float::load(corners.x[k]), Float::load(corners.y[k]), Float::load(corners.z[k])};
+  }
+  const Vec3 middle = (at[0] + at[1] + at[2]) * Float(Real(1) / Real(3));
+  for (int k = 0; k < 6; ++k) at[k] = mul(frame.r, at[k] - middle);
+  s.kind = kernels::ShapeKind::tile;
+  s.p = frame.p + mul(frame.r, middle);
+  s.r = frame.r;
+  s.radius = Real(0);
+  s.margin = frame.margin;
+  s.vertices = 3;
+  const Float zero(Real(0));
+  Float reach2 = zero;
+  tile.normal = unit(cross(at[1] - at[0], at[2] - at[0]));
+  for (int e = 0; e < 3; ++e) {
+    tile.vertex[e] = s.vertex[e] = at[e];
+    reach2 = max(dot(at[e], at[e]), reach2);
+    const Vec3 edge = unit(at[(e + 1) % 3] - at[e]), across = at[3 + e] - at[e];
+    tile.out[e] = cross(edge, tile.normal);
+    const Vec3 on = unit(fnma(edge, dot(edge, across), across));
+    const Mask sticks_out = dot(on, tile.normal) < Float(-kFlat);
+    tile.last[e] = select(sticks_out, on, tile.out[e]);
+  }
+  s.face_normal = tile.normal;
+  const Float reach = sqrt(reach2);
+  s.half = {reach, reach, reach};
+}
+
+Mask has_normal(const Tile& tile, Vec3 n) {
+  const Float slack(kNormalSlack);
+  Mask out = slack < dot(tile.normal, n);
+  for (int e = 0; e < 3; ++e) {
+    out = out & ((dot(tile.out[e], n) <= slack) | (dot(tile.last[e], n) <= slack));
+  }
+  return out;
+}
+
+Mask is_over(const Tile& tile, Vec3 point, Float slack) {
+  Mask out = mask_from_bits(kAllLanes);
+  for (int e = 0; e < 3; ++e) out = out & (dot(tile.out[e], point - tile.vertex[e]) <= slack);
+  return out;
+}
+
+void collide_tile_sphere(const ConvexShape& a, const Tile& tile, const ConvexShape& b,
+                         Manifold<Isotropic, 1>& m) {
+  const Float zero(Real(0)), one(Real(1)), half(Real(0.5));
+  const Vec3 d = b.p - a.p;
+  const Float height = dot(tile.normal, d - tile.vertex[0]);
+  const Mask over = is_over(tile, d, zero);
+  // Beside it, the nearest of its edges.
+  Vec3 nearest = tile.vertex[0];
+  Float best = Real(1e30);
+  for (int e = 0; e < 3; ++e) {
+    const Vec3 from = d - tile.vertex[e], edge = tile.vertex[(e + 1) % 3] - tile.vertex[e];
+    const Float share = clamp(dot(from, edge) / max(dot(edge, edge), Real(1e-30)), zero, one);
+    const Vec3 off = fnma(edge, share, from);
+    const Float d2 = dot(off, off);
+    const Mask nearer = d2 < best;
+    best = min(d2, best);
+    nearest = select(nearer, fma(edge, share, tile.vertex[e]), nearest);
+  }
+  const Vec3 way = d - nearest;
+  const Mask apart = Float(kTinyDistance2) < best;
+  const Float distance = sqrt(select(apart, best, one));
+  m.normal = select(over | !apart, tile.normal, way * (one / distance));
+  const Float reach = select(over, height, select(apart, distance, zero));
+  const Float separation = reach - b.radius;
+  m.tangent = any_tangent(m.normal);
+  m.separation[0] = separation;
+  m.point_b[0] = m.normal * -fma(min(separation, zero), half, b.radius);
+  m.point_a[0] = fma(m.normal, -max(separation, zero), m.point_b[0] + d);
+  m.feature_x[0] = m.feature_y[0] = zero;
+  m.code = tile.code * Float(kTileCodes);
+  m.match_distance2 = zero;
+  m.valid[0] = tile.there & (over | ((zero < height) & has_normal(tile, m.normal)));
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
