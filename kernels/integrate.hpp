@@ -237,10 +237,13 @@ void first_push(const Tables& t, const Group& g, Work& w) {
     for (int b = 0; b < t.bodies; ++b) {
       if (w.touched[b] == 0 || t.body[b].kinematic) continue;  // kinematic: no inertia
       const auto& inertia = constants_of_body(g, b).inertia;
-      const Quat q = load_quat(state_of(t, g, b, kState<S>.orientation));
+      const Vec3 moments{inertia[0], inertia[1], inertia[2]};
+      const Mat3 r = matrix(load_quat(state_of(t, g, b, kState<S>.orientation)));
       Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
-      const Vec3 turned =
-          implicit_gyroscopic(t.dt, {inertia[0], inertia[1], inertia[2]}, matrix(q), v.w);
+      Vec3 turned = implicit_gyroscopic(t.dt, moments, r, v.w);
+      if (t.has_joints) {
+        turned = select(turns_far(t.dt, v.w), turned, half_gyroscopic(t.dt, moments, r, v.w));
+      }
       v.w = select(mask_from_bits(w.touched[b]), turned, v.w);
       put_velocity<S, kDense>(w, w.velocity, b, v);
     }
