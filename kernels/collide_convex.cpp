@@ -247,12 +247,10 @@ void collide_convex_pair(const Tables& t, const ConvexShape& a, const Tile* tile
   const Float zero(Real(0));
   const Vec3 d = b.p - a.p;
   ConvexAxis axis;
+  if (tile) active = active & tile->there;
   find_convex_axis(t, a, b, active, axis);
   Mask bare = zero < zero;
-  if (tile) {
-    bare = keep_to_surface(*tile, b, d, axis);
-    axis.near = axis.near & tile->there;
-  }
+  if (tile) bare = keep_to_surface(*tile, b, d, axis);
   put_found(a, b, axis, d, m);
   active = axis.near;
   m.valid[0] = active & !bare;

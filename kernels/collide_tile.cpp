@@ -34,13 +34,17 @@ struct Corners {
   alignas(64) Real x[6][kLanes], y[6][kLanes], z[6][kLanes], code[kLanes];
   std::uint32_t there = 0;
 };
-void find_corners(const Real* row, int lane, Real low_x, Real low_y, Corners& out) {
+// `low`, `high`: of the shape, x and y in the field's frame.
+void find_corners(const Real* row, int lane, const Real* low, const Real* high, Corners& out) {
   const auto whole = [row](int at) { return static_cast<int>(row[at]); };
   const Real cell_x = row[TileRow::cell_x], cell_y = row[TileRow::cell_y];
   const int columns = whole(TileRow::columns), rows = whole(TileRow::rows);
-  int i = next_with(floor_of(low_x / cell_x), whole(TileRow::column), whole(TileRow::wide));
-  int j = next_with(floor_of(low_y / cell_y), whole(TileRow::row), whole(TileRow::deep));
-  const bool there = 0 <= i && i < columns && 0 <= j && j < rows;
+  int i = next_with(floor_of(low[0] / cell_x), whole(TileRow::column), whole(TileRow::wide));
+  int j = next_with(floor_of(low[1] / cell_y), whole(TileRow::row), whole(TileRow::deep));
+  // A small shape has nothing to do with the tiles that only large ones reach.
+  const bool reached =
+      static_cast<Real>(i) * cell_x <= high[0] && static_cast<Real>(j) * cell_y <= high[1];
+  const bool there = reached && 0 <= i && i < columns && 0 <= j && j < rows;
   if (!there) i = j = 0;
   out.there |= static_cast<std::uint32_t>(there) << lane;
   const int half = whole(TileRow::half);
@@ -78,14 +82,21 @@ void load_tile(const Real* base, const std::int32_t* offset, const ConvexShape& 
   for (int l = 0; l < kLanes; ++l) o[l] = ((lanes >> l) & 1u) != 0 ? offset[l] : offset[any_lane];
   BoxPose frame;
   load_pose(base, o, frame);
-  alignas(64) Real low_x[kLanes], low_y[kLanes], pad[kLanes];
+  alignas(64) Real low[2][kLanes], high[2][kLanes], pad[kLanes];
   for (int l = 0; l < kLanes; ++l) pad[l] = base[o[l] + TileRow::pad];
   const Vec3 d = b.p - frame.p;
   const Float around = b.radius + Float::load(pad);
-  (dot(frame.r.x, d) + extent_along(b, frame.r.x).low - around).store(low_x);
-  (dot(frame.r.y, d) + extent_along(b, frame.r.y).low - around).store(low_y);
+  for (int k = 0; k < 2; ++k) {
+    const Vec3 axis = k == 0 ? frame.r.x : frame.r.y;
+    const Extent e = extent_along(b, axis);
+    const Float place = dot(axis, d);
+    (place + e.low - around).store(low[k]), (place + e.high + around).store(high[k]);
+  }
   Corners corners;
-  for (int l = 0; l < kLanes; ++l) find_corners(base + o[l], l, low_x[l], low_y[l], corners);
+  for (int l = 0; l < kLanes; ++l) {
+    const Real of_lane[4] = {low[0][l], low[1][l], high[0][l], high[1][l]};
+    find_corners(base + o[l], l, of_lane, of_lane + 2, corners);
+  }
   tile.there = mask_from_bits(corners.there & lanes);
   tile.code = Float::load(corners.code);
 

@@ -11,20 +11,23 @@ namespace {
 
 constexpr double kWheelRadius = 0.4;  // m
 constexpr double kGrip = 0.9;         // friction of wheels and ground
-constexpr double kHalfWidth = 100;    // m, of the walled ground
 
-// Balls, until there are cylinders: this is the one place to change.
+// A cylinder rolls about z of its frame.
 Shape wheel_shape() {
-  Shape wheel = shape_of(Sphere{kWheelRadius});
-  wheel.density = 100;
+  Shape wheel = shape_of(Cylinder{kWheelRadius, 0.15});
+  wheel.rotation = Quat(std::sqrt(0.5), std::sqrt(0.5), 0, 0);  // z to -y
+  wheel.density = 180;
   wheel.material.friction = kGrip;
   return wheel;
 }
 
-// Half-sunken logs across the track, and ramps under one wheel or the other.
+// Low hills, half-sunken logs across the track, and ramps under one wheel or the other.
 Body rough_ground() {
-  Body ground = spatial_bin(kHalfWidth);
+  Body ground;
   ground.name = "rough ground";
+  ground.motion = Motion::fixed;
+  ground.shapes.push_back(shape_of(rough_field(101, 51, 2, 0.06)));
+  ground.shapes[0].position.z() = -0.06;  // no hill is higher than 0
   for (int i = 0; i < 12; ++i) {
     Shape log = shape_of(Capsule{0.3, 3});
     log.position = {6 + 5.0 * i, 1.0 * (i % 3) - 1, -0.2};
@@ -46,7 +49,7 @@ Body rough_ground() {
 
 Scene car3d() {
   Scene scene = spatial_scene("car3d");
-  scene.options.bounds = spatial_bounds(kHalfWidth);
+  scene.options.bounds = Eigen::AlignedBox3d(Vec3(-100, -50, -2), Vec3(100, 50, 100));
   scene.options.substeps = 8;  // blows of logs pull its joints apart by 10 mm, with 4 by 25 mm
   scene.add(rough_ground());
 

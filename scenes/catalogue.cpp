@@ -52,6 +52,8 @@ const std::vector<Entry>& all() {
       {"newton-cradle", "2D: 5 elastic balls in a row, one comes in", false, default_cradle},
       {"mixed-pile", "3D: boxes, spheres and compounds of many sizes in a bin", false, mixed_pile},
       {"mixed-pile2d", "2D: circles and polygons of many sizes in a bin", false, mixed_pile2d},
+      {"hills", "3D: cylinders, hulls and all other shapes on a height field", false, hills},
+      {"pebbles", "2D: polygons with round corners and others on a terrain", false, pebbles},
       {"bridge", "2D: boxes on a bridge of 16 hinged planks", false, bridge},
       {"ball-and-chain", "2D: a heavy ball on a chain of 20 links", false, ball_and_chain},
       {"joint-grid", "2D: a net of 10 x 10 hinged discs", false, joint_grid},

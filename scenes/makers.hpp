@@ -31,6 +31,10 @@ Scene elevator();
 Scene windmill();
 Scene four_bar();
 
+// shapes.cpp
+Scene hills();
+Scene pebbles();
+
 // one file each
 Scene car2d();
 Scene lunar_lander();

@@ -32,6 +32,9 @@ Shape shape_of(Geometry geometry);
 // Adds a dynamic body of one shape; returns its index.
 int add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry);
 
+// Hills about height 0, up to `height` m high, 4 m from top to top; shapes.cpp.
+HeightField rough_field(int columns, int rows, double cell, double height);
+
 // A frame at a point of the plane, its axes the world's.
 Frame frame_at(double x, double y);
 

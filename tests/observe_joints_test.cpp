@@ -203,4 +203,21 @@ TEST_CASE("joints that nobody observes are not read", "[fast][observe][joint]") 
   CHECK_NOTHROW(seeing.read(Observed::joint_position, 0, none));
 }
 
+TEST_CASE("joints are seen at the state after a reset, without a step", "[fast][observe][joint]") {
+  for (const Table& table : widest_tables()) {
+    Scene scene = empty_scene(Space::planar, 0);
+    scene.add(uniform_rod(Space::planar, 1, 1, {0.5, 0, 0}));
+    scene.bodies[0].angular_velocity.z() = 2;
+    scene.add(joint_at(scene, -1, 0, at(Vec3::Zero()), HingeJoint{}));
+    Batch batch(compile(scene), observing(table, 2));
+    batch.step(30);
+    REQUIRE(numbers(batch, Observed::joint_position)[0] > 0.5);
+    batch.reset(std::vector<std::uint8_t>{0, 1});
+    batch.look();
+    CHECK(numbers(batch, Observed::joint_position, 0)[0] > 0.5);
+    CHECK(numbers(batch, Observed::joint_position, 1)[0] == Approx(0).margin(1e-6));
+    CHECK(numbers(batch, Observed::joint_speed, 1)[0] == Approx(2));
+  }
+}
+
 }  // namespace manyworlds::test

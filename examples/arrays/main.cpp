@@ -59,8 +59,7 @@ class CartPoles {
       : batch_(mw::compile(cart_pole()),
                {.worlds = kWorlds, .seed = 1, .observe = {{mw::Observer::joints}, {}, 0}}) {}
 
-  // What the last step ended with. Of a world that has just begun anew, whose numbers nobody has
-  // observed yet, zeros.
+  // What the last step ended with; of a world that has just begun anew, what it begins with.
   std::vector<float> observations = std::vector<float>(kWorlds * kObservations);
   std::vector<float> rewards = std::vector<float>(kWorlds);
   std::vector<std::uint8_t> ended = std::vector<std::uint8_t>(kWorlds);
@@ -68,26 +67,36 @@ class CartPoles {
   void step(std::span<const float> actions) {
     batch_.set_controls(actions);  // [world][control]
     batch_.step();
-    batch_.read(mw::Observed::joint_position, place_);  // [world][travel, angle]
-    batch_.read(mw::Observed::joint_speed, speed_);
+    observe();
+    bool any_ended = false;
     for (std::size_t w = 0; w < kWorlds; ++w) {
-      const float travel = place_[2 * w], angle = place_[2 * w + 1];
-      float* seen = observations.data() + w * kObservations;
-      seen[0] = travel, seen[1] = speed_[2 * w];
-      seen[2] = angle, seen[3] = speed_[2 * w + 1];
+      const float* seen = observations.data() + w * kObservations;
+      const float travel = seen[0];
       rewards[w] = 1 - 0.1f * travel * travel;
-      const bool failed = std::abs(angle) > kMostLean || std::abs(travel) > kMostTravel;
+      const bool failed = std::abs(seen[2]) > kMostLean || std::abs(travel) > kMostTravel;
       ended[w] = failed || ++age_[w] == kMostSteps;
-      if (!ended[w]) continue;
-      age_[w] = 0;
-      std::fill(seen, seen + kObservations, 0.0f);
+      if (ended[w]) age_[w] = 0;
+      any_ended = any_ended || ended[w];
     }
+    if (!any_ended) return;
     batch_.reset(ended);  // with a new draw
+    batch_.look();
+    observe();
   }
 
   const mw::Batch& batch() const { return batch_; }
 
  private:
+  void observe() {
+    batch_.read(mw::Observed::joint_position, place_);  // [world][travel, angle]
+    batch_.read(mw::Observed::joint_speed, speed_);
+    for (std::size_t w = 0; w < kWorlds; ++w) {
+      float* seen = observations.data() + w * kObservations;
+      seen[0] = place_[2 * w], seen[1] = speed_[2 * w];
+      seen[2] = place_[2 * w + 1], seen[3] = speed_[2 * w + 1];
+    }
+  }
+
   mw::Batch batch_;
   std::vector<float> place_ = std::vector<float>(2 * kWorlds);
   std::vector<float> speed_ = std::vector<float>(2 * kWorlds);

@@ -261,7 +261,8 @@ class Batch {
   // As many as the batch was made with. Of one world, only origin, direction and length change.
   void set_rays(std::span<const Ray> rays);
   void set_rays(int world, std::span<const Ray> rays);
-  // Motion and rays at the current state, without a step.
+  // Motion, coordinates of joints and rays at the current state, without a step: after a reset,
+  // say.
   void look();
 
   // Time spent per stage since the last call, summed over threads; empty until profile(true).

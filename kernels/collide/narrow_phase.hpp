@@ -197,6 +197,7 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
     } else if (!kPair && kinds.a == ShapeKind::tile) {
       Tile tile;
       load_tile(base_a, o.a, b, active, tile, a);
+      if (!any(tile.there)) continue;
       origin_a = a.p;
       collide_tile<N>(t, a, tile, b, active, m);
     } else {
