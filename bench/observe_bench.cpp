@@ -66,9 +66,43 @@ void time_observer(benchmark::State& state, const char* scene, const Choice& cho
   state.SetItemsProcessed(state.iterations() * kObservedWorlds);
 }
 
+// What a learner does beside the step: writes all controls and reads all coordinates of joints.
+void time_controls(benchmark::State& state) {
+  constexpr int kControlled = 4096;
+  BatchOptions options;
+  options.worlds = kControlled;
+  options.threads = 1;
+  const Plan plan = compile(scenes::find("lunar-lander")->make());
+  Batch left_alone(plan, options);
+  options.observe.what = {Observer::joints};
+  Batch controlled(plan, options);
+  left_alone.step(120), controlled.step(120);
+  std::vector<float> controls(static_cast<std::size_t>(kControlled * controlled.controls()));
+  controlled.read_controls(controls);
+  std::vector<float> angles(controlled.size(Observed::joint_position));
+  std::vector<double> ratios;
+  for ([[maybe_unused]] const auto _ : state) {
+    const double without = processor_seconds_of([&] { left_alone.step(); });
+    const double with = processor_seconds_of([&] {
+      controlled.set_controls(controls);
+      controlled.step();
+      controlled.read(Observed::joint_position, angles);
+    });
+    ratios.push_back(with / without);
+    state.SetIterationTime(with);
+  }
+  if (left_alone.hash() != controlled.hash()) state.SkipWithError("the same controls changed it");
+  std::sort(ratios.begin(), ratios.end());
+  state.counters["ratio"] = ratios[ratios.size() / 2];
+  state.SetItemsProcessed(state.iterations() * kControlled);
+}
+
 }  // namespace
 
 void register_observers() {
+  benchmark::RegisterBenchmark("observe/lunar-lander/controls_and_angles", time_controls)
+      ->UseManualTime()
+      ->Unit(benchmark::kMicrosecond);
   static const std::vector<Choice> kChoices = {
       {"nothing", {}, 0},
       {"motion", {Observer::motion}, 0},

@@ -42,9 +42,9 @@ class Storage {
   // to, directly or not: what carried what is gone would be pushed up.
   void drop_impulses(int slot, int body);
 
-  Real& control(int slot, int which) const {
-    return control_[(group_of(slot) * index(tables_.controls) + index(which)) * index(lanes_) +
-                    lane_of(slot)];
+  Real* controls(int slot) const {  // lanes() apart
+    return control_.data() + group_of(slot) * index(tables_.controls) * index(lanes_) +
+           lane_of(slot);
   }
 
   void add_force(int slot, int body, const Vec3& force, const Vec3& torque);

@@ -10,8 +10,10 @@ template <class Real>
 template <class In>
 void Worlds<Real>::set_controls(int first, int count, const In* in) {
   const auto& ranges = data().control_range;
-  for (int world = first; world < first + count; ++world) {
+  const auto lanes = static_cast<std::size_t>(storage_.lanes());
+  for (int world = first; !ranges.empty() && world < first + count; ++world) {
     const int slot = slot_of(world);
+    Real* control = storage_.controls(slot);
     bool changed = false;
     for (std::size_t i = 0; i < ranges.size(); ++i, ++in) {
       if (std::isnan(*in)) {
@@ -20,7 +22,7 @@ void Worlds<Real>::set_controls(int first, int count, const In* in) {
       }
       const Real value = std::clamp(static_cast<Real>(*in), static_cast<Real>(ranges[i][0]),
                                     static_cast<Real>(ranges[i][1]));
-      Real& stored = storage_.control(slot, static_cast<int>(i));
+      Real& stored = control[i * lanes];
       changed = changed || stored != value;
       stored = value;
     }
@@ -31,9 +33,10 @@ void Worlds<Real>::set_controls(int first, int count, const In* in) {
 template <class Real>
 template <class Out>
 void Worlds<Real>::read_controls(int first, int count, Out* out) const {
-  for (int world = first; world < first + count; ++world) {
-    for (int i = 0; i < tables().controls; ++i) {
-      *out++ = static_cast<Out>(storage_.control(slot_of(world), i));
+  for (int world = first; tables().controls > 0 && world < first + count; ++world) {
+    const Real* control = storage_.controls(slot_of(world));
+    for (int i = 0; i < tables().controls; ++i, control += storage_.lanes()) {
+      *out++ = static_cast<Out>(*control);
     }
   }
 }

@@ -77,9 +77,10 @@ void Worlds<Real>::initialise(int world) {
   storage_.clear_contacts(slot);
   storage_.clear_joints(slot);
   storage_.clear_loose(slot);
-  for (std::size_t i = 0; i < plan_.scene().controls.size(); ++i) {
-    storage_.control(slot, static_cast<int>(i)) =
-        static_cast<Real>(plan_.scene().controls[i].initial);
+  Real* control = storage_.controls(slot);
+  for (const Control& c : plan_.scene().controls) {
+    *control = static_cast<Real>(c.initial);
+    control += storage_.lanes();
   }
   storage_.clear_forces(slot);
   storage_.wake(slot);
