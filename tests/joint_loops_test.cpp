@@ -1,0 +1,134 @@
+// Closed loops of joints, more than are needed to hold them: IFToMM's N-four-bar (numerics.md A11),
+// with large steps (B23, B25), and a redundant loop in space.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "tests/support/joints.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+// N + 1 upright unit links on the ground whose tips N level ones join. All loops stay parallel;
+// when they lie flat, one degree of freedom becomes N + 1.
+Scene four_bars(int n, double rate) {
+  Scene scene = empty_scene(Space::planar, 9.81);
+  scene.options.dt = 1 / rate;
+  for (int i = 0; i <= n; ++i) {
+    Body link = uniform_rod(Space::planar, 1, 1, {static_cast<double>(i), 0.5, 0});
+    link.rotation = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
+    link.angular_velocity = {0, 0, -1};
+    link.linear_velocity = {0.5, 0, 0};
+    scene.add(link);
+  }
+  for (int i = 0; i < n; ++i) {
+    Body link = uniform_rod(Space::planar, 1, 1, {i + 0.5, 1, 0});
+    link.linear_velocity = {1, 0, 0};
+    scene.add(link);
+  }
+  const auto pin = [&](int a, int b, double x, double y) {
+    scene.add(joint_at(scene, a, b, at({x, y, 0}), HingeJoint{}));
+  };
+  for (int i = 0; i <= n; ++i) pin(-1, i, i, 0);
+  for (int i = 0; i < n; ++i) pin(i, n + 1 + i, i, 1), pin(i + 1, n + 1 + i, i + 1, 1);
+  return scene;
+}
+
+struct LoopError {
+  double tip = 0, gap = 0;  // m, largest over the run
+  double gain = 0;          // of energy, largest, as a share of what moves
+};
+LoopError run(int n, double rate, double seconds) {
+  Batch batch(compile(four_bars(n, rate)),
+              options_of({widest_tables().front().isa, Precision::f64}));
+  // theta'' = -c cos(theta), from upright; energy 0 where the links hang.
+  const double c = 9.81 * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n);
+  double theta = kPi / 2, omega = -1;
+  const double start = energy_of(batch, 0), lowest = -9.81 * (0.5 * (n + 1) + n);
+  LoopError out;
+  const int steps = static_cast<int>(seconds * rate + 0.5);
+  for (int i = 0; i < steps; ++i) {
+    batch.step();
+    constexpr int kParts = 20;  // of Runge-Kutta 4
+    const double h = 1 / rate / kParts;
+    for (int k = 0; k < kParts; ++k) {
+      const auto f = [&](double t) { return -c * std::cos(t); };
+      const double k1 = f(theta), l1 = omega, k2 = f(theta + h / 2 * l1), l2 = omega + h / 2 * k1,
+                   k3 = f(theta + h / 2 * l2), l3 = omega + h / 2 * k2, k4 = f(theta + h * l3),
+                   l4 = omega + h * k3;
+      theta += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+      omega += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+    const Vec3 tip = position(batch, 0, 0) + rotation(batch, 0, 0) * Vec3(0.5, 0, 0);
+    out.tip = std::max(out.tip, (tip - Vec3(std::cos(theta), std::sin(theta), 0)).norm());
+    out.gap = std::max(out.gap, worst_gap(batch, 0));
+    out.gain = std::max(out.gain, (energy_of(batch, 0) - start) / (start - lowest));
+  }
+  REQUIRE(batch.status(0) == Status::ok);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("loops of four bars stay closed, gain no energy and reach the 0.1 m level (A11)",
+          "[slow][joint]") {
+  if (!has_table({widest_tables().front().isa, Precision::f64})) return;
+  for (const int n : {2, 40}) {
+    const LoopError coarse = run(n, 240, n == 2 ? 20 : 5), fine = run(n, 960, n == 2 ? 20 : 5);
+    INFO("N " << n << ": tip " << coarse.tip << ", " << fine.tip << " m, gap " << coarse.gap
+              << " m, gain " << coarse.gain);
+    CHECK(coarse.gap < 1e-3);
+    CHECK(fine.gap < 1e-3);
+    CHECK(coarse.gain < 2e-3);
+    CHECK(fine.gain < 5e-4);
+    CHECK(fine.tip < 0.1);
+    CHECK(fine.tip < coarse.tip);
+  }
+}
+
+TEST_CASE("loops of four bars live through large steps (B23, B25)", "[fast][joint]") {
+  if (!has_table({widest_tables().front().isa, Precision::f64})) return;
+  for (const double rate : {60.0, 100.0}) {
+    const LoopError e = run(40, rate, 5);
+    INFO("rate " << rate << ": gap " << e.gap << " m, gain " << e.gain);
+    CHECK(e.gap < 5e-3);
+    CHECK(e.gain < 1e-2);
+  }
+}
+
+TEST_CASE("a redundant loop in space stays finite and closed (B23)", "[fast][joint]") {
+  for (const Table& table : widest_tables()) {
+    // A square of four rods on parallel hinges has one degree of freedom, and three rows too many;
+    // welded at a corner it has none.
+    Scene scene = empty_scene(Space::spatial, 10);
+    const Vec3 corner[4] = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1}};
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 along = corner[(i + 1) % 4] - corner[i];
+      Body rod = uniform_rod(Space::spatial, 1, 1, corner[i] + along / 2);
+      rod.mass_properties->inertia = Vec3(0.02, 0.08, 0.08).asDiagonal();
+      rod.rotation = Quat::FromTwoVectors(Vec3::UnitX(), along);
+      scene.add(rod);
+    }
+    for (int i = 0; i < 4; ++i) {
+      const JointType type = i == 2 ? JointType(FixedJoint{}) : JointType(HingeJoint{});
+      scene.add(joint_at(scene, (i + 3) % 4, i, at(corner[i], z_to_y()), type));
+    }
+    scene.add(joint_at(scene, -1, 0, at(corner[0], z_to_y()), HingeJoint{}));
+    Batch batch(compile(scene), options_of(table));
+    const double start = energy_of(batch, 0);
+    double gap = 0, most = start;
+    for (int i = 0; i < 600; ++i) {
+      batch.step();
+      gap = std::max(gap, worst_gap(batch, 0));
+      most = std::max(most, energy_of(batch, 0));
+    }
+    INFO(name(table) << " gap " << gap << " energy " << start << " to " << most);
+    CHECK(batch.status(0) == Status::ok);
+    CHECK(gap < 5e-3);
+    // 40 N fall by up to 1.5 m.
+    CHECK(most - start < 0.02 * 60);
+  }
+}
+
+}  // namespace manyworlds::test
