@@ -15,8 +15,10 @@ void turn_body_rows(const Tables& t, const Group& g, Work& w);
 void sort_and_sweep(const Tables& t, Work& w);
 void find_sparse_pairs(const Tables& t, const Group& g, Work& w);
 
-// Most candidates of a class that a lane may have: twice the manifolds that it can keep.
+// Most candidates of a class that a lane may have: twice the manifolds that it can keep. Tiles of a
+// height field are all candidates of who is over it.
 MW_INLINE int candidate_limit(const Tables& t, const kernels::PairClass<Real>& c) {
+  if (kernels::is_tile(c.kind)) return c.count;
   return 2 * t.capacity[static_cast<int>(c.list)];
 }
 

@@ -117,6 +117,10 @@ static inline constexpr bool is_multi(ListId id) {
   return id == ListId::pair_multi || id == ListId::fixed_multi;
 }
 
+static inline constexpr bool is_tile(PairKind kind) {
+  return PairKind::tile_sphere <= kind && kind <= PairKind::tile_hull;
+}
+
 inline constexpr int kMaxVertices = 8;
 inline constexpr int kMaxHullVertices = 64;
 inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of pose row

@@ -33,6 +33,7 @@ std::vector<PlanFixed> height_field_tiles(const Body& body, const Shape& shape,
   for (int i = 0; i < tiles.count(); ++i) {
     PlanFixed f;
     f.kind = kernels::ShapeKind::tile;
+    f.triangles = tiles.count(), f.triangles_before = i, f.cell = field.cell;
     f.low = bounds.min(), f.high = bounds.max();
     for (int k = 0; k < 3; ++k) {
       f.row.insert(f.row.end(), {r(0, k), r(1, k), r(2, k), corner[k]});

@@ -200,6 +200,19 @@ class Collector {
   std::map<std::pair<int, int>, PlanClass> classes_;
 };
 
+// Triangles of height fields that the shapes can lie over.
+int manifolds_on_tiles(const PlanData& plan) {
+  double near = 0;
+  for (const PlanFixed& f : plan.fixed) {
+    if (f.kind != ShapeKind::tile || f.triangles_before > 0) continue;
+    for (const PlanCollider& c : plan.colliders) {
+      const double wide = 2 * c.radius / f.cell.x() + 1, deep = 2 * c.radius / f.cell.y() + 1;
+      near += std::min(std::ceil(2 * wide * deep), static_cast<double>(f.triangles));
+    }
+  }
+  return static_cast<int>(near);
+}
+
 // One for each fixed shape; of a terrain's links as many as the shapes can lie over, with their
 // speculative margins, were all links as short as the shortest, and twice that for rough ground.
 int fixed_manifolds(const PlanData& plan) {
@@ -212,12 +225,10 @@ int fixed_manifolds(const PlanData& plan) {
   }
   double near = 0;
   for (const PlanCollider& c : plan.colliders) near += 2 * (4 * c.radius / shortest + 4);
-  // A shape touches some of the tiles below it, seldom many.
-  const int tiles =
-      static_cast<int>(std::count_if(plan.fixed.begin(), plan.fixed.end(),
-                                     [](const PlanFixed& f) { return f.kind == ShapeKind::tile; }));
-  const int others = static_cast<int>(plan.fixed.size()) - links - tiles;
-  return others + std::min(tiles, 12) * static_cast<int>(plan.colliders.size()) +
+  const auto tiles = std::count_if(plan.fixed.begin(), plan.fixed.end(),
+                                   [](const PlanFixed& f) { return f.kind == ShapeKind::tile; });
+  const int others = static_cast<int>(plan.fixed.size()) - links - static_cast<int>(tiles);
+  return others + manifolds_on_tiles(plan) +
          static_cast<int>(std::min(near, static_cast<double>(links)));
 }
 

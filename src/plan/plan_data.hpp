@@ -53,6 +53,9 @@ struct PlanFixed {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::array<double, 4> plane{};
   double length = 0;  // of a link
+  // Of a tile: how many its field has, and how many of them come before it; the field's cells, m.
+  int triangles = 0, triangles_before = 0;
+  Vec2 cell = Vec2::Zero();
   Material material;
   int row_offset = 0;
 };
