@@ -76,9 +76,11 @@ MW_INLINE Vec3 unit(Vec3 v) {
 void load_tile(const Real* base, const std::int32_t* offset, const ConvexShape& b, Mask active,
                Tile& tile, ConvexShape& s) {
   const std::uint32_t lanes = bits(active) & kAllLanes;
+  tile.there = mask_from_bits(0);
+  if (lanes == 0) return;
   // Lanes without a candidate may point at any shape; they look at the tile of another.
   alignas(64) std::int32_t o[kLanes];
-  const int any_lane = lanes != 0 ? __builtin_ctz(lanes) : -1;
+  const int any_lane = __builtin_ctz(lanes);
   for (int l = 0; l < kLanes; ++l) o[l] = ((lanes >> l) & 1u) != 0 ? offset[l] : offset[any_lane];
   BoxPose frame;
   load_pose(base, o, frame);

@@ -253,6 +253,8 @@ std::string to_string(const Issue& issue);
 // Every issue at once, in the order of the scene; empty means that compile() will succeed.
 std::vector<Issue> validate(const Scene& scene);
 
+// A frame of a body (-1: the world) in the world, as the bodies begin.
+Frame frame_in_world(const Scene& scene, int body, const Frame& frame);
 // A joint of two bodies (-1: the world) with both frames where `frame` is in the world as the
 // bodies begin.
 Joint joint_at(const Scene& scene, int body_a, int body_b, const Frame& frame, JointType type);

@@ -34,18 +34,11 @@ Side side_of(const PlanData& plan, int scene_body, const Frame& frame) {
     out.anchor = b.principal.conjugate() * (frame.position - b.center);
     out.frame = b.principal.conjugate() * out.frame;
   } else {
-    const Body& b = plan.scene.bodies[static_cast<std::size_t>(scene_body)];
-    const Quat rotation = b.rotation.normalized();
-    out.anchor = b.position + rotation * frame.position;
-    out.frame = rotation * out.frame;
+    const Frame in_world = frame_in_world(plan.scene, scene_body, frame);
+    out.anchor = in_world.position;
+    out.frame = in_world.rotation;
   }
   return out;
-}
-
-Vec3 in_world(const Scene& scene, int body, const Vec3& point) {
-  if (body < 0) return point;
-  const Body& b = scene.bodies[static_cast<std::size_t>(body)];
-  return b.position + b.rotation.normalized() * point;
 }
 
 class Builder {
@@ -61,6 +54,13 @@ class Builder {
   }
 
  private:
+  // In the world, as the bodies begin.
+  Vec3 anchor_a() const {
+    return frame_in_world(plan_.scene, joint_.body_a, joint_.frame_a).position;
+  }
+  Vec3 anchor_b() const {
+    return frame_in_world(plan_.scene, joint_.body_b, joint_.frame_b).position;
+  }
   bool spatial() const { return plan_.scene.space == Space::spatial; }
 
   RowSoftness<double> soft(double frequency, double damping_ratio) const {
@@ -169,10 +169,7 @@ class Builder {
     part(PartKind::point);
   }
   void add(const DistanceJoint& j) {
-    const double length =
-        j.length.value_or((in_world(plan_.scene, joint_.body_a, joint_.frame_a.position) -
-                           in_world(plan_.scene, joint_.body_b, joint_.frame_b.position))
-                              .norm());
+    const double length = j.length.value_or((anchor_b() - anchor_a()).norm());
     PlanPart& p = part(PartKind::distance);
     p.what.equality = !j.limit && !j.spring;
     p.numbers.rest = length;
@@ -187,8 +184,7 @@ class Builder {
     part(PartKind::line);
   }
   void add(const PulleyJoint& j) {
-    const Vec3 a = in_world(plan_.scene, joint_.body_a, joint_.frame_a.position),
-               b = in_world(plan_.scene, joint_.body_b, joint_.frame_b.position);
+    const Vec3 a = anchor_a(), b = anchor_b();
     PlanPart& p = part(PartKind::pulley);
     p.what.equality = true;
     put(j.ground_a, p.numbers.ground_a);
@@ -224,6 +220,14 @@ std::set<std::pair<int, int>> joined_bodies(const Scene& scene) {
     if (!j.collide && j.body_a >= 0) out.insert(std::minmax(j.body_a, j.body_b));
   }
   return out;
+}
+
+Frame frame_in_world(const Scene& scene, int body, const Frame& frame) {
+  const Quat rotation = frame.rotation.normalized();
+  if (body < 0) return {frame.position, rotation};
+  const Body& b = scene.bodies.at(static_cast<std::size_t>(body));
+  const Quat of_body = b.rotation.normalized();
+  return {b.position + of_body * frame.position, of_body * rotation};
 }
 
 Joint joint_at(const Scene& scene, int body_a, int body_b, const Frame& frame, JointType type) {

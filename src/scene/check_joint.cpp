@@ -82,12 +82,9 @@ class JointChecker {
   }
   // Frames of the two bodies as they begin.
   void check_gap() {
-    const auto place = [&](int index, const Frame& frame) -> Vec3 {
-      const Body* b = body(index);
-      return b ? Vec3(b->position + b->rotation.normalized() * frame.position) : frame.position;
-    };
-    const double gap =
-        (place(joint_.body_a, joint_.frame_a) - place(joint_.body_b, joint_.frame_b)).norm();
+    const double gap = (frame_in_world(scene_, joint_.body_a, joint_.frame_a).position -
+                        frame_in_world(scene_, joint_.body_b, joint_.frame_b).position)
+                           .norm();
     const double most = kFarthest * scene_.options.length_unit;
     if (gap > most) {
       check_.add("frame_b.position", "is " + number_text(gap) +

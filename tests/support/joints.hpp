@@ -32,18 +32,11 @@ inline Quat hinge_axes(Space space) {
 
 // Frame of a scene body in the world, now; -1: the world.
 inline Frame frame_now(const Batch& batch, int world, int scene_body, const Frame& frame) {
-  if (scene_body < 0) return frame;
   const Plan& plan = batch.plan(batch.kind_of(world));
-  const int b = plan.state_body(scene_body);
-  Vec3 x;
-  Quat q;
-  if (b < 0) {
-    const Body& body = plan.scene().bodies[static_cast<std::size_t>(scene_body)];
-    x = body.position, q = body.rotation.normalized();
-  } else {
-    x = position(batch, world, b), q = rotation(batch, world, b);
-  }
-  return {x + q * frame.position, q * frame.rotation};
+  const int b = scene_body < 0 ? -1 : plan.state_body(scene_body);
+  if (b < 0) return frame_in_world(plan.scene(), scene_body, frame);
+  const Quat q = rotation(batch, world, b);
+  return {position(batch, world, b) + q * frame.position, q * frame.rotation};
 }
 // How far the anchors of a joint lie apart, m.
 inline double anchor_gap(const Batch& batch, int world, int joint) {
