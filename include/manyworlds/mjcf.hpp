@@ -2,10 +2,11 @@
 // link manyworlds::mjcf.
 //
 // What is read: worlds of free bodies (a free joint on a top-level body) and static geoms, made of
-// spheres, capsules, boxes and planes. Poses, masses and inertias are those that MuJoCo's compiler
-// computes. Whatever would change the motion and is not simulated here is an error; what only
-// shapes MuJoCo's contact softness or its solver is a warning; what is only seen (lights, cameras,
-// materials, textures, sites) is ignored.
+// spheres, capsules, cylinders, boxes, meshes (their convex hulls, as in MuJoCo), planes and height
+// fields. Equality constraints connect and weld become ball and fixed joints. Poses, masses and
+// inertias are those that MuJoCo's compiler computes. Whatever would change the motion and is not
+// simulated here is an error; what only shapes MuJoCo's contact softness or its solver is a
+// warning; what is only seen (lights, cameras, materials, textures, sites) is ignored.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +29,7 @@ struct MjcfResult {
 };
 
 // A file that cannot be read, or that holds something we do not simulate. what() has one line per
-// problem: "pile.xml: joint 'hip' of body 'leg', line 12: is a hinge; expected a free joint".
+// problem: "pile.xml: joint 'hip' of body 'leg', line 12: is a hinge, which is ...; expected ...".
 class MjcfError : public std::runtime_error {
  public:
   explicit MjcfError(std::vector<std::string> problems);
