@@ -98,7 +98,7 @@ void check_geoms(const Model& model, std::vector<std::string>& problems) {
       }
     }
     if (!model.collides(g)) continue;
-    if ((type == mjGEOM_PLANE || type == mjGEOM_HFIELD) && m.body_weldid[m.geom_bodyid[g]] != 0) {
+    if (type == mjGEOM_HFIELD && m.body_weldid[m.geom_bodyid[g]] != 0) {
       problems.push_back(model.geom_place(g) + ": is a " + kind +
                          " on a body that moves, which is not simulated; expected a static body");
     }
