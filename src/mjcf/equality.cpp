@@ -62,6 +62,45 @@ bool has_effect(const mjModel& m, int e) {
 
 bool is_joint(const mjModel& m, int e) { return m.eq_active0[e] != 0 && has_effect(m, e); }
 
+// In the order of their numbers.
+using Bodies = std::pair<int, int>;
+
+Bodies joined(const mjModel& m, int e) {
+  const auto [end1, end2] = ends_of(m, e);
+  return std::minmax({m.body_weldid[end1.body], m.body_weldid[end2.body]});
+}
+
+// Whether nothing else that is welded to the body, or that it is welded to, can collide.
+bool collides_alone(const Model& model, int body) {
+  const mjModel& m = *model.compiled;
+  for (int g = 0; g < m.ngeom; ++g) {
+    const int owner = m.geom_bodyid[g];
+    if (owner != body && m.body_weldid[owner] == m.body_weldid[body] && model.collides(g)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// The free bodies that do not collide with each other; {0, 0} if there is no saying so of whole
+// ones.
+Bodies excluded(const Model& model, int exclude) {
+  const mjModel& m = *model.compiled;
+  const int body1 = m.exclude_signature[exclude] >> 16;
+  const int body2 = m.exclude_signature[exclude] & 0xffff;
+  const Bodies roots = std::minmax({m.body_weldid[body1], m.body_weldid[body2]});
+  const bool whole =
+      roots.first != 0 && collides_alone(model, body1) && collides_alone(model, body2);
+  return whole ? roots : Bodies{0, 0};
+}
+
+bool any_exclude(const Model& model, const Bodies& bodies) {
+  for (int x = 0; x < model.compiled->nexclude; ++x) {
+    if (excluded(model, x) == bodies) return true;
+  }
+  return false;
+}
+
 const char* type_name(int type) {
   switch (type) {
     case mjEQ_JOINT: return "a joint equality";
@@ -121,6 +160,17 @@ void compare_equalities(const Model& model, std::vector<std::string>& warnings) 
   });
 }
 
+bool excludes_joined(const Model& model, int exclude) {
+  const mjModel& m = *model.compiled;
+  const Bodies bodies = excluded(model, exclude);
+  if (bodies.first == 0 || !equalities_enabled(m)) return false;
+  for (int e = 0; e < m.neq; ++e) {
+    const bool known = m.eq_type[e] == mjEQ_CONNECT || m.eq_type[e] == mjEQ_WELD;
+    if (known && is_joint(m, e) && joined(m, e) == bodies) return true;
+  }
+  return false;
+}
+
 void add_joints(const Model& model, const std::vector<int>& scene_body, Scene& scene) {
   const mjModel& m = *model.compiled;
   if (!equalities_enabled(m)) return;
@@ -140,7 +190,7 @@ void add_joints(const Model& model, const std::vector<int>& scene_body, Scene& s
     joint.body_b = scene_body[static_cast<std::size_t>(b.body)];
     joint.frame_a = {a.frame.position, a.frame.rotation};
     joint.frame_b = {b.frame.position, b.frame.rotation};
-    joint.collide = true;
+    joint.collide = !any_exclude(model, joined(m, e));
     scene.add(std::move(joint));
   }
 }

@@ -1,5 +1,6 @@
 // Equality constraints between bodies as joints: connect is a ball joint, weld a fixed one. Bodies
-// joined by an equality go on colliding with each other, as in MuJoCo.
+// joined by an equality go on colliding with each other, as in MuJoCo, unless a contact exclude
+// says otherwise.
 #pragma once
 
 #include <string>
@@ -15,6 +16,10 @@ void check_equalities(const Model& model, std::vector<std::string>& problems);
 
 // Appends what joints do otherwise: softness, and the equalities that are left out.
 void compare_equalities(const Model& model, std::vector<std::string>& warnings);
+
+// Whether the contact exclude is between two free bodies that a joint holds together, and means all
+// of their shapes: then the joint sees to it.
+bool excludes_joined(const Model& model, int exclude);
 
 // `scene_body`: of each of MuJoCo's free bodies. Precondition: check_equalities finds nothing.
 void add_joints(const Model& model, const std::vector<int>& scene_body, Scene& scene);
