@@ -138,8 +138,8 @@ Scene make_scene(const Model& model, const std::string& name) {
     const bool moves = bodies[b].motion == Motion::dynamic;
     if (moves || !bodies[b].shapes.empty()) scene_body[b] = scene.add(std::move(bodies[b]));
   }
-  add_joints(model, scene_body, scene);
   scene.options.length_unit = typical_size(scene);
+  add_joints(model, scene_body, scene);
   return scene;
 }
 

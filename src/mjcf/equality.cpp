@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,10 @@ namespace {
 // then the pose that it holds this anchor at in body 1, and how much turning weighs.
 constexpr int kConnectAnchor1 = 0, kConnectAnchor2 = 3;
 constexpr int kWeldAnchor2 = 0, kWeldPosition1 = 3, kWeldRotation1 = 6, kWeldTorqueScale = 10;
+
+// s, for joints that begin apart: about what MuJoCo's default solref takes. As stiff as joints are
+// they would shoot.
+constexpr double kClosingTime = 0.1;
 
 // One of the two that an equality holds together, and the frame on it.
 struct End {
@@ -61,6 +66,40 @@ bool has_effect(const mjModel& m, int e) {
 }
 
 bool is_joint(const mjModel& m, int e) { return m.eq_active0[e] != 0 && has_effect(m, e); }
+
+// How far apart, m, and how much turned against each other, rad, the ends of a joint begin.
+struct Gap {
+  double length = 0, angle = 0;
+};
+
+Gap gap_of(const mjModel& m, int e) {
+  const auto in_world = [&](const End& end) {
+    const auto [root, frame] = on_root(m, end);
+    if (root == 0) return frame;
+    return Pose{vec3(m.body_pos + 3 * root), quat(m.body_quat + 4 * root)} * frame;
+  };
+  const auto [end1, end2] = ends_of(m, e);
+  const Pose a = in_world(end1), b = in_world(end2);
+  Gap gap;
+  gap.length = (a.position - b.position).norm();
+  if (holds_rotation(m, e)) {
+    gap.angle = a.rotation.normalized().angularDistance(b.rotation.normalized());
+  }
+  return gap;
+}
+
+// The largest of the joints; zero where that is less than a hundredth of the mean size of bodies.
+Gap largest_gap(const mjModel& m) {
+  Gap most;
+  for (int e = 0; e < m.neq; ++e) {
+    if (!is_joint(m, e)) continue;
+    const Gap gap = gap_of(m, e);
+    most = {std::max(most.length, gap.length), std::max(most.angle, gap.angle)};
+  }
+  if (most.length < 0.01 * m.stat.meansize) most.length = 0;
+  if (most.angle < 0.01) most.angle = 0;
+  return most;
+}
 
 // In the order of their numbers.
 using Bodies = std::pair<int, int>;
@@ -139,6 +178,15 @@ void compare_equalities(const Model& model, std::vector<std::string>& warnings) 
     if (count > 1) text += " and " + std::to_string(count - 1) + " more";
     warnings.push_back(text + ": " + what);
   };
+  if (const Gap gap = largest_gap(m); gap.length > 0 || gap.angle > 0) {
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "equalities: begin up to %.3g m and %.3g rad apart; joints close that in about %g s "
+        "(Options::joint_pull_speed), in MuJoCo as slowly as solref says",
+        gap.length, gap.angle, kClosingTime);
+    warnings.emplace_back(text);
+  }
   const std::string stiffness =
       " is ignored; the joint is as stiff as Options::joint_frequency says";
 
@@ -192,6 +240,10 @@ void add_joints(const Model& model, const std::vector<int>& scene_body, Scene& s
     joint.frame_b = {b.frame.position, b.frame.rotation};
     joint.collide = !any_exclude(model, joined(m, e));
     scene.add(std::move(joint));
+  }
+  if (const Gap gap = largest_gap(m); gap.length > 0 || gap.angle > 0) {
+    scene.options.joint_pull_speed =
+        std::max(gap.length / scene.options.length_unit, gap.angle) / kClosingTime;
   }
 }
 

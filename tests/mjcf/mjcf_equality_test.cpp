@@ -142,7 +142,9 @@ TEST_CASE("where a joint's frames coincide MuJoCo's equality is satisfied", "[mj
     INFO(c.equality);
     const std::string xml = with(c.equality);
     const MjcfResult result = load_mjcf_string(xml);
-    CHECK(result.warnings.empty());
+    for (const std::string& warning : result.warnings) {
+      CHECK_THAT(warning, Catch::Contains("equalities: begin up to"));
+    }
     const Scene& scene = result.scene;
     CHECK(validate(scene).empty());
     REQUIRE(scene.bodies.size() == 2);  // nothing of the shelf can be touched
@@ -229,6 +231,39 @@ TEST_CASE("softness of equalities is a warning", "[mjcf][fast]") {
                                         attribute.substr(0, attribute.find('='))) &&
                             Catch::Contains("is as stiff as Options::joint_frequency says"));
   }
+}
+
+TEST_CASE("joints that begin apart close as slowly as in MuJoCo", "[mjcf]") {
+  const std::string kind = GENERATE("connect", "weld");
+  const auto xml = [&](const std::string& gap) {
+    return "<mujoco><option timestep='.002' gravity='0 0 0'/><worldbody>"
+           "<body name='a'><freejoint/><geom type='box' size='.1 .1 .1'/>"
+           "<site name='s' pos='.1 0 0'/></body>"
+           "<body name='b' pos='.2 0 0'><freejoint/><geom type='box' size='.1 .1 .1'/><site "
+           "name='t' "
+           "pos='" +
+           gap + "'/></body></worldbody><equality><" + kind +
+           " site1='s' site2='t'/></equality></mujoco>";
+  };
+  const MjcfResult together = load_mjcf_string(xml("-.1 0 0"));
+  CHECK(together.warnings.empty());
+  CHECK(std::isinf(together.scene.options.joint_pull_speed));
+
+  const MjcfResult apart = load_mjcf_string(xml("-.1 .6 0"));
+  REQUIRE(apart.warnings.size() == 1);
+  CHECK_THAT(apart.warnings[0], Catch::Contains("equalities: begin up to 0.6 m and 0 rad apart"));
+  Batch batch(compile(apart.scene), one_world());
+  double fastest = 0;
+  for (int step = 0; step < 250; ++step) {
+    batch.step(1);
+    fastest = std::max(fastest, read_vec3(batch, Field::linear_velocity, 0).norm());
+  }
+  CHECK(fastest < 6);  // 0.6 m in 0.1 s
+  const auto site = [&](int body, const Frame& frame) -> Vec3 {
+    return read_vec3(batch, Field::position, body) + read_rotation(batch, body) * frame.position;
+  };
+  const Joint& joint = apart.scene.joints.at(0);
+  CHECK((site(joint.body_a, joint.frame_a) - site(joint.body_b, joint.frame_b)).norm() < 2e-3);
 }
 
 TEST_CASE("a double pendulum of connects swings as in MuJoCo", "[mjcf]") {
