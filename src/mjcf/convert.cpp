@@ -3,36 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "src/mjcf/equality.hpp"
 #include "src/mjcf/filter.hpp"
+#include "src/mjcf/pose.hpp"
+#include "src/mjcf/shape.hpp"
 
 namespace manyworlds::mjcf {
 namespace {
-
-Vec3 vec3(const mjtNum* v) { return {v[0], v[1], v[2]}; }
-Quat quat(const mjtNum* q) { return {q[0], q[1], q[2], q[3]}; }  // both are (w, x, y, z)
-
-struct Pose {
-  Vec3 position = Vec3::Zero();
-  Quat rotation = Quat::Identity();
-};
-Pose operator*(const Pose& a, const Pose& b) {
-  return {a.position + a.rotation * b.position, a.rotation * b.rotation};
-}
-
-// Pose of body b in the frame of the body that it is welded to: the world for static bodies, the
-// free body for its jointless children. Identity for the free body itself.
-Pose pose_in_root(const mjModel& m, int b) {
-  Pose pose;
-  for (const int root = m.body_weldid[b]; b != root; b = m.body_parentid[b]) {
-    pose = Pose{vec3(m.body_pos + 3 * b), quat(m.body_quat + 4 * b)} * pose;
-  }
-  return pose;
-}
 
 Mat3 steiner(double mass, const Vec3& d) {
   return mass * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
@@ -82,28 +62,41 @@ std::vector<double> frictions(const Model& model) {
   return friction;
 }
 
-// Nothing for the kinds that are only seen.
-std::optional<Shape> shape_of(const Model& model, int geom, const Pose& body) {
+// One for each of MuJoCo's bodies. Parts of free bodies stay empty and fixed: their mass and shapes
+// are in the body that they are welded to.
+std::vector<Body> bodies_of(const Model& model) {
   const mjModel& m = *model.compiled;
-  const mjtNum* size = m.geom_size + 3 * geom;
-  const Pose pose = body * Pose{vec3(m.geom_pos + 3 * geom), quat(m.geom_quat + 4 * geom)};
-  Shape shape;
-  shape.name = model.name(mjOBJ_GEOM, geom);
-  switch (m.geom_type[geom]) {
-    case mjGEOM_SPHERE: shape.geometry = Sphere{size[0]}; break;
-    case mjGEOM_CAPSULE: shape.geometry = Capsule{size[0], size[1]}; break;  // both along z
-    case mjGEOM_BOX: shape.geometry = Box{vec3(size)}; break;
-    case mjGEOM_PLANE: {
-      // Solid below the geom's xy plane, without end: MuJoCo's sizes are for rendering only.
-      const Vec3 normal = pose.rotation * Vec3::UnitZ();
-      shape.geometry = Plane{normal, normal.dot(pose.position)};
-      return shape;
+  std::vector<Body> bodies(static_cast<std::size_t>(m.nbody));
+  for (int b = 0; b < m.nbody; ++b) {
+    Body& body = bodies[static_cast<std::size_t>(b)];
+    body.name = model.name(mjOBJ_BODY, b);
+    body.motion = m.body_weldid[b] == b && b != 0 ? Motion::dynamic : Motion::fixed;
+    if (body.motion == Motion::fixed) {
+      const Pose pose = pose_in_root(m, b);
+      body.position = pose.position;
+      body.rotation = pose.rotation;
+    } else {
+      body.position = vec3(m.body_pos + 3 * b);
+      body.rotation = quat(m.body_quat + 4 * b);
+      body.mass_properties = mass_properties_of(m, b);
+      body.gravity_scale = 1 - m.body_gravcomp[b];
     }
-    default: return std::nullopt;
   }
-  shape.position = pose.position;
-  shape.rotation = pose.rotation;
-  return shape;
+  const std::vector<Filter> filter = filters(model);
+  const std::vector<double> friction = frictions(model);
+  for (int g = 0; g < m.ngeom; ++g) {
+    const int b = m.geom_bodyid[g];
+    const bool fixed = m.body_weldid[b] == 0;
+    const int owner = fixed ? b : m.body_weldid[b];
+    // A static body keeps its own frame; what is welded to a free body moves into that one's.
+    const Pose frame = fixed ? Pose{} : pose_in_root(m, b);
+    if (auto shape = shape_of(model, g, frame)) {
+      shape->material = {.friction = friction[static_cast<std::size_t>(g)], .restitution = 0};
+      shape->filter = filter[static_cast<std::size_t>(g)];
+      bodies[static_cast<std::size_t>(owner)].shapes.push_back(std::move(*shape));
+    }
+  }
+  return bodies;
 }
 
 double round_to_two_digits(double x) {
@@ -118,13 +111,7 @@ double typical_size(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     if (body.motion != Motion::dynamic) continue;
     for (const Shape& shape : body.shapes) {
-      if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
-        diameters.push_back(2 * sphere->radius);
-      } else if (const auto* box = std::get_if<Box>(&shape.geometry)) {
-        diameters.push_back(2 * box->half_extents.norm());
-      } else if (const auto* capsule = std::get_if<Capsule>(&shape.geometry)) {
-        diameters.push_back(2 * (capsule->radius + capsule->half_length));
-      }
+      diameters.push_back(bounding_diameter(shape.geometry));
     }
   }
   if (diameters.empty()) return Options{}.length_unit;
@@ -144,45 +131,15 @@ Scene make_scene(const Model& model, const std::string& name) {
   scene.options.gravity =
       (m.opt.disableflags & mjDSBL_GRAVITY) != 0 ? Vec3::Zero().eval() : vec3(m.opt.gravity);
 
-  const std::vector<Filter> filter = filters(model);
-  const std::vector<double> friction = frictions(model);
-  // Static bodies and free ones get a Body; -1 marks those that are part of another one.
-  std::vector<int> scene_body(static_cast<std::size_t>(m.nbody), -1);
-  for (int b = 0; b < m.nbody; ++b) {
-    const bool fixed = m.body_weldid[b] == 0;
-    if (fixed ? m.body_geomnum[b] == 0 : m.body_weldid[b] != b) continue;
-    Body body;
-    body.name = model.name(mjOBJ_BODY, b);
-    body.motion = fixed ? Motion::fixed : Motion::dynamic;
-    if (fixed) {
-      const Pose pose = pose_in_root(m, b);
-      body.position = pose.position;
-      body.rotation = pose.rotation;
-    } else {
-      body.position = vec3(m.body_pos + 3 * b);
-      body.rotation = quat(m.body_quat + 4 * b);
-      body.mass_properties = mass_properties_of(m, b);
-      body.gravity_scale = 1 - m.body_gravcomp[b];
-    }
-    scene_body[static_cast<std::size_t>(b)] = scene.add(std::move(body));
+  std::vector<Body> bodies = bodies_of(model);
+  std::vector<int> scene_body(bodies.size(), -1);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    // A static body that only had something to see is of no use; a part of a free body has none.
+    const bool moves = bodies[b].motion == Motion::dynamic;
+    if (moves || !bodies[b].shapes.empty()) scene_body[b] = scene.add(std::move(bodies[b]));
   }
-  for (int g = 0; g < m.ngeom; ++g) {
-    const int b = m.geom_bodyid[g];
-    const bool fixed = m.body_weldid[b] == 0;
-    const int owner = scene_body[static_cast<std::size_t>(fixed ? b : m.body_weldid[b])];
-    // A static body keeps its own frame; what is welded to a free body moves into that one's.
-    const Pose frame = fixed ? Pose{} : pose_in_root(m, b);
-    if (auto shape = shape_of(model, g, frame)) {
-      shape->material = {.friction = friction[static_cast<std::size_t>(g)], .restitution = 0};
-      shape->filter = filter[static_cast<std::size_t>(g)];
-      scene.bodies[static_cast<std::size_t>(owner)].shapes.push_back(std::move(*shape));
-    }
-  }
-  // A static body that only had something to see is of no use.
-  std::erase_if(scene.bodies, [](const Body& body) {
-    return body.motion == Motion::fixed && body.shapes.empty();
-  });
   scene.options.length_unit = typical_size(scene);
+  add_joints(model, scene_body, scene);
   return scene;
 }
 

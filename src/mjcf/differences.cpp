@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/mjcf/equality.hpp"
 #include "src/mjcf/support.hpp"
 
 namespace manyworlds::mjcf {
@@ -75,6 +76,18 @@ void compare_softness(const Model& model, std::vector<std::string>& warnings) {
   }
 }
 
+void compare_height_fields(const Model& model, std::vector<std::string>& warnings) {
+  const mjModel& m = *model.compiled;
+  for (int g = 0; g < m.ngeom; ++g) {
+    if (m.geom_type[g] != mjGEOM_HFIELD || !model.collides(g)) continue;
+    char base[32];
+    std::snprintf(base, sizeof base, "%g m", m.hfield_size[4 * m.geom_dataid[g] + 3]);
+    warnings.push_back(model.geom_place(g) +
+                       ": is solid without end below its surface, in MuJoCo " + "no more than " +
+                       base + " below its origin");
+  }
+}
+
 // One warning for everything that steers MuJoCo's own integrator and solver.
 void compare_solver(const Model& model, std::vector<std::string>& warnings) {
   const mjOption& option = model.compiled->opt;
@@ -123,6 +136,8 @@ std::vector<std::string> differences(const Model& model) {
   std::vector<std::string> warnings;
   compare_friction(model, warnings);
   compare_softness(model, warnings);
+  compare_height_fields(model, warnings);
+  compare_equalities(model, warnings);
   compare_solver(model, warnings);
   note_ignored(model, warnings);
   return warnings;

@@ -35,7 +35,8 @@ Model::Model(SpecPtr parsed, ModelPtr model)
       compiled(std::move(model)),
       geoms(static_cast<std::size_t>(compiled->ngeom)),
       bodies(static_cast<std::size_t>(compiled->nbody)),
-      joints(static_cast<std::size_t>(compiled->njnt)) {
+      joints(static_cast<std::size_t>(compiled->njnt)),
+      equalities(static_cast<std::size_t>(compiled->neq)) {
   const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
   for_each_element(spec.get(), mjOBJ_GEOM, size(geoms),
                    [&](mjsElement* e, std::size_t id) { geoms[id] = mjs_asGeom(e); });
@@ -43,6 +44,8 @@ Model::Model(SpecPtr parsed, ModelPtr model)
                    [&](mjsElement* e, std::size_t id) { bodies[id] = mjs_asBody(e); });
   for_each_element(spec.get(), mjOBJ_JOINT, size(joints),
                    [&](mjsElement* e, std::size_t id) { joints[id] = mjs_asJoint(e); });
+  for_each_element(spec.get(), mjOBJ_EQUALITY, size(equalities),
+                   [&](mjsElement* e, std::size_t id) { equalities[id] = mjs_asEquality(e); });
 }
 
 std::string Model::name(mjtObj type, int id) const {
@@ -69,6 +72,12 @@ std::string Model::joint_place(int joint) const {
   const int body = compiled->jnt_bodyid[joint];
   return with_line(quoted("joint", name(mjOBJ_JOINT, joint), joint) + " of " +
                        quoted("body", name(mjOBJ_BODY, body), body),
+                   written == nullptr ? nullptr : written->info);
+}
+
+std::string Model::equality_place(int equality) const {
+  const mjsEquality* written = equalities[static_cast<std::size_t>(equality)];
+  return with_line(quoted("equality", name(mjOBJ_EQUALITY, equality), equality),
                    written == nullptr ? nullptr : written->info);
 }
 

@@ -12,10 +12,12 @@ namespace manyworlds::mjcf {
 struct Model {
   SpecPtr spec;
   ModelPtr compiled;
-  // The spec's element of each compiled geom, body and joint; null where the compiler made one.
+  // The spec's element of each compiled geom, body, joint and equality; null where the compiler
+  // made one.
   std::vector<const mjsGeom*> geoms;
   std::vector<const mjsBody*> bodies;
   std::vector<const mjsJoint*> joints;
+  std::vector<const mjsEquality*> equalities;
 
   Model(SpecPtr parsed, ModelPtr model);
 
@@ -23,7 +25,8 @@ struct Model {
   std::string geom_place(int geom) const;
   std::string body_place(int body) const;
   std::string joint_place(int joint) const;
-  // For the kinds that belong to no body: "equality 'weld'".
+  std::string equality_place(int equality) const;
+  // For the other kinds that belong to no body: "tendon 'rope'".
   std::string place(mjtObj type, int id) const;
   std::string name(mjtObj type, int id) const;  // empty when unnamed
 

@@ -2,7 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "src/mjcf/equality.hpp"
 #include "src/mjcf/filter.hpp"
+#include "src/mjcf/shape.hpp"
 #include "src/mjcf/support.hpp"
 
 namespace manyworlds::mjcf {
@@ -17,7 +19,8 @@ void check_joints(const Model& model, std::vector<std::string>& problems) {
   for (int j = 0; j < m.njnt; ++j) {
     if (m.jnt_type[j] != mjJNT_FREE) {
       problems.push_back(model.joint_place(j) + ": is a " + joint_type_name(m.jnt_type[j]) +
-                         ", which is not simulated yet; expected a free joint or none");
+                         ", which is not simulated yet: robots will come as reduced-coordinate "
+                         "articulations; expected a free joint or none");
       continue;
     }
     const int dof = m.jnt_dofadr[j];
@@ -82,12 +85,12 @@ void check_geoms(const Model& model, std::vector<std::string>& problems) {
   for (int g = 0; g < m.ngeom; ++g) {
     const int type = m.geom_type[g];
     const std::string kind = geom_type_name(type);
-    if (type != mjGEOM_SPHERE && type != mjGEOM_CAPSULE && type != mjGEOM_BOX &&
-        type != mjGEOM_PLANE) {
+    if (!has_shape(type)) {
       if (model.collides(g)) {
         problems.push_back(model.geom_place(g) + ": is a " + kind +
                            " that can collide, which is not simulated yet; expected a sphere, a "
-                           "capsule, a box or a plane, or contype and conaffinity 0");
+                           "capsule, a cylinder, a box, a mesh, a plane or a height field, or "
+                           "contype and conaffinity 0");
       } else if (gives_mass(model, g)) {
         problems.push_back(model.geom_place(g) + ": is a " + kind +
                            " that does not collide but gives its body mass, which is not "
@@ -95,6 +98,15 @@ void check_geoms(const Model& model, std::vector<std::string>& problems) {
       }
     }
     if (!model.collides(g)) continue;
+    if (type == mjGEOM_HFIELD && m.body_weldid[m.geom_bodyid[g]] != 0) {
+      problems.push_back(model.geom_place(g) + ": is a " + kind +
+                         " on a body that moves, which is not simulated; expected a static body");
+    }
+    if (type == mjGEOM_MESH) {
+      if (const auto problem = hull_problem(model, g)) {
+        problems.push_back(model.geom_place(g) + ": " + *problem);
+      }
+    }
     if (any_nonzero(m.geom_surfacevel + 6 * g, 6)) {
       problems.push_back(model.geom_place(g) + ": surfacevel is not simulated yet; expected zeros");
     }
@@ -118,11 +130,15 @@ void check_other_elements(const Model& model, std::vector<std::string>& problems
       problems.push_back(model.place(type, i) + ": " + what + " not simulated yet; expected none");
     }
   };
-  refuse(mjOBJ_EQUALITY, m.neq, "equality constraints are");
   refuse(mjOBJ_TENDON, m.ntendon, "tendons are");
   refuse(mjOBJ_ACTUATOR, m.nactuator, "actuators are");
   refuse(mjOBJ_PAIR, m.npair, "contact pairs are");
-  refuse(mjOBJ_EXCLUDE, m.nexclude, "contact excludes are");
+  for (int x = 0; x < m.nexclude; ++x) {
+    if (excludes_joined(model, x)) continue;
+    problems.push_back(model.place(mjOBJ_EXCLUDE, x) +
+                       ": contact excludes are not simulated yet; expected none but between two "
+                       "free bodies that a connect or a weld holds together");
+  }
   refuse(mjOBJ_FLEX, m.nflex, "flexes are");
   refuse(mjOBJ_PLUGIN, m.nplugin, "plugins are");
 }
@@ -148,6 +164,7 @@ std::vector<std::string> unsupported(const Model& model) {
   check_bodies(model, problems);
   check_joints(model, problems);
   check_geoms(model, problems);
+  check_equalities(model, problems);
   check_other_elements(model, problems);
   return problems;
 }

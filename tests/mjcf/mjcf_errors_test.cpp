@@ -67,7 +67,9 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
       "<body><freejoint/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
   const std::vector<Refused> table = {
       {"hinge", world("<body name='b'><joint name='j' type='hinge'/><geom size='.1'/></body>"),
-       "joint 'j' of body 'b'", "hinge"},
+       "joint 'j' of body 'b'",
+       "is a hinge, which is not simulated yet: robots will come as reduced-coordinate "
+       "articulations; expected a free joint or none"},
       {"slide", world("<body name='b'><joint name='j' type='slide'/><geom size='.1'/></body>"),
        "joint 'j' of body 'b'", "slide joint"},
       {"ball", world("<body name='b'><joint name='j' type='ball'/><geom size='.1'/></body>"),
@@ -98,25 +100,15 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
        world("<body name='b'>" + kFree +
              "<body name='c' gravcomp='1'><geom size='.1'/></body></body>"),
        "body 'c'", "gravcomp"},
-      {"cylinder", free_body("type='cylinder' fromto='0 0 0 0 0 1'"), "geom 'g' of body 'b'",
-       "cylinder that can collide"},
       {"ellipsoid", world("<geom name='g' type='ellipsoid' size='1 2 3'/>"), "geom 'g'",
-       "ellipsoid that can collide"},
-      {"mesh",
-       "<mujoco><asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/></asset><worldbody>"
-       "<geom name='g' type='mesh' mesh='m'/></worldbody></mujoco>",
-       "geom 'g'", "mesh that can collide"},
-      {"hfield",
-       "<mujoco><asset><hfield name='h' nrow='2' ncol='2' size='1 1 1 1'/></asset>"
-       "<worldbody><geom name='g' type='hfield' hfield='h'/></worldbody></mujoco>",
-       "geom 'g'", "hfield that can collide"},
-      {"seen cylinder that weighs",
-       free_body("type='cylinder' fromto='0 0 0 0 0 1' contype='0' conaffinity='0'"),
+       "ellipsoid that can collide, which is not simulated yet; expected a sphere, a capsule, a "
+       "cylinder, a box, a mesh, a plane or a height field, or contype and conaffinity 0"},
+      {"seen ellipsoid that weighs",
+       world("<body name='b'><freejoint/><geom name='g' type='ellipsoid' size='.1 .2 .3' "
+             "contype='0' conaffinity='0'/></body>"),
        "geom 'g' of body 'b'", "gives its body mass"},
       {"surface velocity", free_body("surfacevel='1 0 0 0 0 0'"), "geom 'g'", "surfacevel"},
       {"adhesion", free_body("adhesion='1'"), "geom 'g'", "adhesion"},
-      {"equality", with_after(two, "<equality><weld name='e' body1='p' body2='q'/></equality>"),
-       "equality 'e'", "not simulated"},
       {"pair",
        with_after("<geom name='s' size='1'/><body><freejoint/><geom name='g' size='.1'/>"
                   "</body>",
@@ -146,17 +138,51 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
     CHECK(problems[0].find('\n') == std::string::npos);
   }
   // What neither collides nor weighs is left out instead.
-  const std::string seen =
-      "<geom type='cylinder' fromto='0 0 0 0 0 1' size='.1' contype='0' "
-      "conaffinity='0'/>";
+  const std::string seen = "<geom type='ellipsoid' size='.1 .2 .3' contype='0' conaffinity='0'/>";
   CHECK(problems_of(world(inertial + seen + "</body>")).empty());
   CHECK(problems_of(world(seen)).empty());
+}
+
+TEST_CASE("equalities of joints and tendons are errors like the joints themselves",
+          "[mjcf][fast]") {
+  const std::string body =
+      "<body name='b'><joint name='j'/><geom size='.1'/><body><joint name='k'/><geom size='.1'/>"
+      "</body></body>";
+  const std::vector<std::string> problems =
+      problems_of(with_after(body, "<equality><joint name='e' joint1='j' joint2='k'/></equality>"));
+  REQUIRE(problems.size() == 3);
+  CHECK(problems[2] ==
+        "MJCF string: equality 'e', line 1: is a joint equality, which is not simulated yet; "
+        "expected connect or weld");
+}
+
+TEST_CASE("meshes and height fields that cannot be are errors", "[mjcf][fast]") {
+  const auto mesh = [](const std::string& height) {
+    return problems_of(
+        "<mujoco><asset><mesh name='m' inertia='shell' vertex='0 0 0 1 0 0 0 1 0 1 1 " + height +
+        "' face='0 1 2 1 3 2'/></asset><worldbody>"
+        "<geom name='g' type='mesh' mesh='m'/></worldbody></mujoco>");
+  };
+  const std::vector<std::string> flat = mesh("0");  // MuJoCo's own error
+  REQUIRE(flat.size() == 1);
+  CHECK(flat[0].find("mesh 'm' has coplanar vertices") != std::string::npos);
+  CHECK(mesh("1e-7") == std::vector<std::string>{
+                            "MJCF string: geom 'g' of body 'world', line 1: mesh 'm' has no hull: "
+                            "points lie in a plane, must enclose a volume"});
+
+  const std::vector<std::string> moving = problems_of(
+      "<mujoco><asset><hfield name='h' nrow='2' ncol='2' size='1 1 1 1'/></asset><worldbody>"
+      "<body name='b'>" +
+      kFree + "<geom name='g' type='hfield' hfield='h'/></body></worldbody></mujoco>");
+  CHECK(moving == std::vector<std::string>{
+                      "MJCF string: geom 'g' of body 'b', line 1: is a hfield on a body that "
+                      "moves, which is not simulated; expected a static body"});
 }
 
 TEST_CASE("all problems of a file are listed, one per line, with its name", "[mjcf][fast]") {
   const TemporaryFile file("manyworlds_two_problems.xml",
                            world("<body name='b'><joint name='j' type='hinge'/>"
-                                 "<geom name='g' type='cylinder' size='.1 .1'/></body>"));
+                                 "<geom name='g' type='ellipsoid' size='.1 .1 .1'/></body>"));
   std::string text;
   try {
     load_mjcf(file.path);

@@ -178,4 +178,35 @@ TEST_CASE("boxes from MJCF come to rest above the planes of their bin", "[mjcf]"
   CHECK(deepest > -slop);
 }
 
+TEST_CASE("the joined shapes of an MJCF scene come to rest on their height field", "[mjcf]") {
+  const Scene scene =
+      load_mjcf(std::filesystem::path(MW_SOURCE_DIR) / "scenes" / "mjcf" / "shapes.xml").scene;
+  REQUIRE(scene.joints.size() == 4);
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const Plan plan = compile(scene);
+    Batch batch(plan, options(8, precision));
+    batch.step(500);
+    CHECK(batch.lost_worlds() == 0);
+    std::vector<State> states(scene.bodies.size());
+    for (int body = 0; body < batch.bodies(); ++body) {
+      const State state = read_state(batch, body);
+      states[static_cast<std::size_t>(plan.scene_body(body))] = state;
+      INFO(scene.bodies[static_cast<std::size_t>(plan.scene_body(body))].name);
+      CHECK(state.position.head<2>().cwiseAbs().maxCoeff() < 0.4);
+      CHECK(state.position.z() > 0);
+      CHECK(state.position.z() < 0.6);
+    }
+    for (const Joint& joint : scene.joints) {
+      const auto anchor = [&](int body, const Frame& frame) -> Vec3 {
+        if (body < 0) return frame.position;
+        const State& state = states[static_cast<std::size_t>(body)];
+        return state.position + state.rotation * frame.position;
+      };
+      INFO(joint.name);
+      CHECK((anchor(joint.body_a, joint.frame_a) - anchor(joint.body_b, joint.frame_b)).norm() <
+            1e-3);
+    }
+  }
+}
+
 }  // namespace manyworlds

@@ -1,0 +1,131 @@
+#include "src/mjcf/shape.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <variant>
+
+#include "manyworlds/hull.hpp"
+#include "manyworlds/plan.hpp"
+
+namespace manyworlds::mjcf {
+namespace {
+
+constexpr std::size_t kMostCorners = 64;  // of a Hull
+
+// Those that MuJoCo collides: the corners of its own hull where it made one (mesh_graph: number of
+// corners and of faces, an edge address for each corner, then the index of each among the
+// vertices), or else all. In the frame of the geom.
+std::vector<Vec3> mesh_points(const mjModel& m, int mesh) {
+  const float* vertices = m.mesh_vert + 3 * m.mesh_vertadr[mesh];
+  const auto vertex = [&](int i) {
+    const float* v = vertices + 3 * i;
+    return Vec3(v[0], v[1], v[2]);
+  };
+  std::vector<Vec3> points;
+  if (m.mesh_graphadr[mesh] >= 0) {
+    const int* graph = m.mesh_graph + m.mesh_graphadr[mesh];
+    const int count = graph[0];
+    for (int i = 0; i < count; ++i) points.push_back(vertex(graph[2 + count + i]));
+  } else {
+    for (int i = 0; i < m.mesh_vertnum[mesh]; ++i) points.push_back(vertex(i));
+  }
+  return points;
+}
+
+HeightField height_field(const mjModel& m, int field) {
+  const mjtNum* size = m.hfield_size + 4 * field;  // half width, half depth, elevation, base
+  const int columns = m.hfield_ncol[field], rows = m.hfield_nrow[field];
+  HeightField result;
+  result.columns = columns;
+  result.cell = {2 * size[0] / (columns - 1), 2 * size[1] / (rows - 1)};
+  const float* data = m.hfield_data + m.hfield_adr[field];  // 0 to 1, x varies fastest
+  for (int i = 0; i < rows * columns; ++i) result.heights.push_back(size[2] * data[i]);
+  return result;
+}
+
+struct Diameter {
+  double operator()(const Sphere& sphere) const { return 2 * sphere.radius; }
+  double operator()(const Box& box) const { return 2 * box.half_extents.norm(); }
+  double operator()(const Capsule& c) const { return 2 * (c.radius + c.half_length); }
+  double operator()(const Cylinder& c) const { return 2 * std::hypot(c.radius, c.half_length); }
+  double operator()(const Hull& hull) const {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& v : hull.vertices) box.extend(v);
+    return box.diagonal().norm();
+  }
+  template <typename Other>
+  double operator()(const Other&) const {
+    return 0;
+  }
+};
+
+}  // namespace
+
+bool has_shape(int geom_type) {
+  switch (geom_type) {
+    case mjGEOM_SPHERE:
+    case mjGEOM_CAPSULE:
+    case mjGEOM_CYLINDER:
+    case mjGEOM_BOX:
+    case mjGEOM_MESH:
+    case mjGEOM_PLANE:
+    case mjGEOM_HFIELD: return true;
+    default: return false;
+  }
+}
+
+std::optional<std::string> hull_problem(const Model& model, int geom) {
+  const int mesh = model.compiled->geom_dataid[geom];
+  const std::vector<Vec3> points = mesh_points(*model.compiled, mesh);
+  try {
+    make_hull(points);
+  } catch (const SceneError& error) {
+    const Issue& issue = error.issues().front();
+    const std::string place = model.place(mjOBJ_MESH, mesh);
+    if (points.size() > kMostCorners && issue.place == "vertices") {
+      return place +
+             " has a convex hull of more than 64 corners; expected at most 64, to which "
+             "maxhullvert=\"64\" of the mesh limits it";
+    }
+    return place + " has no hull: " + to_string(issue);
+  }
+  return std::nullopt;
+}
+
+std::optional<Shape> shape_of(const Model& model, int geom, const Pose& body) {
+  const mjModel& m = *model.compiled;
+  const mjtNum* size = m.geom_size + 3 * geom;
+  const Pose pose = body * Pose{vec3(m.geom_pos + 3 * geom), quat(m.geom_quat + 4 * geom)};
+  Shape shape;
+  shape.name = model.name(mjOBJ_GEOM, geom);
+  switch (m.geom_type[geom]) {
+    case mjGEOM_SPHERE: shape.geometry = Sphere{size[0]}; break;
+    // Both along z, as ours.
+    case mjGEOM_CAPSULE: shape.geometry = Capsule{size[0], size[1]}; break;
+    case mjGEOM_CYLINDER: shape.geometry = Cylinder{size[0], size[1]}; break;
+    case mjGEOM_BOX: shape.geometry = Box{vec3(size)}; break;
+    case mjGEOM_PLANE: {
+      // Solid below the geom's xy plane, without end: MuJoCo's sizes are for rendering only.
+      const Vec3 normal = pose.rotation * Vec3::UnitZ();
+      shape.geometry = Plane{normal, normal.dot(pose.position)};
+      return shape;
+    }
+    case mjGEOM_MESH:
+      if (!model.collides(geom)) return std::nullopt;
+      shape.geometry = make_hull(mesh_points(m, m.geom_dataid[geom]));
+      break;
+    case mjGEOM_HFIELD:
+      if (!model.collides(geom)) return std::nullopt;
+      shape.geometry = height_field(m, m.geom_dataid[geom]);
+      break;
+    default: return std::nullopt;
+  }
+  shape.position = pose.position;
+  shape.rotation = pose.rotation;
+  return shape;
+}
+
+double bounding_diameter(const Geometry& geometry) { return std::visit(Diameter{}, geometry); }
+
+}  // namespace manyworlds::mjcf
