@@ -237,7 +237,7 @@ Mask keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis&
   axis.face_separation = select(other_face, separation, axis.face_separation);
   axis.face = select(other_face, Float(Real(0)), axis.face);
   axis.face_of_b = axis.face_of_b & !other_face;
-  return other & !is_over(tile, lowest, Real(0));
+  return other & !(is_over(tile, lowest, Real(0)) | is_below(tile, d));
 }
 
 }  // namespace

@@ -39,12 +39,13 @@ void find_corners(const Real* row, int lane, const Real* low, const Real* high, 
   const auto whole = [row](int at) { return static_cast<int>(row[at]); };
   const Real cell_x = row[TileRow::cell_x], cell_y = row[TileRow::cell_y];
   const int columns = whole(TileRow::columns), rows = whole(TileRow::rows);
-  int i = next_with(floor_of(low[0] / cell_x), whole(TileRow::column), whole(TileRow::wide));
-  int j = next_with(floor_of(low[1] / cell_y), whole(TileRow::row), whole(TileRow::deep));
+  const int first_i = floor_of(low[0] / cell_x), first_j = floor_of(low[1] / cell_y);
+  int i = next_with(first_i > 0 ? first_i : 0, whole(TileRow::column), whole(TileRow::wide));
+  int j = next_with(first_j > 0 ? first_j : 0, whole(TileRow::row), whole(TileRow::deep));
   // A small shape has nothing to do with the tiles that only large ones reach.
   const bool reached =
       static_cast<Real>(i) * cell_x <= high[0] && static_cast<Real>(j) * cell_y <= high[1];
-  const bool there = reached && 0 <= i && i < columns && 0 <= j && j < rows;
+  const bool there = reached && i < columns && j < rows;
   if (!there) i = j = 0;
   out.there |= static_cast<std::uint32_t>(there) << lane;
   const int half = whole(TileRow::half);
@@ -75,17 +76,10 @@ MW_INLINE Vec3 unit(Vec3 v) {
 
 void load_tile(const Real* base, const std::int32_t* offset, const ConvexShape& b, Mask active,
                Tile& tile, ConvexShape& s) {
-  const std::uint32_t lanes = bits(active) & kAllLanes;
-  tile.there = mask_from_bits(0);
-  if (lanes == 0) return;
-  // Lanes without a candidate may point at any shape; they look at the tile of another.
-  alignas(64) std::int32_t o[kLanes];
-  const int any_lane = __builtin_ctz(lanes);
-  for (int l = 0; l < kLanes; ++l) o[l] = ((lanes >> l) & 1u) != 0 ? offset[l] : offset[any_lane];
   BoxPose frame;
-  load_pose(base, o, frame);
+  load_pose(base, offset, frame);
   alignas(64) Real low[2][kLanes], high[2][kLanes], pad[kLanes];
-  for (int l = 0; l < kLanes; ++l) pad[l] = base[o[l] + TileRow::pad];
+  for (int l = 0; l < kLanes; ++l) pad[l] = base[offset[l] + TileRow::pad];
   const Vec3 d = b.p - frame.p;
   const Float around = b.radius + Float::load(pad);
   for (int k = 0; k < 2; ++k) {
@@ -97,9 +91,9 @@ void load_tile(const Real* base, const std::int32_t* offset, const ConvexShape& 
   Corners corners;
   for (int l = 0; l < kLanes; ++l) {
     const Real of_lane[4] = {low[0][l], low[1][l], high[0][l], high[1][l]};
-    find_corners(base + o[l], l, of_lane, of_lane + 2, corners);
+    find_corners(base + offset[l], l, of_lane, of_lane + 2, corners);
   }
-  tile.there = mask_from_bits(corners.there & lanes);
+  tile.there = active & mask_from_bits(corners.there);
   tile.code = Float::load(corners.code);
 
   Vec3 at[6];
@@ -122,6 +116,7 @@ void load_tile(const Real* base, const std::int32_t* offset, const ConvexShape& 
     reach2 = max(dot(at[e], at[e]), reach2);
     const Vec3 edge = unit(at[(e + 1) % 3] - at[e]), across = at[3 + e] - at[e];
     tile.out[e] = cross(edge, tile.normal);
+    tile.beside[e] = unit(cross(edge, frame.r.z));
     const Vec3 on = unit(fnma(edge, dot(edge, across), across));
     const Mask sticks_out = dot(on, tile.normal) < Float(-kFlat);
     tile.last[e] = select(sticks_out, on, tile.out[e]);
@@ -146,12 +141,20 @@ Mask is_over(const Tile& tile, Vec3 point, Float slack) {
   return out;
 }
 
+Mask is_below(const Tile& tile, Vec3 point) {
+  const Float zero(Real(0));
+  Mask out = dot(tile.normal, point - tile.vertex[0]) < zero;
+  for (int e = 0; e < 3; ++e) out = out & (dot(tile.beside[e], point - tile.vertex[e]) <= zero);
+  return out;
+}
+
 void collide_tile_sphere(const ConvexShape& a, const Tile& tile, const ConvexShape& b,
                          Manifold<Isotropic, 1>& m) {
   const Float zero(Real(0)), one(Real(1)), half(Real(0.5));
   const Vec3 d = b.p - a.p;
   const Float height = dot(tile.normal, d - tile.vertex[0]);
-  const Mask over = is_over(tile, d, zero);
+  const Mask above = zero <= height;
+  const Mask over = (above & is_over(tile, d, zero)) | is_below(tile, d);
   // Beside it, the nearest of its edges.
   Vec3 nearest = tile.vertex[0];
   Float best = Real(1e30);

@@ -83,9 +83,15 @@ inline void flag_outside(const Group& g, std::uint32_t lanes) {
   }
 }
 
-// Half of dt times the push of a substep: what symplectic substeps fall too far.
+// What symplectic substeps fall too far: half of dt times the push of one, and where drag changes
+// it half a substep times what the velocity changed by.
 template <class S, bool kDense>
-MW_INLINE typename S::Vec drift_excess(const Tables& t, const Work& w, int body) {
+MW_INLINE typename S::Vec drift_excess(const Tables& t, const Group& g, const Work& w, int body) {
+  if (t.has_drag) {
+    const auto before = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear));
+    const Velocity<S> now = get_velocity<S, kDense>(w, w.velocity, body);
+    return (now.v - before) * Float(t.h * Real(0.5));
+  }
   const Float scale(t.dt * Real(0.5));
   if (w.push) return get_velocity<S, kDense>(w, w.push, body).v * scale;
   const Real* p = t.push_rows + body * S::kRow;
@@ -160,7 +166,7 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
         const Vec3 moments{m[0], m[1], m[2]};
         const Mat3 r = matrix(old[i]);
         const Vec3 half = half_gyroscopic(t.dt, moments, r, before) - before;
-        const Vec3 kept = keep_momentum(moments, old[i], q[i], omega[i] - half);
+        const Vec3 kept = keep_momentum(moments, old[i], q[i], omega[i] - half, omega[i]);
         spin = select(held & is_slightly_gyroscopic(t.dt, moments, r, before), kept, spin);
       }
     }
@@ -189,7 +195,7 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     const auto old = load_as<typename S::Vec>(p);
     auto step = moved.v;
     if (t.has_gravity || w.push) {
-      step = select(free, step - drift_excess<S, kDense>(t, w, b), step);
+      step = select(free, step - drift_excess<S, kDense>(t, g, w, b), step);
     }
     if (t.cast) step = cast_against_fixed(t, g, b, old, step);
     if (t.cast_moving) {

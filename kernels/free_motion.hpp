@@ -20,6 +20,7 @@ MW_INLINE Flight<S> fly(const Tables& t, const Group& g, const Work& w, int body
          load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular))};
   // A push of 0 turns -0 into 0; so does every step, pushed or not.
   o.v = {o.v.v + zero_of<typename S::Vec>(), o.v.w + zero_of<typename S::Ang>()};
+  const typename S::Vec start = o.v.v;
   const auto& numbers = constants_of_body(g, body);
   o.push.v.x = numbers.push[0], o.push.v.y = numbers.push[1];
   if constexpr (S::kDim == 3) o.push.v.z = numbers.push[2];
@@ -44,7 +45,11 @@ MW_INLINE Flight<S> fly(const Tables& t, const Group& g, const Work& w, int body
     substeps([] {});
   }
   // What symplectic substeps fall too far.
-  if (t.has_gravity || w.push) o.moved.v = o.moved.v - o.push.v * Float(t.dt * Real(0.5));
+  if (t.has_drag) {
+    o.moved.v = o.moved.v - (o.v.v - start) * Float(t.h * Real(0.5));
+  } else if (t.has_gravity || w.push) {
+    o.moved.v = o.moved.v - o.push.v * Float(t.dt * Real(0.5));
+  }
   return o;
 }
 

@@ -38,15 +38,6 @@ MW_INLINE void for_each_register(const Tables& t, const Work& w, Update update) 
   }
 }
 
-// Where the parts of a body's state are. Only its length depends on has_orientation.
-template <class S>
-inline constexpr kernels::StateOffsets kState = kernels::state_offsets(
-    S::kDim == 2 ? kernels::Dimension::planar : kernels::Dimension::spatial, true);
-
-MW_INLINE Real* state_of(const Tables& t, const Group& g, int body, int component) {
-  return g.state + (body * t.state_stride + component) * kLanes;
-}
-
 template <class S>
 MW_INLINE void offsets_of_body(const Work& w, int body, std::int32_t* o) {
   for (int l = 0; l < kLanes; ++l) o[l] = w.velocity_base[l] + body * S::kRow;
@@ -117,36 +108,6 @@ MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body) {
       out.force = out.force + push;
       out.torque = out.torque + cross(rotate(q, Vec{p[0], p[1], p[2]}), push);
     }
-  }
-  return out;
-}
-
-// The pull of a point on a body at x.
-template <class S>
-struct Attraction {
-  typename S::Vec to;        // m
-  Float strength, nearness;  // with the body's gravity scale, m^3/s^2; 1 / softened distance, 1/m
-  MW_INLINE Attraction(const Tables& t, const Group& g, int body, int i, typename S::Vec x) {
-    const kernels::AttractorTable<Real>& point = t.attractor[i];
-    to.x = Float(point.position[0]) - x.x, to.y = Float(point.position[1]) - x.y;
-    if constexpr (S::kDim == 3) to.z = Float(point.position[2]) - x.z;
-    strength = Float(point.strength) * Float(constants_of_body(g, body).gravity_scale);
-    nearness = Float(Real(1)) / sqrt(dot(to, to) + Float(point.softening2));
-  }
-  MW_INLINE typename S::Vec acceleration() const {
-    return (to * nearness) * (strength * (nearness * nearness));
-  }
-};
-// Where the body is half a step on. With what substeps fall too far taken back (finish.hpp) that
-// makes drift, kick, drift: position Verlet, which keeps orbits.
-template <class S>
-MW_INLINE typename S::Vec attraction_of_body(const Tables& t, const Group& g, int body) {
-  using Vec = typename S::Vec;
-  const Vec x = fma(load_as<Vec>(state_of(t, g, body, kState<S>.linear)), Float(t.dt * Real(0.5)),
-                    load_as<Vec>(state_of(t, g, body, kState<S>.position)));
-  Vec out = zero_of<Vec>();
-  for (int i = 0; i < t.attractors; ++i) {
-    out = out + Attraction<S>(t, g, body, i, x).acceleration();
   }
   return out;
 }

@@ -208,12 +208,20 @@ MW_INLINE Mask is_slightly_gyroscopic(Real dt, Vec3 inertia, const Mat3& r, Vec3
 MW_INLINE Vec3 half_gyroscopic(Real dt, Vec3 inertia, const Mat3& r, Vec3 omega) {
   return midpoint_gyroscopic(dt * kGyroscopicShare, inertia, r, omega);
 }
-// The angular velocity after a turn from `from` to `to` that keeps the angular momentum.
-MW_INLINE Vec3 keep_momentum(Vec3 inertia, Quat from, Quat to, Vec3 omega) {
-  const Vec3 w = rotate_back(from, omega);
+// What keeping the angular momentum may add to the energy of a step. A body that was struck after
+// it had turned, and was not turned by what it had then, would get much more.
+inline constexpr Real kMostGain = Real(1.01);
+
+// The angular velocity omega after a turn from `from` to `to`, with the angular momentum of
+// `before` at its start.
+MW_INLINE Vec3 keep_momentum(Vec3 inertia, Quat from, Quat to, Vec3 before, Vec3 omega) {
+  const Vec3 w = rotate_back(from, before);
   const Vec3 l =
       rotate_back(to, rotate(from, Vec3{w.x * inertia.x, w.y * inertia.y, w.z * inertia.z}));
-  return rotate(to, Vec3{l.x / inertia.x, l.y / inertia.y, l.z / inertia.z});
+  const Vec3 kept{l.x / inertia.x, l.y / inertia.y, l.z / inertia.z}, own = rotate_back(to, omega);
+  const Float energy =
+      fma(own.x * own.x, inertia.x, fma(own.y * own.y, inertia.y, own.z * own.z * inertia.z));
+  return select(dot(l, kept) <= energy * Float(kMostGain), rotate(to, kept), omega);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -15,11 +15,14 @@ void turn_body_rows(const Tables& t, const Group& g, Work& w);
 void sort_and_sweep(const Tables& t, Work& w);
 void find_sparse_pairs(const Tables& t, const Group& g, Work& w);
 
+inline constexpr int kMostTileCandidates = 4096;
+
 // Most candidates of a class that a lane may have: twice the manifolds that it can keep. Tiles of a
 // height field are all candidates of who is over it.
 MW_INLINE int candidate_limit(const Tables& t, const kernels::PairClass<Real>& c) {
-  if (kernels::is_tile(c.kind)) return c.count;
-  return 2 * t.capacity[static_cast<int>(c.list)];
+  const int limit = 2 * t.capacity[static_cast<int>(c.list)];
+  if (!kernels::is_tile(c.kind) || limit > kMostTileCandidates) return limit;
+  return c.count < kMostTileCandidates ? c.count : kMostTileCandidates;
 }
 
 // Most candidates of a class that a lane can have.

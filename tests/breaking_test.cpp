@@ -209,6 +209,23 @@ TEST_CASE("a slow body does not fall asleep in the step in which its joint break
   }
 }
 
+TEST_CASE("a world that goes wrong in the step in which its joint would break keeps it",
+          "[fast][joint]") {
+  for (const Table& table : widest_tables()) {
+    Batch batch(compile(hanging(Space::spatial, HingeJoint{}, 50)), options_of(table, 3));
+    batch.step(5);
+    const std::uint64_t before = batch.hash(1);
+    batch.add_force(1, 0, {0, 0, -1e30});
+    batch.step();
+    INFO(name(table));
+    CHECK(frozen(batch.status(1)));
+    CHECK_FALSE(has(batch.status(1), Status::joint_broken));
+    CHECK(batch.joint_enabled(1, 0));
+    CHECK(batch.hash(1) == before);
+    CHECK(batch.joint_enabled(0, 0));
+  }
+}
+
 TEST_CASE("what a broken joint would bear is read as nothing", "[fast][joint]") {
   const Table table = widest_tables().front();
   BatchOptions options = options_of(table, 2);

@@ -34,6 +34,9 @@ TEST_CASE("a body drifts with the wind as its drag says", "[fast][field]") {
       CHECK(velocity(batch, 0, 0).x() == Approx(3 * (1 - left)).epsilon(pick(table, 1e-5, 1e-12)));
       batch.step(600);
       CHECK(velocity(batch, 0, 0).x() == Approx(3).epsilon(1e-5));
+      const double from = position(batch, 0, 0).x();
+      batch.step(60);
+      CHECK(position(batch, 0, 0).x() - from == Approx(3).epsilon(1e-4));
     }
   }
 }
@@ -115,6 +118,28 @@ TEST_CASE("attractors act beside contacts and joints, on dynamic bodies only", "
       for (int b = 1; b <= 4; ++b) CHECK(position(batch, 0, b).norm() == Approx(1.1).margin(0.005));
       CHECK(position(batch, 0, 0).norm() == 0);
       CHECK(batch.asleep(0, 1));
+    }
+  }
+}
+
+TEST_CASE("a ball that bounces on a planet keeps its height", "[fast][field]") {
+  for (const Table& table : widest_tables()) {
+    for (Space space : kSpaces) {
+      Scene scene = empty_scene(space, 0);
+      Body planet = body_of(shape_of(round_of(space, 10), 0, 1), Vec3::Zero(), Motion::fixed);
+      scene.add(planet);
+      const Vec3 up = up_of(space);
+      Body ball = body_of(shape_of(round_of(space, 0.5), 0, 1), 12.5 * up);
+      scene.add(ball);
+      scene.attractors = {{Vec3::Zero(), 1000, 0}};  // 10 m/s^2 on the ground
+      Batch batch(compile(scene), options_of(table));
+      double top = 0;
+      for (int i = 0; i < 1200; ++i) {
+        batch.step();
+        if (i >= 1000) top = std::max(top, position(batch, 0, 0).dot(up));
+      }
+      INFO(name(table) << " height " << top);  // after eight bounces or more
+      CHECK(top == Approx(12.5).margin(0.06));
     }
   }
 }

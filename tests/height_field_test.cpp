@@ -146,7 +146,8 @@ TEST_CASE("a height field that is an inclined plane carries as that plane does",
         end[as_plane ? 1 : 0] = position(batch, 0, 0);
       }
       INFO(name(table) << " friction " << friction);
-      CHECK((end[0] - end[1]).norm() < 0.01);
+      // Of about 1.8 m: friction is that of many manifolds instead of one.
+      CHECK((end[0] - end[1]).norm() < 0.03);
       CHECK((end[0] - Vec3(2, 0, 0.7)).head<2>().norm() > (friction < 0.2 ? 0.5 : 0.0));
     }
   }
@@ -193,6 +194,35 @@ TEST_CASE("a box lies across a ridge", "[fast][field]") {
     INFO(name(table));
     CHECK(position(batch, 0, 0).z() == Approx(0.1).margin(0.02));
     CHECK(std::abs(position(batch, 0, 0).x()) < 0.05);
+  }
+}
+
+TEST_CASE("a strip of one cell carries what lies across its borders", "[fast][field]") {
+  for (const Table& table : widest_tables()) {
+    for (const Vec2& at : {Vec2(-0.3, 0), Vec2(0.3, 0), Vec2(0, -2.4), Vec2(0, 2.4)}) {
+      Scene scene = empty_scene(Space::spatial);
+      scene.add(land(field_of(2, 6, {1, 1}, flat)));
+      scene.add(body_of(shape_of(Box{{0.4, 0.4, 0.2}}), {at.x(), at.y(), 0.25}));
+      Batch batch(compile(scene), options_of(table));
+      batch.step(60);
+      INFO(name(table) << " at " << at.transpose());
+      CHECK(position(batch, 0, 0).z() == Approx(0.2).margin(5e-3));
+    }
+  }
+}
+
+TEST_CASE("what has sunk below a valley comes up", "[fast][field]") {
+  for (const Table& table : widest_tables()) {
+    const auto valley = [](double x, double) { return std::abs(x); };
+    for (const Sample& sample : samples()) {
+      Scene scene = empty_scene(Space::spatial);
+      scene.add(land(field_of(9, 5, {0.5, 1}, valley)));
+      scene.add(body_of(shape_of(sample.geometry), {0.02, 0.1, -0.6}));
+      Batch batch(compile(scene), options_of(table));
+      batch.step(240);
+      INFO(name(table) << " " << sample.name);
+      CHECK(position(batch, 0, 0).z() > 0.1);
+    }
   }
 }
 

@@ -105,6 +105,34 @@ TEST_CASE("ten stacked cubes that are hulls stand as boxes do", "[slow][stabilit
   check_stack(stack_of(cube_hull(0.5), 10, 1, 0), 10, 1, 1200, 0.01, 5e-3);
 }
 
+TEST_CASE("a fixed hull stands among fixed shapes of other kinds", "[fast][collide]") {
+  for (const Table& table : widest_tables()) {
+    for (const ContactLayout layout : {ContactLayout::dense, ContactLayout::rows}) {
+      Scene scene = empty_scene(Space::spatial);
+      for (int i = 0; i < 6; ++i) {  // whose numbers would be absurd as those of a hull
+        scene.add(body_of(shape_of(Sphere{1}), {1e6, 100.0 + i, 1e6}, Motion::fixed));
+      }
+      Hull block;
+      for (int i = 0; i < 8; ++i) {
+        block.vertices.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 0.5 : -0.5);
+      }
+      scene.add(body_of(shape_of(block), Vec3::Zero(), Motion::fixed));
+      scene.add(body_of(shape_of(Box{{0.2, 0.2, 0.2}}), {0.3, 0.1, 0.75}));
+      scene.add(body_of(shape_of(Cylinder{0.2, 0.2}), {-0.4, 0.1, 0.75}));
+      scene.bodies.back().jitter.position.x() = 3;  // in some worlds beside the block
+      BatchOptions options = options_of(table, 16);
+      options.layout = layout;
+      Batch batch(compile(scene), options);
+      batch.step(60);
+      INFO(name(table));
+      for (int w = 0; w < 16; ++w) {
+        CHECK(position(batch, w, 0).z() == Approx(0.7).margin(5e-3));
+        CHECK(std::isfinite(position(batch, w, 1).z()));
+      }
+    }
+  }
+}
+
 TEST_CASE("hulls and cylinders come to rest in a heap", "[fast][stability]") {
   Scene scene = capsule_crowd(Space::spatial, true);
   for (Body& body : scene.bodies) body.shapes[0].material.restitution = 0;

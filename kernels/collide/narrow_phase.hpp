@@ -184,7 +184,13 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
   ConvexShape a, b;
   for (int i = 0; i < list.count; ++i) {
     const std::int32_t* code = list.code + i * kLanes;
-    const PoseOffsets o = pose_offsets<kPair>(t, w, code);
+    PoseOffsets o = pose_offsets<kPair>(t, w, code);
+    // Lanes without a candidate point at some fixed shape, of another kind perhaps: they look at
+    // that of a lane that has one.
+    const int candidate = __builtin_ctz(list.mask[i]);
+    for (int l = 0; !kPair && l < kLanes; ++l) {
+      if (((list.mask[i] >> l) & 1u) == 0) o.a[l] = o.a[candidate];
+    }
     const Mask active = mask_from_bits(list.mask[i]);
     load_convex(t.hulls, kinds.b, w.pose_rows, o.b, b);
     Manifold<Isotropic, N> m;

@@ -31,6 +31,7 @@ struct Tile {
   Vec3 out[3];             // unit, in the triangle's plane, out of it across edge e
   Vec3 last[3];            // unit, across that edge, along the surface that goes on; `out` at one
                            // that does not stick out
+  Vec3 beside[3];          // unit, level in the field, out of the triangle seen from above
   Float code;              // of the cell, below 256
   Mask there;              // the cell is one of the field
 };
@@ -44,6 +45,10 @@ Mask has_normal(const Tile& tile, Vec3 n);
 // Whether a point, from the tile's p, is straight over the triangle, by no more than `slack`
 // outside of it.
 Mask is_over(const Tile& tile, Vec3 point, Float slack);
+
+// Whether a point is in the solid below the triangle, seen along the field's z axis: below a valley
+// the spaces straight under its slopes leave a wedge between them.
+Mask is_below(const Tile& tile, Vec3 point);
 
 // B is a sphere.
 void collide_tile_sphere(const ConvexShape& a, const Tile& tile, const ConvexShape& b,

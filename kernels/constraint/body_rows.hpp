@@ -60,24 +60,65 @@ MW_INLINE Velocity<S> load_velocity(const Work& w, const std::int32_t* offset, i
   }
 }
 
-// Acceleration of the bodies of the lanes along n, from gravity.
+// The pull of a point on a body at x.
+template <class S>
+struct Attraction {
+  typename S::Vec to;        // m
+  Float strength, nearness;  // with the body's gravity scale, m^3/s^2; 1 / softened distance, 1/m
+  MW_INLINE Attraction(const Tables& t, const Group& g, int body, int i, typename S::Vec x) {
+    const kernels::AttractorTable<Real>& point = t.attractor[i];
+    to.x = Float(point.position[0]) - x.x, to.y = Float(point.position[1]) - x.y;
+    if constexpr (S::kDim == 3) to.z = Float(point.position[2]) - x.z;
+    strength = Float(point.strength) * Float(constants_of_body(g, body).gravity_scale);
+    nearness = Float(Real(1)) / sqrt(dot(to, to) + Float(point.softening2));
+  }
+  MW_INLINE typename S::Vec acceleration() const {
+    // 0 at the point itself, where nearness is as large as it can be.
+    return (((to * nearness) * nearness) * nearness) * strength;
+  }
+};
+// Where the body is half a step on. With what substeps fall too far taken back (finish.hpp) that
+// makes drift, kick, drift: position Verlet, which keeps orbits.
+template <class S>
+MW_INLINE typename S::Vec attraction_of_body(const Tables& t, const Group& g, int body) {
+  using Vec = typename S::Vec;
+  const Vec x = fma(load_as<Vec>(state_of(t, g, body, kState<S>.linear)), Float(t.dt * Real(0.5)),
+                    load_as<Vec>(state_of(t, g, body, kState<S>.position)));
+  Vec out = zero_of<Vec>();
+  for (int i = 0; i < t.attractors; ++i) {
+    out = out + Attraction<S>(t, g, body, i, x).acceleration();
+  }
+  return out;
+}
+
+// Acceleration of the bodies of the lanes along n, from gravity and attractors.
 template <class S>
 MW_INLINE Float gravity_along(const Tables& t, const Group& g, const std::int32_t* body,
                               typename S::Vec n) {
   LaneNumber a[S::kDim];
   for (int c = 0; c < S::kDim; ++c) {
     if (t.uniform_gravity) {
-      a[c] = constants_of_body(g, 0).acceleration[c];
+      a[c] = constants_of_body(g, 0).gravity[c];
     } else {
       for (int l = 0; l < kLanes; ++l) {
-        a[c].lane[l] = constants_of_body(g, body[l]).acceleration[c].lane[l];
+        a[c].lane[l] = constants_of_body(g, body[l]).gravity[c].lane[l];
       }
     }
   }
   typename S::Vec pull;
   pull.x = a[0], pull.y = a[1];
   if constexpr (S::kDim == 3) pull.z = a[2];
-  return dot(pull, n);
+  const Float along = dot(pull, n);
+  if (t.attractors == 0) return along;
+  // Lanes may have different bodies; few scenes have attractors.
+  alignas(64) Real out[kLanes], of_body[kLanes];
+  along.store(out);
+  for (int l = 0; l < kLanes; ++l) {
+    if (body[l] >= t.bodies || t.body[body[l]].kinematic) continue;
+    dot(attraction_of_body<S>(t, g, body[l]), n).store(of_body);
+    out[l] += of_body[l];
+  }
+  return Float::load(out);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -58,11 +58,11 @@ struct KineticForm {
 
 // What gravity and forces do along the way of a body in this step, twice.
 template <class S, bool kDense>
-MW_INLINE Float work_of_pushes(const Tables& t, const Work& w, const KineticForm<S>& form,
-                               int body) {
+MW_INLINE Float work_of_pushes(const Tables& t, const Group& g, const Work& w,
+                               const KineticForm<S>& form, int body) {
   Velocity<S> way = form.own(get_velocity<S, kDense>(w, w.displacement, body));
   const Mask free = mask_from_bits(~w.touched[body] & kAllLanes);
-  way.v = select(free, way.v - drift_excess<S, kDense>(t, w, body), way.v);
+  way.v = select(free, way.v - drift_excess<S, kDense>(t, g, w, body), way.v);
   Velocity<S> push;
   if (w.push) {
     push = form.own(get_velocity<S, kDense>(w, w.push, body));
@@ -92,7 +92,7 @@ void weigh_bodies(const Tables& t, const Group& g, const Work& w) {
     const Velocity<S> found = form.own(get_velocity<S, kDense>(w, w.warmed, b));
     const Velocity<S> after = form.own(get_velocity<S, kDense>(w, w.velocity, b));
     const Velocity<S> change{after.v - found.v, after.w - found.w};
-    const Float before = form(start, start), work = work_of_pushes<S, kDense>(t, w, form, b);
+    const Float before = form(start, start), work = work_of_pushes<S, kDense>(t, g, w, form, b);
     const Float rounding = slack * fma(form.mass, least, before);
     (before + work + rounding).store(account(w, b, kAllowed));
     form(found, found).store(account(w, b, kFound));

@@ -139,11 +139,12 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
   if constexpr (kPair) normal_speed = dot(m.normal, velocity_b.v - velocity_a.v);
   // Of gravity along n: relative, and the most that closes the gap when something holds A or B.
   Float pull = zero, closing_pull = zero;
-  if (t.has_gravity) {
+  if (t.has_gravity || t.attractors > 0) {
     const Float pull_b = gravity_along<S>(t, g, who.b, m.normal);
     pull = closing_pull = pull_b;
     if constexpr (kPair) {
-      const Float pull_a = t.uniform_gravity ? pull_b : gravity_along<S>(t, g, who.a, m.normal);
+      const bool uniform = t.uniform_gravity && t.attractors == 0;
+      const Float pull_a = uniform ? pull_b : gravity_along<S>(t, g, who.a, m.normal);
       pull = pull_b - pull_a;
       closing_pull = min(pull, min(pull_b, -pull_a));
     }
@@ -151,9 +152,9 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
 
   const Float dt(t.dt), margin(t.margin);
   // A body fast enough for a cast needs no speculation against a fixed shape, which could stop one
-  // that only passes by. Half spaces cannot be passed by.
+  // that only passes by. Half spaces cannot be passed by, and height fields are not cast against.
   Float speculation(Real(1));
-  if (!kPair && t.cast && !is_plane(pair_class.kind)) {
+  if (!kPair && t.cast && !is_plane(pair_class.kind) && !is_tile(pair_class.kind)) {
     alignas(64) LaneNumber core;
     for (int l = 0; l < kLanes; ++l) {
       core.lane[l] = who.b[l] < t.bodies ? constants_of_body(g, who.b[l]).core_radius.lane[l] : 0;

@@ -88,6 +88,7 @@ MW_INLINE void forget_load(const Tables& t, const Group& g, Work& w, int body_a,
 template <class S>
 void break_joints(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
+  const std::uint32_t frozen = frozen_lanes(g);  // also those that this step froze
   for (int i = 0; i < t.breakable; ++i) {
     const kernels::BreakTable<Real>& joint = t.breaking[i];
     const auto* from = w.borne + i * kBorne<S>;
@@ -96,7 +97,7 @@ void break_joints(const Tables& t, const Group& g, kernels::Scratch* scratch) {
     const JointPart& part = t.part[joint.first_part];
     const std::uint32_t lanes = bits((Float(joint.most_force) < length_of(force)) |
                                      (Float(joint.most_torque) < length_of(torque))) &
-                                active_lanes(t, g, part) & ~w.frozen;
+                                active_lanes(t, g, part) & ~frozen;
     if (lanes == 0) continue;
     g.loose[joint.joint] |= lanes;
     // What hung on it is not held, however slow it is (kernels/sleep.cpp).

@@ -8,7 +8,7 @@ namespace manyworlds {
 namespace {
 
 // What is below the surface is solid this far down, m per length_unit.
-constexpr double kDepth = 1000;
+constexpr double kDepth = 1e6;
 
 }  // namespace
 

@@ -1,7 +1,9 @@
 // Checks of what varies from world to world.
+#include <algorithm>
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "src/scene/checks.hpp"
 #include "src/scene/variations.hpp"
@@ -94,6 +96,25 @@ void check_range(Checker& checker, const Scene& scene, bool sound, const Variati
   }
 }
 
+// A hull that is stretched far along one axis and not along another would become flat.
+void check_hulls(Checker checker, const Scene& scene, int variation) {
+  constexpr double kMostStretch = 1000;
+  std::map<std::pair<int, int>, std::pair<double, double>> range;  // of a shape's half extents
+  for (const VariedNumber& n : varied_numbers(scene)) {
+    if (n.variation != variation || n.parameter != Parameter::size) continue;
+    const Shape& shape =
+        scene.bodies[static_cast<std::size_t>(n.body)].shapes[static_cast<std::size_t>(n.shape)];
+    if (!std::holds_alternative<Hull>(shape.geometry)) continue;
+    const std::pair<int, int> of(n.body, n.shape);
+    auto& [low, high] = range.try_emplace(of, n.low, n.high).first->second;
+    low = std::min(low, n.low), high = std::max(high, n.high);
+    if (high <= kMostStretch * low) continue;
+    checker.add("size", "of a hull goes from " + number_text(low) + " to " + number_text(high) +
+                            " m, must be by no more than " + number_text(kMostStretch) + " times");
+    return;
+  }
+}
+
 }  // namespace
 
 void check_variations(Checker checker, const Scene& scene, bool sound) {
@@ -132,6 +153,11 @@ void check_variations(Checker checker, const Scene& scene, bool sound) {
         .add(info(scene.variations[i].parameter).name, "is of nothing in this scene");
   }
   if (!sound || checker.count() != before) return;
+  for (std::size_t i = 0; i < scene.variations.size(); ++i) {
+    if (scene.variations[i].parameter == Parameter::size) {
+      check_hulls(at(static_cast<int>(i)), scene, static_cast<int>(i));
+    }
+  }
 
   // What is fine one by one must be so together, at either end.
   for (const bool high : {false, true}) {

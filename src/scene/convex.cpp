@@ -152,11 +152,36 @@ Convex hull_of(const Hull& hull, const Vec3& x, const Mat3& r) {
   return c;
 }
 
-// What is below each triangle of a surface, down to the size of the field below the lowest point.
+// What is below a triangle, counter-clockwise seen from above, down to a level.
+Convex prism_of(const std::array<Vec3, 3>& top, double level, const Vec3& x, const Mat3& r) {
+  Convex c;
+  for (const bool lower : {false, true}) {
+    for (const Vec3& p : top) c.points.push_back(x + r * Vec3(p.x(), p.y(), lower ? level : p.z()));
+  }
+  const auto point = [&](int i) { return c.points[static_cast<std::size_t>(i)]; };
+  const auto face = [&](const Vec3& normal, const Vec3& on) {
+    c.normals.push_back(normal.normalized());
+    c.reach.push_back(c.normals.back().dot(on));
+  };
+  const auto edge = [&](int from, int to) {
+    c.edges.push_back({from, to});
+    c.directions.push_back((point(to) - point(from)).normalized());
+  };
+  face((point(1) - point(0)).cross(point(2) - point(0)), point(0));
+  face(-r.col(2), point(3));
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    face((point(next) - point(i)).cross(r.col(2)), point(i));
+    edge(i, next), edge(3 + i, 3 + next), edge(i, 3 + i);
+  }
+  return c;
+}
+
+// What is below each triangle of a surface, as deep as the field is wide below its lowest point.
 std::vector<Convex> prisms_of(const HeightField& field, const Vec3& x, const Mat3& r) {
   const int columns = field.columns - 1, rows = field.rows() - 1;
   const double wide = columns * field.cell.x(), deep = rows * field.cell.y();
-  const double floor =
+  const double level =
       *std::min_element(field.heights.begin(), field.heights.end()) - std::hypot(wide, deep);
   const auto corner = [&](int i, int j) {
     const double z = field.heights[static_cast<std::size_t>(i + j * field.columns)];
@@ -166,14 +191,8 @@ std::vector<Convex> prisms_of(const HeightField& field, const Vec3& x, const Mat
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
       const Vec3 low = corner(i, j), high = corner(i + 1, j + 1);
-      for (const Vec3& other : {corner(i + 1, j), corner(i, j + 1)}) {
-        Hull prism{{low, high, other}};
-        for (int k = 0; k < 3; ++k) {
-          const Vec3& top = prism.vertices[static_cast<std::size_t>(k)];
-          prism.vertices.emplace_back(top.x(), top.y(), floor);
-        }
-        out.push_back(hull_of(prism, x, r));
-      }
+      out.push_back(prism_of({low, corner(i + 1, j), high}, level, x, r));
+      out.push_back(prism_of({low, high, corner(i, j + 1)}, level, x, r));
     }
   }
   return out;

@@ -77,10 +77,10 @@ void Worlds<Real>::initialise(int world) {
   storage_.clear_contacts(slot);
   storage_.clear_joints(slot);
   storage_.clear_loose(slot);
-  Real* control = storage_.controls(slot);
-  for (const Control& c : plan_.scene().controls) {
-    *control = static_cast<Real>(c.initial);
-    control += storage_.lanes();
+  const auto& controls = plan_.scene().controls;
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    storage_.controls(slot)[i * static_cast<std::size_t>(storage_.lanes())] =
+        static_cast<Real>(controls[i].initial);
   }
   storage_.clear_forces(slot);
   storage_.wake(slot);
@@ -232,7 +232,7 @@ Energy Worlds<Real>::energy(int world) const {
     const Vec3 x = center_of_mass(world, body);
     double height = g.dot(x);
     for (const Attractor& a : plan_.scene().attractors) {
-      height += a.strength / std::hypot((a.position - x).norm(), a.softening);
+      height += a.strength / std::hypot((a.position - x).norm(), std::max(a.softening, 1e-12));
     }
     e.potential -= b.mass * gravity_scale(world, body) * height;
   }
