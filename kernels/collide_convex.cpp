@@ -227,17 +227,19 @@ Mask keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis&
   const Vec3 n = tile.normal;
   const Vec3 lowest = support(b, -n) + d;
   const Float separation = dot(n, lowest - tile.vertex[0]);
-  const Mask other = !has_normal(tile, axis.normal);
+  // Who is below is not apart from the triangle but in the solid.
+  const Mask below = is_below(tile, d), other = below | !has_normal(tile, axis.normal);
+  axis.near = axis.near | (below & tile.there);
   axis.normal = select(other, n, axis.normal);
   axis.separation = select(other, separation, axis.separation);
   axis.on_b = select(other, lowest, axis.on_b);
   axis.on_a = select(other, fnma(n, separation, lowest), axis.on_a);
-  const Mask other_face = axis.face_of_b & !has_normal(tile, axis.face_normal);
+  const Mask other_face = axis.face_of_b & (below | !has_normal(tile, axis.face_normal));
   axis.face_normal = select(other_face, n, axis.face_normal);
   axis.face_separation = select(other_face, separation, axis.face_separation);
   axis.face = select(other_face, Float(Real(0)), axis.face);
   axis.face_of_b = axis.face_of_b & !other_face;
-  return other & !(is_over(tile, lowest, Real(0)) | is_below(tile, d));
+  return other & !(is_over(tile, lowest, Real(0)) | below);
 }
 
 }  // namespace
