@@ -87,7 +87,7 @@ inline void flag_outside(const Group& g, std::uint32_t lanes) {
 // it half a substep times what the velocity changed by.
 template <class S, bool kDense>
 MW_INLINE typename S::Vec drift_excess(const Tables& t, const Group& g, const Work& w, int body) {
-  if (t.has_drag) {
+  if (t.slows) {
     const auto before = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear));
     const Velocity<S> now = get_velocity<S, kDense>(w, w.velocity, body);
     return (now.v - before) * Float(t.h * Real(0.5));
@@ -194,7 +194,7 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     Real* p = state_of(t, g, b, kState<S>.position);
     const auto old = load_as<typename S::Vec>(p);
     auto step = moved.v;
-    if (t.has_gravity || w.push) {
+    if (t.has_gravity || t.slows || w.push) {
       step = select(free, step - drift_excess<S, kDense>(t, g, w, b), step);
     }
     if (t.cast) step = cast_against_fixed(t, g, b, old, step);

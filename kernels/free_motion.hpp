@@ -45,7 +45,7 @@ MW_INLINE Flight<S> fly(const Tables& t, const Group& g, const Work& w, int body
     substeps([] {});
   }
   // What symplectic substeps fall too far.
-  if (t.has_drag) {
+  if (t.slows) {
     o.moved.v = o.moved.v - (o.v.v - start) * Float(t.h * Real(0.5));
   } else if (t.has_gravity || w.push) {
     o.moved.v = o.moved.v - o.push.v * Float(t.dt * Real(0.5));

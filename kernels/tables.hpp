@@ -284,6 +284,7 @@ struct WorldTables {
   std::int32_t restitution_sweeps;
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
   bool has_joints;
+  bool slows;             // by linear drag
   bool has_substeps;      // contacts, joints or thrust: not free motion
   bool collider_is_body;  // collider i is the only shape of body i, centred and aligned
   bool friction_in_bias;

@@ -3,35 +3,13 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <functional>
-#include <optional>
 
-#include "manyworlds/query.hpp"
+#include "tests/support/height_field.hpp"
 #include "tests/support/random.hpp"
-#include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
-
-HeightField field_of(int columns, int rows, const Vec2& cell,
-                     const std::function<double(double, double)>& height) {
-  HeightField out;
-  out.columns = columns, out.cell = cell;
-  for (int j = 0; j < rows; ++j) {
-    for (int i = 0; i < columns; ++i) {
-      out.heights.push_back(
-          height((i - 0.5 * (columns - 1)) * cell.x(), (j - 0.5 * (rows - 1)) * cell.y()));
-    }
-  }
-  return out;
-}
-double flat(double, double) { return 0; }
-double hills(double x, double y) { return 0.4 * std::sin(1.3 * x) * std::cos(0.9 * y + 0.3 * x); }
-
-Body land(Geometry field, double friction = 0.6) {
-  return body_of(shape_of(std::move(field), friction), Vec3::Zero(), Motion::fixed);
-}
 
 Hull wedge() {
   return Hull{{{-0.3, -0.2, -0.2},
@@ -51,20 +29,6 @@ std::vector<Sample> samples() {
           {"box", Box{{0.3, 0.2, 0.25}}, 0.25},
           {"cylinder", Cylinder{0.25, 0.3}, 0.3},
           {"hull", wedge(), 0.2}};
-}
-
-// The surface below a point, as triangles see it.
-double surface(const HeightField& f, double x, double y) {
-  const double u = x / f.cell.x() + 0.5 * (f.columns - 1),
-               v = y / f.cell.y() + 0.5 * (f.rows() - 1);
-  const int i = std::min(std::max(static_cast<int>(std::floor(u)), 0), f.columns - 2);
-  const int j = std::min(std::max(static_cast<int>(std::floor(v)), 0), f.rows() - 2);
-  const auto z = [&](int a, int b) {
-    return f.heights[static_cast<std::size_t>(a + b * f.columns)];
-  };
-  const double s = u - i, t = v - j;
-  return s >= t ? z(i, j) + s * (z(i + 1, j) - z(i, j)) + t * (z(i + 1, j + 1) - z(i + 1, j))
-                : z(i, j) + t * (z(i, j + 1) - z(i, j)) + s * (z(i + 1, j + 1) - z(i, j + 1));
 }
 
 }  // namespace
@@ -307,74 +271,6 @@ TEST_CASE("height fields have the same bits on every table, layout and thread co
   Batch one(plan, options_of(table, 3)), other(compile(scene, sparse), options_of(table, 3));
   one.step(50), other.step(50);
   for (int w = 0; w < 3; ++w) CHECK(position(one, w, 0).isApprox(position(other, w, 0), 1e-2));
-}
-
-TEST_CASE("rays hit the triangles of a height field", "[fast][field][query]") {
-  Random random(3);
-  const HeightField field = field_of(9, 8, {0.7, 0.5}, hills);
-  const Shape shape = shape_of(field);
-  Pose pose;
-  pose.position = {0.4, 0.1, -0.2};
-  pose.rotation = Quat(Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()));
-  int hits = 0;
-  for (int i = 0; i < 600; ++i) {
-    Ray ray;
-    ray.origin = Vec3(random.uniform(-4, 4), random.uniform(-3, 3), random.uniform(0.5, 3));
-    ray.direction =
-        i % 10 == 0 ? Vec3(0, 0, -1)
-                    : (Vec3(random.uniform(-2.5, 2.5), random.uniform(-1.5, 1.5), 0) - ray.origin);
-    ray.direction.normalize();
-    ray.origin = pose.position + pose.rotation * ray.origin;
-    ray.direction = pose.rotation * ray.direction;
-    ray.length = 20;
-    // By small steps: where it first is in the solid.
-    std::optional<double> expected;
-    const auto local = [&](double s) {
-      return Vec3(pose.rotation.conjugate() * (ray.origin + s * ray.direction - pose.position));
-    };
-    const auto within = [&](double s) {
-      const Vec3 p = local(s);
-      return std::abs(p.x()) <= 0.7 * 4 && std::abs(p.y()) <= 0.5 * 3.5 &&
-             p.z() <= surface(field, p.x(), p.y());
-    };
-    for (double s = 0; s < 20 && !expected; s += 1e-3) {
-      if (within(s)) expected = s;
-    }
-    const auto hit = ray_cast(shape, pose, ray);
-    INFO("ray " << i << " expected " << expected.value_or(-1));
-    // A ray that grazes an edge may go either way.
-    if (!expected) continue;
-    REQUIRE(hit);
-    CHECK(hit->distance <= *expected + 1e-4);
-    if (hit->distance < *expected - 2e-3) CHECK(within(hit->distance + 1e-5));
-    CHECK(hit->normal.norm() == Approx(1));
-    CHECK(hit->normal.dot(ray.direction) < 0);
-    hits += *expected > 0 ? 1 : 0;
-  }
-  CHECK(hits > 300);
-}
-
-TEST_CASE("in a batch rays see height fields", "[fast][field][observe]") {
-  for (const Table& table : widest_tables()) {
-    Scene scene = empty_scene(Space::spatial, 0);
-    scene.add(land(field_of(9, 8, {0.7, 0.5}, hills)));
-    scene.add(body_of(shape_of(Sphere{0.1}), {0, 0, 5}));
-    BatchOptions options = options_of(table, 3);
-    for (int i = 0; i < 5; ++i) {
-      Ray ray;
-      ray.origin = {0.4 * i - 0.9, 0.2, 3}, ray.direction = {0, 0, -1}, ray.length = 10;
-      options.observe.rays.push_back(ray);
-    }
-    Batch batch(compile(scene), options);
-    batch.look();
-    const auto hits = batch.ray_hits(1);
-    for (std::size_t i = 0; i < 5; ++i) {
-      const double x = 0.4 * static_cast<double>(i) - 0.9;
-      const double z = surface(std::get<HeightField>(scene.bodies[0].shapes[0].geometry), x, 0.2);
-      CHECK(hits[i].body == 0);
-      CHECK(hits[i].distance == Approx(3 - z).margin(1e-5));
-    }
-  }
 }
 
 TEST_CASE("height fields are checked", "[fast][scene]") {

@@ -108,6 +108,7 @@ void choose_features(PlanData& plan) {
       const PlanBody& b = plan.bodies[i];
       if (b.inv_mass > 0) {
         const Body& body = s.bodies[static_cast<std::size_t>(b.scene_body)];
+        plan.slows = plan.slows || body.linear_drag > 0;
         drag = drag || body.linear_drag > 0 || body.angular_drag > 0;
         const Vec3 g = s.options.gravity * body.gravity_scale + body.linear_drag * s.options.wind;
         gravity = gravity || !g.isZero(0);

@@ -122,6 +122,7 @@ struct PlanData {
   bool collider_is_body = true;
   bool cast = false;
   bool uniform_gravity = true;
+  bool slows = false;  // some body may have linear drag, whatever stages are kept
   int row_block = 0;
 
   bool has(Feature f) const { return in[static_cast<std::size_t>(f)]; }

@@ -66,6 +66,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.has_substeps = t.has_contacts || t.has_joints || !plan.thrusts.empty();
   t.controls = static_cast<std::int32_t>(plan.scene.controls.size());
   t.has_drag = plan.has(Feature::drag);
+  t.slows = plan.slows;
   t.has_gravity = plan.has(Feature::gravity);
   t.collider_is_body = plan.collider_is_body;
   t.friction_in_bias = o.friction_in_bias_pass;
