@@ -183,6 +183,7 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
   const bool turned = is_round(kinds.a);  // the method wants what is round as B
   ConvexShape a, b;
   for (int i = 0; i < list.count; ++i) {
+    if (list.mask[i] == 0) continue;  // its lanes had too many candidates
     const std::int32_t* code = list.code + i * kLanes;
     PoseOffsets o = pose_offsets<kPair>(t, w, code);
     // Lanes without a candidate point at some fixed shape, of another kind perhaps: they look at
