@@ -52,17 +52,20 @@ void find_corners(const Real* row, int lane, const Real* low, const Real* high, 
   // Told apart from cells that are far away in the same tile.
   out.code[lane] = static_cast<Real>((i + j * columns) & 0xff);
   const Real* heights = row + whole(TileRow::heights);
-  for (int k = 0; k < 6; ++k) {
-    const int u = i + kCorner[half][k][0], v = j + kCorner[half][k][1];
-    const bool inside = 0 <= u && u <= columns && 0 <= v && v <= rows;
-    if (inside) {
-      out.x[k][lane] = static_cast<Real>(u) * cell_x;
-      out.y[k][lane] = static_cast<Real>(v) * cell_y;
-      out.z[k][lane] = heights[u + v * (columns + 1)];
+  const auto put = [&](int k, int u, int v) {
+    out.x[k][lane] = static_cast<Real>(u) * cell_x;
+    out.y[k][lane] = static_cast<Real>(v) * cell_y;
+    out.z[k][lane] = heights[u + v * (columns + 1)];
+  };
+  for (int k = 0; k < 3; ++k) put(k, i + kCorner[half][k][0], j + kCorner[half][k][1]);
+  for (int k = 0; k < 3; ++k) {
+    const int u = i + kCorner[half][3 + k][0], v = j + kCorner[half][3 + k][1];
+    if (0 <= u && u <= columns && 0 <= v && v <= rows) {
+      put(3 + k, u, v);
     } else {  // the field ends: straight down from the edge
-      out.x[k][lane] = out.x[k - 3][lane];
-      out.y[k][lane] = out.y[k - 3][lane];
-      out.z[k][lane] = out.z[k - 3][lane] - (cell_x + cell_y);
+      out.x[3 + k][lane] = out.x[k][lane];
+      out.y[3 + k][lane] = out.y[k][lane];
+      out.z[3 + k][lane] = out.z[k][lane] - (cell_x + cell_y);
     }
   }
 }
