@@ -8,7 +8,7 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr int kScenes = 8;  // random sizes and offsets
+constexpr int kScenes = 4;  // random sizes and offsets; 2,048 poses in all
 constexpr int kPosesPerScene = 512;
 
 using Maker = Geometry (*)(Random&);
