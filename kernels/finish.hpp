@@ -165,9 +165,12 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
         const auto& m = constants_of_body(g, first + i).inertia;
         const Vec3 moments{m[0], m[1], m[2]};
         const Mat3 r = matrix(old[i]);
-        const Vec3 half = half_gyroscopic(t.dt, moments, r, before) - before;
-        const Vec3 kept = keep_momentum(moments, old[i], q[i], omega[i] - half, omega[i]);
-        spin = select(held & is_slightly_gyroscopic(t.dt, moments, r, before), kept, spin);
+        const Mask slight = held & is_slightly_gyroscopic(t.dt, moments, r, before);
+        if (any(slight)) {
+          const Vec3 half = half_gyroscopic(t.dt, moments, r, before) - before;
+          const Vec3 kept = keep_momentum(moments, old[i], q[i], omega[i] - half, omega[i]);
+          spin = select(slight, kept, spin);
+        }
       }
     }
     if (t.body[first + i].kinematic) spin = omega[i];

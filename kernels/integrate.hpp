@@ -204,7 +204,9 @@ void first_push(const Tables& t, const Group& g, Work& w) {
       Vec3 turned = implicit_gyroscopic(t.dt, moments, r, v.w);
       if (t.has_joints) {
         const Mask slight = is_slightly_gyroscopic(t.dt, moments, r, v.w);
-        turned = select(slight, half_gyroscopic(t.dt, moments, r, v.w), turned);
+        if (any(slight)) {
+          turned = select(slight, half_gyroscopic(t.dt, moments, r, v.w), turned);
+        }
       }
       v.w = select(mask_from_bits(w.touched[b]), turned, v.w);
       put_velocity<S, kDense>(w, w.velocity, b, v);
