@@ -11,8 +11,6 @@ namespace {
 constexpr int kScenes = 4;  // random sizes and offsets; 2,048 poses in all
 constexpr int kPosesPerScene = 512;
 
-using Maker = Geometry (*)(Random&);
-
 Geometry any_sphere(Random& r) { return Sphere{r.uniform(0.1, 0.6)}; }
 Geometry any_box(Random& r) { return random_box(r); }
 Geometry any_capsule(Random& r) { return random_capsule(r); }
@@ -29,18 +27,10 @@ Geometry any_brick(Random& r) {  // a box, as a hull
   return hull;
 }
 
-void check(Maker first, Motion first_motion, Maker second, const PairPromise& promise) {
+void check(ShapeMaker first, Motion first_motion, ShapeMaker second, const PairPromise& promise) {
   for (const Table& table : widest_tables()) {
-    Random random(20240601);
-    PairResult sum;
-    for (int i = 0; i < kScenes; ++i) {
-      Scene scene = empty_scene(Space::spatial, 0);
-      const bool offset = i % 2 == 1;
-      scene.add(random_body(first(random), first_motion, offset, Space::spatial, random));
-      scene.add(random_body(second(random), Motion::dynamic, offset, Space::spatial, random));
-      if (i % 4 >= 2) std::swap(scene.bodies[0], scene.bodies[1]);
-      merge(sum, check_pair(scene, table, promise, kPosesPerScene, random));
-    }
+    const PairResult sum = check_random_pairs({first, first_motion, second}, Space::spatial, table,
+                                              promise, kScenes, kPosesPerScene, Random(20240601));
     INFO(name(table) << ": " << sum.deviations << " deviations in " << sum.poses << " poses\n"
                      << sum.report);
     CHECK(sum.deviations == 0);

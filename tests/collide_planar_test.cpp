@@ -14,8 +14,6 @@ namespace {
 constexpr int kScenes = 24;          // random sizes, offsets and vertex counts
 constexpr int kPosesPerScene = 512;  // one round of worlds: 12,288 poses in all
 
-using Maker = Geometry (*)(Random&);
-
 Geometry any_circle(Random& r) { return Circle{r.uniform(0.1, 0.6)}; }
 Geometry any_polygon(Random& r) { return random_polygon(r, r.integer(3, 8)); }
 Geometry any_rectangle(Random& r) { return Polygon::box(r.uniform(0.1, 0.6), r.uniform(0.1, 0.6)); }
@@ -70,22 +68,14 @@ Geometry plump_rounded(Random& r) {
   return polygon;
 }
 
-void check(Maker first, Motion first_motion, Maker second, int max_points) {
+void check(ShapeMaker first, Motion first_motion, ShapeMaker second, int max_points) {
   PairPromise promise;
   promise.max_points = max_points;
   // Edges of one polygon win near ties with those of the other (polygon_pairs.hpp).
   if (max_points >= 2) promise.bias = 0.5 * Options{}.slop;
   for (const Table& table : widest_tables()) {
-    Random random(20240602);
-    PairResult sum;
-    for (int i = 0; i < kScenes; ++i) {
-      Scene scene = empty_scene(Space::planar, 0);
-      const bool offset = i % 2 == 1;
-      scene.add(random_body(first(random), first_motion, offset, Space::planar, random));
-      scene.add(random_body(second(random), Motion::dynamic, offset, Space::planar, random));
-      if (i % 4 >= 2) std::swap(scene.bodies[0], scene.bodies[1]);
-      merge(sum, check_pair(scene, table, promise, kPosesPerScene, random));
-    }
+    const PairResult sum = check_random_pairs({first, first_motion, second}, Space::planar, table,
+                                              promise, kScenes, kPosesPerScene, Random(20240602));
     INFO(name(table) << ": " << sum.deviations << " deviations in " << sum.poses << " poses\n"
                      << sum.report);
     CHECK(sum.deviations == 0);

@@ -273,16 +273,6 @@ PairResult check_pair(const Scene& scene, const Table& table, const PairPromise&
   return result;
 }
 
-void merge(PairResult& sum, const PairResult& more) {
-  sum.poses += more.poses;
-  sum.overlapping += more.overlapping;
-  sum.with_contacts += more.with_contacts;
-  sum.normals_checked += more.normals_checked;
-  sum.local += more.local;
-  sum.deviations += more.deviations;
-  if (sum.report.size() < 3000) sum.report += more.report;
-}
-
 Polygon random_polygon(Random& random, int vertices) {
   // Points on an ellipse in angular order are convex; corners keep a distance from each other.
   const double rx = random.uniform(0.2, 0.6), ry = random.uniform(0.2, 0.6);
@@ -335,6 +325,34 @@ Body random_body(Geometry geometry, Motion motion, bool offset, Space space, Ran
     body.rotation = planar ? random.planar_rotation() : random.rotation();
   }
   return body;
+}
+
+namespace {
+
+void merge(PairResult& sum, const PairResult& more) {
+  sum.poses += more.poses;
+  sum.overlapping += more.overlapping;
+  sum.with_contacts += more.with_contacts;
+  sum.normals_checked += more.normals_checked;
+  sum.local += more.local;
+  sum.deviations += more.deviations;
+  if (sum.report.size() < 3000) sum.report += more.report;
+}
+
+}  // namespace
+
+PairResult check_random_pairs(const RandomPair& pair, Space space, const Table& table,
+                              const PairPromise& promise, int scenes, int poses, Random random) {
+  PairResult sum;
+  for (int i = 0; i < scenes; ++i) {
+    Scene scene = empty_scene(space, 0);
+    const bool offset = i % 2 == 1;
+    scene.add(random_body(pair.first(random), pair.first_motion, offset, space, random));
+    scene.add(random_body(pair.second(random), Motion::dynamic, offset, space, random));
+    if (i % 4 >= 2) std::swap(scene.bodies[0], scene.bodies[1]);
+    merge(sum, check_pair(scene, table, promise, poses, random));
+  }
+  return sum;
 }
 
 }  // namespace manyworlds::test

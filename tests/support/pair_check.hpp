@@ -42,8 +42,6 @@ struct PairResult {
 // to touching. Planar scenes get planar poses.
 PairResult check_pair(const Scene& scene, const Table& table, const PairPromise& promise, int poses,
                       Random& random);
-void merge(PairResult& sum, const PairResult& more);
-
 // Random shapes for check_pair, 0.1 to 0.6 m in half extent.
 Polygon random_polygon(Random& random, int vertices);
 Box random_box(Random& random);
@@ -52,5 +50,15 @@ Cylinder random_cylinder(Random& random);
 Hull random_hull(Random& random, int vertices);
 // A body with this shape, placed off its body frame by a random pose when `offset` is set.
 Body random_body(Geometry geometry, Motion motion, bool offset, Space space, Random& random);
+
+using ShapeMaker = Geometry (*)(Random&);
+struct RandomPair {
+  ShapeMaker first;
+  Motion first_motion;
+  ShapeMaker second;  // of a dynamic body
+};
+// check_pair over scenes of random shapes: every other one off its body frame, and in both orders.
+PairResult check_random_pairs(const RandomPair& pair, Space space, const Table& table,
+                              const PairPromise& promise, int scenes, int poses, Random random);
 
 }  // namespace manyworlds::test
