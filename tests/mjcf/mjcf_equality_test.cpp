@@ -13,34 +13,18 @@
 #include "manyworlds/batch.hpp"
 #include "manyworlds/mjcf.hpp"
 
-#include "src/mjcf/mujoco_library.hpp"
+#include "tests/mjcf/mujoco_reference.hpp"
 
 namespace manyworlds {
 namespace {
-
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 struct Place {
   Vec3 position;
   Quat rotation;
 };
 
-struct Reference {
-  mjcf::ModelPtr model;
-  std::unique_ptr<mjData, DataDeleter> data;
-
-  explicit Reference(const std::string& xml) {
-    char error[1000] = "";
-    const mjcf::SpecPtr spec(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
-    INFO(error);
-    REQUIRE(spec);
-    model.reset(mj_compile(spec.get(), nullptr));
-    REQUIRE(model);
-    data.reset(mj_makeData(model.get()));
-  }
-
+struct Reference : test::Reference {
+  using test::Reference::Reference;
   void place(int free_body, const Place& at) {
     mjtNum* q = data->qpos + 7 * free_body;
     for (int i = 0; i < 3; ++i) q[i] = at.position[i];

@@ -13,31 +13,12 @@
 #include "manyworlds/batch.hpp"
 #include "manyworlds/mjcf.hpp"
 
-#include "src/mjcf/mujoco_library.hpp"
+#include "tests/mjcf/mujoco_reference.hpp"
 
 namespace manyworlds {
 namespace {
 
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
-// MuJoCo's own model of the same text, posed as it begins.
-struct Reference {
-  mjcf::ModelPtr model;
-  std::unique_ptr<mjData, DataDeleter> data;
-
-  explicit Reference(const std::string& xml) {
-    char error[1000] = "";
-    const mjcf::SpecPtr spec(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof error));
-    INFO(error);
-    REQUIRE(spec);
-    model.reset(mj_compile(spec.get(), nullptr));
-    REQUIRE(model);
-    data.reset(mj_makeData(model.get()));
-    mj_forward(model.get(), data.get());
-  }
-};
+using test::Reference;
 
 std::string world(const std::string& content, const std::string& assets = "") {
   return "<mujoco><asset>" + assets + "</asset><worldbody>" + content + "</worldbody></mujoco>";
