@@ -42,26 +42,16 @@ struct LoopError {
 LoopError run(int n, double rate, double seconds) {
   Batch batch(compile(four_bars(n, rate)),
               options_of({widest_tables().front().isa, Precision::f64}));
-  // theta'' = -c cos(theta), from upright; energy 0 where the links hang.
-  const double c = 9.81 * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n);
-  double theta = kPi / 2, omega = -1;
+  // All links turn alike, from upright; energy 0 where they hang.
+  Swing theta{9.81 * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n), kPi / 2, -1};
   const double start = energy_of(batch, 0), lowest = -9.81 * (0.5 * (n + 1) + n);
   LoopError out;
   const int steps = static_cast<int>(seconds * rate + 0.5);
   for (int i = 0; i < steps; ++i) {
     batch.step();
-    constexpr int kParts = 20;  // of Runge-Kutta 4
-    const double h = 1 / rate / kParts;
-    for (int k = 0; k < kParts; ++k) {
-      const auto f = [&](double t) { return -c * std::cos(t); };
-      const double k1 = f(theta), l1 = omega, k2 = f(theta + h / 2 * l1), l2 = omega + h / 2 * k1,
-                   k3 = f(theta + h / 2 * l2), l3 = omega + h / 2 * k2, k4 = f(theta + h * l3),
-                   l4 = omega + h * k3;
-      theta += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
-      omega += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-    }
+    theta.advance(1 / rate, 20);
     const Vec3 tip = position(batch, 0, 0) + rotation(batch, 0, 0) * Vec3(0.5, 0, 0);
-    out.tip = std::max(out.tip, (tip - Vec3(std::cos(theta), std::sin(theta), 0)).norm());
+    out.tip = std::max(out.tip, (tip - Vec3(std::cos(theta.angle), std::sin(theta.angle), 0)).norm());
     out.gap = std::max(out.gap, worst_gap(batch, 0));
     out.gain = std::max(out.gain, (energy_of(batch, 0) - start) / (start - lowest));
   }

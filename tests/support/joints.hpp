@@ -1,6 +1,8 @@
 // Jointed scenes, and what their joints do.
 #pragma once
 
+#include <cmath>
+
 #include "tests/support/scenes.hpp"
 
 namespace manyworlds::test {
@@ -58,5 +60,24 @@ inline double energy_of(const Batch& batch, int world) {
   const Energy e = batch.energy(world);
   return e.kinetic + e.potential;
 }
+
+// An angle that follows angle'' = -rate cos(angle), the swing of a pendulum from the horizontal, by
+// Runge-Kutta 4 with small steps.
+struct Swing {
+  double rate;          // 1/s^2
+  double angle, speed;  // rad, rad/s
+
+  void advance(double time, int parts) {
+    const double h = time / parts;
+    const auto f = [this](double a) { return -rate * std::cos(a); };
+    for (int i = 0; i < parts; ++i) {
+      const double k1 = f(angle), l1 = speed, k2 = f(angle + h / 2 * l1), l2 = speed + h / 2 * k1,
+                   k3 = f(angle + h / 2 * l2), l3 = speed + h / 2 * k2, k4 = f(angle + h * l3),
+                   l4 = speed + h * k3;
+      angle += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+      speed += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+  }
+};
 
 }  // namespace manyworlds::test
