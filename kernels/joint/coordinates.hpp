@@ -56,8 +56,8 @@ void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint
 }
 
 template <class S, bool kDense, bool kMoved>
-MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& numbers,
-                       Row<S, true>& s) {
+MW_INLINE void locate(const Work& w, const JointPart& part, const Joint& numbers,
+                      Row<S, true>& s) {
   using Vec = typename S::Vec;
   auto axis = load_as<Vec>(s.start_axis[0]);
   MovedAnchors<S> now = anchors_now<S, kDense, kMoved>(w, s, axis);
@@ -79,11 +79,10 @@ MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& number
   store(s.push_a[0], push_a), store(s.push_b[0], push_b);
   store(s.arm_a[0], cross(now.arm_a, push_a)), store(s.arm_b[0], cross(now.arm_b, push_b));
   value.store(s.value);
-  weigh_row(s);
 }
 
 template <class S, bool kDense, bool kMoved>
-MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, Row<S, false>& s) {
+MW_INLINE void locate(const Work& w, const JointPart& part, const Joint&, Row<S, false>& s) {
   using Ang = typename S::Ang;
   Ang turn_a = zero_of<Ang>(), turn_b = turn_a;
   if constexpr (kMoved) {
@@ -114,6 +113,12 @@ MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, Row<S
     store(s.arm_a[0], n), store(s.arm_b[0], n);
     value.store(s.value);
   }
+}
+
+template <class S, bool kDense, bool kMoved, bool kLinear>
+MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& numbers,
+                       Row<S, kLinear>& s) {
+  locate<S, kDense, kMoved>(w, part, numbers, s);
   weigh_row(s);
 }
 

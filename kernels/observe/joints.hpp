@@ -7,16 +7,15 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// A row at the present state. Its bodies weigh nothing: nobody solves it.
+// A row at the present state; what its bodies weigh is left out, since nobody solves it.
 template <class S, bool kLinear>
 MW_INLINE void row_now(const Tables& t, const Group& g, const Work& w, const JointPart& part,
                        const Joint& numbers, Row<S, kLinear>& s) {
   const Float zero(Real(0));
-  zero.store(s.inv_mass_a), zero.store(s.inv_mass_b), zero.store(s.start_value);
-  for (int i = 0; i < S::kInertia; ++i) zero.store(s.inertia_a[i]), zero.store(s.inertia_b[i]);
-  for (int i = 0; i < 3; ++i) zero.store(s.start_axis[i]), zero.store(s.start_axis_b[i]);
+  zero.store(s.start_value);
+  for (int i = 0; i < 3; ++i) zero.store(s.start_axis[i]);
   prepare(t, g, part, numbers, s);
-  refresh<S, true, false>(w, part, numbers, s);
+  locate<S, true, false>(w, part, numbers, s);
 }
 
 template <class S>

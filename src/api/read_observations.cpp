@@ -44,16 +44,8 @@ ShapeName shape_name(const PlanData& plan, int shape) {
 
 template <class Real>
 template <class Out>
-void ObservationsOf<Real>::read_joints(Observed what, const Kind& kind, const PlanData& plan,
-                                       std::size_t world, Out* out) {
-  if (what == Observed::joint_position || what == Observed::joint_speed) {
-    const std::size_t count = plan.coordinates.size(), speed = what == Observed::joint_speed;
-    const Real* from = kind.coordinate_rows.data() + world * count * kernels::kCoordinateRows;
-    for (std::size_t i = 0; i < count; ++i) {
-      out[i] = static_cast<Out>(from[i * kernels::kCoordinateRows + speed]);
-    }
-    return;
-  }
+void ObservationsOf<Real>::read_loads(Observed what, const Kind& kind, const PlanData& plan,
+                                      std::size_t world, Out* out) {
   const bool planar = plan.scene.space == Space::planar, torque = what == Observed::joint_torque;
   const std::size_t joints = plan.scene.joints.size();
   if (joints == 0) return;
@@ -84,14 +76,10 @@ void ObservationsOf<Real>::read_world(Observed what, int k, int world, Out* out)
     case Observed::penetration: need(Observer::penetration); return copy(&kind.penetration[w]);
     case Observed::contact_count: need(Observer::contacts); return copy(&kind.count[w]);
     case Observed::touching: need(Observer::touching); return copy(kind.touching.data() + w * size);
-    case Observed::joint_position:
-    case Observed::joint_speed:
-      need(Observer::joints);
-      return read_joints(what, kind, plan, w, out);
     case Observed::joint_force:
     case Observed::joint_torque:
       need(Observer::joint_loads);
-      return read_joints(what, kind, plan, w, out);
+      return read_loads(what, kind, plan, w, out);
     case Observed::ray_distance:
     case Observed::ray_normal:
     case Observed::ray_body:
@@ -115,14 +103,29 @@ void ObservationsOf<Real>::read_world(Observed what, int k, int world, Out* out)
 }
 
 template <class Real>
-void ObservationsOf<Real>::read(Observed what, int k, int first, int count, float* out) const {
-  const std::size_t size = observed_size(what, worlds_[at(k)]->data(), kinds_[at(k)].rays.size());
+template <class Out>
+void ObservationsOf<Real>::read_worlds(Observed what, int k, int first, int count, Out* out) const {
+  const Kind& kind = kinds_[at(k)];
+  const PlanData& plan = worlds_[at(k)]->data();
+  const std::size_t size = observed_size(what, plan, kind.rays.size());
+  const bool speed = what == Observed::joint_speed;
+  if (speed || what == Observed::joint_position) {  // of all worlds in one go: read in every step
+    if (!has(Observer::joints)) not_observed(what, "Observer::joints");
+    const Real* from = kind.coordinate_rows.data() + at(first) * size * kernels::kCoordinateRows;
+    for (std::size_t i = 0; i < at(count) * size; ++i) {
+      out[i] = static_cast<Out>(from[i * kernels::kCoordinateRows + speed]);
+    }
+    return;
+  }
   for (int w = first; w < first + count; ++w, out += size) read_world(what, k, w, out);
 }
 template <class Real>
+void ObservationsOf<Real>::read(Observed what, int k, int first, int count, float* out) const {
+  read_worlds(what, k, first, count, out);
+}
+template <class Real>
 void ObservationsOf<Real>::read(Observed what, int k, int first, int count, double* out) const {
-  const std::size_t size = observed_size(what, worlds_[at(k)]->data(), kinds_[at(k)].rays.size());
-  for (int w = first; w < first + count; ++w, out += size) read_world(what, k, w, out);
+  read_worlds(what, k, first, count, out);
 }
 
 template <class Real>
