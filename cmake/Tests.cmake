@@ -7,9 +7,8 @@ find_package(nlohmann_json REQUIRED CONFIG)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 include(Catch)
 
-# mw_test_program(TARGET SOURCE...): one executable whose Catch2 cases are ctest entries.
-function(mw_test_program target)
-  add_executable(${target} ${ARGN} "${PROJECT_SOURCE_DIR}/tests/main.cpp")
+# What all test programs share: options, and what tests may include.
+function(mw_test_target target)
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
   # Catch2 is slow to compile, and most of all its main function.
   target_compile_options(${target} PRIVATE -O1 $<$<CONFIG:RelWithDebInfo>:-g1>)
@@ -17,28 +16,40 @@ function(mw_test_program target)
   if(MW_SANITIZE MATCHES undefined)
     target_compile_options(${target} PRIVATE -fno-sanitize=undefined)
   endif()
-  set_property(SOURCE "${PROJECT_SOURCE_DIR}/tests/main.cpp" PROPERTY COMPILE_OPTIONS -O0)
-  target_compile_definitions(${target} PRIVATE MW_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} PRIVATE
     manyworlds Catch2::Catch2 fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
+  mw_precompile(${target} <catch2/catch.hpp>)
+endfunction()
+
+# main() and tests/support/, compiled once.
+file(GLOB mw_test_support CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/support/*.cpp")
+add_library(manyworlds_test_support OBJECT "${PROJECT_SOURCE_DIR}/tests/main.cpp"
+  ${mw_test_support})
+mw_test_target(manyworlds_test_support)
+set_source_files_properties("${PROJECT_SOURCE_DIR}/tests/main.cpp" PROPERTIES
+  COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
+
+# mw_test_program(TARGET SOURCE...): one executable whose Catch2 cases are ctest entries.
+function(mw_test_program target)
+  add_executable(${target} ${ARGN} $<TARGET_OBJECTS:manyworlds_test_support>)
+  mw_test_target(${target})
+  target_compile_definitions(${target} PRIVATE MW_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   if(TARGET manyworlds_cli)
     target_compile_definitions(${target} PRIVATE MW_CLI_PATH="$<TARGET_FILE:manyworlds_cli>")
     add_dependencies(${target} manyworlds_cli)
   endif()
-  mw_precompile(${target} <catch2/catch.hpp>)
-  set_property(SOURCE "${PROJECT_SOURCE_DIR}/tests/main.cpp" PROPERTY SKIP_PRECOMPILE_HEADERS ON)
   catch_discover_tests(${target} TEST_SPEC ${MW_TEST_FILTER} PROPERTIES TIMEOUT 900)
 endfunction()
 
 mw_sources(mw_test_sources "tests/*.cpp")
-list(REMOVE_ITEM mw_test_sources "${PROJECT_SOURCE_DIR}/tests/main.cpp")
+list(REMOVE_ITEM mw_test_sources "${PROJECT_SOURCE_DIR}/tests/main.cpp" ${mw_test_support})
 set(mw_mjcf_test_sources ${mw_test_sources})
 list(FILTER mw_mjcf_test_sources INCLUDE REGEX "/tests/mjcf/")
 set(mw_record_test_sources ${mw_test_sources})
-list(FILTER mw_record_test_sources INCLUDE REGEX "/tests/(record|support)/")
+list(FILTER mw_record_test_sources INCLUDE REGEX "/tests/record/")
 list(FILTER mw_test_sources EXCLUDE REGEX "/tests/(mjcf|record)/")
 if(MW_TEST_SOURCES)
-  list(FILTER mw_test_sources INCLUDE REGEX "/tests/(${MW_TEST_SOURCES})_test|/tests/support/")
+  list(FILTER mw_test_sources INCLUDE REGEX "/tests/(${MW_TEST_SOURCES})_test")
 endif()
 mw_test_program(manyworlds_tests ${mw_test_sources})
 if(MW_MJCF AND mw_mjcf_test_sources)
@@ -50,14 +61,14 @@ if(MW_RECORD)
   target_link_libraries(manyworlds_record_tests PRIVATE manyworlds_record HDF5::HDF5)
 endif()
 
-# The fast tests with each instruction set forced; one that the CPU lacks is skipped by name.
+# The fast tests with each narrower instruction set forced. First, since they take longest.
 if(NOT MW_SANITIZE)
   foreach(isa IN LISTS MW_ISAS)
     add_test(NAME fast_tests_forced_${isa}
-      COMMAND ${CMAKE_COMMAND} -D ISA=${isa} -D PROGRAM=$<TARGET_FILE:manyworlds_tests>
+      COMMAND ${CMAKE_COMMAND} -D ISA=${isa} "-D ISAS=${MW_ISAS}" -D PROGRAM=$<TARGET_FILE:manyworlds_tests>
               -P "${PROJECT_SOURCE_DIR}/cmake/RunOnIsa.cmake")
     set_tests_properties(fast_tests_forced_${isa} PROPERTIES
-      SKIP_REGULAR_EXPRESSION "^skipped: " TIMEOUT 900)
+      SKIP_REGULAR_EXPRESSION "^skipped: " TIMEOUT 900 COST 1000)
   endforeach()
 endif()
 

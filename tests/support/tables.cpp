@@ -1,6 +1,7 @@
 #include "tests/support/tables.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "tests/support/scenes.hpp"
@@ -30,6 +31,7 @@ const std::vector<Table>& all_tables() {
     const Plan plan = compile(scene);
     std::vector<Table> result;
     for (Isa isa : available_isas()) {
+      if (std::getenv("MANYWORLDS_ISA") != nullptr && isa != default_isa()) continue;
       for (Precision precision : {Precision::f32, Precision::f64})
         if (runs(plan, {isa, precision})) result.push_back({isa, precision});
     }

@@ -14,7 +14,8 @@ struct Table {
 };
 std::string name(const Table& table);
 
-// Every kernel table that this build has and this machine runs. Development and sanitizer builds
+// Every kernel table that this build has and this machine runs; those of one instruction set if
+// MANYWORLDS_ISA names it, since what is compared between them has then been. Development and sanitizer builds
 // leave float64 out; AVX-512 has float32 only.
 const std::vector<Table>& all_tables();
 bool has_table(const Table& table);
