@@ -37,14 +37,6 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-Isa widest_of(Precision precision) {
-  Isa widest = Isa::scalar;
-  for (const Table& table : widest_tables()) {
-    if (table.precision == precision) widest = table.isa;
-  }
-  return widest;
-}
-
 const std::vector<ContactLayout> kLayouts = {ContactLayout::automatic, ContactLayout::dense,
                                              ContactLayout::rows};
 

@@ -59,7 +59,7 @@ TEST_CASE("wind varies with the drag of each world", "[fast][field]") {
 
 TEST_CASE("a body circles an attractor, and the orbit's error falls with the square of the step",
           "[fast][field]") {
-  const Table table{widest_tables().front().isa, Precision::f64};
+  const Table table = double_table();
   if (!has_table(table)) return;
   for (Space space : kSpaces) {
     double last = 0;

@@ -40,8 +40,7 @@ struct LoopError {
   double gain = 0;          // of energy, largest, as a share of what moves
 };
 LoopError run(int n, double rate, double seconds) {
-  Batch batch(compile(four_bars(n, rate)),
-              options_of({widest_tables().front().isa, Precision::f64}));
+  Batch batch(compile(four_bars(n, rate)), options_of(double_table()));
   // All links turn alike, from upright; energy 0 where they hang.
   Swing theta{9.81 * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n), kPi / 2, -1};
   const double start = energy_of(batch, 0), lowest = -9.81 * (0.5 * (n + 1) + n);
@@ -51,7 +50,8 @@ LoopError run(int n, double rate, double seconds) {
     batch.step();
     theta.advance(1 / rate, 20);
     const Vec3 tip = position(batch, 0, 0) + rotation(batch, 0, 0) * Vec3(0.5, 0, 0);
-    out.tip = std::max(out.tip, (tip - Vec3(std::cos(theta.angle), std::sin(theta.angle), 0)).norm());
+    out.tip =
+        std::max(out.tip, (tip - Vec3(std::cos(theta.angle), std::sin(theta.angle), 0)).norm());
     out.gap = std::max(out.gap, worst_gap(batch, 0));
     out.gain = std::max(out.gain, (energy_of(batch, 0) - start) / (start - lowest));
   }
@@ -63,7 +63,7 @@ LoopError run(int n, double rate, double seconds) {
 
 TEST_CASE("loops of four bars stay closed, gain no energy and reach the 0.1 m level (A11)",
           "[slow][joint]") {
-  if (!has_table({widest_tables().front().isa, Precision::f64})) return;
+  if (!has_table(double_table())) return;
   for (const int n : {2, 40}) {
     const LoopError coarse = run(n, 240, n == 2 ? 20 : 5), fine = run(n, 960, n == 2 ? 20 : 5);
     INFO("N " << n << ": tip " << coarse.tip << ", " << fine.tip << " m, gap " << coarse.gap
@@ -78,7 +78,7 @@ TEST_CASE("loops of four bars stay closed, gain no energy and reach the 0.1 m le
 }
 
 TEST_CASE("loops of four bars live through large steps (B23, B25)", "[fast][joint]") {
-  if (!has_table({widest_tables().front().isa, Precision::f64})) return;
+  if (!has_table(double_table())) return;
   for (const double rate : {60.0, 100.0}) {
     const LoopError e = run(40, rate, 5);
     INFO("rate " << rate << ": gap " << e.gap << " m, gain " << e.gain);

@@ -39,7 +39,7 @@ PointError swing_point(Space space, double rate, double seconds) {
   rod.type = DistanceJoint{};
   rod.body_b = 0;
   scene.add(rod);
-  Batch batch(compile(scene), options_of({widest_tables().front().isa, Precision::f64}));
+  Batch batch(compile(scene), options_of(double_table()));
   Swing swing{9.81, 0, 0};
   const double start = energy_of(batch, 0);
   const int between = static_cast<int>(rate / 2 + 0.5);
@@ -101,7 +101,7 @@ TEST_CASE("a double pendulum follows its quadruple-precision reference", "[fast]
 }
 
 TEST_CASE("a point on a rod swings as the elliptic integral says", "[fast][joint]") {
-  if (!has_table({widest_tables().front().isa, Precision::f64})) return;
+  if (!has_table(double_table())) return;
   for (Space space : {Space::planar, Space::spatial}) {
     const PointError e = swing_point(space, 240, 100);
     INFO("off " << e.position << " m, gap " << e.gap << " m, gain " << e.gain << " J");
@@ -112,7 +112,7 @@ TEST_CASE("a point on a rod swings as the elliptic integral says", "[fast][joint
 }
 
 TEST_CASE("a point on a rod is within 0.1 m after 2000 s (A7)", "[slow][joint]") {
-  if (!has_table({widest_tables().front().isa, Precision::f64})) return;
+  if (!has_table(double_table())) return;
   // After 845 swings; a period is 5e-6 of itself off.
   const PointError e = swing_point(Space::planar, 960, 2000);
   INFO("off " << e.position << " m, gap " << e.gap << " m, gain " << e.gain << " J");

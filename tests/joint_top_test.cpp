@@ -36,7 +36,7 @@ double angle_between(const Vec3& a, const Vec3& b) {
 }  // namespace
 
 TEST_CASE("a heavy top nods and precesses (A10)", "[fast][joint]") {
-  const Table table{widest_tables().front().isa, Precision::f64};
+  const Table table = double_table();
   if (!has_table(table)) return;
   Batch batch(compile(top(0.5, kMoments, 0.06, kTilt, {0, 0, 150}, 9.81, 960)), options_of(table));
   const struct {
@@ -55,7 +55,7 @@ TEST_CASE("a heavy top nods and precesses (A10)", "[fast][joint]") {
 
 TEST_CASE("a heavy top that precesses steadily keeps its tilt and its rate (A10)",
           "[fast][joint]") {
-  const Table table{widest_tables().front().isa, Precision::f64};
+  const Table table = double_table();
   if (!has_table(table)) return;
   const double rate = 2.56140113796036;  // rad/s, slow root
   const Vec3 spin(0, rate * std::sin(kTilt), 150);

@@ -57,6 +57,14 @@ std::vector<Table> widest_tables() {
   return result;
 }
 
+Isa widest_of(Precision precision) {
+  Isa widest = Isa::scalar;
+  for (const Table& table : widest_tables()) {
+    if (table.precision == precision) widest = table.isa;
+  }
+  return widest;
+}
+
 BatchOptions options_of(const Table& table, int worlds, int threads) {
   BatchOptions o;
   o.worlds = worlds;
