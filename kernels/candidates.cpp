@@ -96,7 +96,10 @@ kernels::Layout choose_layout(const Tables& t, const Group&, kernels::Scratch* s
   }
   w.dense = wish == kernels::Layout::dense;
   if (wish == kernels::Layout::automatic) {
-    w.dense = static_cast<float>(active) >= kDenseOccupancy * static_cast<float>(all * kLanes);
+    // Parts of joints are slots of which every lane is active.
+    const auto parts = static_cast<unsigned>(t.parts);
+    w.dense = static_cast<float>(active + parts * kLanes) >=
+              kDenseOccupancy * static_cast<float>((all + parts) * kLanes);
   }
   w.dense = w.dense && fits;
   return w.dense ? kernels::Layout::dense : kernels::Layout::rows;
