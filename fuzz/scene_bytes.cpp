@@ -218,6 +218,9 @@ Options SceneBytes::options() {
   if (byte() > 200) o.gravity = planar_vector(20);
   if (byte() > 200) o.wind = planar_vector(20);
   sometimes(o.density, 1, 5000);
+  if (byte() > 128) o.integrator = static_cast<Integrator>(integer(0, 5));
+  if (byte() > 200) o.rotation = static_cast<Rotation>(integer(0, 2));
+  if (byte() > 200) o.angular_momentum = true;
   sometimes(o.length_unit, 0.1, 10);
   sometimes(o.contact_frequency, 0, 300);
   sometimes(o.contact_damping_ratio, 0, 20);

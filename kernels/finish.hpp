@@ -125,22 +125,31 @@ struct LiveLanes {
   MW_INLINE SomeLanes of(int body) const { return {mask_from_bits(lanes & ~idle_lanes(g, body))}; }
 };
 
-// Orientations of bodies whose inertia is a scalar: by the angle that the substeps swept.
-template <class S, class Keep>
-MW_INLINE void turn_body(const Tables& t, const Group& g, int body, typename S::Ang turn,
-                         Keep keep) {
-  Real* p = state_of(t, g, body, kState<S>.orientation);
-  if constexpr (S::kDim == 2) {
-    store(p, keep(rotate_by(load_rot2(p), turn), p));
-  } else {
-    store(p, keep(rotate_by(load_quat(p), turn), p));
+// How bodies that nothing touched have moved: as the substeps say, or by another integrator, which
+// then says where they are (kernels/flight.cpp).
+struct NoFlight {
+  template <class Q>
+  MW_INLINE Q orientation(int, Mask, Q swept) const {
+    return swept;
   }
+};
+template <class Flight>
+inline constexpr bool kFlies = !std::is_same_v<Flight, NoFlight>;
+
+// Orientations of bodies whose inertia is a scalar: by the angle that the substeps swept.
+template <class S, class Keep, class Flight>
+MW_INLINE void turn_body(const Tables& t, const Group& g, int body, typename S::Ang turn, Keep keep,
+                         Mask free, const Flight& flight) {
+  Real* p = state_of(t, g, body, kState<S>.orientation);
+  const auto swept = rotate_by(load_as<typename S::Orientation>(p), turn);
+  store(p, keep(flight.orientation(body, free, swept), p));
 }
 
 // Orientations and angular velocities of kBodies bodies from `first` whose inertia is a tensor:
 // free lanes tumble exactly, lanes in contact turn by the angle that the substeps swept.
-template <bool kDense, int kBodies, class Keep>
-MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first, Keep keep) {
+template <bool kDense, int kBodies, class Keep, class Flight>
+MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first, Keep keep,
+                            const Flight& flight) {
   const Top* tops[kBodies];
   Vec3 omega[kBodies], tumbled[kBodies];
   Quat q[kBodies], old[kBodies];
@@ -151,7 +160,14 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
   }
   std::uint32_t held_everywhere = kAllLanes;
   for (int i = 0; i < kBodies; ++i) held_everywhere &= w.touched[first + i];
-  if (held_everywhere != kAllLanes) rotate_free<kBodies>(tops, tumbled, q);
+  if constexpr (kFlies<Flight>) {
+    for (int i = 0; i < kBodies; ++i) {
+      const auto end = flight.of(first + i);
+      tumbled[i] = end.spin, q[i] = end.q;
+    }
+  } else if (held_everywhere != kAllLanes) {
+    rotate_free<kBodies>(tops, tumbled, q);
+  }
   for (int i = 0; i < kBodies; ++i) {
     const std::uint32_t touched = w.touched[first + i];
     Vec3 spin = tumbled[i];
@@ -182,8 +198,9 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
   }
 }
 
-template <class S, bool kDense, class Keep>
-void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits, Keep keep) {
+template <class S, bool kDense, class Keep, class Flight>
+void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits, Keep keep,
+                  const Flight& flight) {
   constexpr bool kIdle = std::is_same_v<Keep, LiveLanes>;
   Mask inside = mask_from_bits(kAllLanes);
   if (t.cast_moving) {
@@ -191,13 +208,17 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
   }
   for (int b = 0; b < t.bodies; ++b) {
     const auto& keep_body = keep.of(b);
-    const Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
+    Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
     const Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
     const Mask free = mask_from_bits(~w.touched[b] & kAllLanes);
     Real* p = state_of(t, g, b, kState<S>.position);
     const auto old = load_as<typename S::Vec>(p);
     auto step = moved.v;
-    if (t.has_gravity || t.slows || w.push) {
+    if constexpr (kFlies<Flight>) {
+      const auto end = flight.of(b);
+      step = select(free, end.x - old, step);
+      v = select(free, Velocity<S>{end.v, end.spin}, v);
+    } else if (t.has_gravity || t.slows || w.push) {
       step = select(free, step - drift_excess<S, kDense>(t, g, w, b), step);
     }
     if (t.cast) step = cast_against_fixed(t, g, b, old, step);
@@ -220,13 +241,13 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     if constexpr (!std::is_same_v<S, Tensor>) {
       Real* p_angular = state_of(t, g, b, kState<S>.angular);
       store(p_angular, keep_body(v.w, p_angular));
-      if (t.has_orientation) turn_body<S>(t, g, b, moved.w, keep_body);
+      if (t.has_orientation) turn_body<S>(t, g, b, moved.w, keep_body, free, flight);
     }
   }
   if constexpr (std::is_same_v<S, Tensor>) {
     int b = 0;
-    for (; b + 1 < t.bodies; b += 2) turn_tensors<kDense, 2>(t, g, w, b, keep);
-    if (b < t.bodies) turn_tensors<kDense, 1>(t, g, w, b, keep);
+    for (; b + 1 < t.bodies; b += 2) turn_tensors<kDense, 2>(t, g, w, b, keep, flight);
+    if (b < t.bodies) turn_tensors<kDense, 1>(t, g, w, b, keep, flight);
   }
   flag_outside(g, ~bits(inside) & commit_bits);
 }
@@ -238,29 +259,39 @@ inline void report_overflow(const Group& g, const Work& w) {
   }
 }
 
-template <class S, bool kDense, bool kIdle>
-std::uint32_t judge_bodies(const Tables& t, const Group& g, const Work& w) {
+template <class S, bool kDense, bool kIdle, class Flight>
+std::uint32_t judge_bodies(const Tables& t, const Group& g, const Work& w, const Flight& flight) {
   LaneCheck check;
   for (int b = 0; b < t.bodies; ++b) {
-    check.add<S, kIdle>(t, g, b, get_velocity<S, kDense>(w, w.displacement, b),
-                        get_velocity<S, kDense>(w, w.velocity, b));
+    Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
+    Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
+    if constexpr (kFlies<Flight>) {
+      const auto end = flight.of(b);
+      const Mask free = mask_from_bits(~w.touched[b] & kAllLanes);
+      const auto from = load_as<typename S::Vec>(state_of(t, g, b, kState<S>.position));
+      moved = select(free, Velocity<S>{end.x - from, zero_of<typename S::Ang>()}, moved);
+      v = select(free, Velocity<S>{end.v, end.spin}, v);
+    }
+    check.add<S, kIdle>(t, g, b, moved, v);
   }
   return judge_lanes(g, check);
 }
 
-template <class S, bool kDense>
-void leave_state(const Tables& t, const Group& g, Work& w) {
+// Returns the lanes whose new state was committed.
+template <class S, bool kDense, class Flight>
+std::uint32_t leave_state(const Tables& t, const Group& g, Work& w, const Flight& flight) {
   if (has_idle_bodies(g)) {
-    const std::uint32_t commit = judge_bodies<S, kDense, true>(t, g, w);
-    commit_lanes<S, kDense>(t, g, w, commit, LiveLanes{g, commit});
-    return;
+    const std::uint32_t commit = judge_bodies<S, kDense, true>(t, g, w, flight);
+    commit_lanes<S, kDense>(t, g, w, commit, LiveLanes{g, commit}, flight);
+    return commit;
   }
-  const std::uint32_t commit = judge_bodies<S, kDense, false>(t, g, w);
+  const std::uint32_t commit = judge_bodies<S, kDense, false>(t, g, w, flight);
   if (commit == kAllLanes) {
-    commit_lanes<S, kDense>(t, g, w, commit, AllLanes{});
+    commit_lanes<S, kDense>(t, g, w, commit, AllLanes{}, flight);
   } else {
-    commit_lanes<S, kDense>(t, g, w, commit, SomeLanes{mask_from_bits(commit)});
+    commit_lanes<S, kDense>(t, g, w, commit, SomeLanes{mask_from_bits(commit)}, flight);
   }
+  return commit;
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -98,7 +98,9 @@ MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int fi
   } else {
     for (int i = 0; i < kBodies; ++i) {
       store(state_of(t, g, first + i, kState<S>.angular), flight[i].v.w);
-      if (t.has_orientation) turn_body<S>(t, g, first + i, flight[i].moved.w, AllLanes{});
+      if (!t.has_orientation) continue;
+      turn_body<S>(t, g, first + i, flight[i].moved.w, AllLanes{}, mask_from_bits(kAllLanes),
+                   NoFlight{});
     }
   }
 }

@@ -69,14 +69,15 @@ MW_INLINE bool is_thrust(const Tables& t, int body) {
   return t.first_thrust && t.first_thrust[body] != t.first_thrust[body + 1];
 }
 
-// Force, N, and torque about the centre of mass, N m, of the inputs and the controls.
+// Force, N, and torque about the centre of mass, N m, of the inputs and the controls, for a body
+// that is turned by `orientation`.
 template <class S>
 struct Load {
   typename S::Vec force;
   typename S::Ang torque;
 };
 template <class S>
-MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body) {
+MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body, const Real* orientation) {
   using Vec = typename S::Vec;
   Load<S> out{zero_of<Vec>(), zero_of<typename S::Ang>()};
   if (g.force) {
@@ -85,7 +86,7 @@ MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body) {
     out.torque = load_as<typename S::Ang>(f + (S::kDim == 3 ? 3 : 5) * kLanes);
   }
   if (!is_thrust(t, body)) return out;
-  const auto q = load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation));
+  const auto q = load_as<typename S::Orientation>(orientation);
   for (int i = t.first_thrust[body]; i < t.first_thrust[body + 1]; ++i) {
     const auto& numbers =
         reinterpret_cast<const kernels::ThrustConstants<LaneNumber>*>(g.constants.thrust)[i];
@@ -126,7 +127,7 @@ MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& 
     push.v = fma(attraction_of_body<S>(t, g, body), Float(t.h), push.v);
   }
   if (!g.force && !is_thrust(t, body)) return push;
-  const Load<S> load = load_of_body<S>(t, g, body);
+  const Load<S> load = load_of_body<S>(t, g, body, state_of(t, g, body, kState<S>.orientation));
   alignas(64) std::int32_t o[kLanes];
   for (int l = 0; l < kLanes; ++l) o[l] = w.body_base[l] + body * body_row_size(S::kKind);
   BodyRow<S> row;

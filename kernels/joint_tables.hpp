@@ -46,6 +46,7 @@ struct JointConstants {
   T most;         // of the drive or of a soft point, N s or N m s in a substep
   RowSoftness<T> limit_soft;
   T low, high;
+  T stiffness, damping;               // of a spring that is a force, N/m and N s/m
   T ground_a[3], ground_b[3], ratio;  // of a pulley
 };
 
@@ -62,11 +63,12 @@ struct ThrustTable {
 
 struct JointPart {
   PartKind kind;
-  std::int32_t joint;                            // of the scene
-  std::int32_t body_a, body_b;                   // state bodies; WorldTables::bodies: the world
-  bool equality;                                 // a row held at its rest
-  bool drive, low, high;                         // what else a row has
-  bool spring;                                   // a point that is drawn with limited force
+  std::int32_t joint;           // of the scene
+  std::int32_t body_a, body_b;  // state bodies; WorldTables::bodies: the world
+  bool equality;                // a row held at its rest
+  bool drive, low, high;        // what else a row has
+  bool spring;                  // a point that is drawn with limited force
+  bool force;                   // nothing but a spring, which the integrator of the plan evaluates
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
 

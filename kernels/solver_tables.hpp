@@ -13,6 +13,7 @@ FillSolver fill_solver_tensor_dense, fill_solver_tensor_rows;
 
 using FillJoints = void(kernels::JointSolver<Real>& dense, kernels::JointSolver<Real>& rows);
 FillJoints fill_joints_planar, fill_joints_tensor;
+void fill_flight(kernels::FlightTable<Real>* tables);  // [inertia]
 // Bytes of the rows of a part.
 std::size_t part_bytes(Planar);
 std::size_t part_bytes(Tensor);

@@ -51,6 +51,15 @@ struct JointSolver {
   Stage<Real> break_up;
 };
 
+// Free flight by the integrator of the plan (kernels/flight.cpp).
+template <class Real>
+struct FlightTable {
+  // Whole steps of plans in which nothing else moves bodies.
+  void (*steps)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, int steps);
+  Stage<Real> fly;       // before the passes of the solver
+  Stage<Real> leave[2];  // after them, instead of SolverTable::leave; [layout: dense, rows]
+};
+
 template <class Real>
 struct ContactPoint {
   std::int32_t list, key;    // key identifies class and candidate
@@ -77,6 +86,8 @@ struct KernelTable {
   // Plans without contacts and joints: n whole steps of free motion.
   void (*free_motion[kInertiaKinds])(const WorldTables<Real>&, const GroupView<Real>&, Scratch*,
                                      int steps);
+
+  FlightTable<Real> flight[kInertiaKinds];
 
   Stage<Real> settle;  // after the step: bodies at rest fall asleep (plans of batches with sleep)
 

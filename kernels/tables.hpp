@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "kernels/flight_tables.hpp"
 #include "kernels/joint_tables.hpp"
 
 namespace manyworlds::kernels {
@@ -183,10 +184,11 @@ struct BodyConstants {
   T inertia[3];      // principal, kg m^2 (planar: [2])
   T inv_inertia[3];  // 0 for kinematic bodies
   T gravity_scale;
-  T gravity[3];       // times gravity scale, m/s^2; 0 for kinematic bodies
-  T acceleration[3];  // that and what the wind does by drag
-  T push[3];          // h times that; never -0
-  T linear_factor;    // 1 / (1 + h c), per substep
+  T gravity[3];                 // times gravity scale, m/s^2; 0 for kinematic bodies
+  T acceleration[3];            // that and what the wind does by drag
+  T push[3];                    // h times that; never -0
+  T linear_drag, angular_drag;  // c, 1/s
+  T linear_factor;              // 1 / (1 + h c), per substep
   T angular_factor;
   TopConstants<T> top;
   T radius;       // of the bounding sphere about the centre of mass, m
@@ -285,7 +287,7 @@ struct WorldTables {
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
   bool has_joints;
   bool slows;             // by linear drag
-  bool has_substeps;      // contacts, joints or thrust: not free motion
+  bool has_substeps;      // some stages of the solver: not free motion
   bool collider_is_body;  // collider i is the only shape of body i, centred and aligned
   bool friction_in_bias;
   bool uniform_gravity;  // every body has the acceleration of body 0
@@ -295,6 +297,7 @@ struct WorldTables {
   bool cast_moving;      // cast fast bodies against moving shapes
   bool has_bounds;
   bool has_sleep;
+  FlightOptions flight;
 
   bool push_varies, drag_varies, bodies_vary;  // from world to world
 

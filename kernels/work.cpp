@@ -106,8 +106,14 @@ void carve(const Tables& t, Work& w, Carver& c) {
   c.take(w.body_rows, count((t.bodies + 1) * body_row * lanes));
   c.take(w.push_storage, velocities);
   if (t.drag_varies) c.take(w.factor_storage, velocities);
+  const std::size_t state = count(t.bodies * t.state_stride * lanes);
+  if (t.flight.on) {
+    for (Real** block : {&w.flight.now, &w.flight.base, &w.flight.rate, &w.flight.sum}) {
+      c.take(*block, state);
+    }
+  }
   if (!t.has_substeps) {
-    c.take(w.before, count(t.bodies * t.state_stride * lanes));
+    c.take(w.before, state);
     return;
   }
   c.take(w.velocity, velocities);
@@ -173,6 +179,8 @@ void carve(const Tables& t, Work& w, Carver& c) {
 
 // What never changes: lane bases, the dummy's pose, inverse masses that do not turn.
 void fill_constants(const Tables& t, Work& w) {
+  const int state = t.flight.on ? t.bodies * t.state_stride * kLanes : 0;
+  for (int i = 0; i < state; ++i) w.flight.rate[i] = Real(0);  // not all rows of it are used
   const int row = kernels::velocity_row_size(t.dimension);
   const int body_row = body_row_size(t.inertia_kind);
   for (int l = 0; l < kLanes; ++l) {

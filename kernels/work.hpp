@@ -57,7 +57,16 @@ struct SparseWork {
   std::int32_t count[kLanes];  // of pairs
 };
 
+// Blocks of an integrator, laid out as the state is (kernels/flight/).
+struct FlightWork {
+  Real* now;   // where the group has come
+  Real* base;  // where it was
+  Real* rate;  // of change
+  Real* sum;   // of rates
+};
+
 struct Work {
+  FlightWork flight;
   Real* before;  // the group's state before the step (plans without contacts only)
   // begin
   Real* pose_rows;  // [lane][row_block], the last kDummyRow of a block are the dummy's

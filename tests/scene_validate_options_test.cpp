@@ -33,6 +33,23 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
       {"substeps", "is 0, must be between 1 and 64", [](Scene& s) { s.options.substeps = 0; }},
       {"substeps", "is -4", [](Scene& s) { s.options.substeps = -4; }},
       {"substeps", "is 65", [](Scene& s) { s.options.substeps = 65; }},
+      {"rotation", "is quaternion, verlet takes splitting only",
+       [](Scene& s) {
+         s.options.integrator = Integrator::verlet;
+         s.options.rotation = Rotation::quaternion;
+       }},
+      {"rotation", "is splitting, runge-kutta4 takes quaternion or exponential",
+       [](Scene& s) {
+         s.options.integrator = Integrator::runge_kutta4;
+         s.options.rotation = Rotation::splitting;
+       }},
+      {"angular_momentum", "is set, implicit-euler integrates angular velocities",
+       [](Scene& s) {
+         s.options.integrator = Integrator::implicit_euler;
+         s.options.angular_momentum = true;
+       }},
+      {"angular_momentum", "is set, rotation by splitting has no use for it",
+       [](Scene& s) { s.options.angular_momentum = true; }},
       bad("density", &Options::density, 0, "is 0 kg"),
       bad("density", &Options::density, -1, "is -1 kg"),
       bad("density", &Options::density, kNan, "is nan kg"),

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "manyworlds/control.hpp"
+#include "manyworlds/integrator.hpp"
 #include "manyworlds/joint.hpp"
 #include "manyworlds/variation.hpp"
 
@@ -168,10 +169,17 @@ struct Body {
 
 struct Options {
   double dt = 1.0 / 60.0;   // s, one step
-  int substeps = 4;         // contact substeps per step
+  int substeps = 4;         // of the solver and of the integrator, per step
   Vec3 gravity{0, 0, -10};  // m/s^2 (planar scenes: set {0, -10, 0})
   Vec3 wind{0, 0, 0};       // m/s, of the air that Body::linear_drag is against
   double density = 1000;    // kg/m^3 or kg/m^2, for shapes that give none
+  Integrator integrator = Integrator::symplectic_euler;
+  // Default: splitting with symplectic_euler and the Verlets, which take nothing else but
+  // symplectic_euler; exponential with the others.
+  std::optional<Rotation> rotation;
+  // Spins are integrated as angular momenta instead of angular velocities, without splitting and
+  // not by implicit_euler.
+  bool angular_momentum = false;
   // Size of a typical body, m. Scales slop, margins and speed limits of the contact model.
   double length_unit = 1;
 

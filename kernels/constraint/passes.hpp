@@ -139,7 +139,7 @@ struct Passes {
     next_substep<S, kDense>(t, work_of(scratch));
   }
   static void leave(const Tables& t, const Group& g, kernels::Scratch* scratch) {
-    leave_state<S, kDense>(t, g, work_of(scratch));
+    leave_state<S, kDense>(t, g, work_of(scratch), NoFlight{});
   }
 
   static kernels::SolverTable<Real> table() {

@@ -56,8 +56,7 @@ void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint
 }
 
 template <class S, bool kDense, bool kMoved>
-MW_INLINE void locate(const Work& w, const JointPart& part, const Joint& numbers,
-                      Row<S, true>& s) {
+MW_INLINE void locate(const Work& w, const JointPart& part, const Joint& numbers, Row<S, true>& s) {
   using Vec = typename S::Vec;
   auto axis = load_as<Vec>(s.start_axis[0]);
   MovedAnchors<S> now = anchors_now<S, kDense, kMoved>(w, s, axis);

@@ -91,7 +91,7 @@ class ObservationsOf final : public Observations {
   void read_world(Observed what, int kind, int world, Out* out) const;
   template <class Out>
   static void read_loads(Observed what, const Kind& kind, const PlanData& plan, std::size_t world,
-                          Out* out);
+                         Out* out);
   Block make_block(std::size_t kind, kernels::Scratch* scratch) const;
   void put_ray(std::size_t kind, int world, std::size_t ray, const Ray& from);
 

@@ -86,6 +86,14 @@ class Builder {
     return s.damping / (s.damping + h_ * s.stiffness);
   }
 
+  // A joint that is nothing but this spring may be a force to the plan's integrator.
+  void force(PlanPart& p, const Spring& s) const {
+    if (!flies(plan_.scene.options) || s.frequency > 0) return;
+    if (std::isfinite(joint_.break_force) || std::isfinite(joint_.break_torque)) return;
+    p.what.force = true;
+    p.numbers.stiffness = s.stiffness, p.numbers.damping = s.damping;
+  }
+
   PlanPart& part(PartKind kind) {
     PlanPart& out = plan_.parts.emplace_back();
     const Side a = side_of(plan_, joint_.body_a, joint_.frame_a),
@@ -174,6 +182,7 @@ class Builder {
     p.what.equality = !j.limit && !j.spring;
     p.numbers.rest = length;
     if (j.spring) drive(p, Drive{length, 0, j.spring});
+    if (j.spring && !j.limit) force(p, *j.spring);
     limit(p, j.limit);
   }
   void add(const WheelJoint& j) {
@@ -197,6 +206,7 @@ class Builder {
     p.what.spring = true;
     p.numbers.soft = soft(j.spring);
     p.numbers.most = std::min(h_ * j.max_force, kUnlimited);
+    if (std::isinf(j.max_force)) force(p, j.spring);
   }
 
   PlanData& plan_;

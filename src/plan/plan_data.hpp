@@ -134,6 +134,12 @@ struct PlanData {
 // Scene bodies, the lower one first, that joints keep from colliding (joints.cpp).
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene);
 
+// Whether bodies in free flight go by another integrator than the substeps of the solver.
+inline bool flies(const Options& o) {
+  return o.integrator != Integrator::symplectic_euler ||
+         o.rotation.value_or(Rotation::splitting) != Rotation::splitting;
+}
+
 std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // terrain.cpp
 
 // The tiles that a height field is made of (kernels/collide/tile.hpp).

@@ -1,4 +1,6 @@
 // The plan for people: what is in, what is out and why, and what it takes.
+#include <algorithm>
+
 #include "manyworlds/fields.hpp"
 #include "src/plan/plan_data.hpp"
 
@@ -36,16 +38,27 @@ PlanReport describe(const PlanData& plan) {
   const bool contacts = plan.has(Feature::contacts), bounce = plan.has(Feature::restitution);
   const bool moving_casts = plan.scene.options.cast_between_moving;
   const std::string touch = why(Feature::contacts);
-  const bool joints = plan.has(Feature::joints), rows = contacts || joints;
+  const bool flight = flies(plan.scene.options);
+  const bool only_forces =
+      !plan.parts.empty() && std::all_of(plan.parts.begin(), plan.parts.end(),
+                                         [](const PlanPart& p) { return p.what.force; });
+  const bool joints = plan.has(Feature::joints) && !only_forces, rows = contacts || joints;
   const std::string some = contacts ? touch : why(Feature::joints);
-  out.stages = {{"free_motion", !rows, rows ? "rows need the substep loop" : touch},
+  const std::string integrator = to_string(plan.scene.options.integrator);
+  out.stages = {{"free_motion", !rows && !flight,
+                 rows     ? "rows need the substep loop"
+                 : flight ? "bodies fly by another integrator"
+                          : touch},
+                {"flight", flight, flight ? integrator : "bodies fly as the substeps do"},
                 {"begin", rows, some},
                 {"broad_phase", contacts,
                  plan.sparse  ? "sort and sweep, no table of pairs"
                  : plan.sweep ? "sort and sweep"
                               : "masked all-pairs"},
                 {"collide", contacts, touch},
-                {"joints", joints, why(Feature::joints)},
+                {"joints", joints,
+                 plan.has(Feature::joints) && only_forces ? "springs are forces of the flight"
+                                                          : why(Feature::joints)},
                 {"warm_start", rows, some},
                 {"bias", contacts, "soft normal rows, every substep"},
                 {"advance", rows, "displacement, every substep"},

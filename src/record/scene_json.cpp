@@ -14,6 +14,16 @@ struct Words<Motion> {
   static constexpr const char* list[] = {"dynamic", "kinematic", "fixed"};
 };
 template <>
+struct Words<Integrator> {
+  static constexpr const char* list[] = {"symplectic-euler", "explicit-euler",  "implicit-euler",
+                                         "verlet",           "velocity-verlet", "runge-kutta4"};
+};
+static_assert(std::size(Words<Integrator>::list) == static_cast<int>(Integrator::runge_kutta4) + 1);
+template <>
+struct Words<Rotation> {
+  static constexpr const char* list[] = {"splitting", "quaternion", "exponential"};
+};
+template <>
 struct Words<BroadPhase> {
   static constexpr const char* list[] = {"automatic", "all-pairs", "sort-and-sweep", "sparse"};
 };
@@ -146,13 +156,14 @@ MW_MEMBERS(Body) {
 // The corners are all that a box has.
 MW_MEMBERS(Eigen::AlignedBox3d) { visit("min", value.min()), visit("max", value.max()); }
 MW_MEMBERS(Options) {
-  auto& [dt, substeps, gravity, wind, density, length_unit, contact_frequency,
-         contact_damping_ratio, push_out_speed, slop, restitution_threshold, restitution_sweeps,
-         friction_in_bias_pass, cast_against_fixed, cast_between_moving, joint_frequency,
-         joint_damping_ratio, joint_pull_speed, sleep_speed, time_to_sleep, contact_capacity,
-         bounds] = value;
+  auto& [dt, substeps, gravity, wind, density, integrator, rotation, angular_momentum, length_unit,
+         contact_frequency, contact_damping_ratio, push_out_speed, slop, restitution_threshold,
+         restitution_sweeps, friction_in_bias_pass, cast_against_fixed, cast_between_moving,
+         joint_frequency, joint_damping_ratio, joint_pull_speed, sleep_speed, time_to_sleep,
+         contact_capacity, bounds] = value;
   visit("dt", dt), visit("substeps", substeps), visit("gravity", gravity), visit("wind", wind);
-  visit("density", density), visit("length_unit", length_unit);
+  visit("density", density), visit("integrator", integrator), visit("rotation", rotation);
+  visit("angular_momentum", angular_momentum), visit("length_unit", length_unit);
   visit("contact_frequency", contact_frequency);
   visit("contact_damping_ratio", contact_damping_ratio);
   visit("push_out_speed", push_out_speed), visit("slop", slop);

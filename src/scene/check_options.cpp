@@ -30,6 +30,32 @@ void check_bounds(Checker& checker, const Eigen::AlignedBox3d& bounds) {
   }
 }
 
+void check_integrator(Checker& checker, const Options& o) {
+  const bool verlet =
+      o.integrator == Integrator::verlet || o.integrator == Integrator::velocity_verlet;
+  const bool symplectic = o.integrator == Integrator::symplectic_euler;
+  if (o.rotation) {
+    const bool splits = *o.rotation == Rotation::splitting;
+    if (verlet && !splits) {
+      checker.add("options.rotation", std::string("is ") + to_string(*o.rotation) + ", " +
+                                          to_string(o.integrator) + " takes splitting only");
+    }
+    if (!verlet && !symplectic && splits) {
+      checker.add("options.rotation", std::string("is splitting, ") + to_string(o.integrator) +
+                                          " takes quaternion or exponential");
+    }
+  }
+  if (!o.angular_momentum) return;
+  if (o.integrator == Integrator::implicit_euler) {
+    checker.add("options.angular_momentum", "is set, implicit-euler integrates angular velocities");
+  } else if (verlet ||
+             (symplectic && o.rotation.value_or(Rotation::splitting) == Rotation::splitting)) {
+    checker.add(
+        "options.angular_momentum",
+        "is set, rotation by splitting has no use for it: choose quaternion or exponential");
+  }
+}
+
 }  // namespace
 
 void check_options(Checker checker, const Options& options) {
@@ -37,6 +63,7 @@ void check_options(Checker checker, const Options& options) {
   checker.between("options.substeps", options.substeps, 1, kMostSubsteps);
   checker.finite("options.gravity", options.gravity, "m/s^2");
   checker.finite("options.wind", options.wind, "m/s");
+  check_integrator(checker, options);
   checker.density("options.density", options.density);
   checker.size("options.length_unit", options.length_unit);
 

@@ -27,4 +27,25 @@ const char* to_string(BroadPhase broad_phase) {
   return "unknown";
 }
 
+const char* to_string(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::symplectic_euler: return "symplectic-euler";
+    case Integrator::explicit_euler: return "explicit-euler";
+    case Integrator::implicit_euler: return "implicit-euler";
+    case Integrator::verlet: return "verlet";
+    case Integrator::velocity_verlet: return "velocity-verlet";
+    case Integrator::runge_kutta4: return "runge-kutta4";
+  }
+  return "unknown";
+}
+
+const char* to_string(Rotation rotation) {
+  switch (rotation) {
+    case Rotation::splitting: return "splitting";
+    case Rotation::quaternion: return "quaternion";
+    case Rotation::exponential: return "exponential";
+  }
+  return "unknown";
+}
+
 }  // namespace manyworlds

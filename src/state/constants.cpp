@@ -54,6 +54,8 @@ kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody
   for (int c = 0; c < (plan.scene.space == Space::planar ? 2 : 3); ++c) {
     out.push[c] = static_cast<Real>(h * g[c]) + Real(0);  // never -0
   }
+  out.linear_drag = static_cast<Real>(body.linear_drag);
+  out.angular_drag = static_cast<Real>(body.angular_drag);
   out.linear_factor = static_cast<Real>(1 / (1 + h * body.linear_drag));
   out.angular_factor = static_cast<Real>(1 / (1 + h * body.angular_drag));
   return out;

@@ -39,9 +39,11 @@ template <class Real>
 TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep, int lanes)
     : constants_(plan, {}, 1, lanes) {
   add_options(plan);
+  add_flight(plan);
   add_bodies(plan);
   // Without contacts and joints nothing comes to rest, and without bodies nothing is there to.
-  tables_.has_sleep = sleep && (tables_.has_contacts || !plan.parts.empty()) && tables_.bodies > 0;
+  tables_.has_sleep = sleep && tables_.has_substeps &&
+                      (tables_.has_contacts || tables_.has_joints) && tables_.bodies > 0;
   add_shapes(plan);
   add_joints(plan);
   add_attractors(plan);
@@ -101,6 +103,26 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.state_stride = at.components;
   t.bodies = static_cast<std::int32_t>(plan.bodies.size());
   t.state_size = t.bodies * at.components;
+}
+
+template <class Real>
+void TablesOf<Real>::add_flight(const PlanData& plan) {
+  const Options& o = plan.scene.options;
+  auto& t = tables_;
+  auto& flight = t.flight;
+  flight.on = flies(o);
+  flight.scheme = static_cast<kernels::Scheme>(o.integrator);
+  flight.rotation = static_cast<kernels::Rotation>(o.rotation.value_or(Rotation::exponential));
+  flight.momentum = o.angular_momentum;
+  flight.damped = t.has_drag;
+  bool only_springs = true;
+  for (const PlanPart& p : plan.parts) {
+    only_springs = only_springs && p.what.force;
+    if (!p.what.force) continue;
+    ++flight.springs;
+    flight.damped = flight.damped || p.numbers.damping > 0;
+  }
+  if (flight.on) t.has_substeps = t.has_contacts || !only_springs;
 }
 
 template <class Real>

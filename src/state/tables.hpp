@@ -27,6 +27,7 @@ class TablesOf {
   void add_breaking(const PlanData& plan);
   void add_attractors(const PlanData& plan);
   void add_options(const PlanData& plan);
+  void add_flight(const PlanData& plan);
 
   kernels::WorldTables<Real> tables_{};
   Constants<Real> constants_;

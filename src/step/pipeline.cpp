@@ -84,6 +84,11 @@ void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group
     pass(t, group, scratch);
     if (t.has_joints && t.has_contacts) solver.gather(t, group, scratch);
   };
+  const auto& flight = p.kernels.flight[static_cast<int>(t.inertia_kind)];
+  if (t.flight.on) {
+    flight.fly(t, group, scratch);
+    lap(kFreeMotion);
+  }
   with_joints(joints.prepare);
   solver.push(t, group, scratch);
   solver.warm_start(t, group, scratch);
@@ -117,7 +122,8 @@ void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group
   }
   if (t.has_contacts) solver.store(t, group, scratch);
   lap(kStore);
-  solver.leave(t, group, scratch);
+  const auto leave = flight.leave[layout == kernels::Layout::dense ? 0 : 1];
+  (t.flight.on ? leave : solver.leave)(t, group, scratch);
   lap(kFinish);
   if (t.breakable > 0) joints.break_up(t, group, scratch);
   if (t.has_sleep) {
@@ -186,7 +192,10 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
     }
     if (slots) observe_slots(p, group, scratch, taken == steps);
   } else {
-    p.kernels.free_motion[static_cast<int>(p.tables.inertia_kind)](p.tables, group, scratch, steps);
+    const auto& t = p.tables;
+    const auto flight = p.kernels.flight[static_cast<int>(t.inertia_kind)].steps;
+    const auto free_motion = p.kernels.free_motion[static_cast<int>(t.inertia_kind)];
+    (t.flight.on ? flight : free_motion)(t, group, scratch, steps);
     if (clock) clock->lap(kFreeMotion);
     taken = steps;
   }
