@@ -14,6 +14,10 @@ int bench_command(const BenchOptions& options);
 int verify_command(const VerifyOptions& options);
 int soak_command(const JobOptions& options);
 int replay_command(const ReplayArguments& arguments);
+int report_accuracy_command(const ReportOptions& options);
+int report_stability_command(const ReportOptions& options);
+int report_plan_command(const ReportOptions& options);
+int report_throughput_command(const ReportOptions& options);
 int info_command();
 
 }  // namespace manyworlds::cli

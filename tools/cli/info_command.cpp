@@ -1,9 +1,6 @@
 // `manyworlds info`: what this program is, and what it runs on.
-#include <sched.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -12,30 +9,13 @@
 #include "manyworlds/batch.hpp"
 
 #include "commands.hpp"
+#include "machine.hpp"
 #include "recording.hpp"
 #include "scene_source.hpp"
 #include "version.hpp"
 
 namespace manyworlds::cli {
 namespace {
-
-std::string cpu_model() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    if (!line.starts_with("model name")) continue;
-    const std::size_t value = line.find_first_not_of(" \t", line.find(':') + 1);
-    if (value != std::string::npos) return line.substr(value);
-  }
-  return "unknown";
-}
-
-// CPUs in the affinity mask: what --threads 0 comes to.
-int usable_cpus() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
-  return std::max(CPU_COUNT(&set), 1);
-}
 
 std::string isa_list() {
   const std::vector<Isa> available = available_isas();

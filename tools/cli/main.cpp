@@ -27,6 +27,7 @@ struct AllOptions {
   std::optional<std::uint64_t> verify_seed;
   JobOptions soak;
   ReplayArguments replay;
+  ReportOptions report;
 };
 
 constexpr const char* kAppFooter =
@@ -162,6 +163,74 @@ void add_replay(CLI::App& app, AllOptions& all, int& code) {
   command->callback([&] { code = replay_command(all.replay); });
 }
 
+// What all reports take.
+void add_report_options(CLI::App& app, ReportOptions& options, const std::string& name) {
+  app.add_flag("--quick", options.quick, "shorter, in under two minutes");
+  app.add_option("--out", options.out, fmt::format("folder for {0}.html and {0}.json", name))
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  app.add_flag("--json", options.json, "print JSON instead of text");
+}
+
+void add_report(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command = app.add_subcommand("report", "Measure what the library is worth");
+  command->require_subcommand(1);
+  CLI::App* accuracy =
+      command->add_subcommand("accuracy", "Error against run time, where the solution is known");
+  add_report_options(*accuracy, all.report, "accuracy");
+  accuracy->add_option("--cases", all.report.cases, "only these, as A1,A16 (default: all)")
+      ->delimiter(',')
+      ->type_name("ID,...");
+  accuracy->footer(
+      "Examples:\n"
+      "  manyworlds report accuracy --quick\n"
+      "  manyworlds report accuracy --cases A5,A16 --out /tmp/report\n"
+      "\n"
+      "Each case is a scene whose solution is known, run by several integrators or numbers of\n"
+      "substeps with steps of several lengths: once for the error and, without looking at it,\n"
+      "once more for the time. The page has a picture of each.");
+  accuracy->callback([&] { code = report_accuracy_command(all.report); });
+
+  CLI::App* stability =
+      command->add_subcommand("stability", "Stiff and extreme scenes against criteria");
+  add_report_options(*stability, all.report, "stability");
+  stability->add_option("--cases", all.report.cases, "only these, as B9,B13 (default: all)")
+      ->delimiter(',')
+      ->type_name("ID,...");
+  stability->footer(
+      "Examples:\n"
+      "  manyworlds report stability --quick\n"
+      "  manyworlds report stability --cases B13,B15 --json\n"
+      "\n"
+      "Each case is run in many worlds that differ a little, with the default settings and with\n"
+      "others, and fails if one of the worlds does. Failures are part of the report, not of the\n"
+      "exit code.");
+  stability->callback([&] { code = report_stability_command(all.report); });
+
+  CLI::App* plan =
+      command->add_subcommand("plan", "What plans leave out, and what leaving it out is worth");
+  add_report_options(*plan, all.report, "plan");
+  add_scene_list(*plan, all.report.scenes);
+  plan->footer(
+      "Examples:\n"
+      "  manyworlds report plan --quick\n"
+      "  manyworlds report plan --scenes bin-boxes,ball3d\n"
+      "\n"
+      "Each variant (a stage switched back on, another layout, another way to find pairs) steps\n"
+      "in turns with the batch as it is by default, on one thread, and must have its bits.");
+  plan->callback([&] { code = report_plan_command(all.report); });
+
+  CLI::App* throughput = command->add_subcommand(
+      "throughput", "Speed over worlds, threads, instruction sets, precisions and bodies");
+  add_report_options(*throughput, all.report, "throughput");
+  add_scene_list(*throughput, all.report.scenes);
+  throughput->footer(
+      "Examples:\n"
+      "  manyworlds report throughput --quick\n"
+      "  manyworlds report throughput --scenes stack10 --json");
+  throughput->callback([&] { code = report_throughput_command(all.report); });
+}
+
 void add_info(CLI::App& app, int& code) {
   CLI::App* command =
       app.add_subcommand("info", "Show the CPU, instruction sets, threads and versions");
@@ -212,6 +281,7 @@ int run_program(int argc, char** argv) {
   add_verify(app, all, code);
   add_soak(app, all, code);
   add_replay(app, all, code);
+  add_report(app, all, code);
   add_info(app, code);
   try {
     app.parse(argc, argv);  // runs the subcommand's callback

@@ -73,6 +73,14 @@ struct VerifyOptions {
   bool quick = false;
 };
 
+struct ReportOptions {
+  std::vector<std::string> cases;   // of accuracy and stability; empty: all
+  std::vector<std::string> scenes;  // of the others; empty: the report's own
+  std::string out = "report";       // folder
+  bool quick = false;
+  bool json = false;
+};
+
 struct ReplayArguments {
   std::string file;
   JobOptions job;  // threads, isa, layout and json of it

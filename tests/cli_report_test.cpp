@@ -1,0 +1,151 @@
+// `manyworlds report`, run as its users run it: complete JSON with sane numbers, and a page.
+#ifdef MW_CLI_PATH
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.hpp"
+
+namespace manyworlds {
+namespace {
+
+using Json = nlohmann::json;
+using test::contains, test::content, test::Outcome, test::ScratchFolder;
+
+// Least error of each case over its points, and what is wrong with them.
+std::map<std::string, double> least_errors(const Json& report) {
+  std::map<std::string, double> least;
+  for (const Json& c : report["results"]) {
+    const std::string id = c["id"];
+    INFO("case " << id);
+    for (const char* key : {"title", "metric", "unit", "level", "simulated_s", "published"}) {
+      CHECK(c.contains(key));
+    }
+    REQUIRE_FALSE(c["points"].empty());
+    std::set<std::string> precisions;
+    for (const Json& p : c["points"]) {
+      CHECK(p["step_s"].get<double>() > 0);
+      CHECK(p["us_per_world"].get<double>() > 0);
+      CHECK(p["steps_per_s"].get<double>() > 0);
+      CHECK_FALSE(p["method"].get<std::string>().empty());
+      precisions.insert(p["precision"]);
+      if (p["error"].is_null()) continue;  // the world was lost
+      const double error = p["error"];
+      CHECK(error >= 0);
+      if (least.count(id) == 0 || error < least[id]) least[id] = error;
+    }
+    CHECK(precisions.count("f32") == 1);
+    for (const Json& p : c["cheapest_at_level"]) {
+      CHECK(p["error"].get<double>() <= c["level"].get<double>());
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("report accuracy writes complete tables and a page", "[cli][report]") {
+  const ScratchFolder folder;
+  const Outcome outcome =
+      test::run_program(MW_CLI_PATH, folder, "report accuracy --quick --out here", "");
+  INFO(outcome.err);
+  REQUIRE(outcome.code == 0);
+  CHECK(contains(outcome.out, "A16 49 balls that bounce"));
+  const Json report = Json::parse(content(folder.path() / "here" / "accuracy.json"));
+  CHECK(report["report"] == "accuracy");
+  CHECK(report["quick"] == true);
+  const auto least = least_errors(report);
+  // Largest errors that the cheap steps of the short form may leave.
+  const std::map<std::string, double> expected = {
+      {"A1", 1e-4},  {"A2", 1e-6},   {"A3", 1e-6},   {"A4", 1e-2},  {"A5", 1e-3},
+      {"A6", 1e-2},  {"A7", 1e-2},   {"A8", 1e-2},   {"A10", 5e-2}, {"A11-2", 0.1},
+      {"A11-40", 1}, {"A15x", 1e-3}, {"A15y", 1e-3}, {"A16", 1e4},  {"A17", 1},
+      {"A17e", 1e7}, {"A19", 1e-3},  {"A20", 1e-2},  {"A21", 5e-2}, {"A22", 1e-4}};
+  CHECK(least.size() == expected.size());
+  for (const auto& [id, most] : expected) {
+    INFO(id);
+    REQUIRE(least.count(id) == 1);
+    CHECK(least.at(id) < most);
+  }
+  const std::string page = content(folder.path() / "here" / "accuracy.html");
+  CHECK(contains(page, "<svg"));
+  CHECK(contains(page, "RaiSim"));
+  CHECK_FALSE(contains(page, "http"));  // nothing from the network
+  CHECK_FALSE(contains(page, "nan"));
+}
+
+TEST_CASE("report stability judges every case in every setting", "[cli][report]") {
+  const ScratchFolder folder;
+  const Outcome outcome = test::run_program(
+      MW_CLI_PATH, folder, "report stability --quick --cases 'B13,B12,B26 100,B29 2D' --json");
+  INFO(outcome.err);
+  REQUIRE(outcome.code == 0);
+  std::map<std::string, int> rows;
+  for (const Json& v : Json::parse(outcome.out)["results"]) {
+    INFO(v.dump());
+    ++rows[v["id"]];
+    CHECK(v["passed"] == true);
+    CHECK(v["lost_worlds"] == 0);
+    CHECK(v["value"].get<double>() <= v["limit"].get<double>());
+  }
+  CHECK(rows.size() == 4);
+  for (const auto& [id, settings] : rows) CHECK(settings == 3);
+  CHECK(contains(content(folder.path() / "report" / "stability.html"), "pyramid spawned"));
+}
+
+TEST_CASE("report plan finds equal bits whatever was switched on", "[cli][report]") {
+  const ScratchFolder folder;
+  const Outcome outcome = test::run_program(
+      MW_CLI_PATH, folder, "report plan --quick --scenes ball3d,stack10,chain2d --json");
+  INFO(outcome.out << outcome.err);
+  REQUIRE(outcome.code == 0);
+  std::map<std::string, int> variants;
+  for (const Json& row : Json::parse(outcome.out)["results"]) {
+    INFO(row.dump());
+    ++variants[row["scene"]];
+    CHECK(row["time_ratio"].get<double>() > 0);
+    CHECK(row["world_steps_per_s"].get<double>() > 0);
+    if (row["must_be_same"]) CHECK(row["same_bits"] == true);
+  }
+  CHECK(variants.size() == 3);
+  CHECK(variants["ball3d"] > 4);
+  CHECK(contains(content(folder.path() / "report" / "plan.html"), "with friction"));
+}
+
+TEST_CASE("report throughput measures every sweep", "[cli][report]") {
+  const ScratchFolder folder;
+  const Outcome outcome =
+      test::run_program(MW_CLI_PATH, folder, "report throughput --quick --scenes ball2d --json");
+  INFO(outcome.err);
+  REQUIRE(outcome.code == 0);
+  const Json results = Json::parse(outcome.out)["results"];
+  CHECK(results["gigabytes_per_s"].get<double>() > 0);
+  std::map<std::string, std::set<std::string>> hashes;
+  for (const Json& row : results["rows"]) {
+    INFO(row.dump());
+    CHECK(row["world_steps_per_s"].get<double>() > 0);
+    CHECK(row["bytes_per_world"].get<int>() > 0);
+    hashes[row["sweep"]].insert(row["hash"]);
+  }
+  CHECK(hashes.size() == 4);
+  CHECK(hashes["threads"].size() == 1);
+  CHECK(hashes["instruction set and precision"].size() <= 2);  // one for each precision
+  CHECK(contains(content(folder.path() / "report" / "throughput.html"), "By bodies per world"));
+}
+
+TEST_CASE("report says which cases there are", "[fast][cli][report]") {
+  const ScratchFolder folder;
+  const Outcome outcome =
+      test::run_program(MW_CLI_PATH, folder, "report accuracy --cases A1,B7 --out here", "");
+  CHECK(outcome.code == 2);
+  CHECK(contains(outcome.err, "unknown case 'B7'; there are A1, A2"));
+}
+
+}  // namespace manyworlds
+
+#endif

@@ -1,0 +1,194 @@
+// `manyworlds report`: each report as a table for people, JSON, and a page that needs no network.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "machine.hpp"
+#include "manyworlds/scenes.hpp"
+#include "progress.hpp"
+#include "tools/report/accuracy.hpp"
+#include "tools/report/page.hpp"
+#include "tools/report/plan_worth.hpp"
+#include "tools/report/stability.hpp"
+#include "tools/report/throughput.hpp"
+#include "version.hpp"
+
+namespace manyworlds::cli {
+namespace {
+
+using Tell = std::function<void(const std::string&, double)>;
+
+void write_file(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw InputError("--out: cannot write " + path.string());
+}
+
+// Runs `measure` with a progress bar. The folder is made first, so that no work is lost to a name
+// that cannot be one.
+template <class Measure>
+auto run_report(const char* name, const ReportOptions& options, Measure measure) {
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) throw InputError("--out: cannot make " + options.out + ": " + error.message());
+  Progress progress(name, 1000);
+  std::int64_t done = 0;
+  return measure(Tell([&](const std::string& next, double share) {
+    progress.set_label(next);
+    const auto now = static_cast<std::int64_t>(1000 * share);
+    progress.advance(now - done);
+    done = now;
+  }));
+}
+
+// Files, and JSON or what `print` prints to standard output.
+template <class Print>
+int finish_report(const std::string& name, const ReportOptions& options,
+                  nlohmann::ordered_json results, const std::string& page, Print print) {
+  const nlohmann::ordered_json json = {{"report", name},
+                                       {"version", kVersion},
+                                       {"machine", machine_line()},
+                                       {"quick", options.quick},
+                                       {"results", std::move(results)}};
+  const std::filesystem::path folder = options.out;
+  write_file(folder / (name + ".json"), json.dump(1) + "\n");
+  write_file(folder / (name + ".html"), page);
+  if (options.json) {
+    fmt::print("{}\n", json.dump());
+    return kOk;
+  }
+  fmt::print("{}\n", machine_line());
+  print();
+  fmt::print("\n{}\n{}\n", (folder / (name + ".html")).string(),
+             (folder / (name + ".json")).string());
+  return kOk;
+}
+
+void check_names(const char* option, const std::vector<std::string>& wanted,
+                 const std::vector<std::string>& known, const char* what) {
+  std::string all;
+  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
+  for (const std::string& name : wanted) {
+    if (std::count(known.begin(), known.end(), name) > 0) continue;
+    throw InputError(fmt::format("{}: unknown {} '{}'; there are {}", option, what, name, all));
+  }
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const scenes::Entry& entry : scenes::all()) names.push_back(entry.name);
+  return names;
+}
+
+void print_accuracy(const std::vector<report::CaseResult>& results) {
+  for (const report::CaseResult& r : results) {
+    fmt::print("\n{} {}: {} ({}), after {:g} s\n", r.of.id, r.of.title, r.of.metric, r.of.unit,
+               r.seconds);
+    fmt::print("  {:<30} {:>5} {:>10} {:>10} {:>14}\n", "method", "", "step, ms", "error",
+               "us per world");
+    for (const report::Point& p : r.points) {
+      fmt::print("  {:<30} {:>5} {:>10.4g} {:>10.3g} {:>14.4g}\n", p.method, to_string(p.precision),
+                 1e3 * p.step, p.error, p.microseconds);
+    }
+  }
+}
+
+void print_stability(const std::vector<report::Verdict>& verdicts) {
+  std::string id;
+  for (const report::Verdict& v : verdicts) {
+    if (v.id != id) {
+      fmt::print("\n{} {}: {} (at most {:g} {})\n", v.id, v.title, v.criterion, v.limit, v.unit);
+    }
+    id = v.id;
+    fmt::print("  {:<28} {} {:.3g}{}\n", v.setting, v.passed ? "pass" : "FAIL", v.value,
+               v.lost > 0 ? fmt::format(", {} worlds lost", v.lost) : "");
+  }
+}
+
+void print_worth(const std::vector<report::WorthRow>& rows) {
+  std::string scene;
+  for (const report::WorthRow& r : rows) {
+    if (r.scene != scene) fmt::print("\n{}: {}\n", r.scene, report::speed_text(r.plain));
+    scene = r.scene;
+    fmt::print("  {:<40} {:>6.2f}  {}\n", r.variant, r.worth,
+               r.same_bits      ? "equal bits"
+               : r.must_be_same ? "DIFFERENT BITS"
+                                : "");
+  }
+}
+
+void print_throughput(const report::Throughput& result) {
+  fmt::print("limits of the machine, one thread: {:.0f} GFLOP/s (float32), {:.0f} GB/s\n",
+             result.limits.gflops, result.limits.gigabytes_per_s);
+  std::string sweep;
+  for (const report::ThroughputRow& r : result.rows) {
+    if (r.sweep != sweep) {
+      fmt::print("\n{}\n  {:<24} {:<34} {:>10} {:>12} {:>12} {:>10}\n", r.sweep, "scene", "",
+                 "worlds", "steps/s", "B per world", "of memory");
+    }
+    sweep = r.sweep;
+    fmt::print("  {:<24} {:<34} {:>10} {:>12} {:>12} {:>9.1f}%\n", r.scene, r.value, r.worlds,
+               report::speed_text(r.world_steps_per_s), r.bytes_per_world, 100 * r.bandwidth_share);
+  }
+}
+
+}  // namespace
+
+int report_accuracy_command(const ReportOptions& options) {
+  std::vector<std::string> ids;
+  for (const report::Case& c : report::accuracy_cases()) ids.push_back(c.id);
+  check_names("--cases", options.cases, ids, "case");
+  report::AccuracyOptions what;
+  what.cases = options.cases, what.quick = options.quick;
+  const auto results = run_report(
+      "accuracy", options, [&](const Tell& tell) { return report::run_accuracy(what, tell); });
+  return finish_report("accuracy", options, report::to_json(results),
+                       report::accuracy_page(results, machine_line()),
+                       [&] { print_accuracy(results); });
+}
+
+int report_stability_command(const ReportOptions& options) {
+  std::vector<std::string> ids;
+  for (const report::Trial& t : report::stability_trials()) ids.push_back(t.id);
+  check_names("--cases", options.cases, ids, "case");
+  const auto verdicts = run_report("stability", options, [&](const Tell& tell) {
+    return report::run_stability({options.cases, options.quick}, tell);
+  });
+  return finish_report("stability", options, report::to_json(verdicts),
+                       report::stability_page(verdicts, machine_line()),
+                       [&] { print_stability(verdicts); });
+}
+
+int report_plan_command(const ReportOptions& options) {
+  check_names("--scenes", options.scenes, scene_names(), "scene");
+  const auto rows = run_report("plan", options, [&](const Tell& tell) {
+    return report::run_worth({options.scenes, options.quick}, tell);
+  });
+  finish_report("plan", options, report::to_json(rows), report::worth_page(rows, machine_line()),
+                [&] { print_worth(rows); });
+  const bool wrong = std::any_of(rows.begin(), rows.end(), [](const report::WorthRow& r) {
+    return r.must_be_same && !r.same_bits;
+  });
+  return wrong ? kWorldLost : kOk;
+}
+
+int report_throughput_command(const ReportOptions& options) {
+  check_names("--scenes", options.scenes, scene_names(), "scene");
+  const auto result = run_report("throughput", options, [&](const Tell& tell) {
+    return report::run_throughput({options.scenes, options.quick}, tell);
+  });
+  return finish_report("throughput", options, report::to_json(result),
+                       report::throughput_page(result, machine_line()),
+                       [&] { print_throughput(result); });
+}
+
+}  // namespace manyworlds::cli

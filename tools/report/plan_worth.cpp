@@ -1,0 +1,234 @@
+#include "tools/report/plan_worth.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <ctime>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "manyworlds/scenes.hpp"
+#include "tools/report/page.hpp"
+
+namespace manyworlds::report {
+namespace {
+
+// What a row steps.
+struct Setup {
+  Scene scene;
+  PlanOptions plan;
+  BatchOptions batch;
+};
+struct Variant {
+  std::string scene, name;
+  Setup plain, changed;
+  int settle = 60;  // steps before the clock starts
+  bool must_be_same = true;
+};
+
+// Of this thread, so that others on the machine matter little.
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::vector<double> moving_parts(const Batch& batch) {
+  std::vector<double> out;
+  for (const Field f : {Field::position, Field::linear_velocity, Field::angular_velocity}) {
+    std::vector<double> part(batch.size(f));
+    batch.read(f, part);
+    out.insert(out.end(), part.begin(), part.end());
+  }
+  return out;
+}
+
+WorthRow measure(const Variant& v, bool quick) {
+  Batch plain(compile(v.plain.scene, v.plain.plan), v.plain.batch);
+  Batch changed(compile(v.changed.scene, v.changed.plan), v.changed.batch);
+  plain.step(v.settle), changed.step(v.settle);
+  const int rounds = quick ? 5 : 15, steps = quick ? 10 : 40;
+  std::vector<double> ratios, speeds;
+  const auto time_of = [&](Batch& batch) {
+    const double start = processor_seconds();
+    for (int i = 0; i < steps; ++i) batch.step();
+    return processor_seconds() - start;
+  };
+  for (int i = 0; i < rounds; ++i) {
+    // In turns, and each first half of the time: what drifts on the machine cancels.
+    double own = 0, other = 0;
+    if (i % 2 == 0) own = time_of(plain), other = time_of(changed);
+    if (i % 2 == 1) other = time_of(changed), own = time_of(plain);
+    ratios.push_back(other / own);
+    speeds.push_back(steps * plain.worlds() / own);
+  }
+  const auto median = [](std::vector<double>& all) {
+    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2),
+                     all.end());
+    return all[all.size() / 2];
+  };
+  WorthRow row{v.scene, v.name, median(speeds), median(ratios), false, v.must_be_same};
+  const std::vector<double> a = moving_parts(plain), b = moving_parts(changed);
+  row.same_bits =
+      a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  return row;
+}
+
+Setup plain_setup(const Scene& scene, int worlds) {
+  Setup out{scene, {}, {}};
+  out.batch.worlds = worlds, out.batch.threads = 1;
+  return out;
+}
+
+// Stages and rows that the plan left out, switched on again.
+void add_kept(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
+  const Plan plan = compile(plain.scene);
+  std::vector<Feature> missing;
+  for (int i = 0; i < kFeatureCount; ++i) {
+    const auto f = static_cast<Feature>(i);
+    // Nothing is there that could be switched on.
+    const bool absent = f == Feature::joints || f == Feature::contacts ||
+                        (f == Feature::inertia && plain.scene.space == Space::planar);
+    if (!plan.has(f) && !absent) missing.push_back(f);
+  }
+  const auto keep = [&](const std::string& what, std::vector<Feature> features) {
+    Variant v{name, "with " + what, plain, plain};
+    // Tensors of equal moments are rounded otherwise than the scalar that they stand for.
+    v.must_be_same = std::count(features.begin(), features.end(), Feature::inertia) == 0;
+    v.changed.plan.keep = std::move(features);
+    out.push_back(v);
+  };
+  for (const Feature f : missing) keep(to_string(f), {f});
+  if (missing.size() > 1) keep("all of these", missing);
+}
+
+// The other layouts, ways to find pairs, and numbers of every world's own.
+void add_choices(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
+  const Plan plan = compile(plain.scene);
+  if (plan.has(Feature::contacts)) {
+    for (const ContactLayout layout : {ContactLayout::dense, ContactLayout::rows}) {
+      Variant v{name, std::string(to_string(layout)) + " layout", plain, plain};
+      v.changed.batch.layout = layout;
+      out.push_back(v);
+    }
+    for (const BroadPhase broad :
+         {BroadPhase::all_pairs, BroadPhase::sort_and_sweep, BroadPhase::sparse}) {
+      if (broad == plan.report().broad_phase) continue;
+      Variant v{name, std::string("pairs by ") + to_string(broad), plain, plain};
+      v.changed.plan.broad_phase = broad;
+      out.push_back(v);
+    }
+  }
+  if (plain.scene.variations.empty() && plan.bodies() > 0) {
+    Variant v{name, "gravity of every world's own", plain, plain};
+    Variation gravity;
+    gravity.parameter = Parameter::gravity;
+    gravity.low = gravity.high = plain.scene.options.gravity;
+    v.changed.scene.variations = {gravity};
+    out.push_back(v);
+  }
+}
+
+// What other integrators cost where nothing touches.
+void add_integrators(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
+  if (compile(plain.scene).has(Feature::contacts) || !plain.scene.joints.empty()) return;
+  for (const Integrator i :
+       {Integrator::explicit_euler, Integrator::velocity_verlet, Integrator::runge_kutta4}) {
+    Variant v{name, to_string(i), plain, plain};
+    v.changed.scene.options.integrator = i;
+    v.must_be_same = false;
+    out.push_back(v);
+  }
+}
+
+void add_sleep(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
+  Variant v{name, "awake, though at rest (20 s on)", plain, plain};
+  v.plain.batch.sleep = true;
+  v.settle = 1200;
+  v.must_be_same = false;  // who sleeps stands still
+  out.push_back(v);
+}
+
+// Where finding pairs in other ways begins to pay.
+void add_crossover(bool quick, std::vector<Variant>& out) {
+  for (const int bodies :
+       quick ? std::vector{16, 64} : std::vector{4, 8, 16, 32, 48, 64, 128, 256}) {
+    const std::string name = "bin-spheres:" + std::to_string(bodies);
+    const Scene scene = *scenes::sized(name);
+    Setup listed = plain_setup(scene, std::max(16, 4096 / bodies));
+    listed.plan.broad_phase = BroadPhase::all_pairs;
+    for (const BroadPhase broad : {BroadPhase::sort_and_sweep, BroadPhase::sparse}) {
+      Variant v{name, std::string(to_string(broad)) + " against all pairs", listed, listed};
+      v.changed.plan.broad_phase = broad;
+      out.push_back(v);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<WorthRow> run_worth(const WorthOptions& options,
+                                const std::function<void(const std::string&, double)>& tell) {
+  std::vector<Variant> variants;
+  for (const scenes::Entry& entry : scenes::all()) {
+    const auto& names = options.scenes;
+    const bool wanted =
+        names.empty() ? entry.standard : std::count(names.begin(), names.end(), entry.name) > 0;
+    if (!wanted) continue;
+    const Setup plain = plain_setup(entry.make(), options.quick ? 128 : 512);
+    add_kept(entry.name, plain, variants);
+    add_choices(entry.name, plain, variants);
+    add_integrators(entry.name, plain, variants);
+    const bool rests = compile(plain.scene).has(Feature::contacts);
+    if (rests && std::string(entry.name).starts_with("stack")) {
+      add_sleep(entry.name, plain, variants);
+    }
+  }
+  if (options.scenes.empty()) add_crossover(options.quick, variants);
+  std::vector<WorthRow> out;
+  for (const Variant& v : variants) {
+    tell(v.scene + ' ' + v.name,
+         static_cast<double>(out.size()) / static_cast<double>(variants.size()));
+    out.push_back(measure(v, options.quick));
+  }
+  return out;
+}
+
+nlohmann::ordered_json to_json(const std::vector<WorthRow>& rows) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const WorthRow& r : rows) {
+    out.push_back({{"scene", r.scene},
+                   {"variant", r.variant},
+                   {"world_steps_per_s", r.plain},
+                   {"time_ratio", r.worth},
+                   {"same_bits", r.same_bits},
+                   {"must_be_same", r.must_be_same}});
+  }
+  return out;
+}
+
+std::string worth_page(const std::vector<WorthRow>& rows, const std::string& machine) {
+  std::string body =
+      "<p>Each variant steps in turns with the batch as it is by default, on one thread; the ratio "
+      "is the median of (time of the variant / time as by default): 1.30 means that the "
+      "step takes 30 % longer with it. Bits are those of positions and velocities of all "
+      "worlds after the last step.</p>";
+  std::vector<std::vector<std::string>> lines;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const WorthRow& r = rows[i];
+    if (i == 0 || rows[i - 1].scene != r.scene) {
+      if (!lines.empty()) body += table(lines);
+      body += "<h2>" + escaped(r.scene) + "</h2><p>" + speed_text(r.plain) + " as by default.</p>";
+      lines = {{"variant", "ratio", "bits"}};
+    }
+    lines.push_back({r.variant, fmt::format("{:.2f}", r.worth),
+                     r.same_bits      ? "equal"
+                     : r.must_be_same ? "DIFFERENT"
+                                      : "its own"});
+  }
+  if (!lines.empty()) body += table(lines);
+  return page("What plans leave out", machine, body);
+}
+
+}  // namespace manyworlds::report

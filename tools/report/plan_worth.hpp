@@ -1,0 +1,37 @@
+// `manyworlds report plan`: what each plan leaves out, and what that is worth. Every row is a
+// variant of a scene's batch (a stage switched back on, another layout, another way to find pairs),
+// timed in turns with the batch as it is by default; positions and velocities must end with the
+// same bits.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "manyworlds/batch.hpp"
+
+namespace manyworlds::report {
+
+struct WorthRow {
+  std::string scene, variant;
+  double plain = 0;        // world-steps per second, as by default
+  double worth = 0;        // median of (time of the variant / time as by default)
+  bool same_bits = false;  // of positions and velocities
+  bool must_be_same = true;
+};
+
+struct WorthOptions {
+  std::vector<std::string> scenes;  // empty: the standard ones
+  bool quick = false;
+};
+
+// `tell` is called before each row with what comes next and the share that is done.
+std::vector<WorthRow> run_worth(const WorthOptions& options,
+                                const std::function<void(const std::string&, double)>& tell);
+
+nlohmann::ordered_json to_json(const std::vector<WorthRow>& rows);
+std::string worth_page(const std::vector<WorthRow>& rows, const std::string& machine);
+
+}  // namespace manyworlds::report

@@ -1,0 +1,159 @@
+#include "tools/report/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/report/page.hpp"
+
+namespace manyworlds::report {
+namespace {
+
+// Looked at so often, s, whatever the steps.
+constexpr double kLook = 1.0 / 60;
+
+std::vector<Setting> settings(bool quick) {
+  std::vector<Setting> out = {{"as by default, f32", Precision::f32, 1, 4},
+                              {"as by default, f64", Precision::f64, 1, 4},
+                              {"8 substeps, f32", Precision::f32, 1, 8}};
+  if (quick) return out;
+  out.push_back({"1 substep, f32", Precision::f32, 1, 1});
+  out.push_back({"a quarter of the step, f32", Precision::f32, 4, 4});
+  return out;
+}
+
+Verdict run_trial(const Trial& trial, const Setting& setting, int worlds) {
+  Scene scene = trial.scene();
+  Options& o = scene.options;
+  o.dt = trial.dt / setting.finer;
+  o.substeps = std::max(1, o.substeps * setting.substeps / 4);
+  BatchOptions options;
+  options.worlds = worlds, options.precision = setting.precision, options.seed = 1;
+  options.threads = 1;
+  Batch batch(compile(scene), options);
+  Seen seen(batch);
+  std::vector<double> value(static_cast<std::size_t>(worlds), 0.0);
+  const int steps = static_cast<int>(trial.seconds / o.dt + 0.5);
+  const int between = std::max(1, static_cast<int>(kLook / o.dt + 0.5));
+  for (int i = 1; i <= steps; ++i) {
+    if (trial.act) trial.act(batch, (i - 1) * o.dt);
+    batch.step();
+    if (i < steps && (trial.at_end || i % between != 0 || i * o.dt < trial.from)) continue;
+    seen.look(i * o.dt);
+    for (int w = 0; w < worlds; ++w) {
+      double& worst = value[static_cast<std::size_t>(w)];
+      const double now = trial.value(seen, w);
+      worst = std::isfinite(now) ? std::max(worst, now) : std::numeric_limits<double>::infinity();
+    }
+  }
+  Verdict out{
+      trial.id, trial.title, trial.criterion, trial.unit, setting.name, trial.note, trial.limit, 0,
+      0,        false};
+  out.value = *std::max_element(value.begin(), value.end());
+  for (int w = 0; w < worlds; ++w) out.lost += batch.status(w) == Status::ok ? 0 : 1;
+  out.passed = out.lost == 0 && out.value <= trial.limit;
+  return out;
+}
+
+std::string cell_text(const Verdict& v) {
+  const std::string value = std::isfinite(v.value) ? fmt::format("{:.2g}", v.value) : "not finite";
+  return (v.passed ? "pass " : "FAIL ") + value +
+         (v.lost > 0 ? fmt::format(", {} worlds lost", v.lost) : "");
+}
+
+}  // namespace
+
+void Seen::look(double time) {
+  time_ = time;
+  bodies_ = batch_->bodies(0);
+  for (auto& [field, out] : {std::pair(Field::position, &x_),
+                             {Field::linear_velocity, &v_},
+                             {Field::angular_velocity, &w_}}) {
+    out->resize(batch_->size(field));
+    batch_->read(field, *out);
+  }
+  if (start_.empty()) start_ = x_;
+}
+
+Vec3 Seen::vector(const std::vector<double>& all, int world, int body) const {
+  const std::size_t items = static_cast<std::size_t>(batch_->worlds() * bodies_);
+  const std::size_t n = all.size() / items;
+  const double* from = all.data() + static_cast<std::size_t>(world * bodies_ + body) * n;
+  if (n == 1) return {0, 0, from[0]};
+  return {from[0], from[1], n == 3 ? from[2] : 0.0};
+}
+Vec3 Seen::moved(int world, int body) const {
+  return vector(x_, world, body) - vector(start_, world, body);
+}
+double Seen::fastest(int world) const {
+  double most = 0;
+  for (int b = 0; b < bodies_; ++b) most = std::max(most, velocity(world, b).norm());
+  return most;
+}
+
+std::vector<Trial> stability_trials() {
+  std::vector<Trial> out = contact_trials();
+  for (const auto& more : {joint_trials(), motion_trials()}) {
+    out.insert(out.end(), more.begin(), more.end());
+  }
+  return out;
+}
+
+std::vector<Verdict> run_stability(const StabilityOptions& options,
+                                   const std::function<void(const std::string&, double)>& tell) {
+  std::vector<Trial> trials;
+  for (const Trial& t : stability_trials()) {
+    const auto& ids = options.cases;
+    if (ids.empty() || std::count(ids.begin(), ids.end(), t.id) > 0) trials.push_back(t);
+  }
+  std::vector<Verdict> out;
+  const std::vector<Setting> all = settings(options.quick);
+  for (const Trial& t : trials) {
+    for (const Setting& s : all) {
+      tell(t.id + ' ' + s.name,
+           static_cast<double>(out.size()) / static_cast<double>(trials.size() * all.size()));
+      out.push_back(run_trial(t, s, options.quick ? 16 : 64));
+    }
+  }
+  return out;
+}
+
+nlohmann::ordered_json to_json(const std::vector<Verdict>& verdicts) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const Verdict& v : verdicts) {
+    out.push_back({{"id", v.id},
+                   {"title", v.title},
+                   {"criterion", v.criterion},
+                   {"unit", v.unit},
+                   {"limit", v.limit},
+                   {"setting", v.setting},
+                   {"value", std::isfinite(v.value) ? nlohmann::ordered_json(v.value) : nullptr},
+                   {"lost_worlds", v.lost},
+                   {"passed", v.passed},
+                   {"note", v.note}});
+  }
+  return out;
+}
+
+std::string stability_page(const std::vector<Verdict>& verdicts, const std::string& machine) {
+  std::vector<std::vector<std::string>> rows = {{"case", "must stay at or below"}};
+  std::string notes;
+  for (const Verdict& v : verdicts) {
+    if (rows.size() == 1 || rows.back()[0] != v.id + " " + v.title) {
+      rows.push_back(
+          {v.id + " " + v.title, fmt::format("{}: {:g} {}", v.criterion, v.limit, v.unit)});
+      if (!v.note.empty()) notes += "<li>" + escaped(v.id + ": " + v.note) + "</li>";
+    }
+    if (rows.size() == 2) rows[0].push_back(v.setting);
+    rows.back().push_back(cell_text(v));
+  }
+  return page(
+      "Stiff and extreme cases", machine,
+      "<p>The number is that of the worst of the worlds, which differ a little; a world that "
+      "is lost fails its case.</p>" +
+          table(rows) + (notes.empty() ? "" : "<ul>" + notes + "</ul>"));
+}
+
+}  // namespace manyworlds::report

@@ -1,0 +1,85 @@
+// `manyworlds report stability`: stiff and extreme scenes against criteria, with the default
+// settings and others. Each case is run in many worlds that differ a little (Body::jitter, fixed
+// seeds) and fails if one of them does.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "manyworlds/batch.hpp"
+
+namespace manyworlds::report {
+
+// State of all worlds at one time, read in one go.
+class Seen {
+ public:
+  explicit Seen(const Batch& batch) : batch_(&batch) { look(0); }
+  void look(double time);
+
+  double time() const { return time_; }  // s
+  const Batch& batch() const { return *batch_; }
+  int bodies() const { return bodies_; }
+  Vec3 position(int world, int body) const { return vector(x_, world, body); }
+  Vec3 velocity(int world, int body) const { return vector(v_, world, body); }
+  Vec3 spin(int world, int body) const { return vector(w_, world, body); }
+  double fastest(int world) const;        // of the speeds of its bodies, m/s
+  Vec3 moved(int world, int body) const;  // since the start, m
+
+ private:
+  Vec3 vector(const std::vector<double>& all, int world, int body) const;
+  const Batch* batch_;
+  double time_ = 0;
+  int bodies_ = 0;
+  std::vector<double> x_, v_, w_, start_;
+};
+
+struct Trial {
+  std::string id, title;
+  std::string criterion, unit;  // what must stay at or below the limit
+  double limit = 0;
+  double seconds = 10;  // simulated
+  bool at_end = false;  // counts at the end only; else the largest of all times after `from`
+  double from = 0;      // s
+  std::function<Scene()> scene;
+  // Of a world; not finite counts as failed.
+  std::function<double(const Seen&, int)> value;
+  std::function<void(Batch&, double)> act = {};  // before each step, with the time
+  std::string note = {};                         // why it fails where it does
+  // Length of a step if not 1/60 s.
+  double dt = 1.0 / 60;
+};
+
+struct Setting {
+  std::string name;
+  Precision precision = Precision::f32;
+  double finer = 1;  // steps per step of the trial
+  int substeps = 4;  // the trial's own where it has set others: times substeps / 4
+};
+
+struct Verdict {
+  std::string id, title, criterion, unit, setting, note;
+  double limit = 0, value = 0;  // of the worst world
+  int lost = 0;                 // worlds whose status is not ok
+  bool passed = false;
+};
+
+std::vector<Trial> stability_trials();
+std::vector<Trial> contact_trials();  // B2 to B14, B33 to B44
+std::vector<Trial> joint_trials();    // B15 to B24
+std::vector<Trial> motion_trials();   // B26 to B32
+
+struct StabilityOptions {
+  std::vector<std::string> cases;  // ids; empty: all
+  bool quick = false;              // 16 worlds instead of 64, fewer settings
+};
+std::vector<Verdict> run_stability(const StabilityOptions& options,
+                                   const std::function<void(const std::string&, double)>& tell);
+
+nlohmann::ordered_json to_json(const std::vector<Verdict>& verdicts);
+std::string stability_page(const std::vector<Verdict>& verdicts, const std::string& machine);
+
+}  // namespace manyworlds::report
