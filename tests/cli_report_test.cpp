@@ -63,7 +63,7 @@ TEST_CASE("report accuracy writes complete tables and a page", "[cli][report]") 
   // Largest errors that the cheap steps of the short form may leave.
   const std::map<std::string, double> expected = {
       {"A1", 1e-4},  {"A2", 1e-6},   {"A3", 1e-6},   {"A4", 1e-2},  {"A5", 1e-3},
-      {"A6", 1e-2},  {"A7", 1e-2},   {"A8", 1e-2},   {"A10", 5e-2}, {"A11-2", 0.1},
+      {"A6", 1e-2},  {"A7", 1e-2},   {"A8", 1e-2},   {"A10", 5e-2}, {"A11-2", 0.2},
       {"A11-40", 1}, {"A15x", 1e-3}, {"A15y", 1e-3}, {"A16", 1e4},  {"A17", 1},
       {"A17e", 1e7}, {"A19", 1e-3},  {"A20", 1e-2},  {"A21", 5e-2}, {"A22", 1e-4}};
   CHECK(least.size() == expected.size());
@@ -86,7 +86,8 @@ TEST_CASE("report stability judges every case in every setting", "[cli][report]"
   INFO(outcome.err);
   REQUIRE(outcome.code == 0);
   std::map<std::string, int> rows;
-  for (const Json& v : Json::parse(outcome.out)["results"]) {
+  const Json report = Json::parse(outcome.out);
+  for (const Json& v : report["results"]) {
     INFO(v.dump());
     ++rows[v["id"]];
     CHECK(v["passed"] == true);
@@ -105,7 +106,8 @@ TEST_CASE("report plan finds equal bits whatever was switched on", "[cli][report
   INFO(outcome.out << outcome.err);
   REQUIRE(outcome.code == 0);
   std::map<std::string, int> variants;
-  for (const Json& row : Json::parse(outcome.out)["results"]) {
+  const Json report = Json::parse(outcome.out);
+  for (const Json& row : report["results"]) {
     INFO(row.dump());
     ++variants[row["scene"]];
     CHECK(row["time_ratio"].get<double>() > 0);
