@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 # A file in src/ includes its own and lower floors.
-SRC_FLOORS = ["base", "scene", "plan", "state", "dispatch", "step", "api"]
+SRC_FLOORS = ["base", "lcp", "scene", "plan", "state", "dispatch", "step", "api"]
 # Off the column: read models into a Scene, record a Batch. They may know nothing below the public
 # headers but these.
 SRC_SIDE = {"mjcf": {"mjcf", "base"}, "record": {"record", "base"}}
