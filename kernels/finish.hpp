@@ -61,6 +61,14 @@ struct LaneCheck {
       finite = finite & bounded;
     }
   }
+
+  // The orientation that an integrator ended with: one that spun out of all bounds has none.
+  template <bool kIdle, class Q>
+  MW_INLINE void add_end(const Group& g, int body, Q q, Mask free) {
+    Mask ok = (Float(kMinOrientation * kMinOrientation) <= dot(q, q)) | !free;
+    if constexpr (kIdle) ok = ok | mask_from_bits(idle_lanes(g, body) & kAllLanes);
+    good = good & ok, finite = finite & ok;
+  }
 };
 
 // Flags lanes that went bad in this step; returns those that may be committed.
@@ -271,6 +279,7 @@ std::uint32_t judge_bodies(const Tables& t, const Group& g, const Work& w, const
       const auto from = load_as<typename S::Vec>(state_of(t, g, b, kState<S>.position));
       moved = select(free, Velocity<S>{end.x - from, zero_of<typename S::Ang>()}, moved);
       v = select(free, Velocity<S>{end.v, end.spin}, v);
+      if (t.has_orientation) check.add_end<kIdle>(g, b, end.q, free);
     }
     check.add<S, kIdle>(t, g, b, moved, v);
   }

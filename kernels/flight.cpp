@@ -23,15 +23,16 @@ void fly(const Tables& t, const Group& g, kernels::Scratch* scratch) {
 // What springs do at the end of the step, as impulses of a substep, for those who look at joints.
 template <class S>
 void store_forces(const Tables& t, const Group& g, std::uint32_t commit) {
-  const Float h(t.h), zero(Real(0));
+  const Float h(t.h);
   for_each_spring(t, g, [&](const JointPart& part, const Joint& numbers, int index) {
     const auto turning = [](int, const Motion<S>& m) { return m.spin; };
     const SpringNow<S> s = spring_now<S>(t, g, part, numbers, g.state, turning);
     const auto force = elastic_force(part, numbers, s) + damping_force(part, numbers, s);
     Real* to = g.joint_impulse + index * kernels::kPartImpulses * kLanes;
-    const Mask keep = mask_from_bits(commit);
+    // Where both ends sleep the spring keeps what it will wake with.
+    const Mask keep = mask_from_bits(commit & active_lanes(t, g, part));
     const auto put = [&](Float impulse, Real* row) {
-      select(keep, select(s.active, impulse, zero), Float::load(row)).store(row);
+      select(keep, impulse, Float::load(row)).store(row);
     };
     if (part.kind != PartKind::point) return put(dot(force, s.along) * h, to);
     put(force.x * h, to), put(force.y * h, to + kLanes);
@@ -95,6 +96,7 @@ std::uint32_t judge_flight(const Tables& t, const Group& g, const FlightWork& f)
     const Motion<S> m = load_motion<S>(t, f.now, b);
     const auto from = load_as<typename S::Vec>(state_of(t, g, b, kState<S>.position));
     check.add<S, kIdle>(t, g, b, {m.x - from, zero_of<typename S::Ang>()}, {m.v, m.spin});
+    if (t.has_orientation) check.add_end<kIdle>(g, b, m.q, mask_from_bits(kAllLanes));
   }
   return judge_lanes(g, check);
 }
@@ -102,9 +104,10 @@ std::uint32_t judge_flight(const Tables& t, const Group& g, const FlightWork& f)
 template <class S>
 void fly_steps(const Tables& t, const Group& g, kernels::Scratch* scratch, int steps) {
   const FlightWork& f = work_of(scratch).flight;
-  std::uint32_t commit = 0;
+  std::uint32_t moved = 0;  // lanes that some step was good in
   for (int step = 0; step < steps; ++step) {
     fly<S>(t, g, scratch);
+    std::uint32_t commit = 0;
     if (has_idle_bodies(g)) {
       commit = judge_flight<S, true>(t, g, f);
       commit_flight<S, true>(t, g, f, commit, LiveLanes{g, commit});
@@ -112,8 +115,9 @@ void fly_steps(const Tables& t, const Group& g, kernels::Scratch* scratch, int s
       commit = judge_flight<S, false>(t, g, f);
       commit_flight<S, false>(t, g, f, commit, SomeLanes{mask_from_bits(commit)});
     }
+    moved |= commit;
   }
-  if (steps > 0) store_forces<S>(t, g, commit);
+  store_forces<S>(t, g, moved);
 }
 
 template <class S, bool kDense>

@@ -309,4 +309,81 @@ TEST_CASE("springs as forces can be looked at, let go and copied", "[fast][integ
   }
 }
 
+TEST_CASE("a push or a number that is none in one world is seen in no other",
+          "[fast][integrator]") {
+  for (const Table& table : all_tables()) {
+    for (Space space : {Space::planar, Space::spatial}) {
+      for (Integrator integrator : kAll) {
+        Scene scene = tied_crowd(space);
+        choose(scene, integrator);
+        for (Body& body : scene.bodies) {
+          body.shapes[0].filter.mask = 0;
+          if (body.motion == Motion::dynamic) body.linear_velocity.x() = -0.0;
+        }
+        const Plan plan = compile(scene);
+        Batch pushed(plan, options_of(table, 19)), quiet(plan, options_of(table, 19));
+        for (int i = 0; i < 3; ++i) {
+          pushed.add_force(4, 1, Vec3(3, 2, 0));
+          if (i == 1) pushed.add_force(7, 2, Vec3::Constant(std::nan("")));
+          pushed.step(2), quiet.step(2);
+        }
+        INFO(name(table) << ' ' << to_string(integrator));
+        CHECK(frozen(pushed.status(7)));
+        for (int w = 0; w < 19; ++w) {
+          CHECK((pushed.hash(w) == quiet.hash(w)) == (w != 4 && w != 7));
+          if (w != 7) CHECK(pushed.status(w) == quiet.status(w));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("what a spring bears is kept while its bodies sleep, whoever is beside them",
+          "[fast][integrator]") {
+  Scene scene = empty_scene(Space::spatial);
+  scene.options.integrator = Integrator::runge_kutta4;
+  scene.add(ground(Space::spatial));
+  for (double x : {-0.7, 0.7}) {
+    scene.add(body_of(shape_of(Box{Vec3::Constant(0.5)}), {x, 0, 0.5}));
+  }
+  DistanceJoint line;
+  line.length = 1, line.spring = Spring{300, 1, 0, 0};
+  Joint joint;
+  joint.type = line, joint.body_a = 1, joint.body_b = 2;
+  scene.add(joint);
+  BatchOptions options = options_of(widest_tables().front(), 2);
+  options.sleep = true, options.observe.what = {Observer::joint_loads};
+  const Plan plan = compile(scene);
+  Batch calm(plan, options), beside(plan, options);
+  for (int i = 0; i < 180; ++i) {
+    beside.add_force(1, 0, Vec3(0, 100 * (i % 2), 0));
+    calm.step(), beside.step();
+  }
+  REQUIRE(calm.asleep(0));
+  REQUIRE(beside.asleep(0));
+  CHECK_FALSE(beside.asleep(1));
+  std::vector<double> one(3), other(3);
+  calm.read(Observed::joint_force, 0, one), beside.read(Observed::joint_force, 0, other);
+  CHECK(one == other);
+  CHECK(one[0] == Approx(-300 * 0.4).epsilon(1e-2));
+}
+
+TEST_CASE("a world that is lost keeps its forces, in one call or several", "[fast][integrator]") {
+  for (const Table& table : widest_tables()) {
+    Scene scene = oscillator(Space::planar, 1e6, 1.0 / 60);
+    scene.options.integrator = Integrator::explicit_euler;
+    BatchOptions options = options_of(table);
+    options.observe.what = {Observer::joint_loads};
+    Batch one(compile(scene), options), many(compile(scene), options);
+    for (int i = 0; i < 40; ++i) one.step();
+    many.step(40);
+    REQUIRE(frozen(many.status(0)));
+    std::vector<double> force(2), other(2);
+    one.read(Observed::joint_force, 0, force), many.read(Observed::joint_force, 0, other);
+    INFO(name(table));
+    CHECK(force == other);
+    CHECK(one.hash(0) == many.hash(0));
+  }
+}
+
 }  // namespace manyworlds::test

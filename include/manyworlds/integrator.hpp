@@ -17,8 +17,9 @@
 //   runge_kutta4       4                    4                      4               4
 //
 // In a step in which contacts or joints other than springs may act on a body, it moves by the
-// substeps of the solver (order 1), whatever the integrator; so do bodies at the other end of a
-// spring only in their own flight. Bodies that collide are of order 1 after the impact.
+// substeps of the solver (order 1), whatever the integrator. Its springs are then implicit rows, as
+// by default. Bodies that hang on nothing but springs never fall asleep with another integrator
+// than the default, since nothing touches them.
 #pragma once
 
 namespace manyworlds {

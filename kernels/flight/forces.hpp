@@ -94,7 +94,8 @@ MW_INLINE void gather_forces(const Tables& t, const Group& g, const Real* motion
   for (int b = 0; b < t.bodies; ++b) {
     const Motion<S> m = load_motion<S>(t, motion, b);
     const Body& numbers = constants_of_body(g, b);
-    auto a = vector_of(S{}, numbers.acceleration);
+    // Adding 0 turns -0 into 0, as the inputs of another world would.
+    auto a = vector_of(S{}, numbers.acceleration) + zero_of<typename S::Vec>();
     auto torque = zero_of<typename S::Ang>();
     if (!t.body[b].kinematic) {
       for (int i = 0; i < t.attractors; ++i) {

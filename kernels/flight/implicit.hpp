@@ -13,6 +13,8 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Square of the share of the first residual at which a lane is done.
 inline constexpr Real kResidual2 = sizeof(Real) == 4 ? Real(1e-12) : Real(1e-26);
+// Of the residual itself: what is below counts as none.
+inline constexpr Real kNoResidual2 = sizeof(Real) == 4 ? Real(1e-30) : Real(1e-280);
 
 template <class S>
 MW_INLINE Velocity<S> load_rates(const Tables& t, const Real* block, int body) {
@@ -68,6 +70,13 @@ MW_INLINE typename S::Vec speed_at(const Tables& t, const Real* block, int body,
   return u.v + cross(u.w, arm);
 }
 
+// Rows of a body where it takes part, 0 where it is disabled or asleep.
+template <class S>
+MW_INLINE Velocity<S> of_present(const Group& g, int body, const Velocity<S>& rows) {
+  if (!has_idle_bodies(g)) return rows;
+  return select(mask_from_bits(~idle_lanes(g, body) & kAllLanes), rows, no_rates<S>());
+}
+
 // The matrix times `in`; rows of kinematic bodies are 0.
 template <class S>
 MW_INLINE void times_matrix(const Tables& t, const Group& g, const Real* now, const Real* in,
@@ -75,8 +84,9 @@ MW_INLINE void times_matrix(const Tables& t, const Group& g, const Real* now, co
   for (int b = 0; b < t.bodies; ++b) {
     Velocity<S> p = no_rates<S>();
     if (!t.body[b].kinematic) {
-      p = times_mass<S>(t, constants_of_body(g, b), load_motion<S>(t, now, b),
-                        load_rates<S>(t, in, b));
+      p = of_present(g, b,
+                     times_mass<S>(t, constants_of_body(g, b), load_motion<S>(t, now, b),
+                                   load_rates<S>(t, in, b)));
     }
     store_rates<S>(t, out, b, p);
   }
@@ -107,22 +117,25 @@ MW_INLINE void solve_velocities(const Tables& t, const Group& g, FlightWork& f) 
     }
   };
   const auto preconditioned = [&](int b) {
-    return over_mass<S>(t, constants_of_body(g, b), load_motion<S>(t, f.now, b),
-                        load_rates<S>(t, f.rate, b));
+    return of_present(g, b,
+                      over_mass<S>(t, constants_of_body(g, b), load_motion<S>(t, f.now, b),
+                                   load_rates<S>(t, f.rate, b)));
   };
   Float old(Real(0));  // residual times preconditioned residual
   times_matrix<S>(t, g, f.now, f.now, f.base);
   for (int b = 0; b < t.bodies; ++b) store_rates<S>(t, f.sum, b, no_rates<S>());
   for_each_dynamic([&](int b) {
     const Float minus(Real(-1));
-    store_rates<S>(t, f.rate, b,
-                   add_scaled<S>(load_rates<S>(t, f.base, b), minus, load_rates<S>(t, f.rate, b)));
+    const Velocity<S> r =
+        add_scaled<S>(load_rates<S>(t, f.base, b), minus, load_rates<S>(t, f.rate, b));
+    store_rates<S>(t, f.rate, b, of_present(g, b, r));
     const Velocity<S> z = preconditioned(b);
     store_rates<S>(t, f.sum, b, z);
     old = old + dot(z, load_rates<S>(t, f.rate, b));
   });
   const Float enough = old * Float(kResidual2);
-  Mask running = Float(Real(0)) < old;
+  // What is not a number takes a step, too, so that finish finds it in the velocities.
+  Mask running = !(old <= Float(kNoResidual2));
   const int most = (S::kDim + S::kAng) * t.bodies + 10;
   for (int i = 0; i < most && any(running); ++i) {
     times_matrix<S>(t, g, f.now, f.sum, f.base);

@@ -42,7 +42,8 @@ PlanReport describe(const PlanData& plan) {
   const bool only_forces =
       !plan.parts.empty() && std::all_of(plan.parts.begin(), plan.parts.end(),
                                          [](const PlanPart& p) { return p.what.force; });
-  const bool joints = plan.has(Feature::joints) && !only_forces, rows = contacts || joints;
+  const bool joints = plan.has(Feature::joints) && (!only_forces || contacts),
+             rows = contacts || joints;
   const std::string some = contacts ? touch : why(Feature::joints);
   const std::string integrator = to_string(plan.scene.options.integrator);
   out.stages = {{"free_motion", !rows && !flight,
@@ -57,8 +58,8 @@ PlanReport describe(const PlanData& plan) {
                               : "masked all-pairs"},
                 {"collide", contacts, touch},
                 {"joints", joints,
-                 plan.has(Feature::joints) && only_forces ? "springs are forces of the flight"
-                                                          : why(Feature::joints)},
+                 plan.has(Feature::joints) && !joints ? "springs are forces of the flight"
+                                                      : why(Feature::joints)},
                 {"warm_start", rows, some},
                 {"bias", contacts, "soft normal rows, every substep"},
                 {"advance", rows, "displacement, every substep"},

@@ -18,7 +18,8 @@ enum StageIndex {
   kFinish,
   kSettle,
   kObserve,
-  kJoints
+  kJoints,
+  kFlight
 };
 
 template <class Real>
@@ -87,7 +88,7 @@ void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group
   const auto& flight = p.kernels.flight[static_cast<int>(t.inertia_kind)];
   if (t.flight.on) {
     flight.fly(t, group, scratch);
-    lap(kFreeMotion);
+    lap(kFlight);
   }
   with_joints(joints.prepare);
   solver.push(t, group, scratch);
@@ -196,7 +197,7 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
     const auto flight = p.kernels.flight[static_cast<int>(t.inertia_kind)].steps;
     const auto free_motion = p.kernels.free_motion[static_cast<int>(t.inertia_kind)];
     (t.flight.on ? flight : free_motion)(t, group, scratch, steps);
-    if (clock) clock->lap(kFreeMotion);
+    if (clock) clock->lap(t.flight.on ? kFlight : kFreeMotion);
     taken = steps;
   }
   if (p.wanted) {

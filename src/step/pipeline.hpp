@@ -11,10 +11,10 @@ namespace manyworlds {
 // Where a step's time goes; off unless somebody asked.
 class StageClock {
  public:
-  static constexpr int kStages = 14;
+  static constexpr int kStages = 15;
   static constexpr std::array<const char*, kStages> kNames = {
-      "free_motion", "begin",     "broad_phase", "collide", "warm_start", "bias",    "advance",
-      "relax",       "restitute", "store",       "finish",  "settle",     "observe", "joints"};
+      "free_motion", "begin", "broad_phase", "collide", "warm_start", "bias",   "advance", "relax",
+      "restitute",   "store", "finish",      "settle",  "observe",    "joints", "flight"};
 
   void start() { last_ = Clock::now(); }
   void lap(int stage) {
