@@ -40,6 +40,9 @@ auto run_report(const char* name, const ReportOptions& options, Measure measure)
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (error) throw InputError("--out: cannot make " + options.out + ": " + error.message());
+  const std::filesystem::path file =
+      std::filesystem::path(options.out) / (name + std::string(".json"));
+  if (!std::ofstream(file, std::ios::app)) throw InputError("--out: cannot write " + file.string());
   Progress progress(name, 1000);
   std::int64_t done = 0;
   return measure(Tell([&](const std::string& next, double share) {

@@ -192,7 +192,7 @@ std::vector<Case> contact_cases() {
   out.push_back(stop);
 
   Case bounce = of_contacts("A21", "ball that bounces, restitution 0.8",
-                            "largest error of its height over four bounces", "m", 1e-2, 3.5);
+                            "largest error of its height over four bounces", "m", 1e-2, 2.4);
   bounce.scene = [] {
     Scene scene = empty(Space::spatial);
     scene.options.restitution_threshold = 0.1;

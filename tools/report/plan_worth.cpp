@@ -143,7 +143,7 @@ void add_integrators(const std::string& name, const Setup& plain, std::vector<Va
 }
 
 void add_sleep(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
-  Variant v{name, "awake, though at rest (20 s on)", plain, plain};
+  Variant v{name, "at rest: without sleep, against with it", plain, plain};
   v.plain.batch.sleep = true;
   v.settle = 1200;
   v.must_be_same = false;  // who sleeps stands still

@@ -26,15 +26,18 @@ class Seen {
   Vec3 position(int world, int body) const { return vector(x_, world, body); }
   Vec3 velocity(int world, int body) const { return vector(v_, world, body); }
   Vec3 spin(int world, int body) const { return vector(w_, world, body); }
-  double fastest(int world) const;        // of the speeds of its bodies, m/s
+  double fastest(int world) const;  // of the speeds of its bodies, m/s
+  Quat rotation(int world, int body) const;
   Vec3 moved(int world, int body) const;  // since the start, m
+  double energy(int world) const;         // J
+  double start_energy(int world) const { return start_energy_[static_cast<std::size_t>(world)]; }
 
  private:
   Vec3 vector(const std::vector<double>& all, int world, int body) const;
   const Batch* batch_;
   double time_ = 0;
   int bodies_ = 0;
-  std::vector<double> x_, v_, w_, start_;
+  std::vector<double> x_, q_, v_, w_, start_, start_energy_;
 };
 
 struct Trial {
@@ -56,8 +59,8 @@ struct Trial {
 struct Setting {
   std::string name;
   Precision precision = Precision::f32;
-  double finer = 1;  // steps per step of the trial
-  int substeps = 4;  // the trial's own where it has set others: times substeps / 4
+  double finer = 1;     // steps per step of the trial
+  double substeps = 1;  // times the trial's own, which are 4 unless it says otherwise
 };
 
 struct Verdict {

@@ -32,7 +32,7 @@ double sideways(const Vec3& v, Space space) {
 }
 Space space_of(const Seen& s) { return s.batch().plan().scene().space; }
 
-// How far a tower's top is from where it began, to the side or by more than `sag` down.
+// How far a tower's top is to the side of where it began.
 double top_off(const Seen& s, int world) {
   const Vec3 moved = s.moved(world, s.bodies() - 1);
   return sideways(moved, space_of(s));
@@ -283,11 +283,7 @@ Trial painleve() {
     scene.add(rod);
     return scene;
   };
-  t.value = [](const Seen& s, int w) {
-    const Energy e = s.batch().energy(w);
-    const double start = 0.5 + 10 * 0.45;
-    return (e.kinetic + e.potential - start) / start - 0.02;  // jitter
-  };
+  t.value = [](const Seen& s, int w) { return s.energy(w) / s.start_energy(w) - 1; };
   return t;
 }
 
