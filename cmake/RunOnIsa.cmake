@@ -2,6 +2,8 @@
 # this CPU cannot, or when ISA is the widest of the build's ISAS that it can: all tests take that by
 # themselves. cmake -D ISA=avx2 -D ISAS=scalar;avx2;avx512 -D PROGRAM=... -P RunOnIsa.cmake
 
+cmake_minimum_required(VERSION 3.25)
+
 set(needs_scalar)
 set(needs_avx2 avx2 fma bmi2)
 set(needs_avx512 avx512f avx512vl avx512dq avx512bw)

@@ -65,7 +65,7 @@ endif()
 if(NOT MW_SANITIZE)
   foreach(isa IN LISTS MW_ISAS)
     add_test(NAME fast_tests_forced_${isa}
-      COMMAND ${CMAKE_COMMAND} -D ISA=${isa} "-D ISAS=${MW_ISAS}" -D PROGRAM=$<TARGET_FILE:manyworlds_tests>
+      COMMAND ${CMAKE_COMMAND} -D ISA=${isa} -D "ISAS=${MW_ISAS}" -D PROGRAM=$<TARGET_FILE:manyworlds_tests>
               -P "${PROJECT_SOURCE_DIR}/cmake/RunOnIsa.cmake")
     set_tests_properties(fast_tests_forced_${isa} PROPERTIES
       SKIP_REGULAR_EXPRESSION "^skipped: " TIMEOUT 900 COST 1000)
