@@ -108,9 +108,8 @@ void carve(const Tables& t, Work& w, Carver& c) {
   if (t.drag_varies) c.take(w.factor_storage, velocities);
   const std::size_t state = count(t.bodies * t.state_stride * lanes);
   if (t.flight.on) {
-    for (Real** block : {&w.flight.now, &w.flight.base, &w.flight.rate, &w.flight.sum}) {
-      c.take(*block, state);
-    }
+    c.take(w.flight.now, state), c.take(w.flight.base, state);
+    c.take(w.flight.rate, state), c.take(w.flight.sum, state);
   }
   if (!t.has_substeps) {
     c.take(w.before, state);

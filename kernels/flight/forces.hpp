@@ -22,8 +22,8 @@ struct SpringNow {
 
 // `turning(body, motion)`: its angular velocity.
 template <class S, class Turning>
-MW_INLINE SpringNow<S> spring_now(const Tables& t, const Group& g, const JointPart& part,
-                                  const Joint& numbers, const Real* motion, Turning turning) {
+SpringNow<S> spring_now(const Tables& t, const Group& g, const JointPart& part,
+                        const Joint& numbers, const Real* motion, Turning turning) {
   using Vec = typename S::Vec;
   SpringNow<S> s;
   const Motion<S> b = load_motion<S>(t, motion, part.body_b);
@@ -90,7 +90,7 @@ MW_INLINE void add_force(const Tables& t, const Group& g, Real* rate, int body,
 // Into the rows of linear and angular rates: accelerations by all forces but drag, and torques.
 // kDamped: springs damp, too.
 template <class S, bool kDamped>
-MW_INLINE void gather_forces(const Tables& t, const Group& g, const Real* motion, Real* rate) {
+void gather_forces(const Tables& t, const Group& g, const Real* motion, Real* rate) {
   for (int b = 0; b < t.bodies; ++b) {
     const Motion<S> m = load_motion<S>(t, motion, b);
     const Body& numbers = constants_of_body(g, b);
@@ -124,7 +124,7 @@ MW_INLINE void gather_forces(const Tables& t, const Group& g, const Real* motion
 // Rates of velocities and spins at a motion. kTumbling: with what turns angular velocities where no
 // torque acts; without it, what a torque does to a body that stands still.
 template <class S, bool kTumbling>
-MW_INLINE void accelerate(const Tables& t, const Group& g, const Real* motion, Real* rate) {
+void accelerate(const Tables& t, const Group& g, const Real* motion, Real* rate) {
   gather_forces<S, true>(t, g, motion, rate);
   for (int b = 0; b < t.bodies; ++b) {
     const Motion<S> m = load_motion<S>(t, motion, b);
@@ -149,8 +149,8 @@ MW_INLINE void accelerate(const Tables& t, const Group& g, const Real* motion, R
 // Rates of everything. `share` of the last rates, if they were not the first of the step, led from
 // its start to this motion.
 template <class S>
-MW_INLINE void find_rates(const Tables& t, const Group& g, const Real* motion, Real* rate,
-                          Float share, bool first) {
+void find_rates(const Tables& t, const Group& g, const Real* motion, Real* rate, Float share,
+                bool first) {
   accelerate<S, true>(t, g, motion, rate);
   for (int b = 0; b < t.bodies; ++b) {
     const Motion<S> m = load_motion<S>(t, motion, b);

@@ -79,8 +79,7 @@ MW_INLINE Velocity<S> of_present(const Group& g, int body, const Velocity<S>& ro
 
 // The matrix times `in`; rows of kinematic bodies are 0.
 template <class S>
-MW_INLINE void times_matrix(const Tables& t, const Group& g, const Real* now, const Real* in,
-                            Real* out) {
+void times_matrix(const Tables& t, const Group& g, const Real* now, const Real* in, Real* out) {
   for (int b = 0; b < t.bodies; ++b) {
     Velocity<S> p = no_rates<S>();
     if (!t.body[b].kinematic) {
@@ -110,7 +109,7 @@ MW_INLINE void times_matrix(const Tables& t, const Group& g, const Real* now, co
 
 // Conjugate gradients for the velocities in f.now; f.rate holds M u + h f.
 template <class S>
-MW_INLINE void solve_velocities(const Tables& t, const Group& g, FlightWork& f) {
+void solve_velocities(const Tables& t, const Group& g, FlightWork& f) {
   const auto for_each_dynamic = [&](auto visit) {
     for (int b = 0; b < t.bodies; ++b) {
       if (!t.body[b].kinematic) visit(b);

@@ -49,7 +49,7 @@ MW_INLINE void store_motion(const Tables& t, Real* block, int body, const Motion
   store(component_of(t, block, body, kState<S>.angular), m.spin);
   if (t.has_orientation) store(component_of(t, block, body, kState<S>.orientation), m.q);
 }
-MW_INLINE void copy_motion(const Tables& t, Real* to, const Real* from) {
+inline void copy_motion(const Tables& t, Real* to, const Real* from) {
   const int size = t.bodies * t.state_stride * kLanes;
   for (int i = 0; i < size; i += kLanes) Float::load(from + i).store(to + i);
 }
@@ -72,7 +72,7 @@ MW_INLINE typename S::Ang angular_velocity(const Tables& t, const Group& g, int 
 
 // The same motion with the other kind of spin.
 template <class S>
-MW_INLINE void begin_spins(const Tables& t, const Group& g, Real* block) {
+void begin_spins(const Tables& t, const Group& g, Real* block) {
   for (int b = 0; b < t.bodies; ++b) {
     if (!spins_by_momentum(t, b)) continue;
     Motion<S> m = load_motion<S>(t, block, b);
@@ -81,7 +81,7 @@ MW_INLINE void begin_spins(const Tables& t, const Group& g, Real* block) {
   }
 }
 template <class S>
-MW_INLINE void end_spins(const Tables& t, const Group& g, Real* block) {
+void end_spins(const Tables& t, const Group& g, Real* block) {
   for (int b = 0; b < t.bodies; ++b) {
     if (!spins_by_momentum(t, b)) continue;
     Motion<S> m = load_motion<S>(t, block, b);
@@ -131,7 +131,7 @@ MW_INLINE Quat turned(const Tables& t, Quat q, const Real* rows, Float h) {
 
 // The motion h later by these rates.
 template <class S>
-MW_INLINE void move_by(const Tables& t, const Real* from, const Real* rate, Float h, Real* to) {
+void move_by(const Tables& t, const Real* from, const Real* rate, Float h, Real* to) {
   for (int b = 0; b < t.bodies; ++b) {
     Motion<S> m = load_motion<S>(t, from, b);
     const auto row = [&](int component) { return component_of(t, rate, b, component); };
@@ -145,8 +145,7 @@ MW_INLINE void move_by(const Tables& t, const Real* from, const Real* rate, Floa
 
 // Velocities and spins after h of their rates.
 template <class S>
-MW_INLINE void change_velocities(const Tables& t, const Real* from, const Real* rate, Float h,
-                                 Real* to) {
+void change_velocities(const Tables& t, const Real* from, const Real* rate, Float h, Real* to) {
   for (int b = 0; b < t.bodies; ++b) {
     const auto change = [&](auto v, int component) {
       const Real* row = component_of(t, rate, b, component);
@@ -160,7 +159,7 @@ MW_INLINE void change_velocities(const Tables& t, const Real* from, const Real* 
 }
 // Positions and orientations after h at the velocities.
 template <class S>
-MW_INLINE void go_on(const Tables& t, const Group& g, Real* now, Float h) {
+void go_on(const Tables& t, const Group& g, Real* now, Float h) {
   alignas(64) Real rows[4 * kLanes];
   for (int b = 0; b < t.bodies; ++b) {
     Motion<S> m = load_motion<S>(t, now, b);

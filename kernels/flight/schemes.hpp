@@ -22,7 +22,7 @@ void symplectic_euler(const Tables& t, const Group& g, Work& w) {
 
 // Free flight over `share` of h.
 template <class S>
-MW_INLINE void drift(const Tables& t, const Group& g, FlightWork& f, Real share) {
+void drift(const Tables& t, const Group& g, FlightWork& f, Real share) {
   const Float h(t.h * share), of_step(share / static_cast<Real>(t.substeps));
   for (int b = 0; b < t.bodies; ++b) {
     Motion<S> m = load_motion<S>(t, f.now, b);
@@ -43,7 +43,7 @@ MW_INLINE void drift(const Tables& t, const Group& g, FlightWork& f, Real share)
 }
 // What the forces do to velocities over `share` of h; where they depend on them, by the midpoint.
 template <class S>
-MW_INLINE void kick(const Tables& t, const Group& g, FlightWork& f, Real share) {
+void kick(const Tables& t, const Group& g, FlightWork& f, Real share) {
   const Real h = t.h * share;
   accelerate<S, false>(t, g, f.now, f.rate);
   if (t.flight.damped) {
