@@ -242,13 +242,13 @@ TEST_CASE("sparse plans give the same bits on every table, layout, lane and thre
           options.sleep = true;
           options.layout = layout;
           options.threads = layout == ContactLayout::dense ? 1 : 2;
-          seen.push_back(run(plan, options, 0, 25));
+          seen.push_back(run(plan, options, 0, 40));
           INFO(to_string(isa) << ' ' << to_string(precision) << ' ' << to_string(layout));
           CHECK(seen.back() == seen.front());
           for (int n : {1, 5}) {  // other lanes, and lanes without a world
             options.worlds = n;
             options.seed = static_cast<std::uint64_t>(9 - n);
-            const Seen part = run(plan, options, 9 - n, 25);
+            const Seen part = run(plan, options, 9 - n, 40);
             CHECK(
                 std::equal(part.hash.begin(), part.hash.end(), seen.front().hash.begin() + 9 - n));
           }
