@@ -134,7 +134,7 @@ struct LiveLanes {
 };
 
 // How bodies that nothing touched have moved: as the substeps say, or by another integrator, which
-// then says where they are (kernels/flight.cpp).
+// then says where they are (kernels/flight/stages.hpp).
 struct NoFlight {
   template <class Q>
   MW_INLINE Q orientation(int, Mask, Q swept) const {
@@ -295,11 +295,14 @@ std::uint32_t leave_state(const Tables& t, const Group& g, Work& w, const Flight
     return commit;
   }
   const std::uint32_t commit = judge_bodies<S, kDense, false>(t, g, w, flight);
-  if (commit == kAllLanes) {
-    commit_lanes<S, kDense>(t, g, w, commit, AllLanes{}, flight);
-  } else {
-    commit_lanes<S, kDense>(t, g, w, commit, SomeLanes{mask_from_bits(commit)}, flight);
+  // The path without masks is for the default integrator: another one is compiled half as often.
+  if constexpr (!kFlies<Flight>) {
+    if (commit == kAllLanes) {
+      commit_lanes<S, kDense>(t, g, w, commit, AllLanes{}, flight);
+      return commit;
+    }
   }
+  commit_lanes<S, kDense>(t, g, w, commit, SomeLanes{mask_from_bits(commit)}, flight);
   return commit;
 }
 

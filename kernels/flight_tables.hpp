@@ -13,7 +13,6 @@ enum class Scheme : std::int32_t {
   velocity_verlet,
   runge_kutta4,
 };
-inline constexpr int kSchemes = 6;
 
 enum class Rotation : std::int32_t { splitting, quaternion, exponential };
 

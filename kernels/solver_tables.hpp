@@ -13,7 +13,8 @@ FillSolver fill_solver_tensor_dense, fill_solver_tensor_rows;
 
 using FillJoints = void(kernels::JointSolver<Real>& dense, kernels::JointSolver<Real>& rows);
 FillJoints fill_joints_planar, fill_joints_tensor;
-void fill_flight(kernels::FlightTable<Real>* tables);  // [inertia]
+using FillFlight = void(kernels::FlightTable<Real>* tables);  // [inertia]
+FillFlight fill_flight_planar, fill_flight_spatial;
 // Bytes of the rows of a part.
 std::size_t part_bytes(Planar);
 std::size_t part_bytes(Tensor);

@@ -68,7 +68,8 @@ kernels::KernelTable<Real> make_table() {
   out.free_motion[static_cast<int>(InertiaKind::planar)] = free_motion<Planar>;
   out.free_motion[static_cast<int>(InertiaKind::isotropic)] = free_motion<Isotropic>;
   out.free_motion[static_cast<int>(InertiaKind::tensor)] = free_motion<Tensor>;
-  fill_flight(out.flight);
+  fill_flight_planar(out.flight);
+  fill_flight_spatial(out.flight);
   out.settle = settle;
   out.set_class = set_class;
   out.counters = counters;

@@ -51,7 +51,7 @@ struct JointSolver {
   Stage<Real> break_up;
 };
 
-// Free flight by the integrator of the plan (kernels/flight.cpp).
+// Free flight by the integrator of the plan (kernels/flight/stages.hpp).
 template <class Real>
 struct FlightTable {
   // Whole steps of plans in which nothing else moves bodies.

@@ -7,9 +7,9 @@
 // and evaluations of the forces per h:
 //
 //                      forces of position   with drag or damping   free rotation   evaluations
-//   symplectic_euler   2 attractors, exact  2 drag                 2 splitting     -
-//                      constant forces;     1 springs
-//                      1 springs            (implicit)
+//   symplectic_euler   2 attractors, exact  1 (implicit)           2 splitting,    1
+//                      constant forces;                            1 the others
+//                      1 springs
 //   explicit_euler     1                    1                      1               1
 //   implicit_euler     1                    1                      1               1 and a solve
 //   verlet             2                    2                      2               1 or 2

@@ -111,6 +111,10 @@ void TablesOf<Real>::add_flight(const PlanData& plan) {
   auto& t = tables_;
   auto& flight = t.flight;
   flight.on = flies(o);
+  static_assert(static_cast<int>(kernels::Scheme::runge_kutta4) ==
+                    static_cast<int>(Integrator::runge_kutta4) &&
+                static_cast<int>(kernels::Rotation::exponential) ==
+                    static_cast<int>(Rotation::exponential));
   flight.scheme = static_cast<kernels::Scheme>(o.integrator);
   flight.rotation = static_cast<kernels::Rotation>(o.rotation.value_or(Rotation::exponential));
   flight.momentum = o.angular_momentum;

@@ -1,13 +1,12 @@
 // Steps of bodies in free flight by the integrator of the plan. A plan in which nothing but springs
 // acts between bodies is stepped here alone; in others `fly` comes before the solver, and `leave`
 // takes from it the bodies that nothing could touch in the step.
+#pragma once
+
 #include "kernels/finish.hpp"
 #include "kernels/flight/schemes.hpp"
-#include "kernels/solver_tables.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
-
-namespace {
 
 // The motion at the end of the step, in FlightWork::now. The state stays.
 template <class S>
@@ -128,17 +127,9 @@ void leave(const Tables& t, const Group& g, kernels::Scratch* scratch) {
 }
 
 template <class S>
-kernels::FlightTable<Real> table_of() {
+kernels::FlightTable<Real> flight_table() {
   using Space = typename FlightSpace<S>::Type;
   return {fly_steps<Space>, fly<Space>, {leave<S, true>, leave<S, false>}};
-}
-
-}  // namespace
-
-void fill_flight(kernels::FlightTable<Real>* tables) {
-  tables[static_cast<int>(Planar::kKind)] = table_of<Planar>();
-  tables[static_cast<int>(Isotropic::kKind)] = table_of<Isotropic>();
-  tables[static_cast<int>(Tensor::kKind)] = table_of<Tensor>();
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE
