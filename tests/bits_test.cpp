@@ -10,18 +10,13 @@
 
 #include "manyworlds/scenes.hpp"
 #include "tests/support/crowd.hpp"
+#include "tests/support/hashes.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<std::uint64_t> hashes(const Batch& batch) {
-  std::vector<std::uint64_t> result;
-  for (int w = 0; w < batch.worlds(); ++w) result.push_back(batch.hash(w));
-  return result;
-}
 
 std::vector<std::uint64_t> run(const Plan& plan, const BatchOptions& options, int steps) {
   Batch batch(plan, options);

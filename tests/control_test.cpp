@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/hashes.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
@@ -200,11 +201,10 @@ TEST_CASE("controlled worlds have their bits wherever they are computed", "[fast
           drive(batch, 20);
           const Snapshot saved = batch.save();
           batch.step(20);
-          std::vector<std::uint64_t> hashes;
-          for (int w = 0; w < batch.worlds(); ++w) hashes.push_back(batch.hash(w));
-          if (reference.empty()) reference = hashes;
-          CHECK(hashes == reference);
-          CHECK(hashes[0] != hashes[1]);
+          const auto worlds = hashes(batch);
+          if (reference.empty()) reference = worlds;
+          CHECK(worlds == reference);
+          CHECK(worlds[0] != worlds[1]);
           batch.restore(saved);
           batch.step(20);
           CHECK(batch.hash(5) == reference[5]);

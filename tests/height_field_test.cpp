@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/support/hashes.hpp"
 #include "tests/support/height_field.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/tables.hpp"
@@ -253,10 +254,9 @@ TEST_CASE("height fields have the same bits on every table, layout and thread co
         Batch batch(plan, options);
         batch.step(50);
         INFO(name(table));
-        std::vector<std::uint64_t> hashes;
-        for (int w = 0; w < 13; ++w) hashes.push_back(batch.hash(w));
-        if (reference.empty()) reference = hashes;
-        CHECK(hashes == reference);
+        const auto worlds = hashes(batch);
+        if (reference.empty()) reference = worlds;
+        CHECK(worlds == reference);
         options.worlds = 1, options.seed = 5, options.threads = 1;
         Batch alone(plan, options);
         alone.step(50);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/support/crowd.hpp"
+#include "tests/support/hashes.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
@@ -51,14 +52,6 @@ Scene tied_crowd(Space space) {
   tie(-1, 2, target), tie(3, 4, line), tie(5, 6, target), tie(7, 8, line);
   scene.attractors = {{Vec3::UnitX() + up_of(space), 2, 0.5}};
   return scene;
-}
-
-std::vector<std::uint64_t> hashes_of(const Plan& plan, const BatchOptions& options, int steps) {
-  Batch batch(plan, options);
-  batch.step(steps);
-  std::vector<std::uint64_t> out;
-  for (int w = 0; w < batch.worlds(); ++w) out.push_back(batch.hash(w));
-  return out;
 }
 
 }  // namespace
@@ -199,18 +192,18 @@ TEST_CASE("bits do not depend on anything else whatever the integrator", "[fast]
             if (table.precision != precision) continue;
             INFO(name(table) << ' ' << to_string(integrator) << " contacts " << contacts);
             BatchOptions options = options_of(table, 19);
-            const auto all = hashes_of(plan, options, 15);
+            const auto all = hashes_after(plan, options, 15);
             if (wanted.empty()) wanted = all;
             CHECK(all == wanted);
             options.threads = 3;
-            CHECK(hashes_of(plan, options, 15) == wanted);
+            CHECK(hashes_after(plan, options, 15) == wanted);
             options.threads = 1, options.worlds = 5, options.seed = 7;
-            CHECK(hashes_of(plan, options, 15) ==
+            CHECK(hashes_after(plan, options, 15) ==
                   std::vector<std::uint64_t>(wanted.begin() + 7, wanted.begin() + 12));
             if (!contacts) continue;
             for (ContactLayout layout : {ContactLayout::dense, ContactLayout::rows}) {
               options.layout = layout;
-              CHECK(hashes_of(plan, options, 15) ==
+              CHECK(hashes_after(plan, options, 15) ==
                     std::vector<std::uint64_t>(wanted.begin() + 7, wanted.begin() + 12));
             }
           }

@@ -1,6 +1,7 @@
 // Numbers of the scene that differ from world to world: bits, snapshots, copies.
 #include <catch2/catch.hpp>
 
+#include "tests/support/hashes.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied.hpp"
 
@@ -114,11 +115,10 @@ TEST_CASE("bits do not depend on instruction set, batch, threads, layout or slee
               batch.step(4);
               if (i == 12) batch.add_impulse(3, 1, Vec3(100, 0, 0));
             }
-            std::vector<std::uint64_t> hashes;
-            for (int w = 0; w < batch.worlds(); ++w) hashes.push_back(batch.hash(w));
-            if (expected[sleep].empty()) expected[sleep] = hashes;
+            const auto worlds = hashes(batch);
+            if (expected[sleep].empty()) expected[sleep] = worlds;
             INFO(name(table) << " sleep " << sleep << " threads " << threads);
-            CHECK(hashes == expected[sleep]);
+            CHECK(worlds == expected[sleep]);
           }
         }
       }

@@ -1,0 +1,62 @@
+// A scene with everything that joints can do, for tests of bits.
+#pragma once
+
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "tests/support/joints.hpp"
+
+namespace manyworlds::test {
+
+// Every type of joint, over a ground that some of the bodies fall on.
+inline Scene contraption(Space space) {
+  Scene scene = empty_scene(space, 9.81);
+  scene.add(ground(space));
+  const Vec3 up = up_of(space);
+  const auto add = [&](const Vec3& place) {
+    Body body = body_of(shape_of(box_of(space, {0.3, 0.2, 0.1})), place);
+    body.jitter.position = Vec3::UnitX() * 0.05;
+    body.jitter.angle = 0.1;
+    return scene.add(body);
+  };
+  const auto join = [&](int a, int b, const Vec3& where, JointType type) {
+    Joint joint = joint_at(scene, a, b, at(where, hinge_axes(space)), std::move(type));
+    joint.break_force = space == Space::planar ? 4e4 : 9e3;
+    joint.break_torque = joint.break_force;
+    scene.add(joint);
+  };
+  const Spring spring{0, 0, 4, 0.5};
+  int last = -1;
+  const JointType types[] = {
+      HingeJoint{Limit{-1, 1, std::nullopt}, std::nullopt},
+      HingeJoint{std::nullopt, Drive{0.5, 0, spring, 100}},
+      SliderJoint{Limit{-0.2, 0.2, spring}, Drive{0, 1, std::nullopt, 50}},
+      FixedJoint{},
+      DistanceJoint{std::nullopt, std::nullopt, spring},
+      WheelJoint{spring, Limit{-0.1, 0.1, std::nullopt}, Drive{0, 10, std::nullopt, 20}},
+      TargetJoint{spring, 1e3},
+      DistanceJoint{},
+  };
+  for (std::size_t i = 0; i < std::size(types); ++i) {
+    const double x = 0.7 * static_cast<double>(i);
+    const int body = add(Vec3(x, 0, 0) + 1.5 * up);
+    join(last, body, Vec3(x - 0.35, 0, 0) + 1.5 * up, types[i]);
+    last = body;
+  }
+  if (space == Space::spatial) {
+    const int ball = add({2, 2, 3});
+    join(-1, ball, {1.5, 2, 3}, BallJoint{0.6, Limit{-0.2, 0.2, std::nullopt}});
+  }
+  const int a = add(Vec3(-3, 0, 0) + 2 * up), b = add(Vec3(-2, 0, 0) + 2 * up);
+  Joint rope;
+  rope.body_a = a, rope.body_b = b;
+  rope.type = PulleyJoint{Vec3(-3, 0, 0) + 5 * up, Vec3(-2, 0, 0) + 5 * up, 1.5, std::nullopt};
+  scene.add(rope);
+  scene.options.wind = {3, 0, 0};
+  for (std::size_t i = 1; i < scene.bodies.size(); i += 2) scene.bodies[i].linear_drag = 0.1;
+  scene.attractors = {{Vec3(2, 0, 0) + 3 * up, 4, 0.5}};
+  return scene;
+}
+
+}  // namespace manyworlds::test
