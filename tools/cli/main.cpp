@@ -178,9 +178,7 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* accuracy =
       command->add_subcommand("accuracy", "Error against run time, where the solution is known");
   add_report_options(*accuracy, all.report, "accuracy");
-  accuracy->add_option("--cases", all.report.cases, "only these, as A1,A16 (default: all)")
-      ->delimiter(',')
-      ->type_name("ID,...");
+  add_case_list(*accuracy, all.report.cases, "A1,A16");
   accuracy->footer(
       "Examples:\n"
       "  manyworlds report accuracy --quick\n"
@@ -194,9 +192,7 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* stability =
       command->add_subcommand("stability", "Stiff and extreme scenes against criteria");
   add_report_options(*stability, all.report, "stability");
-  stability->add_option("--cases", all.report.cases, "only these, as B9,B13 (default: all)")
-      ->delimiter(',')
-      ->type_name("ID,...");
+  add_case_list(*stability, all.report.cases, "B9,B13");
   stability->footer(
       "Examples:\n"
       "  manyworlds report stability --quick\n"

@@ -80,6 +80,20 @@ std::vector<Method> substeps(const std::vector<int>& counts) {
   return out;
 }
 
+std::vector<Method> other_solvers() {
+  const auto method = [](const char* name, Solver solver, bool split) {
+    return Method{name, [=](Options& o) {
+                    o.solver = solver, o.split_impulse = split, o.substeps = 1;
+                    if (solver != Solver::penalty) o.iterations = 10;
+                  }};
+  };
+  return {method("sequential-impulse, 10 sweeps", Solver::sequential_impulse, false),
+          method("the same with split impulses", Solver::sequential_impulse, true),
+          method("sor 1.3, 10 sweeps", Solver::sor, false),
+          method("nncg, 10 sweeps", Solver::nncg, false),
+          method("penalty", Solver::penalty, false)};
+}
+
 std::vector<double> halvings(double first, int count) {
   std::vector<double> out;
   for (int i = 0; i < count; ++i) out.push_back(first / (1 << i));

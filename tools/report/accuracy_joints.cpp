@@ -1,6 +1,7 @@
 // Cases with joints: pendulums, a top, loops of bars (numerics.md A6 to A11).
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tools/report/accuracy.hpp"
 #include "tools/report/reference.hpp"
@@ -58,6 +59,7 @@ Case of_joints(const std::string& id, const std::string& title, const std::strin
   c.seconds = seconds, c.quick_seconds = quick_seconds;
   c.steps = halvings(1.0 / 30, 8), c.quick_steps = halvings(1.0 / 60, 4);
   c.methods = substeps({1, 4});
+  for (Method& m : other_solvers()) c.methods.push_back(std::move(m));
   return c;
 }
 
@@ -104,7 +106,6 @@ Case heavy_top() {
   return c;
 }
 
-// n + 1 upright unit links on the ground whose tips n level ones join: all turn alike.
 Case four_bars(int n, double seconds) {
   Case c =
       of_joints("A11-" + std::to_string(n), std::to_string(n) + " loops of four bars (IFToMM A02)",
@@ -113,28 +114,7 @@ Case four_bars(int n, double seconds) {
   c.steps = halvings(1.0 / 60, n == 2 ? 7 : 5);
   const double rate = kG * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n);
   const std::vector<double> angles = swing(rate, kPi / 2, -1, 0.05, seconds);
-  c.scene = [n] {
-    Scene scene = empty(Space::planar);
-    const auto link = [&](const Vec3& at, const Vec3& velocity, bool upright) {
-      Body body = lump(Space::planar, 1, Vec3::Constant(1.0 / 12), at);
-      if (upright) {
-        body.rotation = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
-        body.angular_velocity = {0, 0, -1};
-      }
-      body.linear_velocity = velocity;
-      scene.add(body);
-    };
-    for (int i = 0; i <= n; ++i) link({static_cast<double>(i), 0.5, 0}, {0.5, 0, 0}, true);
-    for (int i = 0; i < n; ++i) link({i + 0.5, 1, 0}, {1, 0, 0}, false);
-    const auto pin = [&](int a, int b, double x, double y) {
-      Frame at;
-      at.position = {x, y, 0};
-      scene.add(joint_at(scene, a, b, at, HingeJoint{}));
-    };
-    for (int i = 0; i <= n; ++i) pin(-1, i, i, 0);
-    for (int i = 0; i < n; ++i) pin(i, n + 1 + i, i, 1), pin(i + 1, n + 1 + i, i + 1, 1);
-    return scene;
-  };
+  c.scene = [n] { return loops_of_four_bars(n); };
   c.over = Over::largest;
   c.error = [=](const Batch& b, double t) {
     const int k = seen_at(t, 0.05);

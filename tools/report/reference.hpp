@@ -50,6 +50,30 @@ inline Body lump(Space space, double mass, const Vec3& moments, const Vec3& posi
   return body;
 }
 
+// n + 1 upright unit links on the ground whose tips n level ones join: all turn alike (IFToMM A02).
+inline Scene loops_of_four_bars(int n) {
+  Scene scene = empty(Space::planar);
+  const auto link = [&](const Vec3& at, const Vec3& velocity, bool upright) {
+    Body body = lump(Space::planar, 1, Vec3::Constant(1.0 / 12), at);
+    if (upright) {
+      body.rotation = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
+      body.angular_velocity = {0, 0, -1};
+    }
+    body.linear_velocity = velocity;
+    scene.add(body);
+  };
+  for (int i = 0; i <= n; ++i) link({static_cast<double>(i), 0.5, 0}, {0.5, 0, 0}, true);
+  for (int i = 0; i < n; ++i) link({i + 0.5, 1, 0}, {1, 0, 0}, false);
+  const auto pin = [&](int a, int b, double x, double y) {
+    Frame at;
+    at.position = {x, y, 0};
+    scene.add(joint_at(scene, a, b, at, HingeJoint{}));
+  };
+  for (int i = 0; i <= n; ++i) pin(-1, i, i, 0);
+  for (int i = 0; i < n; ++i) pin(i, n + 1 + i, i, 1), pin(i + 1, n + 1 + i, i + 1, 1);
+  return scene;
+}
+
 inline Vec3 field_of(const Batch& batch, Field field, int body) {
   const Space space = batch.plan().scene().space;
   std::vector<double> all(static_cast<std::size_t>(batch.bodies(0) * components(field, space)));

@@ -54,13 +54,25 @@ struct Trial {
   std::string note = {};                         // why it fails where it does
   // Length of a step if not 1/60 s.
   double dt = 1.0 / 60;
+  // Where one batch does not tell: what counts, from a plan with the setting's options and a
+  // batch's options. `seconds`, `at_end`, `value` and `act` are then the case's own affair.
+  std::function<double(const Plan&, const BatchOptions&)> whole = {};
 };
+
+// The rest is for the case to say.
+inline Trial trial(const std::string& id, const std::string& title, const std::string& criterion,
+                   const std::string& unit, double limit, double seconds) {
+  Trial t;
+  t.id = id, t.title = title, t.criterion = criterion, t.unit = unit;
+  t.limit = limit, t.seconds = seconds;
+  return t;
+}
 
 struct Setting {
   std::string name;
   Precision precision = Precision::f32;
-  double finer = 1;     // steps per step of the trial
-  double substeps = 1;  // times the trial's own, which are 4 unless it says otherwise
+  double finer = 1;  // steps per step of the trial
+  std::function<void(Options&)> choose = [](Options&) {};
 };
 
 struct Verdict {
@@ -71,9 +83,11 @@ struct Verdict {
 };
 
 std::vector<Trial> stability_trials();
-std::vector<Trial> contact_trials();  // B2 to B14, B33 to B44
-std::vector<Trial> joint_trials();    // B15 to B24
-std::vector<Trial> motion_trials();   // B26 to B32
+std::vector<Trial> contact_trials();    // B2 to B14, B33 to B44
+std::vector<Trial> joint_trials();      // B15 to B24
+std::vector<Trial> motion_trials();     // B26 to B32
+std::vector<Trial> structure_trials();  // B7, B19, B24, B37
+std::vector<Trial> law_trials();        // B42, B45, B46
 
 struct StabilityOptions {
   std::vector<std::string> cases;  // ids; empty: all

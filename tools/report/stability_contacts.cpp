@@ -38,14 +38,6 @@ double top_off(const Seen& s, int world) {
   return sideways(moved, space_of(s));
 }
 
-Trial trial(const std::string& id, const std::string& title, const std::string& criterion,
-            const std::string& unit, double limit, double seconds) {
-  Trial t;
-  t.id = id, t.title = title, t.criterion = criterion, t.unit = unit;
-  t.limit = limit, t.seconds = seconds;
-  return t;
-}
-
 Trial mass_ratio(int which) {
   Trial t = trial("B" + std::to_string(which + 1), "", "", "m", 0, 10);
   t.at_end = true;

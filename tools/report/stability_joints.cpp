@@ -8,14 +8,6 @@
 namespace manyworlds::report {
 namespace {
 
-Trial trial(const std::string& id, const std::string& title, const std::string& criterion,
-            const std::string& unit, double limit, double seconds) {
-  Trial t;
-  t.id = id, t.title = title, t.criterion = criterion, t.unit = unit;
-  t.limit = limit, t.seconds = seconds;
-  return t;
-}
-
 // Links of a half length in a row along x from the origin, hinged end to end, and what hangs on the
 // last one.
 Scene chain(int links, double half, double radius, const Body& load, double load_reach) {
@@ -197,29 +189,7 @@ Trial stiff_spring(double stiffness, Integrator integrator) {
 // A11 with large steps.
 Trial loops() {
   Trial t = trial("B25", "40 loops of four bars at 1/60 s", "speed", "m/s", 7.2, 10);
-  t.scene = [] {
-    constexpr int n = 40;
-    Scene scene = empty(Space::planar);
-    const auto link = [&](const Vec3& at, const Vec3& velocity, bool upright) {
-      Body body = lump(Space::planar, 1, Vec3::Constant(1.0 / 12), at);
-      if (upright) {
-        body.rotation = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
-        body.angular_velocity = {0, 0, -1};
-      }
-      body.linear_velocity = velocity;
-      scene.add(body);
-    };
-    for (int i = 0; i <= n; ++i) link({static_cast<double>(i), 0.5, 0}, {0.5, 0, 0}, true);
-    for (int i = 0; i < n; ++i) link({i + 0.5, 1, 0}, {1, 0, 0}, false);
-    const auto pin = [&](int a, int b, double x, double y) {
-      Frame at;
-      at.position = {x, y, 0};
-      scene.add(joint_at(scene, a, b, at, HingeJoint{}));
-    };
-    for (int i = 0; i <= n; ++i) pin(-1, i, i, 0);
-    for (int i = 0; i < n; ++i) pin(i, n + 1 + i, i, 1), pin(i + 1, n + 1 + i, i + 1, 1);
-    return scene;
-  };
+  t.scene = [] { return loops_of_four_bars(40); };
   t.value = [](const Seen& s, int w) { return s.fastest(w); };
   return t;
 }
