@@ -221,6 +221,11 @@ Options SceneBytes::options() {
   if (byte() > 128) o.integrator = static_cast<Integrator>(integer(0, 5));
   if (byte() > 200) o.rotation = static_cast<Rotation>(integer(0, 2));
   if (byte() > 200) o.angular_momentum = true;
+  if (byte() > 128) o.solver = static_cast<Solver>(integer(0, 4));
+  if (byte() > 200) o.iterations = rarely() ? integer(-1, 20000) : integer(1, 12);
+  sometimes(o.relaxation, 0, 2);
+  sometimes(o.push_out_share, 0, 1);
+  flip(o.split_impulse);
   sometimes(o.length_unit, 0.1, 10);
   sometimes(o.contact_frequency, 0, 300);
   sometimes(o.contact_damping_ratio, 0, 20);

@@ -223,7 +223,7 @@ void first_push(const Tables& t, const Group& g, Work& w) {
 
 template <class S, bool kDense>
 void begin_substeps(const Tables& t, Work& w) {
-  w.substep = 0;
+  w.substep = w.sweep = 0;
   for_each_register<S, kDense>(t, w, [&](int at, Float, Float) {
     const Float v = Float::load(w.velocity + at);
     (v - Float::load(w.impulse_part + at)).store(w.impulse_part + at);
@@ -259,7 +259,7 @@ void advance_displacement(const Tables& t, Work& w) {
 
 template <class S, bool kDense>
 void next_substep(const Tables& t, Work& w) {
-  ++w.substep;
+  ++w.substep, w.sweep = 0;
   for_each_register<S, kDense>(t, w, [&](int at, Float push, Float factor) {
     const Float v = Float::load(w.velocity + at);
     const Float part = Float::load(w.impulse_part + at) + (v - Float::load(w.warmed + at));

@@ -35,6 +35,9 @@ inline constexpr int kRayRows = 7, kHitRows = 4;
 // Rows of a coordinate: value, speed. Rows of a joint: force and torque on B.
 inline constexpr int kCoordinateRows = 2, kJointRows = 6;
 
+// Rows of a residual: m/s, rad/s.
+inline constexpr int kResidualRows = 2;
+
 template <class Real>
 struct Observation {
   // Beside the slots of each list: places and features of their points, impulses of the step.
@@ -48,6 +51,9 @@ struct Observation {
   std::int32_t* count;             // [lane] of points, also of those that there is no room for
   ContactImpulse<Real>* contacts;  // [lane][room]
   std::int32_t room;
+
+  Real* residual;        // [row][lane]
+  unsigned char* aside;  // rows and velocities while one more sweep is tried
 
   Real* motion;  // [row][lane]
 
@@ -82,6 +88,9 @@ struct ObserverTable {
   // Adds what the slots of the step tell of pairs that are awake, or, after collide has found them
   // again, what the stored impulses tell of pairs that are asleep.
   Observe<Real> awake[kInertiaKinds], asleep[kInertiaKinds];
+  // Around one more sweep of the solver: keep what it changes; what that is, and put it back.
+  std::size_t (*aside_bytes)(const WorldTables<Real>&, Scratch*);
+  Observe<Real> set_aside, compare[kInertiaKinds];
   Observe<Real> motion[kInertiaKinds];
   Observe<Real> joints[kInertiaKinds], joint_loads[kInertiaKinds];
   Observe<Real> rays;  // after begin: pose rows at the current state

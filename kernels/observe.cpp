@@ -3,6 +3,7 @@
 
 #include "kernels/observe/joints.hpp"
 #include "kernels/observe/motion.hpp"
+#include "kernels/observe/residual.hpp"
 #include "kernels/observe/slots.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -35,6 +36,9 @@ void watch(kernels::Scratch* scratch, Real* const* places) {
 
 void clear(const Tables& t, const Group&, kernels::Scratch*, const Observation& o) {
   if (o.penetration) Float(Real(0)).store(o.penetration);
+  for (int i = 0; o.residual && i < kernels::kResidualRows; ++i) {
+    Float(Real(0)).store(o.residual + i * kLanes);
+  }
   for (int b = 0; o.touching && b < t.bodies; ++b) o.touching[b] = 0;
   for (int l = 0; o.contacts && l < kLanes; ++l) o.count[l] = 0;
 }
@@ -46,6 +50,7 @@ void fill(kernels::ObserverTable<Real>& out) {
   out.awake[kind] = observe_slots<S, false>;
   out.asleep[kind] = observe_slots<S, true>;
   out.motion[kind] = observe_motion<S>;
+  out.compare[kind] = compare<S>;
 }
 
 // Plans with joints have full tensors.
@@ -61,6 +66,8 @@ kernels::ObserverTable<Real> make_table() {
   out.total_reals = total_reals;
   out.watch = watch;
   out.clear = clear;
+  out.aside_bytes = aside_bytes;
+  out.set_aside = set_aside;
   fill<Planar>(out);
   fill<Isotropic>(out);
   fill<Tensor>(out);

@@ -11,6 +11,10 @@ FillSolver fill_solver_planar_dense, fill_solver_planar_rows;
 FillSolver fill_solver_isotropic_dense, fill_solver_isotropic_rows;
 FillSolver fill_solver_tensor_dense, fill_solver_tensor_rows;
 
+using FillSweeps = void(kernels::SweepTable<Real>& dense, kernels::SweepTable<Real>& rows);
+FillSweeps fill_sweeps_planar, fill_sweeps_isotropic, fill_sweeps_tensor;
+void fill_impulses(kernels::ImpulseTable<Real>* tables);  // [inertia]
+
 using FillJoints = void(kernels::JointSolver<Real>& dense, kernels::JointSolver<Real>& rows);
 FillJoints fill_joints_planar, fill_joints_tensor;
 using FillFlight = void(kernels::FlightTable<Real>* tables);  // [inertia]

@@ -68,6 +68,14 @@ kernels::KernelTable<Real> make_table() {
   out.free_motion[static_cast<int>(InertiaKind::planar)] = free_motion<Planar>;
   out.free_motion[static_cast<int>(InertiaKind::isotropic)] = free_motion<Isotropic>;
   out.free_motion[static_cast<int>(InertiaKind::tensor)] = free_motion<Tensor>;
+  const auto sweeps = [&](InertiaKind kind, FillSweeps* fill) {
+    auto& of = out.sweeps[static_cast<int>(kind)];
+    fill(of[0], of[1]);
+  };
+  sweeps(InertiaKind::planar, fill_sweeps_planar);
+  sweeps(InertiaKind::isotropic, fill_sweeps_isotropic);
+  sweeps(InertiaKind::tensor, fill_sweeps_tensor);
+  fill_impulses(out.impulses);
   fill_flight_planar(out.flight);
   fill_flight_spatial(out.flight);
   out.settle = settle;

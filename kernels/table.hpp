@@ -38,13 +38,32 @@ struct SolverTable {
   Stage<Real> collide[kPairKinds];  // narrow phase and rows of one class (Scratch::class_index)
 };
 
+// The passes over contacts of solvers that sweep several times before the bodies move, for one
+// inertia kind and layout.
+template <class Real>
+struct SweepTable {
+  Stage<Real> sweep;
+  Stage<Real> part;   // removes overlap by displacements
+  Stage<Real> tally;  // after each substep, in plans with restitution
+};
+
+// The impulses of all rows, of joints and contacts, for one inertia kind.
+template <class Real>
+struct ImpulseTable {
+  Stage<Real> forget;  // all of them are 0
+  // Conjugate gradients, begun with each substep: `remember` and `turn` around a sweep; then a warm
+  // start with what `turn` has put into the impulses, which `land` adds to what they were.
+  Stage<Real> begin_search, remember, turn, land;
+};
+
 // The passes over joints, for one inertia kind and layout; nothing of contacts in them.
 template <class Real>
 struct JointSolver {
   Stage<Real> prepare;     // rows at the start of the step; after SolverTable::enter
   Stage<Real> warm_start;  // the impulses so far, in every substep
-  Stage<Real> bias;
+  Stage<Real> bias;        // with Options::relaxation where nothing bounds a part
   Stage<Real> relax;
+  Stage<Real> follow;  // rows where the substeps have taken the bodies; relax does it by itself
   Stage<Real> store;
   // Of plans in which some joint may break: after relax, and at the end of the step.
   Stage<Real> bear;
@@ -82,7 +101,9 @@ struct KernelTable {
   // Dense or rows for this group: by occupancy, or as wished if the slots fit.
   Layout (*choose_layout)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, Layout);
   SolverTable<Real> solver[kInertiaKinds][2][2];  // [inertia][friction][layout: dense, rows]
-  JointSolver<Real> joints[kInertiaKinds][2];     // [inertia: planar, tensor][layout: dense, rows]
+  SweepTable<Real> sweeps[kInertiaKinds][2];      // [inertia][layout: dense, rows]
+  ImpulseTable<Real> impulses[kInertiaKinds];
+  JointSolver<Real> joints[kInertiaKinds][2];  // [inertia: planar, tensor][layout: dense, rows]
   // Plans without contacts and joints: n whole steps of free motion.
   void (*free_motion[kInertiaKinds])(const WorldTables<Real>&, const GroupView<Real>&, Scratch*,
                                      int steps);

@@ -7,6 +7,7 @@
 
 #include "kernels/flight_tables.hpp"
 #include "kernels/joint_tables.hpp"
+#include "kernels/solver_options.hpp"
 
 namespace manyworlds::kernels {
 
@@ -298,6 +299,7 @@ struct WorldTables {
   bool has_bounds;
   bool has_sleep;
   FlightOptions flight;
+  SolverOptions<Real> solver;
 
   bool push_varies, drag_varies, bodies_vary;  // from world to world
 

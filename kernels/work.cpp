@@ -92,6 +92,23 @@ void carve_sparse(const Tables& t, SparseWork& s, Carver& c, int hits) {
   c.take(s.pairs, count(s.lane_room * kLanes));
 }
 
+template <class S>
+int impulses_of_list(bool several) {
+  return several ? S::kMulti + S::kTangents + (S::kDim == 3 ? 1 : 0) : 1 + S::kTangents;
+}
+void carve_search(const Tables& t, Search& s, Carver& c) {
+  const bool planar = t.dimension == kernels::Dimension::planar;
+  int impulses = t.parts * kernels::kPartImpulses;
+  for (int l = 0; t.has_contacts && l < kLists; ++l) {
+    const bool several = is_multi(static_cast<ListId>(l));
+    const int rows = planar ? impulses_of_list<Planar>(several) : impulses_of_list<Tensor>(several);
+    impulses += slots_needed(t, l) * rows;
+  }
+  c.take(s.before, static_cast<std::size_t>(impulses * kLanes));
+  c.take(s.way, static_cast<std::size_t>(impulses * kLanes));
+  c.take(s.square, static_cast<std::size_t>(kLanes));
+}
+
 void carve(const Tables& t, Work& w, Carver& c) {
   const int lanes = kLanes;
   const auto count = [](int n) { return static_cast<std::size_t>(n); };
@@ -127,6 +144,7 @@ void carve(const Tables& t, Work& w, Carver& c) {
     c.take(w.borne, count(t.breakable * row * lanes));
     if (t.breakable > 0) c.take(w.reached, count(t.bodies));
   }
+  if (t.solver.kind == kernels::Solver::nncg) carve_search(t, w.search, c);
   if (t.has_sleep || t.has_restitution) c.take(w.parent, count(t.bodies));
   if (t.has_sleep) {
     c.take(w.ready, count(t.bodies));

@@ -65,6 +65,14 @@ struct FlightWork {
   Real* sum;   // of rates
 };
 
+// Of conjugate gradients (kernels/conjugate.hpp): for each impulse of each row, in the order of the
+// solver, what it was and the way that it goes.
+struct Search {
+  Real* before;
+  Real* way;
+  Real* square;  // [lane], of the last step
+};
+
 struct Work {
   FlightWork flight;
   Real* before;  // the group's state before the step (plans without contacts only)
@@ -104,6 +112,8 @@ struct Work {
   int class_index;
   bool dense;
   int substep;
+  int sweep;  // of the substep, over contacts (constraint/sweep.hpp)
+  Search search;
   // solver
   Real* velocity;      // dense or rows, see lane/space.hpp
   Real* warmed;        // velocity after warm start

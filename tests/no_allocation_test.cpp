@@ -157,6 +157,22 @@ TEST_CASE("stepping allocates nothing", "[slow][allocation]") {
   }
 }
 
+TEST_CASE("stepping by any solver allocates nothing", "[fast][allocation][solver]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (int i = 0; i <= static_cast<int>(Solver::penalty); ++i) {
+      Scene scene = crowd(space);
+      scene.add(joint_at(scene, 2, 3, {}, HingeJoint{}));
+      scene.options.solver = static_cast<Solver>(i);
+      scene.options.split_impulse = i % 2 == 0;
+      for (const Table& table : widest_tables()) {
+        Batch batch(compile(scene), options_of(table, 40));
+        batch.step();
+        CHECK(calls_during([&] { batch.step(100); }) == 0);
+      }
+    }
+  }
+}
+
 TEST_CASE("falling asleep, packing, waking and disabling allocate nothing", "[fast][allocation]") {
   Scene scene = crowd(Space::planar);
   scene.options.time_to_sleep = 0.1;
@@ -188,7 +204,8 @@ TEST_CASE("observing everything allocates nothing", "[fast][allocation][observe]
       BatchOptions options = options_of(table, 40);
       options.sleep = true;
       options.observe.what = {Observer::contacts, Observer::touching, Observer::penetration,
-                              Observer::motion,   Observer::joints,   Observer::joint_loads};
+                              Observer::motion,   Observer::joints,   Observer::joint_loads,
+                              Observer::residual};
       options.observe.rays.resize(9);
       std::vector<Ray> rays(9);
       Batch batch(compile(scene), options);

@@ -15,7 +15,8 @@ namespace {
 Observers everything(Space space) {
   Observers observers;
   observers.what = {Observer::contacts, Observer::touching, Observer::penetration,
-                    Observer::motion,   Observer::joints,   Observer::joint_loads};
+                    Observer::motion,   Observer::joints,   Observer::joint_loads,
+                    Observer::residual};
   for (int i = 0; i < 12; ++i) {
     Ray ray;
     const double angle = 2 * kPi * i / 12;

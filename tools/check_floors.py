@@ -23,7 +23,8 @@ SRC_SEES_KERNELS = {"plan", "state", "dispatch", "step", "api"}
 # Top-level headers of kernels/ that hold plain data, shared with src; everything else in kernels/
 # is compiled per instruction set.
 KERNEL_DATA = {
-    "tables.hpp", "flight_tables.hpp", "joint_tables.hpp", "pair_keys.hpp", "group.hpp", "table.hpp", "observation.hpp"}
+    "tables.hpp", "flight_tables.hpp", "joint_tables.hpp", "solver_options.hpp", "pair_keys.hpp",
+    "group.hpp", "table.hpp", "observation.hpp"}
 # The rest of kernels/ (collide, constraint, broad phase, ...) stands on the floor above the lanes.
 KERNEL_FLOORS = {"data": 0, "lane": 1, "stage": 2}
 KERNEL_SYSTEM = {

@@ -19,6 +19,7 @@ enum class Observer {
   motion,       // energies, momenta, mass centre
   joints,       // their coordinates and speeds
   joint_loads,  // the forces and torques in them
+  residual,     // how far the solver was from done
 };
 
 // A ray that every world casts against all of its shapes. Shapes of its own body, disabled bodies
@@ -52,6 +53,7 @@ struct Observers {
 //   joint_position, joint_speed       [coordinate]          Observer::joints
 //   joint_force                       [joint][2 or 3] N     Observer::joint_loads
 //   joint_torque                      [joint][1 or 3] N m   Observer::joint_loads
+//   residual                          [2] m/s, rad/s        Observer::residual
 //   ray_distance                      [ray] m               Observers::rays
 //   ray_normal                        [ray][2 or 3]         Observers::rays
 //   ray_body, ray_shape               [ray] scene body and index in Body::shapes, -1: no hit
@@ -63,6 +65,11 @@ struct Observers {
 //   pulley    |rope at A| + ratio |rope at B|, m                fixed, target  none
 // with angles in (-pi, pi], and their speeds in m/s and rad/s. Force and torque are what B gets
 // from the joint, the torque about B's anchor, world axes; those of the last substep.
+//
+// The residual is the largest change of a component of any body's velocity, and of its spin, that
+// one more sweep of the solver over all rows would make after those of the last substep (of
+// tgs_soft: one more relaxing sweep); restitution comes after it. It is 0 where the velocities
+// solve the rows' complementarity problem, and where nothing is awake.
 enum class Observed {
   kinetic_energy,
   potential_energy,
@@ -77,12 +84,13 @@ enum class Observed {
   joint_speed,
   joint_force,
   joint_torque,
+  residual,
   ray_distance,
   ray_normal,
   ray_body,
   ray_shape,
 };
-inline constexpr int kObservedCount = 17;
+inline constexpr int kObservedCount = 18;
 const char* to_string(Observer observer);
 const char* to_string(Observed what);
 

@@ -19,6 +19,7 @@
 #include "manyworlds/control.hpp"
 #include "manyworlds/integrator.hpp"
 #include "manyworlds/joint.hpp"
+#include "manyworlds/solver.hpp"
 #include "manyworlds/variation.hpp"
 
 namespace manyworlds {
@@ -180,6 +181,15 @@ struct Options {
   // Spins are integrated as angular momenta instead of angular velocities, without splitting and
   // not by implicit_euler.
   bool angular_momentum = false;
+  Solver solver = Solver::tgs_soft;
+  // Sweeps over all rows per substep, of tgs_soft those before the motion. Default: 1 for tgs_soft
+  // and penalty, 10 for the others, which are usually given fewer substeps.
+  std::optional<int> iterations;
+  double relaxation = 1.3;  // of sor, in (0, 2)
+  // Of sequential_impulse, sor and nncg: the share of an overlap beyond slop, or of a joint's gap,
+  // that a substep removes, and whether contacts do so without leaving a speed.
+  double push_out_share = 0.2;
+  bool split_impulse = false;
   // Size of a typical body, m. Scales slop, margins and speed limits of the contact model.
   double length_unit = 1;
 
@@ -217,6 +227,9 @@ struct Options {
   // A world is lost when a body's position leaves this box. Default: no bounds.
   std::optional<Eigen::AlignedBox3d> bounds;
 };
+
+// Options::iterations, or the default of the solver.
+int iterations_of(const Options& options);
 
 // A point that draws every dynamic body to it with the acceleration
 //   Body::gravity_scale strength d / (d^2 + softening^2)^(3/2),  d: from the body's centre of mass,

@@ -109,17 +109,19 @@ struct FrictionBudget {
   Float bound, twist_bound;
 };
 
-// Solves the friction rows; returns the accumulated impulses after.
-template <class S, int N, bool kPair, bool kDense>
+// Solves the friction rows; returns the accumulated impulses after. kRelaxed: what they change is
+// multiplied by `relaxation`.
+template <class S, int N, bool kPair, bool kDense, bool kRelaxed = false>
 MW_INLINE void solve_friction(const Slot<S, N>& s, const FrictionBudget& budget,
                               SlotVelocities<S, N, kPair, kDense>& v, Float* after,
-                              Float& twist_after) {
+                              Float& twist_after, Float relaxation = Real(1)) {
   using Vec = typename S::Vec;
   const Vec t = load_as<Vec>(s.tangent[0]);
   Vec slip = v.b.v + cross(v.b.w, load_as<Vec>(s.centre_b[0]));
   if constexpr (kPair) {
     slip = slip - (v.a.v + cross(v.a.w, load_as<Vec>(s.centre_a[0])));
   }
+  if constexpr (kRelaxed) slip = slip * relaxation;
   Float d[2] = {Real(0), Real(0)}, twist(Real(0));
   if constexpr (S::kTangents == 1) {
     const Float p = fnma(Float::load(s.tangent_mass[0]), dot(t, slip), budget.before[0]);
@@ -142,6 +144,7 @@ MW_INLINE void solve_friction(const Slot<S, N>& s, const FrictionBudget& budget,
     if constexpr (Slot<S, N>::kTwist) {
       Float spin = dot(n, v.b.w);
       if constexpr (kPair) spin = dot(n, v.b.w - v.a.w);
+      if constexpr (kRelaxed) spin = spin * relaxation;
       const Float p = fnma(Float::load(s.twist_mass), spin, budget.twist_before);
       twist_after = clamp(p, -budget.twist_bound, budget.twist_bound);
       twist = twist_after - budget.twist_before;

@@ -2,28 +2,11 @@
 // space, friction and layout fills a SolverTable.
 #pragma once
 
-#include <type_traits>
-
 #include "kernels/constraint/contact_cache.hpp"
 #include "kernels/constraint/energy.hpp"
 #include "kernels/finish.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
-
-// Calls visit(slot, index, list, pair?) for every slot in solver order.
-template <class S, class Visit>
-MW_INLINE void for_each_slot(Work& w, Visit visit) {
-  constexpr std::integral_constant<bool, true> kMoves{};
-  constexpr std::integral_constant<bool, false> kFixed{};
-  SlotList& l0 = w.slots[static_cast<int>(ListId::pair_multi)];
-  for (int i = 0; i < l0.count; ++i) visit(slot_at<S, S::kMulti>(l0, i), i, l0, kMoves);
-  SlotList& l1 = w.slots[static_cast<int>(ListId::pair_single)];
-  for (int i = 0; i < l1.count; ++i) visit(slot_at<S, 1>(l1, i), i, l1, kMoves);
-  SlotList& l2 = w.slots[static_cast<int>(ListId::fixed_multi)];
-  for (int i = 0; i < l2.count; ++i) visit(slot_at<S, S::kMulti>(l2, i), i, l2, kFixed);
-  SlotList& l3 = w.slots[static_cast<int>(ListId::fixed_single)];
-  for (int i = 0; i < l3.count; ++i) visit(slot_at<S, 1>(l3, i), i, l3, kFixed);
-}
 
 template <class S, bool kDense, bool kFriction>
 struct Passes {

@@ -9,6 +9,8 @@
 // tangent rows, and for spatial manifolds of several points a twist row about n.
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -72,6 +74,21 @@ template <class S, int N>
 MW_INLINE Bounce<S, N>& bounce_at(const SlotList& list, int i) {
   return *reinterpret_cast<Bounce<S, N>*>(list.bounces +
                                           static_cast<std::size_t>(i) * list.bounce_stride);
+}
+
+// Calls visit(slot, index, list, pair?) for every slot in solver order.
+template <class S, class Visit>
+MW_INLINE void for_each_slot(Work& w, Visit visit) {
+  constexpr std::integral_constant<bool, true> kMoves{};
+  constexpr std::integral_constant<bool, false> kFixed{};
+  SlotList& l0 = w.slots[static_cast<int>(ListId::pair_multi)];
+  for (int i = 0; i < l0.count; ++i) visit(slot_at<S, S::kMulti>(l0, i), i, l0, kMoves);
+  SlotList& l1 = w.slots[static_cast<int>(ListId::pair_single)];
+  for (int i = 0; i < l1.count; ++i) visit(slot_at<S, 1>(l1, i), i, l1, kMoves);
+  SlotList& l2 = w.slots[static_cast<int>(ListId::fixed_multi)];
+  for (int i = 0; i < l2.count; ++i) visit(slot_at<S, S::kMulti>(l2, i), i, l2, kFixed);
+  SlotList& l3 = w.slots[static_cast<int>(ListId::fixed_single)];
+  for (int i = 0; i < l3.count; ++i) visit(slot_at<S, 1>(l3, i), i, l3, kFixed);
 }
 
 // One manifold as the narrow phase hands it over, in registers. Points in excess of what was

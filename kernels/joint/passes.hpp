@@ -90,8 +90,43 @@ struct JointPasses {
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       if (s.mask == 0) return;
       PartVelocities<S, kDense> v(w, s);
+      const bool relaxes = kPass == Pass::bias && t.solver.relaxes && !bounded(part);
+      const PartImpulses before = relaxes ? impulses_of(s) : PartImpulses{};
       solve<S, kDense, kPass>(t, g, w, part, constants_of_part(g, i), s, v);
+      if (relaxes) relax_change(t, w, before, s, v);
       v.store(w, s);
+    });
+  }
+
+  // May what it does end at a bound, so that more of it would be too much?
+  static bool bounded(const JointPart& part) {
+    return part.drive || part.low || part.high || part.spring;
+  }
+  struct PartImpulses {
+    Float of[kernels::kPartImpulses];
+  };
+  static MW_INLINE PartImpulses impulses_of(const PartBodies<S>& s) {
+    PartImpulses out;
+    for (int k = 0; k < kernels::kPartImpulses; ++k) out.of[k] = Float::load(s.impulse[k]);
+    return out;
+  }
+  // Multiplies by the relaxation what the pass has changed. Impulses and velocities are linear in
+  // each other.
+  static MW_INLINE void relax_change(const Tables& t, const Work& w, const PartImpulses& before,
+                                     PartBodies<S>& s, PartVelocities<S, kDense>& v) {
+    const Float r(t.solver.relaxation);
+    for (int k = 0; k < kernels::kPartImpulses; ++k) {
+      fma(Float::load(s.impulse[k]) - before.of[k], r, before.of[k]).store(s.impulse[k]);
+    }
+    const PartVelocities<S, kDense> began(w, s);
+    v.a.v = fma(v.a.v - began.a.v, r, began.a.v), v.a.w = fma(v.a.w - began.a.w, r, began.a.w);
+    v.b.v = fma(v.b.v - began.b.v, r, began.b.v), v.b.w = fma(v.b.w - began.b.w, r, began.b.w);
+  }
+
+  static void follow(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
+      refresh<S, kDense, true>(w, part, constants_of_part(g, i), s);
     });
   }
 
@@ -124,8 +159,9 @@ struct JointPasses {
   }
 
   static kernels::JointSolver<Real> table() {
-    return {prepare_parts, pass<Pass::warm_start>, pass<Pass::bias>, pass<Pass::relax>, keep,
-            bear,          break_joints<S>};
+    return {
+        prepare_parts, pass<Pass::warm_start>, pass<Pass::bias>, pass<Pass::relax>, follow, keep,
+        bear,          break_joints<S>};
   }
 };
 

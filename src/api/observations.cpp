@@ -25,6 +25,7 @@ ObservationsOf<Real>::ObservationsOf(const AllWorlds& worlds, const Observers& o
     const std::size_t n = at(w.count()), rays = observers_.rays.size();
     if (has(Observer::motion)) kind.motion.resize(n * kernels::kMotionRows);
     if (has(Observer::penetration)) kind.penetration.resize(n);
+    if (has(Observer::residual)) kind.residual.resize(n * kernels::kResidualRows);
     const PlanData& plan = w.data();
     if (has(Observer::joints)) {
       kind.coordinate_rows.resize(n * plan.coordinates.size() * kernels::kCoordinateRows);
@@ -85,6 +86,12 @@ typename ObservationsOf<Real>::Block ObservationsOf<Real>::make_block(
     view.nobody = block.nobody.data();
   }
   if (has(Observer::penetration)) view.penetration = reals(lanes);
+  if (has(Observer::residual)) {
+    view.residual = reals(kernels::kResidualRows * lanes);
+    block.aside =
+        AlignedBuffer<unsigned char>(t.has_substeps ? observer.aside_bytes(t, scratch) : 0);
+    view.aside = block.aside.data();
+  }
   if (has(Observer::touching)) {
     block.touching = AlignedBuffer<std::uint32_t>(bodies);
     view.touching = block.touching.data();
@@ -212,6 +219,12 @@ void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group) {
       untangle(&kind.motion[w * kernels::kMotionRows], view.motion, kernels::kMotionRows, l);
     }
     if (view.penetration) kind.penetration[w] = view.penetration[l];
+    if (view.residual) {
+      Real* to = &kind.residual[w * kernels::kResidualRows];
+      untangle(to, view.residual, kernels::kResidualRows, l);
+      // Groups at rest are not looked at again: what fell asleep in this step has none already.
+      if (worlds_[k]->resting(in)) std::fill_n(to, kernels::kResidualRows, Real(0));
+    }
     const std::size_t coordinates = at(view.coordinates) * kernels::kCoordinateRows,
                       loads = at(view.joints) * kernels::kJointRows;
     untangle(kind.coordinate_rows.data() + w * coordinates, view.coordinate_rows, coordinates, l);

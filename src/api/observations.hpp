@@ -61,8 +61,9 @@ class ObservationsOf final : public Observations {
   kernels::Scratch* poses(std::size_t thread, std::size_t kind) const;
 
  private:
-  struct Kind {                                                 // [world]...
-    std::vector<Real> motion, penetration, ray_rows, hit_rows;  // rays in the user's frames
+  struct Kind {  // [world]...
+    std::vector<Real> motion, penetration, residual, ray_rows,
+        hit_rows;  // rays in the user's frames
     std::vector<Real> coordinate_rows, joint_rows;
     std::vector<std::uint8_t> touching;
     std::vector<std::int32_t> count, hit_shape;
@@ -79,7 +80,7 @@ class ObservationsOf final : public Observations {
     AlignedBuffer<kernels::ContactImpulse<Real>> contacts;
     kernels::Observation<Real> view{};
     std::unique_ptr<kernels::WorldTables<Real>> tables;  // of a plan without contacts, with poses
-    AlignedBuffer<unsigned char> pose_memory;
+    AlignedBuffer<unsigned char> pose_memory, aside;
     kernels::Scratch* poses = nullptr;
     Real* ray_rows = nullptr;  // of view
   };

@@ -17,6 +17,7 @@ const char* to_string(Observer observer) {
     case Observer::motion: return "motion";
     case Observer::joints: return "joints";
     case Observer::joint_loads: return "joint_loads";
+    case Observer::residual: return "residual";
   }
   return "?";
 }
@@ -36,6 +37,7 @@ const char* to_string(Observed what) {
     case Observed::joint_speed: return "joint_speed";
     case Observed::joint_force: return "joint_force";
     case Observed::joint_torque: return "joint_torque";
+    case Observed::residual: return "residual";
     case Observed::ray_distance: return "ray_distance";
     case Observed::ray_normal: return "ray_normal";
     case Observed::ray_body: return "ray_body";
@@ -54,6 +56,7 @@ std::size_t observed_size(Observed what, const PlanData& plan, std::size_t rays)
     case Observed::touching: return plan.bodies.size();
     case Observed::joint_position:
     case Observed::joint_speed: return plan.coordinates.size();
+    case Observed::residual: return kernels::kResidualRows;
     case Observed::joint_force: return plan.scene.joints.size() * dim;
     case Observed::joint_torque: return plan.scene.joints.size() * spins;
     case Observed::ray_distance:

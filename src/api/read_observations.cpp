@@ -74,6 +74,7 @@ void ObservationsOf<Real>::read_world(Observed what, int k, int world, Out* out)
   };
   switch (what) {
     case Observed::penetration: need(Observer::penetration); return copy(&kind.penetration[w]);
+    case Observed::residual: need(Observer::residual); return copy(&kind.residual[w * size]);
     case Observed::contact_count: need(Observer::contacts); return copy(&kind.count[w]);
     case Observed::touching: need(Observer::touching); return copy(kind.touching.data() + w * size);
     case Observed::joint_force:

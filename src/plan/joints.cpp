@@ -71,6 +71,7 @@ class Builder {
   }
   RowSoftness<double> hard() const {
     const Options& o = plan_.scene.options;
+    if (has_hard_rows(o.solver) && !o.joint_frequency) return {o.push_out_share / h_, 0, 0};
     return soft(o.joint_frequency.value_or(0.25 / h_), o.joint_damping_ratio);
   }
   RowSoftness<double> soft(const Spring& s) const {

@@ -46,6 +46,13 @@ PlanReport describe(const PlanData& plan) {
              rows = contacts || joints;
   const std::string some = contacts ? touch : why(Feature::joints);
   const std::string integrator = to_string(plan.scene.options.integrator);
+  const Options& options = plan.scene.options;
+  const bool soft = options.solver == Solver::tgs_soft;
+  const std::string solver = to_string(options.solver),
+                    sweeps = iterations_of(options) == 1
+                                 ? ", a sweep in every substep"
+                                 : ", " + std::to_string(iterations_of(options)) +
+                                       " sweeps in every substep";
   out.stages = {{"free_motion", !rows && !flight,
                  rows     ? "rows need the substep loop"
                  : flight ? "bodies fly by another integrator"
@@ -61,11 +68,12 @@ PlanReport describe(const PlanData& plan) {
                  plan.has(Feature::joints) && !joints ? "springs are forces of the flight"
                                                       : why(Feature::joints)},
                 {"warm_start", rows, some},
-                {"bias", contacts, "soft normal rows, every substep"},
+                {"bias", contacts, solver + sweeps},
                 {"advance", rows, "displacement, every substep"},
-                {"relax", contacts,
-                 plan.has(Feature::friction) ? "normal rows and friction, every substep"
-                                             : "normal rows, every substep"},
+                {"relax", contacts && soft,
+                 !soft                         ? solver + " has no relaxing sweep"
+                 : plan.has(Feature::friction) ? "normal rows and friction, every substep"
+                                               : "normal rows, every substep"},
                 {"restitute", contacts && bounce, why(Feature::restitution)},
                 {"store", contacts, "impulses for the next step's warm start"},
                 {"finish", true,

@@ -24,6 +24,12 @@ struct Words<Rotation> {
   static constexpr const char* list[] = {"splitting", "quaternion", "exponential"};
 };
 template <>
+struct Words<Solver> {
+  static constexpr const char* list[] = {"tgs-soft", "sequential-impulse", "sor", "nncg",
+                                         "penalty"};
+};
+static_assert(std::size(Words<Solver>::list) == static_cast<int>(Solver::penalty) + 1);
+template <>
 struct Words<BroadPhase> {
   static constexpr const char* list[] = {"automatic", "all-pairs", "sort-and-sweep", "sparse"};
 };
@@ -156,14 +162,18 @@ MW_MEMBERS(Body) {
 // The corners are all that a box has.
 MW_MEMBERS(Eigen::AlignedBox3d) { visit("min", value.min()), visit("max", value.max()); }
 MW_MEMBERS(Options) {
-  auto& [dt, substeps, gravity, wind, density, integrator, rotation, angular_momentum, length_unit,
-         contact_frequency, contact_damping_ratio, push_out_speed, slop, restitution_threshold,
-         restitution_sweeps, friction_in_bias_pass, cast_against_fixed, cast_between_moving,
-         joint_frequency, joint_damping_ratio, joint_pull_speed, sleep_speed, time_to_sleep,
-         contact_capacity, bounds] = value;
+  auto& [dt, substeps, gravity, wind, density, integrator, rotation, angular_momentum, solver,
+         iterations, relaxation, push_out_share, split_impulse, length_unit, contact_frequency,
+         contact_damping_ratio, push_out_speed, slop, restitution_threshold, restitution_sweeps,
+         friction_in_bias_pass, cast_against_fixed, cast_between_moving, joint_frequency,
+         joint_damping_ratio, joint_pull_speed, sleep_speed, time_to_sleep, contact_capacity,
+         bounds] = value;
   visit("dt", dt), visit("substeps", substeps), visit("gravity", gravity), visit("wind", wind);
   visit("density", density), visit("integrator", integrator), visit("rotation", rotation);
-  visit("angular_momentum", angular_momentum), visit("length_unit", length_unit);
+  visit("angular_momentum", angular_momentum);
+  visit("solver", solver), visit("iterations", iterations), visit("relaxation", relaxation);
+  visit("push_out_share", push_out_share), visit("split_impulse", split_impulse);
+  visit("length_unit", length_unit);
   visit("contact_frequency", contact_frequency);
   visit("contact_damping_ratio", contact_damping_ratio);
   visit("push_out_speed", push_out_speed), visit("slop", slop);

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kMostSubsteps = 64;
 constexpr int kMostRestitutionSweeps = 64;
+constexpr int kMostIterations = 10000;
 constexpr int kMostManifolds = 1 << 16;
 
 void check_bounds(Checker& checker, const Eigen::AlignedBox3d& bounds) {
@@ -56,6 +57,18 @@ void check_integrator(Checker& checker, const Options& o) {
   }
 }
 
+void check_solver(Checker& checker, const Options& o) {
+  if (o.iterations) checker.between("options.iterations", *o.iterations, 1, kMostIterations);
+  if (!(o.relaxation > 0 && o.relaxation < 2)) {
+    checker.add("options.relaxation",
+                "is " + number_text(o.relaxation) + ", must be more than 0 and less than 2");
+  }
+  if (!(o.push_out_share >= 0 && o.push_out_share <= 1)) {
+    checker.add("options.push_out_share",
+                "is " + number_text(o.push_out_share) + ", must be from 0 to 1");
+  }
+}
+
 }  // namespace
 
 void check_options(Checker checker, const Options& options) {
@@ -64,6 +77,7 @@ void check_options(Checker checker, const Options& options) {
   checker.finite("options.gravity", options.gravity, "m/s^2");
   checker.finite("options.wind", options.wind, "m/s");
   check_integrator(checker, options);
+  check_solver(checker, options);
   checker.density("options.density", options.density);
   checker.size("options.length_unit", options.length_unit);
 

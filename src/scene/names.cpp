@@ -39,6 +39,24 @@ const char* to_string(Integrator integrator) {
   return "unknown";
 }
 
+const char* to_string(Solver solver) {
+  switch (solver) {
+    case Solver::tgs_soft: return "tgs-soft";
+    case Solver::sequential_impulse: return "sequential-impulse";
+    case Solver::sor: return "sor";
+    case Solver::nncg: return "nncg";
+    case Solver::penalty: return "penalty";
+  }
+  return "unknown";
+}
+
+bool has_hard_rows(Solver solver) {
+  return solver != Solver::tgs_soft && solver != Solver::penalty;
+}
+int iterations_of(const Options& options) {
+  return options.iterations.value_or(has_hard_rows(options.solver) ? 10 : 1);
+}
+
 const char* to_string(Rotation rotation) {
   switch (rotation) {
     case Rotation::splitting: return "splitting";

@@ -91,6 +91,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.inv_h = static_cast<Real>(1 / h);
   t.soft_pair = softness<Real>(o.contact_frequency, o.contact_damping_ratio, h);
   t.soft_fixed = softness<Real>(2 * o.contact_frequency, o.contact_damping_ratio, h);
+  add_solver(o);
   t.push_out_speed = static_cast<Real>(o.push_out_speed * o.length_unit);
   t.margin = static_cast<Real>(4 * o.slop * o.length_unit);
   t.half_margin = static_cast<Real>(2 * o.slop * o.length_unit);
@@ -103,6 +104,22 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.state_stride = at.components;
   t.bodies = static_cast<std::int32_t>(plan.bodies.size());
   t.state_size = t.bodies * at.components;
+}
+
+template <class Real>
+void TablesOf<Real>::add_solver(const Options& o) {
+  static_assert(static_cast<int>(kernels::Solver::penalty) == static_cast<int>(Solver::penalty));
+  auto& t = tables_;
+  t.solver.kind = static_cast<kernels::Solver>(o.solver);
+  t.solver.iterations = iterations_of(o);
+  t.solver.relaxation = static_cast<Real>(o.solver == Solver::sor ? o.relaxation : 1);
+  t.solver.relaxes = t.solver.relaxation != 1;
+  t.solver.splits = has_hard_rows(o.solver) && o.split_impulse;
+  t.solver.push_out_share = static_cast<Real>(o.push_out_share);
+  if (!has_hard_rows(o.solver)) return;
+  const double share = o.split_impulse ? 0 : o.push_out_share;
+  t.solver.slop = static_cast<Real>(o.slop * o.length_unit);
+  t.soft_pair = t.soft_fixed = {static_cast<Real>(share * o.substeps / o.dt), 1, 0};
 }
 
 template <class Real>

@@ -28,6 +28,7 @@ class TablesOf {
   void add_attractors(const PlanData& plan);
   void add_options(const PlanData& plan);
   void add_flight(const PlanData& plan);
+  void add_solver(const Options& options);
 
   kernels::WorldTables<Real> tables_{};
   Constants<Real> constants_;

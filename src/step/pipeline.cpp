@@ -1,26 +1,10 @@
 #include "src/step/pipeline.hpp"
 
+#include "src/step/substep.hpp"
+
 namespace manyworlds {
 
 namespace {
-
-enum StageIndex {
-  kFreeMotion,
-  kBegin,
-  kBroadPhase,
-  kCollide,
-  kWarmStart,
-  kBias,
-  kAdvance,
-  kRelax,
-  kRestitute,
-  kStore,
-  kFinish,
-  kSettle,
-  kObserve,
-  kJoints,
-  kFlight
-};
 
 template <class Real>
 const kernels::SolverTable<Real>& solver_of(const GroupStep<Real>& p, kernels::Layout layout) {
@@ -28,12 +12,6 @@ const kernels::SolverTable<Real>& solver_of(const GroupStep<Real>& p, kernels::L
   return p.kernels.solver[static_cast<int>(t.inertia_kind)][t.has_friction ? 1 : 0]
                          [layout == kernels::Layout::dense ? 0 : 1];
 }
-template <class Real>
-const kernels::JointSolver<Real>& joints_of(const GroupStep<Real>& p, kernels::Layout layout) {
-  return p.kernels
-      .joints[static_cast<int>(p.tables.inertia_kind)][layout == kernels::Layout::dense ? 0 : 1];
-}
-
 // Poses, and the rows of all contacts; velocities are then in the layout of the group.
 template <class Real>
 kernels::Layout find_rows(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
@@ -60,76 +38,80 @@ kernels::Layout find_rows(const GroupStep<Real>& p, const kernels::GroupView<Rea
   return layout;
 }
 
-// Contacts and joints: soft rows in substeps.
+template <class Real>
+SolverRun<Real> run_of(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
+                       kernels::Scratch* scratch, StageClock* clock, kernels::Layout layout) {
+  const int kind = static_cast<int>(p.tables.inertia_kind),
+            rows = layout == kernels::Layout::dense ? 0 : 1;
+  const auto& k = p.kernels;
+  return {p.tables,
+          group,
+          scratch,
+          clock,
+          solver_of(p, layout),
+          k.sweeps[kind][rows],
+          k.impulses[kind],
+          k.joints[kind][rows],
+          *k.observer};
+}
+
+// Contacts and joints: rows in substeps. `wanted` in the last step of a call.
 template <class Real>
 void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                  kernels::Scratch* scratch, StageClock* clock,
-                 const kernels::Observation<Real>* slots) {
+                 const kernels::Observation<Real>* wanted) {
   const auto& t = p.tables;
-  const auto lap = [clock](StageIndex stage) {
-    if (clock) clock->lap(stage);
-  };
+  const auto* slots = wanted && wanted->slots && t.has_contacts ? wanted : nullptr;
   if (slots) p.kernels.observer->watch(scratch, slots->places);
   const kernels::Layout layout = find_rows(p, group, scratch, clock);
   if (slots) p.kernels.observer->watch(scratch, nullptr);
   const bool adds_up = slots && slots->totals[0];
-  const auto& solver = solver_of(p, layout);
-  const auto& joints = joints_of(p, layout);
-  const auto with_joints = [&](kernels::Stage<Real> stage) {
-    if (!t.has_joints) return;
-    stage(t, group, scratch);
-    lap(kJoints);
-  };
-  const auto contacts = [&](kernels::Stage<Real> pass) {
-    if (t.has_joints && t.has_contacts) solver.mark(t, group, scratch);
-    pass(t, group, scratch);
-    if (t.has_joints && t.has_contacts) solver.gather(t, group, scratch);
-  };
+  const bool remembers = t.solver.kind != kernels::Solver::penalty;
+  SolverRun<Real> run = run_of(p, group, scratch, clock, layout);
   const auto& flight = p.kernels.flight[static_cast<int>(t.inertia_kind)];
   if (t.flight.on) {
-    flight.fly(t, group, scratch);
-    lap(kFlight);
+    run.run(flight.fly);
+    run.lap(kFlight);
   }
-  with_joints(joints.prepare);
-  solver.push(t, group, scratch);
-  solver.warm_start(t, group, scratch);
-  solver.open(t, group, scratch);
-  lap(kWarmStart);
-  with_joints(joints.warm_start);
+  run.on_joints(run.joints.prepare);
+  if (!remembers) run.run(run.impulses.forget);
+  run.run(run.solver.push);
+  run.run(run.solver.warm_start);
+  run.run(run.solver.open);
+  run.lap(kWarmStart);
+  run.on_joints(run.joints.warm_start);
   for (int s = 0; s < t.substeps; ++s) {
-    with_joints(joints.bias);
-    contacts(solver.bias);
-    lap(kBias);
-    solver.advance(t, group, scratch);
-    lap(kAdvance);
-    with_joints(joints.relax);
-    if (t.breakable > 0) joints.bear(t, group, scratch);
-    contacts(solver.relax);
-    lap(kRelax);
+    if (s + 1 == t.substeps && wanted && wanted->residual) run.residual = wanted;
+    solve_substep(run, s == 0);
+    if (t.breakable > 0) run.on_joints(run.joints.bear);
+    if (t.has_restitution && t.solver.kind != kernels::Solver::tgs_soft) {
+      run.run(run.sweeps.tally);
+      run.lap(kRelax);
+    }
     if (adds_up) {
       p.kernels.observer->accumulate[static_cast<int>(t.inertia_kind)](t, group, scratch, *slots);
-      lap(kObserve);
+      run.lap(kObserve);
     }
     if (s + 1 == t.substeps) break;
-    if (!t.has_contacts) solver.mark(t, group, scratch);
-    solver.next(t, group, scratch);
-    lap(kAdvance);
-    with_joints(joints.warm_start);
+    if (!remembers) run.run(run.impulses.forget);
+    if (!remembers || !t.has_contacts) run.run(run.solver.mark);
+    run.run(run.solver.next);
+    run.lap(kAdvance);
+    run.on_joints(run.joints.warm_start);
   }
-  with_joints(joints.store);
+  run.on_joints(run.joints.store);
   if (t.has_restitution) {
-    solver.restitute(t, group, scratch);
-    lap(kRestitute);
+    run.run(run.solver.restitute);
+    run.lap(kRestitute);
   }
-  if (t.has_contacts) solver.store(t, group, scratch);
-  lap(kStore);
-  const auto leave = flight.leave[layout == kernels::Layout::dense ? 0 : 1];
-  (t.flight.on ? leave : solver.leave)(t, group, scratch);
-  lap(kFinish);
-  if (t.breakable > 0) joints.break_up(t, group, scratch);
+  if (t.has_contacts) run.run(run.solver.store);
+  run.lap(kStore);
+  run.run(t.flight.on ? flight.leave[layout == kernels::Layout::dense ? 0 : 1] : run.solver.leave);
+  run.lap(kFinish);
+  if (t.breakable > 0) run.run(run.joints.break_up);
   if (t.has_sleep) {
     p.kernels.settle(t, group, scratch);
-    lap(kSettle);
+    run.lap(kSettle);
   }
 }
 
@@ -147,7 +129,6 @@ void observe_slots(const GroupStep<Real>& p, const kernels::GroupView<Real>& gro
   const auto& wanted = *p.wanted;
   const auto& observer = *p.kernels.observer;
   const int kind = static_cast<int>(t.inertia_kind);
-  observer.clear(t, group, scratch, wanted);
   if (taken) observer.awake[kind](t, group, scratch, wanted);
   if (!t.has_sleep || *group.idle == 0) return;
   kernels::GroupView<Real> all_awake = group;
@@ -186,11 +167,11 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
   if (clock) clock->start();
   int taken = 0;
   if (p.tables.has_substeps) {
-    const bool observed = p.wanted && p.wanted->slots && p.tables.has_contacts;
-    const auto* slots = observed ? p.wanted : nullptr;
+    if (p.wanted) p.kernels.observer->clear(p.tables, group, scratch, *p.wanted);
     for (; taken < steps && !at_rest(p, group); ++taken) {
-      solver_step(p, group, scratch, clock, taken + 1 == steps ? slots : nullptr);
+      solver_step(p, group, scratch, clock, taken + 1 == steps ? p.wanted : nullptr);
     }
+    const bool slots = p.wanted && p.wanted->slots && p.tables.has_contacts;
     if (slots) observe_slots(p, group, scratch, taken == steps);
   } else {
     const auto& t = p.tables;

@@ -54,7 +54,7 @@ class Maker {
     for (int i = 0; i < bodies; ++i) add_body(i);
     RandomScene out;
     out.unit = unit_;
-    out.passive = !crowded_ && !driven_;
+    out.passive = lossy_ && !crowded_ && !driven_;
     out.rough = rough_;
     const double height = (bodies / (planar_ ? 3 : 4) + 2) * cell_;
     out.top_speed = 4 * (fastest_ + std::sqrt(2 * 1.5 * scene_.options.gravity.norm() * height)) +
@@ -94,6 +94,27 @@ class Maker {
       o.bounds = Eigen::AlignedBox3d(-far, far);
     }
     still_air_ = dice.chance(0.5);
+    choose_methods();
+  }
+
+  // Solvers and integrators other than the default ones may gain some energy.
+  void choose_methods() {
+    Dice dice(seed_, 1 << 20);
+    Options& o = scene_.options;
+    if (dice.chance(0.3)) {
+      o.solver = dice.one_of({Solver::tgs_soft, Solver::sequential_impulse, Solver::sor,
+                              Solver::nncg, Solver::penalty});
+      if (o.solver == Solver::tgs_soft || dice.chance(0.3)) o.iterations = 2 + dice.below(10);
+      o.split_impulse = dice.chance(0.5);
+      o.push_out_share = dice.between(0.1, 0.4);
+      lossy_ = false;
+    }
+    if (dice.chance(0.15)) {
+      o.integrator =
+          dice.one_of({Integrator::explicit_euler, Integrator::implicit_euler, Integrator::verlet,
+                       Integrator::velocity_verlet, Integrator::runge_kutta4});
+      lossy_ = false;
+    }
   }
 
   Shape shape(Dice& dice, Geometry geometry) {
@@ -262,7 +283,7 @@ class Maker {
   Dice room_;
   Scene scene_;
   bool planar_ = false, crowded_ = false, driven_ = false, friction_ = true, bounces_ = false;
-  bool filtered_ = false, still_air_ = true, rough_ = false;
+  bool filtered_ = false, still_air_ = true, rough_ = false, lossy_ = true;
   int columns_ = 1;
   double unit_ = 1, cell_ = 1, wall_ = 1, fastest_ = 0;
 };

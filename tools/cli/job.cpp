@@ -48,6 +48,8 @@ Job prepare(const JobOptions& options) {
   Scene scene = load_scene(options.scene);
   if (options.dt) scene.options.dt = *options.dt;
   if (options.substeps) scene.options.substeps = *options.substeps;
+  if (options.solver) scene.options.solver = *options.solver;
+  if (options.iterations) scene.options.iterations = *options.iterations;
   PlanOptions plan_options;
   plan_options.broad_phase = options.broad_phase;
   plan_options.keep = options.keep;

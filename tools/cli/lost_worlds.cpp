@@ -29,6 +29,8 @@ std::string reproduce_command(const JobOptions& options, int steps, std::uint64_
                                     shell_word(options.scene), seed, steps);
   if (options.dt) command += fmt::format(" --dt {}", *options.dt);
   if (options.substeps) command += fmt::format(" --substeps {}", *options.substeps);
+  if (options.solver) command += fmt::format(" --solver {}", to_string(*options.solver));
+  if (options.iterations) command += fmt::format(" --iterations {}", *options.iterations);
   if (options.sleep) command += " --sleep on";
   if (options.precision != Precision::f32) {
     command += fmt::format(" --precision {}", to_string(options.precision));

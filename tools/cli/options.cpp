@@ -69,6 +69,15 @@ const Choices<BroadPhase>& broad_phases() {
   return choices;
 }
 
+Choices<Solver> solvers() {
+  Choices<Solver> choices;
+  for (int i = 0; i <= static_cast<int>(Solver::penalty); ++i) {
+    const auto solver = static_cast<Solver>(i);
+    choices.emplace_back(to_string(solver), solver);
+  }
+  return choices;
+}
+
 const Choices<ContactLayout>& layouts() {
   static const Choices<ContactLayout> choices = {{"auto", ContactLayout::automatic},
                                                  {"dense", ContactLayout::dense},
@@ -128,6 +137,12 @@ void add_count(CLI::App& app, const std::string& flag, int& value, int least,
       ->capture_default_str();
 }
 
+void add_case_list(CLI::App& app, std::vector<std::string>& cases, const std::string& example) {
+  app.add_option("--cases", cases, "only these, as " + example + " (default: all)")
+      ->delimiter(',')
+      ->type_name("ID,...");
+}
+
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& help) {
   app.add_option_function<std::string>(
          "--seed",
@@ -155,6 +170,13 @@ void add_plan_options(CLI::App& app, JobOptions& options) {
   app.add_option("--substeps", options.substeps,
                  "contact substeps per step, 1 to 64 (default: the scene's)")
       ->check(whole_number(1, 64))
+      ->type_name("N");
+  add_choice<Solver>(
+      app, "--solver", solvers(), [&options](Solver value) { options.solver = value; },
+      "what solves contacts and joints (default: the scene's)");
+  app.add_option("--iterations", options.iterations,
+                 "sweeps over all rows per substep, 1 to 10000 (default: the solver's)")
+      ->check(whole_number(1, 10000))
       ->type_name("N");
   add_choice<BroadPhase>(
       app, "--broad-phase", broad_phases(),

@@ -33,6 +33,8 @@ struct JobOptions {
   // Changes to the scene and its plan.
   std::optional<double> dt;     // s
   std::optional<int> substeps;  // per step
+  std::optional<Solver> solver;
+  std::optional<int> iterations;  // per substep
   BroadPhase broad_phase = BroadPhase::automatic;
   std::vector<Feature> keep;
 
@@ -99,6 +101,7 @@ void add_json_option(CLI::App& app, JobOptions& options);
 void add_record_options(CLI::App& app, JobOptions& options);
 void add_dump_option(CLI::App& app, JobOptions& options);
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes);
+void add_case_list(CLI::App& app, std::vector<std::string>& cases, const std::string& example);
 // A whole number of at least `least`.
 void add_count(CLI::App& app, const std::string& flag, int& value, int least,
                const std::string& help);

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "job.hpp"
+#include "report.hpp"
 #include "text.hpp"
 
 namespace manyworlds::cli {
@@ -105,10 +106,11 @@ int plan_command(const JobOptions& options) {
   }
   const Scene& scene = job.plan.scene();
   fmt::print(
-      "{}: {} ({} with state), {}, dt {:.6g} s, {}\n", job.scene,
+      "{}: {} ({} with state), {}, dt {:.6g} s, {}, {}\n", job.scene,
       fmt::format("{} {}", scene.bodies.size(), scene.bodies.size() == 1 ? "body" : "bodies"),
       job.plan.bodies(), scene.space == Space::planar ? "planar" : "spatial", scene.options.dt,
-      counted(scene.options.substeps, "substep"));
+      counted(scene.options.substeps, "substep"),
+      solver_text(scene.options.solver, iterations_of(scene.options)));
   print_items("features", report.features);
   print_items("stages, in the order of the step", report.stages);
   print_pairs(report.pairs);

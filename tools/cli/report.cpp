@@ -1,5 +1,6 @@
 #include "report.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "joint_gap.hpp"
@@ -40,6 +41,8 @@ Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call
   report.precision = batch.precision();
   report.dt = options.dt;
   report.substeps = options.substeps;
+  report.solver = options.solver;
+  report.iterations = iterations_of(options);
   const double steps_per_s = seconds > 0 ? steps / seconds : 0;
   report.world_steps_per_s = steps_per_s * batch.worlds();
   report.body_steps_per_s = steps_per_s * total_bodies(batch);
@@ -71,6 +74,11 @@ std::vector<Report::StageShare> profile_stages(Batch& batch, int steps, int step
   return shares;
 }
 
+std::string solver_text(Solver solver, int iterations) {
+  const std::string name = to_string(solver);
+  return iterations == 1 ? name : fmt::format("{} with {} iterations", name, iterations);
+}
+
 nlohmann::ordered_json to_json(const Report& report) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const Report::StageShare& share : report.stage_split) stages[share.stage] = share.fraction;
@@ -82,9 +90,10 @@ nlohmann::ordered_json to_json(const Report& report) {
       {"threads", report.threads},
       {"isa", to_string(report.isa)},
       {"precision", to_string(report.precision)},
-      {"solver", "tgs-soft"},
+      {"solver", to_string(report.solver)},
       {"dt", report.dt},
       {"substeps", report.substeps},
+      {"iterations", report.iterations},
       {"sleep", report.sleep},
       {"world_steps_per_s", report.world_steps_per_s},
       {"body_steps_per_s", report.body_steps_per_s},

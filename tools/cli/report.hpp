@@ -29,6 +29,8 @@ struct Report {
   Precision precision = Precision::f32;
   double dt = 0;  // s
   int substeps = 0;
+  Solver solver = Solver::tgs_soft;
+  int iterations = 0;  // per substep
   bool sleep = false;
   double world_steps_per_s = 0;
   double body_steps_per_s = 0;
@@ -54,5 +56,7 @@ Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call
 std::vector<Report::StageShare> profile_stages(Batch& batch, int steps, int steps_per_call);
 
 nlohmann::ordered_json to_json(const Report& report);
+// "tgs-soft", "sor with 10 iterations"
+std::string solver_text(Solver solver, int iterations);
 
 }  // namespace manyworlds::cli

@@ -49,8 +49,8 @@ void print_summary(const Report& report, const LostWorlds& worlds, const Batch& 
   fmt::print("{}: {} x {}, {:.4g} s simulated each\n", report.scene,
              counted(report.worlds, "world"), counted(report.steps, "step"),
              report.steps * report.dt);
-  row("step",
-      fmt::format("dt {:.6g} s, {}, tgs-soft", report.dt, counted(report.substeps, "substep")));
+  row("step", fmt::format("dt {:.6g} s, {}, {}", report.dt, counted(report.substeps, "substep"),
+                          solver_text(report.solver, report.iterations)));
   row("kernels",
       fmt::format("{}, {}, {} per call", batch.kernel_table(), counted(report.threads, "thread"),
                   counted(report.steps_per_call, "step")));
