@@ -13,10 +13,12 @@
 
 #include "commands.hpp"
 #include "options.hpp"
-#include "version.hpp"
+#include "tools/base/version.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::kVersion;
 
 struct AllOptions {
   bool scenes_json = false;

@@ -11,18 +11,20 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "machine.hpp"
 #include "manyworlds/scenes.hpp"
 #include "progress.hpp"
+#include "tools/base/machine.hpp"
+#include "tools/base/version.hpp"
 #include "tools/report/accuracy.hpp"
 #include "tools/report/page.hpp"
 #include "tools/report/plan_worth.hpp"
 #include "tools/report/stability.hpp"
 #include "tools/report/throughput.hpp"
-#include "version.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::kVersion, tools::machine_line;
 
 using Tell = std::function<void(const std::string&, double)>;
 
