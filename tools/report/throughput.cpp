@@ -136,10 +136,16 @@ Throughput run_throughput(const ThroughputOptions& options,
   tell("limits of the machine", 0);
   out.limits = measure_limits();
   const std::vector<Job> jobs = jobs_of(options);
+  const double sweeps = options.peers.empty() ? 1 : 0.3;  // share of the work, about
   for (const Job& job : jobs) {
     tell(job.sweep + ' ' + job.scene + ' ' + job.value,
-         static_cast<double>(out.rows.size()) / static_cast<double>(jobs.size()));
+         sweeps * static_cast<double>(out.rows.size()) / static_cast<double>(jobs.size()));
     out.rows.push_back(measure(job, out.limits, options.quick));
+  }
+  if (!options.peers.empty()) {
+    out.peers = run_peers(
+        {options.peers, options.scenes, options.quick},
+        [&](const std::string& what, double share) { tell(what, sweeps + (1 - sweeps) * share); });
   }
   return out;
 }
@@ -161,9 +167,17 @@ nlohmann::ordered_json to_json(const Throughput& result) {
                     {"stage_split", stages},
                     {"hash", tools::hex(r.hash)}});
   }
-  return {{"gflops", result.limits.gflops},
-          {"gigabytes_per_s", result.limits.gigabytes_per_s},
-          {"rows", rows}};
+  nlohmann::ordered_json out = {{"gflops", result.limits.gflops},
+                                {"gigabytes_per_s", result.limits.gigabytes_per_s},
+                                {"rows", rows}};
+  if (result.peers) {
+    const Peers& p = *result.peers;
+    out["peer_protocol"] = {{"worlds", p.worlds}, {"steps", p.steps}, {"rounds", p.rounds}};
+    out["peers"] = nlohmann::ordered_json::array();
+    for (const PeerScene& scene : p.scenes) out["peers"].push_back(to_json(scene));
+    out["peer_failures"] = p.failures;
+  }
+  return out;
 }
 
 std::string throughput_page(const Throughput& result, const std::string& machine) {
@@ -201,6 +215,7 @@ std::string throughput_page(const Throughput& result, const std::string& machine
     }
   }
   flush();
+  if (result.peers) body += peers_html(*result.peers);
   return page("Throughput", machine, body);
 }
 
