@@ -3,6 +3,8 @@
 find_package(benchmark REQUIRED CONFIG)
 
 mw_sources(mw_bench_sources "bench/*.cpp")
+# Other engines: a project of its own (tools/peers).
+list(FILTER mw_bench_sources EXCLUDE REGEX "/bench/peers/")
 if(mw_bench_sources)
   add_executable(manyworlds_bench ${mw_bench_sources})
   target_include_directories(manyworlds_bench PRIVATE "${PROJECT_SOURCE_DIR}")

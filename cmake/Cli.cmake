@@ -4,7 +4,7 @@ find_package(CLI11 REQUIRED CONFIG)
 find_package(fmt REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
 
-mw_sources(mw_cli_sources "tools/cli/*.cpp" "tools/report/*.cpp")
+mw_sources(mw_cli_sources "tools/base/*.cpp" "tools/report/*.cpp" "tools/cli/*.cpp")
 add_executable(manyworlds_cli ${mw_cli_sources})
 set_target_properties(manyworlds_cli PROPERTIES OUTPUT_NAME manyworlds)
 target_include_directories(manyworlds_cli PRIVATE "${PROJECT_SOURCE_DIR}")

@@ -2,6 +2,8 @@
 #ifdef MW_CLI_PATH
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 #include <string>
@@ -45,6 +47,14 @@ std::map<std::string, double> least_errors(const Json& report) {
     }
   }
   return least;
+}
+
+// A program that stands in for another engine's, in the folder `peers`.
+void write_peer(const ScratchFolder& folder, const std::string& name, const std::string& body) {
+  const std::filesystem::path path = folder.path() / "peers" / name;
+  std::filesystem::create_directories(path.parent_path());
+  std::ofstream(path) << "#!/bin/sh\n" << body;
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
 }
 
 }  // namespace
@@ -138,6 +148,66 @@ TEST_CASE("report throughput measures every sweep", "[cli][report]") {
   CHECK(hashes["threads"].size() == 1);
   CHECK(hashes["instruction set and precision"].size() <= 2);  // one for each precision
   CHECK(contains(content(folder.path() / "report" / "throughput.html"), "By bodies per world"));
+}
+
+TEST_CASE("report throughput compares with other engines and says which of them fail",
+          "[cli][report]") {
+  const ScratchFolder folder;
+  // Says what it was asked for where settings go, and something of its own before the result.
+  write_peer(folder, "peer_good", R"(
+if [ "$1" = --list ]; then echo ball2d; exit; fi
+echo 'hello from an engine'
+cat <<END
+{"engine": "Good", "version": "1.2", "scene": "ball2d", "world_steps_per_s": 1000, \
+"worst_overlap_m": 0.004, "worst_gap_m": null, "settings": "$*"}
+END
+)");
+  write_peer(folder, "peer_bad", R"(
+if [ "$1" = --list ]; then echo ball2d; exit; fi
+printf 'it fell over\377\n' >&2
+exit 3
+)");
+  write_peer(folder, "peer_dumb", "echo ball2d\n");
+  write_peer(folder, "peer_gone", "kill -9 $$\n");
+  write_peer(folder, "other", "exit 1\n");
+  const Outcome outcome = test::run_program(
+      MW_CLI_PATH, folder, "report throughput --quick --scenes ball2d --peers peers");
+  INFO(outcome.out << outcome.err);
+  REQUIRE(outcome.code == 0);
+  const Json results =
+      Json::parse(content(folder.path() / "report" / "throughput.json"))["results"];
+  REQUIRE(results["peers"].size() == 1);
+  const Json& scene = results["peers"][0];
+  CHECK(scene["scene"] == "ball2d");
+  CHECK(scene["worst_gap_m"].is_null());
+  REQUIRE(scene["engines"].size() == 1);
+  const Json& good = scene["engines"][0];
+  CHECK(good["engine"] == "Good");
+  CHECK(good["world_steps_per_s"] == 1000.0);
+  CHECK(good["worst_overlap_m"] == 0.004);
+  CHECK(good["settings"] == "--scenes ball2d --worlds 128 --warm-up 60 --steps 60");
+  CHECK(good["ratio"].get<double>() > 1);
+  const Json& failures = results["peer_failures"];
+  REQUIRE(failures.size() == 3);
+  CHECK(contains(failures[0], "peer_gone failed: --list: "));
+  CHECK(failures[1] == "peer_bad failed: ball2d: exit status 3: it fell over?");
+  CHECK(failures[2] == "peer_dumb failed: ball2d: it printed no result");
+  CHECK(contains(outcome.out, "Good 1.2"));
+  CHECK(contains(outcome.out, "peer_bad failed: "));
+  const std::string page = content(folder.path() / "report" / "throughput.html");
+  CHECK(contains(page, "Beside other engines"));
+  CHECK(contains(page, "4.00 mm"));
+}
+
+TEST_CASE("report throughput says when a folder has no peers", "[fast][cli][report]") {
+  const ScratchFolder folder;
+  for (const char* name : {".", "nowhere"}) {
+    const Outcome outcome = test::run_program(
+        MW_CLI_PATH, folder, std::string("report throughput --quick --peers ") + name);
+    CHECK(outcome.code == 2);
+    CHECK(contains(outcome.err, std::string("--peers: ")));
+    CHECK(contains(outcome.err, name));
+  }
 }
 
 TEST_CASE("report says which cases there are", "[fast][cli][report]") {

@@ -32,6 +32,8 @@ KERNEL_SYSTEM = {
     "initializer_list", "limits",
     "type_traits", "utility",
 }
+# The program: what its parts share, the reports, the command line.
+TOOLS_FLOORS = ["base", "report", "cli"]
 # Third-party headers with one home: pattern -> folder whose files may include it, and how many.
 ONE_HOME = {
     r"(oneapi/)?tbb[/.].*": ("src", 1),
@@ -117,6 +119,17 @@ def check_public(name, quoted):
     return None if PUBLIC_SYSTEM.fullmatch(name) else "public headers include std and Eigen only"
 
 
+def check_tools(file, name):
+    """Why a file of tools/ may not include `name`, or None."""
+    floor, target = Path(file).parts[1], Path(name).parts[1]
+    for part in (floor, target):
+        if part not in TOOLS_FLOORS:
+            return f"tools/{part} is no floor of tools"
+    if TOOLS_FLOORS.index(target) > TOOLS_FLOORS.index(floor):
+        return f"goes up from tools/{floor} to tools/{target}"
+    return None
+
+
 def check_include(file, name, quoted):
     top = Path(file).parts[0]
     if top == "src":
@@ -125,6 +138,8 @@ def check_include(file, name, quoted):
         return check_kernel(file, name, quoted)
     if top == "include":
         return check_public(name, quoted)
+    if top == "tools" and name.startswith("tools/"):
+        return check_tools(file, name)
     if top == "scenes" and name.startswith(("src/", "kernels/")):
         return "scenes are made from the public headers"
     return None

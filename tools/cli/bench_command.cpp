@@ -22,10 +22,13 @@
 #include "lost_worlds.hpp"
 #include "progress.hpp"
 #include "report.hpp"
-#include "text.hpp"
+#include "tools/base/median.hpp"
+#include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::counted, tools::hex, tools::length, tools::median, tools::with_prefix;
 
 constexpr int kProfiledSteps = 96;
 constexpr std::size_t kLostShown = 10;
@@ -35,12 +38,6 @@ class HashMismatch : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 std::vector<std::string> default_scenes() {
   std::vector<std::string> names;

@@ -9,13 +9,15 @@
 #include "manyworlds/batch.hpp"
 
 #include "commands.hpp"
-#include "machine.hpp"
 #include "recording.hpp"
 #include "scene_source.hpp"
-#include "version.hpp"
+#include "tools/base/machine.hpp"
+#include "tools/base/version.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::cpu_model, tools::kCompiler, tools::kVersion, tools::usable_cpus;
 
 std::string isa_list() {
   const std::vector<Isa> available = available_isas();

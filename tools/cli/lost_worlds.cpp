@@ -5,9 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "text.hpp"
+#include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
+
+using tools::shell_word;
 
 void LostWorlds::collect(const Batch& batch, std::int64_t first, std::uint64_t seed) {
   for (int world = 0; world < batch.worlds(); ++world) {

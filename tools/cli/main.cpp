@@ -13,10 +13,12 @@
 
 #include "commands.hpp"
 #include "options.hpp"
-#include "version.hpp"
+#include "tools/base/version.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::kVersion;
 
 struct AllOptions {
   bool scenes_json = false;
@@ -220,10 +222,18 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "throughput", "Speed over worlds, threads, instruction sets, precisions and bodies");
   add_report_options(*throughput, all.report, "throughput");
   add_scene_list(*throughput, all.report.scenes);
+  throughput
+      ->add_option("--peers", all.report.peers,
+                   "compare with the engines in this folder, which tools/peers builds")
+      ->type_name("FOLDER");
   throughput->footer(
       "Examples:\n"
       "  manyworlds report throughput --quick\n"
-      "  manyworlds report throughput --scenes stack10 --json");
+      "  manyworlds report throughput --scenes stack10 --json\n"
+      "  manyworlds report throughput --peers build/peers/bin\n"
+      "\n"
+      "Peers step the same standard scenes in turns with manyworlds, in some 20 minutes, or one\n"
+      "with --quick. One that fails is a line of the report.");
   throughput->callback([&] { code = report_throughput_command(all.report); });
 }
 

@@ -79,6 +79,7 @@ struct ReportOptions {
   std::vector<std::string> cases;   // of accuracy and stability; empty: all
   std::vector<std::string> scenes;  // of the others; empty: the report's own
   std::string out = "report";       // folder
+  std::string peers;                // of throughput: folder of other engines' programs
   bool quick = false;
   bool json = false;
 };

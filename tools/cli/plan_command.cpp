@@ -10,10 +10,12 @@
 #include "commands.hpp"
 #include "job.hpp"
 #include "report.hpp"
-#include "text.hpp"
+#include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::counted;
 
 using Json = nlohmann::ordered_json;
 

@@ -13,14 +13,15 @@
 
 #include <fmt/format.h>
 
-#include "text.hpp"
-
 #ifdef MW_HAVE_RECORD
 #include "manyworlds/record.hpp"
 #endif
+#include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::counted, tools::shell_word, tools::with_prefix;
 
 constexpr std::size_t kMostLines = 1000000;  // worlds in one list
 

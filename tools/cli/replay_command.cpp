@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "text.hpp"
 
 #ifdef MW_HAVE_RECORD
 #include "manyworlds/record.hpp"
+#include "tools/base/text.hpp"
 #endif
 
 namespace manyworlds::cli {
@@ -17,6 +17,8 @@ namespace manyworlds::cli {
 #ifdef MW_HAVE_RECORD
 
 namespace {
+
+using tools::counted;
 
 void print_json(const ReplayArguments& arguments, const Recording& recording,
                 const ReplayResult& result) {

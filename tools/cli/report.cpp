@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "joint_gap.hpp"
-#include "text.hpp"
+#include "tools/base/joint_gap.hpp"
+#include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::hex, tools::max_joint_gap;
 
 double total_bodies(const Batch& batch) {
   double bodies = 0;

@@ -11,18 +11,20 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "machine.hpp"
 #include "manyworlds/scenes.hpp"
 #include "progress.hpp"
+#include "tools/base/machine.hpp"
+#include "tools/base/version.hpp"
 #include "tools/report/accuracy.hpp"
 #include "tools/report/page.hpp"
 #include "tools/report/plan_worth.hpp"
 #include "tools/report/stability.hpp"
 #include "tools/report/throughput.hpp"
-#include "version.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::kVersion, tools::machine_line;
 
 using Tell = std::function<void(const std::string&, double)>;
 
@@ -142,6 +144,7 @@ void print_throughput(const report::Throughput& result) {
     fmt::print("  {:<24} {:<34} {:>10} {:>12} {:>12} {:>9.1f}%\n", r.scene, r.value, r.worlds,
                report::speed_text(r.world_steps_per_s), r.bytes_per_world, 100 * r.bandwidth_share);
   }
+  if (result.peers) fmt::print("{}", report::peers_text(*result.peers));
 }
 
 }  // namespace
@@ -186,8 +189,9 @@ int report_plan_command(const ReportOptions& options) {
 
 int report_throughput_command(const ReportOptions& options) {
   check_names("--scenes", options.scenes, scene_names(), "scene");
+  if (!options.peers.empty()) report::find_peers(options.peers);  // says early what is wrong
   const auto result = run_report("throughput", options, [&](const Tell& tell) {
-    return report::run_throughput({options.scenes, options.quick}, tell);
+    return report::run_throughput({options.scenes, options.peers, options.quick}, tell);
   });
   return finish_report("throughput", options, report::to_json(result),
                        report::throughput_page(result, machine_line()),

@@ -11,10 +11,12 @@
 #include "progress.hpp"
 #include "recording.hpp"
 #include "report.hpp"
-#include "text.hpp"
+#include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::counted, tools::hex, tools::length, tools::with_prefix;
 
 constexpr int kProfiledSteps = 48;  // after the timed ones, for the stage split
 constexpr std::size_t kLostShown = 10;

@@ -10,10 +10,12 @@
 #include "lost_worlds.hpp"
 #include "progress.hpp"
 #include "recording.hpp"
-#include "text.hpp"
+#include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::counted, tools::length;
 
 // Worlds that are in memory at a time. A world's bits do not depend on it.
 constexpr int kWorldsAtOnce = 1024;

@@ -13,10 +13,12 @@
 #include "commands.hpp"
 #include "job.hpp"
 #include "progress.hpp"
-#include "text.hpp"
+#include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
 namespace {
+
+using tools::counted, tools::hex;
 
 constexpr int kWorlds = 40;
 

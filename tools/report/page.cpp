@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "tools/base/text.hpp"
+
 namespace manyworlds::report {
 namespace {
 
@@ -56,10 +58,6 @@ std::string time_text(double microseconds) {
   return fmt::format("{:.3g} s", microseconds / 1e6);
 }
 
-std::string speed_text(double per_second) {
-  if (per_second < 1e3) return fmt::format("{:.3g}/s", per_second);
-  if (per_second < 1e6) return fmt::format("{:.3g} k/s", per_second / 1e3);
-  return fmt::format("{:.3g} M/s", per_second / 1e6);
-}
+std::string speed_text(double per_second) { return tools::with_prefix(per_second) + "/s"; }
 
 }  // namespace manyworlds::report

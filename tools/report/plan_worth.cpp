@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "manyworlds/scenes.hpp"
+#include "tools/base/median.hpp"
 #include "tools/report/page.hpp"
 
 namespace manyworlds::report {
@@ -63,12 +64,8 @@ WorthRow measure(const Variant& v, bool quick) {
     ratios.push_back(other / own);
     speeds.push_back(steps * plain.worlds() / own);
   }
-  const auto median = [](std::vector<double>& all) {
-    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2),
-                     all.end());
-    return all[all.size() / 2];
-  };
-  WorthRow row{v.scene, v.name, median(speeds), median(ratios), false, v.must_be_same};
+  WorthRow row{v.scene, v.name,        tools::median(speeds), tools::median(ratios),
+               false,   v.must_be_same};
   const std::vector<double> a = moving_parts(plain), b = moving_parts(changed);
   row.same_bits =
       a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;

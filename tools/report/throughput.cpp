@@ -1,7 +1,5 @@
 #include "tools/report/throughput.hpp"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
@@ -10,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "manyworlds/scenes.hpp"
+#include "tools/base/machine.hpp"
+#include "tools/base/text.hpp"
 #include "tools/report/page.hpp"
 
 namespace manyworlds::report {
@@ -20,12 +20,6 @@ struct Job {
   BatchOptions options;
   bool profiled = false;
 };
-
-int usable_cpus() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  return sched_getaffinity(0, sizeof set, &set) == 0 ? std::max(1, CPU_COUNT(&set)) : 1;
-}
 
 Scene scene_of(const std::string& name) {
   if (const auto sized = scenes::sized(name)) return *sized;
@@ -100,7 +94,7 @@ std::vector<Job> jobs_of(const ThroughputOptions& options) {
       add("worlds", name, std::to_string(worlds), worlds)->profiled = worlds == 1024;
     }
   }
-  const int cpus = usable_cpus();
+  const int cpus = tools::usable_cpus();
   for (const std::string& name : names) {
     for (int threads = 1; threads <= cpus;
          threads = threads < cpus ? std::min(2 * threads, cpus) : cpus + 1) {
@@ -142,10 +136,16 @@ Throughput run_throughput(const ThroughputOptions& options,
   tell("limits of the machine", 0);
   out.limits = measure_limits();
   const std::vector<Job> jobs = jobs_of(options);
+  const double sweeps = options.peers.empty() ? 1 : 0.3;  // share of the work, about
   for (const Job& job : jobs) {
     tell(job.sweep + ' ' + job.scene + ' ' + job.value,
-         static_cast<double>(out.rows.size()) / static_cast<double>(jobs.size()));
+         sweeps * static_cast<double>(out.rows.size()) / static_cast<double>(jobs.size()));
     out.rows.push_back(measure(job, out.limits, options.quick));
+  }
+  if (!options.peers.empty()) {
+    out.peers = run_peers(
+        {options.peers, options.scenes, options.quick},
+        [&](const std::string& what, double share) { tell(what, sweeps + (1 - sweeps) * share); });
   }
   return out;
 }
@@ -165,11 +165,19 @@ nlohmann::ordered_json to_json(const Throughput& result) {
                     {"bytes_per_world", r.bytes_per_world},
                     {"bandwidth_share", r.bandwidth_share},
                     {"stage_split", stages},
-                    {"hash", fmt::format("{:016x}", r.hash)}});
+                    {"hash", tools::hex(r.hash)}});
   }
-  return {{"gflops", result.limits.gflops},
-          {"gigabytes_per_s", result.limits.gigabytes_per_s},
-          {"rows", rows}};
+  nlohmann::ordered_json out = {{"gflops", result.limits.gflops},
+                                {"gigabytes_per_s", result.limits.gigabytes_per_s},
+                                {"rows", rows}};
+  if (result.peers) {
+    const Peers& p = *result.peers;
+    out["peer_protocol"] = {{"worlds", p.worlds}, {"steps", p.steps}, {"rounds", p.rounds}};
+    out["peers"] = nlohmann::ordered_json::array();
+    for (const PeerScene& scene : p.scenes) out["peers"].push_back(to_json(scene));
+    out["peer_failures"] = p.failures;
+  }
+  return out;
 }
 
 std::string throughput_page(const Throughput& result, const std::string& machine) {
@@ -200,14 +208,14 @@ std::string throughput_page(const Throughput& result, const std::string& machine
     lines.push_back({r.scene, r.value, std::to_string(r.worlds), std::to_string(r.threads),
                      speed_text(r.world_steps_per_s), speed_text(r.body_steps_per_s),
                      std::to_string(r.bytes_per_world),
-                     fmt::format("{:.1f} %", 100 * r.bandwidth_share),
-                     fmt::format("{:016x}", r.hash)});
+                     fmt::format("{:.1f} %", 100 * r.bandwidth_share), tools::hex(r.hash)});
     if (!r.stages.empty()) {
       stages += fmt::format("<p>{}, {} worlds: {}.</p>", escaped(r.scene), r.worlds,
                             escaped(stages_text(r)));
     }
   }
   flush();
+  if (result.peers) body += peers_html(*result.peers);
   return page("Throughput", machine, body);
 }
 

@@ -1,8 +1,10 @@
 // `manyworlds report throughput`: world-steps per second over worlds, threads, instruction sets,
-// precisions and bodies per world, and how near that is to what the machine can do.
+// precisions and bodies per world, how near that is to what the machine can do, and how fast other
+// engines are beside it.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +12,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "manyworlds/batch.hpp"
+#include "tools/report/peers.hpp"
 
 namespace manyworlds::report {
 
@@ -34,10 +37,12 @@ struct ThroughputRow {
 struct Throughput {
   Limits limits;
   std::vector<ThroughputRow> rows;
+  std::optional<Peers> peers;
 };
 
 struct ThroughputOptions {
   std::vector<std::string> scenes;  // empty: bin-spheres, stack10, chain3d, ball2d
+  std::string peers;                // folder of other engines' programs; empty: none
   bool quick = false;
 };
 

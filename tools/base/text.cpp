@@ -1,11 +1,11 @@
-#include "text.hpp"
+#include "tools/base/text.hpp"
 
 #include <cmath>
 #include <string_view>
 
 #include <fmt/format.h>
 
-namespace manyworlds::cli {
+namespace manyworlds::tools {
 namespace {
 
 std::string three_digits(double value) {
@@ -48,4 +48,4 @@ std::string shell_word(const std::string& word) {
   return out + "'";
 }
 
-}  // namespace manyworlds::cli
+}  // namespace manyworlds::tools

@@ -1,4 +1,4 @@
-#include "machine.hpp"
+#include "tools/base/machine.hpp"
 
 #include <sched.h>
 
@@ -9,9 +9,9 @@
 
 #include "manyworlds/batch.hpp"
 
-#include "version.hpp"
+#include "tools/base/version.hpp"
 
-namespace manyworlds::cli {
+namespace manyworlds::tools {
 
 std::string cpu_model() {
   std::ifstream file("/proc/cpuinfo");
@@ -35,4 +35,4 @@ std::string machine_line() {
                      kCompiler);
 }
 
-}  // namespace manyworlds::cli
+}  // namespace manyworlds::tools

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace manyworlds::cli {
+namespace manyworlds::tools {
 
 // Three significant digits and a prefix: "263 k", "12.3 M", "870", "0.5".
 std::string with_prefix(double value);
@@ -21,4 +21,4 @@ std::string shell_word(const std::string& word);
 // "1 world", "3 worlds"
 std::string counted(long long count, const std::string& noun);
 
-}  // namespace manyworlds::cli
+}  // namespace manyworlds::tools

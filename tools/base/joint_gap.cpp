@@ -1,11 +1,11 @@
-#include "joint_gap.hpp"
+#include "tools/base/joint_gap.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <variant>
 #include <vector>
 
-namespace manyworlds::cli {
+namespace manyworlds::tools {
 namespace {
 
 class Poses {
@@ -87,4 +87,4 @@ double max_joint_gap(const Batch& batch) {
   return most;
 }
 
-}  // namespace manyworlds::cli
+}  // namespace manyworlds::tools

@@ -5,7 +5,7 @@
 #define MW_VERSION "0.1.0"
 #endif
 
-namespace manyworlds::cli {
+namespace manyworlds::tools {
 
 inline constexpr const char* kVersion = MW_VERSION;
 #if defined(__clang__)
@@ -16,4 +16,4 @@ inline constexpr const char* kCompiler = "gcc " __VERSION__;
 inline constexpr const char* kCompiler = "unknown";
 #endif
 
-}  // namespace manyworlds::cli
+}  // namespace manyworlds::tools

@@ -3,10 +3,10 @@
 
 #include "manyworlds/batch.hpp"
 
-namespace manyworlds::cli {
+namespace manyworlds::tools {
 
 // m: the most over all worlds that are not frozen, of balls, hinges and fixed joints the distance
 // of their anchors, of sliders and wheels that across their axis. Other joints have no gap.
 double max_joint_gap(const Batch& batch);
 
-}  // namespace manyworlds::cli
+}  // namespace manyworlds::tools
