@@ -43,6 +43,7 @@ const std::set<std::string>& report_keys() {
                                               "steps_per_call",
                                               "threads",
                                               "isa",
+                                              "iterations",
                                               "precision",
                                               "solver",
                                               "dt",
