@@ -112,7 +112,7 @@ TEST_CASE("report stability judges every case in every setting", "[cli][report]"
 TEST_CASE("report plan finds equal bits whatever was switched on", "[cli][report]") {
   const ScratchFolder folder;
   const Outcome outcome = test::run_program(
-      MW_CLI_PATH, folder, "report plan --quick --scenes ball3d,stack10,chain2d --json");
+      MW_CLI_PATH, folder, "report plan --quick --scenes ball3d,stack10,chain2d,pyramid2d --json");
   INFO(outcome.out << outcome.err);
   REQUIRE(outcome.code == 0);
   std::map<std::string, int> variants;
@@ -124,7 +124,9 @@ TEST_CASE("report plan finds equal bits whatever was switched on", "[cli][report
     CHECK(row["world_steps_per_s"].get<double>() > 0);
     if (row["must_be_same"]) CHECK(row["same_bits"] == true);
   }
-  CHECK(variants.size() == 3);
+  CHECK(variants.size() == 4);
+  CHECK(contains(outcome.out, "the same in space"));
+  CHECK(contains(outcome.out, "with a joint"));
   CHECK(variants["ball3d"] > 4);
   CHECK(contains(content(folder.path() / "report" / "plan.html"), "with friction"));
 }

@@ -80,18 +80,20 @@ std::vector<Method> substeps(const std::vector<int>& counts) {
   return out;
 }
 
-std::vector<Method> other_solvers() {
+std::vector<Method> other_solvers(bool contacts) {
   const auto method = [](const char* name, Solver solver, bool split) {
     return Method{name, [=](Options& o) {
                     o.solver = solver, o.split_impulse = split, o.substeps = 1;
                     if (solver != Solver::penalty) o.iterations = 10;
                   }};
   };
-  return {method("sequential-impulse, 10 sweeps", Solver::sequential_impulse, false),
-          method("the same with split impulses", Solver::sequential_impulse, true),
-          method("sor 1.3, 10 sweeps", Solver::sor, false),
-          method("nncg, 10 sweeps", Solver::nncg, false),
-          method("penalty", Solver::penalty, false)};
+  std::vector<Method> out = {
+      method("sequential-impulse, 10 sweeps", Solver::sequential_impulse, false),
+      method("sor 1.3, 10 sweeps", Solver::sor, false),
+      method("nncg, 10 sweeps", Solver::nncg, false), method("penalty", Solver::penalty, false)};
+  if (contacts)
+    out.push_back(method("split impulses, 10 sweeps", Solver::sequential_impulse, true));
+  return out;
 }
 
 std::vector<double> halvings(double first, int count) {

@@ -54,8 +54,8 @@ std::vector<Case> contact_cases();  // A15 to A22
 std::vector<Method> all_integrators();
 // The default integrator with these numbers of substeps.
 std::vector<Method> substeps(const std::vector<int>& counts);
-// One substep of each of the other solvers.
-std::vector<Method> other_solvers();
+// One substep of each of the other solvers; split impulses are for contacts.
+std::vector<Method> other_solvers(bool contacts);
 // first, first / 2, ... (count of them)
 std::vector<double> halvings(double first, int count);
 

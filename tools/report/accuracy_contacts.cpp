@@ -17,7 +17,7 @@ Case of_contacts(const std::string& id, const std::string& title, const std::str
   c.seconds = c.quick_seconds = seconds;
   c.steps = {1e-2, 4e-3, 1e-3, 4e-4}, c.quick_steps = {1e-2, 4e-3};
   c.methods = substeps({1, 4});
-  for (Method& m : other_solvers()) c.methods.push_back(std::move(m));
+  for (Method& m : other_solvers(true)) c.methods.push_back(std::move(m));
   return c;
 }
 

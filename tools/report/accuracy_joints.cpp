@@ -59,7 +59,7 @@ Case of_joints(const std::string& id, const std::string& title, const std::strin
   c.seconds = seconds, c.quick_seconds = quick_seconds;
   c.steps = halvings(1.0 / 30, 8), c.quick_steps = halvings(1.0 / 60, 4);
   c.methods = substeps({1, 4});
-  for (Method& m : other_solvers()) c.methods.push_back(std::move(m));
+  for (Method& m : other_solvers(false)) c.methods.push_back(std::move(m));
   return c;
 }
 

@@ -10,6 +10,7 @@
 
 #include "manyworlds/scenes.hpp"
 #include "tools/base/median.hpp"
+#include "tools/report/in_space.hpp"
 #include "tools/report/page.hpp"
 
 namespace manyworlds::report {
@@ -139,6 +140,28 @@ void add_integrators(const std::string& name, const Setup& plain, std::vector<Va
   }
 }
 
+// The third dimension, and a stage for joints: what a plan cannot be told to keep.
+void add_enlarged(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
+  const auto add = [&](const std::string& what, Scene scene) {
+    Variant v{name, what, plain, plain};
+    v.changed.scene = std::move(scene);
+    v.must_be_same = false;
+    out.push_back(v);
+  };
+  if (plain.scene.space == Space::planar) {
+    if (const auto scene = in_space(plain.scene)) add("the same in space", *scene);
+  }
+  const Plan plan = compile(plain.scene);
+  if (plan.has(Feature::joints) || plan.bodies() == 0) return;
+  Scene scene = plain.scene;
+  TargetJoint pull;  // too weak to be felt
+  pull.spring.stiffness = 1e-6, pull.max_force = 1e-6;
+  Joint joint;
+  joint.type = pull, joint.body_b = plan.scene_body(0);
+  scene.add(joint);
+  add("with a joint", scene);
+}
+
 void add_sleep(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
   Variant v{name, "at rest: without sleep, against with it", plain, plain};
   v.plain.batch.sleep = true;
@@ -176,6 +199,7 @@ std::vector<WorthRow> run_worth(const WorthOptions& options,
     const Setup plain = plain_setup(entry.make(), options.quick ? 128 : 512);
     add_kept(entry.name, plain, variants);
     add_choices(entry.name, plain, variants);
+    add_enlarged(entry.name, plain, variants);
     add_integrators(entry.name, plain, variants);
     const bool rests = compile(plain.scene).has(Feature::contacts);
     if (rests && std::string(entry.name).starts_with("stack")) {
