@@ -51,9 +51,13 @@ std::string printable(std::string text) {
   return text;
 }
 
+constexpr int kPatience = 900;  // s, for one scene
+constexpr int kTimedOut = 124;  // what timeout (coreutils) exits with
+
 // The lines that a program prints, to standard error as well: the last one says why it failed.
 std::vector<std::string> output_of(const std::string& program, const std::string& arguments) {
-  const std::string command = tools::shell_word(program) + ' ' + arguments + " 2>&1 </dev/null";
+  const std::string command = fmt::format("timeout {} {} {} 2>&1 </dev/null", kPatience,
+                                          tools::shell_word(program), arguments);
   std::FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) throw PeerError("cannot be started");
   std::string text;
@@ -63,6 +67,9 @@ std::vector<std::string> output_of(const std::string& program, const std::string
   const std::vector<std::string> lines = lines_of(text);
   if (status == 0) return lines;
   const std::string why = lines.empty() ? "" : ": " + printable(lines.back());
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kTimedOut) {
+    throw PeerError(fmt::format("not done after {} s", kPatience));
+  }
   if (WIFEXITED(status)) {
     throw PeerError(fmt::format("exit status {}{}", WEXITSTATUS(status), why));
   }
