@@ -1,9 +1,10 @@
 // The impulses of all rows of a group: forgetting them, and nonsmooth nonlinear conjugate gradients
 // between the sweeps of a solver (Silcowitz-Hansen, Niebe, Erleben 2010). With z the impulses and
 // d what a sweep has changed, per lane
-//   beta = |d|^2 / |d of the sweep before|^2, or 0 if that is more than 1
+//   beta = |d|^2 / |d of the sweep before|^2, or 0 if that is more than 1 (or not a number)
 //   z += beta way,  way = beta way + d
 // The velocities follow by a warm start with beta way.
+#include "kernels/finish.hpp"
 #include "kernels/joint/body.hpp"
 #include "kernels/solver_tables.hpp"
 
@@ -69,7 +70,7 @@ void turn(const Tables& t, const Group&, kernels::Scratch* scratch) {
     before += kLanes;
   });
   const Float last = Float::load(w.search.square);
-  const Mask shrinks = (zero < last) & (square <= last);
+  const Mask shrinks = (zero < last) & (square <= last) & is_finite(last);
   const Float beta = select(shrinks, square / select(zero < last, last, one), zero);
   square.store(w.search.square);
   before = w.search.before;

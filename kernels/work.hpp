@@ -65,7 +65,7 @@ struct FlightWork {
   Real* sum;   // of rates
 };
 
-// Of conjugate gradients (kernels/conjugate.hpp): for each impulse of each row, in the order of the
+// Of conjugate gradients (kernels/impulses.cpp): for each impulse of each row, in the order of the
 // solver, what it was and the way that it goes.
 struct Search {
   Real* before;

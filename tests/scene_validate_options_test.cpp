@@ -33,6 +33,14 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
       {"substeps", "is 0, must be between 1 and 64", [](Scene& s) { s.options.substeps = 0; }},
       {"substeps", "is -4", [](Scene& s) { s.options.substeps = -4; }},
       {"substeps", "is 65", [](Scene& s) { s.options.substeps = 65; }},
+      {"iterations", "is 0, must be between 1 and 10000",
+       [](Scene& s) { s.options.iterations = 0; }},
+      {"iterations", "is 10001", [](Scene& s) { s.options.iterations = 10001; }},
+      bad("relaxation", &Options::relaxation, 0, "is 0, must be more than 0 and less than 2"),
+      bad("relaxation", &Options::relaxation, 2, "is 2, must be more than 0 and less than 2"),
+      bad("relaxation", &Options::relaxation, kNan, "is nan, must be more than 0"),
+      bad("push_out_share", &Options::push_out_share, -0.1, "is -0.1, must be"),
+      bad("push_out_share", &Options::push_out_share, kNan, "is nan, must be"),
       {"rotation", "is quaternion, verlet takes splitting only",
        [](Scene& s) {
          s.options.integrator = Integrator::verlet;

@@ -193,21 +193,24 @@ struct Options {
   // Size of a typical body, m. Scales slop, margins and speed limits of the contact model.
   double length_unit = 1;
 
-  double contact_frequency = 60;  // Hz, of the soft contact; doubled against fixed shapes
+  // Hz, of the soft contacts of tgs_soft and penalty; doubled against fixed shapes.
+  double contact_frequency = 60;
   double contact_damping_ratio = 10;
   // m/s per length_unit: cap on the speed at which a pair's overlap is removed. Speeds of bodies
   // add up along a row: a row of n that overlap deeply can part at n / 4 times as much.
   double push_out_speed = 1.5;
-  double slop = 0.005;                // m per length_unit: contact margin is 4 slop
-  double restitution_threshold = 1;   // m/s per length_unit: slower impacts do not bounce
-  int restitution_sweeps = 16;        // most repeats of the restitution pass
-  bool friction_in_bias_pass = true;  // much less sway of tall stacks; off is a little faster
-  bool cast_against_fixed = true;     // stop fast bodies at thin fixed shapes
-  bool cast_between_moving = false;   // and at moving ones; for bullets
+  double slop = 0.005;               // m per length_unit: contact margin is 4 slop
+  double restitution_threshold = 1;  // m/s per length_unit: slower impacts do not bounce
+  int restitution_sweeps = 16;       // most repeats of the restitution pass
+  // Of tgs_soft: much less sway of tall stacks; off is a little faster.
+  bool friction_in_bias_pass = true;
+  bool cast_against_fixed = true;    // stop fast bodies at thin fixed shapes
+  bool cast_between_moving = false;  // and at moving ones; for bullets
 
   // What joints hold together is pulled back as by a spring and damper of this frequency and
   // damping ratio. Not capped: stiffer than the default may ring.
-  std::optional<double> joint_frequency;  // Hz; default a quarter per substep
+  // Hz; default a quarter per substep, and hard rows in sequential_impulse, sor and nncg.
+  std::optional<double> joint_frequency;
   double joint_damping_ratio = 2;
   // m/s per length_unit, and rad/s: cap on the speed at which a joint closes what has come apart.
   // For scenes whose joints begin far apart; under heavy loads a low one lets chains stretch.

@@ -3,31 +3,25 @@
 //
 // A sweep visits every joint, then every contact, and gives each the impulse that its own equation
 // asks for, with what those before it have done (Gauss-Seidel); contact impulses stay >= 0 and
-// friction within its cone. All solvers share the same rows and keep the impulses of a step to
-// start the next one from, but for penalty.
+// friction within its cone. All solvers share the same rows. What each does in a substep:
 //
-//                        of a substep                        rows                overlap is removed
-//   tgs_soft             a sweep, motion, a relaxing sweep    soft               by the soft rows,
-//   the
-//                                                                                 speed of it taken
-//                                                                                 back
-//   sequential_impulse   `iterations` sweeps, motion          hard               a share per
-//   substep sor                  the same, each change times          hard               a share
-//   per substep
-//                        `relaxation`
-//   nncg                 the same, with conjugate steps       hard               a share per
-//   substep
-//                        between sweeps
-//   penalty              `iterations` sweeps from nothing,    soft               by the soft rows
-//                        motion
+//   tgs_soft:            `iterations` sweeps with soft rows, motion, and a relaxing sweep with hard
+//                        ones, which takes back the speed that removes overlap
+//   sequential_impulse:  `iterations` sweeps with hard rows, motion
+//   sor:                 the same, each change of an impulse times `relaxation`
+//   nncg:                the same as sequential_impulse, with conjugate steps between sweeps
+//   penalty:             `iterations` sweeps with soft rows, from impulses of 0, motion
+//
+// All but penalty begin a step with the impulses of the last one.
 //
 // Hard rows of joints that have come apart by s ask for the speed Options::push_out_share s / h
-// (Baumgarte), those of contacts that overlap by s for the same of s - slop, at most
-// push_out_speed. That speed stays with the bodies, unless Options::split_impulse moves overlapping
-// bodies apart without one.
+// (Baumgarte 1972), those of contacts that overlap by s for the same of s - slop, at most
+// push_out_speed. That speed stays with the bodies, and its impulses count as loads (Observer,
+// Joint::break_force), unless Options::split_impulse moves overlapping bodies apart without one.
 // Soft rows are springs and dampers of Options::contact_frequency and joint_frequency, implicit
-// one by one (Catto 2011). In sequential_impulse, sor and nncg joints are soft only if
-// joint_frequency is given; springs, limits with springs and drives keep their equations in all.
+// one by one (Catto 2011); friction is hard in all. In sequential_impulse, sor and nncg joints are
+// soft only if joint_frequency is given. Springs, limits with springs and drives keep their
+// equations in all.
 #pragma once
 
 namespace manyworlds {

@@ -222,8 +222,10 @@ void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group) {
     if (view.residual) {
       Real* to = &kind.residual[w * kernels::kResidualRows];
       untangle(to, view.residual, kernels::kResidualRows, l);
-      // Groups at rest are not looked at again: what fell asleep in this step has none already.
-      if (worlds_[k]->resting(in)) std::fill_n(to, kernels::kResidualRows, Real(0));
+      // Nor of worlds that the step has lost, or that have fallen asleep in it: groups at rest are
+      // not looked at again.
+      if (worlds_[k]->resting(in) || frozen(worlds_[k]->status(in)))
+        std::fill_n(to, kernels::kResidualRows, Real(0));
     }
     const std::size_t coordinates = at(view.coordinates) * kernels::kCoordinateRows,
                       loads = at(view.joints) * kernels::kJointRows;

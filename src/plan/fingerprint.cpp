@@ -72,10 +72,9 @@ class Printer {
     add(o.cast_against_fixed), add(o.cast_between_moving);
     add(o.joint_frequency), add(o.joint_damping_ratio), add(o.joint_pull_speed);
     add(o.sleep_speed), add(o.time_to_sleep), add(o.contact_capacity), add(o.bounds);
-    if (o.solver != Solver::tgs_soft || o.iterations.value_or(1) != 1) {
-      add(o.solver), add(o.iterations);
-      add(o.relaxation), add(o.push_out_share), add(o.split_impulse);
-    }
+    if (o.solver != Solver::tgs_soft || iterations_of(o) != 1) add(o.solver), add(iterations_of(o));
+    if (o.solver == Solver::sor) add(o.relaxation);
+    if (has_hard_rows(o.solver)) add(o.push_out_share), add(o.split_impulse);
     if (flies(o)) add(o.integrator), add(o.rotation), add(o.angular_momentum);
   }
   void add(const Frame& f) { add(f.position), add(f.rotation); }

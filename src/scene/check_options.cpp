@@ -63,10 +63,7 @@ void check_solver(Checker& checker, const Options& o) {
     checker.add("options.relaxation",
                 "is " + number_text(o.relaxation) + ", must be more than 0 and less than 2");
   }
-  if (!(o.push_out_share >= 0 && o.push_out_share <= 1)) {
-    checker.add("options.push_out_share",
-                "is " + number_text(o.push_out_share) + ", must be from 0 to 1");
-  }
+  checker.between("options.push_out_share", o.push_out_share, 0, 1);
 }
 
 }  // namespace

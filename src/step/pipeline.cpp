@@ -66,7 +66,6 @@ void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group
   const kernels::Layout layout = find_rows(p, group, scratch, clock);
   if (slots) p.kernels.observer->watch(scratch, nullptr);
   const bool adds_up = slots && slots->totals[0];
-  const bool remembers = t.solver.kind != kernels::Solver::penalty;
   SolverRun<Real> run = run_of(p, group, scratch, clock, layout);
   const auto& flight = p.kernels.flight[static_cast<int>(t.inertia_kind)];
   if (t.flight.on) {
@@ -74,15 +73,10 @@ void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group
     run.lap(kFlight);
   }
   run.on_joints(run.joints.prepare);
-  if (!remembers) run.run(run.impulses.forget);
-  run.run(run.solver.push);
-  run.run(run.solver.warm_start);
-  run.run(run.solver.open);
-  run.lap(kWarmStart);
-  run.on_joints(run.joints.warm_start);
+  begin_substeps(run);
   for (int s = 0; s < t.substeps; ++s) {
     if (s + 1 == t.substeps && wanted && wanted->residual) run.residual = wanted;
-    solve_substep(run, s == 0);
+    solve_substep(run);
     if (t.breakable > 0) run.on_joints(run.joints.bear);
     if (t.has_restitution && t.solver.kind != kernels::Solver::tgs_soft) {
       run.run(run.sweeps.tally);
@@ -93,11 +87,7 @@ void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group
       run.lap(kObserve);
     }
     if (s + 1 == t.substeps) break;
-    if (!remembers) run.run(run.impulses.forget);
-    if (!remembers || !t.has_contacts) run.run(run.solver.mark);
-    run.run(run.solver.next);
-    run.lap(kAdvance);
-    run.on_joints(run.joints.warm_start);
+    next_substep(run);
   }
   run.on_joints(run.joints.store);
   if (t.has_restitution) {

@@ -87,21 +87,53 @@ void penalty(const SolverRun<Real>& run) {
   advance(run);
 }
 
+template <class Real>
+bool forgets(const SolverRun<Real>& run) {
+  return run.tables.solver.kind == Solver::penalty;
+}
+
 }  // namespace
 
 template <class Real>
-void solve_substep(const SolverRun<Real>& run, bool first) {
-  const Solver kind = run.tables.solver.kind;
-  if (kind == Solver::tgs_soft) return tgs_soft(run);
-  if (!first) run.on_joints(run.joints.follow);
-  switch (kind) {
+void begin_substeps(const SolverRun<Real>& run) {
+  if (forgets(run)) run.run(run.impulses.forget);
+  run.run(run.solver.push);
+  run.run(run.solver.warm_start);
+  run.run(run.solver.open);
+  run.lap(kWarmStart);
+  run.on_joints(run.joints.warm_start);
+}
+
+template <class Real>
+void solve_substep(const SolverRun<Real>& run) {
+  switch (run.tables.solver.kind) {
+    case Solver::tgs_soft: return tgs_soft(run);
     case Solver::nncg: return nncg(run);
     case Solver::penalty: return penalty(run);
     default: return sequential_impulse(run);
   }
 }
 
-template void solve_substep<float>(const SolverRun<float>&, bool);
-template void solve_substep<double>(const SolverRun<double>&, bool);
+template <class Real>
+void next_substep(const SolverRun<Real>& run) {
+  const auto& t = run.tables;
+  if (forgets(run)) run.run(run.impulses.forget);
+  // What the velocities have gained since is carried over, unless there is nothing to carry.
+  if (forgets(run) || !t.has_contacts) run.run(run.solver.mark);
+  run.run(run.solver.next);
+  run.lap(kAdvance);
+  // Impulses are to act where the joints are now: at rows of the substep before they would feed
+  // energy. Relaxing sweeps have brought them there already.
+  if (t.solver.kind != Solver::tgs_soft) run.on_joints(run.joints.follow);
+  run.on_joints(run.joints.warm_start);
+}
+
+#define MW_INSTANTIATE(Real)                                  \
+  template void begin_substeps<Real>(const SolverRun<Real>&); \
+  template void solve_substep<Real>(const SolverRun<Real>&);  \
+  template void next_substep<Real>(const SolverRun<Real>&);
+MW_INSTANTIATE(float)
+MW_INSTANTIATE(double)
+#undef MW_INSTANTIATE
 
 }  // namespace manyworlds

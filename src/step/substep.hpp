@@ -57,9 +57,17 @@ struct SolverRun {
   }
 };
 
+// The rows' impulses and velocities before the first substep, after joints are prepared.
+template <class Real>
+void begin_substeps(const SolverRun<Real>& run);
+
 // From the velocities that the substep begins with to those that it ends with, and the displacement
 // of the bodies.
 template <class Real>
-void solve_substep(const SolverRun<Real>& run, bool first);
+void solve_substep(const SolverRun<Real>& run);
+
+// To the velocities that the next substep begins with.
+template <class Real>
+void next_substep(const SolverRun<Real>& run);
 
 }  // namespace manyworlds

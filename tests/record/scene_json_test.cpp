@@ -25,6 +25,9 @@ std::vector<std::string> problems_of(const std::string& json) {
 Scene awkward_scene() {
   Scene scene = capsule_crowd(Space::spatial);
   scene.name = "tab \t, quote \" and \xc3\xa4";
+  scene.options.solver = Solver::sor, scene.options.iterations = 7;
+  scene.options.relaxation = 1.1, scene.options.push_out_share = 0.3;
+  scene.options.split_impulse = true;
   scene.options.dt = 1.0 / 59.94;
   scene.options.contact_capacity = 77;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-1e3, -0.1, -1), Vec3(1e3, 100.1, 1.0 / 3));

@@ -54,7 +54,7 @@ class Maker {
     for (int i = 0; i < bodies; ++i) add_body(i);
     RandomScene out;
     out.unit = unit_;
-    out.passive = lossy_ && !crowded_ && !driven_;
+    out.passive = gains_nothing_ && !crowded_ && !driven_;
     out.rough = rough_;
     const double height = (bodies / (planar_ ? 3 : 4) + 2) * cell_;
     out.top_speed = 4 * (fastest_ + std::sqrt(2 * 1.5 * scene_.options.gravity.norm() * height)) +
@@ -107,13 +107,13 @@ class Maker {
       if (o.solver == Solver::tgs_soft || dice.chance(0.3)) o.iterations = 2 + dice.below(10);
       o.split_impulse = dice.chance(0.5);
       o.push_out_share = dice.between(0.1, 0.4);
-      lossy_ = false;
+      gains_nothing_ = false;
     }
     if (dice.chance(0.15)) {
       o.integrator =
           dice.one_of({Integrator::explicit_euler, Integrator::implicit_euler, Integrator::verlet,
                        Integrator::velocity_verlet, Integrator::runge_kutta4});
-      lossy_ = false;
+      gains_nothing_ = false;
     }
   }
 
@@ -283,7 +283,7 @@ class Maker {
   Dice room_;
   Scene scene_;
   bool planar_ = false, crowded_ = false, driven_ = false, friction_ = true, bounces_ = false;
-  bool filtered_ = false, still_air_ = true, rough_ = false, lossy_ = true;
+  bool filtered_ = false, still_air_ = true, rough_ = false, gains_nothing_ = true;
   int columns_ = 1;
   double unit_ = 1, cell_ = 1, wall_ = 1, fastest_ = 0;
 };

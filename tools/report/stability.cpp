@@ -34,6 +34,8 @@ std::vector<Setting> settings(bool quick) {
                               with_substeps("twice the substeps, f32", 2)};
   if (quick) return out;
   out.push_back(with_substeps("a quarter of the substeps, f32", 0.25));
+  out.push_back(
+      {"two sweeps per substep, f32", Precision::f32, 1, [](Options& o) { o.iterations = 2; }});
   out.push_back({"a quarter of the step, f32", Precision::f32, 4});
   out.push_back(with_solver("sequential-impulse, 20 sweeps, f32", Solver::sequential_impulse));
   out.push_back(with_solver("split impulses, 20 sweeps, f32", Solver::sequential_impulse, true));

@@ -8,7 +8,7 @@
 namespace manyworlds::report {
 namespace {
 
-// The centre of those above lies over each box, by a hair less than a tenth of it.
+// The centre of those above lies over each box, an eighth of it from its edge at least.
 Trial tilted() {
   Trial t = trial("B7 tilted", "five squares, each 15 cm beyond the one below",
                   "one has moved after 20 s", "m", 0.05, 20);
