@@ -109,6 +109,7 @@ void register_observers() {
       {"penetration", {Observer::penetration}, 0},
       {"touching", {Observer::touching}, 0},
       {"contacts", {Observer::contacts}, 0},
+      {"residual", {Observer::residual}, 0},
       {"rays_8", {}, 8},
       {"rays_32", {}, 32},
       {"everything",
