@@ -68,7 +68,7 @@ class Batch(Fields, Inputs, Results):
         seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
         if not isinstance(sleep, (bool, np.bool_)):
             raise TypeError(f"sleep is of type {type(sleep).__name__}; expected a bool")
-        self._core = _core.Batch(
+        self._held = _core.Batch(
             self.plan,
             self._worlds,
             crew,
@@ -81,12 +81,12 @@ class Batch(Fields, Inputs, Results):
             rays,
             contacts_per_world,
         )
-        self._real = np.dtype(np.float32 if self._core.precision == "f32" else np.float64)
+        self._real = np.dtype(np.float32 if self._held.precision == "f32" else np.float64)
         self._watched = frozenset(name.replace("-", "_") for name in observe)
         if len(rays) > 0:
             self._watched |= {"rays"}
         self._bodies = self.plan.bodies
-        self._controls = self._core.controls
+        self._controls = self._held.controls
         self._joints = len(self.plan.scene.joints)
         self._planar = self.plan.scene.space == "planar"
         self._find_fields()
@@ -109,52 +109,52 @@ class Batch(Fields, Inputs, Results):
 
     @property
     def precision(self) -> str:
-        return self._core.precision
+        return self._held.precision
 
     @property
     def threads(self) -> int:
-        return self._core.threads
+        return self._held.threads
 
     @property
     def isa(self) -> str:
-        return self._core.isa
+        return self._held.isa
 
     @property
     def lanes(self) -> int:
         """Worlds that share a register."""
-        return self._core.lanes
+        return self._held.lanes
 
     @property
     def kernel_table(self) -> str:
         """Which kernels step it: "avx2 f32 x8"."""
-        return self._core.kernel_table
+        return self._held.kernel_table
 
     @property
     def seed(self) -> int:
-        return self._core.seed
+        return self._held.seed
 
     @property
     def bytes_per_world(self) -> int:
         """Of persistent state."""
-        return self._core.bytes_per_world
+        return self._held.bytes_per_world
 
     @property
     def time(self) -> float:
         """Simulated since construction or reset of all worlds, s."""
-        return self._core.time
+        return self._held.time
 
     @property
     def steps(self) -> int:
         """Taken since construction or reset of all worlds."""
-        return self._core.steps
+        return self._held.steps
 
     @property
     def closed(self) -> bool:
-        return self._core.closed
+        return self._held.closed
 
     def close(self) -> None:
         """Lets go of the worlds; every later use raises ValueError. Twice is once."""
-        self._core.close()
+        self._held.close()
 
     def __enter__(self) -> Batch:
         return self
@@ -183,7 +183,7 @@ class Batch(Fields, Inputs, Results):
         n = arrays.integer(n, "n", 0, MOST_STEPS)
         if controls is not None:
             self.set_controls(controls)
-        self._core.step(n)
+        self._held.step(n)
 
     def reset(self, mask_or_ids: Optional[Ids] = None) -> None:
         """Begins anew with new draws of jitter and variations, in all worlds or in some.
@@ -192,11 +192,11 @@ class Batch(Fields, Inputs, Results):
         exactly. Else the next episode of those worlds: a bool array (worlds,), or indices.
         """
         if mask_or_ids is None:
-            self._core.reset(None)
+            self._held.reset(None)
             return
         mask = np.zeros(self._worlds, dtype=np.uint8)
         mask[arrays.indices(mask_or_ids, self._worlds, "ids")] = 1
-        self._core.reset(mask)
+        self._held.reset(mask)
 
     def rollout(
         self,

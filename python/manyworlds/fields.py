@@ -33,7 +33,7 @@ class Field:
 class Fields:
     """The part of Batch about arrays."""
 
-    _core: _core.Batch
+    _held: _core.Batch
     _worlds: int
     _real: np.dtype[Any]
     _watched: frozenset[str]
@@ -42,7 +42,7 @@ class Fields:
     def _find_fields(self) -> None:
         double = np.dtype(np.float64)
         found = {}
-        for name, group, *rest in self._core.quantities():
+        for name, group, *rest in self._held.quantities():
             dtype = double if group == "parameter" else self._real
             found[name] = Field(name, group, *rest, dtype)
         self._fields = MappingProxyType(found)
@@ -83,7 +83,7 @@ class Fields:
         """
         field = self._field(name)
         out = arrays.output(out, self._shape(field, self._worlds), self._axes(field), field.dtype)
-        self._core.read(name, out)
+        self._held.read(name, out)
         return out
 
     def set(self, name: str, values: ArrayLike, ids: Optional[Ids] = None) -> None:
@@ -100,22 +100,22 @@ class Fields:
         if ids is None:
             dtype = np.float64 if field.group == "parameter" else None
             shape = self._shape(field, self._worlds)
-            self._core.write(name, arrays.numbers(values, shape, self._axes(field), name, dtype), None)
+            self._held.write(name, arrays.numbers(values, shape, self._axes(field), name, dtype), None)
             return
         worlds = arrays.indices(ids, self._worlds, "ids")
         shape, axes = self._shape(field, len(worlds)), ("ids", *self._axes(field)[1:])
         numbers = arrays.numbers(values, shape, axes, name, np.float64)
-        self._core.write(name, numbers, worlds)
+        self._held.write(name, numbers, worlds)
 
     def view(self, name: str) -> View:
         """A state field in place, as the step keeps it: see View. Raises ValueError."""
         field = self._field(name)
         if field.group != "state":
             raise ValueError(f"{name} is no state field; only those can be seen in place")
-        blocks = self._core.blocks(name)
+        blocks = self._held.blocks(name)
         if blocks is None:
             raise ValueError(f"the plan has no {name}: no body of it has any (Plan.text() says why)")
-        return View(self._core, name, blocks)
+        return View(self._held, name, blocks)
 
     def slots(self, out: Optional[NDArray[np.int32]] = None) -> NDArray[np.int32]:
         """Where worlds live in views, (worlds,) int32: lane slot % lanes of group slot // lanes.
@@ -123,5 +123,5 @@ class Fields:
         With sleep, steps may move them.
         """
         out = arrays.output(out, (self._worlds,), ("worlds",), np.int32)
-        self._core.slots(out)
+        self._held.slots(out)
         return out

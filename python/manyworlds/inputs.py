@@ -18,7 +18,7 @@ from .scene import Ray
 class Inputs:
     """Controls, forces, bodies and joints that come and go, rays."""
 
-    _core: _core.Batch
+    _held: _core.Batch
     _worlds: int
     _bodies: int
     _joints: int
@@ -33,7 +33,7 @@ class Inputs:
         """What controls are set to, (worlds, controls), in the batch's precision."""
         shape = self._worlds, self._controls
         out = arrays.output(out, shape, ("worlds", "controls"), self._real)
-        self._core.read_controls(out)
+        self._held.read_controls(out)
         return out
 
     def set_controls(self, values: ArrayLike, ids: Optional[Ids] = None) -> None:
@@ -45,12 +45,12 @@ class Inputs:
         if ids is None:
             shape = self._worlds, self._controls
             numbers = arrays.numbers(values, shape, ("worlds", "controls"), "controls")
-            self._core.write_controls(numbers, None)
+            self._held.write_controls(numbers, None)
             return
         worlds = arrays.indices(ids, self._worlds, "ids")
         shape = len(worlds), self._controls
         numbers = arrays.numbers(values, shape, ("ids", "controls"), "controls")
-        self._core.write_controls(numbers, worlds)
+        self._held.write_controls(numbers, worlds)
 
     # -- forces and impulses
 
@@ -106,7 +106,7 @@ class Inputs:
         at = None
         if points is not None:
             at = self._vectors(points, (len(worlds), len(chosen)), "points", False)
-        self._core.push(kind, worlds, chosen, full, at)
+        self._held.push(kind, worlds, chosen, full, at)
 
     def _vectors(
         self, values: ArrayLike, lead: tuple[int, ...], name: str, spin: bool
@@ -126,7 +126,7 @@ class Inputs:
     def get_enabled(self, out: Optional[NDArray[np.bool_]] = None) -> NDArray[np.bool_]:
         """Which state bodies take part, (worlds, bodies) bool."""
         out = arrays.output(out, (self._worlds, self._bodies), ("worlds", "bodies"), np.bool_)
-        self._core.enabled(out)
+        self._held.enabled(out)
         return out
 
     def set_enabled(
@@ -137,7 +137,7 @@ class Inputs:
         chosen = arrays.indices(bodies, self._bodies, "bodies")
         shape, axes = (len(worlds), len(chosen)), ("worlds", "bodies")
         flags = arrays.broadcast(enabled, shape, axes, "enabled", np.bool_)
-        self._core.set_enabled(worlds, chosen, flags)
+        self._held.set_enabled(worlds, chosen, flags)
 
     def spawn(
         self,
@@ -166,7 +166,7 @@ class Inputs:
             states[:, 7:10] = self._vectors(linear_velocity, lead, "linear_velocity", False)
         if angular_velocity is not None:
             states[:, 10:13] = self._vectors(angular_velocity, lead, "angular_velocity", True)
-        self._core.spawn(worlds, int(chosen[0]), states)
+        self._held.spawn(worlds, int(chosen[0]), states)
 
     def _quaternions(self, orientation: ArrayLike, count: int) -> NDArray[np.float64]:
         axes = ("worlds", "components")
@@ -184,7 +184,7 @@ class Inputs:
     def get_joints_enabled(self, out: Optional[NDArray[np.bool_]] = None) -> NDArray[np.bool_]:
         """Which joints hold, (worlds, joints) bool; False: disabled or broken."""
         out = arrays.output(out, (self._worlds, self._joints), ("worlds", "joints"), np.bool_)
-        self._core.joints_enabled(out)
+        self._held.joints_enabled(out)
         return out
 
     def set_joints_enabled(
@@ -195,20 +195,20 @@ class Inputs:
         chosen = arrays.indices(joints, self._joints, "joints")
         shape, axes = (len(worlds), len(chosen)), ("worlds", "joints")
         flags = arrays.broadcast(enabled, shape, axes, "enabled", np.bool_)
-        self._core.set_joints_enabled(worlds, chosen, flags)
+        self._held.set_joints_enabled(worlds, chosen, flags)
 
     def asleep(self, out: Optional[NDArray[np.bool_]] = None) -> NDArray[np.bool_]:
         """Which state bodies sleep, (worlds, bodies) bool; never kinematic ones."""
         out = arrays.output(out, (self._worlds, self._bodies), ("worlds", "bodies"), np.bool_)
-        self._core.asleep(out)
+        self._held.asleep(out)
         return out
 
     def wake(self, ids: Optional[Ids] = None) -> None:
         """Wakes everything in these worlds, or in all."""
-        self._core.wake(arrays.indices(ids, self._worlds, "ids"))
+        self._held.wake(arrays.indices(ids, self._worlds, "ids"))
 
     def set_rays(self, rays: Sequence[Ray], world: Union[int, None] = None) -> None:
         """Other rays, as many as the batch was made with. In one world body and mask cannot change."""
         if world is not None:
             world = int(arrays.indices(world, self._worlds, "world")[0])
-        self._core.set_rays(rays, world)
+        self._held.set_rays(rays, world)

@@ -68,7 +68,7 @@ def _records(columns: tuple[NDArray[Any], NDArray[Any]], dtype: np.dtype[Any]) -
 class Results:
     """Status, hashes, energy, contacts, snapshots."""
 
-    _core: _core.Batch
+    _held: _core.Batch
     _worlds: int
     _watched: frozenset[str]
 
@@ -81,7 +81,7 @@ class Results:
     def status(self, out: Optional[NDArray[np.uint32]] = None) -> NDArray[np.uint32]:
         """Bits of Status of every world, (worlds,) uint32. They stay until the world is reset."""
         out = arrays.output(out, (self._worlds,), ("worlds",), np.uint32)
-        self._core.status(out)
+        self._held.status(out)
         return out
 
     def status_names(self, world: int) -> list[str]:
@@ -95,18 +95,18 @@ class Results:
 
     def hash(self, world: Optional[int] = None) -> int:
         """Hash of the state of a world, or of all: equal for equal bits."""
-        return int(self._core.hash(None if world is None else self._world(world)))
+        return int(self._held.hash(None if world is None else self._world(world)))
 
     def hashes(self, out: Optional[NDArray[np.uint64]] = None) -> NDArray[np.uint64]:
         """Hash of the state of every world, (worlds,) uint64."""
         out = arrays.output(out, (self._worlds,), ("worlds",), np.uint64)
-        self._core.hashes(out)
+        self._held.hashes(out)
         return out
 
     def energy(self, out: Optional[NDArray[np.float64]] = None) -> NDArray[np.float64]:
         """Kinetic and potential energy, J, (worlds, 2) float64. The latter is 0 at the origin."""
         out = arrays.output(out, (self._worlds, 2), ("worlds", ""), np.float64)
-        self._core.energy(out)
+        self._held.energy(out)
         return out
 
     def contacts(self, world: int) -> NDArray[Any]:
@@ -114,7 +114,7 @@ class Results:
 
         Runs the collision stages once more: not for hot loops (see step_contacts).
         """
-        return _records(self._core.contacts(self._world(world)), CONTACT)
+        return _records(self._held.contacts(self._world(world)), CONTACT)
 
     def step_contacts(self, world: int) -> NDArray[Any]:
         """Contact points of the last step with its impulses, structured, (contacts,) of STEP_CONTACT.
@@ -123,23 +123,23 @@ class Results:
         """
         if "contacts" not in self._watched:
             raise ValueError("contacts are not observed; make the Batch with observe=['contacts']")
-        return _records(self._core.step_contacts(self._world(world)), STEP_CONTACT)
+        return _records(self._held.step_contacts(self._world(world)), STEP_CONTACT)
 
     def measure_contacts(self) -> dict[str, float]:
         """Contacts of all worlds in four numbers; slow, like contacts."""
-        return self._core.measure_contacts()
+        return self._held.measure_contacts()
 
     def look(self) -> None:
         """Observes motion, joints and rays at the current state, without a step."""
         if not self._watched:
             raise ValueError("nothing is observed; make the Batch with observe=[...] or rays=[...]")
-        self._core.look()
+        self._held.look()
 
     # -- snapshots
 
     def save(self, ids: Optional[Ids] = None) -> _core.Snapshot:
         """A Snapshot of all worlds with clock and episodes, or of those of ``ids``, in this order."""
-        return self._core.save(None if ids is None else arrays.indices(ids, self._worlds, "ids"))
+        return self._held.save(None if ids is None else arrays.indices(ids, self._worlds, "ids"))
 
     def restore(
         self,
@@ -157,7 +157,7 @@ class Results:
             found = type(snapshot).__name__
             raise TypeError(f"snapshot is of type {found}; expected a manyworlds.Snapshot")
         if source is None and ids is None:
-            self._core.restore(snapshot, None)
+            self._held.restore(snapshot, None)
             return
         worlds = arrays.indices(ids, self._worlds, "ids")
         saved = arrays.indices(source, snapshot.worlds, "source")
@@ -166,8 +166,8 @@ class Results:
         if len(saved) != len(worlds):
             raise ValueError(f"source has {len(saved)} worlds, ids {len(worlds)}; expected as many")
         pairs = np.stack([saved, worlds], axis=1).ravel()
-        self._core.restore(snapshot, np.ascontiguousarray(pairs, dtype=np.int32))
+        self._held.restore(snapshot, np.ascontiguousarray(pairs, dtype=np.int32))
 
     def copy_world(self, source: int, target: int) -> None:
         """World ``target`` goes on as world ``source`` does."""
-        self._core.copy_world(self._world(source), self._world(target))
+        self._held.copy_world(self._world(source), self._world(target))

@@ -51,7 +51,7 @@ def rollout(
         for f in known
     ]
     _begin(batch, initial)
-    batch._core.rollout(count, every, played, names, filled)
+    batch._held.rollout(count, every, played, names, filled)
     return dict(zip(names, filled))
 
 

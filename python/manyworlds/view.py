@@ -23,13 +23,13 @@ class View:
     nothing steps them any more. Do not touch them while another thread steps.
     """
 
-    __slots__ = ("_core", "_name", "_blocks")
+    __slots__ = ("_held", "_name", "_blocks")
 
     def __init__(self, core: _core.Batch, name: str, blocks: NDArray[Any]) -> None:
-        self._core, self._name, self._blocks = core, name, blocks
+        self._held, self._name, self._blocks = core, name, blocks
 
     def _open(self) -> NDArray[Any]:
-        if self._core.closed:
+        if self._held.closed:
             raise ValueError(f"the batch of this view of {self._name} is closed")
         return self._blocks
 
@@ -71,6 +71,6 @@ class View:
         return self._open().__dlpack_device__()
 
     def __repr__(self) -> str:
-        if self._core.closed:
+        if self._held.closed:
             return f"<manyworlds.View of {self._name}: the batch is closed>"
         return f"<manyworlds.View of {self._name}: {self.shape} {self.dtype}>"
