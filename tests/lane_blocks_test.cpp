@@ -1,5 +1,5 @@
-// State in place (Batch::lane_blocks): it is what read() and write() see, where a body's own frame is
-// the one that the kernels keep.
+// State in place (Batch::lane_blocks): it is what read() and write() see, where a body's own frame
+// is the one that the kernels keep.
 #include <catch2/catch.hpp>
 
 #include <cstddef>
@@ -34,9 +34,9 @@ std::vector<Real> gathered(Batch& batch, Field field) {
     const auto lane = static_cast<std::size_t>(batch.slot(w) % at.lanes);
     for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b) {
       for (std::size_t c = 0; c < static_cast<std::size_t>(at.components); ++c) {
-        out.push_back(static_cast<const Real*>(
-            at.data)[group * at.group_stride + b * at.body_stride + c * at.component_stride +
-                     lane]);
+        out.push_back(
+            static_cast<const Real*>(at.data)[group * at.group_stride + b * at.body_stride +
+                                              c * at.component_stride + lane]);
       }
     }
   }

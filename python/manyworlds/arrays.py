@@ -33,6 +33,14 @@ def integer(value: Any, name: str, low: int, high: int) -> int:
     return number
 
 
+def index(value: Any, count: int, name: str) -> int:
+    """``value`` as an index below ``count``. TypeError, IndexError."""
+    try:
+        return integer(value, name, 0, count - 1)
+    except ValueError as error:
+        raise IndexError(str(error)) from None
+
+
 def indices(ids: Optional[Ids], count: int, name: str) -> Indices:
     """Indices below ``count`` as int32: None is all of them, a bool array a mask over all.
 

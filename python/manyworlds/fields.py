@@ -100,7 +100,9 @@ class Fields:
         if ids is None:
             dtype = np.float64 if field.group == "parameter" else None
             shape = self._shape(field, self._worlds)
-            self._held.write(name, arrays.numbers(values, shape, self._axes(field), name, dtype), None)
+            self._held.write(
+                name, arrays.numbers(values, shape, self._axes(field), name, dtype), None
+            )
             return
         worlds = arrays.indices(ids, self._worlds, "ids")
         shape, axes = self._shape(field, len(worlds)), ("ids", *self._axes(field)[1:])
@@ -114,7 +116,9 @@ class Fields:
             raise ValueError(f"{name} is no state field; only those can be seen in place")
         blocks = self._held.blocks(name)
         if blocks is None:
-            raise ValueError(f"the plan has no {name}: no body of it has any (Plan.text() says why)")
+            raise ValueError(
+                f"the plan has no {name}: no body of it has any (Plan.text() says why)"
+            )
         return View(self._held, name, blocks)
 
     def slots(self, out: Optional[NDArray[np.int32]] = None) -> NDArray[np.int32]:

@@ -4,7 +4,7 @@ goes."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Optional, Union
+from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -155,7 +155,7 @@ class Inputs:
         ValueError for shapes and for orientations of length 0, IndexError for indices.
         """
         worlds = arrays.indices(ids, self._worlds, "ids")
-        chosen = arrays.indices([arrays.integer(body, "body", 0, self._bodies - 1)], self._bodies, "")
+        body = arrays.index(body, self._bodies, "body")
         lead = (len(worlds),)
         states = np.zeros((len(worlds), 13))
         states[:, 0:3] = self._vectors(position, lead, "position", False)
@@ -166,7 +166,7 @@ class Inputs:
             states[:, 7:10] = self._vectors(linear_velocity, lead, "linear_velocity", False)
         if angular_velocity is not None:
             states[:, 10:13] = self._vectors(angular_velocity, lead, "angular_velocity", True)
-        self._held.spawn(worlds, int(chosen[0]), states)
+        self._held.spawn(worlds, body, states)
 
     def _quaternions(self, orientation: ArrayLike, count: int) -> NDArray[np.float64]:
         axes = ("worlds", "components")
@@ -207,8 +207,8 @@ class Inputs:
         """Wakes everything in these worlds, or in all."""
         self._held.wake(arrays.indices(ids, self._worlds, "ids"))
 
-    def set_rays(self, rays: Sequence[Ray], world: Union[int, None] = None) -> None:
+    def set_rays(self, rays: Sequence[Ray], world: Optional[int] = None) -> None:
         """Other rays, as many as the batch was made with. In one world body and mask cannot change."""
         if world is not None:
-            world = int(arrays.indices(world, self._worlds, "world")[0])
+            world = arrays.index(world, self._worlds, "world")
         self._held.set_rays(rays, world)

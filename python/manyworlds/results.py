@@ -73,10 +73,7 @@ class Results:
     _watched: frozenset[str]
 
     def _world(self, world: Any) -> int:
-        chosen = arrays.indices(world, self._worlds, "world")
-        if len(chosen) != 1 or np.ndim(world) != 0:
-            raise TypeError("world must be one integer")
-        return int(chosen[0])
+        return arrays.index(world, self._worlds, "world")
 
     def status(self, out: Optional[NDArray[np.uint32]] = None) -> NDArray[np.uint32]:
         """Bits of Status of every world, (worlds,) uint32. They stay until the world is reset."""

@@ -169,4 +169,3 @@ def mesh_mass_properties(
     with everything that is wrong with the mesh.
     """
     return _core.mesh_mass_properties(vertices, triangles, density)
-

@@ -55,8 +55,8 @@ template <class T>
 nanobind::ndarray<nanobind::numpy, T> owned(std::vector<T> numbers,
                                             std::initializer_list<std::size_t> shape) {
   auto* kept = new std::vector<T>(std::move(numbers));
-  const nanobind::capsule owner(
-      kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  const nanobind::capsule owner(kept,
+                                [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
   return {kept->data(), shape, owner};
 }
 

@@ -15,8 +15,9 @@ void bind_snapshot(nanobind::module_& m);  // Snapshot, SnapshotError
 void bind_batch(nanobind::module_& m);     // Batch: construction, shape, stepping, resets
 
 // The rest of Batch, by what it is about.
-void bind_batch_state(nanobind::class_<HeldBatch>& c);    // fields as arrays, in place; controls
-void bind_batch_inputs(nanobind::class_<HeldBatch>& c);   // forces, bodies and joints that come and go
+void bind_batch_state(nanobind::class_<HeldBatch>& c);  // fields as arrays, in place; controls
+void bind_batch_inputs(
+    nanobind::class_<HeldBatch>& c);  // forces, bodies and joints that come and go
 void bind_batch_results(nanobind::class_<HeldBatch>& c);  // status, hashes, energy, contacts
 void bind_batch_rollout(nanobind::class_<HeldBatch>& c);  // many steps in one call
 

@@ -14,9 +14,7 @@ namespace {
 // A property that is a member function of Batch.
 template <auto member>
 auto property() {
-  return [](HeldBatch& self) {
-    return self.with([](Batch& b) { return (b.*member)(); });
-  };
+  return [](HeldBatch& self) { return self.with([](Batch& b) { return (b.*member)(); }); };
 }
 
 void make(HeldBatch* self, const Plan& plan, nb::object worlds, nb::object threads,
@@ -71,9 +69,11 @@ void bind_batch(nb::module_& m) {
       .def_prop_ro("time", property<&Batch::time>())
       .def_prop_ro("steps", property<&Batch::steps>())
       .def_prop_ro("sleeps", property<&Batch::sleeps>())
-      .def_prop_ro("isa", [](HeldBatch& s) { return s.with([](Batch& b) { return name_of(b.isa()); }); })
-      .def_prop_ro("precision",
-                   [](HeldBatch& s) { return s.with([](Batch& b) { return name_of(b.precision()); }); })
+      .def_prop_ro("isa",
+                   [](HeldBatch& s) { return s.with([](Batch& b) { return name_of(b.isa()); }); })
+      .def_prop_ro(
+          "precision",
+          [](HeldBatch& s) { return s.with([](Batch& b) { return name_of(b.precision()); }); })
       .def("step", &step, nb::arg("n"), "Takes n steps, without the GIL.")
       .def("reset", &reset, nb::arg("mask").none(),
            "All worlds from the first episode, or the next episode of those in the mask.");

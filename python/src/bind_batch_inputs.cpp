@@ -71,7 +71,9 @@ void spawn(HeldBatch& self, const Ids& worlds, int body, const In<double>& state
     for (std::size_t i = 0; i < worlds.size(); ++i) {
       const double* s = states.data() + 13 * i;
       b.spawn(worlds.data()[i], body,
-              {{s[0], s[1], s[2]}, {s[3], s[4], s[5], s[6]}, {s[7], s[8], s[9]},
+              {{s[0], s[1], s[2]},
+               {s[3], s[4], s[5], s[6]},
+               {s[7], s[8], s[9]},
                {s[10], s[11], s[12]}});
     }
   });

@@ -38,8 +38,9 @@ void energy(HeldBatch& self, const Out<double>& out) {
   });
 }
 
-// Contacts as columns: integers (n, 5) body_a, body_b, shape_a, shape_b, feature, and numbers (n, k)
-// normal, point, separation, normal impulse and, of those of the last step, friction impulse, twist.
+// Contacts as columns: integers (n, 5) body_a, body_b, shape_a, shape_b, feature, and numbers (n,
+// k) normal, point, separation, normal impulse and, of those of the last step, friction impulse,
+// twist.
 struct Columns {
   std::vector<std::int32_t> integers;
   std::vector<double> numbers;
@@ -104,27 +105,28 @@ void restore(HeldBatch& self, const Snapshot& snapshot, const std::optional<Ids>
 void bind_batch_results(nb::class_<HeldBatch>& c) {
   c.def("status", &status, nb::arg("out").noconvert(), "Fills status bits, (worlds).")
       .def("hashes", &hashes, nb::arg("out").noconvert(), "Fills hashes of the state, (worlds).")
-      .def("hash",
-           [](HeldBatch& s, std::optional<int> world) {
-             return s.run([world](Batch& b) { return world ? b.hash(*world) : b.hash(); });
-           },
-           nb::arg("world").none(), "Of a world, or of all.")
+      .def(
+          "hash",
+          [](HeldBatch& s, std::optional<int> world) {
+            return s.run([world](Batch& b) { return world ? b.hash(*world) : b.hash(); });
+          },
+          nb::arg("world").none(), "Of a world, or of all.")
       .def("energy", &energy, nb::arg("out").noconvert(),
            "Fills kinetic and potential energy, (worlds, 2).")
       .def("contacts", &contacts, nb::arg("world"), "Columns of the contacts at this state.")
-      .def("step_contacts", &step_contacts, nb::arg("world"), "Columns of the last step's contacts.")
+      .def("step_contacts", &step_contacts, nb::arg("world"),
+           "Columns of the last step's contacts.")
       .def("measure_contacts", &measure_contacts, "Contacts of all worlds in four numbers.")
-      .def("look",
-           [](HeldBatch& s) { s.run([](Batch& b) { b.look(); }); },
-           "Observes motion, joints and rays at this state.")
+      .def(
+          "look", [](HeldBatch& s) { s.run([](Batch& b) { b.look(); }); },
+          "Observes motion, joints and rays at this state.")
       .def("save", &save, nb::arg("worlds").none(), "A Snapshot of all or of some worlds.")
       .def("restore", &restore, nb::arg("snapshot"), nb::arg("pairs").none(),
            "All worlds, or pairs (world of the snapshot, world of the batch).")
-      .def("copy_world",
-           [](HeldBatch& s, int from, int to) {
-             s.run([=](Batch& b) { b.copy_world(from, to); });
-           },
-           nb::arg("source"), nb::arg("target"), "Copies a world's state.");
+      .def(
+          "copy_world",
+          [](HeldBatch& s, int from, int to) { s.run([=](Batch& b) { b.copy_world(from, to); }); },
+          nb::arg("source"), nb::arg("target"), "Copies a world's state.");
 }
 
 }  // namespace manyworlds::python

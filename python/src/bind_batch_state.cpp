@@ -31,9 +31,7 @@ Quantity quantity(HeldBatch& self, const std::string& name) {
 
 void read(HeldBatch& self, const std::string& name, const AnyOut& out) {
   const Quantity q = quantity(self, name);
-  with_reals(out, [&](auto numbers) {
-    self.run([&](Batch& b) { read_quantity(b, q, numbers); });
-  });
+  with_reals(out, [&](auto numbers) { self.run([&](Batch& b) { read_quantity(b, q, numbers); }); });
 }
 
 void write_all(Batch& batch, const Quantity& q, auto numbers) {

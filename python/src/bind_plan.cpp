@@ -68,8 +68,8 @@ void bind_plan(nb::module_& m) {
             new (self) Plan(compile(s, options));
           },
           nb::arg("scene"), nb::arg("broad_phase") = "automatic", nb::arg("keep") = nb::tuple())
-      .def_prop_ro("scene", [](const Plan& p) { return to_python(p.scene()); },
-                   "A copy of the scene.")
+      .def_prop_ro(
+          "scene", [](const Plan& p) { return to_python(p.scene()); }, "A copy of the scene.")
       .def_prop_ro("bodies", &Plan::bodies, "State bodies: dynamic and kinematic ones.")
       .def_prop_ro("coordinates", &Plan::coordinates, "Coordinates of all joints.")
       .def_prop_ro("fingerprint", &Plan::fingerprint,

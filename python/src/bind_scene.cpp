@@ -77,7 +77,8 @@ void bind_scene(nb::module_& m) {
       "scene_names",
       [] {
         std::vector<std::pair<std::string, std::string>> out;
-        for (const scenes::Entry& entry : scenes::all()) out.emplace_back(entry.name, entry.summary);
+        for (const scenes::Entry& entry : scenes::all())
+          out.emplace_back(entry.name, entry.summary);
         return out;
       },
       "(name, summary) of every scene that has a name.");
@@ -85,10 +86,9 @@ void bind_scene(nb::module_& m) {
       "joint_at",
       [](nb::object scene, int body_a, int body_b, nb::object frame, nb::object type) {
         const Scene s = sound_scene(scene);
-        return to_python(joint_at(s, body_index(s, "body_a", body_a, -1),
-                                  body_index(s, "body_b", body_b, -1),
-                                  from_python<Frame>(frame, "frame"),
-                                  from_python<JointType>(type, "type")));
+        return to_python(
+            joint_at(s, body_index(s, "body_a", body_a, -1), body_index(s, "body_b", body_b, -1),
+                     from_python<Frame>(frame, "frame"), from_python<JointType>(type, "type")));
       },
       nb::arg("scene"), nb::arg("body_a"), nb::arg("body_b"), nb::arg("frame"), nb::arg("type"),
       "A joint of two bodies whose frames are where `frame` is in the world.");

@@ -30,7 +30,8 @@ void bind_snapshot(nb::module_& m) {
   nb::class_<Snapshot>(
       m, "Snapshot",
       "The whole state of some worlds of a Batch, to go on from later, elsewhere or many times.\n\n"
-      "Made by Batch.save(). It knows nothing of lanes, threads or places, so a world continues bit\n"
+      "Made by Batch.save(). It knows nothing of lanes, threads or places, so a world continues "
+      "bit\n"
       "by bit wherever it is restored. Can be pickled.")
       .def_prop_ro("worlds", &Snapshot::worlds, "How many worlds it holds.")
       .def_prop_ro("steps", &Snapshot::steps, "Steps that the batch had taken.")
@@ -44,11 +45,12 @@ void bind_snapshot(nb::module_& m) {
       .def_static("load", &Snapshot::load, nb::arg("file"),
                   nb::call_guard<nb::gil_scoped_release>(),
                   "Reads a file that save() wrote. Raises SnapshotError.")
-      .def("__eq__",
-           [](const Snapshot& a, nb::handle b) {
-             return nb::isinstance<Snapshot>(b) && nb::cast<const Snapshot&>(b).bytes() == a.bytes();
-           },
-           nb::arg("other").none())
+      .def(
+          "__eq__",
+          [](const Snapshot& a, nb::handle b) {
+            return nb::isinstance<Snapshot>(b) && nb::cast<const Snapshot&>(b).bytes() == a.bytes();
+          },
+          nb::arg("other").none())
       .def("__getstate__", &bytes_of)
       .def("__setstate__",
            [](Snapshot& self, const nb::bytes& data) { new (&self) Snapshot(from_bytes(data)); })

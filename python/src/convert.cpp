@@ -71,7 +71,8 @@ std::vector<nb::object> read_elements(nb::handle value, const Place& place, int 
   const auto wanted = [&] {
     return count < 0 ? std::string(expected) : std::to_string(count) + " " + expected;
   };
-  if (PyUnicode_Check(value.ptr()) || PyBytes_Check(value.ptr()) || !PySequence_Check(value.ptr())) {
+  if (PyUnicode_Check(value.ptr()) || PyBytes_Check(value.ptr()) ||
+      !PySequence_Check(value.ptr())) {
     wrong_type(place, value, wanted());
   }
   const nb::object list = nb::steal(PySequence_List(value.ptr()));

@@ -72,11 +72,11 @@ struct Converter<bool> {
   static nb::object write(bool value) { return nb::bool_(value); }
 };
 template <class T>
-  requires std::is_integral_v<T>
+requires std::is_integral_v<T>
 struct Converter<T> {
   static T read(nb::handle value, const Place& place) {
-    return static_cast<T>(read_integer(value, place, std::numeric_limits<T>::min(),
-                                       std::numeric_limits<T>::max()));
+    return static_cast<T>(
+        read_integer(value, place, std::numeric_limits<T>::min(), std::numeric_limits<T>::max()));
   }
   static nb::object write(T value) { return nb::int_(value); }
 };
@@ -86,7 +86,7 @@ struct Converter<std::string> {
   static nb::object write(const std::string& value) { return nb::str(value.c_str(), value.size()); }
 };
 template <class Enum>
-  requires std::is_enum_v<Enum>
+requires std::is_enum_v<Enum>
 struct Converter<Enum> {
   static Enum read(nb::handle value, const Place& place) {
     const std::string text = read_text(value, place);

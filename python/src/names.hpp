@@ -22,14 +22,15 @@ struct Named {
 template <class Enum>
 struct Names;
 
-#define MW_NAMES(Enum, ...)                                      \
-  template <>                                                    \
-  struct Names<Enum> {                                           \
-    using E = Enum;                                              \
-    static constexpr const char* kind = #Enum;                   \
-    static constexpr Named<Enum> all[] = {__VA_ARGS__};          \
+#define MW_NAMES(Enum, ...)                             \
+  template <>                                           \
+  struct Names<Enum> {                                  \
+    using E = Enum;                                     \
+    static constexpr const char* kind = #Enum;          \
+    static constexpr Named<Enum> all[] = {__VA_ARGS__}; \
   }
-#define MW_NAME(x) {E::x, #x}
+#define MW_NAME(x) \
+  { E::x, #x }
 
 MW_NAMES(Space, MW_NAME(planar), MW_NAME(spatial));
 MW_NAMES(Motion, MW_NAME(dynamic), MW_NAME(kinematic), MW_NAME(fixed));

@@ -82,8 +82,8 @@ std::vector<Quantity> quantities_of(const Batch& batch) {
     const Field field{i};
     const FieldInfo& f = info(field);
     const int n = components(field, space);
-    out.push_back({field, f.name, "state", "", "body", items(batch.size(field), n), n, f.unit,
-                   f.meaning});
+    out.push_back(
+        {field, f.name, "state", "", "body", items(batch.size(field), n), n, f.unit, f.meaning});
   }
   for (int i = 0; i < kParameterCount; ++i) {
     const Parameter parameter{i};

@@ -20,17 +20,17 @@ namespace manyworlds::python {
 #define MW_EACH_9(X, a, ...) X(a) MW_EACH_8(X, __VA_ARGS__)
 #define MW_EACH_10(X, a, ...) X(a) MW_EACH_9(X, __VA_ARGS__)
 #define MW_PICK(a, b, c, d, e, f, g, h, i, j, pick, ...) pick
-#define MW_EACH(X, ...)                                                                        \
-  MW_PICK(__VA_ARGS__, MW_EACH_10, MW_EACH_9, MW_EACH_8, MW_EACH_7, MW_EACH_6, MW_EACH_5,      \
-          MW_EACH_4, MW_EACH_3, MW_EACH_2, MW_EACH_1)                                          \
+#define MW_EACH(X, ...)                                                                   \
+  MW_PICK(__VA_ARGS__, MW_EACH_10, MW_EACH_9, MW_EACH_8, MW_EACH_7, MW_EACH_6, MW_EACH_5, \
+          MW_EACH_4, MW_EACH_3, MW_EACH_2, MW_EACH_1)                                     \
   (X, __VA_ARGS__)
 #define MW_VISIT(member) visit(#member, s.member);
 // A struct with up to 10 members; longer ones have several lines of them.
-#define MW_DESCRIBE(Struct, ...)                                             \
-  template <>                                                                \
-  struct Described<Struct> {                                                 \
-    static constexpr const char* name = #Struct;                             \
-    static void fields(auto&& visit, auto& s) { __VA_ARGS__ }                \
+#define MW_DESCRIBE(Struct, ...)                              \
+  template <>                                                 \
+  struct Described<Struct> {                                  \
+    static constexpr const char* name = #Struct;              \
+    static void fields(auto&& visit, auto& s) { __VA_ARGS__ } \
   }
 #define MW_MEMBERS(...) MW_EACH(MW_VISIT, __VA_ARGS__)
 
@@ -49,8 +49,7 @@ MW_DESCRIBE(Terrain, MW_MEMBERS(points, loop));
 MW_DESCRIBE(HeightField, MW_MEMBERS(heights, columns, cell));
 MW_DESCRIBE(Material, MW_MEMBERS(friction, restitution));
 MW_DESCRIBE(Filter, MW_MEMBERS(category, mask));
-MW_DESCRIBE(Shape,
-            MW_MEMBERS(geometry, position, rotation, density, material, filter, name));
+MW_DESCRIBE(Shape, MW_MEMBERS(geometry, position, rotation, density, material, filter, name));
 
 // -- bodies
 MW_DESCRIBE(MassProperties, MW_MEMBERS(mass, center, inertia));
@@ -81,16 +80,16 @@ MW_DESCRIBE(Control, MW_MEMBERS(name, kind, joint, body, point, direction, low, 
 MW_DESCRIBE(Attractor, MW_MEMBERS(position, strength, softening));
 MW_DESCRIBE(Variation, MW_MEMBERS(parameter, body, shape, low, high, draw, together));
 MW_DESCRIBE(Options,
-            MW_MEMBERS(dt, substeps, gravity, wind, density, integrator, rotation,
-                       angular_momentum, solver, iterations)
+            MW_MEMBERS(dt, substeps, gravity, wind, density, integrator, rotation, angular_momentum,
+                       solver, iterations)
                 MW_MEMBERS(relaxation, push_out_share, split_impulse, length_unit,
                            contact_frequency, contact_damping_ratio, push_out_speed, slop,
                            restitution_threshold, restitution_sweeps)
                     MW_MEMBERS(friction_in_bias_pass, cast_against_fixed, cast_between_moving,
                                joint_frequency, joint_damping_ratio, joint_pull_speed, sleep_speed,
                                time_to_sleep, contact_capacity, bounds));
-MW_DESCRIBE(Scene, MW_MEMBERS(name, space, bodies, joints, controls, attractors, options,
-                              variations));
+MW_DESCRIBE(Scene,
+            MW_MEMBERS(name, space, bodies, joints, controls, attractors, options, variations));
 MW_DESCRIBE(Ray, MW_MEMBERS(origin, direction, length, body, mask));
 
 #undef MW_DESCRIBE

@@ -71,7 +71,9 @@ def test_parameters_vary_in_float64():
 
 
 def test_observed_fields():
-    batch = fresh(observe=["motion", "touching", "contacts"], rays=[mw.Ray(direction=(0, 0, -1))] * 2)
+    batch = fresh(
+        observe=["motion", "touching", "contacts"], rays=[mw.Ray(direction=(0, 0, -1))] * 2
+    )
     batch.step(30)
     energy = batch.energy()
     assert energy.shape == (6, 2) and energy.dtype == np.float64

@@ -52,7 +52,9 @@ def test_forces_act_as_the_law_says():
 
 
 def test_planar_forces_and_torques():
-    scene = mw.Scene(space="planar", bodies=[mw.Body(shapes=[mw.Shape(geometry=mw.Polygon.box(1, 1))])])
+    scene = mw.Scene(
+        space="planar", bodies=[mw.Body(shapes=[mw.Shape(geometry=mw.Polygon.box(1, 1))])]
+    )
     scene.options.gravity = (0, 0, 0)
     batch = mw.Batch(scene, worlds=2, precision="f64")
     own = scene.mass_properties(0)
