@@ -10,4 +10,6 @@ NB_MODULE(_core, m) {
   mw::bind_plan(m);
   mw::bind_snapshot(m);
   mw::bind_batch(m);
+  mw::bind_expression(m);
+  mw::bind_environment(m);
 }

@@ -1,0 +1,172 @@
+// Tasks that have a name, what is wrong with a task, and Environment: actions in, arrays out.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "arrays.hpp"
+#include "bind.hpp"
+#include "held_batch.hpp"
+#include "manyworlds/tasks.hpp"
+#include "task_fields.hpp"
+
+namespace manyworlds::python {
+
+namespace {
+
+class HeldEnvironment : public Held<Environment> {
+ public:
+  HeldEnvironment(const Task& task, const EnvironmentOptions& options)
+      : Held(std::make_shared<Environment>(task, options), "Environment") {}
+};
+
+template <class T>
+using MaybeOut = std::optional<Out<T>>;
+
+template <class T>
+std::span<T> span_or_none(const MaybeOut<T>& array) {
+  return array ? span_of(*array) : std::span<T>();
+}
+std::span<std::uint8_t> flags(const MaybeOut<bool>& array) {
+  if (!array) return {};
+  return {reinterpret_cast<std::uint8_t*>(array->data()), array->size()};
+}
+
+void make(HeldEnvironment* self, nb::object task, nb::object worlds, nb::object threads,
+          std::uint64_t seed, nb::object precision, nb::object isa, nb::object autoreset) {
+  const Task t = from_python<Task>(task, "task");
+  EnvironmentOptions options;
+  options.worlds = from_python<int>(worlds, "worlds");
+  options.threads = from_python<int>(threads, "threads");
+  options.seed = seed;
+  options.precision = from_python<Precision>(precision, "precision");
+  options.isa = from_python<std::optional<Isa>>(isa, "isa");
+  options.autoreset = from_python<Autoreset>(autoreset, "autoreset");
+  const nb::gil_scoped_release release;
+  new (self) HeldEnvironment(t, options);
+}
+
+template <class T>
+void step(HeldEnvironment& self, const In<T>& actions, const MaybeOut<float>& observations,
+          const MaybeOut<double>& rewards, const MaybeOut<bool>& terminated,
+          const MaybeOut<bool>& truncated, const MaybeOut<double>& reward_terms,
+          const MaybeOut<float>& final_observations) {
+  self.run([&](Environment& e) {
+    e.step(span_of(actions), {.observations = span_or_none(observations),
+                              .final_observations = span_or_none(final_observations),
+                              .rewards = span_or_none(rewards),
+                              .reward_terms = span_or_none(reward_terms),
+                              .terminated = flags(terminated),
+                              .truncated = flags(truncated)});
+  });
+}
+
+template <class T>
+void def_step(nb::class_<HeldEnvironment>& c, const char* name) {
+  const auto out = [](const char* array) { return nb::arg(array).noconvert().none(); };
+  c.def(name, &step<T>, nb::arg("actions").noconvert(), out("observations"), out("rewards"),
+        out("terminated"), out("truncated"), out("reward_terms"), out("final_observations"),
+        "One step of the task in every world, without the GIL, into arrays; None: not wanted.");
+}
+
+void reset(HeldEnvironment& self, const In<std::uint8_t>& mask,
+           const std::optional<In<std::uint64_t>>& seeds, const MaybeOut<float>& observations) {
+  self.run([&](Environment& e) {
+    if (seeds) {
+      e.reset(span_of(mask), span_of(*seeds), span_or_none(observations));
+    } else {
+      e.reset(span_of(mask), span_or_none(observations));
+    }
+  });
+}
+
+void lost(HeldEnvironment& self, const Out<bool>& out) {
+  self.run([&](Environment& e) {
+    check_size("out", out.size(), static_cast<std::size_t>(e.worlds()));
+    for (int w = 0; w < e.worlds(); ++w) {
+      out.data()[w] = manyworlds::lost(e.batch().status(w));
+    }
+  });
+}
+
+// The environment's own batch: it keeps the environment alive, and takes turns with it.
+HeldBatch* batch_of(HeldEnvironment& self) {
+  return self.with([&](Environment& e) {
+    const auto owner = self.share();
+    return new HeldBatch(std::shared_ptr<Batch>(owner, &e.batch()), self.busy());
+  });
+}
+
+nb::object load(const std::string& name) {
+  if (const tasks::Entry* entry = tasks::find(name)) return to_python(entry->make());
+  std::vector<std::string> known;
+  for (const tasks::Entry& entry : tasks::all()) known.emplace_back(entry.name);
+  throw nb::value_error(("the task " + unknown_name(name, known)).c_str());
+}
+
+void bind_tasks(nb::module_& m) {
+  m.def("load_task", &load, nb::arg("name"), "A task that has a name.");
+  m.def(
+      "task_names",
+      [] {
+        std::vector<std::pair<std::string, std::string>> out;
+        for (const tasks::Entry& entry : tasks::all()) out.emplace_back(entry.name, entry.summary);
+        return out;
+      },
+      "(name, summary) of every task that has a name.");
+  m.def(
+      "validate_task",
+      [](nb::object task) {
+        std::vector<std::pair<std::string, std::string>> out;
+        for (const Issue& issue : validate(from_python<Task>(task, "task"))) {
+          out.emplace_back(issue.place, issue.message);
+        }
+        return out;
+      },
+      nb::arg("task"), "Every issue of a task and its scene as (place, message).");
+  m.def(
+      "default_task_values",
+      [] {
+        nb::dict out;
+        out["Action"] = to_python(Action{});
+        out["Task"] = to_python(Task{});
+        return out;
+      },
+      "The library's default values of a task's dataclasses, by their names.");
+}
+
+}  // namespace
+
+void bind_environment(nb::module_& m) {
+  bind_tasks(m);
+  nb::class_<HeldEnvironment> c(
+      m, "Environment", "A task in many worlds. Private: use manyworlds.Environment.");
+  c.def("__init__", &make, nb::arg("task"), nb::arg("worlds"), nb::arg("threads"), nb::arg("seed"),
+        nb::arg("precision"), nb::arg("isa").none(), nb::arg("autoreset"))
+      .def("close", &HeldEnvironment::close)
+      .def_prop_ro("closed", &HeldEnvironment::closed)
+      .def_prop_ro("actions",
+                   [](HeldEnvironment& s) {
+                     return s.with([](Environment& e) { return e.actions(); });
+                   })
+      .def("reset", &reset, nb::arg("mask").noconvert(), nb::arg("seeds").noconvert().none(),
+           nb::arg("observations").noconvert().none())
+      .def(
+          "begin",
+          [](HeldEnvironment& self, const In<std::uint8_t>& mask, const MaybeOut<float>& out) {
+            self.run([&](Environment& e) { e.begin(span_of(mask), span_or_none(out)); });
+          },
+          nb::arg("mask").noconvert(), nb::arg("observations").noconvert().none())
+      .def("lost", &lost, nb::arg("out").noconvert())
+      .def(
+          "copy_world",
+          [](HeldEnvironment& self, int source, int target) {
+            self.run([&](Environment& e) { e.copy_world(source, target); });
+          },
+          nb::arg("source"), nb::arg("target"))
+      .def("batch", &batch_of, nb::rv_policy::take_ownership);
+  def_step<std::int64_t>(c, "step_choices");
+  def_step<float>(c, "step_numbers");
+}
+
+}  // namespace manyworlds::python

@@ -1,0 +1,59 @@
+// The members of tasks, as scene_fields.hpp has those of scenes. Where the library wants an
+// expression, Python may write a number.
+#pragma once
+
+#include "manyworlds/environment.hpp"
+#include "scene_fields.hpp"
+
+namespace manyworlds::python {
+
+template <>
+struct Names<Autoreset> {
+  static constexpr const char* kind = "Autoreset";
+  static constexpr Named<Autoreset> all[] = {{Autoreset::next_step, "next_step"},
+                                             {Autoreset::same_step, "same_step"},
+                                             {Autoreset::disabled, "disabled"}};
+};
+
+template <>
+struct Converter<Expression> {
+  static Expression read(nb::handle value, const Place& place) {
+    if (nb::isinstance<Expression>(value)) return nb::cast<Expression>(value);
+    if (PyBool_Check(value.ptr())) return value.is(Py_True) ? 1 : 0;
+    return read_number(value, place);
+  }
+  static nb::object write(const Expression& value) { return nb::cast(value); }
+};
+
+template <>
+struct Described<Action> {
+  static constexpr const char* name = "Action";
+  static void fields(auto&& visit, auto& s) {
+    visit("name", s.name), visit("low", s.low), visit("high", s.high);
+  }
+};
+template <>
+struct Described<Observation> {
+  static constexpr const char* name = "Observation";
+  static void fields(auto&& visit, auto& s) {
+    visit("name", s.name), visit("value", s.value), visit("low", s.low), visit("high", s.high);
+  }
+};
+template <>
+struct Described<Reward> {
+  static constexpr const char* name = "Reward";
+  static void fields(auto&& visit, auto& s) { visit("name", s.name), visit("value", s.value); }
+};
+template <>
+struct Described<Task> {
+  static constexpr const char* name = "Task";
+  static void fields(auto&& visit, auto& s) {
+    visit("name", s.name), visit("scene", s.scene), visit("frame_skip", s.frame_skip);
+    visit("choices", s.choices), visit("actions", s.actions), visit("controls", s.controls);
+    visit("observations", s.observations), visit("rewards", s.rewards);
+    visit("terminated", s.terminated), visit("truncated", s.truncated);
+    visit("most_steps", s.most_steps), visit("solved_at", s.solved_at), visit("rays", s.rays);
+  }
+};
+
+}  // namespace manyworlds::python
