@@ -9,11 +9,12 @@ Units are SI; quaternions are (w, x, y, z), planar orientations (cos, sin). docs
 the rest by example.
 """
 
-from . import scenes
-from ._core import Snapshot, SnapshotError, __version__, available_isas
+from . import scenes, tasks
+from ._core import Expression, Snapshot, SnapshotError, __version__, available_isas
 from ._core import names as enumerations
 from .batch import Batch
 from .bodies import Body, Jitter, MassProperties
+from .environment import Environment
 from .fields import Field
 from .joints import (
     BallJoint,
@@ -64,9 +65,11 @@ from .shapes import (
     Sphere,
     Terrain,
 )
+from .tasks import Action, Observation, Reward, Task, TaskError
 from .view import View
 
 __all__ = [
+    "Action",
     "Attractor",
     "BallJoint",
     "Batch",
@@ -79,6 +82,8 @@ __all__ = [
     "Cylinder",
     "DistanceJoint",
     "Drive",
+    "Environment",
+    "Expression",
     "Field",
     "Filter",
     "FixedJoint",
@@ -95,12 +100,14 @@ __all__ = [
     "Limit",
     "MassProperties",
     "Material",
+    "Observation",
     "Options",
     "Plan",
     "Plane",
     "Polygon",
     "PulleyJoint",
     "Ray",
+    "Reward",
     "STEP_CONTACT",
     "Scene",
     "SceneError",
@@ -113,6 +120,8 @@ __all__ = [
     "Spring",
     "Status",
     "TargetJoint",
+    "Task",
+    "TaskError",
     "Terrain",
     "Variation",
     "View",
@@ -123,5 +132,6 @@ __all__ = [
     "make_hull",
     "mesh_mass_properties",
     "scenes",
+    "tasks",
     "vary",
 ]

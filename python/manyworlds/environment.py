@@ -1,0 +1,297 @@
+"""Environment: a task in thousands of worlds; actions in, arrays out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core, arrays, tasks
+from .batch import MOST_THREADS, MOST_WORLDS, Batch
+from .names import Ids, Isa, Precision
+from .plan import Plan
+from .tasks import Task, TaskError
+
+AutoresetName = Literal["next_step", "same_step", "disabled"]
+Floats = NDArray[np.float32]
+Doubles = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Seeds = Union[int, Sequence[int], NDArray[np.integer]]
+
+
+class _OwnBatch(Batch):
+    """The batch inside of an environment."""
+
+    def __init__(self, environment: Environment) -> None:
+        held = environment._held.batch()
+        self.plan = Plan(environment.task.scene)
+        self._held = held
+        self._worlds = held.worlds
+        self._real = np.dtype(np.float32 if held.precision == "f32" else np.float64)
+        # What the task looks at is observed; the extension refuses the rest.
+        self._watched = frozenset({"joints", "touching", "rays"})
+        self._bodies = self.plan.bodies
+        self._controls = held.controls
+        self._joints = len(self.plan.scene.joints)
+        self._planar = self.plan.scene.space == "planar"
+        self._find_fields()
+
+
+class Environment:
+    """A task in many worlds, one SIMD lane for each; what Gymnasium's classes are built on.
+
+    task         a Task, or the name of one (``tasks.names()``)
+    worlds       how many
+    threads      None: as many as the process may run on
+    seed         world i draws from seed + i; 0 to 2**64 - 1
+    precision    "f32" or "f64": of the worlds and of expressions
+    isa          "scalar", "avx2", "avx512"; None: the widest there is
+    autoreset    what happens to a world whose episode has ended: with "next_step" the next step
+                 begins its next episode instead of stepping it (reward 0, no end), with "same_step"
+                 the step that ends it begins the next and ``final_observations`` has where it ended,
+                 with "disabled" it steps on until somebody resets it
+    reward_terms, final_observations  whether these arrays are filled by ``step``
+
+    What a world does depends on the task, its seed and its actions alone. The arrays of the last
+    step or reset are ``observations`` (worlds, observations) float32, ``rewards`` (worlds,) float64,
+    ``terminated`` and ``truncated`` (worlds,) bool, ``reward_terms`` (worlds, rewards) float64 and
+    ``final_observations``: the same arrays in every step. Raises TaskError, ValueError, TypeError.
+    An environment is used by one thread at a time.
+    """
+
+    def __init__(
+        self,
+        task: Union[Task, str],
+        worlds: int = 1,
+        threads: Optional[int] = None,
+        seed: int = 0,
+        precision: Precision = "f32",
+        isa: Optional[Isa] = None,
+        autoreset: AutoresetName = "next_step",
+        *,
+        reward_terms: bool = False,
+        final_observations: Optional[bool] = None,
+    ) -> None:
+        if isinstance(task, str):
+            task = tasks.load(task)
+        if not isinstance(task, Task):
+            found = type(task).__name__
+            raise TypeError(f"task is of type {found}; expected a Task or a name")
+        issues = task.validate()
+        if issues:
+            raise TaskError(issues)
+        self.task = task
+        self._worlds = arrays.integer(worlds, "worlds", 1, MOST_WORLDS)
+        crew = 0 if threads is None else arrays.integer(threads, "threads", 1, MOST_THREADS)
+        seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
+        self._held = _core.Environment(
+            task, self._worlds, crew, seed, precision, isa, autoreset
+        )
+        self.autoreset: str = autoreset.replace("-", "_")
+        self.discrete = task.choices > 0
+        n, seen, parts = self._worlds, len(task.observations), len(task.rewards)
+        self.observations: Floats = np.zeros((n, seen), np.float32)
+        self.rewards: Doubles = np.zeros(n, np.float64)
+        self.terminated: Flags = np.zeros(n, np.bool_)
+        self.truncated: Flags = np.zeros(n, np.bool_)
+        self.reward_terms: Optional[Doubles] = np.zeros((n, parts)) if reward_terms else None
+        if final_observations is None:
+            final_observations = self.autoreset == "same_step"
+        self.final_observations: Optional[Floats] = (
+            np.zeros((n, seen), np.float32) if final_observations else None
+        )
+        self._action_shape = (n,) if self.discrete else (n, len(task.actions))
+        self._action_type = np.dtype(np.int64 if self.discrete else np.float32)
+        self._step = self._held.step_choices if self.discrete else self._held.step_numbers
+        self._batch: Optional[Batch] = None
+        self.begin()
+
+    # -- what it is
+
+    @property
+    def worlds(self) -> int:
+        return self._worlds
+
+    @property
+    def observation_names(self) -> list[str]:
+        """Of the columns of ``observations``."""
+        return [o.name for o in self.task.observations]
+
+    @property
+    def reward_names(self) -> list[str]:
+        """Of the columns of ``reward_terms``."""
+        return [r.name for r in self.task.rewards]
+
+    @property
+    def action_shape(self) -> tuple[int, ...]:
+        """(worlds,) of discrete tasks, whose actions are int64; else (worlds, numbers), float32."""
+        return self._action_shape
+
+    @property
+    def batch(self) -> Batch:
+        """The worlds: to look at, to save and restore, to change. Whoever changes them says so by
+        ``begin``, for what the task remembers of them."""
+        if self._batch is None:
+            self._batch = _OwnBatch(self)
+        return self._batch
+
+    @property
+    def closed(self) -> bool:
+        return self._held.closed
+
+    def close(self) -> None:
+        """Lets go of the worlds; every later use raises ValueError. Twice is once."""
+        if self._batch is not None:
+            self._batch.close()
+        self._held.close()
+
+    def __enter__(self) -> Environment:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        if self.closed:
+            return "<manyworlds.Environment: closed>"
+        return f"<manyworlds.Environment: {self._worlds} worlds of {self.task.name or 'a task'}>"
+
+    # -- stepping
+
+    def step(
+        self,
+        actions: ArrayLike,
+        observations: Optional[Floats] = None,
+        rewards: Optional[Doubles] = None,
+        terminated: Optional[Flags] = None,
+        truncated: Optional[Flags] = None,
+        reward_terms: Optional[Doubles] = None,
+        final_observations: Optional[Floats] = None,
+    ) -> tuple[Floats, Doubles, Flags, Flags]:
+        """One step of the task in every world, without the GIL.
+
+        ``actions``: (worlds,) integers below ``task.choices`` or (worlds, numbers), of any dtype;
+        int64 and float32 are taken without a copy. An action beyond its range counts as the end of
+        the range; one that is not a number freezes its world, which is then lost and truncated. A
+        choice that there is not raises ValueError before anything is done.
+
+        Arrays that are given are filled in place of the environment's own, and returned. Returns
+        (observations, rewards, terminated, truncated).
+        """
+        observations = self._out("observations", observations)
+        rewards = self._out("rewards", rewards)
+        terminated = self._out("terminated", terminated)
+        truncated = self._out("truncated", truncated)
+        if reward_terms is None:
+            reward_terms = self.reward_terms
+        else:
+            shape = self._worlds, len(self.task.rewards)
+            arrays.output(reward_terms, shape, ("worlds", "rewards"), np.float64, "reward_terms")
+        if final_observations is None:
+            final_observations = self.final_observations
+        else:
+            arrays.output(
+                final_observations,
+                self.observations.shape,
+                ("worlds", "observations"),
+                np.float32,
+                "final_observations",
+            )
+        self._step(
+            self._actions(actions),
+            observations,
+            rewards,
+            terminated,
+            truncated,
+            reward_terms,
+            final_observations,
+        )
+        return observations, rewards, terminated, truncated
+
+    def _out(self, name: str, given: Optional[NDArray[Any]]) -> NDArray[Any]:
+        own: NDArray[Any] = getattr(self, name)
+        if given is None or given is own:
+            return own
+        axes = ("worlds", "observations")[: own.ndim]
+        return arrays.output(given, own.shape, axes, own.dtype, name)
+
+    def _actions(self, actions: ArrayLike) -> NDArray[Any]:
+        array = np.asarray(actions)
+        if array.shape != self._action_shape:
+            expected = arrays.shape_text(self._action_shape, ("worlds", "numbers"))
+            raise ValueError(f"actions have shape {array.shape}; expected {expected}")
+        if array.dtype != self._action_type:
+            kinds = "iu" if self.discrete else "fiu"
+            if array.dtype.kind not in kinds:
+                wanted = "integers: the task's actions are choices" if self.discrete else "numbers"
+                raise TypeError(f"actions are of dtype {array.dtype}; expected {wanted}")
+        return np.ascontiguousarray(array, dtype=self._action_type)
+
+    # -- beginnings
+
+    def reset(
+        self,
+        mask_or_ids: Optional[Ids] = None,
+        seeds: Optional[Seeds] = None,
+        observations: Optional[Floats] = None,
+    ) -> Floats:
+        """Begins the next episodes of all worlds or of some; with ``seeds`` their first ones.
+
+        ``mask_or_ids``: a bool array (worlds,), or indices. ``seeds``: a number s, with which world
+        i gets the seed s + i, or one for every world that is reset. Returns observations; those of
+        the other worlds stay.
+        """
+        mask = self._mask(mask_or_ids)
+        observations = self._out("observations", observations)
+        self._held.reset(mask, self._seeds(seeds, mask), observations)
+        chosen = mask.view(np.bool_)
+        self.terminated[chosen] = False
+        self.truncated[chosen] = False
+        return observations
+
+    def begin(
+        self, mask_or_ids: Optional[Ids] = None, observations: Optional[Floats] = None
+    ) -> Floats:
+        """Worlds begin an episode in the state that they have; see ``reset``."""
+        mask = self._mask(mask_or_ids)
+        observations = self._out("observations", observations)
+        self._held.begin(mask, observations)
+        return observations
+
+    def copy_world(self, source: int, target: int) -> None:
+        """World ``target`` becomes what ``source`` is, with what the task remembers of it."""
+        self._held.copy_world(
+            arrays.index(source, self._worlds, "source"),
+            arrays.index(target, self._worlds, "target"),
+        )
+
+    def lost(self) -> Flags:
+        """Which worlds are lost, (worlds,) bool: frozen, or out of their bounds."""
+        out = np.empty(self._worlds, np.bool_)
+        self._held.lost(out)
+        return out
+
+    def _mask(self, mask_or_ids: Optional[Ids]) -> NDArray[np.uint8]:
+        if mask_or_ids is None:
+            return np.ones(self._worlds, np.uint8)
+        mask = np.zeros(self._worlds, np.uint8)
+        mask[arrays.indices(mask_or_ids, self._worlds, "ids")] = 1
+        return mask
+
+    def _seeds(
+        self, seeds: Optional[Seeds], mask: NDArray[np.uint8]
+    ) -> Optional[NDArray[np.uint64]]:
+        if seeds is None:
+            return None
+        if np.ndim(seeds) == 0:
+            first = arrays.integer(seeds, "seeds", 0, 2**64 - 1)
+            return np.arange(self._worlds, dtype=np.uint64) + np.uint64(first)  # wraps around
+        chosen = np.flatnonzero(mask)
+        numbers = [arrays.integer(s, "a seed", 0, 2**64 - 1) for s in seeds]  # type: ignore[union-attr]
+        if len(numbers) != len(chosen):
+            raise ValueError(f"seeds are {len(numbers)}, expected one for each of {len(chosen)} worlds")
+        full = np.zeros(self._worlds, np.uint64)
+        full[chosen] = np.array(numbers, np.uint64)
+        return full

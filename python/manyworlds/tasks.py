@@ -1,0 +1,278 @@
+"""Tasks: what a policy has to do in a scene, as values; and what their expressions are made of.
+
+    from manyworlds import Task, tasks
+    task = Task(name="Balance", scene=scene, choices=2, most_steps=500)
+    t = task.terms                        # names of this scene's bodies, joints, controls
+    task.controls = [tasks.where(t.action(), 10, -10)]
+    task.observe("lean", t.angle("pole"))
+    task.reward("alive", 1)
+    task.terminated = abs(t.angle("pole")) > 0.2
+
+Expressions are worked out after every step in all worlds at once, in the precision of the
+environment. Truth is 1, and what is not 0; ``&``, ``|``, ``~`` are and, or, not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any, Optional, Union
+
+from . import _core
+from ._core import Expression
+from ._core import expressions as _x
+from .scene import Issue, Ray, Scene, SceneError
+
+Value = Union[Expression, float]  # numbers are expressions
+Axis = Union[int, str]  # 0, 1, 2 or "x", "y", "z", of the world
+
+
+def sin(a: Value) -> Expression:
+    """Sine of rad, of up to 1e5 rad."""
+    return _x.sin(a)
+
+
+def cos(a: Value) -> Expression:
+    """Cosine of rad, of up to 1e5 rad."""
+    return _x.cos(a)
+
+
+def exp(a: Value) -> Expression:
+    return _x.exp(a)
+
+
+def sqrt(a: Value) -> Expression:
+    return _x.sqrt(a)
+
+
+def floor(a: Value) -> Expression:
+    """The next whole number below."""
+    return _x.floor(a)
+
+
+def square(a: Value) -> Expression:
+    return Expression(a) ** 2
+
+
+def minimum(a: Value, b: Value) -> Expression:
+    return _x.minimum(a, b)
+
+
+def maximum(a: Value, b: Value) -> Expression:
+    return _x.maximum(a, b)
+
+
+def clip(a: Value, low: Value, high: Value) -> Expression:
+    return _x.clip(a, low, high)
+
+
+def where(condition: Value, yes: Value, no: Value) -> Expression:
+    """``yes`` in worlds where the condition is not 0, ``no`` in others."""
+    return _x.where(condition, yes, no)
+
+
+def arctan2(y: Value, x: Value) -> Expression:
+    """rad, -pi to pi; 0 for (0, 0)."""
+    return _x.arctan2(y, x)
+
+
+def previous(value: Value) -> Expression:
+    """What ``value`` was at the end of the step before; in the first step where the world began."""
+    return _x.previous(value)
+
+
+def held(condition: Value) -> Expression:
+    """Steps in a row, up to this one, at whose end the condition was true."""
+    return _x.held(condition)
+
+
+def largest(value: Value) -> Expression:
+    """The largest that ``value`` has been since the episode began."""
+    return _x.largest(value)
+
+
+class Terms:
+    """What a world is at the end of a step, as expressions.
+
+    Bodies, joints and controls by index or, of a scene that is given, by name. What does not exist
+    raises ValueError here when it is a name, and is an issue of the task when it is an index.
+    """
+
+    def __init__(self, scene: Optional[Scene] = None) -> None:
+        self._scene = scene
+
+    def _index(self, what: str, key: Union[int, str]) -> int:
+        if not isinstance(key, str):
+            return key
+        if self._scene is None:
+            raise ValueError(f"the {what} '{key}': names are those of a scene, use Terms(scene)")
+        parts = {"body": "bodies", "joint": "joints", "control": "controls"}[what]
+        names = [part.name for part in getattr(self._scene, parts)]
+        if key not in names:
+            raise ValueError(f"the {what} " + _core.unknown_name(key, sorted({*names} - {""})))
+        if names.count(key) > 1:
+            raise ValueError(f"there are {names.count(key)} {parts} of the name '{key}'")
+        return names.index(key)
+
+    @staticmethod
+    def _axis(axis: Axis) -> int:
+        if not isinstance(axis, str):
+            return axis
+        if axis not in ("x", "y", "z"):
+            raise ValueError(f"the axis is '{axis}'; expected 'x', 'y', 'z' or 0, 1, 2")
+        return "xyz".index(axis)
+
+    def position(self, body: Union[int, str], axis: Axis) -> Expression:
+        """m, of the body frame."""
+        return _x.position(self._index("body", body), self._axis(axis))
+
+    def velocity(self, body: Union[int, str], axis: Axis) -> Expression:
+        """m/s, of the centre of mass."""
+        return _x.velocity(self._index("body", body), self._axis(axis))
+
+    def angular_velocity(self, body: Union[int, str], axis: Axis = 2) -> Expression:
+        """rad/s; in the plane about axis 2."""
+        return _x.angular_velocity(self._index("body", body), self._axis(axis))
+
+    def angle(self, body: Union[int, str]) -> Expression:
+        """rad, -pi to pi, in the plane."""
+        return _x.angle(self._index("body", body))
+
+    def direction(self, body: Union[int, str], of: Axis, axis: Axis) -> Expression:
+        """A component of the body's x, y or z axis."""
+        return _x.direction(self._index("body", body), self._axis(of), self._axis(axis))
+
+    def joint_position(self, joint: Union[int, str], coordinate: int = 0) -> Expression:
+        """m or rad, from where the joint began."""
+        return _x.joint_position(self._index("joint", joint), coordinate)
+
+    def joint_speed(self, joint: Union[int, str], coordinate: int = 0) -> Expression:
+        """m/s or rad/s."""
+        return _x.joint_speed(self._index("joint", joint), coordinate)
+
+    def touching(self, body: Union[int, str]) -> Expression:
+        """1 where a contact pushed the body in the last step; 0 where a world begins."""
+        return _x.touching(self._index("body", body))
+
+    def ray_distance(self, ray: int) -> Expression:
+        """m, of Task.rays."""
+        return _x.ray_distance(ray)
+
+    def action(self, index: int = 0) -> Expression:
+        """The action that led here; of discrete tasks its number. 0 at the beginning."""
+        return _x.action(index)
+
+    def control(self, control: Union[int, str]) -> Expression:
+        """The control of the scene that led here."""
+        return _x.control(self._index("control", control))
+
+    def age(self) -> Expression:
+        """Steps of the task since the episode began, with this one."""
+        return _x.age()
+
+    def lost(self) -> Expression:
+        """Whether the world is lost (``Status.lost()``)."""
+        return _x.lost()
+
+
+@dataclass(slots=True)
+class Action:
+    """One number of a continuous action. Beyond its range it counts as the end of the range."""
+
+    name: str = ""
+    low: float = -1.0
+    high: float = 1.0
+
+
+@dataclass(slots=True, eq=False)
+class Observation:
+    """What a policy sees; the range is what it is told, the value is not clamped."""
+
+    name: str = ""
+    value: Value = 0.0
+    low: float = -inf
+    high: float = inf
+
+
+@dataclass(slots=True, eq=False)
+class Reward:
+    """A part of the reward of a step; a task's reward is their sum."""
+
+    name: str = ""
+    value: Value = 0.0
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Task:
+    """What a policy has to do in a scene: actions, observations, rewards, and when it ends."""
+
+    name: str = ""
+    scene: Scene = field(default_factory=Scene)
+    frame_skip: int = 1  # steps of the scene in a step of the task
+
+    choices: int = 0  # discrete tasks: the action is 0 to choices - 1, and `actions` is empty
+    actions: list[Action] = field(default_factory=list)
+    # What each control of the scene is set to: of actions, numbers and previous(...).
+    controls: list[Value] = field(default_factory=list)
+
+    observations: list[Observation] = field(default_factory=list)
+    rewards: list[Reward] = field(default_factory=list)
+    terminated: Value = 0.0  # the episode has come to its end
+    truncated: Value = 0.0  # it is broken off; so is a world that is lost
+    most_steps: int = 0  # broken off after so many; 0: never
+    solved_at: float = inf  # mean return; said to people only
+
+    rays: list[Ray] = field(default_factory=list)  # for ray_distance
+
+    @property
+    def terms(self) -> Terms:
+        """Terms with the names of this task's scene."""
+        return Terms(self.scene)
+
+    def act(self, name: str, low: float = -1.0, high: float = 1.0) -> Expression:
+        """Adds a number to the action, and returns it as an expression."""
+        self.actions.append(Action(name, low, high))
+        return _x.action(len(self.actions) - 1)
+
+    def observe(self, name: str, value: Value, low: float = -inf, high: float = inf) -> None:
+        """Adds an observation."""
+        self.observations.append(Observation(name, value, low, high))
+
+    def reward(self, name: str, value: Value) -> None:
+        """Adds a part of the reward."""
+        self.rewards.append(Reward(name, value))
+
+    def validate(self) -> list[Issue]:
+        """Everything that is wrong with the task and its scene; empty: it can be run."""
+        return [Issue(*issue) for issue in _core.validate_task(self)]
+
+
+class TaskError(SceneError):
+    """A task that cannot be run; ``issues`` lists everything that is wrong with it."""
+
+    def __init__(self, issues: Sequence[Issue]) -> None:
+        self.issues = list(issues)
+        count = f"{len(self.issues)} issue" + ("" if len(self.issues) == 1 else "s")
+        ValueError.__init__(self, "\n  ".join([f"the task has {count}:", *map(str, self.issues)]))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return TaskError, (self.issues,)
+
+
+def names() -> list[str]:
+    """The tasks that ``load`` knows."""
+    return [name for name, _ in _core.task_names()]
+
+
+def summaries() -> dict[str, str]:
+    """One line about each task, by its name."""
+    return dict(_core.task_names())
+
+
+def load(name: str) -> Task:
+    """The task of that name, to take or to change. Raises ValueError with the nearest name."""
+    if not isinstance(name, str):
+        raise TypeError(f"the task's name is of type {type(name).__name__}; expected a str")
+    task: Task = _core.load_task(name)
+    return task
