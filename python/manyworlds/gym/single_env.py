@@ -1,0 +1,68 @@
+"""One world as an ordinary environment of Gymnasium: to look at, to test with, not for speed."""
+
+from __future__ import annotations
+
+from typing import Any, Optional, Union
+
+import gymnasium
+import numpy as np
+
+from ..environment import Environment
+from ..names import Isa, Precision
+from ..tasks import Task
+from . import spaces
+
+
+class Env(gymnasium.Env[np.ndarray, Any]):
+    """A task in one world. ``reset(seed=s)`` begins the first episode of the seed s, ``reset()`` the
+    next one; with the seed s + i it is, bit by bit, world i of a VectorEnv with the seed s."""
+
+    metadata: dict[str, Any] = {"render_modes": []}
+
+    def __init__(
+        self,
+        task: Union[Task, str],
+        *,
+        max_episode_steps: Optional[int] = None,
+        precision: Precision = "f32",
+        isa: Optional[Isa] = None,
+        reward_terms: bool = False,
+        render_mode: Optional[str] = None,
+    ) -> None:
+        if render_mode is not None:
+            raise ValueError("there is no rendering; render_mode must be None")
+        self.render_mode = None
+        self.task = spaces.task_of(task, max_episode_steps)
+        self.observation_space = spaces.observation_space(self.task)
+        self.action_space = spaces.action_space(self.task)
+        seed = int(np.random.SeedSequence().generate_state(1)[0])
+        self.environment = Environment(
+            self.task,
+            threads=1,
+            seed=seed,
+            precision=precision,
+            isa=isa,
+            autoreset="disabled",
+            reward_terms=reward_terms,
+        )
+
+    def reset(
+        self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        super().reset(seed=seed)
+        return self.environment.reset(seeds=seed)[0].copy(), {}
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        e = self.environment
+        observations, rewards, terminated, truncated = e.step(np.asarray(action)[None])
+        info: dict[str, Any] = {}
+        if e.reward_terms is not None:
+            parts = e.reward_terms[0]
+            info["reward_terms"] = {n: float(p) for n, p in zip(e.reward_names, parts)}
+        if truncated[0] and e.lost()[0]:
+            info["lost"] = True
+        ends = bool(terminated[0]), bool(truncated[0])
+        return observations[0].copy(), float(rewards[0]), *ends, info
+
+    def close(self) -> None:
+        self.environment.close()

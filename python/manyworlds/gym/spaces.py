@@ -1,0 +1,37 @@
+"""The spaces of a task, and a task as an argument."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, Optional, Union
+
+import gymnasium
+import numpy as np
+
+from .. import arrays, tasks
+from ..tasks import Task
+
+MOST_EPISODE_STEPS = 2**31 - 1
+
+
+def task_of(task: Union[Task, str], max_episode_steps: Optional[int]) -> Task:
+    """The task, or that of a name, with episodes of another length if they are given one."""
+    found = tasks.load(task) if isinstance(task, str) else task
+    if max_episode_steps is None:
+        return found
+    steps = arrays.integer(max_episode_steps, "max_episode_steps", 0, MOST_EPISODE_STEPS)
+    return dataclasses.replace(found, most_steps=steps)
+
+
+def observation_space(task: Task) -> gymnasium.spaces.Box:
+    low = np.array([o.low for o in task.observations], np.float32)
+    high = np.array([o.high for o in task.observations], np.float32)
+    return gymnasium.spaces.Box(low, high, dtype=np.float32)
+
+
+def action_space(task: Task) -> gymnasium.spaces.Space[Any]:
+    if task.choices > 0:
+        return gymnasium.spaces.Discrete(task.choices)
+    low = np.array([a.low for a in task.actions], np.float32)
+    high = np.array([a.high for a in task.actions], np.float32)
+    return gymnasium.spaces.Box(low, high, dtype=np.float32)

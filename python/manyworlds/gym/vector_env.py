@@ -1,0 +1,199 @@
+"""VectorEnv: a task in thousands of worlds as Gymnasium's vector environment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Optional, Union
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from ..environment import Environment
+from ..names import Isa, Precision
+from ..tasks import Task
+from . import spaces
+
+Seed = Union[int, Sequence[Optional[int]], None]
+MODES = {
+    AutoresetMode.NEXT_STEP: "next_step",
+    AutoresetMode.SAME_STEP: "same_step",
+    AutoresetMode.DISABLED: "disabled",
+}
+
+
+class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
+    """A task in ``num_envs`` worlds.
+
+    task                a Task, or the name of one
+    max_episode_steps   instead of the task's own; 0: episodes have no such end
+    autoreset_mode      AutoresetMode or its value; see ``manyworlds.Environment``
+    copy                False: ``reset`` and ``step`` return the same arrays every time
+    seed                of the worlds until ``reset`` gives one; None: a random one
+    reward_terms        ``infos["reward_terms"]`` has the parts of the reward by name
+    threads, precision, isa  as in ``manyworlds.Environment``
+
+    ``reset(seed=s)`` begins the first episode of the seed s + i in world i, ``reset()`` the next
+    episodes. ``infos["lost"]`` tells worlds that went wrong (an action that was not a number, say)
+    from those whose time was up, except with SAME_STEP, where they are new before one can ask.
+    ``environment`` is what steps.
+    """
+
+    def __init__(
+        self,
+        task: Union[Task, str],
+        num_envs: int = 1,
+        *,
+        max_episode_steps: Optional[int] = None,
+        autoreset_mode: Union[AutoresetMode, str] = AutoresetMode.NEXT_STEP,
+        copy: bool = True,
+        seed: Optional[int] = None,
+        reward_terms: bool = False,
+        threads: Optional[int] = None,
+        precision: Precision = "f32",
+        isa: Optional[Isa] = None,
+        render_mode: Optional[str] = None,
+    ) -> None:
+        if render_mode is not None:
+            raise ValueError("there is no rendering; render_mode must be None")
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self.metadata = {"render_modes": [], "autoreset_mode": self.autoreset_mode}
+        self.render_mode = None
+        self.copy = copy
+        self.task = spaces.task_of(task, max_episode_steps)
+        if seed is None:
+            seed = int(np.random.SeedSequence().generate_state(1)[0])
+        self.environment = Environment(
+            self.task,
+            num_envs,
+            threads,
+            seed,
+            precision,
+            isa,
+            MODES[self.autoreset_mode],  # type: ignore[arg-type]
+            reward_terms=reward_terms,
+        )
+        self.num_envs = self.environment.worlds
+        self.single_observation_space = spaces.observation_space(self.task)
+        self.single_action_space = spaces.action_space(self.task)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
+        self._resets_now = np.zeros(self.num_envs, np.bool_)  # with NEXT_STEP, the worlds that do
+
+    # -- the contract
+
+    def reset(
+        self,
+        *,
+        seed: Seed = None,  # type: ignore[override]
+        options: Optional[dict[str, Any]] = None,
+    ) -> tuple[NDArray[Any], dict[str, Any]]:
+        """All worlds, or those of ``options["reset_mask"]``; ``seed``: one, or one for each world,
+        of which None is that world's next episode."""
+        mask = self._reset_mask(options)
+        seeds = self._seeds(seed)
+        if seeds is None or isinstance(seeds, int):
+            super().reset(seed=seeds)
+        if seeds is None:
+            self.environment.reset(mask)
+        elif isinstance(seeds, int):
+            chosen = np.flatnonzero(mask)
+            self.environment.reset(mask, [seeds + int(i) for i in chosen])
+        else:
+            given = mask & np.array([s is not None for s in seeds])
+            chosen = np.flatnonzero(given)
+            self.environment.reset(given, [seeds[i] for i in chosen])  # type: ignore[misc]
+            self.environment.reset(mask & ~given)
+        self._resets_now[mask] = False
+        observations = self.environment.observations
+        return observations.copy() if self.copy else observations, {}
+
+    def step(
+        self, actions: NDArray[Any]
+    ) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
+        results = self.environment.step(actions)
+        infos = self._infos()
+        if self.copy:
+            observations, rewards, terminated, truncated = results
+            results = observations.copy(), rewards.copy(), terminated.copy(), truncated.copy()
+        return *results, infos
+
+    def close_extras(self, **kwargs: Any) -> None:
+        self.environment.close()
+
+    # -- parts of it
+
+    def _reset_mask(self, options: Optional[dict[str, Any]]) -> NDArray[np.bool_]:
+        if options is None or "reset_mask" not in options:
+            return np.ones(self.num_envs, np.bool_)
+        mask = options["reset_mask"]
+        if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
+            found = f"dtype {mask.dtype}" if isinstance(mask, np.ndarray) else type(mask).__name__
+            raise TypeError(f"options['reset_mask'] is of {found}; expected a NumPy array of bool")
+        if mask.shape != (self.num_envs,):
+            expected = f"({self.num_envs},)"
+            raise ValueError(f"options['reset_mask'] has shape {mask.shape}; expected {expected}")
+        if not mask.any():
+            raise ValueError("options['reset_mask'] has no world to reset")
+        return mask
+
+    def _seeds(self, seed: Seed) -> Union[int, list[Optional[int]], None]:
+        if seed is None:
+            return None
+        if np.ndim(seed) == 0:
+            return int(seed)  # type: ignore[arg-type]
+        seeds = list(seed)  # type: ignore[arg-type]
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"seed has {len(seeds)} numbers, expected {self.num_envs}")
+        return [None if s is None else int(s) for s in seeds]
+
+    def _infos(self) -> dict[str, Any]:
+        e, infos = self.environment, {}
+        if e.reward_terms is None and not (e.truncated.any() or e.terminated.any()):
+            return infos
+        ended = e.terminated | e.truncated
+        if self.autoreset_mode == AutoresetMode.SAME_STEP:
+            if ended.any():
+                infos |= self._final(ended)
+            if e.reward_terms is not None and not ended.all():
+                infos |= self._reward_terms(~ended)
+            return infos
+        if e.reward_terms is not None:
+            if self.autoreset_mode == AutoresetMode.DISABLED:
+                stepped = np.ones_like(ended)
+            else:
+                stepped = ~self._resets_now
+                self._resets_now = ended
+            if stepped.any():
+                infos |= self._reward_terms(stepped)
+        if e.truncated.any():
+            lost = e.lost() & e.truncated
+            if lost.any():
+                infos |= {"lost": lost, "_lost": lost.copy()}
+        return infos
+
+    def _final(self, ended: NDArray[np.bool_]) -> dict[str, Any]:
+        e = self.environment
+        assert e.final_observations is not None
+        rows = np.flatnonzero(ended)
+        last = np.full(self.num_envs, None, dtype=object)
+        for row, observation in zip(rows, e.final_observations[rows]):
+            last[row] = observation
+        info = {} if e.reward_terms is None else self._reward_terms(ended)
+        return {
+            "final_obs": last,
+            "_final_obs": ended,
+            "final_info": info,
+            "_final_info": ended.copy(),
+        }
+
+    def _reward_terms(self, mask: NDArray[np.bool_]) -> dict[str, Any]:
+        e = self.environment
+        assert e.reward_terms is not None
+        parts: dict[str, Any] = {}
+        for name, column in zip(e.reward_names, e.reward_terms.T):
+            parts[name] = np.where(mask, column, 0)
+            parts["_" + name] = mask.copy()
+        return {"reward_terms": parts, "_reward_terms": mask.copy()}
