@@ -76,7 +76,8 @@ make_python_environment() {
 configure() {
   local mjcf=$1 record=$2 python=$3
   local arguments=(--preset release -D "MW_MJCF=$mjcf" -D "MW_MUJOCO_DIR=$mujoco_dir"
-    -D "MW_RECORD=$record" -D "MW_PYTHON=$python" -D "Python_EXECUTABLE=$python_dir/bin/python")
+    -D "MW_RECORD=$record" -D "MW_PYTHON=$python")
+  [[ $python == OFF ]] || arguments+=(-D "Python_EXECUTABLE=$python_dir/bin/python")
   if [[ -n ${MW_ISAS-} ]]; then arguments+=(-D "MW_ISAS=$MW_ISAS"); else arguments+=(-U MW_ISAS); fi
   local stamp="$build_dir/configured_with"
   if [[ -f $build_dir/build.ninja && $stamp -nt $root/CMakePresets.json &&
