@@ -16,7 +16,7 @@ packages=(
 )
 # What the Python package is built and tested with, in an environment of its own.
 python_packages=(python3-dev python3-venv)
-python_requirements=(nanobind==3.1.0 numpy pytest scikit-build-core)
+python_requirements=(nanobind==3.1.0 numpy pytest scikit-build-core gymnasium cma jax)
 python_dir="$root/build/python"
 
 say() { printf '%s: %s\n' "$program" "$*" >&2; }

@@ -1,0 +1,85 @@
+"""The tasks as vector environments of Stable-Baselines3, which must be installed:
+
+    from manyworlds.sb3 import VecEnv
+    from stable_baselines3 import PPO
+    PPO("MlpPolicy", VecEnv("LunarLander", num_envs=256)).learn(2_000_000)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from stable_baselines3.common.vec_env import VecEnv as _VecEnv
+
+from .gym import VectorEnv
+from .tasks import Task
+
+
+class VecEnv(_VecEnv):  # type: ignore[misc]
+    """A task in ``num_envs`` worlds. Other arguments are those of ``manyworlds.gym.VectorEnv``.
+
+    As Stable-Baselines3 has it: worlds whose episode ends begin the next one in the same step,
+    ``infos[i]["terminal_observation"]`` is where world i ended, and ``"TimeLimit.truncated"``
+    whether it was broken off. Wrap it into VecMonitor for statistics of episodes.
+    """
+
+    def __init__(self, task: Union[Task, str], num_envs: int = 1, **arguments: Any) -> None:
+        arguments = {"autoreset_mode": AutoresetMode.SAME_STEP, "copy": True, **arguments}
+        if AutoresetMode(arguments["autoreset_mode"]) != AutoresetMode.SAME_STEP:
+            raise ValueError("Stable-Baselines3 wants AutoresetMode.SAME_STEP")
+        self.env = VectorEnv(task, num_envs, **arguments)
+        self.render_mode = None
+        self._actions: Optional[np.ndarray] = None
+        spaces = self.env.single_observation_space, self.env.single_action_space
+        super().__init__(num_envs, *spaces)
+
+    def reset(self) -> np.ndarray:
+        seeds = list(getattr(self, "_seeds", None) or [None] * self.num_envs)
+        observations, _ = self.env.reset(seed=seeds)
+        self._reset_seeds()
+        self._reset_options()
+        self.reset_infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        return observations
+
+    def step_async(self, actions: np.ndarray) -> None:
+        self._actions = np.asarray(actions)
+
+    def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
+        if self._actions is None:
+            raise RuntimeError("step_wait without step_async")
+        actions, self._actions = self._actions, None
+        observations, rewards, terminated, truncated, infos = self.env.step(actions)
+        ended = terminated | truncated
+        out: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        for i in np.flatnonzero(ended):
+            out[i]["terminal_observation"] = infos["final_obs"][i]
+            out[i]["TimeLimit.truncated"] = bool(truncated[i] and not terminated[i])
+        return observations, rewards.astype(np.float32), ended, out
+
+    def close(self) -> None:
+        self.env.close()
+
+    # Worlds are no objects of their own: what is asked of each is what all of them share.
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        owner = self if attr_name == "render_mode" else self.env
+        return [getattr(owner, attr_name)] * len(self._chosen(indices))
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        raise NotImplementedError("worlds have no attributes of their own")
+
+    def env_method(
+        self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
+    ) -> list[Any]:
+        raise NotImplementedError("worlds have no methods of their own")
+
+    def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
+        return [False] * len(self._chosen(indices))
+
+    def _chosen(self, indices: Union[None, int, Sequence[int]]) -> list[int]:
+        if indices is None:
+            return list(range(self.num_envs))
+        return [indices] if isinstance(indices, int) else list(indices)

@@ -1,0 +1,198 @@
+"""Tasks and expressions: composed in Python, the same as in C++; what is wrong is said."""
+
+import copy
+import importlib.util
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import manyworlds as mw
+from manyworlds import tasks
+
+EXAMPLES = Path(__file__).parents[2] / "examples" / "python"
+
+
+def example(name):
+    """A module of examples/python."""
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def falling():
+    """A ball that falls freely: y = 5 - 5 t^2, exactly known."""
+    scene = mw.Scene(space="planar")
+    scene.options.gravity = (0, -10, 0)
+    scene.add(mw.Body(name="ball", position=(1, 5, 0), shapes=[mw.Shape(geometry=mw.Circle(0.1))]))
+    return mw.Task(name="falling", scene=scene, actions=[mw.Action("a", -2, 3)])
+
+
+def values(make, actions, precision="f64", steps=1):
+    """What expressions are after steps of `falling` with these actions."""
+    task = falling()
+    for i, value in enumerate(make(task.terms)):
+        task.observe(f"v{i}", value)
+    with mw.Environment(task, len(actions), precision=precision, threads=1) as env:
+        for _ in range(steps):
+            env.step(np.array(actions, np.float32)[:, None])
+        return env.observations.copy()
+
+
+def test_every_named_task_is_sound_and_can_be_copied():
+    assert len(tasks.names()) == 11 and set(tasks.summaries()) == set(tasks.names())
+    for name in tasks.names():
+        task = tasks.load(name)
+        assert task.name == name and task.validate() == []
+        assert copy.deepcopy(task).validate() == []
+    with pytest.raises(ValueError, match="the task is 'CartPol'.*nearest: 'CartPole'"):
+        tasks.load("CartPol")
+
+
+def test_defaults_are_those_of_the_library():
+    for name, wanted in mw._core.default_task_values().items():
+        found = getattr(mw, name)()
+        for member in wanted.__slots__:
+            a, b = getattr(found, member), getattr(wanted, member)
+            if not isinstance(b, (mw.Expression, mw.Scene)):
+                assert a == b, (name, member)
+
+
+def test_a_task_composed_in_python_is_the_same_bits():
+    task, named = example("compose").make_task(), tasks.load("CartPole")
+    task.scene.name = named.scene.name
+    for precision in ("f32", "f64"):
+        envs = [mw.Environment(t, 37, seed=5, precision=precision) for t in (task, named)]
+        random = np.random.default_rng(0)
+        for _ in range(300):
+            actions = random.integers(2, size=37)
+            a, b = (env.step(actions) for env in envs)
+            for x, y in zip(a, b):
+                assert x.tobytes() == y.tobytes()
+        assert envs[0].batch.hash() == envs[1].batch.hash()
+
+
+def test_operators_and_functions_are_those_of_numpy():
+    x = np.array([-1.5, -0.5, 0.25, 2.0, 3.0])
+    functions = [
+        (lambda a: a + 2, lambda a: a + 2),
+        (lambda a: 2 - a, lambda a: 2 - a),
+        (lambda a: np.float64(3) * a / 7, lambda a: 3 * a / 7),
+        (lambda a: 1 / (a + 10), lambda a: 1 / (a + 10)),
+        (lambda a: -a, lambda a: -a),
+        (lambda a: abs(a) ** 0.5, lambda a: np.sqrt(abs(a))),
+        (lambda a: a**3, lambda a: a**3),
+        (lambda a: a**0, lambda a: a**0),
+        (lambda a: (a > -1) & (a < 2), lambda a: (a > -1) & (a < 2)),
+        (lambda a: (a <= -1) | (a >= 2), lambda a: (a <= -1) | (a >= 2)),
+        (lambda a: ~(a == 2), lambda a: a != 2),
+        (lambda a: a != 2, lambda a: a != 2),
+        (tasks.sin, np.sin),
+        (tasks.cos, np.cos),
+        (tasks.exp, np.exp),
+        (tasks.floor, np.floor),
+        (tasks.square, np.square),
+        (lambda a: tasks.sqrt(a + 2), lambda a: np.sqrt(a + 2)),
+        (lambda a: tasks.minimum(a, 1), lambda a: np.minimum(a, 1)),
+        (lambda a: tasks.maximum(0.5, a), lambda a: np.maximum(a, 0.5)),
+        (lambda a: tasks.clip(a, -1, 1), lambda a: np.clip(a, -1, 1)),
+        (lambda a: tasks.where(a > 0, a, -2), lambda a: np.where(a > 0, a, -2)),
+        (lambda a: tasks.arctan2(a, -1), lambda a: np.arctan2(a, -1)),
+    ]
+    found = values(lambda t: [f(t.action()) for f, _ in functions], x)
+    for i, (_, f) in enumerate(functions):
+        np.testing.assert_allclose(found[:, i], f(x).astype(float), rtol=1e-6, err_msg=str(i))
+
+
+def test_terms_are_what_the_world_is():
+    def make(t):
+        y = t.position("ball", "y")
+        return [t.position(0, 0), y, t.velocity("ball", "y"), t.angle("ball"), t.age(), t.lost(),
+                tasks.previous(y), tasks.held(y < 4.99), tasks.largest(-y), t.touching("ball"),
+                t.direction("ball", "x", "x"), t.angular_velocity("ball")]  # fmt: skip
+
+    for steps in (1, 30):
+        time = steps / 60
+        found = values(make, [0.0], steps=steps)[0]
+        assert found[0] == 1 and found[1] == pytest.approx(5 - 5 * time**2, abs=0.05)
+        assert found[2] == pytest.approx(-10 * time, rel=1e-5)
+        assert found[3] == 0 and found[4] == steps and found[5] == 0
+        assert found[6] > found[1] and found[8] == -found[1]
+        assert found[7] == pytest.approx(steps - 3, abs=2) or steps == 1
+        assert list(found[9:]) == [0, 1, 0]
+
+
+def test_actions_beyond_their_range_count_as_its_end():
+    assert values(lambda t: [t.action()], [-9, 9, 1])[:, 0].tolist() == [-2, 3, 1]
+
+
+def test_expressions_have_no_truth_value():
+    a = tasks.Terms().action()
+    for wrong in (lambda: bool(a > 1), lambda: a > 1 and a < 2, lambda: 0 < a < 1, lambda: not a):
+        with pytest.raises(TypeError, match="no truth value"):
+            wrong()
+
+
+def test_operands_that_are_no_numbers_are_type_errors():
+    a = tasks.Terms().action()
+    for wrong in (lambda: a + "1", lambda: [] * a, lambda: a & None, lambda: tasks.sin("x")):
+        with pytest.raises(TypeError):
+            wrong()
+    with pytest.raises(ValueError, match="powers 0 to 64 and 0.5"):
+        a**1.5
+    with pytest.raises(ValueError, match="nested"):
+        for _ in range(3000):
+            a = a + 1
+
+
+def test_names_that_there_are_not_are_said():
+    t = tasks.load("LunarLander").terms
+    with pytest.raises(ValueError, match="the body is 'landr'.*nearest: 'lander'"):
+        t.position("landr", "x")
+    with pytest.raises(ValueError, match="axis is 'w'"):
+        t.position("lander", "w")
+    with pytest.raises(ValueError, match=r"use Terms\(scene\)"):
+        tasks.Terms().position("lander", 0)
+
+
+def test_every_issue_of_a_task_is_listed_at_once():
+    task = falling()
+    t = task.terms
+    task.observe("far", t.position(7, 0))
+    task.observe("z", t.position(0, 2), low=1, high=0)
+    task.reward("ray", t.ray_distance(0))
+    task.act("bad", 1, 1)
+    task.controls = [1]
+    task.frame_skip = 0
+    with pytest.raises(mw.TaskError) as error:
+        mw.Environment(task)
+    places = [issue.place for issue in error.value.issues]
+    assert len(places) >= 6, places
+    assert isinstance(error.value, mw.SceneError) and "the task has" in str(error.value)
+    for text in ("position of body 7", "frame_skip", "controls", "ray_distance"):
+        assert text in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (dict(choices="two"), "task.choices is of type str"),
+        (dict(observations=[1]), r"task.observations\[0\] is of type int"),
+        (dict(terminated="never"), "task.terminated is of type str"),
+        (dict(controls=[None]), r"task.controls\[0\] is of type NoneType"),
+        (dict(scene=None), "task.scene is of type NoneType"),
+    ],
+)
+def test_members_of_wrong_types_say_where(change, words):
+    task = falling()
+    for name, value in change.items():
+        setattr(task, name, value)
+    with pytest.raises(TypeError, match=words):
+        task.validate()
+
+
+def test_infinite_and_nan_numbers_harm_nobody():
+    found = values(lambda t: [t.action() / 0, t.action() * math.nan, t.position(0, 1)], [1.0, 2.0])
+    assert np.isinf(found[:, 0]).all() and np.isnan(found[:, 1]).all() and found[0, 2] < 5
