@@ -1,6 +1,5 @@
 """The examples of examples/python, in short form."""
 
-import numpy as np
 import pytest
 
 from test_tasks import example
@@ -30,8 +29,7 @@ def test_throughput_is_printed():
 def test_ppo_learns_to_balance():
     pytest.importorskip("gymnasium")
     pytest.importorskip("jax")
-    short = "--task CartPole --envs 64 --steps 32 --updates 25 --seconds 60 --goal 150"
+    short = "--task CartPole --envs 64 --steps 32 --updates 40 --seconds 900 --goal 100"
     result = example("ppo").main(short.split())
-    first = result["curve"][0]["return"]
-    assert np.isnan(first) or first < 60
-    assert result["curve"][-1]["return"] > 60
+    assert result["curve"][0]["return"] < 40
+    assert result["curve"][-1]["return"] > 50

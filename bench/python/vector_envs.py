@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Steps per second of vector environments: Gymnasium's own LunarLander-v3 and CartPole-v1, one after
+the other (sync) and in processes (async), against manyworlds, by Gymnasium's own measure
+(gymnasium.utils.performance.benchmark_vector_step, which draws random actions, too); and manyworlds
+without that, with actions made before.
+
+    pip install "gymnasium[box2d]"
+    bench/python/vector_envs.py --seconds 5 --json build/vector_envs.json
+"""
+
+import argparse
+import json
+import platform
+import statistics
+import time
+
+import gymnasium
+import numpy as np
+from gymnasium.utils.performance import benchmark_vector_step
+
+import manyworlds as mw
+from manyworlds.gym import VectorEnv
+
+PAIRS = [("LunarLander-v3", "LunarLander"), ("CartPole-v1", "CartPole")]
+
+
+def by_gymnasium(make, seconds, repeats):
+    """Median of several runs."""
+    env = make()
+    found = [benchmark_vector_step(env, seconds, seed=i) for i in range(repeats)]
+    env.close()
+    return statistics.median(found)
+
+
+def by_loop(step, actions, worlds, seconds, repeats):
+    found = []
+    for _ in range(repeats + 1):  # the first warms up
+        count, began = 0, time.perf_counter()
+        while time.perf_counter() - began < seconds:
+            for a in actions:
+                step(a)
+            count += len(actions)
+        found.append(count * worlds / (time.perf_counter() - began))
+    return statistics.median(found[1:])
+
+
+def prepared(task, worlds):
+    env = VectorEnv(task, worlds)
+    env.action_space.seed(0)
+    actions = [np.asarray(env.action_space.sample()) for _ in range(32)]
+    env.close()
+    return actions
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    p.add_argument("--seconds", type=float, default=5)
+    p.add_argument("--repeats", type=int, default=3)
+    p.add_argument("--envs", type=int, nargs="*", default=[8, 64], help="of both sides")
+    p.add_argument("--worlds", type=int, nargs="*", default=[4096], help="of manyworlds alone")
+    p.add_argument("--threads", type=int, nargs="*", default=[1, 2])
+    p.add_argument("--skip-async", action="store_true")
+    p.add_argument("--json")
+    o = p.parse_args()
+    rows = []
+
+    def add(task, what, how, worlds, threads, speed):
+        row = dict(task=task, what=what, how=how, worlds=worlds, threads=threads, speed=speed)
+        rows.append(row)
+        threads = "-" if threads is None else threads
+        print(f"| {task} | {what} | {how} | {worlds} | {threads} | {speed:,.0f} |", flush=True)
+
+    print("| task | what | actions | envs | threads | steps/s |\n|---|---|---|---:|---:|---:|")
+    for theirs, ours in PAIRS:
+        for n in o.envs:
+            for mode in ["sync"] + ["async"] * (not o.skip_async):
+                make = lambda: gymnasium.make_vec(theirs, n, vectorization_mode=mode)  # noqa: E731
+                try:
+                    speed = by_gymnasium(make, o.seconds, o.repeats)
+                except gymnasium.error.DependencyNotInstalled as error:
+                    print(f"{theirs} cannot be had here: {error}")
+                    break
+                add(ours, f"Gymnasium {theirs} {mode}", "drawn", n, None, speed)
+        for threads in o.threads:
+            for n in o.envs + o.worlds:
+                make = lambda: VectorEnv(ours, n, threads=threads)  # noqa: E731
+                speed = by_gymnasium(make, o.seconds, o.repeats)
+                add(ours, "VectorEnv", "drawn", n, threads, speed)
+            for n in o.worlds:
+                actions = prepared(ours, n)
+                for copy in (True, False):
+                    env = VectorEnv(ours, n, threads=threads, copy=copy)
+                    env.reset(seed=0)
+                    speed = by_loop(env.step, actions, n, o.seconds, o.repeats)
+                    add(ours, f"VectorEnv, copy={copy}", "prepared", n, threads, speed)
+                    env.close()
+                with mw.Environment(ours, n, threads=threads) as env:
+                    speed = by_loop(env.step, actions, n, o.seconds, o.repeats)
+                    kernels = env.batch.kernel_table
+                add(ours, "Environment", "prepared", n, threads, speed)
+    if o.json:
+        about = dict(
+            machine=platform.processor() or platform.machine(),
+            python=platform.python_version(),
+            gymnasium=gymnasium.__version__,
+            manyworlds=mw.__version__,
+            kernels=kernels,
+            seconds=o.seconds,
+            repeats=o.repeats,
+        )
+        with open(o.json, "w") as file:
+            json.dump({"about": about, "rows": rows}, file, indent=1)
+
+
+if __name__ == "__main__":
+    main()

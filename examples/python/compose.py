@@ -1,0 +1,79 @@
+"""A task composed in Python: the scene, what a policy does and sees, and what it is paid for.
+
+    pip install manyworlds
+    python compose.py
+
+It is the very CartPole that has a name: the same bits in every step.
+"""
+
+import numpy as np
+
+import manyworlds as mw
+from manyworlds import tasks
+
+MOST_FORCE = 10.0  # N
+MOST_TRAVEL = 2.4  # m
+MOST_LEAN = 0.20943951  # rad, 12 degrees
+
+
+def ghost(geometry, area, mass, **more):
+    """A shape that weighs, and collides with nothing."""
+    return mw.Shape(geometry=geometry, density=mass / area, filter=mw.Filter(mask=0), **more)
+
+
+def make_scene():
+    scene = mw.Scene(space="planar")
+    scene.options = mw.Options(dt=0.02, substeps=2, gravity=(0, -9.8, 0), density=1)
+    cart = scene.add(
+        mw.Body(
+            name="cart",
+            shapes=[ghost(mw.Polygon.box(0.25, 0.1), 0.1, 1)],
+            jitter=mw.Jitter(position=(0.05, 0, 0), linear_velocity=(0.05, 0, 0)),
+        )
+    )
+    pole = scene.add(
+        mw.Body(
+            name="pole",  # its frame is at the hinge
+            shapes=[ghost(mw.Polygon.box(0.02, 0.5), 0.04, 0.1, position=(0, 0.5, 0))],
+            jitter=mw.Jitter(with_body=cart, angle=0.05),
+        )
+    )
+    scene.add(scene.joint_at(-1, cart, mw.Frame(), mw.SliderJoint()))
+    scene.add(scene.joint_at(cart, pole, mw.Frame(), mw.HingeJoint()))
+    push = dict(kind="thrust", body=cart, direction=(1, 0, 0), low=-MOST_FORCE, high=MOST_FORCE)
+    scene.add(mw.Control(name="push", **push))
+    return scene
+
+
+def make_task():
+    task = mw.Task(name="CartPole", scene=make_scene(), choices=2, most_steps=500, solved_at=475)
+    t = task.terms
+    task.controls = [tasks.where(t.action(), MOST_FORCE, -MOST_FORCE)]
+    travel, speed = t.joint_position(0), t.joint_speed(0)  # of the rail
+    lean, turn = t.joint_position(1), t.joint_speed(1)  # of the hinge
+    task.observe("travel", travel, -2 * MOST_TRAVEL, 2 * MOST_TRAVEL)
+    task.observe("speed", speed)
+    task.observe("lean", lean, -2 * MOST_LEAN, 2 * MOST_LEAN)
+    task.observe("turn", turn)
+    task.reward("alive", 1)
+    task.terminated = (abs(travel) > MOST_TRAVEL) | (abs(lean) > MOST_LEAN)
+    return task
+
+
+def main():
+    worlds = 1000
+    env = mw.Environment(make_task(), worlds, seed=7)
+    lengths, done = np.zeros(worlds, int), np.zeros(worlds, bool)
+    while not done.all():
+        # Push to where the pole falls (it leans to the left by positive angles).
+        lean, turn = env.observations[:, 2], env.observations[:, 3]
+        actions = (lean + 0.3 * turn < 0).astype(np.int64)
+        _, _, terminated, truncated = env.step(actions)
+        lengths += ~done
+        done |= terminated | truncated
+    print(f"{worlds} carts balance their poles for {lengths.mean():.0f} steps, of at most 500")
+    return lengths
+
+
+if __name__ == "__main__":
+    main()
