@@ -3,6 +3,7 @@
 // into the order of worlds. What was not asked for is a null pointer.
 #pragma once
 
+#include "kernels/program.hpp"
 #include "kernels/table.hpp"
 
 namespace manyworlds::kernels {
@@ -93,7 +94,8 @@ struct ObserverTable {
   Observe<Real> set_aside, compare[kInertiaKinds];
   Observe<Real> motion[kInertiaKinds];
   Observe<Real> joints[kInertiaKinds], joint_loads[kInertiaKinds];
-  Observe<Real> rays;  // after begin: pose rows at the current state
+  Observe<Real> rays;            // after begin: pose rows at the current state
+  RunProgram<Real> run_program;  // on what is there after these
   // One ray against one fixed pose row (64-byte aligned); whether it hits. out: a hit's rows.
   bool (*cast)(Dimension, ShapeKind, const Real* row, const Real* ray, Real* out);
 };

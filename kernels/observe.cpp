@@ -74,6 +74,7 @@ kernels::ObserverTable<Real> make_table() {
   fill_joints<Planar>(out);
   fill_joints<Tensor>(out);
   out.rays = observe_rays;
+  out.run_program = run_program;
   out.cast = cast_one;
   return out;
 }

@@ -13,18 +13,18 @@ import sys
 from pathlib import Path
 
 # A file in src/ includes its own and lower floors.
-SRC_FLOORS = ["base", "lcp", "scene", "plan", "state", "dispatch", "step", "api"]
+SRC_FLOORS = ["base", "lcp", "scene", "plan", "state", "dispatch", "step", "api", "task"]
 # Off the column: read models into a Scene, record a Batch. They may know nothing below the public
 # headers but these.
 SRC_SIDE = {"mjcf": {"mjcf", "base"}, "record": {"record", "base"}}
 # Floors that may see the kernels' top-level headers (tables and views, no lanes).
-SRC_SEES_KERNELS = {"plan", "state", "dispatch", "step", "api"}
+SRC_SEES_KERNELS = {"plan", "state", "dispatch", "step", "api", "task"}
 
 # Top-level headers of kernels/ that hold plain data, shared with src; everything else in kernels/
 # is compiled per instruction set.
 KERNEL_DATA = {
     "tables.hpp", "flight_tables.hpp", "joint_tables.hpp", "solver_options.hpp", "pair_keys.hpp",
-    "group.hpp", "table.hpp", "observation.hpp"}
+    "group.hpp", "table.hpp", "observation.hpp", "program.hpp"}
 # The rest of kernels/ (collide, constraint, broad phase, ...) stands on the floor above the lanes.
 KERNEL_FLOORS = {"data": 0, "lane": 1, "stage": 2}
 KERNEL_SYSTEM = {

@@ -241,6 +241,9 @@ class Batch {
   // the counters, the clock and the step count, so it repeats the first draw exactly.
   void reset();
   void reset(std::span<const std::uint8_t> mask);
+  // The first episode of other seeds, one per world; those of worlds that are not reset are
+  // ignored. World i of a batch of seed s has the seed s + i until then.
+  void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds);
   // What every reset from now on gives a field, instead of the scene's value and its jitter:
   // canonical, as write(). Empty: the scene's again. Resets nothing by itself.
   void set_initial(Field field, std::span<const double> in);
@@ -294,6 +297,7 @@ class Batch {
   bool forces_pending() const;  // some were added since the last step() call
 
  private:
+  friend class Environment;  // environment.hpp: a task around the step
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "manyworlds/batch.hpp"
+#include "manyworlds/environment.hpp"
 #include "manyworlds/executor.hpp"
 #include "manyworlds/fields.hpp"
 #include "manyworlds/hull.hpp"
@@ -10,3 +11,5 @@
 #include "manyworlds/plan.hpp"
 #include "manyworlds/scene.hpp"
 #include "manyworlds/scenes.hpp"
+#include "manyworlds/task.hpp"
+#include "manyworlds/tasks.hpp"

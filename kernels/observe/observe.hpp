@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/observation.hpp"
+#include "kernels/program.hpp"
 #include "kernels/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -11,6 +12,7 @@ using Observation = kernels::Observation<Real>;
 const kernels::ObserverTable<Real>* observer_table();
 
 void observe_rays(const Tables& t, const Group& g, kernels::Scratch* scratch, const Observation& o);
+void run_program(const Group& g, const Observation* seen, const kernels::ProgramRun<Real>& run);
 bool cast_one(kernels::Dimension dimension, kernels::ShapeKind kind, const Real* row,
               const Real* ray, Real* out);
 

@@ -206,16 +206,20 @@ void Batch::reset() {
   for (int w = 0; w < worlds(); ++w) impl_->tell(*this, Input::reset, w);
 }
 void Batch::reset(std::span<const std::uint8_t> mask) {
-  if (mask.size() != static_cast<std::size_t>(worlds())) {
-    reject("the mask has " + std::to_string(mask.size()) + " entries, the batch " +
+  impl_->for_each_masked(mask, [this](int kind, int in_kind, int world) {
+    impl_->core->reset(kind, in_kind);
+    impl_->tell(*this, Input::reset, world);
+  });
+}
+void Batch::reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds) {
+  if (seeds.size() != static_cast<std::size_t>(worlds())) {
+    reject("there are " + std::to_string(seeds.size()) + " seeds, the batch has " +
            std::to_string(worlds()) + " worlds");
   }
-  for (int w = 0; w < worlds(); ++w) {
-    if (mask[static_cast<std::size_t>(w)] == 0) continue;
-    const auto p = impl_->find(w);
-    impl_->core->reset(p.kind, p.world);
-    impl_->tell(*this, Input::reset, w);
-  }
+  impl_->for_each_masked(mask, [&](int kind, int in_kind, int world) {
+    impl_->core->reset(kind, in_kind, seeds[static_cast<std::size_t>(world)]);
+    impl_->tell(*this, Input::reset, world);
+  });
 }
 
 Status Batch::status(int world) const {

@@ -1,13 +1,16 @@
 // What stands behind a Batch: the kinds of world in one number type, stepped by one executor.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "src/api/observations.hpp"
 #include "src/dispatch/kernels.hpp"
 #include "src/state/worlds.hpp"
 #include "src/step/for_each_group.hpp"
+#include "src/step/group_visitor.hpp"
 #include "src/step/pipeline.hpp"
 
 namespace manyworlds {
@@ -16,9 +19,15 @@ namespace manyworlds {
 class BatchCore {
  public:
   virtual ~BatchCore() = default;
-  virtual void step(Executor& executor, int n) = 0;
+  // `visitor`, of the batch's number type, may be null.
+  virtual void step(Executor& executor, int n, GroupVisitor* visitor = nullptr) = 0;
+  // Lets the visitor know that the worlds of this mask begin, after resetting them if it is told
+  // to. Of batches of one kind, without sleep.
+  virtual void begin(Executor& executor, std::span<const std::uint8_t> worlds, bool reset,
+                     GroupVisitor& visitor) = 0;
   virtual void restart() = 0;
   virtual void reset(int kind, int world) = 0;
+  virtual void reset(int kind, int world, std::uint64_t seed) = 0;  // its first episode
   virtual void read(Field field, int kind, int world, float* out) const = 0;
   virtual void read(Field field, int kind, int world, double* out) const = 0;
   virtual void write(Field field, int kind, int world, const float* in) = 0;

@@ -16,12 +16,13 @@ Worlds<Real>::Worlds(Plan plan, int worlds, int first, const BatchOptions& optio
       storage_(tables(), (worlds + lanes - 1) / lanes, lanes),
       worlds_(worlds),
       first_(first),
-      seed_(options.seed),
+      seed_(static_cast<std::size_t>(worlds)),
       episode_(static_cast<std::size_t>(worlds), 0),
       world_in_(static_cast<std::size_t>(storage_.slots()), -1),
       by_count_(static_cast<std::size_t>(storage_.groups())) {
   for (int w = 0; w < worlds_; ++w) {
     slot_of_.push_back(w);
+    seed_[static_cast<std::size_t>(w)] = options.seed + static_cast<std::uint64_t>(first_ + w);
     world_in_[static_cast<std::size_t>(w)] = w;
   }
   const auto& bodies = plan_.scene().bodies;
@@ -52,7 +53,7 @@ void Worlds<Real>::place(int world, int body, const BodyState& s) {
 
 template <class Real>
 void Worlds<Real>::initialise(int world) {
-  const Draws draws(seed_ + static_cast<std::uint64_t>(first_ + world),
+  const Draws draws(seed_[static_cast<std::size_t>(world)],
                     episode_[static_cast<std::size_t>(world)]);
   const int slot = slot_of(world);
   if (own_) {
@@ -104,9 +105,21 @@ void Worlds<Real>::restart() {
 }
 
 template <class Real>
+void Worlds<Real>::begin(int world) {
+  std::unique_lock<std::mutex> lock(own_plan_, std::defer_lock);
+  if (own_) lock.lock();
+  initialise(world);
+}
+template <class Real>
 void Worlds<Real>::reset(int world) {
   ++episode_[static_cast<std::size_t>(world)];
-  initialise(world);
+  begin(world);
+}
+template <class Real>
+void Worlds<Real>::reset(int world, std::uint64_t seed) {
+  seed_[static_cast<std::size_t>(world)] = seed;
+  episode_[static_cast<std::size_t>(world)] = 0;
+  begin(world);
 }
 
 template <class Real>

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "manyworlds/batch.hpp"
@@ -31,8 +32,9 @@ class Worlds {
   int slot_of(int world) const { return slot_of_[static_cast<std::size_t>(world)]; }
   int world_in(int slot) const { return world_in_[static_cast<std::size_t>(slot)]; }  // -1: none
 
-  void restart();         // all worlds, first episode
-  void reset(int world);  // next episode
+  void restart();                             // all worlds, first episode
+  void reset(int world);                      // next episode
+  void reset(int world, std::uint64_t seed);  // the first episode of this seed
 
   // One world, canonical [body][component].
   template <class Out>
@@ -118,6 +120,7 @@ class Worlds {
   double gravity_scale(int world, int scene_body) const;
 
   void initialise(int world);
+  void begin(int world);
   void place(int world, int body, const BodyState& state);
   Quat internal_rotation(int world, int body) const;
   void set_rotation(int world, int body, const Quat& rotation);
@@ -127,8 +130,9 @@ class Worlds {
   std::unique_ptr<TablesOf<Real>> tables_;
   Storage<Real> storage_;
   int worlds_, first_;
-  std::uint64_t seed_;
+  std::vector<std::uint64_t> seed_;  // [world]
   std::vector<std::uint32_t> episode_;
+  std::mutex own_plan_;  // worlds may begin on several threads, with one plan of their own numbers
   std::array<std::vector<double>, kFieldCount> initial_;  // [world][body][component], or empty
   // What varies (Scene::variations).
   std::array<std::vector<int>, kParameterCount> number_at_;  // index in PlanData::varied, or -1

@@ -1,0 +1,87 @@
+// Environment: a task in thousands of worlds. A step maps actions to controls, steps the worlds and
+// works out observations, rewards and ends, group by group on the threads that step.
+//
+// Worlds depend on nothing but the task, their seed and their actions: not on how many there are.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "manyworlds/batch.hpp"
+#include "manyworlds/task.hpp"
+
+namespace manyworlds {
+
+// What happens to a world whose episode has ended (as Gymnasium's AutoresetMode).
+enum class Autoreset {
+  next_step,  // the next step begins its next episode instead of stepping it: reward 0, no end
+  same_step,  // the step that ends it begins the next: `final_observations` has where it ended
+  disabled,   // it steps on until somebody resets it
+};
+const char* to_string(Autoreset autoreset);
+
+struct EnvironmentOptions {
+  int worlds = 1;
+  int threads = 0;         // as BatchOptions
+  std::uint64_t seed = 0;  // world i draws from seed + i
+  Precision precision = Precision::f32;
+  std::optional<Isa> isa = std::nullopt;
+  Autoreset autoreset = Autoreset::next_step;
+  std::shared_ptr<Executor> executor = nullptr;
+};
+
+// The caller's arrays that a step writes to, [world] or [world][number]. Those that are empty are
+// not wanted; others must have just the size.
+struct StepArrays {
+  std::span<float> observations;        // [world][observation]
+  std::span<float> final_observations;  // same_step: of worlds that ended, the others' stay
+  std::span<double> rewards;
+  std::span<double> reward_terms;                 // [world][reward]
+  std::span<std::uint8_t> terminated, truncated;  // 1 or 0
+};
+
+class Environment {
+ public:
+  // Throws SceneError with every issue of the task, std::invalid_argument for options that make no
+  // sense. All worlds are at the beginning of their first episode.
+  explicit Environment(const Task& task, const EnvironmentOptions& options = {});
+  ~Environment();
+  Environment(Environment&&) noexcept;
+  Environment& operator=(Environment&&) noexcept;
+
+  const Task& task() const;
+  Autoreset autoreset() const;
+  int worlds() const;
+  int observations() const;  // numbers of one world
+  int actions() const;       // numbers of one world; 1 of a discrete task
+
+  // One step of the task in every world. `actions`: [world][action]; of a discrete task one per
+  // world. An action that is not a number freezes its world, which then is lost; a choice that
+  // there is not throws std::invalid_argument before anything is done. Allocates nothing, except
+  // where a world begins whose masses or sizes vary.
+  void step(std::span<const float> actions, const StepArrays& out);
+  void step(std::span<const std::int64_t> actions, const StepArrays& out);
+
+  // Next episodes of the worlds of a mask, [world]; with seeds, [world], their first ones.
+  // `observations` ([world][observation], or empty) of the others stay.
+  void reset(std::span<const std::uint8_t> mask, std::span<float> observations);
+  void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
+             std::span<float> observations);
+
+  // What steps, to look at, to record and to draw. Whoever changes worlds in it (write, restore)
+  // says so by begin(), for what the task remembers of them.
+  Batch& batch();
+  const Batch& batch() const;
+  // The worlds of a mask begin an episode in the state that they have.
+  void begin(std::span<const std::uint8_t> mask, std::span<float> observations);
+  // World `to` becomes what world `from` is, with what the task remembers of it.
+  void copy_world(int from, int to);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace manyworlds

@@ -1,0 +1,99 @@
+// Expression: a number of every world that a task (task.hpp) works out after each of its steps, in
+// all lanes at once. Made from what the world is (namespace terms) by arithmetic, evaluated in the
+// batch's precision. Truth is 1 and what is not 0.
+//
+//   const Expression lean = terms::angle(pole);
+//   const Expression fallen = abs(lean) > 0.2;
+//   const Expression reward = 1 - 0.1 * square(terms::position(cart, 0)) - 10 * fallen;
+//
+// The same bits for a world whatever its lane, the batch, threads and instruction set.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace manyworlds {
+
+class LaneFunction;
+
+class Expression {
+ public:
+  Expression(double number = 0);  // NOLINT(google-explicit-constructor): numbers are expressions
+
+  struct Node;  // src/task/node.hpp
+  explicit Expression(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
+  const Node& node() const { return *node_; }
+
+ private:
+  std::shared_ptr<const Node> node_;
+};
+
+Expression operator+(const Expression& a, const Expression& b);
+Expression operator-(const Expression& a, const Expression& b);
+Expression operator*(const Expression& a, const Expression& b);
+Expression operator/(const Expression& a, const Expression& b);
+Expression operator-(const Expression& a);
+Expression operator<(const Expression& a, const Expression& b);
+Expression operator<=(const Expression& a, const Expression& b);
+Expression operator>(const Expression& a, const Expression& b);
+Expression operator>=(const Expression& a, const Expression& b);
+Expression operator&(const Expression& a, const Expression& b);  // both are true
+Expression operator|(const Expression& a, const Expression& b);  // one is
+Expression operator!(const Expression& a);
+Expression equal(const Expression& a, const Expression& b);
+Expression select(const Expression& condition, const Expression& yes, const Expression& no);
+
+Expression abs(const Expression& a);
+Expression square(const Expression& a);
+Expression sqrt(const Expression& a);
+Expression floor(const Expression& a);  // the next whole number below
+Expression min(const Expression& a, const Expression& b);
+Expression max(const Expression& a, const Expression& b);
+Expression clamp(const Expression& a, const Expression& low, const Expression& high);
+Expression sin(const Expression& a);  // rad, of up to 1e5 rad
+Expression cos(const Expression& a);
+Expression exp(const Expression& a);
+Expression atan2(const Expression& y, const Expression& x);  // rad, -pi to pi; 0 for (0, 0)
+
+// A function of one's own, worked out for several worlds at a time: out[l] from in[0][l], in[1][l],
+// ... Called on the threads that step; must not throw, and to keep the promise of same bits it must
+// not let lanes know of each other. In the precision of the batch.
+class LaneFunction {
+ public:
+  virtual ~LaneFunction() = default;
+  virtual void operator()(int lanes, std::span<const float* const> in, float* out) const = 0;
+  virtual void operator()(int lanes, std::span<const double* const> in, double* out) const = 0;
+};
+Expression lane_function(std::shared_ptr<const LaneFunction> function, std::vector<Expression> in);
+
+// What a world is at the end of a step of the task, or where it begins. Bodies and joints are those
+// of the scene; axis 0, 1, 2 is x, y, z of the world. What does not exist is an error of the task.
+namespace terms {
+
+Expression position(int body, int axis);           // m, of the body frame
+Expression velocity(int body, int axis);           // m/s, of the centre of mass
+Expression angular_velocity(int body, int axis);   // rad/s; in the plane axis 2
+Expression angle(int body);                        // rad, -pi to pi, in the plane
+Expression direction(int body, int of, int axis);  // a component of the body's x, y or z axis
+Expression joint_position(int joint, int coordinate = 0);  // as Observed::joint_position
+Expression joint_speed(int joint, int coordinate = 0);
+Expression touching(int body);     // a contact pushed it in the last step; 0 where a world begins
+Expression ray_distance(int ray);  // m, of Task::rays
+Expression action(
+    int index = 0);             // that led here; of discrete tasks its number. 0 at the beginning
+Expression control(int index);  // that led here: of the scene
+Expression age();               // steps of the task since the episode began, with this one
+Expression lost();              // the world is lost (Status)
+
+// What `value` was at the end of the step before; in the first step where the world began. In
+// Task::controls: what it is.
+Expression previous(const Expression& value);
+// Steps in a row, up to this one, at whose end the condition was true; 0 at the beginning.
+Expression held(const Expression& condition);
+// The largest that `value` has been since the beginning, which counts.
+Expression largest(const Expression& value);
+
+}  // namespace terms
+}  // namespace manyworlds

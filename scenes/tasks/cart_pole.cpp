@@ -1,0 +1,86 @@
+// A pole on a cart, with the numbers of Barto, Sutton and Anderson (1983): balanced by pushes to
+// either side, or swung up by a force.
+#include "scenes/tasks/makers.hpp"
+
+namespace manyworlds::tasks {
+namespace {
+
+constexpr double kMostTravel = 2.4;  // m
+
+struct CartPole {
+  Scene scene;
+  int cart = 0, pole = 0;
+  // Of the rail and the hinge.
+  Expression travel = terms::joint_position(0), speed = terms::joint_speed(0);
+  Expression lean = terms::joint_position(1), turn = terms::joint_speed(1);
+};
+
+CartPole make(double most_force) {
+  CartPole out;
+  Scene& scene = out.scene = planar_scene(0.02, 9.8);
+  scene.options.substeps = 2;
+  Body cart;
+  cart.name = "cart";
+  cart.shapes = {ghost(Polygon::box(0.25, 0.1), 0.1, 1)};
+  cart.jitter.position = {0.05, 0, 0};
+  cart.jitter.linear_velocity = {0.05, 0, 0};
+  out.cart = scene.add(cart);
+  Body pole;  // its frame is at the hinge
+  pole.name = "pole";
+  pole.shapes = {ghost(Polygon::box(0.02, 0.5), 0.04, 0.1)};
+  pole.shapes[0].position = {0, 0.5, 0};
+  pole.jitter.with = out.cart;
+  pole.jitter.angle = 0.05;
+  out.pole = scene.add(pole);
+  scene.add(joint_at(scene, -1, out.cart, Frame{}, SliderJoint{}));
+  scene.add(joint_at(scene, out.cart, out.pole, Frame{}, HingeJoint{}));
+  scene.controls = {thrust("push", out.cart, {1, 0, 0}, -most_force, most_force)};
+  return out;
+}
+
+}  // namespace
+
+Task cart_pole() {
+  const CartPole world = make(10);
+  constexpr double kMostLean = 0.20943951;  // rad, 12 degrees
+  Task task;
+  task.name = "CartPole";
+  task.scene = world.scene;
+  task.choices = 2;
+  task.controls = {select(terms::action(), 10, -10)};
+  task.observations = {{"travel", world.travel, -2 * kMostTravel, 2 * kMostTravel},
+                       {"speed", world.speed},
+                       {"lean", world.lean, -2 * kMostLean, 2 * kMostLean},
+                       {"turn", world.turn}};
+  task.rewards = {{"alive", 1}};
+  task.terminated = (abs(world.travel) > kMostTravel) | (abs(world.lean) > kMostLean);
+  task.most_steps = 500;
+  task.solved_at = 475;
+  return task;
+}
+
+Task cart_pole_swing_up() {
+  CartPole world = make(15);
+  world.scene.bodies[1].rotation = Quat(0, 0, 0, 1);  // hanging
+  world.scene.bodies[1].jitter.angle = 0.5;
+  const Expression upright = cos(terms::angle(world.pole));
+  Task task;
+  task.name = "CartPoleSwingUp";
+  task.scene = world.scene;
+  // The hinge counts from where the pole begins.
+  task.actions = {{"push", -1, 1}};
+  task.controls = {15 * terms::action()};
+  task.observations = {{"travel", world.travel, -kMostTravel, kMostTravel},
+                       {"speed", world.speed},
+                       {"upright", upright, -1, 1},
+                       {"sideways", sin(terms::angle(world.pole)), -1, 1},
+                       {"turn", world.turn}};
+  task.rewards = {{"upright", (1 + upright) / 2 * (1 - 0.1 * square(world.travel))},
+                  {"effort", -0.01 * square(terms::action())}};
+  task.terminated = abs(world.travel) > kMostTravel;
+  task.most_steps = 500;
+  task.solved_at = 350;
+  return task;
+}
+
+}  // namespace manyworlds::tasks

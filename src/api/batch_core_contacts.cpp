@@ -1,0 +1,80 @@
+// Contacts of worlds at their current state: the collision stages once more.
+#include "kernels/pair_keys.hpp"
+#include "src/api/batch_core.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+// Looking at contacts looks at all of them, asleep or not.
+template <class Real>
+kernels::GroupView<Real> awake_view(kernels::GroupView<Real> view,
+                                    const kernels::WorldTables<Real>& tables,
+                                    std::vector<std::uint32_t>& nobody) {
+  if (!view.asleep) return view;
+  nobody.assign(static_cast<std::size_t>(tables.bodies), 0);
+  view.asleep = nobody.data();
+  return view;
+}
+
+}  // namespace
+
+template <class Real>
+std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
+  const Worlds<Real>& w = at(kind);
+  const auto& t = w.tables();
+  if (!t.has_contacts) return {};
+  int capacity = 0;
+  for (const int c : t.capacity) capacity += c;
+  std::vector<kernels::ContactPoint<Real>> points(static_cast<std::size_t>(capacity) * 4);
+  kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
+  const FlushDenormals flush;
+  const int slot = w.slot_of(world);
+  std::vector<std::uint32_t> nobody;
+  kernels_.record(scratch, slot % kernels_.lanes, points.data(), static_cast<int>(points.size()));
+  collide_group<Real>({kernels_, t, layout_},
+                      awake_view(w.storage().group(slot / kernels_.lanes), t, nobody), scratch);
+  points.resize(static_cast<std::size_t>(kernels_.record(scratch, 0, nullptr, 0)));
+
+  const PlanData& plan = w.data();
+  std::vector<Contact> out;
+  for (const auto& p : points) {
+    const PairNames names = names_of(plan, t, p.key);
+    Contact contact;
+    contact.body_a = names.body_a, contact.shape_a = names.shape_a;
+    contact.body_b = names.body_b, contact.shape_b = names.shape_b;
+    for (int k = 0; k < 3; ++k) {
+      contact.normal[k] = static_cast<double>(p.normal[k]);
+      contact.point[k] = static_cast<double>(p.point[k]);
+    }
+    contact.separation = static_cast<double>(p.separation);
+    contact.normal_impulse = static_cast<double>(p.impulse);
+    contact.feature = p.feature;
+    out.push_back(contact);
+  }
+  return out;
+}
+
+template <class Real>
+double CoreOf<Real>::occupancy(int kind) const {
+  const Worlds<Real>& w = at(kind);
+  if (!w.tables().has_contacts) return 0;
+  const FlushDenormals flush;
+  kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
+  double active = 0, slots = 0;
+  std::vector<std::uint32_t> nobody;
+  for (int g = 0; g < w.storage().groups(); ++g) {
+    collide_group<Real>({kernels_, w.tables(), layout_},
+                        awake_view(w.storage().group(g), w.tables(), nobody), scratch);
+    active += kernels_.counters(scratch).active;
+    slots += kernels_.counters(scratch).dense_slots * static_cast<double>(kernels_.lanes);
+  }
+  return slots > 0 ? active / slots : 0;
+}
+
+template std::vector<Contact> CoreOf<float>::contacts(int, int) const;
+template std::vector<Contact> CoreOf<double>::contacts(int, int) const;
+template double CoreOf<float>::occupancy(int) const;
+template double CoreOf<double>::occupancy(int) const;
+
+}  // namespace manyworlds

@@ -1,0 +1,36 @@
+// GroupVisitor: what somebody above wants to do with each group of worlds around its steps, on the
+// thread that steps it.
+#pragma once
+
+#include "src/step/pipeline.hpp"
+
+namespace manyworlds {
+
+template <class Real>
+struct VisitedGroup {
+  int group;   // worlds without sleep: lane l is world group * lanes + l
+  int thread;  // slot of the executor
+  const kernels::KernelTable<Real>& kernels;
+  const kernels::WorldTables<Real>& tables;
+  const kernels::GroupView<Real>& view;
+  Real* control;  // [control][lane]
+  // Of the last step, or of the state where worlds begin; null: nothing is observed.
+  const kernels::Observation<Real>* seen;
+};
+
+class GroupVisitor {
+ public:
+  virtual ~GroupVisitor() = default;
+};
+
+// Calls for different groups overlap in time; neither of them throws or waits.
+template <class Real>
+class GroupVisitorOf : public GroupVisitor {
+ public:
+  virtual void before_steps(const VisitedGroup<Real>& group) = 0;
+  virtual void after_steps(const VisitedGroup<Real>& group) = 0;
+  // After the worlds in these lanes began anew.
+  virtual void after_beginning(const VisitedGroup<Real>& group, std::uint32_t lanes) = 0;
+};
+
+}  // namespace manyworlds

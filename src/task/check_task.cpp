@@ -1,0 +1,202 @@
+// What is wrong with a task.
+#include <cmath>
+#include <string>
+#include <unordered_set>
+
+#include "manyworlds/plan.hpp"
+#include "manyworlds/task.hpp"
+#include "src/api/observations.hpp"
+#include "src/plan/plan_data.hpp"
+#include "src/task/node.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+std::string named(const char* what, std::size_t i, const std::string& name) {
+  return std::string(what) + " " + std::to_string(i) + (name.empty() ? "" : " '" + name + "'");
+}
+
+class TaskChecker {
+ public:
+  explicit TaskChecker(const Task& task) : task_(task), issues_(validate(task.scene)) {
+    if (issues_.empty()) plan_.emplace(compile(task.scene));
+  }
+
+  std::vector<Issue> check() {
+    if (task_.frame_skip < 1) add("frame_skip", "is ", task_.frame_skip, ", must be >= 1");
+    if (task_.most_steps < 0) add("most_steps", "is ", task_.most_steps, ", must be >= 0");
+    check_actions();
+    const std::size_t controls = task_.scene.controls.size();
+    if (task_.controls.size() != controls) {
+      add("controls", "are ", task_.controls.size(),
+          ", must be as many as the scene has: " + std::to_string(controls));
+    }
+    for (std::size_t i = 0; i < task_.controls.size(); ++i) {
+      check(named("control", i, i < controls ? task_.scene.controls[i].name : ""),
+            task_.controls[i], true);
+    }
+    check_observations();
+    for (std::size_t i = 0; i < task_.rewards.size(); ++i) {
+      check(named("reward", i, task_.rewards[i].name), task_.rewards[i].value, false);
+    }
+    check("terminated", task_.terminated, false);
+    check("truncated", task_.truncated, false);
+    if (plan_) {
+      try {
+        check_rays(task_.rays, task_.scene.space, plan_->bodies());
+      } catch (const std::invalid_argument& error) {
+        issues_.push_back({"rays", error.what()});
+      }
+    }
+    return std::move(issues_);
+  }
+
+ private:
+  template <class Number>
+  void add(const std::string& place, const char* is, Number found, const std::string& wanted) {
+    issues_.push_back({place, is + std::to_string(found) + wanted});
+  }
+
+  void check_actions() {
+    if (task_.choices < 0) add("choices", "is ", task_.choices, ", must be >= 0");
+    if (task_.choices > 0 && !task_.actions.empty()) {
+      add("actions", "are ", task_.actions.size(), ", must be none where there are choices");
+    }
+    for (std::size_t i = 0; i < task_.actions.size(); ++i) {
+      const Action& a = task_.actions[i];
+      if (!std::isfinite(a.low) || !std::isfinite(a.high) || !(a.low < a.high)) {
+        issues_.push_back({named("action", i, a.name), "has the range " + std::to_string(a.low) +
+                                                           " to " + std::to_string(a.high) +
+                                                           ", must be finite and rising"});
+      }
+    }
+  }
+
+  void check_observations() {
+    if (task_.observations.empty()) issues_.push_back({"observations", "are none, must be some"});
+    for (std::size_t i = 0; i < task_.observations.size(); ++i) {
+      const Observation& o = task_.observations[i];
+      const std::string place = named("observation", i, o.name);
+      check(place, o.value, false);
+      if (!(o.low <= o.high)) {
+        issues_.push_back({place, "has the range " + std::to_string(o.low) + " to " +
+                                      std::to_string(o.high) + ", must rise"});
+      }
+    }
+  }
+
+  void check(const std::string& place, const Expression& e, bool control) {
+    seen_.clear();
+    walk(place, e, control);
+  }
+  void walk(const std::string& place, const Expression& e, bool control) {
+    const Expression::Node& n = e.node();
+    if (!seen_.insert(&n).second) return;
+    const bool looks_back = n.term == Term::arithmetic && remembers(n.operation);
+    if (control) {
+      const bool fits = n.term == Term::number || n.term == Term::action ||
+                        n.term == Term::function ||
+                        (n.term == Term::arithmetic &&
+                         (!looks_back || n.operation == kernels::Operation::previous));
+      if (!fits) {
+        issues_.push_back({place, "depends on " +
+                                      (looks_back ? "what is remembered" : to_string(e)) +
+                                      ", must depend on actions, numbers and previous(...) alone"});
+        return;
+      }
+    }
+    check_leaf(place, e);
+    for (const Expression& operand : n.operands) {
+      walk(place, operand, control && !looks_back);
+    }
+  }
+
+  void check_leaf(const std::string& place, const Expression& e) {
+    const Expression::Node& n = e.node();
+    const auto bounded = [&](int value, std::size_t count, const char* what) {
+      if (value >= 0 && static_cast<std::size_t>(value) < count) return true;
+      issues_.push_back({place, to_string(e) + ": " + what + " must be 0 to " +
+                                    std::to_string(count == 0 ? 0 : count - 1) +
+                                    (count == 0 ? ", but there are none" : "")});
+      return false;
+    };
+    const bool planar = task_.scene.space == Space::planar;
+    const auto axis = [&](int value) {
+      bounded(value, planar && n.term != Term::direction ? 2 : 3, "the axis");
+    };
+    const auto body = [&] { return bounded(n.index, task_.scene.bodies.size(), "the body"); };
+    switch (n.term) {
+      case Term::position:
+        axis(n.axis);
+        if (body()) check_center(place, e);
+        break;
+      case Term::velocity:
+        axis(n.axis);
+        body();
+        break;
+      case Term::angular_velocity:
+        body();
+        if (planar && n.axis != 2) {
+          issues_.push_back({place, to_string(e) + ": the axis must be 2 in the plane"});
+        } else {
+          bounded(n.axis, 3, "the axis");
+        }
+        break;
+      case Term::angle:
+        body();
+        if (!planar)
+          issues_.push_back({place, to_string(e) + ": there are angles in the plane only"});
+        break;
+      case Term::direction:
+        axis(n.axis);
+        axis(n.of);
+        body();
+        break;
+      case Term::touching:
+        if (body() &&
+            task_.scene.bodies[static_cast<std::size_t>(n.index)].motion == Motion::fixed) {
+          issues_.push_back({place, to_string(e) + ": a fixed body is not observed, ask those that "
+                                                   "touch it"});
+        }
+        break;
+      case Term::joint_position:
+      case Term::joint_speed: {
+        if (!bounded(n.index, task_.scene.joints.size(), "the joint") || !plan_) break;
+        const int first = plan_->first_coordinate(n.index);
+        const auto& all = plan_->data().first_coordinate;
+        bounded(n.of, static_cast<std::size_t>(all[static_cast<std::size_t>(n.index) + 1] - first),
+                "the coordinate");
+        break;
+      }
+      case Term::ray_distance: bounded(n.index, task_.rays.size(), "the ray"); break;
+      case Term::action:
+        bounded(n.index, task_.choices > 0 ? 1 : task_.actions.size(), "the action");
+        break;
+      case Term::control: bounded(n.index, task_.scene.controls.size(), "the control"); break;
+      default: break;
+    }
+  }
+
+  // A body frame that moves against its centre of mass from world to world is not to be had.
+  void check_center(const std::string& place, const Expression& e) {
+    if (!plan_) return;
+    const int state_body = plan_->state_body(e.node().index);
+    if (state_body < 0) return;
+    const PlanBody& b = plan_->data().bodies[static_cast<std::size_t>(state_body)];
+    if (!b.reshaped || b.aligned) return;
+    issues_.push_back({place, to_string(e) + ": its centre of mass varies from world to world, "
+                                             "must be where its frame is"});
+  }
+
+  const Task& task_;
+  std::vector<Issue> issues_;
+  std::optional<Plan> plan_;
+  std::unordered_set<const Expression::Node*> seen_;
+};
+
+}  // namespace
+
+std::vector<Issue> validate(const Task& task) { return TaskChecker(task).check(); }
+
+}  // namespace manyworlds

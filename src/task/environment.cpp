@@ -1,0 +1,204 @@
+// Environment: checks what a caller gives, and calls batch and runner in their order.
+#include "manyworlds/environment.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "src/api/batch_data.hpp"
+#include "src/task/runner.hpp"
+
+namespace manyworlds {
+
+const char* to_string(Autoreset autoreset) {
+  switch (autoreset) {
+    case Autoreset::next_step: return "next_step";
+    case Autoreset::same_step: return "same_step";
+    case Autoreset::disabled: return "disabled";
+  }
+  return "?";
+}
+
+namespace {
+
+Task checked(const Task& task) {
+  std::vector<Issue> issues = validate(task);
+  if (!issues.empty()) throw SceneError("task", std::move(issues));
+  return task;
+}
+
+// What the task's expressions look at.
+struct Looks {
+  bool joints = false, touching = false;
+
+  void at(const Expression& e) {
+    const Expression::Node& n = e.node();
+    if (!known.insert(&n).second) return;
+    joints = joints || n.term == Term::joint_position || n.term == Term::joint_speed;
+    touching = touching || n.term == Term::touching;
+    for (const Expression& operand : n.operands) at(operand);
+  }
+
+  std::set<const Expression::Node*> known;
+};
+
+BatchOptions options_of(const Task& task, const EnvironmentOptions& o) {
+  Looks looks;
+  for (const Expression& e : task.controls) looks.at(e);
+  for (const Observation& v : task.observations) looks.at(v.value);
+  for (const Reward& r : task.rewards) looks.at(r.value);
+  looks.at(task.terminated);
+  looks.at(task.truncated);
+  BatchOptions out;
+  out.worlds = o.worlds;
+  out.threads = o.threads;
+  out.seed = o.seed;
+  out.precision = o.precision;
+  out.isa = o.isa;
+  out.executor = o.executor;
+  if (looks.joints) out.observe.what.push_back(Observer::joints);
+  if (looks.touching) out.observe.what.push_back(Observer::touching);
+  out.observe.rays = task.rays;
+  return out;
+}
+
+void check_array(const char* name, std::size_t found, std::size_t wanted, bool may_be_empty) {
+  if (found == wanted || (found == 0 && may_be_empty)) return;
+  reject(std::string(name) + " are " + std::to_string(wanted) + " numbers, the buffer has " +
+         std::to_string(found));
+}
+
+}  // namespace
+
+struct Environment::Impl {
+  Task task;
+  Autoreset autoreset;
+  Batch batch;
+  std::shared_ptr<const TaskPrograms> programs;
+  std::unique_ptr<TaskRunner> runner;
+
+  Impl(const Task& t, const EnvironmentOptions& options)
+      : task(checked(t)),
+        autoreset(options.autoreset),
+        batch(compile(task.scene), options_of(task, options)),
+        programs(std::make_shared<TaskPrograms>(task, batch.plan())),
+        runner(make_runner(programs, batch, autoreset)) {}
+
+  std::size_t worlds() const { return static_cast<std::size_t>(batch.worlds()); }
+  std::size_t observations() const { return worlds() * task.observations.size(); }
+  bool discrete() const { return task.choices > 0; }
+
+  void check(const StepArrays& out) const {
+    check_array("observations", out.observations.size(), observations(), true);
+    check_array("final_observations", out.final_observations.size(), observations(), true);
+    check_array("rewards", out.rewards.size(), worlds(), true);
+    check_array("reward_terms", out.reward_terms.size(), worlds() * task.rewards.size(), true);
+    check_array("terminated", out.terminated.size(), worlds(), true);
+    check_array("truncated", out.truncated.size(), worlds(), true);
+  }
+
+  void step(Batch::Impl& b, const StepArrays& out) {
+    runner->out = out;
+    runner->some_begin = false;
+    b.core->step(*b.executor, task.frame_skip, &runner->visitor());
+    b.steps += task.frame_skip;
+    tell_step(b);
+    if (runner->some_begin) {
+      runner->keeps_last = autoreset == Autoreset::same_step;
+      b.core->begin(*b.executor, runner->begin_now, true, runner->visitor());
+      if (!b.listeners.empty()) {
+        b.for_each_masked(runner->begin_now,
+                          [&](int, int, int world) { b.tell(batch, Input::reset, world); });
+      }
+    }
+    forget_call();
+  }
+
+  void begin(Batch::Impl& b, std::span<const std::uint8_t> mask, std::span<float> seen) {
+    runner->out = {};
+    runner->out.observations = seen;
+    runner->keeps_last = false;
+    b.core->begin(*b.executor, mask, false, runner->visitor());
+    forget_call();
+  }
+
+ private:
+  void tell_step(const Batch::Impl& b) const {
+    if (b.listeners.empty()) return;
+    const std::size_t n = task.controls.size();
+    std::vector<double> values(worlds() * n);
+    batch.read_controls(values);
+    for (std::size_t w = 0; n > 0 && w < worlds(); ++w) {
+      b.tell_controls(batch, static_cast<int>(w), std::span(values).subspan(w * n, n));
+    }
+    b.tell_step(batch, task.frame_skip);
+  }
+  // The caller's arrays live as long as the call.
+  void forget_call() {
+    runner->out = {};
+    runner->actions = nullptr;
+    runner->choices = nullptr;
+  }
+};
+
+Environment::Environment(const Task& task, const EnvironmentOptions& options)
+    : impl_(std::make_unique<Impl>(task, options)) {
+  const std::vector<std::uint8_t> all(impl_->worlds(), 1);
+  begin(all, {});
+}
+Environment::~Environment() = default;
+Environment::Environment(Environment&&) noexcept = default;
+Environment& Environment::operator=(Environment&&) noexcept = default;
+
+const Task& Environment::task() const { return impl_->task; }
+Autoreset Environment::autoreset() const { return impl_->autoreset; }
+int Environment::worlds() const { return impl_->batch.worlds(); }
+int Environment::observations() const { return static_cast<int>(impl_->task.observations.size()); }
+int Environment::actions() const { return impl_->programs->inputs.actions; }
+Batch& Environment::batch() { return impl_->batch; }
+const Batch& Environment::batch() const { return impl_->batch; }
+
+void Environment::step(std::span<const float> actions, const StepArrays& out) {
+  if (impl_->discrete()) reject("the task's actions are choices, these are numbers");
+  check_array("actions", actions.size(), impl_->worlds() * impl_->task.actions.size(), false);
+  impl_->check(out);
+  impl_->runner->actions = actions.data();
+  impl_->step(*impl_->batch.impl_, out);
+}
+
+void Environment::step(std::span<const std::int64_t> actions, const StepArrays& out) {
+  if (!impl_->discrete()) reject("the task's actions are numbers, these are choices");
+  check_array("actions", actions.size(), impl_->worlds(), false);
+  impl_->check(out);
+  const int choices = impl_->task.choices;
+  const auto none = [choices](std::int64_t a) { return a < 0 || a >= choices; };
+  if (const auto bad = std::find_if(actions.begin(), actions.end(), none); bad != actions.end()) {
+    reject("the action of world " + std::to_string(bad - actions.begin()) + " is " +
+           std::to_string(*bad) + ", must be 0 to " + std::to_string(choices - 1));
+  }
+  impl_->runner->choices = actions.data();
+  impl_->step(*impl_->batch.impl_, out);
+}
+
+void Environment::reset(std::span<const std::uint8_t> mask, std::span<float> observations) {
+  check_array("observations", observations.size(), impl_->observations(), true);
+  impl_->batch.reset(mask);
+  begin(mask, observations);
+}
+void Environment::reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
+                        std::span<float> observations) {
+  check_array("observations", observations.size(), impl_->observations(), true);
+  impl_->batch.reset(mask, seeds);
+  begin(mask, observations);
+}
+void Environment::begin(std::span<const std::uint8_t> mask, std::span<float> observations) {
+  check_array("the mask's entries", mask.size(), impl_->worlds(), false);
+  check_array("observations", observations.size(), impl_->observations(), true);
+  impl_->begin(*impl_->batch.impl_, mask, observations);
+}
+
+void Environment::copy_world(int from, int to) {
+  impl_->batch.copy_world(from, to);
+  impl_->runner->copy_world(from, to);
+}
+
+}  // namespace manyworlds

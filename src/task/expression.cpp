@@ -1,0 +1,145 @@
+// Expressions out of expressions.
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "src/task/node.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+using kernels::Operation;
+
+// Expressions are walked through and destroyed by functions that call themselves.
+constexpr int kMostDepth = 2000;
+
+Expression leaf(Term term, int index = -1, int of = 0, int axis = 0) {
+  Expression::Node node;
+  node.term = term;
+  node.index = index;
+  node.of = of;
+  node.axis = axis;
+  return make_expression(std::move(node));
+}
+
+}  // namespace
+
+Expression make_expression(Expression::Node node) {
+  for (const Expression& e : node.operands) node.depth = std::max(node.depth, e.node().depth + 1);
+  if (node.depth > kMostDepth) {
+    throw std::invalid_argument("an expression is nested " + std::to_string(node.depth) +
+                                " deep, at most " + std::to_string(kMostDepth) + " are possible");
+  }
+  return Expression(std::make_shared<const Expression::Node>(std::move(node)));
+}
+
+Expression arithmetic(Operation operation, std::vector<Expression> operands) {
+  Expression::Node node;
+  node.term = Term::arithmetic;
+  node.operation = operation;
+  node.operands = std::move(operands);
+  return make_expression(std::move(node));
+}
+
+Expression::Expression(double number) {
+  Node node;
+  node.number = number;
+  node_ = std::make_shared<const Node>(std::move(node));
+}
+
+Expression lane_function(std::shared_ptr<const LaneFunction> function, std::vector<Expression> in) {
+  if (!function) throw std::invalid_argument("lane_function: the function is null");
+  Expression::Node node;
+  node.term = Term::function;
+  node.function = std::move(function);
+  node.operands = std::move(in);
+  return make_expression(std::move(node));
+}
+
+using E = const Expression&;
+Expression operator+(E a, E b) { return arithmetic(Operation::add, {a, b}); }
+Expression operator-(E a, E b) { return arithmetic(Operation::subtract, {a, b}); }
+Expression operator*(E a, E b) { return arithmetic(Operation::multiply, {a, b}); }
+Expression operator/(E a, E b) { return arithmetic(Operation::divide, {a, b}); }
+Expression operator-(E a) { return arithmetic(Operation::negate, {a}); }
+Expression operator<(E a, E b) { return arithmetic(Operation::less, {a, b}); }
+Expression operator<=(E a, E b) { return arithmetic(Operation::less_equal, {a, b}); }
+Expression operator>(E a, E b) { return b < a; }
+Expression operator>=(E a, E b) { return b <= a; }
+Expression operator&(E a, E b) { return arithmetic(Operation::both, {a, b}); }
+Expression operator|(E a, E b) { return arithmetic(Operation::either, {a, b}); }
+Expression operator!(E a) { return arithmetic(Operation::opposite, {a}); }
+Expression equal(E a, E b) { return arithmetic(Operation::equal, {a, b}); }
+Expression select(E condition, E yes, E no) {
+  return arithmetic(Operation::choose, {condition, yes, no});
+}
+Expression abs(E a) { return arithmetic(Operation::absolute, {a}); }
+Expression square(E a) { return a * a; }
+Expression sqrt(E a) { return arithmetic(Operation::square_root, {a}); }
+Expression floor(E a) { return arithmetic(Operation::round_down, {a}); }
+Expression min(E a, E b) { return arithmetic(Operation::minimum, {a, b}); }
+Expression max(E a, E b) { return arithmetic(Operation::maximum, {a, b}); }
+Expression clamp(E a, E low, E high) { return min(max(a, low), high); }
+Expression sin(E a) { return arithmetic(Operation::sine, {a}); }
+Expression cos(E a) { return arithmetic(Operation::cosine, {a}); }
+Expression exp(E a) { return arithmetic(Operation::exponential, {a}); }
+Expression atan2(E y, E x) { return arithmetic(Operation::arc_tangent, {y, x}); }
+
+namespace terms {
+
+Expression position(int body, int axis) { return leaf(Term::position, body, 0, axis); }
+Expression velocity(int body, int axis) { return leaf(Term::velocity, body, 0, axis); }
+Expression angular_velocity(int body, int axis) {
+  return leaf(Term::angular_velocity, body, 0, axis);
+}
+Expression angle(int body) { return leaf(Term::angle, body); }
+Expression direction(int body, int of, int axis) { return leaf(Term::direction, body, of, axis); }
+Expression joint_position(int joint, int coordinate) {
+  return leaf(Term::joint_position, joint, coordinate);
+}
+Expression joint_speed(int joint, int coordinate) {
+  return leaf(Term::joint_speed, joint, coordinate);
+}
+Expression touching(int body) { return leaf(Term::touching, body); }
+Expression ray_distance(int ray) { return leaf(Term::ray_distance, ray); }
+Expression action(int index) { return leaf(Term::action, index); }
+Expression control(int index) { return leaf(Term::control, index); }
+Expression age() { return leaf(Term::age); }
+Expression lost() { return leaf(Term::lost); }
+Expression previous(E value) { return arithmetic(Operation::previous, {value}); }
+Expression held(E condition) { return arithmetic(Operation::held, {condition}); }
+Expression largest(E value) { return arithmetic(Operation::largest, {value}); }
+
+}  // namespace terms
+
+std::string to_string(E expression) {
+  const Expression::Node& n = expression.node();
+  const std::string index = std::to_string(n.index), axis = ", axis " + std::to_string(n.axis);
+  switch (n.term) {
+    case Term::number: return "a number";
+    case Term::arithmetic: return "arithmetic";
+    case Term::function: return "a function";
+    case Term::position: return "position of body " + index + axis;
+    case Term::velocity: return "velocity of body " + index + axis;
+    case Term::angular_velocity: return "angular_velocity of body " + index + axis;
+    case Term::angle: return "angle of body " + index;
+    case Term::direction:
+      return "direction of body " + index + "'s axis " + std::to_string(n.of) + axis;
+    case Term::joint_position:
+      return "joint_position of joint " + index + ", coordinate " + std::to_string(n.of);
+    case Term::joint_speed:
+      return "joint_speed of joint " + index + ", coordinate " + std::to_string(n.of);
+    case Term::touching: return "touching of body " + index;
+    case Term::ray_distance: return "ray_distance of ray " + index;
+    case Term::action: return "action " + index;
+    case Term::control: return "control " + index;
+    case Term::age: return "age";
+    case Term::lost: return "lost";
+    case Term::raw: return "row " + index + " of the state";
+  }
+  return "?";
+}
+
+}  // namespace manyworlds

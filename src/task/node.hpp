@@ -1,0 +1,56 @@
+// Node: what an Expression is made of.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "kernels/program.hpp"
+#include "manyworlds/expression.hpp"
+
+namespace manyworlds {
+
+enum class Term {
+  number,
+  arithmetic,  // Node::operation of the operands, or what it remembers of one
+  function,
+  position,  // from here on: of Node::index
+  velocity,
+  angular_velocity,
+  angle,
+  direction,
+  joint_position,
+  joint_speed,
+  touching,
+  ray_distance,
+  action,
+  control,
+  age,
+  lost,
+  raw,  // row of the state, as the kernels have it: of the plan, not of users
+};
+
+struct Expression::Node {
+  Term term = Term::number;
+  double number = 0;
+  int index = -1;  // body, joint, ray, action, control, row
+  int of = 0;      // axis of a body, coordinate of a joint
+  int axis = 0;    // of the world
+  kernels::Operation operation{};
+  std::vector<Expression> operands{};
+  std::shared_ptr<const LaneFunction> function{};
+  int depth = 0;  // of operands within operands
+};
+
+// Throws std::invalid_argument for expressions that are nested too deeply to be walked through.
+Expression make_expression(Expression::Node node);
+Expression arithmetic(kernels::Operation operation, std::vector<Expression> operands);
+
+inline bool remembers(kernels::Operation operation) {
+  return operation == kernels::Operation::previous || operation == kernels::Operation::held ||
+         operation == kernels::Operation::largest;
+}
+
+// "position of body 3, axis 1"; of what is no leaf, its kind.
+std::string to_string(const Expression& expression);
+
+}  // namespace manyworlds

@@ -1,0 +1,189 @@
+#include "src/task/program.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "kernels/observation.hpp"
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+using kernels::Operation;
+
+int ProgramBuilder::add(const Expression& expression) {
+  const Expression::Node* node = &expression.node();
+  if (const auto found = known_.find(node); found != known_.end()) return found->second;
+  const int row = add_node(*node);
+  known_.emplace(node, row);
+  kept_.push_back(expression);
+  return row;
+}
+
+int ProgramBuilder::add_node(const Expression::Node& n) {
+  switch (n.term) {
+    case Term::number: return emit(Operation::constant, -1, -1, -1, n.number);
+    case Term::function: return add_function(n);
+    case Term::arithmetic: break;
+    case Term::position: return add(position(n.index, n.axis));
+    case Term::velocity: return add(velocity(n.index, n.axis));
+    case Term::angular_velocity: return add(angular_velocity(n.index, n.axis));
+    case Term::angle: return add(angle(n.index));
+    case Term::direction: return add(direction(n.index, n.of, n.axis));
+    case Term::joint_position:
+    case Term::joint_speed:
+      return emit(Operation::coordinate,
+                  (plan_.first_coordinate(n.index) + n.of) * kernels::kCoordinateRows +
+                      (n.term == Term::joint_speed ? 1 : 0));
+    case Term::touching:
+      if (!plan_.has(Feature::contacts)) return add(0);
+      return emit(Operation::touching, plan_.state_body(n.index));
+    case Term::ray_distance: return emit(Operation::ray, n.index * kernels::kHitRows);
+    case Term::action: return emit(Operation::input, n.index);
+    case Term::control: return emit(Operation::control, n.index);
+    case Term::age: return emit(Operation::input, inputs_.age());
+    case Term::lost: return emit(Operation::input, inputs_.lost());
+    case Term::raw: return emit(Operation::state, n.index);
+  }
+  if (remembers(n.operation)) {
+    // Before the steps the memory is what the last steps left.
+    if (looks_back_) {
+      const int of = looks_back_->remember(looks_back_->add(n.operands[0]));
+      return emit(Operation::previous, -1, of);
+    }
+    const int of = add(n.operands[0]);
+    if (n.operation == Operation::previous) return emit(n.operation, of, remember(of));
+    const std::size_t before = program_.instructions.size();
+    const int row = emit(n.operation, of, static_cast<int>(memory_.row.size()));
+    if (program_.instructions.size() > before) memory_.row.push_back(row);
+    return row;
+  }
+  int operand[3] = {-1, -1, -1};
+  std::transform(n.operands.begin(), n.operands.end(), operand,
+                 [this](const Expression& e) { return add(e); });
+  return emit(n.operation, operand[0], operand[1], operand[2]);
+}
+
+int ProgramBuilder::add_function(const Expression::Node& n) {
+  Program::Call call{0, n.function, {}};
+  for (const Expression& e : n.operands) call.in.push_back(add(e));
+  call.at = static_cast<int>(program_.instructions.size());
+  program_.instructions.push_back({Operation::constant, -1, -1, -1, 0});  // its row
+  program_.calls.push_back(std::move(call));
+  return program_.calls.back().at;
+}
+
+int ProgramBuilder::remember(int row) {
+  const auto found = std::find(memory_.row.begin(), memory_.row.end(), row);
+  if (found == memory_.row.end()) memory_.row.push_back(row);
+  return static_cast<int>(std::find(memory_.row.begin(), memory_.row.end(), row) -
+                          memory_.row.begin());
+}
+
+int ProgramBuilder::emit(Operation operation, int a, int b, int c, double number) {
+  // What `held` and `largest` remember is their own: two of the same operand are the same.
+  const int shared = operation == Operation::held || operation == Operation::largest ? -1 : b;
+  const Key key{static_cast<int>(operation), a, shared, c, std::bit_cast<std::uint64_t>(number)};
+  const auto [at, fresh] = same_.emplace(key, static_cast<int>(program_.instructions.size()));
+  if (fresh) program_.instructions.push_back({operation, a, b, c, number});
+  return at->second;
+}
+
+Expression ProgramBuilder::state(int body, int component) const {
+  const PlanData& plan = plan_.data();
+  const auto at = kernels::state_offsets(plan.dimension(), plan.has(Feature::orientation));
+  Expression::Node node;
+  node.term = Term::raw;
+  node.index = plan_.state_body(body) * at.components + component;
+  return make_expression(std::move(node));
+}
+
+namespace {
+
+const Body& described(const Plan& plan, int body) {
+  return plan.scene().bodies[static_cast<std::size_t>(body)];
+}
+const PlanBody* moving(const Plan& plan, int body) {
+  const int state_body = plan.state_body(body);
+  return state_body < 0 ? nullptr : &plan.data().bodies[static_cast<std::size_t>(state_body)];
+}
+kernels::StateOffsets offsets(const PlanData& plan) {
+  return kernels::state_offsets(plan.dimension(), plan.has(Feature::orientation));
+}
+
+// The sum of those products whose number is not 0.
+class Sum {
+ public:
+  void add(double factor, const Expression& e) {
+    if (factor == 0) return;
+    const Expression term = factor == 1 ? e : Expression(factor) * e;
+    sum_ = empty_ ? term : sum_ + term;
+    empty_ = false;
+  }
+  Expression value() const { return sum_; }
+
+ private:
+  Expression sum_ = 0;
+  bool empty_ = true;
+};
+
+}  // namespace
+
+Expression ProgramBuilder::direction(int body, int of, int axis) const {
+  const PlanBody* b = moving(plan_, body);
+  const bool turns = b != nullptr && plan_.has(Feature::orientation);
+  if (!turns) {
+    const Mat3 r = b ? Mat3(Mat3::Identity())
+                     : described(plan_, body).rotation.normalized().toRotationMatrix();
+    return r(axis, of);
+  }
+  const int q = offsets(plan_.data()).orientation;
+  if (plan_.scene().space == Space::planar) {
+    const Expression c = state(body, q), s = state(body, q + 1);
+    if (axis == 2 || of == 2) return axis == of ? 1 : 0;
+    if (axis == of) return c;
+    return axis == 1 ? s : -s;
+  }
+  // The body's axis in principal axes, turned by the quaternion of those.
+  const Vec3 v = b->principal.conjugate() * Vec3::Unit(of);
+  const Expression w = state(body, q),
+                   u[3] = {state(body, q + 1), state(body, q + 2), state(body, q + 3)};
+  Sum sum;
+  for (int k = 0; k < 3; ++k) {
+    if (k == axis) {
+      sum.add(v[k], 1 - 2 * (square(u[(k + 1) % 3]) + square(u[(k + 2) % 3])));
+      continue;
+    }
+    // R(i, k) = 2 (u_i u_k +- w u_m), m the third: minus where k follows i.
+    const Expression both = u[axis] * u[k], third = w * u[3 - axis - k];
+    sum.add(2 * v[k], (axis + 1) % 3 == k ? both - third : both + third);
+  }
+  return sum.value();
+}
+
+Expression ProgramBuilder::position(int body, int axis) const {
+  const PlanBody* b = moving(plan_, body);
+  if (!b) return described(plan_, body).position[axis];
+  const Expression center = state(body, offsets(plan_.data()).position + axis);
+  if (b->aligned) return center;
+  Sum shift;
+  for (int k = 0; k < 3; ++k) shift.add(b->center[k], direction(body, k, axis));
+  return b->center.isZero(0) ? center : center - shift.value();
+}
+
+Expression ProgramBuilder::velocity(int body, int axis) const {
+  if (!moving(plan_, body)) return 0;
+  return state(body, offsets(plan_.data()).linear + axis);
+}
+
+Expression ProgramBuilder::angular_velocity(int body, int axis) const {
+  if (!moving(plan_, body)) return 0;
+  const bool planar = plan_.scene().space == Space::planar;
+  return state(body, offsets(plan_.data()).angular + (planar ? 0 : axis));
+}
+
+Expression ProgramBuilder::angle(int body) const {
+  return atan2(direction(body, 0, 1), direction(body, 0, 0));
+}
+
+}  // namespace manyworlds

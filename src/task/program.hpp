@@ -1,0 +1,78 @@
+// Program: the expressions of a task as instructions for a plan (kernels/program.hpp), in double.
+// What several expressions have in common is worked out once.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
+
+#include "manyworlds/plan.hpp"
+#include "src/task/node.hpp"
+
+namespace manyworlds {
+
+// Rows of ProgramRun::input: the actions, then these.
+struct InputRows {
+  int actions = 0;
+  int age() const { return actions; }
+  int lost() const { return actions + 1; }
+  int count() const { return actions + 2; }
+};
+
+struct Program {
+  // A function of the user's, worked out before instruction `at`, whose row it fills.
+  struct Call {
+    int at;
+    std::shared_ptr<const LaneFunction> function;
+    std::vector<int> in;  // rows
+  };
+  std::vector<kernels::Instruction<double>> instructions;
+  std::vector<Call> calls;  // in the order of `at`
+};
+
+// What is remembered from step to step: number i is put down from row[i] of the program that looks
+// at worlds after their steps.
+struct Memory {
+  std::vector<int> row;
+};
+
+class ProgramBuilder {
+ public:
+  // `memory` of the program itself; of one that runs before the steps (`looks_back`) of the one
+  // that ran after the last ones, which has everything that this one remembers.
+  ProgramBuilder(const Plan& plan, InputRows inputs, Memory& memory,
+                 ProgramBuilder* looks_back = nullptr)
+      : plan_(plan), inputs_(inputs), memory_(memory), looks_back_(looks_back) {}
+
+  int add(const Expression& expression);  // its row
+  Program take() { return std::move(program_); }
+
+ private:
+  using Key = std::tuple<int, int, int, int, std::uint64_t>;
+
+  int add_node(const Expression::Node& node);
+  int add_function(const Expression::Node& node);
+  int emit(kernels::Operation operation, int a = -1, int b = -1, int c = -1, double number = 0);
+  int remember(int row);
+  // In terms of what the kernels have.
+  Expression position(int body, int axis) const;
+  Expression velocity(int body, int axis) const;
+  Expression angular_velocity(int body, int axis) const;
+  Expression angle(int body) const;
+  Expression direction(int body, int of, int axis) const;
+  Expression state(int body, int component) const;
+
+  const Plan& plan_;
+  InputRows inputs_;
+  Memory& memory_;
+  ProgramBuilder* looks_back_;
+  Program program_;
+  std::map<Key, int> same_;
+  std::unordered_map<const Expression::Node*, int> known_;
+  std::vector<Expression> kept_;  // so that what `known_` points to stays
+};
+
+}  // namespace manyworlds

@@ -1,0 +1,251 @@
+#include "src/task/runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/base/bits.hpp"
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : most_steps(task.most_steps) {
+  inputs.actions = task.choices > 0 ? 1 : static_cast<int>(task.actions.size());
+  for (const Action& a : task.actions) action_range.push_back({a.low, a.high});
+  control_range = plan.data().control_range;
+  ProgramBuilder builder(plan, inputs, memory);
+  for (const Observation& o : task.observations) observations.push_back(builder.add(o.value));
+  for (const Reward& r : task.rewards) rewards.push_back(builder.add(r.value));
+  terminated = builder.add(task.terminated);
+  truncated = builder.add(task.truncated | terms::lost());
+  ProgramBuilder first(plan, inputs, memory, &builder);
+  for (const Expression& c : task.controls) controls.push_back(first.add(c));
+  before = first.take();
+  after = builder.take();
+}
+
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+template <class Real>
+class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
+ public:
+  RunnerOf(std::shared_ptr<const TaskPrograms> programs, const Batch& batch, Autoreset autoreset)
+      : p_(std::move(programs)),
+        before_(p_->before),
+        after_(p_->after),
+        autoreset_(autoreset),
+        worlds_(batch.worlds()),
+        lanes_(batch.lanes()) {
+    const std::size_t groups = at((worlds_ + lanes_ - 1) / lanes_), lanes = at(lanes_);
+    memory_ = AlignedBuffer<Real>(groups * p_->memory.row.size() * lanes);
+    age_ = AlignedBuffer<Real>(groups * lanes);
+    begin_now.resize(at(worlds_));
+    begin_next.resize(at(worlds_));
+    for (int t = 0; t < batch.threads(); ++t) {
+      Thread& thread = threads_.emplace_back();
+      const std::size_t rows = std::max(before_.code.size(), after_.code.size());
+      thread.values = AlignedBuffer<Real>(rows * lanes);
+      thread.inputs = AlignedBuffer<Real>(at(p_->inputs.count()) * lanes);
+      thread.in.reserve(rows);
+    }
+  }
+
+  GroupVisitor& visitor() override { return *this; }
+
+  void copy_world(int from, int to) override {
+    const auto place = [this](int world, std::size_t rows) {
+      return at(world / lanes_) * rows * at(lanes_) + at(world % lanes_);
+    };
+    const std::size_t rows = p_->memory.row.size();
+    for (std::size_t i = 0; i < rows; ++i) {
+      memory_[place(to, rows) + i * at(lanes_)] = memory_[place(from, rows) + i * at(lanes_)];
+    }
+    age_[place(to, 1)] = age_[place(from, 1)];
+    begin_next[at(to)] = begin_next[at(from)];
+  }
+
+  void before_steps(const VisitedGroup<Real>& g) override {
+    Thread& thread = threads_[at(g.thread)];
+    for (int l = 0; l < lanes_; ++l) put_action(g, thread, l);
+    run(g, before_, thread, false);
+    for (std::size_t i = 0; i < p_->controls.size(); ++i) {
+      const auto [low, high] = p_->control_range[i];
+      const Real* from = thread.values.data() + at(p_->controls[i]) * at(lanes_);
+      for (int l = 0; l < lanes_; ++l) {
+        if (std::isnan(from[l])) {
+          g.view.status[l] |= kernels::kNonFinite;
+        } else {
+          g.control[i * at(lanes_) + at(l)] =
+              std::clamp(from[l], static_cast<Real>(low), static_cast<Real>(high));
+        }
+      }
+    }
+  }
+
+  void after_steps(const VisitedGroup<Real>& g) override {
+    Thread& thread = threads_[at(g.thread)];
+    Real* age = age_.data() + at(g.group * lanes_);
+    Real* in = thread.inputs.data();
+    for (int l = 0; l < lanes_; ++l) {
+      in[at(p_->inputs.age() * lanes_ + l)] = age[l] += 1;
+      in[at(p_->inputs.lost() * lanes_ + l)] =
+          has_status(g, l, kernels::kFrozen | kernels::kOutOfBounds) ? 1 : 0;
+    }
+    run(g, after_, thread, false);
+    const int end = std::min(lanes_, worlds_ - g.group * lanes_);
+    for (int l = 0; l < end; ++l) {
+      const int world = g.group * lanes_ + l;
+      put_observations(out.observations, thread, world, l);
+      finish_step(thread, world, l, static_cast<int>(age[l]));
+    }
+    put_down(g.group, thread, (1u << lanes_) - 1u);
+  }
+
+  void after_beginning(const VisitedGroup<Real>& g, std::uint32_t lanes) override {
+    Thread& thread = threads_[at(g.thread)];
+    std::fill_n(thread.inputs.data(), thread.inputs.size(), Real(0));
+    run(g, after_, thread, true);
+    for (int l = 0; l < lanes_; ++l) {
+      if (!get_bit(lanes, at(l))) continue;
+      const int world = g.group * lanes_ + l;
+      age_[at(world)] = 0;
+      begin_next[at(world)] = 0;
+      if (keeps_last) keep_last(world);
+      put_observations(out.observations, thread, world, l);
+    }
+    put_down(g.group, thread, lanes);
+  }
+
+ private:
+  struct Code {
+    explicit Code(const Program& program) : calls(program.calls) {
+      for (const auto& i : program.instructions) {
+        code.push_back({i.operation, i.a, i.b, i.c, static_cast<Real>(i.number)});
+      }
+    }
+    std::vector<kernels::Instruction<Real>> code;
+    const std::vector<Program::Call>& calls;
+  };
+  struct Thread {
+    AlignedBuffer<Real> values, inputs;
+    std::vector<const Real*> in;  // of a call
+  };
+
+  static bool has_status(const VisitedGroup<Real>& g, int lane, std::uint32_t bits) {
+    return (g.view.status[lane] & bits) != 0;
+  }
+
+  void put_action(const VisitedGroup<Real>& g, Thread& thread, int lane) {
+    const std::size_t world = at(std::min(g.group * lanes_ + lane, worlds_ - 1));
+    Real* in = thread.inputs.data() + lane;
+    if (choices) {
+      *in = static_cast<Real>(choices[world]);
+      return;
+    }
+    for (std::size_t i = 0; i < p_->action_range.size(); ++i) {
+      const float value = actions[world * p_->action_range.size() + i];
+      const auto [low, high] = p_->action_range[i];
+      if (std::isnan(value)) g.view.status[lane] |= kernels::kNonFinite;
+      in[i * at(lanes_)] = std::isnan(value)
+                               ? Real(0)
+                               : std::clamp(static_cast<Real>(value), static_cast<Real>(low),
+                                            static_cast<Real>(high));
+    }
+  }
+
+  void run(const VisitedGroup<Real>& g, const Code& code, Thread& thread, bool beginning) const {
+    const std::size_t rows = p_->memory.row.size();
+    kernels::ProgramRun<Real> run{code.code.data(),
+                                  0,
+                                  0,
+                                  thread.inputs.data(),
+                                  memory_.data() + at(g.group) * rows * at(lanes_),
+                                  thread.values.data(),
+                                  beginning};
+    const auto run_to = [&](int end) {
+      run.end = end;
+      g.kernels.observer->run_program(g.view, g.seen, run);
+    };
+    for (const Program::Call& call : code.calls) {
+      run_to(call.at);
+      thread.in.clear();
+      for (const int row : call.in) thread.in.push_back(run.value + at(row * lanes_));
+      (*call.function)(lanes_, std::span<const Real* const>(thread.in),
+                       run.value + at(call.at * lanes_));
+      run.begin = call.at + 1;
+    }
+    run_to(static_cast<int>(code.code.size()));
+  }
+
+  Real value(const Thread& thread, int row, int lane) const {
+    return thread.values[at(row * lanes_ + lane)];
+  }
+
+  void put_observations(std::span<float> to, const Thread& thread, int world, int lane) const {
+    if (to.empty()) return;
+    float* own = to.data() + at(world) * p_->observations.size();
+    for (const int row : p_->observations) *own++ = static_cast<float>(value(thread, row, lane));
+  }
+
+  void keep_last(int world) const {
+    if (out.observations.empty() || out.final_observations.empty()) return;
+    const std::size_t n = p_->observations.size();
+    std::copy_n(out.observations.data() + at(world) * n, n,
+                out.final_observations.data() + at(world) * n);
+  }
+
+  void finish_step(const Thread& thread, int world, int lane, int age) {
+    const bool begins = begin_next[at(world)] != 0;  // the step is no step of an episode
+    const bool terminated = !begins && value(thread, p_->terminated, lane) != 0;
+    const bool truncated = !begins && (value(thread, p_->truncated, lane) != 0 ||
+                                       (p_->most_steps > 0 && age >= p_->most_steps));
+    double sum = 0;
+    for (std::size_t i = 0; i < p_->rewards.size(); ++i) {
+      const double reward = begins ? 0 : static_cast<double>(value(thread, p_->rewards[i], lane));
+      sum += reward;
+      if (!out.reward_terms.empty()) {
+        out.reward_terms[at(world) * p_->rewards.size() + i] = reward;
+      }
+    }
+    if (!out.rewards.empty()) out.rewards[at(world)] = sum;
+    if (!out.terminated.empty()) out.terminated[at(world)] = terminated;
+    if (!out.truncated.empty()) out.truncated[at(world)] = truncated;
+    const bool ended = terminated || truncated;
+    begin_now[at(world)] = begins || (ended && autoreset_ == Autoreset::same_step);
+    begin_next[at(world)] = ended && autoreset_ == Autoreset::next_step;
+    if (begin_now[at(world)] != 0) some_begin.store(true, std::memory_order_relaxed);
+  }
+
+  // What the next step has to remember of these lanes.
+  void put_down(int group, const Thread& thread, std::uint32_t lanes) {
+    const std::size_t rows = p_->memory.row.size();
+    Real* to = memory_.data() + at(group) * rows * at(lanes_);
+    for (const int row : p_->memory.row) {
+      for (int l = 0; l < lanes_; ++l) {
+        if (get_bit(lanes, at(l))) to[l] = value(thread, row, l);
+      }
+      to += lanes_;
+    }
+  }
+
+  std::shared_ptr<const TaskPrograms> p_;
+  Code before_, after_;
+  Autoreset autoreset_;
+  int worlds_, lanes_;
+  AlignedBuffer<Real> memory_;  // [group][number][lane]
+  AlignedBuffer<Real> age_;     // [group][lane]
+  std::vector<Thread> threads_;
+};
+
+}  // namespace
+
+std::unique_ptr<TaskRunner> make_runner(std::shared_ptr<const TaskPrograms> programs,
+                                        const Batch& batch, Autoreset autoreset) {
+  if (batch.precision() == Precision::f32) {
+    return std::make_unique<RunnerOf<float>>(std::move(programs), batch, autoreset);
+  }
+  return std::make_unique<RunnerOf<double>>(std::move(programs), batch, autoreset);
+}
+
+}  // namespace manyworlds

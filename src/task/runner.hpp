@@ -1,0 +1,50 @@
+// TaskRunner: works out a task around the steps of groups of worlds, in the batch's number type.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "manyworlds/environment.hpp"
+#include "src/base/aligned_buffer.hpp"
+#include "src/step/group_visitor.hpp"
+#include "src/task/program.hpp"
+
+namespace manyworlds {
+
+// The programs of a task and which rows of them are what.
+struct TaskPrograms {
+  TaskPrograms(const Task& task, const Plan& plan);
+
+  InputRows inputs;
+  std::vector<std::array<double, 2>> action_range, control_range;
+  int most_steps;
+  Program before, after;
+  std::vector<int> controls;               // rows of `before`
+  std::vector<int> observations, rewards;  // rows of `after`
+  int terminated, truncated;
+  Memory memory;
+};
+
+// The number type's side of an Environment.
+class TaskRunner {
+ public:
+  virtual ~TaskRunner() = default;
+  virtual GroupVisitor& visitor() = 0;
+  virtual void copy_world(int from, int to) = 0;
+
+  // Of the call in progress.
+  const float* actions = nullptr;         // [world][action], or
+  const std::int64_t* choices = nullptr;  // [world]
+  StepArrays out;
+  bool keeps_last = false;  // worlds that begin leave their last observations
+  // [world] worlds that begin after the steps; those that do in the next ones.
+  std::vector<std::uint8_t> begin_now, begin_next;
+  std::atomic<bool> some_begin = false;
+};
+
+std::unique_ptr<TaskRunner> make_runner(std::shared_ptr<const TaskPrograms> programs,
+                                        const Batch& batch, Autoreset autoreset);
+
+}  // namespace manyworlds
