@@ -42,11 +42,14 @@ ONE_HOME = {
     r"hdf5\.h": ("src/record", 1),
     r"libqhull_r/.*": ("src/scene", 1),
     r"nlohmann/.*": ("src/record", 1),
+    r"nanobind/.*": ("python/src", None),
 }
+# Where third-party headers have to be at home; tests and benchmarks may drive a library themselves.
+OF_THE_LIBRARY = ("src/", "kernels/", "include/", "scenes/", "python/")
 # Public headers include the standard library (no dot, no slash), Eigen and each other.
 PUBLIC_SYSTEM = re.compile(r"[a-z_0-9]+|Eigen/\w+")
 
-FOLDERS = ["include", "src", "kernels", "scenes", "tests", "bench", "tools", "examples"]
+FOLDERS = ["include", "src", "kernels", "scenes", "tests", "bench", "tools", "examples", "python"]
 LINE_LIMIT = 400
 REASON = "over 400 lines because"
 REASON_WITHIN = 15
@@ -140,6 +143,8 @@ def check_include(file, name, quoted):
         return check_public(name, quoted)
     if top == "tools" and name.startswith("tools/"):
         return check_tools(file, name)
+    if top == "python" and name.startswith(("src/", "kernels/", "tools/", "tests/")):
+        return "the bindings see the public headers"
     if top == "scenes" and name.startswith(("src/", "kernels/")):
         return "scenes are made from the public headers"
     return None
@@ -156,8 +161,7 @@ def homes(graph):
                     users.setdefault(file, (number, name))
         inside = [f for f in users if f.startswith(home + "/")]
         for file, (number, name) in users.items():
-            # Tests and benchmarks may drive a third-party library of their own accord.
-            if file not in inside and file.startswith(("src/", "kernels/", "include/", "scenes/")):
+            if file not in inside and file.startswith(OF_THE_LIBRARY):
                 found.append((file, number, f"<{name}> belongs in {home}"))
             elif limit is not None and file in inside[limit:]:
                 found.append((file, number, f"<{name}> is already included by {inside[0]}"))

@@ -14,6 +14,10 @@ packages=(
   catch2 libbenchmark-dev libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libqhull-dev libtbb-dev
   libxsimd-dev nlohmann-json3-dev
 )
+# What the Python package is built and tested with, in an environment of its own.
+python_packages=(python3-dev python3-venv)
+python_requirements=(nanobind==3.1.0 numpy pytest scikit-build-core)
+python_dir="$root/build/python"
 
 say() { printf '%s: %s\n' "$program" "$*" >&2; }
 fail() {
@@ -51,12 +55,29 @@ fetch_mujoco() {
     fail "could not fetch MuJoCo from PyPI (MW_MJCF=OFF $program builds without MJCF files)"
 }
 
+# make_python_environment: build/python, from Debian's own python3 where there is one, since that is
+# whom python3-dev belongs to.
+make_python_environment() {
+  local python=/usr/bin/python3 stamp="$python_dir/made_with"
+  [[ -x $python ]] || python=python3
+  if [[ -x $python_dir/bin/python && -f $stamp && $(<"$stamp") == "${python_requirements[*]}" ]]; then
+    return
+  fi
+  say "making an environment for the Python package in build/python"
+  "$python" -m venv --clear "$python_dir" >&2 || fail "$python could not make build/python"
+  "$python_dir/bin/python" -m pip install --quiet --disable-pip-version-check --no-input \
+    "${python_requirements[@]}" >&2 ||
+    fail "pip could not install ${python_requirements[*]} (MW_PYTHON=OFF $program leaves Python out)"
+  printf '%s\n' "${python_requirements[*]}" >"$stamp"
+}
+
 # Configures build/release when it was not, or when the presets changed. Ninja itself reconfigures
 # when a CMake file or the list of sources changed.
 configure() {
-  local mjcf=$1 record=$2
+  local mjcf=$1 record=$2 python=$3
   local arguments=(--preset release -D "MW_MJCF=$mjcf" -D "MW_MUJOCO_DIR=$mujoco_dir"
-    -D "MW_RECORD=$record")
+    -D "MW_RECORD=$record" -D "MW_PYTHON=$python")
+  [[ $python == OFF ]] || arguments+=(-D "Python_EXECUTABLE=$python_dir/bin/python")
   if [[ -n ${MW_ISAS-} ]]; then arguments+=(-D "MW_ISAS=$MW_ISAS"); else arguments+=(-U MW_ISAS); fi
   local stamp="$build_dir/configured_with"
   if [[ -f $build_dir/build.ninja && $stamp -nt $root/CMakePresets.json &&
@@ -68,18 +89,33 @@ configure() {
   printf '%s\n' "${arguments[*]}" >"$stamp"
 }
 
+# configured_python: ON when build/release was last configured with the Python package, else OFF.
+configured_python() {
+  if [[ -f $build_dir/configured_with && $(<"$build_dir/configured_with") == *MW_PYTHON=ON* ]]; then
+    echo ON
+  else
+    echo OFF
+  fi
+}
+
 # build TARGET: everything up to an up-to-date TARGET in build/release. Two at a time wait for one
-# another. MW_MJCF=OFF, MW_RECORD=OFF and MW_ISAS="scalar;avx2", in the environment, leave things out.
+# another. MW_MJCF=OFF, MW_RECORD=OFF, MW_PYTHON=OFF and MW_ISAS="scalar;avx2", in the environment,
+# leave things out. The Python package is only configured by who says so (MW_PYTHON=ON, tools/test).
 build() {
-  local target=$1 mjcf=${MW_MJCF:-ON} record=${MW_RECORD:-ON}
+  local target=$1 mjcf=${MW_MJCF:-ON} record=${MW_RECORD:-ON} python=${MW_PYTHON:-}
   [[ $mjcf == ON || $mjcf == OFF ]] || fail "MW_MJCF is '$mjcf', must be ON or OFF"
   [[ $record == ON || $record == OFF ]] || fail "MW_RECORD is '$record', must be ON or OFF"
+  # Who does not ask for Python leaves it as it was configured last.
+  [[ -n $python ]] || python=$(configured_python)
+  [[ $python == ON || $python == OFF ]] || fail "MW_PYTHON is '$python', must be ON or OFF"
+  if [[ $python == ON ]]; then packages+=("${python_packages[@]}"); fi
   install_packages "${packages[@]}"
   mkdir -p "$root/build"
   exec 9>"$root/build/release.lock"
   flock 9
   [[ $mjcf == OFF ]] || fetch_mujoco
-  configure "$mjcf" "$record"
+  [[ $python == OFF ]] || make_python_environment
+  configure "$mjcf" "$record" "$python"
   cmake --build "$build_dir" --target "$target" --parallel "$(nproc)" >&2 9>&- ||
     fail "the build failed"
   exec 9>&-

@@ -84,6 +84,16 @@ struct Energy {
   double potential = 0;
 };
 
+// A state field as the step keeps it, for those who read or write it in place (Batch::lane_blocks):
+// component c of body b in lane l of group g is number
+//   g group_stride + b body_stride + c component_stride + l
+// of data, which points to float or double (Batch::precision()).
+struct LaneBlocks {
+  void* data = nullptr;  // nullptr: the plan leaves the field out (Feature::orientation)
+  int groups = 0, bodies = 0, components = 0, lanes = 0;
+  std::size_t group_stride = 0, body_stride = 0, component_stride = 0;  // numbers
+};
+
 // What the contacts of the last step looked like, over all worlds (see Batch::measure_contacts).
 struct ContactSummary {
   double points_per_world = 0;  // points closer than 4 slop
@@ -160,6 +170,15 @@ class Batch {
   void write(Field field, std::span<const double> in);
   void read(Field field, int world, std::span<double> out) const;
   void write(Field field, int world, std::span<const double> in);
+
+  // -- state in place, without a copy. Here lie centres of mass, not bodies' origins, and principal
+  // axes, not bodies' own (read() turns one into the other). Whoever writes here neither wakes a
+  // world nor forgets its impulses, and is heard of by no listener. Lanes after the last world
+  // repeat it. The pointer is valid until the Batch is destroyed.
+  LaneBlocks lane_blocks(Field field, int kind = 0);
+  // Where a world lives in the blocks of its kind: lane slot % lanes of group slot / lanes. With
+  // sleep, steps may move it.
+  int slot(int world) const;
 
   // -- numbers of the scene that differ from world to world (Scene::variations), in double and in
   // canonical order: [world][shape of the scene], [world][state body] or [world], times

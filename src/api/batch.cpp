@@ -105,6 +105,17 @@ void Batch::write(Field field, int world, std::span<const double> in) {
   impl_->tell_write(*this, field, world, in);
 }
 
+LaneBlocks Batch::lane_blocks(Field field, int kind) {
+  if (kind < 0 || kind >= kinds()) {
+    reject("kind is " + std::to_string(kind) + ", must be 0 to " + std::to_string(kinds() - 1));
+  }
+  return impl_->core->lane_blocks(field, kind);
+}
+int Batch::slot(int world) const {
+  const auto p = impl_->find(world);
+  return impl_->core->slot(p.kind, p.world);
+}
+
 void Batch::add_force(int world, int body, const Vec3& force) {
   const auto p = impl_->find_body(world, body);
   impl_->core->add_force(p.kind, p.world, body, force, Vec3::Zero());

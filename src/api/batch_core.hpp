@@ -119,6 +119,10 @@ class CoreOf final : public BatchCore {
   void write(Field field, int kind, int world, const double* in) override {
     at(kind).write(field, world, in);
   }
+  LaneBlocks lane_blocks(Field field, int kind) const override {
+    return at(kind).lane_blocks(field);
+  }
+  int slot(int kind, int world) const override { return at(kind).slot_of(world); }
   void set_initial(Field field, int kind, int world, const double* in) override {
     at(kind).set_initial(field, world, in);
   }

@@ -32,6 +32,8 @@ class BatchCore {
   virtual void read(Field field, int kind, int world, double* out) const = 0;
   virtual void write(Field field, int kind, int world, const float* in) = 0;
   virtual void write(Field field, int kind, int world, const double* in) = 0;
+  virtual LaneBlocks lane_blocks(Field field, int kind) const = 0;
+  virtual int slot(int kind, int world) const = 0;
   virtual void set_initial(Field field, int kind, int world, const double* in) = 0;
   virtual std::size_t parameter_size(Parameter parameter, int kind) const = 0;
   virtual void read(Parameter parameter, int kind, int world, double* out) const = 0;

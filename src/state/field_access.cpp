@@ -147,6 +147,31 @@ void Worlds<Real>::write(Field field, int world, const In* in) {
 }
 
 template <class Real>
+LaneBlocks Worlds<Real>::lane_blocks(Field field) const {
+  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
+  LaneBlocks blocks;
+  blocks.groups = storage_.groups();
+  blocks.bodies = tables().bodies;
+  blocks.components = components(field, plan_.scene().space);
+  blocks.lanes = storage_.lanes();
+  blocks.component_stride = static_cast<std::size_t>(blocks.lanes);
+  blocks.body_stride = static_cast<std::size_t>(at.components) * blocks.component_stride;
+  blocks.group_stride = static_cast<std::size_t>(blocks.bodies) * blocks.body_stride;
+  int first = at.position;
+  switch (field) {
+    case Field::position: break;
+    case Field::orientation:
+      if (!tables().has_orientation) return blocks;
+      first = at.orientation;
+      break;
+    case Field::linear_velocity: first = at.linear; break;
+    case Field::angular_velocity: first = at.angular; break;
+  }
+  blocks.data = storage_.group(0).state + static_cast<std::ptrdiff_t>(first) * blocks.lanes;
+  return blocks;
+}
+
+template <class Real>
 void Worlds<Real>::set_initial(Field field, int world, const double* in) {
   auto& values = initial_[static_cast<std::size_t>(field)];
   if (in == nullptr) return values.clear();
@@ -163,6 +188,7 @@ void Worlds<Real>::set_initial(Field field, int world, const double* in) {
   template void Worlds<Real>::read<double>(Field, int, double*) const;  \
   template void Worlds<Real>::write<float>(Field, int, const float*);   \
   template void Worlds<Real>::write<double>(Field, int, const double*); \
+  template LaneBlocks Worlds<Real>::lane_blocks(Field) const;           \
   template void Worlds<Real>::set_initial(Field, int, const double*);   \
   template Quat Worlds<Real>::internal_rotation(int, int) const;        \
   template void Worlds<Real>::set_rotation(int, int, const Quat&);

@@ -41,6 +41,7 @@ class Worlds {
   void read(Field field, int world, Out* out) const;
   template <class In>
   void write(Field field, int world, const In* in);
+  LaneBlocks lane_blocks(Field field) const;
 
   void add_force(int world, int body, const Vec3& force, const Vec3& torque);
   void clear_forces() { storage_.clear_forces(); }

@@ -1,0 +1,286 @@
+"""Compiled part of manyworlds. Private: use the package manyworlds."""
+
+from collections.abc import Sequence
+import os
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+
+def names() -> dict:
+    """Names of the values of every enumeration, by its name."""
+
+def unknown_name(found: str, known: Sequence[str]) -> str:
+    """
+    What is wrong with a name, for an error: the known names and the nearest.
+    """
+
+def available_isas() -> list[str]:
+    """
+    Instruction sets that this CPU and this build can run, narrowest first.
+    """
+
+def default_values() -> dict:
+    """The library's default value of every dataclass, by its name."""
+
+def validate(scene: object) -> list[tuple[str, str]]:
+    """Every issue of a scene as (place, message)."""
+
+def round_trip(scene: object) -> object:
+    """The scene as the library understands it."""
+
+def load_scene(name: str) -> object:
+    """A scene that has a name."""
+
+def scene_names() -> list[tuple[str, str]]:
+    """(name, summary) of every scene that has a name."""
+
+def joint_at(scene: object, body_a: int, body_b: int, frame: object, type: object) -> object:
+    """A joint of two bodies whose frames are where `frame` is in the world."""
+
+def mass_properties(scene: object, body: int) -> object:
+    """Mass, centre and inertia of a body of a scene."""
+
+def mesh_mass_properties(vertices: object, triangles: object, density: float) -> object:
+    """Mass, centre and inertia of the solid inside a closed mesh."""
+
+def make_hull(points: object) -> object:
+    """The convex hull of points."""
+
+class Plan:
+    """What a step of a scene needs; immutable, shared by batches."""
+
+    def __init__(self, scene: object, broad_phase: object = 'automatic', keep: object = ()) -> None: ...
+
+    @property
+    def scene(self) -> object:
+        """A copy of the scene."""
+
+    @property
+    def bodies(self) -> int:
+        """State bodies: dynamic and kinematic ones."""
+
+    @property
+    def coordinates(self) -> int:
+        """Coordinates of all joints."""
+
+    @property
+    def fingerprint(self) -> int:
+        """Equal for plans whose worlds can go on in each other."""
+
+    def scene_body(self, body: int) -> int:
+        """Index in the scene of a state body."""
+
+    def state_body(self, body: int) -> int:
+        """Index of the state body of a body of the scene, -1 for fixed ones."""
+
+    def first_coordinate(self, joint: int) -> int:
+        """Where the coordinates of a joint begin."""
+
+    def has(self, feature: object) -> bool:
+        """Whether the step has this feature."""
+
+    def report(self) -> dict:
+        """What the plan contains, as a dict."""
+
+class SnapshotError(ValueError):
+    pass
+
+class Snapshot:
+    """
+    The whole state of some worlds of a Batch, to go on from later, elsewhere or many times.
+
+    Made by Batch.save(). It knows nothing of lanes, threads or places, so a world continues bit
+    by bit wherever it is restored. Can be pickled.
+    """
+
+    @property
+    def worlds(self) -> int:
+        """How many worlds it holds."""
+
+    @property
+    def steps(self) -> int:
+        """Steps that the batch had taken."""
+
+    @property
+    def time(self) -> float:
+        """Time that the batch had simulated, s."""
+
+    @property
+    def nbytes(self) -> int:
+        """Size in bytes."""
+
+    def bytes(self) -> bytes:
+        """The bytes of a file: what from_bytes() takes."""
+
+    @staticmethod
+    def from_bytes(data: bytes) -> Snapshot:
+        """
+        A snapshot from bytes(). Raises SnapshotError when they are cut or damaged.
+        """
+
+    def save(self, file: str | os.PathLike) -> None:
+        """Writes a file; no reader ever sees half of one. Raises SnapshotError."""
+
+    @staticmethod
+    def load(file: str | os.PathLike) -> Snapshot:
+        """Reads a file that save() wrote. Raises SnapshotError."""
+
+    def __eq__(self, other: object | None) -> bool: ...
+
+    def __getstate__(self) -> bytes: ...
+
+    def __setstate__(self, arg: bytes, /) -> None: ...
+
+    def __repr__(self) -> str: ...
+
+class Batch:
+    """Worlds that step together. Private: use manyworlds.Batch."""
+
+    def __init__(self, plan: Plan, worlds: object, threads: object, seed: int, precision: object, isa: object | None, layout: object, sleep: bool, observe: object, rays: object, contacts_per_world: object) -> None: ...
+
+    def close(self) -> None:
+        """Lets go of the worlds; what follows raises ValueError."""
+
+    @property
+    def closed(self) -> bool: ...
+
+    @property
+    def worlds(self) -> int: ...
+
+    @property
+    def threads(self) -> int: ...
+
+    @property
+    def seed(self) -> int: ...
+
+    @property
+    def lanes(self) -> int: ...
+
+    @property
+    def kernel_table(self) -> str: ...
+
+    @property
+    def bytes_per_world(self) -> int: ...
+
+    @property
+    def scratch_bytes(self) -> int: ...
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def steps(self) -> int: ...
+
+    @property
+    def sleeps(self) -> bool: ...
+
+    @property
+    def isa(self) -> str: ...
+
+    @property
+    def precision(self) -> str: ...
+
+    def step(self, n: int) -> None:
+        """Takes n steps, without the GIL."""
+
+    def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)] | None) -> None:
+        """
+        All worlds from the first episode, or the next episode of those in the mask.
+        """
+
+    def quantities(self) -> list:
+        """
+        (name, group, observer, item, items, components, unit, meaning) of every field.
+        """
+
+    def read(self, name: str, out: Annotated[NDArray, dict(order='C', device='cpu')]) -> None:
+        """Fills an array (worlds, items, components)."""
+
+    def write(self, name: str, numbers: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> None:
+        """
+        Takes an array (worlds, items, components), or those of some worlds in float64.
+        """
+
+    def blocks(self, name: str) -> object:
+        """
+        A state field in place, (groups, bodies, components, lanes); None: left out.
+        """
+
+    def slots(self, out: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu')]) -> None:
+        """Fills slots, (worlds)."""
+
+    @property
+    def controls(self) -> int: ...
+
+    def read_controls(self, out: Annotated[NDArray, dict(order='C', device='cpu')]) -> None:
+        """Fills an array (worlds, controls)."""
+
+    def write_controls(self, numbers: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> None:
+        """Takes an array (worlds, controls), or that of some worlds."""
+
+    def push(self, kind: object, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], bodies: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)] | None) -> None:
+        """
+        Adds forces, torques or impulses, (worlds, bodies, 3); rows of zeros do nothing.
+        """
+
+    def spawn(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], body: int, states: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> None:
+        """Enables a body with a state of 13 numbers in each of the worlds."""
+
+    def set_enabled(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], bodies: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)]) -> None:
+        """Enables and disables bodies, (worlds, bodies)."""
+
+    def enabled(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')]) -> None:
+        """Fills which bodies are enabled, (worlds, bodies)."""
+
+    def set_joints_enabled(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], joints: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)]) -> None:
+        """Enables and disables joints, (worlds, joints)."""
+
+    def joints_enabled(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')]) -> None:
+        """Fills which joints hold, (worlds, joints)."""
+
+    def asleep(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')]) -> None:
+        """Fills which bodies sleep, (worlds, bodies)."""
+
+    def wake(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
+        """Wakes everything in these worlds."""
+
+    def set_rays(self, rays: object, world: int | None) -> None:
+        """Other rays, in one world or in all."""
+
+    def status(self, out: Annotated[NDArray[numpy.uint32], dict(order='C', device='cpu')]) -> None:
+        """Fills status bits, (worlds)."""
+
+    def hashes(self, out: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu')]) -> None:
+        """Fills hashes of the state, (worlds)."""
+
+    def hash(self, world: int | None) -> int:
+        """Of a world, or of all."""
+
+    def energy(self, out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> None:
+        """Fills kinetic and potential energy, (worlds, 2)."""
+
+    def contacts(self, world: int) -> tuple:
+        """Columns of the contacts at this state."""
+
+    def step_contacts(self, world: int) -> tuple:
+        """Columns of the last step's contacts."""
+
+    def measure_contacts(self) -> dict:
+        """Contacts of all worlds in four numbers."""
+
+    def look(self) -> None:
+        """Observes motion, joints and rays at this state."""
+
+    def save(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> Snapshot:
+        """A Snapshot of all or of some worlds."""
+
+    def restore(self, snapshot: Snapshot, pairs: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> None:
+        """All worlds, or pairs (world of the snapshot, world of the batch)."""
+
+    def copy_world(self, source: int, target: int) -> None:
+        """Copies a world's state."""
+
+    def rollout(self, steps: int, every: int, controls: Annotated[NDArray, dict(order='C', device='cpu', writable=False)] | None, names: Sequence[str], arrays: Sequence[Annotated[NDArray, dict(order='C', device='cpu')]]) -> None:
+        """Takes steps and fills arrays (frames, worlds, items, components)."""

@@ -1,0 +1,219 @@
+"""Batch: worlds of one scene that step together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core, arrays, scenes
+from .fields import Fields
+from .inputs import Inputs
+from .names import ContactLayout, Ids, Isa, Observer, Precision
+from .plan import Plan
+from .results import Results
+from .rollout import MOST_STEPS, Initial, Trajectories, rollout
+from .scene import Ray, Scene
+
+MOST_WORLDS = 100_000_000
+MOST_THREADS = 1024
+
+
+class Batch(Fields, Inputs, Results):
+    """Worlds of one scene, stepped together on several threads, one SIMD lane for each.
+
+    scene        a Scene, a Plan, or the name of a scene (``scenes.names()``)
+    worlds       how many
+    threads      None: as many as the process may run on
+    precision    "f32" or "f64": of the state
+    seed         world i draws from seed + i; 0 to 2**64 - 1
+    isa          "scalar", "avx2", "avx512"; None: the widest there is, or what the environment
+                 variable MANYWORLDS_ISA says
+    layout       of contacts: "automatic", "dense", "rows"; changes no bit
+    sleep        bodies at rest fall asleep and cost little
+    observe      what to watch beside the step: "contacts", "touching", "penetration", "motion",
+                 "joints", "joint_loads", "residual"
+    rays         Rays that every world casts
+    contacts_per_world  room for observed contacts; 0: as many as the plan has room for
+
+    What a world does depends on its scene, seed and inputs alone, not on the number of worlds or
+    threads. Raises SceneError, ValueError, TypeError. A batch is used by one thread at a time; calls
+    that take long let go of the GIL. It can be closed, also by ``with``.
+    """
+
+    def __init__(
+        self,
+        scene: Union[Scene, Plan, str],
+        worlds: int = 1,
+        threads: Optional[int] = None,
+        precision: Precision = "f32",
+        seed: int = 0,
+        isa: Optional[Isa] = None,
+        layout: ContactLayout = "automatic",
+        sleep: bool = False,
+        observe: Sequence[Observer] = (),
+        rays: Sequence[Ray] = (),
+        contacts_per_world: int = 0,
+    ) -> None:
+        if isinstance(scene, str):
+            scene = scenes.load(scene)
+        if not isinstance(scene, (Scene, Plan)):
+            found = type(scene).__name__
+            raise TypeError(f"scene is of type {found}; expected a Scene, a Plan or a name")
+        self.plan = scene if isinstance(scene, Plan) else Plan(scene)
+        self._worlds = arrays.integer(worlds, "worlds", 1, MOST_WORLDS)
+        crew = 0 if threads is None else arrays.integer(threads, "threads", 1, MOST_THREADS)
+        seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
+        if not isinstance(sleep, (bool, np.bool_)):
+            raise TypeError(f"sleep is of type {type(sleep).__name__}; expected a bool")
+        self._held = _core.Batch(
+            self.plan,
+            self._worlds,
+            crew,
+            seed,
+            precision,
+            isa,
+            layout,
+            bool(sleep),
+            observe,
+            rays,
+            contacts_per_world,
+        )
+        self._real = np.dtype(np.float32 if self._held.precision == "f32" else np.float64)
+        self._watched = frozenset(name.replace("-", "_") for name in observe)
+        if len(rays) > 0:
+            self._watched |= {"rays"}
+        self._bodies = self.plan.bodies
+        self._controls = self._held.controls
+        self._joints = len(self.plan.scene.joints)
+        self._planar = self.plan.scene.space == "planar"
+        self._find_fields()
+
+    # -- what it is
+
+    @property
+    def worlds(self) -> int:
+        return self._worlds
+
+    @property
+    def bodies(self) -> int:
+        """State bodies of a world: dynamic and kinematic ones, in the order of the scene."""
+        return self._bodies
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Of the state: float32 or float64."""
+        return self._real
+
+    @property
+    def precision(self) -> str:
+        return self._held.precision
+
+    @property
+    def threads(self) -> int:
+        return self._held.threads
+
+    @property
+    def isa(self) -> str:
+        return self._held.isa
+
+    @property
+    def lanes(self) -> int:
+        """Worlds that share a register."""
+        return self._held.lanes
+
+    @property
+    def kernel_table(self) -> str:
+        """Which kernels step it: "avx2 f32 x8"."""
+        return self._held.kernel_table
+
+    @property
+    def seed(self) -> int:
+        return self._held.seed
+
+    @property
+    def bytes_per_world(self) -> int:
+        """Of persistent state."""
+        return self._held.bytes_per_world
+
+    @property
+    def time(self) -> float:
+        """Simulated since construction or reset of all worlds, s."""
+        return self._held.time
+
+    @property
+    def steps(self) -> int:
+        """Taken since construction or reset of all worlds."""
+        return self._held.steps
+
+    @property
+    def closed(self) -> bool:
+        return self._held.closed
+
+    def close(self) -> None:
+        """Lets go of the worlds; every later use raises ValueError. Twice is once."""
+        self._held.close()
+
+    def __enter__(self) -> Batch:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        if self.closed:
+            return "<manyworlds.Batch: closed>"
+        name = self.plan.scene.name
+        return (
+            f"<manyworlds.Batch: {self._worlds} worlds{f' of {name}' if name else ''}, "
+            f"{self._bodies} bodies, {self.kernel_table}, {self.threads} threads, "
+            f"{self.steps} steps>"
+        )
+
+    # -- stepping
+
+    def step(self, n: int = 1, controls: Optional[ArrayLike] = None) -> None:
+        """Takes n steps of every world, without the GIL.
+
+        ``controls``: set before, (worlds, controls); see set_controls. Forces that were added act in
+        all n steps and are cleared. A world that goes wrong is frozen and flagged (``status``).
+        """
+        n = arrays.integer(n, "n", 0, MOST_STEPS)
+        if controls is not None:
+            self.set_controls(controls)
+        self._held.step(n)
+
+    def reset(self, mask_or_ids: Optional[Ids] = None) -> None:
+        """Begins anew with new draws of jitter and variations, in all worlds or in some.
+
+        None: all worlds from their first episode, with the clock, so that it repeats the first draw
+        exactly. Else the next episode of those worlds: a bool array (worlds,), or indices.
+        """
+        if mask_or_ids is None:
+            self._held.reset(None)
+            return
+        mask = np.zeros(self._worlds, dtype=np.uint8)
+        mask[arrays.indices(mask_or_ids, self._worlds, "ids")] = 1
+        self._held.reset(mask)
+
+    def rollout(
+        self,
+        initial: Initial = None,
+        controls: Optional[ArrayLike] = None,
+        steps: Optional[int] = None,
+        fields: Sequence[str] = ("position",),
+        every: int = 1,
+        out: Optional[Mapping[str, NDArray[Any]]] = None,
+    ) -> Trajectories:
+        """Takes many steps in one call, without the GIL, and returns what happened.
+
+        ``initial``: a Snapshot of all worlds, or a dict of fields as ``set`` takes them; None: from
+        where the worlds are. ``controls``: (steps, worlds, controls), one row per step; or ``steps``
+        alone, with the controls as they are. Returns {field: (frames, worlds, items, components)}
+        with frames = steps // every, taken after every ``every`` steps; the state before the first
+        step is none of them. ``out``: a dict of arrays to fill. The worlds stay where the rollout
+        ends; the bits are those of stepping and reading one by one. Ctrl-C ends it early.
+        """
+        return rollout(self, initial, controls, steps, fields, every, out)

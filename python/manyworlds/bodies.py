@@ -1,0 +1,50 @@
+"""Bodies: what shapes belong to, where they begin, and how that differs from world to world."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Optional
+
+from .names import Motion, Numbers
+from .shapes import Shape
+
+
+@dataclass(slots=True)
+class MassProperties:
+    """Mass, centre and inertia of a body. In the plane only inertia[2][2] counts."""
+
+    mass: float = 1.0  # kg
+    center: Numbers = (0.0, 0.0, 0.0)  # m, centre of mass in the body frame
+    # kg m^2 about the centre of mass, body axes, (3, 3)
+    inertia: object = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(slots=True, kw_only=True)
+class Jitter:
+    """Half ranges of uniform draws around the values of a body, anew for each world and reset."""
+
+    position: Numbers = (0.0, 0.0, 0.0)  # m
+    linear_velocity: Numbers = (0.0, 0.0, 0.0)  # m/s
+    angle: float = 0.0  # rad, about z
+    any_orientation: bool = False  # spatial: any rotation, uniformly
+    # A body of the scene whose draws move this one, too, as one rigid piece; -1: none.
+    with_body: int = -1
+
+
+@dataclass(slots=True, kw_only=True)
+class Body:
+    """A rigid body. Its mass comes from its shapes unless ``mass_properties`` gives it."""
+
+    name: str = ""
+    motion: Motion = "dynamic"
+    enabled: bool = True  # False: not there until Batch.spawn or Batch.set_enabled
+    position: Numbers = (0.0, 0.0, 0.0)  # m, of the body frame in the world
+    rotation: Numbers = (1.0, 0.0, 0.0, 0.0)  # (w, x, y, z); need not be unit
+    linear_velocity: Numbers = (0.0, 0.0, 0.0)  # m/s, of the centre of mass
+    angular_velocity: Numbers = (0.0, 0.0, 0.0)  # rad/s
+    shapes: list[Shape] = field(default_factory=list)
+    mass_properties: Optional[MassProperties] = None
+    gravity_scale: float = 1.0
+    linear_drag: float = 0.0  # 1/s
+    angular_drag: float = 0.0  # 1/s
+    jitter: Jitter = field(default_factory=Jitter)

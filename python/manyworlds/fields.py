@@ -1,0 +1,131 @@
+"""Fields: everything that a batch has an array of. ``Batch.get``, ``set`` and ``view``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core, arrays
+from .names import Ids
+from .view import View
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """What is known of a field: its array is (worlds, items, components)."""
+
+    name: str
+    group: str  # "state", "parameter" (a number of the scene) or "observed"
+    observer: str  # that an observed one needs, "rays" for rays; else ""
+    item: str  # what has one: "body", "shape", "world", "joint", "coordinate", "ray"
+    items: int
+    components: int
+    unit: str
+    meaning: str
+    dtype: np.dtype[Any]
+
+
+class Fields:
+    """The part of Batch about arrays."""
+
+    _held: _core.Batch
+    _worlds: int
+    _real: np.dtype[Any]
+    _watched: frozenset[str]
+    _fields: Mapping[str, Field]
+
+    def _find_fields(self) -> None:
+        double = np.dtype(np.float64)
+        found = {}
+        for name, group, *rest in self._held.quantities():
+            dtype = double if group == "parameter" else self._real
+            found[name] = Field(name, group, *rest, dtype)
+        self._fields = MappingProxyType(found)
+
+    @property
+    def fields(self) -> Mapping[str, Field]:
+        """All fields by name: state, numbers of the scene, and what can be observed."""
+        return self._fields
+
+    def _field(self, name: str) -> Field:
+        if not isinstance(name, str):
+            raise TypeError(f"the field is of type {type(name).__name__}; expected a str")
+        if name not in self._fields:
+            raise ValueError("the field " + _core.unknown_name(name, list(self._fields)))
+        field = self._fields[name]
+        if field.observer and field.observer not in self._watched:
+            wanted = "rays=[...]" if field.observer == "rays" else f"observe=['{field.observer}']"
+            raise ValueError(f"{name} is not observed; make the Batch with {wanted}")
+        return field
+
+    def _shape(self, field: Field, worlds: int) -> tuple[int, int, int]:
+        return worlds, field.items, field.components
+
+    @staticmethod
+    def _axes(field: Field) -> tuple[str, str, str]:
+        return "worlds", {"body": "bodies"}.get(field.item, field.item + "s"), "components"
+
+    def get(self, name: str, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
+        """A field of all worlds, (worlds, items, components).
+
+        State and observed fields have the batch's precision (float32 or float64), numbers of the
+        scene float64. Position is that of the body's origin, velocity that of its centre of mass;
+        units are in ``fields[name].unit``. ``out``: filled in place and returned; it must have this
+        shape and dtype and be C-contiguous.
+
+        Raises ValueError for an unknown or unobserved field, and for an ``out`` that does not fit
+        (TypeError for its dtype).
+        """
+        field = self._field(name)
+        out = arrays.output(out, self._shape(field, self._worlds), self._axes(field), field.dtype)
+        self._held.read(name, out)
+        return out
+
+    def set(self, name: str, values: ArrayLike, ids: Optional[Ids] = None) -> None:
+        """Sets a state field or a number of the scene, in all worlds or in those of ``ids``.
+
+        ``values``: (worlds, items, components), or (len(ids), items, components); any dtype, order
+        and strides. Positions and orientations forget the impulses stored in those worlds, and all
+        wake. Numbers of the scene must vary (Scene.variations) and lie in their range, or nothing
+        changes and ValueError is raised, as for a wrong shape. IndexError for wrong ids.
+        """
+        field = self._field(name)
+        if field.group == "observed":
+            raise ValueError(f"{name} is observed and cannot be set")
+        if ids is None:
+            dtype = np.float64 if field.group == "parameter" else None
+            shape = self._shape(field, self._worlds)
+            self._held.write(
+                name, arrays.numbers(values, shape, self._axes(field), name, dtype), None
+            )
+            return
+        worlds = arrays.indices(ids, self._worlds, "ids")
+        shape, axes = self._shape(field, len(worlds)), ("ids", *self._axes(field)[1:])
+        numbers = arrays.numbers(values, shape, axes, name, np.float64)
+        self._held.write(name, numbers, worlds)
+
+    def view(self, name: str) -> View:
+        """A state field in place, as the step keeps it: see View. Raises ValueError."""
+        field = self._field(name)
+        if field.group != "state":
+            raise ValueError(f"{name} is no state field; only those can be seen in place")
+        blocks = self._held.blocks(name)
+        if blocks is None:
+            raise ValueError(
+                f"the plan has no {name}: no body of it has any (Plan.text() says why)"
+            )
+        return View(self._held, name, blocks)
+
+    def slots(self, out: Optional[NDArray[np.int32]] = None) -> NDArray[np.int32]:
+        """Where worlds live in views, (worlds,) int32: lane slot % lanes of group slot // lanes.
+
+        With sleep, steps may move them.
+        """
+        out = arrays.output(out, (self._worlds,), ("worlds",), np.int32)
+        self._held.slots(out)
+        return out

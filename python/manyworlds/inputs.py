@@ -1,0 +1,214 @@
+"""What acts on worlds from outside: the part of Batch about controls, forces, and what comes and
+goes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core, arrays
+from .names import Ids
+from .plan import Plan
+from .scene import Ray
+
+
+class Inputs:
+    """Controls, forces, bodies and joints that come and go, rays."""
+
+    _held: _core.Batch
+    _worlds: int
+    _bodies: int
+    _joints: int
+    _controls: int
+    _planar: bool
+    _real: np.dtype[Any]
+    plan: Plan
+
+    # -- controls
+
+    def get_controls(self, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
+        """What controls are set to, (worlds, controls), in the batch's precision."""
+        shape = self._worlds, self._controls
+        out = arrays.output(out, shape, ("worlds", "controls"), self._real)
+        self._held.read_controls(out)
+        return out
+
+    def set_controls(self, values: ArrayLike, ids: Optional[Ids] = None) -> None:
+        """Sets the scene's controls, (worlds, controls) or (len(ids), controls), of any dtype.
+
+        They act in every step until they are set anew. Beyond its range a value counts as the end
+        of the range; one that is not a number freezes its world.
+        """
+        if ids is None:
+            shape = self._worlds, self._controls
+            numbers = arrays.numbers(values, shape, ("worlds", "controls"), "controls")
+            self._held.write_controls(numbers, None)
+            return
+        worlds = arrays.indices(ids, self._worlds, "ids")
+        shape = len(worlds), self._controls
+        numbers = arrays.numbers(values, shape, ("ids", "controls"), "controls")
+        self._held.write_controls(numbers, worlds)
+
+    # -- forces and impulses
+
+    def add_force(
+        self,
+        force: ArrayLike,
+        bodies: Optional[Ids] = None,
+        ids: Optional[Ids] = None,
+        points: Optional[ArrayLike] = None,
+    ) -> None:
+        """Adds forces, N in the world frame, which act during the next ``step`` call, all its steps.
+
+        ``force``: (worlds, bodies, 3), planar 2, or what broadcasts to it; ``bodies`` and ``ids``
+        choose state bodies and worlds. Through the centre of mass, or at ``points`` (as ``force``, m,
+        world). Rows of zeros do nothing. Raises ValueError for shapes, IndexError for indices.
+        """
+        self._push("force", force, bodies, ids, points)
+
+    def add_torque(
+        self, torque: ArrayLike, bodies: Optional[Ids] = None, ids: Optional[Ids] = None
+    ) -> None:
+        """Adds torques, N m, (worlds, bodies, 3), planar 1: see add_force."""
+        self._push("torque", torque, bodies, ids)
+
+    def add_impulse(
+        self,
+        impulse: ArrayLike,
+        bodies: Optional[Ids] = None,
+        ids: Optional[Ids] = None,
+        points: Optional[ArrayLike] = None,
+    ) -> None:
+        """Changes velocities at once by impulses, N s: see add_force."""
+        self._push("impulse", impulse, bodies, ids, points)
+
+    def add_angular_impulse(
+        self, impulse: ArrayLike, bodies: Optional[Ids] = None, ids: Optional[Ids] = None
+    ) -> None:
+        """Changes spins at once by angular impulses, N m s: see add_torque."""
+        self._push("angular_impulse", impulse, bodies, ids)
+
+    def _push(
+        self,
+        kind: str,
+        values: ArrayLike,
+        bodies: Optional[Ids],
+        ids: Optional[Ids],
+        points: Optional[ArrayLike] = None,
+    ) -> None:
+        worlds = arrays.indices(ids, self._worlds, "ids")
+        chosen = arrays.indices(bodies, self._bodies, "bodies")
+        spin = kind in ("torque", "angular_impulse")
+        full = self._vectors(values, (len(worlds), len(chosen)), kind, spin)
+        at = None
+        if points is not None:
+            at = self._vectors(points, (len(worlds), len(chosen)), "points", False)
+        self._held.push(kind, worlds, chosen, full, at)
+
+    def _vectors(
+        self, values: ArrayLike, lead: tuple[int, ...], name: str, spin: bool
+    ) -> NDArray[np.float64]:
+        """Vectors of this scene as vectors in space, (*lead, 3)."""
+        width = (1 if spin else 2) if self._planar else 3
+        axes = (*("worlds", "bodies")[: len(lead)], "components")
+        own = arrays.broadcast(values, (*lead, width), axes, name, np.float64)
+        if width == 3:
+            return own
+        full = np.zeros((*lead, 3))
+        full[..., 2 if spin else slice(0, 2)] = own[..., 0] if spin else own
+        return full
+
+    # -- bodies and joints that come and go, sleep
+
+    def get_enabled(self, out: Optional[NDArray[np.bool_]] = None) -> NDArray[np.bool_]:
+        """Which state bodies take part, (worlds, bodies) bool."""
+        out = arrays.output(out, (self._worlds, self._bodies), ("worlds", "bodies"), np.bool_)
+        self._held.enabled(out)
+        return out
+
+    def set_enabled(
+        self, enabled: ArrayLike, bodies: Optional[Ids] = None, ids: Optional[Ids] = None
+    ) -> None:
+        """Enables or disables bodies: bools that broadcast to (worlds, bodies)."""
+        worlds = arrays.indices(ids, self._worlds, "ids")
+        chosen = arrays.indices(bodies, self._bodies, "bodies")
+        shape, axes = (len(worlds), len(chosen)), ("worlds", "bodies")
+        flags = arrays.broadcast(enabled, shape, axes, "enabled", np.bool_)
+        self._held.set_enabled(worlds, chosen, flags)
+
+    def spawn(
+        self,
+        body: int,
+        position: ArrayLike,
+        orientation: Optional[ArrayLike] = None,
+        linear_velocity: Optional[ArrayLike] = None,
+        angular_velocity: Optional[ArrayLike] = None,
+        ids: Optional[Ids] = None,
+    ) -> None:
+        """Enables a state body with a new state in all worlds or in those of ``ids``.
+
+        Arrays (worlds, components), or what broadcasts to them, as in the state fields: position in
+        m, orientation (w, x, y, z) or planar (cos, sin), velocities in m/s and rad/s. Raises
+        ValueError for shapes and for orientations of length 0, IndexError for indices.
+        """
+        worlds = arrays.indices(ids, self._worlds, "ids")
+        body = arrays.index(body, self._bodies, "body")
+        lead = (len(worlds),)
+        states = np.zeros((len(worlds), 13))
+        states[:, 0:3] = self._vectors(position, lead, "position", False)
+        states[:, 3] = 1
+        if orientation is not None:
+            states[:, 3:7] = self._quaternions(orientation, len(worlds))
+        if linear_velocity is not None:
+            states[:, 7:10] = self._vectors(linear_velocity, lead, "linear_velocity", False)
+        if angular_velocity is not None:
+            states[:, 10:13] = self._vectors(angular_velocity, lead, "angular_velocity", True)
+        self._held.spawn(worlds, body, states)
+
+    def _quaternions(self, orientation: ArrayLike, count: int) -> NDArray[np.float64]:
+        axes = ("worlds", "components")
+        width = 2 if self._planar else 4
+        own = arrays.broadcast(orientation, (count, width), axes, "orientation", np.float64)
+        length = np.linalg.norm(own, axis=1)
+        if not np.all(np.isfinite(length) & (length > 0)):
+            raise ValueError("orientation has rows that are not finite, or of length 0")
+        if not self._planar:
+            return own
+        half = np.arctan2(own[:, 1], own[:, 0]) / 2
+        zero = np.zeros_like(half)
+        return np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
+
+    def get_joints_enabled(self, out: Optional[NDArray[np.bool_]] = None) -> NDArray[np.bool_]:
+        """Which joints hold, (worlds, joints) bool; False: disabled or broken."""
+        out = arrays.output(out, (self._worlds, self._joints), ("worlds", "joints"), np.bool_)
+        self._held.joints_enabled(out)
+        return out
+
+    def set_joints_enabled(
+        self, enabled: ArrayLike, joints: Optional[Ids] = None, ids: Optional[Ids] = None
+    ) -> None:
+        """Enables (mends) or disables joints: bools that broadcast to (worlds, joints)."""
+        worlds = arrays.indices(ids, self._worlds, "ids")
+        chosen = arrays.indices(joints, self._joints, "joints")
+        shape, axes = (len(worlds), len(chosen)), ("worlds", "joints")
+        flags = arrays.broadcast(enabled, shape, axes, "enabled", np.bool_)
+        self._held.set_joints_enabled(worlds, chosen, flags)
+
+    def asleep(self, out: Optional[NDArray[np.bool_]] = None) -> NDArray[np.bool_]:
+        """Which state bodies sleep, (worlds, bodies) bool; never kinematic ones."""
+        out = arrays.output(out, (self._worlds, self._bodies), ("worlds", "bodies"), np.bool_)
+        self._held.asleep(out)
+        return out
+
+    def wake(self, ids: Optional[Ids] = None) -> None:
+        """Wakes everything in these worlds, or in all."""
+        self._held.wake(arrays.indices(ids, self._worlds, "ids"))
+
+    def set_rays(self, rays: Sequence[Ray], world: Optional[int] = None) -> None:
+        """Other rays, as many as the batch was made with. In one world body and mask cannot change."""
+        if world is not None:
+            world = arrays.index(world, self._worlds, "world")
+        self._held.set_rays(rays, world)

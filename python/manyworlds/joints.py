@@ -1,0 +1,142 @@
+"""Joints: what holds two bodies together, or one to the world.
+
+A hinge turns about z of its frames, a slider slides along x. A coordinate (an angle in rad, a travel
+or length in m) is what B's frame has moved against A's; it may have a limit and a drive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+from typing import Optional, Union
+
+from .names import Numbers
+
+
+@dataclass(slots=True)
+class Frame:
+    """A place and axes on a body, or in the world."""
+
+    position: Numbers = (0.0, 0.0, 0.0)  # m
+    rotation: Numbers = (1.0, 0.0, 0.0, 0.0)  # (w, x, y, z); need not be unit
+
+
+@dataclass(slots=True, kw_only=True)
+class Spring:
+    """A spring and damper: stiffness and damping, or frequency and damping ratio."""
+
+    stiffness: float = 0.0  # N/m or N m/rad
+    damping: float = 0.0  # N s/m or N m s/rad
+    frequency: float = 0.0  # Hz
+    damping_ratio: float = 0.0  # 1: critical
+
+
+@dataclass(slots=True)
+class Limit:
+    """Keeps a coordinate between two values; hard without a spring."""
+
+    low: float = 0.0  # m or rad
+    high: float = 0.0  # m or rad
+    spring: Optional[Spring] = None
+
+
+@dataclass(slots=True, kw_only=True)
+class Drive:
+    """Pulls a coordinate to targets by a spring; without one, a motor that holds a speed."""
+
+    target_position: float = 0.0  # m or rad
+    target_speed: float = 0.0  # m/s or rad/s
+    spring: Optional[Spring] = None
+    max_force: float = inf  # N or N m
+
+
+@dataclass(slots=True, kw_only=True)
+class BallJoint:
+    """The frames' origins coincide. Spatial."""
+
+    cone: Optional[float] = None  # rad, 0 to pi: the most that z of B leans from z of A
+    twist: Optional[Limit] = None  # rad, about z
+
+
+@dataclass(slots=True, kw_only=True)
+class HingeJoint:
+    """The frames' origins coincide, in space their z axes, too."""
+
+    limit: Optional[Limit] = None  # rad
+    drive: Optional[Drive] = None
+
+
+@dataclass(slots=True, kw_only=True)
+class SliderJoint:
+    """B's frame slides along x of A's and does not turn against it."""
+
+    limit: Optional[Limit] = None  # m
+    drive: Optional[Drive] = None
+
+
+@dataclass(slots=True)
+class FixedJoint:
+    """The frames coincide."""
+
+
+@dataclass(slots=True, kw_only=True)
+class DistanceJoint:
+    """The distance of the frames' origins: held, drawn by a spring, or kept within a limit."""
+
+    length: Optional[float] = None  # m; None: as the bodies begin
+    limit: Optional[Limit] = None  # m
+    spring: Optional[Spring] = None
+
+
+@dataclass(slots=True, kw_only=True)
+class WheelJoint:
+    """B is a wheel: it moves along x of A's frame on a suspension and turns about z."""
+
+    suspension: Spring = field(default_factory=Spring)
+    travel: Optional[Limit] = None  # m, along x
+    drive: Optional[Drive] = None  # of the rotation about z
+
+
+@dataclass(slots=True, kw_only=True)
+class PulleyJoint:
+    """A rope over two pulleys: |A - ground_a| + ratio |B - ground_b| = length."""
+
+    ground_a: Numbers = (0.0, 0.0, 0.0)  # m, world
+    ground_b: Numbers = (0.0, 0.0, 0.0)  # m, world
+    ratio: float = 1.0
+    length: Optional[float] = None  # m; None: as the bodies begin
+
+
+@dataclass(slots=True, kw_only=True)
+class TargetJoint:
+    """Draws the origin of B's frame to that of A's, or to a point of the world."""
+
+    spring: Spring = field(default_factory=Spring)
+    max_force: float = inf  # N
+
+
+JointType = Union[
+    BallJoint,
+    HingeJoint,
+    SliderJoint,
+    FixedJoint,
+    DistanceJoint,
+    WheelJoint,
+    PulleyJoint,
+    TargetJoint,
+]
+
+
+@dataclass(slots=True, kw_only=True)
+class Joint:
+    """A joint of bodies ``body_a`` and ``body_b`` of the scene; -1: the world."""
+
+    name: str = ""
+    type: JointType = field(default_factory=HingeJoint)
+    body_a: int = -1
+    body_b: int = -1
+    frame_a: Frame = field(default_factory=Frame)  # in the body frame of A, or in the world
+    frame_b: Frame = field(default_factory=Frame)  # in the body frame of B
+    collide: bool = False  # whether shapes of A and B collide with each other
+    break_force: float = inf  # N
+    break_torque: float = inf  # N m

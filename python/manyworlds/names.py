@@ -1,0 +1,53 @@
+"""Names of the library's enumerations, as type checkers want them.
+
+Every parameter that takes one accepts hyphens for underscores, too, and refuses any other string
+with a ``ValueError`` that lists the known names and the nearest. ``manyworlds.enumerations()`` gives
+them at run time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+Space = Literal["planar", "spatial"]
+Motion = Literal["dynamic", "kinematic", "fixed"]
+Integrator = Literal[
+    "symplectic_euler",
+    "explicit_euler",
+    "implicit_euler",
+    "verlet",
+    "velocity_verlet",
+    "runge_kutta4",
+]
+Rotation = Literal["splitting", "quaternion", "exponential"]
+Solver = Literal["tgs_soft", "sequential_impulse", "sor", "nncg", "penalty"]
+ControlKind = Literal["target_position", "target_speed", "thrust", "torque"]
+Parameter = Literal[
+    "size",
+    "density",
+    "mass",
+    "friction",
+    "restitution",
+    "gravity",
+    "gravity_scale",
+    "linear_drag",
+    "angular_drag",
+]
+Draw = Literal["none", "uniform", "log_uniform"]
+Precision = Literal["f32", "f64"]
+Isa = Literal["scalar", "avx2", "avx512"]
+ContactLayout = Literal["automatic", "dense", "rows"]
+Observer = Literal[
+    "contacts", "touching", "penetration", "motion", "joints", "joint_loads", "residual"
+]
+Feature = Literal[
+    "orientation", "inertia", "friction", "restitution", "contacts", "drag", "gravity", "joints"
+]
+BroadPhase = Literal["automatic", "all_pairs", "sort_and_sweep", "sparse"]
+
+Numbers = Union[Sequence[float], NDArray[Any]]  # a vector: a list, tuple or array of numbers
+Ids = Union[int, Sequence[int], Sequence[bool], NDArray[np.integer], NDArray[np.bool_]]

@@ -1,0 +1,171 @@
+"""Scene: what one world is. Plain values; nothing here knows about batches or steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import inf
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
+
+from . import _core
+from .bodies import Body, MassProperties
+from .joints import Frame, Joint, JointType
+from .names import BroadPhase, ControlKind, Draw, Feature, Numbers, Parameter, Space
+from .options import Options
+from .shapes import Hull
+
+if TYPE_CHECKING:
+    from .plan import Plan
+
+
+class Issue(NamedTuple):
+    """One thing that is wrong with a scene."""
+
+    place: str  # "body 3 'crate', shape 1: half_extents.y"
+    message: str  # "is -0.2 m, must be > 0"
+
+    def __str__(self) -> str:
+        return f"{self.place} {self.message}"
+
+
+class SceneError(ValueError):
+    """A scene that cannot be compiled; ``issues`` lists everything that is wrong with it."""
+
+    def __init__(self, issues: Sequence[Issue]) -> None:
+        self.issues = list(issues)
+        count = f"{len(self.issues)} issue" + ("" if len(self.issues) == 1 else "s")
+        super().__init__("\n  ".join([f"the scene has {count}:", *map(str, self.issues)]))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return SceneError, (self.issues,)
+
+
+@dataclass(slots=True, kw_only=True)
+class Control:
+    """A number that each world is given from outside, and acts on until it is given another."""
+
+    name: str = ""
+    kind: ControlKind = "target_speed"
+    joint: int = -1  # of the scene, with a drive; target_position, target_speed
+    body: int = -1  # of the scene, dynamic; thrust, torque
+    point: Numbers = (0.0, 0.0, 0.0)  # m, body frame
+    direction: Numbers = (1.0, 0.0, 0.0)  # body frame, need not be unit
+    low: float = -1.0
+    high: float = 1.0
+    initial: float = 0.0
+
+
+@dataclass(slots=True, kw_only=True)
+class Attractor:
+    """A point that draws bodies with strength d / (d^2 + softening^2)^(3/2), m/s^2."""
+
+    position: Numbers = (0.0, 0.0, 0.0)  # m, world
+    strength: float = 0.0  # m^3/s^2; a planet: G M
+    softening: float = 0.0  # m
+
+
+@dataclass(slots=True, kw_only=True)
+class Variation:
+    """A parameter that may differ from world to world, and its range. ``vary`` makes simple ones."""
+
+    parameter: Parameter = "friction"
+    body: int = -1  # of the scene; -1: every one that has the parameter
+    shape: int = -1  # of that body; -1: every shape
+    low: Numbers = (0.0, 0.0, 0.0)  # [0] alone counts where the parameter is one number
+    high: Numbers = (0.0, 0.0, 0.0)
+    draw: Draw = "uniform"
+    together: bool = False  # one draw for all bodies and shapes, instead of one for each
+
+
+def vary(
+    parameter: Parameter, low: float, high: float, draw: Draw = "uniform", **more: Any
+) -> Variation:
+    """A Variation of a parameter of one number, between ``low`` and ``high``."""
+    ends = (float(low), 0.0, 0.0), (float(high), 0.0, 0.0)
+    return Variation(parameter=parameter, low=ends[0], high=ends[1], draw=draw, **more)
+
+
+@dataclass(slots=True, kw_only=True)
+class Ray:
+    """A ray that every world casts against all of its shapes."""
+
+    origin: Numbers = (0.0, 0.0, 0.0)  # m, in the world or, with a body, in that body's frame
+    direction: Numbers = (1.0, 0.0, 0.0)  # need not be unit
+    length: float = inf  # m: it sees what is nearer
+    body: int = -1  # state body that it moves and turns with; -1: none
+    mask: int = 0xFFFFFFFF  # of Filter.category
+
+
+Part = Union[Body, Joint, Control, Attractor, Variation]
+
+
+@dataclass(slots=True, kw_only=True)
+class Scene:
+    """One world: bodies, joints, controls, options. Units are SI; planar scenes use x and y."""
+
+    name: str = ""
+    space: Space = "spatial"
+    bodies: list[Body] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
+    controls: list[Control] = field(default_factory=list)
+    attractors: list[Attractor] = field(default_factory=list)
+    options: Options = field(default_factory=Options)
+    variations: list[Variation] = field(default_factory=list)
+
+    def add(self, part: Part) -> int:
+        """Appends a body, joint, control, attractor or variation and returns its index."""
+        places: list[tuple[type, list[Any]]] = [
+            (Body, self.bodies),
+            (Joint, self.joints),
+            (Control, self.controls),
+            (Attractor, self.attractors),
+            (Variation, self.variations),
+        ]
+        for kind, place in places:
+            if isinstance(part, kind):
+                place.append(part)
+                return len(place) - 1
+        names = ", ".join(kind.__name__ for kind, _ in places)
+        raise TypeError(f"cannot add a {type(part).__name__}; expected one of {names}")
+
+    def validate(self) -> list[Issue]:
+        """Everything that is wrong with the scene, in its order; empty: it can be compiled.
+
+        Values of a wrong type or name raise TypeError or ValueError, which name the place.
+        """
+        return [Issue(*issue) for issue in _core.validate(self)]
+
+    def compile(
+        self, *, broad_phase: BroadPhase = "automatic", keep: Sequence[Feature] = ()
+    ) -> Plan:
+        """The Plan of this scene. Raises SceneError."""
+        from .plan import Plan  # which knows of scenes
+
+        return Plan(self, broad_phase=broad_phase, keep=keep)
+
+    def joint_at(self, body_a: int, body_b: int, frame: Frame, type: JointType) -> Joint:
+        """A joint of two bodies (-1: the world) whose frames are where ``frame`` is in the world.
+
+        The scene must have no issues. The joint is returned, not added.
+        """
+        return _core.joint_at(self, body_a, body_b, frame, type)
+
+    def mass_properties(self, body: int) -> MassProperties:
+        """Mass (kg), centre (m) and inertia (kg m^2) of a body: its own, or those of its shapes."""
+        return _core.mass_properties(self, body)
+
+
+def make_hull(points: Sequence[Numbers]) -> Hull:
+    """The convex hull of points (n, 3) in m. Raises ValueError when it is flat or too detailed."""
+    return _core.make_hull(points)
+
+
+def mesh_mass_properties(
+    vertices: Sequence[Numbers], triangles: Sequence[Sequence[int]], density: float
+) -> MassProperties:
+    """Mass properties of the solid in a closed mesh: vertices (n, 3) in m, triangles (m, 3).
+
+    Triangles run counter-clockwise seen from outside. ``density`` is in kg/m^3. Raises ValueError
+    with everything that is wrong with the mesh.
+    """
+    return _core.mesh_mass_properties(vertices, triangles, density)

@@ -1,0 +1,158 @@
+"""What shapes are: geometries, materials, filters. Lengths in m, in the frame of the shape."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Optional, Union
+
+from .names import Numbers
+
+# -- in space
+
+
+@dataclass(slots=True)
+class Sphere:
+    """A ball. Spatial."""
+
+    radius: float = 0.5  # m
+
+
+@dataclass(slots=True)
+class Box:
+    """A box centred on the shape frame. Spatial."""
+
+    half_extents: Numbers = (0.5, 0.5, 0.5)  # m
+
+
+@dataclass(slots=True)
+class Plane:
+    """All points p with normal . p <= offset are solid. Spatial, of fixed bodies only."""
+
+    normal: Numbers = (0.0, 0.0, 1.0)  # unit, pointing out of the solid
+    offset: float = 0.0  # m
+
+
+@dataclass(slots=True)
+class Capsule:
+    """Points within ``radius`` of a line of length 2 half_length: along z in space, y in the plane."""
+
+    radius: float = 0.25  # m
+    half_length: float = 0.5  # m, without the round ends
+
+
+@dataclass(slots=True)
+class Cylinder:
+    """A cylinder about z of the shape frame. Spatial."""
+
+    radius: float = 0.5  # m
+    half_length: float = 0.5  # m
+
+
+@dataclass(slots=True)
+class Hull:
+    """The smallest convex solid around 4 to 64 vertices (``make_hull`` finds them). Spatial."""
+
+    vertices: Sequence[Numbers] = field(default_factory=list)  # m, (n, 3)
+
+
+@dataclass(slots=True)
+class HeightField:
+    """Everything below triangles over a grid of points, centred. Spatial, of fixed bodies only."""
+
+    heights: Numbers = field(default_factory=list)  # m, flat: x varies fastest
+    columns: int = 2  # points along x
+    cell: Numbers = (1.0, 1.0)  # m, between points along x and y
+
+
+# -- in the plane
+
+
+@dataclass(slots=True)
+class Circle:
+    """A disc. Planar."""
+
+    radius: float = 0.5  # m
+
+
+@dataclass(slots=True)
+class Polygon:
+    """A convex polygon of 3 to 8 vertices, and all points within ``radius`` of it. Planar."""
+
+    vertices: Sequence[Numbers] = field(default_factory=list)  # m, (n, 2), counter-clockwise
+    radius: float = 0.0  # m
+
+    @staticmethod
+    def box(half_x: float, half_y: float) -> Polygon:
+        """A rectangle centred on the shape frame, of these half extents in m."""
+        x, y = float(half_x), float(half_y)
+        return Polygon([(-x, -y), (x, -y), (x, y), (-x, y)])
+
+
+@dataclass(slots=True)
+class HalfPlane:
+    """All points p with normal . p <= offset are solid. Planar, of fixed bodies only."""
+
+    normal: Numbers = (0.0, 1.0)  # unit, pointing out of the solid
+    offset: float = 0.0  # m
+
+
+@dataclass(slots=True)
+class Segment:
+    """A line that is solid from either side. Planar, of fixed bodies only."""
+
+    a: Numbers = (-0.5, 0.0)  # m
+    b: Numbers = (0.5, 0.0)  # m
+
+
+@dataclass(slots=True)
+class Terrain:
+    """A chain of segments, solid on the right of its points in their order. Planar, fixed bodies."""
+
+    points: Sequence[Numbers] = field(default_factory=list)  # m, (n, 2)
+    loop: bool = False  # the last point is joined to the first
+
+
+Geometry = Union[
+    Sphere,
+    Box,
+    Plane,
+    Circle,
+    Polygon,
+    HalfPlane,
+    Capsule,
+    Segment,
+    Terrain,
+    Cylinder,
+    Hull,
+    HeightField,
+]
+
+
+@dataclass(slots=True)
+class Material:
+    """What two shapes feel of each other when they touch."""
+
+    friction: float = 0.6  # Coulomb coefficient; a pair takes the geometric mean
+    restitution: float = 0.0  # 0 to 1; a pair takes the larger
+
+
+@dataclass(slots=True)
+class Filter:
+    """Two shapes collide when each one's category is in the other's mask."""
+
+    category: int = 1
+    mask: int = 0xFFFFFFFF
+
+
+@dataclass(slots=True, kw_only=True)
+class Shape:
+    """A geometry, placed on a body."""
+
+    geometry: Geometry = field(default_factory=Sphere)
+    position: Numbers = (0.0, 0.0, 0.0)  # m, in the body frame
+    rotation: Numbers = (1.0, 0.0, 0.0, 0.0)  # (w, x, y, z), in the body frame; need not be unit
+    density: Optional[float] = None  # kg/m^3 (planar: kg/m^2); None: Options.density
+    material: Material = field(default_factory=Material)
+    filter: Filter = field(default_factory=Filter)
+    name: str = ""

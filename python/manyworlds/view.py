@@ -1,0 +1,76 @@
+"""View: a state field in place, without a copy."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+
+
+class View:
+    """A state field where the step keeps it, (groups, bodies, components, lanes).
+
+    World w is lane ``slots[w] % lanes`` of group ``slots[w] // lanes`` (Batch.slots); lanes after
+    the last world repeat it. Positions are those of centres of mass, orientations those of principal
+    axes: ``Batch.get`` turns them into the body's frame. What is written here acts at the next step;
+    it wakes nobody and forgets no stored impulses.
+
+    ``numpy.asarray(view)``, ``view[...]`` and DLPack give arrays that share this memory and keep it
+    alive. After ``Batch.close()`` a view raises ValueError; arrays made before stay readable, but
+    nothing steps them any more. Do not touch them while another thread steps.
+    """
+
+    __slots__ = ("_held", "_name", "_blocks")
+
+    def __init__(self, core: _core.Batch, name: str, blocks: NDArray[Any]) -> None:
+        self._held, self._name, self._blocks = core, name, blocks
+
+    def _open(self) -> NDArray[Any]:
+        if self._held.closed:
+            raise ValueError(f"the batch of this view of {self._name} is closed")
+        return self._blocks
+
+    @property
+    def shape(self) -> tuple[int, int, int, int]:
+        groups, bodies, components, lanes = self._open().shape
+        return groups, bodies, components, lanes
+
+    @property
+    def strides(self) -> tuple[int, ...]:
+        """In bytes, as NumPy's."""
+        return self._open().strides
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        return self._open().dtype
+
+    def __len__(self) -> int:
+        return len(self._open())
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
+        blocks = self._open()
+        if dtype is not None and np.dtype(dtype) != blocks.dtype:
+            if copy is False:
+                raise ValueError(f"a view of {blocks.dtype} cannot become {dtype} without a copy")
+            return blocks.astype(dtype)
+        return blocks.copy() if copy else blocks
+
+    def __getitem__(self, index: Any) -> Any:
+        return self._open()[index]
+
+    def __setitem__(self, index: Any, values: ArrayLike) -> None:
+        self._open()[index] = values
+
+    def __dlpack__(self, **arguments: Any) -> Any:
+        return self._open().__dlpack__(**arguments)
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return self._open().__dlpack_device__()
+
+    def __repr__(self) -> str:
+        if self._held.closed:
+            return f"<manyworlds.View of {self._name}: the batch is closed>"
+        return f"<manyworlds.View of {self._name}: {self.shape} {self.dtype}>"

@@ -1,0 +1,86 @@
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "arrays.hpp"
+#include "bind.hpp"
+#include "held_batch.hpp"
+#include "scene_fields.hpp"
+
+namespace manyworlds::python {
+
+namespace {
+
+// A property that is a member function of Batch.
+template <auto member>
+auto property() {
+  return [](HeldBatch& self) { return self.with([](Batch& b) { return (b.*member)(); }); };
+}
+
+void make(HeldBatch* self, const Plan& plan, nb::object worlds, nb::object threads,
+          std::uint64_t seed, nb::object precision, nb::object isa, nb::object layout, bool sleep,
+          nb::object observe, nb::object rays, nb::object contacts_per_world) {
+  BatchOptions options;
+  options.worlds = from_python<int>(worlds, "worlds");
+  options.threads = from_python<int>(threads, "threads");
+  options.seed = seed;
+  options.precision = from_python<Precision>(precision, "precision");
+  options.isa = from_python<std::optional<Isa>>(isa, "isa");
+  options.layout = from_python<ContactLayout>(layout, "layout");
+  options.sleep = sleep;
+  options.observe.what = from_python<std::vector<Observer>>(observe, "observe");
+  options.observe.rays = from_python<std::vector<Ray>>(rays, "rays");
+  options.observe.contacts_per_world = from_python<int>(contacts_per_world, "contacts_per_world");
+  const nb::gil_scoped_release release;
+  new (self) HeldBatch(plan, options);
+}
+
+void step(HeldBatch& self, int n) {
+  if (n < 0) throw nb::value_error(("n is " + std::to_string(n) + ", must be >= 0").c_str());
+  self.run([n](Batch& b) { b.step(n); });
+}
+
+void reset(HeldBatch& self, const std::optional<In<std::uint8_t>>& mask) {
+  self.run([&](Batch& b) {
+    if (mask) {
+      b.reset(span_of(*mask));
+    } else {
+      b.reset();
+    }
+  });
+}
+
+}  // namespace
+
+void bind_batch(nb::module_& m) {
+  nb::class_<HeldBatch> c(m, "Batch", "Worlds that step together. Private: use manyworlds.Batch.");
+  c.def("__init__", &make, nb::arg("plan"), nb::arg("worlds"), nb::arg("threads"), nb::arg("seed"),
+        nb::arg("precision"), nb::arg("isa").none(), nb::arg("layout"), nb::arg("sleep"),
+        nb::arg("observe"), nb::arg("rays"), nb::arg("contacts_per_world"))
+      .def("close", &HeldBatch::close, "Lets go of the worlds; what follows raises ValueError.")
+      .def_prop_ro("closed", &HeldBatch::closed)
+      .def_prop_ro("worlds", property<&Batch::worlds>())
+      .def_prop_ro("threads", property<&Batch::threads>())
+      .def_prop_ro("seed", property<&Batch::seed>())
+      .def_prop_ro("lanes", property<&Batch::lanes>())
+      .def_prop_ro("kernel_table", property<&Batch::kernel_table>())
+      .def_prop_ro("bytes_per_world", property<&Batch::bytes_per_world>())
+      .def_prop_ro("scratch_bytes", property<&Batch::scratch_bytes>())
+      .def_prop_ro("time", property<&Batch::time>())
+      .def_prop_ro("steps", property<&Batch::steps>())
+      .def_prop_ro("sleeps", property<&Batch::sleeps>())
+      .def_prop_ro("isa",
+                   [](HeldBatch& s) { return s.with([](Batch& b) { return name_of(b.isa()); }); })
+      .def_prop_ro(
+          "precision",
+          [](HeldBatch& s) { return s.with([](Batch& b) { return name_of(b.precision()); }); })
+      .def("step", &step, nb::arg("n"), "Takes n steps, without the GIL.")
+      .def("reset", &reset, nb::arg("mask").none(),
+           "All worlds from the first episode, or the next episode of those in the mask.");
+  bind_batch_state(c);
+  bind_batch_inputs(c);
+  bind_batch_results(c);
+  bind_batch_rollout(c);
+}
+
+}  // namespace manyworlds::python

@@ -1,0 +1,129 @@
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "bind.hpp"
+#include "manyworlds/hull.hpp"
+#include "manyworlds/mesh.hpp"
+#include "manyworlds/scenes.hpp"
+#include "scene_fields.hpp"
+
+namespace manyworlds::python {
+
+namespace {
+
+template <class... Structs>
+nb::dict default_values() {
+  nb::dict out;
+  ((out[Described<Structs>::name] = to_python(Structs{})), ...);
+  return out;
+}
+
+std::vector<std::pair<std::string, std::string>> issues_of(const std::vector<Issue>& issues) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const Issue& issue : issues) out.emplace_back(issue.place, issue.message);
+  return out;
+}
+
+nb::object load(const std::string& name) {
+  if (const scenes::Entry* entry = scenes::find(name)) return to_python(entry->make());
+  if (const auto scene = scenes::sized(name)) return to_python(*scene);
+  throw nb::value_error(("there is no scene '" + name + "' (nearest: '" + scenes::nearest(name) +
+                         "'); scenes.names() lists them")
+                            .c_str());
+}
+
+int body_index(const Scene& scene, const char* name, int body, int low) {
+  const int most = static_cast<int>(scene.bodies.size()) - 1;
+  if (body < low || body > most) {
+    throw nb::index_error((std::string(name) + " is " + std::to_string(body) + ", must be " +
+                           std::to_string(low) + " to " + std::to_string(most))
+                              .c_str());
+  }
+  return body;
+}
+
+// Masses and frames are derived from scenes that have no issue.
+Scene sound_scene(nb::handle value) {
+  Scene scene = from_python<Scene>(value, "scene");
+  if (auto issues = validate(scene); !issues.empty()) throw SceneError(std::move(issues));
+  return scene;
+}
+
+}  // namespace
+
+void bind_scene(nb::module_& m) {
+  m.def(
+      "default_values",
+      [] {
+        return default_values<Sphere, Box, Plane, Capsule, Cylinder, Hull, Circle, Polygon,
+                              HalfPlane, Segment, Terrain, HeightField, Material, Filter, Shape,
+                              MassProperties, Jitter, Body, Frame, Spring, Limit, Drive, BallJoint,
+                              HingeJoint, SliderJoint, FixedJoint, DistanceJoint, WheelJoint,
+                              PulleyJoint, TargetJoint, Joint, Control, Attractor, Variation,
+                              Options, Scene, Ray>();
+      },
+      "The library's default value of every dataclass, by its name.");
+  m.def(
+      "validate",
+      [](nb::object scene) { return issues_of(validate(from_python<Scene>(scene, "scene"))); },
+      nb::arg("scene"), "Every issue of a scene as (place, message).");
+  m.def(
+      "round_trip", [](nb::object scene) { return to_python(from_python<Scene>(scene, "scene")); },
+      nb::arg("scene"), "The scene as the library understands it.");
+  m.def("load_scene", &load, nb::arg("name"), "A scene that has a name.");
+  m.def(
+      "scene_names",
+      [] {
+        std::vector<std::pair<std::string, std::string>> out;
+        for (const scenes::Entry& entry : scenes::all())
+          out.emplace_back(entry.name, entry.summary);
+        return out;
+      },
+      "(name, summary) of every scene that has a name.");
+  m.def(
+      "joint_at",
+      [](nb::object scene, int body_a, int body_b, nb::object frame, nb::object type) {
+        const Scene s = sound_scene(scene);
+        return to_python(
+            joint_at(s, body_index(s, "body_a", body_a, -1), body_index(s, "body_b", body_b, -1),
+                     from_python<Frame>(frame, "frame"), from_python<JointType>(type, "type")));
+      },
+      nb::arg("scene"), nb::arg("body_a"), nb::arg("body_b"), nb::arg("frame"), nb::arg("type"),
+      "A joint of two bodies whose frames are where `frame` is in the world.");
+  m.def(
+      "mass_properties",
+      [](nb::object scene, int body) {
+        const Scene s = sound_scene(scene);
+        const auto at = static_cast<std::size_t>(body_index(s, "body", body, 0));
+        return to_python(mass_properties(s, s.bodies[at]));
+      },
+      nb::arg("scene"), nb::arg("body"), "Mass, centre and inertia of a body of a scene.");
+  m.def(
+      "mesh_mass_properties",
+      [](nb::object vertices, nb::object triangles, double density) {
+        TriangleMesh mesh{from_python<std::vector<Vec3>>(vertices, "vertices"), {}};
+        const Place place{nullptr, "triangles", -1};
+        const auto rows = read_elements(triangles, place, -1, "a list of triangles");
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          const Place row = place.element(i);
+          const auto corners = read_elements(rows[i], row, 3, "indices");
+          auto& triangle = mesh.triangles.emplace_back();
+          for (std::size_t k = 0; k < 3; ++k) {
+            triangle[k] = Converter<int>::read(corners[k], row.element(k));
+          }
+        }
+        return to_python(mass_properties(mesh, density));
+      },
+      nb::arg("vertices"), nb::arg("triangles"), nb::arg("density"),
+      "Mass, centre and inertia of the solid inside a closed mesh.");
+  m.def(
+      "make_hull",
+      [](nb::object points) {
+        return to_python(make_hull(from_python<std::vector<Vec3>>(points, "points")));
+      },
+      nb::arg("points"), "The convex hull of points.");
+}
+
+}  // namespace manyworlds::python

@@ -1,0 +1,63 @@
+#include <nanobind/stl/filesystem.h>
+
+#include <cstring>
+
+#include "bind.hpp"
+#include "manyworlds/snapshot.hpp"
+
+namespace nb = nanobind;
+
+namespace manyworlds::python {
+
+namespace {
+
+nb::bytes bytes_of(const Snapshot& snapshot) {
+  return nb::bytes(snapshot.bytes().data(), snapshot.bytes().size());
+}
+
+Snapshot from_bytes(const nb::bytes& data) {
+  std::vector<std::byte> bytes(data.size());
+  if (!bytes.empty()) std::memcpy(bytes.data(), data.data(), bytes.size());
+  const nb::gil_scoped_release release;
+  return Snapshot::from_bytes(std::move(bytes));
+}
+
+}  // namespace
+
+void bind_snapshot(nb::module_& m) {
+  nb::exception<SnapshotError>(m, "SnapshotError", PyExc_ValueError);
+
+  nb::class_<Snapshot>(
+      m, "Snapshot",
+      "The whole state of some worlds of a Batch, to go on from later, elsewhere or many times.\n\n"
+      "Made by Batch.save(). It knows nothing of lanes, threads or places, so a world continues "
+      "bit\n"
+      "by bit wherever it is restored. Can be pickled.")
+      .def_prop_ro("worlds", &Snapshot::worlds, "How many worlds it holds.")
+      .def_prop_ro("steps", &Snapshot::steps, "Steps that the batch had taken.")
+      .def_prop_ro("time", &Snapshot::time, "Time that the batch had simulated, s.")
+      .def_prop_ro("nbytes", &Snapshot::size, "Size in bytes.")
+      .def("bytes", &bytes_of, "The bytes of a file: what from_bytes() takes.")
+      .def_static("from_bytes", &from_bytes, nb::arg("data"),
+                  "A snapshot from bytes(). Raises SnapshotError when they are cut or damaged.")
+      .def("save", &Snapshot::save, nb::arg("file"), nb::call_guard<nb::gil_scoped_release>(),
+           "Writes a file; no reader ever sees half of one. Raises SnapshotError.")
+      .def_static("load", &Snapshot::load, nb::arg("file"),
+                  nb::call_guard<nb::gil_scoped_release>(),
+                  "Reads a file that save() wrote. Raises SnapshotError.")
+      .def(
+          "__eq__",
+          [](const Snapshot& a, nb::handle b) {
+            return nb::isinstance<Snapshot>(b) && nb::cast<const Snapshot&>(b).bytes() == a.bytes();
+          },
+          nb::arg("other").none())
+      .def("__getstate__", &bytes_of)
+      .def("__setstate__",
+           [](Snapshot& self, const nb::bytes& data) { new (&self) Snapshot(from_bytes(data)); })
+      .def("__repr__", [](const Snapshot& s) {
+        return nb::str("<manyworlds.Snapshot: {} worlds, {} steps, {} bytes>")
+            .format(s.worlds(), s.steps(), s.size());
+      });
+}
+
+}  // namespace manyworlds::python

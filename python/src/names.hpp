@@ -1,0 +1,92 @@
+// The library's enumerations as strings: one table per enumeration, both ways.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "manyworlds/batch.hpp"
+#include "manyworlds/plan.hpp"
+#include "manyworlds/scene.hpp"
+
+namespace manyworlds::python {
+
+template <class Enum>
+struct Named {
+  Enum value;
+  const char* name;
+};
+
+// Specialised for every enumeration that Python sees: what it is called, and its names.
+template <class Enum>
+struct Names;
+
+#define MW_NAMES(Enum, ...)                             \
+  template <>                                           \
+  struct Names<Enum> {                                  \
+    using E = Enum;                                     \
+    static constexpr const char* kind = #Enum;          \
+    static constexpr Named<Enum> all[] = {__VA_ARGS__}; \
+  }
+#define MW_NAME(x) \
+  { E::x, #x }
+
+MW_NAMES(Space, MW_NAME(planar), MW_NAME(spatial));
+MW_NAMES(Motion, MW_NAME(dynamic), MW_NAME(kinematic), MW_NAME(fixed));
+MW_NAMES(Integrator, MW_NAME(symplectic_euler), MW_NAME(explicit_euler), MW_NAME(implicit_euler),
+         MW_NAME(verlet), MW_NAME(velocity_verlet), MW_NAME(runge_kutta4));
+MW_NAMES(Rotation, MW_NAME(splitting), MW_NAME(quaternion), MW_NAME(exponential));
+MW_NAMES(Solver, MW_NAME(tgs_soft), MW_NAME(sequential_impulse), MW_NAME(sor), MW_NAME(nncg),
+         MW_NAME(penalty));
+MW_NAMES(ControlKind, MW_NAME(target_position), MW_NAME(target_speed), MW_NAME(thrust),
+         MW_NAME(torque));
+MW_NAMES(Parameter, MW_NAME(size), MW_NAME(density), MW_NAME(mass), MW_NAME(friction),
+         MW_NAME(restitution), MW_NAME(gravity), MW_NAME(gravity_scale), MW_NAME(linear_drag),
+         MW_NAME(angular_drag));
+MW_NAMES(Draw, MW_NAME(none), MW_NAME(uniform), MW_NAME(log_uniform));
+MW_NAMES(Precision, MW_NAME(f32), MW_NAME(f64));
+MW_NAMES(Isa, MW_NAME(scalar), MW_NAME(avx2), MW_NAME(avx512));
+MW_NAMES(ContactLayout, MW_NAME(automatic), MW_NAME(dense), MW_NAME(rows));
+MW_NAMES(Observer, MW_NAME(contacts), MW_NAME(touching), MW_NAME(penetration), MW_NAME(motion),
+         MW_NAME(joints), MW_NAME(joint_loads), MW_NAME(residual));
+MW_NAMES(Feature, MW_NAME(orientation), MW_NAME(inertia), MW_NAME(friction), MW_NAME(restitution),
+         MW_NAME(contacts), MW_NAME(drag), MW_NAME(gravity), MW_NAME(joints));
+MW_NAMES(BroadPhase, MW_NAME(automatic), MW_NAME(all_pairs), MW_NAME(sort_and_sweep),
+         MW_NAME(sparse));
+MW_NAMES(Status, MW_NAME(ok), MW_NAME(non_finite), MW_NAME(out_of_range), MW_NAME(out_of_bounds),
+         MW_NAME(contact_overflow), MW_NAME(joint_broken));
+#undef MW_NAME
+#undef MW_NAMES
+
+template <class Enum>
+const char* name_of(Enum value) {
+  for (const auto& n : Names<Enum>::all) {
+    if (n.value == value) return n.name;
+  }
+  return "?";
+}
+
+// Edits (insert, remove, change a letter) that turn one word into the other.
+int edit_distance(std::string_view a, std::string_view b);
+// "is 'dynamc'; expected one of 'dynamic', 'kinematic', 'fixed' (nearest: 'dynamic')"
+std::string unknown_name(std::string_view found, const std::vector<std::string>& known);
+
+template <class Enum>
+std::vector<std::string> known_names() {
+  std::vector<std::string> out;
+  for (const auto& n : Names<Enum>::all) out.emplace_back(n.name);
+  return out;
+}
+
+// The value of that name, or nullptr; hyphens count as underscores.
+template <class Enum>
+const Enum* find_name(std::string text) {
+  std::replace(text.begin(), text.end(), '-', '_');
+  for (const auto& n : Names<Enum>::all) {
+    if (text == n.name) return &n.value;
+  }
+  return nullptr;
+}
+
+}  // namespace manyworlds::python

@@ -1,0 +1,42 @@
+"""The examples of README.md and docs/python.md run."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import manyworlds as mw
+
+ROOT = Path(__file__).parents[2]
+
+
+def examples(file):
+    return re.findall(r"```python\n(.*?)```", (ROOT / file).read_text(), re.S)
+
+
+def test_the_readme(capsys):
+    code = next(e for e in examples("README.md") if "import manyworlds" in e)
+    exec(code.replace("4096", "64").replace("step(300)", "step(30)"), {})
+    assert "of 64 towers stand" in capsys.readouterr().out
+
+
+def test_the_manual(capsys):
+    places = {"mw": mw, "np": np}
+    for code in examples("docs/python.md"):
+        if "set_controls" in code or "rollout" in code:
+            batch = mw.Batch(places["plan"], worlds=64)
+            bodies, width = 1, 2
+            places |= {
+                "batch": batch,
+                "actions": np.zeros((64, 1)),
+                "plans": np.zeros((20, 64, 1)),
+                "mask": np.arange(64) < 3,
+                "p": np.zeros((bodies, width)),
+                "where": np.zeros((bodies, width)),
+            }
+            code = code.replace("(0, 0, 9.0), bodies=2", "(0, 9.0), bodies=0")
+            code = code.replace("bodies=3", "bodies=0")
+            code = code.replace("spawn(3, position=(0, 0, 5)", "spawn(0, (0, 5)")
+        exec(code.replace("worlds=4096", "worlds=64"), places)
+    assert places["path"].shape == (2, 64, 1, 2)
