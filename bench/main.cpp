@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   manyworlds::bench::register_batch();
   manyworlds::bench::register_observers();
   manyworlds::bench::register_sizes();
+  manyworlds::bench::register_tasks();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -19,6 +19,8 @@ Scene two_crates(Space space) {
   Scene scene = empty_scene(space, 0);
   for (const double x : {0.0, 5.0}) {
     Body body = body_of(shape_of(box_of(space, {0.3, 0.2, 0.1})), Vec3(x, 0, 0));
+    // Given, the centre of mass is the body's origin to the last bit.
+    body.mass_properties = MassProperties{};
     body.jitter = {.position = {1, 1, 0}, .linear_velocity = {1, 1, 0}, .angle = 1};
     scene.add(body);
   }

@@ -23,7 +23,9 @@ extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(con
 #endif
 
 #include "manyworlds/scenes.hpp"
+#include "manyworlds/tasks.hpp"
 #include "tests/support/crowd.hpp"
+#include "tests/support/policy.hpp"
 #include "tests/support/tables.hpp"
 
 namespace {
@@ -169,6 +171,25 @@ TEST_CASE("stepping by any solver allocates nothing", "[fast][allocation][solver
         batch.step();
         CHECK(calls_during([&] { batch.step(100); }) == 0);
       }
+    }
+  }
+}
+
+TEST_CASE("steps of tasks allocate nothing, with the worlds that begin anew in them",
+          "[fast][allocation][task]") {
+  for (const tasks::Entry& entry : tasks::all()) {
+    Task task = entry.make();
+    task.most_steps = 11;
+    for (const Autoreset autoreset : {Autoreset::next_step, Autoreset::same_step}) {
+      Played p(task, {.worlds = 40, .threads = 1, .autoreset = autoreset});
+      p.step();
+      INFO(task.name);
+      CHECK(calls_during([&] {
+              for (int step = 0; step < 30; ++step) {
+                p.act_at_random(step);
+                p.step();
+              }
+            }) == 0);
     }
   }
 }

@@ -2,6 +2,8 @@
 #include "manyworlds/environment.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <set>
 #include <utility>
 
 #include "src/api/batch_data.hpp"
@@ -128,6 +130,8 @@ struct Environment::Impl {
     std::vector<double> values(worlds() * n);
     batch.read_controls(values);
     for (std::size_t w = 0; n > 0 && w < worlds(); ++w) {
+      // What froze the world has not become a control.
+      if (runner->unsound[w]) values[w * n] = std::numeric_limits<double>::quiet_NaN();
       b.tell_controls(batch, static_cast<int>(w), std::span(values).subspan(w * n, n));
     }
     b.tell_step(batch, task.frame_skip);

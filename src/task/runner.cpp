@@ -42,6 +42,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     age_ = AlignedBuffer<Real>(groups * lanes);
     begin_now.resize(at(worlds_));
     begin_next.resize(at(worlds_));
+    unsound.resize(at(worlds_));
     for (int t = 0; t < batch.threads(); ++t) {
       Thread& thread = threads_.emplace_back();
       const std::size_t rows = std::max(before_.code.size(), after_.code.size());
@@ -67,14 +68,17 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
 
   void before_steps(const VisitedGroup<Real>& g) override {
     Thread& thread = threads_[at(g.thread)];
-    for (int l = 0; l < lanes_; ++l) put_action(g, thread, l);
+    for (int l = 0; l < lanes_; ++l) {
+      if (g.group * lanes_ + l < worlds_) unsound[at(g.group * lanes_ + l)] = 0;
+      put_action(g, thread, l);
+    }
     run(g, before_, thread, false);
     for (std::size_t i = 0; i < p_->controls.size(); ++i) {
       const auto [low, high] = p_->control_range[i];
       const Real* from = thread.values.data() + at(p_->controls[i]) * at(lanes_);
       for (int l = 0; l < lanes_; ++l) {
         if (std::isnan(from[l])) {
-          g.view.status[l] |= kernels::kNonFinite;
+          freeze(g, l);
         } else {
           g.control[i * at(lanes_) + at(l)] =
               std::clamp(from[l], static_cast<Real>(low), static_cast<Real>(high));
@@ -136,6 +140,11 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     return (g.view.status[lane] & bits) != 0;
   }
 
+  void freeze(const VisitedGroup<Real>& g, int lane) {
+    g.view.status[lane] |= kernels::kNonFinite;
+    if (g.group * lanes_ + lane < worlds_) unsound[at(g.group * lanes_ + lane)] = 1;
+  }
+
   void put_action(const VisitedGroup<Real>& g, Thread& thread, int lane) {
     const std::size_t world = at(std::min(g.group * lanes_ + lane, worlds_ - 1));
     Real* in = thread.inputs.data() + lane;
@@ -146,7 +155,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     for (std::size_t i = 0; i < p_->action_range.size(); ++i) {
       const float value = actions[world * p_->action_range.size() + i];
       const auto [low, high] = p_->action_range[i];
-      if (std::isnan(value)) g.view.status[lane] |= kernels::kNonFinite;
+      if (std::isnan(value)) freeze(g, lane);
       in[i * at(lanes_)] = std::isnan(value)
                                ? Real(0)
                                : std::clamp(static_cast<Real>(value), static_cast<Real>(low),

@@ -41,6 +41,7 @@ class TaskRunner {
   bool keeps_last = false;  // worlds that begin leave their last observations
   // [world] worlds that begin after the steps; those that do in the next ones.
   std::vector<std::uint8_t> begin_now, begin_next;
+  std::vector<std::uint8_t> unsound;  // [world] whose action or control was not a number
   std::atomic<bool> some_begin = false;
 };
 
