@@ -1,6 +1,6 @@
 """Learning curves of ppo.py as an SVG: mean return over wall time.
 
-    python curves.py lander1.json lander2.json --out curves.svg
+python curves.py lander1.json lander2.json --out curves.svg
 """
 
 import argparse

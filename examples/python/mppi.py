@@ -55,7 +55,9 @@ def main(argv=None):
             break
         # The next plans are good ones of these, a step later and changed here and there.
         chosen = random.choice(o.samples, o.samples, p=weights / weights.sum())
-        plans = np.concatenate([plans[1:, chosen], random.integers(task.choices, size=(1, o.samples))])
+        plans = np.concatenate(
+            [plans[1:, chosen], random.integers(task.choices, size=(1, o.samples))]
+        )
         changed = random.random(plans.shape) < 0.1
         plans[changed] = random.integers(task.choices, size=int(changed.sum()))
     wall = time.perf_counter() - began

@@ -43,7 +43,9 @@ def arguments(argv=None):
     p.add_argument("--clip", type=float, default=0.2)
     p.add_argument("--entropy", type=float, default=0.01)
     p.add_argument("--hidden", type=int, default=64)
-    p.add_argument("--seconds", type=float, default=300, help="stop after so many, compiling included")
+    p.add_argument(
+        "--seconds", type=float, default=300, help="stop after so many, compiling included"
+    )
     p.add_argument("--goal", type=float, help="stop at this mean return; default: the task's")
     p.add_argument("--threads", type=int, help="that step the worlds")
     p.add_argument("--json", help="write the learning curve here")
@@ -261,7 +263,10 @@ def train(o):
         length = float(np.mean([f[1] for f in finished])) if finished else float("nan")
         curve.append({"seconds": round(wall, 2), "steps": total, "return": mean, "length": length})
         if number % 10 == 1:
-            print(f"{wall:7.1f} s {total:10d} steps  return {mean:8.1f}  length {length:6.0f}", flush=True)
+            print(
+                f"{wall:7.1f} s {total:10d} steps  return {mean:8.1f}  length {length:6.0f}",
+                flush=True,
+            )
         if wall > o.seconds or (len(finished) >= max(200, n) and mean >= goal):
             break
     env.close()

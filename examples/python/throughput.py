@@ -1,7 +1,7 @@
 """How fast is it? Random actions, by the arrays of Environment and by Gymnasium's interface.
 
-    pip install manyworlds[gym]
-    python throughput.py --task LunarLander --worlds 4096
+pip install manyworlds[gym]
+python throughput.py --task LunarLander --worlds 4096
 """
 
 import argparse

@@ -86,9 +86,7 @@ class Environment:
         self._worlds = arrays.integer(worlds, "worlds", 1, MOST_WORLDS)
         crew = 0 if threads is None else arrays.integer(threads, "threads", 1, MOST_THREADS)
         seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
-        self._held = _core.Environment(
-            task, self._worlds, crew, seed, precision, isa, autoreset
-        )
+        self._held = _core.Environment(task, self._worlds, crew, seed, precision, isa, autoreset)
         self.autoreset: str = autoreset.replace("-", "_")
         self.discrete = task.choices > 0
         n, seen, parts = self._worlds, len(task.observations), len(task.rewards)
@@ -291,7 +289,9 @@ class Environment:
         chosen = np.flatnonzero(mask)
         numbers = [arrays.integer(s, "a seed", 0, 2**64 - 1) for s in seeds]  # type: ignore[union-attr]
         if len(numbers) != len(chosen):
-            raise ValueError(f"seeds are {len(numbers)}, expected one for each of {len(chosen)} worlds")
+            raise ValueError(
+                f"seeds are {len(numbers)}, expected one for each of {len(chosen)} worlds"
+            )
         full = np.zeros(self._worlds, np.uint64)
         full[chosen] = np.array(numbers, np.uint64)
         return full

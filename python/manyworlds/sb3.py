@@ -1,8 +1,8 @@
 """The tasks as vector environments of Stable-Baselines3, which must be installed:
 
-    from manyworlds.sb3 import VecEnv
-    from stable_baselines3 import PPO
-    PPO("MlpPolicy", VecEnv("LunarLander", num_envs=256)).learn(2_000_000)
+from manyworlds.sb3 import VecEnv
+from stable_baselines3 import PPO
+PPO("MlpPolicy", VecEnv("LunarLander", num_envs=256)).learn(2_000_000)
 """
 
 from __future__ import annotations

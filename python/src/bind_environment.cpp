@@ -139,16 +139,15 @@ void bind_tasks(nb::module_& m) {
 
 void bind_environment(nb::module_& m) {
   bind_tasks(m);
-  nb::class_<HeldEnvironment> c(
-      m, "Environment", "A task in many worlds. Private: use manyworlds.Environment.");
+  nb::class_<HeldEnvironment> c(m, "Environment",
+                                "A task in many worlds. Private: use manyworlds.Environment.");
   c.def("__init__", &make, nb::arg("task"), nb::arg("worlds"), nb::arg("threads"), nb::arg("seed"),
         nb::arg("precision"), nb::arg("isa").none(), nb::arg("autoreset"))
       .def("close", &HeldEnvironment::close)
       .def_prop_ro("closed", &HeldEnvironment::closed)
-      .def_prop_ro("actions",
-                   [](HeldEnvironment& s) {
-                     return s.with([](Environment& e) { return e.actions(); });
-                   })
+      .def_prop_ro(
+          "actions",
+          [](HeldEnvironment& s) { return s.with([](Environment& e) { return e.actions(); }); })
       .def("reset", &reset, nb::arg("mask").noconvert(), nb::arg("seeds").noconvert().none(),
            nb::arg("observations").noconvert().none())
       .def(

@@ -49,7 +49,8 @@ Expression power(E self, nb::handle exponent) {
 
 template <class F>
 void one(nb::module_& m, const char* name, F f) {
-  m.def(name, [f](nb::handle a) { return f(operand(a)); }, nb::arg("a"));
+  m.def(
+      name, [f](nb::handle a) { return f(operand(a)); }, nb::arg("a"));
 }
 template <class F>
 void two(nb::module_& m, const char* name, F f) {
@@ -76,12 +77,15 @@ void bind_operators(nb::class_<Expression>& c) {
       .def("__invert__", [](E a) { return !a; })
       .def("__abs__", [](E a) { return abs(a); })
       .def("__pow__", &power, nb::arg("exponent"))
-      .def("__hash__", [](nb::handle self) { return reinterpret_cast<std::intptr_t>(self.ptr()) >> 4; })
+      .def("__hash__",
+           [](nb::handle self) { return reinterpret_cast<std::intptr_t>(self.ptr()) >> 4; })
       .def("__copy__", [](nb::object self) { return self; })
-      .def("__deepcopy__", [](nb::object self, nb::handle) { return self; }, nb::arg("memo"))
+      .def(
+          "__deepcopy__", [](nb::object self, nb::handle) { return self; }, nb::arg("memo"))
       .def("__bool__", [](E) -> bool {
         throw nb::type_error(
-            "an Expression has no truth value while a task is composed: use & | ~ for and, or, not, "
+            "an Expression has no truth value while a task is composed: use & | ~ for and, or, "
+            "not, "
             "where(...) for if, and (a < b) & (b < c) for a < b < c");
       });
   c.attr("__array_ufunc__") = nb::none();  // NumPy numbers leave operators to us
@@ -111,9 +115,10 @@ void bind_terms(nb::module_& m) {
 void bind_expression(nb::module_& parent) {
   nb::class_<Expression> c(parent, "Expression",
                            "A number of every world, worked out after each step of a task.");
-  c.def("__init__",
-        [](Expression* self, nb::handle number) { new (self) Expression(operand(number)); },
-        nb::arg("number") = 0);
+  c.def(
+      "__init__",
+      [](Expression* self, nb::handle number) { new (self) Expression(operand(number)); },
+      nb::arg("number") = 0);
   bind_operators(c);
   nb::module_ m = parent.def_submodule("expressions", "Functions and terms of expressions.");
   one(m, "sin", [](E a) { return sin(a); });

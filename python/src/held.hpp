@@ -1,6 +1,6 @@
 // Something that steps, as a Python object holds it: it can be closed, it refuses to be used by two
-// threads at a time (long calls let go of the GIL), and its memory outlives it for as long as others
-// look into it.
+// threads at a time (long calls let go of the GIL), and its memory outlives it for as long as
+// others look into it.
 #pragma once
 
 #include <nanobind/nanobind.h>

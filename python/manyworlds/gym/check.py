@@ -80,7 +80,9 @@ def _check_seeds(env: gymnasium.vector.VectorEnv[Any, Any, Any], seed: int) -> N
     first = start(seed)
     _demand(_same(first, start(seed)), "the same seed gives other observations")
     each = [seed + i for i in range(env.num_envs)]
-    _demand(_same(first, start(each)), "seed s gives world i other observations than the seed s + i")
+    _demand(
+        _same(first, start(each)), "seed s gives world i other observations than the seed s + i"
+    )
     start([None] * env.num_envs)
     start(None)
     if env.num_envs > 1:
