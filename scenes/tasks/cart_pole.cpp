@@ -15,10 +15,10 @@ struct CartPole {
   Expression lean = terms::joint_position(1), turn = terms::joint_speed(1);
 };
 
-CartPole make(double most_force) {
+CartPole make(double most_force, int substeps) {
   CartPole out;
   Scene& scene = out.scene = planar_scene(0.02, 9.8);
-  scene.options.substeps = 2;
+  scene.options.substeps = substeps;
   Body cart;
   cart.name = "cart";
   cart.shapes = {ghost(Polygon::box(0.25, 0.1), 0.1, 1)};
@@ -41,7 +41,9 @@ CartPole make(double most_force) {
 }  // namespace
 
 Task cart_pole() {
-  const CartPole world = make(10);
+  // One substep is as exact as the Euler steps that the task is known with: after 0.8 s a pole that
+  // falls from 0.1 rad is 3 % ahead.
+  const CartPole world = make(10, 1);
   constexpr double kMostLean = 0.20943951;  // rad, 12 degrees
   Task task;
   task.name = "CartPole";
@@ -60,7 +62,7 @@ Task cart_pole() {
 }
 
 Task cart_pole_swing_up() {
-  CartPole world = make(15);
+  CartPole world = make(15, 2);
   world.scene.bodies[1].rotation = Quat(0, 0, 0, 1);  // hanging
   world.scene.bodies[1].jitter.angle = 0.5;
   const Expression upright = cos(terms::angle(world.pole));
