@@ -23,7 +23,7 @@ def ghost(geometry, area, mass, **more):
 
 def make_scene():
     scene = mw.Scene(space="planar")
-    scene.options = mw.Options(dt=0.02, substeps=2, gravity=(0, -9.8, 0), density=1)
+    scene.options = mw.Options(dt=0.02, substeps=1, gravity=(0, -9.8, 0), density=1)
     cart = scene.add(
         mw.Body(
             name="cart",
