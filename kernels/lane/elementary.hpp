@@ -72,7 +72,7 @@ MW_INLINE Float power_of_two(Float k) {
     if constexpr (sizeof(Real) == 4) {
       p = __builtin_ldexpf(1, exponent);
     } else {
-      p = __builtin_ldexp(1, exponent);
+      p = static_cast<Real>(__builtin_ldexp(1, exponent));
     }
   }
   return Float::load(power);
