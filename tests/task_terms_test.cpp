@@ -327,7 +327,8 @@ TEST_CASE("all that is wrong with a task is said at once", "[task][fast]") {
   Task looks;
   looks.scene = scenes::find("lunar-lander")->make();
   looks.observations = {{"age", terms::age()}};
-  looks.controls = {terms::position(1, 0), terms::previous(terms::position(1, 0)), terms::held(1)};
+  const Expression place = terms::position(1, 0);
+  looks.controls = {terms::previous(place) + place, terms::previous(place), terms::held(1)};
   all.clear();
   for (const Issue& issue : validate(looks)) all += to_string(issue) + "\n";
   CHECK_THAT(all, Catch::Contains("control 0 'main' depends on position of body 1, axis 0, must"));

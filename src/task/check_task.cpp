@@ -1,12 +1,15 @@
 // What is wrong with a task.
 #include <cmath>
+#include <optional>
+#include <set>
 #include <string>
-#include <unordered_set>
+#include <utility>
 
 #include "manyworlds/plan.hpp"
 #include "manyworlds/task.hpp"
 #include "src/api/observations.hpp"
 #include "src/plan/plan_data.hpp"
+#include "src/scene/checks.hpp"
 #include "src/task/node.hpp"
 
 namespace manyworlds {
@@ -58,6 +61,11 @@ class TaskChecker {
     issues_.push_back({place, is + std::to_string(found) + wanted});
   }
 
+  void add_range(const std::string& place, double low, double high, const char* wanted) {
+    issues_.push_back({place, "has the range " + detail::number_text(low) + " to " +
+                                  detail::number_text(high) + ", " + wanted});
+  }
+
   void check_actions() {
     if (task_.choices < 0) add("choices", "is ", task_.choices, ", must be >= 0");
     if (task_.choices > 0 && !task_.actions.empty()) {
@@ -66,9 +74,7 @@ class TaskChecker {
     for (std::size_t i = 0; i < task_.actions.size(); ++i) {
       const Action& a = task_.actions[i];
       if (!std::isfinite(a.low) || !std::isfinite(a.high) || !(a.low < a.high)) {
-        issues_.push_back({named("action", i, a.name), "has the range " + std::to_string(a.low) +
-                                                           " to " + std::to_string(a.high) +
-                                                           ", must be finite and rising"});
+        add_range(named("action", i, a.name), a.low, a.high, "must be finite and rising");
       }
     }
   }
@@ -79,10 +85,7 @@ class TaskChecker {
       const Observation& o = task_.observations[i];
       const std::string place = named("observation", i, o.name);
       check(place, o.value, false);
-      if (!(o.low <= o.high)) {
-        issues_.push_back({place, "has the range " + std::to_string(o.low) + " to " +
-                                      std::to_string(o.high) + ", must rise"});
-      }
+      if (!(o.low <= o.high)) add_range(place, o.low, o.high, "must rise");
     }
   }
 
@@ -92,7 +95,8 @@ class TaskChecker {
   }
   void walk(const std::string& place, const Expression& e, bool control) {
     const Expression::Node& n = e.node();
-    if (!seen_.insert(&n).second) return;
+    // What previous(...) may look at, a control by itself may not.
+    if (!seen_.emplace(&n, control).second) return;
     const bool looks_back = n.term == Term::arithmetic && remembers(n.operation);
     if (control) {
       const bool fits = n.term == Term::number || n.term == Term::action ||
@@ -192,7 +196,7 @@ class TaskChecker {
   const Task& task_;
   std::vector<Issue> issues_;
   std::optional<Plan> plan_;
-  std::unordered_set<const Expression::Node*> seen_;
+  std::set<std::pair<const Expression::Node*, bool>> seen_;  // within controls or not
 };
 
 }  // namespace
