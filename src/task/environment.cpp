@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include "src/api/batch_data.hpp"
@@ -28,28 +27,8 @@ Task checked(const Task& task) {
   return task;
 }
 
-// What the task's expressions look at.
-struct Looks {
-  bool joints = false, touching = false;
-
-  void at(const Expression& e) {
-    const Expression::Node& n = e.node();
-    if (!known.insert(&n).second) return;
-    joints = joints || n.term == Term::joint_position || n.term == Term::joint_speed;
-    touching = touching || n.term == Term::touching;
-    for (const Expression& operand : n.operands) at(operand);
-  }
-
-  std::set<const Expression::Node*> known;
-};
-
-BatchOptions options_of(const Task& task, const EnvironmentOptions& o) {
-  Looks looks;
-  for (const Expression& e : task.controls) looks.at(e);
-  for (const Observation& v : task.observations) looks.at(v.value);
-  for (const Reward& r : task.rewards) looks.at(r.value);
-  looks.at(task.terminated);
-  looks.at(task.truncated);
+BatchOptions options_of(const Task& task, const TaskPrograms& programs,
+                        const EnvironmentOptions& o) {
   BatchOptions out;
   out.worlds = o.worlds;
   out.threads = o.threads;
@@ -57,8 +36,11 @@ BatchOptions options_of(const Task& task, const EnvironmentOptions& o) {
   out.precision = o.precision;
   out.isa = o.isa;
   out.executor = o.executor;
-  if (looks.joints) out.observe.what.push_back(Observer::joints);
-  if (looks.touching) out.observe.what.push_back(Observer::touching);
+  const auto looks_at = [&](kernels::Operation what, Observer observer) {
+    if (programs.after.has(what)) out.observe.what.push_back(observer);
+  };
+  looks_at(kernels::Operation::coordinate, Observer::joints);
+  looks_at(kernels::Operation::touching, Observer::touching);
   out.observe.rays = task.rays;
   return out;
 }
@@ -74,15 +56,17 @@ void check_array(const char* name, std::size_t found, std::size_t wanted, bool m
 struct Environment::Impl {
   Task task;
   Autoreset autoreset;
-  Batch batch;
+  Plan plan;
   std::shared_ptr<const TaskPrograms> programs;
+  Batch batch;
   std::unique_ptr<TaskRunner> runner;
 
   Impl(const Task& t, const EnvironmentOptions& options)
       : task(checked(t)),
         autoreset(options.autoreset),
-        batch(compile(task.scene), options_of(task, options)),
-        programs(std::make_shared<TaskPrograms>(task, batch.plan())),
+        plan(compile(task.scene)),
+        programs(std::make_shared<TaskPrograms>(task, plan)),
+        batch(plan, options_of(task, *programs, options)),
         runner(make_runner(programs, batch, autoreset)) {}
 
   std::size_t worlds() const { return static_cast<std::size_t>(batch.worlds()); }

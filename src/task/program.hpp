@@ -2,6 +2,7 @@
 // What several expressions have in common is worked out once.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -31,6 +32,11 @@ struct Program {
   };
   std::vector<kernels::Instruction<double>> instructions;
   std::vector<Call> calls;  // in the order of `at`
+
+  bool has(kernels::Operation operation) const {
+    return std::any_of(instructions.begin(), instructions.end(),
+                       [operation](const auto& i) { return i.operation == operation; });
+  }
 };
 
 // What is remembered from step to step: number i is put down from row[i] of the program that looks

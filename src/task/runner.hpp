@@ -1,6 +1,7 @@
 // TaskRunner: works out a task around the steps of groups of worlds, in the batch's number type.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <string>
