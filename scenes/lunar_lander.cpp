@@ -10,18 +10,6 @@ namespace {
 
 constexpr double kHalfWidth = 20;  // m, of the plain
 
-Control thruster(const char* name, int body, const Vec2& point, const Vec2& direction,
-                 double most) {
-  Control out;
-  out.name = name;
-  out.kind = ControlKind::thrust;
-  out.body = body;
-  out.point = {point.x(), point.y(), 0};
-  out.direction = {direction.x(), direction.y(), 0};
-  out.low = 0, out.high = most;
-  return out;
-}
-
 void add_ground(Scene& scene) {
   Body plain = planar_ground({0.8, 0});
   plain.name = "plain";
@@ -71,9 +59,9 @@ Scene lunar_lander() {
     const Frame frame{cabin.position + Vec3(side * 0.6, -0.25, 0), Quat::Identity()};
     scene.add(joint_at(scene, body, lower, frame, hip));
   }
-  scene.controls = {thruster("main", body, {0, -0.35}, {0, 1}, 4 * mass),
-                    thruster("left", body, {-0.35, 0.4}, {1, 0}, 0.5 * mass),
-                    thruster("right", body, {0.35, 0.4}, {-1, 0}, 0.5 * mass)};
+  scene.controls = {thrust("main", body, {0, -0.35, 0}, {0, 1, 0}, 0, 4 * mass),
+                    thrust("left", body, {-0.35, 0.4, 0}, {1, 0, 0}, 0, 0.5 * mass),
+                    thrust("right", body, {0.35, 0.4, 0}, {-1, 0, 0}, 0, 0.5 * mass)};
   return scene;
 }
 

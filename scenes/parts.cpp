@@ -90,6 +90,28 @@ int add_body(Scene& scene, std::string name, const Vec3& position, Geometry geom
 
 Frame frame_at(double x, double y) { return {Vec3(x, y, 0), Quat::Identity()}; }
 
+Control thrust(std::string name, int body, const Vec3& point, const Vec3& direction, double low,
+               double high) {
+  Control out;
+  out.name = std::move(name);
+  out.kind = ControlKind::thrust;
+  out.body = body;
+  out.point = point;
+  out.direction = direction;
+  out.low = low, out.high = high;
+  return out;
+}
+
+Control torque(std::string name, int body, double most, const Vec3& axis) {
+  Control out;
+  out.name = std::move(name);
+  out.kind = ControlKind::torque;
+  out.body = body;
+  out.direction = axis;
+  out.low = -most, out.high = most;
+  return out;
+}
+
 Control speed_of(std::string name, int joint, double most, double initial) {
   Control out;
   out.name = std::move(name);

@@ -38,6 +38,12 @@ HeightField rough_field(int columns, int rows, double cell, double height);
 // A frame at a point of the plane, its axes the world's.
 Frame frame_at(double x, double y);
 
+// Thrust along a direction at a point of a body (both in its frame), N, and torque about z or
+// another axis of the body, from -most to most, N m.
+Control thrust(std::string name, int body, const Vec3& point, const Vec3& direction, double low,
+               double high);
+Control torque(std::string name, int body, double most, const Vec3& axis = {0, 0, 1});
+
 // The target speed of a joint's drive, from -most to most, m/s or rad/s.
 Control speed_of(std::string name, int joint, double most, double initial);
 

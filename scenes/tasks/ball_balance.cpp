@@ -8,13 +8,13 @@ Task ball_balance() {
   constexpr double kHalfPlate = 0.5, kRadius = 0.05, kMostTorque = 4;  // m, m, N m
   Task task;
   task.name = "BallBalance";
-  Scene& scene = task.scene;
+  Scene& scene = task.scene = scenes::spatial_scene(task.name);
   scene.options.dt = 1.0 / 60;
   scene.options.gravity = {0, 0, -9.81};
   scene.options.length_unit = 0.2;
   Body plate;
   plate.name = "plate";
-  plate.shapes.push_back({.geometry = Box{{kHalfPlate, kHalfPlate, 0.02}}});
+  plate.shapes.push_back(shape_of(Box{{kHalfPlate, kHalfPlate, 0.02}}));
   plate.shapes[0].density = 50;
   plate.angular_drag = 2;
   const int tilted = scene.add(plate);
@@ -23,7 +23,7 @@ Task ball_balance() {
   ball.position = {0, 0, 0.02 + kRadius};
   ball.jitter.position = {0.2, 0.2, 0};
   ball.jitter.linear_velocity = {0.2, 0.2, 0};
-  ball.shapes.push_back({.geometry = Sphere{kRadius}});
+  ball.shapes.push_back(shape_of(Sphere{kRadius}));
   ball.shapes[0].density = 1000;
   const int rolling = scene.add(ball);
   BallJoint gimbal;

@@ -29,8 +29,8 @@ Task bird_sling() {
   const Body& slung = scene.bodies[static_cast<std::size_t>(bird)];
   const double mass = mass_properties(scene, slung).mass;
   const double most = mass * kMostSpeed / (scene.options.dt * task.frame_skip);
-  scene.controls = {thrust("pull x", bird, {1, 0, 0}, 0, most),
-                    thrust("pull y", bird, {0, 1, 0}, 0, most)};
+  scene.controls = {thrust("pull x", bird, Vec3::Zero(), {1, 0, 0}, 0, most),
+                    thrust("pull y", bird, Vec3::Zero(), {0, 1, 0}, 0, most)};
   task.actions = {{"strength", 0, 1}, {"steepness", 0, 1}};
   const Expression pull = select(equal(previous(age()), 0), most * action(0), 0);
   task.controls = {pull * cos(kSteepest * action(1)), pull * sin(kSteepest * action(1))};

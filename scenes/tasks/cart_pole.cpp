@@ -15,9 +15,9 @@ struct CartPole {
   Expression lean = terms::joint_position(1), turn = terms::joint_speed(1);
 };
 
-CartPole make(double most_force, int substeps) {
+CartPole make(const Task& task, double most_force, int substeps) {
   CartPole out;
-  Scene& scene = out.scene = planar_scene(0.02, 9.8);
+  Scene& scene = out.scene = planar_scene(task, 0.02, 9.8);
   scene.options.substeps = substeps;
   Body cart;
   cart.name = "cart";
@@ -34,19 +34,19 @@ CartPole make(double most_force, int substeps) {
   out.pole = scene.add(pole);
   scene.add(joint_at(scene, -1, out.cart, Frame{}, SliderJoint{}));
   scene.add(joint_at(scene, out.cart, out.pole, Frame{}, HingeJoint{}));
-  scene.controls = {thrust("push", out.cart, {1, 0, 0}, -most_force, most_force)};
+  scene.controls = {thrust("push", out.cart, Vec3::Zero(), {1, 0, 0}, -most_force, most_force)};
   return out;
 }
 
 }  // namespace
 
 Task cart_pole() {
-  // One substep is as exact as the Euler steps that the task is known with: after 0.8 s a pole that
-  // falls from 0.1 rad is 3 % ahead.
-  const CartPole world = make(10, 1);
-  constexpr double kMostLean = 0.20943951;  // rad, 12 degrees
   Task task;
   task.name = "CartPole";
+  // One substep is as exact as the Euler steps that the task is known with: after 0.8 s a pole that
+  // falls from 0.1 rad is 3 % ahead.
+  const CartPole world = make(task, 10, 1);
+  constexpr double kMostLean = 0.20943951;  // rad, 12 degrees
   task.scene = world.scene;
   task.choices = 2;
   task.controls = {select(terms::action(), 10, -10)};
@@ -62,18 +62,18 @@ Task cart_pole() {
 }
 
 Task cart_pole_swing_up() {
-  CartPole world = make(15, 2);
+  Task task;
+  task.name = "CartPoleSwingUp";
+  CartPole world = make(task, 15, 2);
   world.scene.bodies[1].rotation = Quat(0, 0, 0, 1);  // hanging
   world.scene.bodies[1].jitter.angle = 0.5;
   const Expression upright = cos(terms::angle(world.pole));
-  Task task;
-  task.name = "CartPoleSwingUp";
   task.scene = world.scene;
-  // The hinge counts from where the pole begins.
   task.actions = {{"push", -1, 1}};
   task.controls = {15 * terms::action()};
   task.observations = {{"travel", world.travel, -kMostTravel, kMostTravel},
                        {"speed", world.speed},
+                       // The hinge counts from where the pole begins.
                        {"upright", upright, -1, 1},
                        {"sideways", sin(terms::angle(world.pole)), -1, 1},
                        {"turn", world.turn}};

@@ -15,8 +15,7 @@ int add_limb(Scene& scene, const char* name, double low, double high, double rad
   Body limb;
   limb.name = name;
   limb.position = {0, (low + high) / 2, 0};
-  Shape shape;
-  shape.geometry = Capsule{radius, (high - low) / 2};
+  Shape shape = shape_of(Capsule{radius, (high - low) / 2});
   shape.density = 200;
   shape.filter = {2, 1};  // its own limbs do not touch each other
   limb.shapes = {shape};
@@ -30,13 +29,8 @@ Task hopper() {
   using namespace terms;
   Task task;
   task.name = "Hopper";
-  Scene& scene = task.scene = planar_scene(0.008, 9.81);
-  Body ground;
-  ground.name = "ground";
-  ground.motion = Motion::fixed;
-  ground.shapes.push_back({.geometry = HalfPlane{}});
-  ground.shapes[0].material.friction = 1;
-  scene.add(ground);
+  Scene& scene = task.scene = planar_scene(task, 0.008, 9.81);
+  scene.add(planar_ground({.friction = 1}));
   const int torso = add_limb(scene, "torso", kHip, kTop, 0.05);
   scene.bodies.back().jitter.position = {0, 0.005, 0};
   scene.bodies.back().jitter.linear_velocity = {0.05, 0.05, 0};

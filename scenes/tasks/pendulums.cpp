@@ -8,7 +8,7 @@ Task pendulum() {
   constexpr double kMostTorque = 2;  // N m
   Task task;
   task.name = "Pendulum";
-  Scene& scene = task.scene = planar_scene(0.05, 10);
+  Scene& scene = task.scene = planar_scene(task, 0.05, 10);
   Body rod;  // its frame is at the hinge; upright at angle 0
   rod.name = "rod";
   rod.shapes = {ghost(Polygon::box(0.01, 0.5), 0.02, 1)};
@@ -33,7 +33,7 @@ Task pendulum() {
 Task acrobot() {
   Task task;
   task.name = "Acrobot";
-  Scene& scene = task.scene = planar_scene(0.05, 9.8);
+  Scene& scene = task.scene = planar_scene(task, 0.05, 9.8);
   task.frame_skip = 4;
   const auto link = [&](const char* name, double height) {
     Body body;  // its frame is at its upper end; it hangs at angle 0

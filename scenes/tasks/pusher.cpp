@@ -9,13 +9,13 @@ Task pusher() {
   constexpr double kHalfTable = 2, kClose = 0.15, kMostForce = 10;  // m, m, N
   Task task;
   task.name = "Pusher";
-  Scene& scene = task.scene = planar_scene(0.02, 0);
+  Scene& scene = task.scene = planar_scene(task, 0.02, 0);
   task.frame_skip = 2;
   Body table;
   table.name = "table";
   table.motion = Motion::fixed;
   for (const Vec2& inward : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)}) {
-    table.shapes.push_back({.geometry = HalfPlane{inward, -kHalfTable}});
+    table.shapes.push_back(shape_of(HalfPlane{inward, -kHalfTable}));
   }
   scene.add(table);
   const auto disc = [&](const char* name, double radius, double density, const Vec3& middle,
@@ -24,7 +24,7 @@ Task pusher() {
     body.name = name;
     body.position = middle;
     body.jitter.position = around;
-    body.shapes.push_back({.geometry = Circle{radius}});
+    body.shapes.push_back(shape_of(Circle{radius}));
     body.shapes[0].density = density;
     body.linear_drag = drag, body.angular_drag = drag;  // the table's friction
     return scene.add(body);
@@ -37,8 +37,8 @@ Task pusher() {
   mark.position = {1.2, 0, 0};
   mark.jitter.position = {0.4, 1.2, 0};
   const int goal = scene.add(mark);
-  scene.controls = {thrust("x", hand, {1, 0, 0}, -kMostForce, kMostForce),
-                    thrust("y", hand, {0, 1, 0}, -kMostForce, kMostForce)};
+  scene.controls = {thrust("x", hand, Vec3::Zero(), {1, 0, 0}, -kMostForce, kMostForce),
+                    thrust("y", hand, Vec3::Zero(), {0, 1, 0}, -kMostForce, kMostForce)};
   task.actions = {{"x", -1, 1}, {"y", -1, 1}};
   // Thrusts are along the body's axes: turned back from the world's by where it has turned to.
   const Expression c = previous(direction(hand, 0, 0)), s = previous(direction(hand, 0, 1));

@@ -9,19 +9,15 @@ Task stacking() {
   constexpr double kSide = 0.5, kGravity = 9.81;  // m, m/s^2
   Task task;
   task.name = "Stacking";
-  Scene& scene = task.scene = planar_scene(1.0 / 60, kGravity);
+  Scene& scene = task.scene = planar_scene(task, 1.0 / 60, kGravity);
   scene.options.length_unit = kSide;
   task.frame_skip = 2;
-  Body ground;
-  ground.name = "ground";
-  ground.motion = Motion::fixed;
-  ground.shapes.push_back({.geometry = HalfPlane{}});
-  scene.add(ground);
+  scene.add(planar_ground());
   const auto box = [&](const char* name, const Vec3& place) {
     Body body;
     body.name = name;
     body.position = place;
-    body.shapes.push_back({.geometry = Polygon::box(kSide / 2, kSide / 2)});
+    body.shapes.push_back(shape_of(Polygon::box(kSide / 2, kSide / 2)));
     body.shapes[0].density = 4;
     body.shapes[0].material.friction = 0.8;
     return body;
@@ -39,8 +35,8 @@ Task stacking() {
   third.linear_drag = 0.5, third.angular_drag = 1;
   const int flown = scene.add(third);
   const double mass = mass_properties(scene, third).mass, most = 2.5 * mass * kGravity;
-  scene.controls = {thrust("x", flown, {1, 0, 0}, -most, most),
-                    thrust("y", flown, {0, 1, 0}, -most, most),
+  scene.controls = {thrust("x", flown, Vec3::Zero(), {1, 0, 0}, -most, most),
+                    thrust("y", flown, Vec3::Zero(), {0, 1, 0}, -most, most),
                     torque("turn", flown, 0.2 * mass * kGravity * kSide)};
   task.actions = {{"x", -1, 1}, {"y", -1, 1}, {"turn", -1, 1}};
   // In the world's axes, whatever way the box has turned.
