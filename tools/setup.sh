@@ -16,7 +16,6 @@ packages=(
 )
 # What the Python package is built and tested with, in an environment of its own.
 python_packages=(python3-dev python3-venv)
-python_requirements=(nanobind==3.1.0 numpy pytest scikit-build-core gymnasium cma jax)
 python_dir="$root/build/python"
 
 say() { printf '%s: %s\n' "$program" "$*" >&2; }
@@ -58,17 +57,24 @@ fetch_mujoco() {
 # make_python_environment: build/python, from Debian's own python3 where there is one, since that is
 # whom python3-dev belongs to.
 make_python_environment() {
-  local python=/usr/bin/python3 stamp="$python_dir/made_with"
+  local python=/usr/bin/python3 stamp="$python_dir/made_with" requirements
   [[ -x $python ]] || python=python3
-  if [[ -x $python_dir/bin/python && -f $stamp && $(<"$stamp") == "${python_requirements[*]}" ]]; then
+  mapfile -t requirements < <("$python" - "$root/pyproject.toml" <<'END'
+import sys, tomllib
+project = tomllib.load(open(sys.argv[1], "rb"))["project"]
+print(*project["dependencies"], *project["optional-dependencies"]["test"], sep="\n")
+END
+  )
+  ((${#requirements[@]} > 0)) || fail "$python could not read pyproject.toml (it wants Python 3.11)"
+  if [[ -x $python_dir/bin/python && -f $stamp && $(<"$stamp") == "${requirements[*]}" ]]; then
     return
   fi
   say "making an environment for the Python package in build/python"
   "$python" -m venv --clear "$python_dir" >&2 || fail "$python could not make build/python"
   "$python_dir/bin/python" -m pip install --quiet --disable-pip-version-check --no-input \
-    "${python_requirements[@]}" >&2 ||
-    fail "pip could not install ${python_requirements[*]} (MW_PYTHON=OFF $program leaves Python out)"
-  printf '%s\n' "${python_requirements[*]}" >"$stamp"
+    "${requirements[@]}" >&2 ||
+    fail "pip could not install ${requirements[*]} (MW_PYTHON=OFF $program leaves Python out)"
+  printf '%s\n' "${requirements[*]}" >"$stamp"
 }
 
 # Configures build/release when it was not, or when the presets changed. Ninja itself reconfigures

@@ -1,6 +1,6 @@
 """PPO in one file: many worlds on the CPU, the network in JAX on the same CPU.
 
-    pip install manyworlds[gym] jax
+    pip install manyworlds[gym] jax optax
     python ppo.py --task LunarLander --seed 1 --seconds 300 --json lander.json
 
 Proximal policy optimisation (Schulman et al. 2017) with generalised advantage estimation, normalised
@@ -17,6 +17,7 @@ from functools import partial
 import jax
 import jax.numpy as jnp
 import numpy as np
+import optax
 from gymnasium.spaces import Discrete
 
 from manyworlds.gym import VectorEnv
@@ -157,21 +158,21 @@ def make_loss(o, kind):
     return loss
 
 
-def make_update(o, kind):
-    """All epochs over one batch as one compiled function; Adam (Kingma and Ba 2015) by hand."""
+def make_optimizer(o):
+    """Adam (Kingma and Ba 2015), with a step that falls to a tenth over all updates."""
+    steps = o.updates * o.epochs * (o.envs * o.steps // o.minibatch)
+    rate = optax.linear_schedule(o.rate, 0.1 * o.rate, steps)
+    return optax.chain(optax.clip_by_global_norm(0.5), optax.adam(rate, eps=1e-5))
+
+
+def make_update(o, kind, optimizer):
+    """All epochs over one batch as one compiled function."""
     gradient = jax.grad(make_loss(o, kind))
 
     def minibatch(state, b):
-        params, m, v, t, rate = state
-        g = gradient(params, b)
-        norm = jnp.sqrt(sum((x**2).sum() for x in jax.tree.leaves(g)))
-        g = jax.tree.map(lambda x: x * jnp.minimum(1, 0.5 / (norm + 1e-8)), g)
-        t = t + 1
-        m = jax.tree.map(lambda a, x: 0.9 * a + 0.1 * x, m, g)
-        v = jax.tree.map(lambda a, x: 0.999 * a + 0.001 * x**2, v, g)
-        step = rate * jnp.sqrt(1 - 0.999**t) / (1 - 0.9**t)
-        params = jax.tree.map(lambda p, a, b: p - step * a / (jnp.sqrt(b) + 1e-5), params, m, v)
-        return (params, m, v, t, rate), None
+        params, memory = state
+        change, memory = optimizer.update(gradient(params, b), memory, params)
+        return (optax.apply_updates(params, change), memory), None
 
     def epoch(state, key, batch):
         n = batch["x"].shape[0]
@@ -202,9 +203,9 @@ def train(o):
         "value": perceptron(k2, [seen, o.hidden, o.hidden, 1], 1.0),
         "spread": jnp.full(0 if discrete else kind.outputs, -0.5),
     }
-    zeros = jax.tree.map(jnp.zeros_like, params)
-    state = (params, zeros, zeros, jnp.int32(0), jnp.float32(o.rate))
-    update = make_update(o, kind)
+    optimizer = make_optimizer(o)
+    state = params, optimizer.init(params)
+    update = make_update(o, kind, optimizer)
 
     @jax.jit
     def act(params, x, key):
@@ -255,8 +256,7 @@ def train(o):
         gain = advantages(o, rewards, values, terminated, ended)
         flat = {**batch, "advantage": gain, "target": gain + values[:-1]}
         flat = {name: x.reshape(-1, *x.shape[2:]) for name, x in flat.items()}
-        share = max(0.1, 1 - number / o.updates)
-        state = update((*state[:4], jnp.float32(o.rate * share)), keys[-2], flat)
+        state = update(state, keys[-2], flat)
         finished = finished[-max(200, n) :]
         wall = time.perf_counter() - began
         mean = float(np.mean([f[0] for f in finished])) if finished else float("nan")

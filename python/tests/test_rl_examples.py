@@ -29,7 +29,9 @@ def test_throughput_is_printed():
 def test_ppo_learns_to_balance():
     pytest.importorskip("gymnasium")
     pytest.importorskip("jax")
-    short = "--task CartPole --envs 64 --steps 32 --updates 40 --seconds 900 --goal 100"
+    pytest.importorskip("optax")
+    short = "--task CartPole --envs 64 --steps 32 --updates 25 --seconds 900 --goal 150"
     result = example("ppo").main(short.split())
     assert result["curve"][0]["return"] < 40
-    assert result["curve"][-1]["return"] > 50
+    assert result["curve"][-1]["return"] > 60
+    assert result["evaluation"] > 300
