@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
+#include <vector>
 
 #if defined(__has_feature)  // clang's way of saying what GCC says by a macro
 #if __has_feature(address_sanitizer)
@@ -138,6 +140,10 @@ void check_scene(const Scene& scene) {
                   batch.step();
                 },
                 rounds) == 0);
+      std::vector<std::uint8_t> some(100, 0);
+      some[3] = some[40] = some[41] = 1;
+      batch.step(some);
+      CHECK(calls_during([&] { batch.step(some, 3); }, rounds) == 0);
     }
   }
 }

@@ -154,6 +154,11 @@ class Batch {
   // -- stepping. Allocates nothing, throws nothing (after the constructor, reset and the first
   // force call).
   void step(int n = 1);
+  // Steps the worlds of a mask alone (one byte per world, nonzero = step): the same bits as a step
+  // of all would give them. The others keep their state, their forces and what was last observed
+  // of them; time() and steps() are of steps of all and stay. Groups of lanes without a world of
+  // the mask cost nothing, one with some as much as a whole one. The first such call allocates.
+  void step(std::span<const std::uint8_t> mask, int n = 1);
   // Runs whole steps until the simulated time reaches `clock` s (never past it, up to half a
   // rounding step) and returns how many. `max_steps` keeps a stalled host from spiralling: time
   // beyond it is dropped. For real-time hosts.
@@ -174,7 +179,7 @@ class Batch {
   // -- state in place, without a copy. Here lie centres of mass, not bodies' origins, and principal
   // axes, not bodies' own (read() turns one into the other). Whoever writes here neither wakes a
   // world nor forgets its impulses, and is heard of by no listener. Lanes after the last world
-  // repeat it. The pointer is valid until the Batch is destroyed.
+  // are nobody's. The pointer is valid until the Batch is destroyed.
   LaneBlocks lane_blocks(Field field, int kind = 0);
   // Where a world lives in the blocks of its kind: lane slot % lanes of group slot / lanes. With
   // sleep, steps may move it.

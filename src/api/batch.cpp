@@ -46,6 +46,14 @@ void Batch::step(int n) {
   impl_->tell_step(*this, n);
 }
 
+void Batch::step(std::span<const std::uint8_t> mask, int n) {
+  impl_->check_mask(mask);
+  if (n <= 0) return;
+  impl_->core->step(*impl_->executor, n, nullptr, mask);
+  impl_->for_each_masked(
+      mask, [this](int, int, int world) { impl_->tell(*this, Input::restore, world); });
+}
+
 int Batch::step_to(double clock, int max_steps) {
   if (!std::isfinite(clock)) return 0;
   // The accumulator: host time that no step has used up yet.

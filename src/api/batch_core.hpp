@@ -37,6 +37,7 @@ class CoreOf final : public BatchCore {
     for (const auto& kind : kinds) {
       worlds_.push_back(
           std::make_unique<Worlds<Real>>(kind.plan, kind.worlds, first, options, kernels_.lanes));
+      first_world_.push_back(first);
       first += kind.worlds;
       first_group_.push_back(groups);
       groups += worlds_.back()->storage().groups();
@@ -57,13 +58,19 @@ class CoreOf final : public BatchCore {
     look_again();
   }
 
-  void step(Executor& executor, int n, GroupVisitor* visitor) override {
+  void step(Executor& executor, int n, GroupVisitor* visitor,
+            std::span<const std::uint8_t> only) override {
     steps_ = n;
     visitor_ = static_cast<GroupVisitorOf<Real>*>(visitor);
+    only_ = only;
     find_active();
     if (!active_.empty() && packs_) {
       for (auto& w : worlds_) w->pack();
       find_active();
+    }
+    if (!only_.empty()) {
+      make_aside();
+      std::erase_if(active_, [this](int group) { return lanes_in(only_, group) == 0; });
     }
     // A kind without contacts keeps its group in the cache for all n steps; so does one with
     // contacts, since groups do not know of each other.
@@ -73,8 +80,17 @@ class CoreOf final : public BatchCore {
           [](void* self, int index, int slot) { static_cast<CoreOf*>(self)->run(index, slot); },
           this);
     }
-    for (auto& w : worlds_) w->clear_forces();
-    all_groups_ = false;
+    if (only_.empty()) {
+      for (auto& w : worlds_) w->clear_forces();
+      all_groups_ = false;
+    } else {
+      for (std::size_t k = 0; k < worlds_.size(); ++k) {
+        for (int w = 0; w < worlds_[k]->count(); ++w) {
+          if (is_in(only_, k, w)) worlds_[k]->clear_forces(w);
+        }
+      }
+    }
+    only_ = {};
   }
   void look(Executor& executor) override {
     steps_ = 0;
@@ -92,7 +108,7 @@ class CoreOf final : public BatchCore {
     resets_ = reset;
     active_.clear();
     for (int g = 0; g < worlds_.front()->storage().groups(); ++g) {
-      if (lanes_beginning(g) != 0) active_.push_back(g);
+      if (lanes_in(beginning_, g) != 0) active_.push_back(g);
     }
     executor.run(
         static_cast<int>(active_.size()),
@@ -237,9 +253,10 @@ class CoreOf final : public BatchCore {
   }
 
  private:
-  struct ThreadScratch {  // one block per kind
-    std::vector<AlignedBuffer<unsigned char>> memory;
+  struct ThreadScratch {
+    std::vector<AlignedBuffer<unsigned char>> memory;  // one block per kind
     std::vector<kernels::Scratch*> views;
+    std::vector<std::byte> aside;  // [lane], see make_aside()
   };
 
   struct alignas(64) ThreadCounters {  // no two threads on one cache line
@@ -259,13 +276,32 @@ class CoreOf final : public BatchCore {
     }
   }
 
-  std::uint32_t lanes_beginning(int group) const {
+  std::size_t kind_of(int active) const {
+    std::size_t kind = 0;
+    while (active >= first_group_[kind + 1]) ++kind;
+    return kind;
+  }
+  bool is_in(std::span<const std::uint8_t> mask, std::size_t kind, int world) const {
+    return mask[static_cast<std::size_t>(first_world_[kind] + world)] != 0;
+  }
+  // Lanes of an active group whose worlds are in a mask.
+  std::uint32_t lanes_in(std::span<const std::uint8_t> mask, int active) const {
+    const std::size_t kind = kind_of(active);
+    const int slot = (active - first_group_[kind]) * kernels_.lanes;
     std::uint32_t lanes = 0;
     for (int l = 0; l < kernels_.lanes; ++l) {
-      const auto world = static_cast<std::size_t>(group * kernels_.lanes + l);
-      if (world < beginning_.size() && beginning_[world] != 0) lanes |= 1u << l;
+      const int world = worlds_[kind]->world_in(slot + l);
+      if (world >= 0 && is_in(mask, kind, world)) lanes |= 1u << l;
     }
     return lanes;
+  }
+  // Room for what lanes hold that are not to step.
+  void make_aside() {
+    std::size_t most = 0;
+    for (const auto& w : worlds_) most = std::max(most, w->storage().world_bytes());
+    for (auto& scratch : scratch_) {
+      scratch.aside.resize(most * static_cast<std::size_t>(kernels_.lanes));
+    }
   }
 
   // Calls work(plan of the step, group, scratch, counters, what a visitor sees) for a group that is
@@ -274,9 +310,8 @@ class CoreOf final : public BatchCore {
   void run_group(int index, int slot, Work work) {
     const FlushDenormals flush;  // whatever thread this is
     const int active = active_[static_cast<std::size_t>(index)];
-    std::size_t kind = 0;
-    while (active >= first_group_[kind + 1]) ++kind;
-    const auto& w = *worlds_[kind];
+    const std::size_t kind = kind_of(active);
+    auto& w = *worlds_[kind];
     const auto s = static_cast<std::size_t>(slot);
     const int group = active - first_group_[kind];
     GroupStep<Real> plan{kernels_, w.tables(), layout_};
@@ -285,10 +320,22 @@ class CoreOf final : public BatchCore {
       plan.poses = observations_->poses(s, kind);
     }
     const kernels::GroupView<Real> view = w.storage().group(group);
+    const std::uint32_t all = ~std::uint32_t{0};
+    const std::uint32_t lanes = only_.empty() ? all : lanes_in(only_, active);
+    const auto for_each_other = [&](auto&& call) {
+      const std::size_t bytes = lanes == all ? 0 : w.storage().world_bytes();
+      for (int l = 0; lanes != all && l < kernels_.lanes; ++l) {
+        const auto lane = static_cast<std::size_t>(l);
+        if (!get_bit(lanes, lane))
+          call(group * kernels_.lanes + l, scratch_[s].aside.data() + lane * bytes);
+      }
+    };
+    for_each_other([&w](int slot_aside, std::byte* to) { w.put_aside(slot_aside, to); });
     work(plan, view, scratch_[s].views[kind], counters_[s],
          VisitedGroup<Real>{group, slot, kernels_, w.tables(), view,
                             w.storage().controls(group * kernels_.lanes), plan.wanted});
-    if (observations_) observations_->take(s, kind, group);
+    for_each_other([&w](int slot_aside, const std::byte* from) { w.put_back(slot_aside, from); });
+    if (observations_) observations_->take(s, kind, group, lanes);
   }
   void run(int index, int slot) {
     run_group(index, slot,
@@ -304,7 +351,7 @@ class CoreOf final : public BatchCore {
     run_group(
         index, slot,
         [this](const auto& plan, const auto& group, auto* scratch, auto&, const auto& visited) {
-          const std::uint32_t lanes = lanes_beginning(visited.group);
+          const std::uint32_t lanes = lanes_in(beginning_, visited.group);
           for (int l = 0; resets_ && l < kernels_.lanes; ++l) {
             if (get_bit(lanes, static_cast<std::size_t>(l))) {
               worlds_.front()->reset(visited.group * kernels_.lanes + l);
@@ -326,7 +373,7 @@ class CoreOf final : public BatchCore {
   Isa isa_ = Isa::scalar;
   int steps_ = 0;
   std::vector<std::unique_ptr<Worlds<Real>>> worlds_;
-  std::vector<int> first_group_;
+  std::vector<int> first_world_, first_group_;
   std::vector<int> active_;  // groups in which something moves
   std::vector<ThreadScratch> scratch_;
   std::vector<ThreadCounters> counters_;
@@ -336,6 +383,7 @@ class CoreOf final : public BatchCore {
   bool all_groups_ = false;                  // those that rest are to be looked at, too
   GroupVisitorOf<Real>* visitor_ = nullptr;  // of the call
   std::span<const std::uint8_t> beginning_;  // [world]
+  std::span<const std::uint8_t> only_;       // [world] of the call; empty: all
   bool resets_ = false;
 };
 

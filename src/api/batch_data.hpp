@@ -134,13 +134,16 @@ struct Batch::Impl {
   std::size_t world_size(Parameter parameter, int kind) const {
     return core->parameter_size(parameter, kind);
   }
-  // visit(kind, world in kind, world)
-  template <class Visit>
-  void for_each_masked(std::span<const std::uint8_t> mask, Visit visit) const {
+  void check_mask(std::span<const std::uint8_t> mask) const {
     if (mask.size() != static_cast<std::size_t>(first_world.back())) {
       reject("the mask has " + std::to_string(mask.size()) + " entries, the batch " +
              std::to_string(first_world.back()) + " worlds");
     }
+  }
+  // visit(kind, world in kind, world)
+  template <class Visit>
+  void for_each_masked(std::span<const std::uint8_t> mask, Visit visit) const {
+    check_mask(mask);
     for (int w = 0; w < first_world.back(); ++w) {
       if (mask[static_cast<std::size_t>(w)] == 0) continue;
       const Place p = find(w);

@@ -19,8 +19,10 @@ namespace manyworlds {
 class BatchCore {
  public:
   virtual ~BatchCore() = default;
-  // `visitor`, of the batch's number type, may be null.
-  virtual void step(Executor& executor, int n, GroupVisitor* visitor = nullptr) = 0;
+  // `visitor`, of the batch's number type, may be null. `only`: the mask of the worlds that are to
+  // step; empty: all.
+  virtual void step(Executor& executor, int n, GroupVisitor* visitor = nullptr,
+                    std::span<const std::uint8_t> only = {}) = 0;
   // Lets the visitor know that the worlds of this mask begin, after resetting them if it is told
   // to. Of batches of one kind, without sleep.
   virtual void begin(Executor& executor, std::span<const std::uint8_t> worlds, bool reset,

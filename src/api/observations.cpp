@@ -204,7 +204,8 @@ const kernels::Observation<Real>& ObservationsOf<Real>::ask(std::size_t thread, 
 }
 
 template <class Real>
-void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group) {
+void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group,
+                                std::uint32_t chosen) {
   const kernels::Observation<Real>& view = blocks_[thread][k].view;
   Kind& kind = kinds_[k];
   const std::size_t lanes = at(kernels_.lanes);
@@ -213,7 +214,7 @@ void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group) {
   };
   for (std::size_t l = 0; l < lanes; ++l) {
     const int in = worlds_[k]->world_in(group * kernels_.lanes + static_cast<int>(l));
-    if (in < 0) continue;
+    if (in < 0 || !get_bit(chosen, l)) continue;
     const std::size_t w = at(in), rays = kind.rays.size();
     if (view.motion) {
       untangle(&kind.motion[w * kernels::kMotionRows], view.motion, kernels::kMotionRows, l);

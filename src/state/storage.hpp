@@ -86,6 +86,8 @@ class Storage {
   std::size_t world_bytes() const;
   void write_world(int slot, std::byte* to) const;
   void read_world(int slot, const std::byte* from);
+  // The same for bytes of this very slot, of a moment ago: allocates nothing.
+  void put_back(int slot, const std::byte* from);
   // Could these bytes have come from write_world()? Says what is wrong, or nothing.
   std::string check_world(const std::byte* from) const;
 

@@ -45,6 +45,7 @@ class Worlds {
 
   void add_force(int world, int body, const Vec3& force, const Vec3& torque);
   void clear_forces() { storage_.clear_forces(); }
+  void clear_forces(int world) { storage_.clear_forces(slot_of(world)); }
   void add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular);
   Vec3 center_of_mass(int world, int body) const;
 
@@ -91,6 +92,9 @@ class Worlds {
   void set_episode(int world, std::uint32_t episode) {
     episode_[static_cast<std::size_t>(world)] = episode;
   }
+  // What a step changes of the world in a slot: kept aside and put back, without allocating.
+  void put_aside(int slot, std::byte* to) const { storage_.write_world(slot, to); }
+  void put_back(int slot, const std::byte* from) { storage_.put_back(slot, from); }
   // A world as bytes: the storage's, then its own numbers.
   std::size_t world_bytes() const;
   void write_world(int world, std::byte* to) const;
