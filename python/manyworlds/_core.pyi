@@ -184,12 +184,12 @@ class Batch:
     @property
     def precision(self) -> str: ...
 
-    def step(self, n: int) -> None:
-        """Takes n steps, without the GIL."""
+    def step(self, n: int, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)] | None) -> None:
+        """Takes n steps, of all worlds or of those in the mask, without the GIL."""
 
-    def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)] | None) -> None:
+    def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)] | None, seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None) -> None:
         """
-        All worlds from the first episode, or the next episode of those in the mask.
+        All worlds from the first episode, or those in the mask: the next episode, or the first of other seeds.
         """
 
     def quantities(self) -> list:
@@ -376,8 +376,6 @@ class Environment:
     def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None: ...
 
     def begin(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None: ...
-
-    def lost(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')]) -> None: ...
 
     def copy_world(self, source: int, target: int) -> None: ...
 

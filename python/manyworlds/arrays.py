@@ -8,7 +8,7 @@ from typing import Any, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .names import Ids
+from .names import Ids, Seeds
 
 Shape = tuple[int, ...]
 Indices = NDArray[np.int32]
@@ -64,6 +64,31 @@ def indices(ids: Optional[Ids], count: int, name: str) -> Indices:
     if wrong.size:
         raise IndexError(f"{name} hold {wrong[0]}, must be 0 to {count - 1}")
     return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def mask(ids: Optional[Ids], count: int) -> NDArray[np.uint8]:
+    """1 for the worlds of ``indices``, else 0."""
+    out = np.zeros(count, dtype=np.uint8)
+    out[indices(ids, count, "ids")] = 1
+    return out
+
+
+def seeds(
+    values: Optional[Seeds], chosen: NDArray[np.uint8], name: str = "seeds"
+) -> Optional[NDArray[np.uint64]]:
+    """A seed for every world: s + i of a number s, else one given for each that is chosen."""
+    if values is None:
+        return None
+    if np.ndim(values) == 0:
+        first = integer(values, name, 0, 2**64 - 1)
+        return np.arange(len(chosen), dtype=np.uint64) + np.uint64(first)  # wraps around
+    each = [integer(s, "a seed", 0, 2**64 - 1) for s in values]  # type: ignore[union-attr]
+    worlds = np.flatnonzero(chosen)
+    if len(each) != len(worlds):
+        raise ValueError(f"{name} are {len(each)}, expected one for each of {len(worlds)} worlds")
+    full = np.zeros(len(chosen), np.uint64)
+    full[worlds] = np.array(each, np.uint64)
+    return full
 
 
 def reals(values: ArrayLike, name: str) -> NDArray[Any]:

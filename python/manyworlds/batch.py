@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core, arrays, scenes
 from .fields import Fields
 from .inputs import Inputs
-from .names import ContactLayout, Ids, Isa, Observer, Precision
+from .names import ContactLayout, Ids, Isa, Observer, Precision, Seeds
 from .plan import Plan
 from .results import Results
 from .rollout import MOST_STEPS, Initial, Trajectories, rollout
@@ -174,29 +174,37 @@ class Batch(Fields, Inputs, Results):
 
     # -- stepping
 
-    def step(self, n: int = 1, controls: Optional[ArrayLike] = None) -> None:
-        """Takes n steps of every world, without the GIL.
+    def step(
+        self, n: int = 1, controls: Optional[ArrayLike] = None, ids: Optional[Ids] = None
+    ) -> None:
+        """Takes n steps of every world, or of some, without the GIL.
 
-        ``controls``: set before, (worlds, controls); see set_controls. Forces that were added act in
-        all n steps and are cleared. A world that goes wrong is frozen and flagged (``status``).
+        ``controls``: set before, (worlds, controls) or (len(ids), controls); see set_controls.
+        Forces that were added act in all n steps and are cleared. A world that goes wrong is frozen
+        and flagged (``status``). ``ids``: indices or a bool array (worlds,); the others keep their
+        state, their forces and what was observed of them. ``time`` and ``steps`` are of steps of
+        all worlds and stay. Lanes step together: a few worlds here and there cost as much as their
+        whole groups of lanes.
         """
         n = arrays.integer(n, "n", 0, MOST_STEPS)
+        mask = None if ids is None else arrays.mask(ids, self._worlds)
         if controls is not None:
-            self.set_controls(controls)
-        self._held.step(n)
+            self.set_controls(controls, ids)
+        self._held.step(n, mask)
 
-    def reset(self, mask_or_ids: Optional[Ids] = None) -> None:
+    def reset(self, mask_or_ids: Optional[Ids] = None, seeds: Optional[Seeds] = None) -> None:
         """Begins anew with new draws of jitter and variations, in all worlds or in some.
 
         None: all worlds from their first episode, with the clock, so that it repeats the first draw
         exactly. Else the next episode of those worlds: a bool array (worlds,), or indices.
+        ``seeds``: the first episode of other seeds, a number s for s + i in world i, or one for
+        every world that is reset; the clock goes on.
         """
-        if mask_or_ids is None:
-            self._held.reset(None)
+        if mask_or_ids is None and seeds is None:
+            self._held.reset(None, None)
             return
-        mask = np.zeros(self._worlds, dtype=np.uint8)
-        mask[arrays.indices(mask_or_ids, self._worlds, "ids")] = 1
-        self._held.reset(mask)
+        mask = arrays.mask(mask_or_ids, self._worlds)
+        self._held.reset(mask, arrays.seeds(seeds, mask))
 
     def rollout(
         self,

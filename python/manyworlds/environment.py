@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, Literal, Optional, Union
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core, arrays, tasks
 from .batch import MOST_THREADS, MOST_WORLDS, Batch
-from .names import Ids, Isa, Precision
+from .names import Ids, Isa, Precision, Seeds
 from .plan import Plan
 from .tasks import Task, TaskError
 
@@ -18,7 +17,6 @@ AutoresetName = Literal["next_step", "same_step", "disabled"]
 Floats = NDArray[np.float32]
 Doubles = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Seeds = Union[int, Sequence[int], NDArray[np.integer]]
 
 
 class _OwnBatch(Batch):
@@ -241,9 +239,9 @@ class Environment:
         i gets the seed s + i, or one for every world that is reset. Returns observations; those of
         the other worlds stay.
         """
-        mask = self._mask(mask_or_ids)
+        mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
-        self._held.reset(mask, self._seeds(seeds, mask), observations)
+        self._held.reset(mask, arrays.seeds(seeds, mask), observations)
         chosen = mask.view(np.bool_)
         self.terminated[chosen] = False
         self.truncated[chosen] = False
@@ -253,7 +251,7 @@ class Environment:
         self, mask_or_ids: Optional[Ids] = None, observations: Optional[Floats] = None
     ) -> Floats:
         """Worlds begin an episode in the state that they have; see ``reset``."""
-        mask = self._mask(mask_or_ids)
+        mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
         self._held.begin(mask, observations)
         return observations
@@ -267,31 +265,4 @@ class Environment:
 
     def lost(self) -> Flags:
         """Which worlds are lost, (worlds,) bool: frozen, or out of their bounds."""
-        out = np.empty(self._worlds, np.bool_)
-        self._held.lost(out)
-        return out
-
-    def _mask(self, mask_or_ids: Optional[Ids]) -> NDArray[np.uint8]:
-        if mask_or_ids is None:
-            return np.ones(self._worlds, np.uint8)
-        mask = np.zeros(self._worlds, np.uint8)
-        mask[arrays.indices(mask_or_ids, self._worlds, "ids")] = 1
-        return mask
-
-    def _seeds(
-        self, seeds: Optional[Seeds], mask: NDArray[np.uint8]
-    ) -> Optional[NDArray[np.uint64]]:
-        if seeds is None:
-            return None
-        if np.ndim(seeds) == 0:
-            first = arrays.integer(seeds, "seeds", 0, 2**64 - 1)
-            return np.arange(self._worlds, dtype=np.uint64) + np.uint64(first)  # wraps around
-        chosen = np.flatnonzero(mask)
-        numbers = [arrays.integer(s, "a seed", 0, 2**64 - 1) for s in seeds]  # type: ignore[union-attr]
-        if len(numbers) != len(chosen):
-            raise ValueError(
-                f"seeds are {len(numbers)}, expected one for each of {len(chosen)} worlds"
-            )
-        full = np.zeros(self._worlds, np.uint64)
-        full[chosen] = np.array(numbers, np.uint64)
-        return full
+        return self.batch.lost()

@@ -51,3 +51,4 @@ BroadPhase = Literal["automatic", "all_pairs", "sort_and_sweep", "sparse"]
 
 Numbers = Union[Sequence[float], NDArray[Any]]  # a vector: a list, tuple or array of numbers
 Ids = Union[int, Sequence[int], Sequence[bool], NDArray[np.integer], NDArray[np.bool_]]
+Seeds = Union[int, Sequence[int], NDArray[np.integer]]

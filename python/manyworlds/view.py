@@ -14,7 +14,7 @@ class View:
     """A state field where the step keeps it, (groups, bodies, components, lanes).
 
     World w is lane ``slots[w] % lanes`` of group ``slots[w] // lanes`` (Batch.slots); lanes after
-    the last world repeat it. Positions are those of centres of mass, orientations those of principal
+    the last world are nobody's. Positions are those of centres of mass, orientations those of principal
     axes: ``Batch.get`` turns them into the body's frame. What is written here acts at the next step;
     it wakes nobody and forgets no stored impulses.
 

@@ -35,14 +35,23 @@ void make(HeldBatch* self, const Plan& plan, nb::object worlds, nb::object threa
   new (self) HeldBatch(plan, options);
 }
 
-void step(HeldBatch& self, int n) {
+void step(HeldBatch& self, int n, const std::optional<In<std::uint8_t>>& mask) {
   if (n < 0) throw nb::value_error(("n is " + std::to_string(n) + ", must be >= 0").c_str());
-  self.run([n](Batch& b) { b.step(n); });
-}
-
-void reset(HeldBatch& self, const std::optional<In<std::uint8_t>>& mask) {
   self.run([&](Batch& b) {
     if (mask) {
+      b.step(span_of(*mask), n);
+    } else {
+      b.step(n);
+    }
+  });
+}
+
+void reset(HeldBatch& self, const std::optional<In<std::uint8_t>>& mask,
+           const std::optional<In<std::uint64_t>>& seeds) {
+  self.run([&](Batch& b) {
+    if (mask && seeds) {
+      b.reset(span_of(*mask), span_of(*seeds));
+    } else if (mask) {
       b.reset(span_of(*mask));
     } else {
       b.reset();
@@ -74,9 +83,12 @@ void bind_batch(nb::module_& m) {
       .def_prop_ro(
           "precision",
           [](HeldBatch& s) { return s.with([](Batch& b) { return name_of(b.precision()); }); })
-      .def("step", &step, nb::arg("n"), "Takes n steps, without the GIL.")
-      .def("reset", &reset, nb::arg("mask").none(),
-           "All worlds from the first episode, or the next episode of those in the mask.");
+      .def("step", &step, nb::arg("n"), nb::arg("mask").none(),
+           "Takes n steps, of all worlds or of those in the mask, without the GIL.")
+      .def(
+          "reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(),
+          "All worlds from the first episode, or those in the mask: the next episode, or the first "
+          "of other seeds.");
   bind_batch_state(c);
   bind_batch_inputs(c);
   bind_batch_results(c);

@@ -80,15 +80,6 @@ void reset(HeldEnvironment& self, const In<std::uint8_t>& mask,
   });
 }
 
-void lost(HeldEnvironment& self, const Out<bool>& out) {
-  self.run([&](Environment& e) {
-    check_size("out", out.size(), static_cast<std::size_t>(e.worlds()));
-    for (int w = 0; w < e.worlds(); ++w) {
-      out.data()[w] = manyworlds::lost(e.batch().status(w));
-    }
-  });
-}
-
 // The environment's own batch: it keeps the environment alive, and takes turns with it.
 HeldBatch* batch_of(HeldEnvironment& self) {
   return self.with([&](Environment& e) {
@@ -156,7 +147,6 @@ void bind_environment(nb::module_& m) {
             self.run([&](Environment& e) { e.begin(span_of(mask), span_or_none(out)); });
           },
           nb::arg("mask").noconvert(), nb::arg("observations").noconvert().none())
-      .def("lost", &lost, nb::arg("out").noconvert())
       .def(
           "copy_world",
           [](HeldEnvironment& self, int source, int target) {

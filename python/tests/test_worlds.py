@@ -165,6 +165,44 @@ def test_rollouts_begin_where_they_are_told_and_fill_what_they_are_given():
     assert batch.rollout(steps=2, fields=[]) == {}
 
 
+def test_worlds_that_step_alone_go_the_way_of_all():
+    every, some = (mw.Batch(crates(), worlds=20, seed=3) for _ in range(2))
+    every.step(12)
+    some.step(5, ids=[4, 17])
+    some.step(7, ids=np.arange(20) % 13 == 4)
+    own = [4, 17]
+    np.testing.assert_array_equal(some.hashes()[own], every.hashes()[own])
+    fresh = mw.Batch(crates(), worlds=20, seed=3)
+    others = np.setdiff1d(np.arange(20), own)
+    np.testing.assert_array_equal(some.hashes()[others], fresh.hashes()[others])
+    assert some.steps == 0 and some.time == 0
+    some.step(3, ids=[])
+    np.testing.assert_array_equal(some.hashes()[others], fresh.hashes()[others])
+    with pytest.raises(IndexError, match="must be 0 to 19"):
+        some.step(ids=[20])
+
+    landers = lander(worlds=6)
+    thrust = np.full((2, landers.get_controls().shape[1]), 1.0)
+    landers.step(4, thrust, ids=[1, 5])
+    assert landers.get_controls()[[1, 5], 0].tolist() == [1, 1]
+    assert not landers.get_controls()[[0, 2, 3, 4]].any()
+    with pytest.raises(ValueError, match="controls has shape"):
+        landers.step(1, np.zeros((6, thrust.shape[1])), ids=[1, 5])
+
+
+def test_worlds_begin_anew_with_seeds_of_their_own():
+    batch = mw.Batch(crates(), worlds=7, seed=3)
+    first = batch.hashes()
+    batch.step(4)
+    batch.reset([2, 5], seeds=[3, 4])
+    assert batch.hashes()[[2, 5]].tolist() == first[:2].tolist()
+    assert batch.steps == 4
+    batch.reset(seeds=3)
+    assert batch.hashes().tolist() == first.tolist()
+    with pytest.raises(ValueError, match="one for each of 2 worlds"):
+        batch.reset([0, 1], seeds=[1])
+
+
 def test_lost_worlds_are_named():
     batch = mw.Batch(crates(), worlds=3)
     speed = batch.get("linear_velocity")
