@@ -1,8 +1,8 @@
-// Cart-poles as an RL or optimal-control user has them: actions go in and observations, rewards and
-// ends come out as flat arrays, [world][number]; worlds that end begin anew. A linear feedback
-// balances them; a policy network takes its place.
+// A task of one's own, as an RL or optimal-control user has it: what a policy does, sees and is
+// paid for is said in expressions, which are worked out in SIMD lanes within the step. Actions go
+// in and observations, rewards and ends come out as flat arrays, [world][number]; worlds that end
+// begin anew. A linear feedback balances the cart-poles; a policy network takes its place.
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -15,9 +15,9 @@ namespace mw = manyworlds;
 
 namespace {
 
-constexpr std::size_t kWorlds = 2048, kObservations = 4, kActions = 1;
-constexpr float kMostLean = 0.2f, kMostTravel = 2.4f;  // rad, m; an episode ends beyond
-constexpr int kMostSteps = 500;                        // and after so many
+constexpr std::size_t kWorlds = 2048, kObservations = 4;
+constexpr double kMostLean = 0.2, kMostTravel = 2.4, kMostPush = 10;  // rad, m, N
+constexpr int kMostSteps = 500;                                       // of an episode
 
 mw::Shape bar(double half_x, double half_y, double mass) {
   mw::Shape shape;
@@ -48,79 +48,55 @@ mw::Scene cart_pole() {
   mw::Control push;
   push.kind = mw::ControlKind::thrust;  // N, along x
   push.body = base;
-  push.low = -10, push.high = 10;
+  push.low = -kMostPush, push.high = kMostPush;
   scene.controls = {push};
   return scene;
 }
 
-class CartPoles {
- public:
-  CartPoles()
-      : batch_(mw::compile(cart_pole()),
-               {.worlds = kWorlds, .seed = 1, .observe = {{mw::Observer::joints}, {}, 0}}) {}
+mw::Task balancing() {
+  using namespace mw::terms;
+  mw::Task task;
+  task.name = "balancing";
+  task.scene = cart_pole();
+  task.actions = {{"push", -1, 1}};
+  task.controls = {kMostPush * action()};
+  // Of the rail and of the hinge, whose angle is positive to the left.
+  const mw::Expression travel = joint_position(0), lean = joint_position(1);
+  task.observations = {
+      {"travel", travel}, {"speed", joint_speed(0)}, {"lean", lean}, {"turn", joint_speed(1)}};
+  task.rewards = {{"upright", 1}, {"off the middle", -0.1 * square(travel)}};
+  task.terminated = (abs(lean) > kMostLean) | (abs(travel) > kMostTravel);
+  task.most_steps = kMostSteps;
+  return task;
+}
 
-  // What the last step ended with; of a world that has just begun anew, what it begins with.
-  std::vector<float> observations = std::vector<float>(kWorlds * kObservations);
-  std::vector<float> rewards = std::vector<float>(kWorlds);
-  std::vector<std::uint8_t> ended = std::vector<std::uint8_t>(kWorlds);
-
-  void step(std::span<const float> actions) {
-    batch_.set_controls(actions);  // [world][control]
-    batch_.step();
-    observe();
-    bool any_ended = false;
-    for (std::size_t w = 0; w < kWorlds; ++w) {
-      const float* seen = observations.data() + w * kObservations;
-      const float travel = seen[0];
-      rewards[w] = 1 - 0.1f * travel * travel;
-      const bool failed = std::abs(seen[2]) > kMostLean || std::abs(travel) > kMostTravel;
-      ended[w] = failed || ++age_[w] == kMostSteps;
-      if (ended[w]) age_[w] = 0;
-      any_ended = any_ended || ended[w];
-    }
-    if (!any_ended) return;
-    batch_.reset(ended);  // with a new draw
-    batch_.look();
-    observe();
-  }
-
-  const mw::Batch& batch() const { return batch_; }
-
- private:
-  void observe() {
-    batch_.read(mw::Observed::joint_position, place_);  // [world][travel, angle]
-    batch_.read(mw::Observed::joint_speed, speed_);
-    for (std::size_t w = 0; w < kWorlds; ++w) {
-      float* seen = observations.data() + w * kObservations;
-      seen[0] = place_[2 * w], seen[1] = speed_[2 * w];
-      seen[2] = place_[2 * w + 1], seen[3] = speed_[2 * w + 1];
-    }
-  }
-
-  mw::Batch batch_;
-  std::vector<float> place_ = std::vector<float>(2 * kWorlds);
-  std::vector<float> speed_ = std::vector<float>(2 * kWorlds);
-  std::vector<int> age_ = std::vector<int>(kWorlds);  // steps
-};
-
-// N; angles are positive to the left.
-float balance(const float* seen) { return seen[0] + 2 * seen[1] - 30 * seen[2] - 6 * seen[3]; }
+float balance(const float* seen) {
+  return 0.1f * seen[0] + 0.2f * seen[1] - 3 * seen[2] - 0.6f * seen[3];
+}
 float let_go(const float*) { return 0; }
 
 // Mean return of the episodes that end within 1000 steps.
 double mean_return(float (*policy)(const float*), const char* name) {
-  CartPoles environment;
-  std::vector<float> actions(kWorlds * kActions), returns(kWorlds);
+  mw::Environment environment(
+      balancing(), {.worlds = kWorlds, .seed = 1, .autoreset = mw::Autoreset::same_step});
+  std::vector<float> observations(kWorlds * kObservations), actions(kWorlds);
+  std::vector<double> rewards(kWorlds), returns(kWorlds);
+  std::vector<std::uint8_t> terminated(kWorlds), truncated(kWorlds);
+  const mw::StepArrays arrays{.observations = observations,
+                              .rewards = rewards,
+                              .terminated = terminated,
+                              .truncated = truncated};
+  environment.reset(std::vector<std::uint8_t>(kWorlds, 1), observations);
   double sum = 0;
   int episodes = 0;
   for (int step = 0; step < 2 * kMostSteps; ++step) {
     for (std::size_t w = 0; w < kWorlds; ++w) {
-      actions[w] = policy(environment.observations.data() + w * kObservations);
+      actions[w] = policy(observations.data() + w * kObservations);
     }
-    environment.step(actions);
+    environment.step(actions, arrays);
     for (std::size_t w = 0; w < kWorlds; ++w) {
-      returns[w] += environment.rewards[w];
-      if (!environment.ended[w]) continue;
+      returns[w] += rewards[w];
+      if (!terminated[w] && !truncated[w]) continue;
       sum += returns[w], ++episodes;
       returns[w] = 0;
     }
