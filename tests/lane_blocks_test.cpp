@@ -61,10 +61,11 @@ void check_fields(Batch& batch) {
 TEST_CASE("lane blocks hold what read() gives, in float32 and float64", "[batch][fast]") {
   for (const Space space : {Space::planar, Space::spatial}) {
     const Plan plan = compile(two_crates(space));
-    Batch single(plan, {.worlds = 11, .threads = 1, .seed = 3});
-    check_fields<float>(single);
-    Batch twice(plan, {.worlds = 11, .threads = 1, .seed = 3, .precision = Precision::f64});
-    check_fields<double>(twice);
+    for (const Table& table : widest_tables()) {
+      CAPTURE(name(table));
+      Batch batch(plan, options_of(table, 11));
+      table.precision == Precision::f32 ? check_fields<float>(batch) : check_fields<double>(batch);
+    }
   }
 }
 

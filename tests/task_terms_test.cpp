@@ -43,7 +43,7 @@ double relative(double found, double wanted) {
 
 TEST_CASE("elementary functions are those of mathematics, to a few units in the last place",
           "[task][fast]") {
-  const auto precision = GENERATE(Precision::f32, Precision::f64);
+  const Precision precision = GENERATE(from_range(widest_tables())).precision;
   const double ulp = precision == Precision::f32 ? 0x1p-23 : 0x1p-52;
   Task task = falling_ball();
   const Expression x = terms::position(0, 0);
@@ -108,7 +108,7 @@ TEST_CASE("functions of what is not finite or beyond their range stay in bounds"
 }
 
 TEST_CASE("terms are what the batch reads, in the user's frames", "[task][fast]") {
-  const auto precision = GENERATE(Precision::f32, Precision::f64);
+  const Precision precision = GENERATE(from_range(widest_tables())).precision;
   const auto name = GENERATE(as<std::string>(), "car2d", "lunar-lander", "ragdoll", "mixed-pile",
                              "mixed-pile2d", "chain3d");
   Task task;
@@ -278,7 +278,7 @@ TEST_CASE("functions of one's own are worked out in lanes", "[task][fast]") {
       {"x", x},
       {"h", h + 1},
       {"again", lane_function(std::make_shared<Hypotenuse>(), {h, Expression(0)})}};
-  Played p(task, {.worlds = 33, .precision = GENERATE(Precision::f32, Precision::f64)});
+  Played p(task, {.worlds = 33, .precision = GENERATE(from_range(widest_tables())).precision});
   for (std::size_t w = 0; w < 33; ++w) {
     const float* o = p.observations.data() + 3 * w;
     CHECK(o[1] == Approx(5 * std::abs(o[0]) + 1));
