@@ -3,6 +3,7 @@
 // of one world, in the whole and of its scene alone (the same worlds, without actions): what a task
 // adds to its physics.
 #include <cstdint>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -29,16 +30,15 @@ class Rollout {
         terminated_(kTaskWorlds),
         truncated_(kTaskWorlds),
         discrete_(task.choices > 0) {
-    // A linear congruence is random enough for a clock.
-    std::uint32_t draw = 1;
-    const auto next = [&draw] { return (draw = 1664525u * draw + 1013904223u) >> 8; };
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> share;
     for (auto& set : choices_) {
-      for (auto& c : set) c = discrete_ ? next() % static_cast<std::uint32_t>(task.choices) : 0;
+      for (auto& c : set) c = static_cast<std::int64_t>(share(random) * task.choices);
     }
     for (auto& set : numbers_) {
       for (std::size_t i = 0; i < set.size(); ++i) {
         const Action& a = task.actions[i % task.actions.size()];
-        set[i] = static_cast<float>(a.low + (a.high - a.low) * next() * 0x1p-24);
+        set[i] = static_cast<float>(a.low + (a.high - a.low) * share(random));
       }
     }
     for (int i = 0; i < kWarmUp; ++i) step();
