@@ -14,7 +14,7 @@
 namespace manyworlds::bench {
 namespace {
 
-constexpr int kTaskWorlds = 4096, kActionSets = 16, kWarmUp = 100;
+constexpr int kTaskWorlds = 4096, kActionSets = 16, kWarmUp = 300;
 
 // An environment with room for what it gives, and actions for it that were made beforehand.
 class Rollout {

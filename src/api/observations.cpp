@@ -1,6 +1,8 @@
 #include "src/api/observations.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace manyworlds {
 
@@ -208,47 +210,56 @@ void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group,
                                 std::uint32_t chosen) {
   const kernels::Observation<Real>& view = blocks_[thread][k].view;
   Kind& kind = kinds_[k];
-  const std::size_t lanes = at(kernels_.lanes);
-  const auto untangle = [lanes](auto* to, const auto* from, std::size_t rows, std::size_t lane) {
-    for (std::size_t i = 0; i < rows; ++i) to[i] = from[i * lanes + lane];
-  };
+  const std::size_t lanes = at(kernels_.lanes), rays = kind.rays.size();
+  std::array<std::pair<std::size_t, std::size_t>, 32> taken;  // lane, world
+  std::size_t count = 0;
   for (std::size_t l = 0; l < lanes; ++l) {
     const int in = worlds_[k]->world_in(group * kernels_.lanes + static_cast<int>(l));
-    if (in < 0 || !get_bit(chosen, l)) continue;
-    const std::size_t w = at(in), rays = kind.rays.size();
-    if (view.motion) {
-      untangle(&kind.motion[w * kernels::kMotionRows], view.motion, kernels::kMotionRows, l);
-    }
-    if (view.penetration) kind.penetration[w] = view.penetration[l];
-    if (view.residual) {
-      Real* to = &kind.residual[w * kernels::kResidualRows];
-      untangle(to, view.residual, kernels::kResidualRows, l);
-      // Nor of worlds that the step has lost, or that have fallen asleep in it: groups at rest are
-      // not looked at again.
-      if (worlds_[k]->resting(in) || frozen(worlds_[k]->status(in)))
-        std::fill_n(to, kernels::kResidualRows, Real(0));
-    }
-    const std::size_t coordinates = at(view.coordinates) * kernels::kCoordinateRows,
-                      loads = at(view.joints) * kernels::kJointRows;
-    untangle(kind.coordinate_rows.data() + w * coordinates, view.coordinate_rows, coordinates, l);
-    untangle(kind.joint_rows.data() + w * loads, view.joint_rows, loads, l);
-    if (view.touching) {
-      const std::size_t bodies = at(worlds_[k]->tables().bodies);
+    if (in >= 0 && get_bit(chosen, l)) taken[count++] = {l, at(in)};
+  }
+  const auto for_each = [&](auto&& call) {
+    for (std::size_t i = 0; i < count; ++i) call(taken[i].first, taken[i].second);
+  };
+  // [row][lane] to [world][row]
+  const auto untangle = [&](auto& to, const auto* from, std::size_t rows) {
+    if (rows == 0) return;
+    for_each([&](std::size_t l, std::size_t w) {
+      auto* own = to.data() + w * rows;
+      for (std::size_t i = 0; i < rows; ++i) own[i] = from[i * lanes + l];
+    });
+  };
+  if (view.motion) untangle(kind.motion, view.motion, kernels::kMotionRows);
+  if (view.penetration) untangle(kind.penetration, view.penetration, 1);
+  if (view.residual) {
+    untangle(kind.residual, view.residual, kernels::kResidualRows);
+    // Nor of worlds that the step has lost, or that have fallen asleep in it: groups at rest are
+    // not looked at again.
+    for_each([&](std::size_t, std::size_t w) {
+      const int world = static_cast<int>(w);
+      if (worlds_[k]->resting(world) || frozen(worlds_[k]->status(world)))
+        std::fill_n(&kind.residual[w * kernels::kResidualRows], kernels::kResidualRows, Real(0));
+    });
+  }
+  untangle(kind.coordinate_rows, view.coordinate_rows,
+           at(view.coordinates) * kernels::kCoordinateRows);
+  untangle(kind.joint_rows, view.joint_rows, at(view.joints) * kernels::kJointRows);
+  if (view.touching) {
+    const std::size_t bodies = at(worlds_[k]->tables().bodies);
+    for_each([&](std::size_t l, std::size_t w) {
       for (std::size_t b = 0; b < bodies; ++b) {
         kind.touching[w * bodies + b] = static_cast<std::uint8_t>((view.touching[b] >> l) & 1u);
       }
-    }
-    if (view.contacts) {
+    });
+  }
+  if (view.contacts) {
+    for_each([&](std::size_t l, std::size_t w) {
       kind.count[w] = view.count[l];
       std::copy_n(view.contacts + l * at(kind.room), std::min(view.count[l], kind.room),
                   kind.contacts.data() + w * at(kind.room));
-    }
-    if (rays > 0) {
-      untangle(&kind.hit_rows[w * rays * kernels::kHitRows], view.hit_rows,
-               rays * kernels::kHitRows, l);
-      untangle(&kind.hit_shape[w * rays], view.hit_shape, rays, l);
-    }
+    });
   }
+  untangle(kind.hit_rows, view.hit_rows, rays * kernels::kHitRows);
+  untangle(kind.hit_shape, view.hit_shape, rays);
 }
 
 template class ObservationsOf<float>;

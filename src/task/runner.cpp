@@ -1,7 +1,9 @@
 #include "src/task/runner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "src/base/bits.hpp"
 #include "src/plan/plan_data.hpp"
@@ -97,12 +99,10 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
           has_status(g, l, kernels::kFrozen | kernels::kOutOfBounds) ? 1 : 0;
     }
     run(g, after_, thread, false);
-    const int end = std::min(lanes_, worlds_ - g.group * lanes_);
-    for (int l = 0; l < end; ++l) {
-      const int world = g.group * lanes_ + l;
-      put_observations(out.observations, thread, world, l);
-      finish_step(thread, world, l, static_cast<int>(age[l]));
-    }
+    const int first = g.group * lanes_, end = std::min(lanes_, worlds_ - first);
+    for (int l = 0; l < end; ++l) put_observations(out.observations, thread, first + l, l);
+    put_rewards(thread, first, end);
+    end_episodes(thread, first, end, age);
     put_down(g.group, thread, (1u << lanes_) - 1u);
   }
 
@@ -204,26 +204,41 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
                 out.final_observations.data() + at(world) * n);
   }
 
-  void finish_step(const Thread& thread, int world, int lane, int age) {
-    const bool begins = begin_next[at(world)] != 0;  // the step is no step of an episode
-    const bool terminated = !begins && value(thread, p_->terminated, lane) != 0;
-    const bool truncated = !begins && (value(thread, p_->truncated, lane) != 0 ||
-                                       (p_->most_steps > 0 && age >= p_->most_steps));
-    double sum = 0;
-    for (std::size_t i = 0; i < p_->rewards.size(); ++i) {
-      const double reward = begins ? 0 : static_cast<double>(value(thread, p_->rewards[i], lane));
-      sum += reward;
-      if (!out.reward_terms.empty()) {
-        out.reward_terms[at(world) * p_->rewards.size() + i] = reward;
+  // Of the worlds `first` on, which are lanes 0 to `end`. In steps that begin an episode there is
+  // no reward and no end.
+  void put_rewards(const Thread& thread, int first, int end) const {
+    std::array<double, 32> sum{};
+    const std::size_t rewards = p_->rewards.size();
+    for (std::size_t i = 0; i < rewards; ++i) {
+      const Real* row = thread.values.data() + at(p_->rewards[i] * lanes_);
+      for (int l = 0; l < end; ++l) {
+        const double reward = begin_next[at(first + l)] != 0 ? 0 : static_cast<double>(row[l]);
+        sum[at(l)] += reward;
+        if (!out.reward_terms.empty()) out.reward_terms[at(first + l) * rewards + i] = reward;
       }
     }
-    if (!out.rewards.empty()) out.rewards[at(world)] = sum;
-    if (!out.terminated.empty()) out.terminated[at(world)] = terminated;
-    if (!out.truncated.empty()) out.truncated[at(world)] = truncated;
-    const bool ended = terminated || truncated;
-    begin_now[at(world)] = begins || (ended && autoreset_ == Autoreset::same_step);
-    begin_next[at(world)] = ended && autoreset_ == Autoreset::next_step;
-    if (begin_now[at(world)] != 0) some_begin.store(true, std::memory_order_relaxed);
+    if (!out.rewards.empty()) std::copy_n(sum.data(), end, out.rewards.data() + first);
+  }
+
+  void end_episodes(const Thread& thread, int first, int end, const Real* age) {
+    const Real* failed = thread.values.data() + at(p_->terminated * lanes_);
+    const Real* broken_off = thread.values.data() + at(p_->truncated * lanes_);
+    const Real most = p_->most_steps > 0 ? static_cast<Real>(p_->most_steps)
+                                         : std::numeric_limits<Real>::infinity();
+    bool some = false;
+    for (int l = 0; l < end; ++l) {
+      const std::size_t world = at(first + l);
+      const bool begins = begin_next[world] != 0;
+      const bool terminated = !begins && failed[l] != 0;
+      const bool truncated = !begins && (broken_off[l] != 0 || age[l] >= most);
+      if (!out.terminated.empty()) out.terminated[world] = terminated;
+      if (!out.truncated.empty()) out.truncated[world] = truncated;
+      const bool ended = terminated || truncated;
+      begin_now[world] = begins || (ended && autoreset_ == Autoreset::same_step);
+      begin_next[world] = ended && autoreset_ == Autoreset::next_step;
+      some = some || begin_now[world] != 0;
+    }
+    if (some) some_begin.store(true, std::memory_order_relaxed);
   }
 
   // What the next step has to remember of these lanes.
