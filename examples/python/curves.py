@@ -1,7 +1,7 @@
 """Learning curves of ppo.py as an SVG: mean return over wall time, one line per run.
 
-    pip install matplotlib
-    python curves.py lander1.json lander2.json --out curves.svg
+pip install matplotlib
+python curves.py lander1.json lander2.json --out curves.svg
 """
 
 import argparse

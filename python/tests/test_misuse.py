@@ -1,7 +1,5 @@
 """Wrong calls: each raises an error that says what was found and what was expected."""
 
-import random
-
 import numpy as np
 import pytest
 
@@ -176,82 +174,3 @@ def test_a_wrong_call_says_what_is_wrong(index):
 def test_a_batch_is_refused_with_a_reason(arguments, error, match):
     with pytest.raises(error, match=match):
         mw.Batch(**{"scene": "stack10", **arguments})
-
-
-def junk(rng: random.Random):
-    """A value of a kind that some call wants, or none does."""
-    shape = [rng.choice([0, 1, 2, 3, 5]) for _ in range(rng.randrange(4))]
-    numbers = np.random.default_rng(rng.randrange(99)).normal(size=shape) * 10 ** rng.randrange(5)
-    return rng.choice(
-        [None, -1, 0, 1, 2, 5, 2**40, 1.5, np.nan, "position", "friction", "x", b"y", True, {}, []]
-        + [[0, 2], [True] * 5, [9], numbers, numbers.astype("f4"), numbers > 0, numbers.T]
-        + [numbers.astype(int), np.full((5, 5, 2), np.nan), mw.Ray(), mw.Body(), object(), len]
-    )
-
-
-def fitting(rng: random.Random, batch: mw.Batch) -> dict:
-    """Arguments that fit, by method."""
-    width = 2 if batch.plan.scene.space == "planar" else 3
-    some = rng.choice([None, 2, [0, 3], [True, False, False, False, True]])
-    shape = (5, batch.bodies, width)
-    return {
-        "step": (rng.randrange(4),),
-        "get": (rng.choice(["position", "orientation", "friction", "mass"]),),
-        "set": ("linear_velocity", np.random.default_rng(0).normal(size=shape)),
-        "view": ("position",),
-        "set_controls": (np.zeros((5, batch._controls)),),
-        "add_force": (np.ones(width), 1, some),
-        "add_impulse": (np.ones(width), None, some, np.zeros(width)),
-        "add_torque": ([1.0],) if width == 2 else ((1, 2, 3),),
-        "set_enabled": (rng.random() < 0.8, 0, some),
-        "spawn": (1, np.full(width, 7.0), None, None, None, some),
-        "wake": (some,),
-        "hash": (3,),
-        "contacts": (1,),
-        "save": (some,),
-        "copy_world": (0, 4),
-        "reset": (some,),
-        "rollout": (None, None, 3, ["position", "mass"]),
-    }
-
-
-METHODS = (
-    "step get set view slots get_controls set_controls add_force add_torque add_impulse "
-    "add_angular_impulse get_enabled set_enabled spawn get_joints_enabled set_joints_enabled asleep "
-    "wake set_rays status status_names lost hash hashes energy contacts step_contacts "
-    "measure_contacts look save restore copy_world reset rollout"
-).split()
-MAKES = [
-    lambda: lander(sleep=True, observe=["motion", "contacts"], rays=[mw.Ray()]),
-    lambda: mw.Batch(crates(), worlds=5, threads=2, precision="f64"),
-]
-
-
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")
-@pytest.mark.parametrize("seed", range(4))
-def test_random_calls_do_no_harm(seed):
-    """2,400 calls with arguments that fit or do not: they work or raise, and nothing breaks."""
-    rng = random.Random(seed)
-    make = MAKES[seed % 2]
-    batch, worked, raised = make(), 0, 0
-    for call in range(600):
-        name = rng.choice(METHODS)
-        good = fitting(rng, batch)
-        if name in good and rng.random() < 0.5:
-            arguments = good[name]
-        else:
-            arguments = tuple(junk(rng) for _ in range(rng.randrange(4)))
-        try:
-            result = getattr(batch, name)(*arguments)
-            worked += 1
-            if name == "save" and result.worlds:
-                batch.restore(result, source=0, ids=[rng.randrange(5)])
-        except (ValueError, TypeError, IndexError):
-            raised += 1
-        if call % 50 == 49:
-            batch.step(2)
-            assert batch.hashes().shape == (5,) and batch.status().shape == (5,)
-            if rng.random() < 0.3:
-                batch.close()
-                batch = make()
-    assert worked > 150 and raised > 150
