@@ -320,14 +320,14 @@ class CoreOf final : public BatchCore {
       plan.poses = observations_->poses(s, kind);
     }
     const kernels::GroupView<Real> view = w.storage().group(group);
-    const std::uint32_t all = ~std::uint32_t{0};
-    const std::uint32_t lanes = only_.empty() ? all : lanes_in(only_, active);
+    const std::uint32_t lanes = only_.empty() ? ~std::uint32_t{0} : lanes_in(only_, active);
     const auto for_each_other = [&](auto&& call) {
-      const std::size_t bytes = lanes == all ? 0 : w.storage().world_bytes();
-      for (int l = 0; lanes != all && l < kernels_.lanes; ++l) {
-        const auto lane = static_cast<std::size_t>(l);
-        if (!get_bit(lanes, lane))
-          call(group * kernels_.lanes + l, scratch_[s].aside.data() + lane * bytes);
+      if (only_.empty()) return;
+      std::vector<std::byte>& aside = scratch_[s].aside;
+      const auto all = static_cast<std::size_t>(kernels_.lanes), bytes = aside.size() / all;
+      for (std::size_t l = 0; l < all; ++l) {
+        if (!get_bit(lanes, l))
+          call(group * kernels_.lanes + static_cast<int>(l), aside.data() + l * bytes);
       }
     };
     for_each_other([&w](int slot_aside, std::byte* to) { w.put_aside(slot_aside, to); });
