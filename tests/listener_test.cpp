@@ -79,7 +79,7 @@ TEST_CASE("a listener hears of every input and step call", "[fast][listener]") {
   CHECK(log->lines == std::vector<std::string>{"step 8"});
   log->lines.clear();
   batch.step(std::array<std::uint8_t, 3>{1, 0, 1}, 2);
-  heard({"restore 0 -1", "restore 2 -1"}, 2);
+  heard({"reset 0 -1", "reset 2 -1"}, 2);
   const Snapshot saved = batch.save();
   batch.restore(saved);
   heard({"restore 0 -1", "restore 1 -1", "restore 2 -1"}, 2);

@@ -145,6 +145,27 @@ TEST_CASE("what is seen does not depend on batch size, place, threads or steps p
   }
 }
 
+TEST_CASE("a look at the state leaves what steps saw of contacts as it was", "[fast][observe]") {
+  for (const Scene& scene : scenes()) {
+    const Plan plan = compile(scene);
+    for (const Table& table : widest_tables()) {
+      INFO(scene.name << ' ' << name(table));
+      BatchOptions options = options_of(table, 37);  // several groups, which differ
+      options.observe = everything(scene.space);
+      Batch batch(plan, options);
+      batch.step(25);
+      const auto all = [&batch] {
+        Seen out;
+        for (int w = 0; w < batch.worlds(); ++w) out.push_back(seen(batch, w));
+        return out;
+      };
+      const Seen before = all();
+      batch.look();
+      CHECK(same_bits(all(), before));
+    }
+  }
+}
+
 TEST_CASE("what is seen of sleepers does not depend on who is awake beside them",
           "[fast][observe][bits]") {
   for (Space space : {Space::planar, Space::spatial}) {

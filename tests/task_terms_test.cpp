@@ -78,8 +78,10 @@ TEST_CASE("elementary functions are those of mathematics, to a few units in the 
                              std::clamp(v, -2.0, 5.0),
                              v < 1 ? 2 * v : v * v,
                              std::sin(1024 * v)};
-    for (std::size_t i = 0; i < terms; ++i)
+    for (std::size_t i = 0; i < terms; ++i) {
+      REQUIRE(std::isfinite(found[i]));
       worst[i] = std::max(worst[i], relative(found[i], wanted[i]) / ulp);
+    }
   }
   for (std::size_t i = 0; i < terms; ++i) {
     CAPTURE(task.rewards[i].name, worst[i]);
@@ -152,6 +154,7 @@ TEST_CASE("terms are what the batch reads, in the user's frames", "[task][fast]"
     const auto x = field(Field::position), v = field(Field::linear_velocity),
                q = field(Field::orientation), s = field(Field::angular_velocity);
     const auto see = [&](double wanted) {
+      REQUIRE(std::isfinite(p.observations[at]));
       worst = std::max(worst, relative(static_cast<double>(p.observations[at++]), wanted));
     };
     for (int b = 0; b < batch.bodies(); ++b) {
@@ -193,7 +196,7 @@ TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task
   down.length = 30;
   down.mask = 1;
   task.rays = {down};
-  task.rays[0].origin = {0, 50, 0};
+  task.rays[0].origin = {0, 20, 0};
   task.observations = {{"hip", terms::joint_position(0)},
                        {"hip speed", terms::joint_speed(0)},
                        {"leg", terms::touching(leg)},
@@ -209,6 +212,7 @@ TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task
   p.actions.assign(9, 1.5f);
   p.actions[3] = 99;  // beyond its range
   int touched = 0;
+  float nearest = 100;
   for (int step = 1; step <= 400; ++step) {
     p.step();
     const Batch& batch = p.environment.batch();
@@ -222,6 +226,10 @@ TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task
       REQUIRE(o[1] == static_cast<float>(speed[0]));
       const int state_leg = batch.plan().state_body(leg);
       REQUIRE((o[2] != 0) == batch.touching(w, state_leg));
+      REQUIRE(o[3] == static_cast<float>(batch.ray_hits(w)[0].distance));
+      REQUIRE((o[8] != 0) == lost(batch.status(w)));
+      REQUIRE((o[9] != 0) == batch.touching(w, batch.plan().state_body(lander)));
+      nearest = std::min(nearest, o[3]);
       REQUIRE(o[4] == static_cast<float>(control[static_cast<std::size_t>(3 * w)]));
       if (o[6] != 0) {
         REQUIRE(o[5] == static_cast<float>(task.scene.controls[2].high));
@@ -231,6 +239,7 @@ TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task
     }
   }
   CHECK(touched > 0);
+  CHECK(nearest < down.length);
 }
 
 TEST_CASE("what tasks remember: previous, held and largest", "[task][fast]") {

@@ -158,6 +158,7 @@ class Batch {
   // of all would give them. The others keep their state, their forces and what was last observed
   // of them; time() and steps() are of steps of all and stay. Groups of lanes without a world of
   // the mask cost nothing, one with some as much as a whole one. The first such call allocates.
+  // Recordings keep the state that each comes to, and do not simulate it again.
   void step(std::span<const std::uint8_t> mask, int n = 1);
   // Runs whole steps until the simulated time reaches `clock` s (never past it, up to half a
   // rounding step) and returns how many. `max_steps` keeps a stalled host from spiralling: time

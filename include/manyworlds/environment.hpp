@@ -35,8 +35,9 @@ struct EnvironmentOptions {
 // The caller's arrays that a step writes to, [world] or [world][number]. Those that are empty are
 // not wanted; others must have just the size.
 struct StepArrays {
-  std::span<float> observations = {};        // [world][observation]
-  std::span<float> final_observations = {};  // same_step: of worlds that ended, the others' stay
+  std::span<float> observations = {};  // [world][observation]
+  std::span<float> final_observations =
+      {};  // same_step: of worlds that ended, the others' stay; wants observations
   std::span<double> rewards = {};
   std::span<double> reward_terms = {};                      // [world][reward]
   std::span<std::uint8_t> terminated = {}, truncated = {};  // 1 or 0

@@ -25,8 +25,8 @@ enum class Input : std::uint8_t {
   write_orientation,       // canonical
   write_linear_velocity,   // canonical
   write_angular_velocity,  // canonical
-  reset,                   // the world has a new state and no pending forces (0)
-  restore,                 // a new state: restored, copied, stepped alone, or other parameters (0)
+  reset,                   // a new state and no pending forces: reset, or stepped alone (0)
+  restore,                 // the world has a new state: restored, copied, or other parameters (0)
   set_controls,            // of the whole world, [control]
   enable_joint,            // (0)
   disable_joint,           // (0)

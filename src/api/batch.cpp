@@ -50,8 +50,8 @@ void Batch::step(std::span<const std::uint8_t> mask, int n) {
   impl_->check_mask(mask);
   if (n <= 0) return;
   impl_->core->step(*impl_->executor, n, nullptr, mask);
-  impl_->for_each_masked(
-      mask, [this](int, int, int world) { impl_->tell(*this, Input::restore, world); });
+  impl_->for_each_masked(mask,
+                         [this](int, int, int world) { impl_->tell(*this, Input::reset, world); });
 }
 
 int Batch::step_to(double clock, int max_steps) {

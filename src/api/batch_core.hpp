@@ -88,6 +88,7 @@ class CoreOf final : public BatchCore {
         for (int w = 0; w < worlds_[k]->count(); ++w) {
           if (is_in(only_, k, w)) worlds_[k]->clear_forces(w);
         }
+        worlds_[k]->find_forces();
       }
     }
     only_ = {};
@@ -305,9 +306,9 @@ class CoreOf final : public BatchCore {
   }
 
   // Calls work(plan of the step, group, scratch, counters, what a visitor sees) for a group that is
-  // active, and brings home what it observed.
+  // active, and brings home what it observed: `steps`, or only looks.
   template <class Work>
-  void run_group(int index, int slot, Work work) {
+  void run_group(int index, int slot, bool steps, Work work) {
     const FlushDenormals flush;  // whatever thread this is
     const int active = active_[static_cast<std::size_t>(index)];
     const std::size_t kind = kind_of(active);
@@ -335,10 +336,10 @@ class CoreOf final : public BatchCore {
          VisitedGroup<Real>{group, slot, kernels_, w.tables(), view,
                             w.storage().controls(group * kernels_.lanes), plan.wanted});
     for_each_other([&w](int slot_aside, const std::byte* from) { w.put_back(slot_aside, from); });
-    if (observations_) observations_->take(s, kind, group, lanes);
+    if (observations_) observations_->take(s, kind, group, lanes, steps);
   }
   void run(int index, int slot) {
-    run_group(index, slot,
+    run_group(index, slot, true,
               [this](const auto& plan, const auto& group, auto* scratch, auto& counters,
                      const auto& visited) {
                 if (visitor_) visitor_->before_steps(visited);
@@ -349,7 +350,7 @@ class CoreOf final : public BatchCore {
   }
   void begin_in(int index, int slot) {
     run_group(
-        index, slot,
+        index, slot, false,
         [this](const auto& plan, const auto& group, auto* scratch, auto&, const auto& visited) {
           const std::uint32_t lanes = lanes_in(beginning_, visited.group);
           for (int l = 0; resets_ && l < kernels_.lanes; ++l) {
@@ -362,7 +363,7 @@ class CoreOf final : public BatchCore {
         });
   }
   void look_at(int index, int slot) {
-    run_group(index, slot,
+    run_group(index, slot, false,
               [](const auto& plan, const auto& group, auto* scratch, auto&, const auto&) {
                 look_at_group<Real>(plan, group, scratch);
               });

@@ -206,8 +206,8 @@ const kernels::Observation<Real>& ObservationsOf<Real>::ask(std::size_t thread, 
 }
 
 template <class Real>
-void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group,
-                                std::uint32_t chosen) {
+void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group, std::uint32_t chosen,
+                                bool stepped) {
   const kernels::Observation<Real>& view = blocks_[thread][k].view;
   Kind& kind = kinds_[k];
   const std::size_t lanes = at(kernels_.lanes), rays = kind.rays.size();
@@ -229,8 +229,8 @@ void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group,
     });
   };
   if (view.motion) untangle(kind.motion, view.motion, kernels::kMotionRows);
-  if (view.penetration) untangle(kind.penetration, view.penetration, 1);
-  if (view.residual) {
+  if (stepped && view.penetration) untangle(kind.penetration, view.penetration, 1);
+  if (stepped && view.residual) {
     untangle(kind.residual, view.residual, kernels::kResidualRows);
     // Nor of worlds that the step has lost, or that have fallen asleep in it: groups at rest are
     // not looked at again.
@@ -243,7 +243,7 @@ void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group,
   untangle(kind.coordinate_rows, view.coordinate_rows,
            at(view.coordinates) * kernels::kCoordinateRows);
   untangle(kind.joint_rows, view.joint_rows, at(view.joints) * kernels::kJointRows);
-  if (view.touching) {
+  if (stepped && view.touching) {
     const std::size_t bodies = at(worlds_[k]->tables().bodies);
     for_each([&](std::size_t l, std::size_t w) {
       for (std::size_t b = 0; b < bodies; ++b) {
@@ -251,7 +251,7 @@ void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group,
       }
     });
   }
-  if (view.contacts) {
+  if (stepped && view.contacts) {
     for_each([&](std::size_t l, std::size_t w) {
       kind.count[w] = view.count[l];
       std::copy_n(view.contacts + l * at(kind.room), std::min(view.count[l], kind.room),

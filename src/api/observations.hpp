@@ -53,9 +53,10 @@ class ObservationsOf final : public Observations {
   void set_rays(std::span<const Ray> rays) override;
   void set_rays(int kind, int world, std::span<const Ray> rays) override;
 
-  // What to look for in a group, and after that what was seen in these lanes of it.
+  // What to look for in a group, and after that what was seen in these lanes of it: `stepped`, or
+  // by a look at the state alone, which knows nothing of contacts.
   const kernels::Observation<Real>& ask(std::size_t thread, std::size_t kind, int group);
-  void take(std::size_t thread, std::size_t kind, int group, std::uint32_t lanes);
+  void take(std::size_t thread, std::size_t kind, int group, std::uint32_t lanes, bool stepped);
   // Where the poses for rays are: the thread's scratch, or memory of their own where a plan without
   // contacts has none.
   kernels::Scratch* poses(std::size_t thread, std::size_t kind) const;

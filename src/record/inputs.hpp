@@ -36,6 +36,8 @@ inline bool is_of_joint(Input input) {
 // How many numbers come with it, for a world of this scene.
 std::int64_t number_count(Input input, int bodies, const Scene& scene);
 
+inline constexpr std::size_t kRowsInMemory = 4096;
+
 class InputLog {
  public:
   // Adds a call that `batch` told of, as one of world `world` of the recording.

@@ -34,7 +34,11 @@ struct LostWorldDumps::Impl final : BatchListener {
   }
 
   void on_input(const Batch& batch, const InputCall& call) noexcept override {
-    guarded([&] { log_.add(batch, call, call.world, steps_); });
+    guarded([&] {
+      log_.add(batch, call, call.world, steps_);
+      // Where worlds step alone, no step of all may ever come.
+      if (log_.rows().size() >= record::kRowsInMemory && !batch.forces_pending()) checkpoint(batch);
+    });
   }
 
   void on_step(const Batch& batch, int n) noexcept override {

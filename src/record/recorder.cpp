@@ -24,7 +24,6 @@ constexpr std::size_t kFieldChunk = std::size_t{1} << 16;  // bytes
 constexpr std::size_t kStartChunk = std::size_t{1} << 20;
 constexpr std::size_t kColumnChunk = std::size_t{1} << 12;  // bytes
 constexpr std::size_t kSmallChunk = 256;                    // bytes; where there are few samples
-constexpr std::size_t kRowsInMemory = 4096;                 // of inputs
 
 std::vector<int> checked_worlds(const Batch& batch, const RecordOptions& options) {
   if (options.every < 0) {
@@ -284,13 +283,17 @@ void Recorder::Impl::on_input(const Batch& batch, const InputCall& call) noexcep
   guarded([&] {
     log_.add(batch, call, place, steps_);
     ++inputs_;
+    // Where worlds step alone, no step of all may ever come.
+    if (log_.rows().size() < record::kRowsInMemory || batch.forces_pending()) return;
+    log_.stepped(0);
+    write_inputs();
   });
 }
 
 void Recorder::Impl::on_step(const Batch& batch, int n) noexcept {
   guarded([&] {
     log_.stepped(n);
-    if (log_.rows().size() >= kRowsInMemory) write_inputs();
+    if (log_.rows().size() >= record::kRowsInMemory) write_inputs();
     steps_ += n;
     if (options_.every == 0 || steps_ < next_) return;
     sample(batch);

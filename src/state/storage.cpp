@@ -206,6 +206,12 @@ void Storage<Real>::clear_forces() {
 }
 
 template <class Real>
+void Storage<Real>::find_forces() {
+  forced_ = forced_ && std::any_of(force_.data(), force_.data() + force_.size(),
+                                   [](Real f) { return !(f == Real(0)); });
+}
+
+template <class Real>
 void Storage<Real>::make_activity() {
   if (has_activity()) return;
   const std::size_t bodies = index(tables_.bodies);

@@ -51,6 +51,7 @@ class Storage {
   void clear_forces();
   bool forced() const { return forced_; }  // forces were added since they were all cleared
   void clear_forces(int slot);
+  void find_forces();  // after some were cleared: are there others?
 
   // Sleeping and disabled bodies. Without masks every body is there and awake.
   bool has_activity() const { return !asleep_.empty(); }

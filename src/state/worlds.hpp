@@ -46,6 +46,7 @@ class Worlds {
   void add_force(int world, int body, const Vec3& force, const Vec3& torque);
   void clear_forces() { storage_.clear_forces(); }
   void clear_forces(int world) { storage_.clear_forces(slot_of(world)); }
+  void find_forces() { storage_.find_forces(); }
   void add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular);
   Vec3 center_of_mass(int world, int body) const;
 

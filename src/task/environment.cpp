@@ -76,6 +76,8 @@ struct Environment::Impl {
   void check(const StepArrays& out) const {
     check_array("observations", out.observations.size(), observations(), true);
     check_array("final_observations", out.final_observations.size(), observations(), true);
+    if (out.observations.empty() && !out.final_observations.empty())
+      reject("final_observations are wanted without observations");
     check_array("rewards", out.rewards.size(), worlds(), true);
     check_array("reward_terms", out.reward_terms.size(), worlds() * task.rewards.size(), true);
     check_array("terminated", out.terminated.size(), worlds(), true);

@@ -81,6 +81,30 @@ TEST_CASE("inputs of every kind are repeated, whatever replays them", "[fast][re
   }
 }
 
+TEST_CASE("steps of some worlds alone are recorded as what they come to", "[fast][record]") {
+  const Folder folder;
+  Batch batch(compile(crowd(Space::spatial)), batch_options(widest_tables().front(), 5));
+  Recorder recorder(batch, folder / "run.h5", {.every = 1});
+  const std::vector<std::uint8_t> some = {1, 0, 1, 0, 0};
+  for (int turn = 0; turn < 4; ++turn) {
+    // World 0 uses its force up alone; world 1 keeps its own for the step of all.
+    for (const int world : {0, 1}) batch.add_force(world, 2, Vec3(900, 0, 0));
+    batch.step(some, 2);
+    CHECK(batch.forces_pending());
+    batch.step();
+  }
+  batch.add_force(2, 2, Vec3(900, 0, 0));
+  batch.step(some);
+  CHECK_FALSE(batch.forces_pending());
+  for (int i = 0; i < 3000; ++i) batch.step(some);  // more than are kept in memory
+  batch.step();
+  recorder.close();
+  const Recording recording = Recording::open(folder / "run.h5");
+  CHECK(recording.samples() == 6);
+  CHECK(recording.inputs() == 2 * 4 * 2 + 1 + 2 + 3000 * 2);
+  check_equal(replay(recording));
+}
+
 TEST_CASE("a world that is woken in a recording wakes in the replay", "[fast][record]") {
   const Folder folder;
   Scene scene = crowd(Space::spatial);
