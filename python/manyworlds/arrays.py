@@ -73,20 +73,21 @@ def mask(ids: Optional[Ids], count: int) -> NDArray[np.uint8]:
     return out
 
 
-def seeds(
-    values: Optional[Seeds], chosen: NDArray[np.uint8], name: str = "seeds"
-) -> Optional[NDArray[np.uint64]]:
-    """A seed for every world: s + i of a number s, else one given for each that is chosen."""
+def seeds(values: Optional[Seeds], ids: Optional[Ids], count: int) -> Optional[NDArray[np.uint64]]:
+    """A seed for each of ``count`` worlds: s + i of a number s, else one given for each of ``ids``,
+    in their order."""
     if values is None:
         return None
     if np.ndim(values) == 0:
-        first = integer(values, name, 0, 2**64 - 1)
-        return np.arange(len(chosen), dtype=np.uint64) + np.uint64(first)  # wraps around
+        first = integer(values, "seeds", 0, 2**64 - 1)
+        return np.arange(count, dtype=np.uint64) + np.uint64(first)  # wraps around
     each = [integer(s, "a seed", 0, 2**64 - 1) for s in values]  # type: ignore[union-attr]
-    worlds = np.flatnonzero(chosen)
+    worlds = indices(ids, count, "ids")
     if len(each) != len(worlds):
-        raise ValueError(f"{name} are {len(each)}, expected one for each of {len(worlds)} worlds")
-    full = np.zeros(len(chosen), np.uint64)
+        raise ValueError(f"seeds are {len(each)}, expected one for each of {len(worlds)} worlds")
+    if len(np.unique(worlds)) != len(worlds):
+        raise ValueError("ids name a world more than once, for which there are several seeds")
+    full = np.zeros(count, np.uint64)
     full[worlds] = np.array(each, np.uint64)
     return full
 

@@ -198,13 +198,13 @@ class Batch(Fields, Inputs, Results):
         None: all worlds from their first episode, with the clock, so that it repeats the first draw
         exactly. Else the next episode of those worlds: a bool array (worlds,), or indices.
         ``seeds``: the first episode of other seeds, a number s for s + i in world i, or one for
-        every world that is reset; the clock goes on.
+        every world that is reset, in the order of ids; the clock goes on.
         """
         if mask_or_ids is None and seeds is None:
             self._held.reset(None, None)
             return
         mask = arrays.mask(mask_or_ids, self._worlds)
-        self._held.reset(mask, arrays.seeds(seeds, mask))
+        self._held.reset(mask, arrays.seeds(seeds, mask_or_ids, self._worlds))
 
     def rollout(
         self,

@@ -24,7 +24,7 @@ class _OwnBatch(Batch):
 
     def __init__(self, environment: Environment) -> None:
         held = environment._held.batch()
-        self.plan = Plan(environment.task.scene)
+        self.plan = environment._plan
         self._held = held
         self._worlds = held.worlds
         self._real = np.dtype(np.float32 if held.precision == "f32" else np.float64)
@@ -84,6 +84,7 @@ class Environment:
         self._worlds = arrays.integer(worlds, "worlds", 1, MOST_WORLDS)
         crew = 0 if threads is None else arrays.integer(threads, "threads", 1, MOST_THREADS)
         seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
+        self._plan = Plan(task.scene)  # of now: the task is its maker's
         self._held = _core.Environment(task, self._worlds, crew, seed, precision, isa, autoreset)
         self.autoreset: str = autoreset.replace("-", "_")
         self.discrete = task.choices > 0
@@ -129,7 +130,7 @@ class Environment:
     def batch(self) -> Batch:
         """The worlds: to look at, to save and restore, to change. Whoever changes them says so by
         ``begin``, for what the task remembers of them."""
-        if self._batch is None:
+        if self._batch is None or self._batch.closed:
             self._batch = _OwnBatch(self)
         return self._batch
 
@@ -236,12 +237,13 @@ class Environment:
         """Begins the next episodes of all worlds or of some; with ``seeds`` their first ones.
 
         ``mask_or_ids``: a bool array (worlds,), or indices. ``seeds``: a number s, with which world
-        i gets the seed s + i, or one for every world that is reset. Returns observations; those of
-        the other worlds stay.
+        i gets the seed s + i, or one for every world that is reset, in the order of ids. Returns
+        observations; those of the other worlds stay.
         """
         mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
-        self._held.reset(mask, arrays.seeds(seeds, mask), observations)
+        own = arrays.seeds(seeds, mask_or_ids, self._worlds)
+        self._held.reset(mask, own, observations)
         chosen = mask.view(np.bool_)
         self.terminated[chosen] = False
         self.truncated[chosen] = False

@@ -28,7 +28,7 @@ def rollout(
     every: int,
     out: Optional[Mapping[str, NDArray[Any]]],
 ) -> Trajectories:
-    """Batch.rollout: everything is checked before the first world changes."""
+    """Batch.rollout: where it raises, no world has changed."""
     played, count = _controls(batch, controls, steps)
     every = arrays.integer(every, "every", 1, MOST_STEPS)
     names = _names(fields)
@@ -89,8 +89,13 @@ def _begin(batch: Batch, initial: Initial) -> None:
     if isinstance(initial, _core.Snapshot):
         batch.restore(initial)
     elif isinstance(initial, Mapping):
-        for name, values in initial.items():
-            batch.set(name, values)
+        before = batch.save()
+        try:
+            for name, values in initial.items():
+                batch.set(name, values)
+        except BaseException:
+            batch.restore(before)
+            raise
     else:
         found = type(initial).__name__
         raise TypeError(f"initial is of type {found}; expected a Snapshot or a dict of arrays")

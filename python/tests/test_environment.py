@@ -175,6 +175,15 @@ def test_an_action_that_is_no_number_loses_its_world_alone():
     assert np.isfinite(env.observations).all() and not env.terminated.any()
 
 
+def test_a_closed_view_of_the_worlds_does_not_close_the_environment():
+    env = make("LunarLander", 5)
+    with env.batch as batch:
+        assert batch.get("position").shape == (5, 5, 2)
+    assert batch.closed and not env.closed
+    env.step(np.zeros(5, int))
+    assert not env.lost().any() and env.batch.get("position").shape == (5, 5, 2)
+
+
 WRONG = [
     (lambda e: e.step(np.zeros(4, int)), ValueError, r"shape \(4,\); expected \(worlds=5,\)"),
     (lambda e: e.step(np.zeros(5)), TypeError, "expected integers"),

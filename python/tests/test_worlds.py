@@ -199,8 +199,21 @@ def test_worlds_begin_anew_with_seeds_of_their_own():
     assert batch.steps == 4
     batch.reset(seeds=3)
     assert batch.hashes().tolist() == first.tolist()
+    batch.reset([6, 1], seeds=[3, 4])  # in this order
+    assert batch.hashes()[[6, 1]].tolist() == first[:2].tolist()
     with pytest.raises(ValueError, match="one for each of 2 worlds"):
         batch.reset([0, 1], seeds=[1])
+    with pytest.raises(ValueError, match="more than once"):
+        batch.reset([1, 1], seeds=[1, 2])
+
+
+def test_a_rollout_that_is_refused_changes_nothing():
+    batch = mw.Batch(crates(), worlds=4, seed=3)
+    before = batch.hashes().tolist()
+    initial = {"position": batch.get("position") + 1, "linear_velocity": np.zeros((4, 1))}
+    with pytest.raises(ValueError, match="linear_velocity has shape"):
+        batch.rollout(initial, steps=3)
+    assert batch.hashes().tolist() == before
 
 
 def test_lost_worlds_are_named():

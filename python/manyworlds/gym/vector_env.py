@@ -11,12 +11,14 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from .. import arrays
 from ..environment import Environment
 from ..names import Isa, Precision
 from ..tasks import Task
 from . import spaces
 
 Seed = Union[int, Sequence[Optional[int]], None]
+_MOST_SEED = 2**64 - 1
 MODES = {
     AutoresetMode.NEXT_STEP: "next_step",
     AutoresetMode.SAME_STEP: "same_step",
@@ -96,11 +98,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[A
         seeds = self._seeds(seed)
         if seeds is None or isinstance(seeds, int):
             super().reset(seed=seeds)
-        if seeds is None:
-            self.environment.reset(mask)
-        elif isinstance(seeds, int):
-            chosen = np.flatnonzero(mask)
-            self.environment.reset(mask, [seeds + int(i) for i in chosen])
+            self.environment.reset(mask, seeds)
         else:
             given = mask & np.array([s is not None for s in seeds])
             chosen = np.flatnonzero(given)
@@ -143,11 +141,11 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[A
         if seed is None:
             return None
         if np.ndim(seed) == 0:
-            return int(seed)  # type: ignore[arg-type]
+            return arrays.integer(seed, "seed", 0, _MOST_SEED)
         seeds = list(seed)  # type: ignore[arg-type]
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed has {len(seeds)} numbers, expected {self.num_envs}")
-        return [None if s is None else int(s) for s in seeds]
+        return [None if s is None else arrays.integer(s, "a seed", 0, _MOST_SEED) for s in seeds]
 
     def _infos(self) -> dict[str, Any]:
         e, infos = self.environment, {}
