@@ -49,18 +49,6 @@ def fitting_a_batch(rng: random.Random, batch: mw.Batch) -> dict:
     }
 
 
-METHODS = (
-    "step get set view slots get_controls set_controls add_force add_torque add_impulse "
-    "add_angular_impulse get_enabled set_enabled spawn get_joints_enabled set_joints_enabled asleep "
-    "wake set_rays status status_names lost hash hashes energy contacts step_contacts "
-    "measure_contacts look save restore copy_world reset rollout"
-).split()
-MAKES = [
-    lambda: lander(sleep=True, observe=["motion", "contacts"], rays=[mw.Ray()]),
-    lambda: mw.Batch(crates(), worlds=5, threads=2, precision="f64"),
-]
-
-
 def fitting_an_environment(rng: random.Random, env: mw.Environment) -> dict:
     some = rng.choice([None, 2, [0, 3], [True, False, False, False, True]])
     actions = np.zeros(env.action_shape, int if env.discrete else float)
