@@ -17,6 +17,9 @@ packages=(
 # What the Python package is built and tested with, in an environment of its own.
 python_packages=(python3-dev python3-venv)
 python_dir="$root/build/python"
+# Debian's own where there is one, since that is whom python3-dev and python3-venv belong to.
+system_python=/usr/bin/python3
+[[ -x $system_python ]] || system_python=python3
 
 say() { printf '%s: %s\n' "$program" "$*" >&2; }
 fail() {
@@ -54,23 +57,22 @@ fetch_mujoco() {
     fail "could not fetch MuJoCo from PyPI (MW_MJCF=OFF $program builds without MJCF files)"
 }
 
-# make_python_environment: build/python, from Debian's own python3 where there is one, since that is
-# whom python3-dev belongs to.
+# make_python_environment: build/python, with what pyproject.toml's tests want.
 make_python_environment() {
-  local python=/usr/bin/python3 stamp="$python_dir/made_with" requirements
-  [[ -x $python ]] || python=python3
-  mapfile -t requirements < <("$python" - "$root/pyproject.toml" <<'END'
+  local stamp="$python_dir/made_with" requirements
+  mapfile -t requirements < <("$system_python" - "$root/pyproject.toml" <<'END'
 import sys, tomllib
 project = tomllib.load(open(sys.argv[1], "rb"))["project"]
 print(*project["dependencies"], *project["optional-dependencies"]["test"], sep="\n")
 END
   )
-  ((${#requirements[@]} > 0)) || fail "$python could not read pyproject.toml (it wants Python 3.11)"
+  ((${#requirements[@]} > 0)) || fail "$system_python could not read pyproject.toml (it wants Python 3.11)"
   if [[ -x $python_dir/bin/python && -f $stamp && $(<"$stamp") == "${requirements[*]}" ]]; then
     return
   fi
   say "making an environment for the Python package in build/python"
-  "$python" -m venv --clear "$python_dir" >&2 || fail "$python could not make build/python"
+  "$system_python" -m venv --clear "$python_dir" >&2 ||
+    fail "$system_python could not make build/python"
   "$python_dir/bin/python" -m pip install --quiet --disable-pip-version-check --no-input \
     "${requirements[@]}" >&2 ||
     fail "pip could not install ${requirements[*]} (MW_PYTHON=OFF $program leaves Python out)"
