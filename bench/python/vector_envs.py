@@ -2,7 +2,7 @@
 """Steps per second of vector environments: Gymnasium's own LunarLander-v3 and CartPole-v1, one after
 the other (sync) and in processes (async), against manyworlds, by Gymnasium's own measure
 (gymnasium.utils.performance.benchmark_vector_step, which draws random actions, too); and manyworlds
-without that, with actions made before.
+without that, with actions made before; and the step of a task's scene alone, with new controls each.
 
     pip install "gymnasium[box2d]"
     bench/python/vector_envs.py --seconds 5 --json build/vector_envs.json
@@ -52,6 +52,15 @@ def prepared(task, worlds):
     return actions
 
 
+def controls_of(batch):
+    """Sets of controls within their ranges."""
+    ranges = [(c.low, c.high) for c in batch.plan.scene.controls]
+    low, high = np.array(ranges, np.float32).T
+    random = np.random.default_rng(0)
+    shape = batch.worlds, len(ranges)
+    return [low + (high - low) * random.random(shape, np.float32) for _ in range(32)]
+
+
 def main():
     p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     p.add_argument("--seconds", type=float, default=5)
@@ -98,6 +107,10 @@ def main():
                     speed = by_loop(env.step, actions, n, o.seconds, o.repeats)
                     kernels = env.batch.kernel_table
                 add(ours, "Environment", "prepared", n, threads, speed)
+                with mw.Batch(mw.tasks.load(ours).scene, n, threads=threads) as batch:
+                    sets = controls_of(batch)
+                    speed = by_loop(lambda c: batch.step(1, c), sets, n, o.seconds, o.repeats)
+                add(ours, "Batch.step with controls", "prepared", n, threads, speed)
     if o.json:
         about = dict(
             machine=platform.processor() or platform.machine(),
