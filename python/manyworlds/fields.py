@@ -94,20 +94,23 @@ class Fields:
         wake. Numbers of the scene must vary (Scene.variations) and lie in their range, or nothing
         changes and ValueError is raised, as for a wrong shape. IndexError for wrong ids.
         """
+        self._held.write(*self._to_write(name, values, ids))
+
+    def _to_write(
+        self, name: str, values: ArrayLike, ids: Optional[Ids] = None
+    ) -> tuple[str, NDArray[Any], Optional[NDArray[np.int32]]]:
+        """What is written where, checked but for the ranges of numbers."""
         field = self._field(name)
         if field.group == "observed":
             raise ValueError(f"{name} is observed and cannot be set")
         if ids is None:
             dtype = np.float64 if field.group == "parameter" else None
             shape = self._shape(field, self._worlds)
-            self._held.write(
-                name, arrays.numbers(values, shape, self._axes(field), name, dtype), None
-            )
-            return
+            return name, arrays.numbers(values, shape, self._axes(field), name, dtype), None
         worlds = arrays.indices(ids, self._worlds, "ids")
         shape, axes = self._shape(field, len(worlds)), ("ids", *self._axes(field)[1:])
         numbers = arrays.numbers(values, shape, axes, name, np.float64)
-        self._held.write(name, numbers, worlds)
+        return name, numbers, worlds
 
     def view(self, name: str) -> View:
         """A state field in place, as the step keeps it: see View. Raises ValueError."""

@@ -89,12 +89,16 @@ def _begin(batch: Batch, initial: Initial) -> None:
     if isinstance(initial, _core.Snapshot):
         batch.restore(initial)
     elif isinstance(initial, Mapping):
-        before = batch.save()
+        writes = [batch._to_write(name, values) for name, values in initial.items()]
+        # Only numbers of the scene can still be refused, by their ranges.
+        refusable = any(batch._field(name).group == "parameter" for name in initial)
+        before = batch.save() if refusable else None
         try:
-            for name, values in initial.items():
-                batch.set(name, values)
-        except BaseException:
-            batch.restore(before)
+            for write in writes:
+                batch._held.write(*write)
+        except ValueError:
+            if before is not None:
+                batch.restore(before)
             raise
     else:
         found = type(initial).__name__

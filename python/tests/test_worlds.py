@@ -214,6 +214,11 @@ def test_a_rollout_that_is_refused_changes_nothing():
     with pytest.raises(ValueError, match="linear_velocity has shape"):
         batch.rollout(initial, steps=3)
     assert batch.hashes().tolist() == before
+    friction = batch.get("friction")
+    beyond = {"position": batch.get("position") + 1, "friction": friction + 1e6}
+    with pytest.raises(ValueError, match="friction"):
+        batch.rollout(beyond, steps=3)
+    assert batch.hashes().tolist() == before and (batch.get("friction") == friction).all()
 
 
 def test_lost_worlds_are_named():
