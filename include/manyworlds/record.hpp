@@ -5,7 +5,8 @@
 // input since then, and every k steps the state fields, hashes and status of each world. Its layout
 // is in docs/batch.md.
 //
-// One thread at a time uses this library, unless the HDF5 library is built thread safe.
+// Any thread may use its own Batch, Recorder and Recording while others do: those that are in HDF5
+// at the same time wait for one another.
 #pragma once
 
 #include <cstddef>

@@ -53,6 +53,8 @@ herr_t refuse_link(const char*, const char*, const char*, const char*, unsigned*
   return -1;
 }
 
+std::recursive_mutex hdf5_mutex;
+
 // How to open what is in this file: a link to another one is not followed.
 Handle inside_only(hid_t sort) {
   Handle access(H5Pcreate(sort), H5Pclose, "access properties");
@@ -69,11 +71,11 @@ void fail(const std::string& what) {
   throw RecordError(what + (reason.empty() ? "" : " (HDF5: " + reason + ")"));
 }
 
-QuietErrors::QuietErrors() {
+UsingHdf5::UsingHdf5() : lock_(hdf5_mutex) {
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
-QuietErrors::~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+UsingHdf5::~UsingHdf5() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
 Handle create_file(const std::filesystem::path& path) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "file properties");

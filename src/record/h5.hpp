@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -20,16 +21,17 @@ namespace manyworlds::record {
 // Throws RecordError, naming what was being done and HDF5's own reason.
 [[noreturn]] void fail(const std::string& what);
 
-// HDF5 prints its errors unless told otherwise, for the whole program; so we tell it while we are
-// in it.
-class QuietErrors {
+// While one lives, its thread is the only one of ours in HDF5, which may not be built for more than
+// one; and HDF5 prints no errors, as it otherwise does, for the whole program. May be nested.
+class UsingHdf5 {
  public:
-  QuietErrors();
-  ~QuietErrors();
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
+  UsingHdf5();
+  ~UsingHdf5();
+  UsingHdf5(const UsingHdf5&) = delete;
+  UsingHdf5& operator=(const UsingHdf5&) = delete;
 
  private:
+  std::unique_lock<std::recursive_mutex> lock_;
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };

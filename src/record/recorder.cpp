@@ -112,7 +112,7 @@ Recorder::Impl::Impl(const Batch& batch, std::filesystem::path path, const Recor
   options_.worlds = checked_worlds(batch, options);
   static std::atomic<std::uint64_t> count = 0;  // two at a time may write the same file
   part_ += ".part" + std::to_string(getpid()) + "_" + std::to_string(count++);
-  const record::QuietErrors quiet;
+  const record::UsingHdf5 hdf5;
   try {
     h5_ = record::create_file(part_);
     describe(batch);
@@ -235,7 +235,7 @@ void Recorder::Impl::write_inputs() {
 template <class Do>
 void Recorder::Impl::guarded(Do&& what) noexcept {
   if (!failure_.empty()) return;
-  const record::QuietErrors quiet;
+  const record::UsingHdf5 hdf5;
   try {
     what();
   } catch (const std::exception& error) {
@@ -302,7 +302,7 @@ void Recorder::Impl::on_step(const Batch& batch, int n) noexcept {
 }
 
 void Recorder::Impl::close() {
-  const record::QuietErrors quiet;
+  const record::UsingHdf5 hdf5;
   if (!failure_.empty()) throw RecordError("'" + file_.string() + "': " + failure_);
   write_inputs();
   for (Table* table : {&step_, &time_, &inputs_before_, &columns_.step, &columns_.call_steps,
@@ -334,7 +334,7 @@ void Recorder::Impl::close_tables() noexcept {
 }
 
 void Recorder::Impl::discard() noexcept {
-  const record::QuietErrors quiet;
+  const record::UsingHdf5 hdf5;
   close_tables();
   h5_ = {};
   std::error_code ignored;

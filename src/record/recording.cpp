@@ -174,11 +174,18 @@ std::vector<double> Recording::Impl::read(Field field, std::size_t kind, std::in
 
 Recording::Recording(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Recording::Recording(Recording&&) noexcept = default;
-Recording& Recording::operator=(Recording&&) noexcept = default;
-Recording::~Recording() = default;
+Recording& Recording::operator=(Recording&& other) noexcept {
+  std::swap(impl_, other.impl_);
+  return *this;
+}
+Recording::~Recording() {
+  if (!impl_) return;
+  const record::UsingHdf5 hdf5;
+  impl_.reset();
+}
 
 Recording Recording::open(const std::filesystem::path& file) {
-  const record::QuietErrors quiet;
+  const record::UsingHdf5 hdf5;
   return described(label(file), [&] {
     if (std::filesystem::is_directory(file)) throw RecordError("is a directory");
     record::check_frame(file);
@@ -187,7 +194,7 @@ Recording Recording::open(const std::filesystem::path& file) {
 }
 
 Recording Recording::from_bytes(std::span<const std::byte> bytes) {
-  const record::QuietErrors quiet;
+  const record::UsingHdf5 hdf5;
   return described("recording: ", [&] {
     record::check_frame(bytes);
     return Recording(std::make_unique<Impl>(record::open_bytes(bytes)));
@@ -229,7 +236,7 @@ std::vector<double> Recording::read(Field field, std::int64_t sample, int world)
     throw std::invalid_argument("sample is " + std::to_string(sample) + ", must be 0 to " +
                                 std::to_string(samples() - 1));
   }
-  const record::QuietErrors quiet;
+  const record::UsingHdf5 hdf5;
   const auto p = impl_->place(world);
   return impl_->read(field, p.kind, sample, static_cast<std::int64_t>(p.world));
 }

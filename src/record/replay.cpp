@@ -39,18 +39,26 @@ class Comparison {
 
   void compare(std::int64_t sample) {
     for (std::size_t k = 0; k < all_.kinds.size(); ++k) {
-      std::array<std::vector<double>, kFieldCount> fields;
-      for (const Field field : record::kFields) {
-        fields[static_cast<std::size_t>(field)] = all_.read(field, k, sample);
-      }
+      const auto fields = read(k, sample);
       const int count = static_cast<int>(all_.kinds[k].worlds.size());
       for (int i = 0; i < count; ++i) compare(sample, k, i, all_.first_world[k] + i, fields);
     }
   }
 
  private:
+  using Fields = std::array<std::vector<double>, kFieldCount>;
+
+  Fields read(std::size_t kind, std::int64_t sample) const {
+    const record::UsingHdf5 hdf5;
+    Fields out;
+    for (const Field field : record::kFields) {
+      out[static_cast<std::size_t>(field)] = all_.read(field, kind, sample);
+    }
+    return out;
+  }
+
   void compare(std::int64_t sample, std::size_t kind, int in_kind, int world,
-               const std::array<std::vector<double>, kFieldCount>& fields) {
+               const Fields& fields) {
     ++result_.compared;
     const Plan& plan = all_.kinds[kind].plan;
     int first_body = -1;
@@ -116,7 +124,6 @@ class Comparison {
 }  // namespace
 
 ReplayResult replay(const Recording& recording, const ReplayOptions& options) {
-  const record::QuietErrors quiet;
   const Recording::Impl& all = recording.impl();
   Batch batch = make_batch(all, options);
   ReplayResult result;

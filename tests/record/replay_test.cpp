@@ -1,6 +1,9 @@
 // What was recorded is what a replay does, on any kernels, threads and layouts, after any input.
 #include <catch2/catch.hpp>
 
+#include <atomic>
+#include <thread>
+
 #include "manyworlds/scenes.hpp"
 #include "tests/record/support.hpp"
 
@@ -79,6 +82,27 @@ TEST_CASE("inputs of every kind are repeated, whatever replays them", "[fast][re
       }
     }
   }
+}
+
+TEST_CASE("threads record, read and replay at a time", "[fast][record]") {
+  const Folder folder;
+  const Plan plan = compile(crowd(Space::spatial));
+  std::atomic<int> same = 0;
+  const auto work = [&](int i) {
+    for (int turn = 0; turn < 4; ++turn) {
+      const fs::path file = folder / (std::to_string(i) + "_" + std::to_string(turn) + ".h5");
+      BatchOptions options = batch_options(widest_tables().front(), 3);
+      options.threads = 1;
+      Batch batch(plan, options);
+      record_disturbed(batch, file, {.every = 7});
+      const ReplayResult result = replay(Recording::open(file), {.threads = 1});
+      if (result.compared > 0 && result.different == 0) ++same;
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 3; ++i) threads.emplace_back(work, i);
+  for (std::thread& thread : threads) thread.join();
+  CHECK(same == 3 * 4);
 }
 
 TEST_CASE("steps of some worlds alone are recorded as what they come to", "[fast][record]") {
