@@ -223,6 +223,76 @@ TEST_CASE("a copied world goes on as the one it is a copy of, with what is remem
   }
 }
 
+TEST_CASE("a saved environment goes on as it did, elsewhere and over the ends of episodes",
+          "[task][bits][fast]") {
+  const auto index = GENERATE(range(std::size_t{0}, tasks::all().size()));
+  const Task task = hurried(tasks::all()[index]);
+  INFO(task.name);
+  constexpr int kWorlds = 20;
+  for (const Autoreset autoreset : {Autoreset::next_step, Autoreset::same_step}) {
+    const EnvironmentOptions options{.worlds = kWorlds, .seed = 5, .autoreset = autoreset};
+    Played p(task, options);
+    const auto play = [](Played& played, int begin, int end) {
+      std::vector<std::vector<double>> seen;
+      for (int step = begin; step < end; ++step) {
+        played.act_at_random(step);
+        played.step();
+        for (int w = 0; w < kWorlds; ++w) seen.push_back(history(played, w, step));
+      }
+      return seen;
+    };
+    // Some worlds end with the very step after which it is saved.
+    play(p, 0, 17);
+    const EnvironmentSnapshot saved = p.environment.save();
+    Played other(
+        task,
+        {.worlds = kWorlds, .threads = 3, .seed = 5, .isa = Isa::scalar, .autoreset = autoreset});
+    play(other, 0, 3);
+    other.environment.restore(saved);
+    other.final_observations = p.final_observations;  // they stay where no world ends
+    const auto wanted = play(p, 17, 40), found = play(other, 17, 40);
+    CHECK(p.environment.batch().hash() == other.environment.batch().hash());
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (!same_bits(found[i], wanted[i])) FAIL_CHECK("step and world " << i);
+    }
+  }
+}
+
+TEST_CASE("a saved world goes on in another place, and nothing else is let in", "[task][fast]") {
+  const Task task = hurried(*tasks::find("LunarLander"));
+  Played p(task, {.worlds = 20}), few(task, {.worlds = 3, .autoreset = Autoreset::disabled});
+  for (int step = 0; step < 9; ++step) {
+    p.act_at_random(step);
+    p.step();
+  }
+  const EnvironmentSnapshot saved = p.environment.save();
+  few.environment.restore(saved, 13, 1);
+  const std::uint64_t beside = few.environment.batch().hash(2);
+  CHECK(few.environment.batch().hash(1) == p.environment.batch().hash(13));
+  CHECK(few.environment.batch().hash(2) == beside);
+  for (int step = 9; step < 15; ++step) {
+    p.act_at_random(step);
+    few.choices[1] = p.choices[13];
+    p.step();
+    few.step();
+    INFO(step);
+    CHECK(few.rewards[1] == p.rewards[13]);
+    CHECK(few.environment.batch().hash(1) == p.environment.batch().hash(13));
+  }
+
+  Task longer = task;
+  longer.most_steps += 1;
+  Environment another(longer, {.worlds = 20});
+  const std::uint64_t before = another.batch().hash();
+  CHECK_THROWS_WITH(another.restore(saved), "snapshot: is of another task than 'LunarLander'");
+  CHECK_THROWS_AS(few.environment.restore(saved), SnapshotError);
+  CHECK_THROWS_AS(p.environment.restore(saved, 20, 0), std::invalid_argument);
+  EnvironmentSnapshot cut = saved;
+  cut.memory.pop_back();
+  CHECK_THROWS_WITH(p.environment.restore(cut), Catch::Matchers::Contains("numbers, must be"));
+  CHECK(another.batch().hash() == before);
+}
+
 TEST_CASE(
     "arrays of the wrong size, choices that there are not and actions of the other kind throw",
     "[task][fast]") {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "manyworlds/batch.hpp"
 #include "manyworlds/task.hpp"
@@ -41,6 +42,15 @@ struct StepArrays {
   std::span<double> rewards = {};
   std::span<double> reward_terms = {};                      // [world][reward]
   std::span<std::uint8_t> terminated = {}, truncated = {};  // 1 or 0
+};
+
+// Worlds of an Environment, to go on from later, elsewhere or many times: what they are, and what
+// the task remembers of them. Later episodes are drawn from the seeds of the worlds that it is
+// restored into.
+struct EnvironmentSnapshot {
+  Snapshot worlds;
+  std::uint64_t task = 0;      // of which task: equal for tasks that compute the same
+  std::vector<double> memory;  // [world][number]
 };
 
 class Environment {
@@ -79,6 +89,12 @@ class Environment {
   void begin(std::span<const std::uint8_t> mask, std::span<float> observations);
   // World `to` becomes what world `from` is, with what the task remembers of it.
   void copy_world(int from, int to);
+
+  EnvironmentSnapshot save() const;  // all worlds
+  // As Batch::restore: all worlds of as many, or world `from` of it into world `to`. Throw
+  // SnapshotError for one of another task, and change nothing then.
+  void restore(const EnvironmentSnapshot& snapshot);
+  void restore(const EnvironmentSnapshot& snapshot, int from, int to);
 
  private:
   struct Impl;

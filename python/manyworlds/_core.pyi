@@ -379,6 +379,14 @@ class Environment:
 
     def copy_world(self, source: int, target: int) -> None: ...
 
+    def save(self) -> tuple:
+        """(Snapshot of all worlds, fingerprint of the task, what it remembers)."""
+
+    def restore(self, worlds: Snapshot, task: int, memory: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], pairs: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> None:
+        """
+        All worlds, or pairs (world of the snapshot, world of the environment).
+        """
+
     def batch(self) -> Batch: ...
 
     def step_choices(self, actions: Annotated[NDArray[numpy.int64], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None:

@@ -66,6 +66,17 @@ def indices(ids: Optional[Ids], count: int, name: str) -> Indices:
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
+def pairs(source: Optional[Ids], saved: int, ids: Optional[Ids], count: int) -> Indices:
+    """(source, world) one after the other: which of ``saved`` worlds goes into which of ``count``; a
+    single source goes into every one of ``ids``. IndexError, TypeError, ValueError."""
+    worlds, sources = indices(ids, count, "ids"), indices(source, saved, "source")
+    if len(sources) == 1:
+        sources = np.repeat(sources, len(worlds))
+    if len(sources) != len(worlds):
+        raise ValueError(f"source has {len(sources)} worlds, ids {len(worlds)}; expected as many")
+    return np.ascontiguousarray(np.stack([sources, worlds], axis=1).ravel(), dtype=np.int32)
+
+
 def mask(ids: Optional[Ids], count: int) -> NDArray[np.uint8]:
     """1 for the worlds of ``indices``, else 0."""
     out = np.zeros(count, dtype=np.uint8)

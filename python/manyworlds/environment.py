@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Literal, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core, arrays, tasks
+from ._core import Snapshot
 from .batch import MOST_THREADS, MOST_WORLDS, Batch
 from .names import Ids, Isa, Precision, Seeds
 from .plan import Plan
@@ -35,6 +37,16 @@ class _OwnBatch(Batch):
         self._joints = len(self.plan.scene.joints)
         self._planar = self.plan.scene.space == "planar"
         self._find_fields()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EnvironmentSnapshot:
+    """The worlds of an Environment with what its task remembers of them; can be pickled."""
+
+    worlds: Snapshot
+    task: int  # of which task: equal for tasks that compute the same
+    memory: Doubles  # (worlds, numbers)
+    observations: Floats  # (worlds, observations), of the last step or reset
 
 
 class Environment:
@@ -264,6 +276,36 @@ class Environment:
             arrays.index(source, self._worlds, "source"),
             arrays.index(target, self._worlds, "target"),
         )
+
+    def save(self) -> EnvironmentSnapshot:
+        """All worlds, with what the task remembers of them and ``observations``."""
+        worlds, task, memory = self._held.save()
+        return EnvironmentSnapshot(worlds, task, memory, self.observations.copy())
+
+    def restore(
+        self,
+        snapshot: EnvironmentSnapshot,
+        source: Optional[Ids] = None,
+        ids: Optional[Ids] = None,
+    ) -> Floats:
+        """Worlds go on bit by bit as the saved ones did, in this or another Environment of the task.
+
+        ``source``, ``ids``: as in ``Batch.restore``. Later episodes are drawn from the seeds that the
+        worlds have here. Returns ``observations``, with the rows of the snapshot. Raises SnapshotError,
+        and changes nothing, for a snapshot of another task or precision.
+        """
+        if not isinstance(snapshot, EnvironmentSnapshot):
+            found = type(snapshot).__name__
+            raise TypeError(f"snapshot is of type {found}; expected an EnvironmentSnapshot")
+        held = snapshot.worlds, snapshot.task, snapshot.memory
+        if source is None and ids is None:
+            self._held.restore(*held, None)
+            self.observations[:] = snapshot.observations
+            return self.observations
+        pairs = arrays.pairs(source, snapshot.worlds.worlds, ids, self._worlds)
+        self._held.restore(*held, pairs)
+        self.observations[pairs[1::2]] = snapshot.observations[pairs[::2]]
+        return self.observations
 
     def lost(self) -> Flags:
         """Which worlds are lost, (worlds,) bool: frozen, or out of their bounds."""

@@ -156,14 +156,8 @@ class Results:
         if source is None and ids is None:
             self._held.restore(snapshot, None)
             return
-        worlds = arrays.indices(ids, self._worlds, "ids")
-        saved = arrays.indices(source, snapshot.worlds, "source")
-        if len(saved) == 1:
-            saved = np.repeat(saved, len(worlds))
-        if len(saved) != len(worlds):
-            raise ValueError(f"source has {len(saved)} worlds, ids {len(worlds)}; expected as many")
-        pairs = np.stack([saved, worlds], axis=1).ravel()
-        self._held.restore(snapshot, np.ascontiguousarray(pairs, dtype=np.int32))
+        pairs = arrays.pairs(source, snapshot.worlds, ids, self._worlds)
+        self._held.restore(snapshot, pairs)
 
     def copy_world(self, source: int, target: int) -> None:
         """World ``target`` goes on as world ``source`` does."""

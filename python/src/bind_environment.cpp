@@ -80,6 +80,28 @@ void reset(HeldEnvironment& self, const In<std::uint8_t>& mask,
   });
 }
 
+using MemoryIn = In<double>;
+
+nb::tuple save(HeldEnvironment& self) {
+  EnvironmentSnapshot saved = self.run([](Environment& e) { return e.save(); });
+  const auto worlds = static_cast<std::size_t>(saved.worlds.worlds());
+  const std::size_t numbers = saved.memory.size() / worlds;
+  return nb::make_tuple(std::move(saved.worlds), saved.task,
+                        owned(std::move(saved.memory), {worlds, numbers}));
+}
+
+// With `pairs`: world pairs[2 i] of the snapshot into world pairs[2 i + 1].
+void restore(HeldEnvironment& self, const Snapshot& worlds, std::uint64_t task,
+             const MemoryIn& memory, const std::optional<Ids>& pairs) {
+  const auto numbers = span_of(memory);
+  const EnvironmentSnapshot saved{worlds, task, {numbers.begin(), numbers.end()}};
+  self.run([&](Environment& e) {
+    if (!pairs) return e.restore(saved);
+    const auto p = span_of(*pairs);
+    for (std::size_t i = 0; i + 1 < p.size(); i += 2) e.restore(saved, p[i], p[i + 1]);
+  });
+}
+
 // The environment's own batch: it keeps the environment alive, and takes turns with it.
 HeldBatch* batch_of(HeldEnvironment& self) {
   return self.with([&](Environment& e) {
@@ -153,6 +175,10 @@ void bind_environment(nb::module_& m) {
             self.run([&](Environment& e) { e.copy_world(source, target); });
           },
           nb::arg("source"), nb::arg("target"))
+      .def("save", &save, "(Snapshot of all worlds, fingerprint of the task, what it remembers).")
+      .def("restore", &restore, nb::arg("worlds"), nb::arg("task"), nb::arg("memory").noconvert(),
+           nb::arg("pairs").noconvert().none(),
+           "All worlds, or pairs (world of the snapshot, world of the environment).")
       .def("batch", &batch_of, nb::rv_policy::take_ownership);
   def_step<std::int64_t>(c, "step_choices");
   def_step<float>(c, "step_numbers");

@@ -1,5 +1,6 @@
 """Environment: the same bits however it is run; arrays, resets, copies; misuse."""
 
+import pickle
 import threading
 
 import numpy as np
@@ -266,3 +267,35 @@ def test_two_threads_take_turns_or_are_told():
         thread.join()
     env.step(actions)
     assert np.isfinite(env.observations).all()
+
+
+@pytest.mark.parametrize("task", ["LunarLander", "Pendulum"])
+def test_a_saved_environment_goes_on_as_it_did(task):
+    def play(env, steps, seed):
+        rng, seen = np.random.default_rng(seed), []
+        for _ in range(steps):
+            seen.append([a.copy() for a in env.step(actions_of(env, rng))])
+        return seen
+
+    first = mw.Environment(task, worlds=10, seed=4)
+    play(first, 120, 0)
+    saved = pickle.loads(pickle.dumps(first.save()))
+    last = first.observations.copy()
+    second = mw.Environment(task, worlds=10, seed=4, threads=1, isa="scalar")
+    np.testing.assert_array_equal(second.restore(saved), last)
+    for a, b in zip(play(first, 150, 1), play(second, 150, 1)):
+        for x, y in zip(a, b):
+            np.testing.assert_array_equal(x, y)
+
+    # One world of it many times over.
+    few = mw.Environment(task, worlds=4)
+    observations = few.restore(saved, source=7, ids=[0, 3])
+    np.testing.assert_array_equal(observations[[0, 3]], last[[7, 7]])
+    hashes = few.batch.hashes()
+    assert hashes[0] == hashes[3] and hashes[0] != hashes[1]
+    with pytest.raises(mw.SnapshotError, match="10 worlds"):
+        few.restore(saved)
+    with pytest.raises(mw.SnapshotError, match="another task"):
+        mw.Environment("Acrobot", worlds=10).restore(saved)
+    with pytest.raises(TypeError, match="EnvironmentSnapshot"):
+        few.restore(saved.worlds)

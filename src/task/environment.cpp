@@ -84,6 +84,22 @@ struct Environment::Impl {
     check_array("truncated", out.truncated.size(), worlds(), true);
   }
 
+  void check(const EnvironmentSnapshot& snapshot) const {
+    if (snapshot.task != programs->fingerprint) {
+      throw SnapshotError("snapshot: is of another task than '" + task.name + "'");
+    }
+    const std::size_t wanted =
+        static_cast<std::size_t>(snapshot.worlds.worlds()) * runner->numbers();
+    if (snapshot.memory.size() != wanted) {
+      throw SnapshotError("snapshot: the task remembers " + std::to_string(snapshot.memory.size()) +
+                          " numbers, must be " + std::to_string(wanted));
+    }
+  }
+  std::span<const double> memory(const EnvironmentSnapshot& snapshot, int world) const {
+    const std::size_t n = runner->numbers();
+    return std::span(snapshot.memory).subspan(static_cast<std::size_t>(world) * n, n);
+  }
+
   void step(Batch::Impl& b, const StepArrays& out) {
     runner->out = out;
     runner->some_begin = false;
@@ -188,7 +204,31 @@ void Environment::begin(std::span<const std::uint8_t> mask, std::span<float> obs
 
 void Environment::copy_world(int from, int to) {
   impl_->batch.copy_world(from, to);
-  impl_->runner->copy_world(from, to);
+  std::vector<double> numbers(impl_->runner->numbers());
+  impl_->runner->save_world(from, numbers);
+  impl_->runner->restore_world(to, numbers);
+}
+
+EnvironmentSnapshot Environment::save() const {
+  const std::size_t n = impl_->runner->numbers();
+  EnvironmentSnapshot out{impl_->batch.save(), impl_->programs->fingerprint,
+                          std::vector<double>(impl_->worlds() * n)};
+  for (std::size_t w = 0; w < impl_->worlds(); ++w) {
+    impl_->runner->save_world(static_cast<int>(w), std::span(out.memory).subspan(w * n, n));
+  }
+  return out;
+}
+
+void Environment::restore(const EnvironmentSnapshot& snapshot) {
+  impl_->check(snapshot);
+  impl_->batch.restore(snapshot.worlds);
+  for (int w = 0; w < worlds(); ++w) impl_->runner->restore_world(w, impl_->memory(snapshot, w));
+}
+
+void Environment::restore(const EnvironmentSnapshot& snapshot, int from, int to) {
+  impl_->check(snapshot);
+  impl_->batch.restore(snapshot.worlds, from, to);
+  impl_->runner->restore_world(to, impl_->memory(snapshot, from));
 }
 
 }  // namespace manyworlds

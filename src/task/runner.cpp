@@ -6,9 +6,46 @@
 #include <limits>
 
 #include "src/base/bits.hpp"
+#include "src/base/hash.hpp"
 #include "src/plan/plan_data.hpp"
 
 namespace manyworlds {
+
+namespace {
+
+std::uint64_t fingerprint_of(const TaskPrograms& programs, const Plan& plan) {
+  Hasher hash;
+  const auto add = [&hash](auto... numbers) {
+    (hash.add(static_cast<std::uint64_t>(numbers)), ...);
+  };
+  const auto add_all = [&](const auto& numbers) {
+    add(numbers.size());
+    for (const auto number : numbers) hash.add(static_cast<double>(number));
+  };
+  add(plan.fingerprint(), programs.most_steps, programs.terminated, programs.truncated);
+  for (const auto* ranges : {&programs.action_range, &programs.control_range}) {
+    add(ranges->size());
+    for (const auto& range : *ranges) add_all(range);
+  }
+  for (const Program* program : {&programs.before, &programs.after}) {
+    add(program->instructions.size(), program->calls.size());
+    for (const auto& i : program->instructions) {
+      add(i.operation, i.a, i.b, i.c);
+      hash.add(i.number);
+    }
+    for (const Program::Call& call : program->calls) {
+      add(call.at);
+      add_all(call.in);
+    }
+  }
+  for (const auto* rows :
+       {&programs.controls, &programs.observations, &programs.rewards, &programs.memory.row}) {
+    add_all(*rows);
+  }
+  return hash.value();
+}
+
+}  // namespace
 
 TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : most_steps(task.most_steps) {
   inputs.actions = task.choices > 0 ? 1 : static_cast<int>(task.actions.size());
@@ -23,6 +60,7 @@ TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : most_steps(task
   for (const Expression& c : task.controls) controls.push_back(first.add(c));
   before = first.take();
   after = builder.take();
+  fingerprint = fingerprint_of(*this, plan);
 }
 
 namespace {
@@ -56,16 +94,20 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
 
   GroupVisitor& visitor() override { return *this; }
 
-  void copy_world(int from, int to) override {
-    const auto place = [this](int world, std::size_t rows) {
-      return at(world / lanes_) * rows * at(lanes_) + at(world % lanes_);
-    };
-    const std::size_t rows = p_->memory.row.size();
-    for (std::size_t i = 0; i < rows; ++i) {
-      memory_[place(to, rows) + i * at(lanes_)] = memory_[place(from, rows) + i * at(lanes_)];
-    }
-    age_[place(to, 1)] = age_[place(from, 1)];
-    begin_next[at(to)] = begin_next[at(from)];
+  std::size_t numbers() const override { return 2 + p_->memory.row.size(); }
+
+  void save_world(int world, std::span<double> to) const override {
+    to[0] = begin_next[at(world)];
+    to[1] = static_cast<double>(age_[at(world)]);
+    const Real* from = remembered(world);
+    for (std::size_t i = 2; i < to.size(); ++i, from += lanes_) to[i] = static_cast<double>(*from);
+  }
+
+  void restore_world(int world, std::span<const double> from) override {
+    begin_next[at(world)] = from[0] != 0 && autoreset_ == Autoreset::next_step;
+    age_[at(world)] = static_cast<Real>(from[1]);
+    Real* to = memory_.data() + (remembered(world) - memory_.data());
+    for (std::size_t i = 2; i < from.size(); ++i, to += lanes_) *to = static_cast<Real>(from[i]);
   }
 
   void before_steps(const VisitedGroup<Real>& g) override {
@@ -135,6 +177,12 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     AlignedBuffer<Real> values, inputs;
     std::vector<const Real*> in;  // of a call
   };
+
+  // Its first number; the next is a row of lanes further.
+  const Real* remembered(int world) const {
+    const std::size_t rows = p_->memory.row.size();
+    return memory_.data() + at(world / lanes_) * rows * at(lanes_) + at(world % lanes_);
+  }
 
   static bool has_status(const VisitedGroup<Real>& g, int lane, std::uint32_t bits) {
     return (g.view.status[lane] & bits) != 0;

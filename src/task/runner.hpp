@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct TaskPrograms {
   std::vector<int> observations, rewards;  // rows of `after`
   int terminated, truncated;
   Memory memory;
+  std::uint64_t
+      fingerprint;  // of all this: of what functions of the user's do, only where they are
 };
 
 // The number type's side of an Environment.
@@ -33,7 +36,10 @@ class TaskRunner {
  public:
   virtual ~TaskRunner() = default;
   virtual GroupVisitor& visitor() = 0;
-  virtual void copy_world(int from, int to) = 0;
+  // What is remembered of a world from step to step: numbers() of them.
+  virtual std::size_t numbers() const = 0;
+  virtual void save_world(int world, std::span<double> to) const = 0;
+  virtual void restore_world(int world, std::span<const double> from) = 0;
 
   // Of the call in progress.
   const float* actions = nullptr;         // [world][action], or
