@@ -10,7 +10,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core, arrays
+from . import _core, arrays, draws
 from .names import Ids
 from .view import View
 
@@ -95,6 +95,38 @@ class Fields:
         changes and ValueError is raised, as for a wrong shape. IndexError for wrong ids.
         """
         self._held.write(*self._to_write(name, values, ids))
+
+    def randomize(
+        self,
+        name: str,
+        low: ArrayLike,
+        high: ArrayLike,
+        ids: Optional[Ids] = None,
+        items: Optional[Ids] = None,
+        seed: Optional[int] = None,
+    ) -> None:
+        """Draws a state field or a number of the scene uniformly from ``low`` to ``high``, and sets it.
+
+        ``low``, ``high``: numbers, or what broadcasts to (items, components). ``ids``: of which worlds,
+        ``items``: of which bodies or shapes (``fields[name].item``); None: all. World i draws from
+        ``seed`` + i (None: the batch's seed) and the field's name: the same numbers in a batch of any
+        size, and again by the same call; another ``seed`` draws others. Raises as ``set`` does.
+        """
+        field = self._field(name)
+        worlds = arrays.indices(ids, self._worlds, "ids")
+        chosen = arrays.indices(items, field.items, "items")
+        first = self._held.seed if seed is None else arrays.integer(seed, "seed", 0, 2**64 - 1)
+        shape = len(chosen), field.components
+        axes = field.item + "s", "components"
+        ends = [
+            arrays.broadcast(end, shape, axes, which, np.float64)
+            for end, which in ((low, "low"), (high, "high"))
+        ]
+        seeds = np.uint64(first) + worlds.astype(np.uint64)  # wraps around
+        share = draws.uniform(seeds, name, shape[0] * shape[1]).reshape(-1, *shape)
+        values = self.get(name)[worlds].astype(np.float64)
+        values[:, chosen] = ends[0] + (ends[1] - ends[0]) * share
+        self.set(name, values, worlds)
 
     def _to_write(
         self, name: str, values: ArrayLike, ids: Optional[Ids] = None

@@ -7,6 +7,7 @@ import pytest
 
 import manyworlds as mw
 from conftest import crates, lander
+from manyworlds import draws
 
 STATE = ["position", "orientation", "linear_velocity", "angular_velocity"]
 
@@ -211,3 +212,41 @@ def test_controls():
     other.step(3, controls=batch.get_controls())
     batch.step(3)
     assert other.hash() == batch.hash()
+
+
+def test_randomized_numbers_depend_on_the_world_s_seed_alone():
+    few, many = (mw.Batch(crates(), worlds=n, seed=s) for n, s in ((3, 14), (40, 10)))
+    for batch in (few, many):
+        batch.randomize("linear_velocity", [-1, -2, 0], [1, 2, 0.5])
+        batch.randomize("friction", 0.3, 0.8, ids=[0, 2])
+        batch.randomize("mass", 2, 4, items=0)  # of scene body 1, which varies
+    v = many.get("linear_velocity")
+    np.testing.assert_array_equal(v[4:7], few.get("linear_velocity"))
+    for c, (low, high) in enumerate(((-1, 1), (-2, 2), (0, 0.5))):
+        drawn = v[..., c].ravel()
+        assert low <= drawn.min() and drawn.max() < high
+        assert abs(drawn.mean() - (low + high) / 2) < 4 * (high - low) / np.sqrt(12 * drawn.size)
+    assert len(np.unique(v)) == v.size
+    mass = many.get("mass")
+    assert len(np.unique(mass[:, 0])) == 40 and len(np.unique(mass[:, 1])) == 1
+    before = many.get("friction").copy()
+    many.randomize("friction", 0.3, 0.8, ids=[0, 2])
+    np.testing.assert_array_equal(many.get("friction"), before)  # the same call, the same draw
+    many.randomize("friction", 0.3, 0.8, ids=[0, 2], seed=77)
+    changed = (many.get("friction") != before).any(axis=(1, 2))
+    np.testing.assert_array_equal(np.flatnonzero(changed), [0, 2])
+
+    with pytest.raises(ValueError, match="low has shape"):
+        many.randomize("linear_velocity", [1, 2], 3)
+    with pytest.raises(IndexError, match="items hold 3"):
+        many.randomize("linear_velocity", 0, 1, items=3)
+    with pytest.raises(ValueError, match="does not vary"):
+        many.randomize("linear_drag", 0, 1)
+
+
+def test_draws_are_uniform_and_independent():
+    numbers = draws.uniform(np.array([0, 1, 2**64 - 1], np.uint64), "x", 100_000)
+    assert numbers.min() >= 0 and numbers.max() < 1
+    counts = np.histogram(numbers, 100, (0, 1))[0]
+    assert ((counts - 3000) ** 2 / 3000).sum() < 160  # chi squared of 99: 4.3 sigma
+    assert np.abs(np.corrcoef(numbers) - np.eye(3)).max() < 0.02
