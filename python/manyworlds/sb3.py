@@ -31,7 +31,7 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
         if AutoresetMode(arguments["autoreset_mode"]) != AutoresetMode.SAME_STEP:
             raise ValueError("Stable-Baselines3 wants AutoresetMode.SAME_STEP")
         self.env = VectorEnv(task, num_envs, **arguments)
-        self.render_mode = None
+        self.render_mode = self.env.render_mode
         self._actions: Optional[np.ndarray] = None
         spaces = self.env.single_observation_space, self.env.single_action_space
         super().__init__(num_envs, *spaces)
@@ -58,6 +58,9 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
             out[i]["terminal_observation"] = infos["final_obs"][i]
             out[i]["TimeLimit.truncated"] = bool(truncated[i] and not terminated[i])
         return observations, rewards.astype(np.float32), ended, out
+
+    def get_images(self) -> Sequence[Optional[np.ndarray]]:
+        return self.env.render() or ()
 
     def close(self) -> None:
         self.env.close()

@@ -6,18 +6,19 @@ from typing import Any, Optional, Union
 
 import gymnasium
 import numpy as np
+from numpy.typing import NDArray
 
 from ..environment import Environment
 from ..names import Isa, Precision
 from ..tasks import Task
-from . import spaces
+from . import rendering, spaces
 
 
 class Env(gymnasium.Env[np.ndarray, Any]):
     """A task in one world. ``reset(seed=s)`` begins the first episode of the seed s, ``reset()`` the
     next one; with the seed s + i it is, bit by bit, world i of a VectorEnv with the seed s."""
 
-    metadata: dict[str, Any] = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": list(rendering.RENDER_MODES)}
 
     def __init__(
         self,
@@ -29,10 +30,10 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         reward_terms: bool = False,
         render_mode: Optional[str] = None,
     ) -> None:
-        if render_mode is not None:
-            raise ValueError("there is no rendering; render_mode must be None")
-        self.render_mode = None
         self.task = spaces.task_of(task, max_episode_steps)
+        self._frames = rendering.Frames(self.task, render_mode)
+        self.render_mode = render_mode
+        self.metadata = rendering.metadata(self.task)
         self.observation_space = spaces.observation_space(self.task)
         self.action_space = spaces.action_space(self.task)
         seed = int(np.random.SeedSequence().generate_state(1)[0])
@@ -63,6 +64,11 @@ class Env(gymnasium.Env[np.ndarray, Any]):
             info["lost"] = True
         ends = bool(terminated[0]), bool(truncated[0])
         return observations[0].copy(), float(rewards[0]), *ends, info
+
+    def render(self) -> Optional[NDArray[np.uint8]]:  # type: ignore[override]
+        """The world as it is, (height, width, 3) uint8; None without a render_mode."""
+        frames = self._frames.of(self.environment)
+        return None if frames is None else frames[0]
 
     def close(self) -> None:
         self.environment.close()

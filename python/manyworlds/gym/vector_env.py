@@ -15,7 +15,7 @@ from .. import arrays
 from ..environment import Environment
 from ..names import Isa, Precision
 from ..tasks import Task
-from . import spaces
+from . import rendering, spaces
 
 Seed = Union[int, Sequence[Optional[int]], None]
 _MOST_SEED = 2**64 - 1
@@ -36,6 +36,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[A
     seed                of the worlds until ``reset`` gives one; None: a random one
     reward_terms        ``infos["reward_terms"]`` has the parts of the reward by name
     threads, precision, isa  as in ``manyworlds.Environment``
+    render_mode         "rgb_array": ``render()`` draws every world (``manyworlds.plot``)
 
     ``reset(seed=s)`` begins the first episode of the seed s + i in world i, ``reset()`` the next
     episodes. ``infos["lost"]`` tells worlds that went wrong (an action that was not a number, say)
@@ -58,13 +59,12 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[A
         isa: Optional[Isa] = None,
         render_mode: Optional[str] = None,
     ) -> None:
-        if render_mode is not None:
-            raise ValueError("there is no rendering; render_mode must be None")
         self.autoreset_mode = AutoresetMode(autoreset_mode)
-        self.metadata = {"render_modes": [], "autoreset_mode": self.autoreset_mode}
-        self.render_mode = None
         self.copy = copy
         self.task = spaces.task_of(task, max_episode_steps)
+        self._frames = rendering.Frames(self.task, render_mode)
+        self.render_mode = render_mode
+        self.metadata = rendering.metadata(self.task) | {"autoreset_mode": self.autoreset_mode}
         if seed is None:
             seed = int(np.random.SeedSequence().generate_state(1)[0])
         self.environment = Environment(
@@ -117,6 +117,10 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[A
             observations, rewards, terminated, truncated = results
             results = observations.copy(), rewards.copy(), terminated.copy(), truncated.copy()
         return *results, infos
+
+    def render(self) -> Optional[tuple[NDArray[np.uint8], ...]]:  # type: ignore[override]
+        """A frame of every world as it is, (height, width, 3) uint8; None without a render_mode."""
+        return self._frames.of(self.environment)
 
     def close_extras(self, **kwargs: Any) -> None:
         self.environment.close()

@@ -1,0 +1,220 @@
+"""Picture: what a world looks like, drawn by matplotlib."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PathCollection
+from matplotlib.figure import Figure
+from matplotlib.path import Path
+from numpy.typing import NDArray
+
+from .. import arrays
+from ..batch import Batch
+from ..scene import Scene
+from ..shapes import HalfPlane, Plane
+from . import pieces, solids
+from .pieces import Eye, Piece, View
+from .solids import Floats, Solid
+
+Poses = list[Optional[tuple[Floats, Floats]]]  # of the scene's bodies: (rotation, position)
+
+_MOST_AROUND = 4  # times what the moving bodies take up: how far fixed ones widen the view
+_INSET = 0.15  # of the view's width and height: how near to its border the leading body comes
+
+
+@dataclass(frozen=True)
+class Camera:
+    """From where spatial worlds are seen, in parallel projection. Angles in degrees."""
+
+    azimuth: float = -60.0  # about z, from x: where the camera stands
+    elevation: float = 20.0  # above the horizon
+
+    def eye(self) -> Eye:
+        a, e = np.radians([self.azimuth, self.elevation])
+        right = np.array([-np.sin(a), np.cos(a), 0.0])
+        towards = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+        return Eye(right, np.cross(towards, right), towards, planar=False)
+
+
+class Picture:
+    """What worlds of a scene look like; made once, for any number of pictures.
+
+    scene    a Scene
+    size     of frames in pixels, (width, height)
+    view     ((left, right), (bottom, top)) in m, of the picture's plane; None: what the scene's bodies
+             take up in the beginning, moved along when the first of them leaves
+    camera   of spatial scenes; planar ones show x and y
+
+    Bodies that no force moves are grey, in spatial scenes see-through, and walls without end are left
+    out; other bodies have colours by their index.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        size: tuple[int, int] = (600, 400),
+        view: Optional[View] = None,
+        camera: Camera = Camera(),
+    ) -> None:
+        self.scene = scene
+        self.size = tuple(arrays.integer(n, "size", 1, 10_000) for n in size)
+        planar = scene.space == "planar"
+        self._eye = Eye(*np.eye(3), True) if planar else camera.eye()
+        self._solids: list[Solid] = []
+        for b, body in enumerate(scene.bodies):
+            for shape in body.shapes:
+                at, dynamic = len(self._solids), body.motion == "dynamic"
+                self._solids.append(solids.solid_of(b, at, shape, not dynamic, planar))
+        self._first = [
+            (solids.rotation_of(body.rotation), np.asarray(body.position, float))
+            for body in scene.bodies
+        ]
+        self._scrolls = view is None
+        self.view: View = self._whole() if view is None else view
+
+    # -- pictures
+
+    def draw(self, batch: Batch, world: int = 0, ax: Optional[Axes] = None) -> Axes:
+        """Draws a world as it is now into axes; None: those of a new figure (``.figure``)."""
+        poses = self._poses(batch, world)
+        if ax is None:
+            ax = self._figure().axes[0]
+        view = self._scrolled(poses)
+        ax.set(xlim=view[0], ylim=view[1], aspect="equal")
+        drawn = self._pieces(poses, self._sizes(batch, world), view)
+        drawn.sort(key=lambda piece: piece.depth)  # the farthest first
+        paths = PathCollection(
+            [Path(p.points) for p in drawn],
+            facecolors=["none" if p.fill is None else (*p.fill, p.alpha) for p in drawn],
+            edgecolors=[(*p.edge, max(p.alpha, 0.4)) for p in drawn],
+            linewidths=0.8,
+        )
+        ax.add_collection(paths)
+        return ax
+
+    def frame(self, batch: Batch, world: int = 0) -> NDArray[np.uint8]:
+        """A world as it is now, (height, width, 3) uint8: red, green, blue."""
+        figure = self._figure()
+        self.draw(batch, world, figure.axes[0])
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+    def _figure(self) -> Figure:
+        width, height = self.size
+        figure = Figure(figsize=(width / 100, height / 100), dpi=100, facecolor="white")
+        figure.add_axes((0, 0, 1, 1)).set_axis_off()
+        return figure
+
+    # -- where things are
+
+    def _poses(self, batch: Batch, world: int) -> Poses:
+        """None: a body that is not there."""
+        world = arrays.index(world, batch.worlds, "world")
+        if len(batch.plan.scene.bodies) != len(self.scene.bodies):
+            raise ValueError("the batch is of another scene")
+        poses: Poses = [*self._first]
+        positions = batch.get("position")[world].astype(float)
+        orientations = batch.get("orientation")[world].astype(float)
+        there = batch.get_enabled()[world]
+        for i in range(batch.bodies):
+            turn, place = orientations[i], positions[i]
+            if self._eye.planar:
+                cos, sin = turn
+                rotation = np.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]])
+                place = np.append(place, 0.0)
+            else:
+                rotation = solids.rotation_of(turn)
+            finite = np.isfinite(rotation).all() and np.isfinite(place).all()
+            poses[batch.plan.scene_body(i)] = (rotation, place) if there[i] and finite else None
+        return poses
+
+    def _sizes(self, batch: Batch, world: int) -> Optional[Floats]:
+        """Of all shapes of the scene, (shapes, 3); None: they are as the scene says."""
+        varied = any(variation.parameter == "size" for variation in self.scene.variations)
+        return batch.get("size")[world] if varied else None
+
+    def _pieces(self, poses: Poses, sizes: Optional[Floats], view: View) -> list[Piece]:
+        out: list[Piece] = []
+        for solid in self._solids:
+            pose = poses[solid.body]
+            if pose is None:
+                continue
+            if isinstance(solid.geometry, (Plane, HalfPlane)):
+                draw = pieces.half_plane if self._eye.planar else pieces.floor
+                out += draw(*_surface(solid, *pose), view, self._eye)
+                continue
+            corners, radius = solid.corners, solid.radius
+            if sizes is not None and sizes[solid.index, 0] > 0:
+                own = solids.resized(solid.geometry, sizes[solid.index])
+                corners, radius = solids.corners_of(own, self._eye.planar) or (corners, radius)
+            placed = _placed(solid, corners, *pose)
+            out += pieces.pieces_of(solid, placed, radius, pose[0] @ solid.rotation, self._eye)
+        return out
+
+    # -- what is seen of it
+
+    def _whole(self) -> View:
+        """Around the bodies that move, with their jitter and what is below them on planes, and around
+        the others as far as that leaves these large enough to be seen."""
+        moving, others = [np.zeros((0, 3))], [np.zeros((0, 3))]
+        for solid in self._solids:
+            body = self.scene.bodies[solid.body]
+            spread = solid.radius + np.abs(np.asarray(body.jitter.position, float))
+            placed = _placed(solid, solid.corners, *self._first[solid.body])
+            (moving if body.motion == "dynamic" else others).extend(
+                [placed - spread, placed + spread]
+            )
+        feet = [np.concatenate(moving)]
+        for solid in self._solids:
+            if isinstance(solid.geometry, (Plane, HalfPlane)):
+                normal, offset = _surface(solid, *self._first[solid.body])
+                feet.append(feet[0] + (offset - feet[0] @ normal)[:, None] * normal)
+        points, rest = (self._eye.flat(np.concatenate(p)) for p in (feet, others))
+        if len(points) == 0:
+            points = rest if len(rest) else np.array([[-1.0, -1.0], [1.0, 1.0]])
+        low, high = points.min(axis=0), points.max(axis=0)
+        room = _MOST_AROUND * max(*(high - low), 1e-3)
+        points = np.concatenate([points, np.clip(rest, low - room, high + room)])
+        low, high = points.min(axis=0), points.max(axis=0)
+        # As wide or high as the picture, so that nothing is cut.
+        middle, half = (low + high) / 2, 0.55 * np.maximum(high - low, 1e-3)
+        width, height = self.size
+        half = np.maximum(half, half[::-1] * np.array([width / height, height / width]))
+        (left, bottom), (right, top) = (middle - half).tolist(), (middle + half).tolist()
+        return (left, right), (bottom, top)
+
+    def _scrolled(self, poses: Poses) -> View:
+        """The view, moved as far as the first body that moves has come near its border."""
+        motions = [body.motion for body in self.scene.bodies]
+        leader = poses[motions.index("dynamic")] if "dynamic" in motions else None
+        if leader is None or not self._scrolls:
+            return self.view
+        (left, right), (bottom, top) = self.view
+        low, high = np.array([left, bottom]), np.array([right, top])
+        inset = _INSET * (high - low)
+        at = self._eye.flat(leader[1])
+        dx, dy = (at - np.clip(at, low + inset, high - inset)).tolist()
+        return (left + dx, right + dx), (bottom + dy, top + dy)
+
+
+def _placed(solid: Solid, corners: Floats, rotation: Floats, position: Floats) -> Floats:
+    """Corners of a shape in the world, whose body has this pose."""
+    placed: Floats = (corners @ solid.rotation.T + solid.position) @ rotation.T + position
+    return placed
+
+
+def _surface(solid: Solid, rotation: Floats, position: Floats) -> tuple[Floats, float]:
+    """Normal and offset in the world of a plane or a half-plane."""
+    assert isinstance(solid.geometry, (Plane, HalfPlane))
+    given = np.zeros(3)
+    given[: len(solid.geometry.normal)] = solid.geometry.normal
+    normal = rotation @ solid.rotation @ given
+    shift = float(normal @ (rotation @ solid.position + position))
+    return normal, solid.geometry.offset + shift

@@ -1,0 +1,144 @@
+"""What is drawn of shapes that are where they are: lines and patches, each with its depth."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..shapes import Circle, HeightField, Sphere
+from . import solids
+from .solids import Floats, Solid
+
+View = tuple[tuple[float, float], tuple[float, float]]  # (left, right), (bottom, top), m
+
+_GROUND = "#cfd4dd"
+_LIGHT = np.array([0.3, -0.5, 0.8]) / np.linalg.norm([0.3, -0.5, 0.8])
+_BEHIND = -np.inf
+_LINES = 40  # of a floor's grid, on either side
+
+
+class Piece(NamedTuple):
+    """A patch, or a line."""
+
+    depth: float  # towards the viewer
+    points: Floats  # (n, 2)
+    fill: Any  # (red, green, blue) of 0 to 1; None: a line
+    edge: Any
+    alpha: float
+
+
+class Eye(NamedTuple):
+    """From where one looks: unit vectors to the right and up in the picture and towards the viewer."""
+
+    right: Floats
+    up: Floats
+    towards: Floats
+    planar: bool
+
+    def flat(self, points: Floats) -> Floats:
+        """Where points (..., 3) are in the picture, (..., 2)."""
+        return np.stack([points @ self.right, points @ self.up], axis=-1)
+
+
+def pieces_of(
+    solid: Solid, corners: Floats, radius: float, rotation: Floats, eye: Eye
+) -> list[Piece]:
+    """Of a solid that has an end; its corners are those in the world."""
+    if solid.is_line:
+        return [Piece(0.0, eye.flat(corners), None, rgb("#555b66"), 1.0)]
+    if solid.faces:
+        return _shaded(solid, corners, eye)
+    return _round(solid, corners, radius, rotation, eye)
+
+
+def _alpha(solid: Solid, eye: Eye) -> float:
+    see_through = solid.color == solids.FIXED and not eye.planar
+    return 0.25 if see_through and not isinstance(solid.geometry, HeightField) else 1.0
+
+
+def _shaded(solid: Solid, corners: Floats, eye: Eye) -> list[Piece]:
+    """The faces that are seen, darker where they turn from the light."""
+    pieces = []
+    color = np.array(rgb(solid.color))
+    for face in solid.faces:
+        ring = corners[face]
+        normal = np.cross(ring[1] - ring[0], ring[2] - ring[0])
+        if normal @ eye.towards <= 0:
+            continue
+        lit = 0.65 + 0.35 * max(0.0, float(normal @ _LIGHT / np.linalg.norm(normal)))
+        edge = (lit if isinstance(solid.geometry, HeightField) else 0.5) * color
+        depth = float(ring.mean(axis=0) @ eye.towards)
+        outline = eye.flat(np.concatenate([ring, ring[:1]]))
+        pieces.append(Piece(depth, outline, lit * color, edge, _alpha(solid, eye)))
+    return pieces
+
+
+def _round(solid: Solid, corners: Floats, radius: float, rotation: Floats, eye: Eye) -> list[Piece]:
+    """The outline of a shape that is round or flat, and a mark that shows how a ball turns."""
+    color = np.array(rgb(solid.color))
+    outline = solids.outline_of(eye.flat(corners), radius)
+    depth = float(corners.mean(axis=0) @ eye.towards)
+    closed = np.concatenate([outline, outline[:1]])
+    pieces = [Piece(depth, closed, color, 0.5 * color, _alpha(solid, eye))]
+    if isinstance(solid.geometry, Circle):
+        mark = np.stack([corners[0], corners[0] + radius * rotation[:, 0]])
+    elif isinstance(solid.geometry, Sphere):
+        ring = radius * solids.EQUATOR @ rotation.T
+        mark = corners[0] + _seen_part(ring, ring @ eye.towards >= 0)
+    else:
+        return pieces
+    return [*pieces, Piece(depth, eye.flat(mark), None, 0.5 * color, 1.0)]
+
+
+def half_plane(normal: Floats, offset: float, view: View, eye: Eye) -> list[Piece]:
+    """What the view shows of one."""
+    (left, right), (bottom, top) = view
+    reach = 2 * max(right - left, top - bottom)
+    middle = _middle(view, eye)
+    foot = middle + (offset - middle @ normal) * normal
+    along, deep = reach * np.cross(normal, eye.towards), -reach * normal
+    corners = np.stack([foot - along, foot + along, foot + along + deep, foot - along + deep])
+    ground = rgb(_GROUND)
+    return [Piece(_BEHIND, eye.flat(corners), ground, ground, 1.0)]
+
+
+def floor(normal: Floats, offset: float, view: View, eye: Eye) -> list[Piece]:
+    """A grid on a plane, if that is a floor seen from above: walls would hide what they hold."""
+    if normal[2] < 0.5 or normal @ eye.towards < 0.01:
+        return []
+    (left, right), _ = view
+    middle, (x, y, z) = _middle(view, eye), np.eye(3)
+    # Where the line of sight through the middle of the picture meets the plane.
+    foot = middle + (offset - middle @ normal) / (normal @ eye.towards) * eye.towards
+    cell = 10 ** np.floor(np.log10(right - left))
+    pieces = []
+    for one, other in ((x, y), (y, x)):
+        along, across = (d - (d @ normal) / normal[2] * z for d in (one, other))
+        first = np.round(foot @ one / cell) * cell - foot @ one
+        for shift in first + cell * np.arange(-_LINES, _LINES + 1):
+            line = foot + shift * along + np.array([[-1.0], [1.0]]) * _LINES * cell * across
+            pieces.append(Piece(_BEHIND, eye.flat(line), None, rgb(_GROUND), 1.0))
+    return pieces
+
+
+def _middle(view: View, eye: Eye) -> Floats:
+    """A point in the world that is seen in the middle of the picture."""
+    (left, right), (bottom, top) = view
+    middle: Floats = (left + right) / 2 * eye.right + (bottom + top) / 2 * eye.up
+    return middle
+
+
+def _seen_part(line: Floats, seen: NDArray[np.bool_]) -> Floats:
+    """Of a closed line, (n + 1, 3), whose seen points are neighbours, those."""
+    ring, inside = line[:-1], seen[:-1]
+    if inside.all():
+        return line
+    start = -int(np.flatnonzero(~inside)[0])
+    return np.roll(ring, start, axis=0)[np.roll(inside, start)]
+
+
+def rgb(color: str) -> tuple[float, ...]:
+    """(red, green, blue) of 0 to 1 of "#rrggbb"."""
+    return tuple(int(color[i : i + 2], 16) / 255 for i in (1, 3, 5))
