@@ -3,7 +3,7 @@
 
 include(cmake/PythonModule.cmake)
 set(mw_python_build "${PROJECT_BINARY_DIR}/python")
-set_target_properties(manyworlds_python PROPERTIES
+set_target_properties(${mw_python_targets} PROPERTIES
   LIBRARY_OUTPUT_DIRECTORY "${mw_python_build}/manyworlds")
 
 # The Python files stand beside the extension as links, so that editing them needs no build.

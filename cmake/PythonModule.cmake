@@ -1,5 +1,6 @@
-# The extension module manyworlds._core, for the ordinary build tree (Python.cmake) and for wheels
-# (python/CMakeLists.txt). Wants the target manyworlds::manyworlds.
+# The extension modules of the package manyworlds, for the ordinary build tree (Python.cmake) and for
+# wheels (python/CMakeLists.txt): _core, and where their libraries are built, _record and _mjcf, which
+# alone need HDF5 and MuJoCo. Wants the target manyworlds::manyworlds.
 
 find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
 if(NOT nanobind_DIR)
@@ -15,12 +16,54 @@ endif()
 
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH mw_root)
 set(mw_python_dir "${mw_root}/python")
+
+# The modules share one library, so that what one makes another can use: all of manyworlds, as a
+# shared library beside them.
+get_target_property(mw_library manyworlds::manyworlds ALIASED_TARGET)
+if(NOT mw_library)
+  set(mw_library manyworlds::manyworlds)
+endif()
+file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/manyworlds_shared.cpp" CONTENT "")
+add_library(manyworlds_shared SHARED "${CMAKE_CURRENT_BINARY_DIR}/manyworlds_shared.cpp")
+set_target_properties(manyworlds_shared PROPERTIES OUTPUT_NAME manyworlds)
+target_link_libraries(manyworlds_shared PRIVATE "$<LINK_LIBRARY:WHOLE_ARCHIVE,${mw_library}>")
+target_link_options(manyworlds_shared PRIVATE -Wl,-Bsymbolic-functions)
+target_compile_features(manyworlds_shared INTERFACE cxx_std_20)
+target_include_directories(manyworlds_shared INTERFACE
+  "$<TARGET_PROPERTY:${mw_library},INTERFACE_INCLUDE_DIRECTORIES>")
+target_link_libraries(manyworlds_shared INTERFACE Eigen3::Eigen)
+set(mw_python_targets manyworlds_shared)
+
+# mw_python_module(NAME SOURCE...): the module manyworlds.NAME.
+function(mw_python_module name)
+  set(target manyworlds_python${name})
+  nanobind_add_module(${target} NB_STATIC NB_SUPPRESS_WARNINGS ${ARGN})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} INSTALL_RPATH "$ORIGIN")
+  target_include_directories(${target} PRIVATE "${mw_root}")
+  target_compile_definitions(${target} PRIVATE MW_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(${target} PRIVATE manyworlds_shared)
+  set(mw_python_targets ${mw_python_targets} ${target} PARENT_SCOPE)
+endfunction()
+
+# mw_python_links(TARGET LIBRARY): an archive alone, without the manyworlds that it is linked with.
+function(mw_python_links target library)
+  target_link_libraries(${target} PRIVATE "$<TARGET_FILE:${library}>" manyworlds_shared)
+  add_dependencies(${target} ${library})
+endfunction()
+
 file(GLOB mw_python_sources CONFIGURE_DEPENDS "${mw_python_dir}/src/*.cpp")
-nanobind_add_module(manyworlds_python NB_STATIC NB_SUPPRESS_WARNINGS ${mw_python_sources})
-set_target_properties(manyworlds_python PROPERTIES OUTPUT_NAME _core)
-target_compile_features(manyworlds_python PRIVATE cxx_std_20)
-target_compile_definitions(manyworlds_python PRIVATE MW_VERSION="${PROJECT_VERSION}")
-target_link_libraries(manyworlds_python PRIVATE manyworlds::manyworlds)
+mw_python_module(_core ${mw_python_sources})
+set(mw_python_converters "${mw_python_dir}/src/convert.cpp" "${mw_python_dir}/src/names.cpp")
+if(TARGET manyworlds::record)
+  mw_python_module(_record "${mw_python_dir}/src/record/module.cpp" ${mw_python_converters})
+  mw_python_links(manyworlds_python_record manyworlds::record)
+  target_link_libraries(manyworlds_python_record PRIVATE HDF5::HDF5)
+endif()
+if(TARGET manyworlds::mjcf)
+  mw_python_module(_mjcf "${mw_python_dir}/src/mjcf/module.cpp" ${mw_python_converters})
+  mw_python_links(manyworlds_python_mjcf manyworlds::mjcf)
+  target_link_libraries(manyworlds_python_mjcf PRIVATE MuJoCo::MuJoCo)
+endif()
 # Our warnings are for our files.
 set_target_properties(nanobind-static PROPERTIES COMPILE_WARNING_AS_ERROR OFF)
 target_compile_options(nanobind-static PRIVATE -w)

@@ -9,12 +9,15 @@ Units are SI; quaternions are (w, x, y, z), planar orientations (cos, sin). docs
 the rest by example.
 """
 
-from . import scenes, tasks
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from . import mjcf, scenes, tasks
 from ._core import Expression, Snapshot, SnapshotError, __version__, available_isas
 from ._core import names as enumerations
 from .batch import Batch
 from .bodies import Body, Jitter, MassProperties
-from .environment import Environment
+from .environment import Environment, EnvironmentSnapshot
 from .fields import Field
 from .joints import (
     BallJoint,
@@ -68,6 +71,9 @@ from .shapes import (
 from .tasks import Action, Observation, Reward, Task, TaskError
 from .view import View
 
+if TYPE_CHECKING:
+    from . import record
+
 __all__ = [
     "Action",
     "Attractor",
@@ -83,6 +89,7 @@ __all__ = [
     "DistanceJoint",
     "Drive",
     "Environment",
+    "EnvironmentSnapshot",
     "Expression",
     "Field",
     "Filter",
@@ -131,7 +138,15 @@ __all__ = [
     "enumerations",
     "make_hull",
     "mesh_mass_properties",
+    "mjcf",
+    "record",
     "scenes",
     "tasks",
     "vary",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "record":  # which loads HDF5
+        return import_module(".record", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

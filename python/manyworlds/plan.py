@@ -29,6 +29,12 @@ class Plan(_core.Plan):
             raise SceneError([Issue(*issue) for issue in issues])
         super().__init__(scene, broad_phase, keep)
 
+    @property
+    def scene(self) -> Scene:
+        """A copy of the scene."""
+        scene: Scene = super().scene  # type: ignore[assignment]
+        return scene
+
     def state_body_named(self, name: str) -> int:
         """Index of the state body of that name: where its row in arrays is. Raises ValueError."""
         names = [body.name for body in self.scene.bodies]

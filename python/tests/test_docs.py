@@ -1,5 +1,6 @@
 """The examples of README.md and docs/python.md run."""
 
+import importlib.util
 import re
 from pathlib import Path
 
@@ -21,7 +22,11 @@ def test_the_readme(capsys):
     assert "of 64 towers stand" in capsys.readouterr().out
 
 
-def test_the_manual(capsys):
+def test_the_manual(tmp_path, monkeypatch):
+    pytest.importorskip("matplotlib")
+    if importlib.util.find_spec("manyworlds._record") is None:
+        pytest.skip("built without HDF5")
+    monkeypatch.chdir(tmp_path)
     places = {"mw": mw, "np": np}
     for code in examples("docs/python.md"):
         if "set_controls" in code or "rollout" in code:
@@ -40,3 +45,5 @@ def test_the_manual(capsys):
             code = code.replace("spawn(3, position=(0, 0, 5)", "spawn(0, (0, 5)")
         exec(code.replace("worlds=4096", "worlds=64"), places)
     assert places["path"].shape == (2, 64, 1, 2)
+    assert places["result"].same and places["frame"].shape == (400, 600, 3)
+    assert sorted(f.name for f in tmp_path.iterdir()) == ["run.h5", "world.png"]

@@ -1,0 +1,87 @@
+"""Recordings. Private: use manyworlds.record."""
+
+import os
+import pathlib
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+import manyworlds._core
+
+
+class RecordError(ValueError):
+    pass
+
+class Recorder:
+    """Private: use manyworlds.record.Recorder."""
+
+    def __init__(self, batch: manyworlds._core.Batch, file: str | os.PathLike, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], every: int, first_world: int) -> None: ...
+
+    def sample(self) -> None: ...
+
+    def close(self) -> None: ...
+
+    @property
+    def samples(self) -> int: ...
+
+class LostWorldDumps:
+    """Private: use manyworlds.record.LostWorldDumps."""
+
+    def __init__(self, batch: manyworlds._core.Batch, folder: str | os.PathLike, checkpoint_steps: int, most: int, first_world: int) -> None: ...
+
+    def close(self) -> list[pathlib.Path]: ...
+
+class Recording:
+    """Private: use manyworlds.record.Recording."""
+
+    def __init__(self, file: str | os.PathLike) -> None: ...
+
+    @property
+    def kinds(self) -> int: ...
+
+    @property
+    def samples(self) -> int: ...
+
+    @property
+    def inputs(self) -> int: ...
+
+    @property
+    def precision(self) -> str: ...
+
+    @property
+    def sleep(self) -> bool: ...
+
+    @property
+    def origin(self) -> str: ...
+
+    @property
+    def steps(self) -> NDArray[numpy.int64]: ...
+
+    @property
+    def worlds(self) -> NDArray[numpy.int64]: ...
+
+    @property
+    def hashes(self) -> NDArray[numpy.uint64]: ...
+
+    @property
+    def status(self) -> NDArray[numpy.uint32]: ...
+
+    def close(self) -> None: ...
+
+    @property
+    def closed(self) -> bool: ...
+
+    def scene(self, kind: int) -> object: ...
+
+    def shape(self, field: object, kind: int) -> tuple: ...
+
+    def read(self, field: object, kind: int, begin: int, out: Annotated[NDArray, dict(order='C', device='cpu')]) -> None: ...
+
+    def replay(self, isa: object | None, threads: object, layout: object) -> dict: ...
+
+def scene_to_json(scene: object) -> str:
+    """A scene as JSON, every number exactly."""
+
+def scene_from_json(json: str) -> object:
+    """The scene of a JSON text."""

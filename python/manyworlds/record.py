@@ -1,0 +1,302 @@
+"""Recordings: what worlds did, in an HDF5 file from which it can be done again bit by bit.
+
+    with mw.record.Recorder(batch, "run.h5", worlds=[0, 5], every=4):
+        batch.step(100)
+    recording = mw.record.Recording("run.h5")
+    x = recording.get("position")                  # (samples, worlds, bodies, components)
+    assert recording.replay(isa="scalar").same
+
+The file's layout is in docs/batch.md; the program's ``replay`` reads it, too, and so does h5py.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import arrays
+from .batch import MOST_THREADS, Batch
+from .names import ContactLayout, Ids, Isa
+from .scene import Scene
+
+try:
+    from . import _record
+    from ._record import RecordError
+except ImportError as error:
+    raise ImportError(
+        "manyworlds.record needs a build with HDF5 and nlohmann_json "
+        f"(apt-get install libhdf5-dev nlohmann-json3-dev, then pip install .): {error}"
+    ) from error
+
+__all__ = [
+    "Difference",
+    "LostWorldDumps",
+    "RecordError",
+    "Recorder",
+    "Recording",
+    "ReplayResult",
+    "scene_from_json",
+    "scene_to_json",
+]
+
+MOST_WORLDS_BY_DEFAULT = 64
+_MOST_STEPS = 2**31 - 1
+_File = Union[str, os.PathLike[str]]
+
+
+class Recorder:
+    """Writes what some worlds of a batch do, from now until ``close``.
+
+    batch        a Batch; an environment's, too
+    file         to be written; it is there only once it is complete
+    worlds       indices, ascending, or a mask; None: the first 64
+    every        a sample is taken at once and after the first step call that ends on or beyond each
+                 multiple of so many steps; 0: only by ``sample``
+    first_world  what the batch's world 0 is called in the file
+
+    The batch tells it of every input, so nothing needs to go through the Recorder. Steps of some worlds
+    alone (``ids``) are recorded as the states that they came to. As a context manager it is closed at the
+    end, also after an exception. Without ``close`` no file is left. Raises RecordError, a ValueError,
+    when the file cannot be written (from ``close`` for what failed while stepping), ValueError when
+    forces were added for the next step already.
+    """
+
+    def __init__(
+        self,
+        batch: Batch,
+        file: _File,
+        worlds: Optional[Ids] = None,
+        every: int = 1,
+        first_world: int = 0,
+    ) -> None:
+        first_world = arrays.integer(first_world, "first_world", 0, 2**62)
+        every = arrays.integer(every, "every", 0, _MOST_STEPS)
+        count = _batch(batch).worlds
+        if worlds is None:
+            chosen = np.arange(min(count, MOST_WORLDS_BY_DEFAULT), dtype=np.int32)
+        else:
+            chosen = arrays.indices(worlds, count, "worlds")
+            if len(chosen) == 0:
+                raise ValueError("worlds are none; at least one must be recorded")
+        self.file = Path(file)
+        self._held = _record.Recorder(batch._held, self.file, chosen, every, first_world)
+        self._closed = False
+
+    @property
+    def samples(self) -> int:
+        """Taken so far."""
+        return self._held.samples
+
+    def sample(self) -> None:
+        """Takes a sample now; nothing when there is one of this state already."""
+        self._held.sample()
+
+    def close(self) -> None:
+        """Finishes the file and gives it its name. Twice is once."""
+        if not self._closed:
+            self._closed = True
+            self._held.close()
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+class LostWorldDumps:
+    """Writes a small recording, "world_17.h5", of every world that gets lost from now until ``close``.
+
+    batch             whose worlds are watched
+    folder            is made; the files go there
+    checkpoint_steps  all worlds are saved in memory every so many steps; a dump begins at the last
+                      one before the world was lost, and ends there
+    most              files; worlds lost after that are left out
+    first_world       what the batch's world 0 is called in the files
+    """
+
+    def __init__(
+        self,
+        batch: Batch,
+        folder: _File,
+        checkpoint_steps: int = 600,
+        most: int = 16,
+        first_world: int = 0,
+    ) -> None:
+        self._held = _record.LostWorldDumps(
+            _batch(batch)._held,
+            Path(folder),
+            arrays.integer(checkpoint_steps, "checkpoint_steps", 1, _MOST_STEPS),
+            arrays.integer(most, "most", 0, _MOST_STEPS),
+            arrays.integer(first_world, "first_world", 0, 2**62),
+        )
+        self.files: list[Path] = []
+        self._closed = False
+
+    def close(self) -> list[Path]:
+        """Stops watching and returns the files. Raises RecordError for what could not be written."""
+        if not self._closed:
+            self._closed = True
+            self.files = self._held.close()
+        return self.files
+
+    def __enter__(self) -> LostWorldDumps:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+class Difference(NamedTuple):
+    """Where a replay first did something else."""
+
+    world: int  # as the recording calls it
+    step: int  # since the recording began
+    body: int  # state body; -1: no field differs, but hash or status does
+    what: str  # "position.x is 1.5, recorded 1.25"
+
+
+@dataclass(frozen=True)
+class ReplayResult:
+    """What came of simulating a recording again."""
+
+    worlds: int
+    samples: int
+    steps: int
+    compared: int  # hashes, each with its status and fields
+    different: int  # of them
+    difference: Optional[Difference]  # the first
+    lost_worlds: int  # at the end
+    kernel_table: str
+
+    @property
+    def same(self) -> bool:
+        """Whether every bit was as recorded."""
+        return self.different == 0
+
+
+class Recording:
+    """A recording that was opened and checked: every size, index, type and text in it.
+
+    Raises RecordError, a ValueError, for what is no recording, cut, corrupted or inconsistent. It can
+    be closed, also by ``with``.
+    """
+
+    def __init__(self, file: _File) -> None:
+        self.file = Path(file)
+        self._held = _record.Recording(self.file)
+
+    @property
+    def kinds(self) -> int:
+        """Of worlds; those of a kind have one scene. Batches made in Python have one kind."""
+        return self._held.kinds
+
+    @property
+    def worlds(self) -> NDArray[np.int64]:
+        """What the recorded worlds were called in their batch, (worlds,), one kind after the other."""
+        return self._held.worlds
+
+    @property
+    def steps(self) -> NDArray[np.int64]:
+        """Since the recording began, at each sample, (samples,)."""
+        return self._held.steps
+
+    @property
+    def hashes(self) -> NDArray[np.uint64]:
+        """(samples, worlds); see Batch.hash."""
+        return self._held.hashes
+
+    @property
+    def status(self) -> NDArray[np.uint32]:
+        """(samples, worlds): bits of Status."""
+        return self._held.status
+
+    @property
+    def inputs(self) -> int:
+        """How many there were."""
+        return self._held.inputs
+
+    @property
+    def precision(self) -> str:
+        return self._held.precision
+
+    @property
+    def sleep(self) -> bool:
+        return self._held.sleep
+
+    @property
+    def origin(self) -> str:
+        """By which program, instruction set, threads and seed it was made; for people."""
+        return self._held.origin
+
+    def scene(self, kind: int = 0) -> Scene:
+        """A copy of the scene of a kind, with all its options."""
+        scene: Scene = self._held.scene(arrays.index(kind, self.kinds, "kind"))  # type: ignore[assignment]
+        return scene
+
+    def get(self, field: str, sample: Optional[int] = None, kind: int = 0) -> NDArray[Any]:
+        """A state field of a kind's worlds at every sample, (samples, worlds, bodies, components), or
+        at one, (worlds, bodies, components); float32 or float64, as the batch had it."""
+        kind = arrays.index(kind, self.kinds, "kind")
+        count = self._held.samples
+        first = 0 if sample is None else arrays.index(sample, count, "sample")
+        shape = (count if sample is None else 1, *self._held.shape(field, kind))
+        out = np.empty(shape, np.float32 if self.precision == "f32" else np.float64)
+        self._held.read(field, kind, first, out)
+        return out if sample is None else out[0]
+
+    def replay(
+        self,
+        isa: Optional[Isa] = None,
+        threads: Optional[int] = None,
+        layout: ContactLayout = "automatic",
+    ) -> ReplayResult:
+        """Simulates it again from its first state and its inputs, without the GIL, and compares hash,
+        status and fields at every sample, bit by bit."""
+        crew = 0 if threads is None else arrays.integer(threads, "threads", 1, MOST_THREADS)
+        found = self._held.replay(isa, crew, layout)
+        if found["difference"] is not None:
+            found["difference"] = Difference(*found["difference"])
+        return ReplayResult(**found)
+
+    def close(self) -> None:
+        """Lets go of the file; every later use raises ValueError. Twice is once."""
+        self._held.close()
+
+    def __enter__(self) -> Recording:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def closed(self) -> bool:
+        return self._held.closed
+
+    def __repr__(self) -> str:
+        if self.closed:
+            return "<manyworlds.record.Recording: closed>"
+        counts = f"{len(self.worlds)} worlds, {self._held.samples} samples, {self.inputs} inputs"
+        return f"<manyworlds.record.Recording: {counts}>"
+
+
+def scene_to_json(scene: Scene) -> str:
+    """Everything of a scene as JSON, every number exactly."""
+    return _record.scene_to_json(scene)
+
+
+def scene_from_json(text: str) -> Scene:
+    """The scene of such a text. Raises RecordError with everything that is missing, unknown or wrong."""
+    scene: Scene = _record.scene_from_json(text)  # type: ignore[assignment]
+    return scene
+
+
+def _batch(batch: Any) -> Batch:
+    if not isinstance(batch, Batch):
+        raise TypeError(f"batch is of type {type(batch).__name__}; expected a Batch")
+    return batch

@@ -1,0 +1,228 @@
+// The extension module manyworlds._record: recordings, and scenes as JSON. A module of its own
+// because it needs HDF5.
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+
+#include "manyworlds/record.hpp"
+#include "python/src/arrays.hpp"
+#include "python/src/held_batch.hpp"
+#include "python/src/scene_fields.hpp"
+
+namespace manyworlds::python {
+
+namespace {
+
+// What listens to a batch: it keeps the batch alive, also after its close(), and takes turns with
+// it.
+template <class Listener>
+class Listening {
+ public:
+  template <class... Arguments>
+  explicit Listening(const HeldBatch& batch, const Arguments&... arguments)
+      : batch_(batch), listener_(batch_.run([&](Batch& b) { return Listener(b, arguments...); })) {}
+  template <class F>
+  decltype(auto) run(F f) {
+    return batch_.run([&](Batch& b) -> decltype(auto) { return f(listener_, b); });
+  }
+
+ private:
+  HeldBatch batch_;
+  Listener listener_;
+};
+
+using HeldRecorder = Listening<Recorder>;
+using HeldDumps = Listening<LostWorldDumps>;
+
+void make_recorder(HeldRecorder* self, const HeldBatch& batch, const std::filesystem::path& file,
+                   const Ids& worlds, int every, std::int64_t first_world) {
+  const auto chosen = span_of(worlds);
+  new (self)
+      HeldRecorder(batch, file, RecordOptions{{chosen.begin(), chosen.end()}, every, first_world});
+}
+
+void make_dumps(HeldDumps* self, const HeldBatch& batch, const std::filesystem::path& folder,
+                int checkpoint_steps, int most, std::int64_t first_world) {
+  new (self) HeldDumps(batch, folder, LostWorldDumps::Options{checkpoint_steps, most, first_world});
+}
+
+class HeldRecording : public Held<Recording> {
+ public:
+  explicit HeldRecording(Recording recording)
+      : Held(std::make_shared<Recording>(std::move(recording)), "Recording") {}
+};
+
+void open(HeldRecording* self, const std::filesystem::path& file) {
+  const nb::gil_scoped_release release;
+  new (self) HeldRecording(Recording::open(file));
+}
+
+// The property `name`: f(recording).
+template <class F>
+void def(nb::class_<HeldRecording>& c, const char* name, F f) {
+  c.def_prop_ro(
+      name, [f](HeldRecording& self) { return self.with([&](Recording& r) { return f(r); }); },
+      nb::rv_policy::move);
+}
+
+const Plan& plan_of(const Recording& recording, int kind) {
+  if (kind < 0 || kind >= recording.kinds()) {
+    throw nb::index_error(("kind is " + std::to_string(kind) + ", must be 0 to " +
+                           std::to_string(recording.kinds() - 1))
+                              .c_str());
+  }
+  return recording.plan(kind);
+}
+
+auto steps_of(const Recording& r) {
+  std::vector<std::int64_t> out;
+  for (std::int64_t s = 0; s < r.samples(); ++s) out.push_back(r.step(s));
+  return owned(std::move(out), {static_cast<std::size_t>(r.samples())});
+}
+auto names_of_worlds(const Recording& r) {
+  std::vector<std::int64_t> out;
+  for (int w = 0; w < r.worlds(); ++w) out.push_back(r.name_of(w));
+  return owned(std::move(out), {static_cast<std::size_t>(r.worlds())});
+}
+// A number of every world at every sample, (samples, worlds).
+template <class T, class F>
+auto table(const Recording& r, F f) {
+  std::vector<T> out;
+  for (std::int64_t s = 0; s < r.samples(); ++s) {
+    for (int w = 0; w < r.worlds(); ++w) out.push_back(static_cast<T>(f(s, w)));
+  }
+  return owned(std::move(out),
+               {static_cast<std::size_t>(r.samples()), static_cast<std::size_t>(r.worlds())});
+}
+
+// (worlds, bodies, components) of a field of a kind of world.
+std::array<int, 3> shape_of(const Recording& recording, Field field, int kind) {
+  const Plan& plan = plan_of(recording, kind);
+  return {recording.worlds_of(kind), plan.bodies(), components(field, plan.scene().space)};
+}
+
+// `out`: a field of a kind at the samples from `begin` on, (samples, worlds, bodies, components).
+void read(HeldRecording& self, nb::object field, int kind, std::int64_t begin, const AnyOut& out) {
+  const Field which = from_python<Field>(field, "field");
+  self.with([&](Recording& r) {
+    const auto [worlds, bodies, n] = shape_of(r, which, kind);
+    if (out.ndim() != 4) throw nb::value_error("the array must have four axes");
+    const auto samples = static_cast<std::int64_t>(out.shape(0));
+    check_size("the array", out.size(),
+               out.shape(0) * static_cast<std::size_t>(worlds) * static_cast<std::size_t>(bodies) *
+                   static_cast<std::size_t>(n));
+    if (begin < 0 || samples > r.samples() || begin > r.samples() - samples) {
+      throw nb::index_error("there is no such sample");
+    }
+    if (bodies == 0) return;
+    int first = 0;
+    for (int k = 0; k < kind; ++k) first += r.worlds_of(k);
+    const int last = first + worlds;
+    with_reals(out, [&](auto to) {
+      const nb::gil_scoped_release release;
+      auto at = to.begin();
+      for (std::int64_t s = begin; s < begin + samples; ++s) {
+        for (int w = first; w < last; ++w) {
+          for (const double x : r.read(which, s, w)) {
+            *at++ = static_cast<typename decltype(to)::value_type>(x);
+          }
+        }
+      }
+    });
+  });
+}
+
+nb::dict replay_of(HeldRecording& self, nb::object isa, nb::object threads, nb::object layout) {
+  const ReplayOptions options{from_python<std::optional<Isa>>(isa, "isa"),
+                              from_python<int>(threads, "threads"),
+                              from_python<ContactLayout>(layout, "layout")};
+  const ReplayResult result = self.run([&](Recording& r) { return replay(r, options); });
+  nb::dict out;
+  out["worlds"] = result.worlds, out["samples"] = result.samples, out["steps"] = result.steps;
+  out["compared"] = result.compared, out["different"] = result.different;
+  out["difference"] = nb::none();
+  if (const auto& d = result.difference) {
+    out["difference"] = nb::make_tuple(d->world, d->step, d->body, d->what);
+  }
+  out["lost_worlds"] = result.lost_worlds, out["kernel_table"] = result.kernel_table;
+  return out;
+}
+
+void bind_writing(nb::module_& m) {
+  nb::class_<HeldRecorder>(m, "Recorder", "Private: use manyworlds.record.Recorder.")
+      .def("__init__", &make_recorder, nb::arg("batch"), nb::arg("file"), nb::arg("worlds"),
+           nb::arg("every"), nb::arg("first_world"))
+      .def("sample",
+           [](HeldRecorder& self) { self.run([](Recorder& r, Batch& b) { r.sample(b); }); })
+      .def("close", [](HeldRecorder& self) { self.run([](Recorder& r, Batch&) { r.close(); }); })
+      .def_prop_ro("samples", [](HeldRecorder& self) {
+        return self.run([](Recorder& r, Batch&) { return r.samples(); });
+      });
+  nb::class_<HeldDumps>(m, "LostWorldDumps", "Private: use manyworlds.record.LostWorldDumps.")
+      .def("__init__", &make_dumps, nb::arg("batch"), nb::arg("folder"),
+           nb::arg("checkpoint_steps"), nb::arg("most"), nb::arg("first_world"))
+      .def("close", [](HeldDumps& self) {
+        return self.run([](LostWorldDumps& d, Batch&) { return d.close(); });
+      });
+}
+
+void bind_reading(nb::module_& m) {
+  nb::class_<HeldRecording> c(m, "Recording", "Private: use manyworlds.record.Recording.");
+  def(c, "kinds", [](Recording& r) { return r.kinds(); });
+  def(c, "samples", [](Recording& r) { return r.samples(); });
+  def(c, "inputs", [](Recording& r) { return r.inputs(); });
+  def(c, "precision", [](Recording& r) { return name_of(r.precision()); });
+  def(c, "sleep", [](Recording& r) { return r.sleep(); });
+  def(c, "origin", [](Recording& r) { return r.origin(); });
+  def(c, "steps", &steps_of);
+  def(c, "worlds", &names_of_worlds);
+  def(c, "hashes", [](Recording& r) {
+    return table<std::uint64_t>(r, [&](std::int64_t s, int w) { return r.hash(s, w); });
+  });
+  def(c, "status", [](Recording& r) {
+    return table<std::uint32_t>(r, [&](std::int64_t s, int w) { return r.status(s, w); });
+  });
+  c.def("__init__", &open, nb::arg("file"))
+      .def("close", &HeldRecording::close)
+      .def_prop_ro("closed", &HeldRecording::closed)
+      .def(
+          "scene",
+          [](HeldRecording& self, int kind) {
+            return self.with([&](Recording& r) { return to_python(plan_of(r, kind).scene()); });
+          },
+          nb::arg("kind"))
+      .def(
+          "shape",
+          [](HeldRecording& self, nb::object field, int kind) {
+            const Field which = from_python<Field>(field, "field");
+            return self.with([&](Recording& r) {
+              const auto [worlds, bodies, n] = shape_of(r, which, kind);
+              return nb::make_tuple(worlds, bodies, n);
+            });
+          },
+          nb::arg("field"), nb::arg("kind"))
+      .def("read", &read, nb::arg("field"), nb::arg("kind"), nb::arg("begin"),
+           nb::arg("out").noconvert())
+      .def("replay", &replay_of, nb::arg("isa").none(), nb::arg("threads"), nb::arg("layout"));
+}
+
+}  // namespace
+
+NB_MODULE(_record, m) {
+  m.doc() = "Recordings. Private: use manyworlds.record.";
+  nb::exception<RecordError>(m, "RecordError", PyExc_ValueError);
+  bind_writing(m);
+  bind_reading(m);
+  m.def(
+      "scene_to_json",
+      [](nb::object scene) { return scene_to_json(from_python<Scene>(scene, "scene")); },
+      nb::arg("scene"), "A scene as JSON, every number exactly.");
+  m.def(
+      "scene_from_json", [](const std::string& json) { return to_python(scene_from_json(json)); },
+      nb::arg("json"), "The scene of a JSON text.");
+}
+
+}  // namespace manyworlds::python

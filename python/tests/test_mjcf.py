@@ -1,0 +1,76 @@
+"""MJCF files: scenes with MuJoCo's own numbers, and clear errors."""
+
+import importlib.util
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import manyworlds as mw
+
+ROOT = Path(__file__).parents[2]
+if importlib.util.find_spec("manyworlds._mjcf") is None:
+    pytest.skip("built without MuJoCo", allow_module_level=True)
+
+BALL = """
+<mujoco model="ball">
+  <option timestep="0.004" gravity="0 0 -3.7"/>
+  <worldbody>
+    <geom name="ground" type="plane" size="5 5 0.1"/>
+    <body name="ball" pos="0 0 2">
+      <freejoint/>
+      <geom type="sphere" size="0.1" mass="0.5"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+def test_a_text_becomes_a_scene():
+    scene = mw.mjcf.load_string(BALL)
+    assert [body.name for body in scene.bodies] == ["world", "ball"]
+    assert [body.motion for body in scene.bodies] == ["fixed", "dynamic"]
+    assert scene.options.dt == 0.004
+    assert scene.options.gravity == (0, 0, -3.7)
+    mass = scene.mass_properties(1)
+    assert mass.mass == pytest.approx(0.5)
+    np.testing.assert_allclose(mass.inertia, np.eye(3) * 0.4 * 0.5 * 0.01, atol=1e-12)
+    batch = mw.Batch(scene, worlds=8)
+    batch.step(1000)
+    np.testing.assert_allclose(batch.get("position")[:, 0, 2], 0.1, atol=2e-3)
+
+
+def test_a_file_becomes_a_scene_that_steps():
+    for file in (ROOT / "scenes/mjcf").glob("*.xml"):
+        batch = mw.Batch(mw.mjcf.load(file), worlds=4)
+        batch.step(100)
+        assert batch.bodies > 3 and not batch.lost().any()
+
+
+def test_what_acts_otherwise_is_a_warning():
+    soft = BALL.replace('size="0.1"', 'size="0.1" solref="0.1 1"')
+    with pytest.warns(mw.mjcf.MjcfWarning, match="solref") as warned:
+        mw.mjcf.load_string(soft)
+    assert warned[0].filename == __file__
+
+
+def test_what_is_not_simulated_is_an_error_that_names_it(tmp_path):
+    hinge = BALL.replace("<freejoint/>", '<joint name="hip" type="hinge"/>')
+    (tmp_path / "leg.xml").write_text(hinge)
+    with pytest.raises(mw.mjcf.MjcfError, match="leg.xml.*'hip'.*hinge"):
+        mw.mjcf.load(tmp_path / "leg.xml")
+    assert issubclass(mw.mjcf.MjcfError, ValueError)
+    with pytest.raises(mw.mjcf.MjcfError, match="no such file"):
+        mw.mjcf.load(tmp_path / "none.xml")
+    with pytest.raises(mw.mjcf.MjcfError):
+        mw.mjcf.load_string("<mujoco><worldbody><geom/>")
+    with pytest.raises(TypeError):
+        mw.mjcf.load(7)
+
+
+def test_the_extra_is_the_mujoco_that_the_library_is_built_with():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    (extra,) = project["optional-dependencies"]["mjcf"]
+    fetched = (ROOT / "tools/fetch_mujoco.sh").read_text().split("\nversion=")[1].split()[0]
+    assert extra == f"mujoco=={fetched}"

@@ -1,0 +1,194 @@
+"""Recordings: what was recorded is read back, and done again bit by bit."""
+
+import importlib.util
+import threading
+
+import numpy as np
+import pytest
+
+import manyworlds as mw
+from conftest import crates, lander
+
+if importlib.util.find_spec("manyworlds._record") is None:
+    pytest.skip("built without HDF5", allow_module_level=True)
+import manyworlds.record as record  # noqa: E402
+
+
+def disturbed(file, batch, steps=12, **arguments):
+    """A recording with inputs of many kinds; returns what was there at its samples."""
+    seen = []
+    with record.Recorder(batch, file, **arguments) as recorder:
+        seen.append(batch.get("position"))
+        for i in range(steps):
+            batch.add_force((3.0, 0, 9), bodies=0, ids=[1])
+            if i == 4:
+                batch.reset([2])
+                batch.set_enabled(False, bodies=1, ids=[0])
+            batch.step(2)
+            seen.append(batch.get("position"))
+        assert recorder.samples == steps + 1
+    return np.array(seen)
+
+
+def test_what_is_recorded_is_read_back_and_replayed(batch, tmp_path):
+    file = tmp_path / "run.h5"
+    seen = disturbed(file, batch, worlds=[0, 1, 4])
+    with record.Recording(file) as recording:
+        assert recording.kinds == 1 and recording.precision == "f32" and not recording.sleep
+        np.testing.assert_array_equal(recording.worlds, [0, 1, 4])
+        np.testing.assert_array_equal(recording.steps, 2 * np.arange(13))
+        x = recording.get("position")
+        assert x.dtype == np.float32
+        np.testing.assert_array_equal(x, seen[:, [0, 1, 4]])
+        np.testing.assert_array_equal(recording.get("position", sample=3), seen[3, [0, 1, 4]])
+        assert recording.get("orientation").shape == (13, 3, 3, 4)
+        np.testing.assert_array_equal(recording.hashes[-1], batch.hashes()[[0, 1, 4]])
+        assert recording.status.shape == (13, 3) and not recording.status.any()
+        assert recording.inputs > 12
+        assert recording.scene() == batch.plan.scene
+        for isa in mw.available_isas():
+            result = recording.replay(isa=isa, threads=2)
+            assert result.same and result.difference is None
+            assert (result.worlds, result.samples, result.compared) == (3, 13, 39)
+            assert result.steps == 24 and isa in result.kernel_table
+    assert recording.closed and "closed" in repr(recording)
+    with pytest.raises(ValueError, match="the recording is closed"):
+        recording.get("position")
+
+
+def test_h5py_reads_the_same(batch, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    seen = disturbed(tmp_path / "run.h5", batch)
+    with h5py.File(tmp_path / "run.h5") as file:
+        np.testing.assert_array_equal(file["kinds/0/position"][:], seen)
+        np.testing.assert_array_equal(file["step"][:], 2 * np.arange(13))
+        assert file["kinds/0/position"].attrs["unit"].decode() == "m"
+
+
+def test_a_changed_file_is_refused(batch, tmp_path):
+    file = tmp_path / "run.h5"
+    disturbed(file, batch)
+    data = bytearray(file.read_bytes())
+    data[len(data) // 2] ^= 1
+    file.write_bytes(data)
+    with pytest.raises(record.RecordError, match="run.h5"):
+        record.Recording(file)
+    assert issubclass(record.RecordError, ValueError)
+    with pytest.raises(record.RecordError, match="nothing.h5"):
+        record.Recording(tmp_path / "nothing.h5")
+
+
+def test_environments_are_recorded_over_the_ends_of_episodes(tmp_path):
+    env = mw.Environment("CartPole", worlds=9, seed=3, autoreset="same_step")
+    rng = np.random.default_rng(1)
+    ended = 0
+    with record.Recorder(env.batch, tmp_path / "run.h5", every=0) as recorder:
+        for _ in range(60):
+            _, _, terminated, _ = env.step(rng.integers(0, 2, 9))
+            ended += terminated.sum()
+            recorder.sample()
+    assert ended > 5
+    assert record.Recording(tmp_path / "run.h5").replay().same
+
+
+def test_what_is_not_finished_leaves_no_file(batch, tmp_path):
+    recorder = record.Recorder(batch, tmp_path / "run.h5")
+    batch.step(3)
+    del recorder
+    batch.step()
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(ZeroDivisionError):
+        with record.Recorder(batch, tmp_path / "run.h5"):
+            batch.step(3)
+            1 / 0
+    assert len(record.Recording(tmp_path / "run.h5").steps) == 2
+
+
+def test_a_recording_outlives_its_batch(tmp_path):
+    batch = lander()
+    recorder = record.Recorder(batch, tmp_path / "run.h5")
+    batch.step(2)
+    batch.close()
+    recorder.close()
+    recorder.close()
+    assert record.Recording(tmp_path / "run.h5").replay().same
+
+
+def test_lost_worlds_are_dumped(tmp_path):
+    batch = mw.Batch(crates(), worlds=6, seed=2)
+    with record.LostWorldDumps(batch, tmp_path / "lost") as dumps:
+        batch.step(5)
+        batch.add_force((np.inf, 0, 0), bodies=0, ids=[3])
+        batch.step()
+        batch.step()
+    assert [file.name for file in dumps.files] == ["world_3.h5"]
+    recording = record.Recording(dumps.files[0])
+    assert recording.worlds.tolist() == [3] and recording.status[-1, 0] != 0
+    assert recording.replay().same
+
+
+def test_scenes_become_json_and_come_back():
+    for name in mw.scenes.names():
+        scene = mw.scenes.load(name)
+        assert record.scene_from_json(record.scene_to_json(scene)) == scene
+    with pytest.raises(record.RecordError):
+        record.scene_from_json("{}")
+
+
+def test_many_threads_record_and_read_at_a_time(tmp_path):
+    problems = []
+
+    def work(i):
+        try:
+            batch = mw.Batch(crates(), worlds=4, threads=1, seed=i)
+            for turn in range(5):
+                file = tmp_path / f"{i}_{turn}.h5"
+                with record.Recorder(batch, file):
+                    batch.step(3)
+                assert record.Recording(file).replay(threads=1).same
+        except BaseException as error:  # noqa: BLE001: said by the main thread
+            problems.append(error)
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert problems == []
+
+
+@pytest.mark.parametrize(
+    "arguments, error, words",
+    [
+        ({"worlds": []}, ValueError, "at least one"),
+        ({"worlds": [6]}, IndexError, "worlds hold 6"),
+        ({"worlds": [2, 1]}, ValueError, "must ascend"),
+        ({"every": -1}, ValueError, "every is -1"),
+        ({"every": 1.5}, TypeError, "every is of type float"),
+    ],
+)
+def test_wrong_arguments_are_errors(batch, tmp_path, arguments, error, words):
+    with pytest.raises(error, match=words):
+        record.Recorder(batch, tmp_path / "run.h5", **arguments)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_more_wrong_arguments_are_errors(batch, tmp_path):
+    with pytest.raises(TypeError, match="expected a Batch"):
+        record.Recorder("stack10", tmp_path / "run.h5")
+    with pytest.raises(record.RecordError, match="nowhere"):
+        record.Recorder(batch, tmp_path / "nowhere" / "run.h5")
+    batch.add_force((0, 0, 1), bodies=0)
+    with pytest.raises(ValueError, match="forces were added"):
+        record.Recorder(batch, tmp_path / "run.h5")
+    batch.step()
+    disturbed(tmp_path / "run.h5", batch)
+    recording = record.Recording(tmp_path / "run.h5")
+    with pytest.raises(ValueError, match="expected one of 'position'"):
+        recording.get("positon")
+    with pytest.raises(IndexError, match="sample is 13"):
+        recording.get("position", sample=13)
+    with pytest.raises(IndexError, match="kind is 1"):
+        recording.scene(1)
+    with pytest.raises(ValueError, match="expected one of 'scalar'"):
+        recording.replay(isa="avx")
