@@ -40,8 +40,7 @@ def main(argv=None):
     plans = random.integers(task.choices, size=(o.horizon, o.samples))
     began = time.perf_counter()
     for step in range(o.steps):
-        worlds.batch.restore(real.batch.save(), source=0, ids=range(o.samples))
-        worlds.begin()
+        worlds.restore(real.save(), source=0, ids=range(o.samples))
         best, done = np.full(o.samples, -2.0), np.zeros(o.samples, bool)
         for t in range(o.horizon):
             observations, _, terminated, _ = worlds.step(plans[t])
