@@ -46,7 +46,8 @@ struct StepArrays {
 
 // Worlds of an Environment, to go on from later, elsewhere or many times: what they are, and what
 // the task remembers of them. Later episodes are drawn from the seeds of the worlds that it is
-// restored into.
+// restored into. A world that was to begin with its next step (Autoreset::next_step) steps on
+// beyond its end in an Environment of another mode.
 struct EnvironmentSnapshot {
   Snapshot worlds;
   std::uint64_t task = 0;      // of which task: equal for tasks that compute the same

@@ -13,7 +13,7 @@ namespace manyworlds {
 
 namespace {
 
-std::uint64_t fingerprint_of(const TaskPrograms& programs, const Plan& plan) {
+std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, const Plan& plan) {
   Hasher hash;
   const auto add = [&hash](auto... numbers) {
     (hash.add(static_cast<std::uint64_t>(numbers)), ...);
@@ -22,7 +22,14 @@ std::uint64_t fingerprint_of(const TaskPrograms& programs, const Plan& plan) {
     add(numbers.size());
     for (const auto number : numbers) hash.add(static_cast<double>(number));
   };
-  add(plan.fingerprint(), programs.most_steps, programs.terminated, programs.truncated);
+  add(plan.fingerprint(), task.frame_skip, task.choices, programs.most_steps, programs.terminated,
+      programs.truncated, task.rays.size());
+  for (const Ray& ray : task.rays) {
+    add_all(ray.origin);
+    add_all(ray.direction);
+    add(ray.body, ray.mask);
+    hash.add(ray.length);
+  }
   for (const auto* ranges : {&programs.action_range, &programs.control_range}) {
     add(ranges->size());
     for (const auto& range : *ranges) add_all(range);
@@ -60,7 +67,7 @@ TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : most_steps(task
   for (const Expression& c : task.controls) controls.push_back(first.add(c));
   before = first.take();
   after = builder.take();
-  fingerprint = fingerprint_of(*this, plan);
+  fingerprint = fingerprint_of(task, *this, plan);
 }
 
 namespace {
@@ -99,14 +106,14 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   void save_world(int world, std::span<double> to) const override {
     to[0] = begin_next[at(world)];
     to[1] = static_cast<double>(age_[at(world)]);
-    const Real* from = remembered(world);
+    const Real* from = memory_.data() + remembered(world);
     for (std::size_t i = 2; i < to.size(); ++i, from += lanes_) to[i] = static_cast<double>(*from);
   }
 
   void restore_world(int world, std::span<const double> from) override {
     begin_next[at(world)] = from[0] != 0 && autoreset_ == Autoreset::next_step;
     age_[at(world)] = static_cast<Real>(from[1]);
-    Real* to = memory_.data() + (remembered(world) - memory_.data());
+    Real* to = memory_.data() + remembered(world);
     for (std::size_t i = 2; i < from.size(); ++i, to += lanes_) *to = static_cast<Real>(from[i]);
   }
 
@@ -178,10 +185,9 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     std::vector<const Real*> in;  // of a call
   };
 
-  // Its first number; the next is a row of lanes further.
-  const Real* remembered(int world) const {
-    const std::size_t rows = p_->memory.row.size();
-    return memory_.data() + at(world / lanes_) * rows * at(lanes_) + at(world % lanes_);
+  // Where in memory_ its first number is; the next is a row of lanes further.
+  std::size_t remembered(int world) const {
+    return at(world / lanes_) * p_->memory.row.size() * at(lanes_) + at(world % lanes_);
   }
 
   static bool has_status(const VisitedGroup<Real>& g, int lane, std::uint32_t bits) {
