@@ -72,6 +72,9 @@ MjcfResult load_mjcf(const std::filesystem::path& file) {
 
 MjcfResult load_mjcf_string(std::string_view xml) {
   const std::string text(xml);
+  if (text.find('\0') != std::string::npos) {
+    throw MjcfError({"MJCF string: holds a character 0, where MuJoCo would stop to read"});
+  }
   return load("MJCF string", "mjcf", [&](char* error, int size) {
     return mj_parseXMLString(text.c_str(), nullptr, error, size);
   });

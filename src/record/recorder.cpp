@@ -110,6 +110,9 @@ struct Recorder::Impl final : BatchListener {
 Recorder::Impl::Impl(const Batch& batch, std::filesystem::path path, const RecordOptions& options)
     : file_(std::move(path)), part_(file_), options_(options) {
   options_.worlds = checked_worlds(batch, options);
+  if (std::filesystem::is_directory(file_)) {
+    throw RecordError("'" + file_.string() + "': is a directory");
+  }
   static std::atomic<std::uint64_t> count = 0;  // two at a time may write the same file
   part_ += ".part" + std::to_string(getpid()) + "_" + std::to_string(count++);
   const record::UsingHdf5 hdf5;
