@@ -225,3 +225,10 @@ class Batch(Fields, Inputs, Results):
         ends; the bits are those of stepping and reading one by one. Ctrl-C ends it early.
         """
         return rollout(self, initial, controls, steps, fields, every, out)
+
+
+def checked_batch(batch: Any) -> Batch:
+    """``batch``, if it is one. TypeError."""
+    if not isinstance(batch, Batch):
+        raise TypeError(f"batch is of type {type(batch).__name__}; expected a Batch")
+    return batch

@@ -138,7 +138,37 @@ def test_wrong_arguments_are_errors():
     made = plot.Picture(batch.plan.scene)
     with pytest.raises(IndexError, match="world is 1"):
         made.draw(batch, 1)
-    with pytest.raises(ValueError, match="another scene"):
-        made.draw(mw.Batch("stack10"))
-    with pytest.raises(ValueError, match="size is 0"):
-        plot.Picture(batch.plan.scene, size=(0, 10))
+    other = planar_ball()
+    other.bodies[1].shapes[0].geometry = mw.Circle(0.6)
+    for another in ("stack10", "ball3d", other):
+        with pytest.raises(ValueError, match="another scene"):
+            made.draw(mw.Batch(another))
+    scene = batch.plan.scene
+    for arguments, error, words in (
+        (dict(size=(0, 10)), ValueError, "size is 0"),
+        (dict(size=5), ValueError, "size has shape"),
+        (dict(size=(5, 5, 5)), ValueError, "size has shape"),
+        (dict(view=(1, 2)), ValueError, "view has shape"),
+        (dict(view=((1, 0), (0, 1))), ValueError, "lower ones first"),
+        (dict(view=((0, np.nan), (0, 1))), ValueError, "lower ones first"),
+        (dict(camera=None), TypeError, "expected a Camera"),
+    ):
+        with pytest.raises(error, match=words):
+            plot.Picture(scene, **arguments)
+    with pytest.raises(ValueError, match="angles must be finite"):
+        plot.Camera(azimuth=np.nan)
+    with pytest.raises(TypeError, match="expected a Scene"):
+        plot.Picture("stack10")
+    with pytest.raises(TypeError, match="expected a Batch"):
+        plot.draw(mw.Environment("CartPole"))
+
+
+def test_worlds_that_fly_apart_have_pictures(recwarn):
+    batch = mw.Batch("stack10", worlds=3)
+    x = batch.get("position")
+    x[0, 0], x[1, 0], x[2] = 1e20, 1e7, np.inf
+    batch.set("position", x)
+    made = plot.Picture(batch.plan.scene)
+    for world in range(3):
+        assert made.frame(batch, world).std() > 1
+    assert not recwarn.list

@@ -15,7 +15,7 @@ except ModuleNotFoundError as error:
     raise ImportError(
         f'manyworlds.plot needs matplotlib; pip install "manyworlds[plot]": {error}'
     ) from error
-from ..batch import Batch
+from ..batch import Batch, checked_batch
 
 __all__ = ["Camera", "Picture", "draw"]
 
@@ -25,4 +25,4 @@ def draw(batch: Batch, world: int = 0, ax: Optional[Any] = None, **options: Any)
 
     ``options``: those of Picture. Who draws many keeps a Picture.
     """
-    return Picture(batch.plan.scene, **options).draw(batch, world, ax)
+    return Picture(checked_batch(batch).plan.scene, **options).draw(batch, world, ax)

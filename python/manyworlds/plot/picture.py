@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,8 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from .. import arrays
-from ..batch import Batch
+from .. import _core, arrays
+from ..batch import Batch, checked_batch
+from ..plan import Plan
 from ..scene import Scene
 from ..shapes import HalfPlane, Plane
 from . import pieces, solids
@@ -23,6 +24,7 @@ from .solids import Floats, Solid
 
 Poses = list[Optional[tuple[Floats, Floats]]]  # of the scene's bodies: (rotation, position)
 
+_FAR = 1e9  # m
 _MOST_AROUND = 4  # times what the moving bodies take up: how far fixed ones widen the view
 _INSET = 0.15  # of the view's width and height: how near to its border the leading body comes
 
@@ -33,6 +35,10 @@ class Camera:
 
     azimuth: float = -60.0  # about z, from x: where the camera stands
     elevation: float = 20.0  # above the horizon
+
+    def __post_init__(self) -> None:
+        if not np.isfinite(arrays.reals([self.azimuth, self.elevation], "camera")).all():
+            raise ValueError(f"{self}: angles must be finite")
 
     def eye(self) -> Eye:
         a, e = np.radians([self.azimuth, self.elevation])
@@ -62,8 +68,14 @@ class Picture:
         view: Optional[View] = None,
         camera: Camera = Camera(),
     ) -> None:
-        self.scene = scene
-        self.size = tuple(arrays.integer(n, "size", 1, 10_000) for n in size)
+        if not isinstance(scene, Scene):
+            raise TypeError(f"scene is of type {type(scene).__name__}; expected a Scene")
+        if not isinstance(camera, Camera):
+            raise TypeError(f"camera is of type {type(camera).__name__}; expected a Camera")
+        self.scene: Scene = _core.round_trip(scene)  # type: ignore[assignment]
+        width, height = arrays.numbers(size, (2,), ("",), "size").tolist()
+        self.size = tuple(arrays.integer(int(n), "size", 1, 10_000) for n in (width, height))
+        self._known: Optional[Plan] = None  # of worlds that look like this
         planar = scene.space == "planar"
         self._eye = Eye(*np.eye(3), True) if planar else camera.eye()
         self._solids: list[Solid] = []
@@ -76,7 +88,7 @@ class Picture:
             for body in scene.bodies
         ]
         self._scrolls = view is None
-        self.view: View = self._whole() if view is None else view
+        self.view: View = self._whole() if view is None else _checked(view)
 
     # -- pictures
 
@@ -115,10 +127,12 @@ class Picture:
     # -- where things are
 
     def _poses(self, batch: Batch, world: int) -> Poses:
-        """None: a body that is not there."""
-        world = arrays.index(world, batch.worlds, "world")
-        if len(batch.plan.scene.bodies) != len(self.scene.bodies):
-            raise ValueError("the batch is of another scene")
+        """None: a body that is not there, or so far away that it has lost its world."""
+        world = arrays.index(world, checked_batch(batch).worlds, "world")
+        if batch.plan is not self._known:
+            if _looks(batch.plan.scene) != _looks(self.scene):
+                raise ValueError("the batch is of another scene: its bodies or shapes differ")
+            self._known = batch.plan
         poses: Poses = [*self._first]
         positions = batch.get("position")[world].astype(float)
         orientations = batch.get("orientation")[world].astype(float)
@@ -131,8 +145,8 @@ class Picture:
                 place = np.append(place, 0.0)
             else:
                 rotation = solids.rotation_of(turn)
-            finite = np.isfinite(rotation).all() and np.isfinite(place).all()
-            poses[batch.plan.scene_body(i)] = (rotation, place) if there[i] and finite else None
+            near = np.isfinite(rotation).all() and (np.abs(place) < _FAR).all()
+            poses[batch.plan.scene_body(i)] = (rotation, place) if there[i] and near else None
         return poses
 
     def _sizes(self, batch: Batch, world: int) -> Optional[Floats]:
@@ -202,6 +216,24 @@ class Picture:
         at = self._eye.flat(leader[1])
         dx, dy = (at - np.clip(at, low + inset, high - inset)).tolist()
         return (left + dx, right + dx), (bottom + dy, top + dy)
+
+
+def _looks(scene: Scene) -> Any:
+    """What of a scene is drawn."""
+    return scene.space, [
+        (b.motion, [(s.geometry, s.position, s.rotation) for s in b.shapes]) for b in scene.bodies
+    ]
+
+
+def _checked(view: Any) -> View:
+    (left, right), (bottom, top) = arrays.numbers(
+        view, (2, 2), ("", ""), "view", np.float64
+    ).tolist()
+    if not (-np.inf < left < right < np.inf and -np.inf < bottom < top < np.inf):
+        raise ValueError(
+            f"view is {view}; expected ((left, right), (bottom, top)), the lower ones first"
+        )
+    return (left, right), (bottom, top)
 
 
 def _placed(solid: Solid, corners: Floats, rotation: Floats, position: Floats) -> Floats:
