@@ -139,7 +139,6 @@ __all__ = [
     "make_hull",
     "mesh_mass_properties",
     "mjcf",
-    "record",
     "scenes",
     "tasks",
     "vary",

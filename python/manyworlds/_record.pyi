@@ -1,4 +1,4 @@
-"""Recordings. Private: use manyworlds.record."""
+"""Recordings, scenes as JSON. Private: use manyworlds.record."""
 
 import os
 import pathlib
@@ -74,14 +74,14 @@ class Recording:
 
     def scene(self, kind: int) -> object: ...
 
-    def shape(self, field: object, kind: int) -> tuple: ...
+    def shape(self, field: object | None, kind: int) -> tuple: ...
 
-    def read(self, field: object, kind: int, begin: int, out: Annotated[NDArray, dict(order='C', device='cpu')]) -> None: ...
+    def read(self, field: object | None, kind: int, begin: int, out: Annotated[NDArray, dict(order='C', device='cpu')]) -> None: ...
 
-    def replay(self, isa: object | None, threads: object, layout: object) -> dict: ...
+    def replay(self, isa: object | None, threads: object, layout: object | None) -> dict: ...
 
-def scene_to_json(scene: object) -> str:
+def scene_to_json(scene: object | None) -> str:
     """A scene as JSON, every number exactly."""
 
-def scene_from_json(json: str) -> object:
+def scene_from_json(json: object | None) -> object:
     """The scene of a JSON text."""

@@ -46,7 +46,10 @@ class EnvironmentSnapshot:
     worlds: Snapshot
     task: int  # of which task: equal for tasks that compute the same
     memory: Doubles  # (worlds, numbers)
-    observations: Floats  # (worlds, observations), of the last step or reset
+    # Of the last step or reset, as the array has them that it filled.
+    observations: Floats  # (worlds, observations)
+    terminated: Flags  # (worlds,)
+    truncated: Flags
 
 
 class Environment:
@@ -115,6 +118,8 @@ class Environment:
         self._action_type = np.dtype(np.int64 if self.discrete else np.float32)
         self._step = self._held.step_choices if self.discrete else self._held.step_numbers
         self._batch: Optional[Batch] = None
+        # Those that were filled last: the caller's or the environment's own.
+        self._last = self.observations, self.terminated, self.truncated
         self.begin()
 
     # -- what it is
@@ -217,6 +222,7 @@ class Environment:
             reward_terms,
             final_observations,
         )
+        self._last = observations, terminated, truncated
         return observations, rewards, terminated, truncated
 
     def _out(self, name: str, given: Optional[NDArray[Any]]) -> NDArray[Any]:
@@ -256,9 +262,7 @@ class Environment:
         observations = self._out("observations", observations)
         own = arrays.seeds(seeds, mask_or_ids, self._worlds)
         self._held.reset(mask, own, observations)
-        chosen = mask.view(np.bool_)
-        self.terminated[chosen] = False
-        self.truncated[chosen] = False
+        self._began(mask, observations)
         return observations
 
     def begin(
@@ -268,7 +272,14 @@ class Environment:
         mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
         self._held.begin(mask, observations)
+        self._began(mask, observations)
         return observations
+
+    def _began(self, mask: NDArray[np.uint8], observations: Floats) -> None:
+        chosen = mask.view(np.bool_)
+        self.terminated[chosen] = False
+        self.truncated[chosen] = False
+        self._last = observations, self.terminated, self.truncated
 
     def copy_world(self, source: int, target: int) -> None:
         """World ``target`` becomes what ``source`` is, with what the task remembers of it."""
@@ -280,7 +291,8 @@ class Environment:
     def save(self) -> EnvironmentSnapshot:
         """All worlds, with what the task remembers of them and ``observations``."""
         worlds, task, memory = self._held.save()
-        return EnvironmentSnapshot(worlds, task, memory, self.observations.copy())
+        last = (array.copy() for array in self._last)
+        return EnvironmentSnapshot(worlds, task, memory, *last)
 
     def restore(
         self,
@@ -291,20 +303,35 @@ class Environment:
         """Worlds go on bit by bit as the saved ones did, in this or another Environment of the task.
 
         ``source``, ``ids``: as in ``Batch.restore``. Later episodes are drawn from the seeds that the
-        worlds have here. Returns ``observations``, with the rows of the snapshot. Raises SnapshotError,
-        and changes nothing, for a snapshot of another task or precision.
+        worlds have here; a world that was to begin with its next step steps on beyond its end where
+        ``autoreset`` is not "next_step". Returns ``observations``, with the rows of the snapshot, as
+        ``terminated`` and ``truncated`` have. Raises SnapshotError, and changes nothing, for a snapshot
+        of another task or precision.
         """
         if not isinstance(snapshot, EnvironmentSnapshot):
             found = type(snapshot).__name__
             raise TypeError(f"snapshot is of type {found}; expected an EnvironmentSnapshot")
-        held = snapshot.worlds, snapshot.task, snapshot.memory
+        saved = snapshot.worlds.worlds
+        own = self.observations, self.terminated, self.truncated
+        last = snapshot.observations, snapshot.terminated, snapshot.truncated
+        for array, name, mine in zip(last, ("observations", "terminated", "truncated"), own):
+            wanted = saved, *mine.shape[1:]
+            if np.shape(array) != wanted:
+                raise _core.SnapshotError(
+                    f"snapshot: {name} have shape {np.shape(array)}, expected {wanted}: it is of "
+                    "another task, or was changed"
+                )
+        held = snapshot.worlds, snapshot.task, np.ascontiguousarray(snapshot.memory, np.float64)
         if source is None and ids is None:
             self._held.restore(*held, None)
-            self.observations[:] = snapshot.observations
-            return self.observations
-        pairs = arrays.pairs(source, snapshot.worlds.worlds, ids, self._worlds)
-        self._held.restore(*held, pairs)
-        self.observations[pairs[1::2]] = snapshot.observations[pairs[::2]]
+            rows = worlds = np.arange(saved)
+        else:
+            pairs = arrays.pairs(source, saved, ids, self._worlds)
+            self._held.restore(*held, pairs)
+            rows, worlds = pairs[::2], pairs[1::2]
+        for array, mine in zip(last, own):
+            mine[worlds] = array[rows]
+        self._last = own
         return self.observations
 
     def lost(self) -> Flags:

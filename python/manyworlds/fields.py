@@ -117,15 +117,18 @@ class Fields:
         chosen = arrays.indices(items, field.items, "items")
         first = self._held.seed if seed is None else arrays.integer(seed, "seed", 0, 2**64 - 1)
         shape = len(chosen), field.components
-        axes = field.item + "s", "components"
-        ends = [
+        axes = self._axes(field)[1:]
+        lowest, highest = (
             arrays.broadcast(end, shape, axes, which, np.float64)
             for end, which in ((low, "low"), (high, "high"))
-        ]
+        )
+        width = highest / 2 - lowest / 2  # of which no number is too large
+        if not (width >= 0).all() or not np.isfinite(width).all():
+            raise ValueError("low and high must be finite numbers, and low no more than high")
         seeds = np.uint64(first) + worlds.astype(np.uint64)  # wraps around
-        share = draws.uniform(seeds, name, shape[0] * shape[1]).reshape(-1, *shape)
+        share = draws.uniform(seeds, name, shape[0] * shape[1]).reshape(len(worlds), *shape)
         values = self.get(name)[worlds].astype(np.float64)
-        values[:, chosen] = ends[0] + (ends[1] - ends[0]) * share
+        values[:, chosen] = lowest * (1 - share) + highest * share
         self.set(name, values, worlds)
 
     def _to_write(

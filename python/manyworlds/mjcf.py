@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import ctypes
 import importlib.util
-import os
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any
 
+from . import files
+from .files import File
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -44,14 +45,14 @@ def _extension() -> Any:
     return _mjcf
 
 
-def load(file: Union[str, os.PathLike[str]]) -> Scene:
+def load(file: File) -> Scene:
     """The scene of an MJCF file, with the masses and inertias that MuJoCo's compiler gives it.
 
     Bodies come in MuJoCo's order; a fixed one for each static body that has geoms. Warns
     (MjcfWarning) of what acts otherwise than in MuJoCo. Raises MjcfError, a ValueError, with one line
     for each thing that is wrong or not simulated, and ImportError without MuJoCo.
     """
-    return _with_warnings(_extension().load(os.fspath(file)))
+    return _with_warnings(_extension().load(files.path(file, "file")))
 
 
 def load_string(xml: str) -> Scene:

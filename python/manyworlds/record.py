@@ -11,16 +11,16 @@ The file's layout is in docs/batch.md; the program's ``replay`` reads it, too, a
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, Optional, Union
+from typing import Any, NamedTuple, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import arrays
-from .batch import MOST_THREADS, Batch
+from . import arrays, files
+from .batch import MOST_THREADS, Batch, checked_batch
+from .files import File
 from .names import ContactLayout, Ids, Isa
 from .scene import Scene
 
@@ -46,7 +46,6 @@ __all__ = [
 
 MOST_WORLDS_BY_DEFAULT = 64
 _MOST_STEPS = 2**31 - 1
-_File = Union[str, os.PathLike[str]]
 
 
 class Recorder:
@@ -61,7 +60,7 @@ class Recorder:
 
     The batch tells it of every input, so nothing needs to go through the Recorder. Steps of some worlds
     alone (``ids``) are recorded as the states that they came to. As a context manager it is closed at the
-    end, also after an exception. Without ``close`` no file is left. Raises RecordError, a ValueError,
+    end, also after an exception. Without ``close`` no file is left, unless the process is cut off. Raises RecordError, a ValueError,
     when the file cannot be written (from ``close`` for what failed while stepping), ValueError when
     forces were added for the next step already.
     """
@@ -69,21 +68,21 @@ class Recorder:
     def __init__(
         self,
         batch: Batch,
-        file: _File,
+        file: File,
         worlds: Optional[Ids] = None,
         every: int = 1,
         first_world: int = 0,
     ) -> None:
         first_world = arrays.integer(first_world, "first_world", 0, 2**62)
         every = arrays.integer(every, "every", 0, _MOST_STEPS)
-        count = _batch(batch).worlds
+        count = checked_batch(batch).worlds
         if worlds is None:
             chosen = np.arange(min(count, MOST_WORLDS_BY_DEFAULT), dtype=np.int32)
         else:
             chosen = arrays.indices(worlds, count, "worlds")
             if len(chosen) == 0:
                 raise ValueError("worlds are none; at least one must be recorded")
-        self.file = Path(file)
+        self.file = files.path(file, "file")
         self._held = _record.Recorder(batch._held, self.file, chosen, every, first_world)
         self._closed = False
 
@@ -94,13 +93,17 @@ class Recorder:
 
     def sample(self) -> None:
         """Takes a sample now; nothing when there is one of this state already."""
+        if self._closed:
+            raise ValueError("the recorder is closed")
         self._held.sample()
 
     def close(self) -> None:
-        """Finishes the file and gives it its name. Twice is once."""
-        if not self._closed:
-            self._closed = True
-            self._held.close()
+        """Finishes the file and gives it its name. Twice is once.
+
+        RuntimeError while another thread steps the batch: it goes on recording, and can be closed later.
+        """
+        self._held.close()
+        self._closed = True
 
     def __enter__(self) -> Recorder:
         return self
@@ -123,26 +126,24 @@ class LostWorldDumps:
     def __init__(
         self,
         batch: Batch,
-        folder: _File,
+        folder: File,
         checkpoint_steps: int = 600,
         most: int = 16,
         first_world: int = 0,
     ) -> None:
         self._held = _record.LostWorldDumps(
-            _batch(batch)._held,
-            Path(folder),
+            checked_batch(batch)._held,
+            files.path(folder, "folder"),
             arrays.integer(checkpoint_steps, "checkpoint_steps", 1, _MOST_STEPS),
             arrays.integer(most, "most", 0, _MOST_STEPS),
             arrays.integer(first_world, "first_world", 0, 2**62),
         )
         self.files: list[Path] = []
-        self._closed = False
 
     def close(self) -> list[Path]:
-        """Stops watching and returns the files. Raises RecordError for what could not be written."""
-        if not self._closed:
-            self._closed = True
-            self.files = self._held.close()
+        """Stops watching and returns the files. Raises RecordError for what could not be written, and
+        RuntimeError, as ``Recorder.close``."""
+        self.files += self._held.close()  # none when it was closed before
         return self.files
 
     def __enter__(self) -> LostWorldDumps:
@@ -187,8 +188,8 @@ class Recording:
     be closed, also by ``with``.
     """
 
-    def __init__(self, file: _File) -> None:
-        self.file = Path(file)
+    def __init__(self, file: File) -> None:
+        self.file = files.path(file, "file")
         self._held = _record.Recording(self.file)
 
     @property
@@ -294,9 +295,3 @@ def scene_from_json(text: str) -> Scene:
     """The scene of such a text. Raises RecordError with everything that is missing, unknown or wrong."""
     scene: Scene = _record.scene_from_json(text)  # type: ignore[assignment]
     return scene
-
-
-def _batch(batch: Any) -> Batch:
-    if not isinstance(batch, Batch):
-        raise TypeError(f"batch is of type {type(batch).__name__}; expected a Batch")
-    return batch

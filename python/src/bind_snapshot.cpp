@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "bind.hpp"
+#include "errors.hpp"
 #include "manyworlds/snapshot.hpp"
 
 namespace nb = nanobind;
@@ -25,7 +26,7 @@ Snapshot from_bytes(const nb::bytes& data) {
 }  // namespace
 
 void bind_snapshot(nb::module_& m) {
-  nb::exception<SnapshotError>(m, "SnapshotError", PyExc_ValueError);
+  bind_error<SnapshotError>(m, "SnapshotError");
 
   nb::class_<Snapshot>(
       m, "Snapshot",

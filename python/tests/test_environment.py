@@ -1,5 +1,6 @@
 """Environment: the same bits however it is run; arrays, resets, copies; misuse."""
 
+import dataclasses
 import pickle
 import threading
 
@@ -287,10 +288,22 @@ def test_a_saved_environment_goes_on_as_it_did(task):
         for x, y in zip(a, b):
             np.testing.assert_array_equal(x, y)
 
+    # Where somebody else's arrays were filled.
+    mine = np.zeros_like(first.observations)
+    first.step(actions_of(first, np.random.default_rng(2)), observations=mine)
+    np.testing.assert_array_equal(first.save().observations, mine)
+    cut = dataclasses.replace(saved, observations=saved.observations[:, :1])
+    before = second.batch.hash()
+    with pytest.raises(mw.SnapshotError, match="observations have shape .10, 1.,"):
+        second.restore(cut)
+    assert second.batch.hash() == before
+
     # One world of it many times over.
     few = mw.Environment(task, worlds=4)
+    few.terminated[3] = True
     observations = few.restore(saved, source=7, ids=[0, 3])
     np.testing.assert_array_equal(observations[[0, 3]], last[[7, 7]])
+    assert not few.terminated[3]
     hashes = few.batch.hashes()
     assert hashes[0] == hashes[3] and hashes[0] != hashes[1]
     with pytest.raises(mw.SnapshotError, match="10 worlds"):

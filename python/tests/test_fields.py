@@ -236,8 +236,16 @@ def test_randomized_numbers_depend_on_the_world_s_seed_alone():
     changed = (many.get("friction") != before).any(axis=(1, 2))
     np.testing.assert_array_equal(np.flatnonzero(changed), [0, 2])
 
-    with pytest.raises(ValueError, match="low has shape"):
+    before = many.hash()
+    for nothing in ([], np.zeros(3, bool)):
+        many.randomize("linear_velocity", 5, 6, items=nothing)
+    many.randomize("linear_velocity", 5, 6, ids=[])
+    assert many.hash() == before
+    with pytest.raises(ValueError, match="low has shape .2,.; expected .bodies=3, components=3."):
         many.randomize("linear_velocity", [1, 2], 3)
+    for low, high in ((5, -5), (np.nan, 1), (0, np.inf)):
+        with pytest.raises(ValueError, match="low no more than high"):
+            many.randomize("linear_velocity", low, high)
     with pytest.raises(IndexError, match="items hold 3"):
         many.randomize("linear_velocity", 0, 1, items=3)
     with pytest.raises(ValueError, match="does not vary"):

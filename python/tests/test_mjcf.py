@@ -65,8 +65,12 @@ def test_what_is_not_simulated_is_an_error_that_names_it(tmp_path):
         mw.mjcf.load(tmp_path / "none.xml")
     with pytest.raises(mw.mjcf.MjcfError):
         mw.mjcf.load_string("<mujoco><worldbody><geom/>")
-    with pytest.raises(TypeError):
+    with pytest.raises(mw.mjcf.MjcfError, match="character 0"):
+        mw.mjcf.load_string(BALL + "\0<oops/>")
+    with pytest.raises(TypeError, match="file is of type int"):
         mw.mjcf.load(7)
+    with pytest.raises(TypeError, match="xml is of type NoneType; expected a str"):
+        mw.mjcf.load_string(None)
 
 
 def test_the_extra_is_the_mujoco_that_the_library_is_built_with():

@@ -104,6 +104,34 @@ def test_what_is_not_finished_leaves_no_file(batch, tmp_path):
     assert len(record.Recording(tmp_path / "run.h5").steps) == 2
 
 
+def test_a_busy_batch_is_recorded_on_and_closed_later(batch, tmp_path):
+    recorder = record.Recorder(batch, tmp_path / "run.h5", every=0)
+    dumps = record.LostWorldDumps(batch, tmp_path / "lost")
+    batch.add_force((np.inf, 0, 0), bodies=0, ids=[3])
+    thread = threading.Thread(target=batch.step, args=(30_000,))
+    thread.start()
+    refused = 0
+    while thread.is_alive() and not refused:
+        try:
+            batch.time
+        except RuntimeError:
+            refused = 1
+            for close in (recorder.close, dumps.close):
+                with pytest.raises(RuntimeError, match="in use by another thread"):
+                    close()
+    thread.join()
+    assert refused
+    recorder.close()
+    with pytest.raises(ValueError, match="the recorder is closed"):
+        recorder.sample()
+    assert len(record.Recording(tmp_path / "run.h5").steps) == 1
+    assert (
+        [file.name for file in dumps.close()]
+        == ["world_3.h5"]
+        == [file.name for file in dumps.close()]
+    )
+
+
 def test_a_recording_outlives_its_batch(tmp_path):
     batch = lander()
     recorder = record.Recorder(batch, tmp_path / "run.h5")
@@ -178,6 +206,18 @@ def test_more_wrong_arguments_are_errors(batch, tmp_path):
         record.Recorder("stack10", tmp_path / "run.h5")
     with pytest.raises(record.RecordError, match="nowhere"):
         record.Recorder(batch, tmp_path / "nowhere" / "run.h5")
+    with pytest.raises(record.RecordError, match="is a directory"):
+        record.Recorder(batch, tmp_path)
+    with pytest.raises(record.RecordError, match="nothing.*no such|cannot"):
+        record.Recording("/nothing/\udcff.h5")
+    with pytest.raises(ValueError, match="character 0"):
+        record.Recording("a\0b")
+    with pytest.raises(TypeError, match="file is of type int; expected a str or a Path"):
+        record.Recorder(batch, 3)
+    with pytest.raises(TypeError, match="scene is of type NoneType; expected manyworlds.Scene"):
+        record.scene_to_json(None)
+    with pytest.raises(TypeError, match="json is of type bytes; expected a str"):
+        record.scene_from_json(b"{}")
     batch.add_force((0, 0, 1), bodies=0)
     with pytest.raises(ValueError, match="forces were added"):
         record.Recorder(batch, tmp_path / "run.h5")

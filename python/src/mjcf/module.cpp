@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "manyworlds/mjcf.hpp"
+#include "python/src/errors.hpp"
 #include "python/src/scene_fields.hpp"
 
 namespace manyworlds::python {
@@ -25,15 +26,18 @@ std::pair<nb::object, std::vector<std::string>> loaded(Load load) {
 
 NB_MODULE(_mjcf, m) {
   m.doc() = "MJCF files. Private: use manyworlds.mjcf.";
-  nb::exception<MjcfError>(m, "MjcfError", PyExc_ValueError);
+  bind_error<MjcfError>(m, "MjcfError");
   m.def(
       "load",
       [](const std::filesystem::path& file) { return loaded([&] { return load_mjcf(file); }); },
       nb::arg("file"), "The scene of a file, and what acts otherwise than in MuJoCo.");
   m.def(
       "load_string",
-      [](const std::string& xml) { return loaded([&] { return load_mjcf_string(xml); }); },
-      nb::arg("xml"), "The same of a text.");
+      [](nb::object xml) {
+        const std::string text = from_python<std::string>(xml, "xml");
+        return loaded([&] { return load_mjcf_string(text); });
+      },
+      nb::arg("xml").none(), "The same of a text.");
 }
 
 }  // namespace manyworlds::python

@@ -9,6 +9,7 @@
 
 #include "manyworlds/record.hpp"
 #include "python/src/arrays.hpp"
+#include "python/src/errors.hpp"
 #include "python/src/held_batch.hpp"
 #include "python/src/scene_fields.hpp"
 
@@ -203,26 +204,30 @@ void bind_reading(nb::module_& m) {
               return nb::make_tuple(worlds, bodies, n);
             });
           },
-          nb::arg("field"), nb::arg("kind"))
-      .def("read", &read, nb::arg("field"), nb::arg("kind"), nb::arg("begin"),
+          nb::arg("field").none(), nb::arg("kind"))
+      .def("read", &read, nb::arg("field").none(), nb::arg("kind"), nb::arg("begin"),
            nb::arg("out").noconvert())
-      .def("replay", &replay_of, nb::arg("isa").none(), nb::arg("threads"), nb::arg("layout"));
+      .def("replay", &replay_of, nb::arg("isa").none(), nb::arg("threads"),
+           nb::arg("layout").none());
 }
 
 }  // namespace
 
 NB_MODULE(_record, m) {
-  m.doc() = "Recordings. Private: use manyworlds.record.";
-  nb::exception<RecordError>(m, "RecordError", PyExc_ValueError);
+  m.doc() = "Recordings, scenes as JSON. Private: use manyworlds.record.";
+  bind_error<RecordError>(m, "RecordError");
   bind_writing(m);
   bind_reading(m);
   m.def(
       "scene_to_json",
       [](nb::object scene) { return scene_to_json(from_python<Scene>(scene, "scene")); },
-      nb::arg("scene"), "A scene as JSON, every number exactly.");
+      nb::arg("scene").none(), "A scene as JSON, every number exactly.");
   m.def(
-      "scene_from_json", [](const std::string& json) { return to_python(scene_from_json(json)); },
-      nb::arg("json"), "The scene of a JSON text.");
+      "scene_from_json",
+      [](nb::object json) {
+        return to_python(scene_from_json(from_python<std::string>(json, "json")));
+      },
+      nb::arg("json").none(), "The scene of a JSON text.");
 }
 
 }  // namespace manyworlds::python
