@@ -17,7 +17,6 @@ enum class Push { force, torque, impulse, angular_impulse };
 
 template <>
 struct Names<Push> {
-  static constexpr const char* kind = "Push";
   static constexpr Named<Push> all[] = {{Push::force, "force"},
                                         {Push::torque, "torque"},
                                         {Push::impulse, "impulse"},

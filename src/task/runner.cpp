@@ -106,15 +106,17 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   void save_world(int world, std::span<double> to) const override {
     to[0] = begin_next[at(world)];
     to[1] = static_cast<double>(age_[at(world)]);
-    const Real* from = memory_.data() + remembered(world);
-    for (std::size_t i = 2; i < to.size(); ++i, from += lanes_) to[i] = static_cast<double>(*from);
+    for (std::size_t i = 2; i < to.size(); ++i) {
+      to[i] = static_cast<double>(memory_[remembered(world, i - 2)]);
+    }
   }
 
   void restore_world(int world, std::span<const double> from) override {
     begin_next[at(world)] = from[0] != 0 && autoreset_ == Autoreset::next_step;
     age_[at(world)] = static_cast<Real>(from[1]);
-    Real* to = memory_.data() + remembered(world);
-    for (std::size_t i = 2; i < from.size(); ++i, to += lanes_) *to = static_cast<Real>(from[i]);
+    for (std::size_t i = 2; i < from.size(); ++i) {
+      memory_[remembered(world, i - 2)] = static_cast<Real>(from[i]);
+    }
   }
 
   void before_steps(const VisitedGroup<Real>& g) override {
@@ -185,9 +187,10 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     std::vector<const Real*> in;  // of a call
   };
 
-  // Where in memory_ its first number is; the next is a row of lanes further.
-  std::size_t remembered(int world) const {
-    return at(world / lanes_) * p_->memory.row.size() * at(lanes_) + at(world % lanes_);
+  // Where in memory_ a number of a world is.
+  std::size_t remembered(int world, std::size_t number) const {
+    const std::size_t row = at(world / lanes_) * p_->memory.row.size() + number;
+    return row * at(lanes_) + at(world % lanes_);
   }
 
   static bool has_status(const VisitedGroup<Real>& g, int lane, std::uint32_t bits) {
