@@ -80,6 +80,17 @@ def test_the_nearer_one_hides_the_farther_one():
         np.testing.assert_allclose(made.frame(batch)[80, 100], color(nearest), atol=2)
 
 
+@pytest.mark.parametrize("name", ["Pendulum", "Acrobot"])
+def test_what_swings_stays_in_view(name):
+    scene = mw.tasks.load(name).scene
+    made = plot.Picture(scene)
+    (left, right), (bottom, top) = made.view
+    tip = sum(2.0 * s.geometry.vertices[2][1] for b in scene.bodies for s in b.shapes[:1])
+    assert tip > 0.5  # m, how far all links reach from the pivot, which is the origin
+    assert left < -tip and right > tip and bottom < -tip and top > tip
+    assert top - bottom < 4 * tip
+
+
 def test_corners_outlines_and_faces():
     box, _ = solids.corners_of(mw.Box((1, 2, 3)), planar=False)
     faces = solids.faces_of(box)

@@ -20,6 +20,12 @@ def test_planning_swings_acrobot_up():
     assert up and steps < 150
 
 
+def test_every_task_has_a_picture(tmp_path):
+    pytest.importorskip("matplotlib")
+    example("gallery").main(["--steps", "2", "--out", str(tmp_path / "tasks.png")])
+    assert (tmp_path / "tasks.png").read_bytes()[1:4] == b"PNG"
+
+
 def test_throughput_is_printed():
     pytest.importorskip("gymnasium")
     found = example("throughput").main(["--worlds", "64", "--seconds", "0.1"])

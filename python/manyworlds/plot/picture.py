@@ -20,13 +20,12 @@ from ..scene import Scene
 from ..shapes import HalfPlane, Plane
 from . import pieces, solids
 from .pieces import Eye, Piece, View
-from .solids import Floats, Solid
+from .solids import Floats, Pose, Solid
+from .view import scrolled, view_of
 
-Poses = list[Optional[tuple[Floats, Floats]]]  # of the scene's bodies: (rotation, position)
+Poses = list[Optional[Pose]]  # of the scene's bodies
 
-_FAR = 1e9  # m
-_MOST_AROUND = 4  # times what the moving bodies take up: how far fixed ones widen the view
-_INSET = 0.15  # of the view's width and height: how near to its border the leading body comes
+_FAR = 1e9  # m, where worlds are lost
 
 
 @dataclass(frozen=True)
@@ -88,7 +87,9 @@ class Picture:
             for body in scene.bodies
         ]
         self._scrolls = view is None
-        self.view: View = self._whole() if view is None else _checked(view)
+        if view is None:
+            view = view_of(self.scene, self._solids, self._first, self._eye, self.size)
+        self.view: View = _checked(view)
 
     # -- pictures
 
@@ -97,7 +98,7 @@ class Picture:
         poses = self._poses(batch, world)
         if ax is None:
             ax = self._figure().axes[0]
-        view = self._scrolled(poses)
+        view = scrolled(self.view, self._leader(poses), self._eye)
         ax.set(xlim=view[0], ylim=view[1], aspect="equal")
         drawn = self._pieces(poses, self._sizes(batch, world), view)
         drawn.sort(key=lambda piece: piece.depth)  # the farthest first
@@ -149,6 +150,11 @@ class Picture:
             poses[batch.plan.scene_body(i)] = (rotation, place) if there[i] and near else None
         return poses
 
+    def _leader(self, poses: Poses) -> Optional[Pose]:
+        """The first body that moves, which the view follows."""
+        motions = [body.motion for body in self.scene.bodies]
+        return poses[motions.index("dynamic")] if self._scrolls and "dynamic" in motions else None
+
     def _sizes(self, batch: Batch, world: int) -> Optional[Floats]:
         """Of all shapes of the scene, (shapes, 3); None: they are as the scene says."""
         varied = any(variation.parameter == "size" for variation in self.scene.variations)
@@ -162,60 +168,15 @@ class Picture:
                 continue
             if isinstance(solid.geometry, (Plane, HalfPlane)):
                 draw = pieces.half_plane if self._eye.planar else pieces.floor
-                out += draw(*_surface(solid, *pose), view, self._eye)
+                out += draw(*solids.surface(solid, *pose), view, self._eye)
                 continue
             corners, radius = solid.corners, solid.radius
             if sizes is not None and sizes[solid.index, 0] > 0:
                 own = solids.resized(solid.geometry, sizes[solid.index])
                 corners, radius = solids.corners_of(own, self._eye.planar) or (corners, radius)
-            placed = _placed(solid, corners, *pose)
+            placed = solids.placed(solid, corners, *pose)
             out += pieces.pieces_of(solid, placed, radius, pose[0] @ solid.rotation, self._eye)
         return out
-
-    # -- what is seen of it
-
-    def _whole(self) -> View:
-        """Around the bodies that move, with their jitter and what is below them on planes, and around
-        the others as far as that leaves these large enough to be seen."""
-        moving, others = [np.zeros((0, 3))], [np.zeros((0, 3))]
-        for solid in self._solids:
-            body = self.scene.bodies[solid.body]
-            spread = solid.radius + np.abs(np.asarray(body.jitter.position, float))
-            placed = _placed(solid, solid.corners, *self._first[solid.body])
-            (moving if body.motion == "dynamic" else others).extend(
-                [placed - spread, placed + spread]
-            )
-        feet = [np.concatenate(moving)]
-        for solid in self._solids:
-            if isinstance(solid.geometry, (Plane, HalfPlane)):
-                normal, offset = _surface(solid, *self._first[solid.body])
-                feet.append(feet[0] + (offset - feet[0] @ normal)[:, None] * normal)
-        points, rest = (self._eye.flat(np.concatenate(p)) for p in (feet, others))
-        if len(points) == 0:
-            points = rest if len(rest) else np.array([[-1.0, -1.0], [1.0, 1.0]])
-        low, high = points.min(axis=0), points.max(axis=0)
-        room = _MOST_AROUND * max(*(high - low), 1e-3)
-        points = np.concatenate([points, np.clip(rest, low - room, high + room)])
-        low, high = points.min(axis=0), points.max(axis=0)
-        # As wide or high as the picture, so that nothing is cut.
-        middle, half = (low + high) / 2, 0.55 * np.maximum(high - low, 1e-3)
-        width, height = self.size
-        half = np.maximum(half, half[::-1] * np.array([width / height, height / width]))
-        (left, bottom), (right, top) = (middle - half).tolist(), (middle + half).tolist()
-        return (left, right), (bottom, top)
-
-    def _scrolled(self, poses: Poses) -> View:
-        """The view, moved as far as the first body that moves has come near its border."""
-        motions = [body.motion for body in self.scene.bodies]
-        leader = poses[motions.index("dynamic")] if "dynamic" in motions else None
-        if leader is None or not self._scrolls:
-            return self.view
-        (left, right), (bottom, top) = self.view
-        low, high = np.array([left, bottom]), np.array([right, top])
-        inset = _INSET * (high - low)
-        at = self._eye.flat(leader[1])
-        dx, dy = (at - np.clip(at, low + inset, high - inset)).tolist()
-        return (left + dx, right + dx), (bottom + dy, top + dy)
 
 
 def _looks(scene: Scene) -> Any:
@@ -234,19 +195,3 @@ def _checked(view: Any) -> View:
             f"view is {view}; expected ((left, right), (bottom, top)), the lower ones first"
         )
     return (left, right), (bottom, top)
-
-
-def _placed(solid: Solid, corners: Floats, rotation: Floats, position: Floats) -> Floats:
-    """Corners of a shape in the world, whose body has this pose."""
-    placed: Floats = (corners @ solid.rotation.T + solid.position) @ rotation.T + position
-    return placed
-
-
-def _surface(solid: Solid, rotation: Floats, position: Floats) -> tuple[Floats, float]:
-    """Normal and offset in the world of a plane or a half-plane."""
-    assert isinstance(solid.geometry, (Plane, HalfPlane))
-    given = np.zeros(3)
-    given[: len(solid.geometry.normal)] = solid.geometry.normal
-    normal = rotation @ solid.rotation @ given
-    shift = float(normal @ (rotation @ solid.position + position))
-    return normal, solid.geometry.offset + shift

@@ -14,8 +14,10 @@ from ..shapes import (
     Circle,
     Cylinder,
     Geometry,
+    HalfPlane,
     HeightField,
     Hull,
+    Plane,
     Polygon,
     Segment,
     Shape,
@@ -24,6 +26,7 @@ from ..shapes import (
 )
 
 Floats = NDArray[np.float64]
+Pose = tuple[Floats, Floats]  # (rotation (3, 3), position (3,)) in the world
 PALETTE = ["#e4572e", "#f3a712", "#29335c", "#669bbc", "#76b041", "#8f5aa8", "#b08968"]
 FIXED = "#8d99ae"
 _ROUND = 24  # corners that stand for a circle
@@ -162,6 +165,22 @@ class Solid(NamedTuple):
     @property
     def is_line(self) -> bool:
         return isinstance(self.geometry, (Segment, Terrain))
+
+
+def placed(solid: Solid, corners: Floats, rotation: Floats, position: Floats) -> Floats:
+    """Corners of a shape in the world, whose body has this pose."""
+    world: Floats = (corners @ solid.rotation.T + solid.position) @ rotation.T + position
+    return world
+
+
+def surface(solid: Solid, rotation: Floats, position: Floats) -> tuple[Floats, float]:
+    """Normal and offset in the world of a plane or a half-plane."""
+    assert isinstance(solid.geometry, (Plane, HalfPlane))
+    given = np.zeros(3)
+    given[: len(solid.geometry.normal)] = solid.geometry.normal
+    normal = rotation @ solid.rotation @ given
+    shift = float(normal @ (rotation @ solid.position + position))
+    return normal, solid.geometry.offset + shift
 
 
 def solid_of(body: int, index: int, shape: Shape, fixed: bool, planar: bool) -> Solid:

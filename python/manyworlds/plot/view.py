@@ -1,0 +1,116 @@
+"""What of a world a picture shows, when nobody says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Optional
+
+import numpy as np
+
+from ..joints import BallJoint, DistanceJoint, HingeJoint
+from ..scene import Scene
+from ..shapes import HalfPlane, Plane
+from . import solids
+from .pieces import Eye, View
+from .solids import Floats, Pose, Solid
+
+_MOST_AROUND = 1  # times what the moving bodies take up: how far the others widen the view
+_INSET = 0.15  # of the view's width and height: how near to its border the leading body comes
+
+
+def view_of(
+    scene: Scene, parts: Sequence[Solid], poses: Sequence[Pose], eye: Eye, size: Sequence[int]
+) -> View:
+    """Around the bodies that move, wherever jitter and pivots let them be, with the floor below them,
+    and around the others as far as that leaves these large enough to be seen. ``poses``: of the scene's
+    bodies in the beginning, ``size``: of the picture, whose shape the view gets."""
+    dynamic = [body.motion == "dynamic" for body in scene.bodies]
+    room = [_room_of(scene, b, parts, poses) for b in range(len(scene.bodies))]
+    moving = [points for points, moves in zip(room, dynamic) if moves] + _swings(scene, room, poses)
+    others = [points for points, moves in zip(room, dynamic) if not moves]
+    above = np.concatenate([*moving, np.zeros((0, 3))])
+    for part in parts:
+        if isinstance(part.geometry, (Plane, HalfPlane)):
+            normal, offset = solids.surface(part, *poses[part.body])
+            if normal[1 if eye.planar else 2] > 0.5:
+                moving.append(above + (offset - above @ normal)[:, None] * normal)
+    points, rest = (eye.flat(np.concatenate([*p, np.zeros((0, 3))])) for p in (moving, others))
+    if len(points) == 0:
+        points = rest if len(rest) else np.array([[-1.0, -1.0], [1.0, 1.0]])
+    low, high = points.min(axis=0), points.max(axis=0)
+    most = _MOST_AROUND * max(*(high - low), 1e-3)
+    points = np.concatenate([points, np.clip(rest, low - most, high + most)])
+    low, high = points.min(axis=0), points.max(axis=0)
+    # As wide or high as the picture, so that nothing is cut.
+    middle, half = (low + high) / 2, 0.55 * np.maximum(high - low, 1e-3)
+    width, height = size
+    half = np.maximum(half, half[::-1] * np.array([width / height, height / width]))
+    (left, bottom), (right, top) = (middle - half).tolist(), (middle + half).tolist()
+    return (left, right), (bottom, top)
+
+
+def scrolled(view: View, leader: Optional[Pose], eye: Eye) -> View:
+    """The view, moved as far as the body that leads has come near its border."""
+    if leader is None:
+        return view
+    (left, right), (bottom, top) = view
+    low, high = np.array([left, bottom]), np.array([right, top])
+    inset = _INSET * (high - low)
+    at = eye.flat(leader[1])
+    dx, dy = (at - np.clip(at, low + inset, high - inset)).tolist()
+    return (left + dx, right + dx), (bottom + dy, top + dy)
+
+
+def _around(middle: Floats, radius: float) -> Floats:
+    """Points that take up as much as a ball."""
+    return middle + radius * np.concatenate([np.eye(3), -np.eye(3)])
+
+
+def _room_of(scene: Scene, b: int, parts: Sequence[Solid], poses: Sequence[Pose]) -> Floats:
+    """Points around what a body takes up in the beginning, with its jitter."""
+    jitter = scene.bodies[b].jitter
+    leader = jitter.with_body if jitter.with_body >= 0 else b
+    own = scene.bodies[leader].jitter
+    spread = np.abs(np.asarray(own.position, float)) + np.abs(np.asarray(jitter.position, float))
+    points = [np.zeros((0, 3))]
+    for part in parts:
+        if part.body == b:
+            placed = solids.placed(part, part.corners, *poses[b])
+            points += [placed - part.radius, placed + part.radius]
+    room = np.concatenate(points)
+    if len(room) and (jitter.any_orientation or max(jitter.angle, own.angle) > 0):
+        middle = poses[leader][1]
+        room = _around(middle, np.linalg.norm(room - middle, axis=1).max())
+    return np.concatenate([room - spread, room + spread])
+
+
+def _swings(scene: Scene, room: Sequence[Floats], poses: Sequence[Pose]) -> list[Floats]:
+    """What moving bodies can reach about the points at which they hang or stand."""
+    dynamic = [body.motion == "dynamic" for body in scene.bodies]
+    moves = [joint for joint in scene.joints if joint.body_b >= 0]
+    out = []
+    for joint in moves:
+        a, b = joint.body_a, joint.body_b
+        if not isinstance(joint.type, (HingeJoint, BallJoint, DistanceJoint)):
+            continue
+        frame = joint.frame_a
+        if a >= 0 and dynamic[a]:
+            if dynamic[b]:
+                continue
+            a, b, frame = b, a, joint.frame_b
+        elif not dynamic[b]:
+            continue
+        rotation, position = poses[a] if a >= 0 else (np.eye(3), np.zeros(3))
+        pivot = rotation @ np.asarray(frame.position, float) + position
+        hanging = {b}
+        while more := {
+            body
+            for other in moves
+            for body, mate in ((other.body_a, other.body_b), (other.body_b, other.body_a))
+            if mate in hanging and body >= 0 and dynamic[body] and body not in hanging
+        }:
+            hanging |= more
+        points = np.concatenate([room[body] for body in hanging])
+        if len(points):
+            out.append(_around(pivot, np.linalg.norm(points - pivot, axis=1).max()))
+    return out
