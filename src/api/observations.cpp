@@ -211,7 +211,7 @@ void ObservationsOf<Real>::take(std::size_t thread, std::size_t k, int group, st
   const kernels::Observation<Real>& view = blocks_[thread][k].view;
   Kind& kind = kinds_[k];
   const std::size_t lanes = at(kernels_.lanes), rays = kind.rays.size();
-  std::array<std::pair<std::size_t, std::size_t>, 32> taken;  // lane, world
+  std::array<std::pair<std::size_t, std::size_t>, kMostLanes> taken;  // lane, world
   std::size_t count = 0;
   for (std::size_t l = 0; l < lanes; ++l) {
     const int in = worlds_[k]->world_in(group * kernels_.lanes + static_cast<int>(l));
