@@ -36,7 +36,7 @@ class RecordingEdit {
   void remake(const Target& target, FuzzedDataProvider& in);
   void mend_fingerprint(const Target& target);
 
-  record::QuietErrors quiet_;
+  record::UsingHdf5 hdf5_;
   record::Handle h5_;
   std::vector<Target> targets_;
 };
