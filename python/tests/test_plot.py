@@ -157,6 +157,7 @@ def test_wrong_arguments_are_errors():
     scene = batch.plan.scene
     for arguments, error, words in (
         (dict(size=(0, 10)), ValueError, "size is 0"),
+        (dict(size=(5, 5.5)), TypeError, "size is of type float"),
         (dict(size=5), ValueError, "size has shape"),
         (dict(size=(5, 5, 5)), ValueError, "size has shape"),
         (dict(view=(1, 2)), ValueError, "view has shape"),

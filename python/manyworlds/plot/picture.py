@@ -71,9 +71,10 @@ class Picture:
             raise TypeError(f"scene is of type {type(scene).__name__}; expected a Scene")
         if not isinstance(camera, Camera):
             raise TypeError(f"camera is of type {type(camera).__name__}; expected a Camera")
-        self.scene: Scene = _core.round_trip(scene)  # type: ignore[assignment]
-        width, height = arrays.numbers(size, (2,), ("",), "size").tolist()
-        self.size = tuple(arrays.integer(int(n), "size", 1, 10_000) for n in (width, height))
+        scene = _core.round_trip(scene)  # type: ignore[assignment]
+        self.scene = scene
+        arrays.numbers(size, (2,), ("",), "size")
+        self.size = tuple(arrays.integer(n, "size", 1, 10_000) for n in size)
         self._known: Optional[Plan] = None  # of worlds that look like this
         planar = scene.space == "planar"
         self._eye = Eye(*np.eye(3), True) if planar else camera.eye()

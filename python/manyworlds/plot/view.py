@@ -78,7 +78,7 @@ def _room_of(scene: Scene, b: int, parts: Sequence[Solid], poses: Sequence[Pose]
             placed = solids.placed(part, part.corners, *poses[b])
             points += [placed - part.radius, placed + part.radius]
     room = np.concatenate(points)
-    if len(room) and (jitter.any_orientation or max(jitter.angle, own.angle) > 0):
+    if len(room) and any(j.any_orientation or j.angle > 0 for j in (jitter, own)):
         middle = poses[leader][1]
         room = _around(middle, np.linalg.norm(room - middle, axis=1).max())
     return np.concatenate([room - spread, room + spread])
@@ -86,31 +86,23 @@ def _room_of(scene: Scene, b: int, parts: Sequence[Solid], poses: Sequence[Pose]
 
 def _swings(scene: Scene, room: Sequence[Floats], poses: Sequence[Pose]) -> list[Floats]:
     """What moving bodies can reach about the points at which they hang or stand."""
-    dynamic = [body.motion == "dynamic" for body in scene.bodies]
-    moves = [joint for joint in scene.joints if joint.body_b >= 0]
+
+    def moves(body: int) -> bool:
+        return body >= 0 and scene.bodies[body].motion == "dynamic"
+
+    ends = [(j.type, j.body_a, j.frame_a, j.body_b) for j in scene.joints]
+    ends += [(j.type, j.body_b, j.frame_b, j.body_a) for j in scene.joints]
     out = []
-    for joint in moves:
-        a, b = joint.body_a, joint.body_b
-        if not isinstance(joint.type, (HingeJoint, BallJoint, DistanceJoint)):
+    for kind, support, frame, body in ends:
+        pivots = isinstance(kind, (HingeJoint, BallJoint, DistanceJoint))
+        if not pivots or moves(support) or not moves(body):
             continue
-        frame = joint.frame_a
-        if a >= 0 and dynamic[a]:
-            if dynamic[b]:
-                continue
-            a, b, frame = b, a, joint.frame_b
-        elif not dynamic[b]:
-            continue
-        rotation, position = poses[a] if a >= 0 else (np.eye(3), np.zeros(3))
+        rotation, position = poses[support] if support >= 0 else (np.eye(3), np.zeros(3))
         pivot = rotation @ np.asarray(frame.position, float) + position
-        hanging = {b}
-        while more := {
-            body
-            for other in moves
-            for body, mate in ((other.body_a, other.body_b), (other.body_b, other.body_a))
-            if mate in hanging and body >= 0 and dynamic[body] and body not in hanging
-        }:
+        hanging = {body}
+        while more := {b for _, a, _, b in ends if a in hanging and moves(b)} - hanging:
             hanging |= more
-        points = np.concatenate([room[body] for body in hanging])
+        points = np.concatenate([room[b] for b in hanging])
         if len(points):
             out.append(_around(pivot, np.linalg.norm(points - pivot, axis=1).max()))
     return out
