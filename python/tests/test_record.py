@@ -108,7 +108,7 @@ def test_a_busy_batch_is_recorded_on_and_closed_later(batch, tmp_path):
     recorder = record.Recorder(batch, tmp_path / "run.h5", every=0)
     dumps = record.LostWorldDumps(batch, tmp_path / "lost")
     batch.add_force((np.inf, 0, 0), bodies=0, ids=[3])
-    thread = threading.Thread(target=batch.step, args=(30_000,))
+    thread = threading.Thread(target=batch.step, args=(100_000,))
     thread.start()
     refused = 0
     while thread.is_alive() and not refused:
