@@ -27,8 +27,8 @@ struct TaskPrograms {
   std::vector<int> observations, rewards;  // rows of `after`
   int terminated, truncated;
   Memory memory;
-  std::uint64_t
-      fingerprint;  // of all this: of what functions of the user's do, only where they are
+  // Of all this; of a user's function only where it stands, since what it does cannot be told.
+  std::uint64_t fingerprint;
 };
 
 // The number type's side of an Environment.
