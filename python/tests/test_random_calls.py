@@ -3,6 +3,7 @@
 10,000 in all, which tools of the kind of AddressSanitizer can look at from below.
 """
 
+import os
 import random
 
 import numpy as np
@@ -89,15 +90,7 @@ def call_at_random(make, methods, fitting, seed, calls, now_and_then):
     return worked, raised
 
 
-def widest():
-    """Sanitizer builds have float32 alone."""
-    try:
-        return mw.Batch("ball2d", precision="f64").precision
-    except ValueError:
-        return "f32"
-
-
-WIDEST = widest()
+WIDEST = os.environ.get("MW_PRECISIONS", "f64")  # sanitizer builds have float32 alone
 BATCHES = [
     lambda: lander(sleep=True, observe=["motion", "contacts"], rays=[mw.Ray()]),
     lambda: mw.Batch(crates(), worlds=5, threads=2, precision=WIDEST),

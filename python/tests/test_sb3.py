@@ -73,3 +73,12 @@ def test_episodes_end_as_stable_baselines_has_it(VecEnv):
 def test_other_autoresets_are_refused(VecEnv):
     with pytest.raises(ValueError, match="SAME_STEP"):
         VecEnv("CartPole", 2, autoreset_mode="NextStep")
+
+
+def test_it_renders(VecEnv):
+    pytest.importorskip("matplotlib")
+    env = VecEnv("CartPole", 2, render_mode="rgb_array")
+    env.reset()
+    frames = env.get_images()
+    assert env.render_mode == "rgb_array" and len(frames) == 2 and frames[0].shape == (400, 600, 3)
+    assert not VecEnv("CartPole", 2).get_images()
