@@ -1,0 +1,13 @@
+// What memory the machine has, for those who say no before they ask it for more.
+#pragma once
+
+#include <string>
+
+namespace manyworlds {
+
+// Bytes that a process may have: of the machine, of its container (cgroup v2), of its address space
+// (RLIMIT_AS), whichever is least; infinity where none says.
+double machine_memory();
+std::string gigabytes(double bytes);  // "12.3 GB"
+
+}  // namespace manyworlds
