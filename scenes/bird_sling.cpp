@@ -37,9 +37,9 @@ Scene bird_sling() {
     const int boxes = kRows + 1 - row;
     for (int k = 0; k < boxes; ++k) {
       const double x = 2 + (k - (boxes - 1) / 2.0) * 1.1 * kSide;
-      const int box = add_body(scene, "box" + std::to_string(row) + "." + std::to_string(k),
-                               {x, (row + 0.5) * kSide, 0}, Polygon::box(kSide / 2, kSide / 2));
-      scene.bodies[static_cast<std::size_t>(box)].jitter.position = {0.01, 0, 0};
+      const BodyId box = add_body(scene, "box" + std::to_string(row) + "." + std::to_string(k),
+                                  {x, (row + 0.5) * kSide, 0}, Polygon::box(kSide / 2, kSide / 2));
+      scene.at(box).jitter.position = {0.01, 0, 0};
     }
   }
   return scene;

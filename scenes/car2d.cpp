@@ -48,7 +48,7 @@ Scene car2d() {
   chassis.jitter.linear_velocity = {1, 0, 0};
   chassis.shapes.push_back(shape_of(
       Polygon{{{-1.5, -0.25}, {1.5, -0.25}, {1.5, 0.05}, {0.5, 0.45}, {-1.2, 0.5}, {-1.5, 0.1}}}));
-  const int car = scene.add(chassis);
+  const BodyId car = scene.add(chassis);
   const double quarter_turn = std::sqrt(0.5);
   for (const double x : {-1.0, 1.0}) {
     Body wheel;
@@ -57,12 +57,12 @@ Scene car2d() {
     wheel.jitter.with = car;
     wheel.shapes.push_back(shape_of(Circle{0.4}));
     wheel.shapes.back().material.friction = 0.9;
-    const int body = scene.add(wheel);
+    const BodyId body = scene.add(wheel);
     WheelJoint suspension{Spring{0, 0, 3, 0.5}, Limit{-0.25, 0.25, std::nullopt}, std::nullopt};
     if (x < 0) suspension.drive = Drive{0, -15, std::nullopt, 4};
     // The wheel moves along x of this frame: up.
     const Frame frame{wheel.position, Quat(quarter_turn, 0, 0, quarter_turn)};
-    const int joint = scene.add(joint_at(scene, car, body, frame, suspension));
+    const JointId joint = scene.add(joint_at(scene, car, body, frame, suspension));
     if (x > 0) continue;
     Control throttle;
     throttle.name = "throttle";  // rad/s, positive forward

@@ -60,15 +60,16 @@ Scene car3d() {
   chassis.jitter.angle = 0.05;
   chassis.shapes.push_back(shape_of(Box{{1.6, 0.4, 0.2}}));
   chassis.shapes.back().density = 300;
-  const int car = scene.add(chassis);
+  const BodyId car = scene.add(chassis);
 
-  const auto wheel_at = [&](const std::string& name, int carrier, const Vec3& place, bool driven) {
+  const auto wheel_at = [&](const std::string& name, BodyId carrier, const Vec3& place,
+                            bool driven) {
     Body wheel;
     wheel.name = name + " wheel";
     wheel.position = place;
     wheel.jitter.with = car;
     wheel.shapes.push_back(wheel_shape());
-    const int body = scene.add(wheel);
+    const BodyId body = scene.add(wheel);
     // Gives way by 6 cm under the car's weight.
     WheelJoint joint{Spring{12000, 800, 0, 0}, Limit{-0.2, 0.2, std::nullopt}, std::nullopt};
     if (driven) joint.drive = Drive{0, 0, std::nullopt, 400};
@@ -78,7 +79,7 @@ Scene car3d() {
   };
   for (const double side : {1.0, -1.0}) {
     const std::string name = side > 0 ? "rear left" : "rear right";
-    const int joint = wheel_at(name, car, {-1.1, 0.85 * side, 0.42}, true);
+    const JointId joint = wheel_at(name, car, {-1.1, 0.85 * side, 0.42}, true);
     scene.controls.push_back(speed_of(name, joint, 30, 12));
   }
   for (const double side : {1.0, -1.0}) {
@@ -90,9 +91,10 @@ Scene car3d() {
     knuckle.jitter.with = car;
     knuckle.shapes.push_back(shape_of(Sphere{0.2}));
     knuckle.shapes.back().filter.mask = 0;
-    const int body = scene.add(knuckle);
+    const BodyId body = scene.add(knuckle);
     const HingeJoint pivot{Limit{-0.6, 0.6, std::nullopt}, Drive{0, 0, Spring{0, 0, 8, 1}}};
-    const int steering = scene.add(joint_at(scene, car, body, {place, Quat::Identity()}, pivot));
+    const JointId steering =
+        scene.add(joint_at(scene, car, body, {place, Quat::Identity()}, pivot));
     wheel_at(name, body, place, false);
     Control angle = speed_of(name + " steering", steering, 0.5, 0);
     angle.kind = ControlKind::target_position;  // rad, positive to the left

@@ -40,8 +40,8 @@ void add_gate(Scene& scene) {
   seesaw.position = {4.2, kPivot, 0};
   seesaw.shapes = {block_at(0, 0, 1.9, 0.06), block_at(-1.85, 0.26, 0.05, 0.2),
                    block_at(-0.75, 0.26, 0.05, 0.2), block_at(1.8, -0.34, 0.1, 0.28)};
-  const int gate = scene.add(seesaw);
-  scene.add(joint_at(scene, -1, gate, frame_at(4.2, kPivot),
+  const BodyId gate = scene.add(seesaw);
+  scene.add(joint_at(scene, {}, gate, frame_at(4.2, kPivot),
                      HingeJoint{Limit{0, 0.4, std::nullopt}, std::nullopt}));
 }
 
@@ -52,8 +52,8 @@ void add_bucket_and_flag(Scene& scene) {
   bucket.linear_drag = bucket.angular_drag = 0.5;
   bucket.shapes = {block_at(0, 0, 0.5, 0.05), block_at(-0.45, 0.4, 0.05, 0.35),
                    block_at(0.45, 0.4, 0.05, 0.35)};
-  const int light = scene.add(bucket);
-  const int heavy = add_body(scene, "flag", {10.5, 0.3, 0}, Polygon::box(0.3, 0.3));
+  const BodyId light = scene.add(bucket);
+  const BodyId heavy = add_body(scene, "flag", {10.5, 0.3, 0}, Polygon::box(0.3, 0.3));
   Joint rope;
   rope.name = "rope";
   rope.type = PulleyJoint{{8.2, kPulley, 0}, {10.5, kPulley, 0}, 1, std::nullopt};

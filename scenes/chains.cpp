@@ -22,10 +22,10 @@ void add_links(Scene& scene, const Quat& along_x, const Vec3& stir, const JointT
     link.shapes.back().rotation = along_x;
     link.shapes.back().filter.mask = 0;
     link.jitter.linear_velocity = stir;
-    const int body = scene.add(link);
+    const BodyId body = scene.add(link);
     Frame end;
     end.position.x() = i;
-    scene.add(joint_at(scene, body - 1, body, end, joint));
+    scene.add(joint_at(scene, BodyId(body.index() - 1), body, end, joint));
   }
 }
 

@@ -20,7 +20,7 @@ Scene cradle_joints() {
     const double x = i * (2 * kRadius + kGap);
     const Vec3 place(x, -kLength, 0);
     const Vec3 raised(x - kLength * kSine, -kLength * std::sqrt(1 - kSine * kSine), 0);
-    const int ball =
+    const BodyId ball =
         add_body(scene, "ball" + std::to_string(i), i == 0 ? raised : place, Circle{kRadius});
     Body& body = scene.bodies.back();
     body.shapes[0].material = {.friction = 0, .restitution = 1};

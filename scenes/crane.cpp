@@ -15,7 +15,7 @@ Scene crane() {
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-20, -0.5, -1), Vec3(20, 20, 1));
   scene.add(planar_ground());
 
-  const int trolley = add_body(scene, "trolley", {0, kHeight, 0}, Polygon::box(0.8, 0.3));
+  const BodyId trolley = add_body(scene, "trolley", {0, kHeight, 0}, Polygon::box(0.8, 0.3));
   scene.bodies.back().jitter.position = {2, 0, 0};
   Body rope;
   rope.name = "rope";
@@ -24,22 +24,22 @@ Scene crane() {
   rope.jitter.linear_velocity = {0.5, 0, 0};
   rope.shapes.push_back(shape_of(Capsule{0.04, kRope / 2}));
   rope.shapes.back().filter.mask = 0;
-  const int line = scene.add(rope);
+  const BodyId line = scene.add(rope);
   Body load;
   load.name = "load";
   load.position = {0, kHeight - kRope, 0};
   load.linear_drag = 0.3;  // what lets it come to rest
   load.jitter.with = trolley;
   load.shapes.push_back(shape_of(Polygon::box(0.5, 0.5)));
-  const int hook = scene.add(load);
+  const BodyId hook = scene.add(load);
 
   const SliderJoint rail{Limit{-8, 8, std::nullopt}, Drive{0, 0, std::nullopt, 2000}};
-  const int drive = scene.add(joint_at(scene, -1, trolley, frame_at(0, kHeight), rail));
+  const JointId drive = scene.add(joint_at(scene, {}, trolley, frame_at(0, kHeight), rail));
   scene.add(joint_at(scene, trolley, line, frame_at(0, kHeight), HingeJoint{}));
   const double half = std::sqrt(0.5);
   const Frame down{load.position, Quat(half, 0, 0, -half)};  // its x points down
   const SliderJoint winch{Limit{-4, 5, std::nullopt}, Drive{0, 0, std::nullopt, 1000}};
-  const int hoist = scene.add(joint_at(scene, line, hook, down, winch));
+  const JointId hoist = scene.add(joint_at(scene, line, hook, down, winch));
   scene.controls = {speed_of("trolley", drive, 3, 1), speed_of("lower", hoist, 1, 0)};
 
   for (int i = 0; i < 3; ++i) {

@@ -22,20 +22,19 @@ Scene bridge() {
     banks.shapes.push_back(bank);
   }
   scene.add(banks);
-  int last = -1;
+  BodyId last;
   for (int i = 0; i < kPlanks; ++i) {
     const double x = i - kPlanks / 2.0;
-    const int plank = add_body(scene, "plank" + std::to_string(i), {x + 0.5, kHeight - 0.1, 0},
-                               Polygon::box(0.48, 0.1));
+    const BodyId plank = add_body(scene, "plank" + std::to_string(i), {x + 0.5, kHeight - 0.1, 0},
+                                  Polygon::box(0.48, 0.1));
     scene.add(joint_at(scene, last, plank, frame_at(x, kHeight - 0.1), HingeJoint{}));
     last = plank;
   }
-  scene.add(joint_at(scene, -1, last, frame_at(kPlanks / 2.0, kHeight - 0.1), HingeJoint{}));
+  scene.add(joint_at(scene, {}, last, frame_at(kPlanks / 2.0, kHeight - 0.1), HingeJoint{}));
   for (int i = 0; i < kBoxes; ++i) {
-    const int box = add_body(scene, "box" + std::to_string(i), {1.5 * i - 3.75, kHeight + 1.5, 0},
-                             Polygon::box(0.4, 0.4));
-    scene.bodies[static_cast<std::size_t>(box)].jitter = {
-        {0.2, 0.5, 0}, Vec3::Zero(), 1, false, -1};
+    const BodyId box = add_body(scene, "box" + std::to_string(i),
+                                {1.5 * i - 3.75, kHeight + 1.5, 0}, Polygon::box(0.4, 0.4));
+    scene.at(box).jitter = {{0.2, 0.5, 0}, Vec3::Zero(), 1, false, {}};
   }
   return scene;
 }
@@ -49,17 +48,17 @@ Scene ball_and_chain() {
   scene.options.substeps = 12;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-30, -0.5, -1), Vec3(30, 60, 1));
   scene.add(planar_ground());
-  int last = -1;
+  BodyId last;
   for (int i = 0; i < kLinks; ++i) {
-    const int link = add_body(scene, "link" + std::to_string(i), {i + 0.5, kHeight, 0},
-                              Polygon::box(0.5, 0.125));
-    scene.bodies[static_cast<std::size_t>(link)].shapes[0].filter.mask = 0;
-    scene.bodies[static_cast<std::size_t>(link)].jitter.linear_velocity = {0, 0.1, 0};
+    const BodyId link = add_body(scene, "link" + std::to_string(i), {i + 0.5, kHeight, 0},
+                                 Polygon::box(0.5, 0.125));
+    scene.at(link).shapes[0].filter.mask = 0;
+    scene.at(link).jitter.linear_velocity = {0, 0.1, 0};
     scene.add(joint_at(scene, last, link, frame_at(i, kHeight), HingeJoint{}));
     last = link;
   }
-  const int ball = add_body(scene, "ball", {kLinks + 2, kHeight, 0}, Circle{2});
-  scene.bodies[static_cast<std::size_t>(ball)].shapes[0].filter.mask = 0;
+  const BodyId ball = add_body(scene, "ball", {kLinks + 2, kHeight, 0}, Circle{2});
+  scene.at(ball).shapes[0].filter.mask = 0;
   scene.add(joint_at(scene, last, ball, frame_at(kLinks, kHeight), HingeJoint{}));
   return scene;
 }
@@ -72,21 +71,21 @@ Scene joint_grid() {
   for (int row = 0; row < kSide; ++row) {
     for (int column = 0; column < kSide; ++column) {
       const Vec3 place(column - (kSide - 1) / 2.0, -row, 0);
-      const int disc =
+      const BodyId disc =
           add_body(scene, "disc" + std::to_string(row * kSide + column), place, Circle{0.4});
       Body& body = scene.bodies.back();
       body.shapes[0].filter.mask = 0;
       body.jitter.linear_velocity = {0.2, 0.2, 0};
       if (column > 0) {
-        scene.add(
-            joint_at(scene, disc - 1, disc, frame_at(place.x() - 0.5, place.y()), HingeJoint{}));
+        scene.add(joint_at(scene, BodyId(disc.index() - 1), disc,
+                           frame_at(place.x() - 0.5, place.y()), HingeJoint{}));
       }
       if (row > 0) {
-        scene.add(joint_at(scene, disc - kSide, disc, frame_at(place.x(), place.y() + 0.5),
-                           HingeJoint{}));
+        scene.add(joint_at(scene, BodyId(disc.index() - kSide), disc,
+                           frame_at(place.x(), place.y() + 0.5), HingeJoint{}));
       }
       if (row == 0 && (column == 0 || column == kSide - 1)) {
-        scene.add(joint_at(scene, -1, disc, frame_at(place.x(), place.y()), HingeJoint{}));
+        scene.add(joint_at(scene, {}, disc, frame_at(place.x(), place.y()), HingeJoint{}));
       }
     }
   }

@@ -8,7 +8,7 @@
 namespace manyworlds::scenes {
 namespace {
 
-constexpr double kHalfWidth = 20;  // m, of the plain
+constexpr double kPlainHalfWidth = 20;  // m, of the plain
 
 void add_ground(Scene& scene) {
   Body plain = planar_ground({0.8, 0});
@@ -32,7 +32,8 @@ Scene lunar_lander() {
   Scene scene = planar_scene("lunar-lander");
   scene.options.gravity = {0, -1.62, 0};
   scene.options.density = 5;
-  scene.options.bounds = Eigen::AlignedBox3d(Vec3(-kHalfWidth, -0.5, -1), Vec3(kHalfWidth, 40, 1));
+  scene.options.bounds =
+      Eigen::AlignedBox3d(Vec3(-kPlainHalfWidth, -0.5, -1), Vec3(kPlainHalfWidth, 40, 1));
   add_ground(scene);
 
   Body cabin;
@@ -43,7 +44,7 @@ Scene lunar_lander() {
   cabin.jitter.angle = 0.2;
   cabin.shapes.push_back(shape_of(Polygon{
       {{-0.6, -0.35}, {0.6, -0.35}, {0.6, 0.05}, {0.35, 0.5}, {-0.35, 0.5}, {-0.6, 0.05}}}));
-  const int body = scene.add(cabin);
+  const BodyId body = scene.add(cabin);
   const double mass = mass_properties(scene, cabin).mass;
   for (const double side : {-1.0, 1.0}) {
     const double lean = side * 0.2;  // sine of half its angle
@@ -54,7 +55,7 @@ Scene lunar_lander() {
     leg.jitter.with = body;
     leg.shapes.push_back(shape_of(Capsule{0.08, 0.25}));
     leg.shapes.back().material.friction = 0.8;
-    const int lower = scene.add(leg);
+    const BodyId lower = scene.add(leg);
     const HingeJoint hip{Limit{-0.5, 0.5, std::nullopt}, Drive{0, 0, Spring{0, 0, 5, 0.7}}};
     const Frame frame{cabin.position + Vec3(side * 0.6, -0.25, 0), Quat::Identity()};
     scene.add(joint_at(scene, body, lower, frame, hip));

@@ -11,10 +11,10 @@ Scene pulley() {
   Scene scene = planar_scene("pulley");
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-10, -0.5, -1), Vec3(10, 20, 1));
   scene.add(planar_ground());
-  const int light = add_body(scene, "light", {-1, 4, 0}, Polygon::box(0.5, 0.5));
-  const int heavy = add_body(scene, "heavy", {1, 4, 0}, Polygon::box(0.5, 0.6));
-  for (const int body : {light, heavy}) {
-    scene.bodies[static_cast<std::size_t>(body)].jitter.linear_velocity = {0.1, 0, 0};
+  const BodyId light = add_body(scene, "light", {-1, 4, 0}, Polygon::box(0.5, 0.5));
+  const BodyId heavy = add_body(scene, "heavy", {1, 4, 0}, Polygon::box(0.5, 0.6));
+  for (const BodyId body : {light, heavy}) {
+    scene.at(body).jitter.linear_velocity = {0.1, 0, 0};
   }
   Joint rope;
   rope.name = "rope";
@@ -30,19 +30,19 @@ Scene elevator() {
   Scene scene = planar_scene("elevator");
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-10, -0.5, -1), Vec3(10, 30, 1));
   scene.add(planar_ground());
-  const int platform = add_body(scene, "platform", {0, 0.2, 0}, Polygon::box(2, 0.15));
+  const BodyId platform = add_body(scene, "platform", {0, 0.2, 0}, Polygon::box(2, 0.15));
   const double half = std::sqrt(0.5);
   const Frame rail{Vec3(0, 0.2, 0), Quat(half, 0, 0, half)};  // its x points up
   const SliderJoint slider{Limit{0, 6, std::nullopt}, Drive{0, 0, Spring{0, 0, 1, 1}, 200}};
-  const int joint = scene.add(joint_at(scene, -1, platform, rail, slider));
+  const JointId joint = scene.add(joint_at(scene, {}, platform, rail, slider));
   Control height = speed_of("height", joint, 6, 4);
   height.kind = ControlKind::target_position;
   height.low = 0;
   scene.controls.push_back(height);
   for (int i = 0; i < 3; ++i) {
-    const int box =
+    const BodyId box =
         add_body(scene, "box" + std::to_string(i), {1.2 * (i - 1), 0.8, 0}, Polygon::box(0.4, 0.4));
-    scene.bodies[static_cast<std::size_t>(box)].jitter.position = {0.1, 0.05, 0};
+    scene.at(box).jitter.position = {0.1, 0.05, 0};
   }
   return scene;
 }
@@ -52,16 +52,16 @@ Scene windmill() {
   Scene scene = planar_scene("windmill");
   scene.options.bounds = planar_bounds(4);
   scene.add(planar_bin(4));
-  const int sails = add_body(scene, "sails", {0, 2.5, 0}, Polygon::box(2, 0.1));
-  scene.bodies[static_cast<std::size_t>(sails)].shapes.push_back(shape_of(Polygon::box(0.1, 2)));
+  const BodyId sails = add_body(scene, "sails", {0, 2.5, 0}, Polygon::box(2, 0.1));
+  scene.at(sails).shapes.push_back(shape_of(Polygon::box(0.1, 2)));
   const Drive motor{0, 2, std::nullopt, 20};
-  const int joint =
-      scene.add(joint_at(scene, -1, sails, frame_at(0, 2.5), HingeJoint{std::nullopt, motor}));
+  const JointId joint =
+      scene.add(joint_at(scene, {}, sails, frame_at(0, 2.5), HingeJoint{std::nullopt, motor}));
   scene.controls.push_back(speed_of("speed", joint, 6, 2));
   for (int i = 0; i < 16; ++i) {
-    const int ball = add_body(scene, "ball" + std::to_string(i),
-                              {1.5 * (i % 4) - 2.25, 6 + 0.8 * (i / 4), 0}, Circle{0.3});
-    scene.bodies[static_cast<std::size_t>(ball)].jitter.position = {0.3, 0.05, 0};
+    const BodyId ball = add_body(scene, "ball" + std::to_string(i),
+                                 {1.5 * (i % 4) - 2.25, 6 + 0.8 * (i / 4), 0}, Circle{0.3});
+    scene.at(ball).jitter.position = {0.3, 0.05, 0};
   }
   return scene;
 }
@@ -73,7 +73,7 @@ Scene four_bar() {
   const double pi = 3.14159265358979323846;
   const auto bar = [&](const char* name, const Vec2& from, const Vec2& to) {
     const Vec2 along = to - from, middle = (from + to) / 2;
-    const int body =
+    const BodyId body =
         add_body(scene, name, {middle.x(), middle.y(), 0}, Capsule{0.05, along.norm() / 2});
     Shape& shape = scene.bodies.back().shapes[0];
     shape.filter.mask = 0;
@@ -82,15 +82,15 @@ Scene four_bar() {
     return body;
   };
   const Vec2 a(0, 0), b(0, 1), c(3, 2.4), d(4, 0);
-  const int crank = bar("crank", a, b), coupler = bar("coupler", b, c),
-            rocker = bar("rocker", c, d);
-  scene.bodies[static_cast<std::size_t>(crank)].jitter.linear_velocity = {0.1, 0.1, 0};
+  const BodyId crank = bar("crank", a, b), coupler = bar("coupler", b, c),
+               rocker = bar("rocker", c, d);
+  scene.at(crank).jitter.linear_velocity = {0.1, 0.1, 0};
   const Drive motor{0, 3, std::nullopt, 100};
-  const int joint =
-      scene.add(joint_at(scene, -1, crank, frame_at(a.x(), a.y()), HingeJoint{{}, motor}));
+  const JointId joint =
+      scene.add(joint_at(scene, {}, crank, frame_at(a.x(), a.y()), HingeJoint{{}, motor}));
   scene.add(joint_at(scene, crank, coupler, frame_at(b.x(), b.y()), HingeJoint{}));
   scene.add(joint_at(scene, coupler, rocker, frame_at(c.x(), c.y()), HingeJoint{}));
-  scene.add(joint_at(scene, -1, rocker, frame_at(d.x(), d.y()), HingeJoint{}));
+  scene.add(joint_at(scene, {}, rocker, frame_at(d.x(), d.y()), HingeJoint{}));
   scene.controls.push_back(speed_of("speed", joint, 10, 3));
   return scene;
 }

@@ -8,7 +8,7 @@
 namespace manyworlds::scenes {
 namespace {
 
-constexpr double kHalfWidth = 2;
+constexpr double kBinHalfWidth = 2;
 
 // Two balls on a bar.
 Body dumbbell() {
@@ -54,8 +54,8 @@ Body sphere(int i) {
 Scene mixed_pile() {
   Scene scene = spatial_scene("mixed-pile");
   scene.options.length_unit = 0.8;
-  scene.options.bounds = spatial_bounds(kHalfWidth);
-  scene.add(spatial_bin(kHalfWidth));
+  scene.options.bounds = spatial_bounds(kBinHalfWidth);
+  scene.add(spatial_bin(kBinHalfWidth));
   for (int i = 0; i < 26; ++i) {
     Body body = i == 24      ? dumbbell()
                 : i == 25    ? angle_bar()

@@ -80,7 +80,7 @@ Eigen::AlignedBox3d spatial_bounds(double half_width) {
   return {Vec3(-wall, -wall, -kWallMargin), Vec3(wall, wall, kCeiling)};
 }
 
-int add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry) {
+BodyId add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry) {
   Body body;
   body.name = std::move(name);
   body.position = position;
@@ -90,7 +90,7 @@ int add_body(Scene& scene, std::string name, const Vec3& position, Geometry geom
 
 Frame frame_at(double x, double y) { return {Vec3(x, y, 0), Quat::Identity()}; }
 
-Control thrust(std::string name, int body, const Vec3& point, const Vec3& direction, double low,
+Control thrust(std::string name, BodyId body, const Vec3& point, const Vec3& direction, double low,
                double high) {
   Control out;
   out.name = std::move(name);
@@ -102,7 +102,7 @@ Control thrust(std::string name, int body, const Vec3& point, const Vec3& direct
   return out;
 }
 
-Control torque(std::string name, int body, double most, const Vec3& axis) {
+Control torque(std::string name, BodyId body, double most, const Vec3& axis) {
   Control out;
   out.name = std::move(name);
   out.kind = ControlKind::torque;
@@ -112,7 +112,7 @@ Control torque(std::string name, int body, double most, const Vec3& axis) {
   return out;
 }
 
-Control speed_of(std::string name, int joint, double most, double initial) {
+Control speed_of(std::string name, JointId joint, double most, double initial) {
   Control out;
   out.name = std::move(name);
   out.kind = ControlKind::target_speed;

@@ -29,8 +29,8 @@ Eigen::AlignedBox3d spatial_bounds(double half_width);
 // A shape at the body frame with the default material.
 Shape shape_of(Geometry geometry);
 
-// Adds a dynamic body of one shape; returns its index.
-int add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry);
+// Adds a dynamic body of one shape; returns it.
+BodyId add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry);
 
 // Hills about height 0, up to `height` m high, 4 m from top to top; shapes.cpp.
 HeightField rough_field(int columns, int rows, double cell, double height);
@@ -40,11 +40,11 @@ Frame frame_at(double x, double y);
 
 // Thrust along a direction at a point of a body (both in its frame), N, and torque about z or
 // another axis of the body, from -most to most, N m.
-Control thrust(std::string name, int body, const Vec3& point, const Vec3& direction, double low,
+Control thrust(std::string name, BodyId body, const Vec3& point, const Vec3& direction, double low,
                double high);
-Control torque(std::string name, int body, double most, const Vec3& axis = {0, 0, 1});
+Control torque(std::string name, BodyId body, double most, const Vec3& axis = {0, 0, 1});
 
 // The target speed of a joint's drive, from -most to most, m/s or rad/s.
-Control speed_of(std::string name, int joint, double most, double initial);
+Control speed_of(std::string name, JointId joint, double most, double initial);
 
 }  // namespace manyworlds::scenes

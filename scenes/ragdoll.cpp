@@ -16,47 +16,49 @@ class Doll {
  public:
   Doll(Scene& scene, const Vec3& pelvis) : scene_(scene), origin_(pelvis) {}
 
-  int box(const char* name, const Vec3& at, const Vec3& half) { return add(name, at, Box{half}); }
-  int ball(const char* name, const Vec3& at, double radius) {
+  BodyId box(const char* name, const Vec3& at, const Vec3& half) {
+    return add(name, at, Box{half});
+  }
+  BodyId ball(const char* name, const Vec3& at, double radius) {
     return add(name, at, Sphere{radius});
   }
-  int limb(const char* name, const Vec3& at, double radius, double half_length) {
+  BodyId limb(const char* name, const Vec3& at, double radius, double half_length) {
     return add(name, at, Capsule{radius, half_length});
   }
   // Swings within a cone, half angle in rad, about the direction in which the limb hangs.
-  void socket(int parent, int child, const Vec3& at, double cone, double twist) {
+  void socket(BodyId parent, BodyId child, const Vec3& at, double cone, double twist) {
     join(parent, child, {at, Quat::Identity()}, BallJoint{cone, Limit{-twist, twist, {}}});
   }
   // Bends about y, which points to the doll's left: from `low` to `high`.
-  void hinge(int parent, int child, const Vec3& at, double low, double high) {
+  void hinge(BodyId parent, BodyId child, const Vec3& at, double low, double high) {
     const double half = std::sqrt(0.5);
     join(parent, child, {at, Quat(half, -half, 0, 0)}, HingeJoint{Limit{low, high, {}}, {}});
   }
 
  private:
-  int add(const char* name, const Vec3& at, Geometry geometry) {
+  BodyId add(const char* name, const Vec3& at, Geometry geometry) {
     Body body;
     body.name = name;
     body.position = origin_ + at;
     body.shapes.push_back(shape_of(std::move(geometry)));
     body.linear_velocity = {2, 0, 0};
-    const int index = scene_.add(body);
-    if (pelvis_ < 0) {
+    const BodyId index = scene_.add(body);
+    if (!pelvis_) {
       pelvis_ = index;
-      scene_.bodies.back().jitter = {{0.2, 0.5, 0.1}, {0.5, 0.5, 0}, 0.5, false, -1};
+      scene_.bodies.back().jitter = {{0.2, 0.5, 0.1}, {0.5, 0.5, 0}, 0.5, false, {}};
     } else {
       scene_.bodies.back().jitter.with = pelvis_;
     }
     return index;
   }
-  void join(int parent, int child, Frame frame, JointType type) {
+  void join(BodyId parent, BodyId child, Frame frame, JointType type) {
     frame.position += origin_;
     scene_.add(joint_at(scene_, parent, child, frame, std::move(type)));
   }
 
   Scene& scene_;
   Vec3 origin_;
-  int pelvis_ = -1;  // the first of its bodies, with which the others begin
+  BodyId pelvis_;  // the first of its bodies, with which the others begin
 };
 
 void add_stair(Scene& scene) {
@@ -85,22 +87,22 @@ Scene ragdoll() {
   add_stair(scene);
 
   Doll doll(scene, {-0.6, 0, kSteps * kRise + 1});
-  const int pelvis = doll.box("pelvis", {0, 0, 0}, {0.1, 0.16, 0.09});
-  const int chest = doll.box("chest", {0, 0, 0.35}, {0.11, 0.18, 0.2});
-  const int head = doll.ball("head", {0, 0, 0.72}, 0.12);
+  const BodyId pelvis = doll.box("pelvis", {0, 0, 0}, {0.1, 0.16, 0.09});
+  const BodyId chest = doll.box("chest", {0, 0, 0.35}, {0.11, 0.18, 0.2});
+  const BodyId head = doll.ball("head", {0, 0, 0.72}, 0.12);
   doll.socket(pelvis, chest, {0, 0, 0.12}, 0.5, 0.4);
   doll.socket(chest, head, {0, 0, 0.58}, 0.6, 0.8);
   for (const double side : {-1.0, 1.0}) {
     const bool left = side > 0;
-    const int upper =
+    const BodyId upper =
         doll.limb(left ? "left upper arm" : "right upper arm", {0, side * 0.25, 0.35}, 0.05, 0.11);
-    const int fore =
+    const BodyId fore =
         doll.limb(left ? "left forearm" : "right forearm", {0, side * 0.25, 0.06}, 0.045, 0.1);
     doll.socket(chest, upper, {0, side * 0.25, 0.5}, 1.4, 0.8);
     doll.hinge(upper, fore, {0, side * 0.25, 0.2}, -2.2, 0.05);
-    const int thigh =
+    const BodyId thigh =
         doll.limb(left ? "left thigh" : "right thigh", {0, side * 0.1, -0.3}, 0.075, 0.14);
-    const int shin =
+    const BodyId shin =
         doll.limb(left ? "left shin" : "right shin", {0, side * 0.1, -0.73}, 0.06, 0.15);
     doll.socket(pelvis, thigh, {0, side * 0.1, -0.09}, 1.0, 0.4);
     doll.hinge(thigh, shin, {0, side * 0.1, -0.52}, -0.05, 2.2);

@@ -74,8 +74,8 @@ Scene hills() {
   scene.add(ground);
   for (int i = 0; i < 24; ++i) {
     const Vec3 place(1.3 * (i % 4) - 1.95, 1.3 * (i / 4 % 3) - 1.3, 1.8 + 1.2 * (i / 12));
-    const int body = add_body(scene, "body" + std::to_string(i), place, shape_number(i));
-    Jitter& jitter = scene.bodies[static_cast<std::size_t>(body)].jitter;
+    const BodyId body = add_body(scene, "body" + std::to_string(i), place, shape_number(i));
+    Jitter& jitter = scene.at(body).jitter;
     jitter.position = {0.1, 0.1, 0.05};
     jitter.any_orientation = true;
   }
@@ -108,9 +108,9 @@ Scene pebbles() {
         Polygon{
             {{-size, -0.5 * size}, {size, -0.5 * size}, {size, 0.5 * size}, {-size, 0.5 * size}},
             0.2 * size}};
-    const int body = add_body(scene, "pebble" + std::to_string(i), place,
-                              shapes[static_cast<std::size_t>(i % 4)]);
-    Jitter& jitter = scene.bodies[static_cast<std::size_t>(body)].jitter;
+    const BodyId body = add_body(scene, "pebble" + std::to_string(i), place,
+                                 shapes[static_cast<std::size_t>(i % 4)]);
+    Jitter& jitter = scene.at(body).jitter;
     jitter.position = {0.1, 0.05, 0};
     jitter.angle = 1.5;
   }

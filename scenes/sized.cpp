@@ -6,6 +6,7 @@
 
 #include "manyworlds/scenes.hpp"
 #include "scenes/parts.hpp"
+#include "src/base/float_mode.hpp"
 
 namespace manyworlds::scenes {
 namespace {
@@ -82,6 +83,7 @@ std::optional<Scene> sized(std::string_view text) {
       throw std::invalid_argument("'" + std::string(text) + "': the size must be a whole number, " +
                                   std::to_string(s.least) + " to " + std::to_string(s.most));
     }
+    const FloatMode mode;
     return s.make(size);
   }
   return std::nullopt;

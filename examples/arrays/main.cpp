@@ -36,15 +36,16 @@ mw::Scene cart_pole() {
   mw::Body cart;
   cart.shapes = {bar(0.25, 0.1, 1)};
   cart.jitter.position = {0.5, 0, 0};
-  const int base = scene.add(cart);
+  const mw::BodyId base = scene.add(cart);
   mw::Body pole;  // its frame is at the hinge
   pole.shapes = {bar(0.02, 0.5, 0.1)};
   pole.shapes[0].position = {0, 0.5, 0};
   pole.jitter.with = base;
   pole.jitter.angle = 0.1;
-  const int upper = scene.add(pole);
-  scene.add(mw::joint_at(scene, -1, base, mw::Frame{}, mw::SliderJoint{}));
-  scene.add(mw::joint_at(scene, base, upper, mw::Frame{}, mw::HingeJoint{}));
+  const mw::BodyId upper = scene.add(pole);
+  const mw::JointId rail = scene.add(mw::joint_at(scene, {}, base, {}, mw::SliderJoint{}));
+  const mw::JointId hinge = scene.add(mw::joint_at(scene, base, upper, {}, mw::HingeJoint{}));
+  scene.at(rail).name = "rail", scene.at(hinge).name = "hinge";
   mw::Control push;
   push.kind = mw::ControlKind::thrust;  // N, along x
   push.body = base;
@@ -60,10 +61,13 @@ mw::Task balancing() {
   task.scene = cart_pole();
   task.actions = {{"push", -1, 1}};
   task.controls = {kMostPush * action()};
-  // Of the rail and of the hinge, whose angle is positive to the left.
-  const mw::Expression travel = joint_position(0), lean = joint_position(1);
-  task.observations = {
-      {"travel", travel}, {"speed", joint_speed(0)}, {"lean", lean}, {"turn", joint_speed(1)}};
+  const mw::JointId rail = task.scene.joint("rail"), hinge = task.scene.joint("hinge");
+  // The hinge's angle is positive to the left.
+  const mw::Expression travel = joint_position(rail), lean = joint_position(hinge);
+  task.observations = {{"travel", travel},
+                       {"speed", joint_speed(rail)},
+                       {"lean", lean},
+                       {"turn", joint_speed(hinge)}};
   task.rewards = {{"upright", 1}, {"off the middle", -0.1 * square(travel)}};
   task.terminated = (abs(lean) > kMostLean) | (abs(travel) > kMostTravel);
   task.most_steps = kMostSteps;

@@ -15,12 +15,11 @@ namespace birds {
 // when it has turned by more than 45 degrees and so lies on another side or on an edge.
 inline constexpr double kFarthest = 0.8;  // m
 
-// The state bodies that are boxes, by their names.
+// The rows of the bodies that are boxes, by their names.
 inline std::vector<int> boxes(const manyworlds::Plan& plan) {
   std::vector<int> out;
   for (int b = 0; b < plan.bodies(); ++b) {
-    const auto i = static_cast<std::size_t>(plan.scene_body(b));
-    if (plan.scene().bodies[i].name.starts_with("box")) out.push_back(b);
+    if (plan.scene().at(plan.body_in_row(b)).name.starts_with("box")) out.push_back(b);
   }
   return out;
 }

@@ -32,18 +32,10 @@ Launch launch_of(int world) {
   return {kFlattest + a * (kSteepest - kFlattest), kSlowest + s * (kFastest - kSlowest)};
 }
 
-int bird_of(const mw::Plan& plan) {
-  for (int b = 0; b < plan.bodies(); ++b) {
-    const auto i = static_cast<std::size_t>(plan.scene_body(b));
-    if (plan.scene().bodies[i].name == "bird") return b;
-  }
-  return -1;
-}
-
 // Slings the birds of all worlds of a batch, the first of which is world `first` of the search.
 void sling(mw::Batch& batch, int first) {
   const auto bodies = static_cast<std::size_t>(batch.bodies());
-  const auto bird = static_cast<std::size_t>(bird_of(batch.plan()));
+  const auto bird = static_cast<std::size_t>(batch.row(batch.body("bird")));
   std::vector<double> velocity(batch.size(mw::Field::linear_velocity));  // [world][body][2]
   batch.read(mw::Field::linear_velocity, velocity);
   for (int w = 0; w < batch.worlds(); ++w) {

@@ -41,11 +41,9 @@ void fly(const State& s, float mass, float gravity, float* thrust) {
 int main() {
   const mw::Plan plan = mw::compile(mw::scenes::find("lunar-lander")->make());
   const mw::Scene& scene = plan.scene();
-  int lander = 0;  // among the bodies with state
+  const int lander = plan.row(plan.body("lander"));
   float mass = 0;  // kg, with its legs
-  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
-    const mw::Body& body = scene.bodies[static_cast<std::size_t>(i)];
-    if (body.name == "lander") lander = plan.state_body(i);
+  for (const mw::Body& body : scene.bodies) {
     if (body.motion == mw::Motion::dynamic) {
       mass += static_cast<float>(mw::mass_properties(scene, body).mass);
     }

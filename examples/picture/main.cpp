@@ -110,8 +110,7 @@ View find_view(const mw::Batch& batch, const std::vector<Pose>& poses) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const int body = static_cast<int>(i) % batch.bodies();
     const mw::Scene& scene = batch.plan().scene();
-    const auto index = static_cast<std::size_t>(batch.plan().scene_body(body));
-    for (const mw::Shape& shape : scene.bodies[index].shapes) {
+    for (const mw::Shape& shape : scene.at(batch.body_in_row(body)).shapes) {
       std::vector<mw::Vec2> corners;
       if (const auto* polygon = std::get_if<mw::Polygon>(&shape.geometry)) {
         for (const mw::Vec2& vertex : polygon->vertices) {
@@ -142,12 +141,11 @@ void draw_world(std::ofstream& svg, const mw::Batch& batch, const Pose* poses, c
   const mw::Scene& scene = batch.plan().scene();
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const mw::Body& body = scene.bodies[b];
-    const int state_body = batch.plan().state_body(static_cast<int>(b));
+    const auto row = batch.plan().find_row(mw::BodyId(static_cast<int>(b)));
     const mw::Mat3 fixed = body.rotation.normalized().toRotationMatrix();
-    const Pose pose = state_body >= 0
-                          ? poses[state_body]
-                          : Pose{body.position.x(), body.position.y(), fixed(0, 0), fixed(1, 0)};
-    svg << "<g fill='" << (state_body < 0 ? "#8d99ae" : kPalette[b % std::size(kPalette)]) << "'>";
+    const Pose pose =
+        row ? poses[*row] : Pose{body.position.x(), body.position.y(), fixed(0, 0), fixed(1, 0)};
+    svg << "<g fill='" << (!row ? "#8d99ae" : kPalette[b % std::size(kPalette)]) << "'>";
     for (const mw::Shape& shape : body.shapes) draw_shape(svg, shape, pose, view);
     svg << "</g>\n";
   }

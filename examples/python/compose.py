@@ -6,7 +6,10 @@
 It is the very CartPole that has a name: the same bits in every step.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
 import manyworlds as mw
 from manyworlds import tasks
@@ -16,12 +19,16 @@ MOST_TRAVEL = 2.4  # m
 MOST_LEAN = 0.20943951  # rad, 12 degrees
 
 
-def ghost(geometry, area, mass, **more):
+def ghost(
+    geometry: mw.Geometry, area: float, mass: float, position: Sequence[float] = (0, 0, 0)
+) -> mw.Shape:
     """A shape that weighs, and collides with nothing."""
-    return mw.Shape(geometry=geometry, density=mass / area, filter=mw.Filter(mask=0), **more)
+    return mw.Shape(
+        geometry=geometry, density=mass / area, filter=mw.Filter(mask=0), position=position
+    )
 
 
-def make_scene():
+def make_scene() -> mw.Scene:
     scene = mw.Scene(space="planar")
     scene.options = mw.Options(dt=0.02, substeps=1, gravity=(0, -9.8, 0), density=1)
     cart = scene.add(
@@ -40,12 +47,13 @@ def make_scene():
     )
     scene.add(scene.joint_at(-1, cart, mw.Frame(), mw.SliderJoint()))
     scene.add(scene.joint_at(cart, pole, mw.Frame(), mw.HingeJoint()))
-    push = dict(kind="thrust", body=cart, direction=(1, 0, 0), low=-MOST_FORCE, high=MOST_FORCE)
-    scene.add(mw.Control(name="push", **push))
+    push = mw.Control(name="push", kind="thrust", body=cart, direction=(1, 0, 0))
+    push.low, push.high = -MOST_FORCE, MOST_FORCE
+    scene.add(push)
     return scene
 
 
-def make_task():
+def make_task() -> mw.Task:
     task = mw.Task(name="CartPole", scene=make_scene(), choices=2, most_steps=500, solved_at=475)
     t = task.terms
     task.controls = [tasks.where(t.action(), MOST_FORCE, -MOST_FORCE)]
@@ -60,10 +68,10 @@ def make_task():
     return task
 
 
-def main():
+def main() -> NDArray[np.int64]:
     worlds = 1000
     env = mw.Environment(make_task(), worlds, seed=7)
-    lengths, done = np.zeros(worlds, int), np.zeros(worlds, bool)
+    lengths, done = np.zeros(worlds, np.int64), np.zeros(worlds, bool)
     while not done.all():
         # Push to where the pole falls (it leans to the left by positive angles).
         lean, turn = env.observations[:, 2], env.observations[:, 3]

@@ -9,16 +9,19 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "manyworlds/executor.hpp"
 #include "manyworlds/fields.hpp"
 #include "manyworlds/listener.hpp"
 #include "manyworlds/observe.hpp"
+#include "manyworlds/pimpl.hpp"
 #include "manyworlds/plan.hpp"
 #include "manyworlds/snapshot.hpp"
 
@@ -36,6 +39,8 @@ std::vector<Isa> available_isas();
 // What a Batch takes when BatchOptions::isa is empty: MANYWORLDS_ISA, else the widest available.
 // Throws std::invalid_argument when MANYWORLDS_ISA names one that is unknown or not available.
 Isa default_isa();
+
+inline constexpr int kMaxThreads = 1024;  // of a Batch, its own or its executor's
 
 struct BatchOptions {
   int worlds = 1;
@@ -104,24 +109,30 @@ struct ContactSummary {
 
 // One contact point at the current state, as the next step would see it.
 struct Contact {
-  int body_a = -1, body_b = -1;    // scene bodies; when one is fixed it is body_a
-  int shape_a = -1, shape_b = -1;  // index in Body::shapes
-  Vec3 normal = Vec3::Zero();      // unit, from A to B, world
-  Vec3 point = Vec3::Zero();       // m, world, half way between the surfaces
-  double separation = 0;           // m, negative when the shapes overlap
-  int feature = 0;                 // which features touch; equal ids persist from step to step
-  double normal_impulse = 0;       // N s, what warm starting would carry into the next substep
+  BodyId body_a = {}, body_b = {};     // when one is fixed it is body_a
+  ShapeId shape_a = {}, shape_b = {};  // of these bodies
+  Vec3 normal = Vec3::Zero();          // unit, from A to B, world
+  Vec3 point = Vec3::Zero();           // m, world, half way between the surfaces
+  double separation = 0;               // m, negative when the shapes overlap
+  int feature = 0;                     // which features touch; equal ids persist from step to step
+  double normal_impulse = 0;           // N s, what warm starting would carry into the next substep
 };
 
 struct StageTime {
-  std::string stage;
+  std::string stage = {};
   double seconds = 0;
 };
 
+// Asked now and then by a call that takes long, on its thread: false ends the call early. Must not
+// throw, nor use what it is asked by.
+using GoOn = std::function<bool()>;
+
 class Batch {
  public:
-  // Throws std::invalid_argument for options that make no sense (worlds < 1, threads < 0 or given
-  // beside an executor, an ISA that is not available).
+  // Throws std::invalid_argument for options that make no sense (worlds < 1, threads not 0 to
+  // kMaxThreads or given beside an executor, an ISA that is not available, a value that an
+  // enumeration does not have), and for worlds that need more memory than the machine has; it says
+  // how much that is.
   explicit Batch(Plan plan, const BatchOptions& options = {});
 
   // Several kinds of world: `worlds` of each plan, in this order. options.worlds is ignored.
@@ -140,8 +151,15 @@ class Batch {
   int worlds() const;
   int kinds() const;
   const Plan& plan(int kind = 0) const;
+  // As those of the kind's Plan: the one of a name, and where a body is in arrays [body].
+  BodyId body(std::string_view name, int kind = 0) const { return plan(kind).body(name); }
+  ShapeId shape(std::string_view name, int kind = 0) const { return plan(kind).shape(name); }
+  JointId joint(std::string_view name, int kind = 0) const { return plan(kind).joint(name); }
+  ControlId control(std::string_view name, int kind = 0) const { return plan(kind).control(name); }
+  int row(BodyId body, int kind = 0) const { return plan(kind).row(body); }
+  BodyId body_in_row(int row, int kind = 0) const { return plan(kind).body_in_row(row); }
   int kind_of(int world) const;
-  int bodies(int world = 0) const;  // state bodies of that world
+  int bodies(int world = 0) const;  // that have a state (rows of arrays)
   int threads() const;
   Isa isa() const;
   Precision precision() const;
@@ -152,7 +170,7 @@ class Batch {
   std::size_t scratch_bytes() const;    // per thread
 
   // -- stepping. Allocates nothing, throws nothing (after the constructor, reset and the first
-  // force call).
+  // force call), but std::invalid_argument for n < 0, a clock that is not finite, or max_steps < 0.
   void step(int n = 1);
   // Steps the worlds of a mask alone (one byte per world, nonzero = step): the same bits as a step
   // of all would give them. The others keep their state, their forces and what was last observed
@@ -160,10 +178,16 @@ class Batch {
   // the mask cost nothing, one with some as much as a whole one. The first such call allocates.
   // Recordings keep the state that each comes to, and do not simulate it again.
   void step(std::span<const std::uint8_t> mask, int n = 1);
+  // As these, asking between steps, some 15 times a second, whether to go on: for hosts that want
+  // to stay in reach. They return how many steps were taken. The bits are those of one call of so
+  // many steps, and so is what inputs, observers and listeners see of it.
+  int step(int n, const GoOn& go_on);
+  int step(std::span<const std::uint8_t> mask, int n, const GoOn& go_on);
   // Runs whole steps until the simulated time reaches `clock` s (never past it, up to half a
   // rounding step) and returns how many. `max_steps` keeps a stalled host from spiralling: time
   // beyond it is dropped. For real-time hosts.
   int step_to(double clock, int max_steps = 8);
+  int step_to(double clock, int max_steps, const GoOn& go_on);  // steps not taken are still due
   double time() const;         // s, simulated since construction or reset of the whole batch
   std::int64_t steps() const;  // taken since construction or reset of the whole batch
 
@@ -187,7 +211,7 @@ class Batch {
   int slot(int world) const;
 
   // -- numbers of the scene that differ from world to world (Scene::variations), in double and in
-  // canonical order: [world][shape of the scene], [world][state body] or [world], times
+  // canonical order: [world][shape of the scene], [world][body] or [world], times
   // info(parameter).numbers. What follows from them (inertia, centre of mass, bounds) is derived
   // anew; a world that is written wakes. Everything can be read. Numbers outside of their declared
   // range, and those of what does not vary that are not what read() gives, throw
@@ -200,13 +224,13 @@ class Batch {
 
   // -- inputs. Forces and torques (world frame, N, N m; planar torque in z) act on the centre of
   // mass during the next step() call, all its steps, and are cleared after it. Impulses (N s,
-  // N m s) change velocities at once. `body` is a state body; kinematic bodies ignore them.
-  void add_force(int world, int body, const Vec3& force);
-  void add_torque(int world, int body, const Vec3& torque);
-  void add_force_at(int world, int body, const Vec3& force, const Vec3& point_world);
-  void add_impulse(int world, int body, const Vec3& impulse);
-  void add_angular_impulse(int world, int body, const Vec3& impulse);
-  void add_impulse_at(int world, int body, const Vec3& impulse, const Vec3& point_world);
+  // N m s) change velocities at once. Kinematic bodies ignore them, fixed ones are refused.
+  void add_force(int world, BodyId body, const Vec3& force);
+  void add_torque(int world, BodyId body, const Vec3& torque);
+  void add_force_at(int world, BodyId body, const Vec3& force, const Vec3& point_world);
+  void add_impulse(int world, BodyId body, const Vec3& impulse);
+  void add_angular_impulse(int world, BodyId body, const Vec3& impulse);
+  void add_impulse_at(int world, BodyId body, const Vec3& impulse, const Vec3& point_world);
 
   // -- controls (Scene::controls), [world][control]. They act in every step until they are set
   // anew; beyond its range a value counts as the end of the range, and one that is not a number
@@ -222,22 +246,22 @@ class Batch {
   // -- bodies that come and go. A disabled body takes no part in the step: nothing touches it, it
   // keeps its state, and the others have the bits that they would have without it. It costs nothing
   // where it is disabled in all worlds of a group. The first call allocates.
-  void set_enabled(int world, int body, bool enabled);
-  bool enabled(int world, int body) const;
-  void spawn(int world, int body, const BodyState& state);  // enabled, with this state
+  void set_enabled(int world, BodyId body, bool enabled);
+  bool enabled(int world, BodyId body) const;                  // true for fixed bodies
+  void spawn(int world, BodyId body, const BodyState& state);  // enabled, with this state
 
   // -- joints that come and go. A disabled joint, or one that broke, holds nothing; enabling it
   // mends it. Its bodies should then be where it wants them: what is apart is drawn together.
-  // `joint` is one of the scene. Both bodies wake. The first call allocates.
-  void set_joint_enabled(int world, int joint, bool enabled);
-  bool joint_enabled(int world, int joint) const;
+  // Both bodies wake. The first call allocates.
+  void set_joint_enabled(int world, JointId joint, bool enabled);
+  bool joint_enabled(int world, JointId joint) const;
 
   // -- sleep (BatchOptions::sleep). A body wakes in the very step in which an awake one comes near
   // it, and at once by a force, an impulse, a written state, or when a body that it slept with is
   // disabled. Sleeping changes nothing that awake bodies compute.
-  bool sleeps() const;                     // BatchOptions::sleep
-  bool asleep(int world, int body) const;  // false for kinematic bodies
-  bool asleep(int world) const;            // nothing in it moves: it costs nothing
+  bool sleeps() const;                        // BatchOptions::sleep
+  bool asleep(int world, BodyId body) const;  // false for kinematic and fixed bodies
+  bool asleep(int world) const;               // nothing in it moves: it costs nothing
   void wake(int world);
   double awake_fraction() const;     // of worlds
   std::int64_t group_steps() const;  // executed since construction: what a step costs
@@ -255,9 +279,11 @@ class Batch {
   void set_initial(Field field, std::span<const double> in);
 
   // -- snapshots. A restored world goes on bit by bit as the saved one did, whatever the batch:
-  // its size, threads, instruction set or place. Plans must have the same fingerprint and the batch
-  // the same precision; throws SnapshotError otherwise and changes nothing.
-  Snapshot save() const;                                     // all worlds, clock, steps, episodes
+  // its size, threads, seed, instruction set or place. A restore of all worlds brings their seeds
+  // and episodes, too, so that later resets draw what they would have drawn. Plans must have the
+  // same fingerprint and the batch the same precision; throws SnapshotError otherwise and changes
+  // nothing.
+  Snapshot save() const;                                     // all worlds, clock, steps
   Snapshot save(std::span<const int> worlds) const;          // these, in this order
   void restore(const Snapshot& snapshot);                    // of as many worlds as the batch has
   void restore(const Snapshot& snapshot, int from, int to);  // world `from` of it into world `to`
@@ -272,6 +298,7 @@ class Batch {
   // Both run the collision stages once more on the current state: not for hot loops.
   std::vector<Contact> contacts(int world) const;
   ContactSummary measure_contacts() const;
+  ContactSummary measure_contacts(const GoOn& go_on) const;  // nothing where it ended early
 
   // -- observers (BatchOptions::observe), as of the last step of the last step() call, in canonical
   // order. A frozen world has no contacts. A pair that is asleep reports where it touches now, and
@@ -282,9 +309,9 @@ class Batch {
   void read(Observed what, std::span<double> out) const;
   void read(Observed what, int world, std::span<double> out) const;
   std::vector<StepContact> step_contacts(int world) const;
-  bool touching(int world, int body) const;  // a contact pushed this state body
-  // A contact pushed these two scene bodies apart; of those that Observer::contacts had room for.
-  bool touching(int world, int scene_body_a, int scene_body_b) const;
+  bool touching(int world, BodyId body) const;  // a contact pushed it; not of fixed bodies
+  // A contact pushed these two apart; of those that Observer::contacts had room for.
+  bool touching(int world, BodyId body_a, BodyId body_b) const;
   std::vector<RayHit> ray_hits(int world) const;
   // As many as the batch was made with. Of one world, only origin, direction and length change.
   void set_rays(std::span<const Ray> rays);
@@ -305,7 +332,7 @@ class Batch {
  private:
   friend class Environment;  // environment.hpp: a task around the step
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Pimpl<Impl> impl_;
 };
 
 }  // namespace manyworlds

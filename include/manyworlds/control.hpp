@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "manyworlds/ids.hpp"
+
 namespace manyworlds {
 
 enum class ControlKind {
@@ -16,10 +18,10 @@ enum class ControlKind {
 };
 
 struct Control {
-  std::string name;
+  std::string name = {};
   ControlKind kind = ControlKind::target_speed;
-  int joint = -1;  // of the scene, with a drive; target_position, target_speed
-  int body = -1;   // scene body, dynamic; thrust, torque
+  JointId joint = {};                               // with a drive; target_position, target_speed
+  BodyId body = {};                                 // dynamic; thrust, torque
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  // m, body frame
   Eigen::Vector3d direction{1, 0, 0};  // body frame, need not be unit; a planar torque is about z
   // Range; what is set beyond it counts as its end.

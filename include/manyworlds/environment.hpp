@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "manyworlds/batch.hpp"
+#include "manyworlds/pimpl.hpp"
 #include "manyworlds/task.hpp"
 
 namespace manyworlds {
@@ -45,13 +46,14 @@ struct StepArrays {
 };
 
 // Worlds of an Environment, to go on from later, elsewhere or many times: what they are, and what
-// the task remembers of them. Later episodes are drawn from the seeds of the worlds that it is
-// restored into. A world that was to begin with its next step (Autoreset::next_step) steps on
-// beyond its end in an Environment of another mode.
+// the task remembers of them. Restored as a whole, later episodes are drawn as they would have
+// been; single worlds draw from the seed of the place that they are restored into. A world that was
+// to begin with its next step (Autoreset::next_step) steps on beyond its end in an Environment of
+// another mode.
 struct EnvironmentSnapshot {
-  Snapshot worlds;
-  std::uint64_t task = 0;      // of which task: equal for tasks that compute the same
-  std::vector<double> memory;  // [world][number]
+  Snapshot worlds = {};
+  std::uint64_t task = 0;           // of which task: equal for tasks that compute the same
+  std::vector<double> memory = {};  // [world][number]
 };
 
 class Environment {
@@ -99,7 +101,7 @@ class Environment {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Pimpl<Impl> impl_;
 };
 
 }  // namespace manyworlds

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "manyworlds/ids.hpp"
+
 namespace manyworlds {
 
 class LaneFunction;
@@ -23,7 +25,10 @@ class Expression {
   Expression(double number = 0);  // NOLINT(google-explicit-constructor): numbers are expressions
 
   struct Node;  // src/task/node.hpp
-  explicit Expression(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
+  // Throws std::invalid_argument for null. An Expression that is moved from stays what it was.
+  explicit Expression(std::shared_ptr<const Node> node);
+  Expression(const Expression&) = default;
+  Expression& operator=(const Expression&) = default;
   const Node& node() const { return *node_; }
 
  private:
@@ -72,20 +77,20 @@ Expression lane_function(std::shared_ptr<const LaneFunction> function, std::vect
 // of the scene; axis 0, 1, 2 is x, y, z of the world. What does not exist is an error of the task.
 namespace terms {
 
-Expression position(int body, int axis);           // m, of the body frame
-Expression velocity(int body, int axis);           // m/s, of the centre of mass
-Expression angular_velocity(int body, int axis);   // rad/s; in the plane axis 2
-Expression angle(int body);                        // rad, -pi to pi, in the plane
-Expression direction(int body, int of, int axis);  // a component of the body's x, y or z axis
-Expression joint_position(int joint, int coordinate = 0);  // as Observed::joint_position
-Expression joint_speed(int joint, int coordinate = 0);
-Expression touching(int body);     // a contact pushed it in the last step; 0 where a world begins
+Expression position(BodyId body, int axis);           // m, of the body frame
+Expression velocity(BodyId body, int axis);           // m/s, of the centre of mass
+Expression angular_velocity(BodyId body, int axis);   // rad/s; in the plane axis 2
+Expression angle(BodyId body);                        // rad, -pi to pi, in the plane
+Expression direction(BodyId body, int of, int axis);  // a component of the body's x, y or z axis
+Expression joint_position(JointId joint, int coordinate = 0);  // as Observed::joint_position
+Expression joint_speed(JointId joint, int coordinate = 0);
+Expression touching(BodyId body);  // a contact pushed it in the last step; 0 where a world begins
 Expression ray_distance(int ray);  // m, of Task::rays
 Expression action(
-    int index = 0);             // that led here; of discrete tasks its number. 0 at the beginning
-Expression control(int index);  // that led here: of the scene
-Expression age();               // steps of the task since the episode began, with this one
-Expression lost();              // the world is lost (Status)
+    int index = 0);  // that led here; of discrete tasks its number. 0 at the beginning
+Expression control(ControlId control);  // that led here: of the scene
+Expression age();                       // steps of the task since the episode began, with this one
+Expression lost();                      // the world is lost (Status)
 
 // What `value` was at the end of the step before; in the first step where the world began. In
 // Task::controls: what it is.

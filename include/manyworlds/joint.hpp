@@ -14,6 +14,8 @@
 #include <string>
 #include <variant>
 
+#include "manyworlds/ids.hpp"
+
 namespace manyworlds {
 
 // A place and axes on a body, or in the world.
@@ -35,7 +37,7 @@ struct Spring {
 // Keeps a coordinate between two values; hard without a spring.
 struct Limit {
   double low = 0, high = 0;  // m or rad
-  std::optional<Spring> spring;
+  std::optional<Spring> spring = {};
 };
 
 // Pulls a coordinate x with speed v by
@@ -45,40 +47,40 @@ struct Limit {
 struct Drive {
   double target_position = 0;  // m or rad
   double target_speed = 0;     // m/s or rad/s
-  std::optional<Spring> spring;
+  std::optional<Spring> spring = {};
   double max_force = std::numeric_limits<double>::infinity();  // N or N m
 };
 
 // The frames' origins coincide. Spatial.
 struct BallJoint {
-  std::optional<double> cone;  // rad, 0 to pi: the most that z of B leans from z of A
-  std::optional<Limit> twist;  // rad, about z
+  std::optional<double> cone = {};  // rad, 0 to pi: the most that z of B leans from z of A
+  std::optional<Limit> twist = {};  // rad, about z
 };
 // The frames' origins coincide, and in space their z axes, too.
 struct HingeJoint {
-  std::optional<Limit> limit;  // rad
-  std::optional<Drive> drive;
+  std::optional<Limit> limit = {};  // rad
+  std::optional<Drive> drive = {};
 };
 // B's frame slides along x of A's and does not turn against it.
 struct SliderJoint {
-  std::optional<Limit> limit;  // m
-  std::optional<Drive> drive;
+  std::optional<Limit> limit = {};  // m
+  std::optional<Drive> drive = {};
 };
 // The frames coincide.
 struct FixedJoint {};
 // The distance between the frames' origins: held at `length` when there is neither limit nor
 // spring, drawn to it by the spring, kept within the limit (a rope: low 0).
 struct DistanceJoint {
-  std::optional<double> length;  // m; default: as the bodies begin
-  std::optional<Limit> limit;
-  std::optional<Spring> spring;
+  std::optional<double> length = {};  // m; default: as the bodies begin
+  std::optional<Limit> limit = {};
+  std::optional<Spring> spring = {};
 };
 // B is a wheel: its frame moves along x of A's on a suspension and, in space, turns about the
 // common z axis only.
 struct WheelJoint {
-  Spring suspension;
-  std::optional<Limit> travel;  // m, along x
-  std::optional<Drive> drive;   // of the rotation about z
+  Spring suspension = {};
+  std::optional<Limit> travel = {};  // m, along x
+  std::optional<Drive> drive = {};   // of the rotation about z
 };
 // A rope of constant length over two pulleys at ground_a and ground_b:
 //   |A's origin - ground_a| + ratio |B's origin - ground_b| = length
@@ -86,23 +88,23 @@ struct PulleyJoint {
   Eigen::Vector3d ground_a = Eigen::Vector3d::Zero();  // m, world
   Eigen::Vector3d ground_b = Eigen::Vector3d::Zero();  // m, world
   double ratio = 1;
-  std::optional<double> length;  // m; default: as the bodies begin
+  std::optional<double> length = {};  // m; default: as the bodies begin
 };
 // Draws the origin of B's frame to that of A's, or to the point frame_a.position of the world.
 struct TargetJoint {
-  Spring spring;
+  Spring spring = {};
   double max_force = std::numeric_limits<double>::infinity();  // N
 };
 using JointType = std::variant<BallJoint, HingeJoint, SliderJoint, FixedJoint, DistanceJoint,
                                WheelJoint, PulleyJoint, TargetJoint>;
 
 struct Joint {
-  std::string name;
+  std::string name = {};
   JointType type = HingeJoint{};
-  int body_a = -1;       // scene body; -1: the world
-  int body_b = -1;       // scene body
-  Frame frame_a;         // in the body frame of A, or in the world
-  Frame frame_b;         // in the body frame of B
+  BodyId body_a = {};  // none: the world
+  BodyId body_b = {};
+  Frame frame_a = {};    // in the body frame of A, or in the world
+  Frame frame_b = {};    // in the body frame of B
   bool collide = false;  // whether shapes of A and B collide with each other, also once it broke
   // What it bears at most, as the mean over a step; then it breaks: Batch::joint_enabled() is false
   // from then on and Status::joint_broken is set. The torque is that about the frames' origin.

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "manyworlds/ids.hpp"
+
 namespace manyworlds {
 
 class Batch;
@@ -37,8 +39,9 @@ const char* to_string(Input input);  // "force", "write_position"
 struct InputCall {
   Input input{};
   int world = 0;
-  int body = -1;                   // state body, or joint of the scene; -1: the whole world
-  std::span<const double> values;  // lives as long as the call
+  BodyId body = {};  // none, and no joint: the whole world
+  JointId joint = {};
+  std::span<const double> values = {};  // lives as long as the call
 };
 
 class BatchListener {

@@ -20,8 +20,8 @@ namespace manyworlds {
 // that its triangles run counter-clockwise seen from within the cavity. Triangles that pass through
 // one another are not looked for: space that is enclosed twice counts twice.
 struct TriangleMesh {
-  std::vector<Vec3> vertices;                 // m, in mesh axes; a triangle need not use all
-  std::vector<std::array<int, 3>> triangles;  // indices into vertices
+  std::vector<Vec3> vertices = {};                 // m, in mesh axes; a triangle need not use all
+  std::vector<std::array<int, 3>> triangles = {};  // indices into vertices
 };
 
 // Everything that is wrong, at its place; empty means that the functions below will succeed. Of one

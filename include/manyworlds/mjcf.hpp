@@ -7,12 +7,23 @@
 // inertias are those that MuJoCo's compiler computes. Whatever would change the motion and is not
 // simulated here is an error; what only shapes MuJoCo's contact softness or its solver is a
 // warning; what is only seen (lights, cameras, materials, textures, sites) is ignored.
+//
+// Files may come from anybody. Before MuJoCo sees one, it and all that it includes are read into
+// memory, each once, and checked: regular files alone, from the model's own folder or from those
+// that MjcfOptions::roots names, symbolic links followed first; root element <mujoco>; and no size
+// beyond MjcfLimits. MuJoCo opens no file itself. Textures and skins are not opened at all, since
+// nothing is drawn, and <size> and <custom> are left out. A model within the limits may still keep
+// MuJoCo busy for minutes: who reads strangers' models does so in a process of its own, with limits
+// of memory and time, as the program manyworlds does.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "manyworlds/scene.hpp"
@@ -24,9 +35,9 @@ struct MjcfResult {
   // named "world"), a dynamic body for each free one. options.dt and options.gravity are the
   // file's; options.length_unit is the median size of the dynamic geoms; joints that begin apart
   // get a finite options.joint_pull_speed. Joints are those of the active equalities, in order.
-  Scene scene;
+  Scene scene = {};
   // What was read but does not act as it does in MuJoCo, one sentence each.
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = {};
 };
 
 // A file that cannot be read, or that holds something we do not simulate. what() has one line per
@@ -41,11 +52,52 @@ class MjcfError : public std::runtime_error {
   std::vector<std::string> problems_;
 };
 
-// Both throw MjcfError and leave nothing behind. The scene still has to pass validate(), which
-// compile() runs. Any thread may call them; calls wait for one another, because MuJoCo reports
-// errors through one handler per process.
-MjcfResult load_mjcf(const std::filesystem::path& file);
-// Assets are looked up relative to the working directory.
-MjcfResult load_mjcf_string(std::string_view xml);
+// What a model may ask for. An error names the limit that it reaches: "pile.xml: replicate, line 7:
+// makes 3000000 elements; expected at most 10000 (limit 'copies')".
+struct MjcfLimits {
+  std::int64_t file_bytes = std::int64_t{64} << 20;    // of each file
+  std::int64_t total_bytes = std::int64_t{256} << 20;  // of all files, and of all names and numbers
+                                                       // after replicate and attach
+  std::int64_t files = 1000;                           // opened for one model
+  std::int64_t depth = 200;         // elements inside one another, through includes and attach
+  std::int64_t elements = 100000;   // written, in all files of the model
+  std::int64_t copies = 10000;      // elements that replicate, attach, composite and flexcomp make
+  std::int64_t samples = 1 << 24;   // of a height field, rows x columns; of all sensors together
+  std::int64_t vertices = 1000000;  // of a mesh
+};
+// The names of the members, in order, and the member of a name. mjcf_limit() throws
+// std::invalid_argument, which lists the names, for any other.
+std::vector<std::string> mjcf_limit_names();
+std::int64_t& mjcf_limit(MjcfLimits& limits, std::string_view name);
+
+struct MjcfOptions {
+  // Folders besides the model's own from which includes, meshes, height fields and attached models
+  // may be read, with all that is in them. A text has no folder: only with a root can it name
+  // files, which are then looked up in the first.
+  std::vector<std::filesystem::path> roots;
+  MjcfLimits limits;
+};
+
+// A model's files, read and checked but not compiled. What happens to them on disk later does not
+// matter any more. Cheap to copy.
+class MjcfFiles {
+ public:
+  // Throw MjcfError.
+  static MjcfFiles read(const std::filesystem::path& file, const MjcfOptions& options = {});
+  static MjcfFiles of_string(std::string_view xml, const MjcfOptions& options = {});
+  // Runs MuJoCo's compiler. Throws MjcfError.
+  MjcfResult compile() const;
+
+ private:
+  struct Impl;
+  explicit MjcfFiles(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  std::shared_ptr<const Impl> impl_;
+};
+
+// Read and compile. All throw MjcfError and leave nothing behind. The scene still has to pass
+// validate(), which compile(Scene) runs. Any thread may call them; compilations wait for one
+// another, because MuJoCo reports errors through one handler per process.
+MjcfResult load_mjcf(const std::filesystem::path& file, const MjcfOptions& options = {});
+MjcfResult load_mjcf_string(std::string_view xml, const MjcfOptions& options = {});
 
 }  // namespace manyworlds

@@ -28,13 +28,13 @@ struct Ray {
   Vec3 origin = Vec3::Zero();  // m, in the world or, with a body, in that body's frame
   Vec3 direction{1, 0, 0};     // need not be unit
   double length = std::numeric_limits<double>::infinity();  // m: it sees what is nearer
-  int body = -1;                     // state body that it moves and turns with; -1: none
-  std::uint32_t mask = 0xffffffffu;  // of Filter::category
+  BodyId body = {};                                         // moves and turns with it; none: stays
+  std::uint32_t mask = 0xffffffffu;                         // of Filter::category
 };
 
 struct Observers {
-  std::vector<Observer> what;
-  std::vector<Ray> rays;
+  std::vector<Observer> what = {};
+  std::vector<Ray> rays = {};
   // Contact points that a world has room for; those beyond it are only counted. 0: for as many as
   // the plan has room for.
   int contacts_per_world = 0;
@@ -97,13 +97,13 @@ const char* to_string(Observed what);
 // One contact point of the last step. Where it lies is what the step began with, the impulses are
 // what B received in the whole step: impulse / dt is the mean force.
 struct StepContact {
-  int body_a = -1, body_b = -1;    // scene bodies; when one is fixed it is body_a
-  int shape_a = -1, shape_b = -1;  // index in Body::shapes
-  Vec3 normal = Vec3::Zero();      // unit, from A to B, world
-  Vec3 point = Vec3::Zero();       // m, world, half way between the surfaces
-  double separation = 0;           // m, negative when the shapes overlap
-  int feature = 0;                 // which features touch; equal ids persist from step to step
-  double normal_impulse = 0;       // N s, along the normal, >= 0
+  BodyId body_a = {}, body_b = {};     // when one is fixed it is body_a
+  ShapeId shape_a = {}, shape_b = {};  // of these bodies
+  Vec3 normal = Vec3::Zero();          // unit, from A to B, world
+  Vec3 point = Vec3::Zero();           // m, world, half way between the surfaces
+  double separation = 0;               // m, negative when the shapes overlap
+  int feature = 0;                     // which features touch; equal ids persist from step to step
+  double normal_impulse = 0;           // N s, along the normal, >= 0
   // Of a manifold's points each reports the share of its friction that it has of its normal
   // impulse: what the points report adds up to what the step applied.
   Vec3 friction_impulse = Vec3::Zero();  // N s, world, across the normal
@@ -114,7 +114,8 @@ struct StepContact {
 // against it. A terrain is hit from its free side only, a segment from both.
 struct RayHit {
   double distance = 0;         // m; the ray's length where it hits nothing
-  int body = -1, shape = -1;   // scene body and index in Body::shapes; -1: no hit
+  BodyId body = {};            // none: no hit
+  ShapeId shape = {};          // of that body
   Vec3 normal = Vec3::Zero();  // unit, out of the shape, world; zero: no hit
 };
 

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "manyworlds/scene.hpp"
@@ -48,31 +50,31 @@ const char* to_string(BroadPhase broad_phase);
 
 struct PlanOptions {
   BroadPhase broad_phase = BroadPhase::automatic;
-  std::vector<Feature> keep;
+  std::vector<Feature> keep = {};
 };
 
 // What a plan contains, for people: `manyworlds plan` prints it.
 struct PlanReport {
   struct Item {
-    std::string name;
+    std::string name = {};
     bool in = false;
-    std::string why;
+    std::string why = {};
   };
   struct PairClass {
-    std::string kernel;  // "sphere-sphere", "box-plane", ...
-    std::string kind;    // "fixed" (against a fixed shape) or "pairs"
-    int candidates = 0;  // pairs of shapes that the step tests
-    int culled = 0;      // pairs of shapes that can never touch, dropped at plan time
+    std::string kernel = {};  // "sphere-sphere", "box-plane", ...
+    std::string kind = {};    // "fixed" (against a fixed shape) or "pairs"
+    int candidates = 0;       // pairs of shapes that the step tests
+    int culled = 0;           // pairs of shapes that can never touch, dropped at plan time
   };
   struct Array {
-    std::string name;
-    std::string shape;  // "[body][3]"
+    std::string name = {};
+    std::string shape = {};  // "[body][3]"
     std::size_t bytes_per_world = 0;
   };
-  std::vector<Item> features;
-  std::vector<Item> stages;  // in the order of the step
-  std::vector<PairClass> pairs;
-  std::vector<Array> arrays;  // persistent, float32
+  std::vector<Item> features = {};
+  std::vector<Item> stages = {};  // in the order of the step
+  std::vector<PairClass> pairs = {};
+  std::vector<Array> arrays = {};  // persistent, float32
   BroadPhase broad_phase = BroadPhase::all_pairs;
   int pair_capacity = 0;   // manifolds per world between moving bodies
   int fixed_capacity = 0;  // manifolds per world against fixed shapes
@@ -83,15 +85,27 @@ struct PlanData;  // src/plan/plan_data.hpp
 
 class Plan {
  public:
-  explicit Plan(std::shared_ptr<const PlanData> data) : data_(std::move(data)) {}
+  // Throws std::invalid_argument for null. A Plan that is moved from stays what it was.
+  explicit Plan(std::shared_ptr<const PlanData> data);
+  Plan(const Plan&) = default;
+  Plan& operator=(const Plan&) = default;
   const Scene& scene() const;
   const PlanOptions& options() const;
+  // As those of its Scene: the one of a name.
+  BodyId body(std::string_view name) const { return scene().body(name); }
+  ShapeId shape(std::string_view name) const { return scene().shape(name); }
+  ShapeId shape(BodyId body, std::string_view name) const { return scene().shape(body, name); }
+  JointId joint(std::string_view name) const { return scene().joint(name); }
+  ControlId control(std::string_view name) const { return scene().control(name); }
   int bodies() const;  // bodies with state: dynamic and kinematic, in scene order
-  // Index in the scene of state body i, and the reverse (-1 for fixed bodies).
-  int scene_body(int state_body) const;
-  int state_body(int scene_body) const;
-  int coordinates() const;                // of all joints of the scene (observe.hpp)
-  int first_coordinate(int joint) const;  // where those of a joint of the scene begin
+  // Where a body is in arrays [body], and who is in a row of them. Fixed bodies are in none: row()
+  // throws std::invalid_argument for them, and both do for what is not there.
+  int row(BodyId body) const;
+  int row(ShapeId shape) const;  // of arrays [shape of the scene]; all have one
+  std::optional<int> find_row(BodyId body) const;
+  BodyId body_in_row(int row) const;
+  int coordinates() const;                    // of all joints of the scene (observe.hpp)
+  int first_coordinate(JointId joint) const;  // where those of a joint begin
   bool has(Feature feature) const;
   // Equal for plans whose worlds can go on in each other: of everything but names and where bodies
   // begin.

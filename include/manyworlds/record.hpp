@@ -52,11 +52,14 @@ PlanOptions plan_options_from_json(std::string_view json);
 inline constexpr int kMostWorldsByDefault = 64;
 
 struct RecordOptions {
-  std::vector<int> worlds;  // of the batch; empty: the first kMostWorldsByDefault of them
+  std::vector<int> worlds = {};  // of the batch; empty: the first kMostWorldsByDefault of them
   // A sample is taken at once, and after the first step() call that ends on or beyond each multiple
   // of `every` steps. 0: only when sample() says so.
   int every = 1;
   std::int64_t first_world = 0;  // what the batch's world 0 is called in the file
+  // What is older than so many seconds of wall time when a call of the batch ends is flushed, and
+  // survives the end of the program, whatever that is (see unfinished_recordings). 0: at each call.
+  double flush_seconds = 5;
 };
 
 // Records from construction to close(): the state of some worlds every few steps, and every input
@@ -65,7 +68,7 @@ class Recorder {
  public:
   // Throws std::invalid_argument for options that do not fit the batch and when forces were added
   // for the next step already, which no file would know of; RecordError when the file cannot be
-  // written.
+  // written, or exists and is no regular file. A symbolic link is followed.
   Recorder(Batch& batch, const std::filesystem::path& file, const RecordOptions& options = {});
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;
@@ -73,8 +76,9 @@ class Recorder {
 
   // One more sample, of the batch that is recorded as it is now.
   void sample(const Batch& batch);
-  // Finishes the file and gives it its name, so that nobody ever sees half of one. Throws
-  // RecordError, also for what failed since the beginning: step() does not throw.
+  // Finishes the file and gives it its name, so that nobody ever sees half of one; an old file of
+  // that name stays until then. Throws RecordError, also for what failed since the beginning:
+  // step() does not throw. What had been flushed until then is kept, and named in the error.
   void close();
   std::int64_t samples() const;
 
@@ -110,13 +114,20 @@ class LostWorldDumps {
   std::shared_ptr<Impl> impl_;
 };
 
+// What programs that were cut off (kill -9, a power cut) had recorded of `file`: the files beside
+// it, "run.h5.part-8c1f03ab5e6d7790", that hold something and that nobody writes any more, by name.
+// Each can be opened and replayed up to where it was last flushed. Throws RecordError when `file`
+// is no name of a file.
+std::vector<std::filesystem::path> unfinished_recordings(const std::filesystem::path& file);
+
 // ---- replay ------------------------------------------------------------------------------------
 
 // A recording that was opened and checked: every size, index, type and text in it. It holds the
 // inputs in memory, and reads fields from the file as they are asked for.
 class Recording {
  public:
-  // Both throw RecordError for what is no recording, cut, corrupted or inconsistent.
+  // Both throw RecordError for what is no recording, cut, corrupted or inconsistent. A file of
+  // unfinished_recordings() is read as it was when it was last flushed.
   static Recording open(const std::filesystem::path& file);
   static Recording from_bytes(std::span<const std::byte> bytes);
   Recording(Recording&&) noexcept;
@@ -128,6 +139,7 @@ class Recording {
   const Plan& plan(int kind = 0) const;
   int worlds_of(int kind) const;          // kinds lie one after the other
   std::int64_t name_of(int world) const;  // which world of the recorded batch it was
+  bool finished() const;                  // false for one of unfinished_recordings()
   std::int64_t samples() const;
   std::int64_t step(std::int64_t sample) const;  // steps since the recording began
   std::int64_t inputs() const;
@@ -141,7 +153,7 @@ class Recording {
   std::string origin() const;
 
   struct Impl;
-  const Impl& impl() const { return *impl_; }
+  const Impl& impl() const;  // throws std::invalid_argument when it was moved from
 
  private:
   explicit Recording(std::unique_ptr<Impl> impl);
@@ -152,24 +164,25 @@ struct ReplayOptions {
   std::optional<Isa> isa = std::nullopt;
   int threads = 0;
   ContactLayout layout = ContactLayout::automatic;
+  GoOn go_on = {};  // asked now and then; where it says no, the result is of what was compared
 };
 
 struct Difference {
   std::int64_t world = 0;  // of the recorded batch (Recording::name_of)
   std::int64_t step = 0;   // since the recording began
-  int body = -1;           // state body; -1: no field differs, but hash or status does
-  std::string what;        // "position.x is 1.5, recorded 1.25"
+  BodyId body = {};        // none: no field differs, but hash or status does
+  std::string what = {};   // "position.x is 1.5, recorded 1.25"
 };
 
 struct ReplayResult {
   int worlds = 0;
   std::int64_t samples = 0;
   std::int64_t steps = 0;
-  std::int64_t compared = 0;             // hashes, each with its status and fields
-  std::int64_t different = 0;            // of them
-  std::optional<Difference> difference;  // the first
-  int lost_worlds = 0;                   // at the end
-  std::string kernel_table;
+  std::int64_t compared = 0;                  // hashes, each with its status and fields
+  std::int64_t different = 0;                 // of them
+  std::optional<Difference> difference = {};  // the first
+  int lost_worlds = 0;                        // at the end
+  std::string kernel_table = {};
 };
 
 // Simulates a recording again from its first snapshot and its inputs, and compares hash, status

@@ -13,10 +13,12 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "manyworlds/control.hpp"
+#include "manyworlds/ids.hpp"
 #include "manyworlds/integrator.hpp"
 #include "manyworlds/joint.hpp"
 #include "manyworlds/solver.hpp"
@@ -60,14 +62,14 @@ struct Cylinder {
 // Spatial, a convex polyhedron: the smallest convex solid around its vertices, 4 to 64 of them.
 // make_hull (hull.hpp) finds those of a cloud of points. Faces that lie in one plane are one.
 struct Hull {
-  std::vector<Vec3> vertices;  // m, shape frame, in any order
+  std::vector<Vec3> vertices = {};  // m, shape frame, in any order
 };
 struct Circle {         // planar
   double radius = 0.5;  // m
 };
-struct Polygon {               // planar, convex, 3 to 8 vertices
-  std::vector<Vec2> vertices;  // m, shape frame, counter-clockwise
-  double radius = 0;           // m, the solid is all points no farther than that from the polygon
+struct Polygon {                    // planar, convex, 3 to 8 vertices
+  std::vector<Vec2> vertices = {};  // m, shape frame, counter-clockwise
+  double radius = 0;  // m, the solid is all points no farther than that from the polygon
 
   // Rectangle of half extents (half_x, half_y) centred on the shape frame.
   static Polygon box(double half_x, double half_y) {
@@ -85,17 +87,17 @@ struct Segment {               // planar, fixed bodies only: a line that is soli
 // the points (so hills run from left to right), free on the left. Bodies slide over its vertices as
 // over one smooth ground. At the ends of an open chain the solid falls off at a right angle.
 struct Terrain {
-  std::vector<Vec2> points;  // m, shape frame; 2 or more, of a loop 3 or more
-  bool loop = false;         // the last point is joined to the first
+  std::vector<Vec2> points = {};  // m, shape frame; 2 or more, of a loop 3 or more
+  bool loop = false;              // the last point is joined to the first
 };
 // Spatial, fixed bodies only: everything below a surface of triangles over a grid of points, which
 // is centred on the shape frame. Each cell has two, on either side of the diagonal from its corner
 // of low x and y. Bodies slide and roll over its edges as over one smooth ground; at its border the
 // solid falls off at a right angle. A body that got below the surface is pushed up.
 struct HeightField {
-  std::vector<double> heights;  // m, of the points: x varies fastest
-  int columns = 2;              // points along x, 2 or more; as many rows as that leaves
-  Vec2 cell{1, 1};              // m, between points along x and y
+  std::vector<double> heights = {};  // m, of the points: x varies fastest
+  int columns = 2;                   // points along x, 2 or more; as many rows as that leaves
+  Vec2 cell{1, 1};                   // m, between points along x and y
   int rows() const { return columns > 0 ? static_cast<int>(heights.size()) / columns : 0; }
 };
 using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Capsule, Segment,
@@ -115,12 +117,12 @@ struct Filter {
 
 struct Shape {
   Geometry geometry = Sphere{};
-  Vec3 position = Vec3::Zero();      // m, of the shape frame in the body frame
-  Quat rotation = Quat::Identity();  // of the shape frame in the body frame; need not be unit
-  std::optional<double> density;     // kg/m^3 (kg/m^2 planar); default Options::density
-  Material material;
-  Filter filter;
-  std::string name;
+  Vec3 position = Vec3::Zero();        // m, of the shape frame in the body frame
+  Quat rotation = Quat::Identity();    // of the shape frame in the body frame; need not be unit
+  std::optional<double> density = {};  // kg/m^3 (kg/m^2 planar); default Options::density
+  Material material = {};
+  Filter filter = {};
+  std::string name = {};
 };
 
 // ---- bodies --------------------------------------------------------------------------------
@@ -145,25 +147,25 @@ struct Jitter {
   Vec3 linear_velocity = Vec3::Zero();  // m/s
   double angle = 0;                     // rad, about z
   bool any_orientation = false;         // spatial: orientation uniform over all rotations
-  // A scene body, -1: none. What is drawn for it moves this body, too, as one rigid piece with it
-  // and with its change of velocity, before anything of its own: for assemblies on joints.
-  int with = -1;
+  // What is drawn for that body moves this one, too, as one rigid piece with it and with its change
+  // of velocity, before anything of its own: for assemblies on joints.
+  BodyId with = {};
 };
 
 struct Body {
-  std::string name;
+  std::string name = {};
   Motion motion = Motion::dynamic;
   bool enabled = true;  // false: not there until a Batch enables or spawns it; not for fixed bodies
   Vec3 position = Vec3::Zero();          // m, of the body frame in the world
   Quat rotation = Quat::Identity();      // of the body frame in the world; need not be unit
   Vec3 linear_velocity = Vec3::Zero();   // m/s, of the centre of mass, world
   Vec3 angular_velocity = Vec3::Zero();  // rad/s, world
-  std::vector<Shape> shapes;
-  std::optional<MassProperties> mass_properties;  // default: from shapes and densities
+  std::vector<Shape> shapes = {};
+  std::optional<MassProperties> mass_properties = {};  // default: from shapes and densities
   double gravity_scale = 1;
   double linear_drag = 0;   // 1/s: v' = (v + h c wind) / (1 + h c)
   double angular_drag = 0;  // 1/s
-  Jitter jitter;
+  Jitter jitter = {};
 };
 
 // ---- options -------------------------------------------------------------------------------
@@ -177,14 +179,14 @@ struct Options {
   Integrator integrator = Integrator::symplectic_euler;
   // Default: splitting with symplectic_euler and the Verlets, which take nothing else but
   // symplectic_euler; exponential with the others.
-  std::optional<Rotation> rotation;
+  std::optional<Rotation> rotation = {};
   // Spins are integrated as angular momenta instead of angular velocities, without splitting and
   // not by implicit_euler.
   bool angular_momentum = false;
   Solver solver = Solver::tgs_soft;
   // Sweeps over all rows per substep, of tgs_soft those before the motion. Default: 1 for tgs_soft
   // and penalty, 10 for the others, which are usually given fewer substeps.
-  std::optional<int> iterations;
+  std::optional<int> iterations = {};
   double relaxation = 1.3;  // of sor, in (0, 2)
   // Of sequential_impulse, sor and nncg: the share of an overlap beyond slop, or of a joint's gap,
   // that a substep removes, and whether contacts do so without leaving a speed.
@@ -210,7 +212,7 @@ struct Options {
   // What joints hold together is pulled back as by a spring and damper of this frequency and
   // damping ratio. Not capped: stiffer than the default may ring.
   // Hz; default a quarter per substep, and hard rows in sequential_impulse, sor and nncg.
-  std::optional<double> joint_frequency;
+  std::optional<double> joint_frequency = {};
   double joint_damping_ratio = 2;
   // m/s per length_unit, and rad/s: cap on the speed at which a joint closes what has come apart.
   // For scenes whose joints begin far apart; under heavy loads a low one lets chains stretch.
@@ -225,10 +227,10 @@ struct Options {
   // Manifolds between moving bodies that a world has room for, of each kind (of several points, of
   // one). Default: 4 per shape (planar: 3) and 8 more. What exceeds it is left out of the step and
   // flagged (Status::contact_overflow).
-  std::optional<int> contact_capacity;
+  std::optional<int> contact_capacity = {};
 
   // A world is lost when a body's position leaves this box. Default: no bounds.
-  std::optional<Eigen::AlignedBox3d> bounds;
+  std::optional<Eigen::AlignedBox3d> bounds = {};
 };
 
 // Options::iterations, or the default of the solver.
@@ -244,23 +246,49 @@ struct Attractor {
 };
 
 struct Scene {
-  std::string name;
+  std::string name = {};
   Space space = Space::spatial;
-  std::vector<Body> bodies;
-  std::vector<Joint> joints;
-  std::vector<Control> controls;
-  std::vector<Attractor> attractors;
-  Options options;
-  std::vector<Variation> variations;
+  std::vector<Body> bodies = {};
+  std::vector<Joint> joints = {};
+  std::vector<Control> controls = {};
+  std::vector<Attractor> attractors = {};
+  Options options = {};
+  std::vector<Variation> variations = {};
 
-  // Appends and returns the index.
-  int add(Body body) {
+  // Appends and returns the handle. Shape k of a body is ShapeId(body, k).
+  BodyId add(Body body) {
     bodies.push_back(std::move(body));
-    return static_cast<int>(bodies.size()) - 1;
+    return BodyId(static_cast<int>(bodies.size()) - 1);
   }
-  int add(Joint joint) {
+  JointId add(Joint joint) {
     joints.push_back(std::move(joint));
-    return static_cast<int>(joints.size()) - 1;
+    return JointId(static_cast<int>(joints.size()) - 1);
+  }
+  ControlId add(Control control) {
+    controls.push_back(std::move(control));
+    return ControlId(static_cast<int>(controls.size()) - 1);
+  }
+
+  // The one of a name. Names may be empty or shared, but then they find nothing: throw
+  // std::invalid_argument, with the names that there are, for a name that none has or several have.
+  BodyId body(std::string_view name) const;
+  ShapeId shape(std::string_view name) const;  // of all bodies' shapes
+  ShapeId shape(BodyId body, std::string_view name) const;
+  JointId joint(std::string_view name) const;
+  ControlId control(std::string_view name) const;
+
+  // What a handle stands for. Throw std::out_of_range where there is none.
+  Body& at(BodyId id) { return bodies.at(static_cast<std::size_t>(id.index())); }
+  const Body& at(BodyId id) const { return bodies.at(static_cast<std::size_t>(id.index())); }
+  Shape& at(ShapeId id) { return at(id.body()).shapes.at(static_cast<std::size_t>(id.index())); }
+  const Shape& at(ShapeId id) const {
+    return at(id.body()).shapes.at(static_cast<std::size_t>(id.index()));
+  }
+  Joint& at(JointId id) { return joints.at(static_cast<std::size_t>(id.index())); }
+  const Joint& at(JointId id) const { return joints.at(static_cast<std::size_t>(id.index())); }
+  Control& at(ControlId id) { return controls.at(static_cast<std::size_t>(id.index())); }
+  const Control& at(ControlId id) const {
+    return controls.at(static_cast<std::size_t>(id.index()));
   }
 };
 
@@ -268,8 +296,8 @@ struct Scene {
 
 // One thing that is wrong with a scene.
 struct Issue {
-  std::string place;    // "body 3 'crate', shape 1: half_extents.y"
-  std::string message;  // "is -0.2 m, must be > 0"
+  std::string place = {};    // "body 3 'crate', shape 1: half_extents.y"
+  std::string message = {};  // "is -0.2 m, must be > 0"
 };
 // "body 3 'crate', shape 1: half_extents.y is -0.2 m, must be > 0"
 std::string to_string(const Issue& issue);
@@ -277,11 +305,12 @@ std::string to_string(const Issue& issue);
 // Every issue at once, in the order of the scene; empty means that compile() will succeed.
 std::vector<Issue> validate(const Scene& scene);
 
-// A frame of a body (-1: the world) in the world, as the bodies begin.
-Frame frame_in_world(const Scene& scene, int body, const Frame& frame);
-// A joint of two bodies (-1: the world) with both frames where `frame` is in the world as the
+// A frame of a body (none: the world) in the world, as the bodies begin.
+Frame frame_in_world(const Scene& scene, BodyId body, const Frame& frame);
+// A joint of two bodies (none: the world) with both frames where `frame` is in the world as the
 // bodies begin.
-Joint joint_at(const Scene& scene, int body_a, int body_b, const Frame& frame, JointType type);
+Joint joint_at(const Scene& scene, BodyId body_a, BodyId body_b, const Frame& frame,
+               JointType type);
 
 // Mass properties of a body: what the user gave, or the sum over its shapes by closed forms and
 // the parallel-axis theorem. Precondition: the body passes validate().

@@ -1,9 +1,10 @@
 // Snapshot: the whole state of some worlds of a Batch, to go on from later, elsewhere or many
 // times.
 //
-// It holds what the next step depends on: state, stored impulses, sleep, disabled bodies, status.
-// It knows nothing of lanes, threads, instruction sets or places, so a world continues bit by bit
-// wherever it is restored. Not in it: forces that were added for the next step.
+// It holds what the next step depends on: state, stored impulses, sleep, disabled bodies, status;
+// and what the next reset draws from: each world's seed and episode. It knows nothing of lanes,
+// threads, instruction sets or places, so a world continues bit by bit wherever it is restored. Not
+// in it: forces that were added for the next step.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +32,9 @@ class Snapshot {
   // Writes a file beside `file` and renames it, so that no reader ever sees half of one.
   // Throws SnapshotError.
   void save(const std::filesystem::path& file) const;
-  // Throws SnapshotError when the file cannot be read, is cut, corrupted or something else.
+  // Throws SnapshotError when the file cannot be read, is cut, corrupted or something else: a
+  // folder, a FIFO, a device, larger than the machine's memory. Reads files of version 0.1, too,
+  // which do not know the worlds' seeds.
   static Snapshot load(const std::filesystem::path& file);
 
   // The bytes of a file: magic, version, header, worlds, checksum; little endian.

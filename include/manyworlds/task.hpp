@@ -16,42 +16,42 @@ namespace manyworlds {
 
 // One number of a continuous action. Beyond its range it counts as the end of the range.
 struct Action {
-  std::string name;
+  std::string name = {};
   double low = -1, high = 1;
 };
 
 struct Observation {
-  std::string name;
-  Expression value;
+  std::string name = {};
+  Expression value = {};
   // What the policy is told of its range; the value is not clamped.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
 
 struct Reward {
-  std::string name;
-  Expression value;  // of a step; a task's reward is the sum of its rewards
+  std::string name = {};
+  Expression value = {};  // of a step; a task's reward is the sum of its rewards
 };
 
 struct Task {
-  std::string name;
-  Scene scene;
+  std::string name = {};
+  Scene scene = {};
   int frame_skip = 1;  // steps of the scene in a step of the task
 
   int choices = 0;  // discrete tasks: the action is one of 0 to choices - 1, and `actions` is empty
-  std::vector<Action> actions;
+  std::vector<Action> actions = {};
   // What each control of the scene is set to before the steps: of actions, numbers and previous().
-  std::vector<Expression> controls;
+  std::vector<Expression> controls = {};
 
-  std::vector<Observation> observations;
-  std::vector<Reward> rewards;
+  std::vector<Observation> observations = {};
+  std::vector<Reward> rewards = {};
   Expression terminated = 0;  // the episode has come to its end
   Expression truncated = 0;   // it is broken off
   // Broken off after so many steps of the task; 0: never. A world that is lost is broken off, too.
   int most_steps = 0;
   double solved_at = std::numeric_limits<double>::infinity();  // mean return; said to people only
 
-  std::vector<Ray> rays;  // for terms::ray_distance
+  std::vector<Ray> rays = {};  // for terms::ray_distance
 };
 
 // Every issue of the task and its scene at once; empty means that an Environment can be made.

@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 
+#include "manyworlds/ids.hpp"
+
 namespace manyworlds {
 
 // X(name, what has one, numbers of each, unit, meaning). In the order in which they are applied: a
@@ -48,8 +50,8 @@ enum class Draw {
 
 struct Variation {
   Parameter parameter = Parameter::friction;
-  int body = -1;   // scene body; -1: every one that has the parameter
-  int shape = -1;  // of that body; -1: every shape
+  BodyId body = {};    // none: every one that has the parameter
+  ShapeId shape = {};  // one shape, which also says of which body; none: every shape
   // The range, inclusive, within which the number of every world must lie; [0] alone counts where
   // the parameter is one number.
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();

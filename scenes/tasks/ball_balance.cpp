@@ -17,7 +17,7 @@ Task ball_balance() {
   plate.shapes.push_back(shape_of(Box{{kHalfPlate, kHalfPlate, 0.02}}));
   plate.shapes[0].density = 50;
   plate.angular_drag = 2;
-  const int tilted = scene.add(plate);
+  const BodyId tilted = scene.add(plate);
   Body ball;
   ball.name = "ball";
   ball.position = {0, 0, 0.02 + kRadius};
@@ -25,11 +25,11 @@ Task ball_balance() {
   ball.jitter.linear_velocity = {0.2, 0.2, 0};
   ball.shapes.push_back(shape_of(Sphere{kRadius}));
   ball.shapes[0].density = 1000;
-  const int rolling = scene.add(ball);
+  const BodyId rolling = scene.add(ball);
   BallJoint gimbal;
   gimbal.cone = 0.4;
   gimbal.twist = Limit{-0.01, 0.01, {}};
-  scene.add(joint_at(scene, -1, tilted, Frame{}, gimbal));
+  scene.add(joint_at(scene, {}, tilted, Frame{}, gimbal));
   scene.controls = {torque("x", tilted, kMostTorque, {1, 0, 0}),
                     torque("y", tilted, kMostTorque, {0, 1, 0})};
   task.actions = {{"x", -1, 1}, {"y", -1, 1}};

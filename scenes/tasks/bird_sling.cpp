@@ -13,20 +13,20 @@ Task bird_sling() {
   task.scene = scenes::find("bird-sling")->make();
   Scene& scene = task.scene;
   task.frame_skip = 6;
-  int bird = -1;
-  std::vector<int> boxes;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    Body& body = scene.bodies[i];
+  BodyId bird;
+  std::vector<BodyId> boxes;
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+    Body& body = scene.at(BodyId(i));
     if (body.name == "bird") {
-      bird = static_cast<int>(i);
+      bird = BodyId(i);
       body.linear_velocity = Vec3::Zero();
       body.jitter.linear_velocity = Vec3::Zero();
     } else if (body.motion == Motion::dynamic) {
-      boxes.push_back(static_cast<int>(i));
+      boxes.emplace_back(i);
     }
   }
   // The sling pulls during the first step of the task.
-  const Body& slung = scene.bodies[static_cast<std::size_t>(bird)];
+  const Body& slung = scene.at(bird);
   const double mass = mass_properties(scene, slung).mass;
   const double most = mass * kMostSpeed / (scene.options.dt * task.frame_skip);
   scene.controls = {thrust("pull x", bird, Vec3::Zero(), {1, 0, 0}, 0, most),
@@ -43,8 +43,8 @@ Task bird_sling() {
   see("bird vx", velocity(bird, 0));
   see("bird vy", velocity(bird, 1));
   Expression shifted = 0;
-  for (const int box : boxes) {
-    const Vec3& home = scene.bodies[static_cast<std::size_t>(box)].position;
+  for (const BodyId box : boxes) {
+    const Vec3& home = scene.at(box).position;
     shifted = shifted +
               (abs(position(box, 0) - home.x()) + abs(position(box, 1) - home.y()) > kLeastShift);
   }

@@ -9,10 +9,10 @@ constexpr double kMostTravel = 2.4;  // m
 
 struct CartPole {
   Scene scene;
-  int cart = 0, pole = 0;
+  BodyId cart, pole;
   // Of the rail and the hinge.
-  Expression travel = terms::joint_position(0), speed = terms::joint_speed(0);
-  Expression lean = terms::joint_position(1), turn = terms::joint_speed(1);
+  Expression travel = terms::joint_position(JointId(0)), speed = terms::joint_speed(JointId(0));
+  Expression lean = terms::joint_position(JointId(1)), turn = terms::joint_speed(JointId(1));
 };
 
 CartPole make(const Task& task, double most_force, int substeps) {
@@ -32,7 +32,7 @@ CartPole make(const Task& task, double most_force, int substeps) {
   pole.jitter.with = out.cart;
   pole.jitter.angle = 0.05;
   out.pole = scene.add(pole);
-  scene.add(joint_at(scene, -1, out.cart, Frame{}, SliderJoint{}));
+  scene.add(joint_at(scene, {}, out.cart, Frame{}, SliderJoint{}));
   scene.add(joint_at(scene, out.cart, out.pole, Frame{}, HingeJoint{}));
   scene.controls = {thrust("push", out.cart, Vec3::Zero(), {1, 0, 0}, -most_force, most_force)};
   return out;
@@ -72,7 +72,7 @@ Task cart_pole_swing_up() {
   task.scene = world.scene;
   task.actions = {{"push", -1, 1}};
   task.controls = {15 * terms::action()};
-  task.observations = {{"travel", world.travel, -kMostTravel, kMostTravel},
+  task.observations = {{"travel", world.travel, -2 * kMostTravel, 2 * kMostTravel},
                        {"speed", world.speed},
                        // The hinge counts from where the pole begins.
                        {"upright", upright, -1, 1},

@@ -11,7 +11,7 @@ namespace {
 constexpr double kMostTorque = 100;                                                        // N m
 constexpr double kFootHeight = 0.06, kAnkle = 0.1, kKnee = 0.6, kHip = 1.05, kTop = 1.45;  // m
 
-int add_limb(Scene& scene, const char* name, double low, double high, double radius) {
+BodyId add_limb(Scene& scene, const char* name, double low, double high, double radius) {
   Body limb;
   limb.name = name;
   limb.position = {0, (low + high) / 2, 0};
@@ -19,7 +19,7 @@ int add_limb(Scene& scene, const char* name, double low, double high, double rad
   shape.density = 200;
   shape.filter = {2, 1};  // its own limbs do not touch each other
   limb.shapes = {shape};
-  if (scene.bodies.size() > 1) limb.jitter.with = 1;  // the torso
+  if (scene.bodies.size() > 1) limb.jitter.with = BodyId(1);  // the torso
   return scene.add(limb);
 }
 
@@ -31,18 +31,18 @@ Task hopper() {
   task.name = "Hopper";
   Scene& scene = task.scene = planar_scene(task, 0.008, 9.81);
   scene.add(planar_ground({.friction = 1}));
-  const int torso = add_limb(scene, "torso", kHip, kTop, 0.05);
+  const BodyId torso = add_limb(scene, "torso", kHip, kTop, 0.05);
   scene.bodies.back().jitter.position = {0, 0.005, 0};
   scene.bodies.back().jitter.linear_velocity = {0.05, 0.05, 0};
-  const int thigh = add_limb(scene, "thigh", kKnee, kHip, 0.05);
-  const int leg = add_limb(scene, "leg", kAnkle, kKnee, 0.04);
-  const int foot = add_limb(scene, "foot", -0.13, 0.26, kFootHeight);
-  Body& sole = scene.bodies[static_cast<std::size_t>(foot)];
+  const BodyId thigh = add_limb(scene, "thigh", kKnee, kHip, 0.05);
+  const BodyId leg = add_limb(scene, "leg", kAnkle, kKnee, 0.04);
+  const BodyId foot = add_limb(scene, "foot", -0.13, 0.26, kFootHeight);
+  Body& sole = scene.at(foot);
   sole.position = {0.065, kAnkle, 0};
   sole.rotation = Quat(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
   sole.shapes[0].material.friction = 2;
 
-  const int body[] = {torso, thigh, leg, foot};
+  const BodyId body[] = {torso, thigh, leg, foot};
   const double height[] = {kHip, kKnee, kAnkle};
   const Limit limit[] = {{-0.2, 2.6, {}}, {-2.6, 0.2, {}}, {-0.8, 0.8, {}}};
   const char* const name[] = {"hip", "knee", "ankle"};
@@ -62,13 +62,13 @@ Task hopper() {
 
   const Expression lean = angle(torso), up = position(torso, 1);
   task.observations = {{"height", up}, {"lean", lean}};
-  for (int i = 0; i < 3; ++i) task.observations.push_back({name[i], joint_position(i)});
+  for (int i = 0; i < 3; ++i) task.observations.push_back({name[i], joint_position(JointId(i))});
   task.observations.push_back({"vx", clamp(velocity(torso, 0), -10, 10), -10, 10});
   task.observations.push_back({"vy", clamp(velocity(torso, 1), -10, 10), -10, 10});
   task.observations.push_back({"turn", clamp(angular_velocity(torso, 2), -10, 10), -10, 10});
   for (int i = 0; i < 3; ++i) {
     task.observations.push_back(
-        {std::string(name[i]) + " speed", clamp(joint_speed(i), -10, 10), -10, 10});
+        {std::string(name[i]) + " speed", clamp(joint_speed(JointId(i)), -10, 10), -10, 10});
   }
   task.rewards = {{"forward", velocity(torso, 0)},
                   {"alive", 1},

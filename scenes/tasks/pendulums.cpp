@@ -15,8 +15,8 @@ Task pendulum() {
   rod.shapes[0].position = {0, 0.5, 0};
   rod.mass_properties = MassProperties{1, {0, 0.5, 0}, Mat3::Identity() / 12};
   rod.jitter.angle = 3.141592653589793;
-  const int body = scene.add(rod);
-  scene.add(joint_at(scene, -1, body, Frame{}, HingeJoint{}));
+  const BodyId body = scene.add(rod);
+  scene.add(joint_at(scene, {}, body, Frame{}, HingeJoint{}));
   scene.controls = {torque("torque", body, kMostTorque)};
   const Expression angle = terms::angle(body), speed = terms::angular_velocity(body, 2);
   task.actions = {{"torque", -kMostTorque, kMostTorque}};
@@ -45,11 +45,11 @@ Task acrobot() {
     body.jitter.angle = 0.1;
     return body;
   };
-  const int upper = scene.add(link("upper", 0));
+  const BodyId upper = scene.add(link("upper", 0));
   Body forearm = link("lower", -1);
   forearm.jitter.with = upper;
-  const int lower = scene.add(forearm);
-  scene.add(joint_at(scene, -1, upper, Frame{}, HingeJoint{}));
+  const BodyId lower = scene.add(forearm);
+  scene.add(joint_at(scene, {}, upper, Frame{}, HingeJoint{}));
   Frame elbow;
   elbow.position = {0, -1, 0};
   scene.add(joint_at(scene, upper, lower, elbow, HingeJoint{}));

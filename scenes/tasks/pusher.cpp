@@ -29,14 +29,14 @@ Task pusher() {
     body.linear_drag = drag, body.angular_drag = drag;  // the table's friction
     return scene.add(body);
   };
-  const int hand = disc("hand", 0.15, 10, {-1.5, 0, 0}, {0.2, 1, 0}, 4),
-            puck = disc("puck", 0.2, 5, {-0.2, 0, 0}, {0.5, 1, 0}, 3);
+  const BodyId hand = disc("hand", 0.15, 10, {-1.5, 0, 0}, {0.2, 1, 0}, 4),
+               puck = disc("puck", 0.2, 5, {-0.2, 0, 0}, {0.5, 1, 0}, 3);
   Body mark;
   mark.name = "mark";
   mark.motion = Motion::kinematic;
   mark.position = {1.2, 0, 0};
   mark.jitter.position = {0.4, 1.2, 0};
-  const int goal = scene.add(mark);
+  const BodyId goal = scene.add(mark);
   scene.controls = {thrust("x", hand, Vec3::Zero(), {1, 0, 0}, -kMostForce, kMostForce),
                     thrust("y", hand, Vec3::Zero(), {0, 1, 0}, -kMostForce, kMostForce)};
   task.actions = {{"x", -1, 1}, {"y", -1, 1}};
@@ -45,7 +45,7 @@ Task pusher() {
   task.controls = {kMostForce * (c * action(0) + s * action(1)),
                    kMostForce * (c * action(1) - s * action(0))};
 
-  const auto apart = [](int a, int b) {
+  const auto apart = [](BodyId a, BodyId b) {
     return sqrt(square(position(a, 0) - position(b, 0)) + square(position(a, 1) - position(b, 1)));
   };
   for (const int axis : {0, 1}) {

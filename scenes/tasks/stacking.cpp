@@ -24,16 +24,16 @@ Task stacking() {
   };
   Body foot = box("lower", {0, kSide / 2, 0});
   foot.jitter.position = {0.5, 0, 0};
-  const int lower = scene.add(foot);
+  const BodyId lower = scene.add(foot);
   Body middle = box("upper", {0, 1.5 * kSide, 0});
   middle.jitter.with = lower;
   middle.jitter.position = {0.03, 0, 0};
-  const int upper = scene.add(middle);
+  const BodyId upper = scene.add(middle);
   Body third = box("flown", {0, 4 * kSide, 0});
   third.jitter.position = {1.5, 0.5, 0};
   third.jitter.angle = 0.3;
   third.linear_drag = 0.5, third.angular_drag = 1;
-  const int flown = scene.add(third);
+  const BodyId flown = scene.add(third);
   const double mass = mass_properties(scene, third).mass, most = 2.5 * mass * kGravity;
   scene.controls = {thrust("x", flown, Vec3::Zero(), {1, 0, 0}, -most, most),
                     thrust("y", flown, Vec3::Zero(), {0, 1, 0}, -most, most),

@@ -10,7 +10,7 @@
 
 #include "src/api/batch_impl.hpp"
 #include "src/base/bits.hpp"
-#include "src/base/denormals.hpp"
+#include "src/base/float_mode.hpp"
 
 namespace manyworlds {
 
@@ -80,18 +80,20 @@ class CoreOf final : public BatchCore {
           [](void* self, int index, int slot) { static_cast<CoreOf*>(self)->run(index, slot); },
           this);
     }
-    if (only_.empty()) {
+    only_ = {};
+  }
+  void end_steps(std::span<const std::uint8_t> only) override {
+    if (only.empty()) {
       for (auto& w : worlds_) w->clear_forces();
       all_groups_ = false;
-    } else {
-      for (std::size_t k = 0; k < worlds_.size(); ++k) {
-        for (int w = 0; w < worlds_[k]->count(); ++w) {
-          if (is_in(only_, k, w)) worlds_[k]->clear_forces(w);
-        }
-        worlds_[k]->find_forces();
-      }
+      return;
     }
-    only_ = {};
+    for (std::size_t k = 0; k < worlds_.size(); ++k) {
+      for (int w = 0; w < worlds_[k]->count(); ++w) {
+        if (is_in(only, k, w)) worlds_[k]->clear_forces(w);
+      }
+      worlds_[k]->find_forces();
+    }
   }
   void look(Executor& executor) override {
     steps_ = 0;
@@ -208,6 +210,10 @@ class CoreOf final : public BatchCore {
   void set_episode(int kind, int world, std::uint32_t episode) override {
     at(kind).set_episode(world, episode);
   }
+  std::uint64_t seed(int kind, int world) const override { return at(kind).seed(world); }
+  void set_seed(int kind, int world, std::uint64_t seed) override {
+    at(kind).set_seed(world, seed);
+  }
   void write_world(int kind, int world, std::byte* to) const override {
     at(kind).write_world(world, to);
   }
@@ -227,7 +233,7 @@ class CoreOf final : public BatchCore {
   Energy energy(int kind, int world) const override { return at(kind).energy(world); }
 
   std::vector<Contact> contacts(int kind, int world) const override;
-  double occupancy(int kind) const override;
+  double occupancy(int kind, const GoOn& go_on) const override;
 
   std::size_t bytes() const override {
     std::size_t total = 0;
@@ -309,7 +315,7 @@ class CoreOf final : public BatchCore {
   // active, and brings home what it observed: `steps`, or only looks.
   template <class Work>
   void run_group(int index, int slot, bool steps, Work work) {
-    const FlushDenormals flush;  // whatever thread this is
+    const FloatMode mode(FloatMode::flush);  // whatever thread this is
     const int active = active_[static_cast<std::size_t>(index)];
     const std::size_t kind = kind_of(active);
     auto& w = *worlds_[kind];

@@ -28,7 +28,7 @@ std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
   for (const int c : t.capacity) capacity += c;
   std::vector<kernels::ContactPoint<Real>> points(static_cast<std::size_t>(capacity) * 4);
   kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
-  const FlushDenormals flush;
+  const FloatMode mode(FloatMode::flush);
   const int slot = w.slot_of(world);
   std::vector<std::uint32_t> nobody;
   kernels_.record(scratch, slot % kernels_.lanes, points.data(), static_cast<int>(points.size()));
@@ -41,8 +41,8 @@ std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
   for (const auto& p : points) {
     const PairNames names = names_of(plan, t, p.key);
     Contact contact;
-    contact.body_a = names.body_a, contact.shape_a = names.shape_a;
-    contact.body_b = names.body_b, contact.shape_b = names.shape_b;
+    contact.body_a = names.a.body(), contact.shape_a = names.a;
+    contact.body_b = names.b.body(), contact.shape_b = names.b;
     for (int k = 0; k < 3; ++k) {
       contact.normal[k] = static_cast<double>(p.normal[k]);
       contact.point[k] = static_cast<double>(p.point[k]);
@@ -56,14 +56,15 @@ std::vector<Contact> CoreOf<Real>::contacts(int kind, int world) const {
 }
 
 template <class Real>
-double CoreOf<Real>::occupancy(int kind) const {
+double CoreOf<Real>::occupancy(int kind, const GoOn& go_on) const {
   const Worlds<Real>& w = at(kind);
   if (!w.tables().has_contacts) return 0;
-  const FlushDenormals flush;
+  const FloatMode mode(FloatMode::flush);
   kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
   double active = 0, slots = 0;
   std::vector<std::uint32_t> nobody;
   for (int g = 0; g < w.storage().groups(); ++g) {
+    if (!go_on()) return 0;
     collide_group<Real>({kernels_, w.tables(), layout_},
                         awake_view(w.storage().group(g), w.tables(), nobody), scratch);
     active += kernels_.counters(scratch).active;
@@ -74,7 +75,7 @@ double CoreOf<Real>::occupancy(int kind) const {
 
 template std::vector<Contact> CoreOf<float>::contacts(int, int) const;
 template std::vector<Contact> CoreOf<double>::contacts(int, int) const;
-template double CoreOf<float>::occupancy(int) const;
-template double CoreOf<double>::occupancy(int) const;
+template double CoreOf<float>::occupancy(int, const GoOn&) const;
+template double CoreOf<double>::occupancy(int, const GoOn&) const;
 
 }  // namespace manyworlds

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "src/api/batch_impl.hpp"
+#include "src/base/enum_names.hpp"
+#include "src/base/pimpl.hpp"
 
 namespace manyworlds {
 
@@ -13,15 +16,14 @@ namespace manyworlds {
 
 inline Isa checked_isa(const BatchOptions& options) {
   if (!options.isa) return default_isa();
-  const std::vector<Isa> have = available_isas();
-  if (std::find(have.begin(), have.end(), *options.isa) == have.end()) {
-    reject(std::string("isa ") + to_string(*options.isa) +
-           " is not available on this machine or in this build");
-  }
+  checked_enum(*options.isa);
+  require_isa(*options.isa, "isa");
   return *options.isa;
 }
 
 struct Batch::Impl {
+  static constexpr const char* kName = "Batch";
+
   std::vector<Kind> kinds;
   std::vector<int> first_world;  // of each kind, and the total
   BatchOptions options;
@@ -33,11 +35,15 @@ struct Batch::Impl {
   std::vector<std::uint64_t> fingerprint;  // of each kind's plan
   std::vector<std::size_t> first_body;     // of each kind, counted over all worlds before it
   std::vector<std::weak_ptr<BatchListener>> listeners;
+  double slowest_step = 0;  // s, of all worlds, as far as it was measured
 
   Impl(std::vector<Kind> all, const BatchOptions& o) : kinds(std::move(all)), options(o) {
     if (kinds.empty()) reject("a batch needs at least one kind of world");
-    if (options.threads < 0) {
-      reject("threads is " + std::to_string(options.threads) + ", must be >= 0");
+    checked_enum(options.precision);
+    checked_enum(options.layout);
+    if (options.threads < 0 || options.threads > kMaxThreads) {
+      reject("threads is " + std::to_string(options.threads) + ", must be 0 to " +
+             std::to_string(kMaxThreads));
     }
     if (options.threads != 0 && options.executor) {
       reject("threads is " + std::to_string(options.threads) +
@@ -46,16 +52,21 @@ struct Batch::Impl {
     check_observers(options.observe);
     int worlds = 0;
     std::size_t bodies = 0;
+    constexpr int kMostWorlds = std::numeric_limits<int>::max();
     for (const Kind& k : kinds) {
       fingerprint.push_back(k.plan.fingerprint());
       if (k.worlds < 1) reject("worlds is " + std::to_string(k.worlds) + ", must be >= 1");
+      if (k.worlds > kMostWorlds - worlds) {
+        reject("worlds of all kinds are " + std::to_string(std::int64_t{worlds} + k.worlds) +
+               " or more, must be at most " + std::to_string(kMostWorlds));
+      }
       if (k.plan.scene().space != kinds.front().plan.scene().space) {
         reject("kinds of one batch must be all planar or all spatial");
       }
       if (k.plan.scene().options.dt != kinds.front().plan.scene().options.dt) {
         reject("kinds of one batch must have the same dt");
       }
-      check_rays(options.observe.rays, k.plan.scene().space, k.plan.bodies());
+      check_rays(options.observe.rays, k.plan);
       first_world.push_back(worlds);
       first_body.push_back(bodies);
       worlds += k.worlds;
@@ -65,19 +76,26 @@ struct Batch::Impl {
     first_body.push_back(bodies);
     dt = kinds.front().plan.scene().options.dt;
     executor = options.executor ? options.executor : make_executor(options.threads);
-    if (executor->threads() < 1) {
-      reject("the executor has " + std::to_string(executor->threads()) + " threads, must be >= 1");
+    if (executor->threads() < 1 || executor->threads() > kMaxThreads) {
+      reject("the executor has " + std::to_string(executor->threads()) + " threads, must be 1 to " +
+             std::to_string(kMaxThreads));
     }
-    core = make_core(kinds, options, checked_isa(options), executor->threads());
+    make_core_within_memory();
   }
+  // Throws std::invalid_argument that says how much memory would be needed.
+  void make_core_within_memory();
+
+  // Steps, all or those of a mask, with questions between them; returns how many.
+  int step(int n, std::span<const std::uint8_t> mask, const GoOn& go_on);
 
   // Told after the change; see batch_listen.cpp.
-  void tell(const Batch& batch, Input input, int world, int body = -1,
+  void tell(const Batch& batch, Input input, int world, BodyId body = {},
             std::initializer_list<Vec3> vectors = {}) const;
+  void tell(const Batch& batch, Input input, int world, JointId joint) const;
   template <class Number>
   void tell_write(const Batch& batch, Field field, std::span<const Number> in) const;
   void tell_write(const Batch& batch, Field field, int world, std::span<const double> in) const;
-  void tell_spawn(const Batch& batch, int world, int body, const BodyState& state) const;
+  void tell_spawn(const Batch& batch, int world, BodyId body, const BodyState& state) const;
   void tell_controls(const Batch& batch, int world, std::span<const double> in) const;
   void tell_step(const Batch& batch, int n) const;
 
@@ -103,20 +121,32 @@ struct Batch::Impl {
     while (world >= first_world[static_cast<std::size_t>(kind) + 1]) ++kind;
     return {kind, world - first_world[static_cast<std::size_t>(kind)]};
   }
+  void check_kind(int kind) const {
+    if (kind >= 0 && static_cast<std::size_t>(kind) < kinds.size()) return;
+    reject("kind is " + std::to_string(kind) + ", must be 0 to " +
+           std::to_string(kinds.size() - 1));
+  }
   const Plan& plan(int kind) const { return kinds[static_cast<std::size_t>(kind)].plan; }
-  Place find_body(int world, int body) const {
+  struct BodyPlace {
+    int kind, world;
+    int row;  // of the body; -1: fixed
+  };
+  BodyPlace find_any_body(int world, BodyId body) const {
     const Place p = find(world);
-    if (body < 0 || body >= plan(p.kind).bodies()) {
-      reject("body is " + std::to_string(body) + ", must be 0 to " +
-             std::to_string(plan(p.kind).bodies() - 1));
-    }
+    return {p.kind, p.world, plan(p.kind).find_row(body).value_or(-1)};
+  }
+  // Of one that is not fixed; `why` that would make no sense.
+  BodyPlace find_body(int world, BodyId body, const char* why) const {
+    const BodyPlace p = find_any_body(world, body);
+    if (p.row < 0) reject(body_text(plan(p.kind).scene(), body) + " is fixed: " + why);
     return p;
   }
-  Place find_joint(int world, int joint) const {
+  Place find_joint(int world, JointId joint) const {
     const Place p = find(world);
     const int joints = static_cast<int>(plan(p.kind).scene().joints.size());
-    if (joint < 0 || joint >= joints) {
-      reject("joint is " + std::to_string(joint) + ", must be 0 to " + std::to_string(joints - 1));
+    if (!joint || joint.index() >= joints) {
+      reject("joint is " + std::to_string(joint.index()) + ", must be 0 to " +
+             std::to_string(joints - 1));
     }
     return p;
   }
@@ -132,7 +162,7 @@ struct Batch::Impl {
     }
   }
   std::size_t world_size(Parameter parameter, int kind) const {
-    return core->parameter_size(parameter, kind);
+    return core->parameter_size(checked_enum(parameter), kind);
   }
   void check_mask(std::span<const std::uint8_t> mask) const {
     if (mask.size() != static_cast<std::size_t>(first_world.back())) {

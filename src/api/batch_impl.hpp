@@ -20,9 +20,10 @@ class BatchCore {
  public:
   virtual ~BatchCore() = default;
   // `visitor`, of the batch's number type, may be null. `only`: the mask of the worlds that are to
-  // step; empty: all.
+  // step; empty: all. Forces act until end_steps().
   virtual void step(Executor& executor, int n, GroupVisitor* visitor = nullptr,
                     std::span<const std::uint8_t> only = {}) = 0;
+  virtual void end_steps(std::span<const std::uint8_t> only = {}) = 0;
   // Lets the visitor know that the worlds of this mask begin, after resetting them if it is told
   // to. Of batches of one kind, without sleep.
   virtual void begin(Executor& executor, std::span<const std::uint8_t> worlds, bool reset,
@@ -61,6 +62,8 @@ class BatchCore {
   virtual std::size_t world_bytes(int kind) const = 0;
   virtual std::uint32_t episode(int kind, int world) const = 0;
   virtual void set_episode(int kind, int world, std::uint32_t episode) = 0;
+  virtual std::uint64_t seed(int kind, int world) const = 0;
+  virtual void set_seed(int kind, int world, std::uint64_t seed) = 0;
   virtual void write_world(int kind, int world, std::byte* to) const = 0;
   virtual std::string check_world(int kind, const std::byte* from) const = 0;
   virtual void read_world(int kind, int world, const std::byte* from) = 0;
@@ -69,10 +72,11 @@ class BatchCore {
   virtual std::uint64_t hash(int kind, int world) const = 0;
   virtual Energy energy(int kind, int world) const = 0;
   virtual std::vector<Contact> contacts(int kind, int world) const = 0;
-  virtual Observations* observations() = 0;      // nullptr: nothing is observed
-  virtual void look(Executor& executor) = 0;     // at the current state
-  virtual void look_again() = 0;                 // at the next step also at what rests
-  virtual double occupancy(int kind) const = 0;  // of dense slots, over all groups, current state
+  virtual Observations* observations() = 0;   // nullptr: nothing is observed
+  virtual void look(Executor& executor) = 0;  // at the current state
+  virtual void look_again() = 0;              // at the next step also at what rests
+  // Of dense slots, over all groups, current state.
+  virtual double occupancy(int kind, const GoOn& go_on) const = 0;
   virtual std::size_t bytes() const = 0;
   virtual std::size_t scratch_bytes() const = 0;
   virtual int lanes() const = 0;

@@ -26,7 +26,7 @@ void Batch::listen(std::weak_ptr<BatchListener> listener) {
   impl_->listeners.push_back(std::move(listener));
 }
 
-void Batch::Impl::tell(const Batch& batch, Input input, int world, int body,
+void Batch::Impl::tell(const Batch& batch, Input input, int world, BodyId body,
                        std::initializer_list<Vec3> vectors) const {
   if (listeners.empty()) return;
   std::array<double, 6> values{};
@@ -34,7 +34,11 @@ void Batch::Impl::tell(const Batch& batch, Input input, int world, int body,
   for (const Vec3& v : vectors) {
     for (int c = 0; c < 3; ++c) values[n++] = v[c];
   }
-  call(listeners, batch, {input, world, body, {values.data(), n}});
+  call(listeners, batch,
+       {.input = input, .world = world, .body = body, .values = {values.data(), n}});
+}
+void Batch::Impl::tell(const Batch& batch, Input input, int world, JointId joint) const {
+  call(listeners, batch, {.input = input, .world = world, .joint = joint});
 }
 
 template <class Number>
@@ -45,7 +49,9 @@ void Batch::Impl::tell_write(const Batch& batch, Field field, std::span<const Nu
     const auto begin = in.begin() + static_cast<std::ptrdiff_t>(at);
     values.assign(begin, begin + static_cast<std::ptrdiff_t>(world_size(field, kind)));
     call(listeners, batch,
-         {write_of(field), first_world[static_cast<std::size_t>(kind)] + world, -1, values});
+         {.input = write_of(field),
+          .world = first_world[static_cast<std::size_t>(kind)] + world,
+          .values = values});
   });
 }
 template void Batch::Impl::tell_write(const Batch&, Field, std::span<const float>) const;
@@ -53,49 +59,25 @@ template void Batch::Impl::tell_write(const Batch&, Field, std::span<const doubl
 
 void Batch::Impl::tell_write(const Batch& batch, Field field, int world,
                              std::span<const double> in) const {
-  call(listeners, batch, {write_of(field), world, -1, in});
+  call(listeners, batch, {.input = write_of(field), .world = world, .values = in});
 }
 
-void Batch::Impl::tell_spawn(const Batch& batch, int world, int body,
+void Batch::Impl::tell_spawn(const Batch& batch, int world, BodyId body,
                              const BodyState& state) const {
   const auto& [x, q, v, w] = state;
   const std::array<double, 13> values = {x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(),
                                          v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
-  call(listeners, batch, {Input::spawn, world, body, values});
+  call(listeners, batch, {.input = Input::spawn, .world = world, .body = body, .values = values});
 }
 
 void Batch::Impl::tell_controls(const Batch& batch, int world, std::span<const double> in) const {
-  call(listeners, batch, {Input::set_controls, world, -1, in});
+  call(listeners, batch, {.input = Input::set_controls, .world = world, .values = in});
 }
 
 void Batch::Impl::tell_step(const Batch& batch, int n) const {
   for (const auto& weak : listeners) {
     if (const auto listener = weak.lock()) listener->on_step(batch, n);
   }
-}
-
-const char* to_string(Input input) {
-  constexpr const char* kNames[kInputCount] = {"force",
-                                               "torque",
-                                               "force_at",
-                                               "impulse",
-                                               "angular_impulse",
-                                               "impulse_at",
-                                               "enable",
-                                               "disable",
-                                               "spawn",
-                                               "wake",
-                                               "write_position",
-                                               "write_orientation",
-                                               "write_linear_velocity",
-                                               "write_angular_velocity",
-                                               "reset",
-                                               "restore",
-                                               "set_controls",
-                                               "enable_joint",
-                                               "disable_joint"};
-  const auto i = static_cast<std::size_t>(input);
-  return i < kInputCount ? kNames[i] : "unknown";
 }
 
 }  // namespace manyworlds

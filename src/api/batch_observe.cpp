@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "src/api/batch_data.hpp"
+#include "src/base/float_mode.hpp"
 
 namespace manyworlds {
 
@@ -70,22 +71,25 @@ std::vector<StepContact> Batch::step_contacts(int world) const {
   return observations_of(*impl_->core).contacts(p.kind, p.world);
 }
 
-bool Batch::touching(int world, int body) const {
-  const auto p = impl_->find_body(world, body);
+bool Batch::touching(int world, BodyId body) const {
+  const auto p =
+      impl_->find_body(world, body, "what touches it is not observed, ask the other body");
   std::vector<double> all(static_cast<std::size_t>(impl_->plan(p.kind).bodies()));
   read(Observed::touching, world, all);
-  return all[static_cast<std::size_t>(body)] != 0;
+  return all[static_cast<std::size_t>(p.row)] != 0;
 }
 
-bool Batch::touching(int world, int scene_body_a, int scene_body_b) const {
+bool Batch::touching(int world, BodyId body_a, BodyId body_b) const {
+  for (const BodyId body : {body_a, body_b}) impl_->find_any_body(world, body);
   const auto all = step_contacts(world);
   return std::any_of(all.begin(), all.end(), [&](const StepContact& c) {
-    return c.normal_impulse > 0 && ((c.body_a == scene_body_a && c.body_b == scene_body_b) ||
-                                    (c.body_a == scene_body_b && c.body_b == scene_body_a));
+    return c.normal_impulse > 0 && ((c.body_a == body_a && c.body_b == body_b) ||
+                                    (c.body_a == body_b && c.body_b == body_a));
   });
 }
 
 std::vector<RayHit> Batch::ray_hits(int world) const {
+  const FloatMode mode;
   const std::size_t rays = impl_->options.observe.rays.size();
   const std::size_t dim = plan().scene().space == Space::planar ? 2 : 3;
   std::vector<double> distance(rays), normal(rays * dim), body(rays), shape(rays);
@@ -96,8 +100,8 @@ std::vector<RayHit> Batch::ray_hits(int world) const {
   std::vector<RayHit> out(rays);
   for (std::size_t i = 0; i < rays; ++i) {
     out[i].distance = distance[i];
-    out[i].body = static_cast<int>(body[i]);
-    out[i].shape = static_cast<int>(shape[i]);
+    out[i].body = BodyId(static_cast<int>(body[i]));
+    if (out[i].body) out[i].shape = ShapeId(out[i].body, static_cast<int>(shape[i]));
     for (std::size_t c = 0; c < dim; ++c) {
       out[i].normal[static_cast<Eigen::Index>(c)] = normal[i * dim + c];
     }
@@ -106,9 +110,10 @@ std::vector<RayHit> Batch::ray_hits(int world) const {
 }
 
 void Batch::set_rays(std::span<const Ray> rays) {
+  const FloatMode mode;
   check_count(rays.size(), impl_->options.observe.rays.size());
   for (const Kind& kind : impl_->kinds) {
-    check_rays(rays, kind.plan.scene().space, kind.plan.bodies());
+    check_rays(rays, kind.plan);
   }
   observations_of(*impl_->core).set_rays(rays);
   impl_->core->look_again();
@@ -116,10 +121,11 @@ void Batch::set_rays(std::span<const Ray> rays) {
 }
 
 void Batch::set_rays(int world, std::span<const Ray> rays) {
+  const FloatMode mode;
   const auto p = impl_->find(world);
   const auto& shared = impl_->options.observe.rays;
   check_count(rays.size(), shared.size());
-  check_rays(rays, plan().scene().space, impl_->plan(p.kind).bodies());
+  check_rays(rays, impl_->plan(p.kind));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays[i].body != shared[i].body || rays[i].mask != shared[i].mask) {
       reject("rays[" + std::to_string(i) +

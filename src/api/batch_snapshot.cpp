@@ -31,6 +31,7 @@ Snapshot Batch::save(std::span<const int> worlds) const {
     entry.fingerprint = impl_->fingerprint[static_cast<std::size_t>(p.kind)];
     entry.size = static_cast<std::uint32_t>(impl_->core->world_bytes(p.kind));
     entry.episode = impl_->core->episode(p.kind, p.world);
+    entry.seed = impl_->core->seed(p.kind, p.world);
     entries.push_back(entry);
   }
   SnapshotHeader header{};
@@ -79,7 +80,9 @@ void Batch::restore(const Snapshot& snapshot) {
     const auto p = impl_->find(w);
     const auto i = static_cast<std::size_t>(w);
     impl_->core->read_world(p.kind, p.world, SnapshotAccess::world(snapshot, i));
-    impl_->core->set_episode(p.kind, p.world, SnapshotAccess::entry(snapshot, i).episode);
+    const SnapshotEntry entry = SnapshotAccess::entry(snapshot, i);
+    impl_->core->set_episode(p.kind, p.world, entry.episode);
+    if (has_seeds(header)) impl_->core->set_seed(p.kind, p.world, entry.seed);
   }
   impl_->steps = header.steps;
   impl_->clock = header.clock;

@@ -1,20 +1,16 @@
-// Names of the public enumerations of batch.hpp.
+// Names of the public enumerations of batch.hpp, observe.hpp and listener.hpp.
 #include <string>
 
 #include "manyworlds/batch.hpp"
+#include "src/base/enum_names.hpp"
 
 namespace manyworlds {
 
-const char* to_string(Precision precision) { return precision == Precision::f32 ? "f32" : "f64"; }
-
-const char* to_string(ContactLayout layout) {
-  switch (layout) {
-    case ContactLayout::automatic: return "automatic";
-    case ContactLayout::dense: return "dense";
-    case ContactLayout::rows: return "rows";
-  }
-  return "?";
-}
+const char* to_string(Precision precision) { return name_of(precision); }
+const char* to_string(ContactLayout layout) { return name_of(layout); }
+const char* to_string(Observer observer) { return name_of(observer); }
+const char* to_string(Observed what) { return name_of(what); }
+const char* to_string(Input input) { return name_of(input); }
 
 std::string to_string(Status status) {
   std::string out;

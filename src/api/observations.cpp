@@ -154,7 +154,11 @@ void ObservationsOf<Real>::put_ray(std::size_t k, int world, std::size_t ray, co
 template <class Real>
 void ObservationsOf<Real>::set_rays(std::span<const Ray> rays) {
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
-    for (std::size_t i = 0; i < rays.size(); ++i) kinds_[k].rays[i] = {rays[i].body, rays[i].mask};
+    const Plan& plan = worlds_[k]->plan();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const BodyId body = rays[i].body;
+      kinds_[k].rays[i] = {body ? plan.row(body) : -1, rays[i].mask};
+    }
     for (int w = 0; w < worlds_[k]->count(); ++w) set_rays(static_cast<int>(k), w, rays);
   }
   observers_.rays.assign(rays.begin(), rays.end());

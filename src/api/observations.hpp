@@ -13,7 +13,7 @@ namespace manyworlds {
 
 // The scene's names for the two shapes of a candidate pair.
 struct PairNames {
-  int body_a, shape_a, body_b, shape_b;
+  ShapeId a, b;
 };
 template <class Real>
 PairNames names_of(const PlanData& plan, const kernels::WorldTables<Real>& tables,
@@ -21,8 +21,8 @@ PairNames names_of(const PlanData& plan, const kernels::WorldTables<Real>& table
 
 // Numbers of one world: what Observed says, for a plan and `rays`.
 std::size_t observed_size(Observed what, const PlanData& plan, std::size_t rays);
-// Throws std::invalid_argument for what makes no sense in a plan with so many bodies.
-void check_rays(std::span<const Ray> rays, Space space, int bodies);
+// Throws std::invalid_argument for what makes no sense in a plan.
+void check_rays(std::span<const Ray> rays, const Plan& plan);
 void check_observers(const Observers& observers);
 
 // The number type's side. Indices were checked by the caller.

@@ -9,6 +9,7 @@
 #include "kernels/observation.hpp"
 #include "manyworlds/batch.hpp"
 #include "src/base/aligned_buffer.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/dispatch/kernels.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/scene/convex.hpp"
@@ -85,7 +86,7 @@ std::optional<RayHit> cast(const kernels::KernelTable<Real>& kernels, const Plan
     for (std::size_t i = 0; i < f.row.size(); ++i) row[i] = static_cast<Real>(f.row[i]);
     if (!kernels.observer->cast(plan.dimension(), f.kind, row.data(), rows, hit)) continue;
     if (best && best->distance <= static_cast<double>(hit[0])) continue;
-    best = RayHit{static_cast<double>(hit[0]), 0, 0, Vec3::Zero()};
+    best = RayHit{static_cast<double>(hit[0]), BodyId(0), ShapeId(BodyId(0), 0), Vec3::Zero()};
     for (int c = 0; c < 3; ++c) best->normal[c] = static_cast<double>(hit[1 + c]);
   }
   return best;
@@ -95,6 +96,7 @@ std::optional<RayHit> cast(const kernels::KernelTable<Real>& kernels, const Plan
 
 Separation distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     std::optional<Space> given) {
+  const FloatMode mode;
   const Space space = space_of(a.geometry, b.geometry, given);
   fixed_scene(space,
               {body_of("a", a, pose_a, Motion::fixed), body_of("b", b, pose_b, Motion::fixed)});
@@ -118,6 +120,7 @@ bool overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pos
 
 std::vector<ManifoldPoint> manifold(const Shape& a, const Pose& pose_a, const Shape& b,
                                     const Pose& pose_b, double margin, std::optional<Space> given) {
+  const FloatMode mode;
   if (!(margin >= 0) || !std::isfinite(margin)) {
     no_answer("manifold: the margin is " + std::to_string(margin) + " m, must be >= 0");
   }
@@ -141,19 +144,20 @@ std::vector<ManifoldPoint> manifold(const Shape& a, const Pose& pose_a, const Sh
   scene.options.slop = std::max(scene.options.slop, margin / (4 * unit) * (1 + 1e-6));
   BatchOptions options;
   options.threads = 1;
-  options.isa = Isa::scalar;
-  options.precision = find_kernels<double>(Isa::scalar) ? Precision::f64 : Precision::f32;
+  options.isa = available_isas().front();
+  options.precision = has_kernels(Precision::f64) ? Precision::f64 : Precision::f32;
   std::vector<ManifoldPoint> points;
   for (const Contact& c : Batch(compile(scene), options).contacts(0)) {
     if (c.separation > margin) continue;
     points.push_back(
-        {c.body_a == 0 ? c.normal : Vec3(-c.normal), c.point, c.separation, c.feature});
+        {c.body_a == BodyId(0) ? c.normal : Vec3(-c.normal), c.point, c.separation, c.feature});
   }
   return points;
 }
 
 std::optional<RayHit> ray_cast(const Shape& shape, const Pose& pose, const Ray& ray,
                                std::optional<Space> given) {
+  const FloatMode mode;
   const Space space = space_of(shape.geometry, shape.geometry, given);
   PlanData plan;
   plan.scene = fixed_scene(space, {body_of("a", shape, pose, Motion::fixed)});
@@ -166,8 +170,7 @@ std::optional<RayHit> ray_cast(const Shape& shape, const Pose& pose, const Ray& 
   }
   choose_polygons(plan);
   collect_fixed(plan);
-  if (const auto* kernels = find_kernels<double>(Isa::scalar))
-    return cast(*kernels, plan, in_space);
+  if (has_kernels(Precision::f64)) return cast(kernels_for<double>(Isa::scalar), plan, in_space);
   return cast(kernels_for<float>(Isa::scalar), plan, in_space);
 }
 

@@ -139,8 +139,8 @@ std::vector<StepContact> ObservationsOf<Real>::contacts(int k, int world) const 
     const auto& from = kind.contacts[w * at(kind.room) + i];
     StepContact& to = out[i];
     const PairNames names = names_of(worlds_[at(k)]->data(), worlds_[at(k)]->tables(), from.key);
-    to.body_a = names.body_a, to.shape_a = names.shape_a;
-    to.body_b = names.body_b, to.shape_b = names.shape_b;
+    to.body_a = names.a.body(), to.shape_a = names.a;
+    to.body_b = names.b.body(), to.shape_b = names.b;
     for (int c = 0; c < 3; ++c) {
       to.normal[c] = static_cast<double>(from.normal[c]);
       to.point[c] = static_cast<double>(from.point[c]);

@@ -1,14 +1,7 @@
-#include "manyworlds/batch.hpp"
+#include "src/base/enum_names.hpp"
 
 namespace manyworlds {
 
-const char* to_string(Isa isa) {
-  switch (isa) {
-    case Isa::scalar: return "scalar";
-    case Isa::avx2: return "avx2";
-    case Isa::avx512: return "avx512";
-  }
-  return "?";
-}
+const char* to_string(Isa isa) { return name_of(isa); }
 
 }  // namespace manyworlds

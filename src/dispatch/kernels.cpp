@@ -1,6 +1,8 @@
 #include "src/dispatch/kernels.hpp"
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +20,12 @@ MW_DECLARE(avx512_f32, float)
 #undef MW_DECLARE
 
 namespace {
+
+constexpr Isa kIsas[] = {Isa::scalar, Isa::avx2, Isa::avx512};
+
+// What this build has kernels for, as in "avx2 f32, avx2 f64", and how to get the others.
+constexpr const char* kBuilt =
+    MW_KERNELS_BUILT " (tools/run --all in the repository builds all; MW_KERNELS, MW_ISAS)";
 
 bool cpu_has(Isa isa) {
   switch (isa) {
@@ -103,31 +111,57 @@ const kernels::KernelTable<Real>& kernels_for(Isa isa) {
   for (int i = static_cast<int>(isa); i >= 0; --i) {
     if (const auto* table = find_kernels<Real>(static_cast<Isa>(i))) return *table;
   }
-  throw std::invalid_argument(std::string("this build has no kernels for ") + to_string(isa) +
-                              (sizeof(Real) == 4 ? " in f32" : " in f64"));
+  // A build may leave the narrow ones out. All give the same bits.
+  for (const Isa wider : kIsas) {
+    if (const auto* table = find_kernels<Real>(wider)) return *table;
+  }
+  throw std::invalid_argument(std::string("no kernels in ") + (sizeof(Real) == 4 ? "f32" : "f64") +
+                              ": this build has " + kBuilt);
 }
 template const kernels::KernelTable<float>& kernels_for<float>(Isa);
 template const kernels::KernelTable<double>& kernels_for<double>(Isa);
 
+bool has_kernels(Precision precision) {
+  return std::any_of(std::begin(kIsas), std::end(kIsas), [&](Isa isa) {
+    return precision == Precision::f32 ? find_kernels<float>(isa) != nullptr
+                                       : find_kernels<double>(isa) != nullptr;
+  });
+}
+
 std::vector<Isa> available_isas() {
   std::vector<Isa> out;
-  for (const Isa isa : {Isa::scalar, Isa::avx2, Isa::avx512}) {
+  for (const Isa isa : kIsas) {
     if (find_kernels<float>(isa) || find_kernels<double>(isa)) out.push_back(isa);
   }
   return out;
 }
 
-Isa default_isa() {
+void require_isa(Isa isa, const std::string& name) {
   const std::vector<Isa> have = available_isas();
+  if (std::find(have.begin(), have.end(), isa) != have.end()) return;
+  throw std::invalid_argument(name + " is '" + to_string(isa) +
+                              (cpu_has(isa)
+                                   ? "', which was not built: this build has " + std::string(kBuilt)
+                                   : "', which this CPU cannot run"));
+}
+
+Isa default_isa() {
   const char* forced = std::getenv("MANYWORLDS_ISA");
-  if (forced == nullptr || *forced == '\0') return have.back();
-  std::string names;
-  for (const Isa isa : have) {
-    if (std::string(forced) == to_string(isa)) return isa;
-    names += std::string(names.empty() ? "" : ", ") + to_string(isa);
+  if (forced != nullptr && *forced != '\0') {
+    for (const Isa isa : kIsas) {
+      if (std::string(forced) != to_string(isa)) continue;
+      require_isa(isa, "MANYWORLDS_ISA");
+      return isa;
+    }
+    throw std::invalid_argument("MANYWORLDS_ISA is '" + std::string(forced) +
+                                "', must be scalar, avx2 or avx512");
   }
-  throw std::invalid_argument("MANYWORLDS_ISA is '" + std::string(forced) +
-                              "', but this machine and build have: " + names);
+  const std::vector<Isa> have = available_isas();
+  if (have.empty()) {
+    throw std::invalid_argument("this CPU cannot run any of the kernels of this build: " +
+                                std::string(kBuilt));
+  }
+  return have.back();
 }
 
 }  // namespace manyworlds

@@ -10,7 +10,7 @@
 namespace manyworlds::lcp {
 namespace {
 
-constexpr double kTiny = 1e-11;
+constexpr double kTinyPivot = 1e-11;
 
 // w = m z + q with w, z >= 0 and w z = 0.
 struct Standard {
@@ -93,7 +93,7 @@ class Tableau {
   Eigen::Index leaving_row(Eigen::Index entering) const {
     Eigen::Index best = -1;
     for (Eigen::Index i = 0; i < n_; ++i) {
-      if (!(rows_(i, entering) > kTiny)) continue;
+      if (!(rows_(i, entering) > kTinyPivot)) continue;
       if (best < 0 || before(i, best, entering)) best = i;
     }
     return best;
@@ -101,12 +101,12 @@ class Tableau {
   bool before(Eigen::Index a, Eigen::Index b, Eigen::Index entering) const {
     const double of_a = rows_(a, entering), of_b = rows_(b, entering);
     const double x = rows_(a, 2 * n_ + 1) / of_a, y = rows_(b, 2 * n_ + 1) / of_b;
-    const double same = kTiny * std::max({1.0, std::abs(x), std::abs(y)});
+    const double same = kTinyPivot * std::max({1.0, std::abs(x), std::abs(y)});
     if (std::abs(x - y) > same) return x < y;
     if (basis_[size(a)] == 2 * n_ || basis_[size(b)] == 2 * n_) return basis_[size(a)] == 2 * n_;
     for (Eigen::Index c = 0; c < n_; ++c) {
       const double u = rows_(a, c) / of_a, v = rows_(b, c) / of_b;
-      if (std::abs(u - v) > kTiny) return u < v;
+      if (std::abs(u - v) > kTinyPivot) return u < v;
     }
     return a < b;
   }

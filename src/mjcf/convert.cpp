@@ -132,7 +132,7 @@ Scene make_scene(const Model& model, const std::string& name) {
       (m.opt.disableflags & mjDSBL_GRAVITY) != 0 ? Vec3::Zero().eval() : vec3(m.opt.gravity);
 
   std::vector<Body> bodies = bodies_of(model);
-  std::vector<int> scene_body(bodies.size(), -1);
+  std::vector<BodyId> scene_body(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     // A static body that only had something to see is of no use; a part of a free body has none.
     const bool moves = bodies[b].motion == Motion::dynamic;

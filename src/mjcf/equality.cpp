@@ -219,7 +219,7 @@ bool excludes_joined(const Model& model, int exclude) {
   return false;
 }
 
-void add_joints(const Model& model, const std::vector<int>& scene_body, Scene& scene) {
+void add_joints(const Model& model, const std::vector<BodyId>& scene_body, Scene& scene) {
   const mjModel& m = *model.compiled;
   if (!equalities_enabled(m)) return;
   for (int e = 0; e < m.neq; ++e) {
@@ -234,7 +234,7 @@ void add_joints(const Model& model, const std::vector<int>& scene_body, Scene& s
     } else {
       joint.type = BallJoint{};
     }
-    joint.body_a = a.body == 0 ? -1 : scene_body[static_cast<std::size_t>(a.body)];
+    joint.body_a = a.body == 0 ? BodyId() : scene_body[static_cast<std::size_t>(a.body)];
     joint.body_b = scene_body[static_cast<std::size_t>(b.body)];
     joint.frame_a = {a.frame.position, a.frame.rotation};
     joint.frame_b = {b.frame.position, b.frame.rotation};

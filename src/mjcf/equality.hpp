@@ -23,6 +23,6 @@ bool excludes_joined(const Model& model, int exclude);
 
 // `scene_body`: of each of MuJoCo's free bodies. Precondition: check_equalities finds nothing, and
 // the scene knows its length_unit. Caps the speed at which joints close that begin apart.
-void add_joints(const Model& model, const std::vector<int>& scene_body, Scene& scene);
+void add_joints(const Model& model, const std::vector<BodyId>& scene_body, Scene& scene);
 
 }  // namespace manyworlds::mjcf

@@ -1,13 +1,15 @@
 #include "manyworlds/mjcf.hpp"
 
 #include <array>
-#include <system_error>
+#include <cstddef>
 #include <utility>
 
+#include "src/base/float_mode.hpp"
 #include "src/mjcf/convert.hpp"
 #include "src/mjcf/model.hpp"
 #include "src/mjcf/mujoco_library.hpp"
 #include "src/mjcf/support.hpp"
+#include "src/mjcf/vet.hpp"
 
 namespace manyworlds {
 namespace {
@@ -18,40 +20,49 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-// `parse(error, size)` returns a spec, or null with a message in `error`.
-template <typename Parse>
-mjcf::Model compile_model(const std::string& label, Parse parse) {
-  if (mj_version() != mjVERSION_HEADER) {
-    throw MjcfError({label + ": MuJoCo's library is version " + std::to_string(mj_version()) +
-                     "; expected " + std::to_string(mjVERSION_HEADER)});
+// The only files that MuJoCo sees.
+class VirtualFiles {
+ public:
+  explicit VirtualFiles(const std::vector<mjcf::VirtualFile>& files) {
+    mj_defaultVFS(&files_);
+    for (const mjcf::VirtualFile& file : files) {
+      mj_addBufferVFS(&files_, file.name.c_str(), file.bytes.data(),
+                      static_cast<int>(file.bytes.size()));
+    }
   }
-  std::array<char, 2048> error{};
-  mjcf::SpecPtr spec(parse(error.data(), static_cast<int>(error.size())));
-  if (!spec) throw MjcfError({label + ": " + mjcf::one_line(error.data())});
-  spec->compiler.usethread = false;  // a compiler thread could not pass its error to us
-  mjcf::ModelPtr compiled(mj_compile(spec.get(), nullptr));
-  if (!compiled) throw MjcfError({label + ": " + mjcf::one_line(mjs_getError(spec.get()))});
-  return {std::move(spec), std::move(compiled)};
+  ~VirtualFiles() { mj_deleteVFS(&files_); }
+  VirtualFiles(const VirtualFiles&) = delete;
+  VirtualFiles& operator=(const VirtualFiles&) = delete;
+  const mjVFS* get() const { return &files_; }
+
+ private:
+  mjVFS files_{};
+};
+
+// A message of MuJoCo's, with files named as they are on disk.
+std::string with_real_names(std::string text, const std::vector<mjcf::VirtualFile>& files) {
+  for (const mjcf::VirtualFile& file : files) {
+    for (std::size_t at = text.find(file.name); at != std::string::npos;
+         at = text.find(file.name, at + file.label.size())) {
+      text.replace(at, file.name.size(), file.label);
+    }
+  }
+  return text;
 }
 
-template <typename Parse>
-MjcfResult load(const std::string& label, const std::string& scene_name, Parse parse) {
-  mjcf::LogCapture log;
-  try {
-    const mjcf::Model model = compile_model(label, parse);
-    std::vector<std::string> problems = mjcf::unsupported(model);
-    if (!problems.empty()) {
-      for (std::string& problem : problems) problem.insert(0, label + ": ");
-      throw MjcfError(std::move(problems));
-    }
-    MjcfResult result{mjcf::make_scene(model, scene_name), log.warnings()};
-    for (std::string& warning : mjcf::differences(model)) {
-      result.warnings.push_back(std::move(warning));
-    }
-    return result;
-  } catch (const mjcf::MujocoFailure& failure) {
-    throw MjcfError({label + ": " + failure.what()});
+mjcf::Model compile_model(const std::string& xml, const mjVFS* files) {
+  if (mj_version() != mjVERSION_HEADER) {
+    throw mjcf::MujocoFailure("MuJoCo's library is version " + std::to_string(mj_version()) +
+                              "; expected " + std::to_string(mjVERSION_HEADER));
   }
+  std::array<char, 2048> error{};
+  mjcf::SpecPtr spec(
+      mj_parseXMLString(xml.c_str(), files, error.data(), static_cast<int>(error.size())));
+  if (!spec) throw mjcf::MujocoFailure(mjcf::one_line(error.data()));
+  spec->compiler.usethread = false;  // a compiler thread could not pass its error to us
+  mjcf::ModelPtr compiled(mj_compile(spec.get(), files));
+  if (!compiled) throw mjcf::MujocoFailure(mjcf::one_line(mjs_getError(spec.get())));
+  return {std::move(spec), std::move(compiled)};
 }
 
 }  // namespace
@@ -59,25 +70,57 @@ MjcfResult load(const std::string& label, const std::string& scene_name, Parse p
 MjcfError::MjcfError(std::vector<std::string> problems)
     : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
 
-MjcfResult load_mjcf(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    const bool exists = std::filesystem::exists(file, ignored);
-    throw MjcfError({file.string() + ": " + (exists ? "is not a file" : "no such file")});
-  }
-  return load(file.string(), file.stem().string(), [&](char* error, int size) {
-    return mj_parseXML(file.string().c_str(), nullptr, error, size);
-  });
+struct MjcfFiles::Impl {
+  std::string label;  // of messages
+  std::string scene_name;
+  mjcf::Vetted vetted;
+};
+
+MjcfFiles MjcfFiles::read(const std::filesystem::path& file, const MjcfOptions& options) {
+  return MjcfFiles(std::make_shared<const Impl>(
+      Impl{file.string(), file.stem().string(), mjcf::vet_file(file, options)}));
 }
 
-MjcfResult load_mjcf_string(std::string_view xml) {
-  const std::string text(xml);
-  if (text.find('\0') != std::string::npos) {
-    throw MjcfError({"MJCF string: holds a character 0, where MuJoCo would stop to read"});
+MjcfFiles MjcfFiles::of_string(std::string_view xml, const MjcfOptions& options) {
+  const std::string label = "MJCF string";
+  return MjcfFiles(
+      std::make_shared<const Impl>(Impl{label, "mjcf", mjcf::vet_string(xml, label, options)}));
+}
+
+MjcfResult MjcfFiles::compile() const {
+  const std::string& label = impl_->label;
+  const VirtualFiles files(impl_->vetted.files);
+  mjcf::LogCapture log;
+  try {
+    const mjcf::Model model = compile_model(impl_->vetted.xml, files.get());
+    std::vector<std::string> problems = mjcf::unsupported(model);
+    if (!problems.empty()) {
+      for (std::string& problem : problems) problem.insert(0, label + ": ");
+      throw MjcfError(std::move(problems));
+    }
+    MjcfResult result{mjcf::make_scene(model, impl_->scene_name), log.warnings()};
+    for (std::string& warning : mjcf::differences(model)) {
+      result.warnings.push_back(std::move(warning));
+    }
+    return result;
+  } catch (const mjcf::MujocoFailure& failure) {
+    throw MjcfError({label + ": " + with_real_names(failure.what(), impl_->vetted.files)});
+  } catch (const MjcfError&) {
+    throw;
+  } catch (...) {
+    // MuJoCo has a C++ library of its own, whose exceptions are none of ours.
+    throw MjcfError({label + ": needs more memory than there is, or MuJoCo failed otherwise"});
   }
-  return load("MJCF string", "mjcf", [&](char* error, int size) {
-    return mj_parseXMLString(text.c_str(), nullptr, error, size);
-  });
+}
+
+MjcfResult load_mjcf(const std::filesystem::path& file, const MjcfOptions& options) {
+  const FloatMode mode;
+  return MjcfFiles::read(file, options).compile();
+}
+
+MjcfResult load_mjcf_string(std::string_view xml, const MjcfOptions& options) {
+  const FloatMode mode;
+  return MjcfFiles::of_string(xml, options).compile();
 }
 
 }  // namespace manyworlds

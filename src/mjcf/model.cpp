@@ -1,6 +1,7 @@
 #include "src/mjcf/model.hpp"
 
 #include <cstddef>
+#include <string_view>
 #include <utility>
 
 namespace manyworlds::mjcf {
@@ -17,10 +18,11 @@ void for_each_element(const mjSpec* spec, mjtObj type, int count, Visit visit) {
 }
 
 // The wheel's MuJoCo has another std::string than ours: only mjs_getString may read mjString.
-// `info` is "line 12", or empty.
+// `info` is "line 12", empty, or "line 0" in what was included, whose lines MuJoCo does not keep.
 std::string with_line(std::string place, const mjString* info) {
   const char* line = info == nullptr ? nullptr : mjs_getString(info);
-  if (line != nullptr && *line != '\0') place += std::string(", ") + line;
+  if (line != nullptr && *line != '\0' && std::string_view(line) != "line 0")
+    place += std::string(", ") + line;
   return place;
 }
 

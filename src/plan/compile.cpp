@@ -1,9 +1,16 @@
 // compile(): from a valid Scene to a Plan.
+#include "src/base/enum_names.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/plan/plan_data.hpp"
 
 namespace manyworlds {
 
 Plan compile(const Scene& scene, const PlanOptions& options) {
+  const FloatMode mode;
+  checked_enum(options.broad_phase);
+  for (std::size_t i = 0; i < options.keep.size(); ++i) {
+    checked_enum(options.keep[i], "keep[" + std::to_string(i) + "]");
+  }
   std::vector<Issue> issues = validate(scene);
   if (!issues.empty()) throw SceneError(std::move(issues));
   auto plan = std::make_shared<PlanData>();
@@ -23,17 +30,20 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
   return Plan(std::move(plan));
 }
 
+Plan::Plan(std::shared_ptr<const PlanData> data) : data_(std::move(data)) {
+  if (!data_) throw std::invalid_argument("Plan: there is no data, compile() makes a plan");
+}
 const Scene& Plan::scene() const { return data_->scene; }
 const PlanOptions& Plan::options() const { return data_->options; }
 int Plan::bodies() const { return static_cast<int>(data_->bodies.size()); }
-int Plan::scene_body(int state_body) const {
-  return data_->bodies.at(static_cast<std::size_t>(state_body)).scene_body;
+bool Plan::has(Feature feature) const { return data_->has(checked_enum(feature)); }
+std::uint64_t Plan::fingerprint() const {
+  const FloatMode mode;
+  return manyworlds::fingerprint(*data_);
 }
-int Plan::state_body(int scene_body) const {
-  return data_->state_body.at(static_cast<std::size_t>(scene_body));
+PlanReport Plan::report() const {
+  const FloatMode mode;
+  return describe(*data_);
 }
-bool Plan::has(Feature feature) const { return data_->has(feature); }
-std::uint64_t Plan::fingerprint() const { return manyworlds::fingerprint(*data_); }
-PlanReport Plan::report() const { return describe(*data_); }
 
 }  // namespace manyworlds

@@ -28,7 +28,7 @@ void collect_controls(PlanData& plan) {
     const int index = static_cast<int>(i);
     plan.control_range.push_back({c.low, c.high});
     if (is_thrust(c)) {
-      const int body = plan.state_body[static_cast<std::size_t>(c.body)];
+      const int body = plan.state_body[static_cast<std::size_t>(c.body.index())];
       const PlanBody& b = plan.bodies[static_cast<std::size_t>(body)];
       PlanThrust out;
       out.what = {body, index, c.kind == ControlKind::torque};
@@ -38,8 +38,8 @@ void collect_controls(PlanData& plan) {
       continue;
     }
     for (PlanPart& part : plan.parts) {
-      if (part.joint != c.joint) continue;
-      if (!has_drive_of(part, plan.scene.joints[static_cast<std::size_t>(c.joint)])) continue;
+      if (part.joint != c.joint.index()) continue;
+      if (!has_drive_of(part, plan.scene.at(c.joint))) continue;
       (c.kind == ControlKind::target_position ? part.what.position_control
                                               : part.what.speed_control) = index;
     }

@@ -37,8 +37,8 @@ void collect_coordinates(PlanData& plan) {
   plan.first_coordinate.push_back(static_cast<int>(plan.coordinates.size()));
 }
 
-int Plan::first_coordinate(int joint) const {
-  return data_->first_coordinate.at(static_cast<std::size_t>(joint));
+int Plan::first_coordinate(JointId joint) const {
+  return data_->first_coordinate.at(static_cast<std::size_t>(joint.index()));
 }
 int Plan::coordinates() const { return static_cast<int>(data_->coordinates.size()); }
 

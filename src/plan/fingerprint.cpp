@@ -14,6 +14,10 @@ class Printer {
   void add(double x) { hasher_.add(x); }
   void add(bool x) { hasher_.add(std::uint64_t{x}); }
   void add(int x) { hasher_.add(static_cast<std::uint64_t>(x)); }
+  template <class Of>
+  void add(Id<Of> id) {
+    add(id.index());
+  }
   void add(std::uint32_t x) { hasher_.add(std::uint64_t{x}); }
   template <class E>
   requires std::is_enum_v<E>

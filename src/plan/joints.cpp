@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/base/float_mode.hpp"
 #include "src/plan/plan_data.hpp"
 
 namespace manyworlds {
@@ -21,20 +22,20 @@ struct Side {
   Quat frame = Quat::Identity();
 };
 
-Side side_of(const PlanData& plan, int scene_body, const Frame& frame) {
+Side side_of(const PlanData& plan, BodyId body, const Frame& frame) {
   Side out;
   out.body = static_cast<int>(plan.bodies.size());
   out.anchor = frame.position;
   out.frame = frame.rotation.normalized();
-  if (scene_body < 0) return out;
-  const int state_body = plan.state_body[static_cast<std::size_t>(scene_body)];
+  if (!body) return out;
+  const int state_body = plan.state_body[static_cast<std::size_t>(body.index())];
   if (state_body >= 0) {
     const PlanBody& b = plan.bodies[static_cast<std::size_t>(state_body)];
     out.body = state_body;
     out.anchor = b.principal.conjugate() * (frame.position - b.center);
     out.frame = b.principal.conjugate() * out.frame;
   } else {
-    const Frame in_world = frame_in_world(plan.scene, scene_body, frame);
+    const Frame in_world = frame_in_world(plan.scene, body, frame);
     out.anchor = in_world.position;
     out.frame = in_world.rotation;
   }
@@ -228,23 +229,27 @@ void collect_joints(PlanData& plan) {
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene) {
   std::set<std::pair<int, int>> out;
   for (const Joint& j : scene.joints) {
-    if (!j.collide && j.body_a >= 0) out.insert(std::minmax(j.body_a, j.body_b));
+    if (j.collide || !j.body_a) continue;
+    out.insert(std::minmax(j.body_a.index(), j.body_b.index()));
   }
   return out;
 }
 
-Frame frame_in_world(const Scene& scene, int body, const Frame& frame) {
+Frame frame_in_world(const Scene& scene, BodyId body, const Frame& frame) {
+  const FloatMode mode;
   const Quat rotation = frame.rotation.normalized();
-  if (body < 0) return {frame.position, rotation};
-  const Body& b = scene.bodies.at(static_cast<std::size_t>(body));
+  if (!body) return {frame.position, rotation};
+  const Body& b = scene.at(body);
   const Quat of_body = b.rotation.normalized();
   return {b.position + of_body * frame.position, of_body * rotation};
 }
 
-Joint joint_at(const Scene& scene, int body_a, int body_b, const Frame& frame, JointType type) {
-  const auto on = [&](int body) {
-    if (body < 0) return frame;
-    const Body& b = scene.bodies.at(static_cast<std::size_t>(body));
+Joint joint_at(const Scene& scene, BodyId body_a, BodyId body_b, const Frame& frame,
+               JointType type) {
+  const FloatMode mode;
+  const auto on = [&](BodyId body) {
+    if (!body) return frame;
+    const Body& b = scene.at(body);
     const Quat back = b.rotation.normalized().conjugate();
     return Frame{back * (frame.position - b.position), back * frame.rotation};
   };

@@ -104,7 +104,7 @@ struct PlanData {
   std::array<std::string, kFeatureCount> why;
   kernels::InertiaKind inertia_kind{};
   std::vector<PlanBody> bodies;
-  std::vector<int> state_body;  // per scene body
+  std::vector<int> state_body;  // per scene body: its row; -1: fixed
   std::vector<PlanCollider> colliders;
   std::vector<PlanFixed> fixed;
   std::vector<double> hulls;  // corners of hulls that move (kernels/tables.hpp)
@@ -130,6 +130,9 @@ struct PlanData {
     return scene.space == Space::planar ? kernels::Dimension::planar : kernels::Dimension::spatial;
   }
 };
+
+// "body 3 'crate'" (rows.cpp)
+std::string body_text(const Scene& scene, BodyId body);
 
 // Scene bodies, the lower one first, that joints keep from colliding (joints.cpp).
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "manyworlds/record.hpp"
-#include "src/base/hash.hpp"
+#include "src/record/checksum.hpp"
 
 namespace manyworlds::record {
 
@@ -23,29 +23,13 @@ struct Frame {
   std::uint64_t checksum = 0;
   std::array<std::byte, 480> rest{};
 };
-static_assert(sizeof(Frame) == 512);
+static_assert(sizeof(Frame) == kFrameSize);
 
-// In pieces whose sizes are multiples of 8, but for the last.
-class Checksum {
- public:
-  void add(std::span<const std::byte> bytes) {
-    std::size_t at = 0;
-    for (; at + sizeof(std::uint64_t) <= bytes.size(); at += sizeof(std::uint64_t)) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, bytes.data() + at, sizeof word);
-      hasher_.add(word);
-    }
-    for (; at < bytes.size(); ++at) hasher_.add(static_cast<std::uint64_t>(bytes[at]));
-  }
-  void add(Frame frame) {
-    frame.checksum = 0;
-    add(std::as_bytes(std::span(&frame, 1)));
-  }
-  std::uint64_t value() const { return hasher_.value(); }
-
- private:
-  Hasher hasher_;
-};
+// Of a frame, with 0 for its checksum.
+void add(Checksum& sum, Frame frame) {
+  frame.checksum = 0;
+  sum.add(std::as_bytes(std::span(&frame, 1)));
+}
 
 void check_head(const Frame& frame, std::uint64_t size) {
   if (frame.magic != Frame().magic) throw RecordError("is no recording of manyworlds");
@@ -71,11 +55,10 @@ void check_sum(const Frame& frame, std::uint64_t found) {
 }
 
 [[noreturn]] void fail_to(const char* what) {
-  throw RecordError(std::string("cannot be ") + what + ": " +
-                    std::generic_category().message(errno));
+  throw RecordError(std::string("cannot be ") + what + ": " + reason_of(errno));
 }
 
-Frame read_frame(std::fstream& in) {
+Frame read_frame(std::ifstream& in) {
   Frame frame;
   in.seekg(0);
   if (!in.read(reinterpret_cast<char*>(&frame), sizeof frame)) fail_to("read");
@@ -83,9 +66,9 @@ Frame read_frame(std::fstream& in) {
 }
 
 // Of everything, the frame as given.
-std::uint64_t checksum(std::fstream& in, const Frame& frame) {
+std::uint64_t checksum(std::ifstream& in, const Frame& frame) {
   Checksum sum;
-  sum.add(frame);
+  add(sum, frame);
   std::vector<std::byte> block(1 << 20);
   in.seekg(sizeof(Frame));
   while (in) {
@@ -99,7 +82,7 @@ std::uint64_t checksum(std::fstream& in, const Frame& frame) {
 
 std::uint64_t checksum(std::span<const std::byte> bytes, const Frame& frame) {
   Checksum sum;
-  sum.add(frame);
+  add(sum, frame);
   sum.add(bytes.subspan(sizeof(Frame)));
   return sum.value();
 }
@@ -113,16 +96,19 @@ std::uint64_t size_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-void seal(const std::filesystem::path& file) {
+void seal(OutputFile& file, std::uint64_t size) {
   Frame frame;
-  frame.size = size_of(file);
-  std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
-  if (!stream) fail_to("opened");
-  frame.checksum = checksum(stream, frame);
-  stream.seekp(0);
-  stream.write(reinterpret_cast<const char*>(&frame), sizeof frame);
-  stream.close();
-  if (!stream) fail_to("written");
+  frame.size = size;
+  Checksum sum;
+  add(sum, frame);
+  std::vector<std::byte> block(1 << 20);
+  for (std::uint64_t at = sizeof frame; at < size; at += block.size()) {
+    block.resize(static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), size - at)));
+    file.read(block, at);
+    sum.add(block);
+  }
+  frame.checksum = sum.value();
+  file.write(std::as_bytes(std::span(&frame, 1)), 0);
 }
 
 void seal(std::span<std::byte> bytes) {
@@ -135,7 +121,7 @@ void seal(std::span<std::byte> bytes) {
 
 void check_frame(const std::filesystem::path& file) {
   const std::uint64_t size = size_of(file);
-  std::fstream stream(file, std::ios::binary | std::ios::in);
+  std::ifstream stream(file, std::ios::binary);
   if (!stream) fail_to("opened");
   require_length(size);
   const Frame frame = read_frame(stream);

@@ -9,12 +9,16 @@
 #include <filesystem>
 #include <span>
 
+#include "src/base/output_file.hpp"
+
 namespace manyworlds::record {
 
 inline constexpr std::int32_t kFormatVersion = 1;
+inline constexpr std::size_t kFrameSize = 512;
+inline constexpr const char* kFrameMagic = "MWRECO\r\n";
 
-// Fills in the block of a finished file. Both throw RecordError.
-void seal(const std::filesystem::path& file);
+// Fills in the block of a finished file. Throws FileError.
+void seal(OutputFile& file, std::uint64_t size);
 void seal(std::span<std::byte> bytes);
 // Throw RecordError unless the block is there and right.
 void check_frame(const std::filesystem::path& file);

@@ -43,8 +43,8 @@ std::string trimmed(std::string text) {
 
 Handle open_attribute(hid_t object, const std::string& name) {
   if (H5Aexists(object, name.c_str()) <= 0) fail("has no attribute '" + name + "'");
-  Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "attribute " + name);
-  const Handle space(H5Aget_space(attribute), H5Sclose, "attribute " + name);
+  Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "attribute", name);
+  const Handle space(H5Aget_space(attribute), H5Sclose, "attribute", name);
   if (H5Sget_simple_extent_type(space) != H5S_SCALAR) fail("attribute " + name + " is no scalar");
   return attribute;
 }
@@ -77,12 +77,18 @@ UsingHdf5::UsingHdf5() : lock_(hdf5_mutex) {
 }
 UsingHdf5::~UsingHdf5() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
-Handle create_file(const std::filesystem::path& path) {
+Handle create_file(const std::shared_ptr<Storage>& storage) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "file properties");
-  check(H5Pset_userblock(creation, kUserBlock), "the user block");
+  check(H5Pset_userblock(creation, kFrameSize), "the user block");
   const Handle access = file_properties();
-  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose,
-          "cannot create '" + path.string() + "'"};
+  set_storage(access, storage);
+  return {H5Fcreate("recording", H5F_ACC_TRUNC, creation, access), H5Fclose, "cannot be created"};
+}
+
+Handle open_file(const std::shared_ptr<Storage>& storage) {
+  const Handle access = file_properties();
+  set_storage(access, storage);
+  return {H5Fopen("recording", H5F_ACC_RDONLY, access), H5Fclose, "cannot be opened"};
 }
 
 Handle open_file(const std::filesystem::path& path) {
@@ -103,20 +109,20 @@ Handle open_bytes(std::span<const std::byte> bytes) {
 
 Handle create_group(hid_t parent, const std::string& name) {
   return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
-          "cannot create group '" + name + "'"};
+          "cannot create group", name};
 }
 bool has_link(hid_t parent, const std::string& name) {
   return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0;
 }
 Handle open_group(hid_t parent, const std::string& name) {
   if (!has_link(parent, name)) fail("has no '" + name + "'");
-  return {H5Gopen2(parent, name.c_str(), inside_only(H5P_GROUP_ACCESS)), H5Gclose,
-          "cannot open '" + name + "'"};
+  return {H5Gopen2(parent, name.c_str(), inside_only(H5P_GROUP_ACCESS)), H5Gclose, "cannot open",
+          name};
 }
 Handle open_dataset(hid_t parent, const std::string& name) {
   if (!has_link(parent, name)) fail("has no '" + name + "'");
   Handle dataset(H5Dopen2(parent, name.c_str(), inside_only(H5P_DATASET_ACCESS)), H5Dclose,
-                 "cannot open '" + name + "'");
+                 "cannot open", name);
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose, name);
   if (H5Pget_layout(creation) == H5D_VIRTUAL || H5Pget_nfilters(creation) != 0 ||
       H5Pget_external_count(creation) != 0) {
@@ -129,13 +135,13 @@ void write_text(hid_t object, const std::string& name, const std::string& text) 
   const Handle type = text_type(text.size());
   const Handle attribute(
       H5Acreate2(object, name.c_str(), type, one_number_space(), H5P_DEFAULT, H5P_DEFAULT),
-      H5Aclose, "attribute " + name);
+      H5Aclose, "attribute", name);
   check(H5Awrite(attribute, type, text.empty() ? "" : text.data()), "attribute " + name);
 }
 
 std::string read_text(hid_t object, const std::string& name) {
   const Handle attribute = open_attribute(object, name);
-  const Handle type(H5Aget_type(attribute), H5Tclose, "attribute " + name);
+  const Handle type(H5Aget_type(attribute), H5Tclose, "attribute", name);
   const std::size_t size = text_size(type);
   if (size == 0 || size > 65536) fail("attribute " + name + " is not a text");
   std::string text(size, '\0');
@@ -147,14 +153,14 @@ template <class T>
 void write_number(hid_t object, const std::string& name, T value) {
   const Handle attribute(H5Acreate2(object, name.c_str(), NumberType<T>::in_file(),
                                     one_number_space(), H5P_DEFAULT, H5P_DEFAULT),
-                         H5Aclose, "attribute " + name);
+                         H5Aclose, "attribute", name);
   check(H5Awrite(attribute, NumberType<T>::in_memory(), &value), "attribute " + name);
 }
 
 template <class T>
 T read_number(hid_t object, const std::string& name) {
   const Handle attribute = open_attribute(object, name);
-  const Handle type(H5Aget_type(attribute), H5Tclose, "attribute " + name);
+  const Handle type(H5Aget_type(attribute), H5Tclose, "attribute", name);
   if (H5Tequal(type, NumberType<T>::in_file()) <= 0) {
     fail("attribute " + name + " is not of type " + NumberType<T>::kName);
   }
@@ -175,9 +181,11 @@ MW_INSTANTIATE(std::uint64_t)
 
 void write_text_table(hid_t parent, const std::string& name, const std::string& text) {
   const Handle type = text_type(text.size());
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
+  check(H5Pset_obj_track_times(creation, false), "the times of '" + name + "'");
   const Handle dataset(H5Dcreate2(parent, name.c_str(), type, one_number_space(), H5P_DEFAULT,
-                                  H5P_DEFAULT, H5P_DEFAULT),
-                       H5Dclose, "cannot create '" + name + "'");
+                                  creation, H5P_DEFAULT),
+                       H5Dclose, "cannot create", name);
   check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.empty() ? "" : text.data()),
         "cannot write '" + name + "'");
 }

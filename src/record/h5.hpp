@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -15,6 +17,8 @@
 #include <hdf5.h>
 
 #include "manyworlds/record.hpp"
+#include "src/base/float_mode.hpp"
+#include "src/record/frame.hpp"
 
 namespace manyworlds::record {
 
@@ -22,7 +26,8 @@ namespace manyworlds::record {
 [[noreturn]] void fail(const std::string& what);
 
 // While one lives, its thread is the only one of ours in HDF5, which may not be built for more than
-// one; and HDF5 prints no errors, as it otherwise does, for the whole program. May be nested.
+// one; and HDF5 prints no errors, as it otherwise does, for the whole program. May be nested. It
+// computes in the library's floating-point mode: HDF5 finds out by computing what numbers are like.
 class UsingHdf5 {
  public:
   UsingHdf5();
@@ -31,6 +36,7 @@ class UsingHdf5 {
   UsingHdf5& operator=(const UsingHdf5&) = delete;
 
  private:
+  FloatMode mode_;
   std::unique_lock<std::recursive_mutex> lock_;
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
@@ -39,8 +45,11 @@ class UsingHdf5 {
 class Handle {
  public:
   Handle() = default;
-  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
-    if (id < 0) fail(what);
+  // The words are put together only if there is no id: where memory runs out, an id is not lost.
+  Handle(hid_t id, herr_t (*close)(hid_t), std::string_view what, std::string_view name = {})
+      : id_(id), close_(close) {
+    if (id >= 0) return;
+    fail(std::string(what) + (name.empty() ? "" : " '" + std::string(name) + "'"));
   }
   Handle(Handle&& other) noexcept
       : id_(std::exchange(other.id_, -1)), close_(std::exchange(other.close_, nullptr)) {}
@@ -51,6 +60,10 @@ class Handle {
   }
   ~Handle() {
     if (id_ >= 0) close_(id_);
+  }
+  // At once, and with a look at whether that works.
+  void close_now(const std::string& what) {
+    if (id_ >= 0 && close_(std::exchange(id_, -1)) < 0) fail(what);
   }
   operator hid_t() const { return id_; }  // NOLINT: stands for it in calls
 
@@ -84,12 +97,14 @@ MW_NUMBER_TYPE(std::uint64_t, H5T_STD_U64LE, H5T_NATIVE_UINT64)
 
 using Dims = std::vector<hsize_t>;
 
-// A file may begin with a block that HDF5 leaves to its users (frame.hpp).
-inline constexpr hsize_t kUserBlock = 512;
-
-Handle create_file(const std::filesystem::path& path);
+class Storage;  // storage.hpp
+Handle create_file(const std::shared_ptr<Storage>& storage);
 Handle open_file(const std::filesystem::path& path);
+Handle open_file(const std::shared_ptr<Storage>& storage);
 Handle open_bytes(std::span<const std::byte> bytes);
+
+// Of a file's access properties: what it lies on. It has to live until the file is open.
+void set_storage(hid_t access, const std::shared_ptr<Storage>& storage);
 
 Handle create_group(hid_t parent, const std::string& name);
 // Of what lies in this file, as it is: not behind a link to another file or in raw data elsewhere,

@@ -33,20 +33,22 @@ Table::Table(hid_t parent, const std::string& name, hid_t in_file, hid_t in_memo
   const Handle space(H5Screate_simple(rank, none.data(), most.data()), H5Sclose, name);
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
   check(H5Pset_chunk(creation, rank, chunk.data()), "chunks of '" + name + "'");
+  check(H5Pset_obj_track_times(creation, false), "the times of '" + name + "'");  // equal bytes
   // We hand over whole chunks; a cache would only copy them.
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, name);
   check(H5Pset_chunk_cache(access, 1, 0, 1), "the chunk cache of '" + name + "'");
   dataset_ = Handle(H5Dcreate2(parent, name.c_str(), in_file, space, H5P_DEFAULT, creation, access),
-                    H5Dclose, "cannot create '" + name + "'");
+                    H5Dclose, "cannot create", name);
 }
 
 void Table::add_bytes(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const std::size_t room = chunk_rows_ * row_bytes_ - buffer_.size();
-    const auto part = bytes.first(std::min(room, bytes.size()));
+    // A chunk that was written in part is filled first.
+    const std::size_t most = (chunk_rows_ - rows_ % chunk_rows_) * row_bytes_;
+    const auto part = bytes.first(std::min(most - buffer_.size(), bytes.size()));
     buffer_.insert(buffer_.end(), part.begin(), part.end());
     bytes = bytes.subspan(part.size());
-    if (buffer_.size() == chunk_rows_ * row_bytes_) flush();
+    if (buffer_.size() == most) flush();
   }
 }
 

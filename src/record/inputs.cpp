@@ -23,7 +23,9 @@ std::int64_t number_count(Input input, int bodies, const Scene& scene) {
 }
 
 void InputLog::add(const Batch& batch, const InputCall& call, int world, std::int64_t step) {
-  InputRow row{step, 0, call.input, world, call.body, 0, 0};
+  InputRow row{step, 0, call.input, world, -1, 0, 0};
+  if (call.body) row.body = batch.row(call.body, batch.kind_of(call.world));
+  if (call.joint) row.body = call.joint.index();
   if (brings_state(call.input)) {
     const Snapshot state = batch.save(std::array{call.world});
     row.begin = static_cast<std::int64_t>(states_.size());
@@ -48,6 +50,11 @@ void InputLog::stepped(int n) {
   since_step_ = rows_.size();
 }
 
+bool InputLog::has_open_forces() const {
+  return std::any_of(rows_.begin() + static_cast<std::ptrdiff_t>(since_step_), rows_.end(),
+                     [](const InputRow& row) { return is_force(row.input); });
+}
+
 void InputLog::clear() {
   rows_.clear();
   values_.clear();
@@ -58,7 +65,9 @@ void InputLog::clear() {
 void apply(Batch& batch, const InputRow& row, int world, std::span<const double> values,
            std::span<const std::uint8_t> state) {
   const auto vector = [&](std::size_t i) { return Vec3(values[i], values[i + 1], values[i + 2]); };
-  const int body = row.body;
+  const int joint = is_of_joint(row.input) ? row.body : -1;
+  const BodyId body =
+      row.body >= 0 && joint < 0 ? batch.body_in_row(row.body, batch.kind_of(world)) : BodyId();
   if (is_force(row.input) && row.call_steps == 0) return;
   switch (row.input) {
     case Input::force: batch.add_force(world, body, vector(0)); break;
@@ -69,8 +78,8 @@ void apply(Batch& batch, const InputRow& row, int world, std::span<const double>
     case Input::impulse_at: batch.add_impulse_at(world, body, vector(0), vector(3)); break;
     case Input::enable: batch.set_enabled(world, body, true); break;
     case Input::disable: batch.set_enabled(world, body, false); break;
-    case Input::enable_joint: batch.set_joint_enabled(world, body, true); break;
-    case Input::disable_joint: batch.set_joint_enabled(world, body, false); break;
+    case Input::enable_joint: batch.set_joint_enabled(world, JointId(joint), true); break;
+    case Input::disable_joint: batch.set_joint_enabled(world, JointId(joint), false); break;
     case Input::spawn:
       batch.spawn(
           world, body,
@@ -93,14 +102,17 @@ void apply(Batch& batch, const InputRow& row, int world, std::span<const double>
   }
 }
 
-void advance(Batch& batch, std::int64_t& at, std::int64_t step, int& call_steps) {
+bool advance(Batch& batch, std::int64_t& at, std::int64_t step, int& call_steps,
+             const GoOn& go_on) {
   while (at < step) {
     const std::int64_t most = call_steps > 0 ? call_steps : 1024;
     const int n = static_cast<int>(std::min(most, step - at));
-    batch.step(n);
-    at += n;
+    const int taken = batch.step(n, go_on);
+    at += taken;
+    if (taken < n || !go_on()) return false;
     call_steps = 0;
   }
+  return true;
 }
 
 }  // namespace manyworlds::record

@@ -14,7 +14,7 @@ struct InputRow {
   std::int32_t call_steps = 0;  // forces: n of the step(n) call in which they act; 0: they never do
   Input input{};
   std::int32_t world = 0;
-  std::int32_t body = -1;  // state body, or joint of the scene; -1: the whole world
+  std::int32_t body = -1;  // row of the body, or index of the joint; -1: the whole world
   std::int64_t begin = 0;  // first of its numbers, or first byte of its state
   std::int64_t count = 0;  // of them
 };
@@ -45,6 +45,9 @@ class InputLog {
   void stepped(int n);  // a step(n) call came after them
   void clear();
 
+  // Whether a force waits for the step call in which it acts.
+  bool has_open_forces() const;
+
   const std::vector<InputRow>& rows() const { return rows_; }
   const std::vector<double>& values() const { return values_; }
   const std::vector<std::uint8_t>& states() const { return states_; }
@@ -62,7 +65,9 @@ void apply(Batch& batch, const InputRow& row, int world, std::span<const double>
            std::span<const std::uint8_t> state);
 
 // Steps to `step` from `at`, in one call while forces act for `call_steps` steps and in few calls
-// otherwise.
-void advance(Batch& batch, std::int64_t& at, std::int64_t step, int& call_steps);
+// otherwise. False where it was ended early.
+bool advance(
+    Batch& batch, std::int64_t& at, std::int64_t step, int& call_steps,
+    const GoOn& go_on = [] { return true; });
 
 }  // namespace manyworlds::record

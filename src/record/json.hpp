@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -17,6 +18,7 @@
 #include <nlohmann/json.hpp>
 
 #include "manyworlds/plan.hpp"
+#include "src/base/enum_names.hpp"
 
 namespace manyworlds::record {
 
@@ -24,62 +26,90 @@ using Json = nlohmann::ordered_json;
 
 // The words for an enumeration, and for the alternatives of a variant, in their order.
 template <class E>
-struct Words;
+struct Words {
+  static constexpr const auto& list = EnumTable<E>::names;
+};
 
+// As text at once: a tree of Json allocates to be destroyed, where running out of memory ends the
+// program.
 struct JsonWriter {
   template <class T>
   void operator()(const char* name, T& value) {
-    put(to[name], value);
+    to += to.back() == '{' ? "\"" : ",\"";
+    to += name;
+    to += "\":";
+    put(to, value);
   }
 
-  static void put(Json& j, double x) {
-    if (std::isfinite(x)) {
-      j = x;
+  template <class T>
+  requires std::same_as<T, bool> || std::same_as<T, std::string> || std::floating_point<T> ||
+      std::integral<T>
+  static void put(std::string& to, const T& value) {
+    if constexpr (std::floating_point<T>) {
+      if (!std::isfinite(value)) {
+        to += std::isnan(value) ? "\"nan\"" : value > 0 ? "\"inf\"" : "\"-inf\"";
+        return;
+      }
+    }
+    to += Json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+  template <class Of>
+  static void put(std::string& to, Id<Of> id) {
+    put(to, id.index());
+  }
+  template <class E>
+  requires std::is_enum_v<E>
+  static void put(std::string& to, E value) { put(to, std::string(name_of(checked_enum(value)))); }
+  template <class T>
+  static void put(std::string& to, std::optional<T>& value) {
+    if (value) {
+      put(to, *value);
     } else {
-      j = std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf";
+      to += "null";
     }
   }
   template <class T>
-  requires std::same_as<T, bool> || std::same_as<T, std::string> || std::integral<T>
-  static void put(Json& j, const T& value) { j = value; }
-  template <class E>
-  requires std::is_enum_v<E>
-  static void put(Json& j, E value) { j = Words<E>::list[static_cast<std::size_t>(value)]; }
-  template <class T>
-  static void put(Json& j, std::optional<T>& value) {
-    j = nullptr;
-    if (value) put(j, *value);
-  }
-  template <class T>
-  static void put(Json& j, std::vector<T>& values) {
-    j = Json::array();
-    for (T& value : values) put(j.emplace_back(), value);
+  static void put(std::string& to, std::vector<T>& values) {
+    put_all(to, values.size(), [&](std::size_t i) { put(to, values[i]); });
   }
   template <class... Ts>
-  static void put(Json& j, std::variant<Ts...>& value) {
+  static void put(std::string& to, std::variant<Ts...>& value) {
+    to += '{';
     const char* word = Words<std::variant<Ts...>>::list[value.index()];
-    j = Json::object();
-    std::visit([&](auto& alternative) { put(j[word], alternative); }, value);
+    std::visit([&](auto& alternative) { JsonWriter{to}(word, alternative); }, value);
+    to += '}';
   }
   template <class T>
   requires requires(JsonWriter& w, T& t) { members(w, t); }
-  static void put(Json& j, T& value) {
-    j = Json::object();
-    JsonWriter writer{j};
+  static void put(std::string& to, T& value) {
+    to += '{';
+    JsonWriter writer{to};
     members(writer, value);
+    to += '}';
   }
   // Vectors and matrices as rows of numbers, quaternions as w, x, y, z.
   template <int Rows, int Columns>
-  static void put(Json& j, const Eigen::Matrix<double, Rows, Columns>& m) {
-    j = Json::array();
-    for (int i = 0; i < Rows * Columns; ++i) put(j.emplace_back(), m(i / Columns, i % Columns));
+  static void put(std::string& to, const Eigen::Matrix<double, Rows, Columns>& m) {
+    put_all(to, Rows * Columns, [&](std::size_t i) {
+      put(to, m(static_cast<int>(i) / Columns, static_cast<int>(i) % Columns));
+    });
   }
-  static void put(Json& j, const Quat& q) {
-    j = Json::array();
-    for (const double x : {q.w(), q.x(), q.y(), q.z()}) put(j.emplace_back(), x);
+  static void put(std::string& to, const Quat& q) {
+    const double parts[] = {q.w(), q.x(), q.y(), q.z()};
+    put_all(to, 4, [&](std::size_t i) { put(to, parts[i]); });
   }
 
-  Json& to;
+  template <class Put>
+  static void put_all(std::string& to, std::size_t count, Put put_one) {
+    to += '[';
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i > 0) to += ',';
+      put_one(i);
+    }
+    to += ']';
+  }
+
+  std::string& to;  // ends with the '{' of the struct, or with one of its members
 };
 
 // Reads what JsonWriter wrote. Whatever does not fit is noted with its place and left as it was.
@@ -141,6 +171,12 @@ class JsonReader {
       value = static_cast<T>(number);
     }
   }
+  template <class Of>
+  void get(const Json& j, Id<Of>& id, const std::string& place) {
+    int index = id.index();
+    get(j, index, place);
+    id = Id<Of>(index);
+  }
   void get(const Json& j, std::string& value, const std::string& place) {
     if (!j.is_string()) return expected(j, place, "a string");
     value = j.get<std::string>();
@@ -149,7 +185,7 @@ class JsonReader {
   requires std::is_enum_v<E>
   void get(const Json& j, E& value, const std::string& place) {
     const std::size_t i = word_index(Words<E>::list, j.is_string() ? j.get<std::string>() : "");
-    if (i == std::size(Words<E>::list)) return expected(j, place, any_of(Words<E>::list));
+    if (i == std::size(Words<E>::list)) return expected(j, place, one_of(Words<E>::list));
     value = static_cast<E>(i);
   }
   template <class T>
@@ -171,7 +207,7 @@ class JsonReader {
     const bool one = j.is_object() && j.size() == 1;
     const std::size_t found = word_index(words, one ? j.begin().key() : "");
     if (found == std::size(words)) {
-      return expected(j, place, "an object with one member, " + any_of(words));
+      return expected(j, place, "an object with one member, " + one_of(words));
     }
     std::size_t i = 0;
     ((i++ == found ? get(*j.begin(), value.template emplace<Ts>(), place + "/" + words[found])
@@ -207,19 +243,10 @@ class JsonReader {
     expected(j, place, "an array of " + std::to_string(size) + " numbers");
     return false;
   }
-  template <std::size_t N>
-  static std::size_t word_index(const char* const (&words)[N], const std::string& word) {
+  static std::size_t word_index(std::span<const char* const> words, const std::string& word) {
     std::size_t i = 0;
-    while (i < N && word != words[i]) ++i;
+    while (i < words.size() && word != words[i]) ++i;
     return i;
-  }
-  template <std::size_t N>
-  static std::string any_of(const char* const (&words)[N]) {
-    std::string list;
-    for (std::size_t i = 0; i < N; ++i) {
-      list += (i == 0 ? "" : i + 1 == N ? " or " : ", ") + std::string(words[i]);
-    }
-    return list;
   }
 
   std::vector<std::string>& problems_;

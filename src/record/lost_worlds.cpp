@@ -1,5 +1,7 @@
 // Dumps of lost worlds: a world that is lost is stepped once more by itself, from the last
 // checkpoint and with its inputs, into a recording.
+#include <exception>
+#include <new>
 #include <system_error>
 #include <unordered_set>
 #include <utility>
@@ -53,7 +55,13 @@ struct LostWorldDumps::Impl final : BatchListener {
   }
 
   std::vector<std::filesystem::path> close() {
-    if (!failure_.empty()) throw RecordError(failure_);
+    try {
+      if (failure_) std::rethrow_exception(failure_);
+    } catch (const std::bad_alloc&) {
+      throw RecordError("dumps of lost worlds: not enough memory");
+    } catch (const std::exception& error) {
+      throw RecordError(error.what());
+    }
     return files_;
   }
 
@@ -62,11 +70,11 @@ struct LostWorldDumps::Impl final : BatchListener {
 
   template <class Do>
   void guarded(Do&& what) noexcept {
-    if (!failure_.empty() || full()) return;
+    if (failure_ || full()) return;
     try {
       what();
-    } catch (const std::exception& error) {
-      failure_ = error.what();
+    } catch (...) {
+      failure_ = std::current_exception();
     }
   }
 
@@ -123,7 +131,7 @@ struct LostWorldDumps::Impl final : BatchListener {
   std::int64_t steps_ = 0;        // since then
   std::unordered_set<int> seen_;  // lost before, or dumped
   std::vector<std::filesystem::path> files_;
-  std::string failure_;
+  std::exception_ptr failure_;  // the first
 };
 
 LostWorldDumps::LostWorldDumps(Batch& batch, std::filesystem::path folder, const Options& options)

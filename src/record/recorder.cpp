@@ -1,34 +1,27 @@
 // Writes a recording: the scenes and the snapshot at once, inputs and samples as they come.
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <atomic>
+#include <cmath>
 #include <numeric>
-#include <system_error>
 #include <utility>
 
-#include "manyworlds/record.hpp"
-#include "src/record/frame.hpp"
-#include "src/record/h5.hpp"
-#include "src/record/inputs.hpp"
-#include "src/record/layout.hpp"
+#include "src/record/recorder.hpp"
 
 namespace manyworlds {
 
+using record::KindTables, record::Table;
+
 namespace {
 
-using record::Table;
-
-constexpr std::size_t kFieldChunk = std::size_t{1} << 16;  // bytes
-constexpr std::size_t kStartChunk = std::size_t{1} << 20;
-constexpr std::size_t kColumnChunk = std::size_t{1} << 12;  // bytes
-constexpr std::size_t kSmallChunk = 256;                    // bytes; where there are few samples
+constexpr std::size_t kStartChunk = std::size_t{1} << 20;  // bytes
 
 std::vector<int> checked_worlds(const Batch& batch, const RecordOptions& options) {
   if (options.every < 0) {
     throw std::invalid_argument("record: every is " + std::to_string(options.every) +
                                 ", must be >= 0");
+  }
+  if (!(options.flush_seconds >= 0)) {
+    throw std::invalid_argument("record: flush_seconds is " +
+                                std::to_string(options.flush_seconds) + ", must be >= 0");
   }
   if (batch.forces_pending()) {
     throw std::invalid_argument(
@@ -52,72 +45,24 @@ std::vector<int> checked_worlds(const Batch& batch, const RecordOptions& options
   return worlds;
 }
 
-// What is recorded of one kind of world.
-struct KindTables {
-  std::vector<int> worlds;  // of the batch
-  int bodies = 0;
-  Space space = Space::spatial;
-  record::Handle group;
-  std::array<Table, kFieldCount> fields;
-  Table hash, status;
-};
-
-struct InputTables {
-  Table step, call_steps, input, world, body, begin, count, values, states;
-};
+std::shared_ptr<record::RecordingFile> create(const std::filesystem::path& path) {
+  try {
+    return std::make_shared<record::RecordingFile>(path);
+  } catch (const FileError& error) {
+    throw RecordError(error.what());
+  }
+}
 
 }  // namespace
 
-struct Recorder::Impl final : BatchListener {
-  Impl(const Batch& batch, std::filesystem::path path, const RecordOptions& options);
-  ~Impl() override { discard(); }
-  void on_input(const Batch& batch, const InputCall& call) noexcept override;
-  void on_step(const Batch& batch, int n) noexcept override;
-  void sample_now(const Batch& batch) noexcept {
-    guarded([&] { sample(batch); });
-  }
-  void close();
-
- private:
-  void sample(const Batch& batch);
-  void describe(const Batch& batch);
-  void make_kind(const Batch& batch, int kind, std::vector<int> worlds);
-  void make_inputs();
-  void write_inputs();
-  template <class Real>
-  void add_fields(const Batch& batch, KindTables& kind);
-  template <class Do>
-  void guarded(Do&& what) noexcept;
-  void close_tables() noexcept;
-  void discard() noexcept;
-
-  std::filesystem::path file_, part_;
-  RecordOptions options_;
-  std::vector<int> place_;  // [world of the batch] in the recording, -1: not in it
-  record::Handle h5_, root_kinds_, root_inputs_;
-  std::vector<KindTables> kinds_;
-  InputTables columns_;
-  Table step_, time_, inputs_before_;
-  record::InputLog log_;
-  std::int64_t numbers_written_ = 0, bytes_written_ = 0, inputs_ = 0;
-  std::int64_t steps_ = 0, next_ = 0, sampled_step_ = -1, sampled_inputs_ = -1;
-  std::string failure_;
-
- public:
-  std::int64_t samples = 0;
-};
-
-Recorder::Impl::Impl(const Batch& batch, std::filesystem::path path, const RecordOptions& options)
-    : file_(std::move(path)), part_(file_), options_(options) {
+Recorder::Impl::Impl(const Batch& batch, const std::filesystem::path& path,
+                     const RecordOptions& options)
+    : options_(options) {
   options_.worlds = checked_worlds(batch, options);
-  if (std::filesystem::is_directory(file_)) {
-    throw RecordError("'" + file_.string() + "': is a directory");
-  }
-  static std::atomic<std::uint64_t> count = 0;  // two at a time may write the same file
-  part_ += ".part" + std::to_string(getpid()) + "_" + std::to_string(count++);
+  file_ = create(path);
   const record::UsingHdf5 hdf5;
   try {
-    h5_ = record::create_file(part_);
+    h5_ = record::create_file(file_);
     describe(batch);
     root_kinds_ = record::create_group(h5_, "kinds");
     place_.assign(static_cast<std::size_t>(batch.worlds()), -1);
@@ -137,83 +82,13 @@ Recorder::Impl::Impl(const Batch& batch, std::filesystem::path path, const Recor
     start.flush();
     make_inputs();
     sample(batch);
+    if (file_->failure()) std::rethrow_exception(file_->failure());
   } catch (...) {
+    failure_ = file_->failure() ? file_->failure() : std::current_exception();
     discard();
-    throw;
+    fail();
   }
   next_ = options_.every;
-}
-
-void Recorder::Impl::describe(const Batch& batch) {
-  record::write_text(h5_, "format", record::kFormat);
-  record::write_number(h5_, "format_version", record::kFormatVersion);
-  record::write_text(h5_, "program_version", MW_VERSION);
-  record::write_text(h5_, "precision", to_string(batch.precision()));
-  record::write_number(h5_, "sleep", static_cast<std::uint8_t>(batch.sleeps() ? 1 : 0));
-  record::write_number(h5_, "seed", batch.seed());
-  record::write_number(h5_, "batch_worlds", std::int64_t{batch.worlds()});
-  record::write_number(h5_, "dt", batch.plan().scene().options.dt);
-  record::write_number(h5_, "every", std::int32_t{options_.every});
-  record::write_text(h5_, "isa", to_string(batch.isa()));
-  record::write_number(h5_, "threads", std::int32_t{batch.threads()});
-}
-
-void Recorder::Impl::make_kind(const Batch& batch, int index, std::vector<int> worlds) {
-  KindTables kind;
-  kind.group = record::create_group(root_kinds_, std::to_string(kinds_.size()));
-  const Plan& plan = batch.plan(index);
-  record::write_text(kind.group, "name", plan.scene().name);
-  record::write_number(kind.group, "fingerprint", plan.fingerprint());
-  record::write_text_table(kind.group, "scene", scene_to_json(plan.scene()));
-  record::write_text_table(kind.group, "plan_options", plan_options_to_json(plan.options()));
-  kind.bodies = plan.bodies();
-  kind.space = plan.scene().space;
-
-  const hsize_t count = worlds.size(), bodies = static_cast<hsize_t>(kind.bodies);
-  Table names = Table::create<std::int64_t>(kind.group, "world", {}, count * sizeof(std::int64_t));
-  for (const int world : worlds) names.add(options_.first_world + world);
-  names.flush();
-  // Without regular samples there are two.
-  const std::size_t chunk = options_.every == 0 ? 1 : kFieldChunk;
-  kind.hash = Table::create<std::uint64_t>(kind.group, "hash", {count}, chunk);
-  kind.status = Table::create<std::uint32_t>(kind.group, "status", {count}, chunk);
-  for (const Field field : record::kFields) {
-    if (bodies == 0) break;
-    const FieldInfo& about = info(field);
-    const record::Dims row = {count, bodies, static_cast<hsize_t>(components(field, kind.space))};
-    Table& table = kind.fields[static_cast<std::size_t>(field)];
-    table = batch.precision() == Precision::f32
-                ? Table::create<float>(kind.group, about.name, row, chunk)
-                : Table::create<double>(kind.group, about.name, row, chunk);
-    record::write_text(table.dataset(), "unit", about.unit);
-    record::write_text(table.dataset(), "frame", about.meaning);
-    record::write_text(table.dataset(), "axes", "sample world body component");
-    record::write_text(table.dataset(), "components", record::component_names(field, kind.space));
-  }
-  kind.worlds = std::move(worlds);
-  kinds_.push_back(std::move(kind));
-}
-
-void Recorder::Impl::make_inputs() {
-  const std::size_t chunk = options_.every == 0 ? kSmallChunk : kColumnChunk;
-  step_ = Table::create<std::int64_t>(h5_, "step", {}, chunk);
-  time_ = Table::create<double>(h5_, "time", {}, chunk);
-  inputs_before_ = Table::create<std::int64_t>(h5_, "inputs_before", {}, chunk);
-  record::write_text(time_.dataset(), "unit", "s");
-  root_inputs_ = record::create_group(h5_, "inputs");
-  std::string words;
-  for (int i = 0; i < kInputCount; ++i) {
-    words += (i > 0 ? " " : "") + std::string(to_string(static_cast<Input>(i)));
-  }
-  const auto column = [&]<class T>(T, const char* name) {
-    return Table::create<T>(root_inputs_, name, {}, chunk);
-  };
-  columns_ = {column(std::int64_t{}, "step"),  column(std::int32_t{}, "call_steps"),
-              column(std::uint8_t{}, "input"), column(std::int32_t{}, "world"),
-              column(std::int32_t{}, "body"),  column(std::int64_t{}, "begin"),
-              column(std::int64_t{}, "count"), column(double{}, "values"),
-              column(std::uint8_t{}, "states")};
-  record::write_text(columns_.input.dataset(), "names", words);
 }
 
 void Recorder::Impl::write_inputs() {
@@ -234,16 +109,32 @@ void Recorder::Impl::write_inputs() {
   log_.clear();
 }
 
-// Nothing may come out of a step. What fails is said by close(); nothing more is written.
+// Nothing may come out of a step. What fails is said by close(); nothing more is written. The file
+// knows better than HDF5, which only hears of the consequences.
 template <class Do>
 void Recorder::Impl::guarded(Do&& what) noexcept {
-  if (!failure_.empty()) return;
+  if (failure_) return;
   const record::UsingHdf5 hdf5;
   try {
     what();
-  } catch (const std::exception& error) {
-    failure_ = error.what();
+    flush_if_due();
+  } catch (...) {
+    failure_ = std::current_exception();
   }
+  if (file_->failure()) failure_ = file_->failure();
+}
+
+// So that what is older than that is not lost with the program. Forces that were added for the
+// next step do not yet know how long they act.
+void Recorder::Impl::flush_if_due() {
+  const auto now = Clock::now();
+  if (std::chrono::duration<double>(now - flushed_).count() < options_.flush_seconds) return;
+  if (log_.has_open_forces()) return;
+  flush_tables();
+  record::check(H5Fflush(h5_, H5F_SCOPE_LOCAL), "cannot be written");
+  file_->checkpoint();
+  flushed_ = Clock::now();
+  flushed_step_ = sampled_step_;
 }
 
 template <class Real>
@@ -280,6 +171,10 @@ void Recorder::Impl::sample(const Batch& batch) {
   ++samples;
 }
 
+void Recorder::Impl::sample_now(const Batch& batch) noexcept {
+  guarded([&] { sample(batch); });
+}
+
 void Recorder::Impl::on_input(const Batch& batch, const InputCall& call) noexcept {
   const int place = place_[static_cast<std::size_t>(call.world)];
   if (place < 0) return;
@@ -304,9 +199,7 @@ void Recorder::Impl::on_step(const Batch& batch, int n) noexcept {
   });
 }
 
-void Recorder::Impl::close() {
-  const record::UsingHdf5 hdf5;
-  if (!failure_.empty()) throw RecordError("'" + file_.string() + "': " + failure_);
+void Recorder::Impl::flush_tables() {
   write_inputs();
   for (Table* table : {&step_, &time_, &inputs_before_, &columns_.step, &columns_.call_steps,
                        &columns_.input, &columns_.world, &columns_.body, &columns_.begin,
@@ -318,13 +211,53 @@ void Recorder::Impl::close() {
     kind.status.flush();
     for (Table& table : kind.fields) table.flush();
   }
+}
+
+void Recorder::Impl::finish() {
+  flush_tables();
   close_tables();
-  record::check(H5Fflush(h5_, H5F_SCOPE_LOCAL), "cannot write '" + file_.string() + "'");
-  h5_ = {};
-  record::seal(part_);
-  std::error_code error;
-  std::filesystem::rename(part_, file_, error);
-  if (error) throw RecordError("cannot write '" + file_.string() + "': " + error.message());
+  record::check(H5Fflush(h5_, H5F_SCOPE_LOCAL), "cannot be written");
+  h5_.close_now("cannot be closed");
+  if (file_->has_checkpoint()) {
+    file_->checkpoint();
+    flushed_step_ = sampled_step_;
+  }
+  file_->finish();
+}
+
+void Recorder::Impl::close() {
+  const record::UsingHdf5 hdf5;
+  if (!failure_) {
+    try {
+      finish();
+      return;
+    } catch (...) {
+      failure_ = file_->failure() ? file_->failure() : std::current_exception();
+    }
+  }
+  if (file_->has_checkpoint()) file_->keep();
+  fail();
+}
+
+void Recorder::Impl::fail() {
+  const std::string file = file_->file().target().string();
+  // Where memory ran out there may be none for words.
+  std::string what = "'" + file + "': ";
+  try {
+    std::rethrow_exception(failure_);
+  } catch (const FileError& error) {
+    what += error.reason();
+  } catch (const std::bad_alloc&) {
+    what += "not enough memory";
+  } catch (const std::exception& error) {
+    what += error.what();
+  }
+  if (file_->has_checkpoint()) {
+    const std::int64_t last = file_->sealed() ? sampled_step_ : flushed_step_;
+    what += "; what was recorded up to step " + std::to_string(last) + " is in '" +
+            file_->file().part().string() + "', which replays";
+  }
+  throw RecordError(what);
 }
 
 // A file is closed when all in it is.
@@ -340,8 +273,6 @@ void Recorder::Impl::discard() noexcept {
   const record::UsingHdf5 hdf5;
   close_tables();
   h5_ = {};
-  std::error_code ignored;
-  std::filesystem::remove(part_, ignored);
 }
 
 Recorder::Recorder(Batch& batch, const std::filesystem::path& file, const RecordOptions& options)

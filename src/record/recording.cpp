@@ -3,9 +3,12 @@
 
 #include <array>
 #include <limits>
+#include <system_error>
 #include <utility>
 
+#include "src/base/enum_names.hpp"
 #include "src/record/frame.hpp"
+#include "src/record/storage.hpp"
 
 namespace manyworlds {
 
@@ -172,6 +175,22 @@ std::vector<double> Recording::Impl::read(Field field, std::size_t kind, std::in
 
 // ---- the public face ---------------------------------------------------------------------------
 
+namespace {
+
+void check_index(const char* what, std::int64_t index, std::size_t count) {
+  if (index >= 0 && static_cast<std::size_t>(index) < count) return;
+  throw std::invalid_argument(std::string(what) + " is " + std::to_string(index) +
+                              ", must be 0 to " + std::to_string(count - 1));
+}
+
+template <class Item>
+const Item& at(const std::vector<Item>& items, const char* what, std::int64_t index) {
+  check_index(what, index, items.size());
+  return items[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
 Recording::Recording(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Recording::Recording(Recording&&) noexcept = default;
 Recording& Recording::operator=(Recording&& other) noexcept {
@@ -184,10 +203,28 @@ Recording::~Recording() {
   impl_.reset();
 }
 
+const Recording::Impl& Recording::impl() const {
+  if (!impl_)
+    throw std::invalid_argument(
+        "Recording was moved from: it can only be assigned to or destroyed");
+  return *impl_;
+}
+
 Recording Recording::open(const std::filesystem::path& file) {
   const record::UsingHdf5 hdf5;
   return described(label(file), [&] {
-    if (std::filesystem::is_directory(file)) throw RecordError("is a directory");
+    std::error_code ignored;  // what cannot be looked at cannot be read either, and is said below
+    const std::filesystem::file_status kind = std::filesystem::status(file, ignored);
+    if (std::filesystem::is_directory(kind)) throw RecordError("is a directory");
+    if (std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind)) {
+      throw RecordError("is no regular file; expected a recording");
+    }
+    if (record::is_part(file)) {
+      auto impl =
+          std::make_unique<Impl>(record::open_file(std::make_shared<record::PartImage>(file)));
+      impl->finished = false;
+      return Recording(std::move(impl));
+    }
     record::check_frame(file);
     return Recording(std::make_unique<Impl>(record::open_file(file)));
   });
@@ -201,45 +238,55 @@ Recording Recording::from_bytes(std::span<const std::byte> bytes) {
   });
 }
 
-int Recording::worlds() const { return impl_->worlds(); }
-int Recording::kinds() const { return static_cast<int>(impl_->kinds.size()); }
-const Plan& Recording::plan(int kind) const {
-  return impl_->kinds.at(static_cast<std::size_t>(kind)).plan;
+std::vector<std::filesystem::path> unfinished_recordings(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> found;
+  try {
+    found = leftover_parts(file);
+  } catch (const FileError& error) {
+    throw RecordError(error.what());
+  }
+  std::erase_if(found, [](const auto& part) { return !record::is_part_or_finished(part); });
+  return found;
 }
+
+bool Recording::finished() const { return impl().finished; }
+int Recording::worlds() const { return impl().worlds(); }
+int Recording::kinds() const { return static_cast<int>(impl().kinds.size()); }
+const Plan& Recording::plan(int kind) const { return at(impl().kinds, "kind", kind).plan; }
 int Recording::worlds_of(int kind) const {
-  return static_cast<int>(impl_->kinds.at(static_cast<std::size_t>(kind)).worlds.size());
+  return static_cast<int>(at(impl().kinds, "kind", kind).worlds.size());
 }
 std::int64_t Recording::name_of(int world) const {
-  const auto p = impl_->place(world);
-  return impl_->kinds[p.kind].worlds[p.world];
+  const auto p = impl().place(world);
+  return impl().kinds[p.kind].worlds[p.world];
 }
-std::int64_t Recording::samples() const { return static_cast<std::int64_t>(impl_->steps.size()); }
+std::int64_t Recording::samples() const { return static_cast<std::int64_t>(impl().steps.size()); }
 std::int64_t Recording::step(std::int64_t sample) const {
-  return impl_->steps.at(static_cast<std::size_t>(sample));
+  return at(impl().steps, "sample", sample);
 }
-std::int64_t Recording::inputs() const { return static_cast<std::int64_t>(impl_->inputs.size()); }
-Precision Recording::precision() const { return impl_->precision; }
-bool Recording::sleep() const { return impl_->sleep; }
+std::int64_t Recording::inputs() const { return static_cast<std::int64_t>(impl().inputs.size()); }
+Precision Recording::precision() const { return impl().precision; }
+bool Recording::sleep() const { return impl().sleep; }
 std::uint64_t Recording::hash(std::int64_t sample, int world) const {
-  const auto p = impl_->place(world);
-  const auto& kind = impl_->kinds[p.kind];
-  return kind.hashes.at(static_cast<std::size_t>(sample) * kind.worlds.size() + p.world);
+  const auto p = impl().place(world);
+  const auto& kind = impl().kinds[p.kind];
+  check_index("sample", sample, impl().steps.size());
+  return kind.hashes[static_cast<std::size_t>(sample) * kind.worlds.size() + p.world];
 }
 Status Recording::status(std::int64_t sample, int world) const {
-  const auto p = impl_->place(world);
-  const auto& kind = impl_->kinds[p.kind];
+  const auto p = impl().place(world);
+  const auto& kind = impl().kinds[p.kind];
   const std::size_t at = static_cast<std::size_t>(sample) * kind.worlds.size() + p.world;
-  return static_cast<Status>(kind.statuses.at(at));
+  check_index("sample", sample, impl().steps.size());
+  return static_cast<Status>(kind.statuses[at]);
 }
 std::vector<double> Recording::read(Field field, std::int64_t sample, int world) const {
-  if (sample < 0 || sample >= samples()) {
-    throw std::invalid_argument("sample is " + std::to_string(sample) + ", must be 0 to " +
-                                std::to_string(samples() - 1));
-  }
+  checked_enum(field);
+  check_index("sample", sample, impl().steps.size());
   const record::UsingHdf5 hdf5;
-  const auto p = impl_->place(world);
-  return impl_->read(field, p.kind, sample, static_cast<std::int64_t>(p.world));
+  const auto p = impl().place(world);
+  return impl().read(field, p.kind, sample, static_cast<std::int64_t>(p.world));
 }
-std::string Recording::origin() const { return impl_->origin; }
+std::string Recording::origin() const { return impl().origin; }
 
 }  // namespace manyworlds

@@ -37,6 +37,7 @@ struct Recording::Impl {
                            std::int64_t world = -1) const;
 
   record::Handle h5;
+  bool finished = true;
   Precision precision = Precision::f32;
   bool sleep = false;
   std::string origin;

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cstdio>
 
+#include "src/base/float_mode.hpp"
 #include "src/record/recording.hpp"
 
 namespace manyworlds {
@@ -88,8 +89,8 @@ class Comparison {
     }
     if (what.empty()) return;
     if (result_.different++ > 0) return;
-    result_.difference =
-        Difference{recording_.name_of(world), recording_.step(sample), first_body, what};
+    result_.difference = Difference{recording_.name_of(world), recording_.step(sample),
+                                    first_body < 0 ? BodyId() : plan.body_in_row(first_body), what};
   }
 
   // Bits, in the number type of the recording: NaN equals itself, and 0 is not -0.
@@ -124,6 +125,7 @@ class Comparison {
 }  // namespace
 
 ReplayResult replay(const Recording& recording, const ReplayOptions& options) {
+  const FloatMode mode;
   const Recording::Impl& all = recording.impl();
   Batch batch = make_batch(all, options);
   ReplayResult result;
@@ -133,18 +135,20 @@ ReplayResult replay(const Recording& recording, const ReplayOptions& options) {
   std::int64_t at = 0;
   int call_steps = 0;
   std::size_t next = 0;
+  bool goes_on = true;
+  const GoOn go_on = [&] { return goes_on = goes_on && (!options.go_on || options.go_on()); };
   try {
     batch.restore(all.start);
-    for (std::int64_t sample = 0; sample < recording.samples(); ++sample) {
+    for (std::int64_t sample = 0; sample < recording.samples() && go_on(); ++sample) {
       const auto before =
           static_cast<std::size_t>(all.inputs_before[static_cast<std::size_t>(sample)]);
-      for (; next < before; ++next) {
+      for (; next < before && goes_on; ++next) {
         const record::InputRow& row = all.inputs[next];
-        record::advance(batch, at, row.step, call_steps);
+        if (!record::advance(batch, at, row.step, call_steps, go_on)) break;
         record::apply(batch, row, row.world, all.values(row), all.state(row));
         if (row.call_steps > 0) call_steps = row.call_steps;
       }
-      record::advance(batch, at, recording.step(sample), call_steps);
+      if (!goes_on || !record::advance(batch, at, recording.step(sample), call_steps, go_on)) break;
       comparison.compare(sample);
       ++result.samples;
     }

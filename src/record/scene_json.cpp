@@ -1,45 +1,11 @@
 // Scenes and plan options as JSON. A member that is added to a struct and not here does not
 // compile.
 #include "manyworlds/record.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/record/json.hpp"
 
 namespace manyworlds::record {
 
-template <>
-struct Words<Space> {
-  static constexpr const char* list[] = {"planar", "spatial"};
-};
-template <>
-struct Words<Motion> {
-  static constexpr const char* list[] = {"dynamic", "kinematic", "fixed"};
-};
-template <>
-struct Words<Integrator> {
-  static constexpr const char* list[] = {"symplectic-euler", "explicit-euler",  "implicit-euler",
-                                         "verlet",           "velocity-verlet", "runge-kutta4"};
-};
-static_assert(std::size(Words<Integrator>::list) == static_cast<int>(Integrator::runge_kutta4) + 1);
-template <>
-struct Words<Rotation> {
-  static constexpr const char* list[] = {"splitting", "quaternion", "exponential"};
-};
-template <>
-struct Words<Solver> {
-  static constexpr const char* list[] = {"tgs-soft", "sequential-impulse", "sor", "nncg",
-                                         "penalty"};
-};
-static_assert(std::size(Words<Solver>::list) == static_cast<int>(Solver::penalty) + 1);
-template <>
-struct Words<BroadPhase> {
-  static constexpr const char* list[] = {"automatic", "all-pairs", "sort-and-sweep", "sparse"};
-};
-static_assert(std::size(Words<BroadPhase>::list) == static_cast<int>(BroadPhase::sparse) + 1);
-template <>
-struct Words<Feature> {
-  static constexpr const char* list[] = {"orientation", "inertia", "friction", "restitution",
-                                         "contacts",    "drag",    "gravity",  "joints"};
-};
-static_assert(std::size(Words<Feature>::list) == kFeatureCount);
 template <>
 struct Words<Geometry> {
   static constexpr const char* list[] = {"sphere",  "box",        "plane",   "circle",
@@ -54,24 +20,6 @@ struct Words<JointType> {
                                          "distance", "wheel", "pulley", "target"};
 };
 static_assert(std::size(Words<JointType>::list) == std::variant_size_v<JointType>);
-
-template <>
-struct Words<ControlKind> {
-  static constexpr const char* list[] = {"target_position", "target_speed", "thrust", "torque"};
-};
-
-template <>
-struct Words<Parameter> {
-  static constexpr const char* list[] = {
-#define MW_PARAMETER_WORD(name, owner, numbers, unit, meaning) #name,
-      MW_PARAMETERS(MW_PARAMETER_WORD)
-#undef MW_PARAMETER_WORD
-  };
-};
-template <>
-struct Words<Draw> {
-  static constexpr const char* list[] = {"none", "uniform", "log_uniform"};
-};
 
 #define MW_MEMBERS(Struct) \
   template <class Visit>   \
@@ -253,7 +201,10 @@ MW_MEMBERS(Control) {
 }
 MW_MEMBERS(Variation) {
   auto& [parameter, body, shape, low, high, draw, together] = value;
-  visit("parameter", parameter), visit("body", body), visit("shape", shape);
+  if (shape.body()) body = shape.body();
+  int index = shape.index();
+  visit("parameter", parameter), visit("body", body), visit("shape", index);
+  shape = index == -1 ? ShapeId() : ShapeId(body, index);
   visit("low", low), visit("high", high), visit("draw", draw), visit("together", together);
 }
 MW_MEMBERS(Scene) {
@@ -275,9 +226,10 @@ namespace {
 
 template <class Struct>
 std::string to_json(Struct value) {
-  record::Json json;
-  record::JsonWriter::put(json, value);
-  return json.dump(-1, ' ', false, record::Json::error_handler_t::replace);
+  const FloatMode mode;
+  std::string text;
+  record::JsonWriter::put(text, value);
+  return text;
 }
 
 // What we write is not half as deep; to print what is wrong takes a call per level.
@@ -290,6 +242,7 @@ bool shallow(int depth, record::Json::parse_event_t, record::Json&) {
 
 template <class Struct>
 Struct from_json(std::string_view text) {
+  const FloatMode mode;
   record::Json json;
   try {
     json = record::Json::parse(text, shallow);

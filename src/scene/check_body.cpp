@@ -99,12 +99,12 @@ void check_jitter(Checker& checker, const Scene& scene, const Body& body) {
   if (checker.planar() && jitter.any_orientation) {
     checker.add("jitter.any_orientation", "is true, must be false in a planar scene (set angle)");
   }
-  if (jitter.with == -1) return;
-  const auto with = static_cast<std::size_t>(jitter.with);
+  if (jitter.with == BodyId()) return;
+  const auto with = static_cast<std::size_t>(jitter.with.index());
   const Body* leader = with < scene.bodies.size() ? &scene.bodies[with] : nullptr;
   if (leader == nullptr || leader == &body || leader->motion == Motion::fixed ||
-      leader->jitter.with != -1) {
-    checker.add("jitter.with", "is " + std::to_string(jitter.with) +
+      leader->jitter.with != BodyId()) {
+    checker.add("jitter.with", "is " + std::to_string(jitter.with.index()) +
                                    ", must be -1 or another body that is not fixed and whose own "
                                    "jitter.with is -1");
   }
@@ -124,7 +124,7 @@ void check_fixed(Checker& checker, const Body& body) {
   }
   const Jitter& jitter = body.jitter;
   if (!jitter.position.isZero(0) || !jitter.linear_velocity.isZero(0) || jitter.angle != 0 ||
-      jitter.any_orientation || jitter.with != -1) {
+      jitter.any_orientation || jitter.with != BodyId()) {
     checker.add("jitter", set);
   }
 }
@@ -133,6 +133,7 @@ void check_fixed(Checker& checker, const Body& body) {
 
 void check_body(Checker checker, const Scene& scene, const Body& body, bool density_valid) {
   const std::size_t before = checker.count();
+  checker.named("motion", body.motion);
   checker.finite("position", body.position, "m");
   checker.rotation("rotation", body.rotation);
   checker.finite("linear_velocity", body.linear_velocity, "m/s");

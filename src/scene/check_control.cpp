@@ -26,10 +26,10 @@ bool in(int index, std::size_t count) {
 }
 
 void check_thrust(Checker& checker, const Scene& scene, const Control& control) {
-  if (!in(control.body, scene.bodies.size())) {
-    checker.add("body", index_text(control.body, scene.bodies.size(), "body"));
-  } else if (scene.bodies[static_cast<std::size_t>(control.body)].motion != Motion::dynamic) {
-    checker.add("body", "is " + std::to_string(control.body) + ", must be a dynamic body");
+  if (!in(control.body.index(), scene.bodies.size())) {
+    checker.add("body", index_text(control.body.index(), scene.bodies.size(), "body"));
+  } else if (scene.at(control.body).motion != Motion::dynamic) {
+    checker.add("body", "is " + std::to_string(control.body.index()) + ", must be a dynamic body");
   }
   const bool axial = control.kind == ControlKind::torque;
   if (!axial) checker.finite("point", control.point, "m");
@@ -42,12 +42,12 @@ void check_thrust(Checker& checker, const Scene& scene, const Control& control) 
 
 void check_target(Checker& checker, const Scene& scene, std::size_t index) {
   const Control& control = scene.controls[index];
-  if (!in(control.joint, scene.joints.size())) {
-    checker.add("joint", index_text(control.joint, scene.joints.size(), "joint"));
+  if (!in(control.joint.index(), scene.joints.size())) {
+    checker.add("joint", index_text(control.joint.index(), scene.joints.size(), "joint"));
     return;
   }
-  const std::string is = "is " + std::to_string(control.joint) + ", ";
-  const Drive* drive = drive_of(scene.joints[static_cast<std::size_t>(control.joint)].type);
+  const std::string is = "is " + std::to_string(control.joint.index()) + ", ";
+  const Drive* drive = drive_of(scene.at(control.joint).type);
   if (drive == nullptr) {
     checker.add("joint", is + "must be one that has a drive");
   } else if (control.kind == ControlKind::target_position && !drive->spring) {
@@ -66,6 +66,7 @@ void check_target(Checker& checker, const Scene& scene, std::size_t index) {
 
 void check_control(Checker checker, const Scene& scene, std::size_t index) {
   const Control& control = scene.controls[index];
+  if (!checker.named("kind", control.kind)) return;
   if (control.kind == ControlKind::thrust || control.kind == ControlKind::torque) {
     check_thrust(checker, scene, control);
   } else {

@@ -37,14 +37,14 @@ class JointChecker {
     check_.add(name, "is " + number_text(value) + " " + unit + ", must be > 0");
   }
 
-  const Body* body(int index) const {
-    if (index < 0 || static_cast<std::size_t>(index) >= scene_.bodies.size()) return nullptr;
-    return &scene_.bodies[static_cast<std::size_t>(index)];
+  const Body* body(BodyId id) const {
+    if (!id || static_cast<std::size_t>(id.index()) >= scene_.bodies.size()) return nullptr;
+    return &scene_.at(id);
   }
 
   bool check_bodies() {
     const int count = static_cast<int>(scene_.bodies.size());
-    const int a = joint_.body_a, b = joint_.body_b;
+    const int a = joint_.body_a.index(), b = joint_.body_b.index();
     bool good = true;
     if (a < -1 || a >= count) {
       check_.add("body_a", "is " + std::to_string(a) + ", must be -1 (the world) or a body, 0 to " +
@@ -61,7 +61,8 @@ class JointChecker {
       check_.add("body_b", "is " + std::to_string(b) + ", must be another body than body_a");
       return false;
     }
-    const Motion of_a = a < 0 ? Motion::fixed : body(a)->motion, of_b = body(b)->motion;
+    const Motion of_a = a < 0 ? Motion::fixed : body(joint_.body_a)->motion,
+                 of_b = body(joint_.body_b)->motion;
     if (of_a != Motion::dynamic && of_b != Motion::dynamic) {
       check_.add("body_b", "and body_a are both not dynamic, one of them must be");
       return false;
@@ -166,7 +167,7 @@ class JointChecker {
     check_.positive("ratio", j.ratio, "", kSmallestSize, kLargestSize);
     if (j.length) check_.not_negative("length", *j.length, "m");
     const Body* a = body(joint_.body_a);
-    if (joint_.body_a == -1 || (a && a->motion == Motion::fixed)) {
+    if (joint_.body_a == BodyId() || (a && a->motion == Motion::fixed)) {
       check_.add("body_a", "does not move, must be a body that hangs on the rope");
     }
   }

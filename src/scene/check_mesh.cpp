@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "src/base/float_mode.hpp"
 #include "src/scene/checks.hpp"
 #include "src/scene/mesh_moments.hpp"
 
@@ -181,6 +182,7 @@ void check_volume(Checker& checker, const TriangleMesh& mesh) {
 }  // namespace
 
 std::vector<Issue> validate(const TriangleMesh& mesh) {
+  const FloatMode mode;
   std::vector<Issue> issues;
   Checker checker(issues, Space::spatial);
   check_vertices(checker, mesh);

@@ -32,6 +32,9 @@ void check_bounds(Checker& checker, const Eigen::AlignedBox3d& bounds) {
 }
 
 void check_integrator(Checker& checker, const Options& o) {
+  bool known = checker.named("options.integrator", o.integrator);
+  if (o.rotation) known &= checker.named("options.rotation", *o.rotation);
+  if (!known) return;
   const bool verlet =
       o.integrator == Integrator::verlet || o.integrator == Integrator::velocity_verlet;
   const bool symplectic = o.integrator == Integrator::symplectic_euler;
@@ -58,6 +61,7 @@ void check_integrator(Checker& checker, const Options& o) {
 }
 
 void check_solver(Checker& checker, const Options& o) {
+  checker.named("options.solver", o.solver);
   if (o.iterations) checker.between("options.iterations", *o.iterations, 1, kMostIterations);
   if (!(o.relaxation > 0 && o.relaxation < 2)) {
     checker.add("options.relaxation",

@@ -27,30 +27,37 @@ bool check_number(Checker& checker, const std::string& field, Parameter paramete
 
 // Does it name something that is there and has the parameter?
 bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
+  if (!checker.named("parameter", v.parameter) || !checker.named("draw", v.draw)) return false;
   const ParameterInfo& parameter = info(v.parameter);
   const auto reject = [&](const char* field, int index, const std::string& expected) {
     checker.add(field, "is " + std::to_string(index) + ", must be " + expected);
     return false;
   };
   const std::string every = std::string("-1: ") + parameter.name + " is of the ";
-  if (parameter.owner == ParameterInfo::world && v.body != -1) {
-    return reject("body", v.body, every + "world");
+  const int body = body_of(v).index(), shape = v.shape.index();
+  if (v.body && v.shape.body() && v.body != v.shape.body()) {
+    return reject("shape", shape,
+                  "a shape of body " + std::to_string(v.body.index()) + ", is one of body " +
+                      std::to_string(body));
   }
-  if (parameter.owner != ParameterInfo::shape && v.shape != -1) {
-    return reject("shape", v.shape, every + (v.body < 0 ? "world" : "body"));
+  if (parameter.owner == ParameterInfo::world && body != -1) {
+    return reject("body", body, every + "world");
+  }
+  if (parameter.owner != ParameterInfo::shape && shape != -1) {
+    return reject("shape", shape, every + (body < 0 ? "world" : "body"));
   }
   const int bodies = static_cast<int>(scene.bodies.size());
-  if (v.body < -1 || v.body >= bodies) {
-    return reject("body", v.body, "-1 or the index of one of " + std::to_string(bodies));
+  if (body < -1 || body >= bodies) {
+    return reject("body", body, "-1 or the index of one of " + std::to_string(bodies));
   }
-  if (v.body < 0 && v.shape != -1) return reject("shape", v.shape, "-1 where body is -1");
-  if (v.body < 0) return true;
-  const int shapes = static_cast<int>(scene.bodies[static_cast<std::size_t>(v.body)].shapes.size());
-  if (v.shape < -1 || v.shape >= shapes) {
-    return reject("shape", v.shape, "-1 or the index of one of " + std::to_string(shapes));
+  if (body < 0 && shape != -1) return reject("shape", shape, "-1 where body is -1");
+  if (body < 0) return true;
+  const int shapes = static_cast<int>(scene.bodies[static_cast<std::size_t>(body)].shapes.size());
+  if (shape < -1 || shape >= shapes) {
+    return reject("shape", shape, "-1 or the index of one of " + std::to_string(shapes));
   }
-  const bool named = parameter.owner == ParameterInfo::body || v.shape >= 0;
-  if (named && !can_vary(scene, v.parameter, v.body, v.shape)) {
+  const bool named = parameter.owner == ParameterInfo::body || shape >= 0;
+  if (named && !can_vary(scene, v.parameter, body, shape)) {
     const char* why = v.parameter == Parameter::size      ? "a shape of a moving body with a size"
                       : v.parameter == Parameter::density ? "a dynamic body whose mass is not given"
                                                           : "a dynamic body";

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "manyworlds/scene.hpp"
+#include "src/base/enum_names.hpp"
 
 namespace manyworlds::detail {
 
@@ -62,6 +63,13 @@ class Checker {
     return positive(field, value, planar() ? "kg/m^2" : "kg/m^3", kSmallestMass, kLargestMass);
   }
   bool between(std::string_view field, double value, double low, double high);
+  // One of the values that the enumeration has.
+  template <class Enum>
+  bool named(std::string_view field, Enum value) {
+    if (is_named(value)) return true;
+    add(field, unnamed(value));
+    return false;
+  }
 
   // Vectors; in a planar scene the z component must be 0.
   bool finite(std::string_view field, const Vec3& value, std::string_view unit);

@@ -12,6 +12,7 @@
 
 #include "manyworlds/hull.hpp"
 #include "manyworlds/plan.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/scene/checks.hpp"
 
 extern "C" {
@@ -142,6 +143,7 @@ TriangleMesh surface(const ConvexHull& hull) {
 }  // namespace detail
 
 Hull make_hull(const std::vector<Vec3>& points) {
+  const FloatMode mode;
   std::vector<Issue> issues;
   detail::Checker checker(issues, Space::spatial);
   if (points.size() < detail::kFewestHullVertices) {

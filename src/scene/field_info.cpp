@@ -2,6 +2,7 @@
 #include <cstddef>
 
 #include "manyworlds/fields.hpp"
+#include "src/base/enum_names.hpp"
 
 namespace manyworlds {
 
@@ -13,7 +14,7 @@ const FieldInfo& info(Field field) {
 #undef MW_FIELD_INFO
   };
   static_assert(kInfo.size() == kFieldCount);
-  return kInfo[static_cast<std::size_t>(field)];
+  return kInfo[static_cast<std::size_t>(checked_enum(field))];
 }
 
 }  // namespace manyworlds

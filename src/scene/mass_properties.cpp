@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "src/base/float_mode.hpp"
 #include "src/scene/convex_hull.hpp"
 #include "src/scene/mesh_moments.hpp"
 
@@ -168,6 +169,7 @@ MassProperties of(const Shape& shape, const Scene& scene) {
 }  // namespace
 
 MassProperties mass_properties(const Scene& scene, const Body& body) {
+  const FloatMode mode;
   if (body.mass_properties) return *body.mass_properties;
 
   std::vector<MassProperties> parts;

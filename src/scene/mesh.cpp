@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "manyworlds/plan.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/scene/checks.hpp"
 #include "src/scene/mesh_moments.hpp"
 
@@ -57,12 +58,14 @@ Vec3 mesh_middle(const TriangleMesh& mesh) {
 }  // namespace detail
 
 double volume(const TriangleMesh& mesh) {
+  const FloatMode mode;
   std::vector<Issue> issues = validate(mesh);
   if (!issues.empty()) throw SceneError("mesh", std::move(issues));
-  return detail::mesh_moments(mesh, detail::mesh_middle(mesh)).volume;
+  return FloatMode::done(detail::mesh_moments(mesh, detail::mesh_middle(mesh)).volume);
 }
 
 MassProperties mass_properties(const TriangleMesh& mesh, double density) {
+  const FloatMode mode;
   std::vector<Issue> issues = validate(mesh);
   detail::Checker(issues, Space::spatial).density("density", density);
   if (!issues.empty()) throw SceneError("mesh", std::move(issues));

@@ -1,4 +1,5 @@
 // validate(): every issue of a scene, in the order in which its members are declared.
+#include "src/base/float_mode.hpp"
 #include "src/scene/checks.hpp"
 #include "src/scene/height_field.hpp"
 
@@ -30,8 +31,10 @@ void check_tiles(detail::Checker& checker, const Scene& scene) {
 std::string to_string(const Issue& issue) { return issue.place + " " + issue.message; }
 
 std::vector<Issue> validate(const Scene& scene) {
+  const FloatMode mode;
   std::vector<Issue> issues;
   detail::Checker checker(issues, scene.space);
+  if (!checker.named("space", scene.space)) return issues;  // what holds depends on it
 
   const auto check_count = [&](const char* what, std::size_t count, int most) {
     if (count <= static_cast<std::size_t>(most)) return;

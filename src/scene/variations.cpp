@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "src/base/enum_names.hpp"
+
 namespace manyworlds {
 
 namespace {
@@ -98,7 +100,7 @@ const ParameterInfo& info(Parameter parameter) {
 #undef MW_PARAMETER_INFO
   };
   static_assert(kInfo.size() == kParameterCount);
-  return kInfo[static_cast<std::size_t>(parameter)];
+  return kInfo[static_cast<std::size_t>(checked_enum(parameter))];
 }
 
 bool can_vary(const Scene& scene, Parameter parameter, int body, int shape) {
@@ -129,11 +131,11 @@ std::vector<VariedNumber> varied_numbers(const Scene& scene) {
     if (owner == ParameterInfo::world) add(i, -1, -1);
     for (int b = 0; owner != ParameterInfo::world && b < static_cast<int>(scene.bodies.size());
          ++b) {
-      if (v.body >= 0 && v.body != b) continue;
+      if (body_of(v) && body_of(v) != BodyId(b)) continue;
       const int shapes = static_cast<int>(body_of(scene, b).shapes.size());
       if (owner == ParameterInfo::body) add(i, b, -1);
       for (int s = 0; owner == ParameterInfo::shape && s < shapes; ++s) {
-        if (v.shape < 0 || v.shape == s) add(i, b, s);
+        if (!v.shape || v.shape.index() == s) add(i, b, s);
       }
     }
   }

@@ -14,6 +14,9 @@ struct VariedNumber {
   double low = 0, high = 0;
 };
 
+// The body that it is about: that of its shape, if it has one.
+inline BodyId body_of(const Variation& v) { return v.shape.body() ? v.shape.body() : v.body; }
+
 // In the order in which they have to be set. A variation of every body or shape leaves out those
 // that have no such number.
 std::vector<VariedNumber> varied_numbers(const Scene& scene);

@@ -41,11 +41,11 @@ inline void add_jitter(const Jitter& j, int index, const Draws& draws, BodyState
 inline BodyState draw_initial_state(const Scene& scene, int index, const Draws& draws) {
   const Body& body = scene.bodies[static_cast<std::size_t>(index)];
   BodyState s = described_state(body);
-  if (body.jitter.with >= 0) {
-    const Body& leader = scene.bodies[static_cast<std::size_t>(body.jitter.with)];
+  if (body.jitter.with) {
+    const Body& leader = scene.at(body.jitter.with);
     const BodyState from = described_state(leader);
     BodyState to = from;
-    add_jitter(leader.jitter, body.jitter.with, draws, to);
+    add_jitter(leader.jitter, body.jitter.with.index(), draws, to);
     const Quat turn = to.rotation * from.rotation.conjugate();
     s.position = to.position + turn * (s.position - from.position);
     s.rotation = turn * s.rotation;

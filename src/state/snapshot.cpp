@@ -1,17 +1,24 @@
 #include "manyworlds/snapshot.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <bit>
 #include <cerrno>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <system_error>
 #include <utility>
 
+#include "src/base/float_mode.hpp"
 #include "src/base/hash.hpp"
+#include "src/base/machine_memory.hpp"
+#include "src/base/output_file.hpp"
 #include "src/state/snapshot_format.hpp"
 
 namespace manyworlds {
@@ -21,7 +28,6 @@ static_assert(std::endian::native == std::endian::little, "snapshots are little 
 namespace {
 
 constexpr char kMagic[8] = {'M', 'W', 'S', 'N', 'A', 'P', '\r', '\n'};
-constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 [[noreturn]] void refuse(const std::string& what) { throw SnapshotError("snapshot: " + what); }
@@ -48,35 +54,54 @@ std::uint64_t checksum(const std::vector<std::byte>& bytes) {
   return hasher.value();
 }
 
-std::size_t entry_at(std::size_t index) {
-  return sizeof(SnapshotHeader) + index * sizeof(SnapshotEntry);
+std::size_t entry_size(const SnapshotHeader& header) {
+  return has_seeds(header) ? sizeof(SnapshotEntry) : offsetof(SnapshotEntry, seed);
+}
+std::size_t entry_at(const SnapshotHeader& header, std::size_t index) {
+  return sizeof(SnapshotHeader) + index * entry_size(header);
+}
+SnapshotEntry read_entry(const std::vector<std::byte>& bytes, const SnapshotHeader& header,
+                         std::size_t index) {
+  SnapshotEntry entry{};
+  std::memcpy(&entry, bytes.data() + entry_at(header, index), entry_size(header));
+  return entry;
 }
 
-// Everything that reading a world relies on.
-void check(const std::vector<std::byte>& bytes) {
-  const std::size_t size = bytes.size();
-  if (size < sizeof(SnapshotHeader) + kChecksum) {
-    refuse("is " + std::to_string(size) + " bytes long, must have at least " +
-           std::to_string(sizeof(SnapshotHeader) + kChecksum));
-  }
-  const auto header = read_at<SnapshotHeader>(bytes, 0);
+// What tells a snapshot from other files before anything of its size is allocated or read.
+void check_header(const SnapshotHeader& header, std::uint64_t size) {
   if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
     refuse("does not begin like a snapshot of manyworlds");
   }
-  if (header.version != kVersion) {
+  if (header.version < kOldestSnapshotVersion || header.version > kSnapshotVersion) {
     refuse("has format version " + std::to_string(header.version) + ", must be " +
-           std::to_string(kVersion));
+           std::to_string(kOldestSnapshotVersion) + " to " + std::to_string(kSnapshotVersion));
   }
   if (header.size != size) {
     refuse("is " + std::to_string(size) + " bytes long, its header says " +
            std::to_string(header.size));
   }
+  if (header.real_bytes != 4 && header.real_bytes != 8) {
+    refuse("has numbers of " + std::to_string(header.real_bytes) + " bytes, must be 4 or 8");
+  }
+}
+
+void check_size(std::uint64_t size) {
+  if (size < sizeof(SnapshotHeader) + kChecksum) {
+    refuse("is " + std::to_string(size) + " bytes long, must have at least " +
+           std::to_string(sizeof(SnapshotHeader) + kChecksum));
+  }
+}
+
+// Everything that reading a world relies on.
+void check(const std::vector<std::byte>& bytes) {
+  const FloatMode mode;
+  const std::size_t size = bytes.size();
+  check_size(size);
+  const auto header = read_at<SnapshotHeader>(bytes, 0);
+  check_header(header, size);
   const std::uint64_t expected = checksum(bytes);
   if (read_at<std::uint64_t>(bytes, size - kChecksum) != expected) {
     refuse("is corrupted: its checksum does not match");
-  }
-  if (header.real_bytes != 4 && header.real_bytes != 8) {
-    refuse("has numbers of " + std::to_string(header.real_bytes) + " bytes, must be 4 or 8");
   }
   if (!std::isfinite(header.clock)) {
     refuse("has a clock that is not finite");
@@ -88,13 +113,13 @@ void check(const std::vector<std::byte>& bytes) {
            std::to_string(kMostSteps));
   }
   const std::size_t room = size - sizeof(SnapshotHeader) - kChecksum;
-  if (header.worlds == 0 || header.worlds > room / sizeof(SnapshotEntry) ||
+  if (header.worlds == 0 || header.worlds > room / entry_size(header) ||
       header.worlds > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) {
     refuse("cannot hold the " + std::to_string(header.worlds) + " worlds that its header says");
   }
-  const std::size_t first = entry_at(header.worlds), end = size - kChecksum;
+  const std::size_t first = entry_at(header, header.worlds), end = size - kChecksum;
   for (std::size_t i = 0; i < header.worlds; ++i) {
-    const auto entry = read_at<SnapshotEntry>(bytes, entry_at(i));
+    const SnapshotEntry entry = read_entry(bytes, header, i);
     if (entry.offset < first || entry.offset > end || entry.size > end - entry.offset) {
       refuse("world " + std::to_string(i) + " lies outside of it");
     }
@@ -103,14 +128,74 @@ void check(const std::vector<std::byte>& bytes) {
 
 std::string last_error() { return std::generic_category().message(errno); }
 
+// Closes what it opened.
+class OpenFile {
+ public:
+  // Without waiting: opening a FIFO does not depend on who writes to it.
+  explicit OpenFile(const std::filesystem::path& file)
+      : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    if (descriptor_ < 0) refuse("cannot be read: " + last_error());
+  }
+  ~OpenFile() { close(descriptor_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  struct stat status() const {
+    struct stat out {};
+    if (fstat(descriptor_, &out) != 0) refuse("cannot be read: " + last_error());
+    return out;
+  }
+  void read(std::span<std::byte> to) const {
+    while (!to.empty()) {
+      const ssize_t n = ::read(descriptor_, to.data(), to.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) refuse("cannot be read: " + last_error());
+      if (n == 0) refuse("has become shorter while it was read");
+      to = to.subspan(static_cast<std::size_t>(n));
+    }
+  }
+
+ private:
+  int descriptor_;
+};
+
+const char* kind_of(mode_t mode) {
+  if (S_ISDIR(mode)) return "a folder";
+  if (S_ISFIFO(mode)) return "a FIFO";
+  if (S_ISSOCK(mode)) return "a socket";
+  return "a device";
+}
+
+// The header is looked at before there is memory for what it says.
+std::vector<std::byte> read_file(const std::filesystem::path& file) {
+  const OpenFile in(file);
+  const struct stat status = in.status();
+  if (!S_ISREG(status.st_mode)) {
+    refuse(std::string("is ") + kind_of(status.st_mode) + ", must be a file");
+  }
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  check_size(size);
+  SnapshotHeader header;
+  in.read(std::as_writable_bytes(std::span(&header, 1)));
+  check_header(header, size);
+  if (static_cast<double>(size) > machine_memory()) {
+    refuse("is " + gigabytes(static_cast<double>(size)) + ", the machine has " +
+           gigabytes(machine_memory()) + " of memory");
+  }
+  std::vector<std::byte> bytes(size);
+  std::memcpy(bytes.data(), &header, sizeof header);
+  in.read(std::span(bytes).subspan(sizeof header));
+  return bytes;
+}
+
 }  // namespace
 
 Snapshot SnapshotAccess::prepare(const SnapshotHeader& counts, std::vector<SnapshotEntry> entries) {
   SnapshotHeader header = counts;
   std::memcpy(header.magic, kMagic, sizeof kMagic);
-  header.version = kVersion;
+  header.version = kSnapshotVersion;
   header.worlds = entries.size();
-  std::size_t at = entry_at(entries.size());
+  std::size_t at = entry_at(header, entries.size());
   for (SnapshotEntry& entry : entries) {
     entry.offset = at;
     at += entry.size;
@@ -120,7 +205,7 @@ Snapshot SnapshotAccess::prepare(const SnapshotHeader& counts, std::vector<Snaps
   snapshot.bytes_.resize(header.size);
   write_at(snapshot.bytes_, 0, header);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    write_at(snapshot.bytes_, entry_at(i), entries[i]);
+    write_at(snapshot.bytes_, entry_at(header, i), entries[i]);
   }
   return snapshot;
 }
@@ -138,7 +223,7 @@ SnapshotHeader SnapshotAccess::header(const Snapshot& snapshot) {
   return read_at<SnapshotHeader>(snapshot.bytes_, 0);
 }
 SnapshotEntry SnapshotAccess::entry(const Snapshot& snapshot, std::size_t index) {
-  return read_at<SnapshotEntry>(snapshot.bytes_, entry_at(index));
+  return read_entry(snapshot.bytes_, header(snapshot), index);
 }
 
 int Snapshot::worlds() const {
@@ -158,37 +243,16 @@ Snapshot Snapshot::from_bytes(std::vector<std::byte> bytes) {
 
 void Snapshot::save(const std::filesystem::path& file) const {
   if (bytes_.empty()) refuse("is empty, nothing to save");
-  std::filesystem::path part = file;
-  part += ".part" + std::to_string(getpid());
-  const auto fail = [&](const std::string& why) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    refuse("cannot write '" + file.string() + "': " + why);
-  };
-  {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    if (!out) fail(last_error());
-    out.write(reinterpret_cast<const char*>(bytes_.data()),
-              static_cast<std::streamsize>(bytes_.size()));
-    out.close();
-    if (!out) fail(last_error());
+  try {
+    write_file(file, std::span(bytes_));
+  } catch (const FileError& error) {
+    refuse("cannot write " + std::string(error.what()));
   }
-  std::error_code error;
-  std::filesystem::rename(part, file, error);
-  if (error) fail(error.message());
 }
 
 Snapshot Snapshot::load(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in) refuse("cannot read '" + file.string() + "': " + last_error());
-  const std::streamoff size = in.tellg();
-  if (size < 0) refuse("cannot read '" + file.string() + "': " + last_error());
-  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
-  in.seekg(0);
-  in.read(reinterpret_cast<char*>(bytes.data()), size);
-  if (!in) refuse("cannot read '" + file.string() + "': " + last_error());
   try {
-    return from_bytes(std::move(bytes));
+    return from_bytes(read_file(file));
   } catch (const SnapshotError& error) {
     throw SnapshotError("'" + file.string() + "': " + error.what());
   }

@@ -1,6 +1,8 @@
 // The bytes of a Snapshot:
 //   Header | WorldEntry [worlds] | the worlds' bytes (Storage::write_world) | checksum
-// all little endian, without padding. The checksum is Hasher's over the words before it.
+// all little endian, without padding. The checksum is Hasher's over the words before it. Version 2
+// had no seeds in its entries; it is read as what it was, and leaves the seeds of a batch as they
+// are.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +27,11 @@ struct SnapshotEntry {
   std::uint64_t offset;       // of the world, from the start
   std::uint32_t size;         // of the world, bytes
   std::uint32_t episode;
+  std::uint64_t seed;  // of the world's draws; not in version 2
 };
-static_assert(sizeof(SnapshotHeader) == 48 && sizeof(SnapshotEntry) == 24);
+static_assert(sizeof(SnapshotHeader) == 48 && sizeof(SnapshotEntry) == 32);
+inline constexpr std::uint32_t kSnapshotVersion = 3, kOldestSnapshotVersion = 2;
+inline bool has_seeds(const SnapshotHeader& header) { return header.version >= 3; }
 
 struct SnapshotAccess {
   // Room for worlds of these sizes, with header and entries filled in; fill the worlds, then seal.

@@ -89,10 +89,19 @@ class Worlds {
   // Moves worlds so that those in which something moves fill as few groups as possible.
   void pack();
 
+  // Bytes of a world outside of the storage.
+  std::size_t own_bytes() const {
+    return sizeof(std::uint64_t) + sizeof(std::uint32_t) + 2 * sizeof(int) +
+           (values_.size() * sizeof(double) + own_bodies_.size() * sizeof(PlanBody)) /
+               static_cast<std::size_t>(worlds_);
+  }
+
   std::uint32_t episode(int world) const { return episode_[static_cast<std::size_t>(world)]; }
   void set_episode(int world, std::uint32_t episode) {
     episode_[static_cast<std::size_t>(world)] = episode;
   }
+  std::uint64_t seed(int world) const { return seed_[static_cast<std::size_t>(world)]; }
+  void set_seed(int world, std::uint64_t seed) { seed_[static_cast<std::size_t>(world)] = seed; }
   // What a step changes of the world in a slot: kept aside and put back, without allocating.
   void put_aside(int slot, std::byte* to) const { storage_.write_world(slot, to); }
   void put_back(int slot, const std::byte* from) { storage_.put_back(slot, from); }

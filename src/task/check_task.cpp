@@ -8,6 +8,7 @@
 #include "manyworlds/plan.hpp"
 #include "manyworlds/task.hpp"
 #include "src/api/observations.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/scene/checks.hpp"
 #include "src/task/node.hpp"
@@ -47,7 +48,7 @@ class TaskChecker {
     check("truncated", task_.truncated, false);
     if (plan_) {
       try {
-        check_rays(task_.rays, task_.scene.space, plan_->bodies());
+        check_rays(task_.rays, *plan_);
       } catch (const std::invalid_argument& error) {
         issues_.push_back({"rays", error.what()});
       }
@@ -167,7 +168,7 @@ class TaskChecker {
       case Term::joint_position:
       case Term::joint_speed: {
         if (!bounded(n.index, task_.scene.joints.size(), "the joint") || !plan_) break;
-        const int first = plan_->first_coordinate(n.index);
+        const int first = plan_->first_coordinate(JointId(n.index));
         const auto& all = plan_->data().first_coordinate;
         bounded(n.of, static_cast<std::size_t>(all[static_cast<std::size_t>(n.index) + 1] - first),
                 "the coordinate");
@@ -185,9 +186,9 @@ class TaskChecker {
   // A body frame that moves against its centre of mass from world to world is not to be had.
   void check_center(const std::string& place, const Expression& e) {
     if (!plan_) return;
-    const int state_body = plan_->state_body(e.node().index);
-    if (state_body < 0) return;
-    const PlanBody& b = plan_->data().bodies[static_cast<std::size_t>(state_body)];
+    const auto row = plan_->find_row(BodyId(e.node().index));
+    if (!row) return;
+    const PlanBody& b = plan_->data().bodies[static_cast<std::size_t>(*row)];
     if (!b.reshaped || b.aligned) return;
     issues_.push_back({place, to_string(e) + ": its centre of mass varies from world to world, "
                                              "must be where its frame is"});
@@ -201,6 +202,9 @@ class TaskChecker {
 
 }  // namespace
 
-std::vector<Issue> validate(const Task& task) { return TaskChecker(task).check(); }
+std::vector<Issue> validate(const Task& task) {
+  const FloatMode mode;
+  return TaskChecker(task).check();
+}
 
 }  // namespace manyworlds

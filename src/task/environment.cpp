@@ -6,18 +6,12 @@
 #include <utility>
 
 #include "src/api/batch_data.hpp"
+#include "src/base/enum_names.hpp"
 #include "src/task/runner.hpp"
 
 namespace manyworlds {
 
-const char* to_string(Autoreset autoreset) {
-  switch (autoreset) {
-    case Autoreset::next_step: return "next_step";
-    case Autoreset::same_step: return "same_step";
-    case Autoreset::disabled: return "disabled";
-  }
-  return "?";
-}
+const char* to_string(Autoreset autoreset) { return name_of(autoreset); }
 
 namespace {
 
@@ -54,6 +48,8 @@ void check_array(const char* name, std::size_t found, std::size_t wanted, bool m
 }  // namespace
 
 struct Environment::Impl {
+  static constexpr const char* kName = "Environment";
+
   Task task;
   Autoreset autoreset;
   Plan plan;
@@ -63,7 +59,7 @@ struct Environment::Impl {
 
   Impl(const Task& t, const EnvironmentOptions& options)
       : task(checked(t)),
-        autoreset(options.autoreset),
+        autoreset(checked_enum(options.autoreset)),
         plan(compile(task.scene)),
         programs(std::make_shared<TaskPrograms>(task, plan)),
         batch(plan, options_of(task, *programs, options)),
@@ -104,6 +100,7 @@ struct Environment::Impl {
     runner->out = out;
     runner->some_begin = false;
     b.core->step(*b.executor, task.frame_skip, &runner->visitor());
+    b.core->end_steps();
     b.steps += task.frame_skip;
     tell_step(b);
     if (runner->some_begin) {
@@ -147,7 +144,7 @@ struct Environment::Impl {
 };
 
 Environment::Environment(const Task& task, const EnvironmentOptions& options)
-    : impl_(std::make_unique<Impl>(task, options)) {
+    : impl_(Pimpl<Impl>::make(task, options)) {
   const std::vector<std::uint8_t> all(impl_->worlds(), 1);
   begin(all, {});
 }

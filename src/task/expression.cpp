@@ -49,6 +49,10 @@ Expression::Expression(double number) {
   node_ = std::make_shared<const Node>(std::move(node));
 }
 
+Expression::Expression(std::shared_ptr<const Node> node) : node_(std::move(node)) {
+  if (!node_) throw std::invalid_argument("Expression: there is no node");
+}
+
 Expression lane_function(std::shared_ptr<const LaneFunction> function, std::vector<Expression> in) {
   if (!function) throw std::invalid_argument("lane_function: the function is null");
   Expression::Node node;
@@ -89,23 +93,25 @@ Expression atan2(E y, E x) { return arithmetic(Operation::arc_tangent, {y, x}); 
 
 namespace terms {
 
-Expression position(int body, int axis) { return leaf(Term::position, body, 0, axis); }
-Expression velocity(int body, int axis) { return leaf(Term::velocity, body, 0, axis); }
-Expression angular_velocity(int body, int axis) {
-  return leaf(Term::angular_velocity, body, 0, axis);
+Expression position(BodyId body, int axis) { return leaf(Term::position, body.index(), 0, axis); }
+Expression velocity(BodyId body, int axis) { return leaf(Term::velocity, body.index(), 0, axis); }
+Expression angular_velocity(BodyId body, int axis) {
+  return leaf(Term::angular_velocity, body.index(), 0, axis);
 }
-Expression angle(int body) { return leaf(Term::angle, body); }
-Expression direction(int body, int of, int axis) { return leaf(Term::direction, body, of, axis); }
-Expression joint_position(int joint, int coordinate) {
-  return leaf(Term::joint_position, joint, coordinate);
+Expression angle(BodyId body) { return leaf(Term::angle, body.index()); }
+Expression direction(BodyId body, int of, int axis) {
+  return leaf(Term::direction, body.index(), of, axis);
 }
-Expression joint_speed(int joint, int coordinate) {
-  return leaf(Term::joint_speed, joint, coordinate);
+Expression joint_position(JointId joint, int coordinate) {
+  return leaf(Term::joint_position, joint.index(), coordinate);
 }
-Expression touching(int body) { return leaf(Term::touching, body); }
+Expression joint_speed(JointId joint, int coordinate) {
+  return leaf(Term::joint_speed, joint.index(), coordinate);
+}
+Expression touching(BodyId body) { return leaf(Term::touching, body.index()); }
 Expression ray_distance(int ray) { return leaf(Term::ray_distance, ray); }
 Expression action(int index) { return leaf(Term::action, index); }
-Expression control(int index) { return leaf(Term::control, index); }
+Expression control(ControlId control) { return leaf(Term::control, control.index()); }
 Expression age() { return leaf(Term::age); }
 Expression lost() { return leaf(Term::lost); }
 Expression previous(E value) { return arithmetic(Operation::previous, {value}); }

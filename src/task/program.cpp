@@ -33,11 +33,11 @@ int ProgramBuilder::add_node(const Expression::Node& n) {
     case Term::joint_position:
     case Term::joint_speed:
       return emit(Operation::coordinate,
-                  (plan_.first_coordinate(n.index) + n.of) * kernels::kCoordinateRows +
+                  (plan_.first_coordinate(JointId(n.index)) + n.of) * kernels::kCoordinateRows +
                       (n.term == Term::joint_speed ? 1 : 0));
     case Term::touching:
       if (!plan_.has(Feature::contacts)) return add(0);
-      return emit(Operation::touching, plan_.state_body(n.index));
+      return emit(Operation::touching, plan_.row(BodyId(n.index)));
     case Term::ray_distance: return emit(Operation::ray, n.index * kernels::kHitRows);
     case Term::action: return emit(Operation::input, n.index);
     case Term::control: return emit(Operation::control, n.index);
@@ -94,7 +94,7 @@ Expression ProgramBuilder::state(int body, int component) const {
   const auto at = kernels::state_offsets(plan.dimension(), plan.has(Feature::orientation));
   Expression::Node node;
   node.term = Term::raw;
-  node.index = plan_.state_body(body) * at.components + component;
+  node.index = plan_.row(BodyId(body)) * at.components + component;
   return make_expression(std::move(node));
 }
 
@@ -104,8 +104,8 @@ const Body& described(const Plan& plan, int body) {
   return plan.scene().bodies[static_cast<std::size_t>(body)];
 }
 const PlanBody* moving(const Plan& plan, int body) {
-  const int state_body = plan.state_body(body);
-  return state_body < 0 ? nullptr : &plan.data().bodies[static_cast<std::size_t>(state_body)];
+  const auto row = plan.find_row(BodyId(body));
+  return row ? &plan.data().bodies[static_cast<std::size_t>(*row)] : nullptr;
 }
 kernels::StateOffsets offsets(const PlanData& plan) {
   return kernels::state_offsets(plan.dimension(), plan.has(Feature::orientation));

@@ -27,7 +27,7 @@ std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, con
   for (const Ray& ray : task.rays) {
     add_all(ray.origin);
     add_all(ray.direction);
-    add(ray.body, ray.mask);
+    add(ray.body ? plan.row(ray.body) : -1, ray.mask);
     hash.add(ray.length);
   }
   for (const auto* ranges : {&programs.action_range, &programs.control_range}) {

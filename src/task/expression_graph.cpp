@@ -1,0 +1,271 @@
+#include "manyworlds/expression_graph.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "src/task/node.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+using kernels::Operation;
+using Node = Expression::Node;
+
+struct OperationName {
+  Operation operation;
+  std::string_view name, sign;  // `sign`: of Python's operator, empty for functions
+  std::size_t operands;
+};
+constexpr OperationName kOperations[] = {
+    {Operation::add, "add", "+", 2},
+    {Operation::subtract, "subtract", "-", 2},
+    {Operation::multiply, "multiply", "*", 2},
+    {Operation::divide, "divide", "/", 2},
+    {Operation::negate, "negate", "-", 1},
+    {Operation::absolute, "abs", "", 1},
+    {Operation::square_root, "sqrt", "", 1},
+    {Operation::minimum, "minimum", "", 2},
+    {Operation::maximum, "maximum", "", 2},
+    {Operation::round_down, "floor", "", 1},
+    {Operation::sine, "sin", "", 1},
+    {Operation::cosine, "cos", "", 1},
+    {Operation::arc_tangent, "arctan2", "", 2},
+    {Operation::exponential, "exp", "", 1},
+    {Operation::less, "less", "<", 2},
+    {Operation::less_equal, "less_equal", "<=", 2},
+    {Operation::equal, "equal", "==", 2},
+    {Operation::both, "both", "&", 2},
+    {Operation::either, "either", "|", 2},
+    {Operation::opposite, "opposite", "~", 1},
+    {Operation::choose, "where", "", 3},
+    {Operation::previous, "previous", "", 1},
+    {Operation::held, "held", "", 1},
+    {Operation::largest, "largest", "", 1},
+};
+
+// Which members of a node a term has, in this order.
+using Member = int Node::*;
+struct TermName {
+  Term term;
+  std::string_view name;
+  std::array<Member, 3> members;
+};
+constexpr Member kIndex = &Node::index, kOf = &Node::of, kAxis = &Node::axis;
+constexpr TermName kTerms[] = {
+    {Term::position, "position", {kIndex, kAxis}},
+    {Term::velocity, "velocity", {kIndex, kAxis}},
+    {Term::angular_velocity, "angular_velocity", {kIndex, kAxis}},
+    {Term::angle, "angle", {kIndex}},
+    {Term::direction, "direction", {kIndex, kOf, kAxis}},
+    {Term::joint_position, "joint_position", {kIndex, kOf}},
+    {Term::joint_speed, "joint_speed", {kIndex, kOf}},
+    {Term::touching, "touching", {kIndex}},
+    {Term::ray_distance, "ray_distance", {kIndex}},
+    {Term::action, "action", {kIndex}},
+    {Term::control, "control", {kIndex}},
+    {Term::age, "age", {}},
+    {Term::lost, "lost", {}},
+};
+constexpr std::string_view kNumber = "number";
+
+template <class Table, class Found>
+auto find(const Table& table, Found found) {
+  const auto* at = std::find_if(std::begin(table), std::end(table), found);
+  return at == std::end(table) ? nullptr : at;
+}
+
+const OperationName& name_of(Operation operation) {
+  return *find(kOperations, [=](const auto& o) { return o.operation == operation; });
+}
+
+// nullptr: a number, an operation, or nothing that Python can make.
+const TermName* term_of(const Node& node) {
+  return find(kTerms, [&](const auto& t) { return t.term == node.term; });
+}
+
+class Exporter {
+ public:
+  int add(const Expression& e) {
+    const Node& node = e.node();
+    if (const auto known = known_.find(&node); known != known_.end()) return known->second;
+    ExpressionGraph::Node out;
+    if (node.term == Term::number) {
+      out = {std::string(kNumber), node.number, {}};
+    } else if (node.term == Term::arithmetic) {
+      out.name = name_of(node.operation).name;
+      for (const Expression& operand : node.operands) out.arguments.push_back(add(operand));
+    } else if (const TermName* term = term_of(node)) {
+      out.name = term->name;
+      for (const Member member : term->members) {
+        if (member != nullptr) out.arguments.push_back(node.*member);
+      }
+    } else {
+      throw std::invalid_argument(
+          "the expression holds a function of C++, which has no plain values");
+    }
+    graph.nodes.push_back(std::move(out));
+    const int index = static_cast<int>(known_.size());
+    known_.emplace(&node, index);
+    return index;
+  }
+
+  ExpressionGraph graph;
+
+ private:
+  std::unordered_map<const Node*, int> known_;
+};
+
+[[noreturn]] void wrong_node(std::size_t at, const std::string& what) {
+  throw std::invalid_argument("nodes[" + std::to_string(at) + "] " + what);
+}
+
+Expression read_node(const ExpressionGraph::Node& from, std::span<const Expression> before) {
+  const std::size_t at = before.size();
+  const auto count = [&](std::size_t wanted) {
+    if (from.arguments.size() == wanted) return;
+    wrong_node(at, "has " + std::to_string(from.arguments.size()) + " values, '" + from.name +
+                       "' must have " + std::to_string(wanted));
+  };
+  Node node;
+  if (from.name == kNumber) {
+    count(0);
+    node.number = from.number;
+    return make_expression(std::move(node));
+  }
+  if (const auto* term = find(kTerms, [&](const auto& t) { return t.name == from.name; })) {
+    node.term = term->term;
+    const auto end = std::find(term->members.begin(), term->members.end(), nullptr);
+    count(static_cast<std::size_t>(end - term->members.begin()));
+    for (std::size_t i = 0; i < from.arguments.size(); ++i) {
+      node.*term->members[i] = from.arguments[i];
+    }
+    return make_expression(std::move(node));
+  }
+  const auto* operation = find(kOperations, [&](const auto& o) { return o.name == from.name; });
+  if (operation == nullptr) wrong_node(at, "is '" + from.name + "', which no expression is");
+  count(operation->operands);
+  std::vector<Expression> operands;
+  for (const int of : from.arguments) {
+    if (of < 0 || static_cast<std::size_t>(of) >= at) {
+      wrong_node(at, "is of node " + std::to_string(of) + ", which does not come before it");
+    }
+    operands.push_back(before[static_cast<std::size_t>(of)]);
+  }
+  return arithmetic(operation->operation, std::move(operands));
+}
+
+std::string number_text(double number) {
+  std::array<char, 32> out;
+  const auto end = std::to_chars(out.data(), out.data() + out.size(), number);
+  return {out.data(), end.ptr};
+}
+
+// Gives up beyond `size`, and writes "..." for what is nested more than `depth` deep.
+class Writer {
+ public:
+  explicit Writer(std::size_t size) : size_(size) {}
+
+  bool write(const Expression& e, int depth) {
+    out.clear();
+    add(e, depth, false);
+    return out.size() <= size_;
+  }
+  std::string out;
+
+ private:
+  void add(const Expression& e, int depth, bool inside) {
+    if (out.size() > size_) return;
+    const Node& node = e.node();
+    if (node.term == Term::number) {
+      out += number_text(node.number);
+    } else if (const TermName* term = term_of(node)) {
+      add_term(node, *term);
+    } else if (depth < 0) {
+      out += "...";
+    } else if (node.term == Term::arithmetic) {
+      add_operation(node, depth, inside);
+    } else {
+      out += "a function";
+    }
+  }
+
+  void add_term(const Node& node, const TermName& term) {
+    out += std::string(term.name) + "(";
+    const char* comma = "";
+    for (const Member member : term.members) {
+      if (member == nullptr) break;
+      out += comma;
+      const int value = node.*member;
+      const bool letter = member != kIndex && !(node.term == Term::joint_position) &&
+                          !(node.term == Term::joint_speed) && value >= 0 && value < 3;
+      out += letter ? std::string("'") + "xyz"[value] + "'" : std::to_string(value);
+      comma = ", ";
+    }
+    out += ")";
+  }
+
+  void add_operation(const Node& node, int depth, bool inside) {
+    const OperationName& operation = name_of(node.operation);
+    if (operation.sign.empty()) {
+      out += std::string(operation.name) + "(";
+      for (std::size_t i = 0; i < node.operands.size(); ++i) {
+        if (i > 0) out += ", ";
+        add(node.operands[i], depth - 1, false);
+      }
+      out += ")";
+      return;
+    }
+    if (inside) out += "(";
+    if (node.operands.size() == 1) {
+      out += operation.sign;
+    } else {
+      add(node.operands[0], depth - 1, true);
+      out += " " + std::string(operation.sign) + " ";
+    }
+    add(node.operands.back(), depth - 1, true);
+    if (inside) out += ")";
+  }
+
+  std::size_t size_;
+};
+
+}  // namespace
+
+ExpressionGraph graph_of(std::span<const Expression> roots) {
+  Exporter exporter;
+  for (const Expression& e : roots) exporter.graph.roots.push_back(exporter.add(e));
+  return std::move(exporter.graph);
+}
+
+std::vector<Expression> from_graph(const ExpressionGraph& graph) {
+  std::vector<Expression> known, out;
+  for (const ExpressionGraph::Node& node : graph.nodes) known.push_back(read_node(node, known));
+  for (std::size_t i = 0; i < graph.roots.size(); ++i) {
+    const int at = graph.roots[i];
+    if (at < 0 || static_cast<std::size_t>(at) >= known.size()) {
+      throw std::invalid_argument("roots[" + std::to_string(i) + "] is " + std::to_string(at) +
+                                  ", must be 0 to " +
+                                  std::to_string(static_cast<long>(known.size()) - 1));
+    }
+    out.push_back(known[static_cast<std::size_t>(at)]);
+  }
+  return out;
+}
+
+std::string text_of(const Expression& expression, std::size_t size) {
+  Writer writer(size);
+  for (int depth = 12; depth > 0; --depth) {
+    if (writer.write(expression, depth)) return writer.out;
+  }
+  writer.write(expression, 0);
+  return writer.out;
+}
+
+}  // namespace manyworlds
