@@ -1,6 +1,6 @@
 #!/bin/sh
-# Puts MuJoCo's headers and shared library into DIR/include and DIR/lib, from the PyPI wheel
-# `mujoco`. Needs python3 with pip. Quick when DIR already has this version. Prints on standard
+# Puts MuJoCo's headers, shared library and licences into DIR/include, DIR/lib and DIR, from the PyPI
+# wheel `mujoco`. Needs python3 with pip. Quick when DIR already has this version. Prints on standard
 # error only; exit 0 done, 1 failed, 2 bad usage.
 set -eu
 
@@ -19,7 +19,8 @@ fi
 dir=${1%/}
 
 if [ "$(cat "$dir/version" 2>/dev/null)" = "$version" ] &&
-   [ -e "$dir/lib/libmujoco.so" ] && [ -e "$dir/include/mujoco/mujoco.h" ]; then
+   [ -e "$dir/lib/libmujoco.so" ] && [ -e "$dir/include/mujoco/mujoco.h" ] &&
+   [ -e "$dir/LICENSE" ]; then
   exit 0
 fi
 # Only a folder of ours may be replaced.
@@ -59,6 +60,8 @@ with zipfile.ZipFile(wheel) as archive:
             target = work / "new" / path.relative_to("mujoco")
         elif path.parent.name == "mujoco" and path.name.startswith("libmujoco.so."):
             target = work / "new" / "lib" / path.name
+        elif path.parent.name == "licenses" and path.name.startswith("LICENSE"):
+            target = work / "new" / path.name
         else:
             continue
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -67,6 +70,7 @@ PYTHON
   fail "cannot unpack the wheel: $(tail -n 1 "$work/log")"
 
 [ -e "$work/new/lib/libmujoco.so.$version" ] || fail "the wheel has no libmujoco.so.$version"
+[ -e "$work/new/LICENSE" ] || fail "the wheel has no licence"
 [ -e "$work/new/include/mujoco/mujoco.h" ] || fail "the wheel has no mujoco/mujoco.h"
 ln -s "libmujoco.so.$version" "$work/new/lib/libmujoco.so"
 echo "$version" > "$work/new/version"

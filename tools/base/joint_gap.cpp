@@ -19,11 +19,11 @@ class Poses {
     batch.read(Field::orientation, world, orientation_);
   }
 
-  // A frame of a scene body (-1: the world) in the world.
-  Frame in_world(int scene_body, const Frame& frame) const {
-    const int state_body = scene_body < 0 ? -1 : plan_.state_body(scene_body);
-    if (state_body < 0) return frame_in_world(plan_.scene(), scene_body, frame);
-    const auto b = static_cast<std::size_t>(state_body);
+  // A frame of a body (none: the world) in the world.
+  Frame in_world(BodyId body, const Frame& frame) const {
+    const auto row = body ? plan_.find_row(body) : std::nullopt;
+    if (!row) return frame_in_world(plan_.scene(), body, frame);
+    const auto b = static_cast<std::size_t>(*row);
     Vec3 x;
     Quat q;
     if (planar_) {
@@ -80,7 +80,7 @@ double max_joint_gap(const Batch& batch) {
     if (joints.empty() || frozen(batch.status(world))) continue;
     const Poses poses(batch, world);
     for (std::size_t j = 0; j < joints.size(); ++j) {
-      if (!batch.joint_enabled(world, static_cast<int>(j))) continue;
+      if (!batch.joint_enabled(world, JointId(static_cast<int>(j)))) continue;
       most = std::max(most, gap_of(scene, poses, joints[j]));
     }
   }

@@ -22,6 +22,7 @@
 #include "lost_worlds.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "tools/base/interrupt.hpp"
 #include "tools/base/median.hpp"
 #include "tools/base/text.hpp"
 
@@ -56,14 +57,15 @@ class SceneBench {
   SceneBench(const BenchOptions& options, const Job& job, Progress& progress)
       : options_(options), job_(job), progress_(progress) {}
 
-  // The median over the repeats. Throws HashMismatch.
+  // The median over the repeats. Throws HashMismatch and Interrupted.
   Report time(Batch& batch, int steps_per_call) {
     progress_.set_label(fmt::format("{}, {}, step({})", job_.scene,
                                     counted(batch.threads(), "thread"), steps_per_call));
     std::vector<double> seconds;
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       warm_up(batch, steps_per_call);
-      seconds.push_back(timed_steps(batch, job_.steps, steps_per_call, &progress_));
+      seconds.push_back(timed_steps(batch, job_.steps, steps_per_call, &progress_).seconds);
+      tools::stop_if_interrupted();
       require_same_hash(batch, steps_per_call, repeat);
     }
     Report report = measure(batch, job_, job_.steps, steps_per_call, median(seconds));
@@ -72,6 +74,7 @@ class SceneBench {
     warm_up(batch, steps_per_call);
     report.stage_split =
         profile_stages(batch, std::min(job_.steps, kProfiledSteps), steps_per_call);
+    tools::stop_if_interrupted();
     return report;
   }
 
@@ -81,6 +84,7 @@ class SceneBench {
   void warm_up(Batch& batch, int steps_per_call) {
     batch.reset();
     timed_steps(batch, options_.warm_up, steps_per_call, &progress_);
+    tools::stop_if_interrupted();
   }
 
   void require_same_hash(const Batch& batch, int steps_per_call, int repeat) {
@@ -133,7 +137,8 @@ std::vector<Job> prepare_all(const BenchOptions& options) {
   return jobs;
 }
 
-// One scene, with sleep or without: a row for 1 thread and one for all. Throws HashMismatch.
+// One scene, with sleep or without: a row for 1 thread and one for all. Throws HashMismatch and
+// Interrupted.
 // Returns whether a world was lost.
 bool bench_scene(const BenchOptions& options, const Job& job, Progress& progress, bool& head,
                  nlohmann::ordered_json& list) {
@@ -174,6 +179,7 @@ int bench_command(const BenchOptions& options) {
   for (const Job& job : jobs) work += runs * (job.steps + options.warm_up);
   Progress progress("bench", work);
 
+  const tools::Interruptible interruptible;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   bool any_lost = false;
   bool head = !options.job.json;
@@ -189,6 +195,15 @@ int bench_command(const BenchOptions& options) {
     progress.erase();
     fmt::print(stderr, "manyworlds: {}\n", mismatch.what());
     return kWorldLost;
+  } catch (const tools::Interrupted&) {
+    progress.erase();
+    const std::size_t rows = list.size();
+    list.push_back({{"interrupted", tools::interrupt_name()}});
+    if (options.job.json) fmt::print("{}\n", list.dump(2));
+    std::fflush(stdout);
+    fmt::print(stderr, "manyworlds: interrupted by {} after {}\n", tools::interrupt_name(),
+               counted(static_cast<long long>(rows), "measurement"));
+    return tools::interrupt_code();
   }
   progress.erase();
   if (options.job.json) fmt::print("{}\n", list.dump(2));

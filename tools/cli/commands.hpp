@@ -18,6 +18,6 @@ int report_accuracy_command(const ReportOptions& options);
 int report_stability_command(const ReportOptions& options);
 int report_plan_command(const ReportOptions& options);
 int report_throughput_command(const ReportOptions& options);
-int info_command();
+int info_command(bool json);
 
 }  // namespace manyworlds::cli

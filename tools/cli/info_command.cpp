@@ -1,12 +1,15 @@
 // `manyworlds info`: what this program is, and what it runs on.
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "manyworlds/batch.hpp"
+#include "manyworlds/scenes.hpp"
 
 #include "commands.hpp"
 #include "recording.hpp"
@@ -30,10 +33,38 @@ std::string isa_list() {
   return list;
 }
 
+// Those that this build and this CPU have kernels for.
+std::string precision_list() {
+  std::string list;
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    BatchOptions options;
+    options.threads = 1;
+    options.precision = precision;
+    try {
+      const Batch probe(compile(scenes::find("ball2d")->make()), options);
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+    list += (list.empty() ? "" : ", ") + std::string(to_string(precision));
+  }
+  return list;
+}
+
 }  // namespace
 
-int info_command() {
+int info_command(bool json) {
   const Isa in_use = default_isa();  // throws before anything is printed
+  if (json) {
+    nlohmann::ordered_json isas = nlohmann::ordered_json::array();
+    for (const Isa isa : available_isas()) isas.push_back(to_string(isa));
+    const nlohmann::ordered_json all = {
+        {"manyworlds", kVersion}, {"compiler", kCompiler},
+        {"cpu", cpu_model()},     {"threads", usable_cpus()},
+        {"isas", isas},           {"isa", to_string(in_use)},
+        {"mjcf", reads_mjcf()},   {"recordings", writes_recordings()}};
+    fmt::print("{}\n", all.dump(2));
+    return kOk;
+  }
   const auto row = [](const char* name, const std::string& value) {
     fmt::print("{:<13}{}\n", name, value);
   };
@@ -43,7 +74,7 @@ int info_command() {
   row("threads", fmt::format("{}", usable_cpus()));
   row("isa", isa_list());
   row("isa in use", to_string(in_use));
-  row("precision", fmt::format("{}, {}", to_string(Precision::f32), to_string(Precision::f64)));
+  row("precision", precision_list());
   row("mjcf", reads_mjcf() ? "yes" : "no");
   row("recordings", writes_recordings() ? "yes" : "no");
   return kOk;

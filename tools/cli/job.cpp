@@ -1,16 +1,17 @@
 #include "job.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "scene_source.hpp"
+#include "tools/base/interrupt.hpp"
 
 namespace manyworlds::cli {
 namespace {
@@ -29,23 +30,10 @@ int steps_for(double seconds, double dt) {
   return std::max(static_cast<int>(steps), 1);
 }
 
-// The kernel would grant the memory and kill the program later.
-void require_memory(const Job& job, const JobOptions& options, int worlds) {
-  const double scale = options.precision == Precision::f64 ? 2.0 : 1.0;
-  const double needed = static_cast<double>(job.plan.report().bytes_per_world) * scale * worlds;
-  const double present =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  if (present > 0 && needed > present) {
-    throw InputError(
-        fmt::format("--worlds: {} worlds of '{}' need {:.1f} GB, the machine has {:.1f} GB", worlds,
-                    job.scene, needed / 1e9, present / 1e9));
-  }
-}
-
 }  // namespace
 
 Job prepare(const JobOptions& options) {
-  Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene, options.mjcf);
   if (options.dt) scene.options.dt = *options.dt;
   if (options.substeps) scene.options.substeps = *options.substeps;
   if (options.solver) scene.options.solver = *options.solver;
@@ -61,7 +49,6 @@ Job prepare(const JobOptions& options) {
 
 Batch make_batch(const Job& job, const JobOptions& options, int worlds, std::uint64_t seed,
                  int threads) {
-  require_memory(job, options, worlds);
   BatchOptions batch_options;
   batch_options.worlds = worlds;
   batch_options.threads = threads;
@@ -70,21 +57,34 @@ Batch make_batch(const Job& job, const JobOptions& options, int worlds, std::uin
   batch_options.isa = options.isa;
   batch_options.layout = options.layout;
   batch_options.sleep = options.sleep;
-  return Batch(job.plan, batch_options);
+  try {
+    return Batch(job.plan, batch_options);
+  } catch (const std::invalid_argument& error) {
+    // What is said of this member is about the option of the same name.
+    const std::string text = error.what();
+    if (text.starts_with("worlds: ")) throw InputError("--" + text);
+    throw;
+  }
 }
 
-double timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progress) {
+Timed timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progress) {
   using Clock = std::chrono::steady_clock;
-  Clock::duration spent{};
-  for (int done = 0; done < steps;) {
-    const int n = std::min(steps_per_call, steps - done);
+  constexpr double kLongest = 0.2;  // s of a call; what it costs to make another is nothing then
+  Timed done;
+  int most = std::min(steps_per_call, 64);  // steps that a call may have so as not to be too long
+  while (done.steps < steps && tools::interrupted() == 0) {
+    const int in_call = done.steps % steps_per_call;
+    const int n = std::min({steps_per_call - in_call, steps - done.steps, most});
     const Clock::time_point before = Clock::now();
     batch.step(n);
-    spent += Clock::now() - before;
-    done += n;
+    const double spent = std::chrono::duration<double>(Clock::now() - before).count();
+    done.seconds += spent;
+    done.steps += n;
     if (progress != nullptr) progress->advance(n);
+    if (n == most && spent < kLongest / 2 && most < steps_per_call) most *= 2;
+    if (spent > kLongest && most > 1) most /= 2;
   }
-  return std::chrono::duration<double>(spent).count();
+  return done;
 }
 
 }  // namespace manyworlds::cli

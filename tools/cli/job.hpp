@@ -26,8 +26,13 @@ Job prepare(const JobOptions& options);
 Batch make_batch(const Job& job, const JobOptions& options, int worlds, std::uint64_t seed,
                  int threads);
 
-// Takes `steps` steps in calls of `steps_per_call` (the last one may be shorter); returns the
-// seconds spent inside step(). `progress` may be null.
-double timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progress);
+struct Timed {
+  int steps = 0;
+  double seconds = 0;  // inside step()
+};
+
+// Takes `steps` steps in calls of `steps_per_call`, or fewer if it is interrupted. Calls may be
+// shorter: the last one, and those that would keep an interrupt waiting. `progress` may be null.
+Timed timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progress);
 
 }  // namespace manyworlds::cli

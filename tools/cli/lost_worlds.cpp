@@ -29,6 +29,9 @@ std::map<std::string, std::int64_t> LostWorlds::by_reason() const {
 std::string reproduce_command(const JobOptions& options, int steps, std::uint64_t seed) {
   std::string command = fmt::format("manyworlds run {} --worlds 1 --seed {} --steps {}",
                                     shell_word(options.scene), seed, steps);
+  for (const std::string& root : options.mjcf.roots) command += " --mjcf-root " + shell_word(root);
+  for (const std::string& limit : options.mjcf.limits)
+    command += " --mjcf-limit " + shell_word(limit);
   if (options.dt) command += fmt::format(" --dt {}", *options.dt);
   if (options.substeps) command += fmt::format(" --substeps {}", *options.substeps);
   if (options.solver) command += fmt::format(" --solver {}", to_string(*options.solver));

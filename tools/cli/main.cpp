@@ -1,5 +1,7 @@
 // The program `manyworlds`: parsing and exit codes. What a subcommand does is in its own file.
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <optional>
@@ -10,6 +12,8 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
+#include "manyworlds/nearest.hpp"
 
 #include "commands.hpp"
 #include "options.hpp"
@@ -22,6 +26,7 @@ using tools::kVersion;
 
 struct AllOptions {
   bool scenes_json = false;
+  bool info_json = false;
   JobOptions run;
   JobOptions plan;
   BenchOptions bench;
@@ -38,8 +43,12 @@ constexpr const char* kAppFooter =
     "  manyworlds bench --scenes bin-spheres,stack10\n"
     "  manyworlds run --help\n"
     "\n"
-    "Exit codes: 0 ok, 1 a world was lost or bits differ, 2 bad input.\n"
-    "MANYWORLDS_ISA=scalar|avx2|avx512 chooses the instruction set of all commands.";
+    "Exit codes: 0 ok, 1 a world was lost or bits differ, 2 bad input or a file that cannot be\n"
+    "written, 130 interrupted (Ctrl-C), 143 terminated.\n"
+    "Scenes in other sizes: pyramid2d:100, bin-spheres:1000, bin-boxes:1000.\n"
+    "MANYWORLDS_ISA=scalar|avx2|avx512 chooses the instruction set of all commands; which there "
+    "are\n"
+    "was chosen when the program was built (MW_ISAS=\"scalar;avx2\" tools/run).";
 
 void add_scenes(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command = app.add_subcommand("scenes", "List the scenes that have a name");
@@ -237,11 +246,24 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
   throughput->callback([&] { code = report_throughput_command(all.report); });
 }
 
-void add_info(CLI::App& app, int& code) {
+void add_info(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command =
       app.add_subcommand("info", "Show the CPU, instruction sets, threads and versions");
-  command->footer("Example:\n  MANYWORLDS_ISA=avx2 manyworlds info");
-  command->callback([&] { code = info_command(); });
+  command->add_flag("--json", all.info_json, "print JSON instead of text");
+  command->footer("Examples:\n  MANYWORLDS_ISA=avx2 manyworlds info\n  manyworlds info --json");
+  command->callback([&] { code = info_command(all.info_json); });
+}
+
+// Where memory runs out in what cannot say so, a destructor, the program still ends as it promises.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    std::fputs("manyworlds: not enough memory\n", stderr);
+    std::_Exit(kBadInput);
+  } catch (...) {
+  }
+  std::abort();
 }
 
 // One line per problem, each with the program's name in front.
@@ -257,21 +279,44 @@ int complain(std::string_view text) {
 
 // What is wrong with the command line, and where help is unless the message already says it all.
 std::string describe(const CLI::ParseError& error, const CLI::App& app) {
-  const std::vector<CLI::App*> commands = app.get_subcommands();
-  if (commands.empty()) {
-    std::string names;
-    for (const CLI::App* command : app.get_subcommands(nullptr)) {
-      names += (names.empty() ? "" : ", ") + command->get_name();
-    }
-    const std::vector<std::string> rest = app.remaining();
-    return rest.empty() ? fmt::format("a command is missing: {}", names)
-                        : fmt::format("unknown command '{}'; there are {}", rest.front(), names);
+  // The innermost command that was named, and how it is called.
+  const CLI::App* command = &app;
+  std::string called = "manyworlds";
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+    called += " " + command->get_name();
   }
   if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return error.what();
-  return fmt::format("{} (see 'manyworlds {} --help')", error.what(), commands.front()->get_name());
+  const std::vector<std::string> rest = app.remaining(true);
+  const auto meant = [](const std::string& word, const std::vector<std::string>& known) {
+    const std::optional<std::string> near = nearest(word, known);
+    return near ? fmt::format("; did you mean '{}'?", *near) : std::string();
+  };
+  if (!rest.empty() && rest.front().starts_with("-")) {
+    const std::string option = rest.front().substr(0, rest.front().find('='));
+    std::vector<std::string> known;
+    for (const CLI::Option* one : command->get_options()) {
+      for (const std::string& name : one->get_lnames()) known.push_back("--" + name);
+    }
+    return fmt::format("unknown option '{}'{} (see '{} --help')", option, meant(option, known),
+                       called);
+  }
+  std::vector<std::string> names;
+  for (const CLI::App* one : command->get_subcommands(nullptr)) names.push_back(one->get_name());
+  if (!names.empty()) {
+    const std::string what = command == &app ? "command" : command->get_name();
+    const std::string all = fmt::format("{}", fmt::join(names, ", "));
+    if (rest.empty()) return fmt::format("a {} is missing: {}", what, all);
+    const std::string near = meant(rest.front(), names);
+    return fmt::format("unknown {} '{}'{}", what, rest.front(),
+                       near.empty() ? "; there are " + all : near);
+  }
+  return fmt::format("{} (see '{} --help')", error.what(), called);
 }
 
 int run_program(int argc, char** argv) {
+  std::set_terminate(end_without_memory);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that would grow too large is an error of its write
   CLI::App app("Steps thousands of small rigid-body worlds at once.", "manyworlds");
   app.set_version_flag("--version", fmt::format("manyworlds {}", kVersion));
   app.footer(kAppFooter);
@@ -288,7 +333,7 @@ int run_program(int argc, char** argv) {
   add_soak(app, all, code);
   add_replay(app, all, code);
   add_report(app, all, code);
-  add_info(app, code);
+  add_info(app, all, code);
   try {
     app.parse(argc, argv);  // runs the subcommand's callback
   } catch (const CLI::Success& help) {

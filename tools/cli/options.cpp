@@ -158,9 +158,23 @@ void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::stri
 }
 
 void add_scene_argument(CLI::App& app, JobOptions& options) {
-  app.add_option("scene", options.scene, "name of a scene, or an MJCF file (.xml)")
+  app.add_option("scene", options.scene,
+                 "name of a scene, with a size for some (bin-boxes:1000), or an MJCF file (.xml)")
       ->required()
-      ->type_name("SCENE|FILE.xml");
+      ->type_name("NAME|NAME:SIZE|FILE.xml");
+  app.add_option("--mjcf-root", options.mjcf.roots,
+                 "folder besides the MJCF file's own that it may take files from; may be repeated")
+      ->type_name("DIR")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--mjcf-limit", options.mjcf.limits,
+                 "another limit of what an MJCF file may ask for, which its error names, or of the "
+                 "compilation: seconds=60, megabytes=4096; may be repeated")
+      ->type_name("NAME=N")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void add_plan_options(CLI::App& app, JobOptions& options) {
@@ -254,6 +268,12 @@ void add_record_options(CLI::App& app, JobOptions& options) {
   app.add_option("--record-every", options.record_every, "steps from one sample to the next")
       ->check(whole_number(1, std::numeric_limits<int>::max()))
       ->type_name("K")
+      ->capture_default_str()
+      ->needs(file);
+  app.add_option("--record-flush", options.record_flush,
+                 "s; what is older survives the end of the program (0: after every call)")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("SECONDS")
       ->capture_default_str()
       ->needs(file);
 }

@@ -10,6 +10,8 @@
 #include "manyworlds/batch.hpp"
 #include "manyworlds/plan.hpp"
 
+#include "mjcf_file.hpp"
+
 namespace CLI {
 class App;
 }
@@ -29,6 +31,7 @@ class InputError : public std::runtime_error {
 
 struct JobOptions {
   std::string scene;  // name of a scene, or path of an MJCF file
+  MjcfArguments mjcf;
 
   // Changes to the scene and its plan.
   std::optional<double> dt;     // s
@@ -58,6 +61,7 @@ struct JobOptions {
   std::string record;         // file
   std::string record_worlds;  // "0,5,10-20"; empty: the first few
   int record_every = 1;       // steps
+  double record_flush = 5;    // s
   std::string dump_lost;      // folder
 };
 

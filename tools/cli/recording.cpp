@@ -14,7 +14,11 @@
 #include <fmt/format.h>
 
 #ifdef MW_HAVE_RECORD
+#include "leftovers.hpp"
 #include "manyworlds/record.hpp"
+#include "src/base/output_file.hpp"
+#else
+#include "not_built.hpp"
 #endif
 #include "tools/base/text.hpp"
 
@@ -87,20 +91,28 @@ JobRecorder::JobRecorder(Batch& batch, const JobOptions& options) {
     record.worlds = parse_worlds(options.record_worlds, batch.worlds());
   }
   record.every = options.record_every;
+  record.flush_seconds = options.record_flush;
   const std::size_t worlds =
       record.worlds.empty()
           ? static_cast<std::size_t>(std::min(batch.worlds(), kMostWorldsByDefault))
           : record.worlds.size();
   impl_ = std::make_unique<Impl>(Impl{Recorder(batch, options.record, record), options.record,
                                       worlds, batch.worlds(), record.every});
+  tell_of_leftovers(leftover_parts(options.record), unfinished_recordings(options.record));
 }
 JobRecorder::~JobRecorder() = default;
 
 std::string JobRecorder::finish(const Batch& batch) {
   if (!impl_) return {};
-  impl_->recorder.sample(batch);
-  impl_->recorder.close();
-  const double bytes = static_cast<double>(std::filesystem::file_size(impl_->file));
+  try {
+    impl_->recorder.sample(batch);
+    impl_->recorder.close();
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+    return {};
+  }
+  std::error_code ignored;
+  const double bytes = static_cast<double>(std::filesystem::file_size(impl_->file, ignored));
   return fmt::format("{} of {}, {} samples every {}, {}B in {}", impl_->worlds,
                      counted(impl_->all, "world"), impl_->recorder.samples(),
                      counted(impl_->every, "step"), with_prefix(bytes), impl_->file.string());
@@ -120,6 +132,7 @@ LostDumps::LostDumps(const JobOptions& options) {
     throw InputError(fmt::format("--dump-lost: cannot make the folder '{}'", options.dump_lost));
   }
   impl_ = std::make_unique<Impl>(Impl{options.dump_lost, {}, {}});
+  tell_of_leftovers(leftover_parts_in(options.dump_lost), {});
 }
 LostDumps::~LostDumps() = default;
 
@@ -132,7 +145,11 @@ void LostDumps::watch(Batch& batch, std::int64_t first) {
 }
 void LostDumps::finish() {
   if (!impl_ || !impl_->dumps) return;
-  for (auto& file : impl_->dumps->close()) impl_->files.push_back(std::move(file));
+  try {
+    for (auto& file : impl_->dumps->close()) impl_->files.push_back(std::move(file));
+  } catch (const std::exception& error) {
+    if (failure_.empty()) failure_ = error.what();
+  }
   impl_->dumps.reset();
 }
 void LostDumps::print() const {
@@ -146,9 +163,9 @@ void LostDumps::print() const {
 
 namespace {
 
-constexpr const char* kHow =
-    "this program was built without recordings; cmake -D MW_RECORD=ON builds it with them, and "
-    "needs the HDF5 library";
+InputError no_recordings(const char* asked) {
+  return not_built(asked, "recordings", "MW_RECORD=ON");
+}
 
 }  // namespace
 
@@ -156,14 +173,14 @@ bool writes_recordings() { return false; }
 
 struct JobRecorder::Impl {};
 JobRecorder::JobRecorder(Batch&, const JobOptions& options) {
-  if (!options.record.empty()) throw InputError(fmt::format("--record: {}", kHow));
+  if (!options.record.empty()) throw no_recordings("--record");
 }
 JobRecorder::~JobRecorder() = default;
 std::string JobRecorder::finish(const Batch&) { return {}; }
 
 struct LostDumps::Impl {};
 LostDumps::LostDumps(const JobOptions& options) {
-  if (!options.dump_lost.empty()) throw InputError(fmt::format("--dump-lost: {}", kHow));
+  if (!options.dump_lost.empty()) throw no_recordings("--dump-lost");
 }
 LostDumps::~LostDumps() = default;
 void LostDumps::watch(Batch&, std::int64_t) {}
@@ -171,5 +188,17 @@ void LostDumps::finish() {}
 void LostDumps::print() const {}
 
 #endif
+
+int finish_code(const LostDumps& dumps, int code) {
+  if (dumps.failure().empty()) return code;
+  fmt::print(stderr, "manyworlds: {}\n", dumps.failure());
+  return kBadInput;
+}
+int finish_code(const JobRecorder& recorder, const LostDumps& dumps, int code) {
+  code = finish_code(dumps, code);
+  if (recorder.failure().empty()) return code;
+  fmt::print(stderr, "manyworlds: {}\n", recorder.failure());
+  return kBadInput;
+}
 
 }  // namespace manyworlds::cli

@@ -31,12 +31,14 @@ class JobRecorder {
   JobRecorder(const JobRecorder&) = delete;
   JobRecorder& operator=(const JobRecorder&) = delete;
   // The last sample, and the file gets its name. Returns a line for people, empty if nothing was
-  // recorded. Throws RecordError.
+  // recorded. Throws nothing: what went wrong, now or before, is failure().
   std::string finish(const Batch& batch);
+  const std::string& failure() const { return failure_; }  // one line; empty if there is none
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  std::string failure_;
 };
 
 // What --dump-lost asks for, over the batches of a job.
@@ -48,12 +50,19 @@ class LostDumps {
   LostDumps& operator=(const LostDumps&) = delete;
   // From now on watches `batch`, whose world 0 is world `first` of the job.
   void watch(Batch& batch, std::int64_t first);
-  void finish();       // with that batch
+  void finish();       // with that batch; what goes wrong is failure()
   void print() const;  // the files, and what to do with them, on standard error
+  const std::string& failure() const { return failure_; }
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  std::string failure_;
 };
+
+// Tells on standard error of what failed while something was written. Returns the exit code for
+// that, or else `code`.
+int finish_code(const JobRecorder& recorder, const LostDumps& dumps, int code);
+int finish_code(const LostDumps& dumps, int code);
 
 }  // namespace manyworlds::cli

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "not_built.hpp"
 
 #ifdef MW_HAVE_RECORD
 #include "manyworlds/record.hpp"
@@ -34,26 +35,26 @@ void print_json(const ReplayArguments& arguments, const Recording& recording,
                                  {"difference", nullptr}};
   if (const auto& d = result.difference) {
     json["difference"] = {
-        {"world", d->world}, {"step", d->step}, {"body", d->body}, {"what", d->what}};
+        {"world", d->world}, {"step", d->step}, {"body", d->body.index()}, {"what", d->what}};
   }
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-// "body 3 'crate'": a body with state, by its name in the scene.
+// ", body 3 'crate'"
 std::string body_name(const Recording& recording, const Difference& difference) {
-  if (difference.body < 0) return {};
+  if (!difference.body) return {};
   for (int world = 0; world < recording.worlds(); ++world) {
     if (recording.name_of(world) != difference.world) continue;
     for (int kind = 0, first = 0; kind < recording.kinds(); ++kind) {
       first += recording.worlds_of(kind);
       if (world >= first) continue;
       const Plan& plan = recording.plan(kind);
-      const auto body = static_cast<std::size_t>(plan.scene_body(difference.body));
-      const std::string& name = plan.scene().bodies[body].name;
-      return fmt::format(", body {}{}", difference.body, name.empty() ? "" : " '" + name + "'");
+      const std::string& name = plan.scene().at(difference.body).name;
+      return fmt::format(", body {}{}", difference.body.index(),
+                         name.empty() ? "" : " '" + name + "'");
     }
   }
-  return fmt::format(", body {}", difference.body);
+  return fmt::format(", body {}", difference.body.index());
 }
 
 void print_text(const ReplayArguments& arguments, const Recording& recording,
@@ -106,9 +107,7 @@ int replay_command(const ReplayArguments& arguments) {
 #else
 
 int replay_command(const ReplayArguments&) {
-  throw InputError(
-      "replay: this program was built without recordings; cmake -D MW_RECORD=ON builds it with "
-      "them, and needs the HDF5 library");
+  throw not_built("replay", "recordings", "MW_RECORD=ON");
 }
 
 #endif

@@ -84,7 +84,7 @@ std::string solver_text(Solver solver, int iterations) {
 nlohmann::ordered_json to_json(const Report& report) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const Report::StageShare& share : report.stage_split) stages[share.stage] = share.fraction;
-  return {
+  nlohmann::ordered_json json = {
       {"scene", report.scene},
       {"worlds", report.worlds},
       {"steps", report.steps},
@@ -109,6 +109,8 @@ nlohmann::ordered_json to_json(const Report& report) {
       {"stage_split", stages},
       {"hash", hex(report.hash)},
   };
+  if (!report.interrupted.empty()) json["interrupted"] = report.interrupted;
+  return json;
 }
 
 }  // namespace manyworlds::cli

@@ -44,7 +44,8 @@ struct Report {
   double awake_fraction = 1;  // of worlds
   int lost_worlds = 0;
   std::uint64_t hash = 0;
-  std::vector<StageShare> stage_split;
+  std::vector<StageShare> stage_split;  // empty where it was interrupted
+  std::string interrupted;              // "SIGINT"; empty: it went to its end
 };
 
 // Reads everything but the stage split off a batch that took `steps` steps in `seconds` s. Changes

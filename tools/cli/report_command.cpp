@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,8 +11,11 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "leftovers.hpp"
 #include "manyworlds/scenes.hpp"
 #include "progress.hpp"
+#include "src/base/output_file.hpp"
+#include "tools/base/interrupt.hpp"
 #include "tools/base/machine.hpp"
 #include "tools/base/version.hpp"
 #include "tools/report/accuracy.hpp"
@@ -28,23 +31,51 @@ using tools::kVersion, tools::machine_line;
 
 using Tell = std::function<void(const std::string&, double)>;
 
-void write_file(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw InputError("--out: cannot write " + path.string());
-}
+// Both files of a report, each whole or not at all. They are made first, so that no work is lost to
+// a name that cannot be one, or a disk that is full.
+class ReportFiles {
+ public:
+  ReportFiles(const std::string& name, const ReportOptions& options)
+      : page_(std::filesystem::path(options.out) / (name + ".html")),
+        json_(std::filesystem::path(options.out) / (name + ".json")) {
+    std::error_code error;
+    std::filesystem::create_directories(options.out, error);
+    if (error) throw InputError("--out: cannot make " + options.out + ": " + error.message());
+    for (const auto& file : {page_, json_}) {
+      guarded([&] {
+        const OutputFile trial(file);
+        tell_of_leftovers(leftover_parts(file), {});
+      });
+    }
+  }
+  void write(const std::string& page, const std::string& json) const {
+    guarded([&] {
+      OutputFile page_file(page_), json_file(json_);
+      page_file.write(std::as_bytes(std::span(page)), 0);
+      json_file.write(std::as_bytes(std::span(json)), 0);
+      page_file.commit();
+      json_file.commit();
+    });
+  }
+  const std::filesystem::path& page() const { return page_; }
+  const std::filesystem::path& json() const { return json_; }
 
-// Runs `measure` with a progress bar. The folder is made first, so that no work is lost to a name
-// that cannot be one.
+ private:
+  template <class Do>
+  static void guarded(Do&& what) {
+    try {
+      what();
+    } catch (const FileError& error) {
+      throw InputError(std::string("--out: cannot write ") + error.what());
+    }
+  }
+
+  std::filesystem::path page_, json_;
+};
+
+// Runs `measure` with a progress bar.
 template <class Measure>
-auto run_report(const char* name, const ReportOptions& options, Measure measure) {
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error) throw InputError("--out: cannot make " + options.out + ": " + error.message());
-  const std::filesystem::path file =
-      std::filesystem::path(options.out) / (name + std::string(".json"));
-  if (!std::ofstream(file, std::ios::app)) throw InputError("--out: cannot write " + file.string());
+auto run_report(const char* name, Measure measure) {
   Progress progress(name, 1000);
   std::int64_t done = 0;
   return measure(Tell([&](const std::string& next, double share) {
@@ -55,27 +86,34 @@ auto run_report(const char* name, const ReportOptions& options, Measure measure)
   }));
 }
 
-// Files, and JSON or what `print` prints to standard output.
+// Files, and JSON or what `print` prints to standard output. Where it was interrupted there are no
+// files: those of an older, whole report stay.
 template <class Print>
-int finish_report(const std::string& name, const ReportOptions& options,
+int finish_report(const std::string& name, const ReportOptions& options, const ReportFiles& files,
                   nlohmann::ordered_json results, const std::string& page, Print print) {
-  const nlohmann::ordered_json json = {{"report", name},
-                                       {"version", kVersion},
-                                       {"machine", machine_line()},
-                                       {"quick", options.quick},
-                                       {"results", std::move(results)}};
-  const std::filesystem::path folder = options.out;
-  write_file(folder / (name + ".json"), json.dump(1) + "\n");
-  write_file(folder / (name + ".html"), page);
+  nlohmann::ordered_json json = {{"report", name},
+                                 {"version", kVersion},
+                                 {"machine", machine_line()},
+                                 {"quick", options.quick},
+                                 {"results", std::move(results)}};
+  const bool whole = tools::interrupted() == 0;
+  if (whole) {
+    files.write(page, json.dump(1) + "\n");
+  } else {
+    json["interrupted"] = tools::interrupt_name();
+  }
   if (options.json) {
     fmt::print("{}\n", json.dump());
-    return kOk;
+  } else {
+    fmt::print("{}\n", machine_line());
+    print();
+    if (whole) fmt::print("\n{}\n{}\n", files.page().string(), files.json().string());
   }
-  fmt::print("{}\n", machine_line());
-  print();
-  fmt::print("\n{}\n{}\n", (folder / (name + ".html")).string(),
-             (folder / (name + ".json")).string());
-  return kOk;
+  if (whole) return kOk;
+  std::fflush(stdout);
+  fmt::print(stderr, "manyworlds: interrupted by {}; {} and {} are not written\n",
+             tools::interrupt_name(), files.page().string(), files.json().string());
+  return tools::interrupt_code();
 }
 
 void check_names(const char* option, const std::vector<std::string>& wanted,
@@ -155,9 +193,11 @@ int report_accuracy_command(const ReportOptions& options) {
   check_names("--cases", options.cases, ids, "case");
   report::AccuracyOptions what;
   what.cases = options.cases, what.quick = options.quick;
-  const auto results = run_report(
-      "accuracy", options, [&](const Tell& tell) { return report::run_accuracy(what, tell); });
-  return finish_report("accuracy", options, report::to_json(results),
+  const ReportFiles files("accuracy", options);
+  const tools::Interruptible interruptible;
+  const auto results =
+      run_report("accuracy", [&](const Tell& tell) { return report::run_accuracy(what, tell); });
+  return finish_report("accuracy", options, files, report::to_json(results),
                        report::accuracy_page(results, machine_line()),
                        [&] { print_accuracy(results); });
 }
@@ -166,21 +206,25 @@ int report_stability_command(const ReportOptions& options) {
   std::vector<std::string> ids;
   for (const report::Trial& t : report::stability_trials()) ids.push_back(t.id);
   check_names("--cases", options.cases, ids, "case");
-  const auto verdicts = run_report("stability", options, [&](const Tell& tell) {
+  const ReportFiles files("stability", options);
+  const tools::Interruptible interruptible;
+  const auto verdicts = run_report("stability", [&](const Tell& tell) {
     return report::run_stability({options.cases, options.quick}, tell);
   });
-  return finish_report("stability", options, report::to_json(verdicts),
+  return finish_report("stability", options, files, report::to_json(verdicts),
                        report::stability_page(verdicts, machine_line()),
                        [&] { print_stability(verdicts); });
 }
 
 int report_plan_command(const ReportOptions& options) {
   check_names("--scenes", options.scenes, scene_names(), "scene");
-  const auto rows = run_report("plan", options, [&](const Tell& tell) {
+  const ReportFiles files("plan", options);
+  const tools::Interruptible interruptible;
+  const auto rows = run_report("plan", [&](const Tell& tell) {
     return report::run_worth({options.scenes, options.quick}, tell);
   });
-  finish_report("plan", options, report::to_json(rows), report::worth_page(rows, machine_line()),
-                [&] { print_worth(rows); });
+  finish_report("plan", options, files, report::to_json(rows),
+                report::worth_page(rows, machine_line()), [&] { print_worth(rows); });
   const bool wrong = std::any_of(rows.begin(), rows.end(), [](const report::WorthRow& r) {
     return r.must_be_same && !r.same_bits;
   });
@@ -190,10 +234,12 @@ int report_plan_command(const ReportOptions& options) {
 int report_throughput_command(const ReportOptions& options) {
   check_names("--scenes", options.scenes, scene_names(), "scene");
   if (!options.peers.empty()) report::find_peers(options.peers);  // says early what is wrong
-  const auto result = run_report("throughput", options, [&](const Tell& tell) {
+  const ReportFiles files("throughput", options);
+  const tools::Interruptible interruptible;
+  const auto result = run_report("throughput", [&](const Tell& tell) {
     return report::run_throughput({options.scenes, options.peers, options.quick}, tell);
   });
-  return finish_report("throughput", options, report::to_json(result),
+  return finish_report("throughput", options, files, report::to_json(result),
                        report::throughput_page(result, machine_line()),
                        [&] { print_throughput(result); });
 }

@@ -11,6 +11,7 @@
 #include "progress.hpp"
 #include "recording.hpp"
 #include "report.hpp"
+#include "tools/base/interrupt.hpp"
 #include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
@@ -18,8 +19,8 @@ namespace {
 
 using tools::counted, tools::hex, tools::length, tools::with_prefix;
 
-constexpr int kProfiledSteps = 48;  // after the timed ones, for the stage split
-constexpr std::size_t kLostShown = 10;
+constexpr int kStepsProfiled = 48;  // after the timed ones, for the stage split
+constexpr std::size_t kLostShownByRun = 10;
 
 std::string stage_line(const Report& report) {
   std::vector<Report::StageShare> shares = report.stage_split;
@@ -85,26 +86,30 @@ int run_command(const JobOptions& options) {
   Batch batch = make_batch(job, options, options.worlds, seed, options.threads);
 
   const int call = steps_per_call(options);
+  const tools::Interruptible interruptible;
   JobRecorder recorder(batch, options);
   LostDumps dumps(options);
   dumps.watch(batch, 0);
-  double seconds = 0;
+  Timed done;
   {
     Progress progress(options.scene, job.steps);
-    seconds = timed_steps(batch, job.steps, call, &progress);
+    done = timed_steps(batch, job.steps, call, &progress);
   }
   dumps.finish();
   const std::string recorded = recorder.finish(batch);
-  Report report = measure(batch, job, job.steps, call, seconds);
+  Report report = measure(batch, job, done.steps, call, done.seconds);
+  report.interrupted = tools::interrupt_name();
   LostWorlds worlds;
   worlds.collect(batch, 0, seed);
-  report.stage_split =
-      profile_stages(batch, std::min(job.steps, kProfiledSteps), options.steps_per_call);
+  if (report.interrupted.empty()) {
+    report.stage_split =
+        profile_stages(batch, std::min(job.steps, kStepsProfiled), options.steps_per_call);
+  }
 
   if (options.json) {
     fmt::print("{}\n", to_json(report).dump(2));
   } else {
-    print_summary(report, worlds, batch, seconds);
+    print_summary(report, worlds, batch, done.seconds);
     if (!recorded.empty()) fmt::print("  {:<13}{}\n", "recorded", recorded);
   }
   std::fflush(stdout);  // the lines below come after it on a terminal and in a log
@@ -112,9 +117,15 @@ int run_command(const JobOptions& options) {
     fmt::print(stderr, "manyworlds: warning: {} ran out of contact capacity\n",
                counted(worlds.overflowed(), "world"));
   }
-  print_lost(worlds, options, job.steps, kLostShown);
+  print_lost(worlds, options, done.steps, kLostShownByRun);
   dumps.print();
-  return worlds.lost().empty() ? kOk : kWorldLost;
+  int code = worlds.lost().empty() ? kOk : kWorldLost;
+  if (!report.interrupted.empty()) {
+    fmt::print(stderr, "manyworlds: interrupted by {} after {} of {}\n", report.interrupted,
+               done.steps, counted(job.steps, "step"));
+    code = tools::interrupt_code();
+  }
+  return finish_code(recorder, dumps, code);
 }
 
 }  // namespace manyworlds::cli

@@ -5,14 +5,13 @@
 
 #include "manyworlds/scene.hpp"
 
-namespace manyworlds::cli {
+#include "mjcf_file.hpp"
 
-// True when this program was built with the MJCF reader.
-bool reads_mjcf();
+namespace manyworlds::cli {
 
 // The scene of that name, or the one in that file. Anything that ends in .xml or holds a slash is
 // taken for a file. Warnings of the reader go to standard error. Throws InputError: unknown name
-// (with the nearest known one), file that cannot be read.
-Scene load_scene(const std::string& name_or_file);
+// (with the nearest known one, if one is near), file that cannot be read.
+Scene load_scene(const std::string& name_or_file, const MjcfArguments& mjcf);
 
 }  // namespace manyworlds::cli

@@ -10,6 +10,7 @@
 #include "lost_worlds.hpp"
 #include "progress.hpp"
 #include "recording.hpp"
+#include "tools/base/interrupt.hpp"
 #include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
@@ -19,7 +20,7 @@ using tools::counted, tools::length;
 
 // Worlds that are in memory at a time. A world's bits do not depend on it.
 constexpr int kWorldsAtOnce = 1024;
-constexpr std::size_t kLostShown = 20;
+constexpr std::size_t kLostShownBySoak = 20;
 
 }  // namespace
 
@@ -28,15 +29,18 @@ int soak_command(const JobOptions& options) {
   // 32 bits are plenty and short enough to type.
   const std::uint64_t seed = options.seed ? *options.seed : std::random_device{}();
 
+  const tools::Interruptible interruptible;
   LostWorlds worlds;
   LostDumps dumps(options);
   double deepest = 0;
   double seconds = 0;
+  std::int64_t whole = 0;  // worlds that took all steps
+  Timed last;
   {
     const std::int64_t all = options.worlds;
     const std::int64_t batches = (all + kWorldsAtOnce - 1) / kWorldsAtOnce;
     Progress progress(fmt::format("soak {}", options.scene), batches * job.steps);
-    for (std::int64_t first = 0; first < all; first += kWorldsAtOnce) {
+    for (std::int64_t first = 0; first < all && tools::interrupted() == 0; first += kWorldsAtOnce) {
       const int count = static_cast<int>(std::min<std::int64_t>(kWorldsAtOnce, all - first));
       const std::uint64_t batch_seed = seed + static_cast<std::uint64_t>(first);
       Batch batch = make_batch(job, options, count, batch_seed, options.threads);
@@ -47,7 +51,9 @@ int soak_command(const JobOptions& options) {
         std::fflush(stdout);
       }
       dumps.watch(batch, first);
-      seconds += timed_steps(batch, job.steps, options.steps_per_call, &progress);
+      last = timed_steps(batch, job.steps, options.steps_per_call, &progress);
+      seconds += last.seconds;
+      if (last.steps == job.steps) whole += count;
       dumps.finish();
       worlds.collect(batch, first, batch_seed);
       deepest = std::max(deepest, batch.measure_contacts().max_penetration);
@@ -62,9 +68,19 @@ int soak_command(const JobOptions& options) {
     fmt::print("    {:<11}{}\n", count, reason);
   }
   std::fflush(stdout);
-  print_lost(worlds, options, job.steps, kLostShown);
+  print_lost(worlds, options, job.steps, kLostShownBySoak);
   dumps.print();
-  return worlds.lost().empty() ? kOk : kWorldLost;
+  int code = worlds.lost().empty() ? kOk : kWorldLost;
+  if (tools::interrupted() != 0 && whole < options.worlds) {
+    std::string also;
+    if (last.steps < job.steps) {
+      also = fmt::format(", and {} of the next", counted(last.steps, "step"));
+    }
+    fmt::print(stderr, "manyworlds: interrupted by {} after {} of {}{}\n", tools::interrupt_name(),
+               whole, counted(options.worlds, "world"), also);
+    code = tools::interrupt_code();
+  }
+  return finish_code(dumps, code);
 }
 
 }  // namespace manyworlds::cli

@@ -45,13 +45,13 @@ bool available(Isa isa) {
   return std::find(isas.begin(), isas.end(), isa) != isas.end();
 }
 
-// A state body that forces act on; -1 when there is none.
-int first_dynamic_body(const Plan& plan) {
-  for (int body = 0; body < plan.bodies(); ++body) {
-    const auto scene_body = static_cast<std::size_t>(plan.scene_body(body));
-    if (plan.scene().bodies[scene_body].motion == Motion::dynamic) return body;
+// A body that forces act on, or none.
+BodyId first_dynamic_body(const Plan& plan) {
+  for (int row = 0; row < plan.bodies(); ++row) {
+    const BodyId body = plan.body_in_row(row);
+    if (plan.scene().at(body).motion == Motion::dynamic) return body;
   }
-  return -1;
+  return {};
 }
 
 // All comparisons of one scene in one precision.
@@ -129,8 +129,8 @@ class Verifier {
   void compare_beside_frozen(const JobOptions& options) {
     constexpr int kVictim = 5;
     Batch batch = batch_of(options, kWorlds, 0, 1);
-    const int body = first_dynamic_body(batch.plan());
-    if (body < 0) return;
+    const BodyId body = first_dynamic_body(batch.plan());
+    if (!body) return;
     const int half = options.steps / 2;
     timed_steps(batch, half, 1, nullptr);
     batch.add_force(kVictim, body, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));

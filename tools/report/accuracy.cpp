@@ -1,4 +1,5 @@
 #include "tools/report/accuracy.hpp"
+#include "tools/base/interrupt.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -52,6 +53,7 @@ double seconds_of(const Case& c, Batch& batch, int steps) {
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     best = std::min(best, seconds), total += seconds;
+    tools::stop_if_interrupted();
   }
   return best;
 }
@@ -145,8 +147,15 @@ std::vector<CaseResult> run_accuracy(const AccuracyOptions& options,
           tell(c.id + ' ' + method.name, static_cast<double>(done++) / static_cast<double>(total));
           const int steps = std::max(1, static_cast<int>(result.seconds / step + 0.5));
           Batch batch = make_batch(c, method, precision, step);
-          Point p{method.name, precision, step, error_of(c, batch, step, steps), 0, 0};
-          const double seconds = seconds_of(c, batch, steps) / batch.worlds();
+          Point p{method.name, precision, step, kLost, 0, 0};
+          double seconds = 0;
+          try {
+            p.error = error_of(c, batch, step, steps);
+            seconds = seconds_of(c, batch, steps) / batch.worlds();
+          } catch (const tools::Interrupted&) {
+            std::erase_if(out, [](const CaseResult& r) { return r.points.empty(); });
+            return out;
+          }
           p.microseconds = 1e6 * seconds, p.steps_per_s = steps / seconds;
           result.points.push_back(p);
         }

@@ -78,7 +78,7 @@ std::vector<Case> free_cases() {
     Joint joint;
     TargetJoint target;
     target.spring.stiffness = 4 * kPi * kPi;
-    joint.type = target, joint.body_b = 0;
+    joint.type = target, joint.body_b = BodyId(0);
     scene.add(joint);
     return scene;
   };

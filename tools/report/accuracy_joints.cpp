@@ -16,7 +16,7 @@ Scene rods(int count) {
     scene.add(lump(Space::planar, 1, Vec3::Constant(1.0 / 12), {i + 0.5, 0, 0}));
     Frame pin;
     pin.position = {static_cast<double>(i), 0, 0};
-    scene.add(joint_at(scene, i - 1, i, pin, HingeJoint{}));
+    scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), pin, HingeJoint{}));
   }
   return scene;
 }
@@ -72,7 +72,7 @@ Case long_pendulum() {
     Scene scene = empty(Space::planar);
     scene.add(lump(Space::planar, 1, Vec3::Constant(0.01), {1, 0, 0}));
     Joint rod;
-    rod.type = DistanceJoint{}, rod.body_b = 0;
+    rod.type = DistanceJoint{}, rod.body_b = BodyId(0);
     scene.add(rod);
     return scene;
   };
@@ -95,7 +95,7 @@ Case heavy_top() {
     scene.add(lump(Space::spatial, 0.5, {5e-4, 5e-4, 8e-4}, tilt * Vec3(0, 0, 0.06)));
     scene.bodies[0].rotation = tilt;
     scene.bodies[0].angular_velocity = tilt * Vec3(0, 0, 150);
-    scene.add(joint_at(scene, -1, 0, Frame{}, BallJoint{}));
+    scene.add(joint_at(scene, {}, BodyId(0), Frame{}, BallJoint{}));
     return scene;
   };
   c.error = [](const Batch& b, double) {

@@ -1,4 +1,5 @@
 #include "tools/report/peers.hpp"
+#include "tools/base/interrupt.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,6 +65,7 @@ std::vector<std::string> output_of(const std::string& program, const std::string
   char part[4096];
   while (const std::size_t n = std::fread(part, 1, sizeof part, pipe)) text.append(part, n);
   const int status = pclose(pipe);
+  tools::stop_if_interrupted();  // of which the program has heard as well
   const std::vector<std::string> lines = lines_of(text);
   if (status == 0) return lines;
   const std::string why = lines.empty() ? "" : ": " + printable(lines.back());
@@ -165,6 +167,7 @@ PeerScene compare(const std::string& scene, std::vector<Peer> peers, Peers& out)
   std::vector<bool> failed(peers.size(), false);
   for (int round = 0; round < out.rounds; ++round) {
     speeds.push_back(own.speed());
+    tools::stop_if_interrupted();
     for (std::size_t p = 0; p < peers.size(); ++p) {
       if (failed[p]) continue;
       try {
@@ -230,9 +233,8 @@ std::vector<std::string> find_peers(const std::string& folder) {
   return out;
 }
 
-Peers run_peers(const PeerOptions& options,
-                const std::function<void(const std::string&, double)>& tell) {
-  Peers out;
+void run_peers(const PeerOptions& options,
+               const std::function<void(const std::string&, double)>& tell, Peers& out) {
   out.worlds = options.quick ? 128 : 1024;
   out.steps = options.quick ? 60 : 300;
   out.rounds = options.quick ? 1 : 3;
@@ -254,7 +256,6 @@ Peers run_peers(const PeerOptions& options,
                  [&](const Peer& p) { return p.has(name); });
     out.scenes.push_back(compare(name, std::move(those), out));
   }
-  return out;
 }
 
 nlohmann::ordered_json to_json(const PeerScene& scene) {

@@ -46,9 +46,10 @@ struct PeerOptions {
 // is none.
 std::vector<std::string> find_peers(const std::string& folder);
 
-// A peer that fails is left out and becomes a line of `failures`.
-Peers run_peers(const PeerOptions& options,
-                const std::function<void(const std::string&, double)>& tell);
+// A peer that fails is left out and becomes a line of `failures`. Throws Interrupted; the scenes
+// that were done until then are in `out`.
+void run_peers(const PeerOptions& options,
+               const std::function<void(const std::string&, double)>& tell, Peers& out);
 
 nlohmann::ordered_json to_json(const PeerScene& scene);
 std::string peers_text(const Peers& peers);

@@ -1,4 +1,5 @@
 #include "tools/report/plan_worth.hpp"
+#include "tools/base/interrupt.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -64,6 +65,7 @@ WorthRow measure(const Variant& v, bool quick) {
     if (i % 2 == 1) other = time_of(changed), own = time_of(plain);
     ratios.push_back(other / own);
     speeds.push_back(steps * plain.worlds() / own);
+    tools::stop_if_interrupted();
   }
   WorthRow row{v.scene, v.name,        tools::median(speeds), tools::median(ratios),
                false,   v.must_be_same};
@@ -157,7 +159,7 @@ void add_enlarged(const std::string& name, const Setup& plain, std::vector<Varia
   TargetJoint pull;  // too weak to be felt
   pull.spring.stiffness = 1e-6, pull.max_force = 1e-6;
   Joint joint;
-  joint.type = pull, joint.body_b = plan.scene_body(0);
+  joint.type = pull, joint.body_b = plan.body_in_row(0);
   scene.add(joint);
   add("with a joint", scene);
 }
@@ -211,7 +213,11 @@ std::vector<WorthRow> run_worth(const WorthOptions& options,
   for (const Variant& v : variants) {
     tell(v.scene + ' ' + v.name,
          static_cast<double>(out.size()) / static_cast<double>(variants.size()));
-    out.push_back(measure(v, options.quick));
+    try {
+      out.push_back(measure(v, options.quick));
+    } catch (const tools::Interrupted&) {
+      break;
+    }
   }
   return out;
 }

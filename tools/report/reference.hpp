@@ -67,7 +67,7 @@ inline Scene loops_of_four_bars(int n) {
   const auto pin = [&](int a, int b, double x, double y) {
     Frame at;
     at.position = {x, y, 0};
-    scene.add(joint_at(scene, a, b, at, HingeJoint{}));
+    scene.add(joint_at(scene, BodyId(a), BodyId(b), at, HingeJoint{}));
   };
   for (int i = 0; i <= n; ++i) pin(-1, i, i, 0);
   for (int i = 0; i < n; ++i) pin(i, n + 1 + i, i, 1), pin(i + 1, n + 1 + i, i + 1, 1);

@@ -1,4 +1,5 @@
 #include "tools/report/stability.hpp"
+#include "tools/base/interrupt.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +64,7 @@ Verdict run_trial(const Trial& trial, const Setting& setting, int worlds) {
   if (trial.whole) {
     Verdict out = verdict_of(trial, setting);
     out.value = trial.whole(plan, options);
+    tools::stop_if_interrupted();
     out.passed = out.value <= trial.limit;
     return out;
   }
@@ -74,6 +76,7 @@ Verdict run_trial(const Trial& trial, const Setting& setting, int worlds) {
   for (int i = 1; i <= steps; ++i) {
     if (trial.act) trial.act(batch, (i - 1) * o.dt);
     batch.step();
+    tools::stop_if_interrupted();
     if (i < steps && (trial.at_end || i % between != 0 || i * o.dt < trial.from)) continue;
     seen.look(i * o.dt);
     for (int w = 0; w < worlds; ++w) {
@@ -160,7 +163,11 @@ std::vector<Verdict> run_stability(const StabilityOptions& options,
     for (const Setting& s : all) {
       tell(t.id + ' ' + s.name,
            static_cast<double>(out.size()) / static_cast<double>(trials.size() * all.size()));
-      out.push_back(run_trial(t, s, options.quick ? 16 : 64));
+      try {
+        out.push_back(run_trial(t, s, options.quick ? 16 : 64));
+      } catch (const tools::Interrupted&) {
+        return out;
+      }
     }
   }
   return out;

@@ -177,7 +177,7 @@ Trial warm_start() {
   };
   t.act = [](Batch& b, double time) {
     if (std::abs(time - 2) > 1e-6) return;
-    for (int w = 0; w < b.worlds(); ++w) b.set_enabled(w, 2, false);
+    for (int w = 0; w < b.worlds(); ++w) b.set_enabled(w, b.body_in_row(2), false);
   };
   t.value = [](const Seen& s, int w) {
     return std::max(s.velocity(w, 0).norm(), s.velocity(w, 1).norm());
@@ -328,7 +328,7 @@ Trial rush() {
     for (int w = 0; w < b.worlds(); ++w) {
       for (int body = 0; body < b.bodies(w); ++body, i += 2) {
         const Vec3 at(x[i], x[i + 1], 0);
-        if (at.norm() > 0.1) b.add_force(w, body, -1000 * at.normalized());
+        if (at.norm() > 0.1) b.add_force(w, b.body_in_row(body), -1000 * at.normalized());
       }
     }
   };

@@ -16,7 +16,7 @@ Scene chain(int links, double half, double radius, const Body& load, double load
   const auto pin = [&](int a, int b, double x) {
     Frame at;
     at.position = {x, 0, 0};
-    scene.add(joint_at(scene, a, b, at, HingeJoint{}));
+    scene.add(joint_at(scene, BodyId(a), BodyId(b), at, HingeJoint{}));
   };
   for (int i = 0; i < links; ++i) {
     Body link = with_shape(Capsule{radius, half}, {half * (2 * i + 1), 0, 0});
@@ -39,9 +39,10 @@ double worst_gap(const Seen& s, int w) {
   const Scene& scene = s.batch().plan().scene();
   double most = 0;
   for (const Joint& j : scene.joints) {
-    const auto anchor = [&](int body, const Frame& frame) {
-      if (body < 0) return frame.position;
-      return Vec3(s.position(w, body) + s.rotation(w, body) * frame.position);
+    const auto anchor = [&](BodyId body, const Frame& frame) {
+      if (!body) return frame.position;
+      const int row = s.batch().row(body);
+      return Vec3(s.position(w, row) + s.rotation(w, row) * frame.position);
     };
     most = std::max(most, (anchor(j.body_a, j.frame_a) - anchor(j.body_b, j.frame_b)).norm());
   }
@@ -78,7 +79,7 @@ Trial stretched(bool gravity) {
       scene.add(bead);
       Joint joint;
       joint.type = HingeJoint{};
-      joint.body_a = i - 1, joint.body_b = i;
+      joint.body_a = BodyId(i - 1), joint.body_b = BodyId(i);
       joint.frame_a.position = {i == 0 ? -0.5 : 0.5, 0, 0}, joint.frame_b.position = {-0.5, 0, 0};
       scene.add(joint);
     }
@@ -113,7 +114,7 @@ Trial grid() {
           middle.position = (at(i, k) + from) / 2;
           const int a = fixed(self) ? self : other,
                     b = fixed(self) ? other : self;  // A may be fixed
-          if (!fixed(b)) scene.add(joint_at(scene, a, b, middle, HingeJoint{}));
+          if (!fixed(b)) scene.add(joint_at(scene, BodyId(a), BodyId(b), middle, HingeJoint{}));
         };
         if (i > 0) pin(25 * k + i - 1, at(i - 1, k));
         if (k > 0) pin(25 * (k - 1) + i, at(i, k - 1));
@@ -140,7 +141,7 @@ Trial spring_chain() {
       DistanceJoint line;
       line.length = 1, line.spring = Spring{i % 2 == 0 ? 1000.0 : 1e6, 1, 0, 0};
       Joint joint;
-      joint.type = line, joint.body_a = i - 1, joint.body_b = i;
+      joint.type = line, joint.body_a = BodyId(i - 1), joint.body_b = BodyId(i);
       scene.add(joint);
     }
     return scene;
@@ -172,7 +173,7 @@ Trial stiff_spring(double stiffness, Integrator integrator) {
     TargetJoint target;
     target.spring.stiffness = stiffness;
     Joint joint;
-    joint.type = target, joint.body_b = 0;
+    joint.type = target, joint.body_b = BodyId(0);
     scene.add(joint);
     return scene;
   };

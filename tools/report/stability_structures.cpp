@@ -46,7 +46,7 @@ Trial cantilever() {
       scene.add(box);
       Frame at;
       at.position = {static_cast<double>(i), 0, 0};
-      scene.add(joint_at(scene, i - 1, i, at, FixedJoint{}));
+      scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), at, FixedJoint{}));
     }
     return scene;
   };
@@ -83,7 +83,8 @@ Trial bridge() {
     }
     for (int i = 0; i <= kLinks; ++i) {
       Joint hinge;
-      hinge.body_a = i == kLinks ? -1 : i - 1, hinge.body_b = i == kLinks ? i - 1 : i;
+      hinge.body_a = BodyId(i == kLinks ? -1 : i - 1);
+      hinge.body_b = BodyId(i == kLinks ? i - 1 : i);
       hinge.frame_a.position = {i == 0 ? -kSpan / 2 : i == kLinks ? kSpan / 2 : 0.5, 0, 0};
       hinge.frame_b.position = {i == kLinks ? 0.5 : -0.5, 0, 0};
       scene.add(hinge);
@@ -113,11 +114,11 @@ Trial cart() {
     scene.add(ground(Space::planar, 0.6));
     Body chassis = with_shape(Polygon::box(1, 0.25), {0, 0.6, 0}, 0.6);
     chassis.shapes[0].density = 1000, chassis.jitter.position = {0, 0.01, 0};
-    const int cart = scene.add(chassis);
+    const BodyId cart = scene.add(chassis);
     for (const double x : {-0.8, 0.8}) {
       Body wheel = with_shape(Circle{0.1}, {x, 0.1, 0}, 0.6);
       wheel.shapes[0].density = 50;
-      const int body = scene.add(wheel);
+      const BodyId body = scene.add(wheel);
       const WheelJoint suspension{Spring{2.2e5, 1.2e4, 0, 0}, Limit{-0.2, 0.2, {}}, {}};
       Frame at;
       at.position = {x, 0.1, 0};

@@ -1,4 +1,5 @@
 #include "tools/report/throughput.hpp"
+#include "tools/base/interrupt.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -41,6 +42,7 @@ ThroughputRow measure(const Job& job, const Limits& limits, bool quick) {
     batch.step(steps);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     best = std::min(best, seconds / steps), total += seconds;
+    tools::stop_if_interrupted();
   }
 
   ThroughputRow row;
@@ -130,9 +132,10 @@ std::string stages_text(const ThroughputRow& row) {
 
 }  // namespace
 
-Throughput run_throughput(const ThroughputOptions& options,
-                          const std::function<void(const std::string&, double)>& tell) {
-  Throughput out;
+// Throws Interrupted; what was measured until then is in `out`.
+static void run_sweeps(const ThroughputOptions& options,
+                       const std::function<void(const std::string&, double)>& tell,
+                       Throughput& out) {
   tell("limits of the machine", 0);
   out.limits = measure_limits();
   const std::vector<Job> jobs = jobs_of(options);
@@ -143,9 +146,20 @@ Throughput run_throughput(const ThroughputOptions& options,
     out.rows.push_back(measure(job, out.limits, options.quick));
   }
   if (!options.peers.empty()) {
-    out.peers = run_peers(
+    out.peers.emplace();
+    run_peers(
         {options.peers, options.scenes, options.quick},
-        [&](const std::string& what, double share) { tell(what, sweeps + (1 - sweeps) * share); });
+        [&](const std::string& what, double share) { tell(what, sweeps + (1 - sweeps) * share); },
+        *out.peers);
+  }
+}
+
+Throughput run_throughput(const ThroughputOptions& options,
+                          const std::function<void(const std::string&, double)>& tell) {
+  Throughput out;
+  try {
+    run_sweeps(options, tell, out);
+  } catch (const tools::Interrupted&) {
   }
   return out;
 }
