@@ -2,12 +2,14 @@
 #
 # Input:  MW_MUJOCO_DIR   folder with include/mujoco/mujoco.h and lib/libmujoco.so, as
 #                         tools/fetch_mujoco.sh makes it
-# Output: MuJoCo_FOUND, MuJoCo_VERSION ("3.17.0"), MuJoCo_INCLUDE_DIR, MuJoCo_LIBRARY
+# Output: MuJoCo_FOUND, MuJoCo_VERSION ("3.17.0"), MuJoCo_INCLUDE_DIR, MuJoCo_LIBRARY,
+#         MuJoCo_LICENSE (only where it lies in MW_MUJOCO_DIR)
 set(MW_MUJOCO_DIR "" CACHE PATH "Folder with MuJoCo's include and lib (tools/fetch_mujoco.sh)")
 
 find_path(MuJoCo_INCLUDE_DIR mujoco/mujoco.h HINTS "${MW_MUJOCO_DIR}/include")
 find_library(MuJoCo_LIBRARY mujoco HINTS "${MW_MUJOCO_DIR}/lib")
-mark_as_advanced(MuJoCo_INCLUDE_DIR MuJoCo_LIBRARY)
+find_file(MuJoCo_LICENSE LICENSE PATHS "${MW_MUJOCO_DIR}" NO_DEFAULT_PATH)
+mark_as_advanced(MuJoCo_INCLUDE_DIR MuJoCo_LIBRARY MuJoCo_LICENSE)
 
 # The header has the version as one number, 3017000 for 3.17.0.
 set(MuJoCo_VERSION "")

@@ -28,6 +28,15 @@ if(MW_SANITIZE MATCHES address)
   set(mw_scopes_avx2 -fno-sanitize-address-use-after-scope -fno-sanitize=undefined)
   set(mw_scopes_avx512 ${mw_scopes_avx2})
 endif()
+# Most of GCC's time for these files goes into the search for what a load may have been stored by; it
+# gives up sooner. -O1 is half the work, for what no standard scene runs.
+set(mw_search $<$<CXX_COMPILER_ID:GNU>:--param=sccvn-max-alias-queries-per-access=50
+    --param=dse-max-alias-queries-per-store=32>)
+set(mw_cold_kernels kernels/flight_planar.cpp kernels/flight_spatial.cpp)
+if(NOT MW_KERNEL_OPTIMIZATION)
+  list(TRANSFORM mw_cold_kernels PREPEND "${PROJECT_SOURCE_DIR}/")
+  set_source_files_properties(${mw_cold_kernels} PROPERTIES COMPILE_OPTIONS -O1)
+endif()
 set(mw_optimization_scalar -O2)
 set(mw_optimization_avx2 -O3)
 set(mw_optimization_avx512 -O3)
@@ -42,7 +51,7 @@ foreach(isa IN LISTS MW_ISAS)
       message(FATAL_ERROR "MW_PRECISIONS: unknown precision '${precision}'; known: f32, f64")
     endif()
     set(name ${isa}_${precision})
-    if(NOT DEFINED mw_lanes_${name})
+    if(NOT DEFINED mw_lanes_${name} OR (MW_KERNELS AND NOT name IN_LIST MW_KERNELS))
       continue()
     endif()
     list(APPEND MW_KERNEL_SETS ${name})
@@ -59,10 +68,19 @@ foreach(isa IN LISTS MW_ISAS)
     target_compile_options(mw_kernels_${name} PRIVATE
       -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti
       ${mw_flags_${isa}} ${mw_moves_${isa}} ${mw_quiet_${isa}} ${mw_scopes_${isa}}
-      ${optimization}
+      ${optimization} ${mw_search}
       # Full debug information doubles the time to compile a kernel; line numbers are free.
       $<$<CONFIG:RelWithDebInfo>:-g1>)
     target_include_directories(mw_kernels_${name} PRIVATE "${PROJECT_SOURCE_DIR}")
+    if(MW_UNITY AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+      # Half of what most of these files cost are the vector headers.
+      target_precompile_headers(mw_kernels_${name} PRIVATE
+        "${PROJECT_SOURCE_DIR}/kernels/stages.hpp"
+        "${PROJECT_SOURCE_DIR}/kernels/lane/elementary.hpp"
+        "${PROJECT_SOURCE_DIR}/kernels/lane/rows.hpp"
+        "${PROJECT_SOURCE_DIR}/kernels/lane/solve.hpp"
+        "${PROJECT_SOURCE_DIR}/kernels/lane/space.hpp")
+    endif()
     set_target_properties(mw_kernels_${name} PROPERTIES
       CXX_VISIBILITY_PRESET hidden
       VISIBILITY_INLINES_HIDDEN ON
@@ -70,6 +88,11 @@ foreach(isa IN LISTS MW_ISAS)
       INTERPROCEDURAL_OPTIMIZATION OFF)
   endforeach()
 endforeach()
+
+if(NOT MW_KERNEL_SETS)
+  message(FATAL_ERROR "no kernels to build: MW_ISAS is '${MW_ISAS}', MW_PRECISIONS "
+                      "'${MW_PRECISIONS}', MW_KERNELS '${MW_KERNELS}'")
+endif()
 
 # The objects alone, for checks that need nothing else built.
 add_custom_target(mw_kernel_objects)

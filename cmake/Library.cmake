@@ -7,7 +7,7 @@ find_package(Qhull REQUIRED CONFIG)
 mw_sources(mw_library_sources "src/*.cpp" "scenes/*.cpp")
 list(FILTER mw_library_sources EXCLUDE REGEX "/src/(mjcf|record)/")
 
-add_library(manyworlds ${mw_library_sources})
+mw_library(manyworlds ${mw_library_sources})
 add_library(manyworlds::manyworlds ALIAS manyworlds)
 target_compile_features(manyworlds PUBLIC cxx_std_20)
 target_include_directories(manyworlds
@@ -15,23 +15,25 @@ target_include_directories(manyworlds
          "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>"
   PRIVATE "${PROJECT_SOURCE_DIR}")
 target_link_libraries(manyworlds PUBLIC Eigen3::Eigen PRIVATE Threads::Threads Qhull::qhull_r)
-set_target_properties(manyworlds PROPERTIES
-  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-target_compile_definitions(manyworlds PRIVATE MW_VERSION="${PROJECT_VERSION}")
 mw_precompile(manyworlds)
+# These instantiate what others declare, or keep names for themselves that others do, too.
+mw_unity(manyworlds ALONE src/state/worlds.cpp src/api/read_observations.cpp)
 
 if(MW_EXECUTOR STREQUAL tbb)
   find_package(TBB 2021 REQUIRED CONFIG)
   target_link_libraries(manyworlds PRIVATE TBB::tbb)
 elseif(MW_EXECUTOR STREQUAL threads)
-  target_compile_definitions(manyworlds PRIVATE MW_EXECUTOR_THREADS=1)
+  mw_define(src/step/for_each_group.cpp MW_EXECUTOR_THREADS=1)
 else()
   message(FATAL_ERROR "MW_EXECUTOR is '${MW_EXECUTOR}'; known: tbb, threads")
 endif()
 
-# src/dispatch learns from MW_HAVE_<ISA>_<PRECISION> which kernel tables exist.
+# src/dispatch alone learns from MW_HAVE_<ISA>_<PRECISION> which kernel tables exist.
+list(JOIN MW_KERNEL_SETS ", " mw_built)
+string(REPLACE "_" " " mw_built "${mw_built}")
+mw_define(src/dispatch/kernels.cpp MW_KERNELS_BUILT="${mw_built}")
 foreach(name IN LISTS MW_KERNEL_SETS)
   string(TOUPPER ${name} upper)
-  target_compile_definitions(manyworlds PRIVATE MW_HAVE_${upper}=1)
+  mw_define(src/dispatch/kernels.cpp MW_HAVE_${upper}=1)
   target_sources(manyworlds PRIVATE $<TARGET_OBJECTS:mw_kernels_${name}>)
 endforeach()

@@ -53,6 +53,44 @@ function(mw_precompile target)
   endif()
 endfunction()
 
+# mw_library(TARGET SOURCE...): an archive, or with BUILD_SHARED_LIBS a shared library, of the same
+# objects.
+function(mw_library target)
+  add_library(${target} ${ARGN})
+  set_target_properties(${target} PROPERTIES DEFINE_SYMBOL ""
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+endfunction()
+
+# mw_unity(TARGET): with MW_UNITY, compiles the files of each of the target's folders as one, which
+# spares their common headers and instantiations. What a folder's files define for themselves has to
+# differ in name, then; files with definitions of their own (mw_define) and ALONE ones stay alone.
+function(mw_unity target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" ALONE)
+  if(NOT MW_UNITY)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "\\.cpp$")
+  foreach(source IN LISTS sources)
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE group)
+    cmake_path(GET group PARENT_PATH group)
+    string(MAKE_C_IDENTIFIER "${group}" group)
+    string(REGEX REPLACE "^src_" "" group "${group}")
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${group})
+  endforeach()
+  list(TRANSFORM arg_ALONE PREPEND "${PROJECT_SOURCE_DIR}/")
+  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # One file's own name may be another's local one.
+  target_compile_options(${target} PRIVATE -Wno-shadow)
+endfunction()
+
+# mw_define(FILE DEFINITION...): for one file. What the whole target need not know does not compile it
+# anew when it changes, so a build that gets more kernels or parts keeps its objects.
+function(mw_define file)
+  set_property(SOURCE "${PROJECT_SOURCE_DIR}/${file}" APPEND PROPERTY COMPILE_DEFINITIONS ${ARGN})
+endfunction()
+
 # mw_sources(VARIABLE PATTERN...): the source files that match, relative to the project.
 function(mw_sources variable)
   list(TRANSFORM ARGN PREPEND "${PROJECT_SOURCE_DIR}/")

@@ -6,11 +6,9 @@ find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 find_package(nlohmann_json REQUIRED CONFIG)
 
 mw_sources(mw_record_sources "src/record/*.cpp")
-add_library(manyworlds_record ${mw_record_sources})
+mw_library(manyworlds_record ${mw_record_sources})
 add_library(manyworlds::record ALIAS manyworlds_record)
-set_target_properties(manyworlds_record PROPERTIES
-  EXPORT_NAME record
-  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set_target_properties(manyworlds_record PROPERTIES EXPORT_NAME record)
 target_compile_definitions(manyworlds_record PRIVATE MW_VERSION="${PROJECT_VERSION}")
 target_include_directories(manyworlds_record PRIVATE "${PROJECT_SOURCE_DIR}")
 target_link_libraries(manyworlds_record PUBLIC manyworlds

@@ -1,23 +1,26 @@
-# Installs the built tree into a prefix inside BUILD_DIR, then configures, builds and runs the
-# project SOURCE_DIR, whose program has the name of its folder, against it.
-#   cmake -D BUILD_DIR=... -D SOURCE_DIR=... -P TestEmbed.cmake
+# Configures, builds and runs the project SOURCE_DIR, whose program has the name of its folder, against
+# the package installed in PREFIX; with COMPONENTS also PROGRAM_<component> for each of them.
+#   cmake -D BUILD_DIR=... -D SOURCE_DIR=... -D PREFIX=... -D LIBDIR=lib [-D COMPONENTS=mjcf]
+#         -D COMPILER=c++ -D GENERATOR=Ninja -P TestEmbed.cmake
+cmake_minimum_required(VERSION 3.25)
 
+include("${CMAKE_CURRENT_LIST_DIR}/RunStep.cmake")
 cmake_path(GET SOURCE_DIR FILENAME program)
-set(prefix "${BUILD_DIR}/examples/${program}/prefix")
-set(build "${BUILD_DIR}/examples/${program}/build")
-file(REMOVE_RECURSE "${BUILD_DIR}/examples/${program}")
+string(JOIN "_" name ${program} ${COMPONENTS})
+set(build "${BUILD_DIR}/examples/${name}")
+file(REMOVE_RECURSE "${build}")
 
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
-  if(NOT result EQUAL 0)
-    list(JOIN ARGN " " line)
-    message(FATAL_ERROR "failed (${result}): ${line}")
-  endif()
-endfunction()
-
-run(${CMAKE_COMMAND} --install "${BUILD_DIR}" --prefix "${prefix}")
+set(components)
+set(targets ${program})
+if(COMPONENTS)
+  set(components -D "COMPONENTS=${COMPONENTS}")
+  set(targets ${COMPONENTS})
+  list(TRANSFORM targets PREPEND "${program}_")
+endif()
 run(${CMAKE_COMMAND} -S "${SOURCE_DIR}" -B "${build}" -G "${GENERATOR}"
     -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release
-    -D manyworlds_DIR=${prefix}/${LIBDIR}/cmake/manyworlds)
-run(${CMAKE_COMMAND} --build "${build}")
-run("${build}/${program}")
+    -D manyworlds_DIR=${PREFIX}/${LIBDIR}/cmake/manyworlds ${components})
+run(${CMAKE_COMMAND} --build "${build}" --target ${targets})
+foreach(target IN LISTS targets)
+  run("${build}/${target}" WORKING_DIRECTORY "${build}")
+endforeach()

@@ -19,6 +19,9 @@ function(mw_test_target target)
   target_link_libraries(${target} PRIVATE
     manyworlds Catch2::Catch2 fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
   mw_precompile(${target} <catch2/catch.hpp>)
+  if(TARGET manyworlds_cli)
+    target_compile_definitions(${target} PRIVATE MW_HAVE_CLI=1)
+  endif()
 endfunction()
 
 # main() and tests/support/, compiled once.
@@ -28,14 +31,18 @@ add_library(manyworlds_test_support OBJECT "${PROJECT_SOURCE_DIR}/tests/main.cpp
 mw_test_target(manyworlds_test_support)
 set_source_files_properties("${PROJECT_SOURCE_DIR}/tests/main.cpp" PROPERTIES
   COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
+set(mw_test_paths MW_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+if(TARGET manyworlds_cli)
+  list(APPEND mw_test_paths MW_CLI_PATH="$<TARGET_FILE:manyworlds_cli>")
+endif()
+set_source_files_properties("${PROJECT_SOURCE_DIR}/tests/support/paths.cpp" PROPERTIES
+  COMPILE_DEFINITIONS "${mw_test_paths}")
 
 # mw_test_program(TARGET SOURCE...): one executable whose Catch2 cases are ctest entries.
 function(mw_test_program target)
   add_executable(${target} ${ARGN} $<TARGET_OBJECTS:manyworlds_test_support>)
   mw_test_target(${target})
-  target_compile_definitions(${target} PRIVATE MW_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   if(TARGET manyworlds_cli)
-    target_compile_definitions(${target} PRIVATE MW_CLI_PATH="$<TARGET_FILE:manyworlds_cli>")
     add_dependencies(${target} manyworlds_cli)
   endif()
   catch_discover_tests(${target} TEST_SPEC ${MW_TEST_FILTER} PROPERTIES TIMEOUT 900)
@@ -72,6 +79,20 @@ if(NOT MW_SANITIZE)
   endforeach()
 endif()
 
+# The C++ of README and docs compiles without a warning, by this build's compiler and by clang.
+get_target_property(mw_eigen_include Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+set(mw_docs_compilers "${CMAKE_CXX_COMPILER}")
+if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  list(APPEND mw_docs_compilers clang++-14)
+endif()
+foreach(compiler IN LISTS mw_docs_compilers)
+  cmake_path(GET compiler FILENAME name)
+  add_test(NAME docs_code_${name}
+    COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/check_docs_code.py"
+            --compiler "${compiler}" --include "${mw_eigen_include}" "${PROJECT_SOURCE_DIR}")
+  set_tests_properties(docs_code_${name} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped: ")
+endforeach()
+
 # The checks below do not depend on a sanitizer; there they would only repeat themselves.
 if(MW_SANITIZE)
   return()
@@ -81,21 +102,25 @@ add_test(NAME check_floors
   COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/check_floors.py"
           "${PROJECT_SOURCE_DIR}")
 
+# What tools/run, tools/test and what they share build.
+add_test(NAME tools_run
+  COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/run_test.py")
+
 foreach(name IN LISTS MW_KERNEL_SETS)
   add_test(NAME check_kernel_symbols_${name}
     COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/check_kernel_symbols.py"
-            --nm ${CMAKE_NM} ${name} $<TARGET_OBJECTS:mw_kernels_${name}>
+            --nm ${CMAKE_NM} ${name}
+            $<FILTER:$<TARGET_OBJECTS:mw_kernels_${name}>,EXCLUDE,[.]gch$>
     COMMAND_EXPAND_LISTS)
 endforeach()
 
 # Each public header compiles alone, under our warnings.
-get_target_property(mw_eigen_include Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
 file(GLOB mw_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/manyworlds/*.hpp")
 foreach(header IN LISTS mw_headers)
   cmake_path(GET header STEM stem)
   add_test(NAME header_alone_${stem}
     COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Wshadow
-            -Wconversion -Wno-missing-field-initializers -Werror
+            -Wconversion -Werror
             -I "${PROJECT_SOURCE_DIR}/include" -isystem ${mw_eigen_include}
             -include ${header} -x c++ /dev/null)
 endforeach()
@@ -112,16 +137,7 @@ if(MW_CLANG_FORMAT)
   endif()
 endif()
 
-# Users' projects, against the installed package.
+# Users' projects, against the installed package, which all of them share.
 if(MW_INSTALL)
-  foreach(example IN ITEMS embed lander birds arrays)
-    add_test(NAME ${example}
-      COMMAND ${CMAKE_COMMAND}
-              -D BUILD_DIR=${PROJECT_BINARY_DIR}
-              -D SOURCE_DIR=${PROJECT_SOURCE_DIR}/examples/${example}
-              -D COMPILER=${CMAKE_CXX_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
-              -D LIBDIR=${CMAKE_INSTALL_LIBDIR}
-              -P "${PROJECT_SOURCE_DIR}/cmake/TestEmbed.cmake")
-    set_tests_properties(${example} PROPERTIES TIMEOUT 300)
-  endforeach()
+  include(cmake/InstallTests.cmake)
 endif()
