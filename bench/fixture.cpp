@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "src/base/denormals.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/base/hash.hpp"
 #include "src/dispatch/kernels.hpp"
 
@@ -84,7 +84,7 @@ TypicalWorlds::TypicalWorlds(const Plan& plan, const Kernels& kernels, int steps
       worlds_(plan, kWorlds, 0, BatchOptions{}, kernels.lanes),
       scratch_memory_(kernels.scratch_bytes(worlds_.tables())),
       scratch_(kernels.make_scratch(worlds_.tables(), scratch_memory_.data())) {
-  const FlushDenormals flush;
+  const FloatMode mode(FloatMode::flush);
   const Tables& t = tables();
   const int lanes = kernels.lanes;
   for (int g = 0; g < groups(); ++g) {
@@ -133,7 +133,7 @@ std::uint64_t TypicalWorlds::current_hash() const {
 }
 
 std::string TypicalWorlds::check(kernels::Layout layout) {
-  const FlushDenormals flush;
+  const FloatMode mode(FloatMode::flush);
   StageRunner runner(kernels_, tables(), scratch_, layout);
   for (int g = 0; g < groups(); ++g) {
     restore(g);

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "bench/report.hpp"
-#include "src/base/denormals.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/dispatch/kernels.hpp"
 #include "src/plan/plan_data.hpp"
 
@@ -47,7 +47,7 @@ void time_pair(benchmark::State& state, const Scenario& scenario, Isa isa, int c
   tables.pair_class += class_index;
   tables.classes = 1;
   StageRunner runner(worlds.kernels(), tables, worlds.scratch(), layout);
-  const FlushDenormals flush;
+  const FloatMode mode(FloatMode::flush);
   ContactCounts counts;
   for (int g = 0; g < worlds.groups(); ++g) {
     worlds.restore(g);

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "bench/report.hpp"
-#include "src/base/denormals.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/dispatch/kernels.hpp"
 
 namespace manyworlds::bench {
@@ -13,7 +13,7 @@ void time_stage(benchmark::State& state, const Scenario& scenario, Isa isa, Stag
                 kernels::Layout layout, BroadPhase broad_phase) {
   TypicalWorlds& worlds = typical_worlds(scenario, isa, broad_phase);
   StageRunner runner(worlds.kernels(), worlds.tables(), worlds.scratch(), layout);
-  const FlushDenormals flush;
+  const FloatMode mode(FloatMode::flush);
   ContactCounts counts;
   for (int g = 0; g < worlds.groups(); ++g) {
     worlds.restore(g);
@@ -38,7 +38,7 @@ void time_stage(benchmark::State& state, const Scenario& scenario, Isa isa, Stag
 
 void time_free_motion(benchmark::State& state, const Scenario& scenario, Isa isa, int steps) {
   TypicalWorlds& worlds = typical_worlds(scenario, isa);
-  const FlushDenormals flush;
+  const FloatMode mode(FloatMode::flush);
   for ([[maybe_unused]] const auto _ : state) {
     double seconds = 0;
     for (int g = 0; g < worlds.groups(); ++g) {

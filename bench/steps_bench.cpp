@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/report.hpp"
-#include "src/base/denormals.hpp"
+#include "src/base/float_mode.hpp"
 #include "src/dispatch/kernels.hpp"
 
 namespace manyworlds::bench {
@@ -15,7 +15,7 @@ constexpr int kSteps = 4;  // per iteration; the state stays close to the typica
 
 void time_steps(benchmark::State& state, const Scenario& scenario, Isa isa) {
   TypicalWorlds& worlds = typical_worlds(scenario, isa);
-  const FlushDenormals flush;
+  const FloatMode mode(FloatMode::flush);
   ContactCounts counts;
   for ([[maybe_unused]] const auto _ : state) {
     double seconds = 0;

@@ -12,13 +12,14 @@ the rest by example.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import mjcf, scenes, tasks
+from . import mjcf, query, scenes, tasks
 from ._core import Expression, Snapshot, SnapshotError, __version__, available_isas
 from ._core import names as enumerations
 from .batch import Batch
 from .bodies import Body, Jitter, MassProperties
 from .environment import Environment, EnvironmentSnapshot
 from .fields import Field
+from .ids import BodyId, ControlId, JointId, ShapeId
 from .joints import (
     BallJoint,
     DistanceJoint,
@@ -35,8 +36,10 @@ from .joints import (
     TargetJoint,
     WheelJoint,
 )
+from .kinds import Kind
 from .options import Options
 from .plan import Plan
+from .query import Pose
 from .results import CONTACT, STEP_CONTACT, Status
 from .scene import (
     Attractor,
@@ -71,6 +74,8 @@ from .shapes import (
 from .tasks import Action, Observation, Reward, Task, TaskError
 from .view import View
 
+from . import pickling as _pickling  # of the values above; isort: skip
+
 if TYPE_CHECKING:
     from . import record
 
@@ -80,11 +85,13 @@ __all__ = [
     "BallJoint",
     "Batch",
     "Body",
+    "BodyId",
     "Box",
     "CONTACT",
     "Capsule",
     "Circle",
     "Control",
+    "ControlId",
     "Cylinder",
     "DistanceJoint",
     "Drive",
@@ -103,7 +110,9 @@ __all__ = [
     "Issue",
     "Jitter",
     "Joint",
+    "JointId",
     "JointType",
+    "Kind",
     "Limit",
     "MassProperties",
     "Material",
@@ -112,6 +121,7 @@ __all__ = [
     "Plan",
     "Plane",
     "Polygon",
+    "Pose",
     "PulleyJoint",
     "Ray",
     "Reward",
@@ -120,6 +130,7 @@ __all__ = [
     "SceneError",
     "Segment",
     "Shape",
+    "ShapeId",
     "SliderJoint",
     "Snapshot",
     "SnapshotError",
@@ -139,6 +150,7 @@ __all__ = [
     "make_hull",
     "mesh_mass_properties",
     "mjcf",
+    "query",
     "scenes",
     "tasks",
     "vary",

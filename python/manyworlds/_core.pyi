@@ -1,5 +1,6 @@
 """Compiled part of manyworlds. Private: use the package manyworlds."""
 
+from builtins import bytes as Bytes
 from collections.abc import Sequence
 import os
 from typing import Annotated
@@ -7,7 +8,9 @@ from typing import Annotated
 import numpy
 from numpy.typing import NDArray
 
-from manyworlds._core import expressions as expressions
+from manyworlds.scene import Scene
+from manyworlds.shapes import Hull
+from manyworlds.tasks import Task
 
 
 def names() -> dict:
@@ -32,22 +35,30 @@ def validate(scene: object) -> list[tuple[str, str]]:
 def round_trip(scene: object) -> object:
     """The scene as the library understands it."""
 
-def load_scene(name: str) -> object:
+def find_in_scene(scene: object, kind: str, name: object) -> int:
+    """
+    Index of the body, joint or control that a name, handle or index means.
+    """
+
+def find_shape_in_scene(scene: object, name: str, body: object | None) -> tuple[int, int]:
+    """(body, index) of the shape of a name, of one body or of all."""
+
+def load_scene(name: str) -> Scene:
     """A scene that has a name."""
 
 def scene_names() -> list[tuple[str, str]]:
     """(name, summary) of every scene that has a name."""
 
-def joint_at(scene: object, body_a: int, body_b: int, frame: object, type: object) -> object:
+def joint_at(scene: object, body_a: object, body_b: object, frame: object, type: object) -> object:
     """A joint of two bodies whose frames are where `frame` is in the world."""
 
-def mass_properties(scene: object, body: int) -> object:
+def mass_properties(scene: object, body: object) -> object:
     """Mass, centre and inertia of a body of a scene."""
 
 def mesh_mass_properties(vertices: object, triangles: object, density: float) -> object:
     """Mass, centre and inertia of the solid inside a closed mesh."""
 
-def make_hull(points: object) -> object:
+def make_hull(points: object) -> Hull:
     """The convex hull of points."""
 
 class Plan:
@@ -71,14 +82,35 @@ class Plan:
     def fingerprint(self) -> int:
         """Equal for plans whose worlds can go on in each other."""
 
-    def scene_body(self, body: int) -> int:
-        """Index in the scene of a state body."""
+    @property
+    def scene_bodies(self) -> int:
+        """All bodies of the scene, with the fixed ones."""
 
-    def state_body(self, body: int) -> int:
-        """Index of the state body of a body of the scene, -1 for fixed ones."""
+    @property
+    def joints(self) -> int:
+        """Joints of the scene."""
 
-    def first_coordinate(self, joint: int) -> int:
-        """Where the coordinates of a joint begin."""
+    def row(self, body: object) -> int:
+        """
+        Where a body, by handle, name or index, is in arrays (worlds, bodies, ...), or a shape, by handle, in arrays (worlds, shapes, ...). Raises ValueError for fixed bodies.
+        """
+
+    def body_in_row(self, row: int) -> int:
+        """Index in the scene of the body in a row."""
+
+    def bodies_in_rows(self) -> list[int]:
+        """Indices in the scene of the bodies in all rows."""
+
+    def find(self, kind: str, name: object) -> int:
+        """
+        Index of the body, joint or control that a name, handle or index means.
+        """
+
+    def find_shape(self, name: str, body: object | None) -> tuple[int, int]:
+        """(body, index) of the shape of a name, of one body or of all."""
+
+    def first_coordinate(self, joint: object) -> int:
+        """Where the coordinates of a joint, by handle, name or index, begin."""
 
     def has(self, feature: object) -> bool:
         """Whether the step has this feature."""
@@ -86,8 +118,22 @@ class Plan:
     def report(self) -> dict:
         """What the plan contains, as a dict."""
 
+def distance(a: object, pose_a: object, b: object, pose_b: object, space: object | None) -> object:
+    """(distance, point of A, point of B, normal)."""
+
+def overlap(a: object, pose_a: object, b: object, pose_b: object, space: object | None) -> bool:
+    """Do two shapes overlap?"""
+
+def manifold(a: object, pose_a: object, b: object, pose_b: object, margin: object, space: object | None) -> list:
+    """[(normal, point, separation, feature)] of two shapes."""
+
+def ray_cast(shape: object, pose: object, ray: object, space: object | None) -> object:
+    """(distance, normal), or None where the ray misses."""
+
 class SnapshotError(ValueError):
-    pass
+    """
+    A snapshot that is cut, damaged, or of another plan, task or precision.
+    """
 
 class Snapshot:
     """
@@ -113,11 +159,11 @@ class Snapshot:
     def nbytes(self) -> int:
         """Size in bytes."""
 
-    def bytes(self) -> bytes:
+    def bytes(self) -> Bytes:
         """The bytes of a file: what from_bytes() takes."""
 
     @staticmethod
-    def from_bytes(data: bytes) -> Snapshot:
+    def from_bytes(data: Bytes) -> Snapshot:
         """
         A snapshot from bytes(). Raises SnapshotError when they are cut or damaged.
         """
@@ -131,16 +177,16 @@ class Snapshot:
 
     def __eq__(self, other: object | None) -> bool: ...
 
-    def __getstate__(self) -> bytes: ...
+    def __getstate__(self) -> Bytes: ...
 
-    def __setstate__(self, arg: bytes, /) -> None: ...
+    def __setstate__(self, arg: Bytes, /) -> None: ...
 
     def __repr__(self) -> str: ...
 
 class Batch:
     """Worlds that step together. Private: use manyworlds.Batch."""
 
-    def __init__(self, plan: Plan, worlds: object, threads: object, seed: int, precision: object, isa: object | None, layout: object, sleep: bool, observe: object, rays: object, contacts_per_world: object) -> None: ...
+    def __init__(self, kinds: object, threads: object, seed: int, precision: object, isa: object | None, layout: object, sleep: bool, observe: object, rays: object, contacts_per_world: object) -> None: ...
 
     def close(self) -> None:
         """Lets go of the worlds; what follows raises ValueError."""
@@ -185,41 +231,48 @@ class Batch:
     def precision(self) -> str: ...
 
     def step(self, n: int, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)] | None) -> None:
-        """Takes n steps, of all worlds or of those in the mask, without the GIL."""
+        """
+        Takes n steps, of all worlds or of those in the mask, without the GIL; a signal ends it.
+        """
+
+    def step_to(self, clock: float, max_steps: int) -> int:
+        """
+        Takes whole steps up to a time in s, without the GIL, and returns how many.
+        """
 
     def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)] | None, seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None) -> None:
         """
         All worlds from the first episode, or those in the mask: the next episode, or the first of other seeds.
         """
 
-    def quantities(self) -> list:
+    def quantities(self, kind: int = 0) -> list:
         """
         (name, group, observer, item, items, components, unit, meaning) of every field.
         """
 
-    def read(self, name: str, out: Annotated[NDArray, dict(order='C', device='cpu')]) -> None:
-        """Fills an array (worlds, items, components)."""
+    def read(self, name: str, out: Annotated[NDArray, dict(order='C', device='cpu')], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None, kind: int = 0) -> None:
+        """Fills an array (worlds, items, components), or that of some worlds."""
 
-    def write(self, name: str, numbers: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> None:
+    def write(self, name: str, numbers: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None, kind: int = 0) -> None:
         """
         Takes an array (worlds, items, components), or those of some worlds in float64.
         """
 
-    def blocks(self, name: str) -> object:
+    def blocks(self, name: str, kind: int = 0) -> object:
         """
         A state field in place, (groups, bodies, components, lanes); None: left out.
         """
 
-    def slots(self, out: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu')]) -> None:
+    def slots(self, out: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu')], kind: int = 0) -> None:
         """Fills slots, (worlds)."""
 
-    @property
-    def controls(self) -> int: ...
+    def controls(self, kind: int = 0) -> int:
+        """Of a world."""
 
-    def read_controls(self, out: Annotated[NDArray, dict(order='C', device='cpu')]) -> None:
+    def read_controls(self, out: Annotated[NDArray, dict(order='C', device='cpu')], kind: int = 0) -> None:
         """Fills an array (worlds, controls)."""
 
-    def write_controls(self, numbers: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> None:
+    def write_controls(self, numbers: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None, kind: int = 0) -> None:
         """Takes an array (worlds, controls), or that of some worlds."""
 
     def push(self, kind: object, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], bodies: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)] | None) -> None:
@@ -233,16 +286,16 @@ class Batch:
     def set_enabled(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], bodies: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)]) -> None:
         """Enables and disables bodies, (worlds, bodies)."""
 
-    def enabled(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')]) -> None:
+    def enabled(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')], kind: int = 0) -> None:
         """Fills which bodies are enabled, (worlds, bodies)."""
 
     def set_joints_enabled(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], joints: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)]) -> None:
         """Enables and disables joints, (worlds, joints)."""
 
-    def joints_enabled(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')]) -> None:
+    def joints_enabled(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')], kind: int = 0) -> None:
         """Fills which joints hold, (worlds, joints)."""
 
-    def asleep(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')]) -> None:
+    def asleep(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')], kind: int = 0) -> None:
         """Fills which bodies sleep, (worlds, bodies)."""
 
     def wake(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
@@ -292,41 +345,41 @@ class Expression:
 
     def __init__(self, number: object = 0) -> None: ...
 
-    def __add__(self, arg: object, /) -> object: ...
+    def __add__(self, other: Expression | float, /) -> Expression: ...
 
-    def __radd__(self, arg: object, /) -> object: ...
+    def __radd__(self, other: Expression | float, /) -> Expression: ...
 
-    def __sub__(self, arg: object, /) -> object: ...
+    def __sub__(self, other: Expression | float, /) -> Expression: ...
 
-    def __rsub__(self, arg: object, /) -> object: ...
+    def __rsub__(self, other: Expression | float, /) -> Expression: ...
 
-    def __mul__(self, arg: object, /) -> object: ...
+    def __mul__(self, other: Expression | float, /) -> Expression: ...
 
-    def __rmul__(self, arg: object, /) -> object: ...
+    def __rmul__(self, other: Expression | float, /) -> Expression: ...
 
-    def __truediv__(self, arg: object, /) -> object: ...
+    def __truediv__(self, other: Expression | float, /) -> Expression: ...
 
-    def __rtruediv__(self, arg: object, /) -> object: ...
+    def __rtruediv__(self, other: Expression | float, /) -> Expression: ...
 
-    def __and__(self, arg: object, /) -> object: ...
+    def __and__(self, other: Expression | float, /) -> Expression: ...
 
-    def __rand__(self, arg: object, /) -> object: ...
+    def __rand__(self, other: Expression | float, /) -> Expression: ...
 
-    def __or__(self, arg: object, /) -> object: ...
+    def __or__(self, other: Expression | float, /) -> Expression: ...
 
-    def __ror__(self, arg: object, /) -> object: ...
+    def __ror__(self, other: Expression | float, /) -> Expression: ...
 
-    def __lt__(self, arg: object, /) -> object: ...
+    def __lt__(self, other: Expression | float, /) -> Expression: ...
 
-    def __le__(self, arg: object, /) -> object: ...
+    def __le__(self, other: Expression | float, /) -> Expression: ...
 
-    def __gt__(self, arg: object, /) -> object: ...
+    def __gt__(self, other: Expression | float, /) -> Expression: ...
 
-    def __ge__(self, arg: object, /) -> object: ...
+    def __ge__(self, other: Expression | float, /) -> Expression: ...
 
-    def __eq__(self, arg: object, /) -> object: ...
+    def __eq__(self, other: object, /) -> Expression: ...  # type: ignore[override]
 
-    def __ne__(self, arg: object, /) -> object: ...
+    def __ne__(self, other: object, /) -> Expression: ...  # type: ignore[override]
 
     def __neg__(self) -> Expression: ...
 
@@ -348,7 +401,98 @@ class Expression:
 
     __array_ufunc__: None = None
 
-def load_task(name: str) -> object:
+    def __repr__(self) -> str: ...
+
+def expression_graph(roots: Sequence[Expression]) -> tuple[list[tuple[str | int | float, ...]], list[int]]:
+    """
+    (nodes, roots): expressions as plain values, of which what they share is one.
+    """
+
+def expressions_of_graph(nodes: object, roots: object) -> list[Expression]:
+    """The expressions of such a graph. Raises TypeError and ValueError."""
+
+class expressions:
+    """Functions and terms of expressions."""
+
+    @staticmethod
+    def sin(a: object) -> Expression: ...
+
+    @staticmethod
+    def cos(a: object) -> Expression: ...
+
+    @staticmethod
+    def exp(a: object) -> Expression: ...
+
+    @staticmethod
+    def sqrt(a: object) -> Expression: ...
+
+    @staticmethod
+    def floor(a: object) -> Expression: ...
+
+    @staticmethod
+    def minimum(a: object, b: object) -> Expression: ...
+
+    @staticmethod
+    def maximum(a: object, b: object) -> Expression: ...
+
+    @staticmethod
+    def arctan2(a: object, b: object) -> Expression: ...
+
+    @staticmethod
+    def where(condition: object, yes: object, no: object) -> Expression: ...
+
+    @staticmethod
+    def clip(a: object, low: object, high: object) -> Expression: ...
+
+    @staticmethod
+    def position(body: int, axis: int) -> Expression: ...
+
+    @staticmethod
+    def velocity(body: int, axis: int) -> Expression: ...
+
+    @staticmethod
+    def angular_velocity(body: int, axis: int) -> Expression: ...
+
+    @staticmethod
+    def angle(body: int) -> Expression: ...
+
+    @staticmethod
+    def direction(body: int, of: int, axis: int) -> Expression: ...
+
+    @staticmethod
+    def joint_position(joint: int, coordinate: int) -> Expression: ...
+
+    @staticmethod
+    def joint_speed(joint: int, coordinate: int) -> Expression: ...
+
+    @staticmethod
+    def touching(body: int) -> Expression: ...
+
+    @staticmethod
+    def ray_distance(ray: int) -> Expression: ...
+
+    @staticmethod
+    def action(index: int) -> Expression: ...
+
+    @staticmethod
+    def control(index: int) -> Expression: ...
+
+    @staticmethod
+    def age() -> Expression: ...
+
+    @staticmethod
+    def lost() -> Expression: ...
+
+    @staticmethod
+    def previous(a: object) -> Expression: ...
+
+    @staticmethod
+    def held(a: object) -> Expression: ...
+
+    @staticmethod
+    def largest(a: object) -> Expression: ...
+
+def load_task(name: str) -> Task:
     """A task that has a name."""
 
 def task_names() -> list[tuple[str, str]]:
@@ -398,3 +542,5 @@ class Environment:
         """
         One step of the task in every world, without the GIL, into arrays; None: not wanted.
         """
+
+__version__: str

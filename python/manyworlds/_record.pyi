@@ -11,7 +11,7 @@ import manyworlds._core
 
 
 class RecordError(ValueError):
-    pass
+    """A recording that cannot be written, or that is cut, corrupted or none."""
 
 class Recorder:
     """Private: use manyworlds.record.Recorder."""

@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from .names import Ids, Seeds
 
 Shape = tuple[int, ...]
+# What ``out`` may be: a NumPy array, or another writable one on the CPU that has DLPack (a torch.Tensor)
+# or is a buffer (bytearray, array.array, memoryview).
+Writable = Any
 Indices = NDArray[np.int32]
 
 
@@ -132,10 +135,16 @@ def numbers(
 
 
 def broadcast(
-    values: ArrayLike, shape: Shape, axes: tuple[str, ...], name: str, dtype: type
+    values: ArrayLike,
+    shape: Shape,
+    axes: tuple[str, ...],
+    name: str,
+    dtype: Optional[type] = None,
 ) -> NDArray[Any]:
-    """Numbers that broadcast to this shape, in order."""
+    """Numbers that broadcast to this shape, in order; without a dtype as ``numbers``."""
     array = reals(values, name)
+    if dtype is None:
+        dtype = np.float32 if array.dtype.type is np.float32 else np.float64
     if dtype is np.bool_ and array.dtype != np.bool_:
         raise TypeError(f"{name} is of dtype {array.dtype}; expected bools")
     try:
@@ -149,25 +158,84 @@ def broadcast(
 
 
 def output(
-    out: Optional[NDArray[Any]],
+    out: Optional[Writable],
     shape: Shape,
     axes: tuple[str, ...],
     dtype: Union[type, np.dtype[Any]],
     name: str = "out",
 ) -> NDArray[Any]:
-    """``out`` if it can be filled in place, a new array if it is None. TypeError, ValueError."""
+    """``out`` as an array that can be filled in place, a new array if it is None.
+
+    What is no NumPy array gives one over the same memory: through DLPack, or as a buffer of just as
+    many numbers of the type, or bytes. TypeError, ValueError.
+    """
     wanted = np.dtype(dtype)
     if out is None:
         return np.empty(shape, dtype=wanted)
-    if not isinstance(out, np.ndarray):
-        raise TypeError(f"{name} is of type {type(out).__name__}; expected a numpy.ndarray")
-    if out.dtype != wanted or not out.dtype.isnative:
-        raise TypeError(f"{name} is of dtype {out.dtype}; expected {wanted}")
-    if out.shape != shape:
+    if isinstance(out, np.ndarray):
+        array = out
+    elif hasattr(out, "__dlpack__"):
+        array = _from_dlpack(out, name)
+    else:
+        array = _from_buffer(out, shape, axes, wanted, name)
+    if array.dtype != wanted or not array.dtype.isnative:
+        raise TypeError(f"{name} is of dtype {array.dtype}; expected {wanted}")
+    if array.shape != shape:
         expected = shape_text(shape, axes)
-        raise ValueError(f"{name} has shape {out.shape}; expected {expected}")
-    if not out.flags.c_contiguous:
+        raise ValueError(f"{name} has shape {array.shape}; expected {expected}")
+    if not array.flags.c_contiguous:
         raise ValueError(f"{name} is not C-contiguous; it is filled in place, without a copy")
-    if not out.flags.writeable:
+    if not array.flags.writeable:
         raise ValueError(f"{name} is read-only")
-    return out
+    return array
+
+
+_CPU = 1  # DLPack's kDLCPU
+
+
+def _from_dlpack(out: Any, name: str) -> NDArray[Any]:
+    try:
+        device = out.__dlpack_device__()
+        if device[0] != _CPU:
+            raise ValueError(f"its memory is on the device {tuple(device)}, must be on the CPU")
+        array = np.from_dlpack(out)
+    except (AttributeError, BufferError, RuntimeError, TypeError, ValueError) as error:
+        kind = type(out).__name__
+        raise TypeError(f"{name}, a {kind}, cannot be had through DLPack: {error}") from None
+    if array.flags.writeable or not hasattr(out, "__array__"):
+        return array
+    # DLPack before its version 1 cannot say that memory may be written to; the type itself can.
+    own = np.asarray(out)
+    same = own.__array_interface__["data"][0] == array.__array_interface__["data"][0]
+    return own if same and (own.shape, own.strides) == (array.shape, array.strides) else array
+
+
+def _from_buffer(
+    out: Any, shape: Shape, axes: tuple[str, ...], dtype: np.dtype[Any], name: str
+) -> NDArray[Any]:
+    try:
+        view = memoryview(out)
+    except TypeError:
+        raise TypeError(
+            f"{name} is of type {type(out).__name__}; expected a numpy.ndarray, or what has DLPack or "
+            "is a buffer"
+        ) from None
+    if not view.c_contiguous:
+        raise ValueError(f"{name} is not C-contiguous; it is filled in place, without a copy")
+    array: NDArray[Any] = np.asarray(view)
+    if array.ndim != 1:
+        return array
+    # One after the other, as buffers without a shape have them.
+    raw = view.format in ("B", "b", "c") and dtype.itemsize > 1
+    numbers = int(np.prod(shape, dtype=np.int64))
+    expected = f"{numbers * dtype.itemsize} bytes" if raw else f"{numbers} numbers"
+    if (view.nbytes if raw else array.size) != numbers * (dtype.itemsize if raw else 1):
+        raise ValueError(
+            f"{name} has {view.nbytes if raw else array.size} {expected.split()[1]}; expected "
+            f"{expected} for {shape_text(shape, axes)}"
+        )
+    if raw:
+        array = array.view(np.uint8).view(dtype)
+        if not array.flags.aligned:
+            raise ValueError(f"{name} begins at an address that is no multiple of {dtype.itemsize}")
+    return array.reshape(shape)

@@ -3,29 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core, arrays, scenes
+from . import _core, arrays, shown
+from .arrays import Writable
 from .fields import Fields
+from .ids import Chooser
+from .in_memory import InMemory
 from .inputs import Inputs
+from .kinds import MOST_WORLDS, AnyScene, Kind, plans_of
 from .names import ContactLayout, Ids, Isa, Observer, Precision, Seeds
-from .plan import Plan
 from .results import Results
 from .rollout import MOST_STEPS, Initial, Trajectories, rollout
-from .scene import Ray, Scene
+from .scene import Ray
 
-MOST_WORLDS = 100_000_000
 MOST_THREADS = 1024
+# What there is one of for each kind of world.
+_OF_A_KIND = frozenset({"plan", "_choose", "_bodies", "_controls", "_joints", "_fields"})
+
+__all__ = ["MOST_THREADS", "MOST_WORLDS", "Batch", "checked_batch"]
 
 
-class Batch(Fields, Inputs, Results):
+class Batch(Fields, Inputs, Results, InMemory):
     """Worlds of one scene, stepped together on several threads, one SIMD lane for each.
 
-    scene        a Scene, a Plan, or the name of a scene (``scenes.names()``)
-    worlds       how many
+    scene        a Scene, a Plan, or the name of a scene (``scenes.names()``); for several kinds of
+                 world a list [(scene, worlds), ...] of them, all planar or all spatial, of one dt
+    worlds       how many; None: 1, or as the list says
     threads      None: as many as the process may run on
     precision    "f32" or "f64": of the state
     seed         world i draws from seed + i; 0 to 2**64 - 1
@@ -41,12 +48,19 @@ class Batch(Fields, Inputs, Results):
     What a world does depends on its scene, seed and inputs alone, not on the number of worlds or
     threads. Raises SceneError, ValueError, TypeError. A batch is used by one thread at a time; calls
     that take long let go of the GIL. It can be closed, also by ``with``.
+
+    Worlds of several kinds lie one after the other. They step, are reset, saved, restored and looked at
+    (status, hashes, energy, contacts) together, by their indices in the batch. Arrays, controls and
+    forces are those of a kind, ``batch.kinds[k].get("position")``; the batch's own raise ValueError, and
+    so do rollouts.
     """
+
+    _instead = "pickle its scene or plan, the arguments that it was made with, and save()"
 
     def __init__(
         self,
-        scene: Union[Scene, Plan, str],
-        worlds: int = 1,
+        scene: Union[AnyScene, Sequence[tuple[AnyScene, int]]],
+        worlds: Optional[int] = None,
         threads: Optional[int] = None,
         precision: Precision = "f32",
         seed: int = 0,
@@ -57,20 +71,14 @@ class Batch(Fields, Inputs, Results):
         rays: Sequence[Ray] = (),
         contacts_per_world: int = 0,
     ) -> None:
-        if isinstance(scene, str):
-            scene = scenes.load(scene)
-        if not isinstance(scene, (Scene, Plan)):
-            found = type(scene).__name__
-            raise TypeError(f"scene is of type {found}; expected a Scene, a Plan or a name")
-        self.plan = scene if isinstance(scene, Plan) else Plan(scene)
-        self._worlds = arrays.integer(worlds, "worlds", 1, MOST_WORLDS)
+        plans = plans_of(scene, worlds)
+        self._worlds = sum(count for _, count in plans)
         crew = 0 if threads is None else arrays.integer(threads, "threads", 1, MOST_THREADS)
         seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
         if not isinstance(sleep, (bool, np.bool_)):
             raise TypeError(f"sleep is of type {type(sleep).__name__}; expected a bool")
         self._held = _core.Batch(
-            self.plan,
-            self._worlds,
+            plans,
             crew,
             seed,
             precision,
@@ -85,21 +93,49 @@ class Batch(Fields, Inputs, Results):
         self._watched = frozenset(name.replace("-", "_") for name in observe)
         if len(rays) > 0:
             self._watched |= {"rays"}
+        self._planar = plans[0][0].scene.space == "planar"
+        self._plans = plans
+        self._kinds: Optional[tuple[Kind, ...]] = None
+        if len(plans) > 1:
+            return
+        self.plan = plans[0][0]
         self._bodies = self.plan.bodies
-        self._controls = self._held.controls
-        self._joints = len(self.plan.scene.joints)
-        self._planar = self.plan.scene.space == "planar"
+        self._controls = self._held.controls()
+        self._joints = self.plan.joints
+        self._choose = Chooser(self.plan)
         self._find_fields()
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            if name in _OF_A_KIND and "_plans" in self.__dict__:
+                raise ValueError(
+                    f"the batch has {len(self._plans)} kinds of worlds, each with a plan, arrays, "
+                    "controls and bodies of its own: use batch.kinds[0] for those of the first"
+                )
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     # -- what it is
 
     @property
+    def kinds(self) -> tuple[Kind, ...]:
+        """The worlds of each kind, with their arrays; one kind, unless it was made of several."""
+        if self._kinds is None:
+            kinds, first = [], 0
+            for i, (plan, worlds) in enumerate(self._plans):
+                kinds.append(Kind(self._held, plan, i, first, worlds, self._watched))
+                first += worlds
+            self._kinds = tuple(kinds)
+        return self._kinds
+
+    @property
     def worlds(self) -> int:
+        """How many there are."""
         return self._worlds
 
     @property
     def bodies(self) -> int:
-        """State bodies of a world: dynamic and kinematic ones, in the order of the scene."""
+        """Rows of a world's arrays: its dynamic and kinematic bodies, in the order of the scene."""
         return self._bodies
 
     @property
@@ -109,14 +145,17 @@ class Batch(Fields, Inputs, Results):
 
     @property
     def precision(self) -> str:
+        """Of the state: "f32" or "f64"."""
         return self._held.precision
 
     @property
     def threads(self) -> int:
+        """On which it steps."""
         return self._held.threads
 
     @property
     def isa(self) -> str:
+        """The instruction set of its kernels: "scalar", "avx2" or "avx512"."""
         return self._held.isa
 
     @property
@@ -131,6 +170,7 @@ class Batch(Fields, Inputs, Results):
 
     @property
     def seed(self) -> int:
+        """World i draws from seed + i."""
         return self._held.seed
 
     @property
@@ -150,6 +190,7 @@ class Batch(Fields, Inputs, Results):
 
     @property
     def closed(self) -> bool:
+        """Whether ``close`` was called."""
         return self._held.closed
 
     def close(self) -> None:
@@ -165,11 +206,15 @@ class Batch(Fields, Inputs, Results):
     def __repr__(self) -> str:
         if self.closed:
             return "<manyworlds.Batch: closed>"
-        name = self.plan.scene.name
-        return (
-            f"<manyworlds.Batch: {self._worlds} worlds{f' of {name}' if name else ''}, "
-            f"{self._bodies} bodies, {self.kernel_table}, {self.threads} threads, "
-            f"{self.steps} steps>"
+        one = len(self._plans) == 1
+        return shown.line(
+            "Batch",
+            self.plan.scene.name if one else "",
+            f"{self._worlds} world" + ("" if self._worlds == 1 else "s"),
+            f"{self._bodies} bodies" if one else f"{len(self._plans)} kinds",
+            self.kernel_table,
+            f"{self.threads} threads",
+            f"{self.steps} steps",
         )
 
     # -- stepping
@@ -183,7 +228,8 @@ class Batch(Fields, Inputs, Results):
         Forces that were added act in all n steps and are cleared. A world that goes wrong is frozen
         and flagged (``status``). ``ids``: indices or a bool array (worlds,); the others keep their
         state, their forces and what was observed of them. ``time`` and ``steps`` are of steps of
-        all worlds and stay. Lanes step together: a few worlds here and there cost as much as their
+        all worlds and stay. Ctrl-C ends the call between two steps; ``steps`` says how many were
+        taken, and the batch goes on from there. Lanes step together: a few worlds here and there cost as much as their
         whole groups of lanes.
         """
         n = arrays.integer(n, "n", 0, MOST_STEPS)
@@ -191,6 +237,21 @@ class Batch(Fields, Inputs, Results):
         if controls is not None:
             self.set_controls(controls, ids)
         self._held.step(n, mask)
+
+    def step_to(self, clock: float, max_steps: int = 8) -> int:
+        """Takes whole steps until the simulated time reaches ``clock``, in s, and returns how many.
+
+        For hosts that run by a clock: never past it (but for up to half a rounding step), at most
+        ``max_steps``, beyond which time is dropped, so that a host that stalled is not behind for ever.
+        Raises ValueError for a clock that is not finite, and for ``max_steps`` below 0.
+        """
+        if isinstance(clock, (bool, np.bool_)) or not isinstance(clock, (int, float, np.number)):
+            raise TypeError(f"clock is of type {type(clock).__name__}; expected a number of s")
+        if not np.isfinite(clock):
+            raise ValueError(f"clock is {clock}, must be finite")
+        return self._held.step_to(
+            float(clock), arrays.integer(max_steps, "max_steps", 0, MOST_STEPS)
+        )
 
     def reset(self, mask_or_ids: Optional[Ids] = None, seeds: Optional[Seeds] = None) -> None:
         """Begins anew with new draws of jitter and variations, in all worlds or in some.
@@ -213,7 +274,7 @@ class Batch(Fields, Inputs, Results):
         steps: Optional[int] = None,
         fields: Sequence[str] = ("position",),
         every: int = 1,
-        out: Optional[Mapping[str, NDArray[Any]]] = None,
+        out: Optional[Mapping[str, Writable]] = None,
     ) -> Trajectories:
         """Takes many steps in one call, without the GIL, and returns what happened.
 
@@ -222,7 +283,8 @@ class Batch(Fields, Inputs, Results):
         alone, with the controls as they are. Returns {field: (frames, worlds, items, components)}
         with frames = steps // every, taken after every ``every`` steps; the state before the first
         step is none of them. ``out``: a dict of arrays to fill. The worlds stay where the rollout
-        ends; the bits are those of stepping and reading one by one. Ctrl-C ends it early.
+        ends; the bits are those of stepping and reading one by one. Ctrl-C ends it
+        early, between two steps; frames beyond are not filled.
         """
         return rollout(self, initial, controls, steps, fields, every, out)
 

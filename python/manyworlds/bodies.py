@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Optional
 
+from .ids import BodyRef
 from .names import Motion, Numbers
 from .shapes import Shape
 
@@ -27,8 +28,8 @@ class Jitter:
     linear_velocity: Numbers = (0.0, 0.0, 0.0)  # m/s
     angle: float = 0.0  # rad, about z
     any_orientation: bool = False  # spatial: any rotation, uniformly
-    # A body of the scene whose draws move this one, too, as one rigid piece; -1: none.
-    with_body: int = -1
+    # A body whose draws move this one, too, as one rigid piece; -1: none.
+    with_body: BodyRef = -1
 
 
 @dataclass(slots=True, kw_only=True)

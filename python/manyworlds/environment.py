@@ -8,9 +8,11 @@ from typing import Any, Literal, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core, arrays, tasks
+from . import _core, arrays, shown, tasks
 from ._core import Snapshot
+from .arrays import Writable
 from .batch import MOST_THREADS, MOST_WORLDS, Batch
+from .in_memory import InMemory
 from .names import Ids, Isa, Precision, Seeds
 from .plan import Plan
 from .tasks import Task, TaskError
@@ -29,11 +31,13 @@ class _OwnBatch(Batch):
         self.plan = environment._plan
         self._held = held
         self._worlds = held.worlds
+        self._plans = [(self.plan, held.worlds)]
+        self._kinds = None
         self._real = np.dtype(np.float32 if held.precision == "f32" else np.float64)
         # What the task looks at is observed; the extension refuses the rest.
         self._watched = frozenset({"joints", "touching", "rays"})
         self._bodies = self.plan.bodies
-        self._controls = held.controls
+        self._controls = held.controls()
         self._joints = len(self.plan.scene.joints)
         self._planar = self.plan.scene.space == "planar"
         self._find_fields()
@@ -52,7 +56,7 @@ class EnvironmentSnapshot:
     truncated: Flags
 
 
-class Environment:
+class Environment(InMemory):
     """A task in many worlds, one SIMD lane for each; what Gymnasium's classes are built on.
 
     task         a Task, or the name of one (``tasks.names()``)
@@ -73,6 +77,8 @@ class Environment:
     ``final_observations``: the same arrays in every step. Raises TaskError, ValueError, TypeError.
     An environment is used by one thread at a time.
     """
+
+    _instead = "pickle its task, the arguments that it was made with, and save()"
 
     def __init__(
         self,
@@ -126,6 +132,7 @@ class Environment:
 
     @property
     def worlds(self) -> int:
+        """How many there are."""
         return self._worlds
 
     @property
@@ -153,6 +160,7 @@ class Environment:
 
     @property
     def closed(self) -> bool:
+        """Whether ``close`` was called."""
         return self._held.closed
 
     def close(self) -> None:
@@ -170,19 +178,26 @@ class Environment:
     def __repr__(self) -> str:
         if self.closed:
             return "<manyworlds.Environment: closed>"
-        return f"<manyworlds.Environment: {self._worlds} worlds of {self.task.name or 'a task'}>"
+        return shown.line(
+            "Environment",
+            self.task.name,
+            f"{self._worlds} world" + ("" if self._worlds == 1 else "s"),
+            f"{self.task.choices} choices" if self.discrete else f"{self._action_shape[1]} actions",
+            f"{self.observations.shape[1]} observations",
+            f"autoreset {self.autoreset}",
+        )
 
     # -- stepping
 
     def step(
         self,
         actions: ArrayLike,
-        observations: Optional[Floats] = None,
-        rewards: Optional[Doubles] = None,
-        terminated: Optional[Flags] = None,
-        truncated: Optional[Flags] = None,
-        reward_terms: Optional[Doubles] = None,
-        final_observations: Optional[Floats] = None,
+        observations: Optional[Writable] = None,
+        rewards: Optional[Writable] = None,
+        terminated: Optional[Writable] = None,
+        truncated: Optional[Writable] = None,
+        reward_terms: Optional[Writable] = None,
+        final_observations: Optional[Writable] = None,
     ) -> tuple[Floats, Doubles, Flags, Flags]:
         """One step of the task in every world, without the GIL.
 
@@ -191,8 +206,8 @@ class Environment:
         the range; one that is not a number freezes its world, which is then lost and truncated. A
         choice that there is not raises ValueError before anything is done.
 
-        Arrays that are given are filled in place of the environment's own, and returned. Returns
-        (observations, rewards, terminated, truncated).
+        Arrays that are given are filled in place of the environment's own, and returned; they may be
+        whatever ``Batch.get`` takes as ``out``. Returns (observations, rewards, terminated, truncated).
         """
         observations = self._out("observations", observations)
         rewards = self._out("rewards", rewards)
@@ -202,11 +217,12 @@ class Environment:
             reward_terms = self.reward_terms
         else:
             shape = self._worlds, len(self.task.rewards)
-            arrays.output(reward_terms, shape, ("worlds", "rewards"), np.float64, "reward_terms")
+            axes = "worlds", "rewards"
+            reward_terms = arrays.output(reward_terms, shape, axes, np.float64, "reward_terms")
         if final_observations is None:
             final_observations = self.final_observations
         else:
-            arrays.output(
+            final_observations = arrays.output(
                 final_observations,
                 self.observations.shape,
                 ("worlds", "observations"),
@@ -225,7 +241,7 @@ class Environment:
         self._last = observations, terminated, truncated
         return observations, rewards, terminated, truncated
 
-    def _out(self, name: str, given: Optional[NDArray[Any]]) -> NDArray[Any]:
+    def _out(self, name: str, given: Optional[Writable]) -> NDArray[Any]:
         own: NDArray[Any] = getattr(self, name)
         if given is None or given is own:
             return own
@@ -250,7 +266,7 @@ class Environment:
         self,
         mask_or_ids: Optional[Ids] = None,
         seeds: Optional[Seeds] = None,
-        observations: Optional[Floats] = None,
+        observations: Optional[Writable] = None,
     ) -> Floats:
         """Begins the next episodes of all worlds or of some; with ``seeds`` their first ones.
 
@@ -266,7 +282,7 @@ class Environment:
         return observations
 
     def begin(
-        self, mask_or_ids: Optional[Ids] = None, observations: Optional[Floats] = None
+        self, mask_or_ids: Optional[Ids] = None, observations: Optional[Writable] = None
     ) -> Floats:
         """Worlds begin an episode in the state that they have; see ``reset``."""
         mask = arrays.mask(mask_or_ids, self._worlds)
@@ -302,8 +318,8 @@ class Environment:
     ) -> Floats:
         """Worlds go on bit by bit as the saved ones did, in this or another Environment of the task.
 
-        ``source``, ``ids``: as in ``Batch.restore``. Later episodes are drawn from the seeds that the
-        worlds have here; a world that was to begin with its next step steps on beyond its end where
+        ``source``, ``ids``: as in ``Batch.restore``. Restored as a whole, later episodes are
+        drawn as they would have been; single worlds draw from the seeds that are here. A world that was to begin with its next step steps on beyond its end where
         ``autoreset`` is not "next_step". Returns ``observations``, with the rows of the snapshot, as
         ``terminated`` and ``truncated`` have. Raises SnapshotError, and changes nothing, for a snapshot
         of another task or precision.

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core, arrays, draws
+from .arrays import Writable
 from .names import Ids
 from .view import View
 
@@ -70,27 +71,35 @@ class Fields:
     def _axes(field: Field) -> tuple[str, str, str]:
         return "worlds", {"body": "bodies"}.get(field.item, field.item + "s"), "components"
 
-    def get(self, name: str, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
-        """A field of all worlds, (worlds, items, components).
+    def get(
+        self, name: str, out: Optional[Writable] = None, ids: Optional[Ids] = None
+    ) -> NDArray[Any]:
+        """A field of all worlds, (worlds, items, components), or of those of ``ids``, in this order.
 
         State and observed fields have the batch's precision (float32 or float64), numbers of the
         scene float64. Position is that of the body's origin, velocity that of its centre of mass;
-        units are in ``fields[name].unit``. ``out``: filled in place and returned; it must have this
-        shape and dtype and be C-contiguous.
+        units are in ``fields[name].unit``. ``ids``: indices or a bool array (worlds,). ``out``: filled
+        in place and returned; it must have this shape and dtype, be C-contiguous, writable, and on the
+        CPU. What is no NumPy array is filled, too, if it has DLPack (a torch.Tensor) or is a buffer (a
+        bytearray, array.array, memoryview) of just the size; an array over its memory is returned.
 
         Raises ValueError for an unknown or unobserved field, and for an ``out`` that does not fit
-        (TypeError for its dtype).
+        (TypeError for its dtype), IndexError for wrong ids.
         """
         field = self._field(name)
-        out = arrays.output(out, self._shape(field, self._worlds), self._axes(field), field.dtype)
-        self._held.read(name, out)
-        return out
+        worlds = None if ids is None else arrays.indices(ids, self._worlds, "ids")
+        shape = self._shape(field, self._worlds if worlds is None else len(worlds))
+        axes = self._axes(field) if worlds is None else ("ids", *self._axes(field)[1:])
+        array = arrays.output(out, shape, axes, field.dtype)
+        self._held.read(name, array, worlds)
+        return array
 
     def set(self, name: str, values: ArrayLike, ids: Optional[Ids] = None) -> None:
         """Sets a state field or a number of the scene, in all worlds or in those of ``ids``.
 
-        ``values``: (worlds, items, components), or (len(ids), items, components); any dtype, order
-        and strides. Positions and orientations forget the impulses stored in those worlds, and all
+        ``values``: (worlds, items, components), or (len(ids), items, components), or what broadcasts to
+        it as NumPy does: a number, a row (components,), rows (items, components); any dtype, order and
+        strides. ``ids``: indices or a bool array (worlds,). Positions and orientations forget the impulses stored in those worlds, and all
         wake. Numbers of the scene must vary (Scene.variations) and lie in their range, or nothing
         changes and ValueError is raised, as for a wrong shape. IndexError for wrong ids.
         """
@@ -127,7 +136,7 @@ class Fields:
             raise ValueError("low and high must be finite numbers, and low no more than high")
         seeds = np.uint64(first) + worlds.astype(np.uint64)  # wraps around
         share = draws.uniform(seeds, name, shape[0] * shape[1]).reshape(len(worlds), *shape)
-        values = self.get(name)[worlds].astype(np.float64)
+        values = self.get(name, ids=worlds).astype(np.float64)
         values[:, chosen] = lowest * (1 - share) + highest * share
         self.set(name, values, worlds)
 
@@ -141,10 +150,10 @@ class Fields:
         if ids is None:
             dtype = np.float64 if field.group == "parameter" else None
             shape = self._shape(field, self._worlds)
-            return name, arrays.numbers(values, shape, self._axes(field), name, dtype), None
+            return name, arrays.broadcast(values, shape, self._axes(field), name, dtype), None
         worlds = arrays.indices(ids, self._worlds, "ids")
         shape, axes = self._shape(field, len(worlds)), ("ids", *self._axes(field)[1:])
-        numbers = arrays.numbers(values, shape, axes, name, np.float64)
+        numbers = arrays.broadcast(values, shape, axes, name, np.float64)
         return name, numbers, worlds
 
     def view(self, name: str) -> View:
@@ -159,11 +168,11 @@ class Fields:
             )
         return View(self._held, name, blocks)
 
-    def slots(self, out: Optional[NDArray[np.int32]] = None) -> NDArray[np.int32]:
+    def slots(self, out: Optional[Writable] = None) -> NDArray[np.int32]:
         """Where worlds live in views, (worlds,) int32: lane slot % lanes of group slot // lanes.
 
         With sleep, steps may move them.
         """
-        out = arrays.output(out, (self._worlds,), ("worlds",), np.int32)
-        self._held.slots(out)
-        return out
+        array = arrays.output(out, (self._worlds,), ("worlds",), np.int32)
+        self._held.slots(array)
+        return array

@@ -10,18 +10,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core, arrays
+from .arrays import Writable
+from .ids import BodyRef, BodyRefs, Chooser, JointRefs, Named
 from .names import Ids
 from .plan import Plan
 from .scene import Ray
 
 
-class Inputs:
+class Inputs(Named):
     """Controls, forces, bodies and joints that come and go, rays."""
 
     _held: _core.Batch
     _worlds: int
     _bodies: int
     _joints: int
+    _choose: Chooser
     _controls: int
     _planar: bool
     _real: np.dtype[Any]
@@ -29,7 +32,7 @@ class Inputs:
 
     # -- controls
 
-    def get_controls(self, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
+    def get_controls(self, out: Optional[Writable] = None) -> NDArray[Any]:
         """What controls are set to, (worlds, controls), in the batch's precision."""
         shape = self._worlds, self._controls
         out = arrays.output(out, shape, ("worlds", "controls"), self._real)
@@ -57,20 +60,21 @@ class Inputs:
     def add_force(
         self,
         force: ArrayLike,
-        bodies: Optional[Ids] = None,
+        bodies: Optional[BodyRefs] = None,
         ids: Optional[Ids] = None,
         points: Optional[ArrayLike] = None,
     ) -> None:
         """Adds forces, N in the world frame, which act during the next ``step`` call, all its steps.
 
-        ``force``: (worlds, bodies, 3), planar 2, or what broadcasts to it; ``bodies`` and ``ids``
-        choose state bodies and worlds. Through the centre of mass, or at ``points`` (as ``force``, m,
-        world). Rows of zeros do nothing. Raises ValueError for shapes, IndexError for indices.
+        ``force``: (worlds, bodies, 3), planar 2, or what broadcasts to it. ``bodies`` are handles,
+        names or indices of the scene's bodies, or a mask over rows; None: all rows. ``ids`` chooses
+        worlds. Through the centre of mass, or at ``points`` (as ``force``, m, world). Rows of zeros do
+        nothing. Raises ValueError for shapes, names and fixed bodies, IndexError for indices.
         """
         self._push("force", force, bodies, ids, points)
 
     def add_torque(
-        self, torque: ArrayLike, bodies: Optional[Ids] = None, ids: Optional[Ids] = None
+        self, torque: ArrayLike, bodies: Optional[BodyRefs] = None, ids: Optional[Ids] = None
     ) -> None:
         """Adds torques, N m, (worlds, bodies, 3), planar 1: see add_force."""
         self._push("torque", torque, bodies, ids)
@@ -78,7 +82,7 @@ class Inputs:
     def add_impulse(
         self,
         impulse: ArrayLike,
-        bodies: Optional[Ids] = None,
+        bodies: Optional[BodyRefs] = None,
         ids: Optional[Ids] = None,
         points: Optional[ArrayLike] = None,
     ) -> None:
@@ -86,7 +90,7 @@ class Inputs:
         self._push("impulse", impulse, bodies, ids, points)
 
     def add_angular_impulse(
-        self, impulse: ArrayLike, bodies: Optional[Ids] = None, ids: Optional[Ids] = None
+        self, impulse: ArrayLike, bodies: Optional[BodyRefs] = None, ids: Optional[Ids] = None
     ) -> None:
         """Changes spins at once by angular impulses, N m s: see add_torque."""
         self._push("angular_impulse", impulse, bodies, ids)
@@ -95,12 +99,12 @@ class Inputs:
         self,
         kind: str,
         values: ArrayLike,
-        bodies: Optional[Ids],
+        bodies: Optional[BodyRefs],
         ids: Optional[Ids],
         points: Optional[ArrayLike] = None,
     ) -> None:
         worlds = arrays.indices(ids, self._worlds, "ids")
-        chosen = arrays.indices(bodies, self._bodies, "bodies")
+        chosen = self._choose.bodies(bodies, "bodies")
         spin = kind in ("torque", "angular_impulse")
         full = self._vectors(values, (len(worlds), len(chosen)), kind, spin)
         at = None
@@ -123,39 +127,39 @@ class Inputs:
 
     # -- bodies and joints that come and go, sleep
 
-    def get_enabled(self, out: Optional[NDArray[np.bool_]] = None) -> NDArray[np.bool_]:
-        """Which state bodies take part, (worlds, bodies) bool."""
+    def get_enabled(self, out: Optional[Writable] = None) -> NDArray[np.bool_]:
+        """Which bodies take part, (worlds, bodies) bool."""
         out = arrays.output(out, (self._worlds, self._bodies), ("worlds", "bodies"), np.bool_)
         self._held.enabled(out)
         return out
 
     def set_enabled(
-        self, enabled: ArrayLike, bodies: Optional[Ids] = None, ids: Optional[Ids] = None
+        self, enabled: ArrayLike, bodies: Optional[BodyRefs] = None, ids: Optional[Ids] = None
     ) -> None:
-        """Enables or disables bodies: bools that broadcast to (worlds, bodies)."""
+        """Enables or disables bodies (see add_force): bools that broadcast to (worlds, bodies)."""
         worlds = arrays.indices(ids, self._worlds, "ids")
-        chosen = arrays.indices(bodies, self._bodies, "bodies")
+        chosen = self._choose.bodies(bodies, "bodies")
         shape, axes = (len(worlds), len(chosen)), ("worlds", "bodies")
         flags = arrays.broadcast(enabled, shape, axes, "enabled", np.bool_)
         self._held.set_enabled(worlds, chosen, flags)
 
     def spawn(
         self,
-        body: int,
+        body: BodyRef,
         position: ArrayLike,
         orientation: Optional[ArrayLike] = None,
         linear_velocity: Optional[ArrayLike] = None,
         angular_velocity: Optional[ArrayLike] = None,
         ids: Optional[Ids] = None,
     ) -> None:
-        """Enables a state body with a new state in all worlds or in those of ``ids``.
+        """Enables a body with a new state in all worlds or in those of ``ids``.
 
         Arrays (worlds, components), or what broadcasts to them, as in the state fields: position in
         m, orientation (w, x, y, z) or planar (cos, sin), velocities in m/s and rad/s. Raises
         ValueError for shapes and for orientations of length 0, IndexError for indices.
         """
         worlds = arrays.indices(ids, self._worlds, "ids")
-        body = arrays.index(body, self._bodies, "body")
+        chosen = self._choose.body(body, "body")
         lead = (len(worlds),)
         states = np.zeros((len(worlds), 13))
         states[:, 0:3] = self._vectors(position, lead, "position", False)
@@ -166,7 +170,7 @@ class Inputs:
             states[:, 7:10] = self._vectors(linear_velocity, lead, "linear_velocity", False)
         if angular_velocity is not None:
             states[:, 10:13] = self._vectors(angular_velocity, lead, "angular_velocity", True)
-        self._held.spawn(worlds, body, states)
+        self._held.spawn(worlds, chosen, states)
 
     def _quaternions(self, orientation: ArrayLike, count: int) -> NDArray[np.float64]:
         axes = ("worlds", "components")
@@ -181,24 +185,24 @@ class Inputs:
         zero = np.zeros_like(half)
         return np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
 
-    def get_joints_enabled(self, out: Optional[NDArray[np.bool_]] = None) -> NDArray[np.bool_]:
+    def get_joints_enabled(self, out: Optional[Writable] = None) -> NDArray[np.bool_]:
         """Which joints hold, (worlds, joints) bool; False: disabled or broken."""
         out = arrays.output(out, (self._worlds, self._joints), ("worlds", "joints"), np.bool_)
         self._held.joints_enabled(out)
         return out
 
     def set_joints_enabled(
-        self, enabled: ArrayLike, joints: Optional[Ids] = None, ids: Optional[Ids] = None
+        self, enabled: ArrayLike, joints: Optional[JointRefs] = None, ids: Optional[Ids] = None
     ) -> None:
         """Enables (mends) or disables joints: bools that broadcast to (worlds, joints)."""
         worlds = arrays.indices(ids, self._worlds, "ids")
-        chosen = arrays.indices(joints, self._joints, "joints")
+        chosen = self._choose.joints(joints, "joints")
         shape, axes = (len(worlds), len(chosen)), ("worlds", "joints")
         flags = arrays.broadcast(enabled, shape, axes, "enabled", np.bool_)
         self._held.set_joints_enabled(worlds, chosen, flags)
 
-    def asleep(self, out: Optional[NDArray[np.bool_]] = None) -> NDArray[np.bool_]:
-        """Which state bodies sleep, (worlds, bodies) bool; never kinematic ones."""
+    def asleep(self, out: Optional[Writable] = None) -> NDArray[np.bool_]:
+        """Which bodies sleep, (worlds, bodies) bool; never kinematic ones."""
         out = arrays.output(out, (self._worlds, self._bodies), ("worlds", "bodies"), np.bool_)
         self._held.asleep(out)
         return out

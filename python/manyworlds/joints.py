@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Optional, Union
 
+from .ids import BodyRef
 from .names import Numbers
 
 
@@ -129,12 +130,12 @@ JointType = Union[
 
 @dataclass(slots=True, kw_only=True)
 class Joint:
-    """A joint of bodies ``body_a`` and ``body_b`` of the scene; -1: the world."""
+    """A joint of bodies ``body_a`` and ``body_b``; -1: the world."""
 
     name: str = ""
     type: JointType = field(default_factory=HingeJoint)
-    body_a: int = -1
-    body_b: int = -1
+    body_a: BodyRef = -1
+    body_b: BodyRef = -1
     frame_a: Frame = field(default_factory=Frame)  # in the body frame of A, or in the world
     frame_b: Frame = field(default_factory=Frame)  # in the body frame of B
     collide: bool = False  # whether shapes of A and B collide with each other

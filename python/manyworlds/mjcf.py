@@ -4,13 +4,21 @@ MuJoCo's own library reads the file; ``pip install "manyworlds[mjcf]"`` brings i
 bodies and static geoms of spheres, capsules, cylinders, boxes, meshes (their convex hulls), planes and
 height fields, and the equality constraints connect and weld. Whatever else would change the motion,
 such as hinges and slides, is an error that names it.
+
+A model is read into memory and checked before MuJoCo sees it: it may take files only from its own folder
+and from those in ``roots``, and ask for no more than ``limits`` say. An error names the limit that it
+reaches: ``mw.mjcf.load("crowd.xml", limits={"copies": 50_000})`` allows more. ``limits()`` has them all.
+Who loads strangers' models does so in a process of its own, which may be ended: within the limits, too,
+MuJoCo's compiler may take minutes.
 """
 
 from __future__ import annotations
 
 import ctypes
 import importlib.util
+import operator
 import warnings
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +29,7 @@ from .scene import Scene
 if TYPE_CHECKING:
     from ._mjcf import MjcfError
 
-__all__ = ["MjcfError", "MjcfWarning", "load", "load_string"]
+__all__ = ["MjcfError", "MjcfWarning", "limits", "load", "load_string"]
 
 
 class MjcfWarning(UserWarning):
@@ -40,24 +48,49 @@ def _extension() -> Any:
         if "libmujoco" in str(error):
             wanted = 'the MuJoCo that it was built with; pip install "manyworlds[mjcf]"'
         else:
-            wanted = "a build with MuJoCo's headers (tools/run --setup-only, then pip install .)"
+            wanted = "a build with MuJoCo's headers (tools/run --all --setup-only, then pip install .)"
         raise ImportError(f"manyworlds.mjcf needs {wanted}: {error}") from error
     return _mjcf
 
 
-def load(file: File) -> Scene:
+def load(file: File, *, roots: Sequence[File] = (), limits: Mapping[str, int] | None = None) -> Scene:
     """The scene of an MJCF file, with the masses and inertias that MuJoCo's compiler gives it.
 
-    Bodies come in MuJoCo's order; a fixed one for each static body that has geoms. Warns
-    (MjcfWarning) of what acts otherwise than in MuJoCo. Raises MjcfError, a ValueError, with one line
-    for each thing that is wrong or not simulated, and ImportError without MuJoCo.
+    Bodies come in MuJoCo's order; a fixed one for each static body that has geoms. ``roots`` are folders
+    besides the file's own from which it may include and take meshes; ``limits`` replaces some of
+    ``limits()``. Warns (MjcfWarning) of what acts otherwise than in MuJoCo. Raises MjcfError, a
+    ValueError, with one line for each thing that is wrong or not simulated, and ImportError without
+    MuJoCo.
     """
-    return _with_warnings(_extension().load(files.path(file, "file")))
+    found = _extension().load(files.path(file, "file"), _paths(roots), _limits(limits))
+    return _with_warnings(found)
 
 
-def load_string(xml: str) -> Scene:
-    """The scene of an MJCF text; its assets are looked up in the working directory."""
-    return _with_warnings(_extension().load_string(xml))
+def load_string(
+    xml: str, *, roots: Sequence[File] = (), limits: Mapping[str, int] | None = None
+) -> Scene:
+    """The scene of an MJCF text. Files that it names are looked up in the first of ``roots``."""
+    return _with_warnings(_extension().load_string(xml, _paths(roots), _limits(limits)))
+
+
+def limits() -> dict[str, int]:
+    """What a model may ask for unless ``limits=`` says otherwise.
+
+    ``file_bytes`` of each file, ``total_bytes`` of all, ``files`` opened, ``depth`` of nesting,
+    ``elements`` written, ``copies`` that replicate, attach and the like make, ``samples`` of a height
+    field, ``vertices`` of a mesh.
+    """
+    return _extension().limits()
+
+
+def _paths(roots: Sequence[File]) -> list[Path]:
+    if isinstance(roots, (str, bytes)):
+        raise TypeError(f"roots must be a list of folders, is {roots!r}")
+    return [Path(files.path(root, "roots")) for root in roots]
+
+
+def _limits(limits: Mapping[str, int] | None) -> dict[str, int]:
+    return {str(name): operator.index(value) for name, value in (limits or {}).items()}
 
 
 def _with_warnings(result: tuple[Scene, list[str]]) -> Scene:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Optional
 
-from . import _core
+from . import _core, shown
+from .ids import BodyId, BodyRef, ControlId, ControlRef, JointId, JointRef, ShapeId
 from .names import BroadPhase, Feature
 from .scene import Issue, Scene, SceneError
 
@@ -28,6 +29,17 @@ class Plan(_core.Plan):
         if issues:
             raise SceneError([Issue(*issue) for issue in issues])
         super().__init__(scene, broad_phase, keep)
+        self._broad_phase, self._keep = broad_phase, tuple(keep)
+
+    @property
+    def broad_phase(self) -> BroadPhase:
+        """As it was asked for; ``report()["broad_phase"]`` is what it came to."""
+        return self._broad_phase
+
+    @property
+    def keep(self) -> tuple[Feature, ...]:
+        """The features that were asked for."""
+        return self._keep
 
     @property
     def scene(self) -> Scene:
@@ -35,15 +47,26 @@ class Plan(_core.Plan):
         scene: Scene = super().scene  # type: ignore[assignment]
         return scene
 
-    def state_body_named(self, name: str) -> int:
-        """Index of the state body of that name: where its row in arrays is. Raises ValueError."""
-        names = [body.name for body in self.scene.bodies]
-        if name not in names:
-            raise ValueError("the body " + _core.unknown_name(name, sorted({*names} - {""})))
-        body: int = self.state_body(names.index(name))
-        if body < 0:
-            raise ValueError(f"the body '{name}' is fixed and has no state")
-        return body
+    def body(self, name: BodyRef) -> BodyId:
+        """The body of a name, as Scene.body. Raises ValueError for none or several, IndexError."""
+        return BodyId(self.find("body", name))
+
+    def joint(self, name: JointRef) -> JointId:
+        """The joint of a name: see body."""
+        return JointId(self.find("joint", name))
+
+    def control(self, name: ControlRef) -> ControlId:
+        """The control of a name: see body."""
+        return ControlId(self.find("control", name))
+
+    def shape(self, name: str, body: Optional[BodyRef] = None) -> ShapeId:
+        """The shape of a name, among all or among those of a body: see body."""
+        of, index = self.find_shape(name, body)
+        return ShapeId(BodyId(of), index)
+
+    def body_in_row(self, row: int) -> BodyId:
+        """Which body is in a row of arrays (worlds, bodies, ...). Raises IndexError."""
+        return BodyId(super().body_in_row(row))
 
     def text(self) -> str:
         """The report for people: features and stages with their reasons, pairs, arrays."""
@@ -69,4 +92,25 @@ class Plan(_core.Plan):
         return "\n".join(lines)
 
     def __repr__(self) -> str:
-        return f"<manyworlds.Plan: {self.bodies} bodies, fingerprint {self.fingerprint:016x}>"
+        return shown.line(
+            "Plan",
+            super().scene.name,  # type: ignore[attr-defined]
+            f"{self.bodies} bodies",
+            f"{self.coordinates} joint coordinates",
+            f"fingerprint {self.fingerprint:016x}",
+        )
+
+    def _repr_html_(self) -> str:
+        """Features, stages and pairs of shapes as tables, for notebooks."""
+        report: dict[str, Any] = self.report()
+        parts = [
+            shown.table(
+                f"Plan {self.scene.name}: {part}",
+                ("", "in", "why"),
+                [(i["name"], "yes" if i["in"] else "no", i["why"]) for i in report[part]],
+            )
+            for part in ("features", "stages")
+        ]
+        pairs = [(p["kernel"], p["kind"], p["candidates"], p["culled"]) for p in report["pairs"]]
+        head = "kernel", "kind", "tested", "never touch"
+        return "".join(parts) + shown.table("pairs of shapes", head, pairs)

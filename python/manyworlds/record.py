@@ -18,9 +18,10 @@ from typing import Any, NamedTuple, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from . import arrays, files
+from . import arrays, files, pickling
 from .batch import MOST_THREADS, Batch, checked_batch
 from .files import File
+from .in_memory import InMemory
 from .names import ContactLayout, Ids, Isa
 from .scene import Scene
 
@@ -48,7 +49,7 @@ MOST_WORLDS_BY_DEFAULT = 64
 _MOST_STEPS = 2**31 - 1
 
 
-class Recorder:
+class Recorder(InMemory):
     """Writes what some worlds of a batch do, from now until ``close``.
 
     batch        a Batch; an environment's, too
@@ -64,6 +65,8 @@ class Recorder:
     when the file cannot be written (from ``close`` for what failed while stepping), ValueError when
     forces were added for the next step already.
     """
+
+    _instead = "pickle the path of its file"
 
     def __init__(
         self,
@@ -112,7 +115,7 @@ class Recorder:
         self.close()
 
 
-class LostWorldDumps:
+class LostWorldDumps(InMemory):
     """Writes a small recording, "world_17.h5", of every world that gets lost from now until ``close``.
 
     batch             whose worlds are watched
@@ -122,6 +125,8 @@ class LostWorldDumps:
     most              files; worlds lost after that are left out
     first_world       what the batch's world 0 is called in the files
     """
+
+    _instead = "pickle what close() returns"
 
     def __init__(
         self,
@@ -158,7 +163,7 @@ class Difference(NamedTuple):
 
     world: int  # as the recording calls it
     step: int  # since the recording began
-    body: int  # state body; -1: no field differs, but hash or status does
+    body: int  # of the scene; -1: no field differs, but hash or status does
     what: str  # "position.x is 1.5, recorded 1.25"
 
 
@@ -181,12 +186,17 @@ class ReplayResult:
         return self.different == 0
 
 
-class Recording:
+pickling.register(ReplayResult)
+
+
+class Recording(InMemory):
     """A recording that was opened and checked: every size, index, type and text in it.
 
     Raises RecordError, a ValueError, for what is no recording, cut, corrupted or inconsistent. It can
     be closed, also by ``with``.
     """
+
+    _instead = "pickle the path of its file"
 
     def __init__(self, file: File) -> None:
         self.file = files.path(file, "file")
@@ -224,10 +234,12 @@ class Recording:
 
     @property
     def precision(self) -> str:
+        """Of the recorded state: "f32" or "f64"."""
         return self._held.precision
 
     @property
     def sleep(self) -> bool:
+        """Whether bodies could fall asleep."""
         return self._held.sleep
 
     @property
@@ -277,6 +289,7 @@ class Recording:
 
     @property
     def closed(self) -> bool:
+        """Whether ``close`` was called."""
         return self._held.closed
 
     def __repr__(self) -> str:

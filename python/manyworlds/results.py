@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, arrays
+from .arrays import Writable
 from .names import Ids
 
 
@@ -42,7 +43,9 @@ _NUMBERS: list[Any] = [
     ("separation", np.float64),  # m, negative when the shapes overlap
     ("normal_impulse", np.float64),  # N s
 ]
+# CONTACT: of Batch.contacts.
 CONTACT = np.dtype(_PLACE + _NUMBERS)
+# STEP_CONTACT: of Batch.step_contacts, with the impulses of the last step.
 STEP_CONTACT = np.dtype(
     _PLACE
     + _NUMBERS
@@ -75,7 +78,7 @@ class Results:
     def _world(self, world: Any) -> int:
         return arrays.index(world, self._worlds, "world")
 
-    def status(self, out: Optional[NDArray[np.uint32]] = None) -> NDArray[np.uint32]:
+    def status(self, out: Optional[Writable] = None) -> NDArray[np.uint32]:
         """Bits of Status of every world, (worlds,) uint32. They stay until the world is reset."""
         out = arrays.output(out, (self._worlds,), ("worlds",), np.uint32)
         self._held.status(out)
@@ -94,13 +97,13 @@ class Results:
         """Hash of the state of a world, or of all: equal for equal bits."""
         return int(self._held.hash(None if world is None else self._world(world)))
 
-    def hashes(self, out: Optional[NDArray[np.uint64]] = None) -> NDArray[np.uint64]:
+    def hashes(self, out: Optional[Writable] = None) -> NDArray[np.uint64]:
         """Hash of the state of every world, (worlds,) uint64."""
         out = arrays.output(out, (self._worlds,), ("worlds",), np.uint64)
         self._held.hashes(out)
         return out
 
-    def energy(self, out: Optional[NDArray[np.float64]] = None) -> NDArray[np.float64]:
+    def energy(self, out: Optional[Writable] = None) -> NDArray[np.float64]:
         """Kinetic and potential energy, J, (worlds, 2) float64. The latter is 0 at the origin."""
         out = arrays.output(out, (self._worlds, 2), ("worlds", ""), np.float64)
         self._held.energy(out)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core, arrays
+from .arrays import Writable
 
 if TYPE_CHECKING:
     from .batch import Batch
@@ -26,7 +27,7 @@ def rollout(
     steps: Optional[int],
     fields: Sequence[str],
     every: int,
-    out: Optional[Mapping[str, NDArray[Any]]],
+    out: Optional[Mapping[str, Writable]],
 ) -> Trajectories:
     """Batch.rollout: where it raises, no world has changed."""
     played, count = _controls(batch, controls, steps)

@@ -37,6 +37,8 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
         super().__init__(num_envs, *spaces)
 
     def reset(self) -> np.ndarray:
+        """Begins an episode in every world, of the seeds that ``seed`` gave, else the next ones. Returns
+        observations (num_envs, observations) float32."""
         seeds = list(getattr(self, "_seeds", None) or [None] * self.num_envs)
         observations, _ = self.env.reset(seed=seeds)
         self._reset_seeds()
@@ -45,9 +47,12 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
         return observations
 
     def step_async(self, actions: np.ndarray) -> None:
+        """Keeps the actions, (num_envs,) or (num_envs, numbers), for ``step_wait``."""
         self._actions = np.asarray(actions)
 
     def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
+        """The step. Returns (observations, rewards, ended, infos): float32, float32 and bool arrays, and
+        a dict for each world. RuntimeError without actions."""
         if self._actions is None:
             raise RuntimeError("step_wait without step_async")
         actions, self._actions = self._actions, None
@@ -60,26 +65,32 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
         return observations, rewards.astype(np.float32), ended, out
 
     def get_images(self) -> Sequence[Optional[np.ndarray]]:
+        """A frame of every world, (height, width, 3) uint8; none without a render_mode."""
         return self.env.render() or ()
 
     def close(self) -> None:
+        """Lets go of the worlds."""
         self.env.close()
 
     # Worlds are no objects of their own: what is asked of each is what all of them share.
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """An attribute of the VectorEnv, once for each of the worlds ``indices``."""
         owner = self if attr_name == "render_mode" else self.env
         return [getattr(owner, attr_name)] * len(self._chosen(indices))
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Raises NotImplementedError."""
         raise NotImplementedError("worlds have no attributes of their own")
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
+        """Raises NotImplementedError."""
         raise NotImplementedError("worlds have no methods of their own")
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
+        """False for each of the worlds ``indices``."""
         return [False] * len(self._chosen(indices))
 
     def _chosen(self, indices: Union[None, int, Sequence[int]]) -> list[int]:

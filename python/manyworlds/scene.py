@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import inf
-from typing import TYPE_CHECKING, Any, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union, overload
 
-from . import _core
+from . import _core, shown
 from .bodies import Body, MassProperties
+from .ids import BodyId, BodyRef, ControlId, ControlRef, JointId, JointRef, ShapeId, ShapeRef
 from .joints import Frame, Joint, JointType
 from .names import BroadPhase, ControlKind, Draw, Feature, Numbers, Parameter, Space
 from .options import Options
@@ -46,8 +47,8 @@ class Control:
 
     name: str = ""
     kind: ControlKind = "target_speed"
-    joint: int = -1  # of the scene, with a drive; target_position, target_speed
-    body: int = -1  # of the scene, dynamic; thrust, torque
+    joint: JointRef = -1  # with a drive; target_position, target_speed
+    body: BodyRef = -1  # dynamic; thrust, torque
     point: Numbers = (0.0, 0.0, 0.0)  # m, body frame
     direction: Numbers = (1.0, 0.0, 0.0)  # body frame, need not be unit
     low: float = -1.0
@@ -69,8 +70,8 @@ class Variation:
     """A parameter that may differ from world to world, and its range. ``vary`` makes simple ones."""
 
     parameter: Parameter = "friction"
-    body: int = -1  # of the scene; -1: every one that has the parameter
-    shape: int = -1  # of that body; -1: every shape
+    body: BodyRef = -1  # -1: every one that has the parameter
+    shape: ShapeRef = -1  # an int is one of that body; -1: every shape
     low: Numbers = (0.0, 0.0, 0.0)  # [0] alone counts where the parameter is one number
     high: Numbers = (0.0, 0.0, 0.0)
     draw: Draw = "uniform"
@@ -92,7 +93,7 @@ class Ray:
     origin: Numbers = (0.0, 0.0, 0.0)  # m, in the world or, with a body, in that body's frame
     direction: Numbers = (1.0, 0.0, 0.0)  # need not be unit
     length: float = inf  # m: it sees what is nearer
-    body: int = -1  # state body that it moves and turns with; -1: none
+    body: BodyRef = -1  # moves and turns with it; -1: stays
     mask: int = 0xFFFFFFFF  # of Filter.category
 
 
@@ -112,21 +113,82 @@ class Scene:
     options: Options = field(default_factory=Options)
     variations: list[Variation] = field(default_factory=list)
 
-    def add(self, part: Part) -> int:
-        """Appends a body, joint, control, attractor or variation and returns its index."""
-        places: list[tuple[type, list[Any]]] = [
-            (Body, self.bodies),
-            (Joint, self.joints),
-            (Control, self.controls),
-            (Attractor, self.attractors),
-            (Variation, self.variations),
+    def __repr__(self) -> str:
+        return shown.line(
+            "Scene",
+            self.name,
+            str(self.space),
+            shown.count(self.bodies, "body", "bodies"),
+            shown.count(self.joints, "joint", "joints"),
+            shown.count(self.controls, "control", "controls"),
+            shown.count(self.variations, "variation", "variations"),
+        )
+
+    def _repr_html_(self) -> str:
+        """Bodies and joints as tables, for notebooks."""
+        bodies = [
+            (
+                i,
+                getattr(b, "name", "?"),
+                getattr(b, "motion", "?"),
+                shown.attempt(lambda b=b: shown.short(tuple(map(float, b.position)))),
+                shown.attempt(lambda b=b: ", ".join(type(s.geometry).__name__ for s in b.shapes)),
+            )
+            for i, b in enumerate(self.bodies)
         ]
-        for kind, place in places:
+        joints = [
+            (i, *(getattr(j, name, "?") for name in ("name", "body_a", "body_b")))
+            + (type(getattr(j, "type", None)).__name__,)
+            for i, j in enumerate(self.joints)
+        ]
+        return shown.table(
+            f"Scene {self.name}: bodies",
+            ("", "name", "motion", "position, m", "shapes"),
+            bodies,
+        ) + shown.table("joints", ("", "name", "body_a", "body_b", "type"), joints)
+
+    @overload
+    def add(self, part: Body) -> BodyId: ...
+    @overload
+    def add(self, part: Joint) -> JointId: ...
+    @overload
+    def add(self, part: Control) -> ControlId: ...
+    @overload
+    def add(self, part: Union[Attractor, Variation]) -> int: ...
+    def add(self, part: Part) -> int:
+        """Appends a body, joint, control, attractor or variation and returns its handle or index."""
+        places: list[tuple[type, list[Any], type[int]]] = [
+            (Body, self.bodies, BodyId),
+            (Joint, self.joints, JointId),
+            (Control, self.controls, ControlId),
+            (Attractor, self.attractors, int),
+            (Variation, self.variations, int),
+        ]
+        for kind, place, handle in places:
             if isinstance(part, kind):
                 place.append(part)
-                return len(place) - 1
-        names = ", ".join(kind.__name__ for kind, _ in places)
+                return handle(len(place) - 1)
+        names = ", ".join(kind.__name__ for kind, _, _ in places)
         raise TypeError(f"cannot add a {type(part).__name__}; expected one of {names}")
+
+    # -- by name. Names may be empty or shared, but then they find nothing.
+
+    def body(self, name: BodyRef) -> BodyId:
+        """The body of a name. Raises ValueError, which lists the names, for none or several."""
+        return BodyId(_core.find_in_scene(self, "body", name))
+
+    def joint(self, name: JointRef) -> JointId:
+        """The joint of a name: see body."""
+        return JointId(_core.find_in_scene(self, "joint", name))
+
+    def control(self, name: ControlRef) -> ControlId:
+        """The control of a name: see body."""
+        return ControlId(_core.find_in_scene(self, "control", name))
+
+    def shape(self, name: str, body: Optional[BodyRef] = None) -> ShapeId:
+        """The shape of a name, among all or among those of a body: see body."""
+        of, index = _core.find_shape_in_scene(self, name, body)
+        return ShapeId(BodyId(of), index)
 
     def validate(self) -> list[Issue]:
         """Everything that is wrong with the scene, in its order; empty: it can be compiled.
@@ -143,14 +205,14 @@ class Scene:
 
         return Plan(self, broad_phase=broad_phase, keep=keep)
 
-    def joint_at(self, body_a: int, body_b: int, frame: Frame, type: JointType) -> Joint:
+    def joint_at(self, body_a: BodyRef, body_b: BodyRef, frame: Frame, type: JointType) -> Joint:
         """A joint of two bodies (-1: the world) whose frames are where ``frame`` is in the world.
 
         The scene must have no issues. The joint is returned, not added.
         """
         return _core.joint_at(self, body_a, body_b, frame, type)
 
-    def mass_properties(self, body: int) -> MassProperties:
+    def mass_properties(self, body: BodyRef) -> MassProperties:
         """Mass (kg), centre (m) and inertia (kg m^2) of a body: its own, or those of its shapes."""
         return _core.mass_properties(self, body)
 

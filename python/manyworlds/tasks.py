@@ -19,9 +19,10 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Any, Optional, Union
 
-from . import _core
+from . import _core, shown
 from ._core import Expression
 from ._core import expressions as _x
+from .ids import BodyId, BodyRef, ControlId, ControlRef, JointId, JointRef, index_of
 from .scene import Issue, Ray, Scene, SceneError
 
 Value = Union[Expression, float]  # numbers are expressions
@@ -39,10 +40,12 @@ def cos(a: Value) -> Expression:
 
 
 def exp(a: Value) -> Expression:
+    """e to the power of ``a``."""
     return _x.exp(a)
 
 
 def sqrt(a: Value) -> Expression:
+    """Square root; of what is below 0 not a number."""
     return _x.sqrt(a)
 
 
@@ -52,18 +55,22 @@ def floor(a: Value) -> Expression:
 
 
 def square(a: Value) -> Expression:
+    """``a`` times ``a``."""
     return Expression(a) ** 2
 
 
 def minimum(a: Value, b: Value) -> Expression:
+    """The smaller of two."""
     return _x.minimum(a, b)
 
 
 def maximum(a: Value, b: Value) -> Expression:
+    """The larger of two."""
     return _x.maximum(a, b)
 
 
 def clip(a: Value, low: Value, high: Value) -> Expression:
+    """``a``, at least ``low`` and at most ``high``."""
     return _x.clip(a, low, high)
 
 
@@ -95,25 +102,22 @@ def largest(value: Value) -> Expression:
 class Terms:
     """What a world is at the end of a step, as expressions.
 
-    Bodies, joints and controls by index or, of a scene that is given, by name. What does not exist
+    Bodies, joints and controls by handle, index or, of a scene that is given, by name. What does not exist
     raises ValueError here when it is a name, and is an issue of the task when it is an index.
     """
 
     def __init__(self, scene: Optional[Scene] = None) -> None:
         self._scene = scene
 
-    def _index(self, what: str, key: Union[int, str]) -> int:
-        if not isinstance(key, str):
-            return key
-        if self._scene is None:
-            raise ValueError(f"the {what} '{key}': names are those of a scene, use Terms(scene)")
-        parts = {"body": "bodies", "joint": "joints", "control": "controls"}[what]
-        names = [part.name for part in getattr(self._scene, parts)]
-        if key not in names:
-            raise ValueError(f"the {what} " + _core.unknown_name(key, sorted({*names} - {""})))
-        if names.count(key) > 1:
-            raise ValueError(f"there are {names.count(key)} {parts} of the name '{key}'")
-        return names.index(key)
+    def _index(self, what: str, key: Any) -> Any:
+        kind = {"body": BodyId, "joint": JointId, "control": ControlId}[what]
+
+        def find(name: str) -> int:
+            if self._scene is None:
+                raise ValueError(f"the {what} '{key}': names are those of a scene, use Terms(scene)")
+            return _core.find_in_scene(self._scene, what, name)
+
+        return index_of(key, kind, find, f"the {what}")
 
     @staticmethod
     def _axis(axis: Axis) -> int:
@@ -123,35 +127,35 @@ class Terms:
             raise ValueError(f"the axis is '{axis}'; expected 'x', 'y', 'z' or 0, 1, 2")
         return "xyz".index(axis)
 
-    def position(self, body: Union[int, str], axis: Axis) -> Expression:
+    def position(self, body: BodyRef, axis: Axis) -> Expression:
         """m, of the body frame."""
         return _x.position(self._index("body", body), self._axis(axis))
 
-    def velocity(self, body: Union[int, str], axis: Axis) -> Expression:
+    def velocity(self, body: BodyRef, axis: Axis) -> Expression:
         """m/s, of the centre of mass."""
         return _x.velocity(self._index("body", body), self._axis(axis))
 
-    def angular_velocity(self, body: Union[int, str], axis: Axis = 2) -> Expression:
+    def angular_velocity(self, body: BodyRef, axis: Axis = 2) -> Expression:
         """rad/s; in the plane about axis 2."""
         return _x.angular_velocity(self._index("body", body), self._axis(axis))
 
-    def angle(self, body: Union[int, str]) -> Expression:
+    def angle(self, body: BodyRef) -> Expression:
         """rad, -pi to pi, in the plane."""
         return _x.angle(self._index("body", body))
 
-    def direction(self, body: Union[int, str], of: Axis, axis: Axis) -> Expression:
+    def direction(self, body: BodyRef, of: Axis, axis: Axis) -> Expression:
         """A component of the body's x, y or z axis."""
         return _x.direction(self._index("body", body), self._axis(of), self._axis(axis))
 
-    def joint_position(self, joint: Union[int, str], coordinate: int = 0) -> Expression:
+    def joint_position(self, joint: JointRef, coordinate: int = 0) -> Expression:
         """m or rad, from where the joint began."""
         return _x.joint_position(self._index("joint", joint), coordinate)
 
-    def joint_speed(self, joint: Union[int, str], coordinate: int = 0) -> Expression:
+    def joint_speed(self, joint: JointRef, coordinate: int = 0) -> Expression:
         """m/s or rad/s."""
         return _x.joint_speed(self._index("joint", joint), coordinate)
 
-    def touching(self, body: Union[int, str]) -> Expression:
+    def touching(self, body: BodyRef) -> Expression:
         """1 where a contact pushed the body in the last step; 0 where a world begins."""
         return _x.touching(self._index("body", body))
 
@@ -163,7 +167,7 @@ class Terms:
         """The action that led here; of discrete tasks its number. 0 at the beginning."""
         return _x.action(index)
 
-    def control(self, control: Union[int, str]) -> Expression:
+    def control(self, control: ControlRef) -> Expression:
         """The control of the scene that led here."""
         return _x.control(self._index("control", control))
 
@@ -224,6 +228,17 @@ class Task:
     solved_at: float = inf  # mean return; said to people only
 
     rays: list[Ray] = field(default_factory=list)  # for ray_distance
+
+    def __repr__(self) -> str:
+        actions = shown.count(self.actions, "action", "actions")
+        return shown.line(
+            "Task",
+            self.name,
+            f"{self.choices} choices" if self.choices else actions,
+            shown.count(self.observations, "observation", "observations"),
+            shown.count(self.rewards, "reward", "rewards"),
+            f"most_steps {self.most_steps}",
+        )
 
     @property
     def terms(self) -> Terms:

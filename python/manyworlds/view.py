@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .in_memory import InMemory
 
 
-class View:
+class View(InMemory):
     """A state field where the step keeps it, (groups, bodies, components, lanes).
 
     World w is lane ``slots[w] % lanes`` of group ``slots[w] // lanes`` (Batch.slots); lanes after
@@ -24,6 +25,7 @@ class View:
     """
 
     __slots__ = ("_held", "_name", "_blocks")
+    _instead = "pickle numpy.array(view), or Batch.get of the field"
 
     def __init__(self, core: _core.Batch, name: str, blocks: NDArray[Any]) -> None:
         self._held, self._name, self._blocks = core, name, blocks
@@ -35,6 +37,7 @@ class View:
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
+        """(groups, bodies, components, lanes)."""
         groups, bodies, components, lanes = self._open().shape
         return groups, bodies, components, lanes
 
@@ -45,6 +48,7 @@ class View:
 
     @property
     def dtype(self) -> np.dtype[Any]:
+        """That of the batch: float32 or float64."""
         return self._open().dtype
 
     def __len__(self) -> int:

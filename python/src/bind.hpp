@@ -11,6 +11,7 @@ class HeldBatch;  // held_batch.hpp
 void bind_names(nanobind::module_& m);     // the enumerations' names
 void bind_scene(nanobind::module_& m);     // scenes from and to Python, checks, scenes with a name
 void bind_plan(nanobind::module_& m);      // Plan
+void bind_query(nanobind::module_& m);     // queries on single shapes
 void bind_snapshot(nanobind::module_& m);  // Snapshot, SnapshotError
 void bind_batch(nanobind::module_& m);     // Batch: construction, shape, stepping, resets
 void bind_expression(nanobind::module_& m);   // Expression, its functions and terms

@@ -5,6 +5,7 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "held_batch.hpp"
+#include "interrupts.hpp"
 #include "scene_fields.hpp"
 
 namespace manyworlds::python {
@@ -17,11 +18,23 @@ auto property() {
   return [](HeldBatch& self) { return self.with([](Batch& b) { return (b.*member)(); }); };
 }
 
-void make(HeldBatch* self, const Plan& plan, nb::object worlds, nb::object threads,
-          std::uint64_t seed, nb::object precision, nb::object isa, nb::object layout, bool sleep,
-          nb::object observe, nb::object rays, nb::object contacts_per_world) {
+std::vector<Batch::Kind> kinds_of(nb::handle value) {
+  std::vector<Batch::Kind> out;
+  const Place place{nullptr, "kinds", -1};
+  for (const nb::object& pair : read_elements(value, place, -1, "a list of (Plan, worlds)")) {
+    const Place at = place.element(out.size());
+    const auto parts = read_elements(pair, at, 2, "a Plan and a number");
+    if (!nb::isinstance<Plan>(parts[0])) wrong_type(at, parts[0], "a Plan");
+    out.push_back({nb::cast<Plan>(parts[0]), from_python<int>(parts[1], "worlds")});
+  }
+  return out;
+}
+
+void make(HeldBatch* self, nb::object plans, nb::object threads, std::uint64_t seed,
+          nb::object precision, nb::object isa, nb::object layout, bool sleep, nb::object observe,
+          nb::object rays, nb::object contacts_per_world) {
   BatchOptions options;
-  options.worlds = from_python<int>(worlds, "worlds");
+  const std::vector<Batch::Kind> kinds = kinds_of(plans);
   options.threads = from_python<int>(threads, "threads");
   options.seed = seed;
   options.precision = from_python<Precision>(precision, "precision");
@@ -29,20 +42,26 @@ void make(HeldBatch* self, const Plan& plan, nb::object worlds, nb::object threa
   options.layout = from_python<ContactLayout>(layout, "layout");
   options.sleep = sleep;
   options.observe.what = from_python<std::vector<Observer>>(observe, "observe");
-  options.observe.rays = from_python<std::vector<Ray>>(rays, "rays");
+  options.observe.rays = from_python<std::vector<Ray>>(
+      rays, "rays", kinds.empty() ? nullptr : &kinds.front().plan.scene());
   options.observe.contacts_per_world = from_python<int>(contacts_per_world, "contacts_per_world");
   const nb::gil_scoped_release release;
-  new (self) HeldBatch(plan, options);
+  new (self) HeldBatch(kinds, options);
 }
 
 void step(HeldBatch& self, int n, const std::optional<In<std::uint8_t>>& mask) {
   if (n < 0) throw nb::value_error(("n is " + std::to_string(n) + ", must be >= 0").c_str());
   self.run([&](Batch& b) {
-    if (mask) {
-      b.step(span_of(*mask), n);
-    } else {
-      b.step(n);
-    }
+    Interrupts::during([&](const GoOn& go_on) {
+      return mask ? b.step(span_of(*mask), n, go_on) : b.step(n, go_on);
+    });
+  });
+}
+
+int step_to(HeldBatch& self, double clock, int max_steps) {
+  return self.run([&](Batch& b) {
+    return Interrupts::during(
+        [&](const GoOn& go_on) { return b.step_to(clock, max_steps, go_on); });
   });
 }
 
@@ -63,7 +82,7 @@ void reset(HeldBatch& self, const std::optional<In<std::uint8_t>>& mask,
 
 void bind_batch(nb::module_& m) {
   nb::class_<HeldBatch> c(m, "Batch", "Worlds that step together. Private: use manyworlds.Batch.");
-  c.def("__init__", &make, nb::arg("plan"), nb::arg("worlds"), nb::arg("threads"), nb::arg("seed"),
+  c.def("__init__", &make, nb::arg("kinds"), nb::arg("threads"), nb::arg("seed"),
         nb::arg("precision"), nb::arg("isa").none(), nb::arg("layout"), nb::arg("sleep"),
         nb::arg("observe"), nb::arg("rays"), nb::arg("contacts_per_world"))
       .def("close", &HeldBatch::close, "Lets go of the worlds; what follows raises ValueError.")
@@ -84,7 +103,10 @@ void bind_batch(nb::module_& m) {
           "precision",
           [](HeldBatch& s) { return s.with([](Batch& b) { return name_of(b.precision()); }); })
       .def("step", &step, nb::arg("n"), nb::arg("mask").none(),
-           "Takes n steps, of all worlds or of those in the mask, without the GIL.")
+           "Takes n steps, of all worlds or of those in the mask, without the GIL; a signal ends "
+           "it.")
+      .def("step_to", &step_to, nb::arg("clock"), nb::arg("max_steps"),
+           "Takes whole steps up to a time in s, without the GIL, and returns how many.")
       .def(
           "reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(),
           "All worlds from the first episode, or those in the mask: the next episode, or the first "

@@ -46,7 +46,8 @@ void push(HeldBatch& self, nb::object kind, const Ids& worlds, const Ids& bodies
   check_size("values", values.size(), wanted);
   if (points) check_size("points", points->size(), wanted);
   self.run([&](Batch& b) {
-    for_each_pair(worlds, bodies, [&](int world, int body, std::size_t i) {
+    for_each_pair(worlds, bodies, [&](int world, int index, std::size_t i) {
+      const BodyId body(index);
       const Vec3 value = vector_at(values, i);
       if (value.isZero(0)) return;  // would wake a world for nothing
       switch (what) {
@@ -69,7 +70,7 @@ void spawn(HeldBatch& self, const Ids& worlds, int body, const In<double>& state
   self.run([&](Batch& b) {
     for (std::size_t i = 0; i < worlds.size(); ++i) {
       const double* s = states.data() + 13 * i;
-      b.spawn(worlds.data()[i], body,
+      b.spawn(worlds.data()[i], BodyId(body),
               {{s[0], s[1], s[2]},
                {s[3], s[4], s[5], s[6]},
                {s[7], s[8], s[9]},
@@ -78,30 +79,43 @@ void spawn(HeldBatch& self, const Ids& worlds, int body, const In<double>& state
   });
 }
 
-using Setter = void (Batch::*)(int, int, bool);
-using Getter = bool (Batch::*)(int, int) const;
+template <class Handle>
+using Setter = void (Batch::*)(int, Handle, bool);
+template <class Handle>
+using Getter = bool (Batch::*)(int, Handle) const;
 
-// values: (worlds, items).
-template <Setter set>
+// values: (worlds, items), items by their indices in the scene.
+template <class Handle, Setter<Handle> set>
 void set_flags(HeldBatch& self, const Ids& worlds, const Ids& items, const In<bool>& values) {
   check_size("values", values.size(), worlds.size() * items.size());
   self.run([&](Batch& b) {
     for_each_pair(worlds, items, [&](int world, int item, std::size_t i) {
-      (b.*set)(world, item, values.data()[i]);
+      (b.*set)(world, Handle(item), values.data()[i]);
     });
   });
 }
 
-// out: (worlds, items), items the same in all worlds.
-template <Getter get>
-void get_flags(HeldBatch& self, const Out<bool>& out) {
+// Who is in a column of an array of flags: bodies by their rows.
+void in_column(const Batch& b, int world, int column, BodyId& out) {
+  out = b.body_in_row(column, b.kind_of(world));
+}
+void in_column(const Batch&, int, int column, JointId& out) { out = JointId(column); }
+
+// out: (worlds, columns), the same in all worlds.
+template <class Handle, Getter<Handle> get>
+void get_flags(HeldBatch& self, const Out<bool>& out, int kind) {
   self.run([&](Batch& b) {
-    const std::size_t worlds = static_cast<std::size_t>(b.worlds());
+    const KindRange& of = self.range(kind);
+    const std::size_t worlds = static_cast<std::size_t>(of.worlds);
     const int items = static_cast<int>(out.size() / worlds);
     check_size("out", out.size(), worlds * static_cast<std::size_t>(items));
     bool* to = out.data();
-    for (int w = 0; w < b.worlds(); ++w) {
-      for (int i = 0; i < items; ++i) *to++ = (b.*get)(w, i);
+    for (int w = of.first; w < of.first + of.worlds; ++w) {
+      for (int i = 0; i < items; ++i) {
+        Handle item;
+        in_column(b, w, i, item);
+        *to++ = (b.*get)(w, item);
+      }
     }
   });
 }
@@ -113,7 +127,8 @@ void wake(HeldBatch& self, const Ids& worlds) {
 }
 
 void set_rays(HeldBatch& self, nb::object rays, std::optional<int> world) {
-  const auto all = from_python<std::vector<Ray>>(rays, "rays");
+  const Plan plan = self.with([&](Batch& b) { return b.plan(world ? b.kind_of(*world) : 0); });
+  const auto all = from_python<std::vector<Ray>>(rays, "rays", &plan.scene());
   self.run([&](Batch& b) {
     if (world) {
       b.set_rays(*world, all);
@@ -127,22 +142,24 @@ void set_rays(HeldBatch& self, nb::object rays, std::optional<int> world) {
 
 void bind_batch_inputs(nb::class_<HeldBatch>& c) {
   const auto ids = nb::arg("worlds").noconvert();
+  const auto kind = nb::arg("kind") = 0;
   c.def("push", &push, nb::arg("kind"), ids, nb::arg("bodies").noconvert(),
         nb::arg("values").noconvert(), nb::arg("points").none(),
         "Adds forces, torques or impulses, (worlds, bodies, 3); rows of zeros do nothing.")
       .def("spawn", &spawn, ids, nb::arg("body"), nb::arg("states").noconvert(),
            "Enables a body with a state of 13 numbers in each of the worlds.")
-      .def("set_enabled", &set_flags<&Batch::set_enabled>, ids, nb::arg("bodies").noconvert(),
-           nb::arg("values").noconvert(), "Enables and disables bodies, (worlds, bodies).")
-      .def("enabled", &get_flags<&Batch::enabled>, nb::arg("out").noconvert(),
+      .def("set_enabled", &set_flags<BodyId, &Batch::set_enabled>, ids,
+           nb::arg("bodies").noconvert(), nb::arg("values").noconvert(),
+           "Enables and disables bodies, (worlds, bodies).")
+      .def("enabled", &get_flags<BodyId, &Batch::enabled>, nb::arg("out").noconvert(), kind,
            "Fills which bodies are enabled, (worlds, bodies).")
-      .def("set_joints_enabled", &set_flags<&Batch::set_joint_enabled>, ids,
+      .def("set_joints_enabled", &set_flags<JointId, &Batch::set_joint_enabled>, ids,
            nb::arg("joints").noconvert(), nb::arg("values").noconvert(),
            "Enables and disables joints, (worlds, joints).")
-      .def("joints_enabled", &get_flags<&Batch::joint_enabled>, nb::arg("out").noconvert(),
-           "Fills which joints hold, (worlds, joints).")
-      .def("asleep", &get_flags<static_cast<Getter>(&Batch::asleep)>, nb::arg("out").noconvert(),
-           "Fills which bodies sleep, (worlds, bodies).")
+      .def("joints_enabled", &get_flags<JointId, &Batch::joint_enabled>, nb::arg("out").noconvert(),
+           kind, "Fills which joints hold, (worlds, joints).")
+      .def("asleep", &get_flags<BodyId, static_cast<Getter<BodyId>>(&Batch::asleep)>,
+           nb::arg("out").noconvert(), kind, "Fills which bodies sleep, (worlds, bodies).")
       .def("wake", &wake, ids, "Wakes everything in these worlds.")
       .def("set_rays", &set_rays, nb::arg("rays"), nb::arg("world").none(),
            "Other rays, in one world or in all.");

@@ -5,6 +5,7 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "held_batch.hpp"
+#include "interrupts.hpp"
 
 namespace nb = nanobind;
 
@@ -46,7 +47,10 @@ struct Columns {
   std::vector<double> numbers;
 
   void add(const auto& c) {
-    for (const int i : {c.body_a, c.body_b, c.shape_a, c.shape_b, c.feature}) integers.push_back(i);
+    for (const int i :
+         {c.body_a.index(), c.body_b.index(), c.shape_a.index(), c.shape_b.index(), c.feature}) {
+      integers.push_back(i);
+    }
     add(c.normal);
     add(c.point);
     numbers.push_back(c.separation);
@@ -78,7 +82,9 @@ nb::tuple step_contacts(HeldBatch& self, int world) {
 }
 
 nb::dict measure_contacts(HeldBatch& self) {
-  const ContactSummary s = self.run([](Batch& b) { return b.measure_contacts(); });
+  const ContactSummary s = self.run([](Batch& b) {
+    return Interrupts::during([&](const GoOn& go_on) { return b.measure_contacts(go_on); });
+  });
   nb::dict out;
   out["points_per_world"] = s.points_per_world;
   out["manifolds_per_world"] = s.manifolds_per_world;

@@ -3,11 +3,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <chrono>
-
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "held_batch.hpp"
+#include "interrupts.hpp"
 #include "read_quantity.hpp"
 
 namespace nb = nanobind;
@@ -15,22 +14,6 @@ namespace nb = nanobind;
 namespace manyworlds::python {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// Ctrl-C and other signals, ten times a second.
-class Interrupts {
- public:
-  void check() {
-    if (Clock::now() < next_) return;
-    next_ = Clock::now() + std::chrono::milliseconds(100);
-    const nb::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();
-  }
-
- private:
-  Clock::time_point next_ = Clock::now() + std::chrono::milliseconds(100);
-};
 
 // One array (frames, ...) and where its next frame goes.
 template <class Number>
@@ -65,20 +48,22 @@ struct Recorder {
   }
 };
 
+// Returns the steps taken.
 template <class Number>
-void roll(Batch& batch, const Plays<Number>& plays, const Recorder& recorder, std::size_t steps,
-          std::size_t every) {
-  Interrupts interrupts;
+std::size_t roll(Batch& batch, const Plays<Number>& plays, const Recorder& recorder,
+                 std::size_t steps, std::size_t every, const GoOn& go_on) {
   const std::size_t frames = steps / every;
-  for (std::size_t step = 0; step < steps;) {
+  std::size_t step = 0;
+  while (step < steps && go_on()) {
     // Without controls the steps to the next frame are one call.
     const std::size_t n = plays.controls.empty() ? std::min(every - step % every, steps - step) : 1;
     plays.play(batch, step);
-    batch.step(static_cast<int>(n));
-    step += n;
+    const auto taken = static_cast<std::size_t>(batch.step(static_cast<int>(n), go_on));
+    step += taken;
+    if (taken < n) break;
     if (step % every == 0) recorder.frame(batch, step / every - 1, frames);
-    interrupts.check();
   }
+  return step;
 }
 
 void rollout(HeldBatch& self, int steps, int every, const std::optional<AnyIn>& controls,
@@ -86,13 +71,14 @@ void rollout(HeldBatch& self, int steps, int every, const std::optional<AnyIn>& 
   if (steps < 0 || every < 1 || names.size() != arrays.size()) {
     throw nb::value_error("steps must be >= 0, every >= 1, and as many arrays as names");
   }
+  if (self.kinds() > 1) throw nb::value_error("rollouts are of batches with one kind of world");
   const auto count = static_cast<std::size_t>(steps);
   const std::size_t frames = count / static_cast<std::size_t>(every);
   Recorder recorder;
   std::size_t of_step = 0;
   self.with([&](Batch& b) {
     of_step = static_cast<std::size_t>(b.worlds()) * static_cast<std::size_t>(b.controls());
-    const auto all = quantities_of(b);
+    const auto all = quantities_of(b, self.range(0));
     for (std::size_t i = 0; i < names.size(); ++i) {
       const Quantity& q = find_quantity(all, names[i]);
       check_size(q.name, arrays[i].size(),
@@ -108,7 +94,11 @@ void rollout(HeldBatch& self, int steps, int every, const std::optional<AnyIn>& 
     }
   });
   const auto go = [&](auto plays) {
-    self.run([&](Batch& b) { roll(b, plays, recorder, count, static_cast<std::size_t>(every)); });
+    self.run([&](Batch& b) {
+      Interrupts::during([&](const GoOn& go_on) {
+        return roll(b, plays, recorder, count, static_cast<std::size_t>(every), go_on);
+      });
+    });
   };
   if (!controls) return go(Plays<float>{});
   check_size("controls", controls->size(), of_step * count);

@@ -2,7 +2,11 @@
 // and what else is convenient are the package's business (manyworlds/tasks.py).
 #include <array>
 
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
 #include "bind.hpp"
+#include "expression_graph.hpp"
 #include "task_fields.hpp"
 
 namespace manyworlds::python {
@@ -18,15 +22,19 @@ bool is_operand(nb::handle value) {
 }
 Expression operand(nb::handle value) { return from_python<Expression>(value, "the operand"); }
 
+// `narrows`: what any two objects have, which here is an Expression.
 template <class F>
-void binary(nb::class_<Expression>& c, const char* name, F f) {
+void binary(nb::class_<Expression>& c, const char* name, F f, bool narrows = false) {
+  const std::string operand_type = narrows ? "object" : "Expression | float";
+  const std::string signature =
+      "def " + std::string(name) + "(self, other: " + operand_type + ", /) -> Expression";
   c.def(
       name,
       [f](E self, nb::handle other) -> nb::object {
         if (!is_operand(other)) return nb::borrow(nb::handle(Py_NotImplemented));
         return nb::cast(f(self, operand(other)));
       },
-      nb::is_operator());
+      nb::is_operator(), nb::sig(signature.c_str()));
 }
 // With the operand on the left, too.
 template <class F>
@@ -47,14 +55,18 @@ Expression power(E self, nb::handle exponent) {
   return out;
 }
 
+// A class as a namespace: stubs have no place for a module within a module.
+struct FunctionsOfExpressions {};
+using Functions = nb::class_<FunctionsOfExpressions>;
+
 template <class F>
-void one(nb::module_& m, const char* name, F f) {
-  m.def(
+void one(Functions& m, const char* name, F f) {
+  m.def_static(
       name, [f](nb::handle a) { return f(operand(a)); }, nb::arg("a"));
 }
 template <class F>
-void two(nb::module_& m, const char* name, F f) {
-  m.def(
+void two(Functions& m, const char* name, F f) {
+  m.def_static(
       name, [f](nb::handle a, nb::handle b) { return f(operand(a), operand(b)); }, nb::arg("a"),
       nb::arg("b"));
 }
@@ -70,8 +82,10 @@ void bind_operators(nb::class_<Expression>& c) {
   binary(c, "__le__", [](E a, E b) { return a <= b; });
   binary(c, "__gt__", [](E a, E b) { return a > b; });
   binary(c, "__ge__", [](E a, E b) { return a >= b; });
-  binary(c, "__eq__", [](E a, E b) { return equal(a, b); });
-  binary(c, "__ne__", [](E a, E b) { return !equal(a, b); });
+  binary(
+      c, "__eq__", [](E a, E b) { return equal(a, b); }, true);
+  binary(
+      c, "__ne__", [](E a, E b) { return !equal(a, b); }, true);
   c.def("__neg__", [](E a) { return -a; })
       .def("__pos__", [](E a) { return a; })
       .def("__invert__", [](E a) { return !a; })
@@ -91,20 +105,47 @@ void bind_operators(nb::class_<Expression>& c) {
   c.attr("__array_ufunc__") = nb::none();  // NumPy numbers leave operators to us
 }
 
-void bind_terms(nb::module_& m) {
-  m.def("position", &terms::position, nb::arg("body"), nb::arg("axis"));
-  m.def("velocity", &terms::velocity, nb::arg("body"), nb::arg("axis"));
-  m.def("angular_velocity", &terms::angular_velocity, nb::arg("body"), nb::arg("axis"));
-  m.def("angle", &terms::angle, nb::arg("body"));
-  m.def("direction", &terms::direction, nb::arg("body"), nb::arg("of"), nb::arg("axis"));
-  m.def("joint_position", &terms::joint_position, nb::arg("joint"), nb::arg("coordinate"));
-  m.def("joint_speed", &terms::joint_speed, nb::arg("joint"), nb::arg("coordinate"));
-  m.def("touching", &terms::touching, nb::arg("body"));
-  m.def("ray_distance", &terms::ray_distance, nb::arg("ray"));
-  m.def("action", &terms::action, nb::arg("index"));
-  m.def("control", &terms::control, nb::arg("index"));
-  m.def("age", &terms::age);
-  m.def("lost", &terms::lost);
+// What pickles and repr() are made of.
+void bind_values(nb::module_& m, nb::class_<Expression>& c) {
+  m.def("expression_graph", &values_of, nb::arg("roots"),
+        nb::sig("def expression_graph(roots: Sequence[Expression]) -> "
+                "tuple[list[tuple[str | int | float, ...]], list[int]]"),
+        "(nodes, roots): expressions as plain values, of which what they share is one.");
+  m.def("expressions_of_graph", &from_values, nb::arg("nodes"), nb::arg("roots"),
+        "The expressions of such a graph. Raises TypeError and ValueError.");
+  c.def("__repr__", [](E a) { return "<manyworlds.Expression " + text_of(a, 72) + ">"; });
+}
+
+void bind_terms(Functions& m) {
+  const auto of_body = [&m](const char* name, auto term) {
+    m.def_static(
+        name, [term](int body, int axis) { return term(BodyId(body), axis); }, nb::arg("body"),
+        nb::arg("axis"));
+  };
+  const auto of_joint = [&m](const char* name, auto term) {
+    m.def_static(
+        name, [term](int joint, int coordinate) { return term(JointId(joint), coordinate); },
+        nb::arg("joint"), nb::arg("coordinate"));
+  };
+  of_body("position", terms::position);
+  of_body("velocity", terms::velocity);
+  of_body("angular_velocity", terms::angular_velocity);
+  m.def_static(
+      "angle", [](int body) { return terms::angle(BodyId(body)); }, nb::arg("body"));
+  m.def_static(
+      "direction",
+      [](int body, int of, int axis) { return terms::direction(BodyId(body), of, axis); },
+      nb::arg("body"), nb::arg("of"), nb::arg("axis"));
+  of_joint("joint_position", terms::joint_position);
+  of_joint("joint_speed", terms::joint_speed);
+  m.def_static(
+      "touching", [](int body) { return terms::touching(BodyId(body)); }, nb::arg("body"));
+  m.def_static("ray_distance", &terms::ray_distance, nb::arg("ray"));
+  m.def_static("action", &terms::action, nb::arg("index"));
+  m.def_static(
+      "control", [](int index) { return terms::control(ControlId(index)); }, nb::arg("index"));
+  m.def_static("age", &terms::age);
+  m.def_static("lost", &terms::lost);
   one(m, "previous", terms::previous);
   one(m, "held", terms::held);
   one(m, "largest", terms::largest);
@@ -120,7 +161,8 @@ void bind_expression(nb::module_& parent) {
       [](Expression* self, nb::handle number) { new (self) Expression(operand(number)); },
       nb::arg("number") = 0);
   bind_operators(c);
-  nb::module_ m = parent.def_submodule("expressions", "Functions and terms of expressions.");
+  bind_values(parent, c);
+  Functions m(parent, "expressions", "Functions and terms of expressions.");
   one(m, "sin", [](E a) { return sin(a); });
   one(m, "cos", [](E a) { return cos(a); });
   one(m, "exp", [](E a) { return exp(a); });
@@ -129,13 +171,13 @@ void bind_expression(nb::module_& parent) {
   two(m, "minimum", [](E a, E b) { return min(a, b); });
   two(m, "maximum", [](E a, E b) { return max(a, b); });
   two(m, "arctan2", [](E y, E x) { return atan2(y, x); });
-  m.def(
+  m.def_static(
       "where",
       [](nb::handle condition, nb::handle yes, nb::handle no) {
         return select(operand(condition), operand(yes), operand(no));
       },
       nb::arg("condition"), nb::arg("yes"), nb::arg("no"));
-  m.def(
+  m.def_static(
       "clip",
       [](nb::handle a, nb::handle low, nb::handle high) {
         return clamp(operand(a), operand(low), operand(high));

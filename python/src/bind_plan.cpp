@@ -1,3 +1,4 @@
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -44,14 +45,21 @@ nb::dict report(const Plan& plan) {
   return out;
 }
 
-// An index of a list of the scene, or an IndexError.
-int checked(const char* name, int index, std::size_t count) {
-  if (index < 0 || static_cast<std::size_t>(index) >= count) {
-    throw nb::index_error((std::string(name) + " is " + std::to_string(index) + ", must be 0 to " +
-                           std::to_string(static_cast<std::ptrdiff_t>(count) - 1))
-                              .c_str());
+int find(const Plan& p, const std::string& kind, nb::object name) {
+  return find_in(p.scene(), kind, name);
+}
+std::pair<int, int> find_shape(const Plan& p, const std::string& name, nb::object body) {
+  return find_shape_in(p.scene(), name, body);
+}
+
+int row(const Plan& p, nb::object body) {
+  if (is_dataclass(body, "ShapeId")) {
+    const ShapeId shape = read_shape(body, {}, Place{nullptr, "shape"});
+    checked("shape.body", shape.body().index(), p.scene().bodies.size());
+    checked("shape.index", shape.index(), p.scene().at(shape.body()).shapes.size());
+    return p.row(shape);
   }
-  return index;
+  return p.row(BodyId(find(p, "body", body)));
 }
 
 }  // namespace
@@ -74,24 +82,40 @@ void bind_plan(nb::module_& m) {
       .def_prop_ro("coordinates", &Plan::coordinates, "Coordinates of all joints.")
       .def_prop_ro("fingerprint", &Plan::fingerprint,
                    "Equal for plans whose worlds can go on in each other.")
+      .def_prop_ro(
+          "scene_bodies", [](const Plan& p) { return p.scene().bodies.size(); },
+          "All bodies of the scene, with the fixed ones.")
+      .def_prop_ro(
+          "joints", [](const Plan& p) { return p.scene().joints.size(); }, "Joints of the scene.")
+      .def("row", &row, nb::arg("body"),
+           "Where a body, by handle, name or index, is in arrays (worlds, bodies, ...), or a "
+           "shape, by "
+           "handle, in arrays (worlds, shapes, ...). Raises ValueError for fixed bodies.")
       .def(
-          "scene_body",
-          [](const Plan& p, int body) {
-            return p.scene_body(checked("body", body, static_cast<std::size_t>(p.bodies())));
+          "body_in_row",
+          [](const Plan& p, int row) {
+            checked("row", row, static_cast<std::size_t>(p.bodies()));
+            return p.body_in_row(row).index();
           },
-          nb::arg("body"), "Index in the scene of a state body.")
+          nb::arg("row"), "Index in the scene of the body in a row.")
       .def(
-          "state_body",
-          [](const Plan& p, int body) {
-            return p.state_body(checked("body", body, p.scene().bodies.size()));
+          "bodies_in_rows",
+          [](const Plan& p) {
+            std::vector<int> out;
+            for (int r = 0; r < p.bodies(); ++r) out.push_back(p.body_in_row(r).index());
+            return out;
           },
-          nb::arg("body"), "Index of the state body of a body of the scene, -1 for fixed ones.")
+          "Indices in the scene of the bodies in all rows.")
+      .def("find", &find, nb::arg("kind"), nb::arg("name"),
+           "Index of the body, joint or control that a name, handle or index means.")
+      .def("find_shape", &find_shape, nb::arg("name"), nb::arg("body").none(),
+           "(body, index) of the shape of a name, of one body or of all.")
       .def(
           "first_coordinate",
-          [](const Plan& p, int joint) {
-            return p.first_coordinate(checked("joint", joint, p.scene().joints.size()));
+          [](const Plan& p, nb::object joint) {
+            return p.first_coordinate(JointId(find(p, "joint", joint)));
           },
-          nb::arg("joint"), "Where the coordinates of a joint begin.")
+          nb::arg("joint"), "Where the coordinates of a joint, by handle, name or index, begin.")
       .def(
           "has",
           [](const Plan& p, nb::object f) { return p.has(from_python<Feature>(f, "feature")); },

@@ -34,14 +34,11 @@ nb::object load(const std::string& name) {
                             .c_str());
 }
 
-int body_index(const Scene& scene, const char* name, int body, int low) {
-  const int most = static_cast<int>(scene.bodies.size()) - 1;
-  if (body < low || body > most) {
-    throw nb::index_error((std::string(name) + " is " + std::to_string(body) + ", must be " +
-                           std::to_string(low) + " to " + std::to_string(most))
-                              .c_str());
-  }
-  return body;
+// A body of the scene; the world, too, where `world` is allowed.
+BodyId body_of(const Scene& scene, const char* name, nb::handle body, bool world) {
+  const BodyId id = read_body(body, Place{nullptr, name, -1, &scene});
+  if (world && id == BodyId()) return id;
+  return BodyId(checked(name, id.index(), scene.bodies.size(), world ? -1 : 0));
 }
 
 // Masses and frames are derived from scenes that have no issue.
@@ -72,6 +69,20 @@ void bind_scene(nb::module_& m) {
   m.def(
       "round_trip", [](nb::object scene) { return to_python(from_python<Scene>(scene, "scene")); },
       nb::arg("scene"), "The scene as the library understands it.");
+  m.def(
+      "find_in_scene",
+      [](nb::object scene, const std::string& kind, nb::object name) {
+        return find_in(names_of_scene(scene), kind, name);
+      },
+      nb::arg("scene"), nb::arg("kind"), nb::arg("name"),
+      "Index of the body, joint or control that a name, handle or index means.");
+  m.def(
+      "find_shape_in_scene",
+      [](nb::object scene, const std::string& name, nb::object body) {
+        return find_shape_in(names_of_scene(scene), name, body);
+      },
+      nb::arg("scene"), nb::arg("name"), nb::arg("body").none(),
+      "(body, index) of the shape of a name, of one body or of all.");
   m.def("load_scene", &load, nb::arg("name"), "A scene that has a name.");
   m.def(
       "scene_names",
@@ -84,20 +95,20 @@ void bind_scene(nb::module_& m) {
       "(name, summary) of every scene that has a name.");
   m.def(
       "joint_at",
-      [](nb::object scene, int body_a, int body_b, nb::object frame, nb::object type) {
+      [](nb::object scene, nb::object body_a, nb::object body_b, nb::object frame,
+         nb::object type) {
         const Scene s = sound_scene(scene);
         return to_python(
-            joint_at(s, body_index(s, "body_a", body_a, -1), body_index(s, "body_b", body_b, -1),
+            joint_at(s, body_of(s, "body_a", body_a, true), body_of(s, "body_b", body_b, true),
                      from_python<Frame>(frame, "frame"), from_python<JointType>(type, "type")));
       },
       nb::arg("scene"), nb::arg("body_a"), nb::arg("body_b"), nb::arg("frame"), nb::arg("type"),
       "A joint of two bodies whose frames are where `frame` is in the world.");
   m.def(
       "mass_properties",
-      [](nb::object scene, int body) {
+      [](nb::object scene, nb::object body) {
         const Scene s = sound_scene(scene);
-        const auto at = static_cast<std::size_t>(body_index(s, "body", body, 0));
-        return to_python(mass_properties(s, s.bodies[at]));
+        return to_python(mass_properties(s, s.at(body_of(s, "body", body, false))));
       },
       nb::arg("scene"), nb::arg("body"), "Mass, centre and inertia of a body of a scene.");
   m.def(

@@ -26,7 +26,9 @@ Snapshot from_bytes(const nb::bytes& data) {
 }  // namespace
 
 void bind_snapshot(nb::module_& m) {
-  bind_error<SnapshotError>(m, "SnapshotError");
+  bind_error<SnapshotError>(
+      m, "SnapshotError",
+      "A snapshot that is cut, damaged, or of another plan, task or precision.");
 
   nb::class_<Snapshot>(
       m, "Snapshot",

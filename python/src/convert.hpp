@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -38,19 +39,38 @@ bool is_dataclass(nb::handle value, const char* name);
 template <class T>
 struct Described;  // name, and fields(visit, value): visit("member", value.member)...
 
+// Index of the "body", "joint" or "control" of a scene that a handle, a name or an index means, and
+// (body, index) of a shape by its name. Raise IndexError and ValueError.
+int find_in(const Scene& scene, const std::string& kind, nb::handle name);
+std::pair<int, int> find_shape_in(const Scene& scene, const std::string& name, nb::handle body);
+// An index from `low` to below a count, or an IndexError.
+int checked(const std::string& name, int index, std::size_t count, int low = 0);
+
+// A scene of the names of one in Python, and of nothing else; parts of a wrong type have none.
+Scene names_of_scene(nb::handle scene);
+
 template <class T>
 struct Converter {  // of a Described struct
   static T read(nb::handle value, const Place& place) {
     check_dataclass(value, place, Described<T>::name);
-    T out;
-    Described<T>::fields(
-        [&]<class Member>(const char* name, Member& member) {
-          member = Converter<Member>::read(nb::getattr(value, name), place.member(name));
-        },
-        out);
-    return out;
+    if constexpr (std::is_same_v<T, Scene>) {
+      const Scene names = names_of_scene(value);
+      return read_members(value, {place.up, place.name, place.index, &names});
+    } else if constexpr (requires(T t) { t.scene; }) {  // a task
+      const Scene names = names_of_scene(nb::getattr(value, "scene"));
+      return read_members(value, {place.up, place.name, place.index, &names});
+    } else {
+      return read_members(value, place);
+    }
   }
   static nb::object write(const T& value) {
+    if constexpr (std::is_same_v<T, Variation>) {  // its shape is written as one of its body
+      if (value.body != value.shape.body() && value.shape.body()) {
+        T told = value;
+        told.body = value.shape.body();
+        return write(told);
+      }
+    }
     nb::dict members;
     Described<T>::fields(
         [&]<class Member>(const char* name, const Member& member) {
@@ -58,6 +78,26 @@ struct Converter {  // of a Described struct
         },
         value);
     return make_dataclass(Described<T>::name, members);
+  }
+
+ private:
+  static T read_members(nb::handle value, const Place& place) {
+    T out;
+    Described<T>::fields(
+        [&]<class Member>(const char* name, Member& member) {
+          read_member(out, member, nb::getattr(value, name), place.member(name));
+        },
+        out);
+    return out;
+  }
+  template <class Member>
+  static void read_member(T& out, Member& member, const nb::object& found, const Place& place) {
+    if constexpr (std::is_same_v<Member, ShapeId>) {  // of a Variation, after its body
+      member = read_shape(found, out.body, place);
+      if (!out.body) out.body = member.body();
+    } else {
+      member = Converter<Member>::read(found, place);
+    }
   }
 };
 
@@ -79,6 +119,26 @@ struct Converter<T> {
         read_integer(value, place, std::numeric_limits<T>::min(), std::numeric_limits<T>::max()));
   }
   static nb::object write(T value) { return nb::int_(value); }
+};
+// Handles, names of Place::scene, or indices of it (references.cpp).
+BodyId read_body(nb::handle value, const Place& place);
+JointId read_joint(nb::handle value, const Place& place);
+ControlId read_control(nb::handle value, const Place& place);
+// Indices and names are of the body, if there is one.
+ShapeId read_shape(nb::handle value, BodyId body, const Place& place);
+template <>
+struct Converter<BodyId> {
+  static BodyId read(nb::handle value, const Place& place) { return read_body(value, place); }
+  static nb::object write(BodyId id) { return nb::int_(id.index()); }
+};
+template <>
+struct Converter<JointId> {
+  static JointId read(nb::handle value, const Place& place) { return read_joint(value, place); }
+  static nb::object write(JointId id) { return nb::int_(id.index()); }
+};
+template <>
+struct Converter<ShapeId> {
+  static nb::object write(ShapeId id) { return nb::int_(id.index()); }
 };
 template <>
 struct Converter<std::string> {
@@ -199,8 +259,8 @@ struct Converter<std::variant<Ts...>> {
 };
 
 template <class T>
-T from_python(nb::handle value, const char* name) {
-  return Converter<T>::read(value, Place{nullptr, name, -1});
+T from_python(nb::handle value, const char* name, const Scene* scene = nullptr) {
+  return Converter<T>::read(value, Place{nullptr, name, -1, scene});
 }
 template <class T>
 nb::object to_python(const T& value) {

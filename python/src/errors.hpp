@@ -10,9 +10,10 @@ namespace manyworlds::python {
 
 // `Error` becomes a ValueError of that name; what() may hold file names, which need not be UTF-8.
 template <class Error>
-void bind_error(nanobind::module_& m, const char* name) {
+void bind_error(nanobind::module_& m, const char* name, const char* doc) {
   // Kept for as long as the interpreter runs, whatever becomes of the module.
   PyObject* type = nanobind::exception<Error>(m, name, PyExc_ValueError).inc_ref().ptr();
+  nanobind::setattr(type, "__doc__", nanobind::str(doc));
   nanobind::register_exception_translator(
       [](const std::exception_ptr& thrown, void* payload) {
         try {

@@ -8,6 +8,7 @@ NB_MODULE(_core, m) {
   mw::bind_names(m);
   mw::bind_scene(m);
   mw::bind_plan(m);
+  mw::bind_query(m);
   mw::bind_snapshot(m);
   mw::bind_batch(m);
   mw::bind_expression(m);

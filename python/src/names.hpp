@@ -69,8 +69,6 @@ const char* name_of(Enum value) {
   return "?";
 }
 
-// Edits (insert, remove, change a letter) that turn one word into the other.
-int edit_distance(std::string_view a, std::string_view b);
 // "is 'dynamc'; expected one of 'dynamic', 'kinematic', 'fixed' (nearest: 'dynamic')"
 std::string unknown_name(std::string_view found, const std::vector<std::string>& known);
 

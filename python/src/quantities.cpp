@@ -71,30 +71,39 @@ const char* owner_name(ParameterInfo::Owner owner) {
 
 }  // namespace
 
-std::vector<Quantity> quantities_of(const Batch& batch) {
-  const Space space = batch.plan().scene().space;
-  const auto items = [&](std::size_t numbers, int components) {
-    return static_cast<int>(numbers / static_cast<std::size_t>(batch.worlds()) /
-                            static_cast<std::size_t>(components));
+std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of) {
+  const Plan& plan = batch.plan(of.kind);
+  const Scene& scene = plan.scene();
+  const Space space = scene.space;
+  const auto items = [&](std::string_view item) {
+    if (item == "body") return plan.bodies();
+    if (item == "joint") return static_cast<int>(scene.joints.size());
+    if (item == "coordinate") return plan.coordinates();
+    if (item == "ray") {  // every world casts them all
+      return static_cast<int>(batch.size(Observed::ray_distance)) / batch.worlds();
+    }
+    std::size_t shapes = 0;
+    for (const Body& body : scene.bodies) shapes += body.shapes.size();
+    return item == "shape" ? static_cast<int>(shapes) : 1;
   };
   std::vector<Quantity> out;
   for (int i = 0; i < kFieldCount; ++i) {
     const Field field{i};
     const FieldInfo& f = info(field);
     const int n = components(field, space);
-    out.push_back(
-        {field, f.name, "state", "", "body", items(batch.size(field), n), n, f.unit, f.meaning});
+    out.push_back({field, f.name, "state", "", "body", items("body"), n, f.unit, f.meaning});
   }
   for (int i = 0; i < kParameterCount; ++i) {
     const Parameter parameter{i};
     const ParameterInfo& p = info(parameter);
-    out.push_back({parameter, p.name, "parameter", "", owner_name(p.owner),
-                   items(batch.size(parameter), p.numbers), p.numbers, p.unit, p.meaning});
+    const char* const owner = owner_name(p.owner);
+    out.push_back(
+        {parameter, p.name, "parameter", "", owner, items(owner), p.numbers, p.unit, p.meaning});
   }
   for (const ObservedInfo& o : kObserved) {
     const int n = components_of(o.width, space == Space::planar);
-    out.push_back({o.what, o.name, "observed", o.observer, o.item, items(batch.size(o.what), n), n,
-                   o.unit, o.meaning});
+    out.push_back(
+        {o.what, o.name, "observed", o.observer, o.item, items(o.item), n, o.unit, o.meaning});
   }
   return out;
 }

@@ -1,12 +1,12 @@
 // Everything that a batch has an array of, by name: state fields, numbers of the scene, what is
-// observed. All arrays are (worlds, items, components).
+// observed. All arrays are (worlds, items, components), of the worlds of one kind.
 #pragma once
 
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "manyworlds/batch.hpp"
+#include "held_batch.hpp"
 
 namespace manyworlds::python {
 
@@ -22,7 +22,7 @@ struct Quantity {
   const char* meaning;
 };
 
-std::vector<Quantity> quantities_of(const Batch& batch);
+std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of);
 // Throws nanobind::value_error with the known names and the nearest.
 const Quantity& find_quantity(const std::vector<Quantity>& all, std::string_view name);
 

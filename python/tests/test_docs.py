@@ -40,9 +40,6 @@ def test_the_manual(tmp_path, monkeypatch):
                 "p": np.zeros((bodies, width)),
                 "where": np.zeros((bodies, width)),
             }
-            code = code.replace("(0, 0, 9.0), bodies=2", "(0, 9.0), bodies=0")
-            code = code.replace("bodies=3", "bodies=0")
-            code = code.replace("spawn(3, position=(0, 0, 5)", "spawn(0, (0, 5)")
         exec(code.replace("worlds=4096", "worlds=64"), places)
     assert places["path"].shape == (2, 64, 1, 2)
     assert places["result"].same and places["frame"].shape == (400, 600, 3)

@@ -43,7 +43,7 @@ WRONG = [
     (lambda b: b.get("position", out=np.zeros((5, 5, 2), ">f4")), TypeError, "expected float32"),
     # set
     (lambda b: b.set("position", np.zeros((5, 5, 3))), ValueError, r"\(5, 5, 3\); expected"),
-    (lambda b: b.set("position", 3), ValueError, r"shape \(\); expected"),
+    (lambda b: b.set("position", [1, 2, 3]), ValueError, r"shape \(3,\); expected"),
     (lambda b: b.set("position", "abc"), TypeError, "expected real numbers"),
     (lambda b: b.set("position", [[1], [1, 2]]), ValueError, "position is no array"),
     (lambda b: b.set("position", np.zeros((5, 5, 2), complex)), TypeError, "complex128"),
@@ -81,15 +81,15 @@ WRONG = [
         ValueError,
         r"\(worlds=5, bodies=5, components=2\), or what",
     ),
-    (lambda b: b.add_force((1, 2), bodies=5), IndexError, "bodies hold 5, must be 0 to 4"),
+    (lambda b: b.add_force((1, 2), bodies=6), IndexError, "bodies hold 6, must be 0 to 5"),
     (lambda b: b.add_force((1, 2), ids=[0, 7]), IndexError, "ids hold 7"),
     (lambda b: b.add_force((1, 2), points=(1, 2, 3)), ValueError, "points has shape"),
     (lambda b: b.add_torque((1, 2)), ValueError, "torque has shape"),
     (lambda b: b.set_enabled(1), TypeError, "expected bools"),
     (lambda b: b.set_joints_enabled(True, joints=2), IndexError, "joints hold 2, must be 0 to 1"),
-    (lambda b: b.spawn(5, (0, 0)), IndexError, "body is 5, must be 0 to 4"),
-    (lambda b: b.spawn(0, (0, 0, 0)), ValueError, "position has shape"),
-    (lambda b: b.spawn(0, (0, 0), orientation=(0, 0)), ValueError, "length 0"),
+    (lambda b: b.spawn(6, (0, 0)), IndexError, "body is 6, must be 0 to 5"),
+    (lambda b: b.spawn(1, (0, 0, 0)), ValueError, "position has shape"),
+    (lambda b: b.spawn(1, (0, 0), orientation=(0, 0)), ValueError, "length 0"),
     (lambda b: b.wake(ids=9), IndexError, "ids hold 9"),
     (lambda b: b.set_rays([mw.Ray()]), ValueError, "ray"),
     # results
@@ -132,7 +132,7 @@ WRONG = [
     (lambda b: b.rollout(steps=3, out=[]), TypeError, "expected a dict"),
     (lambda b: b.rollout(steps=3, out={"position": np.zeros(3, "f4")}), ValueError, "frames=3"),
     (lambda b: b.rollout(7, steps=3), TypeError, "expected a Snapshot or a dict"),
-    (lambda b: b.rollout({"position": 1}, steps=3), ValueError, "position has shape"),
+    (lambda b: b.rollout({"position": [1, 2, 3]}, steps=3), ValueError, "position has shape"),
 ]
 
 
@@ -151,6 +151,11 @@ def test_a_wrong_call_says_what_is_wrong(index):
     [
         ({"worlds": 0}, ValueError, "worlds is 0, must be 1 to 100000000"),
         ({"worlds": 2**31}, ValueError, "worlds is 2147483648"),
+        (
+            {"worlds": 10**8},
+            ValueError,
+            r"worlds: 100000000 worlds of '.*' need \d+\.\d GB of memory, the machine has",
+        ),
         ({"worlds": "5"}, TypeError, "worlds is of type str"),
         ({"threads": 0}, ValueError, "threads is 0, must be 1"),
         ({"threads": 10**6}, ValueError, "must be 1 to 1024"),

@@ -73,6 +73,39 @@ def test_what_is_not_simulated_is_an_error_that_names_it(tmp_path):
         mw.mjcf.load_string(None)
 
 
+def test_files_come_from_the_model_s_folder_and_from_roots(tmp_path):
+    (tmp_path / "model").mkdir()
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts/ball.xml").write_text(BALL)
+    model = tmp_path / "model/model.xml"
+    model.write_text('<mujoco><include file="../parts/ball.xml"/></mujoco>')
+    with pytest.raises(mw.mjcf.MjcfError, match="include, line 1: .* outside of the model's folder"):
+        mw.mjcf.load(model)
+    assert len(mw.mjcf.load(model, roots=[tmp_path / "parts"]).bodies) == len(
+        mw.mjcf.load_string(BALL).bodies
+    )
+    text = '<mujoco><include file="ball.xml"/></mujoco>'
+    with pytest.raises(mw.mjcf.MjcfError, match="a text has no folder"):
+        mw.mjcf.load_string(text)
+    assert mw.mjcf.load_string(text, roots=[str(tmp_path / "parts")]).bodies
+    with pytest.raises(TypeError, match="roots must be a list of folders"):
+        mw.mjcf.load(model, roots="parts")
+
+
+def test_what_asks_for_too_much_is_refused_and_limits_widen():
+    crowd = BALL.replace("<body", '<replicate count="20"><body').replace(
+        "</body>", "</body></replicate>"
+    )
+    with pytest.raises(mw.mjcf.MjcfError, match=r"replicate, line \d+: .*expected at most 9 .*'copies'"):
+        mw.mjcf.load_string(crowd, limits={"copies": 9})
+    assert len(mw.mjcf.load_string(crowd).bodies) >= 20
+    assert mw.mjcf.limits()["copies"] >= 10000
+    with pytest.raises(ValueError, match="'copys' is unknown; there are .*copies"):
+        mw.mjcf.load_string(crowd, limits={"copys": 9})
+    with pytest.raises(TypeError):
+        mw.mjcf.load_string(crowd, limits={"copies": 9.5})
+
+
 def test_the_extra_is_the_mujoco_that_the_library_is_built_with():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     (extra,) = project["optional-dependencies"]["mjcf"]

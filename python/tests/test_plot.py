@@ -44,11 +44,11 @@ def test_what_is_not_there_is_not_drawn():
     batch = mw.Batch(planar_ball(position=(0, 1, 0)), worlds=2)
     made = plot.Picture(batch.plan.scene)
     there = made.frame(batch)
-    batch.set_enabled(False, bodies=0)
+    batch.set_enabled(False, bodies=1)
     gone = made.frame(batch)
     assert (there != gone).any(axis=2).sum() > 1000
     # A world that was lost in the meantime has no pose to draw.
-    batch.set_enabled(True, bodies=0)
+    batch.set_enabled(True, bodies=1)
     batch.set("position", [[[np.nan, 1.0]]], ids=[1])
     np.testing.assert_array_equal(made.frame(batch, 1), gone)
 
@@ -63,9 +63,9 @@ def test_sizes_that_vary_are_seen():
         batch.set("size", sizes)
         made = plot.Picture(scene, size=(800, 800), view=((-2, 2), (-1, 3)))
         with_ball = made.frame(batch)
-        batch.set_enabled(False, bodies=0)
+        batch.set_enabled(False, bodies=1)
         area = (with_ball != made.frame(batch)).any(axis=2).sum() / 200**2  # m^2
-        batch.set_enabled(True, bodies=0)
+        batch.set_enabled(True, bodies=1)
         assert area == pytest.approx(np.pi * radius**2, rel=0.07)
 
 

@@ -20,10 +20,10 @@ def disturbed(file, batch, steps=12, **arguments):
     with record.Recorder(batch, file, **arguments) as recorder:
         seen.append(batch.get("position"))
         for i in range(steps):
-            batch.add_force((3.0, 0, 9), bodies=0, ids=[1])
+            batch.add_force((3.0, 0, 9), bodies=1, ids=[1])
             if i == 4:
                 batch.reset([2])
-                batch.set_enabled(False, bodies=1, ids=[0])
+                batch.set_enabled(False, bodies=2, ids=[0])
             batch.step(2)
             seen.append(batch.get("position"))
         assert recorder.samples == steps + 1
@@ -107,7 +107,7 @@ def test_what_is_not_finished_leaves_no_file(batch, tmp_path):
 def test_a_busy_batch_is_recorded_on_and_closed_later(batch, tmp_path):
     recorder = record.Recorder(batch, tmp_path / "run.h5", every=0)
     dumps = record.LostWorldDumps(batch, tmp_path / "lost")
-    batch.add_force((np.inf, 0, 0), bodies=0, ids=[3])
+    batch.add_force((np.inf, 0, 0), bodies=1, ids=[3])
     thread = threading.Thread(target=batch.step, args=(100_000,))
     thread.start()
     refused = 0
@@ -146,7 +146,7 @@ def test_lost_worlds_are_dumped(tmp_path):
     batch = mw.Batch(crates(), worlds=6, seed=2)
     with record.LostWorldDumps(batch, tmp_path / "lost") as dumps:
         batch.step(5)
-        batch.add_force((np.inf, 0, 0), bodies=0, ids=[3])
+        batch.add_force((np.inf, 0, 0), bodies=1, ids=[3])
         batch.step()
         batch.step()
     assert [file.name for file in dumps.files] == ["world_3.h5"]
@@ -218,7 +218,7 @@ def test_more_wrong_arguments_are_errors(batch, tmp_path):
         record.scene_to_json(None)
     with pytest.raises(TypeError, match="json is of type bytes; expected a str"):
         record.scene_from_json(b"{}")
-    batch.add_force((0, 0, 1), bodies=0)
+    batch.add_force((0, 0, 1), bodies=1)
     with pytest.raises(ValueError, match="forces were added"):
         record.Recorder(batch, tmp_path / "run.h5")
     batch.step()

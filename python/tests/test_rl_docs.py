@@ -1,5 +1,6 @@
 """The examples of docs/rl.md run."""
 
+import importlib.util
 import re
 from pathlib import Path
 
@@ -23,3 +24,19 @@ def test_the_manual():
     assert places["task"].validate() == []
     for name in tasks.names():
         assert f"| {name} |" in text
+
+
+def test_peers_are_measured(monkeypatch, capsys):
+    """The script of the table of peers: who is there has a row, who is not is named."""
+    pytest.importorskip("gymnasium")
+    path = ROOT / "bench" / "python" / "vector_envs.py"
+    spec = importlib.util.spec_from_file_location("vector_envs", path)
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    monkeypatch.setattr(script, "PAIRS", [("CartPole-v1", "CartPole")])
+    rows = {row["what"]: row for row in script.compare_peers([8], 0.02, 1)}
+    assert rows["manyworlds VectorEnv"]["ratio"] == 1
+    assert rows["Gymnasium, NumPy (vector_entry_point)"]["speed"] > 0
+    assert rows["Gymnasium, SyncVectorEnv"]["ratio"] > 0
+    absent = "EnvPool of CartPole-v1 cannot be had here" in capsys.readouterr().out
+    assert ("EnvPool" in rows) != absent

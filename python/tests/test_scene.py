@@ -135,17 +135,17 @@ def test_derived_values():
 def test_plans():
     plan = crates().compile(keep=["restitution"])
     assert plan.bodies == 3 and plan.scene.name == "crates"
-    assert [plan.state_body(i) for i in range(4)] == [-1, 0, 1, 2]
-    assert plan.scene_body(2) == 3 and plan.state_body_named("crate1") == 1
+    assert [plan.row(i) for i in range(1, 4)] == [0, 1, 2]
+    assert plan.body_in_row(2) == 3 and plan.row("crate1") == 1
     assert plan.has("friction") and plan.has("restitution")
     assert not crates().compile().has("restitution")
     assert plan.fingerprint != crates(2).compile().fingerprint
     assert {a["name"] for a in plan.report()["arrays"]} >= {"position", "orientation"}
     assert "friction" in plan.text() and "3 bodies" in repr(plan)
     with pytest.raises(ValueError, match="nearest: 'crate1'"):
-        plan.state_body_named("crat1")
-    with pytest.raises(IndexError, match="body is 3, must be 0 to 2"):
-        plan.scene_body(3)
+        plan.row("crat1")
+    with pytest.raises(IndexError, match="row is 3, must be 0 to 2"):
+        plan.body_in_row(3)
     with pytest.raises(ValueError, match="broad_phase is 'x'"):
         crates().compile(broad_phase="x")
 

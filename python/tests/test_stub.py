@@ -1,6 +1,7 @@
 """The type stubs of the extensions, kept in git, are what nanobind makes of them today.
 
-Written anew by:  python -m nanobind.stubgen -m manyworlds._core -o python/manyworlds/_core.pyi
+Written anew by:
+    python -m nanobind.stubgen -m manyworlds._core -p python/stub_patterns.txt -o python/manyworlds/_core.pyi
 """
 
 import importlib.util
@@ -13,6 +14,7 @@ import pytest
 import manyworlds
 
 PACKAGE = Path(manyworlds.__file__).parent
+PATTERNS = Path(__file__).parents[1] / "stub_patterns.txt"
 
 
 @pytest.mark.parametrize("name", ["_core", "_record", "_mjcf"])
@@ -24,7 +26,8 @@ def test_the_stub_is_up_to_date(tmp_path, name):
     if importlib.util.find_spec(module) is None:
         pytest.skip(f"built without {module}")
     stub, out = PACKAGE / f"{name}.pyi", tmp_path / f"{name}.pyi"
-    run = [sys.executable, "-m", "nanobind.stubgen", "-q", "-m", module, "-o", str(out)]
+    run = [sys.executable, "-m", "nanobind.stubgen", "-q", "-m", module]
+    run += ["-p", str(PATTERNS), "-o", str(out)]
     subprocess.run(run, check=True)
     assert stub.read_text() == out.read_text(), f"write it anew: {' '.join(run[1:-1])} {stub}"
 

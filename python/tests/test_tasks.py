@@ -149,7 +149,7 @@ def test_operands_that_are_no_numbers_are_type_errors():
 
 def test_names_that_there_are_not_are_said():
     t = tasks.load("LunarLander").terms
-    with pytest.raises(ValueError, match="the body is 'landr'.*nearest: 'lander'"):
+    with pytest.raises(ValueError, match="no body is named 'landr'.*nearest: 'lander'"):
         t.position("landr", "x")
     with pytest.raises(ValueError, match="axis is 'w'"):
         t.position("lander", "w")

@@ -72,10 +72,10 @@ def test_planar_forces_and_torques():
 
 def test_bodies_and_joints_come_and_go():
     batch = lander(sleep=True)
-    batch.set_enabled(False, bodies=[3, 4], ids=[0, 2])
+    batch.set_enabled(False, bodies=[4, 5], ids=[0, 2])
     assert batch.get_enabled().tolist()[0] == [True, True, True, False, False]
     assert batch.get_enabled()[1].all()
-    batch.spawn(3, (0, 50), ids=[0])
+    batch.spawn(4, (0, 50), ids=[0])
     assert batch.get_enabled()[0].tolist() == [True, True, True, True, False]
     batch.set_joints_enabled([[True, False]], ids=[4])
     assert batch.get_joints_enabled()[4].tolist() == [True, False]

@@ -12,6 +12,7 @@ NAMESPACE = "manyworlds"
 
 
 def ids() -> list[str]:
+    """The ids of all tasks, as ``gymnasium.make`` and ``make_vec`` take them."""
     return [f"{NAMESPACE}/{name}-v0" for name in tasks.names()]
 
 
@@ -23,8 +24,9 @@ def register() -> None:
         task = tasks.load(name)
         gymnasium.register(
             id=id,
-            entry_point="manyworlds.gym:Env",
+            entry_point="manyworlds.gym.single_env:RegisteredEnv",
             vector_entry_point="manyworlds.gym:VectorEnv",
+            max_episode_steps=task.most_steps or None,
             kwargs={"task": name},
             reward_threshold=task.solved_at if math.isfinite(task.solved_at) else None,
         )

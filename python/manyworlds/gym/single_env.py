@@ -9,16 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..environment import Environment
+from ..in_memory import InMemory
 from ..names import Isa, Precision
 from ..tasks import Task
 from . import rendering, spaces
 
 
-class Env(gymnasium.Env[np.ndarray, Any]):
+class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
     """A task in one world. ``reset(seed=s)`` begins the first episode of the seed s, ``reset()`` the
     next one; with the seed s + i it is, bit by bit, world i of a VectorEnv with the seed s."""
 
     metadata: dict[str, Any] = {"render_modes": list(rendering.RENDER_MODES)}
+    _instead = "pickle its spec, or the task and arguments that it was made with"
 
     def __init__(
         self,
@@ -34,8 +36,6 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         self._frames = rendering.Frames(self.task, render_mode)
         self.render_mode = render_mode
         self.metadata = rendering.metadata(self.task)
-        self.observation_space = spaces.observation_space(self.task)
-        self.action_space = spaces.action_space(self.task)
         seed = int(np.random.SeedSequence().generate_state(1)[0])
         self.environment = Environment(
             self.task,
@@ -46,14 +46,24 @@ class Env(gymnasium.Env[np.ndarray, Any]):
             autoreset="disabled",
             reward_terms=reward_terms,
         )
+        self.observation_space = spaces.observation_space(self.task)
+        self.action_space = spaces.action_space(self.task)
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
+        """The first episode of the seed, 0 to 2**64 - 1; None: the next episode. Returns (observation,
+        info): (observations,) float32 and an empty dict."""
         super().reset(seed=seed)
         return self.environment.reset(seeds=seed)[0].copy(), {}
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """One step of the task. ``action``: an integer below ``task.choices``, or (numbers,).
+
+        Returns (observation, reward, terminated, truncated, info); the observation is (observations,)
+        float32, a copy. ``info`` has "lost" where the world is, "reward_terms" by name if asked for.
+        ValueError for a wrong shape and for a choice that there is not, TypeError for a wrong dtype.
+        """
         e = self.environment
         observations, rewards, terminated, truncated = e.step(np.asarray(action)[None])
         info: dict[str, Any] = {}
@@ -71,4 +81,12 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         return None if frames is None else frames[0]
 
     def close(self) -> None:
+        """Lets go of the world; later steps raise ValueError."""
         self.environment.close()
+
+
+class RegisteredEnv(Env):
+    """What ``gymnasium.make`` makes: its TimeLimit ends the episodes, after ``spec.max_episode_steps``."""
+
+    def __init__(self, task: Union[Task, str], **arguments: Any) -> None:
+        super().__init__(task, **{"max_episode_steps": 0, **arguments})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from math import inf
 from typing import Any, Optional, Union
 
 import gymnasium
@@ -10,6 +11,7 @@ import numpy as np
 
 from .. import arrays, tasks
 from ..tasks import Task
+from .bounds import range_of
 
 MOST_EPISODE_STEPS = 2**31 - 1
 
@@ -24,12 +26,21 @@ def task_of(task: Union[Task, str], max_episode_steps: Optional[int]) -> Task:
 
 
 def observation_space(task: Task) -> gymnasium.spaces.Box:
-    low = np.array([o.low for o in task.observations], np.float32)
-    high = np.array([o.high for o in task.observations], np.float32)
-    return gymnasium.spaces.Box(low, high, dtype=np.float32)
+    """A Box, (observations,) float32, of finite bounds: those that the task gives, else what its
+    expressions can be, else the largest numbers."""
+    ends = [range_of(o.value, task) for o in task.observations]
+    low = [o.low if o.low > -inf else least for o, (least, _) in zip(task.observations, ends)]
+    high = [o.high if o.high < inf else most for o, (_, most) in zip(task.observations, ends)]
+    largest = np.finfo(np.float32).max
+    return gymnasium.spaces.Box(
+        np.clip(low, -largest, largest).astype(np.float32),
+        np.clip(high, -largest, largest).astype(np.float32),
+        dtype=np.float32,
+    )
 
 
 def action_space(task: Task) -> gymnasium.spaces.Space[Any]:
+    """Discrete(choices), or a Box, (actions,) float32, of the actions' ranges."""
     if task.choices > 0:
         return gymnasium.spaces.Discrete(task.choices)
     low = np.array([a.low for a in task.actions], np.float32)

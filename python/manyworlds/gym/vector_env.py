@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .. import arrays
 from ..environment import Environment
+from ..in_memory import InMemory
 from ..names import Isa, Precision
 from ..tasks import Task
 from . import rendering, spaces
@@ -26,7 +27,7 @@ MODES = {
 }
 
 
-class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
+class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
     """A task in ``num_envs`` worlds.
 
     task                a Task, or the name of one
@@ -43,6 +44,14 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[A
     from those whose time was up, except with SAME_STEP, where they are new before one can ask.
     ``environment`` is what steps.
     """
+
+    metadata: dict[str, Any] = {
+        "render_modes": list(rendering.RENDER_MODES),
+        "autoreset_mode": AutoresetMode.NEXT_STEP,
+    }
+    _instead = (
+        "pickle its spec, or the task and arguments that it was made with, and environment.save()"
+    )
 
     def __init__(
         self,
@@ -111,6 +120,12 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[A
     def step(
         self, actions: NDArray[Any]
     ) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
+        """One step of the task in every world. ``actions``: (num_envs,) integers or (num_envs, numbers).
+
+        Returns (observations, rewards, terminated, truncated, infos): (num_envs, observations) float32,
+        (num_envs,) float64, and twice (num_envs,) bool, copies unless ``copy`` is False. ValueError for a
+        wrong shape and for a choice that there is not, before anything is done; TypeError for a dtype.
+        """
         results = self.environment.step(actions)
         infos = self._infos()
         if self.copy:
@@ -123,6 +138,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[A
         return self._frames.of(self.environment)
 
     def close_extras(self, **kwargs: Any) -> None:
+        """Lets go of the worlds: what ``close`` does, once."""
         self.environment.close()
 
     # -- parts of it

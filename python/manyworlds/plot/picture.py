@@ -40,6 +40,7 @@ class Camera:
             raise ValueError(f"{self}: angles must be finite")
 
     def eye(self) -> Eye:
+        """The axes of the picture, unit vectors of the world."""
         a, e = np.radians([self.azimuth, self.elevation])
         right = np.array([-np.sin(a), np.cos(a), 0.0])
         towards = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
@@ -148,7 +149,7 @@ class Picture:
             else:
                 rotation = solids.rotation_of(turn)
             near = np.isfinite(rotation).all() and (np.abs(place) < _FAR).all()
-            poses[batch.plan.scene_body(i)] = (rotation, place) if there[i] and near else None
+            poses[batch.plan.body_in_row(i)] = (rotation, place) if there[i] and near else None
         return poses
 
     def _leader(self, poses: Poses) -> Optional[Pose]:

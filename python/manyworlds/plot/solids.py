@@ -164,6 +164,7 @@ class Solid(NamedTuple):
 
     @property
     def is_line(self) -> bool:
+        """Whether it has no inside."""
         return isinstance(self.geometry, (Segment, Terrain))
 
 

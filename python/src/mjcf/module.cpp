@@ -1,9 +1,13 @@
 // The extension module manyworlds._mjcf: scenes from MJCF files. A module of its own because it
 // needs MuJoCo's library, which whoever wants it installs.
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+
+#include <cstdint>
+#include <map>
 
 #include "manyworlds/mjcf.hpp"
 #include "python/src/errors.hpp"
@@ -22,22 +26,45 @@ std::pair<nb::object, std::vector<std::string>> loaded(Load load) {
   return {to_python(result.scene), result.warnings};
 }
 
+MjcfOptions options(const std::vector<std::filesystem::path>& roots,
+                    const std::map<std::string, std::int64_t>& limits) {
+  MjcfOptions result;
+  result.roots = roots;
+  for (const auto& [name, value] : limits) mjcf_limit(result.limits, name) = value;
+  return result;
+}
+
 }  // namespace
 
 NB_MODULE(_mjcf, m) {
   m.doc() = "MJCF files. Private: use manyworlds.mjcf.";
-  bind_error<MjcfError>(m, "MjcfError");
+  bind_error<MjcfError>(
+      m, "MjcfError", "What is wrong in an MJCF file, or not simulated: one line for each thing.");
   m.def(
       "load",
-      [](const std::filesystem::path& file) { return loaded([&] { return load_mjcf(file); }); },
-      nb::arg("file"), "The scene of a file, and what acts otherwise than in MuJoCo.");
+      [](const std::filesystem::path& file, const std::vector<std::filesystem::path>& roots,
+         const std::map<std::string, std::int64_t>& limits) {
+        return loaded([&, with = options(roots, limits)] { return load_mjcf(file, with); });
+      },
+      nb::arg("file"), nb::arg("roots"), nb::arg("limits"),
+      "The scene of a file, and what acts otherwise than in MuJoCo.");
   m.def(
       "load_string",
-      [](nb::object xml) {
+      [](nb::object xml, const std::vector<std::filesystem::path>& roots,
+         const std::map<std::string, std::int64_t>& limits) {
         const std::string text = from_python<std::string>(xml, "xml");
-        return loaded([&] { return load_mjcf_string(text); });
+        return loaded([&, with = options(roots, limits)] { return load_mjcf_string(text, with); });
       },
-      nb::arg("xml").none(), "The same of a text.");
+      nb::arg("xml").none(), nb::arg("roots"), nb::arg("limits"), "The same of a text.");
+  m.def(
+      "limits",
+      [] {
+        std::map<std::string, std::int64_t> values;
+        MjcfLimits limits;
+        for (const std::string& name : mjcf_limit_names()) values[name] = mjcf_limit(limits, name);
+        return values;
+      },
+      "The limits that hold unless others are given.");
 }
 
 }  // namespace manyworlds::python

@@ -11,6 +11,7 @@
 #include "python/src/arrays.hpp"
 #include "python/src/errors.hpp"
 #include "python/src/held_batch.hpp"
+#include "python/src/interrupts.hpp"
 #include "python/src/scene_fields.hpp"
 
 namespace manyworlds::python {
@@ -137,16 +138,21 @@ void read(HeldRecording& self, nb::object field, int kind, std::int64_t begin, c
 }
 
 nb::dict replay_of(HeldRecording& self, nb::object isa, nb::object threads, nb::object layout) {
-  const ReplayOptions options{from_python<std::optional<Isa>>(isa, "isa"),
-                              from_python<int>(threads, "threads"),
-                              from_python<ContactLayout>(layout, "layout")};
-  const ReplayResult result = self.run([&](Recording& r) { return replay(r, options); });
+  ReplayOptions options{from_python<std::optional<Isa>>(isa, "isa"),
+                        from_python<int>(threads, "threads"),
+                        from_python<ContactLayout>(layout, "layout")};
+  const ReplayResult result = self.run([&](Recording& r) {
+    return Interrupts::during([&](const GoOn& go_on) {
+      options.go_on = go_on;
+      return replay(r, options);
+    });
+  });
   nb::dict out;
   out["worlds"] = result.worlds, out["samples"] = result.samples, out["steps"] = result.steps;
   out["compared"] = result.compared, out["different"] = result.different;
   out["difference"] = nb::none();
   if (const auto& d = result.difference) {
-    out["difference"] = nb::make_tuple(d->world, d->step, d->body, d->what);
+    out["difference"] = nb::make_tuple(d->world, d->step, d->body.index(), d->what);
   }
   out["lost_worlds"] = result.lost_worlds, out["kernel_table"] = result.kernel_table;
   return out;
@@ -215,7 +221,8 @@ void bind_reading(nb::module_& m) {
 
 NB_MODULE(_record, m) {
   m.doc() = "Recordings, scenes as JSON. Private: use manyworlds.record.";
-  bind_error<RecordError>(m, "RecordError");
+  bind_error<RecordError>(m, "RecordError",
+                          "A recording that cannot be written, or that is cut, corrupted or none.");
   bind_writing(m);
   bind_reading(m);
   m.def(

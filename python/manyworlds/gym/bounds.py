@@ -1,0 +1,111 @@
+"""What an expression of a task can be, for spaces: from the ranges of what it is made of.
+
+Gymnasium calls a space without bounds a mistake. Where a task gives none they follow from what a world
+can be: the step freezes what is faster or further than `_MOST` says.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from math import inf, pi
+from typing import Any
+
+from .. import _core
+from ..tasks import Task, Value
+
+Range = tuple[float, float]
+
+_ALL: Range = (-inf, inf)
+_TRUTH: Range = (0.0, 1.0)
+_UNIT: Range = (-1.00001, 1.00001)  # of what is rounded
+_ANGLE: Range = (-3.1416, 3.1416)
+# Twice what a step commits (Status.out_of_range), for what lies between a body's frame and its centre
+# of mass: m, m/s, rad/s.
+_MOST = {"position": 2e10, "velocity": 2e5, "angular_velocity": 2e6}
+
+
+def range_of(value: Value, task: Task) -> Range:
+    """The least and the most that a value of a task can be; infinite where nothing is known."""
+    if not isinstance(value, _core.Expression):
+        return float(value), float(value)
+    nodes, (root,) = _core.expression_graph([value])
+    found: list[Range] = []
+    for name, *rest in nodes:
+        low, high = _range(str(name), rest, found, task)
+        found.append(_ALL if math.isnan(low) or math.isnan(high) else (low, high))
+    return found[root]
+
+
+def _range(name: str, rest: Sequence[Any], found: Sequence[Range], task: Task) -> Range:
+    if name == "number":
+        return rest[0], rest[0]
+    if name in _OPERATIONS:
+        return _OPERATIONS[name](*(found[i] for i in rest))
+    if name in _MOST:
+        return -_MOST[name], _MOST[name]
+    steps = float(task.most_steps or inf)
+    if name in ("age", "held"):
+        return 0.0, steps
+    if name == "ray_distance":
+        return 0.0, task.rays[rest[0]].length
+    if name == "action":
+        if task.choices > 0:
+            return 0.0, task.choices - 1.0
+        action = task.actions[rest[0]]
+        return min(action.low, 0.0), max(action.high, 0.0)  # 0 at the beginning
+    if name == "control":
+        control = task.scene.controls[rest[0]]
+        return control.low, control.high
+    return {"angle": _ANGLE, "direction": _UNIT, "touching": _TRUTH, "lost": _TRUTH}.get(name, _ALL)
+
+
+def _corners(f: Callable[[float, float], float], a: Range, b: Range) -> Range:
+    at = [0.0 if math.isnan(x) else x for x in (f(i, j) for i in a for j in b)]  # 0 times infinite
+    return min(at), max(at)
+
+
+def _product(a: Range, b: Range) -> Range:
+    return _corners(lambda x, y: x * y, a, b)
+
+
+def _quotient(a: Range, b: Range) -> Range:
+    if b[0] <= 0 <= b[1]:
+        return _ALL
+    return _product(a, (1 / b[1], 1 / b[0]))
+
+
+def _absolute(a: Range) -> Range:
+    least = 0.0 if a[0] <= 0 <= a[1] else min(abs(a[0]), abs(a[1]))
+    return least, max(abs(a[0]), abs(a[1]))
+
+
+def _floor(a: Range) -> Range:
+    return tuple(x if math.isinf(x) else math.floor(x) for x in a)  # type: ignore[return-value]
+
+
+def _exp(x: float) -> float:
+    return math.exp(x) if x < 700 else inf
+
+
+_OPERATIONS: dict[str, Callable[..., Range]] = {
+    "add": lambda a, b: (a[0] + b[0], a[1] + b[1]),
+    "subtract": lambda a, b: (a[0] - b[1], a[1] - b[0]),
+    "multiply": _product,
+    "divide": _quotient,
+    "negate": lambda a: (-a[1], -a[0]),
+    "abs": _absolute,
+    "sqrt": lambda a: (math.sqrt(max(a[0], 0.0)), math.sqrt(max(a[1], 0.0))),
+    "minimum": lambda a, b: (min(a[0], b[0]), min(a[1], b[1])),
+    "maximum": lambda a, b: (max(a[0], b[0]), max(a[1], b[1])),
+    "floor": _floor,
+    "sin": lambda a: _UNIT,
+    "cos": lambda a: _UNIT,
+    "arctan2": lambda a, b: _ANGLE,
+    "exp": lambda a: (_exp(a[0]), _exp(a[1])),
+    **{name: lambda *_: _TRUTH for name in ("less", "less_equal", "equal", "both", "either")},
+    "opposite": lambda a: _TRUTH,
+    "where": lambda a, b, c: (min(b[0], c[0]), max(b[1], c[1])),
+    "previous": lambda a: a,
+    "largest": lambda a: a,
+}

@@ -1,0 +1,18 @@
+"""What holds worlds in memory: neither pickled nor copied, and says what can be."""
+
+from __future__ import annotations
+
+from typing import Any, NoReturn
+
+
+class InMemory:
+    """Refuses ``pickle`` and ``copy``."""
+
+    __slots__ = ()
+    _instead = ""  # "pickle its scene ..."
+
+    def __reduce_ex__(self, protocol: Any) -> NoReturn:
+        name = next(c.__name__ for c in type(self).__mro__ if not c.__name__.startswith("_"))
+        raise TypeError(
+            f"{name} objects hold what is in memory and cannot be pickled or copied; {self._instead}"
+        )

@@ -1,0 +1,180 @@
+"""Pickles and deep copies of scenes, tasks, plans and results: for processes that are spawned, Ray,
+checkpoints.
+
+A pickle says by which version it was made and in which format. What this version cannot read, and what
+was changed, raises ``pickle.UnpicklingError``. (Reading a pickle may run any code: read those of people
+you trust.) What holds worlds in memory has no pickle (in_memory.py).
+"""
+
+from __future__ import annotations
+
+import copyreg
+import dataclasses
+from collections.abc import Callable
+from pickle import UnpicklingError
+from typing import Any, NamedTuple
+
+from . import _core, bodies, environment, fields, joints, options, plan, scene, shapes, tasks
+
+FORMAT = 1  # of what follows; another one when it is no longer read by what is here
+
+Members = dict[str, Any]
+Reduced = tuple[Callable[..., Any], tuple[Any, ...]]
+
+
+def _check(name: Any, form: Any, version: Any) -> None:
+    if form != FORMAT:
+        raise UnpicklingError(
+            f"the pickle of a {name} is of manyworlds {version}, in format {form}; this is "
+            f"{_core.__version__}, which reads format {FORMAT}"
+        )
+
+
+# -- dataclasses: their members by name
+
+_VALUES: dict[str, type] = {}
+
+
+def register(*kinds: type) -> None:
+    """Pickles and copies of these dataclasses go by this module. Classes made from them are others."""
+    for kind in kinds:
+        _VALUES[kind.__name__] = kind
+        copyreg.pickle(kind, _reduce_value)
+
+
+def _members(value: Any) -> Members:
+    return {f.name: getattr(value, f.name) for f in dataclasses.fields(value)}
+
+
+def _reduce_value(value: Any) -> Reduced:
+    return restore_value, (FORMAT, _core.__version__, type(value).__name__, _members(value))
+
+
+def restore_value(form: int, version: str, name: str, members: Members) -> Any:
+    """A dataclass of the package. Members that it did not have yet get their defaults."""
+    _check(name, form, version)
+    if not isinstance(name, str) or name not in _VALUES:
+        raise UnpicklingError(f"a pickle of manyworlds {version} has a {name}, which there is not")
+    if not isinstance(members, dict):
+        found = type(members).__name__
+        raise UnpicklingError(f"the pickle of a {name} is damaged: its members are of type {found}")
+    kind = _VALUES[name]
+    known = {f.name for f in dataclasses.fields(kind)}
+    if unknown := sorted(map(str, set(members) - known)):
+        raise UnpicklingError(
+            f"the pickle of a {name}, of manyworlds {version}, has {', '.join(unknown)}, which a "
+            f"{name} of {_core.__version__} does not have"
+        )
+    try:
+        return kind(**members)
+    except TypeError as error:  # a member without a default
+        raise UnpicklingError(f"the pickle of a {name} is not whole: {error}") from None
+
+
+# -- expressions as a graph; those of a task as one, so that what they share stays shared
+
+
+class Root(NamedTuple):
+    """Where a pickled task has an expression: which of its graph."""
+
+    index: int
+
+
+def _reduce_expression(value: _core.Expression) -> Reduced:
+    return restore_expression, (FORMAT, _core.__version__, *_core.expression_graph([value]))
+
+
+def restore_expression(form: int, version: str, nodes: Any, roots: Any) -> _core.Expression:
+    """An Expression."""
+    _check("Expression", form, version)
+    found = _expressions(nodes, roots)
+    if len(found) != 1:
+        raise UnpicklingError(f"the pickle of an Expression is damaged: it has {len(found)} roots")
+    return found[0]
+
+
+def _expressions(nodes: Any, roots: Any) -> list[_core.Expression]:
+    try:
+        return _core.expressions_of_graph(nodes, roots)
+    except (TypeError, ValueError) as error:
+        raise UnpicklingError(f"the pickle of an Expression is damaged: {error}") from None
+
+
+def _exchanged(members: Members, exchange: Callable[[Any], Any]) -> Members:
+    """The members of a task with other values where expressions may be."""
+
+    def part(one: Any) -> Any:
+        if not isinstance(one, (tasks.Observation, tasks.Reward)):
+            return one
+        return dataclasses.replace(one, value=exchange(one.value))
+
+    return members | {
+        "controls": [exchange(value) for value in members["controls"]],
+        "observations": [part(one) for one in members["observations"]],
+        "rewards": [part(one) for one in members["rewards"]],
+        "terminated": exchange(members["terminated"]),
+        "truncated": exchange(members["truncated"]),
+    }
+
+
+def _reduce_task(task: tasks.Task) -> Reduced:
+    found: list[_core.Expression] = []
+
+    def exchange(value: Any) -> Any:
+        if not isinstance(value, _core.Expression):
+            return value
+        found.append(value)
+        return Root(len(found) - 1)
+
+    members = _exchanged(_members(task), exchange)
+    return restore_task, (FORMAT, _core.__version__, members, *_core.expression_graph(found))
+
+
+def restore_task(form: int, version: str, members: Members, nodes: Any, roots: Any) -> tasks.Task:
+    """A Task."""
+    _check("Task", form, version)
+    found = _expressions(nodes, roots)
+
+    def exchange(value: Any) -> Any:
+        return found[value.index] if isinstance(value, Root) else value
+
+    try:
+        task: tasks.Task = restore_value(form, version, "Task", _exchanged(members, exchange))
+    except (LookupError, TypeError) as error:
+        raise UnpicklingError(f"the pickle of a Task is damaged: {error}") from None
+    return task
+
+
+# -- plans: compiled again
+
+
+def _reduce_plan(value: plan.Plan) -> Reduced:
+    state = value.scene, value.broad_phase, value.keep, value.fingerprint
+    return restore_plan, (FORMAT, _core.__version__, *state)
+
+
+def restore_plan(
+    form: int, version: str, scene: scene.Scene, broad_phase: Any, keep: Any, fingerprint: int
+) -> plan.Plan:
+    """A Plan, whose worlds go on in those of the one that was pickled."""
+    _check("Plan", form, version)
+    found = plan.Plan(scene, broad_phase=broad_phase, keep=keep)
+    if found.fingerprint != fingerprint:
+        raise UnpicklingError(
+            f"manyworlds {version} made another plan of this scene (fingerprint {fingerprint:016x}) "
+            f"than {_core.__version__} does ({found.fingerprint:016x}): pickle the Scene instead"
+        )
+    return found
+
+
+for module in (shapes, bodies, joints, options, scene, tasks, fields, environment):
+    register(
+        *(
+            kind
+            for kind in vars(module).values()
+            if isinstance(kind, type) and dataclasses.is_dataclass(kind)
+        )
+    )
+copyreg.pickle(_core.Expression, _reduce_expression)
+copyreg.pickle(tasks.Task, _reduce_task)
+copyreg.pickle(plan.Plan, _reduce_plan)
