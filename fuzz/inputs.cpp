@@ -34,7 +34,7 @@ void apply(const Input& in, Batch& batch) {
     return batch.set_controls(world, controls);
   }
   if (batch.bodies(world) == 0) return;
-  const int body = in.body % batch.bodies(world);
+  const BodyId body = batch.body_in_row(in.body % batch.bodies(world), batch.kind_of(world));
   switch (in.kind) {
     case 1: return batch.add_force(world, body, in.value);
     case 2: return batch.add_torque(world, body, in.value);
@@ -65,10 +65,15 @@ void apply(const Input& in, Batch& batch) {
 
 namespace {
 
+BodyId in_row(const Batch& batch, int world, int row) {
+  return batch.body_in_row(row, batch.kind_of(world));
+}
+
 // Nobody steps a body that sleeps or is disabled, and so nobody looks at its numbers.
 bool all_step(const Batch& batch, int world) {
   for (int b = 0; b < batch.bodies(world); ++b) {
-    if (!batch.enabled(world, b) || batch.asleep(world, b)) return false;
+    const BodyId body = in_row(batch, world, b);
+    if (!batch.enabled(world, body) || batch.asleep(world, body)) return false;
   }
   return !batch.asleep(world);
 }
@@ -90,7 +95,7 @@ void step_and_look(Batch& batch, int steps) {
     }
     (void)batch.contacts(w);
     (void)batch.energy(w);
-    for (int b = 0; b < batch.bodies(w); ++b) (void)batch.asleep(w, b);
+    for (int b = 0; b < batch.bodies(w); ++b) (void)batch.asleep(w, in_row(batch, w, b));
   }
   (void)batch.measure_contacts();
 }

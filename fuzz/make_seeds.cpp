@@ -61,7 +61,7 @@ void snapshots(const std::filesystem::path& folder) {
       add(batch.save());
       add(batch.save(std::vector<int>{i}));
       batch.step(15);
-      batch.set_enabled(i, i, i % 2 == 0);
+      batch.set_enabled(i, batch.body_in_row(i), i % 2 == 0);
     }
   }
 }

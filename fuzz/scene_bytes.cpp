@@ -190,7 +190,7 @@ Body SceneBytes::body(int index) {
       out.jitter.linear_velocity = planar_vector(1).cwiseAbs();
       out.jitter.angle = number(0, 3);
       out.jitter.any_orientation = !planar_ && byte() > 128;
-      if (rarely()) out.jitter.with = integer(-2, 4);
+      if (rarely()) out.jitter.with = BodyId(integer(-2, 4));
     }
   }
   out.position = planar_vector(3);
@@ -303,8 +303,8 @@ JointType SceneBytes::joint_type() {
 Joint SceneBytes::joint(int bodies) {
   Joint out;
   out.type = joint_type();
-  out.body_a = integer(-1, bodies - (rarely() ? 0 : 1));
-  out.body_b = integer(0, bodies - (rarely() ? 0 : 1));
+  out.body_a = BodyId(integer(-1, bodies - (rarely() ? 0 : 1)));
+  out.body_b = BodyId(integer(0, bodies - (rarely() ? 0 : 1)));
   out.frame_a.position = planar_vector(1), out.frame_b.position = planar_vector(1);
   out.frame_a.rotation = rotation(), out.frame_b.rotation = rotation();
   out.collide = byte() > 200;
@@ -316,8 +316,8 @@ Joint SceneBytes::joint(int bodies) {
 Control SceneBytes::control(int bodies, int joints) {
   Control out;
   out.kind = static_cast<ControlKind>(integer(0, 3));
-  out.joint = integer(-1, joints - (rarely() ? 0 : 1));
-  out.body = integer(0, bodies - (rarely() ? 0 : 1));
+  out.joint = JointId(integer(-1, joints - (rarely() ? 0 : 1)));
+  out.body = BodyId(integer(0, bodies - (rarely() ? 0 : 1)));
   out.point = planar_vector(1);
   if (out.kind == ControlKind::torque && planar_) {
     out.direction = Vec3::UnitZ();
@@ -333,9 +333,10 @@ Variation SceneBytes::variation(int bodies) {
   Variation out;
   out.parameter = static_cast<Parameter>(integer(0, kParameterCount - 1));
   const auto owner = info(out.parameter).owner;
-  if (rarely() || (owner != ParameterInfo::world && byte() > 128)) out.body = integer(0, bodies);
-  if (rarely() || (owner == ParameterInfo::shape && out.body >= 0 && byte() > 128)) {
-    out.shape = integer(0, 2);
+  if (rarely() || (owner != ParameterInfo::world && byte() > 128))
+    out.body = BodyId(integer(0, bodies));
+  if (rarely() || (owner == ParameterInfo::shape && out.body && byte() > 128)) {
+    out.shape = ShapeId(out.body, integer(0, 2));
   }
   const bool gravity = out.parameter == Parameter::gravity;
   out.low = gravity ? planar_vector(10) : Vec3::Constant(number(0.05, 0.5));

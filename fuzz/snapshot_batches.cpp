@@ -36,7 +36,7 @@ void frame(std::vector<std::byte>& bytes) {
   SnapshotHeader header;
   std::memcpy(&header, bytes.data(), sizeof header);
   std::memcpy(header.magic, good.magic, sizeof header.magic);
-  header.version = good.version;
+  if (header.version != kOldestSnapshotVersion) header.version = good.version;
   header.size = bytes.size();
   std::memcpy(bytes.data(), &header, sizeof header);
   const std::size_t end = bytes.size() - kSum;

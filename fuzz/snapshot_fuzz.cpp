@@ -64,8 +64,8 @@ void run(int index, std::vector<std::byte> bytes) {
   t.batch.step(2);
   require(t.batch.hash() == hash, "a restored batch has gone on with other bits");
   t.batch.step_to(t.batch.time() + 0.05);
-  t.batch.set_enabled(0, 0, false);
-  t.batch.add_impulse(1, 1, Vec3(0, 5, 5));
+  t.batch.set_enabled(0, t.batch.body_in_row(0), false);
+  t.batch.add_impulse(1, t.batch.body_in_row(1), Vec3(0, 5, 5));
   t.batch.copy_world(1, 2);
   step_and_look(t.batch, 4);
   t.batch.restore(t.before);

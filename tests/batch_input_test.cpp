@@ -27,9 +27,9 @@ TEST_CASE("forces act through one call of step and are cleared", "[fast][batch]"
       INFO(name(table));
       const double tight = pick(table, 1e-5, 1e-12);
       Batch batch(compile(scene), options_of(table, 9));
-      batch.add_force(4, 0, m.mass * Vec3(3, 1, 0));
-      batch.add_force(4, 0, m.mass * Vec3(0, 1, 0));  // forces add up
-      batch.add_torque(4, 0, inertia * Vec3(0, 0, 6));
+      batch.add_force(4, batch.body_in_row(0), m.mass * Vec3(3, 1, 0));
+      batch.add_force(4, batch.body_in_row(0), m.mass * Vec3(0, 1, 0));  // forces add up
+      batch.add_torque(4, batch.body_in_row(0), inertia * Vec3(0, 0, 6));
       batch.step(30);
       const double t = 0.5;
       CHECK((velocity(batch, 4, 0) - t * Vec3(3, 2, 0)).norm() < tight);
@@ -57,17 +57,19 @@ TEST_CASE("forces and impulses at a point turn the body about its centre", "[fas
       const double tight = pick(table, 1e-5, 1e-12);
       Batch batch(compile(scene), options_of(table, 3));
       // Impulses act at once.
-      batch.add_impulse_at(0, 0, m.mass * Vec3(0, 2, 0), center + Vec3(0.5, 0, 0));
+      batch.add_impulse_at(0, batch.body_in_row(0), m.mass * Vec3(0, 2, 0),
+                           center + Vec3(0.5, 0, 0));
       CHECK((velocity(batch, 0, 0) - Vec3(0, 2, 0)).norm() < tight);
       CHECK(spin(batch, 0, 0).z() ==
             Approx(m.mass / m.inertia(2, 2)).epsilon(pick(table, 1e-5, 1e-12)));
-      batch.add_impulse(1, 0, m.mass * Vec3(1, 0, 0));
-      batch.add_angular_impulse(1, 0, m.inertia(2, 2) * Vec3(0, 0, 3));
+      batch.add_impulse(1, batch.body_in_row(0), m.mass * Vec3(1, 0, 0));
+      batch.add_angular_impulse(1, batch.body_in_row(0), m.inertia(2, 2) * Vec3(0, 0, 3));
       CHECK((velocity(batch, 1, 0) - Vec3(1, 0, 0)).norm() < tight);
       CHECK((spin(batch, 1, 0) - Vec3(0, 0, 3)).norm() < 10 * tight);
       // A force through the centre does not turn it; beside it, the lever arm counts.
-      batch.add_force_at(2, 0, m.mass * Vec3(1, 0, 0), center + Vec3(0.7, 0, 0));
-      batch.add_force_at(2, 0, m.mass * Vec3(1, 0, 0), center + Vec3(0, 0.25, 0));
+      batch.add_force_at(2, batch.body_in_row(0), m.mass * Vec3(1, 0, 0), center + Vec3(0.7, 0, 0));
+      batch.add_force_at(2, batch.body_in_row(0), m.mass * Vec3(1, 0, 0),
+                         center + Vec3(0, 0.25, 0));
       batch.step();
       const double dt = scene.options.dt;
       CHECK((velocity(batch, 2, 0) - Vec3(2 * dt, 0, 0)).norm() < tight);
@@ -87,7 +89,7 @@ TEST_CASE("an angular impulse goes through the whole inertia tensor", "[fast][ba
   const Vec3 expected = (r * m.inertia * r.transpose()).inverse() * impulse;
   for (const Table& table : all_tables()) {
     Batch batch(compile(scene), options_of(table));
-    batch.add_angular_impulse(0, 0, impulse);
+    batch.add_angular_impulse(0, batch.body_in_row(0), impulse);
     CHECK((spin(batch, 0, 0) - expected).norm() < pick(table, 1e-5, 1e-12) * expected.norm());
   }
 }
@@ -102,9 +104,9 @@ TEST_CASE("kinematic bodies ignore forces and keep their velocity", "[fast][batc
     for (const Table& table : all_tables()) {
       INFO(name(table));
       Batch batch(compile(scene), options_of(table));
-      batch.add_force(0, 0, Vec3(1e4, 0, 0));
-      batch.add_impulse(0, 0, Vec3(1e4, 0, 0));
-      batch.add_torque(0, 0, Vec3(0, 0, 1e4));
+      batch.add_force(0, batch.body_in_row(0), Vec3(1e4, 0, 0));
+      batch.add_impulse(0, batch.body_in_row(0), Vec3(1e4, 0, 0));
+      batch.add_torque(0, batch.body_in_row(0), Vec3(0, 0, 1e4));
       batch.step(60);
       CHECK((velocity(batch, 0, 0) - Vec3(0.5, 0, 0)).norm() == 0);
       CHECK((spin(batch, 0, 0) - Vec3(0, 0, 1)).norm() == 0);

@@ -94,8 +94,8 @@ TEST_CASE("a force in one world changes no other world's bits", "[fast][bits]") 
           INFO(name(table) << " gravity " << gravity << " contacts " << contacts);
           Batch pushed(plan, options_of(table, 19)), quiet(plan, options_of(table, 19));
           for (int i = 0; i < 5; ++i) {
-            pushed.add_force(4, 1, Vec3(3, 2, 0));
-            pushed.add_torque(4, 2, Vec3(0, 0, 1));
+            pushed.add_force(4, pushed.body_in_row(1), Vec3(3, 2, 0));
+            pushed.add_torque(4, pushed.body_in_row(2), Vec3(0, 0, 1));
             pushed.step(2);
             quiet.step(2);
           }
@@ -348,9 +348,9 @@ TEST_CASE("an absurd force freezes its world before the step, the others keep th
           bad.step(12);
           const std::vector<double> before = state(bad, 7);
           if (kind == 0) {
-            bad.add_force(7, 2, Vec3(0, force, 0));
+            bad.add_force(7, bad.body_in_row(2), Vec3(0, force, 0));
           } else {
-            bad.add_torque(7, 2, Vec3(0, 0, force));
+            bad.add_torque(7, bad.body_in_row(2), Vec3(0, 0, force));
           }
           for (int i = 0; i < 3; ++i) {
             bad.step(2);

@@ -15,7 +15,8 @@ Scene hanging(Space space, JointType type, double break_force) {
   Scene scene = empty_scene(space, kGravity);
   const Vec3 up = up_of(space);
   scene.add(rod_of(space, 2, {0.2, 0.2, 0.2}, -up));
-  Joint joint = joint_at(scene, -1, 0, at(Vec3::Zero(), hinge_axes(space)), std::move(type));
+  Joint joint =
+      joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), std::move(type));
   joint.break_force = break_force;
   scene.add(joint);
   return scene;
@@ -24,7 +25,7 @@ double height(const Batch& batch, int world = 0, int body = 0) {
   return position(batch, world, body).dot(up_of(batch.plan().scene().space));
 }
 Joint rope(const Scene& scene, int a, int b, const Vec3& upper, const Vec3& lower) {
-  Joint out = joint_at(scene, a, b, at(upper), DistanceJoint{});
+  Joint out = joint_at(scene, BodyId(a), BodyId(b), at(upper), DistanceJoint{});
   out.frame_b.position = lower - scene.bodies[static_cast<std::size_t>(b)].position;
   return out;
 }
@@ -39,13 +40,13 @@ TEST_CASE("a joint breaks under more than it bears, and holds under less", "[fas
         INFO(name(table) << " type " << type.index());
         Batch holds(compile(hanging(space, type, 1.01 * weight)), options_of(table));
         holds.step(240);
-        CHECK(holds.joint_enabled(0, 0));
+        CHECK(holds.joint_enabled(0, JointId(0)));
         CHECK(holds.status(0) == Status::ok);
         CHECK(height(holds) == Approx(-1).margin(1e-3));
 
         Batch breaks(compile(hanging(space, type, 0.99 * weight)), options_of(table));
         breaks.step(4);
-        CHECK_FALSE(breaks.joint_enabled(0, 0));
+        CHECK_FALSE(breaks.joint_enabled(0, JointId(0)));
         CHECK(breaks.status(0) == Status::joint_broken);
         CHECK_FALSE(lost(breaks.status(0)));
         const double y = height(breaks);
@@ -65,13 +66,13 @@ TEST_CASE("a weld breaks by torque: a beam that is clamped at its end", "[fast][
       for (const double most : {14.7, 22.0}) {
         Scene scene = empty_scene(space, kGravity);
         scene.add(uniform_rod(space, 3, 1, {0.5, 0, 0}));
-        Joint weld = joint_at(scene, -1, 0, at(Vec3::Zero()), FixedJoint{});
+        Joint weld = joint_at(scene, {}, BodyId(0), at(Vec3::Zero()), FixedJoint{});
         weld.break_torque = most;
         scene.add(weld);
         Batch batch(compile(scene), options_of(table));
         batch.step(120);
         INFO(name(table) << " most " << most);
-        CHECK(batch.joint_enabled(0, 0) == (most > 15));
+        CHECK(batch.joint_enabled(0, JointId(0)) == (most > 15));
       }
     }
   }
@@ -86,15 +87,16 @@ TEST_CASE("of a chain that is too heavy the uppermost joint breaks, and the rest
       constexpr int kLinks = 8;
       for (int i = 0; i < kLinks; ++i) {
         scene.add(rod_of(space, 1, {0.01, 0.01, 0.01}, -(i + 0.5) * 0.2 * up));
-        Joint joint = joint_at(scene, i - 1, i, at(-i * 0.2 * up, hinge_axes(space)), HingeJoint{});
+        Joint joint = joint_at(scene, BodyId(i - 1), BodyId(i),
+                               at(-i * 0.2 * up, hinge_axes(space)), HingeJoint{});
         joint.break_force = 75;  // the uppermost bears 80 N, the next 70
         scene.add(joint);
       }
       Batch batch(compile(scene), options_of(table));
       batch.step(30);
       INFO(name(table));
-      CHECK_FALSE(batch.joint_enabled(0, 0));
-      for (int j = 1; j < kLinks; ++j) CHECK(batch.joint_enabled(0, j));
+      CHECK_FALSE(batch.joint_enabled(0, JointId(0)));
+      for (int j = 1; j < kLinks; ++j) CHECK(batch.joint_enabled(0, JointId(j)));
       // Nothing was thrown up: all fall side by side.
       const double fall = -velocity(batch, 0, 0).dot(up);
       for (int i = 1; i < kLinks; ++i) {
@@ -109,19 +111,19 @@ TEST_CASE("what one world breaks leaves the bits of its neighbours alone", "[fas
     const Plan plan = compile(hanging(Space::spatial, HingeJoint{}, 50));
     Batch alone(plan, options_of(table, 9)), pulled(plan, options_of(table, 9));
     for (int i = 0; i < 60; ++i) {
-      if (i > 20) pulled.add_force(4, 0, {0, 0, -40});
+      if (i > 20) pulled.add_force(4, pulled.body_in_row(0), {0, 0, -40});
       alone.step(), pulled.step();
     }
     for (int w = 0; w < 9; ++w) {
       INFO(name(table) << " world " << w);
-      CHECK(pulled.joint_enabled(w, 0) == (w != 4));
+      CHECK(pulled.joint_enabled(w, JointId(0)) == (w != 4));
       if (w != 4) CHECK(pulled.hash(w) == alone.hash(w));
     }
     CHECK(pulled.lost_worlds() == 0);
     std::vector<std::uint8_t> mask(9, 0);
     mask[4] = 1;
     pulled.reset(mask);
-    CHECK(pulled.joint_enabled(4, 0));
+    CHECK(pulled.joint_enabled(4, JointId(0)));
     CHECK(pulled.status(4) == Status::ok);
   }
 }
@@ -130,17 +132,17 @@ TEST_CASE("a broken joint stays broken through snapshots and copies", "[fast][jo
   const Table table = widest_tables().front();
   const Plan plan = compile(hanging(Space::spatial, HingeJoint{}, 50));
   Batch batch(plan, options_of(table, 5));
-  batch.add_force(2, 0, {0, 0, -40});
+  batch.add_force(2, batch.body_in_row(0), {0, 0, -40});
   batch.step(3);
-  REQUIRE_FALSE(batch.joint_enabled(2, 0));
+  REQUIRE_FALSE(batch.joint_enabled(2, JointId(0)));
   const Snapshot saved = batch.save();
   batch.copy_world(2, 0);
   Batch other(plan, options_of(table, 5));
   other.restore(saved);
   batch.step(20), other.step(20);
-  CHECK_FALSE(batch.joint_enabled(0, 0));
-  CHECK_FALSE(other.joint_enabled(2, 0));
-  CHECK(other.joint_enabled(0, 0));
+  CHECK_FALSE(batch.joint_enabled(0, JointId(0)));
+  CHECK_FALSE(other.joint_enabled(2, JointId(0)));
+  CHECK(other.joint_enabled(0, JointId(0)));
   CHECK(batch.hash(0) == batch.hash(2));
   CHECK(other.hash(2) == batch.hash(2));
 }
@@ -152,16 +154,16 @@ TEST_CASE("joints are taken away and put back by hand", "[fast][joint]") {
       const Scene scene = hanging(space, HingeJoint{}, std::numeric_limits<double>::infinity());
       Batch batch(compile(scene), options_of(table, 3));
       batch.step(10);
-      batch.set_joint_enabled(1, 0, false);
+      batch.set_joint_enabled(1, JointId(0), false);
       batch.step(6);
       INFO(name(table));
       CHECK(height(batch, 0) == Approx(-1).margin(1e-3));
       CHECK(height(batch, 1) < -1.03);
       CHECK(batch.status(1) == Status::ok);  // it did not break
-      batch.set_joint_enabled(1, 0, true);
+      batch.set_joint_enabled(1, JointId(0), true);
       batch.step(120);
       CHECK(anchor_gap(batch, 1, 0) < 1e-2);
-      CHECK_THROWS_WITH(batch.set_joint_enabled(0, 1, false),
+      CHECK_THROWS_WITH(batch.set_joint_enabled(0, JointId(1), false),
                         Catch::Contains("joint is 1, must be 0 to 0"));
     }
   }
@@ -180,12 +182,12 @@ TEST_CASE("what hangs still and asleep wakes and falls when its joint is cut", "
     Batch batch(compile(scene), options);
     batch.step(200);
     INFO(name(table));
-    REQUIRE(batch.asleep(0, 1));
-    batch.set_joint_enabled(0, 1, false);
-    batch.add_force(1, 1, {0, 0, -6});
+    REQUIRE(batch.asleep(0, batch.body_in_row(1)));
+    batch.set_joint_enabled(0, JointId(1), false);
+    batch.add_force(1, batch.body_in_row(1), {0, 0, -6});
     batch.step(30);
     CHECK(height(batch, 0, 1) < -2.5);
-    CHECK_FALSE(batch.joint_enabled(1, 1));
+    CHECK_FALSE(batch.joint_enabled(1, JointId(1)));
     CHECK(height(batch, 1, 1) < -2.5);
     CHECK(height(batch, 2, 1) == Approx(-2).margin(0.01));
     CHECK(batch.asleep(2));
@@ -200,10 +202,10 @@ TEST_CASE("a slow body does not fall asleep in the step in which its joint break
     BatchOptions options = options_of(table);
     options.sleep = true;
     Batch batch(compile(scene), options);
-    batch.add_force(0, 0, {0, 0, -1});
+    batch.add_force(0, batch.body_in_row(0), {0, 0, -1});
     batch.step();
-    REQUIRE_FALSE(batch.joint_enabled(0, 0));
-    CHECK_FALSE(batch.asleep(0, 0));
+    REQUIRE_FALSE(batch.joint_enabled(0, JointId(0)));
+    CHECK_FALSE(batch.asleep(0, batch.body_in_row(0)));
     batch.step(30);
     CHECK(height(batch) < -1.5);
   }
@@ -215,14 +217,14 @@ TEST_CASE("a world that goes wrong in the step in which its joint would break ke
     Batch batch(compile(hanging(Space::spatial, HingeJoint{}, 50)), options_of(table, 3));
     batch.step(5);
     const std::uint64_t before = batch.hash(1);
-    batch.add_force(1, 0, {0, 0, -1e30});
+    batch.add_force(1, batch.body_in_row(0), {0, 0, -1e30});
     batch.step();
     INFO(name(table));
     CHECK(frozen(batch.status(1)));
     CHECK_FALSE(has(batch.status(1), Status::joint_broken));
-    CHECK(batch.joint_enabled(1, 0));
+    CHECK(batch.joint_enabled(1, JointId(0)));
     CHECK(batch.hash(1) == before);
-    CHECK(batch.joint_enabled(0, 0));
+    CHECK(batch.joint_enabled(0, JointId(0)));
   }
 }
 
@@ -231,7 +233,7 @@ TEST_CASE("what a broken joint would bear is read as nothing", "[fast][joint]") 
   BatchOptions options = options_of(table, 2);
   options.observe.what = {Observer::joint_loads};
   Batch batch(compile(hanging(Space::spatial, HingeJoint{}, 50)), options);
-  batch.add_force(1, 0, {0, 0, -40});
+  batch.add_force(1, batch.body_in_row(0), {0, 0, -40});
   batch.step(2);
   std::vector<double> force(batch.size(Observed::joint_force));
   batch.read(Observed::joint_force, force);

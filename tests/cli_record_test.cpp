@@ -1,5 +1,5 @@
 // The program's recordings as its users see them; and without HDF5, how to get them.
-#ifdef MW_CLI_PATH
+#if MW_HAVE_CLI
 
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 
 namespace manyworlds {
@@ -22,7 +23,7 @@ using test::contains, test::Outcome;
 // A folder that the program runs in.
 struct Folder : test::ScratchFolder {
   Outcome run(const std::string& arguments) const {
-    return test::run_program(MW_CLI_PATH, *this, arguments);
+    return test::run_program(test::kProgram, *this, arguments);
   }
 };
 
@@ -123,4 +124,4 @@ TEST_CASE("lost worlds are dumped, and a replay loses them again", "[cli]") {
 
 }  // namespace manyworlds
 
-#endif  // MW_CLI_PATH
+#endif  // MW_HAVE_CLI

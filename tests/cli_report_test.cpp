@@ -1,5 +1,5 @@
 // `manyworlds report`, run as its users run it: complete JSON with sane numbers, and a page.
-#ifdef MW_CLI_PATH
+#if MW_HAVE_CLI
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 
 namespace manyworlds {
@@ -62,7 +63,7 @@ void write_peer(const ScratchFolder& folder, const std::string& name, const std:
 TEST_CASE("report accuracy writes complete tables and a page", "[cli][report]") {
   const ScratchFolder folder;
   const Outcome outcome =
-      test::run_program(MW_CLI_PATH, folder, "report accuracy --quick --out here", "");
+      test::run_program(test::kProgram, folder, "report accuracy --quick --out here", "");
   INFO(outcome.err);
   REQUIRE(outcome.code == 0);
   CHECK(contains(outcome.out, "A16 49 balls that bounce"));
@@ -91,7 +92,8 @@ TEST_CASE("report accuracy writes complete tables and a page", "[cli][report]") 
 
 TEST_CASE("report stability judges every case in every setting", "[cli][report]") {
   const ScratchFolder folder;
-  const Outcome outcome = test::run_program(MW_CLI_PATH, folder, "report stability --quick --json");
+  const Outcome outcome =
+      test::run_program(test::kProgram, folder, "report stability --quick --json");
   INFO(outcome.err);
   REQUIRE(outcome.code == 0);
   // What the default settings are known not to hold, by docs/stability.md.
@@ -129,8 +131,9 @@ TEST_CASE("report stability judges every case in every setting", "[cli][report]"
 
 TEST_CASE("report plan finds equal bits whatever was switched on", "[cli][report]") {
   const ScratchFolder folder;
-  const Outcome outcome = test::run_program(
-      MW_CLI_PATH, folder, "report plan --quick --scenes ball3d,stack10,chain2d,pyramid2d --json");
+  const Outcome outcome =
+      test::run_program(test::kProgram, folder,
+                        "report plan --quick --scenes ball3d,stack10,chain2d,pyramid2d --json");
   INFO(outcome.out << outcome.err);
   REQUIRE(outcome.code == 0);
   std::map<std::string, int> variants;
@@ -152,7 +155,7 @@ TEST_CASE("report plan finds equal bits whatever was switched on", "[cli][report
 TEST_CASE("report throughput measures every sweep", "[cli][report]") {
   const ScratchFolder folder;
   const Outcome outcome =
-      test::run_program(MW_CLI_PATH, folder, "report throughput --quick --scenes ball2d --json");
+      test::run_program(test::kProgram, folder, "report throughput --quick --scenes ball2d --json");
   INFO(outcome.err);
   REQUIRE(outcome.code == 0);
   const Json results = Json::parse(outcome.out)["results"];
@@ -191,7 +194,7 @@ exit 3
   write_peer(folder, "peer_gone", "kill -9 $$\n");
   write_peer(folder, "other", "exit 1\n");
   const Outcome outcome = test::run_program(
-      MW_CLI_PATH, folder, "report throughput --quick --scenes ball2d --peers peers");
+      test::kProgram, folder, "report throughput --quick --scenes ball2d --peers peers");
   INFO(outcome.out << outcome.err);
   REQUIRE(outcome.code == 0);
   const Json results =
@@ -223,7 +226,7 @@ TEST_CASE("report throughput says when a folder has no peers", "[fast][cli][repo
   const ScratchFolder folder;
   for (const char* name : {".", "nowhere"}) {
     const Outcome outcome = test::run_program(
-        MW_CLI_PATH, folder, std::string("report throughput --quick --peers ") + name);
+        test::kProgram, folder, std::string("report throughput --quick --peers ") + name);
     CHECK(outcome.code == 2);
     CHECK(contains(outcome.err, std::string("--peers: ")));
     CHECK(contains(outcome.err, name));
@@ -233,7 +236,7 @@ TEST_CASE("report throughput says when a folder has no peers", "[fast][cli][repo
 TEST_CASE("report says which cases there are", "[fast][cli][report]") {
   const ScratchFolder folder;
   const Outcome outcome =
-      test::run_program(MW_CLI_PATH, folder, "report accuracy --cases A1,B7 --out here", "");
+      test::run_program(test::kProgram, folder, "report accuracy --cases A1,B7 --out here", "");
   CHECK(outcome.code == 2);
   CHECK(contains(outcome.err, "unknown case 'B7'; there are A1, A2"));
 }

@@ -1,5 +1,6 @@
 // The program manyworlds, run as its users run it: exit codes, what goes to which stream, JSON.
-#ifdef MW_CLI_PATH
+// over 400 lines because it is the one list of what the program says.
+#if MW_HAVE_CLI
 
 #include <algorithm>
 #include <cstdint>
@@ -16,6 +17,7 @@
 
 #include "manyworlds/batch.hpp"
 #include "manyworlds/scenes.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 
 namespace manyworlds {
@@ -27,7 +29,7 @@ using Json = nlohmann::json;
 using test::contains, test::content, test::Outcome, test::ScratchFolder;
 
 Outcome run(const std::string& arguments, const std::string& environment = "") {
-  return test::run_program(MW_CLI_PATH, ScratchFolder(), arguments, environment);
+  return test::run_program(test::kProgram, ScratchFolder(), arguments, environment);
 }
 
 std::set<std::string> keys(const Json& object) {
@@ -105,6 +107,14 @@ TEST_CASE("bad input ends with exit code 2, one line that names it, and no outpu
       {"", "a command is missing"},
       {"frobnicate", "unknown command 'frobnicate'"},
       {"run", "scene is required"},
+      {"rum", "unknown command 'rum'; did you mean 'run'?"},
+      {"report foo", "unknown report 'foo'; there are accuracy, stability, plan, throughput"},
+      {"report", "a report is missing: accuracy, "},
+      {"run ball3d --world 5", "unknown option '--world'; did you mean '--worlds'? (see"},
+      {"run ball3d --world=5", "unknown option '--world'; did you mean '--worlds'? (see"},
+      {"run ball3d --qwertyuiop", "unknown option '--qwertyuiop' (see 'manyworlds run --help')"},
+      {"report plan --quik", "did you mean '--quick'? (see 'manyworlds report plan --help')"},
+      {"run qwertyuiop", "unknown scene 'qwertyuiop' ('manyworlds scenes' lists all)"},
       {"run bin-boxen", "unknown scene 'bin-boxen'; did you mean 'bin-boxes'?"},
       {"plan stack1", "did you mean 'stack10'?"},
       {"soak bal3d", "did you mean 'ball3d'?"},
@@ -126,6 +136,7 @@ TEST_CASE("bad input ends with exit code 2, one line that names it, and no outpu
       {"run ball3d --substeps 0", "--substeps: must be at least 1, is 0"},
       {"run ball3d --substeps 65", "--substeps: must be at most 64, is 65"},
       {"run ball3d --threads -1", "--threads: must be at least 0, is -1"},
+      {"run ball3d --threads 100000", "--threads: must be at most 1024, is 100000"},
       {"run ball3d --seed -1", "--seed: must be a whole number from 0 to 2^64 - 1, is '-1'"},
       {"run ball3d --precision f16", "--precision: must be f32 or f64, is 'f16'"},
       {"run ball3d --isa neon", "--isa: must be scalar, avx2 or avx512, is 'neon'"},
@@ -135,8 +146,8 @@ TEST_CASE("bad input ends with exit code 2, one line that names it, and no outpu
       {"run ball3d --keep contactz", "--keep: must be orientation, "},
       {"run ball3d --json --frobnicate", "--frobnicate"},
       {"bench --repeats 0", "--repeats: must be at least 1, is 0"},
-      {"run no/such/file.xml", "cannot read 'no/such/file.xml': no such file"},
-      {"run /", "cannot read '/': it is a directory"},
+      {"run no/such/file.xml", "no/such/file.xml: no such file"},
+      {"run /", "/: is a directory; expected a file"},
   };
   for (const Bad& bad : cases) {
     INFO("manyworlds " << bad.arguments);
@@ -153,7 +164,8 @@ TEST_CASE("more worlds than the machine can hold are refused", "[cli]") {
   const Outcome outcome = run("run bin-boxes --worlds 2147483647 --json");
   CHECK(outcome.code == 2);
   CHECK(outcome.out.empty());
-  CHECK(contains(outcome.err, "--worlds"));
+  CHECK(contains(outcome.err, "--worlds: 2147483647 worlds of 'bin-boxes' need "));
+  CHECK(contains(outcome.err, " GB of memory, the machine has "));
 }
 
 TEST_CASE("an unknown instruction set in the environment is bad input", "[cli]") {
@@ -350,6 +362,38 @@ TEST_CASE("a lost world ends with exit code 1 and the command that shows it agai
   CHECK(run("soak free-flight --worlds 3 --steps 2 --dt 1e12 --seed 1").code == 1);
 }
 
+TEST_CASE("help tells of sizes of scenes, MW_ISAS, and each report's examples", "[cli]") {
+  const Outcome help = run("--help");
+  CHECK(contains(help.out, "bin-boxes:1000"));
+  CHECK(contains(help.out, "MW_ISAS"));
+  CHECK(contains(run("run --help").out, "bin-boxes:1000"));
+  for (const char* report : {"accuracy", "stability", "plan", "throughput"}) {
+    const std::string command = std::string("report ") + report;
+    CHECK(contains(run(command + " --help").out, "manyworlds " + command + " --quick"));
+  }
+}
+
+TEST_CASE("info --json tells machines what info tells people", "[cli]") {
+  const Outcome outcome = run("info --json");
+  REQUIRE(outcome.code == 0);
+  const Json json = Json::parse(outcome.out);
+  CHECK(keys(json) == std::set<std::string>{"manyworlds", "compiler", "cpu", "threads", "isas",
+                                            "isa", "mjcf", "recordings"});
+  CHECK(json["isa"] == to_string(default_isa()));
+}
+
+TEST_CASE("replay says in a line what it cannot read, and hangs on nothing", "[cli]") {
+  if (!contains(run("info").out, "recordings   yes")) return;
+  for (const char* file :
+       {"/dev/null", "/", "none.h5", "/dev/null/x", "'../../../../../etc/passwd/x'"}) {
+    const Outcome outcome = run(std::string("replay ") + file);
+    INFO(file << ": " << outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+    CHECK_FALSE(contains(outcome.err, "filesystem error"));
+  }
+}
+
 TEST_CASE("info names the machine and the build", "[cli]") {
   const Outcome outcome = run("info");
   CHECK(outcome.code == 0);
@@ -363,4 +407,4 @@ TEST_CASE("info names the machine and the build", "[cli]") {
 }  // namespace
 }  // namespace manyworlds
 
-#endif  // MW_CLI_PATH
+#endif  // MW_HAVE_CLI

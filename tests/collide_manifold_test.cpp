@@ -57,7 +57,7 @@ void check_face(const Scene& scene, double overlap, double spanned, double toler
     REQUIRE(contacts.size() == points);
     std::set<int> ids;
     for (const Contact& c : contacts) {
-      CHECK((c.normal - up * (c.body_a == 0 ? 1.0 : -1.0)).norm() < tight);
+      CHECK((c.normal - up * (c.body_a == BodyId(0) ? 1.0 : -1.0)).norm() < tight);
       CHECK(c.separation == Approx(-overlap).margin(tight));
       CHECK(c.normal_impulse == 0);
       ids.insert(c.feature);
@@ -240,7 +240,7 @@ TEST_CASE("filters and shared bodies keep shapes apart", "[fast][collide]") {
       const auto contacts = Batch(compile(filtered), options_of(table)).contacts(0);
       REQUIRE(!contacts.empty());
       for (const Contact& c : contacts) {
-        CHECK(c.shape_a + c.shape_b == 1);
+        CHECK(c.shape_a.index() + c.shape_b.index() == 1);
         CHECK(c.body_a != c.body_b);
       }
     }

@@ -17,7 +17,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 Control thrust(int body, const Vec3& point, const Vec3& direction) {
   Control out;
   out.kind = ControlKind::thrust;
-  out.body = body, out.point = point, out.direction = direction;
+  out.body = BodyId(body), out.point = point, out.direction = direction;
   out.low = -100, out.high = 100;
   return out;
 }
@@ -28,7 +28,7 @@ Control torque(int body, const Vec3& direction) {
 }
 Control target(ControlKind kind, int joint) {
   Control out;
-  out.kind = kind, out.joint = joint;
+  out.kind = kind, out.joint = JointId(joint);
   out.low = -10, out.high = 10;
   return out;
 }
@@ -43,7 +43,8 @@ Scene free_body(Space space) {
 Scene arm(Space space, const Drive& drive) {
   Scene scene = empty_scene(space, 0);
   scene.add(uniform_rod(space, 1, 1, {0.5, 0, 0}));
-  scene.add(joint_at(scene, -1, 0, at(Vec3::Zero(), hinge_axes(space)), HingeJoint{{}, drive}));
+  scene.add(
+      joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), HingeJoint{{}, drive}));
   return scene;
 }
 // About the axis of hinge_axes, rad.

@@ -72,7 +72,7 @@ TEST_CASE("in a batch rays see height fields", "[fast][field][observe]") {
     for (std::size_t i = 0; i < 5; ++i) {
       const double x = 0.4 * static_cast<double>(i) - 0.9;
       const double z = surface(std::get<HeightField>(scene.bodies[0].shapes[0].geometry), x, 0.2);
-      CHECK(hits[i].body == 0);
+      CHECK(hits[i].body == BodyId(0));
       CHECK(hits[i].distance == Approx(3 - z).margin(1e-5));
     }
   }

@@ -142,7 +142,7 @@ TEST_CASE("integrators swing on a spring with their order (A5)", "[fast][integra
     TargetJoint target;
     target.spring.stiffness = 4 * kPi * kPi;
     spring.type = target;
-    spring.body_b = 0;
+    spring.body_b = BodyId(0);
     scene.add(spring);
     MovingBody end = start_of(scene, 0);
     const double t = 1.125;
@@ -165,11 +165,11 @@ TEST_CASE("integrators keep their order where everything acts at once", "[fast][
   Joint hung, tied;
   TargetJoint target;
   target.spring.stiffness = 60, target.spring.damping = 1.5;
-  hung.type = target, hung.body_b = 0;
+  hung.type = target, hung.body_b = BodyId(0);
   hung.frame_a.position = {0.1, 0, 0.5}, hung.frame_b.position = {0.2, -0.1, 0.3};
   DistanceJoint line;
   line.length = 0.6, line.spring = Spring{30, 0.8, 0, 0};
-  tied.type = line, tied.body_a = 0, tied.body_b = 1;
+  tied.type = line, tied.body_a = BodyId(0), tied.body_b = BodyId(1);
   tied.frame_a.position = {0, 0.3, -0.1}, tied.frame_b.position = {-0.2, 0.1, 0};
   scene.add(hung), scene.add(tied);
 

@@ -30,7 +30,7 @@ Scene oscillator(Space space, double stiffness, double h) {
   Joint joint;
   TargetJoint target;
   target.spring.stiffness = stiffness;
-  joint.type = target, joint.body_b = 0;
+  joint.type = target, joint.body_b = BodyId(0);
   scene.add(joint);
   return scene;
 }
@@ -40,7 +40,7 @@ Scene tied_crowd(Space space) {
   Scene scene = crowd(space, 12);
   const auto tie = [&](int a, int b, JointType type) {
     Joint joint;
-    joint.type = std::move(type), joint.body_a = a, joint.body_b = b;
+    joint.type = std::move(type), joint.body_a = BodyId(a), joint.body_b = BodyId(b);
     joint.frame_b.position = {0.1, 0.2, 0};
     joint.collide = true;
     scene.add(joint);
@@ -131,7 +131,7 @@ TEST_CASE("implicit Euler takes springs of any stiffness", "[fast][integrator]")
           DistanceJoint line;
           line.length = 0.3, line.spring = Spring{stiffness, 1, 0, 0};
           Joint joint;
-          joint.type = line, joint.body_a = i - 1, joint.body_b = i;
+          joint.type = line, joint.body_a = BodyId(i - 1), joint.body_b = BodyId(i);
           if (i > 0) joint.frame_a.position = {0.2, 0, 0};
           joint.frame_b.position = {-0.2, 0, 0};
           scene.add(joint);
@@ -255,7 +255,7 @@ TEST_CASE("a pile stands and sleeps whatever the integrator", "[fast][integrator
     Batch batch(compile(scene), options);
     batch.step(180);
     INFO(to_string(integrator));
-    CHECK(batch.asleep(0, 3));
+    CHECK(batch.asleep(0, batch.body_in_row(3)));
     CHECK(position(batch, 0, 3).z() == Approx(3.5).margin(0.02));
     CHECK(max_penetration(batch, 0) < 0.01);
   }
@@ -290,7 +290,7 @@ TEST_CASE("springs as forces can be looked at, let go and copied", "[fast][integ
     INFO(name(table));
     CHECK(force[0] == Approx(-20 * position(batch, 1, 0).x()).epsilon(1e-5));
     const Snapshot snapshot = batch.save();
-    batch.set_joint_enabled(1, 0, false);
+    batch.set_joint_enabled(1, JointId(0), false);
     const Vec3 v = velocity(batch, 1, 0);
     batch.step(10);
     CHECK((velocity(batch, 1, 0) - v).norm() < 1e-6);
@@ -316,8 +316,8 @@ TEST_CASE("a push or a number that is none in one world is seen in no other",
         const Plan plan = compile(scene);
         Batch pushed(plan, options_of(table, 19)), quiet(plan, options_of(table, 19));
         for (int i = 0; i < 3; ++i) {
-          pushed.add_force(4, 1, Vec3(3, 2, 0));
-          if (i == 1) pushed.add_force(7, 2, Vec3::Constant(std::nan("")));
+          pushed.add_force(4, pushed.body_in_row(1), Vec3(3, 2, 0));
+          if (i == 1) pushed.add_force(7, pushed.body_in_row(2), Vec3::Constant(std::nan("")));
           pushed.step(2), quiet.step(2);
         }
         INFO(name(table) << ' ' << to_string(integrator));
@@ -342,14 +342,14 @@ TEST_CASE("what a spring bears is kept while its bodies sleep, whoever is beside
   DistanceJoint line;
   line.length = 1, line.spring = Spring{300, 1, 0, 0};
   Joint joint;
-  joint.type = line, joint.body_a = 1, joint.body_b = 2;
+  joint.type = line, joint.body_a = BodyId(1), joint.body_b = BodyId(2);
   scene.add(joint);
   BatchOptions options = options_of(widest_tables().front(), 2);
   options.sleep = true, options.observe.what = {Observer::joint_loads};
   const Plan plan = compile(scene);
   Batch calm(plan, options), beside(plan, options);
   for (int i = 0; i < 180; ++i) {
-    beside.add_force(1, 0, Vec3(0, 100 * (i % 2), 0));
+    beside.add_force(1, beside.body_in_row(0), Vec3(0, 100 * (i % 2), 0));
     calm.step(), beside.step();
   }
   REQUIRE(calm.asleep(0));

@@ -115,13 +115,13 @@ TEST_CASE("a disabled body lets go of its joints", "[fast][joint]") {
     Scene scene = empty_scene(space, 10);
     for (int i = 0; i < 2; ++i) {
       scene.add(uniform_rod(space, 1, 1, Vec3(0.5 + i, 0, 0)));
-      scene.add(joint_at(scene, i - 1, i, at({static_cast<double>(i), 0, 0}, hinge_axes(space)),
-                         HingeJoint{}));
+      scene.add(joint_at(scene, BodyId(i - 1), BodyId(i),
+                         at({static_cast<double>(i), 0, 0}, hinge_axes(space)), HingeJoint{}));
     }
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       Batch batch(plan, options_of(table, 3));
-      batch.set_enabled(1, 0, false);
+      batch.set_enabled(1, batch.body_in_row(0), false);
       batch.step(60);
       INFO(name(table));
       CHECK(velocity(batch, 1, 1).dot(up_of(space)) == Approx(-10).epsilon(1e-5));
@@ -139,15 +139,15 @@ TEST_CASE("what hung on a disabled body's joint is not thrown up", "[fast][joint
       Body rod = uniform_rod(space, i == 0 ? 1 : 1000, 1, (-0.5 - i) * up);
       rod.rotation = Quat::FromTwoVectors(Vec3::UnitX(), up);
       scene.add(rod);
-      scene.add(joint_at(scene, i - 1, i, at(-static_cast<double>(i) * up, hinge_axes(space)),
-                         HingeJoint{}));
+      scene.add(joint_at(scene, BodyId(i - 1), BodyId(i),
+                         at(-static_cast<double>(i) * up, hinge_axes(space)), HingeJoint{}));
     }
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       INFO(name(table));
       Batch batch(plan, options_of(table));
       batch.step(60);
-      batch.set_enabled(0, 1, false);
+      batch.set_enabled(0, batch.body_in_row(1), false);
       for (int i = 0; i < 30; ++i) {
         batch.step();
         CHECK(velocity(batch, 0, 0).norm() < 0.05);
@@ -164,8 +164,8 @@ TEST_CASE("jointed bodies fall asleep and wake together", "[fast][sleep][joint]"
       for (int i = 0; i < 3; ++i) {
         Body link = uniform_rod(space, 1, 1, 6 * up_of(space) - (i + 0.5) * up_of(space));
         link.angular_drag = link.linear_drag = 2;
-        const int body = scene.add(link);
-        scene.add(joint_at(scene, i == 0 ? -1 : body - 1, body,
+        const BodyId body = scene.add(link);
+        scene.add(joint_at(scene, BodyId(i == 0 ? -1 : body.index() - 1), body,
                            at((6.0 - i) * up_of(space), hinge_axes(space)), HingeJoint{}));
       }
       BatchOptions options = options_of(widest_tables().front(), 2);
@@ -176,7 +176,7 @@ TEST_CASE("jointed bodies fall asleep and wake together", "[fast][sleep][joint]"
       const std::uint64_t at_rest = batch.hash(0);
       batch.step(60);
       CHECK(batch.hash(0) == at_rest);
-      batch.add_impulse(0, 2, Vec3(1, 0, 0));
+      batch.add_impulse(0, batch.body_in_row(2), Vec3(1, 0, 0));
       batch.step(20);
       CHECK(std::abs(spin(batch, 0, 0).norm()) > 1e-3);
       CHECK(batch.asleep(1));

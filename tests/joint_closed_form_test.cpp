@@ -14,7 +14,7 @@ constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 Scene still_scene(Space space) { return empty_scene(space, 0); }
 
 // A ball of 1 kg at `position` in the scene.
-int add_ball(Scene& scene, const Vec3& position, double mass = 1) {
+BodyId add_ball(Scene& scene, const Vec3& position, double mass = 1) {
   return scene.add(rod_of(scene.space, mass, Vec3::Constant(0.1 * mass), position));
 }
 
@@ -26,11 +26,11 @@ TEST_CASE("a spring follows the recurrence of implicit Euler", "[fast][joint]") 
       for (const double ratio : {0.0, 0.1, 1.0}) {
         Scene scene = still_scene(space);
         const double damping = ratio * 2 * std::sqrt(stiffness);
-        const int ball = add_ball(scene, {3, 0, 0});
+        const BodyId ball = add_ball(scene, {3, 0, 0});
         DistanceJoint spring;
         spring.length = 2;
         spring.spring = Spring{stiffness, damping, 0, 0};
-        scene.add(joint_at(scene, -1, ball, at(Vec3::Zero()), spring));
+        scene.add(joint_at(scene, {}, ball, at(Vec3::Zero()), spring));
         scene.joints[0].frame_b = {};
         const Plan plan = compile(scene);
         for (const Table& table : widest_tables()) {
@@ -57,10 +57,10 @@ TEST_CASE("springs of any stiffness stay finite and come to rest", "[fast][joint
   for (Space space : kSpaces) {
     for (const double stiffness : {1e2, 1e4, 1e6, 1e8, 1e12}) {
       Scene scene = still_scene(space);
-      const int ball = add_ball(scene, {1, 0, 0});
+      const BodyId ball = add_ball(scene, {1, 0, 0});
       TargetJoint target;
       target.spring = Spring{stiffness, 2 * std::sqrt(stiffness), 0, 0};
-      scene.add(joint_at(scene, -1, ball, at(Vec3::Zero()), target));
+      scene.add(joint_at(scene, {}, ball, at(Vec3::Zero()), target));
       scene.joints[0].frame_b = {};
       const Plan plan = compile(scene);
       for (const Table& table : widest_tables()) {
@@ -77,10 +77,10 @@ TEST_CASE("springs of any stiffness stay finite and come to rest", "[fast][joint
 TEST_CASE("a motor turns its body with its torque, up to its speed", "[fast][joint]") {
   for (Space space : kSpaces) {
     Scene scene = still_scene(space);
-    const int wheel = add_ball(scene, Vec3::Zero());
+    const BodyId wheel = add_ball(scene, Vec3::Zero());
     HingeJoint hinge;
     hinge.drive = Drive{0, 8, std::nullopt, 0.5};
-    scene.add(joint_at(scene, -1, wheel, at(Vec3::Zero()), hinge));
+    scene.add(joint_at(scene, {}, wheel, at(Vec3::Zero()), hinge));
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       Batch batch(plan, options_of(table));
@@ -99,7 +99,7 @@ TEST_CASE("a position drive holds a rod up with the torque that this takes", "[f
     scene.add(uniform_rod(space, 2, 1, {0.5, 0, 0}));
     HingeJoint hinge;
     hinge.drive = Drive{0, 0, Spring{500, 50, 0, 0}, 1e3};
-    scene.add(joint_at(scene, -1, 0, at(Vec3::Zero(), hinge_axes(space)), hinge));
+    scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), hinge));
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       Batch batch(plan, options_of(table));
@@ -120,13 +120,13 @@ TEST_CASE("limits stop a hinge and a slider, and hold what leans on them", "[fas
     scene.add(uniform_rod(space, 1, 1, {0.5, 0, 0}));
     HingeJoint hinge;
     hinge.limit = Limit{-0.5, 0.5, std::nullopt};
-    scene.add(joint_at(scene, -1, 0, at(Vec3::Zero(), hinge_axes(space)), hinge));
+    scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), hinge));
     // Slides down along -up: x of the frame is up.
     const Quat up = Quat::FromTwoVectors(Vec3::UnitX(), up_of(space));
-    const int lift = add_ball(scene, {5, 0, 0});
+    const BodyId lift = add_ball(scene, {5, 0, 0});
     SliderJoint slider;
     slider.limit = Limit{-2, 1, std::nullopt};
-    scene.add(joint_at(scene, -1, lift, at({5, 0, 0}, up), slider));
+    scene.add(joint_at(scene, {}, lift, at({5, 0, 0}, up), slider));
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       Batch batch(plan, options_of(table));
@@ -152,8 +152,8 @@ TEST_CASE("a bead slides down a wire as g sin of its slope", "[fast][joint]") {
     scene.options.dt = 1.0 / 240;
     const double slope = 0.4;
     const Vec3 down = std::cos(slope) * Vec3::UnitX() - std::sin(slope) * up_of(space);
-    const int bead = add_ball(scene, Vec3::Zero());
-    scene.add(joint_at(scene, -1, bead, at(Vec3::Zero(), Quat::FromTwoVectors(Vec3::UnitX(), down)),
+    const BodyId bead = add_ball(scene, Vec3::Zero());
+    scene.add(joint_at(scene, {}, bead, at(Vec3::Zero(), Quat::FromTwoVectors(Vec3::UnitX(), down)),
                        SliderJoint{}));
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
@@ -173,11 +173,11 @@ TEST_CASE("a wheel's suspension sags and swings as a damped oscillator", "[fast]
     Scene scene = empty_scene(space, 9.81);
     scene.options.dt = 1.0 / 960;
     const Quat up = Quat::FromTwoVectors(Vec3::UnitX(), up_of(space));
-    const int chassis = add_ball(scene, Vec3::Zero(), 3);
+    const BodyId chassis = add_ball(scene, Vec3::Zero(), 3);
     const double omega = 2 * kPi * 1.5, zeta = 0.3;
     WheelJoint wheel;
     wheel.suspension = Spring{0, 0, 1.5, zeta};
-    scene.add(joint_at(scene, -1, chassis, at(Vec3::Zero(), up), wheel));
+    scene.add(joint_at(scene, {}, chassis, at(Vec3::Zero(), up), wheel));
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       Batch batch(plan, options_of(table));
@@ -202,7 +202,7 @@ TEST_CASE("Atwood's machine falls with (m1 - m2) g / (m1 + m2)", "[fast][joint]"
       scene.options.dt = 1.0 / 240;
       const double m1 = 2, m2 = 1;
       const Vec3 up = up_of(space);
-      const int heavy = add_ball(scene, {-1, 0, 0}, m1), light = add_ball(scene, {1, 0, 0}, m2);
+      const BodyId heavy = add_ball(scene, {-1, 0, 0}, m1), light = add_ball(scene, {1, 0, 0}, m2);
       PulleyJoint rope;
       rope.ground_a = Vec3(-1, 0, 0) + 5 * up;
       rope.ground_b = Vec3(1, 0, 0) + 5 * up;
@@ -231,7 +231,8 @@ TEST_CASE("welded bodies fly as one, and keep their momenta", "[fast][joint]") {
     Scene scene = still_scene(space);
     for (int i = 0; i < 3; ++i) add_ball(scene, {0.3 * i, 0, 0}, 1 + i);
     for (int i = 0; i < 2; ++i) {
-      scene.add(joint_at(scene, i, i + 1, at({0.3 * i + 0.15, 0, 0}), FixedJoint{}));
+      scene.add(
+          joint_at(scene, BodyId(i), BodyId(i + 1), at({0.3 * i + 0.15, 0, 0}), FixedJoint{}));
     }
     // About the common centre of mass, 0.4 m from the first body.
     const Vec3 spin_rate(0, 0, 3), flight(1, 2, 0);

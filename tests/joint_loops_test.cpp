@@ -28,7 +28,7 @@ Scene four_bars(int n, double rate) {
     scene.add(link);
   }
   const auto pin = [&](int a, int b, double x, double y) {
-    scene.add(joint_at(scene, a, b, at({x, y, 0}), HingeJoint{}));
+    scene.add(joint_at(scene, BodyId(a), BodyId(b), at({x, y, 0}), HingeJoint{}));
   };
   for (int i = 0; i <= n; ++i) pin(-1, i, i, 0);
   for (int i = 0; i < n; ++i) pin(i, n + 1 + i, i, 1), pin(i + 1, n + 1 + i, i + 1, 1);
@@ -102,9 +102,9 @@ TEST_CASE("a redundant loop in space stays finite and closed (B23)", "[fast][joi
     }
     for (int i = 0; i < 4; ++i) {
       const JointType type = i == 2 ? JointType(FixedJoint{}) : JointType(HingeJoint{});
-      scene.add(joint_at(scene, (i + 3) % 4, i, at(corner[i], z_to_y()), type));
+      scene.add(joint_at(scene, BodyId((i + 3) % 4), BodyId(i), at(corner[i], z_to_y()), type));
     }
-    scene.add(joint_at(scene, -1, 0, at(corner[0], z_to_y()), HingeJoint{}));
+    scene.add(joint_at(scene, {}, BodyId(0), at(corner[0], z_to_y()), HingeJoint{}));
     Batch batch(compile(scene), options_of(table));
     const double start = energy_of(batch, 0);
     double gap = 0, most = start;

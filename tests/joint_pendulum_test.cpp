@@ -15,8 +15,8 @@ Scene rods(Space space, int count, double dt) {
   scene.options.dt = dt;
   for (int i = 0; i < count; ++i) {
     scene.add(uniform_rod(space, 1, 1, {i + 0.5, 0, 0}));
-    scene.add(joint_at(scene, i - 1, i, at({static_cast<double>(i), 0, 0}, hinge_axes(space)),
-                       HingeJoint{}));
+    scene.add(joint_at(scene, BodyId(i - 1), BodyId(i),
+                       at({static_cast<double>(i), 0, 0}, hinge_axes(space)), HingeJoint{}));
   }
   return scene;
 }
@@ -37,7 +37,7 @@ PointError swing_point(Space space, double rate, double seconds) {
   scene.add(rod_of(space, 1, {0.01, 0.01, 0.01}, {1, 0, 0}));
   Joint rod;
   rod.type = DistanceJoint{};
-  rod.body_b = 0;
+  rod.body_b = BodyId(0);
   scene.add(rod);
   Batch batch(compile(scene), options_of(double_table()));
   Swing swing{9.81, 0, 0};

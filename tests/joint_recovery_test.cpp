@@ -14,7 +14,7 @@ namespace {
 constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 
 // A circle or sphere of 0.2 m that collides with nothing.
-int add_bead(Scene& scene, const Vec3& position) {
+BodyId add_bead(Scene& scene, const Vec3& position) {
   Body bead = body_of(shape_of(round_of(scene.space, 0.2)), position);
   bead.shapes[0].filter.mask = 0;
   return scene.add(bead);
@@ -32,11 +32,11 @@ TEST_CASE("a chain whose joints begin a metre apart contracts gently", "[fast][j
     scene.options.joint_pull_speed = 1;
     scene.options.substeps = 8;
     for (int i = 0; i < 40; ++i) {
-      const int bead = add_bead(scene, {2.0 * i, 0, 0});
+      const BodyId bead = add_bead(scene, {2.0 * i, 0, 0});
       Joint joint;
       joint.type = free_joint(space);
-      joint.body_a = bead - 1, joint.body_b = bead;
-      joint.frame_a.position = {bead == 0 ? -0.5 : 0.5, 0, 0};
+      joint.body_a = BodyId(i - 1), joint.body_b = bead;
+      joint.frame_a.position = {i == 0 ? -0.5 : 0.5, 0, 0};
       joint.frame_b.position = {-0.5, 0, 0};
       scene.add(joint);
     }
@@ -68,8 +68,9 @@ TEST_CASE("a ball of 672 links' mass swings on its chain", "[joint]") {
     if (!ball) link.shapes[0].rotation = along_x;
     link.shapes[0].filter.mask = 0;
     link.linear_drag = link.angular_drag = 0.1;
-    const int body = scene.add(link);
-    scene.add(joint_at(scene, body - 1, body, at({static_cast<double>(i), 0, 0}), HingeJoint{}));
+    const BodyId body = scene.add(link);
+    scene.add(
+        joint_at(scene, BodyId(i - 1), body, at({static_cast<double>(i), 0, 0}), HingeJoint{}));
   }
   const Plan plan = compile(scene);
   for (const Table& table : widest_tables()) {
@@ -104,7 +105,7 @@ TEST_CASE("every joint lives through half a minute of shaking", "[joint]") {
       Scene scene = empty_scene(space, 10);
       for (int i = 0; i < 3; ++i) {
         scene.add(rod_of(space, 1, {0.1, 0.15, 0.2}, {static_cast<double>(i), 0, 0}));
-        scene.add(joint_at(scene, i - 1, i, at({i - 0.5, 0, 0}), types[k]));
+        scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), at({i - 0.5, 0, 0}), types[k]));
         if (std::holds_alternative<DistanceJoint>(types[k])) {
           scene.joints.back().frame_b.position = {0.5, 0, 0};
         }
@@ -119,8 +120,8 @@ TEST_CASE("every joint lives through half a minute of shaking", "[joint]") {
           for (int b = 0; b < 3; ++b) {
             Vec3 force = random.in_cube(100);
             if (space == Space::planar) force.z() = 0;
-            batch.add_force(0, b, force);
-            batch.add_torque(0, b, Vec3(0, 0, random.uniform(-10, 10)));
+            batch.add_force(0, batch.body_in_row(b), force);
+            batch.add_torque(0, batch.body_in_row(b), Vec3(0, 0, random.uniform(-10, 10)));
           }
           batch.step();
           fastest = std::max(fastest, max_speed(batch, 0));
@@ -142,10 +143,10 @@ TEST_CASE("bodies that begin with another keep their places on it", "[fast][batc
     const Plan plan = compile(scenes::find(name)->make());
     const Scene& scene = plan.scene();
     Batch batch(plan, options_of(widest_tables().front(), 20));
-    const int leader = scene.bodies.back().jitter.with;
-    REQUIRE(leader >= 0);
-    const Body& first = scene.bodies[static_cast<std::size_t>(leader)];
-    const int b = plan.state_body(leader);
+    const BodyId leader = scene.bodies.back().jitter.with;
+    REQUIRE(leader);
+    const Body& first = scene.at(leader);
+    const int b = plan.row(leader);
     CHECK((position(batch, 3, b) - position(batch, 4, b)).norm() > 0.01);
     for (int w = 0; w < batch.worlds(); ++w) {
       INFO(name << " world " << w);
@@ -153,7 +154,7 @@ TEST_CASE("bodies that begin with another keep their places on it", "[fast][batc
       for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
         const Body& body = scene.bodies[static_cast<std::size_t>(i)];
         if (body.jitter.with != leader) continue;
-        const int s = plan.state_body(i);
+        const int s = plan.row(BodyId(i));
         const Vec3 held =
             rotation(batch, w, b).conjugate() * (position(batch, w, s) - position(batch, w, b));
         CHECK((held - (body.position - first.position)).norm() < 1e-5);
@@ -177,11 +178,11 @@ TEST_CASE("a heavy cart stands still on light wheels (B24)", "[fast][joint]") {
     scene.add(ground(Space::planar));
     Body chassis = body_of(shape_of(Polygon::box(1, 0.25)), {0, 0.6, 0});
     chassis.shapes[0].density = 1000;
-    const int cart = scene.add(chassis);
+    const BodyId cart = scene.add(chassis);
     for (const double x : {-0.8, 0.8}) {
       Body wheel = body_of(shape_of(Circle{0.1}), {x, 0.1, 0});
       wheel.shapes[0].density = 50;
-      const int body = scene.add(wheel);
+      const BodyId body = scene.add(wheel);
       // Gives way by 5 cm.
       const WheelJoint suspension{Spring{2.2e5, 1.2e4, 0, 0}, Limit{-0.2, 0.2, {}}, {}};
       const Quat up(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
@@ -222,7 +223,8 @@ TEST_CASE("a bridge of 160 links hangs as the catenary (B19)", "[slow][joint]") 
   }
   for (int i = 0; i <= kLinks; ++i) {
     Joint hinge;
-    hinge.body_a = i == kLinks ? -1 : i - 1, hinge.body_b = i == kLinks ? i - 1 : i;
+    hinge.body_a = BodyId(i == kLinks ? -1 : i - 1);
+    hinge.body_b = BodyId(i == kLinks ? i - 1 : i);
     hinge.frame_a.position = {i == 0 ? -kSpan / 2 : i == kLinks ? kSpan / 2 : 0.5, 0, 0};
     hinge.frame_b.position = {i == kLinks ? 0.5 : -0.5, 0, 0};
     scene.add(hinge);

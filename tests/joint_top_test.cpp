@@ -22,7 +22,7 @@ Scene top(double mass, const Vec3& moments, double arm, double tilt, const Vec3&
   body.angular_velocity = q * spin;
   body.linear_velocity = body.angular_velocity.cross(body.position);
   scene.add(body);
-  scene.add(joint_at(scene, -1, 0, at(Vec3::Zero()), BallJoint{}));
+  scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero()), BallJoint{}));
   return scene;
 }
 constexpr double kTilt = kPi / 6;

@@ -130,13 +130,13 @@ void check_scene(const Scene& scene) {
                 },
                 rounds) == 0);
       CHECK(calls_during([&] { batch.step_to(batch.time() + 0.1); }, rounds) == 0);
-      batch.add_force(3, 0, Vec3(1, 0, 0));  // the first one may allocate
+      batch.add_force(3, batch.body_in_row(0), Vec3(1, 0, 0));  // the first one may allocate
       batch.step();
       CHECK(calls_during(
                 [&] {
-                  batch.add_force(5, 0, Vec3(1, 0, 0));
-                  batch.add_torque(50, 0, Vec3(0, 0, 1));
-                  batch.add_impulse(7, 0, Vec3(0.1, 0, 0));
+                  batch.add_force(5, batch.body_in_row(0), Vec3(1, 0, 0));
+                  batch.add_torque(50, batch.body_in_row(0), Vec3(0, 0, 1));
+                  batch.add_impulse(7, batch.body_in_row(0), Vec3(0.1, 0, 0));
                   batch.step();
                 },
                 rounds) == 0);
@@ -169,7 +169,7 @@ TEST_CASE("stepping by any solver allocates nothing", "[fast][allocation][solver
   for (Space space : {Space::planar, Space::spatial}) {
     for (int i = 0; i <= static_cast<int>(Solver::penalty); ++i) {
       Scene scene = crowd(space);
-      scene.add(joint_at(scene, 2, 3, {}, HingeJoint{}));
+      scene.add(joint_at(scene, BodyId(2), BodyId(3), {}, HingeJoint{}));
       scene.options.solver = static_cast<Solver>(i);
       scene.options.split_impulse = i % 2 == 0;
       for (const Table& table : widest_tables()) {
@@ -208,13 +208,13 @@ TEST_CASE("falling asleep, packing, waking and disabling allocate nothing", "[fa
     BatchOptions options = options_of(table, 40);
     options.sleep = true;
     Batch batch(compile(scene), options);
-    batch.add_force(0, 0, Vec3(1, 0, 0));
+    batch.add_force(0, batch.body_in_row(0), Vec3(1, 0, 0));
     batch.step();
     CHECK(calls_during([&] {
             for (int i = 0; i < 200; ++i) {
               batch.step();
-              if (i % 20 == 0) batch.add_impulse(i % 40, 0, Vec3(100, 0, 0));
-              if (i % 30 == 0) batch.set_enabled(i % 40, 1, i % 60 == 0);
+              if (i % 20 == 0) batch.add_impulse(i % 40, batch.body_in_row(0), Vec3(100, 0, 0));
+              if (i % 30 == 0) batch.set_enabled(i % 40, batch.body_in_row(1), i % 60 == 0);
             }
           }) == 0);
     CHECK(batch.awake_fraction() < 1);
@@ -224,7 +224,7 @@ TEST_CASE("falling asleep, packing, waking and disabling allocate nothing", "[fa
 TEST_CASE("observing everything allocates nothing", "[fast][allocation][observe]") {
   for (Space space : {Space::planar, Space::spatial}) {
     Scene scene = crowd(space);
-    scene.add(joint_at(scene, 2, 3, {}, HingeJoint{}));
+    scene.add(joint_at(scene, BodyId(2), BodyId(3), {}, HingeJoint{}));
     scene.options.time_to_sleep = 0.1;
     scene.options.sleep_speed = 0.5;
     for (const Table& table : widest_tables()) {

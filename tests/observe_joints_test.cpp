@@ -38,7 +38,7 @@ Vec3 torque_on_b(const Batch& batch, std::size_t joint = 0) {
 // The axis of a hinge with hinge_axes.
 Vec3 axis_of(Space space) { return space == Space::planar ? Vec3::UnitZ() : Vec3::UnitY(); }
 
-int add_ball(Scene& scene, const Vec3& position, double mass = 1) {
+BodyId add_ball(Scene& scene, const Vec3& position, double mass = 1) {
   return scene.add(rod_of(scene.space, mass, Vec3::Constant(0.1 * mass), position));
 }
 
@@ -50,7 +50,7 @@ TEST_CASE("a hinge tells its angle, its speed and what it carries", "[fast][obse
     scene.add(uniform_rod(space, 2, 1, {0.5, 0, 0}));
     HingeJoint hinge;
     hinge.drive = Drive{0.3, 0, Spring{0, 0, 8, 1}};
-    scene.add(joint_at(scene, -1, 0, at(Vec3::Zero(), hinge_axes(space)), hinge));
+    scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), hinge));
     const Plan plan = compile(scene);
     CHECK(plan.coordinates() == 1);
     for (const Table& table : all_tables()) {
@@ -83,7 +83,7 @@ TEST_CASE("a hinge that turns steadily pulls its body to its axis", "[fast][obse
     scene.add(uniform_rod(space, 2, 1, {0.5, 0, 0}));
     HingeJoint hinge;
     hinge.drive = Drive{0, 3, std::nullopt, 1e3};
-    scene.add(joint_at(scene, -1, 0, at(Vec3::Zero(), hinge_axes(space)), hinge));
+    scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), hinge));
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       INFO(name(table));
@@ -102,26 +102,26 @@ TEST_CASE("sliders, wheels, springs and ropes tell where they are", "[fast][obse
     Scene scene = empty_scene(space, 10);
     const Vec3 up = up_of(space);
     const Quat to_up = Quat::FromTwoVectors(Vec3::UnitX(), up);
-    const int slider = add_ball(scene, Vec3::Zero());
+    const BodyId slider = add_ball(scene, Vec3::Zero());
     SliderJoint held;
     held.drive = Drive{0.5, 0, Spring{1000, 100, 0, 0}};
-    scene.add(joint_at(scene, -1, slider, at(Vec3::Zero(), to_up), held));
-    const int wheel = add_ball(scene, {3, 0, 0}, 2);
-    scene.add(joint_at(scene, -1, wheel, at({3, 0, 0}, to_up), WheelJoint{Spring{500, 100, 0, 0}}));
-    const int bob = add_ball(scene, Vec3(6, 0, 0) - 2 * up, 3);
-    scene.add(joint_at(scene, -1, bob, at({6, 0, 0}), DistanceJoint{}));
+    scene.add(joint_at(scene, {}, slider, at(Vec3::Zero(), to_up), held));
+    const BodyId wheel = add_ball(scene, {3, 0, 0}, 2);
+    scene.add(joint_at(scene, {}, wheel, at({3, 0, 0}, to_up), WheelJoint{Spring{500, 100, 0, 0}}));
+    const BodyId bob = add_ball(scene, Vec3(6, 0, 0) - 2 * up, 3);
+    scene.add(joint_at(scene, {}, bob, at({6, 0, 0}), DistanceJoint{}));
     scene.joints.back().frame_b = {};
     std::get<DistanceJoint>(scene.joints.back().type).length = 2;
-    const int heavy = add_ball(scene, {9, 0, 0}, 2), light = add_ball(scene, {11, 0, 0}, 1);
+    const BodyId heavy = add_ball(scene, {9, 0, 0}, 2), light = add_ball(scene, {11, 0, 0}, 1);
     Joint rope;
     rope.type = PulleyJoint{Vec3(9, 0, 0) + 5 * up, Vec3(11, 0, 0) + 5 * up, 2, std::nullopt};
     rope.body_a = heavy, rope.body_b = light;
     scene.add(rope);
     const Plan plan = compile(scene);
     REQUIRE(plan.coordinates() == 5);
-    CHECK(plan.first_coordinate(1) == 1);
-    CHECK(plan.first_coordinate(2) == 3);
-    CHECK(plan.first_coordinate(3) == 4);
+    CHECK(plan.first_coordinate(JointId(1)) == 1);
+    CHECK(plan.first_coordinate(JointId(2)) == 3);
+    CHECK(plan.first_coordinate(JointId(3)) == 4);
     for (const Table& table : all_tables()) {
       INFO(name(table));
       Batch batch(plan, observing(table));
@@ -149,8 +149,8 @@ TEST_CASE("sliders, wheels, springs and ropes tell where they are", "[fast][obse
 
 TEST_CASE("a ball joint tells its cone and its twist", "[fast][observe][joint]") {
   Scene scene = empty_scene(Space::spatial, 0);
-  const int ball = add_ball(scene, {0, 0, -1});
-  scene.add(joint_at(scene, -1, ball, at(Vec3::Zero()), BallJoint{}));
+  const BodyId ball = add_ball(scene, {0, 0, -1});
+  scene.add(joint_at(scene, {}, ball, at(Vec3::Zero()), BallJoint{}));
   scene.bodies[0].rotation = Quat(Eigen::AngleAxisd(0.7, Vec3(0.6, 0.8, 0))) *
                              Quat(Eigen::AngleAxisd(-0.4, Vec3::UnitZ()));
   scene.bodies[0].position = scene.bodies[0].rotation * Vec3(0, 0, -1);
@@ -169,7 +169,7 @@ TEST_CASE("a fixed joint carries what hangs on it", "[fast][observe][joint]") {
   for (Space space : kSpaces) {
     Scene scene = empty_scene(space, 10);
     scene.add(uniform_rod(space, 2, 1, {0.5, 0, 0}));
-    scene.add(joint_at(scene, -1, 0, at(Vec3::Zero()), FixedJoint{}));
+    scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero()), FixedJoint{}));
     const Plan plan = compile(scene);
     CHECK(plan.coordinates() == 0);
     for (const Table& table : all_tables()) {
@@ -208,7 +208,7 @@ TEST_CASE("joints are seen at the state after a reset, without a step", "[fast][
     Scene scene = empty_scene(Space::planar, 0);
     scene.add(uniform_rod(Space::planar, 1, 1, {0.5, 0, 0}));
     scene.bodies[0].angular_velocity.z() = 2;
-    scene.add(joint_at(scene, -1, 0, at(Vec3::Zero()), HingeJoint{}));
+    scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero()), HingeJoint{}));
     Batch batch(compile(scene), observing(table, 2));
     batch.step(30);
     REQUIRE(numbers(batch, Observed::joint_position)[0] > 0.2);

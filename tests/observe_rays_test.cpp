@@ -57,14 +57,14 @@ void check_cases(Space space, const Geometry& geometry, const std::vector<Case>&
                       << static_cast<int>(motion));
         if (cases[i].distance == kInfinite) {
           CHECK(hits[i].distance == kInfinite);
-          CHECK(hits[i].body == -1);
-          CHECK(hits[i].shape == -1);
+          CHECK(hits[i].body == BodyId());
+          CHECK(hits[i].shape == ShapeId());
           CHECK(hits[i].normal.norm() == 0);
         } else {
           CHECK(hits[i].distance == Approx(cases[i].distance).margin(10 * near));
           CHECK((hits[i].normal - cases[i].normal).norm() < 10 * near);
-          CHECK(hits[i].body == 0);
-          CHECK(hits[i].shape == 0);
+          CHECK(hits[i].body == BodyId(0));
+          CHECK(hits[i].shape.index() == 0);
         }
       }
     }
@@ -243,7 +243,7 @@ TEST_CASE("rays end where a slow march along them does", "[fast][observe]") {
             return signed_distance(solid, rays[i].origin + along * rays[i].direction);
           };
           INFO(name(table) << " round " << round << " ray " << i);
-          if (hits[i].body < 0) {
+          if (!hits[i].body) {
             double nearest = 1;
             for (double t = 0; t < 5; t += 0.02) nearest = std::min(nearest, height(t));
             CHECK(nearest > -near);
@@ -279,7 +279,7 @@ TEST_CASE("rays go with their body and do not see it", "[fast][observe]") {
     seen.shapes[0].filter.category = 4;
     scene.add(seen);
     Ray forward = ray_of(Vec3(-0.5, 0, 0), kX), left = ray_of(Vec3::Zero(), kY), blind = left;
-    forward.body = left.body = blind.body = 0;
+    forward.body = left.body = blind.body = BodyId(0);
     blind.mask = ~4u;
     Ray shorter = forward;
     shorter.length = 2;
@@ -291,21 +291,21 @@ TEST_CASE("rays go with their body and do not see it", "[fast][observe]") {
       batch.look();
       auto hits = batch.ray_hits(3);
       CHECK(hits[0].distance == Approx(8));
-      CHECK(hits[0].body == 1);
+      CHECK(hits[0].body == BodyId(1));
       CHECK(hits[1].distance == Approx(4.5));
-      CHECK(hits[1].body == 2);
+      CHECK(hits[1].body == BodyId(2));
       CHECK((hits[1].normal - kX).norm() < 1e-5);
-      CHECK(hits[2].body == -1);
-      CHECK(hits[3].body == -1);
+      CHECK(hits[2].body == BodyId());
+      CHECK(hits[3].body == BodyId());
       CHECK(hits[3].distance == 2);
       batch.step(30);  // 3 m on
       hits = batch.ray_hits(3);
       CHECK(hits[0].distance == Approx(5).epsilon(1e-5));
-      CHECK(hits[1].body == -1);
-      batch.set_enabled(3, 1, false);
+      CHECK(hits[1].body == BodyId());
+      batch.set_enabled(3, batch.body_in_row(1), false);
       batch.look();
-      CHECK(batch.ray_hits(3)[0].body == -1);
-      CHECK(batch.ray_hits(2)[0].body == 1);
+      CHECK(batch.ray_hits(3)[0].body == BodyId());
+      CHECK(batch.ray_hits(2)[0].body == BodyId(1));
     }
   }
 }
@@ -338,9 +338,9 @@ TEST_CASE("rays change with set_rays, in one world or all", "[fast][observe]") {
     wrong[0].length = 0;
     CHECK_THROWS_WITH(batch.set_rays(3, wrong), Catch::Contains("rays[0].length is 0"));
     wrong = up;
-    wrong[0].body = 2;
+    wrong[0].body = BodyId(2);
     CHECK_THROWS_WITH(batch.set_rays(wrong), Catch::Contains("rays[0].body is 2, must be -1 to 1"));
-    wrong[0].body = 1;
+    wrong[0].body = BodyId(1);
     CHECK_THROWS_WITH(batch.set_rays(3, wrong), Catch::Contains("same in all worlds"));
   }
 }

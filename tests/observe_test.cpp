@@ -88,8 +88,8 @@ TEST_CASE("a box at rest: the impulses of a step are its weight times dt", "[fas
         CHECK(sum_of(contacts).impulse.dot(up_of(space)) == Approx(weight).epsilon(1e-4));
         double deepest = 0;
         for (const StepContact& c : contacts) {
-          CHECK(c.body_a == 0);
-          CHECK(c.body_b == 1);
+          CHECK(c.body_a == BodyId(0));
+          CHECK(c.body_b == BodyId(1));
           CHECK((c.normal - up_of(space)).norm() < 1e-5);
           CHECK(std::abs(c.point.dot(up_of(space))) < 0.01);
           CHECK(std::abs(c.point.x()) == Approx(0.5).margin(0.01));
@@ -98,8 +98,8 @@ TEST_CASE("a box at rest: the impulses of a step are its weight times dt", "[fas
           deepest = std::max(deepest, -c.separation);
         }
         CHECK(number(batch, Observed::penetration) == deepest);
-        CHECK(batch.touching(0, 0));
-        CHECK(batch.touching(0, 1, 0));
+        CHECK(batch.touching(0, batch.body_in_row(0)));
+        CHECK(batch.touching(0, BodyId(1), BodyId(0)));
       }
     }
   }
@@ -151,9 +151,8 @@ TEST_CASE("what a body gains in a step is gravity and the impulses of its contac
           const auto dim = before.size() / static_cast<std::size_t>(batch.bodies());
           double worst = 0;
           for (int b = 0; b < batch.bodies(); ++b) {
-            const int body = plan.scene_body(b);
-            const double mass =
-                mass_properties(scene, scene.bodies[static_cast<std::size_t>(body)]).mass;
+            const BodyId body = plan.body_in_row(b);
+            const double mass = mass_properties(scene, scene.at(body)).mass;
             Vec3 gain = mass * scene.options.dt * scene.options.gravity;
             bool touched = false;
             for (const StepContact& c : contacts) {
@@ -162,7 +161,7 @@ TEST_CASE("what a body gains in a step is gravity and the impulses of its contac
               if (c.body_a == body) gain -= p;
               touched |= c.normal_impulse > 0 && (c.body_a == body || c.body_b == body);
             }
-            CHECK(batch.touching(3, b) == touched);
+            CHECK(batch.touching(3, body) == touched);
             pushed += touched ? 1 : 0;
             for (std::size_t c = 0; c < dim; ++c) {
               const std::size_t at = static_cast<std::size_t>(b) * dim + c;
@@ -194,8 +193,8 @@ TEST_CASE("energies and momenta are those of the state", "[fast][observe]") {
         double mass = 0;
         Vec3 center = Vec3::Zero(), linear = Vec3::Zero();
         for (int b = 0; b < batch.bodies(); ++b) {
-          const Body& body = scene.bodies[static_cast<std::size_t>(plan.scene_body(b))];
-          if (body.motion != Motion::dynamic || !batch.enabled(w, b)) continue;
+          const Body& body = scene.at(plan.body_in_row(b));
+          if (body.motion != Motion::dynamic || !batch.enabled(w, batch.body_in_row(b))) continue;
           const double m = mass_properties(scene, body).mass;
           mass += m;
           center += m * position(batch, w, b);
@@ -273,11 +272,11 @@ TEST_CASE("a pair asleep reports what it will wake with", "[fast][observe]") {
       for (std::size_t i = 0; i < contacts.size(); ++i) {
         CHECK(contacts[i].normal_impulse == others[i].normal_impulse);
         CHECK(contacts[i].point == others[i].point);
-        if (contacts[i].body_a == 0) ground_sum += contacts[i].normal_impulse;
+        if (contacts[i].body_a == BodyId(0)) ground_sum += contacts[i].normal_impulse;
       }
       CHECK(ground_sum == Approx(2 * 1000 * 10 * scene.options.dt).epsilon(1e-2));
-      CHECK(batch.touching(1, 0));
-      CHECK(batch.touching(1, 2, 1));
+      CHECK(batch.touching(1, batch.body_in_row(0)));
+      CHECK(batch.touching(1, BodyId(2), BodyId(1)));
       // Restored into a batch that has never stepped it: the same.
       Batch fresh(compile(scene), options);
       fresh.restore(batch.save(), 1, 2);
@@ -289,7 +288,7 @@ TEST_CASE("a pair asleep reports what it will wake with", "[fast][observe]") {
       batch.step();
       double awake_sum = 0;
       for (const StepContact& c : batch.step_contacts(1)) {
-        if (c.body_a == 0) awake_sum += c.normal_impulse;
+        if (c.body_a == BodyId(0)) awake_sum += c.normal_impulse;
       }
       CHECK(awake_sum == Approx(2 * 1000 * 10 * scene.options.dt).epsilon(1e-3));
     }
@@ -315,10 +314,10 @@ TEST_CASE("of two stacks one sleeps: every contact is reported once", "[fast][ob
       batch.step(300);
       REQUIRE(batch.asleep(0));
       for (int i = 0; i < 5; ++i) {
-        batch.add_impulse(1, 3, 100 * up_of(space));  // keeps its stack awake
+        batch.add_impulse(1, batch.body_in_row(3), 100 * up_of(space));  // keeps its stack awake
         batch.step();
-        REQUIRE(batch.asleep(1, 0));
-        REQUIRE_FALSE(batch.asleep(1, 3));
+        REQUIRE(batch.asleep(1, batch.body_in_row(0)));
+        REQUIRE_FALSE(batch.asleep(1, batch.body_in_row(3)));
         for (int w = 0; w < 3; ++w) CHECK(batch.step_contacts(w).size() == all);
       }
       CHECK(number(batch, Observed::contact_count, 1) == static_cast<double>(all));
@@ -336,15 +335,15 @@ TEST_CASE("a frozen world touches nothing, a disabled body nobody", "[fast][obse
     Batch batch(compile(scene), observing(table, kEverything, 3));
     batch.step(30);
     set_vector(batch, Field::linear_velocity, 1, 1, Vec3(std::nan(""), 0, 0));
-    batch.set_enabled(2, 0, false);
+    batch.set_enabled(2, batch.body_in_row(0), false);
     batch.step(10);
     REQUIRE(frozen(batch.status(1)));
     CHECK(batch.step_contacts(0).size() == 4);
     CHECK(batch.step_contacts(1).empty());
-    CHECK_FALSE(batch.touching(1, 0));
+    CHECK_FALSE(batch.touching(1, batch.body_in_row(0)));
     CHECK(batch.step_contacts(2).size() == 2);
-    CHECK_FALSE(batch.touching(2, 0));
-    CHECK(batch.touching(2, 1));
+    CHECK_FALSE(batch.touching(2, batch.body_in_row(0)));
+    CHECK(batch.touching(2, batch.body_in_row(1)));
     CHECK(number(batch, Observed::mass, 2) == Approx(1000));
   }
 }

@@ -21,7 +21,7 @@ TEST_CASE(
     fall.variations = {gravity_between(Vec3(-3, 0, -20), Vec3(3, 0, 0)),
                        vary(Parameter::gravity_scale, 0.5, 2), vary(Parameter::mass, 1, 9)};
     Batch falling(compile(fall), options_of(table, kWorlds));
-    for (int w = 0; w < kWorlds; ++w) falling.add_force(w, 0, Vec3(0, 12, 0));
+    for (int w = 0; w < kWorlds; ++w) falling.add_force(w, falling.body_in_row(0), Vec3(0, 12, 0));
     falling.step(1);
     const double dt = fall.options.dt;
     for (int w = 0; w < kWorlds; ++w) {
@@ -165,7 +165,7 @@ TEST_CASE("a body keeps its place when its sizes shift its centre of mass", "[fa
     scene.add(two);
     Variation size;
     size.parameter = Parameter::size;
-    size.body = 0, size.shape = 1;
+    size.shape = ShapeId(BodyId(0), 1);
     size.low.setConstant(0.1), size.high.setConstant(0.9);
     size.draw = Draw::none;
     scene.variations = {size};
@@ -183,7 +183,7 @@ TEST_CASE("a body keeps its place when its sizes shift its centre of mass", "[fa
       }
       // A push at the centre of mass does not turn it, wherever that has gone.
       const double own = numbers(batch, Parameter::mass, 1)[0];
-      batch.add_impulse(1, 0, Vec3(own, 0, 0));
+      batch.add_impulse(1, batch.body_in_row(0), Vec3(own, 0, 0));
       CHECK((velocity(batch, 1, 0) - Vec3(1, 0, 0)).norm() < pick(table, 1e-6, 1e-14));
       CHECK(spin(batch, 1, 0).norm() < 1e-12);
     }
@@ -202,18 +202,19 @@ TEST_CASE("a ray goes with its body wherever sizes put the centre of mass",
     scene.add(two);
     Variation size;
     size.parameter = Parameter::size;
-    size.body = 1, size.shape = 1;
+    size.shape = ShapeId(BodyId(1), 1);
     size.low.setConstant(0.1), size.high.setConstant(0.9);
     scene.variations = {size};
     for (const Table& table : all_tables()) {
       BatchOptions options = options_of(table, 9);
-      options.observe.rays = {{.origin = Vec3(0.1, 0, 0), .direction = Vec3::UnitX(), .body = 0}};
+      options.observe.rays = {
+          {.origin = Vec3(0.1, 0, 0), .direction = Vec3::UnitX(), .body = BodyId(1)}};
       Batch batch(compile(scene), options);
       batch.look();
       for (int w = 0; w < 9; ++w) {
         REQUIRE(batch.ray_hits(w).size() == 1);
         CHECK(batch.ray_hits(w)[0].distance == Approx(3.9).epsilon(pick(table, 1e-5, 1e-12)));
-        CHECK(batch.ray_hits(w)[0].body == 0);
+        CHECK(batch.ray_hits(w)[0].body == BodyId(0));
       }
     }
   }

@@ -108,14 +108,14 @@ TEST_CASE("planar and spatial joints move alike", "[fast][planar_spatial][joint]
       body.angular_velocity = {0, 0, 2 - x};
       return scene.add(body);
     };
-    const int a = rod(0.5, 0), b = rod(1.5, 0.1), c = rod(2.4, 0.3), d = rod(0, -1);
-    const auto join = [&](int first, int second, const Vec3& where, JointType type) {
+    const BodyId a = rod(0.5, 0), b = rod(1.5, 0.1), c = rod(2.4, 0.3), d = rod(0, -1);
+    const auto join = [&](BodyId first, BodyId second, const Vec3& where, JointType type) {
       scene.add(joint_at(scene, first, second, at(where), std::move(type)));
     };
-    join(-1, a, {0, 0, 0}, HingeJoint{std::nullopt, Drive{0, 3, std::nullopt, 4}});
+    join({}, a, {0, 0, 0}, HingeJoint{std::nullopt, Drive{0, 3, std::nullopt, 4}});
     join(a, b, {1, 0, 0}, HingeJoint{Limit{-0.05, 0.02, std::nullopt}, std::nullopt});
     join(b, c, {2, 0.2, 0}, SliderJoint{std::nullopt, Drive{0.1, 0, Spring{40, 1, 0, 0}}});
-    join(-1, d, {0, 0, 0}, DistanceJoint{});
+    join({}, d, {0, 0, 0}, DistanceJoint{});
     scene.joints.back().frame_b.position.setZero();  // a rod of 1 m to the middle of the body
     return scene;
   };

@@ -237,7 +237,7 @@ TEST_CASE("a ray against a single shape", "[fast][query]") {
   REQUIRE(hit);
   CHECK(hit->distance == Approx(3.5));
   CHECK((hit->normal + Vec3::UnitX()).norm() < 1e-12);
-  CHECK(hit->body == 0);
+  CHECK(hit->body == BodyId(0));
   CHECK_FALSE(ray_cast(shape_of(Sphere{}), at(1, 1), ray));
   ray.length = 3.4;
   CHECK_FALSE(ray_cast(shape_of(Sphere{}), at(1, 0), ray));

@@ -31,7 +31,7 @@ class Trial {
     options_.sleep = seed % 5 == 0;
     const Scene& scene = random_.scene;
     for (int i = 0; i < plan_.bodies(); ++i) {
-      const Body& body = scene.bodies[static_cast<std::size_t>(plan_.scene_body(i))];
+      const Body& body = scene.at(plan_.body_in_row(i));
       dynamic_.push_back(body.motion == Motion::dynamic);
       center_.push_back(dynamic_.back() ? mass_properties(scene, body).center : Vec3::Zero());
     }
@@ -90,7 +90,7 @@ class Trial {
     double behind = -1;
     for (int b = 0; b < batch.bodies(world); ++b) {
       const auto i = static_cast<std::size_t>(b);
-      if (!dynamic_[i] || !batch.enabled(world, b)) continue;
+      if (!dynamic_[i] || !batch.enabled(world, batch.body_in_row(b))) continue;
       const Vec3 center = position(batch, world, b) + rotation(batch, world, b) * center_[i];
       behind = std::max(behind, behind_walls(random_, center));
     }
@@ -124,7 +124,7 @@ class Trial {
     batch.step(20);
     const int body =
         static_cast<int>(std::find(dynamic_.begin(), dynamic_.end(), true) - dynamic_.begin());
-    batch.set_enabled(kBad, body, true);
+    batch.set_enabled(kBad, batch.body_in_row(body), true);
     set_vector(batch, Field::linear_velocity, kBad, body,
                Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
     batch.step(kSteps - 20);

@@ -22,14 +22,7 @@ Batch worlds_of(const char* scene, const Table& table) {
   return Batch(compile(entry->make()), options_of(table, kWorlds));
 }
 
-// Among the bodies with state.
-int body_named(const Batch& batch, const std::string& name) {
-  const std::vector<Body>& bodies = batch.plan().scene().bodies;
-  const auto it = std::find_if(bodies.begin(), bodies.end(),
-                               [&](const Body& body) { return body.name == name; });
-  REQUIRE(it != bodies.end());
-  return batch.plan().state_body(static_cast<int>(it - bodies.begin()));
-}
+int row_named(const Batch& batch, const std::string& name) { return batch.row(batch.body(name)); }
 
 void step_seconds(Batch& batch, double seconds) {
   batch.step(static_cast<int>(std::lround(seconds / batch.plan().scene().options.dt)));
@@ -74,7 +67,7 @@ TEST_CASE("the bird knocks boxes out of the pile, which stands without it", "[fa
     for (const int boxes : knocked_out(slung)) CHECK(boxes >= 1);
     Batch kept = worlds_of("bird-sling", table);
     for (int w = 0; w < kWorlds; ++w) {
-      set_vector(kept, Field::linear_velocity, w, body_named(kept, "bird"), Vec3::Zero());
+      set_vector(kept, Field::linear_velocity, w, row_named(kept, "bird"), Vec3::Zero());
     }
     for (const int boxes : knocked_out(kept)) CHECK(boxes == 0);
   }
@@ -84,7 +77,7 @@ TEST_CASE("a cradle on rods passes the swing on and gains no energy", "[fast][sc
   for (const Table& table : widest_tables()) {
     INFO(name(table));
     Batch batch = worlds_of("cradle-joints", table);
-    const int first = body_named(batch, "ball0"), last = body_named(batch, "ball4");
+    const int first = row_named(batch, "ball0"), last = row_named(batch, "ball4");
     const double rest = position(batch, 0, last).y();
     std::vector<double> start, swing, rise(kWorlds), back(kWorlds);
     batch.step();  // what the jitter gave along the rod is gone
@@ -120,7 +113,7 @@ TEST_CASE("a crane's load comes to rest below its trolley and goes where it is d
   for (const Table& table : widest_tables()) {
     INFO(name(table));
     Batch batch = worlds_of("crane", table);
-    const int trolley = body_named(batch, "trolley"), load = body_named(batch, "load");
+    const int trolley = row_named(batch, "trolley"), load = row_named(batch, "load");
     const auto hanging = [&](int w) {
       return Vec3(position(batch, w, load) - position(batch, w, trolley));
     };
@@ -173,7 +166,7 @@ TEST_CASE("a car drives over rough ground by its motors and turns where it is st
     };
     const Batch ahead = driven({12, 12, 0, 0}, 10), left = driven({12, 12, 0.3, 0.3}, 3),
                 still = driven({0, 0, 0, 0}, 10), fresh = worlds_of("car3d", table);
-    const int car = body_named(fresh, "chassis");
+    const int car = row_named(fresh, "chassis");
     for (int w = 0; w < kWorlds; ++w) {
       const Vec3 from = position(fresh, w, car);
       CHECK(position(ahead, w, car).x() - from.x() > 30);
@@ -192,10 +185,10 @@ TEST_CASE("a chain reaction hoists its flag, and not without the ball that start
     INFO(name(table));
     const auto risen = [&](bool ball) {
       Batch batch = worlds_of("chain-reaction", table);
-      const int flag = body_named(batch, "flag");
+      const int flag = row_named(batch, "flag");
       const double from = position(batch, 0, flag).y();
       for (int w = 0; w < kWorlds && !ball; ++w) {
-        batch.set_enabled(w, body_named(batch, "ball"), false);
+        batch.set_enabled(w, batch.body("ball"), false);
       }
       step_seconds(batch, 12);
       check_ok(batch);

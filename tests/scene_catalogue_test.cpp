@@ -131,8 +131,8 @@ TEST_CASE("chains have ten links of 1 m, joined at their ends", "[fast][scene][j
             (scene.space == Space::planar ? Vec3(0, 0.1, 0) : Vec3(0.1, 0.1, 0.1)));
       CHECK(link.shapes[0].filter.mask == 0);
       const Joint& joint = scene.joints[static_cast<std::size_t>(i)];
-      CHECK(joint.body_a == i - 1);
-      CHECK(joint.body_b == i);
+      CHECK(joint.body_a == BodyId(i - 1));
+      CHECK(joint.body_b == BodyId(i));
       CHECK(joint.frame_a.position == Vec3(i == 0 ? 0 : 0.5, 0, 0));
       CHECK(joint.frame_b.position == Vec3(-0.5, 0, 0));
     }

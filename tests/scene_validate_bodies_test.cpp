@@ -56,10 +56,10 @@ TEST_CASE("bad body states are named", "[fast][scene]") {
        [](Scene& s) { crate(s).jitter.linear_velocity.x() = kInf; }},
       {"jitter.angle", "is -0.1 rad", [](Scene& s) { crate(s).jitter.angle = -0.1; }},
       {"jitter.with", "is 99, must be -1 or another body",
-       [](Scene& s) { crate(s).jitter.with = 99; }},
+       [](Scene& s) { crate(s).jitter.with = BodyId(99); }},
       {"jitter.with", "is 0, must be -1 or another body that is not fixed",
-       [](Scene& s) { crate(s).jitter.with = 0; }},
-      {"jitter.with", "is -2", [](Scene& s) { crate(s).jitter.with = -2; }}};
+       [](Scene& s) { crate(s).jitter.with = BodyId(0); }},
+      {"jitter.with", "is -2", [](Scene& s) { crate(s).jitter.with = BodyId(-2); }}};
   check_each(spatial(), kBody, common);
   check_each(planar(), kBody, common);
 }
@@ -202,7 +202,7 @@ TEST_CASE("what a fixed body would ignore is refused", "[fast][scene]") {
               {"angular_velocity", "is set", [&](Scene& s) { ground(s).angular_velocity.x() = 1; }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.position.x() = 1; }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.angle = 1; }},
-              {"jitter", "is set", [&](Scene& s) { ground(s).jitter.with = 1; }},
+              {"jitter", "is set", [&](Scene& s) { ground(s).jitter.with = BodyId(1); }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.any_orientation = true; }}});
 }
 

@@ -19,7 +19,7 @@ Scene jointed(Space space, JointType type) {
   for (int i = 0; i < 2; ++i) {
     scene.add(body_of(shape_of(cube_of(space, 0.1)), Vec3(i, 0, 0) + up_of(space)));
   }
-  Joint joint = joint_at(scene, 1, 2, at(up_of(space)), std::move(type));
+  Joint joint = joint_at(scene, BodyId(1), BodyId(2), at(up_of(space)), std::move(type));
   joint.name = "elbow";
   scene.add(joint);
   return scene;
@@ -37,14 +37,14 @@ TEST_CASE("joints between the wrong bodies are refused", "[fast][validate][joint
     check_each(
         jointed(space, HingeJoint{}), kElbow,
         {{"body_a", "is 3, must be -1 (the world) or a body, 0 to 2",
-          [](Scene& s) { s.joints[0].body_a = 3; }},
-         {"body_b", "is -1, must be a body, 0 to 2", [](Scene& s) { s.joints[0].body_b = -1; }},
+          [](Scene& s) { s.joints[0].body_a = BodyId(3); }},
+         {"body_b", "is -1, must be a body, 0 to 2", [](Scene& s) { s.joints[0].body_b = {}; }},
          {"body_b", "is 1, must be another body than body_a",
-          [](Scene& s) { s.joints[0].body_b = 1; }},
+          [](Scene& s) { s.joints[0].body_b = BodyId(1); }},
          {"body_b", "are both not dynamic",
           [](Scene& s) { s.bodies[1].motion = s.bodies[2].motion = Motion::kinematic; }},
          {"body_b", "is fixed, must be a body that moves",
-          [](Scene& s) { s.joints[0].body_b = 0; }},
+          [](Scene& s) { s.joints[0].body_b = BodyId(0); }},
          {"frame_b.position", "is 1000 m from frame_a's",
           [](Scene& s) { s.joints[0].frame_a.position.x() += 1000; }},
          {"frame_a.position.x", "is nan m",
@@ -87,9 +87,9 @@ TEST_CASE("each type of joint has checks of its own", "[fast][validate][joint]")
       {{"ratio", "is 0, must be > 0", [](Scene& s) { type_of<PulleyJoint>(s).ratio = 0; }},
        {"ground_b.y", "is nan m", [](Scene& s) { type_of<PulleyJoint>(s).ground_b.y() = kNan; }},
        {"body_a", "does not move, must be a body that hangs on the rope",
-        [](Scene& s) { s.joints[0].body_a = -1; }},
+        [](Scene& s) { s.joints[0].body_a = {}; }},
        {"body_a", "does not move, must be a body that hangs on the rope",
-        [](Scene& s) { s.joints[0].body_a = 0; }}});
+        [](Scene& s) { s.joints[0].body_a = BodyId(0); }}});
   check_each(
       jointed(Space::planar, WheelJoint{Spring{0, 0, 2, 0.5}, std::nullopt, std::nullopt}), kElbow,
       {{"suspension", "is zero", [](Scene& s) { type_of<WheelJoint>(s).suspension = Spring{}; }}});
@@ -100,11 +100,11 @@ TEST_CASE("each type of joint has checks of its own", "[fast][validate][joint]")
 
 TEST_CASE("all problems of all joints are listed at once", "[fast][validate][joint]") {
   Scene scene = jointed(Space::spatial, HingeJoint{});
-  scene.joints[0].body_a = 7;
+  scene.joints[0].body_a = BodyId(7);
   scene.joints.push_back(scene.joints[0]);
   scene.joints[1].name.clear();
-  scene.joints[1].body_a = 1;
-  scene.joints[1].body_b = 1;
+  scene.joints[1].body_a = BodyId(1);
+  scene.joints[1].body_b = BodyId(1);
   scene.bodies[1].position.x() = kNan;
   CHECK(places(scene) ==
         std::vector<std::string>{"body 1: position.x", kElbow + "body_a", "joint 1: body_b"});

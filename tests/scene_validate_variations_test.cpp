@@ -27,7 +27,8 @@ std::string only_issue(const Scene& scene) {
 }
 
 Variation of(Variation v, int body, int shape = -1) {
-  v.body = body, v.shape = shape;
+  v.body = BodyId(body);
+  if (shape != -1) v.shape = ShapeId(BodyId(body), shape);
   return v;
 }
 

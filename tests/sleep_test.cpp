@@ -32,7 +32,7 @@ Scene two_stacks(Space space) {
 
 int sleepers(const Batch& batch, int world, int first, int last) {
   int n = 0;
-  for (int b = first; b <= last; ++b) n += batch.asleep(world, b) ? 1 : 0;
+  for (int b = first; b <= last; ++b) n += batch.asleep(world, batch.body_in_row(b)) ? 1 : 0;
   return n;
 }
 
@@ -40,7 +40,7 @@ int sleepers(const Batch& batch, int world, int first, int last) {
 std::vector<double> impulses_above(const Batch& batch, int first) {
   std::vector<double> all;
   for (const Contact& c : batch.contacts(0))
-    if (c.body_b >= first) all.push_back(c.normal_impulse);
+    if (c.body_b.index() >= first) all.push_back(c.normal_impulse);
   return all;
 }
 
@@ -50,8 +50,8 @@ void disturb(Batch& batch, int first_world, int step) {
     const int id = first_world + w;
     if (step % 90 != (id * 17) % 90 || id % 3 == 0) continue;
     const int body = id % batch.bodies(w);
-    if (id % 2 == 0) batch.add_impulse(w, body, Vec3(0, 300, 0));
-    if (id % 2 == 1) batch.add_force(w, body, Vec3(900, 0, 0));
+    if (id % 2 == 0) batch.add_impulse(w, batch.body_in_row(body), Vec3(0, 300, 0));
+    if (id % 2 == 1) batch.add_force(w, batch.body_in_row(body), Vec3(900, 0, 0));
   }
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("a batch at rest executes no group step", "[fast][sleep]") {
       CHECK(batch.group_steps() == before);
       CHECK(batch.hash() == hash);
       // One world that moves costs one group.
-      batch.add_impulse(13, 0, Vec3(500, 0, 0));
+      batch.add_impulse(13, batch.body_in_row(0), Vec3(500, 0, 0));
       batch.step(5);
       CHECK(batch.group_steps() == before + 5);
     }
@@ -164,7 +164,7 @@ TEST_CASE("worlds that move are packed into as few groups as they fill", "[fast]
     Batch batch(compile(two_stacks(Space::spatial)), sleeping(table, 64));
     batch.step(120);
     REQUIRE(batch.awake_fraction() == 0);
-    for (int w = 3; w < 64; w += 8) batch.add_impulse(w, 0, Vec3(500, 0, 0));
+    for (int w = 3; w < 64; w += 8) batch.add_impulse(w, batch.body_in_row(0), Vec3(500, 0, 0));
     const std::int64_t before = batch.group_steps();
     batch.step();
     CHECK(batch.group_steps() - before == (8 + batch.lanes() - 1) / batch.lanes());
@@ -181,7 +181,7 @@ TEST_CASE("an island sleeps and wakes for itself", "[fast][sleep]") {
       REQUIRE(sleepers(batch, 0, 0, 5) == 6);
       const std::vector<double> before = values(batch, Field::position);
       const std::vector<double> carried = impulses_above(batch, 4);
-      batch.add_impulse(0, 2, Vec3(400, 0, 0));
+      batch.add_impulse(0, batch.body_in_row(2), Vec3(400, 0, 0));
       CHECK(sleepers(batch, 0, 0, 2) == 0);  // its whole stack
       CHECK(sleepers(batch, 0, 3, 5) == 3);
       batch.step(10);
@@ -208,7 +208,7 @@ TEST_CASE("who sleeps wakes in the step in which something comes near", "[fast][
       Batch batch(compile(scene), sleeping(table));
       batch.step(120);
       REQUIRE(batch.asleep(0));
-      batch.spawn(0, 6, {ball.position});
+      batch.spawn(0, batch.body_in_row(6), {ball.position});
       CHECK_FALSE(batch.asleep(0));
       double speed = 0, fall = 0;
       int steps = 0;
@@ -244,10 +244,10 @@ TEST_CASE("forces, impulses, writes and lost supports wake", "[fast][sleep]") {
       CHECK(batch.asleep(1));
       return sleepers(batch, 0, 0, 5) < 6;
     };
-    CHECK(awake(rested(), [](Batch& b) { b.add_force(0, 1, Vec3(1, 0, 0)); }));
-    CHECK_FALSE(awake(rested(), [](Batch& b) { b.add_force(0, 1, Vec3(0, 0, 0)); }));
-    CHECK(awake(rested(), [](Batch& b) { b.add_torque(0, 1, Vec3(0, 0, 1)); }));
-    CHECK(awake(rested(), [](Batch& b) { b.add_impulse(0, 1, Vec3(1, 0, 0)); }));
+    CHECK(awake(rested(), [](Batch& b) { b.add_force(0, b.body_in_row(1), Vec3(1, 0, 0)); }));
+    CHECK_FALSE(awake(rested(), [](Batch& b) { b.add_force(0, b.body_in_row(1), Vec3(0, 0, 0)); }));
+    CHECK(awake(rested(), [](Batch& b) { b.add_torque(0, b.body_in_row(1), Vec3(0, 0, 1)); }));
+    CHECK(awake(rested(), [](Batch& b) { b.add_impulse(0, b.body_in_row(1), Vec3(1, 0, 0)); }));
     CHECK(awake(rested(), [](Batch& b) {
       b.write(Field::linear_velocity, 0, values(b, Field::linear_velocity, 0));
     }));
@@ -256,7 +256,7 @@ TEST_CASE("forces, impulses, writes and lost supports wake", "[fast][sleep]") {
       b.reset(mask);
     }));
     Batch batch = rested();
-    batch.set_enabled(0, 0, false);
+    batch.set_enabled(0, batch.body_in_row(0), false);
     CHECK(sleepers(batch, 0, 0, 2) == 0);
     CHECK(sleepers(batch, 0, 3, 5) == 3);
     batch.step(10);
@@ -314,13 +314,14 @@ TEST_CASE("what is pulled and not held does not sleep", "[fast][sleep]") {
         INFO(name(table) << " gravity " << gravity);
         const double mass = mass_properties(scene, scene.bodies[1]).mass;
         Batch batch(compile(scene), sleeping(table));
-        if (gravity == 0) batch.add_force(0, 0, 0.02 * mass * up_of(space));
+        if (gravity == 0) batch.add_force(0, batch.body_in_row(0), 0.02 * mass * up_of(space));
         batch.step(300);  // 5 s at 0.02 m/s^2
         CHECK(std::abs(position(batch, 0, 0).dot(up_of(space)) - 30) == Approx(0.25).epsilon(1e-3));
-        CHECK_FALSE(batch.asleep(0, 0));
+        CHECK_FALSE(batch.asleep(0, batch.body_in_row(0)));
         if (gravity == 0) set_vector(batch, Field::linear_velocity, 0, 0, Vec3::Zero());
         batch.step(60);
-        CHECK(batch.asleep(0, 0) == (gravity == 0));  // at rest where nothing pulls
+        CHECK(batch.asleep(0, batch.body_in_row(0)) ==
+              (gravity == 0));  // at rest where nothing pulls
       }
     }
   }
@@ -336,12 +337,13 @@ TEST_CASE("a frozen world is the same whoever shares its group", "[fast][sleep][
     Batch one(plan, options);
     for (Batch* batch : {&many, &one}) {
       batch->step(20);
-      batch->add_force(batch == &many ? 5 : 0, 2, Vec3(std::nan(""), 0, 0));
+      batch->add_force(batch == &many ? 5 : 0, batch->body_in_row(2), Vec3(std::nan(""), 0, 0));
       batch->step(100);
     }
     CHECK(many.status(5) == Status::non_finite);
     CHECK(one.hash(0) == many.hash(5));
-    for (int b = 0; b < one.bodies(); ++b) CHECK(one.asleep(0, b) == many.asleep(5, b));
+    for (int b = 0; b < one.bodies(); ++b)
+      CHECK(one.asleep(0, one.body_in_row(b)) == many.asleep(5, many.body_in_row(b)));
     const auto a = one.contacts(0), c = many.contacts(5);
     REQUIRE(a.size() == c.size());
     for (std::size_t i = 0; i < a.size(); ++i) CHECK(a[i].normal_impulse == c[i].normal_impulse);

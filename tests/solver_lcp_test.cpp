@@ -58,8 +58,9 @@ ContactProblem problem_of(const Plan& plan, const Batch& begun, const Batch& don
   out.inv_mass = out.free = Eigen::VectorXd::Zero(6 * bodies);
   const bool planar = scene.space == Space::planar;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const int b = plan.state_body(static_cast<int>(i));
-    if (b < 0) continue;
+    const auto row = plan.find_row(BodyId(static_cast<int>(i)));
+    if (!row) continue;
+    const int b = *row;
     const MassProperties mass = mass_properties(scene, scene.bodies[i]);
     out.inv_mass.segment<3>(6 * b).setConstant(1 / mass.mass);
     if (planar) out.inv_mass[6 * b + 2] = 0;
@@ -74,8 +75,9 @@ ContactProblem problem_of(const Plan& plan, const Batch& begun, const Batch& don
     const StepContact& p = points[static_cast<std::size_t>(k)];
     gap[k] = std::max(p.separation, 0.0);
     for (const auto& [body, sign] : {std::pair(p.body_a, -1.0), std::pair(p.body_b, 1.0)}) {
-      const int b = plan.state_body(body);
-      if (b < 0) continue;
+      const auto row = plan.find_row(body);
+      if (!row) continue;
+      const int b = *row;
       const Vec3 arm = p.point - position(begun, 0, b);
       out.jacobian.row(k).segment<3>(6 * b) = sign * p.normal;
       out.jacobian.row(k).segment<3>(6 * b + 3) = sign * arm.cross(p.normal);

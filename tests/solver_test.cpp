@@ -90,8 +90,8 @@ TEST_CASE("penalty sags by what its springs say, joints included", "[fast][solve
     scene.add(ground(space));
     scene.add(body_of(shape_of(round_of(space, 0.5)), 0.5 * up_of(space)));
     const Vec3 peg = Vec3(3, 0, 0) + 2 * up_of(space);
-    const int hung = scene.add(body_of(shape_of(round_of(space, 0.1)), peg));
-    scene.add(joint_at(scene, -1, hung, at(peg), FixedJoint{}));
+    const BodyId hung = scene.add(body_of(shape_of(round_of(space, 0.1)), peg));
+    scene.add(joint_at(scene, {}, hung, at(peg), FixedJoint{}));
     Batch batch(compile(scene), options_of(double_table()));
     batch.step(600);
     const double contact = 2 * kPi * 10, hold = 2 * kPi * 3;
@@ -115,8 +115,8 @@ TEST_CASE("no solver changes momentum", "[fast][solver]") {
         choose(scene, solver);
         scene.bodies.erase(scene.bodies.begin(), scene.bodies.begin() + 2);  // what is fixed
         for (Body& body : scene.bodies) body.linear_drag = body.angular_drag = 0;
-        Joint hinge =
-            joint_at(scene, 0, 1, at(scene.bodies[0].position, hinge_axes(space)), HingeJoint{});
+        Joint hinge = joint_at(scene, BodyId(0), BodyId(1),
+                               at(scene.bodies[0].position, hinge_axes(space)), HingeJoint{});
         hinge.collide = true;
         if (hinged) scene.add(hinge);
         Batch batch(compile(scene), options_of(double_table(), kWorlds));
@@ -191,10 +191,10 @@ TEST_CASE("every solver keeps joints together", "[fast][solver]") {
       for (Solver solver : kAll) {
         Scene scene = empty_scene(space, 10);
         choose(scene, solver);
-        int last = -1;
+        BodyId last;
         for (int i = 0; i < 6; ++i) {
           const Vec3 middle(0.5 + i, 0, 0);
-          const int body = scene.add(body_of(shape_of(box_of(space, {0.4, 0.1, 0.1})), middle));
+          const BodyId body = scene.add(body_of(shape_of(box_of(space, {0.4, 0.1, 0.1})), middle));
           scene.add(joint_at(scene, last, body, at(middle - Vec3(0.5, 0, 0), hinge_axes(space)),
                              HingeJoint{}));
           last = body;
@@ -229,8 +229,8 @@ TEST_CASE("four substeps turn a jointed rod as four steps do", "[fast][solver]")
           const Vec3 turn = 5 * (hinge_axes(space) * Vec3::UnitZ());
           rod.angular_velocity = turn, rod.linear_velocity = turn.cross(rod.position);
           scene.add(rod);
-          scene.add(
-              joint_at(scene, i - 1, i, at({1.0 * i, 0, 0}, hinge_axes(space)), HingeJoint{}));
+          scene.add(joint_at(scene, BodyId(i - 1), BodyId(i),
+                             at({1.0 * i, 0, 0}, hinge_axes(space)), HingeJoint{}));
         }
         Batch batch(compile(scene), options_of(double_table()));
         const double start = kinetic_energy(batch, 0);
@@ -255,8 +255,8 @@ TEST_CASE("what rests bears its weight, by any solver", "[fast][solver]") {
         scene.add(ground(space));
         scene.add(body_of(shape_of(cube_of(space, 0.5)), 0.5 * up_of(space)));
         const Vec3 peg = Vec3(3, 0, 0) + 2 * up_of(space);
-        const int hung = scene.add(body_of(shape_of(round_of(space, 0.1)), peg));
-        scene.add(joint_at(scene, -1, hung, at(peg), FixedJoint{}));
+        const BodyId hung = scene.add(body_of(shape_of(round_of(space, 0.1)), peg));
+        scene.add(joint_at(scene, {}, hung, at(peg), FixedJoint{}));
         BatchOptions options = options_of(double_table());
         options.observe.what = {Observer::contacts, Observer::joint_loads};
         Batch batch(compile(scene), options);

@@ -88,9 +88,11 @@ Seen look(const Batch& batch) {
   for (int w = 0; w < batch.worlds(); ++w) {
     seen.hash.push_back(batch.hash(w));
     seen.status.push_back(batch.status(w));
-    for (int b = 0; b < batch.bodies(w); ++b) seen.asleep.push_back(batch.asleep(w, b));
+    for (int b = 0; b < batch.bodies(w); ++b)
+      seen.asleep.push_back(batch.asleep(w, batch.body_in_row(b)));
     for (const Contact& c : batch.contacts(w)) {
-      for (int n : {c.body_a, c.shape_a, c.body_b, c.shape_b, c.feature})
+      for (int n :
+           {c.body_a.index(), c.shape_a.index(), c.body_b.index(), c.shape_b.index(), c.feature})
         seen.contacts.push_back(n);
       for (int k = 0; k < 3; ++k) seen.contacts.push_back(c.normal[k]);
       seen.contacts.push_back(c.separation);
@@ -104,8 +106,9 @@ Seen look(const Batch& batch) {
 void disturb(Batch& batch, int first, int step) {
   for (int w = 0; w < batch.worlds(); ++w) {
     const int who = (first + w + step) % batch.bodies(w);
-    if ((first + w + step) % 7 == 0) batch.set_enabled(w, who, step % 2 == 0);
-    if ((first + w + step) % 11 == 0) batch.add_impulse(w, who, Vec3(0.5, 0.2, 0));
+    if ((first + w + step) % 7 == 0) batch.set_enabled(w, batch.body_in_row(who), step % 2 == 0);
+    if ((first + w + step) % 11 == 0)
+      batch.add_impulse(w, batch.body_in_row(who), Vec3(0.5, 0.2, 0));
   }
 }
 

@@ -35,7 +35,8 @@ Scene tower(Space space, int boxes) {
 double impulse_between(const std::vector<Contact>& contacts, int a, int b) {
   double sum = 0;
   for (const Contact& c : contacts)
-    if ((c.body_a == a && c.body_b == b) || (c.body_a == b && c.body_b == a))
+    if ((c.body_a == BodyId(a) && c.body_b == BodyId(b)) ||
+        (c.body_a == BodyId(b) && c.body_b == BodyId(a)))
       sum += c.normal_impulse;
   return sum;
 }

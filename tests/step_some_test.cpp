@@ -33,7 +33,8 @@ std::vector<double> numbers_of(const Batch& batch, int world) {
   std::vector<double> all = {
       static_cast<double>(hash >> 32), static_cast<double>(hash & 0xffffffffu),
       static_cast<double>(batch.status(world)), static_cast<double>(batch.asleep(world))};
-  for (int b = 0; b < batch.bodies(world); ++b) all.push_back(batch.touching(world, b));
+  for (int b = 0; b < batch.bodies(world); ++b)
+    all.push_back(batch.touching(world, batch.body_in_row(b)));
   for (const Observed what : {Observed::momentum, Observed::residual}) {
     if (batch.kinds() > 1) break;
     std::vector<double> seen(batch.size(what) / static_cast<std::size_t>(batch.worlds()));
@@ -50,8 +51,10 @@ Numbers numbers_of(const Batch& batch) {
 
 // What a world is given before its next step depends on it and on how many it has taken.
 void push(Batch& batch, int world, int taken) {
-  if ((taken + world) % 7 == 0) batch.add_force(world, world % 3, Vec3(800, 0, 0));
-  if ((taken + world) % 11 == 0) batch.add_impulse(world, world % 3, Vec3(0, 200, 0));
+  if ((taken + world) % 7 == 0)
+    batch.add_force(world, batch.body_in_row(world % 3), Vec3(800, 0, 0));
+  if ((taken + world) % 11 == 0)
+    batch.add_impulse(world, batch.body_in_row(world % 3), Vec3(0, 200, 0));
 }
 
 void check_against_steps_of_all(const Kinds& kinds, const BatchOptions& options) {

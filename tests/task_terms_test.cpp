@@ -46,7 +46,7 @@ TEST_CASE("elementary functions are those of mathematics, to a few units in the 
   const Precision precision = GENERATE(from_range(widest_tables())).precision;
   const double ulp = precision == Precision::f32 ? 0x1p-23 : 0x1p-52;
   Task task = falling_ball();
-  const Expression x = terms::position(0, 0);
+  const Expression x = terms::position(BodyId(0), 0);
   task.observations = {{"x", x}};
   // As parts of the reward, since these are float64.
   task.rewards = {{"x", x},
@@ -121,18 +121,18 @@ TEST_CASE("terms are what the batch reads, in the user's frames", "[task][fast]"
     const int body = static_cast<int>(i);
     if (task.scene.bodies[i].motion == Motion::fixed) continue;
     for (int c = 0; c < dim; ++c) {
-      task.observations.push_back({"position", terms::position(body, c)});
-      task.observations.push_back({"velocity", terms::velocity(body, c)});
+      task.observations.push_back({"position", terms::position(BodyId(body), c)});
+      task.observations.push_back({"velocity", terms::velocity(BodyId(body), c)});
       for (int of = 0; of < dim; ++of) {
-        task.observations.push_back({"direction", terms::direction(body, of, c)});
+        task.observations.push_back({"direction", terms::direction(BodyId(body), of, c)});
       }
     }
     if (planar) {
-      task.observations.push_back({"spin", terms::angular_velocity(body, 2)});
-      task.observations.push_back({"angle", terms::angle(body)});
+      task.observations.push_back({"spin", terms::angular_velocity(BodyId(body), 2)});
+      task.observations.push_back({"angle", terms::angle(BodyId(body))});
     } else {
       for (int c = 0; c < 3; ++c) {
-        task.observations.push_back({"spin", terms::angular_velocity(body, c)});
+        task.observations.push_back({"spin", terms::angular_velocity(BodyId(body), c)});
       }
     }
   }
@@ -184,11 +184,7 @@ TEST_CASE("terms are what the batch reads, in the user's frames", "[task][fast]"
 TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task][fast]") {
   Task task;
   task.scene = scenes::find("lunar-lander")->make();
-  int lander = -1, leg = -1;
-  for (std::size_t i = 0; i < task.scene.bodies.size(); ++i) {
-    if (task.scene.bodies[i].name == "lander") lander = static_cast<int>(i);
-    if (task.scene.bodies[i].name == "left leg") leg = static_cast<int>(i);
-  }
+  const BodyId lander = task.scene.body("lander"), leg = task.scene.body("left leg");
   task.actions = {{"main", 0, 2}};
   task.controls = {100 * terms::action(), 0, 1000};
   Ray down;
@@ -197,12 +193,12 @@ TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task
   down.mask = 1;
   task.rays = {down};
   task.rays[0].origin = {0, 20, 0};
-  task.observations = {{"hip", terms::joint_position(0)},
-                       {"hip speed", terms::joint_speed(0)},
+  task.observations = {{"hip", terms::joint_position(JointId(0))},
+                       {"hip speed", terms::joint_speed(JointId(0))},
                        {"leg", terms::touching(leg)},
                        {"ray", terms::ray_distance(0)},
-                       {"main", terms::control(0)},
-                       {"right", terms::control(2)},
+                       {"main", terms::control(ControlId(0))},
+                       {"right", terms::control(ControlId(2))},
                        {"age", terms::age()},
                        {"action", terms::action()},
                        {"lost", terms::lost()},
@@ -224,11 +220,10 @@ TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task
       batch.read_controls(control);
       REQUIRE(o[0] == static_cast<float>(joint[0]));
       REQUIRE(o[1] == static_cast<float>(speed[0]));
-      const int state_leg = batch.plan().state_body(leg);
-      REQUIRE((o[2] != 0) == batch.touching(w, state_leg));
+      REQUIRE((o[2] != 0) == batch.touching(w, leg));
       REQUIRE(o[3] == static_cast<float>(batch.ray_hits(w)[0].distance));
       REQUIRE((o[8] != 0) == lost(batch.status(w)));
-      REQUIRE((o[9] != 0) == batch.touching(w, batch.plan().state_body(lander)));
+      REQUIRE((o[9] != 0) == batch.touching(w, lander));
       nearest = std::min(nearest, o[3]);
       REQUIRE(o[4] == static_cast<float>(control[static_cast<std::size_t>(3 * w)]));
       if (o[6] != 0) {
@@ -244,7 +239,7 @@ TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task
 
 TEST_CASE("what tasks remember: previous, held and largest", "[task][fast]") {
   Task task = falling_ball(10);
-  const Expression x = terms::position(0, 2), v = terms::velocity(0, 2);
+  const Expression x = terms::position(BodyId(0), 2), v = terms::velocity(BodyId(0), 2);
   task.observations = {{"x", x},
                        {"before", terms::previous(x)},
                        {"twice before", terms::previous(terms::previous(x))},
@@ -281,7 +276,7 @@ TEST_CASE("what tasks remember: previous, held and largest", "[task][fast]") {
 
 TEST_CASE("functions of one's own are worked out in lanes", "[task][fast]") {
   Task task = falling_ball();
-  const Expression x = terms::position(0, 0);
+  const Expression x = terms::position(BodyId(0), 0);
   const Expression h = lane_function(std::make_shared<Hypotenuse>(), {3 * x, 4 * x});
   task.observations = {
       {"x", x},
@@ -306,18 +301,21 @@ TEST_CASE("an expression that is nested too deeply is an error", "[task][fast]")
 
 TEST_CASE("all that is wrong with a task is said at once", "[task][fast]") {
   Task task = falling_ball();
-  task.scene.add(joint_at(task.scene, -1, 0, Frame{}, BallJoint{}));
+  task.scene.add(joint_at(task.scene, {}, BodyId(0), Frame{}, BallJoint{}));
   task.frame_skip = 0;
   task.most_steps = -1;
   task.choices = 2;
   task.actions = {{"a", 1, 1}};
   task.controls = {0};
-  task.observations = {{"one", terms::position(1, 0)},   {"two", terms::position(0, 3)},
-                       {"three", terms::angle(0)},       {"four", terms::joint_position(0, 2)},
-                       {"five", terms::ray_distance(0)}, {"six", terms::control(0), 2, 1},
+  task.observations = {{"one", terms::position(BodyId(1), 0)},
+                       {"two", terms::position(BodyId(0), 3)},
+                       {"three", terms::angle(BodyId(0))},
+                       {"four", terms::joint_position(JointId(0), 2)},
+                       {"five", terms::ray_distance(0)},
+                       {"six", terms::control(ControlId(0)), 2, 1},
                        {"seven", terms::action(1)}};
-  task.rewards = {{"r", terms::touching(-1)}};
-  task.terminated = terms::joint_speed(1);
+  task.rewards = {{"r", terms::touching(BodyId())}};
+  task.terminated = terms::joint_speed(JointId(1));
   std::string all;
   for (const Issue& issue : validate(task)) all += to_string(issue) + "\n";
   INFO(all);
@@ -340,7 +338,7 @@ TEST_CASE("all that is wrong with a task is said at once", "[task][fast]") {
   Task looks;
   looks.scene = scenes::find("lunar-lander")->make();
   looks.observations = {{"age", terms::age()}};
-  const Expression place = terms::position(1, 0);
+  const Expression place = terms::position(BodyId(1), 0);
   looks.controls = {terms::previous(place) + place, terms::previous(place), terms::held(1)};
   all.clear();
   for (const Issue& issue : validate(looks)) all += to_string(issue) + "\n";

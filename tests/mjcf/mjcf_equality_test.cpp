@@ -139,8 +139,8 @@ TEST_CASE("where a joint's frames coincide MuJoCo's equality is satisfied", "[mj
     CHECK(std::holds_alternative<FixedJoint>(joint.type) == c.weld);
     CHECK(std::holds_alternative<BallJoint>(joint.type) == !c.weld);
 
-    const Place a = joint.body_a < 0 ? Place{Vec3::Zero(), Quat::Identity()}
-                                     : Place{{0.7, 0.1, -0.4}, Quat(lean)};
+    const Place a =
+        !joint.body_a ? Place{Vec3::Zero(), Quat::Identity()} : Place{{0.7, 0.1, -0.4}, Quat(lean)};
     // B as the joint wants it; `turned`: about the anchor.
     const auto b = [&](const Quat& turned) {
       const Quat rotation =
@@ -152,8 +152,8 @@ TEST_CASE("where a joint's frames coincide MuJoCo's equality is satisfied", "[mj
     const bool torqueless = c.equality.find("torquescale") != std::string::npos;
     const int rows = c.weld || torqueless ? 6 : 3;
     const auto residual = [&](const Place& at) {
-      if (joint.body_a >= 0) reference.place(joint.body_a, a);
-      reference.place(joint.body_b, at);
+      if (joint.body_a) reference.place(joint.body_a.index(), a);
+      reference.place(joint.body_b.index(), at);
       return reference.residual(rows);
     };
     const Quat turned(Eigen::AngleAxisd(0.5, Vec3(2, 1, 1).normalized()));
@@ -243,8 +243,9 @@ TEST_CASE("joints that begin apart close as slowly as in MuJoCo", "[mjcf]") {
     fastest = std::max(fastest, read_vec3(batch, Field::linear_velocity, 0).norm());
   }
   CHECK(fastest < 6);  // 0.6 m in 0.1 s
-  const auto site = [&](int body, const Frame& frame) -> Vec3 {
-    return read_vec3(batch, Field::position, body) + read_rotation(batch, body) * frame.position;
+  const auto site = [&](BodyId body, const Frame& frame) -> Vec3 {
+    const int row = batch.row(body);
+    return read_vec3(batch, Field::position, row) + read_rotation(batch, row) * frame.position;
   };
   const Joint& joint = apart.scene.joints.at(0);
   CHECK((site(joint.body_a, joint.frame_a) - site(joint.body_b, joint.frame_b)).norm() < 2e-3);

@@ -12,6 +12,7 @@
 #include <catch2/catch.hpp>
 
 #include "src/mjcf/mujoco_library.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manyworlds {
 namespace {
@@ -242,7 +243,8 @@ TEST_CASE("a frictionless world needs no warning about friction", "[mjcf][fast]"
 }
 
 TEST_CASE("unreadable files give MuJoCo's message with the name of the file", "[mjcf][fast]") {
-  std::ifstream stream(std::filesystem::path(MW_SOURCE_DIR) / "scenes" / "mjcf" / "box_pile.xml");
+  std::ifstream stream(std::filesystem::path(test::kSourceFolder) / "scenes" / "mjcf" /
+                       "box_pile.xml");
   const std::string whole{std::istreambuf_iterator<char>(stream), {}};
   REQUIRE(whole.size() > 2000);
   for (const std::size_t length : {std::size_t{5}, whole.size() / 2, whole.size() - 5}) {
@@ -258,7 +260,8 @@ TEST_CASE("unreadable files give MuJoCo's message with the name of the file", "[
                                                  Catch::Contains("blob") &&
                                                  Catch::Contains("line 1"));
   CHECK_THROWS_WITH(load_mjcf("no_such_folder/none.xml"), "no_such_folder/none.xml: no such file");
-  CHECK_THROWS_WITH(load_mjcf(MW_SOURCE_DIR), Catch::Contains("is not a file"));
+  CHECK_THROWS_WITH(load_mjcf(test::kSourceFolder),
+                    Catch::Contains("is a directory; expected a file"));
   CHECK_THROWS_AS(load_mjcf_string(world("<body><freejoint/></body>")), MjcfError);  // no mass
   CHECK_THROWS_AS(load_mjcf_string(free_body("mass='-1'")), MjcfError);
   CHECK_NOTHROW(load_mjcf_string(free_body("")));

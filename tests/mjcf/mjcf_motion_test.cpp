@@ -17,6 +17,7 @@
 #include "manyworlds/mjcf.hpp"
 
 #include "src/mjcf/mujoco_library.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manyworlds {
 namespace {
@@ -154,7 +155,8 @@ TEST_CASE("a spin about a principal axis turns as far as in MuJoCo", "[mjcf][fas
 
 TEST_CASE("boxes from MJCF come to rest above the planes of their bin", "[mjcf]") {
   Scene scene =
-      load_mjcf(std::filesystem::path(MW_SOURCE_DIR) / "scenes" / "mjcf" / "box_pile.xml").scene;
+      load_mjcf(std::filesystem::path(test::kSourceFolder) / "scenes" / "mjcf" / "box_pile.xml")
+          .scene;
   const double slop = scene.options.slop * scene.options.length_unit;
   const Plan plan = compile(scene);
   Batch batch(plan, options(1, Precision::f32));
@@ -163,7 +165,7 @@ TEST_CASE("boxes from MJCF come to rest above the planes of their bin", "[mjcf]"
   double deepest = 0;
   for (int body = 0; body < batch.bodies(); ++body) {
     const State state = read_state(batch, body);
-    const Body& box = scene.bodies[static_cast<std::size_t>(plan.scene_body(body))];
+    const Body& box = scene.at(plan.body_in_row(body));
     INFO(box.name);
     const Vec3 half = std::get<Box>(box.shapes.at(0).geometry).half_extents;
     for (const Shape& wall : scene.bodies.at(0).shapes) {
@@ -180,7 +182,8 @@ TEST_CASE("boxes from MJCF come to rest above the planes of their bin", "[mjcf]"
 
 TEST_CASE("the joined shapes of an MJCF scene come to rest on their height field", "[mjcf]") {
   const Scene scene =
-      load_mjcf(std::filesystem::path(MW_SOURCE_DIR) / "scenes" / "mjcf" / "shapes.xml").scene;
+      load_mjcf(std::filesystem::path(test::kSourceFolder) / "scenes" / "mjcf" / "shapes.xml")
+          .scene;
   REQUIRE(scene.joints.size() == 4);
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     const Plan plan = compile(scene);
@@ -190,16 +193,16 @@ TEST_CASE("the joined shapes of an MJCF scene come to rest on their height field
     std::vector<State> states(scene.bodies.size());
     for (int body = 0; body < batch.bodies(); ++body) {
       const State state = read_state(batch, body);
-      states[static_cast<std::size_t>(plan.scene_body(body))] = state;
-      INFO(scene.bodies[static_cast<std::size_t>(plan.scene_body(body))].name);
+      states[static_cast<std::size_t>(plan.body_in_row(body).index())] = state;
+      INFO(scene.at(plan.body_in_row(body)).name);
       CHECK(state.position.head<2>().cwiseAbs().maxCoeff() < 0.4);
       CHECK(state.position.z() > 0);
       CHECK(state.position.z() < 0.6);
     }
     for (const Joint& joint : scene.joints) {
-      const auto anchor = [&](int body, const Frame& frame) -> Vec3 {
-        if (body < 0) return frame.position;
-        const State& state = states[static_cast<std::size_t>(body)];
+      const auto anchor = [&](BodyId body, const Frame& frame) -> Vec3 {
+        if (!body) return frame.position;
+        const State& state = states[static_cast<std::size_t>(body.index())];
         return state.position + state.rotation * frame.position;
       };
       INFO(joint.name);

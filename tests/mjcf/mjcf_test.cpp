@@ -13,11 +13,13 @@
 #include <catch2/catch.hpp>
 
 #include "src/mjcf/mujoco_library.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manyworlds {
 namespace {
 
-const std::filesystem::path kScenes = std::filesystem::path(MW_SOURCE_DIR) / "scenes" / "mjcf";
+const std::filesystem::path kScenes =
+    std::filesystem::path(test::kSourceFolder) / "scenes" / "mjcf";
 
 mjcf::ModelPtr load_with_mujoco(const std::filesystem::path& file) {
   char error[1000] = "";

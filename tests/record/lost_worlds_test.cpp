@@ -33,11 +33,11 @@ TEST_CASE("a lost world is dumped from the last checkpoint, with its inputs", "[
       disturb(batch, turn);
       batch.step(3);
       // Worlds that nothing else touches.
-      if (turn == 1) batch.add_impulse(2, 1, Vec3(100, 0, 300));
-      if (turn == 2) batch.set_enabled(2, 3, false);
-      if (turn == 4) batch.add_force(2, 2, Vec3::Constant(std::nan("")));
+      if (turn == 1) batch.add_impulse(2, batch.body_in_row(1), Vec3(100, 0, 300));
+      if (turn == 2) batch.set_enabled(2, batch.body_in_row(3), false);
+      if (turn == 4) batch.add_force(2, batch.body_in_row(2), Vec3::Constant(std::nan("")));
       if (turn == 8) batch.copy_world(0, 5);
-      if (turn == 9) batch.add_impulse(5, 2, Vec3(1e12, 0, 0));
+      if (turn == 9) batch.add_impulse(5, batch.body_in_row(2), Vec3(1e12, 0, 0));
     }
     REQUIRE(batch.lost_worlds() == 2);
     const auto files = dumps.close();
@@ -86,7 +86,7 @@ TEST_CASE("nothing lost, nothing dumped", "[fast][record]") {
   CHECK_THROWS_WITH(LostWorldDumps(batch, folder.path(), {.checkpoint_steps = 0}),
                     Catch::Contains("checkpoint_steps is 0"));
   CHECK_THROWS_AS(LostWorldDumps(batch, "/proc/nowhere"), RecordError);
-  batch.add_force(0, 0, Vec3(1, 0, 0));
+  batch.add_force(0, batch.body_in_row(0), Vec3(1, 0, 0));
   CHECK_THROWS_WITH(LostWorldDumps(batch, folder.path()), Catch::Contains("forces were added"));
 }
 

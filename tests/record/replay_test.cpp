@@ -15,7 +15,7 @@ void check_equal(const ReplayResult& result) {
   CHECK(result.different == 0);
   if (result.difference) {
     UNSCOPED_INFO("world " << result.difference->world << ", step " << result.difference->step
-                           << ", body " << result.difference->body << ": "
+                           << ", body " << result.difference->body.index() << ": "
                            << result.difference->what);
     CHECK_FALSE(result.difference);
   }
@@ -54,7 +54,7 @@ TEST_CASE("inputs of every kind are repeated, whatever replays them", "[fast][re
   for (const Space space : {Space::planar, Space::spatial}) {
     Scene scene = crowd(space);
     scene.controls = {
-        {"jet", ControlKind::thrust, -1, 3, Vec3(0.1, 0, 0), Vec3(1, 2, 0), 0, 1e3, 0}};
+        {"jet", ControlKind::thrust, {}, BodyId(3), Vec3(0.1, 0, 0), Vec3(1, 2, 0), 0, 1e3, 0}};
     const Plan plan = compile(scene);
     for (const Table& table : all_tables()) {
       for (const bool sleep : {false, true}) {
@@ -112,12 +112,12 @@ TEST_CASE("steps of some worlds alone are recorded as what they come to", "[fast
   const std::vector<std::uint8_t> some = {1, 0, 1, 0, 0};
   for (int turn = 0; turn < 4; ++turn) {
     // World 0 uses its force up alone; world 1 keeps its own for the step of all.
-    for (const int world : {0, 1}) batch.add_force(world, 2, Vec3(900, 0, 0));
+    for (const int world : {0, 1}) batch.add_force(world, batch.body_in_row(2), Vec3(900, 0, 0));
     batch.step(some, 2);
     CHECK(batch.forces_pending());
     batch.step();
   }
-  batch.add_force(2, 2, Vec3(900, 0, 0));
+  batch.add_force(2, batch.body_in_row(2), Vec3(900, 0, 0));
   batch.step(some);
   CHECK_FALSE(batch.forces_pending());
   for (int i = 0; i < 3000; ++i) batch.step(some);  // more than are kept in memory
@@ -185,7 +185,7 @@ TEST_CASE("a recording has samples where it says, and the fields of the batch", 
     batch.step(3);
     recorder.sample(batch);  // there is one already
     batch.step(1);
-    batch.add_impulse(0, 0, Vec3(1, 2, 0));
+    batch.add_impulse(0, batch.body_in_row(0), Vec3(1, 2, 0));
     recorder.sample(batch);
     CHECK(recorder.samples() == 4);
     recorder.close();
@@ -226,7 +226,7 @@ TEST_CASE("a recording begins in the middle of a run, and ends with its Recorder
   moved.reset();
   moved.step(2);
   first.close();
-  moved.add_impulse(2, 0, Vec3(0, 0, 5));
+  moved.add_impulse(2, moved.body_in_row(0), Vec3(0, 0, 5));
   moved.step(2);
   second.close();
   first.close();  // nothing happens
@@ -252,7 +252,7 @@ TEST_CASE("frozen worlds are recorded and replayed", "[fast][record]") {
   Batch batch(compile(crowd(Space::spatial)), batch_options(widest_tables().front(), 4));
   Recorder recorder(batch, folder / "run.h5");
   batch.step(5);
-  batch.add_force(2, 1, Vec3::Constant(std::nan("")));
+  batch.add_force(2, batch.body_in_row(1), Vec3::Constant(std::nan("")));
   batch.step(5);
   recorder.close();
   REQUIRE(frozen(batch.status(2)));
@@ -274,7 +274,7 @@ TEST_CASE("a Recorder refuses what it cannot record", "[fast][record]") {
   refused({.worlds = {2, 1}}, "1 comes after 2");
   refused({.every = -1}, "every is -1");
   CHECK_THROWS_AS(Recorder(batch, "/nowhere/at/all.h5"), RecordError);
-  batch.add_force(0, 0, Vec3(1, 0, 0));
+  batch.add_force(0, batch.body_in_row(0), Vec3(1, 0, 0));
   refused({}, "forces were added for the next step");
   batch.step();
   CHECK_NOTHROW(Recorder(batch, folder / "run.h5"));

@@ -55,14 +55,30 @@ Scene awkward_scene() {
                              TargetJoint{spring, 12}};
   scene.bodies[4].motion = Motion::dynamic;
   for (const JointType& type : types) {
-    Joint joint = joint_at(scene, 3, 4, {Vec3(0.1, 0.2, 0.3), Quat(1, 0.1, 0.2, 0.3)}, type);
+    Joint joint =
+        joint_at(scene, BodyId(3), BodyId(4), {Vec3(0.1, 0.2, 0.3), Quat(1, 0.1, 0.2, 0.3)}, type);
     joint.name = "joint";
     joint.collide = true;
     scene.add(joint);
   }
-  scene.controls = {
-      {"knee", ControlKind::target_position, 1, -1, Vec3::Zero(), Vec3::UnitX(), -1.0 / 3, 2, 0.1},
-      {"jet", ControlKind::thrust, -1, 4, Vec3(0.1, 0.2, 0.3), Vec3(1, -0.0, 1e-310), 0, 1e3, 7}};
+  scene.controls = {{"knee",
+                     ControlKind::target_position,
+                     JointId(1),
+                     {},
+                     Vec3::Zero(),
+                     Vec3::UnitX(),
+                     -1.0 / 3,
+                     2,
+                     0.1},
+                    {"jet",
+                     ControlKind::thrust,
+                     {},
+                     BodyId(4),
+                     Vec3(0.1, 0.2, 0.3),
+                     Vec3(1, -0.0, 1e-310),
+                     0,
+                     1e3,
+                     7}};
   return scene;
 }
 

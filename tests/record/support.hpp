@@ -78,15 +78,21 @@ inline void disturb(Batch& batch, int turn) {
       batch.set_controls(world, controls);
       break;
     }
-    case 0: batch.add_force(world, body, 20 * push); break;
-    case 1: batch.add_torque(world, body, 20 * turn_by); break;
-    case 2: batch.add_force_at(world, body, 20 * push, at); break;
-    case 3: batch.add_impulse(world, body, push); break;
-    case 4: batch.add_angular_impulse(world, body, turn_by); break;
-    case 5: batch.add_impulse_at(world, body, push, at); break;
-    case 6: batch.set_enabled(world, body, false); break;
-    case 7: batch.set_enabled((3 * (turn - 1)) % worlds, (turn - 1) % batch.bodies(), true); break;
-    case 8: batch.spawn(world, body, {.position = planar ? Vec3(0, 4, 0) : Vec3(0, 0, 4)}); break;
+    case 0: batch.add_force(world, in_row(batch, world, body), 20 * push); break;
+    case 1: batch.add_torque(world, in_row(batch, world, body), 20 * turn_by); break;
+    case 2: batch.add_force_at(world, in_row(batch, world, body), 20 * push, at); break;
+    case 3: batch.add_impulse(world, in_row(batch, world, body), push); break;
+    case 4: batch.add_angular_impulse(world, in_row(batch, world, body), turn_by); break;
+    case 5: batch.add_impulse_at(world, in_row(batch, world, body), push, at); break;
+    case 6: batch.set_enabled(world, in_row(batch, world, body), false); break;
+    case 7:
+      batch.set_enabled((3 * (turn - 1)) % worlds, batch.body_in_row((turn - 1) % batch.bodies()),
+                        true);
+      break;
+    case 8:
+      batch.spawn(world, in_row(batch, world, body),
+                  {.position = planar ? Vec3(0, 4, 0) : Vec3(0, 0, 4)});
+      break;
     case 9: batch.wake(world); break;
     case 10: set_vector(batch, Field::position, world, body, at); break;
     case 11: set_vector(batch, Field::linear_velocity, world, body, turn_by); break;
@@ -98,11 +104,11 @@ inline void disturb(Batch& batch, int turn) {
       break;
     }
     case 13: {  // the force before it never acts, the one after it does
-      batch.add_force(world, body, 50 * push);
+      batch.add_force(world, in_row(batch, world, body), 50 * push);
       std::vector<std::uint8_t> mask(static_cast<std::size_t>(worlds), 0);
       mask[static_cast<std::size_t>(world)] = mask[static_cast<std::size_t>(other)] = 1;
       batch.reset(mask);
-      batch.add_force(other, 0, 20 * push);
+      batch.add_force(other, batch.body_in_row(0), 20 * push);
       break;
     }
     case 14: batch.copy_world(world, other); break;

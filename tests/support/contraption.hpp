@@ -20,14 +20,14 @@ inline Scene contraption(Space space) {
     body.jitter.angle = 0.1;
     return scene.add(body);
   };
-  const auto join = [&](int a, int b, const Vec3& where, JointType type) {
+  const auto join = [&](BodyId a, BodyId b, const Vec3& where, JointType type) {
     Joint joint = joint_at(scene, a, b, at(where, hinge_axes(space)), std::move(type));
     joint.break_force = space == Space::planar ? 4e4 : 9e3;
     joint.break_torque = joint.break_force;
     scene.add(joint);
   };
   const Spring spring{0, 0, 4, 0.5};
-  int last = -1;
+  BodyId last;
   const JointType types[] = {
       HingeJoint{Limit{-1, 1, std::nullopt}, std::nullopt},
       HingeJoint{std::nullopt, Drive{0.5, 0, spring, 100}},
@@ -40,15 +40,15 @@ inline Scene contraption(Space space) {
   };
   for (std::size_t i = 0; i < std::size(types); ++i) {
     const double x = 0.7 * static_cast<double>(i);
-    const int body = add(Vec3(x, 0, 0) + 1.5 * up);
+    const BodyId body = add(Vec3(x, 0, 0) + 1.5 * up);
     join(last, body, Vec3(x - 0.35, 0, 0) + 1.5 * up, types[i]);
     last = body;
   }
   if (space == Space::spatial) {
-    const int ball = add({2, 2, 3});
-    join(-1, ball, {1.5, 2, 3}, BallJoint{0.6, Limit{-0.2, 0.2, std::nullopt}});
+    const BodyId ball = add({2, 2, 3});
+    join({}, ball, {1.5, 2, 3}, BallJoint{0.6, Limit{-0.2, 0.2, std::nullopt}});
   }
-  const int a = add(Vec3(-3, 0, 0) + 2 * up), b = add(Vec3(-2, 0, 0) + 2 * up);
+  const BodyId a = add(Vec3(-3, 0, 0) + 2 * up), b = add(Vec3(-2, 0, 0) + 2 * up);
   Joint rope;
   rope.body_a = a, rope.body_b = b;
   rope.type = PulleyJoint{Vec3(-3, 0, 0) + 5 * up, Vec3(-2, 0, 0) + 5 * up, 1.5, std::nullopt};

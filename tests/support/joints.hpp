@@ -32,13 +32,13 @@ inline Quat hinge_axes(Space space) {
   return space == Space::planar ? Quat(Quat::Identity()) : z_to_y();
 }
 
-// Frame of a scene body in the world, now; -1: the world.
-inline Frame frame_now(const Batch& batch, int world, int scene_body, const Frame& frame) {
+// Frame of a body (none: the world) in the world, now.
+inline Frame frame_now(const Batch& batch, int world, BodyId body, const Frame& frame) {
   const Plan& plan = batch.plan(batch.kind_of(world));
-  const int b = scene_body < 0 ? -1 : plan.state_body(scene_body);
-  if (b < 0) return frame_in_world(plan.scene(), scene_body, frame);
-  const Quat q = rotation(batch, world, b);
-  return {position(batch, world, b) + q * frame.position, q * frame.rotation};
+  const auto row = body ? plan.find_row(body) : std::nullopt;
+  if (!row) return frame_in_world(plan.scene(), body, frame);
+  const Quat q = rotation(batch, world, *row);
+  return {position(batch, world, *row) + q * frame.position, q * frame.rotation};
 }
 // How far the anchors of a joint lie apart, m.
 inline double anchor_gap(const Batch& batch, int world, int joint) {

@@ -87,7 +87,7 @@ void write_poses(Batch& batch, const std::vector<std::vector<Pose>>& poses) {
   std::vector<double> x, q;
   for (const auto& world : poses) {
     for (int i = 0; i < plan.bodies(); ++i) {
-      const Pose& p = world[static_cast<std::size_t>(plan.scene_body(i))];
+      const Pose& p = world[static_cast<std::size_t>(plan.body_in_row(i).index())];
       x.insert(x.end(), {p.position.x(), p.position.y()});
       if (space == Space::planar) {
         const double angle = 2 * std::atan2(p.rotation.z(), p.rotation.w());
@@ -129,7 +129,7 @@ class Judge {
     if (static_cast<int>(contacts.size()) > promise_.max_points)
       deviation("too many points", static_cast<double>(contacts.size()));
 
-    const bool in_order = contacts[0].body_a == 0;
+    const bool in_order = contacts[0].body_a == BodyId(0);
     const Solid& a = in_order ? first : second;
     const Solid& b = in_order ? second : first;
     double depth = 1e9;  // of the manifold that comes closest
@@ -154,10 +154,10 @@ class Judge {
             (other.kind == Solid::Kind::capsule && truth_ < tight_ - other.radius));
   }
   void check_point(const Solid& a, const Solid& b, const Contact& c) {
-    if (c.body_a + c.body_b != 1 || c.shape_a != 0 || c.shape_b != 0)
-      deviation("wrong bodies", c.body_a);
-    if (scene_.bodies[static_cast<std::size_t>(c.body_b)].motion == Motion::fixed)
-      deviation("the fixed body is B", c.body_b);
+    const int a_index = c.body_a.index(), b_index = c.body_b.index();
+    if (a_index + b_index != 1 || c.shape_a.index() != 0 || c.shape_b.index() != 0)
+      deviation("wrong bodies", a_index);
+    if (scene_.at(c.body_b).motion == Motion::fixed) deviation("the fixed body is B", b_index);
     // Double precision does not follow from the name of the field: the normal is checked at the
     // precision of the batch.
     if (!(std::abs(c.normal.norm() - 1) < tight_)) deviation("normal not unit", c.normal.norm());
@@ -217,8 +217,9 @@ class Judge {
       describe(s, scene_.bodies[i].shapes[0]);
     }
     for (const Contact& c : *contacts_)
-      s << "  contact " << c.body_a << '-' << c.body_b << " s " << c.separation << " n "
-        << c.normal.transpose() << " p " << c.point.transpose() << " id " << c.feature << "\n";
+      s << "  contact " << c.body_a.index() << '-' << c.body_b.index() << " s " << c.separation
+        << " n " << c.normal.transpose() << " p " << c.point.transpose() << " id " << c.feature
+        << "\n";
     result_.report += s.str();
   }
   static void describe(std::ostream& s, const Shape& shape) {
@@ -265,8 +266,8 @@ PairResult check_pair(const Scene& scene, const Table& table, const PairPromise&
       std::vector<Pose> seen = all[static_cast<std::size_t>(w)];
       const Plan& plan = batch.plan(0);
       for (int i = 0; i < plan.bodies(); ++i)  // what the batch stored, after its rounding
-        seen[static_cast<std::size_t>(plan.scene_body(i))] = {position(batch, w, i),
-                                                              rotation(batch, w, i)};
+        seen[static_cast<std::size_t>(plan.body_in_row(i).index())] = {position(batch, w, i),
+                                                                       rotation(batch, w, i)};
       judge.judge(seen, batch.contacts(w));
     }
   }

@@ -9,7 +9,7 @@ template <class Visit>
 void for_each_dynamic(const Batch& batch, int world, Visit visit) {
   const Plan& plan = batch.plan(batch.kind_of(world));
   for (int i = 0; i < plan.bodies(); ++i) {
-    const Body& body = plan.scene().bodies[static_cast<std::size_t>(plan.scene_body(i))];
+    const Body& body = plan.scene().at(plan.body_in_row(i));
     if (body.motion == Motion::dynamic) visit(i, mass_properties(plan.scene(), body));
   }
 }

@@ -98,6 +98,26 @@ inline Quat rotation(const Batch& batch, int world, int body) {
   return Quat(Eigen::AngleAxisd(std::atan2(v[2 * i + 1], v[2 * i]), Vec3::UnitZ()));
 }
 
+// Of a body of the scene instead of a row.
+inline int row_of(const Batch& batch, int world, BodyId body) {
+  return batch.row(body, batch.kind_of(world));
+}
+inline BodyId in_row(const Batch& batch, int world, int row) {
+  return batch.body_in_row(row, batch.kind_of(world));
+}
+inline Vec3 position(const Batch& b, int world, BodyId body) {
+  return position(b, world, row_of(b, world, body));
+}
+inline Vec3 velocity(const Batch& b, int world, BodyId body) {
+  return velocity(b, world, row_of(b, world, body));
+}
+inline Vec3 spin(const Batch& b, int world, BodyId body) {
+  return spin(b, world, row_of(b, world, body));
+}
+inline Quat rotation(const Batch& b, int world, BodyId body) {
+  return rotation(b, world, row_of(b, world, body));
+}
+
 // Puts one vector of one body of one world, leaving the others alone.
 inline void set_vector(Batch& batch, Field field, int world, int body, const Vec3& value) {
   std::vector<double> v = values(batch, field, world);

@@ -41,7 +41,7 @@ inline Scene varied_crowd(Space space, bool polygons = false) {
                       vary(Parameter::angular_drag, 0, 0.3)};
   for (int body : {2, 5}) {
     Variation mass = vary(Parameter::mass, 50, 500);
-    mass.body = body;
+    mass.body = BodyId(body);
     scene.variations.push_back(mass);
   }
   return scene;

@@ -1,0 +1,10 @@
+#include "tests/support/paths.hpp"
+
+namespace manyworlds::test {
+
+const char* const kSourceFolder = MW_SOURCE_DIR;
+#if MW_HAVE_CLI
+const char* const kProgram = MW_CLI_PATH;
+#endif
+
+}  // namespace manyworlds::test
