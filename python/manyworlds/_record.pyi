@@ -16,7 +16,7 @@ class RecordError(ValueError):
 class Recorder:
     """Private: use manyworlds.record.Recorder."""
 
-    def __init__(self, batch: manyworlds._core.Batch, file: str | os.PathLike, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], every: int, first_world: int) -> None: ...
+    def __init__(self, batch: manyworlds._core.Batch, file: str | os.PathLike, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], every: int, first_world: int, flush_seconds: float) -> None: ...
 
     def sample(self) -> None: ...
 
@@ -53,6 +53,9 @@ class Recording:
     def sleep(self) -> bool: ...
 
     @property
+    def finished(self) -> bool: ...
+
+    @property
     def origin(self) -> str: ...
 
     @property
@@ -79,6 +82,11 @@ class Recording:
     def read(self, field: object | None, kind: int, begin: int, out: Annotated[NDArray, dict(order='C', device='cpu')]) -> None: ...
 
     def replay(self, isa: object | None, threads: object, layout: object | None) -> dict: ...
+
+def unfinished_recordings(file: str | os.PathLike) -> list[pathlib.Path]:
+    """
+    The part files beside a file that hold something and that nobody writes any more.
+    """
 
 def scene_to_json(scene: object | None) -> str:
     """A scene as JSON, every number exactly."""

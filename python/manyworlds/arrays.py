@@ -36,6 +36,20 @@ def integer(value: Any, name: str, low: int, high: int) -> int:
     return number
 
 
+def at_least(value: Any, name: str, low: float) -> float:
+    """``value`` as a float from ``low`` to infinity, which is one, too. TypeError, ValueError."""
+    if isinstance(value, (bool, np.bool_)) or not isinstance(
+        value, (int, float, np.integer, np.floating)
+    ):
+        raise TypeError(f"{name} is of type {type(value).__name__}; expected a number")
+    if not value >= low:
+        raise ValueError(f"{name} is {value}, must be >= {low:g}")
+    try:
+        return float(value)
+    except OverflowError:  # an int with hundreds of digits
+        return float("inf")
+
+
 def index(value: Any, count: int, name: str) -> int:
     """``value`` as an index below ``count``. TypeError, IndexError."""
     try:

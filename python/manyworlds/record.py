@@ -43,6 +43,7 @@ __all__ = [
     "ReplayResult",
     "scene_from_json",
     "scene_to_json",
+    "unfinished_recordings",
 ]
 
 MOST_WORLDS_BY_DEFAULT = 64
@@ -58,12 +59,15 @@ class Recorder(InMemory):
     every        a sample is taken at once and after the first step call that ends on or beyond each
                  multiple of so many steps; 0: only by ``sample``
     first_world  what the batch's world 0 is called in the file
+    flush_seconds  what is older than so many seconds of wall time when a call of the batch ends is
+                 flushed, and survives the end of the process, whatever that is (see
+                 unfinished_recordings); 0: at each call, inf: never
 
     The batch tells it of every input, so nothing needs to go through the Recorder. Steps of some worlds
     alone (``ids``) are recorded as the states that they came to. As a context manager it is closed at the
-    end, also after an exception. Without ``close`` no file is left, unless the process is cut off. Raises RecordError, a ValueError,
-    when the file cannot be written (from ``close`` for what failed while stepping), ValueError when
-    forces were added for the next step already.
+    end, also after an exception. Without ``close`` no file is left, unless the process is cut off. Raises
+    RecordError, a ValueError, when the file cannot be written (from ``close`` for what failed while
+    stepping), ValueError when forces were added for the next step already.
     """
 
     _instead = "pickle the path of its file"
@@ -75,9 +79,11 @@ class Recorder(InMemory):
         worlds: Optional[Ids] = None,
         every: int = 1,
         first_world: int = 0,
+        flush_seconds: float = 5.0,
     ) -> None:
         first_world = arrays.integer(first_world, "first_world", 0, 2**62)
         every = arrays.integer(every, "every", 0, _MOST_STEPS)
+        flush_seconds = arrays.at_least(flush_seconds, "flush_seconds", 0)
         count = checked_batch(batch).worlds
         if worlds is None:
             chosen = np.arange(min(count, MOST_WORLDS_BY_DEFAULT), dtype=np.int32)
@@ -86,7 +92,9 @@ class Recorder(InMemory):
             if len(chosen) == 0:
                 raise ValueError("worlds are none; at least one must be recorded")
         self.file = files.path(file, "file")
-        self._held = _record.Recorder(batch._held, self.file, chosen, every, first_world)
+        self._held = _record.Recorder(
+            batch._held, self.file, chosen, every, first_world, flush_seconds
+        )
         self._closed = False
 
     @property
@@ -243,6 +251,11 @@ class Recording(InMemory):
         return self._held.sleep
 
     @property
+    def finished(self) -> bool:
+        """Whether its Recorder was closed; False for one of unfinished_recordings."""
+        return self._held.finished
+
+    @property
     def origin(self) -> str:
         """By which program, instruction set, threads and seed it was made; for people."""
         return self._held.origin
@@ -296,7 +309,19 @@ class Recording(InMemory):
         if self.closed:
             return "<manyworlds.record.Recording: closed>"
         counts = f"{len(self.worlds)} worlds, {self._held.samples} samples, {self.inputs} inputs"
+        if not self.finished:
+            counts += ", unfinished"
         return f"<manyworlds.record.Recording: {counts}>"
+
+
+def unfinished_recordings(file: File) -> list[Path]:
+    """What processes that were cut off (kill -9, a power cut) had recorded of ``file``, by name.
+
+    The files beside it, "run.h5.part-8c1f03ab5e6d7790", that hold something and that nobody writes any
+    more. Each can be opened and replayed up to where it was last flushed (``Recorder``'s
+    ``flush_seconds``); nothing deletes them. Raises RecordError when ``file`` is no name of a file.
+    """
+    return _record.unfinished_recordings(files.path(file, "file"))
 
 
 def scene_to_json(scene: Scene) -> str:

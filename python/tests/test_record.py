@@ -1,6 +1,9 @@
 """Recordings: what was recorded is read back, and done again bit by bit."""
 
 import importlib.util
+import os
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -104,6 +107,50 @@ def test_what_is_not_finished_leaves_no_file(batch, tmp_path):
     assert len(record.Recording(tmp_path / "run.h5").steps) == 2
 
 
+CUT_OFF = """
+import os, signal, sys
+import manyworlds as mw
+batch = mw.Batch("stack10", worlds=2, threads=1, seed=3)
+recorder = mw.record.Recorder(batch, sys.argv[1], every=2, flush_seconds=float(sys.argv[2]))
+batch.step(2), batch.step(2)
+batch.add_impulse((0, 0, 1), bodies=1)
+batch.step(2)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def cut_off(file, flush_seconds):
+    """What a process that is killed while it records leaves of a file."""
+    done = subprocess.run([sys.executable, "-c", CUT_OFF, file, flush_seconds], stderr=-1)
+    assert done.returncode < 0, done.stderr
+    return record.unfinished_recordings(file)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_what_a_killed_process_had_flushed_is_found_and_replays(tmp_path):
+    file = tmp_path / "run.h5"
+    assert record.unfinished_recordings(file) == []
+    (left,) = cut_off(file, "0")
+    assert left.name.startswith("run.h5.part-") and left.parent == tmp_path and not file.exists()
+    with record.Recording(left) as recording:
+        assert not recording.finished and "unfinished" in repr(recording)
+        assert recording.steps.tolist() == [0, 2, 4, 6] and recording.inputs == 2
+        assert recording.replay().same
+    batch = mw.Batch("stack10", worlds=2, threads=1, seed=3)
+    with record.Recorder(batch, file, flush_seconds=0) as recorder:
+        batch.step()
+        assert len(record.unfinished_recordings(str(file))) == 1  # without the one that is written
+        recorder.sample()
+    with record.Recording(file) as recording:
+        assert recording.finished and "unfinished" not in repr(recording)
+    assert record.unfinished_recordings(file) == [left]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_without_a_flush_a_killed_process_leaves_nothing_that_counts(tmp_path):
+    assert cut_off(tmp_path / "run.h5", "inf") == []
+
+
 def test_a_busy_batch_is_recorded_on_and_closed_later(batch, tmp_path):
     recorder = record.Recorder(batch, tmp_path / "run.h5", every=0)
     dumps = record.LostWorldDumps(batch, tmp_path / "lost")
@@ -193,6 +240,11 @@ def test_many_threads_record_and_read_at_a_time(tmp_path):
         ({"worlds": [2, 1]}, ValueError, "must ascend"),
         ({"every": -1}, ValueError, "every is -1"),
         ({"every": 1.5}, TypeError, "every is of type float"),
+        ({"flush_seconds": -1}, ValueError, "flush_seconds is -1, must be >= 0"),
+        ({"flush_seconds": np.nan}, ValueError, "flush_seconds is nan, must be >= 0"),
+        ({"flush_seconds": "5"}, TypeError, "flush_seconds is of type str; expected a number"),
+        ({"flush_seconds": True}, TypeError, "flush_seconds is of type bool; expected a number"),
+        ({"flush_seconds": None}, TypeError, "flush_seconds is of type NoneType"),
     ],
 )
 def test_wrong_arguments_are_errors(batch, tmp_path, arguments, error, words):
@@ -214,6 +266,10 @@ def test_more_wrong_arguments_are_errors(batch, tmp_path):
         record.Recording("a\0b")
     with pytest.raises(TypeError, match="file is of type int; expected a str or a Path"):
         record.Recorder(batch, 3)
+    with pytest.raises(TypeError, match="file is of type int; expected a str or a Path"):
+        record.unfinished_recordings(3)
+    with pytest.raises(record.RecordError, match="is a directory"):
+        record.unfinished_recordings(tmp_path)
     with pytest.raises(TypeError, match="scene is of type NoneType; expected manyworlds.Scene"):
         record.scene_to_json(None)
     with pytest.raises(TypeError, match="json is of type bytes; expected a str"):

@@ -40,10 +40,13 @@ using HeldRecorder = Listening<Recorder>;
 using HeldDumps = Listening<LostWorldDumps>;
 
 void make_recorder(HeldRecorder* self, const HeldBatch& batch, const std::filesystem::path& file,
-                   const Ids& worlds, int every, std::int64_t first_world) {
+                   const Ids& worlds, int every, std::int64_t first_world, double flush_seconds) {
   const auto chosen = span_of(worlds);
-  new (self)
-      HeldRecorder(batch, file, RecordOptions{{chosen.begin(), chosen.end()}, every, first_world});
+  new (self) HeldRecorder(batch, file,
+                          RecordOptions{.worlds = {chosen.begin(), chosen.end()},
+                                        .every = every,
+                                        .first_world = first_world,
+                                        .flush_seconds = flush_seconds});
 }
 
 void make_dumps(HeldDumps* self, const HeldBatch& batch, const std::filesystem::path& folder,
@@ -161,7 +164,7 @@ nb::dict replay_of(HeldRecording& self, nb::object isa, nb::object threads, nb::
 void bind_writing(nb::module_& m) {
   nb::class_<HeldRecorder>(m, "Recorder", "Private: use manyworlds.record.Recorder.")
       .def("__init__", &make_recorder, nb::arg("batch"), nb::arg("file"), nb::arg("worlds"),
-           nb::arg("every"), nb::arg("first_world"))
+           nb::arg("every"), nb::arg("first_world"), nb::arg("flush_seconds"))
       .def("sample",
            [](HeldRecorder& self) { self.run([](Recorder& r, Batch& b) { r.sample(b); }); })
       .def("close", [](HeldRecorder& self) { self.run([](Recorder& r, Batch&) { r.close(); }); })
@@ -183,6 +186,7 @@ void bind_reading(nb::module_& m) {
   def(c, "inputs", [](Recording& r) { return r.inputs(); });
   def(c, "precision", [](Recording& r) { return name_of(r.precision()); });
   def(c, "sleep", [](Recording& r) { return r.sleep(); });
+  def(c, "finished", [](Recording& r) { return r.finished(); });
   def(c, "origin", [](Recording& r) { return r.origin(); });
   def(c, "steps", &steps_of);
   def(c, "worlds", &names_of_worlds);
@@ -225,6 +229,9 @@ NB_MODULE(_record, m) {
                           "A recording that cannot be written, or that is cut, corrupted or none.");
   bind_writing(m);
   bind_reading(m);
+  m.def("unfinished_recordings", &unfinished_recordings, nb::arg("file"),
+        nb::call_guard<nb::gil_scoped_release>(),
+        "The part files beside a file that hold something and that nobody writes any more.");
   m.def(
       "scene_to_json",
       [](nb::object scene) { return scene_to_json(from_python<Scene>(scene, "scene")); },
