@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "manyworlds/batch.hpp"
+#include "manyworlds/pimpl.hpp"
 
 namespace manyworlds {
 
@@ -83,9 +84,9 @@ class Recorder {
   std::int64_t samples() const;
 
  private:
+  struct Listener;  // what the batch tells
   struct Impl;
-  std::shared_ptr<Impl> impl_;
-  std::int64_t samples_ = 0;
+  Pimpl<Impl> impl_;
 };
 
 // Writes small recordings of worlds that get lost: each begins at the last checkpoint before and
@@ -110,8 +111,9 @@ class LostWorldDumps {
   std::vector<std::filesystem::path> close();
 
  private:
+  struct Listener;  // what the batch tells
   struct Impl;
-  std::shared_ptr<Impl> impl_;
+  Pimpl<Impl> impl_;
 };
 
 // What programs that were cut off (kill -9, a power cut) had recorded of `file`: the files beside

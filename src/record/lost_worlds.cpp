@@ -7,12 +7,13 @@
 #include <utility>
 
 #include "manyworlds/record.hpp"
+#include "src/base/pimpl.hpp"
 #include "src/record/inputs.hpp"
 
 namespace manyworlds {
 
-struct LostWorldDumps::Impl final : BatchListener {
-  Impl(const Batch& batch, std::filesystem::path folder, const Options& options)
+struct LostWorldDumps::Listener final : BatchListener {
+  Listener(const Batch& batch, std::filesystem::path folder, const Options& options)
       : folder_(std::move(folder)), options_(options) {
     if (options.checkpoint_steps < 1 || options.most < 0) {
       throw std::invalid_argument(
@@ -134,10 +135,19 @@ struct LostWorldDumps::Impl final : BatchListener {
   std::exception_ptr failure_;  // the first
 };
 
+struct LostWorldDumps::Impl {
+  static constexpr const char* kName = "LostWorldDumps";
+
+  std::shared_ptr<Listener> listener;  // null: closed
+
+  Impl(Batch& batch, std::filesystem::path folder, const Options& options)
+      : listener(std::make_shared<Listener>(batch, std::move(folder), options)) {
+    batch.listen(listener);
+  }
+};
+
 LostWorldDumps::LostWorldDumps(Batch& batch, std::filesystem::path folder, const Options& options)
-    : impl_(std::make_shared<Impl>(batch, std::move(folder), options)) {
-  batch.listen(impl_);
-}
+    : impl_(Pimpl<Impl>::make(batch, std::move(folder), options)) {}
 LostWorldDumps::LostWorldDumps(Batch& batch, std::filesystem::path folder)
     : LostWorldDumps(batch, std::move(folder), Options{}) {}
 LostWorldDumps::LostWorldDumps(LostWorldDumps&&) noexcept = default;
@@ -145,8 +155,8 @@ LostWorldDumps& LostWorldDumps::operator=(LostWorldDumps&&) noexcept = default;
 LostWorldDumps::~LostWorldDumps() = default;
 
 std::vector<std::filesystem::path> LostWorldDumps::close() {
-  const auto impl = std::exchange(impl_, nullptr);
-  return impl ? impl->close() : std::vector<std::filesystem::path>();
+  const auto listener = std::exchange(impl_->listener, nullptr);
+  return listener ? listener->close() : std::vector<std::filesystem::path>();
 }
 
 }  // namespace manyworlds

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "src/base/pimpl.hpp"
 #include "src/record/recorder.hpp"
 
 namespace manyworlds {
@@ -55,7 +56,7 @@ std::shared_ptr<record::RecordingFile> create(const std::filesystem::path& path)
 
 }  // namespace
 
-Recorder::Impl::Impl(const Batch& batch, const std::filesystem::path& path,
+Recorder::Listener::Listener(const Batch& batch, const std::filesystem::path& path,
                      const RecordOptions& options)
     : options_(options) {
   options_.worlds = checked_worlds(batch, options);
@@ -91,7 +92,7 @@ Recorder::Impl::Impl(const Batch& batch, const std::filesystem::path& path,
   next_ = options_.every;
 }
 
-void Recorder::Impl::write_inputs() {
+void Recorder::Listener::write_inputs() {
   for (const record::InputRow& row : log_.rows()) {
     columns_.step.add(row.step);
     columns_.call_steps.add(row.call_steps);
@@ -112,7 +113,7 @@ void Recorder::Impl::write_inputs() {
 // Nothing may come out of a step. What fails is said by close(); nothing more is written. The file
 // knows better than HDF5, which only hears of the consequences.
 template <class Do>
-void Recorder::Impl::guarded(Do&& what) noexcept {
+void Recorder::Listener::guarded(Do&& what) noexcept {
   if (failure_) return;
   const record::UsingHdf5 hdf5;
   try {
@@ -126,7 +127,7 @@ void Recorder::Impl::guarded(Do&& what) noexcept {
 
 // So that what is older than that is not lost with the program. Forces that were added for the
 // next step do not yet know how long they act.
-void Recorder::Impl::flush_if_due() {
+void Recorder::Listener::flush_if_due() {
   const auto now = Clock::now();
   if (std::chrono::duration<double>(now - flushed_).count() < options_.flush_seconds) return;
   if (log_.has_open_forces()) return;
@@ -138,7 +139,7 @@ void Recorder::Impl::flush_if_due() {
 }
 
 template <class Real>
-void Recorder::Impl::add_fields(const Batch& batch, KindTables& kind) {
+void Recorder::Listener::add_fields(const Batch& batch, KindTables& kind) {
   std::vector<double> values;
   std::vector<Real> row;
   for (const Field field : record::kFields) {
@@ -152,7 +153,7 @@ void Recorder::Impl::add_fields(const Batch& batch, KindTables& kind) {
   }
 }
 
-void Recorder::Impl::sample(const Batch& batch) {
+void Recorder::Listener::sample(const Batch& batch) {
   if (sampled_step_ == steps_ && sampled_inputs_ == inputs_) return;
   step_.add(steps_);
   time_.add(batch.time());
@@ -171,11 +172,11 @@ void Recorder::Impl::sample(const Batch& batch) {
   ++samples;
 }
 
-void Recorder::Impl::sample_now(const Batch& batch) noexcept {
+void Recorder::Listener::sample_now(const Batch& batch) noexcept {
   guarded([&] { sample(batch); });
 }
 
-void Recorder::Impl::on_input(const Batch& batch, const InputCall& call) noexcept {
+void Recorder::Listener::on_input(const Batch& batch, const InputCall& call) noexcept {
   const int place = place_[static_cast<std::size_t>(call.world)];
   if (place < 0) return;
   guarded([&] {
@@ -188,7 +189,7 @@ void Recorder::Impl::on_input(const Batch& batch, const InputCall& call) noexcep
   });
 }
 
-void Recorder::Impl::on_step(const Batch& batch, int n) noexcept {
+void Recorder::Listener::on_step(const Batch& batch, int n) noexcept {
   guarded([&] {
     log_.stepped(n);
     if (log_.rows().size() >= record::kRowsInMemory) write_inputs();
@@ -199,7 +200,7 @@ void Recorder::Impl::on_step(const Batch& batch, int n) noexcept {
   });
 }
 
-void Recorder::Impl::flush_tables() {
+void Recorder::Listener::flush_tables() {
   write_inputs();
   for (Table* table : {&step_, &time_, &inputs_before_, &columns_.step, &columns_.call_steps,
                        &columns_.input, &columns_.world, &columns_.body, &columns_.begin,
@@ -213,7 +214,7 @@ void Recorder::Impl::flush_tables() {
   }
 }
 
-void Recorder::Impl::finish() {
+void Recorder::Listener::finish() {
   flush_tables();
   close_tables();
   record::check(H5Fflush(h5_, H5F_SCOPE_LOCAL), "cannot be written");
@@ -225,7 +226,7 @@ void Recorder::Impl::finish() {
   file_->finish();
 }
 
-void Recorder::Impl::close() {
+void Recorder::Listener::close() {
   const record::UsingHdf5 hdf5;
   if (!failure_) {
     try {
@@ -239,7 +240,7 @@ void Recorder::Impl::close() {
   fail();
 }
 
-void Recorder::Impl::fail() {
+void Recorder::Listener::fail() {
   const std::string file = file_->file().target().string();
   // Where memory ran out there may be none for words.
   std::string what = "'" + file + "': ";
@@ -261,7 +262,7 @@ void Recorder::Impl::fail() {
 }
 
 // A file is closed when all in it is.
-void Recorder::Impl::close_tables() noexcept {
+void Recorder::Listener::close_tables() noexcept {
   columns_ = {};
   for (Table* table : {&step_, &time_, &inputs_before_}) *table = {};
   kinds_.clear();
@@ -269,31 +270,43 @@ void Recorder::Impl::close_tables() noexcept {
   root_inputs_ = {};
 }
 
-void Recorder::Impl::discard() noexcept {
+void Recorder::Listener::discard() noexcept {
   const record::UsingHdf5 hdf5;
   close_tables();
   h5_ = {};
 }
 
+struct Recorder::Impl {
+  static constexpr const char* kName = "Recorder";
+
+  std::shared_ptr<Listener> listener;  // null: closed
+  std::int64_t samples = 0;            // by then
+
+  Impl(Batch& batch, const std::filesystem::path& file, const RecordOptions& options)
+      : listener(std::make_shared<Listener>(batch, file, options)) {
+    batch.listen(listener);
+  }
+};
+
 Recorder::Recorder(Batch& batch, const std::filesystem::path& file, const RecordOptions& options)
-    : impl_(std::make_shared<Impl>(batch, file, options)) {
-  batch.listen(impl_);
-}
+    : impl_(Pimpl<Impl>::make(batch, file, options)) {}
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 Recorder::~Recorder() = default;
 
 void Recorder::sample(const Batch& batch) {
-  if (impl_) impl_->sample_now(batch);
+  if (const auto& listener = impl_->listener) listener->sample_now(batch);
 }
 
 void Recorder::close() {
   // Gone in any case, and with it what was not finished.
-  if (const auto impl = std::exchange(impl_, nullptr)) {
-    samples_ = impl->samples;
-    impl->close();
+  if (const auto listener = std::exchange(impl_->listener, nullptr)) {
+    impl_->samples = listener->samples;
+    listener->close();
   }
 }
-std::int64_t Recorder::samples() const { return impl_ ? impl_->samples : samples_; }
+std::int64_t Recorder::samples() const {
+  return impl_->listener ? impl_->listener->samples : impl_->samples;
+}
 
 }  // namespace manyworlds

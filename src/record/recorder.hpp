@@ -33,9 +33,9 @@ struct InputTables {
 
 }  // namespace record
 
-struct Recorder::Impl final : BatchListener {
-  Impl(const Batch& batch, const std::filesystem::path& path, const RecordOptions& options);
-  ~Impl() override { discard(); }
+struct Recorder::Listener final : BatchListener {
+  Listener(const Batch& batch, const std::filesystem::path& path, const RecordOptions& options);
+  ~Listener() override { discard(); }
   void on_input(const Batch& batch, const InputCall& call) noexcept override;
   void on_step(const Batch& batch, int n) noexcept override;
   void sample_now(const Batch& batch) noexcept;

@@ -17,7 +17,7 @@ constexpr std::size_t kSmallChunk = 256;                    // bytes; where ther
 
 }  // namespace
 
-void Recorder::Impl::describe(const Batch& batch) {
+void Recorder::Listener::describe(const Batch& batch) {
   record::write_text(h5_, "format", record::kFormat);
   record::write_number(h5_, "format_version", record::kFormatVersion);
   record::write_text(h5_, "program_version", MW_VERSION);
@@ -31,7 +31,7 @@ void Recorder::Impl::describe(const Batch& batch) {
   record::write_number(h5_, "threads", std::int32_t{batch.threads()});
 }
 
-void Recorder::Impl::make_kind(const Batch& batch, int index, std::vector<int> worlds) {
+void Recorder::Listener::make_kind(const Batch& batch, int index, std::vector<int> worlds) {
   KindTables kind;
   kind.group = record::create_group(root_kinds_, std::to_string(kinds_.size()));
   const Plan& plan = batch.plan(index);
@@ -67,7 +67,7 @@ void Recorder::Impl::make_kind(const Batch& batch, int index, std::vector<int> w
   kinds_.push_back(std::move(kind));
 }
 
-void Recorder::Impl::make_inputs() {
+void Recorder::Listener::make_inputs() {
   const std::size_t chunk = options_.every == 0 ? kSmallChunk : kColumnChunk;
   step_ = Table::create<std::int64_t>(h5_, "step", {}, chunk);
   time_ = Table::create<double>(h5_, "time", {}, chunk);
