@@ -224,7 +224,7 @@ class Batch(Fields, Inputs, Results, InMemory):
     ) -> None:
         """Takes n steps of every world, or of some, without the GIL.
 
-        ``controls``: set before, (worlds, controls) or (len(ids), controls); see set_controls.
+        ``controls``: set before, for the worlds that step; see set_controls.
         Forces that were added act in all n steps and are cleared. A world that goes wrong is frozen
         and flagged (``status``). ``ids``: indices or a bool array (worlds,); the others keep their
         state, their forces and what was observed of them. ``time`` and ``steps`` are of steps of
@@ -279,8 +279,9 @@ class Batch(Fields, Inputs, Results, InMemory):
         """Takes many steps in one call, without the GIL, and returns what happened.
 
         ``initial``: a Snapshot of all worlds, or a dict of fields as ``set`` takes them; None: from
-        where the worlds are. ``controls``: (steps, worlds, controls), one row per step; or ``steps``
-        alone, with the controls as they are. Returns {field: (frames, worlds, items, components)}
+        where the worlds are. ``controls``: (steps, worlds, controls), or with axes of length 1 that
+        broadcast, as (steps, 1, controls) for the same in all worlds; or ``steps`` alone, with the
+        controls as they are. Returns {field: (frames, worlds, items, components)}
         with frames = steps // every, taken after every ``every`` steps; the state before the first
         step is none of them. ``out``: a dict of arrays to fill. The worlds stay where the rollout
         ends; the bits are those of stepping and reading one by one. Ctrl-C ends it

@@ -40,20 +40,17 @@ class Inputs(Named):
         return out
 
     def set_controls(self, values: ArrayLike, ids: Optional[Ids] = None) -> None:
-        """Sets the scene's controls, (worlds, controls) or (len(ids), controls), of any dtype.
+        """Sets the scene's controls in all worlds, or in those of ``ids``.
 
-        They act in every step until they are set anew. Beyond its range a value counts as the end
-        of the range; one that is not a number freezes its world.
+        ``values``: (worlds, controls) or (len(ids), controls), of any dtype, or what broadcasts to it as
+        in ``set``: a number, a row (controls,), a column (worlds, 1). They act in every step until they
+        are set anew. Beyond its range a value counts as the end of the range; one that is not a number
+        freezes its world. Raises ValueError for a wrong shape, IndexError for wrong ids.
         """
-        if ids is None:
-            shape = self._worlds, self._controls
-            numbers = arrays.numbers(values, shape, ("worlds", "controls"), "controls")
-            self._held.write_controls(numbers, None)
-            return
-        worlds = arrays.indices(ids, self._worlds, "ids")
-        shape = len(worlds), self._controls
-        numbers = arrays.numbers(values, shape, ("ids", "controls"), "controls")
-        self._held.write_controls(numbers, worlds)
+        worlds = None if ids is None else arrays.indices(ids, self._worlds, "ids")
+        shape = self._worlds if worlds is None else len(worlds), self._controls
+        axes = "worlds" if worlds is None else "ids", "controls"
+        self._held.write_controls(arrays.broadcast(values, shape, axes, "controls"), worlds)
 
     # -- forces and impulses
 

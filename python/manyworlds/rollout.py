@@ -72,7 +72,7 @@ def _controls(
     if count < 0:
         expected = arrays.shape_text(shape[1:], axes[1:])[1:]
         raise ValueError(f"controls has shape {array.shape}; expected (steps, {expected}")
-    return arrays.numbers(array, shape, axes, "controls"), count
+    return arrays.broadcast(array, shape, axes, "controls"), count
 
 
 def _names(fields: Sequence[str]) -> list[str]:

@@ -91,6 +91,57 @@ def test_a_row_for_each_world_broadcasts_over_bodies():
     assert batch.get("friction").max() == 0.5
 
 
+@pytest.mark.parametrize("ids", [None, [4, 1], np.arange(5) < 2])
+@pytest.mark.parametrize(
+    "value",
+    [0.5, np.float32(0.25), [0.5], [0.25, 0.5, 0.75], [[0.5], [0.25]], np.zeros((1, 3)), np.ones(3, "f4")],
+)  # fmt: skip
+def test_controls_broadcast_as_what_is_set_does(ids, value):
+    if ids is None and np.shape(value) == (2, 1):
+        value = np.linspace(0, 1, 5)[:, None]  # a number for each world
+    batch, other = lander(), lander()
+    start = np.full((5, 3), 0.125, np.float32)
+    batch.set_controls(start), other.set_controls(start)
+    wanted = start.copy()
+    chosen = np.arange(5) if ids is None else np.arange(5)[ids]
+    wanted[chosen] = value
+    batch.set_controls(value, ids)
+    assert batch.get_controls().tobytes() == wanted.tobytes()
+    batch.set_controls(start)
+    batch.step(3, controls=value, ids=ids)
+    other.set_controls(wanted), other.step(3, ids=ids)
+    assert (batch.hashes() == other.hashes()).all()
+
+
+def test_controls_of_a_kind_and_of_a_rollout_broadcast():
+    car = mw.scenes.load("car2d")
+    scene = mw.scenes.load("lunar-lander")
+    car.options.dt = scene.options.dt
+    flown, _ = mw.Batch([(scene, 4), (car, 3)], threads=1).kinds
+    flown.set_controls(0.5)
+    flown.set_controls([1, 0, 0], ids=[3])
+    assert (flown.get_controls() == [[0.5] * 3] * 3 + [[1, 0, 0]]).all()
+    rolled, whole = lander(), lander()
+    plan = np.random.default_rng(0).uniform(0, 1, (7, 1, 3))
+    path = rolled.rollout(controls=plan)["position"]
+    assert path.tobytes() == whole.rollout(controls=np.repeat(plan, 5, 1))["position"].tobytes()
+
+
+def test_what_does_not_broadcast_to_controls_is_refused():
+    batch = lander()
+    for value, ids, words in [
+        (np.zeros(5), None, r"controls has shape \(5,\); expected \(worlds=5, controls=3\), or"),
+        (np.zeros((2, 3)), None, r"\(2, 3\); expected \(worlds=5, controls=3\)"),
+        (np.zeros((5, 3)), [0, 1], r"\(5, 3\); expected \(ids=2, controls=3\)"),
+        (np.zeros((1, 5, 3)), None, r"\(1, 5, 3\); expected"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            batch.set_controls(value, ids)
+    with pytest.raises(ValueError, match=r"\(7, 2, 3\); expected \(steps=7, worlds=5, controls=3"):
+        batch.rollout(controls=np.zeros((7, 2, 3)))
+    assert not batch.get_controls().any()
+
+
 def test_a_rollout_begins_with_what_set_takes():
     a, b = batch_of(), batch_of()
     found = a.rollout({"linear_velocity": [0, 0, 1]}, steps=3)["position"]

@@ -18,9 +18,9 @@ WRONG = [
     (lambda b: b.step(2**31), ValueError, "n is 2147483648"),
     (lambda b: b.step(True), TypeError, "n is a bool"),
     (
-        lambda b: b.step(1, controls=[1]),
+        lambda b: b.step(1, controls=[1, 2]),
         ValueError,
-        r"controls has shape \(1,\); expected \(worlds=5",
+        r"controls has shape \(2,\); expected \(worlds=5",
     ),
     # get
     (lambda b: b.get("positon"), ValueError, "the field is 'positon'.*nearest: 'position'"),
