@@ -80,6 +80,7 @@ UsingHdf5::~UsingHdf5() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 Handle create_file(const std::shared_ptr<Storage>& storage) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "file properties");
   check(H5Pset_userblock(creation, kFrameSize), "the user block");
+  check(H5Pset_obj_track_times(creation, false), "the times of the file");  // equal bytes
   const Handle access = file_properties();
   set_storage(access, storage);
   return {H5Fcreate("recording", H5F_ACC_TRUNC, creation, access), H5Fclose, "cannot be created"};
@@ -108,7 +109,9 @@ Handle open_bytes(std::span<const std::byte> bytes) {
 }
 
 Handle create_group(hid_t parent, const std::string& name) {
-  return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, name);
+  check(H5Pset_obj_track_times(creation, false), "the times of '" + name + "'");
+  return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose,
           "cannot create group", name};
 }
 bool has_link(hid_t parent, const std::string& name) {

@@ -57,7 +57,7 @@ std::shared_ptr<record::RecordingFile> create(const std::filesystem::path& path)
 }  // namespace
 
 Recorder::Listener::Listener(const Batch& batch, const std::filesystem::path& path,
-                     const RecordOptions& options)
+                             const RecordOptions& options)
     : options_(options) {
   options_.worlds = checked_worlds(batch, options);
   file_ = create(path);
