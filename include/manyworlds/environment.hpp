@@ -77,6 +77,18 @@ class Environment {
   // where a world begins whose masses or sizes vary.
   void step(std::span<const float> actions, const StepArrays& out);
   void step(std::span<const std::int64_t> actions, const StepArrays& out);
+  // As these, asking between physics steps, some 15 times a second, whether to go on. False: it was
+  // ended early. All worlds have then taken as many physics steps, batch().steps() counts them,
+  // forces that were added have acted in them and are gone, and nothing was written to `out`.
+  // Until the step is finished, or all worlds are reset, begun or restored, other calls that step,
+  // begin, copy or save worlds throw std::invalid_argument. The early end allocates.
+  bool step(std::span<const float> actions, const StepArrays& out, const GoOn& go_on);
+  bool step(std::span<const std::int64_t> actions, const StepArrays& out, const GoOn& go_on);
+  // Takes a step that was ended early to its end, with its actions: the bits are those of one that
+  // was not. Throws std::invalid_argument when there is none.
+  void finish_step(const StepArrays& out);
+  bool finish_step(const StepArrays& out, const GoOn& go_on);
+  int steps_left() const;  // physics steps of a step that was ended early; 0: there is none
 
   // Next episodes of the worlds of a mask, [world]; with seeds, [world], their first ones.
   // `observations` ([world][observation], or empty) of the others stay.

@@ -517,6 +517,9 @@ class Environment:
     @property
     def actions(self) -> int: ...
 
+    @property
+    def steps_left(self) -> int: ...
+
     def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None: ...
 
     def begin(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None: ...
@@ -542,5 +545,8 @@ class Environment:
         """
         One step of the task in every world, without the GIL, into arrays; None: not wanted.
         """
+
+    def finish_step(self, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None:
+        """The rest of a step that was ended early."""
 
 __version__: str

@@ -126,6 +126,10 @@ class Environment(InMemory):
         self._batch: Optional[Batch] = None
         # Those that were filled last: the caller's or the environment's own.
         self._last = self.observations, self.terminated, self.truncated
+        # Those of the step that was begun last, in the order of the extension.
+        self._filling: tuple[
+            Floats, Doubles, Flags, Flags, Optional[Doubles], Optional[Floats]
+        ]
         self.begin()
 
     # -- what it is
@@ -208,6 +212,11 @@ class Environment(InMemory):
 
         Arrays that are given are filled in place of the environment's own, and returned; they may be
         whatever ``Batch.get`` takes as ``out``. Returns (observations, rewards, terminated, truncated).
+
+        Ctrl-C, and what a signal's handler raises, ends a step that takes longer than some 0.2 s between
+        two of its physics steps. The arrays are then as they were, ``steps_left`` says how many physics
+        steps are still to take, and until ``finish_step``, or a reset, begin or restore of all worlds,
+        other calls that step, begin, copy or save worlds raise ValueError.
         """
         observations = self._out("observations", observations)
         rewards = self._out("rewards", rewards)
@@ -229,17 +238,32 @@ class Environment(InMemory):
                 np.float32,
                 "final_observations",
             )
-        self._step(
-            self._actions(actions),
-            observations,
-            rewards,
-            terminated,
-            truncated,
-            reward_terms,
-            final_observations,
-        )
+        given = self._actions(actions)
+        out = observations, rewards, terminated, truncated, reward_terms, final_observations
+        if self.steps_left == 0:
+            self._filling = out
+        self._step(given, *out)
         self._last = observations, terminated, truncated
         return observations, rewards, terminated, truncated
+
+    def finish_step(self) -> tuple[Floats, Doubles, Flags, Flags]:
+        """Takes a step that Ctrl-C ended early to its end, with its actions and into its arrays.
+
+        What comes of it has the bits of a step that was not ended, but for forces that were added to
+        ``batch`` before: they act up to where it was. Returns what ``step`` would have; Ctrl-C ends it
+        early as it does ``step``. Raises ValueError when no step was ended early.
+        """
+        if self.steps_left == 0:
+            raise ValueError("no step was ended early")
+        self._held.finish_step(*self._filling)
+        observations, rewards, terminated, truncated = self._filling[:4]
+        self._last = observations, terminated, truncated
+        return observations, rewards, terminated, truncated
+
+    @property
+    def steps_left(self) -> int:
+        """Physics steps that a step which was ended early has still to take; 0: none was."""
+        return self._held.steps_left
 
     def _out(self, name: str, given: Optional[Writable]) -> NDArray[Any]:
         own: NDArray[Any] = getattr(self, name)

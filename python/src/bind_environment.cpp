@@ -7,6 +7,7 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "held_batch.hpp"
+#include "interrupts.hpp"
 #include "manyworlds/tasks.hpp"
 #include "task_fields.hpp"
 
@@ -46,27 +47,60 @@ void make(HeldEnvironment* self, nb::object task, nb::object worlds, nb::object 
   new (self) HeldEnvironment(t, options);
 }
 
+StepArrays arrays_of(const MaybeOut<float>& observations, const MaybeOut<double>& rewards,
+                     const MaybeOut<bool>& terminated, const MaybeOut<bool>& truncated,
+                     const MaybeOut<double>& reward_terms,
+                     const MaybeOut<float>& final_observations) {
+  return {.observations = span_or_none(observations),
+          .final_observations = span_or_none(final_observations),
+          .rewards = span_or_none(rewards),
+          .reward_terms = span_or_none(reward_terms),
+          .terminated = flags(terminated),
+          .truncated = flags(truncated)};
+}
+
+// f(environment, go on), without the GIL. What is over by then is taken to its end, so that a
+// signal rarely meets the middle of a step.
+template <class F>
+void run_step(HeldEnvironment& self, F f) {
+  constexpr std::chrono::milliseconds kWhole(150);
+  self.run([&](Environment& e) {
+    Interrupts::during([&](const GoOn& go_on) { return f(e, go_on); }, kWhole);
+  });
+}
+
 template <class T>
 void step(HeldEnvironment& self, const In<T>& actions, const MaybeOut<float>& observations,
           const MaybeOut<double>& rewards, const MaybeOut<bool>& terminated,
           const MaybeOut<bool>& truncated, const MaybeOut<double>& reward_terms,
           const MaybeOut<float>& final_observations) {
-  self.run([&](Environment& e) {
-    e.step(span_of(actions), {.observations = span_or_none(observations),
-                              .final_observations = span_or_none(final_observations),
-                              .rewards = span_or_none(rewards),
-                              .reward_terms = span_or_none(reward_terms),
-                              .terminated = flags(terminated),
-                              .truncated = flags(truncated)});
-  });
+  const StepArrays out =
+      arrays_of(observations, rewards, terminated, truncated, reward_terms, final_observations);
+  run_step(self,
+           [&](Environment& e, const GoOn& go_on) { return e.step(span_of(actions), out, go_on); });
 }
 
-template <class T>
-void def_step(nb::class_<HeldEnvironment>& c, const char* name) {
+void finish_step(HeldEnvironment& self, const MaybeOut<float>& observations,
+                 const MaybeOut<double>& rewards, const MaybeOut<bool>& terminated,
+                 const MaybeOut<bool>& truncated, const MaybeOut<double>& reward_terms,
+                 const MaybeOut<float>& final_observations) {
+  const StepArrays out =
+      arrays_of(observations, rewards, terminated, truncated, reward_terms, final_observations);
+  run_step(self, [&](Environment& e, const GoOn& go_on) { return e.finish_step(out, go_on); });
+}
+
+void def_steps(nb::class_<HeldEnvironment>& c) {
   const auto out = [](const char* array) { return nb::arg(array).noconvert().none(); };
-  c.def(name, &step<T>, nb::arg("actions").noconvert(), out("observations"), out("rewards"),
-        out("terminated"), out("truncated"), out("reward_terms"), out("final_observations"),
-        "One step of the task in every world, without the GIL, into arrays; None: not wanted.");
+  const auto def = [&](const char* name, auto f, const char* text, auto... actions) {
+    c.def(name, f, actions..., out("observations"), out("rewards"), out("terminated"),
+          out("truncated"), out("reward_terms"), out("final_observations"), text);
+  };
+  const char* const text =
+      "One step of the task in every world, without the GIL, into arrays; None: not wanted.";
+  const auto actions = nb::arg("actions").noconvert();
+  def("step_choices", &step<std::int64_t>, text, actions);
+  def("step_numbers", &step<float>, text, actions);
+  def("finish_step", &finish_step, "The rest of a step that was ended early.");
 }
 
 void reset(HeldEnvironment& self, const In<std::uint8_t>& mask,
@@ -161,6 +195,9 @@ void bind_environment(nb::module_& m) {
       .def_prop_ro(
           "actions",
           [](HeldEnvironment& s) { return s.with([](Environment& e) { return e.actions(); }); })
+      .def_prop_ro(
+          "steps_left",
+          [](HeldEnvironment& s) { return s.with([](Environment& e) { return e.steps_left(); }); })
       .def("reset", &reset, nb::arg("mask").noconvert(), nb::arg("seeds").noconvert().none(),
            nb::arg("observations").noconvert().none())
       .def(
@@ -180,8 +217,7 @@ void bind_environment(nb::module_& m) {
            nb::arg("pairs").noconvert().none(),
            "All worlds, or pairs (world of the snapshot, world of the environment).")
       .def("batch", &batch_of, nb::rv_policy::take_ownership);
-  def_step<std::int64_t>(c, "step_choices");
-  def_step<float>(c, "step_numbers");
+  def_steps(c);
 }
 
 }  // namespace manyworlds::python

@@ -14,6 +14,11 @@ namespace manyworlds::python {
 // after the call, by whoever let it ask.
 class Interrupts {
  public:
+  static constexpr auto kPause = std::chrono::milliseconds(50);
+
+  // Looks first when the call has lasted for so long.
+  explicit Interrupts(std::chrono::milliseconds first = kPause) : next_(Clock::now() + first) {}
+
   bool go_on() {
     if (raised_) return false;
     const auto now = Clock::now();
@@ -33,8 +38,8 @@ class Interrupts {
   }
   // f(go on), then raise().
   template <class F>
-  static auto during(F f) {
-    Interrupts self;
+  static auto during(F f, std::chrono::milliseconds first = kPause) {
+    Interrupts self(first);
     auto result = f([&self] { return self.go_on(); });
     self.raise();
     return result;
@@ -42,9 +47,8 @@ class Interrupts {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr auto kPause = std::chrono::milliseconds(50);
 
-  Clock::time_point next_ = Clock::now() + kPause;
+  Clock::time_point next_;
   std::optional<nanobind::python_error> raised_;
 };
 

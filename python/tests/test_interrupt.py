@@ -64,6 +64,84 @@ def check():
     assert env.batch.steps % env.task.frame_skip == 0  # whole steps of the task
     env.step(actions)
 """,
+    "Environment.step, in its middle": """
+task = mw.tasks.load("LunarLander")
+task.frame_skip = NEVER
+env = mw.Environment(task, 64, threads=1, seed=1)
+actions = np.ones(64, np.int64)
+env.rewards[:] = 7.5
+begin = lambda: env.step(actions)
+
+def check():
+    done = env.batch.steps
+    assert 0 < done < NEVER and env.steps_left == NEVER - done
+    assert (env.rewards == 7.5).all()  # nothing was filled
+    for call in (lambda: env.step(actions), env.save, lambda: env.copy_world(0, 1), lambda: env.reset([3])):
+        try:
+            call()
+        except ValueError as error:
+            assert f"after {done} of its {NEVER} physics steps" in str(error), error
+        else:
+            raise AssertionError("it was not refused")
+    other = mw.Environment(task, 64, threads=1, seed=1)
+    env.batch.step(3)  # the batch is usable
+    env.reset(seeds=5), other.reset(seeds=5)
+    assert env.steps_left == 0 and (env.observations == other.observations).all()
+    assert (env.batch.hashes() == other.batch.hashes()).all()
+    env.save()
+""",
+    "Environment.finish_step": """
+import time
+task = mw.tasks.load("LunarLander")
+actions = np.arange(64) % 4
+
+def make(frame_skip):
+    task.frame_skip = frame_skip
+    return mw.Environment(task, 64, threads=1, seed=1)
+
+trial = make(2000)
+trial.step(actions)
+before = time.perf_counter()
+trial.step(actions)
+pace = (time.perf_counter() - before) / 2000
+long = make(int(1.5 / pace))  # s, a step
+steps = 0
+
+def begin():
+    global steps
+    while True:
+        long.step(actions)
+        steps += 1
+
+def check():
+    other = make(task.frame_skip)
+    if long.steps_left > 0:
+        assert long.finish_step()[0] is long.observations
+        for _ in range(steps + 1):
+            wanted = other.step(actions)
+        for mine, its in zip((long.observations, long.rewards, long.terminated, long.truncated), wanted):
+            assert mine.tobytes() == its.tobytes()
+        assert (long.batch.hashes() == other.batch.hashes()).all()
+    try:
+        long.finish_step()
+    except ValueError as error:
+        assert "no step was ended early" in str(error)
+    else:
+        raise AssertionError("there was none to finish")
+""",
+    "VectorEnv.step, in its middle": """
+from manyworlds.gym import VectorEnv
+task = mw.tasks.load("LunarLander")
+task.frame_skip = NEVER
+envs = VectorEnv(task, 64, threads=1)
+envs.reset(seed=1)
+begin = lambda: envs.step(envs.action_space.sample())
+
+def check():
+    assert envs.environment.steps_left > 0
+    envs.reset(seed=1)
+    assert envs.environment.steps_left == 0
+""",
     "VectorEnv.step": """
 from manyworlds.gym import VectorEnv
 envs = VectorEnv("LunarLander", 2048, threads=1)

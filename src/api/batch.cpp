@@ -81,7 +81,7 @@ void Batch::step(std::span<const std::uint8_t> mask, int n) {
   impl_->check_mask(mask);
   check_steps("n", n);
   if (n == 0) return;
-  impl_->core->step(*impl_->executor, n, nullptr, mask);
+  impl_->core->step(*impl_->executor, n, {}, mask);
   impl_->core->end_steps(mask);
   impl_->for_each_masked(mask,
                          [this](int, int, int world) { impl_->tell(*this, Input::reset, world); });

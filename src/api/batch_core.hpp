@@ -58,10 +58,11 @@ class CoreOf final : public BatchCore {
     look_again();
   }
 
-  void step(Executor& executor, int n, GroupVisitor* visitor,
+  void step(Executor& executor, int n, const Visit& visit,
             std::span<const std::uint8_t> only) override {
     steps_ = n;
-    visitor_ = static_cast<GroupVisitorOf<Real>*>(visitor);
+    visitor_ = static_cast<GroupVisitorOf<Real>*>(visit.visitor);
+    part_ = visit;
     only_ = only;
     find_active();
     if (!active_.empty() && packs_) {
@@ -340,7 +341,8 @@ class CoreOf final : public BatchCore {
     for_each_other([&w](int slot_aside, std::byte* to) { w.put_aside(slot_aside, to); });
     work(plan, view, scratch_[s].views[kind], counters_[s],
          VisitedGroup<Real>{group, slot, kernels_, w.tables(), view,
-                            w.storage().controls(group * kernels_.lanes), plan.wanted});
+                            w.storage().controls(group * kernels_.lanes), plan.wanted,
+                            part_.begins && part_.ends});
     for_each_other([&w](int slot_aside, const std::byte* from) { w.put_back(slot_aside, from); });
     if (observations_) observations_->take(s, kind, group, lanes, steps);
   }
@@ -348,10 +350,10 @@ class CoreOf final : public BatchCore {
     run_group(index, slot, true,
               [this](const auto& plan, const auto& group, auto* scratch, auto& counters,
                      const auto& visited) {
-                if (visitor_) visitor_->before_steps(visited);
+                if (visitor_ && part_.begins) visitor_->before_steps(visited);
                 counters.group_steps += step_group<Real>(plan, group, scratch, steps_,
                                                          profiling_ ? &counters.clock : nullptr);
-                if (visitor_) visitor_->after_steps(visited);
+                if (visitor_ && part_.ends) visitor_->after_steps(visited);
               });
   }
   void begin_in(int index, int slot) {
@@ -389,6 +391,7 @@ class CoreOf final : public BatchCore {
   std::unique_ptr<ObservationsOf<Real>> observations_;
   bool all_groups_ = false;                  // those that rest are to be looked at, too
   GroupVisitorOf<Real>* visitor_ = nullptr;  // of the call
+  Visit part_;                               // of it, that these steps are
   std::span<const std::uint8_t> beginning_;  // [world]
   std::span<const std::uint8_t> only_;       // [world] of the call; empty: all
   bool resets_ = false;

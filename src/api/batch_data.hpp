@@ -86,7 +86,7 @@ struct Batch::Impl {
   void make_core_within_memory();
 
   // Steps, all or those of a mask, with questions between them; returns how many.
-  int step(int n, std::span<const std::uint8_t> mask, const GoOn& go_on);
+  int step(int n, std::span<const std::uint8_t> mask, const GoOn& go_on, const Visit& visit = {});
 
   // Told after the change; see batch_listen.cpp.
   void tell(const Batch& batch, Input input, int world, BodyId body = {},

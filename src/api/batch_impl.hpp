@@ -19,9 +19,9 @@ namespace manyworlds {
 class BatchCore {
  public:
   virtual ~BatchCore() = default;
-  // `visitor`, of the batch's number type, may be null. `only`: the mask of the worlds that are to
-  // step; empty: all. Forces act until end_steps().
-  virtual void step(Executor& executor, int n, GroupVisitor* visitor = nullptr,
+  // The visitor, of the batch's number type, may be null. `only`: the mask of the worlds that are
+  // to step; empty: all. Forces act until end_steps().
+  virtual void step(Executor& executor, int n, const Visit& visit = {},
                     std::span<const std::uint8_t> only = {}) = 0;
   virtual void end_steps(std::span<const std::uint8_t> only = {}) = 0;
   // Lets the visitor know that the worlds of this mask begin, after resetting them if it is told

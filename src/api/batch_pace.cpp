@@ -22,7 +22,8 @@ double now() {
 // As many steps at a time as take about kPause: at first by the slowest steps that were ever seen,
 // since worlds that slept may be awake now, then by what the last ones took. A call that is shorter
 // is in one piece.
-int Batch::Impl::step(int n, std::span<const std::uint8_t> mask, const GoOn& go_on) {
+int Batch::Impl::step(int n, std::span<const std::uint8_t> mask, const GoOn& go_on,
+                      const Visit& visit) {
   const FloatMode mode;  // the caller's may trap
   double at_once = slowest_step > 0 ? kPause / slowest_step : 1;
   int taken = 0;
@@ -31,9 +32,12 @@ int Batch::Impl::step(int n, std::span<const std::uint8_t> mask, const GoOn& go_
     const double start = now();
     // What rests by now has to tell observers what it would have told them in one call.
     if (taken > 0) core->look_again();
-    core->step(*executor, few, nullptr, mask);
+    core->step(*executor, few,
+               {visit.visitor, visit.begins && taken == 0, visit.ends && taken + few == n}, mask);
     const double seconds = std::max(now() - start, 1e-9);
-    if (mask.empty()) slowest_step = std::max(slowest_step, seconds / few);
+    // Where nothing sleeps, a step that was held up once is forgotten again.
+    const double slow_before = options.sleep ? slowest_step : slowest_step / 2;
+    if (mask.empty()) slowest_step = std::max(slow_before, seconds / few);
     at_once = std::min(kPause / seconds, kMostGrowth) * few;
     taken += few;
     if (taken < n && !go_on()) break;

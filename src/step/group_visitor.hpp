@@ -2,6 +2,8 @@
 // thread that steps it.
 #pragma once
 
+#include <cstdint>
+
 #include "src/step/pipeline.hpp"
 
 namespace manyworlds {
@@ -16,11 +18,19 @@ struct VisitedGroup {
   Real* control;  // [control][lane]
   // Of the last step, or of the state where worlds begin; null: nothing is observed.
   const kernels::Observation<Real>* seen;
+  bool whole;  // this visit takes all steps of the call: what this thread has put down still holds
 };
 
 class GroupVisitor {
  public:
   virtual ~GroupVisitor() = default;
+};
+
+// Who visits the groups around their steps. A call that steps in parts begins with the first of
+// them and ends with the last.
+struct Visit {
+  GroupVisitor* visitor = nullptr;
+  bool begins = true, ends = true;
 };
 
 // Calls for different groups overlap in time; neither of them throws or waits.

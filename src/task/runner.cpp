@@ -142,6 +142,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
 
   void after_steps(const VisitedGroup<Real>& g) override {
     Thread& thread = threads_[at(g.thread)];
+    for (int l = 0; !g.whole && l < lanes_; ++l) put_action(g, thread, l);
     Real* age = age_.data() + at(g.group * lanes_);
     Real* in = thread.inputs.data();
     for (int l = 0; l < lanes_; ++l) {

@@ -39,4 +39,30 @@ TEST_CASE("episodes of an environment are recorded and replayed", "[fast][record
   }
 }
 
+TEST_CASE("a step of a task that is ended early and finished is recorded as both parts",
+          "[fast][record][task]") {
+  const Folder folder;
+  Task task = tasks::find("Pusher")->make();
+  task.frame_skip = 200;
+  task.most_steps = 2;
+  Played p(task, {.worlds = 5, .autoreset = Autoreset::same_step});
+  Batch& batch = p.environment.batch();
+  Recorder recorder(batch, folder / "run.h5");
+  p.act_at_random(0);
+  batch.add_force(1, batch.body_in_row(0), Vec3(1, 0, 0));  // acts in the first part
+  REQUIRE_FALSE(p.environment.step(p.actions, p.arrays(), [] { return false; }));
+  const int taken = static_cast<int>(batch.steps());
+  p.environment.finish_step(p.arrays());
+  p.act_at_random(1);
+  p.step();
+  recorder.close();
+  const Recording recording = Recording::open(folder / "run.h5");
+  REQUIRE(recording.samples() == 4);
+  CHECK(recording.step(1) == taken);
+  CHECK(recording.step(2) == task.frame_skip);
+  const ReplayResult result = replay(recording);
+  CHECK(result.compared > 0);
+  CHECK(result.different == 0);
+}
+
 }  // namespace manyworlds::test

@@ -1,0 +1,169 @@
+// What an Environment consists of, and the order in which a step calls batch and runner.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/api/batch_data.hpp"
+#include "src/task/runner.hpp"
+
+namespace manyworlds {
+
+inline void check_array(const char* name, std::size_t found, std::size_t wanted,
+                        bool may_be_empty) {
+  if (found == wanted || (found == 0 && may_be_empty)) return;
+  reject(std::string(name) + " are " + std::to_string(wanted) + " numbers, the buffer has " +
+         std::to_string(found));
+}
+
+struct Environment::Impl {
+  static constexpr const char* kName = "Environment";
+
+  Task task;
+  Autoreset autoreset;
+  Plan plan;
+  std::shared_ptr<const TaskPrograms> programs;
+  Batch batch;
+  std::unique_ptr<TaskRunner> runner;
+  // Of a step that was ended early: the physics steps that are still to take, and its actions.
+  int steps_left = 0;
+  std::vector<float> actions;
+  std::vector<std::int64_t> choices;
+
+  Impl(const Task& t, const EnvironmentOptions& options);
+
+  std::size_t worlds() const { return static_cast<std::size_t>(batch.worlds()); }
+  std::size_t observations() const { return worlds() * task.observations.size(); }
+  bool discrete() const { return task.choices > 0; }
+
+  void check(const StepArrays& out) const {
+    check_array("observations", out.observations.size(), observations(), true);
+    check_array("final_observations", out.final_observations.size(), observations(), true);
+    if (out.observations.empty() && !out.final_observations.empty())
+      reject("final_observations are wanted without observations");
+    check_array("rewards", out.rewards.size(), worlds(), true);
+    check_array("reward_terms", out.reward_terms.size(), worlds() * task.rewards.size(), true);
+    check_array("terminated", out.terminated.size(), worlds(), true);
+    check_array("truncated", out.truncated.size(), worlds(), true);
+  }
+
+  void check(const EnvironmentSnapshot& snapshot) const {
+    if (snapshot.task != programs->fingerprint) {
+      throw SnapshotError("snapshot: is of another task than '" + task.name + "'");
+    }
+    const std::size_t wanted =
+        static_cast<std::size_t>(snapshot.worlds.worlds()) * runner->numbers();
+    if (snapshot.memory.size() != wanted) {
+      throw SnapshotError("snapshot: the task remembers " + std::to_string(snapshot.memory.size()) +
+                          " numbers, must be " + std::to_string(wanted));
+    }
+  }
+  std::span<const double> memory(const EnvironmentSnapshot& snapshot, int world) const {
+    const std::size_t n = runner->numbers();
+    return std::span(snapshot.memory).subspan(static_cast<std::size_t>(world) * n, n);
+  }
+
+  // Worlds are only saved, stepped and begun one by one where they stand between two steps.
+  void check_between_steps(const char* call) const {
+    if (steps_left == 0) return;
+    const int taken = task.frame_skip - steps_left;
+    reject(std::string(call) + ": the worlds stand in the middle of a step that was ended after " +
+           std::to_string(taken) + " of its " + std::to_string(task.frame_skip) +
+           " physics steps: finish_step takes it to its end; a reset, begin or restore of all "
+           "worlds gives it up");
+  }
+  // What begins all worlds gives up a step in whose middle they stand.
+  void check_to_begin(const char* call, std::span<const std::uint8_t> mask,
+                      std::span<const float> seen) const {
+    check_array("observations", seen.size(), observations(), true);
+    const auto begins = [](std::uint8_t begin) { return begin != 0; };
+    if (!std::all_of(mask.begin(), mask.end(), begins)) check_between_steps(call);
+  }
+
+  bool step(const float* numbers, const StepArrays& out, const GoOn& go_on) {
+    runner->actions = numbers;
+    if (advance(*batch.impl_, out, go_on)) return true;
+    actions.assign(numbers, numbers + worlds() * task.actions.size());
+    return false;
+  }
+  bool step(const std::int64_t* each, const StepArrays& out, const GoOn& go_on) {
+    runner->choices = each;
+    if (advance(*batch.impl_, out, go_on)) return true;
+    choices.assign(each, each + worlds());
+    return false;
+  }
+  bool finish_step(const StepArrays& out, const GoOn& go_on) {
+    if (discrete()) {
+      runner->choices = choices.data();
+    } else {
+      runner->actions = actions.data();
+    }
+    return advance(*batch.impl_, out, go_on);
+  }
+
+  // A step, or what is left of it. An empty `go_on` is not asked.
+  bool advance(Batch::Impl& b, const StepArrays& out, const GoOn& go_on) {
+    const bool begins = steps_left == 0;
+    const int n = begins ? task.frame_skip : steps_left;
+    runner->out = out;
+    runner->some_begin = false;
+    const Visit visit{&runner->visitor(), begins};
+    int taken = n;
+    if (go_on) {
+      taken = b.step(n, {}, go_on, visit);
+    } else {
+      b.core->step(*b.executor, n, visit);
+      b.core->end_steps();
+    }
+    b.steps += taken;
+    tell_step(b, taken, begins);
+    steps_left = n - taken;
+    if (steps_left == 0) begin_some(b);
+    forget_call();
+    return steps_left == 0;
+  }
+
+  // The next episodes of worlds whose last has ended.
+  void begin_some(Batch::Impl& b) {
+    if (!runner->some_begin) return;
+    runner->keeps_last = autoreset == Autoreset::same_step;
+    b.core->begin(*b.executor, runner->begin_now, true, runner->visitor());
+    if (b.listeners.empty()) return;
+    b.for_each_masked(runner->begin_now,
+                      [&](int, int, int world) { b.tell(batch, Input::reset, world); });
+  }
+
+  void begin(Batch::Impl& b, std::span<const std::uint8_t> mask, std::span<float> seen) {
+    runner->out = {};
+    runner->out.observations = seen;
+    runner->keeps_last = false;
+    b.core->begin(*b.executor, mask, false, runner->visitor());
+    steps_left = 0;
+    forget_call();
+  }
+
+ private:
+  void tell_step(const Batch::Impl& b, int steps, bool begins) const {
+    if (b.listeners.empty()) return;
+    const std::size_t n = begins ? task.controls.size() : 0;
+    std::vector<double> values(worlds() * n);
+    if (n > 0) batch.read_controls(values);
+    for (std::size_t w = 0; n > 0 && w < worlds(); ++w) {
+      // What froze the world has not become a control.
+      if (runner->unsound[w]) values[w * n] = std::numeric_limits<double>::quiet_NaN();
+      b.tell_controls(batch, static_cast<int>(w), std::span(values).subspan(w * n, n));
+    }
+    b.tell_step(batch, steps);
+  }
+  // The caller's arrays live as long as the call.
+  void forget_call() {
+    runner->out = {};
+    runner->actions = nullptr;
+    runner->choices = nullptr;
+  }
+};
+
+}  // namespace manyworlds
