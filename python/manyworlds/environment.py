@@ -127,9 +127,7 @@ class Environment(InMemory):
         # Those that were filled last: the caller's or the environment's own.
         self._last = self.observations, self.terminated, self.truncated
         # Those of the step that was begun last, in the order of the extension.
-        self._filling: tuple[
-            Floats, Doubles, Flags, Flags, Optional[Doubles], Optional[Floats]
-        ]
+        self._filling: tuple[Floats, Doubles, Flags, Flags, Optional[Doubles], Optional[Floats]]
         self.begin()
 
     # -- what it is
