@@ -6,6 +6,7 @@ python curves.py lander1.json lander2.json --out curves.svg
 
 import argparse
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib
@@ -14,8 +15,8 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the back end is chosen first)
 
 
-def main(argv=None):
-    p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+def main(argv: Sequence[str] | None = None) -> None:
+    p = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     p.add_argument("files", nargs="+", type=Path)
     p.add_argument("--out", default="curves.svg")
     o = p.parse_args(argv)

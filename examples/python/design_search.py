@@ -8,15 +8,19 @@ One world is one candidate: 10,000 shots a generation, all of them simulated at 
 
 import argparse
 import time
+from collections.abc import Sequence
+from typing import Any
 
 import cma
 import numpy as np
+from numpy.typing import NDArray
 
 import manyworlds as mw
 
 
-def main(argv=None):
-    p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+def main(argv: Sequence[str] | None = None) -> list[tuple[float, float]]:
+    """(mean, best) of each generation."""
+    p = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     p.add_argument("--candidates", type=int, default=10_000, help="of a generation")
     p.add_argument("--generations", type=int, default=8)
     p.add_argument("--threads", type=int)
@@ -27,7 +31,7 @@ def main(argv=None):
     env = mw.Environment(task, n, threads=o.threads, seed=1, autoreset="disabled")
     low, high = (np.array([getattr(a, end) for a in task.actions]) for end in ("low", "high"))
 
-    def scores(designs):
+    def scores(designs: NDArray[Any]) -> NDArray[np.float64]:
         """Returns of one shot each, every generation in the very same worlds."""
         env.reset(seeds=1)
         actions = np.ascontiguousarray(low + (high - low) * np.clip(designs, 0, 1), np.float32)

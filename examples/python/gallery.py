@@ -5,10 +5,13 @@ python gallery.py --out tasks.png
 """
 
 import argparse
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 import manyworlds as mw
 from manyworlds.plot import Picture
@@ -16,15 +19,15 @@ from manyworlds.plot import Picture
 COLUMNS = 4
 
 
-def actions_of(env, random):
+def actions_of(env: mw.Environment, random: np.random.Generator) -> NDArray[Any]:
     if env.discrete:
         return random.integers(env.task.choices, size=env.worlds)
     low, high = np.array([(a.low, a.high) for a in env.task.actions]).T
     return random.uniform(low, high, env.action_shape)
 
 
-def main(argv=None):
-    p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+def main(argv: Sequence[str] | None = None) -> None:
+    p = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     p.add_argument("--steps", type=int, default=30)
     p.add_argument("--seed", type=int, default=3)
     p.add_argument("--out", default="tasks.png")

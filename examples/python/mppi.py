@@ -10,20 +10,24 @@ and what they tried, weighted by how well they did, is what the real world does 
 
 import argparse
 import time
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 import manyworlds as mw
 
 
-def height(observations):
+def height(observations: NDArray[np.float32]) -> NDArray[np.float32]:
     """m, of the tip over the hinge: what a plan is worth, since Acrobot's reward says little."""
     cos1, sin1, cos2, sin2 = observations[:, :4].T
-    return -cos1 - (cos1 * cos2 - sin1 * sin2)
+    tip: NDArray[np.float32] = -cos1 - (cos1 * cos2 - sin1 * sin2)
+    return tip
 
 
-def main(argv=None):
-    p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+def main(argv: Sequence[str] | None = None) -> tuple[bool, int]:
+    """Whether it swung up, and after how many steps."""
+    p = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     p.add_argument("--samples", type=int, default=256)
     p.add_argument("--horizon", type=int, default=40, help="steps of the task")
     p.add_argument("--steps", type=int, default=150, help="at most")
@@ -39,7 +43,8 @@ def main(argv=None):
     worlds = mw.Environment(task, o.samples, threads=o.threads, seed=o.seed, autoreset="disabled")
     plans = random.integers(task.choices, size=(o.horizon, o.samples))
     began = time.perf_counter()
-    for step in range(o.steps):
+    taken = 0
+    for taken in range(1, o.steps + 1):
         worlds.restore(real.save(), source=0, ids=range(o.samples))
         best, done = np.full(o.samples, -2.0), np.zeros(o.samples, bool)
         for t in range(o.horizon):
@@ -62,10 +67,10 @@ def main(argv=None):
     wall = time.perf_counter() - began
     up = bool(real.terminated[0])
     print(
-        f"{'up' if up else 'not up'} after {step + 1} steps, {wall:.1f} s, "
-        f"{(step + 1) * o.samples * o.horizon / wall / 1e3:.0f} k planned steps/s"
+        f"{'up' if up else 'not up'} after {taken} steps, {wall:.1f} s, "
+        f"{taken * o.samples * o.horizon / wall / 1e3:.0f} k planned steps/s"
     )
-    return up, step + 1
+    return up, taken
 
 
 if __name__ == "__main__":

@@ -12,25 +12,34 @@ the observation before it is where the episode ended, from which a truncated one
 import argparse
 import json
 import time
+from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any, Union
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import optax
 from gymnasium.spaces import Discrete
+from numpy.typing import NDArray
 
 from manyworlds.gym import VectorEnv
 
+Options = argparse.Namespace
+Layers = list[tuple[jax.Array, jax.Array]]
+Params = dict[str, Any]  # "policy" and "value": Layers; "spread": jax.Array
+Batch = dict[str, Any]  # arrays, (samples, ...)
+State = tuple[Params, Any]  # with the optimizer's memory
+
 # What differs from the defaults below, by task.
-TUNED = {
+TUNED: dict[str, dict[str, float]] = {
     "CartPole": dict(envs=256, steps=32, updates=300, gamma=0.98, lam=0.9, rate=2e-3),
     "LunarLander": dict(updates=90, gamma=0.999, lam=0.98, entropy=0.002, goal=220),
 }
 
 
-def arguments(argv=None):
-    p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+def arguments(argv: Sequence[str] | None = None) -> Options:
+    p = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     p.add_argument("--task", default="LunarLander")
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--envs", type=int, default=512)
@@ -58,7 +67,7 @@ def arguments(argv=None):
 # -- the network: two perceptrons, of the policy and of the value
 
 
-def perceptron(key, sizes, last):
+def perceptron(key: jax.Array, sizes: list[int], last: float) -> Layers:
     layers = []
     for i, (n, m) in enumerate(zip(sizes, sizes[1:])):
         key, sub = jax.random.split(key)
@@ -67,7 +76,7 @@ def perceptron(key, sizes, last):
     return layers
 
 
-def apply(layers, x):
+def apply(layers: Layers, x: Any) -> jax.Array:
     for w, b in layers[:-1]:
         x = jnp.tanh(x @ w + b)
     w, b = layers[-1]
@@ -77,19 +86,19 @@ def apply(layers, x):
 class Categorical:
     """A choice among n: the network gives the logits."""
 
-    def __init__(self, space):
-        self.outputs = int(space.n)
+    def __init__(self, choices: int) -> None:
+        self.outputs = choices
 
-    def sample(self, params, out, key):
+    def sample(self, params: Params, out: jax.Array, key: jax.Array) -> jax.Array:
         return jax.random.categorical(key, out)
 
-    def best(self, params, out):
+    def best(self, params: Params, out: jax.Array) -> jax.Array:
         return jnp.argmax(out, -1)
 
-    def log_prob(self, params, out, a):
+    def log_prob(self, params: Params, out: jax.Array, a: jax.Array) -> jax.Array:
         return jnp.take_along_axis(jax.nn.log_softmax(out), a[..., None], -1)[..., 0]
 
-    def entropy(self, params, out):
+    def entropy(self, params: Params, out: jax.Array) -> jax.Array:
         logp = jax.nn.log_softmax(out)
         return -(jnp.exp(logp) * logp).sum(-1)
 
@@ -97,57 +106,69 @@ class Categorical:
 class Gaussian:
     """Numbers: the network gives their means, and the spread is a parameter of its own."""
 
-    def __init__(self, space):
-        self.outputs = space.shape[0]
+    def __init__(self, numbers: int) -> None:
+        self.outputs = numbers
 
-    def sample(self, params, out, key):
+    def sample(self, params: Params, out: jax.Array, key: jax.Array) -> jax.Array:
         return out + jnp.exp(params["spread"]) * jax.random.normal(key, out.shape)
 
-    def best(self, params, out):
+    def best(self, params: Params, out: jax.Array) -> jax.Array:
         return out
 
-    def log_prob(self, params, out, a):
+    def log_prob(self, params: Params, out: jax.Array, a: jax.Array) -> jax.Array:
         z = (a - out) / jnp.exp(params["spread"])
         return (-0.5 * z**2 - params["spread"] - 0.5 * jnp.log(2 * jnp.pi)).sum(-1)
 
-    def entropy(self, params, out):
+    def entropy(self, params: Params, out: jax.Array) -> jax.Array:
         return (params["spread"] + 0.5 * jnp.log(2 * jnp.pi * jnp.e)).sum() + 0 * out[..., 0]
+
+
+Kind = Union[Categorical, Gaussian]
 
 
 # -- running moments, for normalisation
 
 
 class Moments:
-    def __init__(self, shape=()):
+    def __init__(self, shape: tuple[int, ...] = ()) -> None:
         self.mean, self.var, self.count = np.zeros(shape), np.ones(shape), 1e-4
 
-    def update(self, x):
+    def update(self, x: NDArray[Any]) -> None:
         mean, var, n = x.mean(0), x.var(0), len(x)
         total = self.count + n
         delta = mean - self.mean
         self.var = (self.var * self.count + var * n + delta**2 * self.count * n / total) / total
         self.mean, self.count = self.mean + delta * n / total, total
 
-    def scale(self, x):
+    def scale(self, x: NDArray[Any]) -> NDArray[np.float32]:
         return np.clip((x - self.mean) / np.sqrt(self.var + 1e-8), -10, 10).astype(np.float32)
 
 
 # -- learning
 
 
-def advantages(o, rewards, values, terminated, ended):
+def advantages(
+    o: Options,
+    rewards: NDArray[np.float32],
+    values: NDArray[np.float32],
+    terminated: NDArray[np.bool_],
+    ended: NDArray[np.bool_],
+) -> NDArray[np.float32]:
     """Generalised advantage estimation, from the last step to the first; values has one row more."""
-    out, after = np.zeros_like(rewards), 0.0
+    out, after = np.zeros_like(rewards), np.zeros_like(rewards[0])
     for t in reversed(range(len(rewards))):
         delta = rewards[t] + o.gamma * values[t + 1] * ~terminated[t] - values[t]
         out[t] = after = delta + o.gamma * o.lam * ~ended[t] * after
     return out
 
 
-def make_loss(o, kind):
-    def loss(params, b):
+def make_loss(o: Options, kind: Kind) -> Callable[[Params, Batch], jax.Array]:
+    def loss(params: Params, b: Batch) -> jax.Array:
         out, value = apply(params["policy"], b["x"]), apply(params["value"], b["x"])[..., 0]
-        mean = lambda y: (y * b["weight"]).sum() / b["weight"].sum()  # resets do not count
+
+        def mean(y: jax.Array) -> jax.Array:
+            return (y * b["weight"]).sum() / b["weight"].sum()  # resets do not count
+
         a = b["advantage"] - mean(b["advantage"])
         a = a / jnp.sqrt(mean(a**2) + 1e-8)
         ratio = jnp.exp(kind.log_prob(params, out, b["action"]) - b["log_prob"])
@@ -158,42 +179,47 @@ def make_loss(o, kind):
     return loss
 
 
-def make_optimizer(o):
+def make_optimizer(o: Options) -> Any:
     """Adam (Kingma and Ba 2015), with a step that falls to a tenth over all updates."""
     steps = o.updates * o.epochs * (o.envs * o.steps // o.minibatch)
     rate = optax.linear_schedule(o.rate, 0.1 * o.rate, steps)
     return optax.chain(optax.clip_by_global_norm(0.5), optax.adam(rate, eps=1e-5))
 
 
-def make_update(o, kind, optimizer):
+def make_update(
+    o: Options, kind: Kind, optimizer: Any
+) -> Callable[[State, jax.Array, Batch], State]:
     """All epochs over one batch as one compiled function."""
     gradient = jax.grad(make_loss(o, kind))
 
-    def minibatch(state, b):
+    def minibatch(state: State, b: Batch) -> tuple[State, None]:
         params, memory = state
         change, memory = optimizer.update(gradient(params, b), memory, params)
         return (optax.apply_updates(params, change), memory), None
 
-    def epoch(state, key, batch):
+    def epoch(state: State, key: jax.Array, batch: Batch) -> tuple[State, None]:
         n = batch["x"].shape[0]
         order = jax.random.permutation(key, n)[: n // o.minibatch * o.minibatch]
         parts = jax.tree.map(lambda x: x[order].reshape(-1, o.minibatch, *x.shape[1:]), batch)
-        return jax.lax.scan(minibatch, state, parts)
+        done: tuple[State, None] = jax.lax.scan(minibatch, state, parts)
+        return done
 
-    @jax.jit
-    def update(state, key, batch):
+    def epochs(state: State, key: jax.Array, batch: Batch) -> State:
         keys = jax.random.split(key, o.epochs)
-        return jax.lax.scan(lambda s, k: epoch(s, k, batch), state, keys)[0]
+        done: State = jax.lax.scan(lambda s, k: epoch(s, k, batch), state, keys)[0]
+        return done
 
+    update: Callable[[State, jax.Array, Batch], State] = jax.jit(epochs)
     return update
 
 
-def train(o):
+def train(o: Options) -> dict[str, Any]:
     began = time.perf_counter()
     env = VectorEnv(o.task, o.envs, copy=False, threads=o.threads)
-    n, seen = o.envs, env.single_observation_space.shape[0]
-    discrete = isinstance(env.single_action_space, Discrete)
-    kind = (Categorical if discrete else Gaussian)(env.single_action_space)
+    n, seen = o.envs, env.environment.observations.shape[1]
+    space = env.single_action_space
+    numbers = env.environment.action_shape[1:]  # of an action; () where it is a choice
+    kind = Categorical(int(space.n)) if isinstance(space, Discrete) else Gaussian(*numbers)
     goal = env.task.solved_at if o.goal is None else o.goal
     o.minibatch = min(o.minibatch, n * o.steps // 4)
 
@@ -201,29 +227,30 @@ def train(o):
     params = {
         "policy": perceptron(k1, [seen, o.hidden, o.hidden, kind.outputs], 0.01),
         "value": perceptron(k2, [seen, o.hidden, o.hidden, 1], 1.0),
-        "spread": jnp.full(0 if discrete else kind.outputs, -0.5),
+        "spread": jnp.full(numbers or 0, -0.5),
     }
     optimizer = make_optimizer(o)
     state = params, optimizer.init(params)
     update = make_update(o, kind, optimizer)
 
-    @jax.jit
-    def act(params, x, key):
+    def choose(params: Params, x: Any, key: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
         out = apply(params["policy"], x)
         action = kind.sample(params, out, key)
         log_prob = kind.log_prob(params, out, action)
         return action, log_prob, apply(params["value"], x)[..., 0]
 
-    moments, gains = Moments(seen), Moments()
+    act = jax.jit(choose)
+
+    moments, gains = Moments((seen,)), Moments()
     discounted, returns, lengths = np.zeros(n), np.zeros(n), np.zeros(n, int)
-    finished = []  # (return, length)
+    finished: list[tuple[float, int]] = []  # (return, length)
     observations, _ = env.reset(seed=1000 * o.seed)
     begins = np.zeros(n, bool)  # the next step is a reset
     curve, total = [], 0
     shape = (o.steps, n)
     batch = {
         "x": np.zeros((*shape, seen), np.float32),
-        "action": np.zeros((*shape, *env.single_action_space.shape), env.action_space.dtype),
+        "action": np.zeros((*shape, *numbers), env.action_space.dtype),
         "log_prob": np.zeros(shape, np.float32),
         "weight": np.zeros(shape, np.float32),
     }
@@ -277,12 +304,14 @@ def train(o):
     return {"task": o.task, "seed": o.seed, "curve": curve, "evaluation": score, "seconds": wall}
 
 
-def best(kind, params, moments, observations):
+def best(kind: Kind, params: Params, moments: Moments, observations: NDArray[Any]) -> NDArray[Any]:
     out = apply(params["policy"], moments.scale(observations))
     return np.asarray(kind.best(params, out))
 
 
-def evaluate(o, policy, worlds=256):
+def evaluate(
+    o: Options, policy: Callable[[NDArray[Any]], NDArray[Any]], worlds: int = 256
+) -> float:
     """Mean return of the first episode of fresh worlds, without noise."""
     env = VectorEnv(o.task, worlds, copy=False, threads=o.threads)
     observations, _ = env.reset(seed=10**6)
@@ -295,7 +324,7 @@ def evaluate(o, policy, worlds=256):
     return float(total.mean())
 
 
-def main(argv=None):
+def main(argv: Sequence[str] | None = None) -> dict[str, Any]:
     o = arguments(argv)
     result = train(o)
     if o.json:
