@@ -1,10 +1,8 @@
 #include "leftovers.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
-#include <fmt/format.h>
-
+#include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
@@ -14,13 +12,12 @@ void tell_of_leftovers(const std::vector<std::filesystem::path>& parts,
   for (const std::filesystem::path& part : parts) {
     const std::string word = tools::shell_word(part.string());
     if (std::count(recordings.begin(), recordings.end(), part) > 0) {
-      fmt::print(stderr, "manyworlds: note: left by a run that was cut off: manyworlds replay {}\n",
-                 word);
+      tools::tell("manyworlds: note: left by a run that was cut off: manyworlds replay {}\n", word);
     } else {
-      fmt::print(stderr,
-                 "manyworlds: note: left by a run that was cut off, with nothing in it that can be "
-                 "read: rm {}\n",
-                 word);
+      tools::tell(
+          "manyworlds: note: left by a run that was cut off, with nothing in it that can be "
+          "read: rm {}\n",
+          word);
     }
   }
 }

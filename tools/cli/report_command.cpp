@@ -1,10 +1,9 @@
 // `manyworlds report`: each report as a table for people, JSON, and a page that needs no network.
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <functional>
-#include <span>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,13 +13,14 @@
 #include "leftovers.hpp"
 #include "manyworlds/scenes.hpp"
 #include "progress.hpp"
-#include "src/base/output_file.hpp"
 #include "tools/base/interrupt.hpp"
 #include "tools/base/machine.hpp"
+#include "tools/base/tell.hpp"
 #include "tools/base/version.hpp"
 #include "tools/report/accuracy.hpp"
 #include "tools/report/page.hpp"
 #include "tools/report/plan_worth.hpp"
+#include "tools/report/report_files.hpp"
 #include "tools/report/stability.hpp"
 #include "tools/report/throughput.hpp"
 
@@ -31,47 +31,12 @@ using tools::kVersion, tools::machine_line;
 
 using Tell = std::function<void(const std::string&, double)>;
 
-// Both files of a report, each whole or not at all. They are made first, so that no work is lost to
-// a name that cannot be one, or a disk that is full.
-class ReportFiles {
- public:
-  ReportFiles(const std::string& name, const ReportOptions& options)
-      : page_(std::filesystem::path(options.out) / (name + ".html")),
-        json_(std::filesystem::path(options.out) / (name + ".json")) {
-    std::error_code error;
-    std::filesystem::create_directories(options.out, error);
-    if (error) throw InputError("--out: cannot make " + options.out + ": " + error.message());
-    for (const auto& file : {page_, json_}) {
-      guarded([&] {
-        const OutputFile trial(file);
-        tell_of_leftovers(leftover_parts(file), {});
-      });
-    }
-  }
-  void write(const std::string& page, const std::string& json) const {
-    guarded([&] {
-      OutputFile page_file(page_), json_file(json_);
-      page_file.write(std::as_bytes(std::span(page)), 0);
-      json_file.write(std::as_bytes(std::span(json)), 0);
-      page_file.commit();
-      json_file.commit();
-    });
-  }
-  const std::filesystem::path& page() const { return page_; }
-  const std::filesystem::path& json() const { return json_; }
-
- private:
-  template <class Do>
-  static void guarded(Do&& what) {
-    try {
-      what();
-    } catch (const FileError& error) {
-      throw InputError(std::string("--out: cannot write ") + error.what());
-    }
-  }
-
-  std::filesystem::path page_, json_;
-};
+// Made before there is anything to write, so that no work is lost to a name that cannot be one.
+report::ReportFiles files_of(const std::string& name, const ReportOptions& options) {
+  report::ReportFiles files(options.out, name);
+  tell_of_leftovers(files.leftovers(), {});
+  return files;
+}
 
 // Runs `measure` with a progress bar.
 template <class Measure>
@@ -86,33 +51,53 @@ auto run_report(const char* name, Measure measure) {
   }));
 }
 
-// Files, and JSON or what `print` prints to standard output. Where it was interrupted there are no
-// files: those of an older, whole report stay.
+// Why the files could not be written; empty if they are.
+std::string write_files(const report::ReportFiles& files, const std::string& page,
+                        const std::string& json) {
+  try {
+    files.write(page, json);
+    return {};
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+// Files, and JSON or what `print` prints to standard output, which is not lost with the files.
+// Where it was interrupted there are none: those of an older, whole report stay.
 template <class Print>
-int finish_report(const std::string& name, const ReportOptions& options, const ReportFiles& files,
-                  nlohmann::ordered_json results, const std::string& page, Print print) {
+int finish_report(const std::string& name, const ReportOptions& options,
+                  const report::ReportFiles& files, nlohmann::ordered_json results,
+                  const std::string& page, Print print) {
   nlohmann::ordered_json json = {{"report", name},
                                  {"version", kVersion},
                                  {"machine", machine_line()},
                                  {"quick", options.quick},
                                  {"results", std::move(results)}};
   const bool whole = tools::interrupted() == 0;
+  std::string failure;
   if (whole) {
-    files.write(page, json.dump(1) + "\n");
+    failure = write_files(files, page, json.dump(1) + "\n");
   } else {
     json["interrupted"] = tools::interrupt_name();
   }
-  if (options.json) {
-    fmt::print("{}\n", json.dump());
-  } else {
-    fmt::print("{}\n", machine_line());
-    print();
-    if (whole) fmt::print("\n{}\n{}\n", files.page().string(), files.json().string());
+  try {
+    if (options.json) {
+      fmt::print("{}\n", json.dump());
+    } else {
+      fmt::print("{}\n", machine_line());
+      print();
+      if (whole && failure.empty()) {
+        fmt::print("\n{}\n{}\n", files.page().string(), files.json().string());
+      }
+    }
+  } catch (const std::system_error&) {
+    if (failure.empty()) throw;  // what comes first is told
   }
+  if (!failure.empty()) throw InputError(failure);
   if (whole) return kOk;
   std::fflush(stdout);
-  fmt::print(stderr, "manyworlds: interrupted by {}; {} and {} are not written\n",
-             tools::interrupt_name(), files.page().string(), files.json().string());
+  tools::tell("manyworlds: interrupted by {}; {} and {} are not written\n", tools::interrupt_name(),
+              files.page().string(), files.json().string());
   return tools::interrupt_code();
 }
 
@@ -193,7 +178,7 @@ int report_accuracy_command(const ReportOptions& options) {
   check_names("--cases", options.cases, ids, "case");
   report::AccuracyOptions what;
   what.cases = options.cases, what.quick = options.quick;
-  const ReportFiles files("accuracy", options);
+  const report::ReportFiles files = files_of("accuracy", options);
   const tools::Interruptible interruptible;
   const auto results =
       run_report("accuracy", [&](const Tell& tell) { return report::run_accuracy(what, tell); });
@@ -206,7 +191,7 @@ int report_stability_command(const ReportOptions& options) {
   std::vector<std::string> ids;
   for (const report::Trial& t : report::stability_trials()) ids.push_back(t.id);
   check_names("--cases", options.cases, ids, "case");
-  const ReportFiles files("stability", options);
+  const report::ReportFiles files = files_of("stability", options);
   const tools::Interruptible interruptible;
   const auto verdicts = run_report("stability", [&](const Tell& tell) {
     return report::run_stability({options.cases, options.quick}, tell);
@@ -218,23 +203,24 @@ int report_stability_command(const ReportOptions& options) {
 
 int report_plan_command(const ReportOptions& options) {
   check_names("--scenes", options.scenes, scene_names(), "scene");
-  const ReportFiles files("plan", options);
+  const report::ReportFiles files = files_of("plan", options);
   const tools::Interruptible interruptible;
   const auto rows = run_report("plan", [&](const Tell& tell) {
     return report::run_worth({options.scenes, options.quick}, tell);
   });
-  finish_report("plan", options, files, report::to_json(rows),
-                report::worth_page(rows, machine_line()), [&] { print_worth(rows); });
+  const int code =
+      finish_report("plan", options, files, report::to_json(rows),
+                    report::worth_page(rows, machine_line()), [&] { print_worth(rows); });
   const bool wrong = std::any_of(rows.begin(), rows.end(), [](const report::WorthRow& r) {
     return r.must_be_same && !r.same_bits;
   });
-  return wrong ? kWorldLost : kOk;
+  return code == kOk && wrong ? kWorldLost : code;
 }
 
 int report_throughput_command(const ReportOptions& options) {
   check_names("--scenes", options.scenes, scene_names(), "scene");
   if (!options.peers.empty()) report::find_peers(options.peers);  // says early what is wrong
-  const ReportFiles files("throughput", options);
+  const report::ReportFiles files = files_of("throughput", options);
   const tools::Interruptible interruptible;
   const auto result = run_report("throughput", [&](const Tell& tell) {
     return report::run_throughput({options.scenes, options.peers, options.quick}, tell);
