@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 #include <vector>
 
 #include "manyworlds/record.hpp"
+#include "src/base/printable.hpp"
 #include "src/record/checksum.hpp"
 
 namespace manyworlds::record {
@@ -31,8 +33,27 @@ void add(Checksum& sum, Frame frame) {
   sum.add(std::as_bytes(std::span(&frame, 1)));
 }
 
+std::string hex(std::uint64_t number) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(number));
+  return text;
+}
+
+[[noreturn]] void refuse_magic(const std::array<char, 8>& found) {
+  std::string what = "is no recording of manyworlds: ";
+  if (found == std::array<char, 8>{}) {
+    what += "it begins with zeros, as one that was cut off before it was flushed";
+  } else if (std::memcmp(found.data(), "\x89HDF\r\n\x1a\n", found.size()) == 0) {
+    what += "it is an HDF5 file of another program, or one that was copied by h5repack";
+  } else {
+    const std::size_t end = std::find(found.begin(), found.end(), '\0') - found.begin();
+    what += "it begins with '" + printable({found.data(), end}) + "', must with 'MWRECO'";
+  }
+  throw RecordError(what);
+}
+
 void check_head(const Frame& frame, std::uint64_t size) {
-  if (frame.magic != Frame().magic) throw RecordError("is no recording of manyworlds");
+  if (frame.magic != Frame().magic) refuse_magic(frame.magic);
   if (frame.version != kFormatVersion) {
     throw RecordError("has format version " + std::to_string(frame.version) + ", must be " +
                       std::to_string(kFormatVersion));
@@ -45,12 +66,15 @@ void check_head(const Frame& frame, std::uint64_t size) {
 
 void require_length(std::uint64_t size) {
   if (size >= sizeof(Frame)) return;
-  throw RecordError("is " + std::to_string(size) + " bytes long, too short for a recording");
+  throw RecordError("is " + std::to_string(size) +
+                    " bytes long, too short for a recording, must be at least " +
+                    std::to_string(sizeof(Frame)));
 }
 
 void check_sum(const Frame& frame, std::uint64_t found) {
   if (frame.checksum != found) {
-    throw RecordError("is corrupted: its checksum does not match");
+    throw RecordError("is corrupted: its checksum does not match, it has " + hex(found) +
+                      " and says " + hex(frame.checksum));
   }
 }
 

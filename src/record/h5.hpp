@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -22,7 +21,7 @@
 
 namespace manyworlds::record {
 
-// Throws RecordError, naming what was being done and HDF5's own reason.
+// Throws RecordError. What HDF5 itself says is forgotten: it tells of its own insides.
 [[noreturn]] void fail(const std::string& what);
 
 // While one lives, its thread is the only one of ours in HDF5, which may not be built for more than
@@ -79,27 +78,29 @@ inline void check(herr_t result, const std::string& what) {
 // How a number is stored, little endian, and what it is in memory.
 template <class T>
 struct NumberType;
-#define MW_NUMBER_TYPE(T, file, memory)         \
+#define MW_NUMBER_TYPE(T, name, file, memory)   \
   template <>                                   \
   struct NumberType<T> {                        \
     static hid_t in_file() { return file; }     \
     static hid_t in_memory() { return memory; } \
-    static constexpr const char* kName = #T;    \
+    static constexpr const char* kName = name;  \
   };
-MW_NUMBER_TYPE(float, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT)
-MW_NUMBER_TYPE(double, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
-MW_NUMBER_TYPE(std::uint8_t, H5T_STD_U8LE, H5T_NATIVE_UINT8)
-MW_NUMBER_TYPE(std::int32_t, H5T_STD_I32LE, H5T_NATIVE_INT32)
-MW_NUMBER_TYPE(std::uint32_t, H5T_STD_U32LE, H5T_NATIVE_UINT32)
-MW_NUMBER_TYPE(std::int64_t, H5T_STD_I64LE, H5T_NATIVE_INT64)
-MW_NUMBER_TYPE(std::uint64_t, H5T_STD_U64LE, H5T_NATIVE_UINT64)
+MW_NUMBER_TYPE(float, "float32", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT)
+MW_NUMBER_TYPE(double, "float64", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
+MW_NUMBER_TYPE(std::uint8_t, "uint8", H5T_STD_U8LE, H5T_NATIVE_UINT8)
+MW_NUMBER_TYPE(std::int32_t, "int32", H5T_STD_I32LE, H5T_NATIVE_INT32)
+MW_NUMBER_TYPE(std::uint32_t, "uint32", H5T_STD_U32LE, H5T_NATIVE_UINT32)
+MW_NUMBER_TYPE(std::int64_t, "int64", H5T_STD_I64LE, H5T_NATIVE_INT64)
+MW_NUMBER_TYPE(std::uint64_t, "uint64", H5T_STD_U64LE, H5T_NATIVE_UINT64)
 #undef MW_NUMBER_TYPE
+
+// Of any stored type, in the same words.
+std::string type_name(hid_t type);
 
 using Dims = std::vector<hsize_t>;
 
 class Storage;  // storage.hpp
 Handle create_file(const std::shared_ptr<Storage>& storage);
-Handle open_file(const std::filesystem::path& path);
 Handle open_file(const std::shared_ptr<Storage>& storage);
 Handle open_bytes(std::span<const std::byte> bytes);
 

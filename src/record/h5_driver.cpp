@@ -94,7 +94,7 @@ constexpr H5FD_class_t kDriver = {
 hid_t driver() {
   static hid_t id = -1;
   if (id < 0 || H5Iget_type(id) != H5I_VFL) id = H5FDregister(&kDriver);
-  if (id < 0) fail("cannot register a driver");
+  if (id < 0) fail("cannot choose how files are read and written");
   return id;
 }
 
@@ -102,7 +102,7 @@ hid_t driver() {
 
 void set_storage(hid_t access, const std::shared_ptr<Storage>& storage) {
   const Access info{&storage};
-  check(H5Pset_driver(access, driver(), &info), "a file's driver");
+  check(H5Pset_driver(access, driver(), &info), "cannot choose how files are read and written");
 }
 
 }  // namespace manyworlds::record

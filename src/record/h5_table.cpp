@@ -30,15 +30,16 @@ Table::Table(hid_t parent, const std::string& name, hid_t in_file, hid_t in_memo
   const Dims none = joined(0, row), most = joined(H5S_UNLIMITED, row);
   const Dims chunk = joined(chunk_rows_, row);
   const int rank = static_cast<int>(none.size());
-  const Handle space(H5Screate_simple(rank, none.data(), most.data()), H5Sclose, name);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
-  check(H5Pset_chunk(creation, rank, chunk.data()), "chunks of '" + name + "'");
-  check(H5Pset_obj_track_times(creation, false), "the times of '" + name + "'");  // equal bytes
+  const std::string what = "cannot create '" + name + "'";
+  const Handle space(H5Screate_simple(rank, none.data(), most.data()), H5Sclose, what);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
+  check(H5Pset_chunk(creation, rank, chunk.data()), what);
+  check(H5Pset_obj_track_times(creation, false), what);  // equal bytes
   // We hand over whole chunks; a cache would only copy them.
-  const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, name);
-  check(H5Pset_chunk_cache(access, 1, 0, 1), "the chunk cache of '" + name + "'");
+  const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, what);
+  check(H5Pset_chunk_cache(access, 1, 0, 1), what);
   dataset_ = Handle(H5Dcreate2(parent, name.c_str(), in_file, space, H5P_DEFAULT, creation, access),
-                    H5Dclose, "cannot create", name);
+                    H5Dclose, what);
 }
 
 void Table::add_bytes(std::span<const std::byte> bytes) {
@@ -74,16 +75,19 @@ TableReader::TableReader(hid_t parent, const std::string& name, hid_t in_file, h
                          const char* type, const Dims& row)
     : in_memory_(in_memory), row_(row), name_(name) {
   dataset_ = open_dataset(parent, name);
-  const Handle found(H5Dget_type(dataset_), H5Tclose, name);
-  if (H5Tequal(found, in_file) <= 0) fail("'" + name + "' is not of type " + type);
-  const Handle space(H5Dget_space(dataset_), H5Sclose, name);
+  const std::string what = "is damaged: cannot read '" + name + "'";
+  const Handle found(H5Dget_type(dataset_), H5Tclose, what);
+  if (H5Tequal(found, in_file) <= 0) {
+    fail("'" + name + "' is " + type_name(found) + ", must be " + type);
+  }
+  const Handle space(H5Dget_space(dataset_), H5Sclose, what);
   const int rank = H5Sget_simple_extent_ndims(space);
   if (rank != static_cast<int>(row.size()) + 1) {
     fail("'" + name + "' has " + std::to_string(rank) + " dimensions, must have " +
          std::to_string(row.size() + 1));
   }
   Dims dims(static_cast<std::size_t>(rank));
-  check(H5Sget_simple_extent_dims(space, dims.data(), nullptr), name);
+  check(H5Sget_simple_extent_dims(space, dims.data(), nullptr), what);
   rows_ = dims[0];
   if (!std::equal(row.begin(), row.end(), dims.begin() + 1)) {
     fail("'" + name + "' has rows of " + text({dims.begin() + 1, dims.end()}) + ", must be " +
@@ -93,7 +97,10 @@ TableReader::TableReader(hid_t parent, const std::string& name, hid_t in_file, h
   hsize_t bytes = H5Tget_size(found);
   const hsize_t present = H5Dget_storage_size(dataset_);
   for (const hsize_t n : dims) {
-    if (n != 0 && bytes > present / n) fail("'" + name + "' is not all there");
+    if (n != 0 && bytes > present / n) {
+      fail("'" + name + "' is not all there: it has " + std::to_string(present) + " bytes for " +
+           text(dims) + " numbers of " + std::to_string(H5Tget_size(found)));
+    }
     bytes *= n;
   }
 }
@@ -110,7 +117,7 @@ std::size_t TableReader::numbers(hsize_t count, std::int64_t at) const {
 }
 
 void TableReader::read_into(hsize_t first, hsize_t count, std::int64_t at, void* out) const {
-  const std::string what = "cannot read '" + name_ + "'";
+  const std::string what = "is damaged: cannot read '" + name_ + "'";
   Dims start(row_.size() + 1, 0), block = joined(count, row_);
   start[0] = first;
   if (at >= 0) start[1] = static_cast<hsize_t>(at), block[1] = 1;

@@ -2,11 +2,12 @@
 // checkpoint and with its inputs, into a recording.
 #include <exception>
 #include <new>
-#include <system_error>
 #include <unordered_set>
 #include <utility>
 
 #include "manyworlds/record.hpp"
+#include "src/base/output_file.hpp"
+#include "src/base/output_folder.hpp"
 #include "src/base/pimpl.hpp"
 #include "src/record/inputs.hpp"
 
@@ -24,11 +25,10 @@ struct LostWorldDumps::Listener final : BatchListener {
       throw std::invalid_argument(
           "dumps of lost worlds: forces were added for the next step, which no dump would know of");
     }
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (!std::filesystem::is_directory(folder_)) {
-      throw RecordError("cannot make the folder '" + folder_.string() + "'" +
-                        (error ? ": " + error.message() : ""));
+    try {
+      make_folder(folder_);
+    } catch (const FileError& error) {
+      throw RecordError(error.what());
     }
     for (int w = 0; w < batch.worlds(); ++w) {
       if (lost(batch.status(w))) seen_.insert(w);

@@ -41,7 +41,8 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
     record::fail("input " + std::to_string(index) + ": " + what);
   };
   if (static_cast<int>(row.input) >= kInputCount) {
-    refuse("is of unknown kind " + std::to_string(static_cast<int>(row.input)));
+    refuse("is of unknown kind " + std::to_string(static_cast<int>(row.input)) + ", must be 0 to " +
+           std::to_string(kInputCount - 1));
   }
   const bool whole_world = row.input == Input::wake || row.input == Input::set_controls ||
                            record::is_write(row.input) || record::brings_state(row.input);
@@ -57,12 +58,14 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
            " of " + std::to_string(most_body));
   }
   if (row.call_steps < 0 || (row.call_steps > 0 && !record::is_force(row.input))) {
-    refuse("acts for " + std::to_string(row.call_steps) + " steps");
+    refuse("acts for " + std::to_string(row.call_steps) + " steps, must be " +
+           (record::is_force(row.input) ? "0 or more" : "0"));
   }
   const bool brings = record::brings_state(row.input);
   const std::int64_t most = brings ? states : values;
   if (row.begin < 0 || row.count < 0 || row.count > most || row.begin > most - row.count) {
-    refuse("has its numbers outside of what is there");
+    refuse("has its numbers outside of what is there: " + std::to_string(row.count) + " from " +
+           std::to_string(row.begin) + " on, of " + std::to_string(most));
   }
   const std::int64_t wanted =
       brings ? row.count : record::number_count(row.input, bodies, plan.scene());

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "src/base/enum_names.hpp"
+#include "src/base/printable.hpp"
+#include "src/record/described.hpp"
 #include "src/record/frame.hpp"
 #include "src/record/storage.hpp"
 
@@ -14,7 +16,7 @@ namespace manyworlds {
 
 namespace {
 
-using record::TableReader;
+using record::described, record::TableReader;
 
 std::string joined(const std::vector<std::string>& lines) {
   std::string text;
@@ -22,44 +24,37 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-// Every problem of `error` with `place` in front.
-RecordError placed(const std::string& place, const std::vector<std::string>& problems) {
-  std::vector<std::string> lines;
-  for (const std::string& problem : problems) lines.push_back(place + problem);
-  return RecordError(std::move(lines));
-}
-
+// Where the system could not read the file, what HDF5 made of that is of no interest.
 template <class Make>
-auto described(const std::string& place, Make&& make) {
+auto sound(const record::Storage* storage, Make&& make) {
+  const auto check = [&] {
+    const int error = storage == nullptr ? 0 : storage->read_error();
+    if (error != 0) throw RecordError("cannot be read: " + reason_of(error));
+  };
   try {
-    return make();
-  } catch (const RecordError& error) {
-    throw placed(place, error.problems());
-  } catch (const SceneError& error) {
-    std::vector<std::string> problems;
-    for (const Issue& issue : error.issues()) problems.push_back(to_string(issue));
-    throw placed(place, problems);
-  } catch (const SnapshotError& error) {
-    throw placed(place, {error.what()});
-  } catch (const std::bad_alloc&) {
-    throw placed(place, {"needs more memory than there is"});
-  } catch (const std::length_error&) {
-    throw placed(place, {"needs more memory than there is"});
+    auto made = make();
+    check();
+    return made;
+  } catch (const RecordError&) {
+    check();
+    throw;
   }
 }
 
-std::string label(const std::filesystem::path& file) { return "'" + file.string() + "': "; }
+std::string label_of(const std::filesystem::path& file) { return "'" + file.string() + "': "; }
 
 }  // namespace
 
 RecordError::RecordError(std::vector<std::string> problems)
     : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
 
-Recording::Impl::Impl(record::Handle file) : h5(std::move(file)) {
+Recording::Impl::Impl(record::Handle file, std::string called,
+                      std::shared_ptr<record::Storage> lies_on)
+    : storage(std::move(lies_on)), h5(std::move(file)), label(std::move(called)) {
   read_head();
   const record::Handle root = record::open_group(h5, "kinds");
   H5G_info_t about{};
-  record::check(H5Gget_info(root, &about), "the kinds");
+  record::check(H5Gget_info(root, &about), "is damaged: cannot read 'kinds'");
   if (about.nlinks < 1 || about.nlinks > 4096) {
     record::fail("has " + std::to_string(about.nlinks) + " kinds, must have 1 to 4096");
   }
@@ -80,10 +75,14 @@ Recording::Impl::Impl(record::Handle file) : h5(std::move(file)) {
 }
 
 void Recording::Impl::read_head() {
-  if (record::read_text(h5, "format") != record::kFormat) record::fail("is no recording");
+  const std::string format = record::read_text(h5, "format");
+  if (format != record::kFormat) {
+    record::fail("has format '" + format + "', must be '" + record::kFormat + "'");
+  }
   const auto version = record::read_number<std::int32_t>(h5, "format_version");
   if (version != record::kFormatVersion) {
-    record::fail("has format version " + std::to_string(version));
+    record::fail("has format version " + std::to_string(version) + ", must be " +
+                 std::to_string(record::kFormatVersion));
   }
   const std::string numbers = record::read_text(h5, "precision");
   if (numbers != "f32" && numbers != "f64") {
@@ -94,9 +93,9 @@ void Recording::Impl::read_head() {
   if (sleeps > 1) record::fail("sleep is " + std::to_string(sleeps) + ", must be 0 or 1");
   sleep = sleeps == 1;
   const auto threads = record::read_number<std::int32_t>(h5, "threads");
-  origin = "manyworlds " + record::read_text(h5, "program_version") + ", " +
-           record::read_text(h5, "isa") + " " + numbers + ", " + std::to_string(threads) +
-           (threads == 1 ? " thread" : " threads") + ", seed " +
+  const auto word = [&](const char* name) { return printable(record::read_text(h5, name), 40); };
+  origin = "manyworlds " + word("program_version") + ", " + word("isa") + " " + numbers + ", " +
+           std::to_string(threads) + (threads == 1 ? " thread" : " threads") + ", seed " +
            std::to_string(record::read_number<std::uint64_t>(h5, "seed")) + ", sleep " +
            (sleep ? "on" : "off");
 }
@@ -104,7 +103,7 @@ void Recording::Impl::read_head() {
 void Recording::Impl::read_samples() {
   const auto table = TableReader::open<std::int64_t>(h5, "step", {});
   steps = table.read_all<std::int64_t>();
-  if (steps.empty()) record::fail("has no samples");
+  if (steps.empty()) record::fail("has no samples, must have at least 1");
   const auto before = TableReader::open<std::int64_t>(h5, "inputs_before", {});
   before.expect_rows(table.rows());
   inputs_before = before.read_all<std::int64_t>();
@@ -130,7 +129,8 @@ void Recording::Impl::read_kind(hid_t parent, int index) {
   const std::size_t count = kind.worlds.size();
   const auto room = static_cast<std::size_t>(std::numeric_limits<int>::max() - worlds());
   if (count == 0 || count > room) {
-    record::fail("has " + std::to_string(count) + " worlds");
+    record::fail("has " + std::to_string(count) + " worlds, must have 1 to " +
+                 std::to_string(room));
   }
   const auto hashes = TableReader::open<std::uint64_t>(group, "hash", {count});
   const auto statuses = TableReader::open<std::uint32_t>(group, "status", {count});
@@ -168,9 +168,11 @@ std::vector<double> Recording::Impl::read(Field field, std::size_t kind, std::in
   if (k.plan.bodies() == 0) return {};
   const TableReader& table = k.fields[static_cast<std::size_t>(field)];
   const auto row = static_cast<hsize_t>(sample);
-  if (precision == Precision::f64) return table.read<double>(row, 1, world);
-  const std::vector<float> values = table.read<float>(row, 1, world);
-  return {values.begin(), values.end()};
+  return sound(storage.get(), [&]() -> std::vector<double> {
+    if (precision == Precision::f64) return table.read<double>(row, 1, world);
+    const std::vector<float> values = table.read<float>(row, 1, world);
+    return {values.begin(), values.end()};
+  });
 }
 
 // ---- the public face ---------------------------------------------------------------------------
@@ -212,29 +214,36 @@ const Recording::Impl& Recording::impl() const {
 
 Recording Recording::open(const std::filesystem::path& file) {
   const record::UsingHdf5 hdf5;
-  return described(label(file), [&] {
+  const std::string label = label_of(file);
+  return described(label, [&] {
     std::error_code ignored;  // what cannot be looked at cannot be read either, and is said below
     const std::filesystem::file_status kind = std::filesystem::status(file, ignored);
     if (std::filesystem::is_directory(kind)) throw RecordError("is a directory");
     if (std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind)) {
       throw RecordError("is no regular file; expected a recording");
     }
-    if (record::is_part(file)) {
-      auto impl =
-          std::make_unique<Impl>(record::open_file(std::make_shared<record::PartImage>(file)));
-      impl->finished = false;
-      return Recording(std::move(impl));
+    const bool part = record::is_part(file);
+    std::shared_ptr<record::Storage> storage;
+    if (part) {
+      storage = std::make_shared<record::PartImage>(file);
+    } else {
+      record::check_frame(file);
+      storage = std::make_shared<record::FinishedFile>(file);
     }
-    record::check_frame(file);
-    return Recording(std::make_unique<Impl>(record::open_file(file)));
+    return sound(storage.get(), [&] {
+      auto impl = std::make_unique<Impl>(record::open_file(storage), label, storage);
+      impl->finished = !part;
+      return Recording(std::move(impl));
+    });
   });
 }
 
 Recording Recording::from_bytes(std::span<const std::byte> bytes) {
   const record::UsingHdf5 hdf5;
-  return described("recording: ", [&] {
+  const std::string label = "recording: ";
+  return described(label, [&] {
     record::check_frame(bytes);
-    return Recording(std::make_unique<Impl>(record::open_bytes(bytes)));
+    return Recording(std::make_unique<Impl>(record::open_bytes(bytes), label));
   });
 }
 
@@ -285,7 +294,9 @@ std::vector<double> Recording::read(Field field, std::int64_t sample, int world)
   check_index("sample", sample, impl().steps.size());
   const record::UsingHdf5 hdf5;
   const auto p = impl().place(world);
-  return impl().read(field, p.kind, sample, static_cast<std::int64_t>(p.world));
+  return described(impl().label, [&] {
+    return impl().read(field, p.kind, sample, static_cast<std::int64_t>(p.world));
+  });
 }
 std::string Recording::origin() const { return impl().origin; }
 

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "manyworlds/record.hpp"
 #include "src/record/h5.hpp"
 #include "src/record/inputs.hpp"
 #include "src/record/layout.hpp"
+#include "src/record/storage.hpp"
 
 namespace manyworlds {
 
@@ -23,8 +25,8 @@ struct Recording::Impl {
     std::size_t kind, world;
   };
 
-  // Checks everything; throws RecordError, SceneError and SnapshotError.
-  explicit Impl(record::Handle file);
+  // Checks everything; throws RecordError, SceneError and SnapshotError. `lies_on` may be null.
+  Impl(record::Handle file, std::string called, std::shared_ptr<record::Storage> lies_on = nullptr);
 
   Place place(int world) const;  // throws std::invalid_argument
   Space space() const { return kinds.front().plan.scene().space; }
@@ -36,7 +38,9 @@ struct Recording::Impl {
   std::vector<double> read(Field field, std::size_t kind, std::int64_t sample,
                            std::int64_t world = -1) const;
 
+  std::shared_ptr<record::Storage> storage;
   record::Handle h5;
+  std::string label;  // what errors begin with, "'run.h5': "
   bool finished = true;
   Precision precision = Precision::f32;
   bool sleep = false;

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "src/base/float_mode.hpp"
+#include "src/record/described.hpp"
 #include "src/record/recording.hpp"
 
 namespace manyworlds {
@@ -122,11 +123,8 @@ class Comparison {
   std::vector<double> found_;
 };
 
-}  // namespace
-
-ReplayResult replay(const Recording& recording, const ReplayOptions& options) {
-  const FloatMode mode;
-  const Recording::Impl& all = recording.impl();
+ReplayResult replay(const Recording& recording, const Recording::Impl& all,
+                    const ReplayOptions& options) {
   Batch batch = make_batch(all, options);
   ReplayResult result;
   result.worlds = all.worlds();
@@ -160,6 +158,14 @@ ReplayResult replay(const Recording& recording, const ReplayOptions& options) {
   result.steps = at;
   result.lost_worlds = batch.lost_worlds();
   return result;
+}
+
+}  // namespace
+
+ReplayResult replay(const Recording& recording, const ReplayOptions& options) {
+  const FloatMode mode;
+  const Recording::Impl& all = recording.impl();
+  return record::described(all.label, [&] { return replay(recording, all, options); });
 }
 
 }  // namespace manyworlds

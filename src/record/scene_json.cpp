@@ -247,7 +247,10 @@ Struct from_json(std::string_view text) {
   try {
     json = record::Json::parse(text, shallow);
   } catch (const nlohmann::json::exception& error) {
-    throw RecordError(std::string("is not JSON: ") + error.what());
+    // After the number of the error: "[json.exception.parse_error.101] parse error at line 1, ...".
+    const std::string what = error.what();
+    const std::size_t end = what.find("] ");
+    throw RecordError("is not JSON: " + (end == std::string::npos ? what : what.substr(end + 2)));
   }
   std::vector<std::string> problems;
   Struct value;

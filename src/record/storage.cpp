@@ -69,13 +69,17 @@ Overlay overlay_of(std::span<const std::byte> journal) {
   return out;
 }
 
-// Fewer where the file ends.
+// Fewer where the file ends, or, with an errno that is not 0, where it cannot be read.
 std::size_t read_some(int file, std::uint64_t at, std::span<std::byte> bytes) noexcept {
   std::size_t got = 0;
+  errno = 0;
   while (got < bytes.size()) {
     const ssize_t n =
         pread(file, bytes.data() + got, bytes.size() - got, static_cast<off_t>(at + got));
-    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EINTR) {
+      errno = 0;
+      continue;
+    }
     if (n <= 0) break;
     got += static_cast<std::size_t>(n);
   }
@@ -189,17 +193,44 @@ bool is_part_or_finished(const std::filesystem::path& file) {
   return begins_with(file, {kPartMagic, kFrameMagic});
 }
 
-PartImage::PartImage(const std::filesystem::path& file) : file_(opened(file)) {
-  if (file_.get() < 0) throw RecordError("cannot be read: " + reason_of(errno));
-  Head head;
-  const std::size_t got = read_some(file_.get(), 0, std::as_writable_bytes(std::span(&head, 1)));
-  if (got != sizeof head || head.magic != Head().magic || head.version != Head().version ||
-      head.checksum != checksum_of(head)) {
-    throw RecordError("is damaged: its head is not that of a recording");
-  }
+ReadStorage::ReadStorage(const std::filesystem::path& file) : file_(opened(file)) {
   struct stat now {};
-  if (fstat(file_.get(), &now) != 0) throw RecordError("cannot be read: " + reason_of(errno));
-  const auto size = static_cast<std::uint64_t>(now.st_size);
+  if (file_.get() < 0 || fstat(file_.get(), &now) != 0) {
+    throw RecordError("cannot be read: " + reason_of(errno));
+  }
+  end_ = static_cast<std::uint64_t>(now.st_size);
+}
+
+std::size_t ReadStorage::fill(std::uint64_t at, std::span<std::byte> bytes) noexcept {
+  const std::size_t got = read_some(file_.get(), at, bytes);
+  if (got < bytes.size() && errno != 0 && error_ == 0) error_ = errno;
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(got), bytes.end(), std::byte{0});
+  return got;
+}
+
+bool FinishedFile::read(std::uint64_t at, std::span<std::byte> bytes) noexcept {
+  // It was whole when its checksum was looked at.
+  if (fill(at, bytes) < bytes.size() && error_ == 0) error_ = EIO;
+  return true;
+}
+
+PartImage::PartImage(const std::filesystem::path& file) : ReadStorage(file) {
+  Head head;
+  const std::size_t got = fill(0, std::as_writable_bytes(std::span(&head, 1)));
+  if (error_ != 0) throw RecordError("cannot be read: " + reason_of(error_));
+  if (got != sizeof head) {
+    throw RecordError("is " + std::to_string(got) + " bytes long, must be at least " +
+                      std::to_string(sizeof head));
+  }
+  if (head.version != Head().version) {
+    throw RecordError("has format version " + std::to_string(head.version) +
+                      " of part files, must be " + std::to_string(Head().version));
+  }
+  if (head.magic != Head().magic || head.checksum != checksum_of(head)) {
+    throw RecordError("is corrupted: the checksum of its first " + std::to_string(sizeof head) +
+                      " bytes does not match");
+  }
+  const std::uint64_t size = end_;
   end_ = head.end;
   if (end_ > size) {
     throw RecordError("is " + std::to_string(size) + " bytes long, must be at least " +
@@ -208,18 +239,14 @@ PartImage::PartImage(const std::filesystem::path& file) : file_(opened(file)) {
   // One that is not whole was put in place already, and written over since.
   if (head.journal > size || head.journal_size > size - head.journal) return;
   std::vector<std::byte> journal(head.journal_size);
-  if (read_some(file_.get(), head.journal, journal) == journal.size() &&
-      checksum_of(journal) == head.journal_checksum) {
-    journal_ = overlay_of(journal);
-  }
+  const bool whole = fill(head.journal, journal) == journal.size();
+  if (error_ != 0) throw RecordError("cannot be read: " + reason_of(error_));
+  if (whole && checksum_of(journal) == head.journal_checksum) journal_ = overlay_of(journal);
 }
-
-void PartImage::write(std::uint64_t, std::span<const std::byte>, bool) noexcept {}
 
 bool PartImage::read(std::uint64_t at, std::span<std::byte> bytes) noexcept {
   if (at > end_ || bytes.size() > end_ - at) return false;
-  const std::size_t got = read_some(file_.get(), at, bytes);
-  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(got), bytes.end(), std::byte{0});
+  fill(at, bytes);
   journal_.cover(at, bytes);
   return true;
 }

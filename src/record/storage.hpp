@@ -22,6 +22,8 @@ class Storage {
   // Where the file ends; what HDF5 has not yet written before that is 0.
   virtual std::uint64_t end() const noexcept = 0;
   virtual void set_end(std::uint64_t end) noexcept = 0;
+  // Of what was read: the number of the system's first error, 0 if there was none.
+  virtual int read_error() const noexcept { return 0; }
 };
 
 // The part file of a recording that is being written. What programs read of it, should this one be
@@ -67,20 +69,40 @@ class RecordingFile final : public Storage {
   std::exception_ptr failure_;
 };
 
-// A part file that was left over, as it was at its last checkpoint; read only.
-class PartImage final : public Storage {
+// What can only be read. What cannot be read is 0 for HDF5, and an error for who asks.
+class ReadStorage : public Storage {
  public:
-  explicit PartImage(const std::filesystem::path& file);  // throws RecordError
-
-  void write(std::uint64_t at, std::span<const std::byte> bytes, bool data) noexcept override;
-  bool read(std::uint64_t at, std::span<std::byte> bytes) noexcept override;
+  void write(std::uint64_t, std::span<const std::byte>, bool) noexcept override {}
   std::uint64_t end() const noexcept override { return end_; }
   void set_end(std::uint64_t) noexcept override {}
+  int read_error() const noexcept override { return error_; }
+
+ protected:
+  explicit ReadStorage(const std::filesystem::path& file);  // throws RecordError
+  // How many there are before the file ends; the others are 0.
+  std::size_t fill(std::uint64_t at, std::span<std::byte> bytes) noexcept;
+
+  Descriptor file_;
+  std::uint64_t end_ = 0;  // at first, of the file
+  int error_ = 0;
+};
+
+// A finished file. HDF5's own driver would not do: where closing a file fails it keeps it, and
+// crashes at the program's exit.
+class FinishedFile final : public ReadStorage {
+ public:
+  explicit FinishedFile(const std::filesystem::path& file) : ReadStorage(file) {}
+  bool read(std::uint64_t at, std::span<std::byte> bytes) noexcept override;
+};
+
+// A part file that was left over, as it was at its last checkpoint.
+class PartImage final : public ReadStorage {
+ public:
+  explicit PartImage(const std::filesystem::path& file);  // throws RecordError
+  bool read(std::uint64_t at, std::span<std::byte> bytes) noexcept override;
 
  private:
-  Descriptor file_;
   Overlay journal_;
-  std::uint64_t end_ = 0;
 };
 
 // Whether a file begins like a part file that has had a checkpoint.
