@@ -64,7 +64,8 @@ if(MW_MJCF AND mw_mjcf_test_sources)
   target_link_libraries(manyworlds_mjcf_tests PRIVATE manyworlds_mjcf MuJoCo::MuJoCo)
 endif()
 if(MW_RECORD)
-  mw_test_program(manyworlds_record_tests ${mw_record_test_sources})
+  mw_test_program(manyworlds_record_tests ${mw_record_test_sources}
+    "${PROJECT_SOURCE_DIR}/tools/report/report_files.cpp")
   target_link_libraries(manyworlds_record_tests PRIVATE manyworlds_record HDF5::HDF5)
 endif()
 

@@ -35,11 +35,16 @@ bool fails(Call call) {
   return true;
 }
 
+int open_in(int folder, const char* path, int flags, mode_t mode) {
+  if (fails(Call::open)) return -1;
+  return static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
+}
+
 }  // namespace
 
 const char* to_string(Call call) {
-  constexpr const char* kNames[] = {"write",    "sync", "close",     "rename",
-                                    "truncate", "open", "allocation"};
+  constexpr const char* kNames[] = {"write",    "sync", "close", "rename",
+                                    "truncate", "open", "read",  "allocation"};
   return kNames[static_cast<int>(call)];
 }
 
@@ -60,8 +65,10 @@ std::string in_child(const std::function<std::string(const Progress&)>& work) {
   char* const text = static_cast<char*>(shared);
   const auto say = [&](const std::string& what) { std::snprintf(text, kSize, "%s", what.c_str()); };
   std::fflush(nullptr);
+  const int said = memfd_create("standard error", 0);
   const pid_t child = fork();
   if (child == 0) {
+    dup2(said, STDERR_FILENO);
     std::string problem;
     try {
       problem = work(say);
@@ -80,6 +87,12 @@ std::string in_child(const std::function<std::string(const Progress&)>& work) {
     problem = std::string(text) + ": exit " + std::to_string(WEXITSTATUS(status));
   }
   munmap(shared, kSize);
+  // Not even at exit is there anything to say.
+  char last_words[200] = {};
+  if (pread(said, last_words, sizeof last_words - 1, 0) > 0) {
+    problem += std::string(problem.empty() ? "" : ", ") + "on standard error: " + last_words;
+  }
+  close(said);
   return problem;
 }
 
@@ -87,6 +100,7 @@ std::string in_child(const std::function<std::string(const Progress&)>& work) {
 
 using manyworlds::test::Call;
 using manyworlds::test::fails;
+using manyworlds::test::open_in;
 using manyworlds::test::written;
 
 extern "C" {
@@ -128,12 +142,26 @@ int ftruncate(int file, off_t size) noexcept {
   return static_cast<int>(syscall(SYS_ftruncate, file, size));
 }
 int openat(int folder, const char* path, int flags, ...) {
-  if (fails(Call::open)) return -1;
   va_list rest;
   va_start(rest, flags);
   const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(rest, mode_t) : 0;
   va_end(rest);
-  return static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
+  return open_in(folder, path, flags, mode);
+}
+int open(const char* path, int flags, ...) {
+  va_list rest;
+  va_start(rest, flags);
+  const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
+  return open_in(AT_FDCWD, path, flags, mode);
+}
+ssize_t read(int file, void* bytes, size_t size) {
+  if (fails(Call::read)) return -1;
+  return syscall(SYS_read, file, bytes, size);
+}
+ssize_t pread(int file, void* bytes, size_t size, off_t at) {
+  if (fails(Call::read)) return -1;
+  return syscall(SYS_pread64, file, bytes, size, at);
 }
 
 }  // extern "C"

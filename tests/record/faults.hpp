@@ -16,9 +16,9 @@
 
 namespace manyworlds::test {
 
-enum class Call { write, sync, close, rename, truncate, open, allocate };
-inline constexpr Call kFileCalls[] = {Call::write,  Call::sync,     Call::close,
-                                      Call::rename, Call::truncate, Call::open};
+enum class Call { write, sync, close, rename, truncate, open, read, allocate };
+inline constexpr Call kFileCalls[] = {Call::write,    Call::sync, Call::close, Call::rename,
+                                      Call::truncate, Call::open, Call::read};
 const char* to_string(Call call);
 
 // Of allocations, those by new: HDF5's own (malloc) are left alone, since HDF5 1.10 does not get
@@ -46,7 +46,8 @@ struct Written {
 void log_writes(std::vector<Written>* log);
 
 // Runs `work` in a child process, to its exit handlers. Returns what is wrong: what `work`
-// returned, or how the process ended; empty if nothing is. `progress(text)` says where it is.
+// returned, how the process ended, or what it said on standard error; empty if nothing is.
+// `progress(text)` says where it is.
 using Progress = std::function<void(const std::string&)>;
 std::string in_child(const std::function<std::string(const Progress&)>& work);
 

@@ -1,16 +1,9 @@
-// The n-th call of the system fails, for every n, while a recording, a snapshot or a text is
-// written: no crash, not even at exit, and never half a file under the good name.
+// The n-th call of the system fails, for every n, while a recording is written or read: no crash,
+// not even at exit, and never half a file under the good name.
 #include <catch2/catch.hpp>
 
-#include <cerrno>
-#include <cstring>
-#include <new>
-
-#include <hdf5.h>
-
 #include "src/base/output_file.hpp"
-#include "tests/record/faults.hpp"
-#include "tests/record/support.hpp"
+#include "tests/record/fault_sweep.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -35,13 +28,6 @@ void record(const Plan& plan, const fs::path& file, bool flushed) {
   recorder.close();
 }
 
-std::string read_text(const fs::path& file) {
-  const auto bytes = bytes_of(file);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-const std::string kOld = "what was there before";
-
 // What is wrong with a recording that stands, or stood, where writing it may have failed.
 std::string check_recording(const fs::path& file, bool failed) {
   if (read_text(file) == kOld) return failed ? "" : "the file was not written";
@@ -55,50 +41,13 @@ std::string check_folder(const Folder& folder, const fs::path& file, const std::
   for (const std::string& name : folder.files()) {
     if (name == file.filename()) continue;
     const fs::path part = folder / name;
-    if (message.find(part.string()) == std::string::npos) return "not named: " + name;
+    if (message != kNoWords && message.find(part.string()) == std::string::npos) {
+      return "not named: " + name;
+    }
     if (unfinished_recordings(file) != std::vector{part}) return "not found: " + name;
     const ReplayResult result = replay(Recording::open(part));
     if (result.different != 0 || result.samples < 1) return "another replay of what is left";
     fs::remove(part);
-  }
-  return {};
-}
-
-// `write` with the n-th call failing, for every n; `check(message)` says what is wrong then.
-template <class Write, class Check>
-std::string sweep(Call call, int error, bool all_later, const Progress& progress, Write write,
-                  Check check) {
-  for (long n = 1;; ++n) {
-    const std::string where = std::string(to_string(call)) + " " + std::to_string(n) + ", " +
-                              std::strerror(error) + (all_later ? ", and later" : "");
-    progress(where);
-    std::string message;
-    fail_call(call, n, error, all_later);
-    try {
-      write();
-    } catch (const std::bad_alloc&) {
-      message = "no memory";
-    } catch (const std::exception& thrown) {
-      message = thrown.what();
-    }
-    if (!end_failing()) return message.empty() ? "" : where + ": no fault, but " + message;
-    const std::string problem = check(message);
-    if (!problem.empty()) return where + ": " + problem + " (" + message + ")";
-    if (message.find('\n') != std::string::npos) return where + ": two lines (" + message + ")";
-    if (H5Fget_obj_count(static_cast<hid_t>(H5F_OBJ_ALL), H5F_OBJ_ALL) > 0) {
-      return where + ": HDF5 still holds something (" + message + ")";
-    }
-  }
-}
-
-template <class Write, class Check>
-std::string sweep_all(const Progress& progress, Write write, Check check) {
-  for (const Call call : kFileCalls) {
-    for (const bool all_later : {false, true}) {
-      const int error = call == Call::write && !all_later ? EIO : ENOSPC;
-      const std::string problem = sweep(call, error, all_later, progress, write, check);
-      if (!problem.empty()) return problem;
-    }
   }
   return {};
 }
@@ -117,8 +66,26 @@ std::string sweep_recordings(const Progress& progress, bool flushed, bool memory
     write_file(file, kOld);
     return problem;
   };
-  return memory ? sweep(Call::allocate, ENOMEM, false, progress, write, check)
-                : sweep_all(progress, write, check);
+  return memory ? sweep_memory(progress, file, write, check)
+                : sweep_calls(progress, file, write, check);
+}
+
+// Opening and replaying: an error or the whole.
+std::string sweep_reading(const Progress& progress) {
+  const Folder folder;
+  const fs::path file = folder / "run.h5";
+  record(two_balls(), file, false);
+  std::int64_t samples = replay(Recording::open(file)).samples;  // HDF5 sets itself up at first
+  const std::int64_t expected = samples;
+  const auto read = [&] {
+    samples = -1;
+    const ReplayResult result = replay(Recording::open(file));
+    samples = result.different == 0 ? result.samples : -2;
+  };
+  const auto check = [&](const std::string& message) -> std::string {
+    return samples == (message.empty() ? expected : -1) ? "" : "read what is not there";
+  };
+  return sweep_calls(progress, file, read, check);
 }
 
 }  // namespace
@@ -133,6 +100,11 @@ TEST_CASE("wherever memory runs out while recording, nothing crashes", "[fast][r
   if (!kAllocationsFail) return;
   const bool flushed = GENERATE(false, true);
   CHECK(in_child([&](const Progress& say) { return sweep_recordings(say, flushed, true); }) == "");
+}
+
+TEST_CASE("whatever fails while a recording is read, it is an error or the whole of it",
+          "[fast][record][faults]") {
+  CHECK(in_child([](const Progress& say) { return sweep_reading(say); }) == "");
 }
 
 }  // namespace manyworlds::test
