@@ -126,8 +126,10 @@ class Environment(InMemory):
         self._batch: Optional[Batch] = None
         # Those that were filled last: the caller's or the environment's own.
         self._last = self.observations, self.terminated, self.truncated
-        # Those of the step that was begun last, in the order of the extension.
-        self._filling: tuple[Floats, Doubles, Flags, Flags, Optional[Doubles], Optional[Floats]]
+        # Those of a step that was ended early, in the order of the extension.
+        self._unfilled: Optional[
+            tuple[Floats, Doubles, Flags, Flags, Optional[Doubles], Optional[Floats]]
+        ] = None
         self.begin()
 
     # -- what it is
@@ -238,9 +240,12 @@ class Environment(InMemory):
             )
         given = self._actions(actions)
         out = observations, rewards, terminated, truncated, reward_terms, final_observations
-        if self.steps_left == 0:
-            self._filling = out
-        self._step(given, *out)
+        try:
+            self._step(given, *out)
+        except BaseException:  # whatever a signal's handler raised
+            if self._unfilled is None and self.steps_left > 0:
+                self._unfilled = out
+            raise
         self._last = observations, terminated, truncated
         return observations, rewards, terminated, truncated
 
@@ -251,10 +256,11 @@ class Environment(InMemory):
         ``batch`` before: they act up to where it was. Returns what ``step`` would have; Ctrl-C ends it
         early as it does ``step``. Raises ValueError when no step was ended early.
         """
-        if self.steps_left == 0:
+        if self._unfilled is None:
             raise ValueError("no step was ended early")
-        self._held.finish_step(*self._filling)
-        observations, rewards, terminated, truncated = self._filling[:4]
+        self._held.finish_step(*self._unfilled)
+        observations, rewards, terminated, truncated = self._unfilled[:4]
+        self._unfilled = None
         self._last = observations, terminated, truncated
         return observations, rewards, terminated, truncated
 
@@ -317,6 +323,7 @@ class Environment(InMemory):
         chosen = mask.view(np.bool_)
         self.terminated[chosen] = False
         self.truncated[chosen] = False
+        self._unfilled = None
         self._last = observations, self.terminated, self.truncated
 
     def copy_world(self, source: int, target: int) -> None:
@@ -369,6 +376,7 @@ class Environment(InMemory):
             rows, worlds = pairs[::2], pairs[1::2]
         for array, mine in zip(last, own):
             mine[worlds] = array[rows]
+        self._unfilled = None
         self._last = own
         return self.observations
 

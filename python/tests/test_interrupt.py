@@ -86,6 +86,10 @@ def check():
     other = mw.Environment(task, 64, threads=1, seed=1)
     env.batch.step(3)  # the batch is usable
     env.reset(seeds=5), other.reset(seeds=5)
+    try:
+        env.finish_step()
+    except ValueError as error:
+        assert "no step was ended early" in str(error)
     assert env.steps_left == 0 and (env.observations == other.observations).all()
     assert (env.batch.hashes() == other.batch.hashes()).all()
     env.save()
