@@ -24,6 +24,7 @@
 #include "report.hpp"
 #include "tools/base/interrupt.hpp"
 #include "tools/base/median.hpp"
+#include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
@@ -193,7 +194,7 @@ int bench_command(const BenchOptions& options) {
     }
   } catch (const HashMismatch& mismatch) {
     progress.erase();
-    fmt::print(stderr, "manyworlds: {}\n", mismatch.what());
+    tools::tell("manyworlds: {}\n", mismatch.what());
     return kWorldLost;
   } catch (const tools::Interrupted&) {
     progress.erase();
@@ -201,8 +202,8 @@ int bench_command(const BenchOptions& options) {
     list.push_back({{"interrupted", tools::interrupt_name()}});
     if (options.job.json) fmt::print("{}\n", list.dump(2));
     std::fflush(stdout);
-    fmt::print(stderr, "manyworlds: interrupted by {} after {}\n", tools::interrupt_name(),
-               counted(static_cast<long long>(rows), "measurement"));
+    tools::tell("manyworlds: interrupted by {} after {}\n", tools::interrupt_name(),
+                counted(static_cast<long long>(rows), "measurement"));
     return tools::interrupt_code();
   }
   progress.erase();

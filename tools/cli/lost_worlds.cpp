@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
@@ -52,11 +53,11 @@ void print_lost(const LostWorlds& worlds, const JobOptions& options, int steps, 
   const std::size_t shown = std::min(most, worlds.lost().size());
   for (std::size_t i = 0; i < shown; ++i) {
     const LostWorld& lost = worlds.lost()[i];
-    fmt::print(stderr, "manyworlds: world {} lost ({}): {}\n", lost.world, to_string(lost.status),
-               reproduce_command(options, steps, lost.seed));
+    tools::tell("manyworlds: world {} lost ({}): {}\n", lost.world, to_string(lost.status),
+                reproduce_command(options, steps, lost.seed));
   }
   if (shown < worlds.lost().size()) {
-    fmt::print(stderr, "manyworlds: and {} more of them\n", worlds.lost().size() - shown);
+    tools::tell("manyworlds: and {} more of them\n", worlds.lost().size() - shown);
   }
 }
 

@@ -1,4 +1,8 @@
 // The program `manyworlds`: parsing and exit codes. What a subcommand does is in its own file.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -8,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,12 +22,14 @@
 
 #include "commands.hpp"
 #include "options.hpp"
+#include "src/base/output_file.hpp"
+#include "tools/base/tell.hpp"
 #include "tools/base/version.hpp"
 
 namespace manyworlds::cli {
 namespace {
 
-using tools::kVersion;
+using tools::kVersion, tools::tell;
 
 struct AllOptions {
   bool scenes_json = false;
@@ -177,9 +184,7 @@ void add_replay(CLI::App& app, AllOptions& all, int& code) {
 // What all reports take.
 void add_report_options(CLI::App& app, ReportOptions& options, const std::string& name) {
   app.add_flag("--quick", options.quick, "shorter, in under two minutes");
-  app.add_option("--out", options.out, fmt::format("folder for {0}.html and {0}.json", name))
-      ->type_name("FOLDER")
-      ->capture_default_str();
+  add_folder(app, "--out", options.out, fmt::format("folder for {0}.html and {0}.json", name));
   app.add_flag("--json", options.json, "print JSON instead of text");
 }
 
@@ -231,10 +236,8 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "throughput", "Speed over worlds, threads, instruction sets, precisions and bodies");
   add_report_options(*throughput, all.report, "throughput");
   add_scene_list(*throughput, all.report.scenes);
-  throughput
-      ->add_option("--peers", all.report.peers,
-                   "compare with the engines in this folder, which tools/peers builds")
-      ->type_name("FOLDER");
+  add_folder(*throughput, "--peers", all.report.peers,
+             "compare with the engines in this folder, which tools/peers builds");
   throughput->footer(
       "Examples:\n"
       "  manyworlds report throughput --quick\n"
@@ -268,10 +271,11 @@ void add_info(CLI::App& app, AllOptions& all, int& code) {
 
 // One line per problem, each with the program's name in front.
 int complain(std::string_view text) {
+  std::fflush(stdout);  // the lines below come after it on a terminal and in a log
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     const std::string_view line = text.substr(0, end);
-    if (!line.empty()) fmt::print(stderr, "manyworlds: {}\n", line);
+    if (!line.empty()) tell("manyworlds: {}\n", line);
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
   }
   return kBadInput;
@@ -314,7 +318,27 @@ std::string describe(const CLI::ParseError& error, const CLI::App& app) {
   return fmt::format("{} (see '{} --help')", error.what(), called);
 }
 
+// A standard stream that is closed would be the next file that is opened, and what is printed would
+// go into that. What takes its place can be neither read nor written, which is an error of those.
+void occupy_standard_streams() {
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(number, F_GETFD) >= 0) continue;
+    [[maybe_unused]] const int opened =
+        open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+// `code`, unless what was printed did not arrive.
+int after_output(int code) {
+  errno = 0;
+  const bool arrived = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (arrived) return code;
+  const std::string reason = errno == 0 ? "" : ": " + reason_of(errno);
+  return complain("cannot write to standard output" + reason);
+}
+
 int run_program(int argc, char** argv) {
+  occupy_standard_streams();
   std::set_terminate(end_without_memory);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that would grow too large is an error of its write
   CLI::App app("Steps thousands of small rigid-body worlds at once.", "manyworlds");
@@ -337,16 +361,17 @@ int run_program(int argc, char** argv) {
   try {
     app.parse(argc, argv);  // runs the subcommand's callback
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    return after_output(app.exit(help));
   } catch (const CLI::ParseError& error) {
     return complain(describe(error, app));
   } catch (const std::bad_alloc&) {
     return complain("not enough memory for so many worlds (--worlds)");
+  } catch (const std::system_error& error) {  // of fmt, where it cannot print
+    return complain("cannot write to standard output: " + reason_of(error.code().value()));
   } catch (const std::exception& error) {
     return complain(error.what());  // InputError, SceneError, std::invalid_argument
   }
-  if (std::fflush(stdout) != 0) return complain("cannot write to standard output");
-  return code;
+  return after_output(code);
 }
 
 }  // namespace

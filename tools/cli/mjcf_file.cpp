@@ -28,6 +28,7 @@
 #include <utility>
 
 #include "manyworlds/mjcf.hpp"
+#include "tools/base/tell.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define MW_SANITIZED 1
@@ -207,7 +208,7 @@ Scene load_mjcf_file(const std::string& path, const MjcfArguments& arguments) {
     require_harmless(files, path, limits.child);
     MjcfResult result = files.compile();
     for (const std::string& warning : result.warnings) {
-      fmt::print(stderr, "manyworlds: warning: {}\n", warning);
+      tools::tell("manyworlds: warning: {}\n", warning);
     }
     return std::move(result.scene);
   } catch (const MjcfError& error) {

@@ -33,27 +33,55 @@ std::string any_of(const std::vector<std::string>& names) {
   return list;
 }
 
+// Checks of numbers. Each leaves the number as CLI11 reads it, too: it takes a leading 0 for octal.
 CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
   return CLI::Validator(
       [least, most](std::string& text) -> std::string {
-        const std::optional<std::int64_t> value = parse<std::int64_t>(text);
-        if (!value) return fmt::format("must be a whole number, is '{}'", text);
-        if (*value < least) return fmt::format("must be at least {}, is {}", least, text);
-        if (*value > most) return fmt::format("must be at most {}, is {}", most, text);
+        std::int64_t value = 0;
+        const char* end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data(), end, value);
+        if (error == std::errc::invalid_argument || stop != end) {
+          return fmt::format("must be a whole number, is '{}'", text);
+        }
+        const bool beyond = error == std::errc::result_out_of_range;
+        const bool negative = text.front() == '-';
+        if (beyond ? negative : value < least) {
+          return fmt::format("must be at least {}, is {}", least, text);
+        }
+        if (beyond || value > most) return fmt::format("must be at most {}, is {}", most, text);
+        text = fmt::format("{}", value);
         return {};
       },
       std::string());
 }
 
-CLI::Validator positive_number() {
+// Finite, and above 0 or at least that.
+CLI::Validator real_number(bool above_zero) {
   return CLI::Validator(
-      [](std::string& text) -> std::string {
-        const std::optional<double> value = parse<double>(text);
-        if (!value) return fmt::format("must be a number, is '{}'", text);
-        if (!std::isfinite(*value) || *value <= 0) {
-          return fmt::format("must be a finite number above 0, is {}", text);
+      [above_zero](std::string& text) -> std::string {
+        double value = 0;
+        const char* end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data(), end, value);
+        if (error == std::errc::invalid_argument || stop != end) {
+          return fmt::format("must be a number, is '{}'", text);
         }
+        const bool fits = above_zero ? value > 0 : value >= 0;
+        if (error != std::errc{} || !std::isfinite(value) || !fits) {
+          return fmt::format("must be a finite number {} 0, is {}",
+                             above_zero ? "above" : "of at least", text);
+        }
+        text = fmt::format("{}", value);
         return {};
+      },
+      std::string());
+}
+CLI::Validator positive_number() { return real_number(true); }
+
+// An empty name would stand for an option that is not given.
+CLI::Validator name_of_a(const char* what) {
+  return CLI::Validator(
+      [what](std::string& text) -> std::string {
+        return text.empty() ? fmt::format("must be the name of a {}, is ''", what) : std::string();
       },
       std::string());
 }
@@ -132,7 +160,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& flag, const Choices<Va
 void add_count(CLI::App& app, const std::string& flag, int& value, int least,
                const std::string& help) {
   app.add_option(flag, value, help)
-      ->check(whole_number(least, std::numeric_limits<int>::max()))
+      ->transform(whole_number(least, std::numeric_limits<int>::max()))
       ->type_name("N")
       ->capture_default_str();
 }
@@ -179,18 +207,18 @@ void add_scene_argument(CLI::App& app, JobOptions& options) {
 
 void add_plan_options(CLI::App& app, JobOptions& options) {
   app.add_option("--dt", options.dt, "length of a step, s (default: the scene's)")
-      ->check(positive_number())
+      ->transform(positive_number())
       ->type_name("S");
   app.add_option("--substeps", options.substeps,
                  "contact substeps per step, 1 to 64 (default: the scene's)")
-      ->check(whole_number(1, 64))
+      ->transform(whole_number(1, 64))
       ->type_name("N");
   add_choice<Solver>(
       app, "--solver", solvers(), [&options](Solver value) { options.solver = value; },
       "what solves contacts and joints (default: the scene's)");
   app.add_option("--iterations", options.iterations,
                  "sweeps over all rows per substep, 1 to 10000 (default: the solver's)")
-      ->check(whole_number(1, 10000))
+      ->transform(whole_number(1, 10000))
       ->type_name("N");
   add_choice<BroadPhase>(
       app, "--broad-phase", broad_phases(),
@@ -214,7 +242,7 @@ void add_batch_options(CLI::App& app, JobOptions& options) {
 
 void add_kernel_options(CLI::App& app, JobOptions& options) {
   app.add_option("--threads", options.threads, "threads; 0: all that the process may use")
-      ->check(whole_number(0, 1024))
+      ->transform(whole_number(0, 1024))
       ->type_name("N")
       ->capture_default_str();
   add_choice<Isa>(
@@ -231,11 +259,11 @@ void add_kernel_options(CLI::App& app, JobOptions& options) {
 
 void add_length_options(CLI::App& app, JobOptions& options) {
   CLI::Option* steps = app.add_option("--steps", options.steps, "steps of every world")
-                           ->check(whole_number(1, std::numeric_limits<int>::max()))
+                           ->transform(whole_number(1, std::numeric_limits<int>::max()))
                            ->type_name("N")
                            ->capture_default_str();
   app.add_option("--seconds", options.seconds, "simulated time instead of a number of steps")
-      ->check(positive_number())
+      ->transform(positive_number())
       ->type_name("S")
       ->excludes(steps);
 }
@@ -260,19 +288,20 @@ void add_json_option(CLI::App& app, JobOptions& options) {
 void add_record_options(CLI::App& app, JobOptions& options) {
   CLI::Option* file =
       app.add_option("--record", options.record, "record worlds in this file, for 'replay'")
+          ->check(name_of_a("file"))
           ->type_name("FILE.h5");
   app.add_option("--record-worlds", options.record_worlds,
                  "which, as 0,5,10-20 (default: the first 64)")
       ->type_name("LIST")
       ->needs(file);
   app.add_option("--record-every", options.record_every, "steps from one sample to the next")
-      ->check(whole_number(1, std::numeric_limits<int>::max()))
+      ->transform(whole_number(1, std::numeric_limits<int>::max()))
       ->type_name("K")
       ->capture_default_str()
       ->needs(file);
   app.add_option("--record-flush", options.record_flush,
                  "s; what is older survives the end of the program (0: after every call)")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(real_number(false))
       ->type_name("SECONDS")
       ->capture_default_str()
       ->needs(file);
@@ -281,7 +310,16 @@ void add_record_options(CLI::App& app, JobOptions& options) {
 void add_dump_option(CLI::App& app, JobOptions& options) {
   app.add_option("--dump-lost", options.dump_lost,
                  "record how worlds are lost, for 'replay': DIR/world_N.h5, the first 16 of them")
+      ->check(name_of_a("folder"))
       ->type_name("DIR");
+}
+
+void add_folder(CLI::App& app, const std::string& flag, std::string& folder,
+                const std::string& help) {
+  app.add_option(flag, folder, help)
+      ->check(name_of_a("folder"))
+      ->type_name("FOLDER")
+      ->capture_default_str();
 }
 
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes) {

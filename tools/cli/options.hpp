@@ -107,6 +107,9 @@ void add_record_options(CLI::App& app, JobOptions& options);
 void add_dump_option(CLI::App& app, JobOptions& options);
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes);
 void add_case_list(CLI::App& app, std::vector<std::string>& cases, const std::string& example);
+// The name of a folder.
+void add_folder(CLI::App& app, const std::string& flag, std::string& folder,
+                const std::string& help);
 // A whole number of at least `least`.
 void add_count(CLI::App& app, const std::string& flag, int& value, int least,
                const std::string& help);

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-#include <fmt/format.h>
+#include "tools/base/tell.hpp"
 
 namespace manyworlds::cli {
 namespace {
@@ -43,8 +43,8 @@ void Progress::draw(std::chrono::steady_clock::time_point now) {
   const int filled = static_cast<int>(fraction * kBarWidth);
   const double elapsed = seconds(now - start_);
   const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
-  fmt::print(stderr, "\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %, {:.0f} s left", label_, "", filled, "",
-             kBarWidth - filled, 100 * fraction, left);
+  tools::tell("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %, {:.0f} s left", label_, "", filled, "",
+              kBarWidth - filled, 100 * fraction, left);
   std::fflush(stderr);
   last_draw_ = now;
   visible_ = true;
@@ -52,7 +52,7 @@ void Progress::draw(std::chrono::steady_clock::time_point now) {
 
 void Progress::erase() {
   if (!visible_) return;
-  fmt::print(stderr, "\r\x1b[K");
+  tools::tell("\r\x1b[K");
   std::fflush(stderr);
   visible_ = false;
 }

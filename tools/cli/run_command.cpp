@@ -12,6 +12,7 @@
 #include "recording.hpp"
 #include "report.hpp"
 #include "tools/base/interrupt.hpp"
+#include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
@@ -114,15 +115,15 @@ int run_command(const JobOptions& options) {
   }
   std::fflush(stdout);  // the lines below come after it on a terminal and in a log
   if (worlds.overflowed() > 0) {
-    fmt::print(stderr, "manyworlds: warning: {} ran out of contact capacity\n",
-               counted(worlds.overflowed(), "world"));
+    tools::tell("manyworlds: warning: {} ran out of contact capacity\n",
+                counted(worlds.overflowed(), "world"));
   }
   print_lost(worlds, options, done.steps, kLostShownByRun);
   dumps.print();
   int code = worlds.lost().empty() ? kOk : kWorldLost;
   if (!report.interrupted.empty()) {
-    fmt::print(stderr, "manyworlds: interrupted by {} after {} of {}\n", report.interrupted,
-               done.steps, counted(job.steps, "step"));
+    tools::tell("manyworlds: interrupted by {} after {} of {}\n", report.interrupted, done.steps,
+                counted(job.steps, "step"));
     code = tools::interrupt_code();
   }
   return finish_code(recorder, dumps, code);

@@ -11,6 +11,7 @@
 #include "progress.hpp"
 #include "recording.hpp"
 #include "tools/base/interrupt.hpp"
+#include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
@@ -76,8 +77,8 @@ int soak_command(const JobOptions& options) {
     if (last.steps < job.steps) {
       also = fmt::format(", and {} of the next", counted(last.steps, "step"));
     }
-    fmt::print(stderr, "manyworlds: interrupted by {} after {} of {}{}\n", tools::interrupt_name(),
-               whole, counted(options.worlds, "world"), also);
+    tools::tell("manyworlds: interrupted by {} after {} of {}{}\n", tools::interrupt_name(), whole,
+                counted(options.worlds, "world"), also);
     code = tools::interrupt_code();
   }
   return finish_code(dumps, code);

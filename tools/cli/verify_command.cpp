@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "job.hpp"
 #include "progress.hpp"
+#include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
@@ -260,7 +261,7 @@ int verify_command(const VerifyOptions& options) {
   fmt::print("\n{} of {} comparisons differ\n", different, compared);
   std::fflush(stdout);
   for (const std::string& difference : differences) {
-    fmt::print(stderr, "manyworlds: {}\n", difference);
+    tools::tell("manyworlds: {}\n", difference);
   }
   return kWorldLost;
 }
