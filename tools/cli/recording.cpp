@@ -17,9 +17,11 @@
 #include "leftovers.hpp"
 #include "manyworlds/record.hpp"
 #include "src/base/output_file.hpp"
+#include "src/base/output_folder.hpp"
 #else
 #include "not_built.hpp"
 #endif
+#include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
 
 namespace manyworlds::cli {
@@ -77,6 +79,22 @@ int steps_per_call(const JobOptions& options) {
 
 bool writes_recordings() { return true; }
 
+namespace {
+
+// What fails in it is told with the option that asked for it in front.
+template <class Do>
+auto asked_by(const char* option, Do&& what) {
+  try {
+    return what();
+  } catch (const RecordError& error) {
+    throw InputError(fmt::format("{}: {}", option, error.what()));
+  } catch (const FileError& error) {
+    throw InputError(fmt::format("{}: {}", option, error.what()));
+  }
+}
+
+}  // namespace
+
 struct JobRecorder::Impl {
   Recorder recorder;
   std::filesystem::path file;
@@ -96,9 +114,11 @@ JobRecorder::JobRecorder(Batch& batch, const JobOptions& options) {
       record.worlds.empty()
           ? static_cast<std::size_t>(std::min(batch.worlds(), kMostWorldsByDefault))
           : record.worlds.size();
-  impl_ = std::make_unique<Impl>(Impl{Recorder(batch, options.record, record), options.record,
-                                      worlds, batch.worlds(), record.every});
-  tell_of_leftovers(leftover_parts(options.record), unfinished_recordings(options.record));
+  asked_by("--record", [&] {
+    impl_ = std::make_unique<Impl>(Impl{Recorder(batch, options.record, record), options.record,
+                                        worlds, batch.worlds(), record.every});
+    tell_of_leftovers(leftover_parts(options.record), unfinished_recordings(options.record));
+  });
 }
 JobRecorder::~JobRecorder() = default;
 
@@ -108,7 +128,7 @@ std::string JobRecorder::finish(const Batch& batch) {
     impl_->recorder.sample(batch);
     impl_->recorder.close();
   } catch (const std::exception& error) {
-    failure_ = error.what();
+    failure_ = fmt::format("--record: {}", error.what());
     return {};
   }
   std::error_code ignored;
@@ -126,12 +146,12 @@ struct LostDumps::Impl {
 
 LostDumps::LostDumps(const JobOptions& options) {
   if (options.dump_lost.empty()) return;
-  std::error_code error;
-  std::filesystem::create_directories(options.dump_lost, error);
-  if (!std::filesystem::is_directory(options.dump_lost)) {
-    throw InputError(fmt::format("--dump-lost: cannot make the folder '{}'", options.dump_lost));
-  }
   impl_ = std::make_unique<Impl>(Impl{options.dump_lost, {}, {}});
+  asked_by("--dump-lost", [&] {
+    make_folder(impl_->folder);
+    // No world is lost yet; that no file can be made is better known now.
+    const OutputFile trial(impl_->folder / "world_0.h5");
+  });
   tell_of_leftovers(leftover_parts_in(options.dump_lost), {});
 }
 LostDumps::~LostDumps() = default;
@@ -148,14 +168,14 @@ void LostDumps::finish() {
   try {
     for (auto& file : impl_->dumps->close()) impl_->files.push_back(std::move(file));
   } catch (const std::exception& error) {
-    if (failure_.empty()) failure_ = error.what();
+    if (failure_.empty()) failure_ = fmt::format("--dump-lost: {}", error.what());
   }
   impl_->dumps.reset();
 }
 void LostDumps::print() const {
   if (!impl_) return;
   for (const auto& file : impl_->files) {
-    fmt::print(stderr, "manyworlds: dumped: manyworlds replay {}\n", shell_word(file.string()));
+    tools::tell("manyworlds: dumped: manyworlds replay {}\n", shell_word(file.string()));
   }
 }
 
@@ -191,13 +211,13 @@ void LostDumps::print() const {}
 
 int finish_code(const LostDumps& dumps, int code) {
   if (dumps.failure().empty()) return code;
-  fmt::print(stderr, "manyworlds: {}\n", dumps.failure());
+  tools::tell("manyworlds: {}\n", dumps.failure());
   return kBadInput;
 }
 int finish_code(const JobRecorder& recorder, const LostDumps& dumps, int code) {
   code = finish_code(dumps, code);
   if (recorder.failure().empty()) return code;
-  fmt::print(stderr, "manyworlds: {}\n", recorder.failure());
+  tools::tell("manyworlds: {}\n", recorder.failure());
   return kBadInput;
 }
 

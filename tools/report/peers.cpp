@@ -224,10 +224,12 @@ std::vector<std::string> find_peers(const std::string& folder) {
     if (!it->path().filename().string().starts_with("peer_")) continue;
     if (it->is_regular_file(no_file) && access(path.c_str(), X_OK) == 0) out.push_back(path);
   }
-  if (error) throw std::invalid_argument("--peers: " + folder + ": " + error.message());
+  const std::string named = "--peers: '" + folder + "': ";
+  if (error == std::errc::not_a_directory) throw std::invalid_argument(named + "is no folder");
+  if (error) throw std::invalid_argument(named + "cannot be read: " + error.message());
   if (out.empty()) {
-    throw std::invalid_argument("--peers: there is no program peer_* in " + folder +
-                                "; tools/peers builds them");
+    throw std::invalid_argument(named +
+                                "there is no program peer_* in it; tools/peers builds them");
   }
   std::sort(out.begin(), out.end());
   return out;
