@@ -3,6 +3,8 @@
 // allocator, whose checks of new against delete would be lost with the operators.
 #include <catch2/catch.hpp>
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -26,6 +28,7 @@ extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(con
 
 #include "manyworlds/scenes.hpp"
 #include "manyworlds/tasks.hpp"
+#include "src/api/memory.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/policy.hpp"
 #include "tests/support/tables.hpp"
@@ -34,6 +37,7 @@ namespace {
 
 std::atomic<bool> counting{false};
 std::atomic<long> calls{0};
+std::atomic<long> bytes{0};  // in use more than when the counting began
 
 void note() {
   if (counting.load(std::memory_order_relaxed)) calls.fetch_add(1, std::memory_order_relaxed);
@@ -58,11 +62,13 @@ void* allocate(std::size_t size, std::size_t alignment) {
     p = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
   }
   if (p == nullptr) throw std::bad_alloc();
+  if (counting.load(std::memory_order_relaxed)) bytes += static_cast<long>(malloc_usable_size(p));
   return p;
 }
 
 void release(void* p) noexcept {
   if (p != nullptr) note();
+  if (counting.load(std::memory_order_relaxed)) bytes -= static_cast<long>(malloc_usable_size(p));
   std::free(p);
 }
 
@@ -258,5 +264,32 @@ TEST_CASE("stepping a crowd allocates nothing", "[fast][allocation]") {
   check_scene(varied);
   check_scene(crowd(Space::planar, 70));  // without a table of pairs
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+TEST_CASE("the memory that a batch is said to need is what it takes", "[fast][allocation]") {
+  for (const char* scene : {"bin-boxes", "bin2d", "chain3d", "free-flight", "stack10"}) {
+    const Plan plan = compile(scenes::find(scene)->make());
+    for (const bool observed : {false, true}) {
+      BatchOptions options = options_of(widest_tables().front(), 3000);
+      if (observed) {
+        options.observe.what = {Observer::contacts, Observer::touching, Observer::penetration,
+                                Observer::motion,   Observer::joints,   Observer::joint_loads,
+                                Observer::residual};
+        options.observe.rays.resize(9);
+      }
+      bytes = 0;
+      counting = true;
+      const Batch batch(plan, options);
+      counting = false;
+      const double said = memory_of({{plan, 3000}}, options, batch.isa(), 1);
+      INFO(scene << (observed ? ", observed: " : ": ") << said << ", took " << bytes.load());
+      CHECK(static_cast<double>(bytes) > 0.9 * said);
+      CHECK(static_cast<double>(bytes) < 1.1 * said);
+    }
+  }
+}
+
+#endif
 
 }  // namespace manyworlds::test

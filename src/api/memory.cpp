@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "kernels/observation.hpp"
+#include "src/api/observations.hpp"
+#include "src/base/aligned_buffer.hpp"
 #include "src/base/machine_memory.hpp"
 #include "src/dispatch/kernels.hpp"
 #include "src/state/worlds.hpp"
@@ -11,6 +14,33 @@
 namespace manyworlds {
 
 namespace {
+
+bool observes(const Observers& o) { return !o.what.empty() || !o.rays.empty(); }
+
+// What observers take for `worlds` of a kind, with the scratch of one thread.
+template <class Real>
+double observers_in(const Batch::Kind& kind, const BatchOptions& options,
+                    const kernels::KernelTable<Real>& kernels, int threads) {
+  // Room for contacts that somebody asks for may be more than there is.
+  Observers few = options.observe;
+  few.contacts_per_world = std::min(few.contacts_per_world, 1);
+  typename ObservationsOf<Real>::AllWorlds one;
+  one.push_back(std::make_unique<Worlds<Real>>(kind.plan, 1, 0, options, kernels.lanes));
+  const auto& tables = one.front()->tables();
+  AlignedBuffer<unsigned char> memory(kernels.scratch_bytes(tables));
+  kernels::Scratch* const scratch = kernels.make_scratch(tables, memory.data());
+  ObservationsOf<Real> seen(one, few, kernels);
+  seen.add_thread({&scratch, 1});
+  double total = static_cast<double>(kind.worlds) * static_cast<double>(seen.world_bytes(0)) +
+                 threads * static_cast<double>(seen.thread_bytes());
+  if (std::count(few.what.begin(), few.what.end(), Observer::contacts) > 0) {
+    const double more = static_cast<double>(options.observe.contacts_per_world) -
+                        static_cast<double>(few.contacts_per_world);
+    total += (kind.worlds + static_cast<double>(threads) * kernels.lanes) * more *
+             static_cast<double>(sizeof(kernels::ContactImpulse<Real>));
+  }
+  return total;
+}
 
 // One world is made, and what it takes counted.
 template <class Real>
@@ -25,10 +55,7 @@ double memory_in(const std::vector<Batch::Kind>& kinds, const BatchOptions& opti
     total += groups * static_cast<double>(one.storage().bytes());
     total += groups * lanes * static_cast<double>(one.own_bytes());
     total += threads * static_cast<double>(kernels.scratch_bytes(one.tables()));
-    if (options.observe.contacts_per_world > 0) {
-      total += (groups + threads) * lanes * options.observe.contacts_per_world *
-               static_cast<double>(sizeof(kernels::ContactImpulse<Real>));
-    }
+    if (observes(options.observe)) total += observers_in<Real>(kind, options, kernels, threads);
   }
   return total;
 }

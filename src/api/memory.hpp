@@ -8,7 +8,7 @@
 
 namespace manyworlds {
 
-// Bytes: worlds, and the scratch of all threads. Good to some percent.
+// Bytes: worlds, observers, and the scratch of all threads. Good to some percent.
 double memory_of(const std::vector<Batch::Kind>& kinds, const BatchOptions& options, Isa isa,
                  int threads);
 

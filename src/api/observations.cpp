@@ -10,6 +10,11 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+template <class... Arrays>
+std::size_t bytes_of(const Arrays&... arrays) {
+  return (std::size_t{0} + ... + (arrays.size() * sizeof(*arrays.data())));
+}
+
 }  // namespace
 
 template <class Real>
@@ -134,6 +139,28 @@ typename ObservationsOf<Real>::Block ObservationsOf<Real>::make_block(
     block.poses = kernels_.make_scratch(*block.tables, block.pose_memory.data());
   }
   return block;
+}
+
+template <class Real>
+std::size_t ObservationsOf<Real>::world_bytes(std::size_t k) const {
+  const Kind& kind = kinds_[k];
+  return bytes_of(kind.motion, kind.penetration, kind.residual, kind.ray_rows, kind.hit_rows,
+                  kind.coordinate_rows, kind.joint_rows, kind.touching, kind.count, kind.hit_shape,
+                  kind.contacts) /
+         at(worlds_[k]->count());
+}
+
+template <class Real>
+std::size_t ObservationsOf<Real>::thread_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& blocks : blocks_) {
+    for (const Block& b : blocks) {
+      bytes +=
+          bytes_of(b.count, b.hit_shape, b.touching, b.nobody, b.contacts, b.pose_memory, b.aside);
+      for (const auto& reals : b.reals) bytes += bytes_of(reals);
+    }
+  }
+  return blocks_.empty() ? 0 : bytes / blocks_.size();
 }
 
 template <class Real>

@@ -53,6 +53,10 @@ class ObservationsOf final : public Observations {
   void set_rays(std::span<const Ray> rays) override;
   void set_rays(int kind, int world, std::span<const Ray> rays) override;
 
+  // Bytes for each world of a kind, and for each thread.
+  std::size_t world_bytes(std::size_t kind) const;
+  std::size_t thread_bytes() const;
+
   // What to look for in a group, and after that what was seen in these lanes of it: `stepped`, or
   // by a look at the state alone, which knows nothing of contacts.
   const kernels::Observation<Real>& ask(std::size_t thread, std::size_t kind, int group);
