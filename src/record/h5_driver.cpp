@@ -68,27 +68,32 @@ herr_t write(H5FD_t* file, H5FD_mem_t type, hid_t, haddr_t at, std::size_t size,
   return 0;
 }
 
-constexpr H5FD_class_t kDriver = {
+constexpr H5FD_class_t make_driver() {
+  H5FD_class_t driver{};
 #if H5_VERSION_GE(1, 13, 0)
-    .version = H5FD_CLASS_VERSION,
-    .value = H5FD_RESERVED,
+  driver.version = H5FD_CLASS_VERSION;
+  driver.value = H5FD_RESERVED;
 #endif
-    .name = "manyworlds",
-    .maxaddr = (haddr_t{1} << 62),
-    .fc_degree = H5F_CLOSE_WEAK,
-    .fapl_size = sizeof(Access),
-    .open = open_storage,
-    .close = close_storage,
-    .query = query,
-    .get_eoa = get_allocated,
-    .set_eoa = set_allocated,
-    .get_eof = get_end,
-    .read = read,
-    .write = write,
-    .truncate = truncate,
-    // Room of data is never used for headers, nor the other way round.
-    .fl_map = H5FD_FLMAP_DICHOTOMY,
-};
+  driver.name = "manyworlds";
+  driver.maxaddr = haddr_t{1} << 62;
+  driver.fc_degree = H5F_CLOSE_WEAK;
+  driver.fapl_size = sizeof(Access);
+  driver.open = open_storage;
+  driver.close = close_storage;
+  driver.query = query;
+  driver.get_eoa = get_allocated;
+  driver.set_eoa = set_allocated;
+  driver.get_eof = get_end;
+  driver.read = read;
+  driver.write = write;
+  driver.truncate = truncate;
+  // Room of data is never used for headers, nor the other way round.
+  constexpr H5FD_mem_t kApart[H5FD_MEM_NTYPES] = H5FD_FLMAP_DICHOTOMY;
+  for (int i = 0; i < H5FD_MEM_NTYPES; ++i) driver.fl_map[i] = kApart[i];
+  return driver;
+}
+
+constexpr H5FD_class_t kDriver = make_driver();
 
 // HDF5 forgets drivers where somebody has closed the whole library.
 hid_t driver() {
