@@ -32,7 +32,7 @@ endif()
 # gives up sooner. -O1 is half the work, for what no standard scene runs.
 set(mw_search $<$<CXX_COMPILER_ID:GNU>:--param=sccvn-max-alias-queries-per-access=50
     --param=dse-max-alias-queries-per-store=32>)
-set(mw_cold_kernels kernels/flight_planar.cpp kernels/flight_spatial.cpp)
+set(mw_cold_kernels kernels/flight/flight_planar.cpp kernels/flight/flight_spatial.cpp)
 if(NOT MW_KERNEL_OPTIMIZATION)
   list(TRANSFORM mw_cold_kernels PREPEND "${PROJECT_SOURCE_DIR}/")
   set_source_files_properties(${mw_cold_kernels} PROPERTIES COMPILE_OPTIONS -O1)
@@ -75,7 +75,7 @@ foreach(isa IN LISTS MW_ISAS)
     if(MW_UNITY AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
       # Half of what most of these files cost are the vector headers.
       target_precompile_headers(mw_kernels_${name} PRIVATE
-        "${PROJECT_SOURCE_DIR}/kernels/stages.hpp"
+        "${PROJECT_SOURCE_DIR}/kernels/work/stages.hpp"
         "${PROJECT_SOURCE_DIR}/kernels/lane/elementary.hpp"
         "${PROJECT_SOURCE_DIR}/kernels/lane/rows.hpp"
         "${PROJECT_SOURCE_DIR}/kernels/lane/solve.hpp"

@@ -1,11 +1,11 @@
 // The kernel table of this instruction set and precision.
-#include "kernels/table.hpp"
+#include "kernels/data/table.hpp"
 
-#include "kernels/free_motion.hpp"
+#include "kernels/motion/free_motion.hpp"
 #include "kernels/observe/observe.hpp"
-#include "kernels/sleep.hpp"
-#include "kernels/solver_tables.hpp"
-#include "kernels/stages.hpp"
+#include "kernels/sleep/sleep.hpp"
+#include "kernels/work/solver_tables.hpp"
+#include "kernels/work/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

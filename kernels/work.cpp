@@ -1,10 +1,10 @@
 // Lays out a thread's scratch: measures it, then carves it out of one block.
-#include "kernels/work.hpp"
+#include "kernels/work/work.hpp"
 #include <initializer_list>
 
-#include "kernels/constraint/slot.hpp"
-#include "kernels/solver_tables.hpp"
-#include "kernels/stages.hpp"
+#include "kernels/rows/slot.hpp"
+#include "kernels/work/solver_tables.hpp"
+#include "kernels/work/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/pair_keys.hpp"
+#include "kernels/data/pair_keys.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/state/tables.hpp"
 #include "tests/support/scenes.hpp"

@@ -17,16 +17,15 @@ SRC_FLOORS = ["base", "lcp", "scene", "plan", "state", "dispatch", "step", "api"
 # Off the column: read models into a Scene, record a Batch. They may know nothing below the public
 # headers but these.
 SRC_SIDE = {"mjcf": {"mjcf", "base"}, "record": {"record", "base"}}
-# Floors that may see the kernels' top-level headers (tables and views, no lanes).
+# Floors that may see kernels/data (tables and views, no lanes).
 SRC_SEES_KERNELS = {"plan", "state", "dispatch", "step", "api", "task"}
 
-# Top-level headers of kernels/ that hold plain data, shared with src; everything else in kernels/
-# is compiled per instruction set.
-KERNEL_DATA = {
-    "tables.hpp", "flight_tables.hpp", "joint_tables.hpp", "solver_options.hpp", "pair_keys.hpp",
-    "group.hpp", "table.hpp", "observation.hpp", "program.hpp"}
-# The rest of kernels/ (collide, constraint, broad phase, ...) stands on the floor above the lanes.
-KERNEL_FLOORS = {"data": 0, "lane": 1, "stage": 2}
+# The rooms of kernels/, each a floor. Data is plain and shared with src; the others are compiled per
+# instruction set. What lies in kernels/ itself puts the rooms together, above all of them.
+KERNEL_ROOMS = [
+    "data", "lane", "work", "shape", "sleep", "broad", "collide", "rows", "motion", "joint", "flight",
+    "solver", "observe", "program"]
+MOST_KERNEL_FILES_ON_TOP = 12
 KERNEL_SYSTEM = {
     "cfloat", "climits", "cmath", "concepts", "cstddef", "cstdint", "immintrin.h",
     "initializer_list", "limits",
@@ -72,15 +71,15 @@ def includes(path):
 
 
 def kernel_floor(name):
-    """Floor of a file in kernels/, given its path from the root."""
+    """Floor of a file in kernels/, given its path from the root; None where it is in no room."""
     parts = Path(name).parts
-    if len(parts) == 2 and parts[1] in KERNEL_DATA:
-        return KERNEL_FLOORS["data"]
-    return KERNEL_FLOORS["lane"] if parts[1] == "lane" else KERNEL_FLOORS["stage"]
+    if len(parts) == 2:
+        return len(KERNEL_ROOMS)
+    return KERNEL_ROOMS.index(parts[1]) if len(parts) == 3 and parts[1] in KERNEL_ROOMS else None
 
 
 def is_kernel_data(name):
-    return name.startswith("kernels/") and kernel_floor(name) == KERNEL_FLOORS["data"]
+    return name.startswith("kernels/data/")
 
 
 def check_src(file, name):
@@ -109,9 +108,11 @@ def check_src(file, name):
 def check_kernel(file, name, quoted):
     """Why a file of kernels/ may not include `name`, or None."""
     if name.startswith("kernels/"):
-        if kernel_floor(name) > kernel_floor(file):
-            return "goes up inside kernels"
-        return None
+        floor, target = kernel_floor(file), kernel_floor(name)
+        for path, place in ((file, floor), (name, target)):
+            if place is None:
+                return f"{Path(path).parent} is no room of kernels"
+        return "goes up inside kernels" if target > floor else None
     if quoted:
         return "kernels include kernels only"
     if name not in KERNEL_SYSTEM and not name.startswith("xsimd/"):
@@ -200,6 +201,15 @@ def cycles(graph):
     return found
 
 
+def crowded(files):
+    """A violation when more lies in kernels/ itself than what puts its rooms together."""
+    top = [file for file in files if len(Path(file).parts) == 2 and file.startswith("kernels/")]
+    if len(top) <= MOST_KERNEL_FILES_ON_TOP:
+        return []
+    return [(top[-1], 1, f"is one of {len(top)} files in kernels/ itself, at most "
+                         f"{MOST_KERNEL_FILES_ON_TOP} may be; its rooms are {', '.join(KERNEL_ROOMS)}")]
+
+
 def too_long(root, files):
     found = []
     for file in files:
@@ -231,7 +241,7 @@ def check(root):
                 found.append((file, number, f"{name}: {why}"))
             elif quoted and resolve(file, name, graph) is None:
                 found.append((file, number, f"{name}: there is no such file"))
-    found += homes(graph) + cycles(graph) + too_long(root, texts)
+    found += homes(graph) + cycles(graph) + crowded(code) + too_long(root, texts)
     return sorted(found), len(graph), sum(map(len, graph.values()))
 
 

@@ -5,7 +5,9 @@
 // The kind is the same in all lanes, so asking for it is no branch of a lane's.
 #pragma once
 
-#include "kernels/collide/poses.hpp"
+#include "kernels/collide/manifold.hpp"
+#include "kernels/shape/poses.hpp"
+#include "kernels/work/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "kernels/collide/capsule_pairs.hpp"
-#include "kernels/collide/corners.hpp"
 #include "kernels/collide/segments.hpp"
+#include "kernels/shape/corners.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -1,7 +1,9 @@
 // Plane against box and rectangle: the corners of the face that looks at the plane most.
 #pragma once
 
-#include "kernels/collide/poses.hpp"
+#include "kernels/collide/manifold.hpp"
+#include "kernels/shape/poses.hpp"
+#include "kernels/work/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

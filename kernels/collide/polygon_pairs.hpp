@@ -2,9 +2,9 @@
 // kMaxVertices in every lane.
 #pragma once
 
-#include "kernels/collide/corners.hpp"
 #include "kernels/collide/round_pairs.hpp"
 #include "kernels/collide/segments.hpp"
+#include "kernels/shape/corners.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -1,7 +1,9 @@
 // Spheres and circles against each other and against planes: one point, on the line of centres.
 #pragma once
 
-#include "kernels/collide/poses.hpp"
+#include "kernels/collide/manifold.hpp"
+#include "kernels/shape/poses.hpp"
+#include "kernels/work/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

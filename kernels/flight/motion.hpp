@@ -6,8 +6,8 @@
 // equal moments, whose bodies may have no orientation.
 #pragma once
 
-#include "kernels/integrate.hpp"
 #include "kernels/joint/body.hpp"
+#include "kernels/motion/integrate.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -3,8 +3,8 @@
 // takes from it the bodies that nothing could touch in the step.
 #pragma once
 
-#include "kernels/finish.hpp"
 #include "kernels/flight/schemes.hpp"
+#include "kernels/motion/finish.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -2,10 +2,10 @@
 // have moved them since.
 #pragma once
 
-#include "kernels/constraint/body_rows.hpp"
-#include "kernels/constraint/velocities.hpp"
-#include "kernels/integrate.hpp"
 #include "kernels/lane/solve.hpp"
+#include "kernels/motion/integrate.hpp"
+#include "kernels/rows/body_rows.hpp"
+#include "kernels/rows/velocities.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

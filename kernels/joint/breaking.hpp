@@ -2,8 +2,8 @@
 // than they can hold nothing from the next step on, in the lanes in which they did.
 #pragma once
 
-#include "kernels/activity.hpp"
 #include "kernels/joint/coordinates.hpp"
+#include "kernels/work/activity.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -100,7 +100,7 @@ void break_joints(const Tables& t, const Group& g, kernels::Scratch* scratch) {
                                 active_lanes(t, g, part) & ~frozen;
     if (lanes == 0) continue;
     g.loose[joint.joint] |= lanes;
-    // What hung on it is not held, however slow it is (kernels/sleep.cpp).
+    // What hung on it is not held, however slow it is (kernels/sleep/sleep.cpp).
     w.touched[part.body_a] &= ~lanes;
     w.touched[part.body_b] &= ~lanes;
     for (std::uint32_t m = lanes; m != 0; m &= m - 1) {

@@ -7,8 +7,8 @@
 // a given force.
 #pragma once
 
-#include "kernels/constraint/contact.hpp"
 #include "kernels/joint/body.hpp"
+#include "kernels/rows/contact.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

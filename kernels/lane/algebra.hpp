@@ -171,4 +171,19 @@ MW_INLINE void store(Real* p, Vec3 v) {
   v.x.store(p), v.y.store(p + kLanes), v.z.store(p + 2 * kLanes);
 }
 
+template <class T>
+MW_INLINE T zero_of();
+template <>
+MW_INLINE Float zero_of<Float>() {
+  return Real(0);
+}
+template <>
+MW_INLINE Vec2 zero_of<Vec2>() {
+  return {Real(0), Real(0)};
+}
+template <>
+MW_INLINE Vec3 zero_of<Vec3>() {
+  return {Real(0), Real(0), Real(0)};
+}
+
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

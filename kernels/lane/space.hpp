@@ -5,9 +5,9 @@
 //   rows   [lane][body][kRow], planar vx vy w 0, spatial vx vy vz wx | wy wz 0 0
 #pragma once
 
+#include "kernels/data/tables.hpp"
 #include "kernels/lane/algebra.hpp"
 #include "kernels/lane/rows.hpp"
-#include "kernels/tables.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

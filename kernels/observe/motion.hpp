@@ -2,9 +2,9 @@
 // are moved by hand (kinematic) or not there do not count.
 #pragma once
 
-#include "kernels/activity.hpp"
-#include "kernels/integrate.hpp"
+#include "kernels/motion/integrate.hpp"
 #include "kernels/observe/observe.hpp"
+#include "kernels/work/activity.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -1,9 +1,9 @@
 // What observers do beside the step, as one table.
 #pragma once
 
-#include "kernels/observation.hpp"
-#include "kernels/program.hpp"
-#include "kernels/work.hpp"
+#include "kernels/data/observation.hpp"
+#include "kernels/data/program.hpp"
+#include "kernels/work/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

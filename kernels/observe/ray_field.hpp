@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kernels/collide/tile.hpp"
-#include "kernels/observe/ray_shapes.hpp"
+#include "kernels/shape/ray_shapes.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -3,10 +3,10 @@
 // more, `compare` looks and puts everything back.
 #pragma once
 
-#include "kernels/activity.hpp"
-#include "kernels/integrate.hpp"
+#include "kernels/motion/integrate.hpp"
 #include "kernels/observe/observe.hpp"
-#include "kernels/solver_tables.hpp"
+#include "kernels/work/activity.hpp"
+#include "kernels/work/solver_tables.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -4,11 +4,11 @@
 // impulses is what it will wake with, times the number of substeps: what a step of it would take.
 #pragma once
 
-#include "kernels/activity.hpp"
-#include "kernels/constraint/body_rows.hpp"
-#include "kernels/constraint/slot.hpp"
+#include "kernels/data/pair_keys.hpp"
 #include "kernels/observe/observe.hpp"
-#include "kernels/pair_keys.hpp"
+#include "kernels/rows/body_rows.hpp"
+#include "kernels/rows/slot.hpp"
+#include "kernels/work/activity.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -1,5 +1,5 @@
 // Contacts of worlds at their current state: the collision stages once more.
-#include "kernels/pair_keys.hpp"
+#include "kernels/data/pair_keys.hpp"
 #include "src/api/batch_core.hpp"
 
 namespace manyworlds {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "kernels/observation.hpp"
+#include "kernels/data/observation.hpp"
 #include "src/api/observations.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/base/machine_memory.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "kernels/observation.hpp"
+#include "kernels/data/observation.hpp"
 #include "manyworlds/batch.hpp"
 #include "src/state/worlds.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "kernels/pair_keys.hpp"
+#include "kernels/data/pair_keys.hpp"
 #include "src/api/batch_data.hpp"
 #include "src/api/observations.hpp"
 #include "src/base/enum_names.hpp"

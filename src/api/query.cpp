@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernels/observation.hpp"
+#include "kernels/data/observation.hpp"
 #include "manyworlds/batch.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/base/float_mode.hpp"

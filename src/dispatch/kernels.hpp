@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "kernels/table.hpp"
+#include "kernels/data/table.hpp"
 #include "manyworlds/batch.hpp"
 
 namespace manyworlds {

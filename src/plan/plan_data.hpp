@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/tables.hpp"
+#include "kernels/data/tables.hpp"
 #include "manyworlds/plan.hpp"
 #include "src/scene/height_field.hpp"
 #include "src/scene/variations.hpp"
@@ -107,7 +107,7 @@ struct PlanData {
   std::vector<int> state_body;  // per scene body: its row; -1: fixed
   std::vector<PlanCollider> colliders;
   std::vector<PlanFixed> fixed;
-  std::vector<double> hulls;  // corners of hulls that move (kernels/tables.hpp)
+  std::vector<double> hulls;  // corners of hulls that move (kernels/data/tables.hpp)
   std::vector<PlanClass> classes;
   std::vector<PlanPart> parts;                       // of joints, in their order
   std::vector<PlanThrust> thrusts;                   // by body
@@ -156,7 +156,7 @@ struct HullCorners {
   Vec3 middle, half;                    // m, of the bounding box, shape frame
   double radius = 0, inner_radius = 0;  // about the middle, m
   int vertices = 0, faces = 0;
-  std::vector<double> rows;  // kernels/tables.hpp
+  std::vector<double> rows;  // kernels/data/tables.hpp
 };
 HullCorners hull_corners(const Hull& hull);  // hulls.cpp
 // Puts them with the plan's, unless they are there already; returns where, in fours.

@@ -4,7 +4,7 @@
 #include <map>
 #include <tuple>
 
-#include "kernels/pair_keys.hpp"
+#include "kernels/data/pair_keys.hpp"
 #include "src/plan/pair_kinds.hpp"
 
 namespace manyworlds {

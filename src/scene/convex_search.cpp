@@ -1,5 +1,5 @@
-// The method of kernels/convex_axes.cpp, in double and for one pair: from the best of some normals
-// GJK goes up hill, towards a target that moves.
+// The method of kernels/collide/convex_axes.cpp, in double and for one pair: from the best of some
+// normals GJK goes up hill, towards a target that moves.
 #include "src/scene/convex_search.hpp"
 
 #include <Eigen/Geometry>

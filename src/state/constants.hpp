@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "kernels/tables.hpp"
+#include "kernels/data/tables.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/plan/plan_data.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "kernels/pair_keys.hpp"
+#include "kernels/data/pair_keys.hpp"
 
 namespace manyworlds {
 

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/group.hpp"
+#include "kernels/data/group.hpp"
 #include "manyworlds/scene.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/base/bits.hpp"

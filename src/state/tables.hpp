@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kernels/tables.hpp"
+#include "kernels/data/tables.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/state/constants.hpp"

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <utility>
 
-#include "kernels/pair_keys.hpp"
+#include "kernels/data/pair_keys.hpp"
 #include "src/base/bits.hpp"
 #include "src/state/storage.hpp"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <chrono>
 
-#include "kernels/observation.hpp"
+#include "kernels/data/observation.hpp"
 
 namespace manyworlds {
 

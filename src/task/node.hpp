@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "kernels/program.hpp"
+#include "kernels/data/program.hpp"
 #include "manyworlds/expression.hpp"
 
 namespace manyworlds {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "kernels/observation.hpp"
+#include "kernels/data/observation.hpp"
 #include "src/plan/plan_data.hpp"
 
 namespace manyworlds {

@@ -1,5 +1,5 @@
-// Program: the expressions of a task as instructions for a plan (kernels/program.hpp), in double.
-// What several expressions have in common is worked out once.
+// Program: the expressions of a task as instructions for a plan (kernels/data/program.hpp), in
+// double. What several expressions have in common is worked out once.
 #pragma once
 
 #include <algorithm>

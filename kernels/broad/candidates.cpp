@@ -1,0 +1,168 @@
+// Lists of candidates: dense (a slot is one pair in every lane, some lanes idle) or rows (each lane
+// has its own pairs, packed). Both keep the order of the keys inside a lane, so both give the
+// solver the same rows in the same order.
+#include "kernels/work/stages.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+namespace {
+
+// Above this share of active lanes dense slots are faster than rows (measured,
+// docs/architecture.md).
+#if defined(MW_ISA_AVX512)
+constexpr float kDenseOccupancy = 0.45f;
+#else
+constexpr float kDenseOccupancy = 0.55f;
+#endif
+
+std::int32_t dummy_code(const Tables& t, bool fixed) {
+  return (fixed ? 0 : t.colliders) | (t.colliders << 16);
+}
+
+class RowPacker {
+ public:
+  RowPacker(CandidateList& to, std::int32_t dummy) : to_(to), dummy_(dummy) {
+    for (int& n : count_) n = 0;
+  }
+  MW_INLINE void add(int lane, std::int32_t code, std::int32_t key, Real axis) {
+    const int at = count_[lane]++ * kLanes + lane;
+    to_.code[at] = code;
+    to_.key[at] = key;
+    to_.axis[at] = axis;
+  }
+  void close() {
+    int most = 0;
+    for (int n : count_) most = n > most ? n : most;
+    for (int s = 0; s < most; ++s) to_.mask[s] = 0;
+    for (int l = 0; l < kLanes; ++l) {
+      for (int s = 0; s < count_[l]; ++s) to_.mask[s] |= 1u << l;
+      for (int s = count_[l]; s < most; ++s) {
+        to_.code[s * kLanes + l] = dummy_;
+        to_.key[s * kLanes + l] = 0;
+        to_.axis[s * kLanes + l] = Real(0);
+      }
+    }
+    to_.count = most;
+  }
+
+ private:
+  CandidateList& to_;
+  std::int32_t dummy_;
+  int count_[kLanes];
+};
+
+}  // namespace
+
+namespace {
+
+// Drops the last candidates of lanes that have too many: the same ones in both layouts.
+void limit_candidates(const Tables& t, Work& w, int at) {
+  const auto& pairs = t.pair_class[at];
+  const int limit = candidate_limit(t, pairs), hits = w.hit_count[at];
+  if (t.sparse || hits <= limit) return;
+  std::uint32_t* masks = w.hit_masks + pairs.first_key;
+  int count[kLanes] = {};
+  for (int i = 0; i < hits; ++i) {
+    for (std::uint32_t m = masks[i]; m != 0; m &= m - 1) {
+      const int lane = __builtin_ctz(m);
+      if (++count[lane] > limit) {
+        masks[i] &= ~(1u << lane);
+        w.overflow |= 1u << lane;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+kernels::Layout choose_layout(const Tables& t, const Group&, kernels::Scratch* scratch,
+                              kernels::Layout wish) {
+  Work& w = work_of(scratch);
+  unsigned slots[kLists] = {}, all = 0, active = 0;
+  for (int c = 0; c < t.classes; ++c) {
+    limit_candidates(t, w, c);
+    const auto& pairs = t.pair_class[c];
+    const int hits = w.hit_count[c];
+    const std::uint32_t* masks = w.hit_masks + first_hit(t, w, c);
+    for (int i = 0; i < hits; ++i) active += static_cast<unsigned>(__builtin_popcount(masks[i]));
+    slots[static_cast<int>(pairs.list)] += static_cast<unsigned>(hits);
+    all += static_cast<unsigned>(hits);
+  }
+  w.counters.dense_slots = all;
+  w.counters.active = active;
+  bool fits = true;
+  for (int l = 0; l < kLists; ++l) {
+    fits = fits && static_cast<int>(slots[l]) < w.slots[l].max_slots;
+  }
+  w.dense = wish == kernels::Layout::dense;
+  if (wish == kernels::Layout::automatic) {
+    // Parts of joints are slots of which every lane is active.
+    const auto parts = static_cast<unsigned>(t.parts);
+    w.dense = static_cast<float>(active + parts * kLanes) >=
+              kDenseOccupancy * static_cast<float>((all + parts) * kLanes);
+  }
+  w.dense = w.dense && fits;
+  return w.dense ? kernels::Layout::dense : kernels::Layout::rows;
+}
+
+void list_candidates(const Tables& t, Work& w) {
+  const auto& pairs = t.pair_class[w.class_index];
+  const int first = first_hit(t, w, w.class_index);
+  const std::int32_t* hits = w.hits + first;
+  const std::uint32_t* masks = w.hit_masks + first;
+  const int n = w.hit_count[w.class_index];
+  CandidateList& to = w.candidates;
+  if (w.dense) {
+    for (int i = 0; i < n; ++i) {
+      const std::int32_t code = code_of_hit(t, w, w.class_index, i);
+      const std::int32_t key = pairs.first_key + hits[i];
+      for (int l = 0; l < kLanes; ++l) {
+        to.code[i * kLanes + l] = code;
+        to.key[i * kLanes + l] = key;
+        to.axis[i * kLanes + l] = Real(0);
+      }
+      to.mask[i] = masks[i];
+    }
+    to.count = n;
+    return;
+  }
+  RowPacker packer(to, dummy_code(t, is_fixed(pairs.list)));
+  for (int i = 0; i < n; ++i) {
+    const std::int32_t code = code_of_hit(t, w, w.class_index, i);
+    const std::int32_t key = pairs.first_key + hits[i];
+    for (std::uint32_t m = masks[i]; m != 0; m &= m - 1) {
+      packer.add(__builtin_ctz(m), code, key, Real(0));
+    }
+  }
+  packer.close();
+}
+
+void compact(const Tables& t, Work& w, const CandidateList& from, const std::uint32_t* keep,
+             CandidateList& to) {
+  const auto& pairs = t.pair_class[w.class_index];
+  if (w.dense) {
+    int n = 0;
+    for (int i = 0; i < from.count; ++i) {
+      if (keep[i] == 0) continue;
+      for (int l = 0; l < kLanes; ++l) {
+        to.code[n * kLanes + l] = from.code[i * kLanes + l];
+        to.key[n * kLanes + l] = from.key[i * kLanes + l];
+        to.axis[n * kLanes + l] = from.axis[i * kLanes + l];
+      }
+      to.mask[n++] = keep[i];
+    }
+    to.count = n;
+    return;
+  }
+  RowPacker packer(to, dummy_code(t, is_fixed(pairs.list)));
+  for (int i = 0; i < from.count; ++i) {
+    for (std::uint32_t m = keep[i]; m != 0; m &= m - 1) {
+      const int l = __builtin_ctz(m);
+      const int at = i * kLanes + l;
+      packer.add(l, from.code[at], from.key[at], from.axis[at]);
+    }
+  }
+  packer.close();
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,127 @@
+// KernelTable: the one door into the kernels of an instruction set and precision. src/step calls
+// the stages in order; no stage allocates, throws or keeps state outside its arguments.
+#pragma once
+
+#include <cstddef>
+
+#include "kernels/data/group.hpp"
+
+namespace manyworlds::kernels {
+
+struct Scratch;  // per-thread work memory; its layout belongs to the kernels
+template <class Real>
+struct ObserverTable;  // kernels/data/observation.hpp
+
+enum class Layout : int { automatic, dense, rows };
+
+template <class Real>
+using Stage = void (*)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*);
+
+// The solver passes over all four lists, for one inertia kind, friction or not, dense or rows.
+template <class Real>
+struct SolverTable {
+  Stage<Real> enter;       // velocities into the solver's layout
+  Stage<Real> push;        // first push of gravity and inputs
+  Stage<Real> warm_start;  // the stored impulses
+  Stage<Real> open;        // what warm starting has added is known, the first substep begins
+  // Around the passes of contacts, in plans with joints: their impulses alone are carried over to
+  // the next substep as velocities.
+  Stage<Real> mark;
+  Stage<Real> gather;
+  Stage<Real> bias;     // soft normal rows
+  Stage<Real> advance;  // displacement of the substep
+  Stage<Real> relax;    // normal rows without bias, then friction
+  Stage<Real> next;     // push and warm start of the next substep
+  Stage<Real> restitute;
+  Stage<Real> store;                // impulses into the cache
+  Stage<Real> leave;                // commit positions, orientations, velocities
+  Stage<Real> collide[kPairKinds];  // narrow phase and rows of one class (Scratch::class_index)
+};
+
+// The passes over contacts of solvers that sweep several times before the bodies move, for one
+// inertia kind and layout.
+template <class Real>
+struct SweepTable {
+  Stage<Real> sweep;
+  Stage<Real> part;   // removes overlap by displacements
+  Stage<Real> tally;  // after each substep, in plans with restitution
+};
+
+// The impulses of all rows, of joints and contacts, for one inertia kind.
+template <class Real>
+struct ImpulseTable {
+  Stage<Real> forget;  // all of them are 0
+  // Conjugate gradients, begun with each substep: `remember` and `turn` around a sweep; then a warm
+  // start with what `turn` has put into the impulses, which `land` adds to what they were.
+  Stage<Real> begin_search, remember, turn, land;
+};
+
+// The passes over joints, for one inertia kind and layout; nothing of contacts in them.
+template <class Real>
+struct JointSolver {
+  Stage<Real> prepare;     // rows at the start of the step; after SolverTable::enter
+  Stage<Real> warm_start;  // the impulses so far, in every substep
+  Stage<Real> bias;        // with Options::relaxation where nothing bounds a part
+  Stage<Real> relax;
+  Stage<Real> follow;  // rows where the substeps have taken the bodies; relax does it by itself
+  Stage<Real> store;
+  // Of plans in which some joint may break: after relax, and at the end of the step.
+  Stage<Real> bear;
+  Stage<Real> break_up;
+};
+
+// Free flight by the integrator of the plan (kernels/flight/stages.hpp).
+template <class Real>
+struct FlightTable {
+  // Whole steps of plans in which nothing else moves bodies.
+  void (*steps)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, int steps);
+  Stage<Real> fly;       // before the passes of the solver
+  Stage<Real> leave[2];  // after them, instead of SolverTable::leave; [layout: dense, rows]
+};
+
+template <class Real>
+struct ContactPoint {
+  std::int32_t list, key;    // key identifies class and candidate
+  Real normal[3], point[3];  // point relative to nothing: world, m
+  Real separation;
+  Real impulse;
+  std::int32_t feature;
+};
+
+template <class Real>
+struct KernelTable {
+  const char* isa;
+  int lanes;
+  // Bytes of scratch that these tables need, and its set-up in `memory` (64-byte aligned).
+  std::size_t (*scratch_bytes)(const WorldTables<Real>&);
+  Scratch* (*make_scratch)(const WorldTables<Real>&, void* memory);
+
+  Stage<Real> begin;        // poses, bounds, inertia
+  Stage<Real> broad_phase;  // candidate masks of every class
+  // Dense or rows for this group: by occupancy, or as wished if the slots fit.
+  Layout (*choose_layout)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, Layout);
+  SolverTable<Real> solver[kInertiaKinds][2][2];  // [inertia][friction][layout: dense, rows]
+  SweepTable<Real> sweeps[kInertiaKinds][2];      // [inertia][layout: dense, rows]
+  ImpulseTable<Real> impulses[kInertiaKinds];
+  JointSolver<Real> joints[kInertiaKinds][2];  // [inertia: planar, tensor][layout: dense, rows]
+  // Plans without contacts and joints: n whole steps of free motion.
+  void (*free_motion[kInertiaKinds])(const WorldTables<Real>&, const GroupView<Real>&, Scratch*,
+                                     int steps);
+
+  FlightTable<Real> flight[kInertiaKinds];
+
+  Stage<Real> settle;  // after the step: bodies at rest fall asleep (plans of batches with sleep)
+
+  void (*set_class)(Scratch*, int class_index);  // which class collide works on
+  const GroupCounters& (*counters)(Scratch*);    // of the last step
+  // While set, collide writes the contact points of `lane` to out; returns their number when
+  // called again. Pass nullptr to stop.
+  int (*record)(Scratch*, int lane, ContactPoint<Real>* out, int max);
+
+  const ObserverTable<Real>* observer;  // what batches with observers do beside the step
+};
+
+// Every kernel library defines
+// manyworlds::<isa>_<precision>::fill_kernel_table(KernelTable<Real>&).
+
+}  // namespace manyworlds::kernels

@@ -1,0 +1,372 @@
+// WorldTables: what the kernels know of a Plan, in the kernels' number type. Every value is shared
+// by all worlds of the Plan and reaches the lanes by a broadcast load. Built once per Batch by
+// src/state/tables.cpp; plain pointers into arrays that the Batch owns.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/data/flight_tables.hpp"
+#include "kernels/data/joint_tables.hpp"
+#include "kernels/data/solver_options.hpp"
+
+namespace manyworlds::kernels {
+
+// Functions here are static: every kernel library includes this header with flags of its own, and a
+// shared inline function could put one library's instructions into another's calls.
+
+enum class Dimension : int { planar, spatial };
+
+// How a body's inertia enters the rows: a scalar in the plane or when isotropic, else a tensor.
+enum class InertiaKind : int { planar, isotropic, tensor };
+inline constexpr int kInertiaKinds = 3;
+
+enum class ShapeKind : int {
+  sphere,
+  box,
+  circle,
+  rectangle,
+  polygon,
+  plane,
+  capsule,
+  link,
+  cylinder,
+  hull,
+  rounded,  // polygon
+  tile,     // of a height field
+};
+inline constexpr int kShapeKinds = 12;
+
+// Shape pairs; the first shape is A. Planes and other fixed shapes are always A. Capsules have the
+// same names in the plane and in space.
+enum class PairKind : int {
+  sphere_sphere,
+  box_sphere,
+  box_box,
+  plane_sphere,
+  plane_box,
+  circle_circle,
+  rectangle_circle,
+  rectangle_rectangle,
+  polygon_circle,
+  polygon_polygon,
+  plane_circle,
+  plane_rectangle,
+  plane_polygon,
+  sphere_box,        // fixed sphere
+  circle_rectangle,  // fixed circle
+  circle_polygon,    // fixed circle
+  capsule_sphere,
+  capsule_circle,
+  capsule_capsule,
+  box_capsule,
+  rectangle_capsule,
+  polygon_capsule,
+  plane_capsule,
+  sphere_capsule,     // fixed sphere
+  circle_capsule,     // fixed circle
+  capsule_box,        // fixed capsule
+  capsule_rectangle,  // fixed capsule
+  capsule_polygon,    // fixed capsule
+  link_circle,
+  link_rectangle,
+  link_polygon,
+  link_capsule,
+  plane_cylinder,
+  plane_hull,
+  cylinder_sphere,
+  cylinder_capsule,
+  box_cylinder,
+  cylinder_cylinder,
+  hull_sphere,
+  hull_capsule,
+  hull_box,
+  hull_cylinder,
+  hull_hull,
+  sphere_cylinder,  // fixed sphere, and so on
+  capsule_cylinder,
+  cylinder_box,
+  sphere_hull,
+  capsule_hull,
+  box_hull,
+  cylinder_hull,
+  tile_sphere,
+  tile_capsule,
+  tile_box,
+  tile_cylinder,
+  tile_hull,
+  plane_rounded,
+  rounded_circle,
+  rounded_rounded,
+  rounded_capsule,
+  circle_rounded,   // fixed circle
+  capsule_rounded,  // fixed capsule
+  link_rounded,
+};
+inline constexpr int kPairKinds = 62;
+static inline constexpr bool is_plane(PairKind kind) {
+  return kind == PairKind::plane_sphere || kind == PairKind::plane_box ||
+         kind == PairKind::plane_circle || kind == PairKind::plane_rectangle ||
+         kind == PairKind::plane_polygon || kind == PairKind::plane_capsule ||
+         kind == PairKind::plane_cylinder || kind == PairKind::plane_hull ||
+         kind == PairKind::plane_rounded;
+}
+
+// Contacts of a world live in four lists, solved in this order.
+enum class ListId : int { pair_multi, pair_single, fixed_multi, fixed_single };
+inline constexpr int kLists = 4;
+static inline constexpr bool is_fixed(ListId id) { return id >= ListId::fixed_multi; }
+static inline constexpr bool is_multi(ListId id) {
+  return id == ListId::pair_multi || id == ListId::fixed_multi;
+}
+
+static inline constexpr bool is_tile(PairKind kind) {
+  return PairKind::tile_sphere <= kind && kind <= PairKind::tile_hull;
+}
+
+inline constexpr int kMaxVertices = 8;
+inline constexpr int kMaxHullVertices = 64;
+inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of pose row
+
+// A pose row describes one shape of one world to the narrow phase:
+//   sphere, circle        x y z radius                       (4; z unused in the plane)
+//   box                   Rx p.x | Ry p.y | Rz p.z | hx hy hz margin, columns of the rotation (16)
+//   rectangle             x y c s | hx hy 0 0                (8)
+//   polygon               x y count radius | 8 vertices | 8 normals, about x y     (36)
+//   rounded               as polygon; the radius is that of its rounding
+//   plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
+//   capsule               x y z radius | a.x a.y a.z half, a: the axis (8; a.z unused in the plane)
+//   link                  x y a.x a.y | half low high index | b.x b.y c.x c.y, a: the axis; low and
+//                         high: reach along it; b, c: last normals at its ends (12)
+//   cylinder              as box, half extents radius, radius, half length (16)
+//   hull                  as box | at vertices faces 0; a fixed one is followed by its corners (20)
+//
+// Corners of a hull, in units of its half extents, so that one that is stretched has the same:
+//   vertices              x y z 0 of each
+//   faces                 m.x m.y m.z c | first count 0 0 of each: m . x <= c is the hull's side of
+//                         it, not unit; its outline has `count` vertices from row 4 `first` on
+//   outlines              x y z 0 of each vertex, counter-clockwise seen from outside
+// A pose row says where they are: 4 `at` numbers from WorldTables::hulls on, or for a fixed one
+// from its own row.
+static inline constexpr int pose_row_size(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::box:
+    case ShapeKind::cylinder: return 16;
+    case ShapeKind::hull: return 20;
+    case ShapeKind::rectangle:
+    case ShapeKind::plane:
+    case ShapeKind::capsule: return 8;
+    case ShapeKind::link: return 12;
+    case ShapeKind::rounded:
+    case ShapeKind::polygon: return 4 + 4 * kMaxVertices;
+    default: return 4;
+  }
+}
+
+// Numbers that may differ from world to world. T is a number, or one of every lane: what a group
+// sees are blocks of them, [item][member][lane] (kernels/work/constants.hpp), its own where some
+// differ and one of the whole Plan where none does.
+template <class T>
+struct MaterialOf {
+  T friction, restitution;
+};
+
+// Free rotation of a body about its principal axes (kernels/motion/rotate.hpp). A kinematic body
+// has equal moments of 1, which turn it about its fixed axis.
+template <class T>
+struct TopConstants {
+  T inertia[3], inverse[3];
+  T rate[3];     // dt / (2 I_x), dt / (2 I_y), dt / I_z
+  T turn_bound;  // dt / I_min: times |L|, a bound of the turn about every axis, rad
+};
+
+template <class T>
+struct BodyConstants {
+  T inv_mass;
+  T inertia[3];      // principal, kg m^2 (planar: [2])
+  T inv_inertia[3];  // 0 for kinematic bodies
+  T gravity_scale;
+  T gravity[3];                 // times gravity scale, m/s^2; 0 for kinematic bodies
+  T acceleration[3];            // that and what the wind does by drag
+  T push[3];                    // h times that; never -0
+  T linear_drag, angular_drag;  // c, 1/s
+  T linear_factor;              // 1 / (1 + h c), per substep
+  T angular_factor;
+  TopConstants<T> top;
+  T radius;       // of the bounding sphere about the centre of mass, m
+  T core_radius;  // of a sphere inside the body about its centre of mass, m; 0: never cast
+};
+
+template <class T>
+struct ShapeConstants {
+  T offset[3];    // shape origin from the centre of mass, principal axes, m
+  T rotation[9];  // shape axes in principal axes, columns; planar: [0] cos, [1] sin
+  T half[3];      // half extents (box, rectangle, cylinder, hull); capsule: [0] half length
+  T radius;  // sphere, circle, capsule, rounded; else of the bounding sphere about the shape origin
+  T margin_cap;  // most that the speculative margin of this shape may grow to, m
+};
+
+template <class T>
+struct PolygonConstants {
+  T vertices[2 * kMaxVertices];  // padded by repeating the first
+  T normals[2 * kMaxVertices];
+};
+
+template <class Real>
+struct ConstantBlocks {
+  const Real* body;      // [body][BodyConstants][lane]
+  const Real* shape;     // [collider][ShapeConstants][lane]
+  const Real* polygon;   // [collider][PolygonConstants][lane]; nullptr without polygons
+  const Real* material;  // [collider, then fixed shape][MaterialOf][lane]
+  const Real* joint;     // [part][JointConstants][lane]
+  const Real* thrust;    // [thrust][ThrustConstants][lane]
+};
+
+// What is the same in all worlds.
+struct BodyTable {
+  bool kinematic;
+};
+
+struct ColliderTable {
+  ShapeKind kind;
+  std::int32_t body;
+  std::int32_t row;              // offset of its pose row in a lane's block
+  std::uint32_t category, mask;  // collision filter
+  std::int32_t vertex_count;     // of a polygon or hull
+  std::int32_t face_count;       // of a hull
+  std::int32_t hull;             // where its corners are, in fours, in WorldTables::hulls
+};
+
+template <class Real>
+struct FixedTable {
+  ShapeKind kind;
+  std::int32_t row;      // offset of its pose row in WorldTables::fixed_rows
+  Real low[3], high[3];  // bounding box (not for planes)
+  Real plane[4];         // normal, offset
+  std::uint32_t category, mask;
+  std::int32_t body;  // its place in WorldTables::joined, beyond those of moving bodies
+};
+
+// Candidate pairs of one shape pair kind, all against fixed shapes or all between moving ones. In
+// sparse plans count is that of the keys, and there are no arrays (kernels/data/pair_keys.hpp).
+template <class Real>
+struct PairClass {
+  PairKind kind;
+  ListId list;
+  std::int32_t count;
+  std::int32_t first_key;  // keys of the class are first_key + 0 .. count - 1
+  const std::int32_t* a;   // [count] collider, or fixed shape
+  const std::int32_t* b;   // [count] collider
+};
+
+template <class Real>
+struct Softness {  // numerics of the soft constraint: lambda' = lambda - k (m v + b s) - i lambda
+  Real bias_rate, mass_scale, impulse_scale;
+};
+
+// Draws all bodies to a point: acceleration strength d / (d^2 + softening^2)^(3/2).
+template <class T>
+struct AttractorTable {
+  T position[3];
+  T strength;    // m^3/s^2
+  T softening2;  // m^2, never 0
+};
+
+template <class Real>
+struct WorldTables {
+  Dimension dimension;
+  InertiaKind inertia_kind;
+  std::int32_t bodies;
+  std::int32_t colliders;
+  std::int32_t fixed_shapes;
+  std::int32_t classes;
+  std::int32_t joints, parts;  // of the scene, and what they are made of
+  std::int32_t breakable;      // of them
+  std::int32_t controls;
+  std::int32_t attractors;
+  std::int32_t substeps;
+  std::int32_t restitution_sweeps;
+  bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
+  bool has_joints;
+  bool slows;             // by linear drag
+  bool has_substeps;      // some stages of the solver: not free motion
+  bool collider_is_body;  // collider i is the only shape of body i, centred and aligned
+  bool friction_in_bias;
+  bool uniform_gravity;  // every body has the acceleration of body 0
+  bool sweep;            // sort and sweep instead of masked all-pairs
+  bool sparse;           // pairs are found lane by lane, there are no tables of them
+  bool cast;             // cast fast bodies against fixed shapes
+  bool cast_moving;      // cast fast bodies against moving shapes
+  bool has_bounds;
+  bool has_sleep;
+  FlightOptions flight;
+  SolverOptions<Real> solver;
+
+  bool push_varies, drag_varies, bodies_vary;  // from world to world
+
+  const BodyTable* body;
+  const ColliderTable* collider;
+  const std::int32_t* collider_row;    // [collider + 1], the last is the dummy's
+  const std::int32_t* collider_body;   // [collider + 1]
+  const std::int32_t* first_collider;  // [body + 1], those of a body follow one another
+  const FixedTable<Real>* fixed;
+  const Real* fixed_rows;
+  const Real* hulls;  // corners of hulls that move
+  const PairClass<Real>* pair_class;
+  const JointPart* part;
+  const BreakTable<Real>* breaking;  // [breakable]
+  const AttractorTable<Real>* attractor;
+  const ThrustTable* thrust;         // ordered by body
+  const std::int32_t* first_thrust;  // [body + 1]; nullptr: there is none
+  // Bodies that a body does not collide with, because of a joint: [first_joined[body] ...);
+  // nullptr: there are none.
+  const std::int32_t* joined;
+  const std::int32_t* first_joined;  // [body + 1]
+  // Sort and sweep: key of the candidate pair of colliders (i, j), in either order, or -1.
+  const std::int32_t* pair_of;  // [collider][collider]
+  // Sparse: class of two kinds of shape, in moving_class twice that, and 1 more where the second is
+  // A; -2 and -1: none.
+  std::int32_t moving_class[kShapeKinds][kShapeKinds], fixed_class[kShapeKinds][kShapeKinds];
+
+  // Where no world has its own.
+  ConstantBlocks<Real> constants;
+  // Pushes and factors of one substep in the order of a velocity row, of worlds that have none of
+  // their own: [body + pad][row].
+  const Real* push_rows;
+  const Real* factor_rows;
+
+  std::int32_t capacity[kLists];  // manifolds per world
+  std::int32_t row_block;         // reals of one lane's pose rows
+  std::int32_t state_stride;      // components per body in the state
+  std::int32_t state_size;        // components per world in the state
+
+  Real dt, h, inv_h;
+  Softness<Real> soft_pair, soft_fixed;
+  Real push_out_speed;
+  Real margin;  // 4 slop, m
+  Real half_margin;
+  Real restitution_threshold;
+  Real sleep_speed, sleep_time;        // a body is at rest below; an island sleeps after
+  Real bounds_low[3], bounds_high[3];  // of body positions, m
+  Real face_tie;                       // m, a face of A wins over one of B by this
+  Real face_bias;  // m, preference of the previous kind of axis in separating-axis tests
+};
+
+// State block of one body: components in this order, each kLanes wide. The orientation block is
+// absent when the plan has no orientation.
+struct StateOffsets {
+  int position, linear, angular, orientation, components;
+};
+static inline constexpr StateOffsets state_offsets(Dimension d, bool orientation) {
+  return d == Dimension::planar ? StateOffsets{0, 2, 4, 5, orientation ? 7 : 5}
+                                : StateOffsets{0, 3, 6, 9, orientation ? 13 : 9};
+}
+static inline constexpr int velocity_row_size(Dimension d) {
+  return d == Dimension::planar ? 4 : 8;
+}
+
+// Stored impulses of one manifold (see rows/contact_cache.hpp).
+static inline constexpr int cache_row_size(Dimension d, ListId list) {
+  return !is_multi(list) ? 4 : d == Dimension::planar ? 8 : 16;
+}
+
+}  // namespace manyworlds::kernels

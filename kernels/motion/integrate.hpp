@@ -1,0 +1,276 @@
+// The motion side of a contact step: velocities into the solver's layout, pushes, displacements.
+//
+// Warm starting costs no pass after the first substep: Jacobians and masses are constant during a
+// step, so the velocity change that the accumulated impulses make is the difference of velocities
+// (impulse_part), and adding it to the next substep's velocity is the warm start.
+#pragma once
+
+#include "kernels/motion/rotate.hpp"
+#include "kernels/rows/body_rows.hpp"
+#include "kernels/rows/velocities.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S>
+inline constexpr int kVelocityBlock = (S::kDim + S::kAng) * kLanes;  // dense, one body
+
+// Runs update(offset of a register in the velocity-like arrays, push, factor) over all of them.
+template <class S, bool kDense, class Update>
+MW_INLINE void for_each_register(const Tables& t, const Work& w, Update update) {
+  if constexpr (kDense) {
+    for (int b = 0; b < t.bodies; ++b) {
+      for (int c = 0; c < S::kDim + S::kAng; ++c) {
+        const int at = b * kVelocityBlock<S> + c * kLanes;
+        const int shared = b * S::kRow + c;
+        update(at, w.push ? Float::load(w.push + at) : Float(t.push_rows[shared]),
+               w.factor ? Float::load(w.factor + at) : Float(t.factor_rows[shared]));
+      }
+    }
+  } else {
+    const int block = w.rows_per_lane * S::kRow;
+    for (int l = 0; l < kLanes; ++l) {
+      for (int i = 0; i < block; i += kLanes) {
+        const int at = l * block + i;
+        const Float push = Float::load((w.push ? w.push + l * block : t.push_rows) + i);
+        const Float factor = Float::load((w.factor ? w.factor + l * block : t.factor_rows) + i);
+        update(at, push, factor);
+      }
+    }
+  }
+}
+
+template <class S>
+MW_INLINE void offsets_of_body(const Work& w, int body, std::int32_t* o) {
+  for (int l = 0; l < kLanes; ++l) o[l] = w.velocity_base[l] + body * S::kRow;
+}
+
+template <class S, bool kDense>
+MW_INLINE void put_velocity(const Work& w, Real* array, int body, const Velocity<S>& v) {
+  if constexpr (kDense) {
+    store_velocity_dense(array + body * kVelocityBlock<S>, v);
+  } else {
+    alignas(64) std::int32_t o[kLanes];
+    offsets_of_body<S>(w, body, o);
+    store_velocity_row(S{}, array, o, v);
+  }
+}
+template <class S, bool kDense>
+MW_INLINE Velocity<S> get_velocity(const Work& w, const Real* array, int body) {
+  if constexpr (kDense) {
+    return load_velocity_dense<S>(array + body * kVelocityBlock<S>);
+  } else {
+    alignas(64) std::int32_t o[kLanes];
+    offsets_of_body<S>(w, body, o);
+    return load_velocity_row(S{}, array, o);
+  }
+}
+
+// Does a control push or turn this body?
+MW_INLINE bool is_thrust(const Tables& t, int body) {
+  return t.first_thrust && t.first_thrust[body] != t.first_thrust[body + 1];
+}
+
+// Force, N, and torque about the centre of mass, N m, of the inputs and the controls, for a body
+// that is turned by `orientation`.
+template <class S>
+struct Load {
+  typename S::Vec force;
+  typename S::Ang torque;
+};
+template <class S>
+MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body, const Real* orientation) {
+  using Vec = typename S::Vec;
+  Load<S> out{zero_of<Vec>(), zero_of<typename S::Ang>()};
+  if (g.force) {
+    const Real* f = g.force + body * 6 * kLanes;
+    out.force = load_as<Vec>(f);
+    out.torque = load_as<typename S::Ang>(f + (S::kDim == 3 ? 3 : 5) * kLanes);
+  }
+  if (!is_thrust(t, body)) return out;
+  const auto q = load_as<typename S::Orientation>(orientation);
+  for (int i = t.first_thrust[body]; i < t.first_thrust[body + 1]; ++i) {
+    const auto& numbers =
+        reinterpret_cast<const kernels::ThrustConstants<LaneNumber>*>(g.constants.thrust)[i];
+    const Float control = Float::load(g.control + t.thrust[i].control * kLanes);
+    if constexpr (S::kDim == 2) {
+      if (t.thrust[i].torque) {
+        out.torque = fma(Float(numbers.direction[2]), control, out.torque);
+        continue;
+      }
+      const Vec push = rotate(q, {numbers.direction[0], numbers.direction[1]}) * control;
+      out.force = out.force + push;
+      out.torque = out.torque + cross(rotate(q, {numbers.point[0], numbers.point[1]}), push);
+    } else {
+      const LaneNumber *d = numbers.direction, *p = numbers.point;
+      const Vec push = rotate(q, Vec{d[0], d[1], d[2]}) * control;
+      if (t.thrust[i].torque) {
+        out.torque = out.torque + push;
+        continue;
+      }
+      out.force = out.force + push;
+      out.torque = out.torque + cross(rotate(q, Vec{p[0], p[1], p[2]}), push);
+    }
+  }
+  return out;
+}
+
+// What gravity and the inputs add to the velocity of a body in one substep.
+template <class S>
+MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& w, int body) {
+  // The sum starts from the same number that a group without forces adds: a world's bits must not
+  // tell whether another one is pushed.
+  const auto& numbers = constants_of_body(g, body);
+  Velocity<S> push;
+  push.v.x = numbers.push[0], push.v.y = numbers.push[1];
+  if constexpr (S::kDim == 3) push.v.z = numbers.push[2];
+  push.w = zero_of<typename S::Ang>();
+  if (t.attractors > 0 && !t.body[body].kinematic) {
+    push.v = fma(attraction_of_body<S>(t, g, body), Float(t.h), push.v);
+  }
+  if (!g.force && !is_thrust(t, body)) return push;
+  const Load<S> load = load_of_body<S>(t, g, body, state_of(t, g, body, kState<S>.orientation));
+  alignas(64) std::int32_t o[kLanes];
+  for (int l = 0; l < kLanes; ++l) o[l] = w.body_base[l] + body * body_row_size(S::kKind);
+  BodyRow<S> row;
+  load_body_row(t, w, o, row);
+  const Float h(t.h), scale = row.inv_mass * h;
+  push.v = fma(load.force, scale, push.v);
+  push.w = apply(row.inertia, load.torque) * h;
+  return push;
+}
+
+// The dummy's row and what follows it.
+template <class S, bool kDense>
+MW_INLINE void clear_padding(const Tables& t, const Work& w, Real* array) {
+  if constexpr (!kDense) {
+    const int block = w.rows_per_lane * S::kRow;
+    for (int l = 0; l < kLanes; ++l) {
+      for (int i = t.bodies * S::kRow; i < block; ++i) array[l * block + i] = Real(0);
+    }
+  }
+}
+
+template <class S, bool kDense>
+void enter_velocities(const Tables& t, const Group& g, Work& w) {
+  const Float zero(Real(0));
+  for (int b = 0; b < t.bodies; ++b) {
+    const Velocity<S> v{load_as<typename S::Vec>(state_of(t, g, b, kState<S>.linear)),
+                        load_as<typename S::Ang>(state_of(t, g, b, kState<S>.angular))};
+    put_velocity<S, kDense>(w, w.velocity, b, v);
+  }
+  const bool own = g.force || t.push_varies || t.first_thrust || t.attractors > 0;
+  w.push = own ? w.push_storage : nullptr;
+  w.factor = t.drag_varies ? w.factor_storage : nullptr;
+  if constexpr (kDense) {
+    for (int i = 0; i < t.bodies * kVelocityBlock<S>; i += kLanes) zero.store(w.displacement + i);
+    for (int i = 0; t.has_joints && i < kVelocityBlock<S>; i += kLanes) {
+      const int at = world_body(t) * kVelocityBlock<S> + i;
+      zero.store(w.velocity + at), zero.store(w.displacement + at);
+    }
+  } else {
+    const int block = w.rows_per_lane * S::kRow;
+    for (int i = 0; i < kLanes * block; i += kLanes) zero.store(w.displacement + i);
+    clear_padding<S, kDense>(t, w, w.velocity);
+  }
+}
+
+// Velocities at the start of the first substep, before any impulse; impulse_part keeps them.
+template <class S, bool kDense>
+void first_push(const Tables& t, const Group& g, Work& w) {
+  if (w.push) {
+    clear_padding<S, kDense>(t, w, w.push);
+    for (int b = 0; b < t.bodies; ++b) {
+      put_velocity<S, kDense>(w, w.push, b, push_of_body<S>(t, g, w, b));
+    }
+  }
+  if (w.factor) {
+    clear_padding<S, kDense>(t, w, w.factor);
+    for (int b = 0; b < t.bodies; ++b) {
+      const auto& numbers = constants_of_body(g, b);
+      const Float linear = numbers.linear_factor, angular = numbers.angular_factor;
+      if constexpr (S::kDim == 3) {
+        put_velocity<S, kDense>(w, w.factor, b,
+                                {{linear, linear, linear}, {angular, angular, angular}});
+      } else {
+        put_velocity<S, kDense>(w, w.factor, b, {{linear, linear}, angular});
+      }
+    }
+  }
+  if constexpr (std::is_same_v<S, Tensor>) {
+    for (int b = 0; b < t.bodies; ++b) {
+      if (w.touched[b] == 0 || t.body[b].kinematic) continue;  // kinematic: no inertia
+      const auto& inertia = constants_of_body(g, b).inertia;
+      const Vec3 moments{inertia[0], inertia[1], inertia[2]};
+      const Mat3 r = matrix(load_quat(state_of(t, g, b, kState<S>.orientation)));
+      Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
+      Vec3 turned = implicit_gyroscopic(t.dt, moments, r, v.w);
+      if (t.has_joints) {
+        const Mask slight = is_slightly_gyroscopic(t.dt, moments, r, v.w);
+        if (any(slight)) {
+          turned = select(slight, half_gyroscopic(t.dt, moments, r, v.w), turned);
+        }
+      }
+      v.w = select(mask_from_bits(w.touched[b]), turned, v.w);
+      put_velocity<S, kDense>(w, w.velocity, b, v);
+    }
+  }
+  for_each_register<S, kDense>(t, w, [&](int at, Float push, Float factor) {
+    Float v = Float::load(w.velocity + at) + push;
+    if (t.has_drag) v = v * factor;
+    v.store(w.velocity + at);
+    v.store(w.impulse_part + at);
+  });
+}
+
+template <class S, bool kDense>
+void begin_substeps(const Tables& t, Work& w) {
+  w.substep = w.sweep = 0;
+  for_each_register<S, kDense>(t, w, [&](int at, Float, Float) {
+    const Float v = Float::load(w.velocity + at);
+    (v - Float::load(w.impulse_part + at)).store(w.impulse_part + at);
+    v.store(w.warmed + at);
+  });
+}
+
+// Joints warm start by themselves, since their Jacobians change from substep to substep: what they
+// have done before is left out of impulse_part.
+template <class S, bool kDense>
+void mark_velocities(const Tables& t, Work& w) {
+  for_each_register<S, kDense>(
+      t, w, [&](int at, Float, Float) { Float::load(w.velocity + at).store(w.warmed + at); });
+}
+template <class S, bool kDense>
+void gather_impulses(const Tables& t, Work& w) {
+  for_each_register<S, kDense>(t, w, [&](int at, Float, Float) {
+    const Float v = Float::load(w.velocity + at);
+    (Float::load(w.impulse_part + at) + (v - Float::load(w.warmed + at)))
+        .store(w.impulse_part + at);
+    v.store(w.warmed + at);
+  });
+}
+
+template <class S, bool kDense>
+void advance_displacement(const Tables& t, Work& w) {
+  const Float h(t.h);
+  for_each_register<S, kDense>(t, w, [&](int at, Float, Float) {
+    fma(h, Float::load(w.velocity + at), Float::load(w.displacement + at))
+        .store(w.displacement + at);
+  });
+}
+
+template <class S, bool kDense>
+void next_substep(const Tables& t, Work& w) {
+  ++w.substep, w.sweep = 0;
+  for_each_register<S, kDense>(t, w, [&](int at, Float push, Float factor) {
+    const Float v = Float::load(w.velocity + at);
+    const Float part = Float::load(w.impulse_part + at) + (v - Float::load(w.warmed + at));
+    Float next = v + push;
+    if (t.has_drag) next = next * factor;
+    next = next + part;
+    part.store(w.impulse_part + at);
+    next.store(w.velocity + at);
+    next.store(w.warmed + at);
+  });
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

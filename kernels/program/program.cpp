@@ -1,0 +1,63 @@
+// Runs a program for the worlds of a group.
+#include "kernels/data/program.hpp"
+
+#include "kernels/lane/elementary.hpp"
+#include "kernels/lane/solve.hpp"
+#include "kernels/observe/observe.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+void run_program(const Group& g, const Observation* seen, const kernels::ProgramRun<Real>& run) {
+  using kernels::Operation;
+  const Float zero(Real(0)), one(Real(1));
+  const auto row = [](const Real* rows, int i) { return Float::load(rows + i * kLanes); };
+  const auto truth = [&](Mask m) { return select(m, one, zero); };
+  const auto holds = [&](Float x) { return !(x == zero); };
+  for (int i = run.begin; i < run.end; ++i) {
+    const kernels::Instruction<Real>& at = run.instruction[i];
+    const auto a = [&] { return row(run.value, at.a); };
+    const auto b = [&] { return row(run.value, at.b); };
+    const auto c = [&] { return row(run.value, at.c); };
+    const auto evaluate = [&]() -> Float {
+      switch (at.operation) {
+        case Operation::constant: return at.number;
+        case Operation::state: return row(g.state, at.a);
+        case Operation::control: return row(g.control, at.a);
+        case Operation::coordinate: return row(seen->coordinate_rows, at.a);
+        case Operation::ray: return row(seen->hit_rows, at.a);
+        case Operation::touching:
+          return run.beginning ? zero : truth(mask_from_bits(seen->touching[at.a]));
+        case Operation::input: return row(run.input, at.a);
+        case Operation::previous: return run.beginning ? a() : row(run.memory, at.b);
+        case Operation::held:
+          return run.beginning ? zero : select(holds(a()), row(run.memory, at.b) + one, zero);
+        case Operation::largest: return run.beginning ? a() : max(row(run.memory, at.b), a());
+        case Operation::add: return a() + b();
+        case Operation::subtract: return a() - b();
+        case Operation::multiply: return a() * b();
+        case Operation::divide: return a() / b();
+        case Operation::negate: return -a();
+        case Operation::absolute: return abs(a());
+        case Operation::square_root: return sqrt(a());
+        case Operation::minimum: return min(a(), b());
+        case Operation::maximum: return max(a(), b());
+        case Operation::round_down: return round_down(a());
+        case Operation::sine: return sine_and_cosine(a()).sine;
+        case Operation::cosine: return sine_and_cosine(a()).cosine;
+        case Operation::arc_tangent: return arc_tangent(a(), b());
+        case Operation::exponential: return exponential(a());
+        case Operation::less: return truth(a() < b());
+        case Operation::less_equal: return truth(a() <= b());
+        case Operation::equal: return truth(a() == b());
+        case Operation::both: return truth(holds(a()) & holds(b()));
+        case Operation::either: return truth(holds(a()) | holds(b()));
+        case Operation::opposite: return truth(!holds(a()));
+        case Operation::choose: return select(holds(a()), b(), c());
+      }
+      return zero;
+    };
+    evaluate().store(run.value + i * kLanes);
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

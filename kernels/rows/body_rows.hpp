@@ -1,0 +1,109 @@
+// What rows need to know of bodies: inverse mass and inertia, centre of mass, velocity, gravity.
+#pragma once
+
+#include "kernels/rows/slot.hpp"
+#include "kernels/work/constants.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S>
+struct BodyRow {
+  Float inv_mass;
+  typename S::Inertia inertia;
+  typename S::Vec centre;  // of mass, world; only when asked for
+};
+
+MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
+                             BodyRow<Planar>& r) {
+  (void)t;
+  load_rows4(w.body_rows, o, r.inv_mass, r.inertia, r.centre.x, r.centre.y);
+}
+MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
+                             BodyRow<Isotropic>& r) {
+  Float unused0, unused1;
+  load_rows4(w.body_rows, o, r.inv_mass, r.inertia, unused0, unused1);
+  if (!t.collider_is_body) {
+    load_rows4(w.body_rows + 4, o, r.centre.x, r.centre.y, r.centre.z, unused0);
+  }
+}
+MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
+                             BodyRow<Tensor>& r) {
+  Float unused;
+  load_rows4(w.body_rows, o, r.inertia.xx, r.inertia.xy, r.inertia.xz, r.inertia.yy);
+  load_rows4(w.body_rows + 4, o, r.inertia.yz, r.inertia.zz, r.inv_mass, unused);
+  if (!t.collider_is_body) {
+    load_rows4(w.body_rows + 8, o, r.centre.x, r.centre.y, r.centre.z, unused);
+  }
+}
+
+template <class S, bool kDense>
+MW_INLINE Velocity<S> load_velocity(const Work& w, const std::int32_t* offset, int body) {
+  if constexpr (kDense) {
+    return load_velocity_dense<S>(w.velocity + body * (S::kDim + S::kAng) * kLanes);
+  } else {
+    return load_velocity_row(S{}, w.velocity, offset);
+  }
+}
+
+// The pull of a point on a body at x.
+template <class S>
+struct Attraction {
+  typename S::Vec to;        // m
+  Float strength, nearness;  // with the body's gravity scale, m^3/s^2; 1 / softened distance, 1/m
+  MW_INLINE Attraction(const Tables& t, const Group& g, int body, int i, typename S::Vec x) {
+    const kernels::AttractorTable<Real>& point = t.attractor[i];
+    to.x = Float(point.position[0]) - x.x, to.y = Float(point.position[1]) - x.y;
+    if constexpr (S::kDim == 3) to.z = Float(point.position[2]) - x.z;
+    strength = Float(point.strength) * Float(constants_of_body(g, body).gravity_scale);
+    nearness = Float(Real(1)) / sqrt(dot(to, to) + Float(point.softening2));
+  }
+  MW_INLINE typename S::Vec acceleration() const {
+    // 0 at the point itself, where nearness is as large as it can be.
+    return (((to * nearness) * nearness) * nearness) * strength;
+  }
+};
+// Where the body is half a step on. With what substeps fall too far taken back (finish.hpp) that
+// makes drift, kick, drift: position Verlet, which keeps orbits.
+template <class S>
+MW_INLINE typename S::Vec attraction_of_body(const Tables& t, const Group& g, int body) {
+  using Vec = typename S::Vec;
+  const Vec x = fma(load_as<Vec>(state_of(t, g, body, kState<S>.linear)), Float(t.dt * Real(0.5)),
+                    load_as<Vec>(state_of(t, g, body, kState<S>.position)));
+  Vec out = zero_of<Vec>();
+  for (int i = 0; i < t.attractors; ++i) {
+    out = out + Attraction<S>(t, g, body, i, x).acceleration();
+  }
+  return out;
+}
+
+// Acceleration of the bodies of the lanes along n, from gravity and attractors.
+template <class S>
+MW_INLINE Float gravity_along(const Tables& t, const Group& g, const std::int32_t* body,
+                              typename S::Vec n) {
+  LaneNumber a[S::kDim];
+  for (int c = 0; c < S::kDim; ++c) {
+    if (t.uniform_gravity) {
+      a[c] = constants_of_body(g, 0).gravity[c];
+    } else {
+      for (int l = 0; l < kLanes; ++l) {
+        a[c].lane[l] = constants_of_body(g, body[l]).gravity[c].lane[l];
+      }
+    }
+  }
+  typename S::Vec pull;
+  pull.x = a[0], pull.y = a[1];
+  if constexpr (S::kDim == 3) pull.z = a[2];
+  const Float along = dot(pull, n);
+  if (t.attractors == 0) return along;
+  // Lanes may have different bodies; few scenes have attractors.
+  alignas(64) Real out[kLanes], of_body[kLanes];
+  along.store(out);
+  for (int l = 0; l < kLanes; ++l) {
+    if (body[l] >= t.bodies || t.body[body[l]].kinematic) continue;
+    dot(attraction_of_body<S>(t, g, body[l]), n).store(of_body);
+    out[l] += of_body[l];
+  }
+  return Float::load(out);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,302 @@
+// narrow_phase: runs a shape pair over the candidates of a class and hands the manifolds to
+// prepare. The one place that connects pairs, layouts and lists.
+#pragma once
+
+#include "kernels/collide/box_box.hpp"
+#include "kernels/collide/box_capsule.hpp"
+#include "kernels/collide/box_round.hpp"
+#include "kernels/collide/convex.hpp"
+#include "kernels/collide/link_pairs.hpp"
+#include "kernels/collide/polygon_pairs.hpp"
+#include "kernels/collide/rectangle_rectangle.hpp"
+#include "kernels/collide/tile.hpp"
+#include "kernels/rows/prepare.hpp"
+#include "kernels/work/stages.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// Offsets of the pose rows of both shapes of a slot.
+struct PoseOffsets {
+  alignas(64) std::int32_t a[kLanes], b[kLanes];
+};
+
+template <bool kPair>
+MW_INLINE PoseOffsets pose_offsets(const Tables& t, const Work& w, const std::int32_t* code) {
+  PoseOffsets o;
+  for (int l = 0; l < kLanes; ++l) {
+    const std::int32_t a = code[l] & 0xffff, b = (code[l] >> 16) & 0xffff;
+    o.a[l] = kPair ? w.pose_base[l] + t.collider_row[a] : t.fixed[a].row;
+    o.b[l] = w.pose_base[l] + t.collider_row[b];
+  }
+  return o;
+}
+
+// Planes are fixed and have no origin that anchors are measured from.
+template <class S, class Pose>
+MW_INLINE typename S::Vec origin_of(const Pose& pose) {
+  if constexpr (std::is_same_v<Pose, PlanePose>) {
+    return zero_of<typename S::Vec>();
+  } else {
+    return pose.p;
+  }
+}
+
+template <class S, class Pair, bool kPair, bool kDense>
+void collide_list(const Tables& t, const Group& g, Work& w, const CandidateList& list) {
+  const auto& pairs = t.pair_class[w.class_index];
+  const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
+  for (int i = 0; i < list.count; ++i) {
+    const std::int32_t* code = list.code + i * kLanes;
+    const PoseOffsets o = pose_offsets<kPair>(t, w, code);
+    typename Pair::A a;
+    typename Pair::B b;
+    load_pose(base_a, o.a, a);
+    load_pose(w.pose_rows, o.b, b);
+    Manifold<S, Pair::kPoints> m;
+    Pair::collide(t, a, b, Float::load(list.axis + i * kLanes), m);
+    add_slot<S, Pair::kPoints, kPair, kDense>(t, g, w, pairs.list, pairs, m,
+                                              mask_from_bits(list.mask[i]), code,
+                                              list.key + i * kLanes, origin_of<S>(a), b.p);
+  }
+}
+
+// Boxes first drop the candidates that a separating axis keeps apart.
+template <bool kPair>
+void find_axes(const Tables& t, Work& w) {
+  const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
+  CandidateList& list = w.candidates;
+  for (int i = 0; i < list.count; ++i) {
+    const PoseOffsets o = pose_offsets<kPair>(t, w, list.code + i * kLanes);
+    BoxPose a, b;
+    load_pose(base_a, o.a, a);
+    load_pose(w.pose_rows, o.b, b);
+    const BoxAxes found = find_box_axes(t, a, b);
+    found.axis.store(list.axis + i * kLanes);
+    const Mask near = found.separation < a.margin + b.margin;
+    w.keep[i] = bits(near) & list.mask[i];
+  }
+  compact(t, w, list, w.keep, w.found);
+}
+
+// Shape pairs whose A is always fixed.
+template <class Pair>
+inline constexpr bool kOnlyFixed =
+    std::is_same_v<typename Pair::A, PlanePose> || std::is_same_v<typename Pair::A, LinkPose>;
+template <class S, class Reverse>
+inline constexpr bool kOnlyFixed<Reversed<S, Reverse>> = true;
+
+template <class S, class Pair, bool kDense>
+void collide(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  Work& w = work_of(scratch);
+  const bool fixed = is_fixed(t.pair_class[w.class_index].list);
+  list_candidates(t, w);
+  const CandidateList* list = &w.candidates;
+  if constexpr (std::is_same_v<Pair, BoxBox<S>>) {
+    fixed ? find_axes<false>(t, w) : find_axes<true>(t, w);
+    list = &w.found;
+  }
+  if (fixed) {
+    collide_list<S, Pair, false, kDense>(t, g, w, *list);
+  } else if constexpr (!kOnlyFixed<Pair>) {
+    collide_list<S, Pair, true, kDense>(t, g, w, *list);
+  }
+}
+
+// ---- pairs of the general method
+// -----------------------------------------------------------------
+
+struct ConvexKinds {
+  kernels::ShapeKind a, b;
+};
+inline constexpr ConvexKinds convex_kinds(kernels::PairKind pair) {
+  using kernels::PairKind, kernels::ShapeKind;
+  switch (pair) {
+    case PairKind::plane_cylinder: return {ShapeKind::plane, ShapeKind::cylinder};
+    case PairKind::plane_hull: return {ShapeKind::plane, ShapeKind::hull};
+    case PairKind::cylinder_sphere: return {ShapeKind::cylinder, ShapeKind::sphere};
+    case PairKind::cylinder_capsule: return {ShapeKind::cylinder, ShapeKind::capsule};
+    case PairKind::box_cylinder: return {ShapeKind::box, ShapeKind::cylinder};
+    case PairKind::cylinder_cylinder: return {ShapeKind::cylinder, ShapeKind::cylinder};
+    case PairKind::hull_sphere: return {ShapeKind::hull, ShapeKind::sphere};
+    case PairKind::hull_capsule: return {ShapeKind::hull, ShapeKind::capsule};
+    case PairKind::hull_box: return {ShapeKind::hull, ShapeKind::box};
+    case PairKind::hull_cylinder: return {ShapeKind::hull, ShapeKind::cylinder};
+    case PairKind::hull_hull: return {ShapeKind::hull, ShapeKind::hull};
+    case PairKind::sphere_cylinder: return {ShapeKind::sphere, ShapeKind::cylinder};
+    case PairKind::capsule_cylinder: return {ShapeKind::capsule, ShapeKind::cylinder};
+    case PairKind::cylinder_box: return {ShapeKind::cylinder, ShapeKind::box};
+    case PairKind::sphere_hull: return {ShapeKind::sphere, ShapeKind::hull};
+    case PairKind::capsule_hull: return {ShapeKind::capsule, ShapeKind::hull};
+    case PairKind::box_hull: return {ShapeKind::box, ShapeKind::hull};
+    case PairKind::tile_sphere: return {ShapeKind::tile, ShapeKind::sphere};
+    case PairKind::tile_capsule: return {ShapeKind::tile, ShapeKind::capsule};
+    case PairKind::tile_box: return {ShapeKind::tile, ShapeKind::box};
+    case PairKind::tile_cylinder: return {ShapeKind::tile, ShapeKind::cylinder};
+    case PairKind::tile_hull: return {ShapeKind::tile, ShapeKind::hull};
+    default: return {ShapeKind::cylinder, ShapeKind::hull};
+  }
+}
+inline constexpr bool is_round(kernels::ShapeKind kind) {
+  return kind == kernels::ShapeKind::sphere || kind == kernels::ShapeKind::capsule;
+}
+
+template <class S, int N>
+MW_INLINE void turn_round(Manifold<S, N>& m) {
+  m.normal = -m.normal;
+  for (int i = 0; i < N; ++i) {
+    const auto point = m.point_a[i];
+    m.point_a[i] = m.point_b[i];
+    m.point_b[i] = point;
+  }
+}
+
+// Tensor and Isotropic have the same vectors.
+template <class S, int N>
+MW_INLINE void copy_manifold(const Manifold<Isotropic, N>& from, Manifold<S, N>& to) {
+  to.normal = from.normal, to.tangent = from.tangent;
+  for (int i = 0; i < N; ++i) {
+    to.point_a[i] = from.point_a[i], to.point_b[i] = from.point_b[i];
+    to.separation[i] = from.separation[i];
+    to.feature_x[i] = from.feature_x[i], to.feature_y[i] = from.feature_y[i];
+    to.valid[i] = from.valid[i];
+  }
+  to.code = from.code, to.match_distance2 = from.match_distance2;
+}
+
+template <int N>
+MW_INLINE void collide_tile(const Tables& t, const ConvexShape& a, const Tile& tile,
+                            const ConvexShape& b, Mask active, Manifold<Isotropic, N>& m) {
+  if constexpr (N == 1) {
+    collide_tile_sphere(a, tile, b, m);
+  } else {
+    collide_convex_pair(t, a, &tile, b, active, m);
+    m.code = fma(tile.code, Float(kTileCodes), m.code);
+  }
+}
+
+template <class S, int N, bool kPair, bool kDense>
+void collide_convex_list(const Tables& t, const Group& g, Work& w) {
+  using kernels::ShapeKind;
+  const auto& pairs = t.pair_class[w.class_index];
+  const ConvexKinds kinds = convex_kinds(pairs.kind);
+  const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
+  const CandidateList& list = w.candidates;
+  const bool turned = is_round(kinds.a);  // the method wants what is round as B
+  ConvexShape a, b;
+  for (int i = 0; i < list.count; ++i) {
+    if (list.mask[i] == 0) continue;  // its lanes had too many candidates
+    const std::int32_t* code = list.code + i * kLanes;
+    PoseOffsets o = pose_offsets<kPair>(t, w, code);
+    // Lanes without a candidate point at some fixed shape, of another kind perhaps: they look at
+    // that of a lane that has one.
+    const int candidate = __builtin_ctz(list.mask[i]);
+    for (int l = 0; !kPair && l < kLanes; ++l) {
+      if (((list.mask[i] >> l) & 1u) == 0) o.a[l] = o.a[candidate];
+    }
+    const Mask active = mask_from_bits(list.mask[i]);
+    load_convex(t.hulls, kinds.b, w.pose_rows, o.b, b);
+    Manifold<Isotropic, N> m;
+    Vec3 origin_a;
+    if (N > 1 && kinds.a == ShapeKind::plane) {
+      PlanePose plane;
+      load_pose(base_a, o.a, plane);
+      origin_a = zero_of<Vec3>();
+      if constexpr (N > 1) collide_plane_convex(t, plane, b, m);
+    } else if (!kPair && kinds.a == ShapeKind::tile) {
+      Tile tile;
+      load_tile(base_a, o.a, b, active, tile, a);
+      if (!any(tile.there)) continue;
+      origin_a = a.p;
+      collide_tile<N>(t, a, tile, b, active, m);
+    } else {
+      load_convex(kPair ? t.hulls : nullptr, kinds.a, base_a, o.a, a);
+      origin_a = a.p;
+      const ConvexShape &first = turned ? b : a, &second = turned ? a : b;
+      if constexpr (N == 1) {
+        collide_convex_sphere(t, first, second, active, m);
+      } else {
+        collide_convex_pair(t, first, nullptr, second, active, m);
+      }
+      if (turned) turn_round(m);
+    }
+    Manifold<S, N> out;
+    copy_manifold(m, out);
+    add_slot<S, N, kPair, kDense>(t, g, w, pairs.list, pairs, out, active, code,
+                                  list.key + i * kLanes, origin_a, b.p);
+  }
+}
+
+template <class S, bool kDense>
+void collide_convex(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  Work& w = work_of(scratch);
+  const ListId list = t.pair_class[w.class_index].list;
+  list_candidates(t, w);
+  if (is_multi(list)) {
+    is_fixed(list) ? collide_convex_list<S, 4, false, kDense>(t, g, w)
+                   : collide_convex_list<S, 4, true, kDense>(t, g, w);
+  } else {
+    is_fixed(list) ? collide_convex_list<S, 1, false, kDense>(t, g, w)
+                   : collide_convex_list<S, 1, true, kDense>(t, g, w);
+  }
+}
+
+template <class S, bool kDense>
+void fill_narrow_phase(kernels::Stage<Real>* out) {
+  using kernels::PairKind;
+  const auto at = [out](PairKind kind) -> kernels::Stage<Real>& {
+    return out[static_cast<int>(kind)];
+  };
+  at(PairKind::plane_capsule) = collide<S, PlaneCapsule<S>, kDense>;
+  if constexpr (S::kDim == 3) {
+    at(PairKind::sphere_sphere) = collide<S, SphereSphere<S>, kDense>;
+    at(PairKind::box_sphere) = collide<S, BoxSphere<S>, kDense>;
+    at(PairKind::box_box) = collide<S, BoxBox<S>, kDense>;
+    at(PairKind::plane_sphere) = collide<S, PlaneSphere<S>, kDense>;
+    at(PairKind::plane_box) = collide<S, PlaneBox<S>, kDense>;
+    at(PairKind::sphere_box) = collide<S, Reversed<S, BoxSphere<S>>, kDense>;
+    using CapsuleSphere = CapsuleRound<S, SpherePose>;
+    at(PairKind::capsule_sphere) = collide<S, CapsuleSphere, kDense>;
+    at(PairKind::capsule_capsule) = collide<S, CapsuleCapsule<S>, kDense>;
+    at(PairKind::box_capsule) = collide<S, BoxCapsule<S>, kDense>;
+    at(PairKind::sphere_capsule) = collide<S, Reversed<S, CapsuleSphere>, kDense>;
+    at(PairKind::capsule_box) = collide<S, Reversed<S, BoxCapsule<S>>, kDense>;
+    constexpr int kFirst = static_cast<int>(PairKind::plane_cylinder);
+    constexpr int kLast = static_cast<int>(PairKind::tile_hull);
+    for (int i = kFirst; i <= kLast; ++i) out[i] = collide_convex<S, kDense>;
+  } else {
+    at(PairKind::circle_circle) = collide<S, CircleCircle<S>, kDense>;
+    at(PairKind::rectangle_circle) = collide<S, RectangleCircle<S>, kDense>;
+    at(PairKind::rectangle_rectangle) = collide<S, RectangleRectangle<S>, kDense>;
+    at(PairKind::polygon_circle) = collide<S, PolygonCircle<S>, kDense>;
+    at(PairKind::polygon_polygon) = collide<S, PolygonPolygon<S>, kDense>;
+    at(PairKind::plane_circle) = collide<S, PlaneCircle<S>, kDense>;
+    at(PairKind::plane_rectangle) = collide<S, PlaneRectangle<S>, kDense>;
+    at(PairKind::plane_polygon) = collide<S, PlanePolygon<S>, kDense>;
+    at(PairKind::circle_rectangle) = collide<S, Reversed<S, RectangleCircle<S>>, kDense>;
+    at(PairKind::circle_polygon) = collide<S, Reversed<S, PolygonCircle<S>>, kDense>;
+    using CapsuleCircle = CapsuleRound<S, CirclePose>;
+    using RectangleCapsule = EdgesCapsule<S, RectanglePose>;
+    using PolygonCapsule = EdgesCapsule<S, PolygonPose>;
+    at(PairKind::capsule_circle) = collide<S, CapsuleCircle, kDense>;
+    at(PairKind::capsule_capsule) = collide<S, EdgesCapsule<S, CapsulePose<Vec2>>, kDense>;
+    at(PairKind::rectangle_capsule) = collide<S, RectangleCapsule, kDense>;
+    at(PairKind::polygon_capsule) = collide<S, PolygonCapsule, kDense>;
+    at(PairKind::circle_capsule) = collide<S, Reversed<S, CapsuleCircle>, kDense>;
+    at(PairKind::capsule_rectangle) = collide<S, Reversed<S, RectangleCapsule>, kDense>;
+    at(PairKind::capsule_polygon) = collide<S, Reversed<S, PolygonCapsule>, kDense>;
+    using RoundedCapsule = EdgesCapsule<S, RoundedPose>;
+    at(PairKind::plane_rounded) = collide<S, PlaneOutline<S, RoundedPose>, kDense>;
+    at(PairKind::rounded_circle) = collide<S, RoundedCircle<S>, kDense>;
+    at(PairKind::rounded_rounded) = collide<S, RoundEdges<S, RoundedPose, RoundedPose>, kDense>;
+    at(PairKind::rounded_capsule) = collide<S, RoundedCapsule, kDense>;
+    at(PairKind::circle_rounded) = collide<S, Reversed<S, RoundedCircle<S>>, kDense>;
+    at(PairKind::capsule_rounded) = collide<S, Reversed<S, RoundedCapsule>, kDense>;
+    at(PairKind::link_rounded) = collide<S, LinkEdges<S, RoundedPose>, kDense>;
+    at(PairKind::link_circle) = collide<S, LinkCircle<S>, kDense>;
+    at(PairKind::link_rectangle) = collide<S, LinkEdges<S, RectanglePose>, kDense>;
+    at(PairKind::link_polygon) = collide<S, LinkEdges<S, PolygonPose>, kDense>;
+    at(PairKind::link_capsule) = collide<S, LinkEdges<S, CapsulePose<Vec2>>, kDense>;
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,147 @@
+// The solver's passes over a group: each contact list in its fixed order. One instantiation per
+// space, friction and layout fills a SolverTable.
+#pragma once
+
+#include "kernels/motion/finish.hpp"
+#include "kernels/rows/contact_cache.hpp"
+#include "kernels/solver/energy.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S, bool kDense, bool kFriction>
+struct Passes {
+  template <Pass kPass>
+  static void solve(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      solve_slot<S, N, decltype(pair)::value, kDense, kFriction, kPass>(t, w, s);
+      if constexpr (kPass == Pass::relax) {
+        if (t.has_restitution) accumulate_bounce(s, bounce_at<S, N>(list, i), kFriction);
+      }
+    });
+  }
+
+  // Velocities after the first push are the base of warm starting.
+  static void push(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    first_push<S, kDense>(t, g, work_of(scratch));
+  }
+  static void open(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    begin_substeps<S, kDense>(t, work_of(scratch));
+  }
+
+  static void mark(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    mark_velocities<S, kDense>(t, work_of(scratch));
+  }
+  static void gather(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    gather_impulses<S, kDense>(t, work_of(scratch));
+  }
+
+  static void restitute(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    unsigned active = 0;
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      auto& bounce = bounce_at<S, N>(list, i);
+      find_participants(t, s, bounce);
+      active |= bounce.participants;
+    });
+    if (active == 0) return;
+    for_each_register<S, kDense>(
+        t, w, [&](int at, Float, Float) { Float::load(w.velocity + at).store(w.warmed + at); });
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      take_back<S, N, decltype(pair)::value, kDense>(w, s, bounce_at<S, N>(list, i));
+    });
+    for (int sweep = 0; sweep < t.restitution_sweeps && active != 0; ++sweep) {
+      active = 0;
+      for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+        constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+        active |= play_impact<S, N, decltype(pair)::value, kDense>(
+            t, w, s, bounce_at<S, N>(list, i), sweep == 0);
+      });
+    }
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      finish_impact<S, N, decltype(pair)::value, kDense, kFriction>(w, s, bounce_at<S, N>(list, i));
+    });
+    balance(t, g, w);
+  }
+
+  // No island keeps more energy than it had (energy.hpp).
+  static void balance(const Tables& t, const Group& g, Work& w) {
+    weigh_bodies<S, kDense>(t, g, w);
+    bool driven = false;
+    for (int b = 0; b < t.bodies; ++b) driven |= t.body[b].kinematic;
+    if (driven) {
+      for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+        constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+        if constexpr (decltype(pair)::value) {
+          credit_driver<S, N, kDense, kFriction>(t, w, s, bounce_at<S, N>(list, i));
+        }
+      });
+    }
+    const unsigned gained = lanes_that_gained(t, w);
+    if (gained == 0) return;
+    for (int l = 0; l < kLanes; ++l) {
+      if (!((gained >> l) & 1u)) {
+        for (int b = 0; b < t.bodies; ++b) account(w, b, kShare)[l] = Real(1);
+        continue;
+      }
+      for (int b = 0; b < t.bodies; ++b) w.parent[b] = b;
+      for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+        constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+        if constexpr (decltype(pair)::value) join_bodies(t, w, s, bounce_at<S, N>(list, i), l);
+      });
+      share_out(t, w, l);
+    }
+    keep_share_of_bodies<S, kDense>(t, w);
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      keep_share_of_slot<S, N, decltype(pair)::value, kFriction>(t, w, s, bounce_at<S, N>(list, i));
+    });
+  }
+
+  static void store(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    CacheWriter writer(t, g, w);
+    for_each_slot<S>(w, [&](auto& s, int, SlotList& list, auto) {
+      writer.put(s, static_cast<ListId>(&list - w.slots));
+    });
+    writer.close();
+    report_overflow(g, w);
+  }
+
+  static void enter(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    enter_velocities<S, kDense>(t, g, work_of(scratch));
+  }
+  static void advance(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    advance_displacement<S, kDense>(t, work_of(scratch));
+  }
+  static void next(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    next_substep<S, kDense>(t, work_of(scratch));
+  }
+  static void leave(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+    leave_state<S, kDense>(t, g, work_of(scratch), NoFlight{});
+  }
+
+  static kernels::SolverTable<Real> table() {
+    kernels::SolverTable<Real> out{};
+    out.enter = enter;
+    out.push = push;
+    out.warm_start = solve<Pass::warm_start>;
+    out.open = open;
+    out.mark = mark;
+    out.gather = gather;
+    out.bias = solve<Pass::bias>;
+    out.advance = advance;
+    out.relax = solve<Pass::relax>;
+    out.next = next;
+    out.restitute = restitute;
+    out.store = store;
+    out.leave = leave;
+    return out;
+  }
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

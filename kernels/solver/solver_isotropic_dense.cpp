@@ -1,0 +1,15 @@
+// Solver passes of the Isotropic space in the dense layout.
+#include "kernels/solver/passes.hpp"
+#include "kernels/work/solver_tables.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+void fill_solver_isotropic_dense(kernels::SolverTable<Real>& with,
+                                 kernels::SolverTable<Real>& without) {
+  with = Passes<Isotropic, true, true>::table();
+  without = Passes<Isotropic, true, false>::table();
+  fill_collide_isotropic_dense(with.collide);
+  fill_collide_isotropic_dense(without.collide);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,15 @@
+// Solver passes of the Isotropic space in the rows layout.
+#include "kernels/solver/passes.hpp"
+#include "kernels/work/solver_tables.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+void fill_solver_isotropic_rows(kernels::SolverTable<Real>& with,
+                                kernels::SolverTable<Real>& without) {
+  with = Passes<Isotropic, false, true>::table();
+  without = Passes<Isotropic, false, false>::table();
+  fill_collide_isotropic_rows(with.collide);
+  fill_collide_isotropic_rows(without.collide);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

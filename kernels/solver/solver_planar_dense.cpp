@@ -1,0 +1,15 @@
+// Solver passes of the Planar space in the dense layout.
+#include "kernels/solver/passes.hpp"
+#include "kernels/work/solver_tables.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+void fill_solver_planar_dense(kernels::SolverTable<Real>& with,
+                              kernels::SolverTable<Real>& without) {
+  with = Passes<Planar, true, true>::table();
+  without = Passes<Planar, true, false>::table();
+  fill_collide_planar_dense(with.collide);
+  fill_collide_planar_dense(without.collide);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,15 @@
+// Solver passes of the Planar space in the rows layout.
+#include "kernels/solver/passes.hpp"
+#include "kernels/work/solver_tables.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+void fill_solver_planar_rows(kernels::SolverTable<Real>& with,
+                             kernels::SolverTable<Real>& without) {
+  with = Passes<Planar, false, true>::table();
+  without = Passes<Planar, false, false>::table();
+  fill_collide_planar_rows(with.collide);
+  fill_collide_planar_rows(without.collide);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,113 @@
+// sweep: the passes over contacts of the solvers that work by several sweeps before the bodies
+// move (projected Gauss-Seidel, SOR, nonsmooth conjugate gradients, penalty). Normal row of a
+// point with gap s, before relaxation r:
+//   lambda' = max(0, lambda - r (m (a v + bias) + i lambda))
+//   s > 0: bias = s / h, a = 1, i = 0 (speculative)
+//   s <= 0: bias = max(a b min(s + slop, 0), -c), gains a, b, i (tables.hpp, Softness), c the
+//           push-out speed
+// Hard rows have a = 1, i = 0 and b = share / h (Baumgarte 1972), or b = 0 where `part` removes
+// overlaps by displacements; soft ones have no slop.
+#pragma once
+
+#include "kernels/solver/restitution.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S, int N, bool kPair, bool kDense>
+MW_INLINE void sweep_slot(const Tables& t, Work& w, Slot<S, N>& s) {
+  SlotVelocities<S, N, kPair, kDense> v(w, s);
+  const Float zero(Real(0)), one(Real(1)), inv_h(t.inv_h), relaxation(t.solver.relaxation);
+  const Float slop(t.solver.slop);
+  const auto& soft = kPair ? t.soft_pair : t.soft_fixed;
+  const Float rate(soft.bias_rate * soft.mass_scale), cap(-t.push_out_speed);
+  Float impulse[N], d[N], gap[N], speed[N];
+  for (int i = 0; i < N; ++i) {
+    impulse[i] = Float::load(s.impulse[i]);
+    gap[i] = Float::load(s.gap[i]);
+  }
+  if (w.sweep == 0 && w.substep > 0) {
+    for (int i = 0; i < N; ++i) gap[i] = Float::load(s.separation[i]);
+    moved_apart<S, N, kPair, kDense>(w, s, gap);
+    for (int i = 0; i < N; ++i) gap[i].store(s.gap[i]);
+  }
+  normal_speeds(s, v, speed);
+  for (int i = 0; i < N; ++i) {
+    const Mask apart = zero < gap[i];
+    const Float bias = select(apart, gap[i] * inv_h, max(min(gap[i] + slop, zero) * rate, cap));
+    const Float scale = select(apart, one, soft.mass_scale);
+    const Float keep = select(apart, zero, soft.impulse_scale);
+    const Float change = fma(keep, impulse[i], Float::load(s.mass[i]) * fma(scale, speed[i], bias));
+    const Float total = max(fnma(relaxation, change, impulse[i]), zero);
+    d[i] = total - impulse[i];
+    impulse[i] = total;
+    total.store(s.impulse[i]);
+    couple_following(s, i, d[i], speed);
+  }
+  apply_normal(s, d, v);
+  if (t.has_friction) {
+    Float after[2], twist_after(Real(0));
+    solve_friction<S, N, kPair, kDense, true>(s, friction_budget(s, impulse), v, after, twist_after,
+                                              relaxation);
+    after[0].store(s.tangent_impulse[0]);
+    if constexpr (S::kTangents == 2) after[1].store(s.tangent_impulse[1]);
+    if constexpr (Slot<S, N>::kTwist) twist_after.store(s.twist_impulse);
+  }
+  v.store(w, s);
+}
+
+// Moves the bodies of a slot apart by what is left of their share of the overlap that the substep
+// began with; w.velocity holds displacements.
+template <class S, int N, bool kPair, bool kDense>
+MW_INLINE void part_slot(const Tables& t, Work& w, const Slot<S, N>& s) {
+  SlotVelocities<S, N, kPair, kDense> moved(w, s);
+  const Float zero(Real(0)), share(t.solver.push_out_share), most(t.push_out_speed * t.h);
+  const Float slop(t.solver.slop);
+  Float way[N], d[N];
+  normal_speeds(s, moved, way);
+  for (int i = 0; i < N; ++i) {
+    const Float began = Float::load(s.gap[i]);
+    const Float wanted = began + min(max((began + slop) * -share, zero), most);
+    const Float gap = Float::load(s.separation[i]) + way[i];
+    const Mask overlaps = began < zero;
+    d[i] = select(overlaps, Float::load(s.mass[i]) * max(wanted - gap, zero), zero);
+    couple_following(s, i, d[i], way);
+  }
+  apply_normal(s, d, moved);
+  moved.store(w, s);
+}
+
+template <class S, bool kDense>
+struct Sweeps {
+  static void sweep(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for_each_slot<S>(w, [&](auto& s, int, SlotList&, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      sweep_slot<S, N, decltype(pair)::value, kDense>(t, w, s);
+    });
+    ++w.sweep;
+  }
+
+  static void part(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    Real* const velocity = w.velocity;
+    w.velocity = w.displacement;
+    for_each_slot<S>(w, [&](auto& s, int, SlotList&, auto pair) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      part_slot<S, N, decltype(pair)::value, kDense>(t, w, s);
+    });
+    w.velocity = velocity;
+  }
+
+  // What the contacts of the substep have done, for restitution.
+  static void tally(const Tables& t, const Group&, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto) {
+      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+      accumulate_bounce(s, bounce_at<S, N>(list, i), t.has_friction);
+    });
+  }
+
+  static kernels::SweepTable<Real> table() { return {sweep, part, tally}; }
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,31 @@
+// The solver's instantiations, one file each so that they compile side by side.
+#pragma once
+
+#include "kernels/work/work.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// with / without friction
+using FillSolver = void(kernels::SolverTable<Real>& with, kernels::SolverTable<Real>& without);
+FillSolver fill_solver_planar_dense, fill_solver_planar_rows;
+FillSolver fill_solver_isotropic_dense, fill_solver_isotropic_rows;
+FillSolver fill_solver_tensor_dense, fill_solver_tensor_rows;
+
+using FillSweeps = void(kernels::SweepTable<Real>& dense, kernels::SweepTable<Real>& rows);
+FillSweeps fill_sweeps_planar, fill_sweeps_isotropic, fill_sweeps_tensor;
+void fill_impulses(kernels::ImpulseTable<Real>* tables);  // [inertia]
+
+using FillJoints = void(kernels::JointSolver<Real>& dense, kernels::JointSolver<Real>& rows);
+FillJoints fill_joints_planar, fill_joints_tensor;
+using FillFlight = void(kernels::FlightTable<Real>* tables);  // [inertia]
+FillFlight fill_flight_planar, fill_flight_spatial;
+// Bytes of the rows of a part.
+std::size_t part_bytes(Planar);
+std::size_t part_bytes(Tensor);
+
+using FillCollide = void(kernels::Stage<Real>* collide);
+FillCollide fill_collide_planar_dense, fill_collide_planar_rows;
+FillCollide fill_collide_isotropic_dense, fill_collide_isotropic_rows;
+FillCollide fill_collide_tensor_dense, fill_collide_tensor_rows;
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

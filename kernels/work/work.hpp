@@ -1,0 +1,157 @@
+// Work: the per-thread scratch of one plan, reused from group to group. Laid out once by
+// make_scratch (work.cpp); stages only follow the pointers.
+#pragma once
+
+#include "kernels/data/table.hpp"
+#include "kernels/lane/space.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+using Tables = kernels::WorldTables<Real>;
+using Group = kernels::GroupView<Real>;
+using kernels::kLists;
+using kernels::ListId;
+
+// Candidates of one class, one per lane and slot. An inactive lane holds the code of the dummy.
+struct CandidateList {
+  int count;
+  std::int32_t* code;   // [slot][lane]: a | b << 16
+  std::int32_t* key;    // [slot][lane]
+  std::uint32_t* mask;  // [slot]: active lanes
+  Real* axis;           // [slot][lane]: separating axis found so far (boxes)
+};
+
+struct SlotList {
+  int count;
+  int max_slots;
+  std::size_t stride;         // bytes of a slot
+  std::size_t bounce_stride;  // bytes of a slot's restitution rows
+  unsigned char* slots;
+  unsigned char* bounces;
+};
+
+// Takes down contact points while the collide stages run: of one lane (KernelTable::record), or the
+// places of those of all lanes for the observers (kernels/observe/).
+struct Recorder {
+  kernels::ContactPoint<Real>* out;
+  int max, lane, count;
+  Real* const* places;  // [list], or nullptr
+};
+
+// Sparse plans: where pairs are looked for, one lane after the other
+// (kernels/broad/sparse_pairs.cpp). The shapes are the colliders, then the fixed shapes. Those that
+// are there are cut into strips; on the average a shape lies in no more than kCopies of them.
+inline constexpr int kMostStrips = 256, kCopies = 3;
+struct SparseWork {
+  std::int32_t* hit_start;             // [class], of its hits
+  std::int32_t* hit_code;              // [hit]
+  std::int32_t* name;                  // [shape that is there]
+  float* bounds;                       // [axis][low, high][shape that is there]
+  std::uint64_t *order, *order_spare;  // [shape that is there]: lower bound, which
+  float* sorted;                       // [axis][low, high][place], strip by strip
+  std::int32_t *shape, *first_strip;   // [place]
+  std::int32_t strip_start[kMostStrips + 2];
+  std::uint64_t *found, *found_spare;  // [room]: key, code
+  std::uint64_t* pairs;                // [lane][lane_room]: key, code; ascending
+  std::int32_t shapes, room, lane_room;
+  std::int32_t count[kLanes];  // of pairs
+};
+
+// Blocks of an integrator, laid out as the state is (kernels/flight/).
+struct FlightWork {
+  Real* now;   // where the group has come
+  Real* base;  // where it was
+  Real* rate;  // of change
+  Real* sum;   // of rates
+};
+
+// Of conjugate gradients (kernels/solver/impulses.cpp): for each impulse of each row, in the order
+// of the solver, what it was and the way that it goes.
+struct Search {
+  Real* before;
+  Real* way;
+  Real* square;  // [lane], of the last step
+};
+
+struct Work {
+  FlightWork flight;
+  Real* before;  // the group's state before the step (plans without contacts only)
+  // begin
+  Real* pose_rows;  // [lane][row_block], the last kDummyRow of a block are the dummy's
+  Real* body_rows;  // [lane][bodies + 1][body_row], see body_row_size
+  Real* bounds;     // [collider][centre dim, half extent dim][lane], margin included
+  Real* beyond;     // [collider][lane], how much farther its body may move than the margin's cap
+  // broad phase
+  std::int32_t* hits;        // [key] candidate index within its class, compacted per class
+  std::uint32_t* hit_masks;  // [key]
+  std::int32_t* hit_count;   // [class]
+  std::uint32_t* marks;      // [key], sort and sweep
+  Real* sorted;              // [collider][low, high, index][lane], sort and sweep
+  SparseWork sparse;
+  // narrow phase
+  CandidateList candidates;  // of the class at work
+  CandidateList found;       // box pairs: after the separating-axis test
+  std::uint32_t* keep;       // [slot], lanes that passed it
+  SlotList slots[kLists];
+  unsigned char* parts;                     // rows of joints (kernels/joint/)
+  Real* borne;                              // [breakable joint] impulses of the step so far
+  std::int32_t* reached;                    // [body] by a joint that broke
+  std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
+  std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
+  // sleep
+  std::uint32_t frozen;         // lanes that were frozen when the step began
+  std::uint32_t untouched;      // those, and lanes in which no body is awake: their cache stays
+  std::uint32_t partly_asleep;  // lanes whose cache keeps the impulses of sleeping pairs:
+  std::int32_t kept[kLists][kLanes];
+  std::int32_t* kept_keys[kLists];  // [lane][capacity]
+  Real* kept_rows[kLists];          // [lane][capacity][cache row]
+  std::uint32_t* ready;             // [body], lanes in which it has rested long enough
+  std::int32_t* parent;             // [body] of islands
+  std::int32_t* restless;           // [body] 1: its island has a body that is not ready
+  std::uint32_t overflow;           // lanes that dropped a contact in this step
+  int class_index;
+  bool dense;
+  int substep;
+  int sweep;  // of the substep, over contacts (solver/sweep.hpp)
+  Search search;
+  // solver
+  Real* velocity;      // dense or rows, see lane/space.hpp
+  Real* warmed;        // velocity after warm start
+  Real* impulse_part;  // what warm starting adds to the velocity of the next substep
+  Real* displacement;
+  Real* push_storage;
+  Real* push;  // what each lane adds to velocities in a substep; nullptr: all the same
+  Real* factor_storage;
+  Real* factor;       // what drag leaves of them; nullptr: all the same
+  int rows_per_lane;  // bodies + dummy + world + padding
+  alignas(64) std::int32_t velocity_base[kLanes];  // offset of a lane's velocity rows
+  alignas(64) std::int32_t pose_base[kLanes];
+  alignas(64) std::int32_t body_base[kLanes];
+  std::int32_t* swift;  // colliders that go far in this step (casts between moving shapes)
+  std::int32_t swift_count;
+  std::uint32_t* touched;  // [body] lanes in which a contact may push the body in this step
+  Recorder* recorder;      // nullptr but while contacts are recorded
+  Recorder recorder_storage;
+  kernels::GroupCounters counters;
+};
+
+// Place of the world among velocities, for joints that hold to it. Not the dummy's, to which idle
+// lanes of contacts write.
+MW_INLINE int world_body(const Tables& t) { return t.bodies + 1; }
+
+// Inverse mass and inertia of a body, and its centre of mass (for shapes that are off it):
+//   planar      1/m 1/I x y
+//   isotropic   1/m 1/I 0 0 | x y z 0
+//   tensor      Ixx Ixy Ixz Iyy | Iyz Izz 1/m 0 | x y z 0    (inverse, world axes)
+inline constexpr int body_row_size(kernels::InertiaKind kind) {
+  return kind == kernels::InertiaKind::planar      ? 4
+         : kind == kernels::InertiaKind::isotropic ? 8
+                                                   : 12;
+}
+
+MW_INLINE Work& work_of(kernels::Scratch* s) { return *reinterpret_cast<Work*>(s); }
+
+std::size_t scratch_bytes(const Tables& tables);
+kernels::Scratch* make_scratch(const Tables& tables, void* memory);
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
