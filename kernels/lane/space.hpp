@@ -110,14 +110,12 @@ template <class S>
 MW_INLINE Velocity<S> load_velocity_row(S, const Real* base, const std::int32_t* o) {
   Velocity<S> a;
   Float unused0, unused1;
-  load_rows4(base, o, a.v.x, a.v.y, a.v.z, a.w.x);
-  load_rows4(base + 4, o, a.w.y, a.w.z, unused0, unused1);
+  load_rows8(base, o, a.v.x, a.v.y, a.v.z, a.w.x, a.w.y, a.w.z, unused0, unused1);
   return a;
 }
 template <class S>
 MW_INLINE void store_velocity_row(S, Real* base, const std::int32_t* o, const Velocity<S>& a) {
-  store_rows4(base, o, a.v.x, a.v.y, a.v.z, a.w.x);
-  store_rows4(base + 4, o, a.w.y, a.w.z, Real(0), Real(0));
+  store_rows8(base, o, a.v.x, a.v.y, a.v.z, a.w.x, a.w.y, a.w.z, Real(0), Real(0));
 }
 
 template <class S>

@@ -104,13 +104,12 @@ class CacheWriter {
   void write(const Slot<S, 4>& s, Real* rows, const std::int32_t* o) {
     const Float zero(Real(0));
     const bool friction = t_.has_friction;
-    store_rows4(rows, o, Float::load(s.feature_x[0]), Float::load(s.feature_x[1]),
-                Float::load(s.feature_x[2]), Float::load(s.feature_x[3]));
-    store_rows4(rows + 4, o, Float::load(s.feature_y[0]), Float::load(s.feature_y[1]),
+    store_rows8(rows, o, Float::load(s.feature_x[0]), Float::load(s.feature_x[1]),
+                Float::load(s.feature_x[2]), Float::load(s.feature_x[3]),
+                Float::load(s.feature_y[0]), Float::load(s.feature_y[1]),
                 Float::load(s.feature_y[2]), Float::load(s.feature_y[3]));
-    store_rows4(rows + 8, o, Float::load(s.impulse[0]), Float::load(s.impulse[1]),
-                Float::load(s.impulse[2]), Float::load(s.impulse[3]));
-    store_rows4(rows + 12, o, Float::load(s.code),
+    store_rows8(rows + 8, o, Float::load(s.impulse[0]), Float::load(s.impulse[1]),
+                Float::load(s.impulse[2]), Float::load(s.impulse[3]), Float::load(s.code),
                 friction ? Float::load(s.tangent_impulse[0]) : zero,
                 friction ? Float::load(s.tangent_impulse[1]) : zero,
                 friction ? Float::load(s.twist_impulse) : zero);

@@ -63,10 +63,8 @@ MW_INLINE void load_pose(const Real* base, const std::int32_t* o, SpherePose& s)
   load_rows4(base, o, s.p.x, s.p.y, s.p.z, s.radius);
 }
 MW_INLINE void load_pose(const Real* base, const std::int32_t* o, BoxPose& b) {
-  load_rows4(base, o, b.r.x.x, b.r.x.y, b.r.x.z, b.p.x);
-  load_rows4(base + 4, o, b.r.y.x, b.r.y.y, b.r.y.z, b.p.y);
-  load_rows4(base + 8, o, b.r.z.x, b.r.z.y, b.r.z.z, b.p.z);
-  load_rows4(base + 12, o, b.half.x, b.half.y, b.half.z, b.margin);
+  load_rows8(base, o, b.r.x.x, b.r.x.y, b.r.x.z, b.p.x, b.r.y.x, b.r.y.y, b.r.y.z, b.p.y);
+  load_rows8(base + 8, o, b.r.z.x, b.r.z.y, b.r.z.z, b.p.z, b.half.x, b.half.y, b.half.z, b.margin);
 }
 MW_INLINE void load_pose(const Real* base, const std::int32_t* o, CylinderPose& c) {
   BoxPose box;
@@ -140,13 +138,12 @@ MW_INLINE void load_pose(const Real* base, const std::int32_t* o, PolygonPose& p
 }
 MW_INLINE void load_pose(const Real* base, const std::int32_t* o, PlanePose& p) {
   Float unused;
-  load_rows4(base, o, p.normal.x, p.normal.y, p.normal.z, p.offset);
-  load_rows4(base + 4, o, p.tangent.x, p.tangent.y, p.tangent.z, unused);
+  load_rows8(base, o, p.normal.x, p.normal.y, p.normal.z, p.offset, p.tangent.x, p.tangent.y,
+             p.tangent.z, unused);
 }
 
 MW_INLINE void load_pose(const Real* base, const std::int32_t* o, CapsulePose<Vec3>& c) {
-  load_rows4(base, o, c.p.x, c.p.y, c.p.z, c.radius);
-  load_rows4(base + 4, o, c.axis.x, c.axis.y, c.axis.z, c.half);
+  load_rows8(base, o, c.p.x, c.p.y, c.p.z, c.radius, c.axis.x, c.axis.y, c.axis.z, c.half);
 }
 MW_INLINE void load_pose(const Real* base, const std::int32_t* o, CapsulePose<Vec2>& c) {
   Float unused;
