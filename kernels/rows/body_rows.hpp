@@ -1,6 +1,7 @@
 // What rows need to know of bodies: inverse mass and inertia, centre of mass, velocity, gravity.
 #pragma once
 
+#include "kernels/lane/ints.hpp"
 #include "kernels/rows/slot.hpp"
 #include "kernels/work/constants.hpp"
 
@@ -29,8 +30,8 @@ MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t*
 MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
                              BodyRow<Tensor>& r) {
   Float unused;
-  load_rows4(w.body_rows, o, r.inertia.xx, r.inertia.xy, r.inertia.xz, r.inertia.yy);
-  load_rows4(w.body_rows + 4, o, r.inertia.yz, r.inertia.zz, r.inv_mass, unused);
+  load_rows8(w.body_rows, o, r.inertia.xx, r.inertia.xy, r.inertia.xz, r.inertia.yy, r.inertia.yz,
+             r.inertia.zz, r.inv_mass, unused);
   if (!t.collider_is_body) {
     load_rows4(w.body_rows + 8, o, r.centre.x, r.centre.y, r.centre.z, unused);
   }
@@ -78,17 +79,12 @@ MW_INLINE typename S::Vec attraction_of_body(const Tables& t, const Group& g, in
 
 // Acceleration of the bodies of the lanes along n, from gravity and attractors.
 template <class S>
-MW_INLINE Float gravity_along(const Tables& t, const Group& g, const std::int32_t* body,
-                              typename S::Vec n) {
-  LaneNumber a[S::kDim];
+MW_INLINE Float gravity_along(const Tables& t, const Group& g, Ints bodies, typename S::Vec n) {
+  using Constants = kernels::BodyConstants<LaneNumber>;
+  Float a[S::kDim];
   for (int c = 0; c < S::kDim; ++c) {
-    if (t.uniform_gravity) {
-      a[c] = constants_of_body(g, 0).gravity[c];
-    } else {
-      for (int l = 0; l < kLanes; ++l) {
-        a[c].lane[l] = constants_of_body(g, body[l]).gravity[c].lane[l];
-      }
-    }
+    const LaneNumber& of_first = constants_of_body(g, 0).gravity[c];
+    a[c] = t.uniform_gravity ? Float(of_first) : gather_numbers<Constants>(of_first, bodies);
   }
   typename S::Vec pull;
   pull.x = a[0], pull.y = a[1];
@@ -97,7 +93,9 @@ MW_INLINE Float gravity_along(const Tables& t, const Group& g, const std::int32_
   if (t.attractors == 0) return along;
   // Lanes may have different bodies; few scenes have attractors.
   alignas(64) Real out[kLanes], of_body[kLanes];
+  alignas(64) std::int32_t body[kLanes];
   along.store(out);
+  bodies.store(body);
   for (int l = 0; l < kLanes; ++l) {
     if (body[l] >= t.bodies || t.body[body[l]].kinematic) continue;
     dot(attraction_of_body<S>(t, g, body[l]), n).store(of_body);

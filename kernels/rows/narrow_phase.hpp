@@ -15,7 +15,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Offsets of the pose rows of both shapes of a slot.
+// Offsets of the pose rows of both shapes of a slot; of a fixed A in the rows of fixed shapes.
 struct PoseOffsets {
   alignas(64) std::int32_t a[kLanes], b[kLanes];
 };
@@ -23,10 +23,13 @@ struct PoseOffsets {
 template <bool kPair>
 MW_INLINE PoseOffsets pose_offsets(const Tables& t, const Work& w, const std::int32_t* code) {
   PoseOffsets o;
-  for (int l = 0; l < kLanes; ++l) {
-    const std::int32_t a = code[l] & 0xffff, b = (code[l] >> 16) & 0xffff;
-    o.a[l] = kPair ? w.pose_base[l] + t.collider_row[a] : t.fixed[a].row;
-    o.b[l] = w.pose_base[l] + t.collider_row[b];
+  const Ints shapes = Ints::load(code), base = Ints::load(w.pose_base);
+  (base + gather(t.collider_row, high_half(shapes))).store(o.b);
+  if constexpr (kPair) {
+    (base + gather(t.collider_row, low_half(shapes))).store(o.a);
+  } else {
+    constexpr auto kStride = static_cast<std::int32_t>(sizeof(*t.fixed) / sizeof(std::int32_t));
+    gather(&t.fixed->row, low_half(shapes) * Ints(kStride)).store(o.a);
   }
   return o;
 }
