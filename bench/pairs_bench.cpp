@@ -14,32 +14,6 @@ namespace {
 
 using kernels::PairKind;
 
-// Kinds whose first shape may move.
-bool may_move(PairKind kind) {
-  switch (kind) {
-    case PairKind::sphere_box:
-    case PairKind::circle_rectangle:
-    case PairKind::circle_polygon:
-    case PairKind::sphere_capsule:
-    case PairKind::circle_capsule:
-    case PairKind::capsule_box:
-    case PairKind::capsule_rectangle:
-    case PairKind::capsule_polygon:
-    case PairKind::link_circle:
-    case PairKind::link_rectangle:
-    case PairKind::link_polygon:
-    case PairKind::link_capsule:
-    case PairKind::sphere_cylinder:
-    case PairKind::capsule_cylinder:
-    case PairKind::cylinder_box:
-    case PairKind::sphere_hull:
-    case PairKind::capsule_hull:
-    case PairKind::box_hull:
-    case PairKind::cylinder_hull: return false;
-    default: return !is_plane(kind);
-  }
-}
-
 void time_pair(benchmark::State& state, const Scenario& scenario, Isa isa, int class_index,
                kernels::Layout layout) {
   TypicalWorlds& worlds = typical_worlds(scenario, isa);
@@ -89,7 +63,7 @@ void register_pairs() {
       for (const Isa isa : benched_isas()) {
         for (const auto layout : {kernels::Layout::rows, kernels::Layout::dense}) {
           const std::string name = std::string("collide/") + (other_space ? "planar_" : "") +
-                                   (fixed && may_move(classes[c].kind) ? "fixed_" : "") +
+                                   (fixed && may_both_move(classes[c].kind) ? "fixed_" : "") +
                                    manyworlds::to_string(classes[c].kind) + "/" +
                                    manyworlds::to_string(isa) + "/" + to_string(layout);
           const int index = static_cast<int>(c);

@@ -7,6 +7,7 @@
 
 #include "kernels/data/flight_tables.hpp"
 #include "kernels/data/joint_tables.hpp"
+#include "kernels/data/pair_kinds.hpp"
 #include "kernels/data/solver_options.hpp"
 
 namespace manyworlds::kernels {
@@ -20,107 +21,12 @@ enum class Dimension : int { planar, spatial };
 enum class InertiaKind : int { planar, isotropic, tensor };
 inline constexpr int kInertiaKinds = 3;
 
-enum class ShapeKind : int {
-  sphere,
-  box,
-  circle,
-  rectangle,
-  polygon,
-  plane,
-  capsule,
-  link,
-  cylinder,
-  hull,
-  rounded,  // polygon
-  tile,     // of a height field
-};
-inline constexpr int kShapeKinds = 12;
-
-// Shape pairs; the first shape is A. Planes and other fixed shapes are always A. Capsules have the
-// same names in the plane and in space.
-enum class PairKind : int {
-  sphere_sphere,
-  box_sphere,
-  box_box,
-  plane_sphere,
-  plane_box,
-  circle_circle,
-  rectangle_circle,
-  rectangle_rectangle,
-  polygon_circle,
-  polygon_polygon,
-  plane_circle,
-  plane_rectangle,
-  plane_polygon,
-  sphere_box,        // fixed sphere
-  circle_rectangle,  // fixed circle
-  circle_polygon,    // fixed circle
-  capsule_sphere,
-  capsule_circle,
-  capsule_capsule,
-  box_capsule,
-  rectangle_capsule,
-  polygon_capsule,
-  plane_capsule,
-  sphere_capsule,     // fixed sphere
-  circle_capsule,     // fixed circle
-  capsule_box,        // fixed capsule
-  capsule_rectangle,  // fixed capsule
-  capsule_polygon,    // fixed capsule
-  link_circle,
-  link_rectangle,
-  link_polygon,
-  link_capsule,
-  plane_cylinder,
-  plane_hull,
-  cylinder_sphere,
-  cylinder_capsule,
-  box_cylinder,
-  cylinder_cylinder,
-  hull_sphere,
-  hull_capsule,
-  hull_box,
-  hull_cylinder,
-  hull_hull,
-  sphere_cylinder,  // fixed sphere, and so on
-  capsule_cylinder,
-  cylinder_box,
-  sphere_hull,
-  capsule_hull,
-  box_hull,
-  cylinder_hull,
-  tile_sphere,
-  tile_capsule,
-  tile_box,
-  tile_cylinder,
-  tile_hull,
-  plane_rounded,
-  rounded_circle,
-  rounded_rounded,
-  rounded_capsule,
-  circle_rounded,   // fixed circle
-  capsule_rounded,  // fixed capsule
-  link_rounded,
-};
-inline constexpr int kPairKinds = 62;
-static inline constexpr bool is_plane(PairKind kind) {
-  return kind == PairKind::plane_sphere || kind == PairKind::plane_box ||
-         kind == PairKind::plane_circle || kind == PairKind::plane_rectangle ||
-         kind == PairKind::plane_polygon || kind == PairKind::plane_capsule ||
-         kind == PairKind::plane_cylinder || kind == PairKind::plane_hull ||
-         kind == PairKind::plane_rounded;
-}
-
 // Contacts of a world live in four lists, solved in this order.
 enum class ListId : int { pair_multi, pair_single, fixed_multi, fixed_single };
 inline constexpr int kLists = 4;
 static inline constexpr bool is_fixed(ListId id) { return id >= ListId::fixed_multi; }
 static inline constexpr bool is_multi(ListId id) {
   return id == ListId::pair_multi || id == ListId::fixed_multi;
-}
-
-static inline constexpr bool is_tile(PairKind kind) {
-  return PairKind::tile_sphere <= kind && kind <= PairKind::tile_hull;
 }
 
 inline constexpr int kMaxVertices = 8;

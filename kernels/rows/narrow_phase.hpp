@@ -108,37 +108,6 @@ void collide(const Tables& t, const Group& g, kernels::Scratch* scratch) {
 // ---- pairs of the general method
 // -----------------------------------------------------------------
 
-struct ConvexKinds {
-  kernels::ShapeKind a, b;
-};
-inline constexpr ConvexKinds convex_kinds(kernels::PairKind pair) {
-  using kernels::PairKind, kernels::ShapeKind;
-  switch (pair) {
-    case PairKind::plane_cylinder: return {ShapeKind::plane, ShapeKind::cylinder};
-    case PairKind::plane_hull: return {ShapeKind::plane, ShapeKind::hull};
-    case PairKind::cylinder_sphere: return {ShapeKind::cylinder, ShapeKind::sphere};
-    case PairKind::cylinder_capsule: return {ShapeKind::cylinder, ShapeKind::capsule};
-    case PairKind::box_cylinder: return {ShapeKind::box, ShapeKind::cylinder};
-    case PairKind::cylinder_cylinder: return {ShapeKind::cylinder, ShapeKind::cylinder};
-    case PairKind::hull_sphere: return {ShapeKind::hull, ShapeKind::sphere};
-    case PairKind::hull_capsule: return {ShapeKind::hull, ShapeKind::capsule};
-    case PairKind::hull_box: return {ShapeKind::hull, ShapeKind::box};
-    case PairKind::hull_cylinder: return {ShapeKind::hull, ShapeKind::cylinder};
-    case PairKind::hull_hull: return {ShapeKind::hull, ShapeKind::hull};
-    case PairKind::sphere_cylinder: return {ShapeKind::sphere, ShapeKind::cylinder};
-    case PairKind::capsule_cylinder: return {ShapeKind::capsule, ShapeKind::cylinder};
-    case PairKind::cylinder_box: return {ShapeKind::cylinder, ShapeKind::box};
-    case PairKind::sphere_hull: return {ShapeKind::sphere, ShapeKind::hull};
-    case PairKind::capsule_hull: return {ShapeKind::capsule, ShapeKind::hull};
-    case PairKind::box_hull: return {ShapeKind::box, ShapeKind::hull};
-    case PairKind::tile_sphere: return {ShapeKind::tile, ShapeKind::sphere};
-    case PairKind::tile_capsule: return {ShapeKind::tile, ShapeKind::capsule};
-    case PairKind::tile_box: return {ShapeKind::tile, ShapeKind::box};
-    case PairKind::tile_cylinder: return {ShapeKind::tile, ShapeKind::cylinder};
-    case PairKind::tile_hull: return {ShapeKind::tile, ShapeKind::hull};
-    default: return {ShapeKind::cylinder, ShapeKind::hull};
-  }
-}
 inline constexpr bool is_round(kernels::ShapeKind kind) {
   return kind == kernels::ShapeKind::sphere || kind == kernels::ShapeKind::capsule;
 }
@@ -181,10 +150,10 @@ template <class S, int N, bool kPair, bool kDense>
 void collide_convex_list(const Tables& t, const Group& g, Work& w) {
   using kernels::ShapeKind;
   const auto& pairs = t.pair_class[w.class_index];
-  const ConvexKinds kinds = convex_kinds(pairs.kind);
+  const ShapeKind kind_a = shape_a(pairs.kind), kind_b = shape_b(pairs.kind);
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
   const CandidateList& list = w.candidates;
-  const bool turned = is_round(kinds.a);  // the method wants what is round as B
+  const bool turned = is_round(kind_a);  // the method wants what is round as B
   ConvexShape a, b;
   for (int i = 0; i < list.count; ++i) {
     if (list.mask[i] == 0) continue;  // its lanes had too many candidates
@@ -197,22 +166,22 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
       if (((list.mask[i] >> l) & 1u) == 0) o.a[l] = o.a[candidate];
     }
     const Mask active = mask_from_bits(list.mask[i]);
-    load_convex(t.hulls, kinds.b, w.pose_rows, o.b, b);
+    load_convex(t.hulls, kind_b, w.pose_rows, o.b, b);
     Manifold<Isotropic, N> m;
     Vec3 origin_a;
-    if (N > 1 && kinds.a == ShapeKind::plane) {
+    if (N > 1 && kind_a == ShapeKind::plane) {
       PlanePose plane;
       load_pose(base_a, o.a, plane);
       origin_a = zero_of<Vec3>();
       if constexpr (N > 1) collide_plane_convex(t, plane, b, m);
-    } else if (!kPair && kinds.a == ShapeKind::tile) {
+    } else if (!kPair && kind_a == ShapeKind::tile) {
       Tile tile;
       load_tile(base_a, o.a, b, active, tile, a);
       if (!any(tile.there)) continue;
       origin_a = a.p;
       collide_tile<N>(t, a, tile, b, active, m);
     } else {
-      load_convex(kPair ? t.hulls : nullptr, kinds.a, base_a, o.a, a);
+      load_convex(kPair ? t.hulls : nullptr, kind_a, base_a, o.a, a);
       origin_a = a.p;
       const ConvexShape &first = turned ? b : a, &second = turned ? a : b;
       if constexpr (N == 1) {
@@ -245,60 +214,67 @@ void collide_convex(const Tables& t, const Group& g, kernels::Scratch* scratch) 
 
 template <class S, bool kDense>
 void fill_narrow_phase(kernels::Stage<Real>* out) {
-  using kernels::PairKind;
-  const auto at = [out](PairKind kind) -> kernels::Stage<Real>& {
-    return out[static_cast<int>(kind)];
+  using K = kernels::ShapeKind;
+  const auto at = [out](K a, K b) -> kernels::Stage<Real>& {
+    return out[static_cast<int>(kernels::pair_of(a, b))];
   };
-  at(PairKind::plane_capsule) = collide<S, PlaneCapsule<S>, kDense>;
+  at(K::plane, K::capsule) = collide<S, PlaneCapsule<S>, kDense>;
   if constexpr (S::kDim == 3) {
-    at(PairKind::sphere_sphere) = collide<S, SphereSphere<S>, kDense>;
-    at(PairKind::box_sphere) = collide<S, BoxSphere<S>, kDense>;
-    at(PairKind::box_box) = collide<S, BoxBox<S>, kDense>;
-    at(PairKind::plane_sphere) = collide<S, PlaneSphere<S>, kDense>;
-    at(PairKind::plane_box) = collide<S, PlaneBox<S>, kDense>;
-    at(PairKind::sphere_box) = collide<S, Reversed<S, BoxSphere<S>>, kDense>;
+    at(K::sphere, K::sphere) = collide<S, SphereSphere<S>, kDense>;
+    at(K::box, K::sphere) = collide<S, BoxSphere<S>, kDense>;
+    at(K::box, K::box) = collide<S, BoxBox<S>, kDense>;
+    at(K::plane, K::sphere) = collide<S, PlaneSphere<S>, kDense>;
+    at(K::plane, K::box) = collide<S, PlaneBox<S>, kDense>;
+    at(K::sphere, K::box) = collide<S, Reversed<S, BoxSphere<S>>, kDense>;
     using CapsuleSphere = CapsuleRound<S, SpherePose>;
-    at(PairKind::capsule_sphere) = collide<S, CapsuleSphere, kDense>;
-    at(PairKind::capsule_capsule) = collide<S, CapsuleCapsule<S>, kDense>;
-    at(PairKind::box_capsule) = collide<S, BoxCapsule<S>, kDense>;
-    at(PairKind::sphere_capsule) = collide<S, Reversed<S, CapsuleSphere>, kDense>;
-    at(PairKind::capsule_box) = collide<S, Reversed<S, BoxCapsule<S>>, kDense>;
-    constexpr int kFirst = static_cast<int>(PairKind::plane_cylinder);
-    constexpr int kLast = static_cast<int>(PairKind::tile_hull);
-    for (int i = kFirst; i <= kLast; ++i) out[i] = collide_convex<S, kDense>;
+    at(K::capsule, K::sphere) = collide<S, CapsuleSphere, kDense>;
+    at(K::capsule, K::capsule) = collide<S, CapsuleCapsule<S>, kDense>;
+    at(K::box, K::capsule) = collide<S, BoxCapsule<S>, kDense>;
+    at(K::sphere, K::capsule) = collide<S, Reversed<S, CapsuleSphere>, kDense>;
+    at(K::capsule, K::box) = collide<S, Reversed<S, BoxCapsule<S>>, kDense>;
+    // Whatever has a shape that only the general method knows.
+    constexpr K kGeneral[] = {K::cylinder, K::hull};
+    constexpr K kShapes[] = {K::sphere, K::capsule, K::box, K::cylinder, K::hull};
+    for (const K general : kGeneral) {
+      at(K::plane, general) = collide_convex<S, kDense>;
+      for (const K other : kShapes) {
+        at(general, other) = at(other, general) = collide_convex<S, kDense>;
+      }
+    }
+    for (const K shape : kShapes) at(K::tile, shape) = collide_convex<S, kDense>;
   } else {
-    at(PairKind::circle_circle) = collide<S, CircleCircle<S>, kDense>;
-    at(PairKind::rectangle_circle) = collide<S, RectangleCircle<S>, kDense>;
-    at(PairKind::rectangle_rectangle) = collide<S, RectangleRectangle<S>, kDense>;
-    at(PairKind::polygon_circle) = collide<S, PolygonCircle<S>, kDense>;
-    at(PairKind::polygon_polygon) = collide<S, PolygonPolygon<S>, kDense>;
-    at(PairKind::plane_circle) = collide<S, PlaneCircle<S>, kDense>;
-    at(PairKind::plane_rectangle) = collide<S, PlaneRectangle<S>, kDense>;
-    at(PairKind::plane_polygon) = collide<S, PlanePolygon<S>, kDense>;
-    at(PairKind::circle_rectangle) = collide<S, Reversed<S, RectangleCircle<S>>, kDense>;
-    at(PairKind::circle_polygon) = collide<S, Reversed<S, PolygonCircle<S>>, kDense>;
+    at(K::circle, K::circle) = collide<S, CircleCircle<S>, kDense>;
+    at(K::rectangle, K::circle) = collide<S, RectangleCircle<S>, kDense>;
+    at(K::rectangle, K::rectangle) = collide<S, RectangleRectangle<S>, kDense>;
+    at(K::polygon, K::circle) = collide<S, PolygonCircle<S>, kDense>;
+    at(K::polygon, K::polygon) = collide<S, PolygonPolygon<S>, kDense>;
+    at(K::plane, K::circle) = collide<S, PlaneCircle<S>, kDense>;
+    at(K::plane, K::rectangle) = collide<S, PlaneRectangle<S>, kDense>;
+    at(K::plane, K::polygon) = collide<S, PlanePolygon<S>, kDense>;
+    at(K::circle, K::rectangle) = collide<S, Reversed<S, RectangleCircle<S>>, kDense>;
+    at(K::circle, K::polygon) = collide<S, Reversed<S, PolygonCircle<S>>, kDense>;
     using CapsuleCircle = CapsuleRound<S, CirclePose>;
     using RectangleCapsule = EdgesCapsule<S, RectanglePose>;
     using PolygonCapsule = EdgesCapsule<S, PolygonPose>;
-    at(PairKind::capsule_circle) = collide<S, CapsuleCircle, kDense>;
-    at(PairKind::capsule_capsule) = collide<S, EdgesCapsule<S, CapsulePose<Vec2>>, kDense>;
-    at(PairKind::rectangle_capsule) = collide<S, RectangleCapsule, kDense>;
-    at(PairKind::polygon_capsule) = collide<S, PolygonCapsule, kDense>;
-    at(PairKind::circle_capsule) = collide<S, Reversed<S, CapsuleCircle>, kDense>;
-    at(PairKind::capsule_rectangle) = collide<S, Reversed<S, RectangleCapsule>, kDense>;
-    at(PairKind::capsule_polygon) = collide<S, Reversed<S, PolygonCapsule>, kDense>;
+    at(K::capsule, K::circle) = collide<S, CapsuleCircle, kDense>;
+    at(K::capsule, K::capsule) = collide<S, EdgesCapsule<S, CapsulePose<Vec2>>, kDense>;
+    at(K::rectangle, K::capsule) = collide<S, RectangleCapsule, kDense>;
+    at(K::polygon, K::capsule) = collide<S, PolygonCapsule, kDense>;
+    at(K::circle, K::capsule) = collide<S, Reversed<S, CapsuleCircle>, kDense>;
+    at(K::capsule, K::rectangle) = collide<S, Reversed<S, RectangleCapsule>, kDense>;
+    at(K::capsule, K::polygon) = collide<S, Reversed<S, PolygonCapsule>, kDense>;
     using RoundedCapsule = EdgesCapsule<S, RoundedPose>;
-    at(PairKind::plane_rounded) = collide<S, PlaneOutline<S, RoundedPose>, kDense>;
-    at(PairKind::rounded_circle) = collide<S, RoundedCircle<S>, kDense>;
-    at(PairKind::rounded_rounded) = collide<S, RoundEdges<S, RoundedPose, RoundedPose>, kDense>;
-    at(PairKind::rounded_capsule) = collide<S, RoundedCapsule, kDense>;
-    at(PairKind::circle_rounded) = collide<S, Reversed<S, RoundedCircle<S>>, kDense>;
-    at(PairKind::capsule_rounded) = collide<S, Reversed<S, RoundedCapsule>, kDense>;
-    at(PairKind::link_rounded) = collide<S, LinkEdges<S, RoundedPose>, kDense>;
-    at(PairKind::link_circle) = collide<S, LinkCircle<S>, kDense>;
-    at(PairKind::link_rectangle) = collide<S, LinkEdges<S, RectanglePose>, kDense>;
-    at(PairKind::link_polygon) = collide<S, LinkEdges<S, PolygonPose>, kDense>;
-    at(PairKind::link_capsule) = collide<S, LinkEdges<S, CapsulePose<Vec2>>, kDense>;
+    at(K::plane, K::rounded) = collide<S, PlaneOutline<S, RoundedPose>, kDense>;
+    at(K::rounded, K::circle) = collide<S, RoundedCircle<S>, kDense>;
+    at(K::rounded, K::rounded) = collide<S, RoundEdges<S, RoundedPose, RoundedPose>, kDense>;
+    at(K::rounded, K::capsule) = collide<S, RoundedCapsule, kDense>;
+    at(K::circle, K::rounded) = collide<S, Reversed<S, RoundedCircle<S>>, kDense>;
+    at(K::capsule, K::rounded) = collide<S, Reversed<S, RoundedCapsule>, kDense>;
+    at(K::link, K::rounded) = collide<S, LinkEdges<S, RoundedPose>, kDense>;
+    at(K::link, K::circle) = collide<S, LinkCircle<S>, kDense>;
+    at(K::link, K::rectangle) = collide<S, LinkEdges<S, RectanglePose>, kDense>;
+    at(K::link, K::polygon) = collide<S, LinkEdges<S, PolygonPose>, kDense>;
+    at(K::link, K::capsule) = collide<S, LinkEdges<S, CapsulePose<Vec2>>, kDense>;
   }
 }
 

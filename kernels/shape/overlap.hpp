@@ -62,7 +62,7 @@ MW_INLINE Mask fixed_overlap(const Tables& t, const Work& w, int fixed, int b) {
 }
 
 MW_INLINE bool is_round(kernels::PairKind kind) {
-  return kind == kernels::PairKind::sphere_sphere || kind == kernels::PairKind::circle_circle;
+  return kernels::is_ball(shape_a(kind)) && kernels::is_ball(shape_b(kind));
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -184,6 +184,6 @@ std::vector<Scene> extremes(const PlanData& plan);
 
 // Equal for plans that step worlds alike and store them alike (fingerprint.cpp).
 std::uint64_t fingerprint(const PlanData& plan);
-const char* to_string(kernels::PairKind kind);
+std::string to_string(kernels::PairKind kind);  // "box-sphere"
 
 }  // namespace manyworlds

@@ -6,28 +6,6 @@
 
 namespace manyworlds {
 
-const char* to_string(kernels::PairKind kind) {
-  static constexpr const char* kNames[kernels::kPairKinds] = {
-      "sphere-sphere",     "box-sphere",        "box-box",           "plane-sphere",
-      "plane-box",         "circle-circle",     "rectangle-circle",  "rectangle-rectangle",
-      "polygon-circle",    "polygon-polygon",   "halfplane-circle",  "halfplane-rectangle",
-      "halfplane-polygon", "sphere-box",        "circle-rectangle",  "circle-polygon",
-      "capsule-sphere",    "capsule-circle",    "capsule-capsule",   "box-capsule",
-      "rectangle-capsule", "polygon-capsule",   "plane-capsule",     "sphere-capsule",
-      "circle-capsule",    "capsule-box",       "capsule-rectangle", "capsule-polygon",
-      "terrain-circle",    "terrain-rectangle", "terrain-polygon",   "terrain-capsule",
-      "plane-cylinder",    "plane-hull",        "cylinder-sphere",   "cylinder-capsule",
-      "box-cylinder",      "cylinder-cylinder", "hull-sphere",       "hull-capsule",
-      "hull-box",          "hull-cylinder",     "hull-hull",         "sphere-cylinder",
-      "capsule-cylinder",  "cylinder-box",      "sphere-hull",       "capsule-hull",
-      "box-hull",          "cylinder-hull",     "field-sphere",      "field-capsule",
-      "field-box",         "field-cylinder",    "field-hull",        "halfplane-rounded",
-      "rounded-circle",    "rounded-rounded",   "rounded-capsule",   "circle-rounded",
-      "capsule-rounded",   "terrain-rounded"};
-  static_assert(kNames[kernels::kPairKinds - 1] != nullptr);
-  return kNames[static_cast<int>(kind)];
-}
-
 PlanReport describe(const PlanData& plan) {
   PlanReport out;
   for (int i = 0; i < kFeatureCount; ++i) {

@@ -106,7 +106,7 @@ class Counter {
 
   void add(const Alike& a, const Alike& b, bool fixed, std::int64_t pairs, int i, int j) {
     const KindOfPair k = kind_of_pair(a.kind, b.kind, fixed);
-    PlanClass& c = classes_[{static_cast<int>(k.list), static_cast<int>(k.kind)}];
+    PlanClass& c = classes_[k.place()];
     c.kind = k.kind;
     c.list = k.list;
     const Alike& who = b;
@@ -153,7 +153,7 @@ class Counter {
   int shapes_ = 0, fixed_shapes_ = 0;
   std::vector<std::size_t> flock_;  // [collider]
   std::map<std::pair<std::size_t, std::size_t>, std::int64_t> same_body_;
-  std::map<std::pair<int, int>, PlanClass> classes_;
+  std::map<KindOfPair::Place, PlanClass> classes_;
 };
 
 }  // namespace
