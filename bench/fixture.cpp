@@ -55,7 +55,8 @@ void StageRunner::run(Stage stage, const Group& group) {
     case Stage::collide:
       for (int c = 0; c < tables_.classes; ++c) {
         kernels_.set_class(scratch_, c);
-        solver.collide[static_cast<int>(tables_.pair_class[c].kind)](tables_, group, scratch_);
+        const int kind = static_cast<int>(tables_.pair_class[c].kind);
+        kernels_.collide[static_cast<int>(tables_.dimension)][kind](tables_, group, scratch_);
       }
       return;
     case Stage::warm_start:

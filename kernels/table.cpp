@@ -52,6 +52,8 @@ kernels::KernelTable<Real> make_table() {
   out.begin = begin;
   out.broad_phase = broad_phase;
   out.choose_layout = choose_layout;
+  fill_collide_planar(out.collide[static_cast<int>(kernels::Dimension::planar)]);
+  fill_collide_spatial(out.collide[static_cast<int>(kernels::Dimension::spatial)]);
   auto& planar = out.solver[static_cast<int>(InertiaKind::planar)];
   auto& isotropic = out.solver[static_cast<int>(InertiaKind::isotropic)];
   auto& tensor = out.solver[static_cast<int>(InertiaKind::tensor)];

@@ -18,9 +18,9 @@ import time
 
 # Relative costs of units, as measured: CPU seconds on an AMD EPYC of 2.6 GHz. The first match counts.
 COSTS = [
-    (r"kernels_(avx2|avx512)_f\d\d.*/(collide_(isotropic|planar|tensor)|solver_)", 12.0),
+    (r"kernels_(avx2|avx512)_f\d\d.*/(collide_(planar|spatial)|build_|solver_)", 12.0),
     (r"kernels_(avx2|avx512)_f\d\d.*/(flight_spatial|joints_tensor)", 9.0),
-    (r"kernels_scalar_f\d\d.*/(collide_(isotropic|planar|tensor)|solver|flight|joints_tensor)", 4.0),
+    (r"kernels_scalar_f\d\d.*/(collide_(planar|spatial)|build_|solver|flight|joints_tensor)", 4.0),
     (r"kernels_.*/(flight|joints|table|observe|sweeps|cmake_pch)", 3.0),
     (r"kernels_", 0.8),
     (r"/unity_(scene|plan|api|state)_", 14.0),

@@ -33,9 +33,8 @@ struct SolverTable {
   Stage<Real> relax;    // normal rows without bias, then friction
   Stage<Real> next;     // push and warm start of the next substep
   Stage<Real> restitute;
-  Stage<Real> store;                // impulses into the cache
-  Stage<Real> leave;                // commit positions, orientations, velocities
-  Stage<Real> collide[kPairKinds];  // narrow phase and rows of one class (Scratch::class_index)
+  Stage<Real> store;  // impulses into the cache
+  Stage<Real> leave;  // commit positions, orientations, velocities
 };
 
 // The passes over contacts of solvers that sweep several times before the bodies move, for one
@@ -100,6 +99,8 @@ struct KernelTable {
   Stage<Real> broad_phase;  // candidate masks of every class
   // Dense or rows for this group: by occupancy, or as wished if the slots fit.
   Layout (*choose_layout)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, Layout);
+  // Narrow phase and rows of one class (set_class). [dimension: planar, spatial]
+  Stage<Real> collide[2][kPairKinds];
   SolverTable<Real> solver[kInertiaKinds][2][2];  // [inertia][friction][layout: dense, rows]
   SweepTable<Real> sweeps[kInertiaKinds][2];      // [inertia][layout: dense, rows]
   ImpulseTable<Real> impulses[kInertiaKinds];

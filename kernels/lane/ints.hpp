@@ -84,7 +84,11 @@ MW_INLINE __m128i select(unsigned m, __m128i a, __m128i b) {
   return _mm_blendv_epi8(b, a, _mm_cmpeq_epi32(set, lane));
 }
 MW_INLINE __m256 gather(const float* p, __m256i at) { return _mm256_i32gather_ps(p, at, 4); }
-MW_INLINE __m256d gather(const double* p, __m128i at) { return _mm256_i32gather_pd(p, at, 8); }
+// GCC 12 warns of the undefined operand of its own unmasked intrinsic.
+MW_INLINE __m256d gather(const double* p, __m128i at) {
+  const __m256d zero = _mm256_setzero_pd();
+  return _mm256_mask_i32gather_pd(zero, p, at, _mm256_cmp_pd(zero, zero, _CMP_EQ_OQ), 8);
+}
 
 #if MW_LANES == 8
 using IntRegister = __m256i;

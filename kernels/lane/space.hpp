@@ -5,6 +5,8 @@
 //   rows   [lane][body][kRow], planar vx vy w 0, spatial vx vy vz wx | wy wz 0 0
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/data/tables.hpp"
 #include "kernels/lane/algebra.hpp"
 #include "kernels/lane/rows.hpp"
@@ -35,6 +37,10 @@ struct Tensor {
   static constexpr int kDim = 3, kAng = 3, kTangents = 2, kRow = 8, kInertia = 6, kMulti = 4;
   static constexpr auto kKind = kernels::InertiaKind::tensor;
 };
+
+// The space of the shapes: of their vectors, whatever the inertia.
+template <class S>
+using GeometryOf = std::conditional_t<S::kDim == 2, Planar, Isotropic>;
 
 // Inverse inertia times an angular vector.
 MW_INLINE Float apply(Float inertia, Float a) { return inertia * a; }

@@ -59,7 +59,7 @@ struct Approach {
 // Takes points that stay beyond the margin out of the manifold.
 template <class S, int N, bool kPair>
 MW_INLINE void measure_approach(const Tables& t, const Group& g, const Sides<S, kPair>& sides,
-                                kernels::PairKind kind, Mask active, Manifold<S, N>& m,
+                                kernels::PairKind kind, Mask active, Manifold<GeometryOf<S>, N>& m,
                                 Approach<S, N>& out) {
   const Float zero(Real(0)), dt(t.dt), margin(t.margin);
   Float normal_speed = dot(m.normal, sides.velocity_b.v);

@@ -31,8 +31,9 @@ MW_INLINE void put_tangents(const Sides<Planar, kPair>& sides, const Manifold<Pl
 
 // The two tangents share one effective mass, the inverse of a 2x2 matrix.
 template <class S, int N, bool kPair>
-MW_INLINE void put_tangents(const Sides<S, kPair>& sides, const Manifold<S, N>& m, Mask active,
-                            Vec3 normal, const FrictionCentre<S>& centre, Slot<S, N>& s) {
+MW_INLINE void put_tangents(const Sides<S, kPair>& sides, const Manifold<GeometryOf<S>, N>& m,
+                            Mask active, Vec3 normal, const FrictionCentre<S>& centre,
+                            Slot<S, N>& s) {
   const Float zero(Real(0)), one(Real(1)), inv_mass = sides.inv_mass();
   const Vec3 tangent = select(active, m.tangent, zero_of<Vec3>());
   const Vec3 second = cross(normal, tangent);
@@ -54,9 +55,9 @@ MW_INLINE void put_tangents(const Sides<S, kPair>& sides, const Manifold<S, N>& 
 }
 
 template <class S, int N, bool kPair>
-MW_INLINE void put_twist(const Sides<S, kPair>& sides, const Manifold<S, N>& m, Mask active,
-                         typename S::Vec normal, const FrictionCentre<S>& centre, Float impulse,
-                         Slot<S, N>& s) {
+MW_INLINE void put_twist(const Sides<S, kPair>& sides, const Manifold<GeometryOf<S>, N>& m,
+                         Mask active, typename S::Vec normal, const FrictionCentre<S>& centre,
+                         Float impulse, Slot<S, N>& s) {
   const Float zero(Real(0)), one(Real(1));
   Float k = dot(normal, apply(sides.b.inertia, normal));
   if constexpr (kPair) k = k + dot(normal, apply(sides.a.inertia, normal));
@@ -71,8 +72,8 @@ MW_INLINE void put_twist(const Sides<S, kPair>& sides, const Manifold<S, N>& m, 
 // `sum`: of the anchors of the points, of which there are `count`.
 template <class S, int N, bool kPair>
 MW_INLINE void put_friction(const Tables& t, const Group& g, const Sides<S, kPair>& sides,
-                            const std::int32_t* code, const Manifold<S, N>& m, Mask active,
-                            const FrictionCentre<S>& sum, Float count,
+                            const std::int32_t* code, const Manifold<GeometryOf<S>, N>& m,
+                            Mask active, const FrictionCentre<S>& sum, Float count,
                             const StoredImpulses<N>& stored, Slot<S, N>& s) {
   const Float zero(Real(0)), one(Real(1));
   const MaterialPair mu = load_materials<kPair>(t, g, code, s.mask, &Material::friction);

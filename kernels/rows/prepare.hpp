@@ -3,6 +3,7 @@
 // and only here.
 #pragma once
 
+#include "kernels/collide/row_builder.hpp"
 #include "kernels/rows/approach.hpp"
 #include "kernels/rows/friction.hpp"
 #include "kernels/rows/record.hpp"
@@ -12,7 +13,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 // Shapes that are off their body's centre of mass: anchors are from that centre.
 template <class S, int N, bool kPair>
 MW_INLINE void anchor_at_centres(const Sides<S, kPair>& sides, typename S::Vec pose_a,
-                                 typename S::Vec pose_b, Manifold<S, N>& m) {
+                                 typename S::Vec pose_b, Manifold<GeometryOf<S>, N>& m) {
   const auto shift_b = pose_b - sides.b.centre;
   for (int i = 0; i < N; ++i) m.point_b[i] = m.point_b[i] + shift_b;
   if constexpr (kPair) {
@@ -60,7 +61,7 @@ struct PointSums {
 template <class S, int N, bool kPair>
 MW_INLINE PointSums<S> put_normal_rows(const Tables& t, Work& w, const Sides<S, kPair>& sides,
                                        const Approach<S, N>& approach, Mask active,
-                                       Manifold<S, N>& m, Slot<S, N>& s) {
+                                       Manifold<GeometryOf<S>, N>& m, Slot<S, N>& s) {
   using Vec = typename S::Vec;
   const Float zero(Real(0)), one(Real(1)), margin(t.margin), inv_mass = sides.inv_mass();
   store(s.normal[0], select(active, m.normal, zero_of<Vec>()));
@@ -109,7 +110,7 @@ MW_INLINE void put_couplings(const Sides<S, kPair>& sides, const Approach<S, N>&
 
 template <class S, int N, bool kPair>
 MW_INLINE void put_bounce(const Tables& t, const Group& g, const std::int32_t* code,
-                          const Manifold<S, N>& m, const Approach<S, N>& approach,
+                          const Manifold<GeometryOf<S>, N>& m, const Approach<S, N>& approach,
                           const StoredImpulses<N>& stored, std::uint32_t mask,
                           Bounce<S, N>& bounce) {
   const Float zero(Real(0)), dt(t.dt), threshold(t.restitution_threshold);
@@ -132,13 +133,11 @@ MW_INLINE void put_bounce(const Tables& t, const Group& g, const std::int32_t* c
 
 // Adds one slot to `list`. kPair: A moves too. `active` are the lanes that the narrow phase
 // worked on; lanes without a point close enough drop out.
-// Not inlined: every shape pair shares these few instantiations.
 template <class S, int N, bool kPair, bool kDense>
-__attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w, ListId list,
-                                        const kernels::PairClass<Real>& pair_class,
-                                        Manifold<S, N>& m, Mask active, const std::int32_t* code,
-                                        const std::int32_t* key, typename S::Vec pose_a,
-                                        typename S::Vec pose_b) {
+void add_slot(const Tables& t, const Group& g, Work& w, ListId list,
+              const kernels::PairClass<Real>& pair_class, Manifold<GeometryOf<S>, N>& m,
+              Mask active, const std::int32_t* code, const std::int32_t* key,
+              typename S::Vec pose_a, typename S::Vec pose_b) {
   SlotList& slots = w.slots[static_cast<int>(list)];
   auto& s = slot_at<S, N>(slots, slots.count);
   const Sides<S, kPair> sides = find_sides<S, kPair, kDense>(t, w, code, s);
@@ -176,6 +175,12 @@ __attribute__((noinline)) void add_slot(const Tables& t, const Group& g, Work& w
     record_points<S, N>(w, list, m, key, stored.normal,
                         t.collider_is_body ? pose_b : sides.b.centre);
   }
+}
+
+template <class S, bool kDense>
+RowBuilder<GeometryOf<S>> row_builder_of() {
+  return {{add_slot<S, 1, false, kDense>, add_slot<S, 1, true, kDense>},
+          {add_slot<S, S::kMulti, false, kDense>, add_slot<S, S::kMulti, true, kDense>}};
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -10,7 +10,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 // Places of the points of a slot in all lanes, half way between the surfaces, and the code of its
 // features: [point][component][lane], [lane].
 template <class S, int N>
-void record_places(const Manifold<S, N>& m, typename S::Vec origin, Real* out) {
+void record_places(const Manifold<GeometryOf<S>, N>& m, typename S::Vec origin, Real* out) {
   for (int i = 0; i < N; ++i) {
     const Float to_middle = max(m.separation[i], Real(0)) * Float(Real(-0.5));
     store(out + i * S::kDim * kLanes, fma(m.normal, to_middle, origin + m.point_b[i]));
@@ -20,8 +20,8 @@ void record_places(const Manifold<S, N>& m, typename S::Vec origin, Real* out) {
 
 // Writes the points of the recorder's lane.
 template <class S, int N>
-void record_points(Work& w, ListId list, const Manifold<S, N>& m, const std::int32_t* key,
-                   const Float* impulse, typename S::Vec origin) {
+void record_points(Work& w, ListId list, const Manifold<GeometryOf<S>, N>& m,
+                   const std::int32_t* key, const Float* impulse, typename S::Vec origin) {
   Recorder& r = *w.recorder;
   if (r.places) {
     const int id = static_cast<int>(list), slot = w.slots[id].count - 1;

@@ -44,8 +44,9 @@ struct StoredImpulses {
 
 // A point's friction impulse is kept as a world vector, since its tangents turn with it.
 template <class S>
-MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored, const Manifold<S, 1>& m,
-                              Slot<S, 1>&, StoredImpulses<1>& out) {
+MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
+                              const Manifold<GeometryOf<S>, 1>& m, Slot<S, 1>&,
+                              StoredImpulses<1>& out) {
   const Float zero(Real(0));
   typename S::Vec kept;
   Float unused;
@@ -63,8 +64,9 @@ MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored, cons
 
 // Points are told apart by their place on the reference feature.
 template <class S, int N>
-MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored, const Manifold<S, N>& m,
-                              Slot<S, N>& s, StoredImpulses<N>& out) {
+MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
+                              const Manifold<GeometryOf<S>, N>& m, Slot<S, N>& s,
+                              StoredImpulses<N>& out) {
   const Float zero(Real(0));
   Float old_x[4], old_y[4] = {zero, zero, zero, zero}, old[4], code, unused;
   out.tangent[1] = out.twist = zero;

@@ -8,8 +8,6 @@ void fill_solver_isotropic_dense(kernels::SolverTable<Real>& with,
                                  kernels::SolverTable<Real>& without) {
   with = Passes<Isotropic, true, true>::table();
   without = Passes<Isotropic, true, false>::table();
-  fill_collide_isotropic_dense(with.collide);
-  fill_collide_isotropic_dense(without.collide);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

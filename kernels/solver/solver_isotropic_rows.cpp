@@ -8,8 +8,6 @@ void fill_solver_isotropic_rows(kernels::SolverTable<Real>& with,
                                 kernels::SolverTable<Real>& without) {
   with = Passes<Isotropic, false, true>::table();
   without = Passes<Isotropic, false, false>::table();
-  fill_collide_isotropic_rows(with.collide);
-  fill_collide_isotropic_rows(without.collide);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -8,8 +8,6 @@ void fill_solver_planar_dense(kernels::SolverTable<Real>& with,
                               kernels::SolverTable<Real>& without) {
   with = Passes<Planar, true, true>::table();
   without = Passes<Planar, true, false>::table();
-  fill_collide_planar_dense(with.collide);
-  fill_collide_planar_dense(without.collide);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

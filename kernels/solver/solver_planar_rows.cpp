@@ -8,8 +8,6 @@ void fill_solver_planar_rows(kernels::SolverTable<Real>& with,
                              kernels::SolverTable<Real>& without) {
   with = Passes<Planar, false, true>::table();
   without = Passes<Planar, false, false>::table();
-  fill_collide_planar_rows(with.collide);
-  fill_collide_planar_rows(without.collide);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -8,8 +8,6 @@ void fill_solver_tensor_dense(kernels::SolverTable<Real>& with,
                               kernels::SolverTable<Real>& without) {
   with = Passes<Tensor, true, true>::table();
   without = Passes<Tensor, true, false>::table();
-  fill_collide_tensor_dense(with.collide);
-  fill_collide_tensor_dense(without.collide);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

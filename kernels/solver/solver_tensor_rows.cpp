@@ -8,8 +8,6 @@ void fill_solver_tensor_rows(kernels::SolverTable<Real>& with,
                              kernels::SolverTable<Real>& without) {
   with = Passes<Tensor, false, true>::table();
   without = Passes<Tensor, false, false>::table();
-  fill_collide_tensor_rows(with.collide);
-  fill_collide_tensor_rows(without.collide);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

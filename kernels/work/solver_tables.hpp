@@ -24,8 +24,6 @@ std::size_t part_bytes(Planar);
 std::size_t part_bytes(Tensor);
 
 using FillCollide = void(kernels::Stage<Real>* collide);
-FillCollide fill_collide_planar_dense, fill_collide_planar_rows;
-FillCollide fill_collide_isotropic_dense, fill_collide_isotropic_rows;
-FillCollide fill_collide_tensor_dense, fill_collide_tensor_rows;
+FillCollide fill_collide_planar, fill_collide_spatial;
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

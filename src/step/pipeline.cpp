@@ -30,9 +30,10 @@ kernels::Layout find_rows(const GroupStep<Real>& p, const kernels::GroupView<Rea
   }
   const auto& solver = solver_of(p, layout);
   solver.enter(t, group, scratch);
+  const auto* collide = p.kernels.collide[static_cast<int>(t.dimension)];
   for (int c = 0; c < t.classes; ++c) {
     p.kernels.set_class(scratch, c);
-    solver.collide[static_cast<int>(t.pair_class[c].kind)](t, group, scratch);
+    collide[static_cast<int>(t.pair_class[c].kind)](t, group, scratch);
   }
   lap(kCollide);
   return layout;

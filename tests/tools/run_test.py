@@ -188,7 +188,7 @@ class Progress(unittest.TestCase):
             self.assertEqual(progress.text_of(seconds), text)
 
     def test_estimate_follows_costs_and_pace(self):
-        kernel = "Building CXX object CMakeFiles/mw_kernels_avx2_f32.dir/kernels/rows/collide_planar_rows.cpp.o"
+        kernel = "Building CXX object CMakeFiles/mw_kernels_avx2_f32.dir/kernels/collide/collide_planar.cpp.o"
         small = "Building CXX object CMakeFiles/manyworlds.dir/src/a.cpp.o"
         self.assertGreater(progress.cost_of(kernel), 2 * progress.cost_of(small))
         estimate = progress.Estimate([kernel, small], cores=1)

@@ -1,5 +1,5 @@
 // narrow_phase: runs a shape pair over the candidates of a class and hands the manifolds to
-// prepare. The one place that connects pairs, layouts and lists.
+// prepare. The one place that connects pairs and lists.
 #pragma once
 
 #include "kernels/collide/box_box.hpp"
@@ -9,8 +9,9 @@
 #include "kernels/collide/link_pairs.hpp"
 #include "kernels/collide/polygon_pairs.hpp"
 #include "kernels/collide/rectangle_rectangle.hpp"
+#include "kernels/collide/row_builder.hpp"
 #include "kernels/collide/tile.hpp"
-#include "kernels/rows/prepare.hpp"
+#include "kernels/lane/ints.hpp"
 #include "kernels/work/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -44,8 +45,10 @@ MW_INLINE typename S::Vec origin_of(const Pose& pose) {
   }
 }
 
-template <class S, class Pair, bool kPair, bool kDense>
+template <class S, class Pair, bool kPair>
 void collide_list(const Tables& t, const Group& g, Work& w, const CandidateList& list) {
+  AddSlot<S, Pair::kPoints>* const add_slot =
+      row_builder<S>(t, w).template add<Pair::kPoints>(kPair);
   const auto& pairs = t.pair_class[w.class_index];
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
   for (int i = 0; i < list.count; ++i) {
@@ -57,9 +60,8 @@ void collide_list(const Tables& t, const Group& g, Work& w, const CandidateList&
     load_pose(w.pose_rows, o.b, b);
     Manifold<S, Pair::kPoints> m;
     Pair::collide(t, a, b, Float::load(list.axis + i * kLanes), m);
-    add_slot<S, Pair::kPoints, kPair, kDense>(t, g, w, pairs.list, pairs, m,
-                                              mask_from_bits(list.mask[i]), code,
-                                              list.key + i * kLanes, origin_of<S>(a), b.p);
+    add_slot(t, g, w, pairs.list, pairs, m, mask_from_bits(list.mask[i]), code,
+             list.key + i * kLanes, origin_of<S>(a), b.p);
   }
 }
 
@@ -88,7 +90,7 @@ inline constexpr bool kOnlyFixed =
 template <class S, class Reverse>
 inline constexpr bool kOnlyFixed<Reversed<S, Reverse>> = true;
 
-template <class S, class Pair, bool kDense>
+template <class S, class Pair>
 void collide(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   const bool fixed = is_fixed(t.pair_class[w.class_index].list);
@@ -99,9 +101,9 @@ void collide(const Tables& t, const Group& g, kernels::Scratch* scratch) {
     list = &w.found;
   }
   if (fixed) {
-    collide_list<S, Pair, false, kDense>(t, g, w, *list);
+    collide_list<S, Pair, false>(t, g, w, *list);
   } else if constexpr (!kOnlyFixed<Pair>) {
-    collide_list<S, Pair, true, kDense>(t, g, w, *list);
+    collide_list<S, Pair, true>(t, g, w, *list);
   }
 }
 
@@ -122,19 +124,6 @@ MW_INLINE void turn_round(Manifold<S, N>& m) {
   }
 }
 
-// Tensor and Isotropic have the same vectors.
-template <class S, int N>
-MW_INLINE void copy_manifold(const Manifold<Isotropic, N>& from, Manifold<S, N>& to) {
-  to.normal = from.normal, to.tangent = from.tangent;
-  for (int i = 0; i < N; ++i) {
-    to.point_a[i] = from.point_a[i], to.point_b[i] = from.point_b[i];
-    to.separation[i] = from.separation[i];
-    to.feature_x[i] = from.feature_x[i], to.feature_y[i] = from.feature_y[i];
-    to.valid[i] = from.valid[i];
-  }
-  to.code = from.code, to.match_distance2 = from.match_distance2;
-}
-
 template <int N>
 MW_INLINE void collide_tile(const Tables& t, const ConvexShape& a, const Tile& tile,
                             const ConvexShape& b, Mask active, Manifold<Isotropic, N>& m) {
@@ -146,7 +135,7 @@ MW_INLINE void collide_tile(const Tables& t, const ConvexShape& a, const Tile& t
   }
 }
 
-template <class S, int N, bool kPair, bool kDense>
+template <int N, bool kPair>
 void collide_convex_list(const Tables& t, const Group& g, Work& w) {
   using kernels::ShapeKind;
   const auto& pairs = t.pair_class[w.class_index];
@@ -154,6 +143,7 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
   const CandidateList& list = w.candidates;
   const bool turned = is_round(kind_a);  // the method wants what is round as B
+  AddSlot<Isotropic, N>* const add_slot = row_builder<Isotropic>(t, w).template add<N>(kPair);
   ConvexShape a, b;
   for (int i = 0; i < list.count; ++i) {
     if (list.mask[i] == 0) continue;  // its lanes had too many candidates
@@ -191,90 +181,84 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
       }
       if (turned) turn_round(m);
     }
-    Manifold<S, N> out;
-    copy_manifold(m, out);
-    add_slot<S, N, kPair, kDense>(t, g, w, pairs.list, pairs, out, active, code,
-                                  list.key + i * kLanes, origin_a, b.p);
+    add_slot(t, g, w, pairs.list, pairs, m, active, code, list.key + i * kLanes, origin_a, b.p);
   }
 }
 
-template <class S, bool kDense>
-void collide_convex(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+inline void collide_convex(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   const ListId list = t.pair_class[w.class_index].list;
   list_candidates(t, w);
   if (is_multi(list)) {
-    is_fixed(list) ? collide_convex_list<S, 4, false, kDense>(t, g, w)
-                   : collide_convex_list<S, 4, true, kDense>(t, g, w);
+    is_fixed(list) ? collide_convex_list<4, false>(t, g, w) : collide_convex_list<4, true>(t, g, w);
   } else {
-    is_fixed(list) ? collide_convex_list<S, 1, false, kDense>(t, g, w)
-                   : collide_convex_list<S, 1, true, kDense>(t, g, w);
+    is_fixed(list) ? collide_convex_list<1, false>(t, g, w) : collide_convex_list<1, true>(t, g, w);
   }
 }
 
-template <class S, bool kDense>
+template <class S>
 void fill_narrow_phase(kernels::Stage<Real>* out) {
   using K = kernels::ShapeKind;
   const auto at = [out](K a, K b) -> kernels::Stage<Real>& {
     return out[static_cast<int>(kernels::pair_of(a, b))];
   };
-  at(K::plane, K::capsule) = collide<S, PlaneCapsule<S>, kDense>;
+  at(K::plane, K::capsule) = collide<S, PlaneCapsule<S>>;
   if constexpr (S::kDim == 3) {
-    at(K::sphere, K::sphere) = collide<S, SphereSphere<S>, kDense>;
-    at(K::box, K::sphere) = collide<S, BoxSphere<S>, kDense>;
-    at(K::box, K::box) = collide<S, BoxBox<S>, kDense>;
-    at(K::plane, K::sphere) = collide<S, PlaneSphere<S>, kDense>;
-    at(K::plane, K::box) = collide<S, PlaneBox<S>, kDense>;
-    at(K::sphere, K::box) = collide<S, Reversed<S, BoxSphere<S>>, kDense>;
+    at(K::sphere, K::sphere) = collide<S, SphereSphere<S>>;
+    at(K::box, K::sphere) = collide<S, BoxSphere<S>>;
+    at(K::box, K::box) = collide<S, BoxBox<S>>;
+    at(K::plane, K::sphere) = collide<S, PlaneSphere<S>>;
+    at(K::plane, K::box) = collide<S, PlaneBox<S>>;
+    at(K::sphere, K::box) = collide<S, Reversed<S, BoxSphere<S>>>;
     using CapsuleSphere = CapsuleRound<S, SpherePose>;
-    at(K::capsule, K::sphere) = collide<S, CapsuleSphere, kDense>;
-    at(K::capsule, K::capsule) = collide<S, CapsuleCapsule<S>, kDense>;
-    at(K::box, K::capsule) = collide<S, BoxCapsule<S>, kDense>;
-    at(K::sphere, K::capsule) = collide<S, Reversed<S, CapsuleSphere>, kDense>;
-    at(K::capsule, K::box) = collide<S, Reversed<S, BoxCapsule<S>>, kDense>;
+    at(K::capsule, K::sphere) = collide<S, CapsuleSphere>;
+    at(K::capsule, K::capsule) = collide<S, CapsuleCapsule<S>>;
+    at(K::box, K::capsule) = collide<S, BoxCapsule<S>>;
+    at(K::sphere, K::capsule) = collide<S, Reversed<S, CapsuleSphere>>;
+    at(K::capsule, K::box) = collide<S, Reversed<S, BoxCapsule<S>>>;
     // Whatever has a shape that only the general method knows.
     constexpr K kGeneral[] = {K::cylinder, K::hull};
     constexpr K kShapes[] = {K::sphere, K::capsule, K::box, K::cylinder, K::hull};
     for (const K general : kGeneral) {
-      at(K::plane, general) = collide_convex<S, kDense>;
+      at(K::plane, general) = collide_convex;
       for (const K other : kShapes) {
-        at(general, other) = at(other, general) = collide_convex<S, kDense>;
+        at(general, other) = at(other, general) = collide_convex;
       }
     }
-    for (const K shape : kShapes) at(K::tile, shape) = collide_convex<S, kDense>;
+    for (const K shape : kShapes) at(K::tile, shape) = collide_convex;
   } else {
-    at(K::circle, K::circle) = collide<S, CircleCircle<S>, kDense>;
-    at(K::rectangle, K::circle) = collide<S, RectangleCircle<S>, kDense>;
-    at(K::rectangle, K::rectangle) = collide<S, RectangleRectangle<S>, kDense>;
-    at(K::polygon, K::circle) = collide<S, PolygonCircle<S>, kDense>;
-    at(K::polygon, K::polygon) = collide<S, PolygonPolygon<S>, kDense>;
-    at(K::plane, K::circle) = collide<S, PlaneCircle<S>, kDense>;
-    at(K::plane, K::rectangle) = collide<S, PlaneRectangle<S>, kDense>;
-    at(K::plane, K::polygon) = collide<S, PlanePolygon<S>, kDense>;
-    at(K::circle, K::rectangle) = collide<S, Reversed<S, RectangleCircle<S>>, kDense>;
-    at(K::circle, K::polygon) = collide<S, Reversed<S, PolygonCircle<S>>, kDense>;
+    at(K::circle, K::circle) = collide<S, CircleCircle<S>>;
+    at(K::rectangle, K::circle) = collide<S, RectangleCircle<S>>;
+    at(K::rectangle, K::rectangle) = collide<S, RectangleRectangle<S>>;
+    at(K::polygon, K::circle) = collide<S, PolygonCircle<S>>;
+    at(K::polygon, K::polygon) = collide<S, PolygonPolygon<S>>;
+    at(K::plane, K::circle) = collide<S, PlaneCircle<S>>;
+    at(K::plane, K::rectangle) = collide<S, PlaneRectangle<S>>;
+    at(K::plane, K::polygon) = collide<S, PlanePolygon<S>>;
+    at(K::circle, K::rectangle) = collide<S, Reversed<S, RectangleCircle<S>>>;
+    at(K::circle, K::polygon) = collide<S, Reversed<S, PolygonCircle<S>>>;
     using CapsuleCircle = CapsuleRound<S, CirclePose>;
     using RectangleCapsule = EdgesCapsule<S, RectanglePose>;
     using PolygonCapsule = EdgesCapsule<S, PolygonPose>;
-    at(K::capsule, K::circle) = collide<S, CapsuleCircle, kDense>;
-    at(K::capsule, K::capsule) = collide<S, EdgesCapsule<S, CapsulePose<Vec2>>, kDense>;
-    at(K::rectangle, K::capsule) = collide<S, RectangleCapsule, kDense>;
-    at(K::polygon, K::capsule) = collide<S, PolygonCapsule, kDense>;
-    at(K::circle, K::capsule) = collide<S, Reversed<S, CapsuleCircle>, kDense>;
-    at(K::capsule, K::rectangle) = collide<S, Reversed<S, RectangleCapsule>, kDense>;
-    at(K::capsule, K::polygon) = collide<S, Reversed<S, PolygonCapsule>, kDense>;
+    at(K::capsule, K::circle) = collide<S, CapsuleCircle>;
+    at(K::capsule, K::capsule) = collide<S, EdgesCapsule<S, CapsulePose<Vec2>>>;
+    at(K::rectangle, K::capsule) = collide<S, RectangleCapsule>;
+    at(K::polygon, K::capsule) = collide<S, PolygonCapsule>;
+    at(K::circle, K::capsule) = collide<S, Reversed<S, CapsuleCircle>>;
+    at(K::capsule, K::rectangle) = collide<S, Reversed<S, RectangleCapsule>>;
+    at(K::capsule, K::polygon) = collide<S, Reversed<S, PolygonCapsule>>;
     using RoundedCapsule = EdgesCapsule<S, RoundedPose>;
-    at(K::plane, K::rounded) = collide<S, PlaneOutline<S, RoundedPose>, kDense>;
-    at(K::rounded, K::circle) = collide<S, RoundedCircle<S>, kDense>;
-    at(K::rounded, K::rounded) = collide<S, RoundEdges<S, RoundedPose, RoundedPose>, kDense>;
-    at(K::rounded, K::capsule) = collide<S, RoundedCapsule, kDense>;
-    at(K::circle, K::rounded) = collide<S, Reversed<S, RoundedCircle<S>>, kDense>;
-    at(K::capsule, K::rounded) = collide<S, Reversed<S, RoundedCapsule>, kDense>;
-    at(K::link, K::rounded) = collide<S, LinkEdges<S, RoundedPose>, kDense>;
-    at(K::link, K::circle) = collide<S, LinkCircle<S>, kDense>;
-    at(K::link, K::rectangle) = collide<S, LinkEdges<S, RectanglePose>, kDense>;
-    at(K::link, K::polygon) = collide<S, LinkEdges<S, PolygonPose>, kDense>;
-    at(K::link, K::capsule) = collide<S, LinkEdges<S, CapsulePose<Vec2>>, kDense>;
+    at(K::plane, K::rounded) = collide<S, PlaneOutline<S, RoundedPose>>;
+    at(K::rounded, K::circle) = collide<S, RoundedCircle<S>>;
+    at(K::rounded, K::rounded) = collide<S, RoundEdges<S, RoundedPose, RoundedPose>>;
+    at(K::rounded, K::capsule) = collide<S, RoundedCapsule>;
+    at(K::circle, K::rounded) = collide<S, Reversed<S, RoundedCircle<S>>>;
+    at(K::capsule, K::rounded) = collide<S, Reversed<S, RoundedCapsule>>;
+    at(K::link, K::rounded) = collide<S, LinkEdges<S, RoundedPose>>;
+    at(K::link, K::circle) = collide<S, LinkCircle<S>>;
+    at(K::link, K::rectangle) = collide<S, LinkEdges<S, RectanglePose>>;
+    at(K::link, K::polygon) = collide<S, LinkEdges<S, PolygonPose>>;
+    at(K::link, K::capsule) = collide<S, LinkEdges<S, CapsulePose<Vec2>>>;
   }
 }
 

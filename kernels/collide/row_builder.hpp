@@ -1,0 +1,49 @@
+// What the narrow phase calls with a manifold. Geometry knows only plane and space; which inertia
+// bodies have, and how velocities lie in memory, is behind these pointers, so that no pair of
+// shapes is compiled twice for it.
+#pragma once
+
+#include "kernels/collide/manifold.hpp"
+#include "kernels/work/work.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// add_slot (prepare.hpp).
+template <class G, int N>
+using AddSlot = void(const Tables& t, const Group& g, Work& w, ListId list,
+                     const kernels::PairClass<Real>& pair_class, Manifold<G, N>& m, Mask active,
+                     const std::int32_t* code, const std::int32_t* key, typename G::Vec pose_a,
+                     typename G::Vec pose_b);
+
+// Of an inertia kind and a layout.
+template <class G>
+struct RowBuilder {
+  AddSlot<G, 1>* single[2];           // [A moves, too]
+  AddSlot<G, G::kMulti>* several[2];  // points
+
+  template <int N>
+  MW_INLINE AddSlot<G, N>* add(bool pair) const {
+    if constexpr (N == 1) {
+      return single[pair];
+    } else {
+      return several[pair];
+    }
+  }
+};
+
+RowBuilder<Planar> planar_dense(), planar_rows();
+RowBuilder<Isotropic> isotropic_dense(), isotropic_rows(), tensor_dense(), tensor_rows();
+
+// Of the plan, in the layout of this step.
+template <class G>
+MW_INLINE RowBuilder<G> row_builder(const Tables& t, const Work& w) {
+  if constexpr (G::kDim == 2) {
+    return w.dense ? planar_dense() : planar_rows();
+  } else if (t.inertia_kind == kernels::InertiaKind::tensor) {
+    return w.dense ? tensor_dense() : tensor_rows();
+  } else {
+    return w.dense ? isotropic_dense() : isotropic_rows();
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
