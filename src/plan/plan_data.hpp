@@ -184,6 +184,7 @@ std::vector<Scene> extremes(const PlanData& plan);
 
 // Equal for plans that step worlds alike and store them alike (fingerprint.cpp).
 std::uint64_t fingerprint(const PlanData& plan);
+std::uint64_t fingerprint(const Scene& scene);  // of what of it counts (members.hpp)
 std::string to_string(kernels::PairKind kind);  // "box-sphere"
 
 }  // namespace manyworlds

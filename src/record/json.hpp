@@ -1,6 +1,4 @@
-// Plain structs to JSON and back. A struct says what its members are called, once, in
-//   template <class Visit> void members(Visit& visit, Struct& s)
-// by naming all of them in a structured binding, so that one that is added cannot be forgotten.
+// Plain structs to JSON and back, by the names of their members (members.hpp).
 #pragma once
 
 #include <cmath>
@@ -17,6 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "manyworlds/members.hpp"
 #include "manyworlds/plan.hpp"
 #include "src/base/enum_names.hpp"
 
@@ -30,11 +29,18 @@ struct Words {
   static constexpr const auto& list = EnumTable<E>::names;
 };
 
+// What a struct consists of in JSON.
+template <class T>
+struct JsonMembers {
+  static void visit(T& value, auto& visit) requires HasMembers<T> {
+    Members<T>::visit(value, visit);
+  }
+};
 // As text at once: a tree of Json allocates to be destroyed, where running out of memory ends the
 // program.
 struct JsonWriter {
   template <class T>
-  void operator()(const char* name, T& value) {
+  void operator()(const char* name, T& value, Counted = {}) {
     to += to.back() == '{' ? "\"" : ",\"";
     to += name;
     to += "\":";
@@ -80,11 +86,11 @@ struct JsonWriter {
     to += '}';
   }
   template <class T>
-  requires requires(JsonWriter& w, T& t) { members(w, t); }
+  requires requires(JsonWriter& w, T& t) { JsonMembers<T>::visit(t, w); }
   static void put(std::string& to, T& value) {
     to += '{';
     JsonWriter writer{to};
-    members(writer, value);
+    JsonMembers<T>::visit(value, writer);
     to += '}';
   }
   // Vectors and matrices as rows of numbers, quaternions as w, x, y, z.
@@ -119,7 +125,7 @@ class JsonReader {
       : problems_(problems), from_(from), place_(std::move(place)) {}
 
   template <class T>
-  void operator()(const char* name, T& value) {
+  void operator()(const char* name, T& value, Counted = {}) {
     known_.insert(name);
     const auto member = from_.find(name);
     if (member == from_.end()) {
@@ -135,11 +141,11 @@ class JsonReader {
   }
 
   template <class T>
-  requires requires(JsonReader& r, T& t) { members(r, t); }
+  requires requires(JsonReader& r, T& t) { JsonMembers<T>::visit(t, r); }
   void get(const Json& j, T& value, const std::string& place) {
     if (!j.is_object()) return expected(j, place, "an object");
     JsonReader reader(problems_, j, place);
-    members(reader, value);
+    JsonMembers<T>::visit(value, reader);
     reader.refuse_others();
   }
   void get(const Json& j, double& value, const std::string& place) {

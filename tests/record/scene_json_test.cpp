@@ -8,6 +8,7 @@
 #include "manyworlds/mesh.hpp"
 #include "manyworlds/scenes.hpp"
 #include "tests/record/support.hpp"
+#include "tests/support/changed_members.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -188,6 +189,20 @@ TEST_CASE("JSON that is no scene names every problem and its place", "[fast][rec
   CHECK_THROWS_WITH(plan_options_from_json("{\"broad_phase\":\"tree\",\"keep\":[\"dark\"]}"),
                     Catch::Contains("/broad_phase: is \"tree\"") &&
                         Catch::Contains("/keep/0: is \"dark\", must be orientation"));
+}
+
+TEST_CASE("every member of a scene comes back from JSON", "[fast][record][json]") {
+  for (const bool all : {false, true}) {
+    const Scene scene = scene_with_everything(all);
+    const std::string text = scene_to_json(scene);
+    CHECK(scene_to_json(scene_from_json(text)) == text);
+    for (const Change& change : changes_of(scene)) {
+      INFO(change.member);
+      const std::string changed = scene_to_json(change.scene);
+      CHECK(changed != text);
+      CHECK(scene_to_json(scene_from_json(changed)) == changed);
+    }
+  }
 }
 
 }  // namespace manyworlds::test
