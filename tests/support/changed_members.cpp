@@ -66,7 +66,7 @@ class Walk {
   }
   template <int rows, int columns>
   void visit(Eigen::Matrix<double, rows, columns>& m) {
-    for (int i = 0; i < m.size(); ++i) enter(std::to_string(i), m.data()[i]);
+    for (int i = 0; i < m.size() && !done_; ++i) enter(std::to_string(i), m.data()[i]);
   }
   void visit(Quat& q) {
     for (double* x : {&q.w(), &q.x(), &q.y(), &q.z()}) visit(*x);
