@@ -14,3 +14,4 @@ target_include_directories(manyworlds_record PRIVATE "${PROJECT_SOURCE_DIR}")
 target_link_libraries(manyworlds_record PUBLIC manyworlds
   PRIVATE HDF5::HDF5 $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
 mw_precompile(manyworlds_record)
+mw_unity(manyworlds_record)
