@@ -50,7 +50,7 @@ class Fingerprint {
   template <class... Ts>
   void add(const std::variant<Ts...>& value) {
     add(static_cast<int>(value.index()));
-    std::visit([this](const auto& alternative) { add(alternative); }, value);
+    std::visit([this](const auto& alternative) { this->add(alternative); }, value);
   }
   template <HasMembers Struct>
   void add(const Struct& value) {

@@ -87,7 +87,7 @@ class Walk {
   }
   template <class... Ts>
   void visit(std::variant<Ts...>& value) {
-    std::visit([this](auto& alternative) { visit(alternative); }, value);
+    std::visit([this](auto& alternative) { this->visit(alternative); }, value);
   }
 
   int change_, at_ = 0;
