@@ -46,7 +46,8 @@ std::string hex(std::uint64_t number) {
   } else if (std::memcmp(found.data(), "\x89HDF\r\n\x1a\n", found.size()) == 0) {
     what += "it is an HDF5 file of another program, or one that was copied by h5repack";
   } else {
-    const std::size_t end = std::find(found.begin(), found.end(), '\0') - found.begin();
+    const auto end =
+        static_cast<std::size_t>(std::find(found.begin(), found.end(), '\0') - found.begin());
     what += "it begins with '" + printable({found.data(), end}) + "', must with 'MWRECO'";
   }
   throw RecordError(what);

@@ -158,7 +158,7 @@ TEST_CASE("a recording that was cut or changed says so in one line", "[fast][rec
       const std::string wrong = messages.of(sealed(changed), {}, false);
       if (!wrong.empty()) return wrong;
     }
-    for (const std::size_t at : {0, 512, 600, 1024, 4096}) {
+    for (const std::size_t at : {0u, 512u, 600u, 1024u, 4096u}) {
       Bytes zeroed = whole;
       std::fill_n(zeroed.begin() + static_cast<std::ptrdiff_t>(at), 512, std::byte{0});
       if (const std::string wrong = messages.of(zeroed); !wrong.empty()) return wrong;
