@@ -37,7 +37,6 @@ namespace {
 
 std::atomic<bool> counting{false};
 std::atomic<long> calls{0};
-std::atomic<long> bytes{0};  // in use more than when the counting began
 
 void note() {
   if (counting.load(std::memory_order_relaxed)) calls.fetch_add(1, std::memory_order_relaxed);
@@ -51,6 +50,8 @@ void note() {
 }  // namespace
 
 #else
+
+std::atomic<long> bytes{0};  // in use more than when the counting began
 
 void* allocate(std::size_t size, std::size_t alignment) {
   note();
