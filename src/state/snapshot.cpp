@@ -128,36 +128,15 @@ void check(const std::vector<std::byte>& bytes) {
 
 std::string last_error() { return std::generic_category().message(errno); }
 
-// Closes what it opened.
-class OpenFile {
- public:
-  // Without waiting: opening a FIFO does not depend on who writes to it.
-  explicit OpenFile(const std::filesystem::path& file)
-      : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-    if (descriptor_ < 0) refuse("cannot be read: " + last_error());
+void read_from(const Descriptor& file, std::span<std::byte> to) {
+  while (!to.empty()) {
+    const ssize_t n = ::read(file.get(), to.data(), to.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) refuse("cannot be read: " + last_error());
+    if (n == 0) refuse("has become shorter while it was read");
+    to = to.subspan(static_cast<std::size_t>(n));
   }
-  ~OpenFile() { close(descriptor_); }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-
-  struct stat status() const {
-    struct stat out {};
-    if (fstat(descriptor_, &out) != 0) refuse("cannot be read: " + last_error());
-    return out;
-  }
-  void read(std::span<std::byte> to) const {
-    while (!to.empty()) {
-      const ssize_t n = ::read(descriptor_, to.data(), to.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) refuse("cannot be read: " + last_error());
-      if (n == 0) refuse("has become shorter while it was read");
-      to = to.subspan(static_cast<std::size_t>(n));
-    }
-  }
-
- private:
-  int descriptor_;
-};
+}
 
 const char* kind_of(mode_t mode) {
   if (S_ISDIR(mode)) return "a folder";
@@ -168,15 +147,17 @@ const char* kind_of(mode_t mode) {
 
 // The header is looked at before there is memory for what it says.
 std::vector<std::byte> read_file(const std::filesystem::path& file) {
-  const OpenFile in(file);
-  const struct stat status = in.status();
+  // Without waiting: opening a FIFO does not depend on who writes to it.
+  const Descriptor in(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  struct stat status {};
+  if (in.get() < 0 || fstat(in.get(), &status) != 0) refuse("cannot be read: " + last_error());
   if (!S_ISREG(status.st_mode)) {
     refuse(std::string("is ") + kind_of(status.st_mode) + ", must be a file");
   }
   const auto size = static_cast<std::uint64_t>(status.st_size);
   check_size(size);
   SnapshotHeader header;
-  in.read(std::as_writable_bytes(std::span(&header, 1)));
+  read_from(in, std::as_writable_bytes(std::span(&header, 1)));
   check_header(header, size);
   if (static_cast<double>(size) > machine_memory()) {
     refuse("is " + gigabytes(static_cast<double>(size)) + ", the machine has " +
@@ -184,7 +165,7 @@ std::vector<std::byte> read_file(const std::filesystem::path& file) {
   }
   std::vector<std::byte> bytes(size);
   std::memcpy(bytes.data(), &header, sizeof header);
-  in.read(std::span(bytes).subspan(sizeof header));
+  read_from(in, std::span(bytes).subspan(sizeof header));
   return bytes;
 }
 
