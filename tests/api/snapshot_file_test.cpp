@@ -13,16 +13,11 @@
 #include "src/base/machine_memory.hpp"
 #include "src/state/snapshot_format.hpp"
 #include "tests/support/crowd.hpp"
+#include "tests/support/hashes.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
-
-std::vector<std::uint64_t> hashes(const Batch& batch) {
-  std::vector<std::uint64_t> all;
-  for (int w = 0; w < batch.worlds(); ++w) all.push_back(batch.hash(w));
-  return all;
-}
 
 std::filesystem::path temporary(const char* name) {
   return std::filesystem::temp_directory_path() / (std::string("manyworlds_") + name);

@@ -12,16 +12,11 @@
 #include "src/base/hash.hpp"
 #include "src/state/snapshot_format.hpp"
 #include "tests/support/crowd.hpp"
+#include "tests/support/hashes.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
-
-std::vector<std::uint64_t> hashes(const Batch& batch) {
-  std::vector<std::uint64_t> all;
-  for (int w = 0; w < batch.worlds(); ++w) all.push_back(batch.hash(w));
-  return all;
-}
 
 BatchOptions with_sleep(BatchOptions options, bool sleep) {
   options.sleep = sleep;
