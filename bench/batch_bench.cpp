@@ -25,7 +25,7 @@ Scene bin_boxes() { return scenes::find("bin-boxes")->make(); }
 // The typical, moving state: nothing sleeps in it, whether it may or not.
 void time_moving_steps(benchmark::State& state, bool sleep) {
   Scene scene = bin_boxes();
-  scene.options.sleep_speed = 0;
+  scene.options.sleep.speed = 0;
   Batch batch = batch_of(scene, sleep);
   batch.step(120);
   for ([[maybe_unused]] const auto _ : state) batch.step();

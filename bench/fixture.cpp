@@ -83,6 +83,7 @@ void StageRunner::run_before(Stage stage, const Group& group) {
 TypicalWorlds::TypicalWorlds(const Plan& plan, const Kernels& kernels, int steps)
     : kernels_(kernels),
       worlds_(plan, kWorlds, 0, BatchOptions{}, kernels.lanes),
+      stages_(worlds_.data(), worlds_.tables(), kernels),
       scratch_memory_(kernels.scratch_bytes(worlds_.tables())),
       scratch_(kernels.make_scratch(worlds_.tables(), scratch_memory_.data())) {
   const FloatMode mode(FloatMode::flush);
@@ -124,7 +125,7 @@ void TypicalWorlds::restore(int group) {
 }
 
 void TypicalWorlds::step(int index, int steps, kernels::Layout layout) const {
-  step_group<float>({kernels_, tables(), layout}, group(index), scratch_, steps, nullptr);
+  step_group<float>({kernels_, tables(), stages_, layout}, group(index), scratch_, steps, nullptr);
 }
 
 std::uint64_t TypicalWorlds::current_hash() const {

@@ -102,6 +102,7 @@ class TypicalWorlds {
 
   const Kernels& kernels_;
   Worlds<float> worlds_;
+  StageList<float> stages_;
   AlignedBuffer<unsigned char> scratch_memory_;
   kernels::Scratch* scratch_;
   std::vector<std::vector<Saved>> saved_;  // per group

@@ -1,10 +1,10 @@
 # Finds MuJoCo's headers and shared library and defines the imported target MuJoCo::MuJoCo.
 #
 # Input:  MW_MUJOCO_DIR   folder with include/mujoco/mujoco.h and lib/libmujoco.so, as
-#                         tools/fetch_mujoco.sh makes it
+#                         tools/scripts/fetch_mujoco.sh makes it
 # Output: MuJoCo_FOUND, MuJoCo_VERSION ("3.17.0"), MuJoCo_INCLUDE_DIR, MuJoCo_LIBRARY,
 #         MuJoCo_LICENSE (only where it lies in MW_MUJOCO_DIR)
-set(MW_MUJOCO_DIR "" CACHE PATH "Folder with MuJoCo's include and lib (tools/fetch_mujoco.sh)")
+set(MW_MUJOCO_DIR "" CACHE PATH "Folder with MuJoCo's include and lib (tools/scripts/fetch_mujoco.sh)")
 
 find_path(MuJoCo_INCLUDE_DIR mujoco/mujoco.h HINTS "${MW_MUJOCO_DIR}/include")
 find_library(MuJoCo_LIBRARY mujoco HINTS "${MW_MUJOCO_DIR}/lib")
@@ -28,7 +28,7 @@ include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(MuJoCo
   REQUIRED_VARS MuJoCo_LIBRARY MuJoCo_INCLUDE_DIR
   VERSION_VAR MuJoCo_VERSION
-  REASON_FAILURE_MESSAGE "set MW_MUJOCO_DIR to the folder that tools/fetch_mujoco.sh filled")
+  REASON_FAILURE_MESSAGE "set MW_MUJOCO_DIR to the folder that tools/scripts/fetch_mujoco.sh filled")
 
 if(MuJoCo_FOUND AND NOT TARGET MuJoCo::MuJoCo)
   # The real file behind the libmujoco.so link: its name is what the loader asks for.

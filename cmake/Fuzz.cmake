@@ -17,7 +17,7 @@ foreach(target IN LISTS mw_covered ITEMS manyworlds manyworlds_record)
 endforeach()
 
 add_library(mw_fuzz_support STATIC
-  fuzz/inputs.cpp fuzz/scene_bytes.cpp fuzz/snapshot_batches.cpp)
+  fuzz/inputs.cpp fuzz/scene_bytes.cpp fuzz/scene_members.cpp fuzz/snapshot_batches.cpp)
 target_include_directories(mw_fuzz_support PUBLIC "${PROJECT_SOURCE_DIR}")
 target_link_libraries(mw_fuzz_support PUBLIC manyworlds)
 

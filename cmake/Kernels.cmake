@@ -71,7 +71,8 @@ foreach(isa IN LISTS MW_ISAS)
       ${optimization} ${mw_search}
       # Full debug information doubles the time to compile a kernel; line numbers are free.
       $<$<CONFIG:RelWithDebInfo>:-g1>)
-    target_include_directories(mw_kernels_${name} PRIVATE "${PROJECT_SOURCE_DIR}")
+    target_include_directories(mw_kernels_${name} PRIVATE "${PROJECT_SOURCE_DIR}"
+      "${PROJECT_SOURCE_DIR}/include")
     if(MW_UNITY AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
       # Half of what most of these files cost are the vector headers.
       target_precompile_headers(mw_kernels_${name} PRIVATE

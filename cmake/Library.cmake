@@ -17,7 +17,7 @@ target_include_directories(manyworlds
 target_link_libraries(manyworlds PUBLIC Eigen3::Eigen PRIVATE Threads::Threads Qhull::qhull_r)
 mw_precompile(manyworlds)
 # These instantiate what others declare, or keep names for themselves that others do, too.
-mw_unity(manyworlds ALONE src/state/worlds.cpp src/api/read_observations.cpp)
+mw_unity(manyworlds ALONE src/state/worlds.cpp src/api/read_observers.cpp)
 
 if(MW_EXECUTOR STREQUAL tbb)
   find_package(TBB 2021 REQUIRED CONFIG)

@@ -33,7 +33,7 @@ if(MJCF)
   run("${program}" run "${SOURCE_DIR}/scenes/mjcf/box_pile.xml" --worlds 20 --steps 3
       WORKING_DIRECTORY "${folder}")
   if(NOT EXISTS "${PREFIX}/${DATADIR}/licenses/mujoco/LICENSE")
-    message(FATAL_ERROR "MuJoCo's library was installed without its licence (tools/fetch_mujoco.sh)")
+    message(FATAL_ERROR "MuJoCo's library was installed without its licence (tools/scripts/fetch_mujoco.sh)")
   endif()
 endif()
 if(RECORD)

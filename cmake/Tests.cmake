@@ -89,7 +89,7 @@ endif()
 foreach(compiler IN LISTS mw_docs_compilers)
   cmake_path(GET compiler FILENAME name)
   add_test(NAME docs_code_${name}
-    COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/check_docs_code.py"
+    COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_docs_code.py"
             --compiler "${compiler}" --include "${mw_eigen_include}" "${PROJECT_SOURCE_DIR}")
   set_tests_properties(docs_code_${name} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped: ")
 endforeach()
@@ -100,7 +100,7 @@ if(MW_SANITIZE)
 endif()
 
 add_test(NAME check_floors
-  COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/check_floors.py"
+  COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_floors.py"
           "${PROJECT_SOURCE_DIR}")
 
 # What tools/run, tools/test and what they share build.
@@ -109,7 +109,7 @@ add_test(NAME tools_run
 
 foreach(name IN LISTS MW_KERNEL_SETS)
   add_test(NAME check_kernel_symbols_${name}
-    COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/check_kernel_symbols.py"
+    COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_kernel_symbols.py"
             --nm ${CMAKE_NM} ${name}
             $<FILTER:$<TARGET_OBJECTS:mw_kernels_${name}>,EXCLUDE,[.]gch$>
     COMMAND_EXPAND_LISTS)
@@ -132,7 +132,7 @@ mark_as_advanced(MW_CLANG_FORMAT)
 if(MW_CLANG_FORMAT)
   execute_process(COMMAND "${MW_CLANG_FORMAT}" --version OUTPUT_VARIABLE version ERROR_QUIET)
   if(version MATCHES "version 14\\.")
-    add_test(NAME clang_format COMMAND "${PROJECT_SOURCE_DIR}/tools/lint" --format-only)
+    add_test(NAME clang_format COMMAND "${PROJECT_SOURCE_DIR}/tools/scripts/lint" --format-only)
     set_tests_properties(clang_format PROPERTIES
       ENVIRONMENT "CLANG_FORMAT=${MW_CLANG_FORMAT}")
   endif()

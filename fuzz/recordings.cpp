@@ -20,8 +20,8 @@ namespace {
 Scene scene_of(Space space, bool varies) {
   Scene scene = test::crowd(space, 3);
   scene.bodies[2].shapes.front().geometry = Capsule{0.3, 0.2};
-  scene.options.sleep_speed = 10;
-  scene.options.time_to_sleep = 0.05;
+  scene.options.sleep.speed = 10;
+  scene.options.sleep.time = 0.05;
   if (!varies) return scene;
   scene.variations.push_back(vary(Parameter::friction, 0.1, 0.9));
   scene.variations.push_back(vary(Parameter::density, 500, 2000, Draw::log_uniform));

@@ -206,113 +206,6 @@ Body SceneBytes::body(int index) {
   return out;
 }
 
-Options SceneBytes::options() {
-  Options o;
-  if (planar_) o.gravity = {0, -10, 0};
-  const auto sometimes = [&](double& value, double low, double high) {
-    if (byte() > 200) value = number(low, high);
-  };
-  const auto flip = [&](bool& value) { value = (byte() > 200) != value; };
-  sometimes(o.dt, 0.001, 0.1);
-  if (byte() > 128) o.substeps = rarely() ? integer(-2, 70) : integer(1, 8);
-  if (byte() > 200) o.gravity = planar_vector(20);
-  if (byte() > 200) o.wind = planar_vector(20);
-  sometimes(o.density, 1, 5000);
-  if (byte() > 128) o.integrator = static_cast<Integrator>(integer(0, 5));
-  if (byte() > 200) o.rotation = static_cast<Rotation>(integer(0, 2));
-  if (byte() > 200) o.angular_momentum = true;
-  if (byte() > 128) o.solver = static_cast<Solver>(integer(0, 4));
-  if (byte() > 200) o.iterations = rarely() ? integer(-1, 20000) : integer(1, 12);
-  sometimes(o.relaxation, 0, 2);
-  sometimes(o.push_out_share, 0, 1);
-  flip(o.split_impulse);
-  sometimes(o.length_unit, 0.1, 10);
-  sometimes(o.contact_frequency, 0, 300);
-  sometimes(o.contact_damping_ratio, 0, 20);
-  sometimes(o.push_out_speed, 0, 10);
-  sometimes(o.slop, 0.001, 0.05);
-  sometimes(o.restitution_threshold, 0, 2);
-  if (byte() > 200) o.restitution_sweeps = rarely() ? integer(-2, 70) : integer(1, 16);
-  flip(o.friction_in_bias_pass);
-  flip(o.cast_against_fixed);
-  flip(o.cast_between_moving);
-  if (byte() > 200) o.joint_frequency = number(0, 300);
-  sometimes(o.joint_damping_ratio, 0, 5);
-  sometimes(o.joint_pull_speed, 0, 20);
-  sometimes(o.sleep_speed, 0, 1);
-  sometimes(o.time_to_sleep, 0.01, 1);
-  if (byte() > 200) o.contact_capacity = rarely() ? integer(-1, 70000) : integer(1, 20);
-  if (byte() > 200) {
-    const Vec3 low = vector(5), size = vector(5);
-    o.bounds = Eigen::AlignedBox3d(low, low + (rarely() ? size : size.cwiseAbs().eval()));
-  }
-  return o;
-}
-
-Spring SceneBytes::spring() {
-  Spring out;
-  if (byte() > 128) {
-    out.frequency = number(0.1, 60), out.damping_ratio = number(0, 3);
-  } else {
-    out.stiffness = number(1, 1e4), out.damping = number(0, 100);
-  }
-  return out;
-}
-std::optional<Limit> SceneBytes::limit() {
-  if (byte() > 128) return std::nullopt;
-  Limit out{number(-1, 0), number(0, 1), std::nullopt};
-  if (rarely()) out.spring = spring();
-  return out;
-}
-std::optional<Drive> SceneBytes::drive() {
-  if (byte() > 128) return std::nullopt;
-  Drive out;
-  out.target_position = number(-1, 1), out.target_speed = number(-5, 5);
-  if (byte() > 128) out.spring = spring();
-  if (byte() > 128) out.max_force = number(0, 1000);
-  return out;
-}
-
-JointType SceneBytes::joint_type() {
-  switch (integer(0, 7)) {
-    case 0: {
-      if (planar_ && !rarely()) return HingeJoint{};
-      BallJoint ball;
-      if (byte() > 128) ball.cone = number(0, 3);
-      ball.twist = limit();
-      return ball;
-    }
-    case 1: return HingeJoint{limit(), drive()};
-    case 2: return SliderJoint{limit(), drive()};
-    case 3: return FixedJoint{};
-    case 4: {
-      DistanceJoint distance{std::nullopt, limit(), std::nullopt};
-      if (byte() > 128) distance.length = number(0, 3);
-      if (byte() > 128) distance.spring = spring();
-      return distance;
-    }
-    case 5: return WheelJoint{spring(), limit(), drive()};
-    case 6: {
-      const Vec3 a = planar_vector(3);
-      return PulleyJoint{a, planar_vector(3), number(0.1, 3), std::nullopt};
-    }
-    default: return TargetJoint{spring(), number(0, 1e4)};
-  }
-}
-
-Joint SceneBytes::joint(int bodies) {
-  Joint out;
-  out.type = joint_type();
-  out.body_a = BodyId(integer(-1, bodies - (rarely() ? 0 : 1)));
-  out.body_b = BodyId(integer(0, bodies - (rarely() ? 0 : 1)));
-  out.frame_a.position = planar_vector(1), out.frame_b.position = planar_vector(1);
-  out.frame_a.rotation = rotation(), out.frame_b.rotation = rotation();
-  out.collide = byte() > 200;
-  if (byte() > 200) out.break_force = number(1, 1e4);
-  if (byte() > 200) out.break_torque = number(1, 1e4);
-  return out;
-}
-
 Control SceneBytes::control(int bodies, int joints) {
   Control out;
   out.kind = static_cast<ControlKind>(integer(0, 3));
@@ -373,6 +266,7 @@ Scene SceneBytes::scene() {
   for (int n = byte() > 128 ? integer(1, 4) : 0; n > 0 && !out.bodies.empty(); --n) {
     out.variations.push_back(variation(static_cast<int>(out.bodies.size()) - (rarely() ? 0 : 1)));
   }
+  for (int n = byte() > 192 ? integer(1, 4) : 0; n > 0; --n) change_any(out);
   return out;
 }
 

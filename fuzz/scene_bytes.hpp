@@ -9,6 +9,7 @@
 #include <string>
 
 #include "manyworlds/batch.hpp"
+#include "manyworlds/members.hpp"
 
 namespace manyworlds::fuzz {
 
@@ -42,11 +43,46 @@ class SceneBytes {
   Shape shape(bool fixed);
   MassProperties mass_properties();
   Body body(int index);
+  // What a member may become, from what it is; of a struct (members.hpp), some of its members.
+  void fill(double& value);
+  void fill(bool& value);
+  void fill(int& value);
+  void fill(std::uint32_t& value);
+  void fill(std::string& value);
+  void fill(ShapeId& value);
+  template <class Of>
+  void fill(Id<Of>& value);
+  template <class E>
+  requires std::is_enum_v<E>
+  void fill(E& value);
+  template <int n>
+  void fill(Eigen::Matrix<double, n, 1>& value);
+  void fill(Mat3& value);
+  void fill(Quat& value);
+  void fill(Eigen::AlignedBox3d& value);
+  void fill(Limit& value);
+  void fill(Spring& value);
+  template <class T>
+  void fill(std::optional<T>& value);
+  template <class T>
+  void fill(std::vector<T>& value);
+  template <class... Ts>
+  void fill(std::variant<Ts...>& value);
+  template <HasMembers Struct>
+  void fill(Struct& value);
+  // Fills what has that many members before it; whether there is one.
+  template <class T>
+  bool change(T& value, int& before);
+  template <class T>
+  bool change_inside(T& value, int& before);
+  template <class T>
+  bool change_inside(std::optional<T>& value, int& before);
+  template <class T>
+  bool change_inside(std::vector<T>& values, int& before);
+  template <class... Ts>
+  bool change_inside(std::variant<Ts...>& value, int& before);
+  void change_any(Scene& scene);
   Options options();
-  Spring spring();
-  std::optional<Limit> limit();
-  std::optional<Drive> drive();
-  JointType joint_type();
   Joint joint(int bodies);
   Control control(int bodies, int joints);
   Variation variation(int bodies);

@@ -14,8 +14,8 @@ Batch make_batch(int index) {
   scene.bodies.back().shapes.front().geometry = Capsule{0.3, 0.2};
   scene.bodies[3].motion = Motion::kinematic;
   const bool sleep = index >= 2;
-  scene.options.sleep_speed = sleep ? 10 : 0.05;
-  scene.options.time_to_sleep = 0.05;
+  scene.options.sleep.speed = sleep ? 10 : 0.05;
+  scene.options.sleep.time = 0.05;
   scene.bodies[4].enabled = !sleep;
   BatchOptions options;
   options.worlds = kWorlds;

@@ -8,7 +8,7 @@ Scene newton_cradle(int moving, double gap) {
   constexpr double kRadius = 0.5;
   Scene scene = planar_scene("newton-cradle");
   scene.options.gravity.setZero();
-  scene.options.restitution_threshold = 0.01;
+  scene.options.contact.restitution_threshold = 0.01;
   for (int i = 0; i < 5; ++i) {
     Body ball;
     ball.name = "ball" + std::to_string(i);

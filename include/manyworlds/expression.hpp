@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "manyworlds/ids.hpp"
+#include "manyworlds/observed.hpp"
 
 namespace manyworlds {
 
@@ -82,10 +83,31 @@ Expression velocity(BodyId body, int axis);           // m/s, of the centre of m
 Expression angular_velocity(BodyId body, int axis);   // rad/s; in the plane axis 2
 Expression angle(BodyId body);                        // rad, -pi to pi, in the plane
 Expression direction(BodyId body, int of, int axis);  // a component of the body's x, y or z axis
-Expression joint_position(JointId joint, int coordinate = 0);  // as Observed::joint_position
-Expression joint_speed(JointId joint, int coordinate = 0);
-Expression touching(BodyId body);  // a contact pushed it in the last step; 0 where a world begins
-Expression ray_distance(int ray);  // m, of Task::rays
+
+// A component of what an observer sees (observed.hpp), which the task's batch then has. The item is
+// a body, a joint, or a ray or point of the task, 0 for what is of the world; of what is of a
+// coordinate, the joint, and the component its coordinate. Components count as axes do: a spin of
+// the plane is 2. What only a step makes is 0 where a world begins.
+Expression observed(Observed what, int item = 0, int component = 0);
+inline Expression joint_position(JointId joint, int coordinate = 0) {
+  return observed(Observed::joint_position, joint.index(), coordinate);
+}
+inline Expression joint_speed(JointId joint, int coordinate = 0) {
+  return observed(Observed::joint_speed, joint.index(), coordinate);
+}
+inline Expression touching(BodyId body) {  // a contact pushed it in the last step
+  return observed(Observed::touching, body.index());
+}
+inline Expression point_position(int point, int axis) {  // m, of Task::points
+  return observed(Observed::point_position, point, axis);
+}
+inline Expression point_velocity(int point, int axis) {  // m/s
+  return observed(Observed::point_velocity, point, axis);
+}
+inline Expression ray_distance(int ray) {  // m, of Task::rays
+  return observed(Observed::ray_distance, ray);
+}
+
 Expression action(
     int index = 0);  // that led here; of discrete tasks its number. 0 at the beginning
 Expression control(ControlId control);  // that led here: of the scene

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "manyworlds/field_table.hpp"
 #include "manyworlds/ids.hpp"
 
 namespace manyworlds {
@@ -13,28 +14,37 @@ class Batch;
 
 // A change of one world, named after the call of Batch that makes it.
 enum class Input : std::uint8_t {
-  force,                   // values: N (3)
-  torque,                  // N m (3)
-  force_at,                // N, then the point in the world, m (6)
-  impulse,                 // N s (3)
-  angular_impulse,         // N m s (3)
-  impulse_at,              // N s, then the point in the world, m (6)
-  enable,                  // (0)
-  disable,                 // (0)
-  spawn,                   // position, rotation w x y z, linear and angular velocity (13)
-  wake,                    // of the whole world (0)
-  write_position,          // canonical, [body][component]
-  write_orientation,       // canonical
-  write_linear_velocity,   // canonical
-  write_angular_velocity,  // canonical
-  reset,                   // a new state and no pending forces: reset, or stepped alone (0)
-  restore,                 // the world has a new state: restored, copied, or other parameters (0)
-  set_controls,            // of the whole world, [control]
-  enable_joint,            // (0)
-  disable_joint,           // (0)
+  force,            // values: N (3)
+  torque,           // N m (3)
+  force_at,         // N, then the point in the world, m (6)
+  impulse,          // N s (3)
+  angular_impulse,  // N m s (3)
+  impulse_at,       // N s, then the point in the world, m (6)
+  enable,           // (0)
+  disable,          // (0)
+  spawn,            // position, rotation w x y z, linear and angular velocity (13)
+  wake,             // of the whole world (0)
+#define MW_WRITE(name, ...) write_##name,
+  MW_STATE_FIELDS(MW_WRITE)  // write_position and so on: canonical, [item][component]
+#undef MW_WRITE
+  reset,          // a new state and no pending forces: reset, or stepped alone (0)
+  restore,        // the world has a new state: restored, copied, or other parameters (0)
+  set_controls,   // of the whole world, [control]
+  enable_joint,   // (0)
+  disable_joint,  // (0)
 };
-inline constexpr int kInputCount = 19;
+inline constexpr int kInputCount = static_cast<int>(Input::disable_joint) + 1;
 const char* to_string(Input input);  // "force", "write_position"
+
+// Of which field an input is the write, and the other way round.
+inline constexpr Input kFirstWrite = static_cast<Input>(static_cast<int>(Input::wake) + 1);
+inline constexpr bool is_write(Input input) { return input >= kFirstWrite && input < Input::reset; }
+inline constexpr Input write_of(Field field) {
+  return static_cast<Input>(static_cast<int>(kFirstWrite) + static_cast<int>(field));
+}
+inline constexpr Field written_field(Input write) {
+  return static_cast<Field>(static_cast<int>(write) - static_cast<int>(kFirstWrite));
+}
 
 struct InputCall {
   Input input{};

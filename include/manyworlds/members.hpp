@@ -4,157 +4,17 @@
 //   Members<Body>::visit(body, [](const char* name, auto& member, Counted = {}) { ... });
 //
 // Each list names all members in a structured binding, so that one that is added to a struct and
-// not here does not compile.
+// not here does not compile. Those of shapes and options are in
+// shape_members.hpp and option_members.hpp.
 #pragma once
 
-#include <type_traits>
-
+#include "manyworlds/member_list.hpp"
+#include "manyworlds/option_members.hpp"
 #include "manyworlds/scene.hpp"
+#include "manyworlds/shape_members.hpp"
 
 namespace manyworlds {
 
-// Whether plans that differ in a member have different fingerprints (Plan::fingerprint), and so
-// snapshots and recordings that are not for one another.
-struct Counted {
-  bool yes = true;
-  const char* unless = "";  // why not
-};
-constexpr Counted not_counted(const char* why) { return {false, why}; }
-constexpr Counted counted_if(bool condition, const char* why_not) { return {condition, why_not}; }
-
-template <class Struct>
-struct Members;  // name; visit(value, visit): visit("member", value.member[, Counted]) in turn
-template <class Struct>
-concept HasMembers = requires {
-  Members<Struct>::name;
-};
-
-// -- shapes
-template <>
-struct Members<Sphere> {
-  static constexpr const char* name = "Sphere";
-  static void visit(auto& value, auto&& visit) {
-    auto& [radius] = value;
-    visit("radius", radius);
-  }
-};
-template <>
-struct Members<Box> {
-  static constexpr const char* name = "Box";
-  static void visit(auto& value, auto&& visit) {
-    auto& [half_extents] = value;
-    visit("half_extents", half_extents);
-  }
-};
-template <>
-struct Members<Plane> {
-  static constexpr const char* name = "Plane";
-  static void visit(auto& value, auto&& visit) {
-    auto& [normal, offset] = value;
-    visit("normal", normal), visit("offset", offset);
-  }
-};
-template <>
-struct Members<Capsule> {
-  static constexpr const char* name = "Capsule";
-  static void visit(auto& value, auto&& visit) {
-    auto& [radius, half_length] = value;
-    visit("radius", radius), visit("half_length", half_length);
-  }
-};
-template <>
-struct Members<Cylinder> {
-  static constexpr const char* name = "Cylinder";
-  static void visit(auto& value, auto&& visit) {
-    auto& [radius, half_length] = value;
-    visit("radius", radius), visit("half_length", half_length);
-  }
-};
-template <>
-struct Members<Hull> {
-  static constexpr const char* name = "Hull";
-  static void visit(auto& value, auto&& visit) {
-    auto& [vertices] = value;
-    visit("vertices", vertices);
-  }
-};
-template <>
-struct Members<Circle> {
-  static constexpr const char* name = "Circle";
-  static void visit(auto& value, auto&& visit) {
-    auto& [radius] = value;
-    visit("radius", radius);
-  }
-};
-template <>
-struct Members<Polygon> {
-  static constexpr const char* name = "Polygon";
-  static void visit(auto& value, auto&& visit) {
-    auto& [vertices, radius] = value;
-    visit("vertices", vertices);
-    visit("radius", radius,
-          counted_if(radius != 0,
-                     "a polygon without a rounding is what it was before there was one"));
-  }
-};
-template <>
-struct Members<HalfPlane> {
-  static constexpr const char* name = "HalfPlane";
-  static void visit(auto& value, auto&& visit) {
-    auto& [normal, offset] = value;
-    visit("normal", normal), visit("offset", offset);
-  }
-};
-template <>
-struct Members<Segment> {
-  static constexpr const char* name = "Segment";
-  static void visit(auto& value, auto&& visit) {
-    auto& [a, b] = value;
-    visit("a", a), visit("b", b);
-  }
-};
-template <>
-struct Members<Terrain> {
-  static constexpr const char* name = "Terrain";
-  static void visit(auto& value, auto&& visit) {
-    auto& [points, loop] = value;
-    visit("points", points), visit("loop", loop);
-  }
-};
-template <>
-struct Members<HeightField> {
-  static constexpr const char* name = "HeightField";
-  static void visit(auto& value, auto&& visit) {
-    auto& [heights, columns, cell] = value;
-    visit("heights", heights), visit("columns", columns), visit("cell", cell);
-  }
-};
-template <>
-struct Members<Material> {
-  static constexpr const char* name = "Material";
-  static void visit(auto& value, auto&& visit) {
-    auto& [friction, restitution] = value;
-    visit("friction", friction), visit("restitution", restitution);
-  }
-};
-template <>
-struct Members<Filter> {
-  static constexpr const char* name = "Filter";
-  static void visit(auto& value, auto&& visit) {
-    auto& [category, mask] = value;
-    visit("category", category), visit("mask", mask);
-  }
-};
-template <>
-struct Members<Shape> {
-  static constexpr const char* name = "Shape";
-  static void visit(auto& value, auto&& visit) {
-    auto& [geometry, position, rotation, density, material, filter, name_] = value;
-    visit("geometry", geometry), visit("position", position), visit("rotation", rotation);
-    visit("density", density), visit("material", material), visit("filter", filter);
-    visit("name", name_, not_counted("names are for people"));
-  }
-};
 // -- bodies
 template <>
 struct Members<MassProperties> {
@@ -336,43 +196,7 @@ struct Members<Variation> {
     visit("high", high), visit("draw", draw), visit("together", together);
   }
 };
-template <>
-struct Members<Options> {
-  static constexpr const char* name = "Options";
-  static void visit(auto& value, auto&& visit) {
-    auto& [dt, substeps, gravity, wind, density, integrator, rotation, angular_momentum, solver,
-           iterations, relaxation, push_out_share, split_impulse, length_unit, contact_frequency,
-           contact_damping_ratio, push_out_speed, slop, restitution_threshold, restitution_sweeps,
-           friction_in_bias_pass, cast_against_fixed, cast_between_moving, joint_frequency,
-           joint_damping_ratio, joint_pull_speed, sleep_speed, time_to_sleep, contact_capacity,
-           bounds] = value;
-    const Counted swept =
-        counted_if(solver != Solver::tgs_soft || iterations_of(value) != 1,
-                   "the default solver is what there was before there was a choice");
-    const Counted hard = counted_if(has_hard_rows(solver), "of solvers with hard rows alone");
-    const Counted flown =
-        counted_if(integrator != Integrator::symplectic_euler ||
-                       rotation.value_or(Rotation::splitting) != Rotation::splitting,
-                   "the default integrator is what there was before there was a choice");
-    visit("dt", dt), visit("substeps", substeps), visit("gravity", gravity), visit("wind", wind);
-    visit("density", density), visit("length_unit", length_unit);
-    visit("contact_frequency", contact_frequency);
-    visit("contact_damping_ratio", contact_damping_ratio), visit("push_out_speed", push_out_speed);
-    visit("slop", slop), visit("restitution_threshold", restitution_threshold);
-    visit("restitution_sweeps", restitution_sweeps);
-    visit("friction_in_bias_pass", friction_in_bias_pass);
-    visit("cast_against_fixed", cast_against_fixed);
-    visit("cast_between_moving", cast_between_moving), visit("joint_frequency", joint_frequency);
-    visit("joint_damping_ratio", joint_damping_ratio), visit("joint_pull_speed", joint_pull_speed);
-    visit("sleep_speed", sleep_speed), visit("time_to_sleep", time_to_sleep);
-    visit("contact_capacity", contact_capacity), visit("bounds", bounds);
-    visit("solver", solver, swept), visit("iterations", iterations, swept);
-    visit("relaxation", relaxation, counted_if(solver == Solver::sor, "of sor alone"));
-    visit("push_out_share", push_out_share, hard), visit("split_impulse", split_impulse, hard);
-    visit("integrator", integrator, flown), visit("rotation", rotation, flown);
-    visit("angular_momentum", angular_momentum, flown);
-  }
-};
+// -- the whole
 template <>
 struct Members<Scene> {
   static constexpr const char* name = "Scene";

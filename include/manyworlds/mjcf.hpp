@@ -34,7 +34,7 @@ struct MjcfResult {
   // Bodies in MuJoCo's order: a fixed body for each static body that has geoms (the worldbody is
   // named "world"), a dynamic body for each free one. options.dt and options.gravity are the
   // file's; options.length_unit is the median size of the dynamic geoms; joints that begin apart
-  // get a finite options.joint_pull_speed. Joints are those of the active equalities, in order.
+  // get a finite JointOptions::pull_speed. Joints are those of the active equalities, in order.
   Scene scene = {};
   // What was read but does not act as it does in MuJoCo, one sentence each.
   std::vector<std::string> warnings = {};

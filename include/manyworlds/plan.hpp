@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "manyworlds/field_table.hpp"
 #include "manyworlds/scene.hpp"
 
 namespace manyworlds {
@@ -97,7 +98,9 @@ class Plan {
   ShapeId shape(BodyId body, std::string_view name) const { return scene().shape(body, name); }
   JointId joint(std::string_view name) const { return scene().joint(name); }
   ControlId control(std::string_view name) const { return scene().control(name); }
-  int bodies() const;  // bodies with state: dynamic and kinematic, in scene order
+  int bodies() const;              // bodies with state: dynamic and kinematic, in scene order
+  int items(ItemKind kind) const;  // of a world, that have the state fields of this kind
+  std::size_t numbers(Field field) const;  // of a world: items times components
   // Where a body is in arrays [body], and who is in a row of them. Fixed bodies are in none: row()
   // throws std::invalid_argument for them, and both do for what is not there.
   int row(BodyId body) const;

@@ -14,14 +14,14 @@
 //
 // All but penalty begin a step with the impulses of the last one.
 //
-// Hard rows of joints that have come apart by s ask for the speed Options::push_out_share s / h
-// (Baumgarte 1972), those of contacts that overlap by s for the same of s - slop, at most
-// push_out_speed. That speed stays with the bodies, and its impulses count as loads (Observer,
-// Joint::break_force), unless Options::split_impulse moves overlapping bodies apart without one.
-// Soft rows are springs and dampers of Options::contact_frequency and joint_frequency, implicit
-// one by one (Catto 2011); friction is hard in all. In sequential_impulse, sor and nncg joints are
-// soft only if joint_frequency is given. Springs, limits with springs and drives keep their
-// equations in all.
+// Hard rows of joints that have come apart by s ask for the speed SolverOptions::push_out_share
+// s / h (Baumgarte 1972), those of contacts that overlap by s for the same of s - slop, at most
+// ContactOptions::push_out_speed. That speed stays with the bodies, and its impulses count as loads
+// (Observer, Joint::break_force), unless SolverOptions::split_impulse moves overlapping bodies
+// apart without one. Soft rows are springs and dampers of ContactOptions::frequency and
+// JointOptions::frequency, implicit one by one (Catto 2011); friction is hard in all. In
+// sequential_impulse, sor and nncg joints are soft only if JointOptions::frequency is given.
+// Springs, limits with springs and drives keep their equations in all.
 #pragma once
 
 namespace manyworlds {

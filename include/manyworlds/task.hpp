@@ -51,7 +51,8 @@ struct Task {
   int most_steps = 0;
   double solved_at = std::numeric_limits<double>::infinity();  // mean return; said to people only
 
-  std::vector<Ray> rays = {};  // for terms::ray_distance
+  std::vector<Ray> rays = {};      // for terms::ray_distance
+  std::vector<Point> points = {};  // for terms::point_position and point_velocity
 };
 
 // Every issue of the task and its scene at once; empty means that an Environment can be made.

@@ -336,28 +336,58 @@ void cylinder_sphere(const ConvexShape& a, Vec3 d, Vec3& normal, Float& separati
 
 }  // namespace
 
-void collide_convex_sphere(const Tables& t, const ConvexShape& a, const ConvexShape& b, Mask active,
-                           Manifold<Isotropic, 1>& m) {
-  const Vec3 d = b.p - a.p;
-  Vec3 normal;
-  Float distance;
-  if (a.kind == ShapeKind::cylinder) {
-    cylinder_sphere(a, d, normal, distance);
-  } else {
-    ConvexAxis axis;
-    find_convex_axis(t, a, b, active, axis);
-    normal = axis.normal, distance = axis.separation;
-  }
-  const Float zero(Real(0)), separation = distance - b.radius;
-  m.normal = normal;
-  m.tangent = any_tangent(normal);
-  m.separation[0] = separation;
-  m.point_b[0] = normal * -fma(min(separation, zero), Real(0.5), b.radius);
-  m.point_a[0] = fma(normal, -max(separation, zero), m.point_b[0] + d);
+void collide_plane_point(const PlanePose& a, const ConvexShape& b, Manifold<Isotropic, 1>& m) {
+  const Float zero(Real(0));
+  const Vec3 lowest = support(b, -a.normal);
+  m.normal = a.normal;
+  m.tangent = a.tangent;
+  m.separation[0] = dot(a.normal, b.p) - a.offset + dot(a.normal, lowest);
+  m.point_b[0] = fma(a.normal, min(m.separation[0], zero) * Float(Real(-0.5)), lowest);
+  m.point_a[0] = m.point_b[0];
   m.feature_x[0] = m.feature_y[0] = zero;
   m.code = zero;
   m.match_distance2 = zero;
   m.valid[0] = mask_from_bits(kAllLanes);
+}
+
+void collide_convex_point(const Tables& t, const ConvexShape& a, const Tile* tile,
+                          const ConvexShape& b, Mask active, Manifold<Isotropic, 1>& m) {
+  const Float zero(Real(0)), half(Real(0.5));
+  const Vec3 d = b.p - a.p;
+  const bool sphere = b.kind == ShapeKind::sphere;
+  m.valid[0] = mask_from_bits(kAllLanes);
+  ConvexAxis axis;
+  if (a.kind == ShapeKind::cylinder && sphere) {
+    cylinder_sphere(a, d, axis.normal, axis.separation);
+  } else {
+    if (tile) active = active & tile->there;
+    find_convex_axis(t, a, b, active, axis);
+  }
+  if (tile) {
+    const Mask bare = keep_to_surface(*tile, b, d, axis);
+    m.valid[0] = axis.near & !bare;
+  } else if (!sphere) {
+    m.valid[0] = axis.near;
+  }
+  const Vec3 normal = axis.normal;
+  const Float separation = axis.separation - b.radius;
+  m.normal = normal;
+  m.tangent = any_tangent(normal);
+  m.separation[0] = separation;
+  if (sphere) {
+    m.point_b[0] = normal * -fma(min(separation, zero), half, b.radius);
+    m.point_a[0] = fma(normal, -max(separation, zero), m.point_b[0] + d);
+  } else {
+    // Half way between the two, or on each one's surface when they are apart.
+    const Vec3 surface_b = fnma(normal, b.radius, axis.on_b),
+               middle = (axis.on_a + surface_b) * half;
+    const Mask apart = zero < separation;
+    m.point_a[0] = select(apart, axis.on_a, middle);
+    m.point_b[0] = select(apart, surface_b, middle) - d;
+  }
+  m.feature_x[0] = m.feature_y[0] = zero;
+  m.code = zero;
+  m.match_distance2 = zero;
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

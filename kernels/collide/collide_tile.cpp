@@ -30,28 +30,29 @@ int next_with(int from, int remainder, int divisor) {
 }
 
 // What a lane sees of its tile: the corners in the field's frame.
-struct Corners {
+struct CellCorners {
   alignas(64) Real x[6][kLanes], y[6][kLanes], z[6][kLanes], code[kLanes];
   std::uint32_t there = 0;
 };
 // `low`, `high`: of the shape, x and y in the field's frame.
-void find_corners(const Real* row, int lane, const Real* low, const Real* high, Corners& out) {
-  const auto whole = [row](int at) { return static_cast<int>(row[at]); };
-  const Real cell_x = row[TileRow::cell_x], cell_y = row[TileRow::cell_y];
-  const int columns = whole(TileRow::columns), rows = whole(TileRow::rows);
+void find_corners(const TileRow& row, int lane, const Real* low, const Real* high,
+                  CellCorners& out) {
+  const auto whole = [](Real x) { return static_cast<int>(x); };
+  const Real cell_x = row.cell[0], cell_y = row.cell[1];
+  const int columns = whole(row.columns), rows = whole(row.rows);
   const int first_i = floor_of(low[0] / cell_x), first_j = floor_of(low[1] / cell_y);
-  int i = next_with(first_i > 0 ? first_i : 0, whole(TileRow::column), whole(TileRow::wide));
-  int j = next_with(first_j > 0 ? first_j : 0, whole(TileRow::row), whole(TileRow::deep));
+  int i = next_with(first_i > 0 ? first_i : 0, whole(row.column), whole(row.wide));
+  int j = next_with(first_j > 0 ? first_j : 0, whole(row.row), whole(row.deep));
   // A small shape has nothing to do with the tiles that only large ones reach.
   const bool reached =
       static_cast<Real>(i) * cell_x <= high[0] && static_cast<Real>(j) * cell_y <= high[1];
   const bool there = reached && i < columns && j < rows;
   if (!there) i = j = 0;
   out.there |= static_cast<std::uint32_t>(there) << lane;
-  const int half = whole(TileRow::half);
+  const int half = whole(row.half);
   // Told apart from cells that are far away in the same tile.
   out.code[lane] = static_cast<Real>((i + j * columns) & 0xff);
-  const Real* heights = row + whole(TileRow::heights);
+  const Real* heights = heights_of(row);
   const auto put = [&](int k, int u, int v) {
     out.x[k][lane] = static_cast<Real>(u) * cell_x;
     out.y[k][lane] = static_cast<Real>(v) * cell_y;
@@ -82,7 +83,7 @@ void load_tile(const Real* base, const std::int32_t* offset, const ConvexShape& 
   BoxPose frame;
   load_pose(base, offset, frame);
   alignas(64) Real low[2][kLanes], high[2][kLanes], pad[kLanes];
-  for (int l = 0; l < kLanes; ++l) pad[l] = base[offset[l] + TileRow::pad];
+  for (int l = 0; l < kLanes; ++l) pad[l] = tile_row(base, offset[l]).pad;
   const Vec3 d = b.p - frame.p;
   const Float around = b.radius + Float::load(pad);
   for (int k = 0; k < 2; ++k) {
@@ -91,10 +92,10 @@ void load_tile(const Real* base, const std::int32_t* offset, const ConvexShape& 
     const Float place = dot(axis, d);
     (place + e.low - around).store(low[k]), (place + e.high + around).store(high[k]);
   }
-  Corners corners;
+  CellCorners corners;
   for (int l = 0; l < kLanes; ++l) {
     const Real of_lane[4] = {low[0][l], low[1][l], high[0][l], high[1][l]};
-    find_corners(base + offset[l], l, of_lane, of_lane + 2, corners);
+    find_corners(tile_row(base, offset[l]), l, of_lane, of_lane + 2, corners);
   }
   tile.there = active & mask_from_bits(corners.there);
   tile.code = Float::load(corners.code);

@@ -23,6 +23,8 @@ namespace {
 using kernels::ShapeKind;
 
 constexpr int kRounds = 24;
+// Where one shape is round all over the search never comes to a corner that it has been to.
+constexpr int kRoundsOfCurved = 96;
 constexpr Real kDeep = Real(0.004);                                        // of the shapes' size
 constexpr Real kTolerance = sizeof(Real) == 4 ? Real(2e-6) : Real(1e-12);  // of the shapes' size
 
@@ -50,8 +52,8 @@ struct BestFace {
 void try_faces(const ConvexShape& s, const ConvexShape& other, Vec3 d, BestFace& best) {
   if (s.kind == ShapeKind::hull) {
     const Vec3 inverse = inverse_of(s.half);
-    for (int i = 0; i < s.hull.most_faces; ++i) {
-      const HullFace face = hull_face(s.hull, inverse, i);
+    for (int i = 0; i < s.faces.most; ++i) {
+      const HullFace face = hull_face(s.faces, s.r, inverse, i);
       best.take(face.normal,
                 dot(face.normal, d) + extent_along(other, face.normal).low - face.reach, i);
     }
@@ -224,9 +226,13 @@ Simplex add_corner(const Simplex& s, const Corner& fresh, Vec3 target) {
 void climb(const ConvexShape& a, const ConvexShape& b, Vec3 d, Float tolerance, bool fixed_target,
            Mask going, Best& best, Simplex& s) {
   const Float zero(Real(0)), one(Real(1));
+  const auto curved = [](const ConvexShape& c) {
+    return info(c.kind).single && !info(c.kind).ball;
+  };
+  const int rounds = curved(a) || curved(b) ? kRoundsOfCurved : kRounds;
   s.x = s.y = s.z = corner_along(a, b, d, best.normal);
   Corner fresh = s.x;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     const Vec3 target = best.normal * (fixed_target ? zero : min(best.separation, zero));
     s = select(going, add_corner(s, fresh, target), s);
     const Float distance = sqrt(s.distance2);

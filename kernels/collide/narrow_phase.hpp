@@ -110,7 +110,8 @@ void collide(const Tables& t, const Group& g, kernels::Scratch* scratch) {
 // ---- pairs of the general method
 // -----------------------------------------------------------------
 
-inline constexpr bool is_round(kernels::ShapeKind kind) {
+// Whether the general method has a core with a radius around it.
+inline constexpr bool has_radius(kernels::ShapeKind kind) {
   return kind == kernels::ShapeKind::sphere || kind == kernels::ShapeKind::capsule;
 }
 
@@ -128,11 +129,12 @@ template <int N>
 MW_INLINE void collide_tile(const Tables& t, const ConvexShape& a, const Tile& tile,
                             const ConvexShape& b, Mask active, Manifold<Isotropic, N>& m) {
   if constexpr (N == 1) {
-    collide_tile_sphere(a, tile, b, m);
+    if (b.kind == kernels::ShapeKind::sphere) return collide_tile_sphere(a, tile, b, m);
+    collide_convex_point(t, a, &tile, b, active, m);
   } else {
     collide_convex_pair(t, a, &tile, b, active, m);
-    m.code = fma(tile.code, Float(kTileCodes), m.code);
   }
+  m.code = fma(tile.code, Float(kTileCodes), m.code);
 }
 
 template <int N, bool kPair>
@@ -142,7 +144,7 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
   const ShapeKind kind_a = shape_a(pairs.kind), kind_b = shape_b(pairs.kind);
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
   const CandidateList& list = w.candidates;
-  const bool turned = is_round(kind_a);  // the method wants what is round as B
+  const bool turned = has_radius(kind_a);  // the method wants what is round as B
   AddSlot<Isotropic, N>* const add_slot = row_builder<Isotropic>(t, w).template add<N>(kPair);
   ConvexShape a, b;
   for (int i = 0; i < list.count; ++i) {
@@ -159,11 +161,15 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
     load_convex(t.hulls, kind_b, w.pose_rows, o.b, b);
     Manifold<Isotropic, N> m;
     Vec3 origin_a;
-    if (N > 1 && kind_a == ShapeKind::plane) {
+    if (!kPair && kind_a == ShapeKind::plane) {
       PlanePose plane;
       load_pose(base_a, o.a, plane);
       origin_a = zero_of<Vec3>();
-      if constexpr (N > 1) collide_plane_convex(t, plane, b, m);
+      if constexpr (N == 1) {
+        collide_plane_point(plane, b, m);
+      } else {
+        collide_plane_convex(t, plane, b, m);
+      }
     } else if (!kPair && kind_a == ShapeKind::tile) {
       Tile tile;
       load_tile(base_a, o.a, b, active, tile, a);
@@ -175,7 +181,7 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
       origin_a = a.p;
       const ConvexShape &first = turned ? b : a, &second = turned ? a : b;
       if constexpr (N == 1) {
-        collide_convex_sphere(t, first, second, active, m);
+        collide_convex_point(t, first, nullptr, second, active, m);
       } else {
         collide_convex_pair(t, first, nullptr, second, active, m);
       }
@@ -217,15 +223,12 @@ void fill_narrow_phase(kernels::Stage<Real>* out) {
     at(K::sphere, K::capsule) = collide<S, Reversed<S, CapsuleSphere>>;
     at(K::capsule, K::box) = collide<S, Reversed<S, BoxCapsule<S>>>;
     // Whatever has a shape that only the general method knows.
-    constexpr K kGeneral[] = {K::cylinder, K::hull};
-    constexpr K kShapes[] = {K::sphere, K::capsule, K::box, K::cylinder, K::hull};
-    for (const K general : kGeneral) {
-      at(K::plane, general) = collide_convex;
-      for (const K other : kShapes) {
-        at(general, other) = at(other, general) = collide_convex;
-      }
+    for (int i = 0; i < kernels::kPairKinds; ++i) {
+      const auto kind = static_cast<kernels::PairKind>(i);
+      const auto &a = info(shape_a(kind)), &b = info(shape_b(kind));
+      if (a.planar || b.planar || b.ground) continue;
+      if (a.general || b.general || is_tile(kind)) out[i] = collide_convex;
     }
-    for (const K shape : kShapes) at(K::tile, shape) = collide_convex;
   } else {
     at(K::circle, K::circle) = collide<S, CircleCircle<S>>;
     at(K::rectangle, K::circle) = collide<S, RectangleCircle<S>>;

@@ -6,7 +6,7 @@
 
 #include "kernels/collide/capsule_pairs.hpp"
 #include "kernels/collide/segments.hpp"
-#include "kernels/shape/corners.hpp"
+#include "kernels/shape/shapes.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

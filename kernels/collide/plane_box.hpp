@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/collide/manifold.hpp"
-#include "kernels/shape/poses.hpp"
+#include "kernels/shape/shapes.hpp"
 #include "kernels/work/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -11,41 +11,6 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 inline constexpr Real kMatchShare = Real(0.12);
 
 MW_INLINE Float match_distance2(Float extent) { return square(extent * Float(kMatchShare)); }
-
-// The face of a box whose outward normal is most opposed to n: its axis (0, 1, 2), the sign of
-// its normal, and the two half edges that span it.
-struct BoxFace {
-  Float axis, sign;
-  Vec3 centre;  // from the box's centre, world axes
-  Vec3 edge1, edge2;
-  Float half1, half2;
-  Float code;  // 2 axis + (sign > 0)
-};
-
-MW_INLINE BoxFace opposed_face(const BoxPose& box, Vec3 n) {
-  const Float zero(Real(0)), one(Real(1)), two(Real(2));
-  // Near ties go to the earlier axis, so that rounding does not make the face flicker.
-  const Float tie(Real(1e-3));
-  const Float a0 = dot(n, box.r.x), a1 = dot(n, box.r.y), a2 = dot(n, box.r.z);
-  Float axis = zero, best = abs(a0), along = a0;
-  Mask better = best + tie < abs(a1);
-  axis = select(better, one, axis), along = select(better, a1, along);
-  best = select(better, abs(a1), best);
-  better = best + tie < abs(a2);
-  axis = select(better, two, axis), along = select(better, a2, along);
-  BoxFace f;
-  f.axis = axis;
-  f.sign = copysign(one, -along);
-  const Float axis1 = select(axis == two, zero, axis + one);
-  const Float axis2 = select(axis == zero, two, axis - one);
-  f.half1 = pick(axis1, box.half.x, box.half.y, box.half.z);
-  f.half2 = pick(axis2, box.half.x, box.half.y, box.half.z);
-  f.centre = pick(axis, box.r) * (pick(axis, box.half.x, box.half.y, box.half.z) * f.sign);
-  f.edge1 = pick(axis1, box.r) * f.half1;
-  f.edge2 = pick(axis2, box.r) * f.half2;
-  f.code = axis + axis + select(zero < f.sign, one, zero);
-  return f;
-}
 
 template <class S>
 struct PlaneBox {

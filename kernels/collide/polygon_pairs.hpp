@@ -4,7 +4,7 @@
 
 #include "kernels/collide/round_pairs.hpp"
 #include "kernels/collide/segments.hpp"
-#include "kernels/shape/corners.hpp"
+#include "kernels/shape/shapes.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

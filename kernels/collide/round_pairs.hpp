@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/collide/manifold.hpp"
-#include "kernels/shape/poses.hpp"
+#include "kernels/shape/shapes.hpp"
 #include "kernels/work/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {

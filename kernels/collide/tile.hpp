@@ -14,14 +14,6 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Numbers of a tile in its pose row; the first twelve and the margin are those of a box.
-struct TileRow {
-  static constexpr int cell_x = 12, cell_y = 13, columns = 14;  // m, m, of cells
-  static constexpr int rows = 16, wide = 17, deep = 18;         // of cells, and of tiles
-  static constexpr int column = 19, row = 20, half = 21;        // remainders, which triangle
-  static constexpr int heights = 22, pad = 23;                  // from the row, m
-};
-
 // Codes of contacts that a tile's pairs tell apart (collide_convex.cpp).
 inline constexpr Real kTileCodes = Real(65536);
 

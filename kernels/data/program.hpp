@@ -10,18 +10,16 @@
 namespace manyworlds::kernels {
 
 template <class Real>
-struct Observation;  // kernels/data/observation.hpp
+struct ObserverView;  // kernels/data/observer.hpp
 
 // a, b, c: operands, or as said.
 enum class Operation : std::int32_t {
   // of the world
-  constant,    // number
-  state,       // a: row of GroupView::state
-  control,     // a: row of GroupView::control
-  coordinate,  // a: row of Observation::coordinate_rows
-  ray,         // a: row of Observation::hit_rows
-  touching,    // a: state body; 1 or 0, and 0 at the beginning of an episode
-  input,       // a: row of ProgramRun::input
+  constant,  // number
+  state,     // a: row of GroupView::state
+  control,   // a: row of GroupView::control
+  seen,      // a: row of ObserverView::rows[b]; what a step makes is 0 where an episode begins
+  input,     // a: row of ProgramRun::input
   // of what was before in the episode; b: row of ProgramRun::memory, which the owner puts down anew
   previous,  // a of the step before; a itself at the beginning
   held,      // steps in a row at whose end a was not 0; 0 at the beginning
@@ -69,7 +67,7 @@ struct ProgramRun {
 
 // `seen` may be null where the program asks for nothing of it.
 template <class Real>
-using RunProgram = void (*)(const GroupView<Real>&, const Observation<Real>* seen,
+using RunProgram = void (*)(const GroupView<Real>&, const ObserverView<Real>* seen,
                             const ProgramRun<Real>&);
 
 }  // namespace manyworlds::kernels

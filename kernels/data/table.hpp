@@ -10,7 +10,7 @@ namespace manyworlds::kernels {
 
 struct Scratch;  // per-thread work memory; its layout belongs to the kernels
 template <class Real>
-struct ObserverTable;  // kernels/data/observation.hpp
+struct ObserverTable;  // kernels/data/observer.hpp
 
 enum class Layout : int { automatic, dense, rows };
 

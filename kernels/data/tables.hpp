@@ -7,15 +7,14 @@
 
 #include "kernels/data/flight_tables.hpp"
 #include "kernels/data/joint_tables.hpp"
-#include "kernels/data/pair_kinds.hpp"
+#include "kernels/data/shape_kinds.hpp"
 #include "kernels/data/solver_options.hpp"
+#include "kernels/data/state_layout.hpp"
 
 namespace manyworlds::kernels {
 
 // Functions here are static: every kernel library includes this header with flags of its own, and a
 // shared inline function could put one library's instructions into another's calls.
-
-enum class Dimension : int { planar, spatial };
 
 // How a body's inertia enters the rows: a scalar in the plane or when isotropic, else a tensor.
 enum class InertiaKind : int { planar, isotropic, tensor };
@@ -27,45 +26,6 @@ inline constexpr int kLists = 4;
 static inline constexpr bool is_fixed(ListId id) { return id >= ListId::fixed_multi; }
 static inline constexpr bool is_multi(ListId id) {
   return id == ListId::pair_multi || id == ListId::fixed_multi;
-}
-
-inline constexpr int kMaxVertices = 8;
-inline constexpr int kMaxHullVertices = 64;
-inline constexpr int kDummyRow = 4 + 4 * kMaxVertices;  // fits every kind of pose row
-
-// A pose row describes one shape of one world to the narrow phase:
-//   sphere, circle        x y z radius                       (4; z unused in the plane)
-//   box                   Rx p.x | Ry p.y | Rz p.z | hx hy hz margin, columns of the rotation (16)
-//   rectangle             x y c s | hx hy 0 0                (8)
-//   polygon               x y count radius | 8 vertices | 8 normals, about x y     (36)
-//   rounded               as polygon; the radius is that of its rounding
-//   plane                 n.x n.y n.z offset | t.x t.y t.z 0 (8)
-//   capsule               x y z radius | a.x a.y a.z half, a: the axis (8; a.z unused in the plane)
-//   link                  x y a.x a.y | half low high index | b.x b.y c.x c.y, a: the axis; low and
-//                         high: reach along it; b, c: last normals at its ends (12)
-//   cylinder              as box, half extents radius, radius, half length (16)
-//   hull                  as box | at vertices faces 0; a fixed one is followed by its corners (20)
-//
-// Corners of a hull, in units of its half extents, so that one that is stretched has the same:
-//   vertices              x y z 0 of each
-//   faces                 m.x m.y m.z c | first count 0 0 of each: m . x <= c is the hull's side of
-//                         it, not unit; its outline has `count` vertices from row 4 `first` on
-//   outlines              x y z 0 of each vertex, counter-clockwise seen from outside
-// A pose row says where they are: 4 `at` numbers from WorldTables::hulls on, or for a fixed one
-// from its own row.
-static inline constexpr int pose_row_size(ShapeKind kind) {
-  switch (kind) {
-    case ShapeKind::box:
-    case ShapeKind::cylinder: return 16;
-    case ShapeKind::hull: return 20;
-    case ShapeKind::rectangle:
-    case ShapeKind::plane:
-    case ShapeKind::capsule: return 8;
-    case ShapeKind::link: return 12;
-    case ShapeKind::rounded:
-    case ShapeKind::polygon: return 4 + 4 * kMaxVertices;
-    default: return 4;
-  }
 }
 
 // Numbers that may differ from world to world. T is a number, or one of every lane: what a group
@@ -242,8 +202,8 @@ struct WorldTables {
 
   std::int32_t capacity[kLists];  // manifolds per world
   std::int32_t row_block;         // reals of one lane's pose rows
-  std::int32_t state_stride;      // components per body in the state
-  std::int32_t state_size;        // components per world in the state
+  std::int32_t state_stride;      // rows of the state per body
+  std::int32_t state_size;        // rows of the state per world
 
   Real dt, h, inv_h;
   Softness<Real> soft_pair, soft_fixed;
@@ -257,15 +217,6 @@ struct WorldTables {
   Real face_bias;  // m, preference of the previous kind of axis in separating-axis tests
 };
 
-// State block of one body: components in this order, each kLanes wide. The orientation block is
-// absent when the plan has no orientation.
-struct StateOffsets {
-  int position, linear, angular, orientation, components;
-};
-static inline constexpr StateOffsets state_offsets(Dimension d, bool orientation) {
-  return d == Dimension::planar ? StateOffsets{0, 2, 4, 5, orientation ? 7 : 5}
-                                : StateOffsets{0, 3, 6, 9, orientation ? 13 : 9};
-}
 static inline constexpr int velocity_row_size(Dimension d) {
   return d == Dimension::planar ? 4 : 8;
 }

@@ -106,7 +106,7 @@ MW_INLINE void locate(const Work& w, const JointPart& part, const Joint&, Row<S,
     } else {
       const Vec3 lean = cross(z_a, z_b);
       n = direction_of(lean, length);
-      n = select(Float(Real(1e-6)) < length, n, across(z_a));
+      n = select(Float(Real(1e-6)) < length, n, any_tangent(z_a));
       value = arc_tangent(length, dot(z_a, z_b));
     }
     store(s.arm_a[0], n), store(s.arm_b[0], n);

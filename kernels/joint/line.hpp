@@ -49,7 +49,7 @@ MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, LineRows<S
     dot(d, gap).store(s.error[0]);
     inverse_or_zero(coupling<S>(s, reach, arm_b, d, d)).store(s.mass[0]);
   } else {
-    const Vec d = across(axis), e = cross(axis, d);
+    const Vec d = any_tangent(axis), e = cross(axis, d);
     store(s.direction[0][0], d), store(s.direction[1][0], e);
     dot(d, gap).store(s.error[0]), dot(e, gap).store(s.error[1]);
     store(s.mass[0],

@@ -4,15 +4,10 @@
 #pragma once
 
 #include "kernels/joint/lock.hpp"
+#include "kernels/shape/tangent.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// A unit vector across the unit vector n (Duff et al. 2017).
-MW_INLINE Vec3 across(Vec3 n) {
-  const Float sign = copysign(Real(1), n.z), one(Real(1));
-  const Float a = -(one / (sign + n.z)), b = n.x * n.y * a;
-  return {fma(sign * n.x * n.x, a, one), sign * b, -(sign * n.x)};
-}
 MW_INLINE Vec3 axis_x(Quat q) {
   const Float y2 = q.y + q.y, z2 = q.z + q.z;
   return {fnma(q.z, z2, fnma(q.y, y2, Real(1))), fma(q.x, y2, q.w * z2), fms(q.x, z2, q.w * y2)};
@@ -47,7 +42,7 @@ MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, SwingRows<
     z_a = z_a + Turned<S>(moved.a.w).change(z_a);
     z_b = z_b + Turned<S>(moved.b.w).change(z_b);
   }
-  const Vec3 b = across(z_a), c = cross(z_a, b), lean = cross(z_a, z_b);
+  const Vec3 b = any_tangent(z_a), c = cross(z_a, b), lean = cross(z_a, z_b);
   store(s.b[0], b), store(s.c[0], c);
   dot(b, lean).store(s.error[0]), dot(c, lean).store(s.error[1]);
   using Inertia = typename S::Inertia;

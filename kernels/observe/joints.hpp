@@ -35,8 +35,8 @@ MW_INLINE void observe_coordinate(const Tables& t, const Group& g, const Work& w
   Row<S, kLinear> s;
   row_now(t, g, w, c.what, constants_of_part(g, c.part), s);
   const TwoBodies<S> v{velocity_of<S>(t, g, c.what.body_a), velocity_of<S>(t, g, c.what.body_b)};
-  Float::load(s.value).store(rows);
-  speed_of(s, v).store(rows + kLanes);
+  Float::load(s.value).store(rows + row_of(Observed::joint_position) * kLanes);
+  speed_of(s, v).store(rows + row_of(Observed::joint_speed) * kLanes);
 }
 
 MW_INLINE bool is_linear(PartKind kind) {
@@ -44,8 +44,10 @@ MW_INLINE bool is_linear(PartKind kind) {
 }
 
 // Torques of the plane are about z, the last of three rows.
-MW_INLINE void add_torque(Real* rows, Float l) { add_to(rows, 5, l); }
-MW_INLINE void add_torque(Real* rows, Vec3 l) { add_to(rows, 3, l); }
+MW_INLINE void add_torque(Real* rows, Float l) {
+  add_to(rows, row_of(Observed::joint_torque) + 2, l);
+}
+MW_INLINE void add_torque(Real* rows, Vec3 l) { add_to(rows, row_of(Observed::joint_torque), l); }
 
 template <class S>
 MW_INLINE void observe_load(const Tables& t, const Group& g, const Work& w, int part, Real* rows) {
@@ -78,11 +80,11 @@ MW_INLINE void observe_load(const Tables& t, const Group& g, const Work& w, int 
 
 template <class S>
 void observe_joints(const Tables& t, const Group& g, kernels::Scratch* scratch,
-                    const Observation& o) {
+                    const ObserverView& o) {
   const Work& w = work_of(scratch);
-  for (int i = 0; i < o.coordinates; ++i) {
+  for (int i = 0; i < items_of(o, Observer::joints); ++i) {
     const kernels::JointCoordinate& c = o.coordinate[i];
-    Real* rows = o.coordinate_rows + i * kernels::kCoordinateRows * kLanes;
+    Real* rows = rows_for(o, Observer::joints) + i * rows_of(Observer::joints) * kLanes;
     if (is_linear(c.what.kind)) {
       observe_coordinate<S, true>(t, g, w, c, rows);
     } else {
@@ -93,12 +95,15 @@ void observe_joints(const Tables& t, const Group& g, kernels::Scratch* scratch,
 
 template <class S>
 void observe_loads(const Tables& t, const Group& g, kernels::Scratch* scratch,
-                   const Observation& o) {
+                   const ObserverView& o) {
   const Work& w = work_of(scratch);
   const Float zero(Real(0));
-  for (int i = 0; i < o.joints * kernels::kJointRows; ++i) zero.store(o.joint_rows + i * kLanes);
+  constexpr int kRows = rows_of(Observer::joint_loads);
+  Real* rows = rows_for(o, Observer::joint_loads);
+  const int count = items_of(o, Observer::joint_loads) * kRows;
+  for (int i = 0; i < count; ++i) zero.store(rows + i * kLanes);
   for (int i = 0; i < t.parts; ++i) {
-    observe_load<S>(t, g, w, i, o.joint_rows + o.joint_of_part[i] * kernels::kJointRows * kLanes);
+    observe_load<S>(t, g, w, i, rows + o.joint_of_part[i] * kRows * kLanes);
   }
 }
 

@@ -41,10 +41,10 @@ MW_INLINE void spin_of(const Tables& t, const Group& g, int body, const BodyMass
 }
 
 template <class S>
-void observe_motion(const Tables& t, const Group& g, kernels::Scratch*, const Observation& o) {
+void observe_motion(const Tables& t, const Group& g, kernels::Scratch*, const ObserverView& o) {
   const Float zero(Real(0)), half(Real(0.5));
-  Real* rows = o.motion;
-  for (int i = 0; i < kernels::kMotionRows; ++i) zero.store(rows + i * kLanes);
+  Real* rows = rows_for(o, Observer::motion);
+  for (int i = 0; i < rows_of(Observer::motion); ++i) zero.store(rows + i * kLanes);
   for (int b = 0; b < t.bodies; ++b) {
     if (t.body[b].kinematic) continue;
     const BodyMass<S> m(g, b);
@@ -58,22 +58,23 @@ void observe_motion(const Tables& t, const Group& g, kernels::Scratch*, const Ob
     Float spin_energy;
     spin_of<S>(t, g, b, m, w, spin, spin_energy);
     const auto angular = select(there, spin + cross(x, p), zero_of<typename S::Ang>());
-    add_to(rows, kernels::kKinetic,
+    add_to(rows, row_of(Observed::kinetic_energy),
            select(there, half * fma(weight, dot(v, v), spin_energy), zero));
     Float height = dot(m.pull, x);
     for (int i = 0; i < t.attractors; ++i) {
       const Attraction<S> at(t, g, b, i, x);
       height = fma(at.strength, at.nearness, height);
     }
-    add_to(rows, kernels::kPotential, -(weight * height));
-    add_to(rows, kernels::kMass, weight);
-    add_to(rows, kernels::kMomentum, p);
-    add_to(rows, kernels::kAngular + (S::kDim == 2 ? 2 : 0), angular);
-    add_to(rows, kernels::kCentre, x * weight);
+    add_to(rows, row_of(Observed::potential_energy), -(weight * height));
+    add_to(rows, row_of(Observed::total_mass), weight);
+    add_to(rows, row_of(Observed::momentum), p);
+    add_to(rows, row_of(Observed::angular_momentum) + (S::kDim == 2 ? 2 : 0), angular);
+    add_to(rows, row_of(Observed::mass_center), x * weight);
   }
-  const Float mass = Float::load(rows + kernels::kMass * kLanes);
+  const Float mass = Float::load(rows + row_of(Observed::total_mass) * kLanes);
   const Float share = Float(Real(1)) / select(zero < mass, mass, Float(Real(1)));
-  for (int i = kernels::kCentre; i < kernels::kCentre + 3; ++i) {
+  constexpr int kCentre = row_of(Observed::mass_center);
+  for (int i = kCentre; i < kCentre + 3; ++i) {
     (Float::load(rows + i * kLanes) * share).store(rows + i * kLanes);
   }
 }

@@ -3,6 +3,7 @@
 
 #include "kernels/observe/joints.hpp"
 #include "kernels/observe/motion.hpp"
+#include "kernels/observe/points.hpp"
 #include "kernels/observe/residual.hpp"
 #include "kernels/observe/slots.hpp"
 
@@ -34,13 +35,19 @@ void watch(kernels::Scratch* scratch, Real* const* places) {
   w.recorder = places ? &w.recorder_storage : nullptr;
 }
 
-void clear(const Tables& t, const Group&, kernels::Scratch*, const Observation& o) {
-  if (o.penetration) Float(Real(0)).store(o.penetration);
-  for (int i = 0; o.residual && i < kernels::kResidualRows; ++i) {
-    Float(Real(0)).store(o.residual + i * kLanes);
+void clear(const Tables&, const Group&, kernels::Scratch*, const ObserverView& o) {
+  for (int k = 0; k < kObserverCount; ++k) {
+    if (!o.rows[k] || kObserverInfo[k].of != ObservedOf::step) continue;
+    const int rows = o.items[k] * kernels::kObserverRows.of_item[k];
+    for (int i = 0; i < rows; ++i) Float(Real(0)).store(o.rows[k] + i * kLanes);
   }
-  for (int b = 0; o.touching && b < t.bodies; ++b) o.touching[b] = 0;
-  for (int l = 0; o.contacts && l < kLanes; ++l) o.count[l] = 0;
+}
+
+kernels::Observe<Real>* look(kernels::ObserverTable<Real>& out, Observer observer) {
+  return out.look[static_cast<int>(observer)];
+}
+kernels::Observe<Real>* begin(kernels::ObserverTable<Real>& out, Observer observer) {
+  return out.begin[static_cast<int>(observer)];
 }
 
 template <class S>
@@ -49,15 +56,18 @@ void fill(kernels::ObserverTable<Real>& out) {
   out.accumulate[kind] = accumulate_totals<S>;
   out.awake[kind] = observe_slots<S, false>;
   out.asleep[kind] = observe_slots<S, true>;
-  out.motion[kind] = observe_motion<S>;
   out.compare[kind] = compare<S>;
+  look(out, Observer::motion)[kind] = observe_motion<S>;
+  look(out, Observer::rays)[kind] = observe_rays;
+  look(out, Observer::points)[kind] = observe_points<S>;
 }
 
 // Plans with joints have full tensors.
 template <class S>
 void fill_joints(kernels::ObserverTable<Real>& out) {
-  out.joints[static_cast<int>(S::kKind)] = observe_joints<S>;
-  out.joint_loads[static_cast<int>(S::kKind)] = observe_loads<S>;
+  const int kind = static_cast<int>(S::kKind);
+  look(out, Observer::joints)[kind] = observe_joints<S>;
+  look(out, Observer::joint_loads)[kind] = observe_loads<S>;
 }
 
 kernels::ObserverTable<Real> make_table() {
@@ -73,7 +83,6 @@ kernels::ObserverTable<Real> make_table() {
   fill<Tensor>(out);
   fill_joints<Planar>(out);
   fill_joints<Tensor>(out);
-  out.rays = observe_rays;
   out.run_program = run_program;
   out.cast = cast_one;
   return out;

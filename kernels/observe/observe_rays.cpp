@@ -2,7 +2,7 @@
 // put down.
 #include "kernels/motion/integrate.hpp"
 #include "kernels/observe/observe.hpp"
-#include "kernels/observe/ray_field.hpp"
+#include "kernels/shape/shapes.hpp"
 #include "kernels/work/activity.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -12,36 +12,12 @@ namespace {
 using kernels::ShapeKind;
 
 // Calls visit(pose) with the pose of a shape of this kind.
-template <class Pose, class Visit>
-MW_INLINE void visit_pose(const Real* base, const std::int32_t* o, Visit& visit) {
-  Pose pose;
-  load_pose(base, o, pose);
-  visit(pose);
-}
-// `hulls`: where the corners of hulls are; nullptr: behind the pose row.
 template <class S, class Visit>
 MW_INLINE void with_pose(ShapeKind kind, const Real* base, const std::int32_t* o, const Real* hulls,
                          Visit visit) {
-  using Capsule = CapsulePose<typename S::Vec>;
-  if (kind == ShapeKind::capsule) return visit_pose<Capsule>(base, o, visit);
-  if (kind == ShapeKind::plane) return visit_pose<PlanePose>(base, o, visit);
-  if constexpr (S::kDim == 3) {
-    if (kind == ShapeKind::sphere) return visit_pose<SpherePose>(base, o, visit);
-    if (kind == ShapeKind::cylinder) return visit_pose<CylinderPose>(base, o, visit);
-    if (kind == ShapeKind::tile) return visit(FieldPose{base, o});
-    if (kind == ShapeKind::hull) {
-      HullPose pose;
-      load_hull(base, o, hulls, pose);
-      return visit(pose);
-    }
-    visit_pose<BoxPose>(base, o, visit);
-  } else {
-    if (kind == ShapeKind::circle) return visit_pose<CirclePose>(base, o, visit);
-    if (kind == ShapeKind::rectangle) return visit_pose<RectanglePose>(base, o, visit);
-    if (kind == ShapeKind::link) return visit_pose<LinkPose>(base, o, visit);
-    if (kind == ShapeKind::rounded) return visit_pose<RoundedPose>(base, o, visit);
-    visit_pose<PolygonPose>(base, o, visit);
-  }
+  using Shapes = ShapesOf<typename S::Vec>;
+  visit_pose(typename Shapes::Moving{}, kind, base, o, hulls, visit) ||
+      visit_pose(typename Shapes::Ground{}, kind, base, o, hulls, visit);
 }
 
 // The ray in the world: one that belongs to a body goes where that goes.
@@ -66,60 +42,68 @@ struct Target {
   const Real* base;  // of its pose rows
   const std::int32_t* offset;
   int body;  // -1: fixed
-  std::uint32_t category, lanes;
-  int index;
+  const kernels::SeenShape& seen;
+  std::uint32_t lanes;
   const Real* hulls;
 };
 
+static_assert(row_of(Observed::ray_distance) == 0 && row_of(Observed::ray_normal) == 1 &&
+              row_of(Observed::ray_body) == kernels::kHitRows);
+
 // One shape against all rays; nearer hits replace those found so far.
 template <class S>
-void cast_at(const Observation& o, const Target& target) {
+void cast_at(const ObserverView& o, const Target& target) {
   using Vec = typename S::Vec;
   const Mask there = mask_from_bits(target.lanes);
   with_pose<S>(target.kind, target.base, target.offset, target.hulls, [&](const auto& pose) {
-    for (int i = 0; i < o.rays; ++i) {
+    for (int i = 0; i < items_of(o, Observer::rays); ++i) {
       const kernels::RayTable& shared = o.ray[i];
       const bool own = target.body >= 0 && target.body == shared.body;
-      if (own || (target.category & shared.mask) == 0) continue;
+      if (own || (target.seen.category & shared.mask) == 0) continue;
       const Real* rows = o.placed + i * 6 * kLanes;
-      Real* hit = o.hit_rows + i * kernels::kHitRows * kLanes;
+      Real* hit = rows_for(o, Observer::rays) + i * rows_of(Observer::rays) * kLanes;
       const RayOf<Vec> ray{load_as<Vec>(rows), load_as<Vec>(rows + 3 * kLanes)};
       const RayHit<Vec> h = cast(ray, pose);
       const Float best = Float::load(hit);
       const Mask nearest = there & h.hit & (h.distance < best);
-      std::uint32_t m = bits(nearest);
-      if (m == 0) continue;
+      if (bits(nearest) == 0) continue;
       select(nearest, h.distance, best).store(hit);
-      store(hit + kLanes, select(nearest, h.normal, load_as<Vec>(hit + kLanes)));
-      for (; m != 0; m &= m - 1) o.hit_shape[i * kLanes + __builtin_ctz(m)] = target.index;
+      Real* normal = hit + row_of(Observed::ray_normal) * kLanes;
+      store(normal, select(nearest, h.normal, load_as<Vec>(normal)));
+      const auto name = [&](int row, std::int32_t index) {
+        Real* at = hit + row * kLanes;
+        select(nearest, Float(static_cast<Real>(index)), Float::load(at)).store(at);
+      };
+      name(row_of(Observed::ray_body), target.seen.body);
+      name(row_of(Observed::ray_shape), target.seen.shape);
     }
   });
 }
 
 template <class S>
-void cast_rays(const Tables& t, const Group& g, const Work& w, const Observation& o) {
-  for (int i = 0; i < o.rays; ++i) {
+void cast_rays(const Tables& t, const Group& g, const Work& w, const ObserverView& o) {
+  constexpr int kRows = rows_of(Observer::rays);
+  for (int i = 0; i < items_of(o, Observer::rays); ++i) {
     const Real* rows = o.ray_rows + i * kernels::kRayRows * kLanes;
     const auto ray = place_ray<S>(t, g, o.ray[i].body, rows);
     store(o.placed + i * 6 * kLanes, ray.from);
     store(o.placed + (i * 6 + 3) * kLanes, ray.way);
-    Real* hit = o.hit_rows + i * kernels::kHitRows * kLanes;
+    Real* hit = rows_for(o, Observer::rays) + i * kRows * kLanes;
     Float::load(rows + 6 * kLanes).store(hit);
     for (int c = 1; c < kernels::kHitRows; ++c) Float(Real(0)).store(hit + c * kLanes);
-    for (int l = 0; l < kLanes; ++l) o.hit_shape[i * kLanes + l] = -1;
+    for (int c = kernels::kHitRows; c < kRows; ++c) Float(Real(-1)).store(hit + c * kLanes);
   }
   alignas(64) std::int32_t at[kLanes];
   for (int f = 0; f < t.fixed_shapes; ++f) {
     for (int l = 0; l < kLanes; ++l) at[l] = t.fixed[f].row;
-    cast_at<S>(o,
-               {t.fixed[f].kind, t.fixed_rows, at, -1, o.fixed_category[f], kAllLanes, f, nullptr});
+    cast_at<S>(o, {t.fixed[f].kind, t.fixed_rows, at, -1, o.seen_shape[f], kAllLanes, nullptr});
   }
   for (int c = 0; c < t.colliders; ++c) {
     const auto& shape = t.collider[c];
     for (int l = 0; l < kLanes; ++l) at[l] = w.pose_base[l] + shape.row;
     const std::uint32_t lanes = kAllLanes & ~bits(absent_lanes(g, shape.body));
-    cast_at<S>(o, {shape.kind, w.pose_rows, at, shape.body, shape.category, lanes,
-                   t.fixed_shapes + c, t.hulls});
+    cast_at<S>(o, {shape.kind, w.pose_rows, at, shape.body, o.seen_shape[t.fixed_shapes + c], lanes,
+                   t.hulls});
   }
 }
 
@@ -143,7 +127,7 @@ bool cast_one_in(ShapeKind kind, const Real* row, const Real* rows, Real* out) {
 }  // namespace
 
 void observe_rays(const Tables& t, const Group& g, kernels::Scratch* scratch,
-                  const Observation& o) {
+                  const ObserverView& o) {
   const Work& w = work_of(scratch);
   if (t.dimension == kernels::Dimension::planar) {
     cast_rays<Planar>(t, g, w, o);

@@ -46,7 +46,7 @@ inline void copy_bytes(const unsigned char* from, unsigned char* to, std::size_t
 }
 
 inline void set_aside(const Tables& t, const Group&, kernels::Scratch* scratch,
-                      const Observation& o) {
+                      const ObserverView& o) {
   const Work& w = work_of(scratch);
   Real* velocity = reinterpret_cast<Real*>(o.aside);
   const std::size_t reals = velocity_reals(t, w);
@@ -73,7 +73,7 @@ void find_change(const Tables& t, const Work& w, const Real* before, Float& spee
 }
 
 template <class S>
-void compare(const Tables& t, const Group& g, kernels::Scratch* scratch, const Observation& o) {
+void compare(const Tables& t, const Group& g, kernels::Scratch* scratch, const ObserverView& o) {
   Work& w = work_of(scratch);
   const Real* velocity = reinterpret_cast<const Real*>(o.aside);
   Float speed(Real(0)), spin(Real(0));
@@ -83,8 +83,9 @@ void compare(const Tables& t, const Group& g, kernels::Scratch* scratch, const O
     find_change<S, false>(t, w, velocity, speed, spin);
   }
   const Mask live = mask_from_bits(~frozen_lanes(g) & kAllLanes);
-  select(live, speed, Float(Real(0))).store(o.residual);
-  select(live, spin, Float(Real(0))).store(o.residual + kLanes);
+  Real* rows = rows_for(o, Observer::residual);
+  select(live, speed, Float(Real(0))).store(rows);
+  select(live, spin, Float(Real(0))).store(rows + kLanes);
   const std::size_t reals = velocity_reals(t, w);
   for (std::size_t i = 0; i < reals; ++i) w.velocity[i] = velocity[i];
   const unsigned char* from = o.aside + reals * sizeof(Real);

@@ -36,7 +36,7 @@ void for_each_observed(Work& w, Visit visit) {
 
 template <class S>
 void accumulate_totals(const Tables& t, const Group&, kernels::Scratch* scratch,
-                       const Observation& o) {
+                       const ObserverView& o) {
   Work& w = work_of(scratch);
   for_each_observed<S>(w, [&](auto& s, int index, int id) {
     constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
@@ -73,7 +73,7 @@ MW_INLINE void set_friction(const Slot<S, N>& s, Float first, Float second, Tota
 
 template <class S, int N, bool kAsleep>
 MW_INLINE Totals<S, N> totals_of(const Tables& t, const Work& w, const Slot<S, N>& s, int index,
-                                 int id, const Observation& o) {
+                                 int id, const ObserverView& o) {
   constexpr bool kTwist = Slot<S, N>::kTwist;
   constexpr int kSecond = S::kTangents - 1;
   Totals<S, N> out;
@@ -134,7 +134,7 @@ class Features {
 // impulse has.
 template <class S, int N>
 void put_contacts(const Slot<S, N>& s, const Totals<S, N>& total, const Real* places,
-                  std::uint32_t lanes, const Observation& o) {
+                  std::uint32_t lanes, const ObserverView& o) {
   constexpr int kDim = S::kDim;
   const Float zero(Real(0)), one(Real(1));
   const Float per_impulse = one / select(zero < total.sum, total.sum, one);
@@ -145,12 +145,14 @@ void put_contacts(const Slot<S, N>& s, const Totals<S, N>& total, const Real* pl
     store(friction[i][0], total.friction * share);
     (total.twist * share).store(twist[i]);
   }
+  Real* count = rows_for(o, Observer::contacts);
   for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
     const int l = __builtin_ctz(m);
     const Features<S, N> features(s, places + N * kDim * kLanes, l);
     for (int i = 0; i < N; ++i) {
       if (!(Real(0) < s.mass[i][l])) continue;
-      const std::int32_t at = o.count[l]++;
+      const auto at = static_cast<std::int32_t>(count[l]);
+      count[l] += Real(1);
       if (at >= o.room) continue;
       auto& out = o.contacts[l * o.room + at];
       out.key = s.key[l];
@@ -169,12 +171,13 @@ void put_contacts(const Slot<S, N>& s, const Totals<S, N>& total, const Real* pl
 }
 
 inline void put_touching(const Tables& t, const std::int32_t* key, int id, std::uint32_t lanes,
-                         const Observation& o) {
+                         Real* touching) {
   for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
     const int l = __builtin_ctz(m);
     const kernels::PairOfKey pair = kernels::pair_of_key(t, key[l]);
-    o.touching[t.collider_body[pair.b]] |= 1u << l;
-    if (!is_fixed(static_cast<ListId>(id))) o.touching[t.collider_body[pair.a]] |= 1u << l;
+    touching[t.collider_body[pair.b] * kLanes + l] = Real(1);
+    if (is_fixed(static_cast<ListId>(id))) continue;
+    touching[t.collider_body[pair.a] * kLanes + l] = Real(1);
   }
 }
 
@@ -194,10 +197,12 @@ inline std::uint32_t sleeping_lanes(const Tables& t, const Group& g, const std::
 
 template <class S, bool kAsleep>
 void observe_slots(const Tables& t, const Group& g, kernels::Scratch* scratch,
-                   const Observation& o) {
+                   const ObserverView& o) {
   Work& w = work_of(scratch);
   const std::uint32_t live = ~frozen_lanes(g) & kAllLanes;
   const bool idle = t.has_sleep && has_idle_bodies(g);
+  Real* const penetration = rows_for(o, Observer::penetration);
+  Real* const touching = rows_for(o, Observer::touching);
   for_each_observed<S>(w, [&](auto& s, int index, int id) {
     constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
     std::uint32_t lanes = s.mask & live;
@@ -206,19 +211,19 @@ void observe_slots(const Tables& t, const Group& g, kernels::Scratch* scratch,
       lanes = kAsleep ? asleep : lanes & ~asleep;
     }
     if (lanes == 0) return;
-    if (o.penetration) {
-      Float deepest = Float::load(o.penetration);
+    if (penetration) {
+      Float deepest = Float::load(penetration);
       const Mask there = mask_from_bits(lanes);
       for (int i = 0; i < N; ++i) {
         const Mask valid = there & (Float(Real(0)) < Float::load(s.mass[i]));
         deepest = select(valid, max(deepest, -Float::load(s.separation[i])), deepest);
       }
-      deepest.store(o.penetration);
+      deepest.store(penetration);
     }
-    if (!o.touching && !o.contacts) return;
+    if (!touching && !o.contacts) return;
     const auto total = totals_of<S, N, kAsleep>(t, w, s, index, id, o);
-    if (o.touching) {
-      put_touching(t, s.key, id, bits(Float(Real(0)) < total.sum) & lanes, o);
+    if (touching) {
+      put_touching(t, s.key, id, bits(Float(Real(0)) < total.sum) & lanes, touching);
     }
     if (o.contacts) {
       put_contacts(s, total, o.places[id] + index * kPlaces<S, N> * kLanes, lanes, o);

@@ -7,7 +7,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void run_program(const Group& g, const Observation* seen, const kernels::ProgramRun<Real>& run) {
+void run_program(const Group& g, const ObserverView* seen, const kernels::ProgramRun<Real>& run) {
   using kernels::Operation;
   const Float zero(Real(0)), one(Real(1));
   const auto row = [](const Real* rows, int i) { return Float::load(rows + i * kLanes); };
@@ -23,10 +23,10 @@ void run_program(const Group& g, const Observation* seen, const kernels::Program
         case Operation::constant: return at.number;
         case Operation::state: return row(g.state, at.a);
         case Operation::control: return row(g.control, at.a);
-        case Operation::coordinate: return row(seen->coordinate_rows, at.a);
-        case Operation::ray: return row(seen->hit_rows, at.a);
-        case Operation::touching:
-          return run.beginning ? zero : truth(mask_from_bits(seen->touching[at.a]));
+        case Operation::seen:
+          return run.beginning && kObserverInfo[at.b].of == ObservedOf::step
+                     ? zero
+                     : row(seen->rows[at.b], at.a);
         case Operation::input: return row(run.input, at.a);
         case Operation::previous: return run.beginning ? a() : row(run.memory, at.b);
         case Operation::held:

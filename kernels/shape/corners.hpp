@@ -1,8 +1,8 @@
-// The corners of planar convex shapes and the search among their edges. A capsule is the thinnest
-// polygon, of two corners and two edges that look to either side, with a radius around it.
+// The corners of planar convex shapes and the search among their edges. Each shape's file loads its
+// own.
 #pragma once
 
-#include "kernels/shape/poses.hpp"
+#include "kernels/shape/tangent.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -12,32 +12,6 @@ struct Corners {
   static constexpr int kCount = N;
   Vec2 vertex[N], normal[N];
 };
-using PolygonCorners = Corners<kernels::kMaxVertices>;
-
-// Unused places of a polygon repeat vertex and normal 0, which never win a strict comparison
-// against the first.
-MW_INLINE PolygonCorners load_corners(const PolygonPose& p) {
-  PolygonCorners c;
-  for (int i = 0; i < kernels::kMaxVertices; i += 2) {
-    load_vertex_pair(p, i, c.vertex[i], c.vertex[i + 1]);
-    load_vertex_pair(p, kernels::kMaxVertices + i, c.normal[i], c.normal[i + 1]);
-  }
-  return c;
-}
-MW_INLINE Corners<4> load_corners(const RectanglePose& r) {
-  const Vec2 ux{r.q.c, r.q.s}, uy{-r.q.s, r.q.c};
-  const Vec2 x = ux * r.half.x, y = uy * r.half.y;
-  return {{-x - y, x - y, x + y, y - x}, {-uy, ux, uy, -ux}};
-}
-MW_INLINE Corners<2> load_corners(const CapsulePose<Vec2>& c) {
-  const Vec2 end = c.axis * c.half, left = across(c.axis);
-  return {{-end, end}, {-left, left}};
-}
-
-MW_INLINE Float radius_of(const PolygonPose&) { return Real(0); }
-MW_INLINE Float radius_of(const RoundedPose& p) { return p.radius; }
-MW_INLINE Float radius_of(const RectanglePose&) { return Real(0); }
-MW_INLINE Float radius_of(const CapsulePose<Vec2>& c) { return c.radius; }
 
 // An edge chosen per lane: the running winner of a loop over all edges.
 struct PolygonEdge {

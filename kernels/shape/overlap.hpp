@@ -61,8 +61,4 @@ MW_INLINE Mask fixed_overlap(const Tables& t, const Work& w, int fixed, int b) {
   return m;
 }
 
-MW_INLINE bool is_round(kernels::PairKind kind) {
-  return kernels::is_ball(shape_a(kind)) && kernels::is_ball(shape_b(kind));
-}
-
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

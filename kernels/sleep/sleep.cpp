@@ -4,6 +4,7 @@
 #include "kernels/shape/overlap.hpp"
 #include "kernels/work/constants.hpp"
 #include "kernels/work/stages.hpp"
+#include "kernels/work/union_find.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -116,14 +117,6 @@ Readiness rest(const Tables& t, const Group& g, const Work& w, int body, std::ui
   return out;
 }
 
-int root_of(std::int32_t* parent, int body) {
-  while (parent[body] != body) {
-    parent[body] = parent[parent[body]];
-    body = parent[body];
-  }
-  return body;
-}
-
 // Islands of the awake bodies of one lane: parent[] leads to the lowest body of each.
 void find_islands(const Tables& t, const Group& g, Work& w, int lane) {
   for (int b = 0; b < t.bodies; ++b) w.parent[b] = b;
@@ -136,8 +129,7 @@ void find_islands(const Tables& t, const Group& g, Work& w, int lane) {
       const std::int32_t code = code_of_hit(t, w, i, k);
       const int a = t.collider_body[code & 0xffff], b = t.collider_body[(code >> 16) & 0xffff];
       if ((((g.asleep[a] | g.asleep[b]) >> lane) & 1u) != 0) continue;  // a kinematic at rest
-      const int root_a = root_of(w.parent, a), root_b = root_of(w.parent, b);
-      w.parent[root_a < root_b ? root_b : root_a] = root_a < root_b ? root_a : root_b;
+      unite(w.parent, a, b);
     }
   }
   for (int i = 0; i < t.parts; ++i) {
@@ -145,8 +137,7 @@ void find_islands(const Tables& t, const Group& g, Work& w, int lane) {
     const int a = part.body_a, b = part.body_b;
     const std::uint32_t awake = joined_lanes(t, g, part) & ~(a < t.bodies ? g.asleep[a] : 0);
     if (!(((awake & ~g.asleep[b]) >> lane) & 1u)) continue;
-    const int root_a = root_of(w.parent, a), root_b = root_of(w.parent, b);
-    w.parent[root_a < root_b ? root_b : root_a] = root_a < root_b ? root_a : root_b;
+    unite(w.parent, a, b);
   }
 }
 

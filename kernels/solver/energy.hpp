@@ -12,6 +12,7 @@
 
 #include "kernels/motion/finish.hpp"
 #include "kernels/solver/restitution.hpp"
+#include "kernels/work/union_find.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -122,12 +123,7 @@ MW_INLINE int body_b_of(const Work& w, const Slot<S, N>& s, int lane) {
   return (s.offset_b[lane] - w.velocity_base[lane]) / S::kRow;
 }
 
-inline int root_of(std::int32_t* parent, int body) {
-  while (parent[body] != body) body = parent[body] = parent[parent[body]];
-  return body;
-}
-
-// Joins the bodies of a slot that push each other in this lane, the smaller index on top.
+// Joins the bodies of a slot that push each other in this lane.
 template <class S, int N>
 MW_INLINE void join_bodies(const Tables& t, const Work& w, const Slot<S, N>& s,
                            const Bounce<S, N>& bounce, int lane) {
@@ -136,8 +132,7 @@ MW_INLINE void join_bodies(const Tables& t, const Work& w, const Slot<S, N>& s,
   for (int i = 0; i < N; ++i) pushes |= bounce.total[i][lane] > 0 || bounce.found[i][lane] > 0;
   const int a = body_a_of(w, s, lane), b = body_b_of(w, s, lane);
   if (!pushes || t.body[a].kinematic || t.body[b].kinematic) return;
-  const int ra = root_of(w.parent, a), rb = root_of(w.parent, b);
-  w.parent[ra > rb ? ra : rb] = ra > rb ? rb : ra;
+  unite(w.parent, a, b);
 }
 
 // Work that kinematic bodies do at a slot by normal impulses, with friction at its centre.

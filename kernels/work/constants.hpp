@@ -22,10 +22,10 @@ MW_INLINE const kernels::PolygonConstants<LaneNumber>& constants_of_polygon(cons
   return reinterpret_cast<const kernels::PolygonConstants<LaneNumber>*>(g.constants.polygon)[shape];
 }
 
-// Where the parts of a body's state are. Only its length depends on has_orientation.
+// Where the fields of a body's state are.
 template <class S>
-inline constexpr kernels::StateOffsets kState = kernels::state_offsets(
-    S::kDim == 2 ? kernels::Dimension::planar : kernels::Dimension::spatial, true);
+inline constexpr kernels::StateOffsets kState =
+    kernels::state_offsets(S::kDim == 2 ? kernels::Dimension::planar : kernels::Dimension::spatial);
 
 MW_INLINE Real* state_of(const Tables& t, const Group& g, int body, int component) {
   return g.state + (body * t.state_stride + component) * kLanes;

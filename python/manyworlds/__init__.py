@@ -12,7 +12,7 @@ the rest by example.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import mjcf, query, scenes, tasks
+from . import joints, mjcf, query, scenes, shapes, tasks
 from ._core import Expression, Snapshot, SnapshotError, __version__, available_isas
 from ._core import names as enumerations
 from .batch import Batch
@@ -20,24 +20,9 @@ from .bodies import Body, Jitter, MassProperties
 from .environment import Environment, EnvironmentSnapshot
 from .fields import Field
 from .ids import BodyId, ControlId, JointId, ShapeId
-from .joints import (
-    BallJoint,
-    DistanceJoint,
-    Drive,
-    FixedJoint,
-    Frame,
-    HingeJoint,
-    Joint,
-    JointType,
-    Limit,
-    PulleyJoint,
-    SliderJoint,
-    Spring,
-    TargetJoint,
-    WheelJoint,
-)
+from .joints import *  # noqa: F403
 from .kinds import Kind
-from .options import Options
+from .options import ContactOptions, JointOptions, Options, SleepOptions, SolverOptions
 from .plan import Plan
 from .query import Pose
 from .results import CONTACT, STEP_CONTACT, Status
@@ -45,6 +30,7 @@ from .scene import (
     Attractor,
     Control,
     Issue,
+    Point,
     Ray,
     Scene,
     SceneError,
@@ -53,24 +39,7 @@ from .scene import (
     mesh_mass_properties,
     vary,
 )
-from .shapes import (
-    Box,
-    Capsule,
-    Circle,
-    Cylinder,
-    Filter,
-    Geometry,
-    HalfPlane,
-    HeightField,
-    Hull,
-    Material,
-    Plane,
-    Polygon,
-    Segment,
-    Shape,
-    Sphere,
-    Terrain,
-)
+from .shapes import *  # noqa: F403
 from .tasks import Action, Observation, Reward, Task, TaskError
 from .view import View
 
@@ -82,68 +51,43 @@ if TYPE_CHECKING:
 __all__ = [
     "Action",
     "Attractor",
-    "BallJoint",
     "Batch",
     "Body",
     "BodyId",
-    "Box",
     "CONTACT",
-    "Capsule",
-    "Circle",
+    "ContactOptions",
     "Control",
     "ControlId",
-    "Cylinder",
-    "DistanceJoint",
-    "Drive",
     "Environment",
     "EnvironmentSnapshot",
     "Expression",
     "Field",
-    "Filter",
-    "FixedJoint",
-    "Frame",
-    "Geometry",
-    "HalfPlane",
-    "HeightField",
-    "HingeJoint",
-    "Hull",
     "Issue",
     "Jitter",
-    "Joint",
     "JointId",
-    "JointType",
+    "JointOptions",
     "Kind",
-    "Limit",
     "MassProperties",
-    "Material",
     "Observation",
     "Options",
     "Plan",
-    "Plane",
-    "Polygon",
+    "Point",
     "Pose",
-    "PulleyJoint",
     "Ray",
     "Reward",
     "STEP_CONTACT",
     "Scene",
     "SceneError",
-    "Segment",
-    "Shape",
     "ShapeId",
-    "SliderJoint",
+    "SleepOptions",
     "Snapshot",
     "SnapshotError",
-    "Sphere",
-    "Spring",
+    "SolverOptions",
     "Status",
-    "TargetJoint",
     "Task",
     "TaskError",
-    "Terrain",
     "Variation",
     "View",
-    "WheelJoint",
     "__version__",
     "available_isas",
     "enumerations",
@@ -155,6 +99,8 @@ __all__ = [
     "tasks",
     "vary",
 ]
+__all__ += joints.__all__
+__all__ += shapes.__all__
 
 
 def __getattr__(name: str) -> Any:

@@ -130,6 +130,14 @@ def manifold(a: object, pose_a: object, b: object, pose_b: object, margin: objec
 def ray_cast(shape: object, pose: object, ray: object, space: object | None) -> object:
     """(distance, normal), or None where the ray misses."""
 
+def outline(geometry: object, planar: bool) -> object:
+    """
+    (corners, radius): all points within radius of their convex hull. None: not convex.
+    """
+
+def resized(geometry: object, size: object) -> object:
+    """The geometry with other numbers of the parameter size."""
+
 class SnapshotError(ValueError):
     """
     A snapshot that is cut, damaged, or of another plan, task or precision.
@@ -186,7 +194,7 @@ class Snapshot:
 class Batch:
     """Worlds that step together. Private: use manyworlds.Batch."""
 
-    def __init__(self, kinds: object, threads: object, seed: int, precision: object, isa: object | None, layout: object, sleep: bool, observe: object, rays: object, contacts_per_world: object) -> None: ...
+    def __init__(self, kinds: object, threads: object, seed: int, precision: object, isa: object | None, layout: object, sleep: bool, observe: object, rays: object, points: object, contacts_per_world: object) -> None: ...
 
     def close(self) -> None:
         """Lets go of the worlds; what follows raises ValueError."""
@@ -260,11 +268,11 @@ class Batch:
 
     def blocks(self, name: str, kind: int = 0) -> object:
         """
-        A state field in place, (groups, bodies, components, lanes); None: left out.
+        A state field in place, (groups, items, components, lanes); None: left out.
         """
 
-    def slots(self, out: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu')], kind: int = 0) -> None:
-        """Fills slots, (worlds)."""
+    def lane_indices(self, out: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu')], kind: int = 0) -> None:
+        """Fills lane indices, (worlds)."""
 
     def controls(self, kind: int = 0) -> int:
         """Of a world."""
@@ -460,16 +468,7 @@ class expressions:
     def direction(body: int, of: int, axis: int) -> Expression: ...
 
     @staticmethod
-    def joint_position(joint: int, coordinate: int) -> Expression: ...
-
-    @staticmethod
-    def joint_speed(joint: int, coordinate: int) -> Expression: ...
-
-    @staticmethod
-    def touching(body: int) -> Expression: ...
-
-    @staticmethod
-    def ray_distance(ray: int) -> Expression: ...
+    def observed(what: str, item: int, component: int) -> Expression: ...
 
     @staticmethod
     def action(index: int) -> Expression: ...

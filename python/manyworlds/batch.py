@@ -18,7 +18,7 @@ from .kinds import MOST_WORLDS, AnyScene, Kind, plans_of
 from .names import ContactLayout, Ids, Isa, Observer, Precision, Seeds
 from .results import Results
 from .rollout import MOST_STEPS, Initial, Trajectories, rollout
-from .scene import Ray
+from .scene import Point, Ray
 
 MOST_THREADS = 1024
 # What there is one of for each kind of world.
@@ -40,9 +40,10 @@ class Batch(Fields, Inputs, Results, InMemory):
                  variable MANYWORLDS_ISA says
     layout       of contacts: "automatic", "dense", "rows"; changes no bit
     sleep        bodies at rest fall asleep and cost little
-    observe      what to watch beside the step: "contacts", "touching", "penetration", "motion",
-                 "joints", "joint_loads", "residual"
-    rays         Rays that every world casts
+    observe      what to watch beside the step: "motion", "contacts", ..., ``enumerations()`` has all;
+                 ``batch.fields`` says which fields each gives
+    rays         Rays that every world casts, which are observed then
+    points       Points of bodies, whose places and velocities are observed then
     contacts_per_world  room for observed contacts; 0: as many as the plan has room for
 
     What a world does depends on its scene, seed and inputs alone, not on the number of worlds or
@@ -70,6 +71,7 @@ class Batch(Fields, Inputs, Results, InMemory):
         observe: Sequence[Observer] = (),
         rays: Sequence[Ray] = (),
         contacts_per_world: int = 0,
+        points: Sequence[Point] = (),
     ) -> None:
         plans = plans_of(scene, worlds)
         self._worlds = sum(count for _, count in plans)
@@ -87,12 +89,13 @@ class Batch(Fields, Inputs, Results, InMemory):
             bool(sleep),
             observe,
             rays,
+            points,
             contacts_per_world,
         )
         self._real = np.dtype(np.float32 if self._held.precision == "f32" else np.float64)
         self._watched = frozenset(name.replace("-", "_") for name in observe)
-        if len(rays) > 0:
-            self._watched |= {"rays"}
+        given = {"rays": rays, "points": points}
+        self._watched |= {name for name, some in given.items() if len(some) > 0}
         self._planar = plans[0][0].scene.space == "planar"
         self._plans = plans
         self._kinds: Optional[tuple[Kind, ...]] = None

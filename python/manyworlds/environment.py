@@ -35,7 +35,7 @@ class _OwnBatch(Batch):
         self._kinds = None
         self._real = np.dtype(np.float32 if held.precision == "f32" else np.float64)
         # What the task looks at is observed; the extension refuses the rest.
-        self._watched = frozenset({"joints", "touching", "rays"})
+        self._watched = frozenset(_core.names()["Observer"])
         self._bodies = self.plan.bodies
         self._controls = held.controls()
         self._joints = len(self.plan.scene.joints)

@@ -22,7 +22,7 @@ class Field:
 
     name: str
     group: str  # "state", "parameter" (a number of the scene) or "observed"
-    observer: str  # that an observed one needs, "rays" for rays; else ""
+    observer: str  # that an observed one needs; else ""
     item: str  # what has one: "body", "shape", "world", "joint", "coordinate", "ray"
     items: int
     components: int
@@ -60,7 +60,8 @@ class Fields:
             raise ValueError("the field " + _core.unknown_name(name, list(self._fields)))
         field = self._fields[name]
         if field.observer and field.observer not in self._watched:
-            wanted = "rays=[...]" if field.observer == "rays" else f"observe=['{field.observer}']"
+            given = field.item in ("ray", "point")  # of a list that chooses its observer
+            wanted = f"{field.observer}=[...]" if given else f"observe=['{field.observer}']"
             raise ValueError(f"{name} is not observed; make the Batch with {wanted}")
         return field
 
@@ -168,11 +169,11 @@ class Fields:
             )
         return View(self._held, name, blocks)
 
-    def slots(self, out: Optional[Writable] = None) -> NDArray[np.int32]:
-        """Where worlds live in views, (worlds,) int32: lane slot % lanes of group slot // lanes.
+    def lane_indices(self, out: Optional[Writable] = None) -> NDArray[np.int32]:
+        """Where worlds live in views, (worlds,) int32: index i is lane i % lanes of group i // lanes.
 
         With sleep, steps may move them.
         """
         array = arrays.output(out, (self._worlds,), ("worlds",), np.int32)
-        self._held.slots(array)
+        self._held.lane_indices(array)
         return array

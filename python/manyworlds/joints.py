@@ -13,6 +13,23 @@ from typing import Optional, Union
 from .ids import BodyRef
 from .names import Numbers
 
+__all__ = [
+    "BallJoint",
+    "DistanceJoint",
+    "Drive",
+    "FixedJoint",
+    "Frame",
+    "HingeJoint",
+    "Joint",
+    "JointType",
+    "Limit",
+    "PulleyJoint",
+    "SliderJoint",
+    "Spring",
+    "TargetJoint",
+    "WheelJoint",
+]
+
 
 @dataclass(slots=True)
 class Frame:

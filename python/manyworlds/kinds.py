@@ -80,8 +80,8 @@ class _Core:
     def blocks(self, name: str) -> Any:
         return self._core.blocks(name, self._kind)
 
-    def slots(self, out: Any) -> None:
-        self._core.slots(out, self._kind)
+    def lane_indices(self, out: Any) -> None:
+        self._core.lane_indices(out, self._kind)
 
     def read_controls(self, out: Any) -> None:
         self._core.read_controls(out, self._kind)

@@ -42,7 +42,8 @@ Precision = Literal["f32", "f64"]
 Isa = Literal["scalar", "avx2", "avx512"]
 ContactLayout = Literal["automatic", "dense", "rows"]
 Observer = Literal[
-    "contacts", "touching", "penetration", "motion", "joints", "joint_loads", "residual"
+    "contacts", "touching", "penetration", "motion", "joints", "joint_loads", "residual", "rays",
+    "points"
 ]
 Feature = Literal[
     "orientation", "inertia", "friction", "restitution", "contacts", "drag", "gravity", "joints"

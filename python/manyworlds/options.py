@@ -1,8 +1,8 @@
-"""Options of a scene: time step, gravity, integrator, solver, contact model."""
+"""Options of a scene: the step, its solver, contacts, joints and sleep."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from typing import Optional
 
@@ -10,8 +10,51 @@ from .names import Integrator, Numbers, Rotation, Solver
 
 
 @dataclass(slots=True, kw_only=True)
+class SolverOptions:
+    """What runs over the rows of contacts and joints. The header ``solver.hpp`` has more."""
+
+    method: Solver = "tgs_soft"
+    iterations: Optional[int] = None  # sweeps per substep; None: the method's default
+    relaxation: float = 1.3  # of sor, in (0, 2)
+    push_out_share: float = 0.2  # of sequential_impulse, sor, nncg
+    split_impulse: bool = False  # of the same
+
+
+@dataclass(slots=True, kw_only=True)
+class ContactOptions:
+    """The contact model."""
+
+    frequency: float = 60.0  # Hz, of tgs_soft and penalty
+    damping_ratio: float = 10.0
+    push_out_speed: float = 1.5  # m/s per length_unit
+    slop: float = 0.005  # m per length_unit
+    restitution_threshold: float = 1.0  # m/s per length_unit: slower impacts do not bounce
+    restitution_sweeps: int = 16
+    friction_in_bias_pass: bool = True  # of tgs_soft
+    cast_against_fixed: bool = True  # stop fast bodies at thin fixed shapes
+    cast_between_moving: bool = False  # and at moving ones
+
+
+@dataclass(slots=True, kw_only=True)
+class JointOptions:
+    """How what joints hold together is pulled back."""
+
+    frequency: Optional[float] = None  # Hz; None: a quarter per substep, or hard rows
+    damping_ratio: float = 2.0
+    pull_speed: float = inf  # m/s per length_unit, and rad/s
+
+
+@dataclass(slots=True, kw_only=True)
+class SleepOptions:
+    """When bodies at rest fall asleep."""
+
+    speed: float = 0.05  # m/s per length_unit
+    time: float = 0.5  # s
+
+
+@dataclass(slots=True, kw_only=True)
 class Options:
-    """How worlds of a scene are stepped. The header ``scene.hpp`` has more on each."""
+    """How worlds of a scene are stepped. The header ``options.hpp`` has more on each."""
 
     dt: float = 1.0 / 60.0  # s, one step
     substeps: int = 4
@@ -21,28 +64,10 @@ class Options:
     integrator: Integrator = "symplectic_euler"
     rotation: Optional[Rotation] = None  # None: what suits the integrator
     angular_momentum: bool = False  # spins as angular momenta
-    solver: Solver = "tgs_soft"
-    iterations: Optional[int] = None  # sweeps per substep; None: the solver's default
-    relaxation: float = 1.3  # of sor, in (0, 2)
-    push_out_share: float = 0.2  # of sequential_impulse, sor, nncg
-    split_impulse: bool = False  # of the same
     length_unit: float = 1.0  # m, size of a typical body
-
-    contact_frequency: float = 60.0  # Hz, of tgs_soft and penalty
-    contact_damping_ratio: float = 10.0
-    push_out_speed: float = 1.5  # m/s per length_unit
-    slop: float = 0.005  # m per length_unit
-    restitution_threshold: float = 1.0  # m/s per length_unit: slower impacts do not bounce
-    restitution_sweeps: int = 16
-    friction_in_bias_pass: bool = True  # of tgs_soft
-    cast_against_fixed: bool = True  # stop fast bodies at thin fixed shapes
-    cast_between_moving: bool = False  # and at moving ones
-
-    joint_frequency: Optional[float] = None  # Hz; None: a quarter per substep, or hard rows
-    joint_damping_ratio: float = 2.0
-    joint_pull_speed: float = inf  # m/s per length_unit, and rad/s
-
-    sleep_speed: float = 0.05  # m/s per length_unit
-    time_to_sleep: float = 0.5  # s
+    solver: SolverOptions = field(default_factory=SolverOptions)
+    contact: ContactOptions = field(default_factory=ContactOptions)
+    joint: JointOptions = field(default_factory=JointOptions)
+    sleep: SleepOptions = field(default_factory=SleepOptions)
     contact_capacity: Optional[int] = None  # manifolds per world, of each kind
     bounds: Optional[tuple[Numbers, Numbers]] = None  # m, (low, high) corners; beyond: lost

@@ -130,7 +130,7 @@ class Results:
         return self._held.measure_contacts()
 
     def look(self) -> None:
-        """Observes motion, joints and rays at the current state, without a step."""
+        """Observes motion, joints, rays and points at the current state, without a step."""
         if not self._watched:
             raise ValueError("nothing is observed; make the Batch with observe=[...] or rays=[...]")
         self._held.look()

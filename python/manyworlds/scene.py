@@ -97,6 +97,14 @@ class Ray:
     mask: int = 0xFFFFFFFF  # of Filter.category
 
 
+@dataclass(slots=True, kw_only=True)
+class Point:
+    """A point that is fixed to a body that can move."""
+
+    position: Numbers = (0.0, 0.0, 0.0)  # m, in the body's frame
+    body: BodyRef = -1
+
+
 Part = Union[Body, Joint, Control, Attractor, Variation]
 
 

@@ -8,6 +8,25 @@ from typing import Optional, Union
 
 from .names import Numbers
 
+__all__ = [
+    "Box",
+    "Capsule",
+    "Circle",
+    "Cylinder",
+    "Filter",
+    "Geometry",
+    "HalfPlane",
+    "HeightField",
+    "Hull",
+    "Material",
+    "Plane",
+    "Polygon",
+    "Segment",
+    "Shape",
+    "Sphere",
+    "Terrain",
+]
+
 # -- in space
 
 

@@ -23,7 +23,7 @@ from . import _core, shown
 from ._core import Expression
 from ._core import expressions as _x
 from .ids import BodyId, BodyRef, ControlId, ControlRef, JointId, JointRef, index_of
-from .scene import Issue, Ray, Scene, SceneError
+from .scene import Issue, Point, Ray, Scene, SceneError
 
 Value = Union[Expression, float]  # numbers are expressions
 Axis = Union[int, str]  # 0, 1, 2 or "x", "y", "z", of the world
@@ -149,19 +149,27 @@ class Terms:
 
     def joint_position(self, joint: JointRef, coordinate: int = 0) -> Expression:
         """m or rad, from where the joint began."""
-        return _x.joint_position(self._index("joint", joint), coordinate)
+        return _x.observed("joint_position", self._index("joint", joint), coordinate)
 
     def joint_speed(self, joint: JointRef, coordinate: int = 0) -> Expression:
         """m/s or rad/s."""
-        return _x.joint_speed(self._index("joint", joint), coordinate)
+        return _x.observed("joint_speed", self._index("joint", joint), coordinate)
 
     def touching(self, body: BodyRef) -> Expression:
         """1 where a contact pushed the body in the last step; 0 where a world begins."""
-        return _x.touching(self._index("body", body))
+        return _x.observed("touching", self._index("body", body), 0)
+
+    def point_position(self, point: int, axis: Axis) -> Expression:
+        """m, of Task.points; world."""
+        return _x.observed("point_position", point, self._axis(axis))
+
+    def point_velocity(self, point: int, axis: Axis) -> Expression:
+        """m/s, of Task.points; world."""
+        return _x.observed("point_velocity", point, self._axis(axis))
 
     def ray_distance(self, ray: int) -> Expression:
         """m, of Task.rays."""
-        return _x.ray_distance(ray)
+        return _x.observed("ray_distance", ray, 0)
 
     def action(self, index: int = 0) -> Expression:
         """The action that led here; of discrete tasks its number. 0 at the beginning."""
@@ -228,6 +236,7 @@ class Task:
     solved_at: float = inf  # mean return; said to people only
 
     rays: list[Ray] = field(default_factory=list)  # for ray_distance
+    points: list[Point] = field(default_factory=list)  # for point_position, point_velocity
 
     def __repr__(self) -> str:
         actions = shown.count(self.actions, "action", "actions")

@@ -12,12 +12,12 @@ from .in_memory import InMemory
 
 
 class View(InMemory):
-    """A state field where the step keeps it, (groups, bodies, components, lanes).
+    """A state field where the step keeps it, (groups, items, components, lanes).
 
-    World w is lane ``slots[w] % lanes`` of group ``slots[w] // lanes`` (Batch.slots); lanes after
-    the last world are nobody's. Positions are those of centres of mass, orientations those of principal
+    World w is lane ``i % lanes`` of group ``i // lanes``, ``i = Batch.lane_indices()[w]``; lanes after
+    the last world are unused. Positions are those of centres of mass, orientations those of principal
     axes: ``Batch.get`` turns them into the body's frame. What is written here acts at the next step;
-    it wakes nobody and forgets no stored impulses.
+    it wakes no body and forgets no stored impulses.
 
     ``numpy.asarray(view)``, ``view[...]`` and DLPack give arrays that share this memory and keep it
     alive. After ``Batch.close()`` a view raises ValueError; arrays made before stay readable, but
@@ -37,9 +37,9 @@ class View(InMemory):
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
-        """(groups, bodies, components, lanes)."""
-        groups, bodies, components, lanes = self._open().shape
-        return groups, bodies, components, lanes
+        """(groups, items, components, lanes)."""
+        groups, items, components, lanes = self._open().shape
+        return groups, items, components, lanes
 
     @property
     def strides(self) -> tuple[int, ...]:

@@ -32,7 +32,7 @@ std::vector<Batch::Kind> kinds_of(nb::handle value) {
 
 void make(HeldBatch* self, nb::object plans, nb::object threads, std::uint64_t seed,
           nb::object precision, nb::object isa, nb::object layout, bool sleep, nb::object observe,
-          nb::object rays, nb::object contacts_per_world) {
+          nb::object rays, nb::object points, nb::object contacts_per_world) {
   BatchOptions options;
   const std::vector<Batch::Kind> kinds = kinds_of(plans);
   options.threads = from_python<int>(threads, "threads");
@@ -42,8 +42,9 @@ void make(HeldBatch* self, nb::object plans, nb::object threads, std::uint64_t s
   options.layout = from_python<ContactLayout>(layout, "layout");
   options.sleep = sleep;
   options.observe.what = from_python<std::vector<Observer>>(observe, "observe");
-  options.observe.rays = from_python<std::vector<Ray>>(
-      rays, "rays", kinds.empty() ? nullptr : &kinds.front().plan.scene());
+  const Scene* scene = kinds.empty() ? nullptr : &kinds.front().plan.scene();
+  options.observe.rays = from_python<std::vector<Ray>>(rays, "rays", scene);
+  options.observe.points = from_python<std::vector<Point>>(points, "points", scene);
   options.observe.contacts_per_world = from_python<int>(contacts_per_world, "contacts_per_world");
   const nb::gil_scoped_release release;
   new (self) HeldBatch(kinds, options);
@@ -84,7 +85,7 @@ void bind_batch(nb::module_& m) {
   nb::class_<HeldBatch> c(m, "Batch", "Worlds that step together. Private: use manyworlds.Batch.");
   c.def("__init__", &make, nb::arg("kinds"), nb::arg("threads"), nb::arg("seed"),
         nb::arg("precision"), nb::arg("isa").none(), nb::arg("layout"), nb::arg("sleep"),
-        nb::arg("observe"), nb::arg("rays"), nb::arg("contacts_per_world"))
+        nb::arg("observe"), nb::arg("rays"), nb::arg("points"), nb::arg("contacts_per_world"))
       .def("close", &HeldBatch::close, "Lets go of the worlds; what follows raises ValueError.")
       .def_prop_ro("closed", &HeldBatch::closed)
       .def_prop_ro("worlds", property<&Batch::worlds>())

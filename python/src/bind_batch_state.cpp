@@ -131,10 +131,10 @@ void write(HeldBatch& self, const std::string& name, const AnyIn& in,
 template <class Real>
 nb::object blocks_array(const LaneBlocks& at, nb::handle owner) {
   const auto size = [](int n) { return static_cast<std::size_t>(n); };
-  const std::size_t shape[] = {size(at.groups), size(at.bodies), size(at.components),
+  const std::size_t shape[] = {size(at.groups), size(at.items), size(at.components),
                                size(at.lanes)};
   const std::int64_t strides[] = {static_cast<std::int64_t>(at.group_stride),
-                                  static_cast<std::int64_t>(at.body_stride),
+                                  static_cast<std::int64_t>(at.item_stride),
                                   static_cast<std::int64_t>(at.component_stride), 1};
   return nb::cast(nb::ndarray<nb::numpy, Real>(at.data, 4, shape, owner, strides));
 }
@@ -155,11 +155,11 @@ nb::object blocks(HeldBatch& self, const std::string& name, int kind) {
   });
 }
 
-void slots(HeldBatch& self, const Out<std::int32_t>& out, int kind) {
+void lane_indices(HeldBatch& self, const Out<std::int32_t>& out, int kind) {
   self.with([&](Batch& b) {
     const KindRange& of = self.range(kind);
     check_size("out", out.size(), static_cast<std::size_t>(of.worlds));
-    for (int w = 0; w < of.worlds; ++w) out.data()[w] = b.slot(of.first + w);
+    for (int w = 0; w < of.worlds; ++w) out.data()[w] = b.lane_index(of.first + w);
   });
 }
 
@@ -216,8 +216,9 @@ void bind_batch_state(nb::class_<HeldBatch>& c) {
            nb::arg("worlds").none(), of_kind,
            "Takes an array (worlds, items, components), or those of some worlds in float64.")
       .def("blocks", &blocks, nb::arg("name"), of_kind,
-           "A state field in place, (groups, bodies, components, lanes); None: left out.")
-      .def("slots", &slots, nb::arg("out").noconvert(), of_kind, "Fills slots, (worlds).")
+           "A state field in place, (groups, items, components, lanes); None: left out.")
+      .def("lane_indices", &lane_indices, nb::arg("out").noconvert(), of_kind,
+           "Fills lane indices, (worlds).")
       .def(
           "controls",
           [](HeldBatch& s, int kind) {

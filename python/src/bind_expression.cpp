@@ -116,16 +116,20 @@ void bind_values(nb::module_& m, nb::class_<Expression>& c) {
   c.def("__repr__", [](E a) { return "<manyworlds.Expression " + text_of(a, 72) + ">"; });
 }
 
+Observed observed_named(const std::string& name) {
+  std::vector<std::string> known;
+  for (const ObservedInfo& what : kObservedInfo) {
+    if (name == what.name) return Observed(&what - kObservedInfo);
+    known.emplace_back(what.name);
+  }
+  throw nb::value_error(("the observed number " + unknown_name(name, known)).c_str());
+}
+
 void bind_terms(Functions& m) {
   const auto of_body = [&m](const char* name, auto term) {
     m.def_static(
         name, [term](int body, int axis) { return term(BodyId(body), axis); }, nb::arg("body"),
         nb::arg("axis"));
-  };
-  const auto of_joint = [&m](const char* name, auto term) {
-    m.def_static(
-        name, [term](int joint, int coordinate) { return term(JointId(joint), coordinate); },
-        nb::arg("joint"), nb::arg("coordinate"));
   };
   of_body("position", terms::position);
   of_body("velocity", terms::velocity);
@@ -136,11 +140,12 @@ void bind_terms(Functions& m) {
       "direction",
       [](int body, int of, int axis) { return terms::direction(BodyId(body), of, axis); },
       nb::arg("body"), nb::arg("of"), nb::arg("axis"));
-  of_joint("joint_position", terms::joint_position);
-  of_joint("joint_speed", terms::joint_speed);
   m.def_static(
-      "touching", [](int body) { return terms::touching(BodyId(body)); }, nb::arg("body"));
-  m.def_static("ray_distance", &terms::ray_distance, nb::arg("ray"));
+      "observed",
+      [](const std::string& what, int item, int component) {
+        return terms::observed(observed_named(what), item, component);
+      },
+      nb::arg("what"), nb::arg("item"), nb::arg("component"));
   m.def_static("action", &terms::action, nb::arg("index"));
   m.def_static(
       "control", [](int index) { return terms::control(ControlId(index)); }, nb::arg("index"));

@@ -91,6 +91,19 @@ nb::object ray_cast_of(nb::handle shape, nb::handle pose, nb::handle ray, nb::ha
   return nb::make_tuple(hit->distance, to_python(hit->normal));
 }
 
+// (corners (n, 3), radius) of a geometry, or None.
+nb::object outline_of(nb::handle geometry, bool planar) {
+  const Outline out =
+      outline(from_python<Geometry>(geometry, "geometry"), planar ? Space::planar : Space::spatial);
+  if (out.points.empty()) return nb::none();
+  return nb::make_tuple(to_python(out.points), out.radius);
+}
+
+nb::object resized_of(nb::handle geometry, nb::handle size) {
+  return to_python(
+      resized(from_python<Geometry>(geometry, "geometry"), from_python<Vec3>(size, "size")));
+}
+
 }  // namespace
 
 void bind_query(nb::module_& m) {
@@ -103,6 +116,10 @@ void bind_query(nb::module_& m) {
         "[(normal, point, separation, feature)] of two shapes.");
   m.def("ray_cast", &ray_cast_of, nb::arg("shape"), nb::arg("pose"), nb::arg("ray"),
         nb::arg("space").none(), "(distance, normal), or None where the ray misses.");
+  m.def("outline", &outline_of, nb::arg("geometry"), nb::arg("planar"),
+        "(corners, radius): all points within radius of their convex hull. None: not convex.");
+  m.def("resized", &resized_of, nb::arg("geometry"), nb::arg("size"),
+        "The geometry with other numbers of the parameter size.");
 }
 
 }  // namespace manyworlds::python

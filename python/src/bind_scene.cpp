@@ -20,6 +20,14 @@ nb::dict default_values() {
   return out;
 }
 
+template <class Variant>
+void add_alternatives(nb::dict& out) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    out.update(default_values<std::variant_alternative_t<I, Variant>...>());
+  }
+  (std::make_index_sequence<std::variant_size_v<Variant>>());
+}
+
 std::vector<std::pair<std::string, std::string>> issues_of(const std::vector<Issue>& issues) {
   std::vector<std::pair<std::string, std::string>> out;
   for (const Issue& issue : issues) out.emplace_back(issue.place, issue.message);
@@ -54,12 +62,12 @@ void bind_scene(nb::module_& m) {
   m.def(
       "default_values",
       [] {
-        return default_values<Sphere, Box, Plane, Capsule, Cylinder, Hull, Circle, Polygon,
-                              HalfPlane, Segment, Terrain, HeightField, Material, Filter, Shape,
-                              MassProperties, Jitter, Body, Frame, Spring, Limit, Drive, BallJoint,
-                              HingeJoint, SliderJoint, FixedJoint, DistanceJoint, WheelJoint,
-                              PulleyJoint, TargetJoint, Joint, Control, Attractor, Variation,
-                              Options, Scene, Ray>();
+        nb::dict out = default_values<Material, Filter, Shape, MassProperties, Jitter, Body, Frame,
+                                      Spring, Limit, Drive, Joint, Control, Attractor, Variation,
+                                      SolverOptions, ContactOptions, JointOptions, SleepOptions,
+                                      Options, Scene, Ray, Point>();
+        add_alternatives<Geometry>(out), add_alternatives<JointType>(out);
+        return out;
       },
       "The library's default value of every dataclass, by its name.");
   m.def(

@@ -50,8 +50,6 @@ MW_NAMES(Draw, MW_NAME(none), MW_NAME(uniform), MW_NAME(log_uniform));
 MW_NAMES(Precision, MW_NAME(f32), MW_NAME(f64));
 MW_NAMES(Isa, MW_NAME(scalar), MW_NAME(avx2), MW_NAME(avx512));
 MW_NAMES(ContactLayout, MW_NAME(automatic), MW_NAME(dense), MW_NAME(rows));
-MW_NAMES(Observer, MW_NAME(contacts), MW_NAME(touching), MW_NAME(penetration), MW_NAME(motion),
-         MW_NAME(joints), MW_NAME(joint_loads), MW_NAME(residual));
 MW_NAMES(Feature, MW_NAME(orientation), MW_NAME(inertia), MW_NAME(friction), MW_NAME(restitution),
          MW_NAME(contacts), MW_NAME(drag), MW_NAME(gravity), MW_NAME(joints));
 MW_NAMES(BroadPhase, MW_NAME(automatic), MW_NAME(all_pairs), MW_NAME(sort_and_sweep),
@@ -60,6 +58,16 @@ MW_NAMES(Status, MW_NAME(ok), MW_NAME(non_finite), MW_NAME(out_of_range), MW_NAM
          MW_NAME(contact_overflow), MW_NAME(joint_broken));
 #undef MW_NAME
 #undef MW_NAMES
+
+template <>
+struct Names<Observer> {
+  static constexpr const char* kind = "Observer";
+  static constexpr Named<Observer> all[] = {
+#define MW_NAME(name, item, of, meaning) {Observer::name, #name},
+      MW_OBSERVERS(MW_NAME)
+#undef MW_NAME
+  };
+};
 
 template <class Enum>
 const char* name_of(Enum value) {

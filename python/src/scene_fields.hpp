@@ -30,4 +30,12 @@ struct Described<Ray> {
   }
 };
 
+template <>
+struct Described<Point> {
+  static constexpr const char* name = "Point";
+  static void fields(auto&& visit, auto& s) {
+    visit("position", s.position), visit("body", s.body);
+  }
+};
+
 }  // namespace manyworlds::python

@@ -53,6 +53,7 @@ struct Described<Task> {
     visit("observations", s.observations), visit("rewards", s.rewards);
     visit("terminated", s.terminated), visit("truncated", s.truncated);
     visit("most_steps", s.most_steps), visit("solved_at", s.solved_at), visit("rays", s.rays);
+    visit("points", s.points);
   }
 };
 

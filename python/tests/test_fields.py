@@ -112,7 +112,7 @@ def test_other_outs_are_filled_too():
         (batch.status, (5,), np.uint32),
         (batch.hashes, (5,), np.uint64),
         (batch.energy, (5, 2), np.float64),
-        (batch.slots, (5,), np.int32),
+        (batch.lane_indices, (5,), np.int32),
         (batch.get_enabled, (5, 5), np.bool_),
         (batch.get_joints_enabled, (5, 2), np.bool_),
         (batch.asleep, (5, 5), np.bool_),
@@ -136,7 +136,7 @@ def test_views_are_the_storage(precision):
         groups, bodies, components, lanes = view.shape
         assert (bodies, components) == batch.get(name).shape[1:] and lanes == batch.lanes
         assert groups == -(-11 // lanes) and view.dtype == batch.dtype
-        slots = batch.slots()
+        slots = batch.lane_indices()
         mine = view[slots // lanes, :, :, slots % lanes]
         if name in ("position", "linear_velocity", "angular_velocity"):
             np.testing.assert_array_equal(mine, batch.get(name))

@@ -218,7 +218,7 @@ def test_buffers_of_other_types_of_number():
     for call, code in [
         (batch.status, "I"),
         (batch.hashes, "L"),
-        (batch.slots, "i"),
+        (batch.lane_indices, "i"),
         (batch.energy, "d"),
         (batch.get_enabled, "B"),
     ]:

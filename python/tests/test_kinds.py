@@ -70,7 +70,7 @@ def test_inputs_go_to_the_worlds_of_a_kind():
     for kind, other in zip(batch.kinds, apart):
         assert (kind.get("touching") == other.get("touching")).all()
         assert (kind.asleep() == other.asleep()).all()
-        assert len(kind.slots()) == kind.worlds
+        assert len(kind.lane_indices()) == kind.worlds
     first = batch.kinds[1].view("position")
     assert first.shape[1:3] == (10, 3)
 

@@ -96,7 +96,7 @@ BATCHES = [
     lambda: mw.Batch(crates(), worlds=5, threads=2, precision=WIDEST),
 ]
 METHODS = (
-    "step get set view slots get_controls set_controls add_force add_torque add_impulse "
+    "step get set view lane_indices get_controls set_controls add_force add_torque add_impulse "
     "add_angular_impulse get_enabled set_enabled spawn get_joints_enabled set_joints_enabled asleep "
     "wake set_rays status status_names lost hash hashes energy contacts step_contacts "
     "measure_contacts look save restore copy_world reset randomize rollout"

@@ -94,7 +94,7 @@ Craft make_craft(const char* name) {
   named.name = name;
   Scene& scene = made.scene = planar_scene(named, kDt, 10);
   // With fewer, 5 kg on legs of 70 g sway for ever, and never are at rest.
-  scene.options.iterations = 3;
+  scene.options.solver.iterations = 3;
   // There is no ceiling there either.
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-20, -10, -1), Vec3(20, 4000, 1));
   add_ground(scene);

@@ -6,9 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "src/api/batch_impl.hpp"
+#include "src/api/batch_core.hpp"
 #include "src/base/enum_names.hpp"
 #include "src/base/pimpl.hpp"
+#include "src/dispatch/kernels.hpp"
 
 namespace manyworlds {
 
@@ -33,7 +34,6 @@ struct Batch::Impl {
   double dt = 0;
   double clock = 0;                        // of step_to
   std::vector<std::uint64_t> fingerprint;  // of each kind's plan
-  std::vector<std::size_t> first_body;     // of each kind, counted over all worlds before it
   std::vector<std::weak_ptr<BatchListener>> listeners;
   double slowest_step = 0;  // s, of all worlds, as far as it was measured
 
@@ -51,7 +51,6 @@ struct Batch::Impl {
     }
     check_observers(options.observe);
     int worlds = 0;
-    std::size_t bodies = 0;
     constexpr int kMostWorlds = std::numeric_limits<int>::max();
     for (const Kind& k : kinds) {
       fingerprint.push_back(k.plan.fingerprint());
@@ -67,13 +66,11 @@ struct Batch::Impl {
         reject("kinds of one batch must have the same dt");
       }
       check_rays(options.observe.rays, k.plan);
+      check_points(options.observe.points, k.plan);
       first_world.push_back(worlds);
-      first_body.push_back(bodies);
       worlds += k.worlds;
-      bodies += static_cast<std::size_t>(k.plan.bodies()) * static_cast<std::size_t>(k.worlds);
     }
     first_world.push_back(worlds);
-    first_body.push_back(bodies);
     dt = kinds.front().plan.scene().options.dt;
     executor = options.executor ? options.executor : make_executor(options.threads);
     if (executor->threads() < 1 || executor->threads() > kMaxThreads) {
@@ -85,7 +82,8 @@ struct Batch::Impl {
   // Throws std::invalid_argument that says how much memory would be needed.
   void make_core_within_memory();
 
-  // Steps, all or those of a mask, with questions between them; returns how many.
+  // Steps, all worlds or those of a mask, with questions between them unless `go_on` is empty;
+  // returns how many.
   int step(int n, std::span<const std::uint8_t> mask, const GoOn& go_on, const Visit& visit = {});
 
   // Told after the change; see batch_listen.cpp.
@@ -126,6 +124,7 @@ struct Batch::Impl {
     reject("kind is " + std::to_string(kind) + ", must be 0 to " +
            std::to_string(kinds.size() - 1));
   }
+  WorldsBase& worlds(int kind) const { return core->worlds(kind); }
   const Plan& plan(int kind) const { return kinds[static_cast<std::size_t>(kind)].plan; }
   struct BodyPlace {
     int kind, world;
@@ -150,10 +149,7 @@ struct Batch::Impl {
     }
     return p;
   }
-  std::size_t world_size(Field field, int kind) const {
-    return static_cast<std::size_t>(plan(kind).bodies()) *
-           static_cast<std::size_t>(components(field, plan(kind).scene().space));
-  }
+  std::size_t world_size(Field field, int kind) const { return plan(kind).numbers(field); }
   template <class What>
   void check_size(What what, std::size_t got, std::size_t wanted) const {
     if (got != wanted) {
@@ -162,7 +158,7 @@ struct Batch::Impl {
     }
   }
   std::size_t world_size(Parameter parameter, int kind) const {
-    return core->parameter_size(checked_enum(parameter), kind);
+    return worlds(kind).parameter_size(checked_enum(parameter));
   }
   void check_mask(std::span<const std::uint8_t> mask) const {
     if (mask.size() != static_cast<std::size_t>(first_world.back())) {
@@ -179,6 +175,15 @@ struct Batch::Impl {
       const Place p = find(w);
       visit(p.kind, p.world, w);
     }
+  }
+  // Of all worlds.
+  template <class What>
+  std::size_t size(What what) const {
+    std::size_t total = 0;
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      total += world_size(what, static_cast<int>(k)) * static_cast<std::size_t>(kinds[k].worlds);
+    }
+    return total;
   }
   // visit(kind, world in kind, offset in the canonical array of a field or a parameter)
   template <class What, class Visit>

@@ -8,10 +8,6 @@ namespace manyworlds {
 
 namespace {
 
-Input write_of(Field field) {
-  return static_cast<Input>(static_cast<int>(Input::write_position) + static_cast<int>(field));
-}
-
 void call(const std::vector<std::weak_ptr<BatchListener>>& listeners, const Batch& batch,
           const InputCall& input) {
   for (const auto& weak : listeners) {

@@ -8,8 +8,8 @@ namespace manyworlds {
 
 namespace {
 
-Observations& observations_of(BatchCore& core) {
-  Observations* found = core.observations();
+ObserverResults& results_of(BatchCore& core) {
+  ObserverResults* found = core.observer_results();
   if (!found) reject("nothing is observed: choose observers in BatchOptions::observe");
   return *found;
 }
@@ -33,7 +33,7 @@ void check_count(std::size_t got, std::size_t wanted) {
 std::size_t Batch::size(Observed what) const {
   std::size_t sum = 0;
   for (const Kind& kind : impl_->kinds) {
-    sum += observed_size(what, kind.plan.data(), impl_->options.observe.rays.size()) *
+    sum += observed_size(what, kind.plan.data(), impl_->options.observe) *
            static_cast<std::size_t>(kind.worlds);
   }
   return sum;
@@ -42,33 +42,29 @@ std::size_t Batch::size(Observed what) const {
 void Batch::read(Observed what, int world, std::span<double> out) const {
   const auto p = impl_->find(world);
   const Plan& plan = impl_->plan(p.kind);
-  check_observed_size(what, out.size(),
-                      observed_size(what, plan.data(), impl_->options.observe.rays.size()));
-  observations_of(*impl_->core).read(what, p.kind, p.world, 1, out.data());
+  check_observed_size(what, out.size(), observed_size(what, plan.data(), impl_->options.observe));
+  results_of(*impl_->core).read(what, p.kind, p.world, 1, out.data());
 }
 
 template <class Number>
 void Batch::Impl::read_observed(Observed what, std::size_t wanted, std::span<Number> out) const {
   check_observed_size(what, out.size(), wanted);
-  const Observations& observations = observations_of(*core);
+  const ObserverResults& results = results_of(*core);
   std::size_t at = 0;
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     const int count = kinds[k].worlds;
-    observations.read(what, static_cast<int>(k), 0, count, out.data() + at);
-    at += observed_size(what, kinds[k].plan.data(), options.observe.rays.size()) *
+    results.read(what, static_cast<int>(k), 0, count, out.data() + at);
+    at += observed_size(what, kinds[k].plan.data(), options.observe) *
           static_cast<std::size_t>(count);
   }
 }
-void Batch::read(Observed what, std::span<double> out) const {
-  impl_->read_observed(what, size(what), out);
-}
-void Batch::read(Observed what, std::span<float> out) const {
-  impl_->read_observed(what, size(what), out);
+void Batch::read(Observed what, Reals out) const {
+  std::visit([&](auto to) { impl_->read_observed(what, size(what), to); }, out);
 }
 
 std::vector<StepContact> Batch::step_contacts(int world) const {
   const auto p = impl_->find(world);
-  return observations_of(*impl_->core).contacts(p.kind, p.world);
+  return results_of(*impl_->core).contacts(p.kind, p.world);
 }
 
 bool Batch::touching(int world, BodyId body) const {
@@ -115,7 +111,7 @@ void Batch::set_rays(std::span<const Ray> rays) {
   for (const Kind& kind : impl_->kinds) {
     check_rays(rays, kind.plan);
   }
-  observations_of(*impl_->core).set_rays(rays);
+  results_of(*impl_->core).set_rays(rays);
   impl_->core->look_again();
   impl_->options.observe.rays.assign(rays.begin(), rays.end());
 }
@@ -133,12 +129,12 @@ void Batch::set_rays(int world, std::span<const Ray> rays) {
              "them");
     }
   }
-  observations_of(*impl_->core).set_rays(p.kind, p.world, rays);
+  results_of(*impl_->core).set_rays(p.kind, p.world, rays);
   impl_->core->look_again();
 }
 
 void Batch::look() {
-  observations_of(*impl_->core);
+  results_of(*impl_->core);
   impl_->core->look(*impl_->executor);
 }
 

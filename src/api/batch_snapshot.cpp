@@ -29,9 +29,9 @@ Snapshot Batch::save(std::span<const int> worlds) const {
     const auto p = impl_->find(world);
     SnapshotEntry entry{};
     entry.fingerprint = impl_->fingerprint[static_cast<std::size_t>(p.kind)];
-    entry.size = static_cast<std::uint32_t>(impl_->core->world_bytes(p.kind));
-    entry.episode = impl_->core->episode(p.kind, p.world);
-    entry.seed = impl_->core->seed(p.kind, p.world);
+    entry.size = static_cast<std::uint32_t>(impl_->worlds(p.kind).world_bytes());
+    entry.episode = impl_->worlds(p.kind).episode(p.world);
+    entry.seed = impl_->worlds(p.kind).seed(p.world);
     entries.push_back(entry);
   }
   SnapshotHeader header{};
@@ -41,7 +41,7 @@ Snapshot Batch::save(std::span<const int> worlds) const {
   Snapshot snapshot = SnapshotAccess::prepare(header, std::move(entries));
   for (std::size_t i = 0; i < worlds.size(); ++i) {
     const auto p = impl_->find(worlds[i]);
-    impl_->core->write_world(p.kind, p.world, SnapshotAccess::world(snapshot, i));
+    impl_->worlds(p.kind).write_world(p.world, SnapshotAccess::world(snapshot, i));
   }
   SnapshotAccess::seal(snapshot);
   return snapshot;
@@ -59,11 +59,11 @@ void Batch::Impl::check_snapshot_world(const Snapshot& snapshot, std::size_t fro
   if (entry.fingerprint != fingerprint[static_cast<std::size_t>(kind)]) {
     refuse(place + " is of another plan than '" + plan(kind).scene().name + "'");
   }
-  if (entry.size != core->world_bytes(kind)) {
+  if (entry.size != worlds(kind).world_bytes()) {
     refuse(place + " has " + std::to_string(entry.size) + " bytes, must have " +
-           std::to_string(core->world_bytes(kind)));
+           std::to_string(worlds(kind).world_bytes()));
   }
-  const std::string problem = core->check_world(kind, SnapshotAccess::world(snapshot, from));
+  const std::string problem = worlds(kind).check_world(SnapshotAccess::world(snapshot, from));
   if (!problem.empty()) refuse(place + ": " + problem);
 }
 
@@ -76,13 +76,14 @@ void Batch::restore(const Snapshot& snapshot) {
   for (int w = 0; w < worlds(); ++w) {
     impl_->check_snapshot_world(snapshot, static_cast<std::size_t>(w), impl_->find(w).kind);
   }
+  impl_->core->look_again();
   for (int w = 0; w < worlds(); ++w) {
     const auto p = impl_->find(w);
     const auto i = static_cast<std::size_t>(w);
-    impl_->core->read_world(p.kind, p.world, SnapshotAccess::world(snapshot, i));
+    impl_->worlds(p.kind).read_world(p.world, SnapshotAccess::world(snapshot, i));
     const SnapshotEntry entry = SnapshotAccess::entry(snapshot, i);
-    impl_->core->set_episode(p.kind, p.world, entry.episode);
-    if (has_seeds(header)) impl_->core->set_seed(p.kind, p.world, entry.seed);
+    impl_->worlds(p.kind).set_episode(p.world, entry.episode);
+    if (has_seeds(header)) impl_->worlds(p.kind).set_seed(p.world, entry.seed);
   }
   impl_->steps = header.steps;
   impl_->clock = header.clock;
@@ -96,8 +97,9 @@ void Batch::restore(const Snapshot& snapshot, int from, int to) {
            " worlds, there is no world " + std::to_string(from));
   }
   impl_->check_snapshot_world(snapshot, static_cast<std::size_t>(from), p.kind);
-  impl_->core->read_world(p.kind, p.world,
-                          SnapshotAccess::world(snapshot, static_cast<std::size_t>(from)));
+  impl_->core->look_again();
+  impl_->worlds(p.kind).read_world(p.world,
+                                   SnapshotAccess::world(snapshot, static_cast<std::size_t>(from)));
   impl_->tell(*this, Input::restore, to);
 }
 
@@ -107,7 +109,8 @@ void Batch::copy_world(int from, int to) {
     reject("copy_world: worlds " + std::to_string(from) + " and " + std::to_string(to) +
            " are of different kinds");
   }
-  impl_->core->copy_world(a.kind, a.world, b.world);
+  impl_->core->look_again();
+  impl_->worlds(a.kind).copy_world(a.world, b.world);
   impl_->tell(*this, Input::restore, to);
 }
 

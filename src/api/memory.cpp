@@ -4,8 +4,8 @@
 #include <cmath>
 #include <memory>
 
-#include "kernels/data/observation.hpp"
-#include "src/api/observations.hpp"
+#include "kernels/data/observer.hpp"
+#include "src/api/observer_results.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/base/machine_memory.hpp"
 #include "src/dispatch/kernels.hpp"
@@ -15,8 +15,6 @@ namespace manyworlds {
 
 namespace {
 
-bool observes(const Observers& o) { return !o.what.empty() || !o.rays.empty(); }
-
 // What observers take for `worlds` of a kind, with the scratch of one thread.
 template <class Real>
 double observers_in(const Batch::Kind& kind, const BatchOptions& options,
@@ -24,16 +22,16 @@ double observers_in(const Batch::Kind& kind, const BatchOptions& options,
   // Room for contacts that somebody asks for may be more than there is.
   Observers few = options.observe;
   few.contacts_per_world = std::min(few.contacts_per_world, 1);
-  typename ObservationsOf<Real>::AllWorlds one;
+  typename ObserverResultsOf<Real>::AllWorlds one;
   one.push_back(std::make_unique<Worlds<Real>>(kind.plan, 1, 0, options, kernels.lanes));
   const auto& tables = one.front()->tables();
   AlignedBuffer<unsigned char> memory(kernels.scratch_bytes(tables));
   kernels::Scratch* const scratch = kernels.make_scratch(tables, memory.data());
-  ObservationsOf<Real> seen(one, few, kernels);
+  ObserverResultsOf<Real> seen(one, few, kernels);
   seen.add_thread({&scratch, 1});
   double total = static_cast<double>(kind.worlds) * static_cast<double>(seen.world_bytes(0)) +
                  threads * static_cast<double>(seen.thread_bytes());
-  if (std::count(few.what.begin(), few.what.end(), Observer::contacts) > 0) {
+  if (observes(few, Observer::contacts)) {
     const double more = static_cast<double>(options.observe.contacts_per_world) -
                         static_cast<double>(few.contacts_per_world);
     total += (kind.worlds + static_cast<double>(threads) * kernels.lanes) * more *

@@ -12,7 +12,7 @@ namespace manyworlds {
 double memory_of(const std::vector<Batch::Kind>& kinds, const BatchOptions& options, Isa isa,
                  int threads);
 
-// Whether it may be more than a machine has: for small batches nobody needs to work that out.
+// Whether it may be more than a machine has: for small batches that need not be worked out.
 bool may_be_large(const std::vector<Batch::Kind>& kinds, const BatchOptions& options, int threads);
 
 // "worlds: 5000000 worlds of 'stack10' need 12.3 GB of memory"

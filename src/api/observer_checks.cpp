@@ -5,35 +5,41 @@
 
 #include "kernels/data/pair_keys.hpp"
 #include "src/api/batch_data.hpp"
-#include "src/api/observations.hpp"
+#include "src/api/observer_results.hpp"
 #include "src/base/enum_names.hpp"
 
 namespace manyworlds {
 
-std::size_t observed_size(Observed what, const PlanData& plan, std::size_t rays) {
-  const bool planar = plan.scene.space == Space::planar;
-  const std::size_t dim = planar ? 2 : 3, spins = planar ? 1 : 3;
-  switch (checked_enum(what)) {
-    case Observed::momentum:
-    case Observed::mass_center: return dim;
-    case Observed::angular_momentum: return spins;
-    case Observed::touching: return plan.bodies.size();
-    case Observed::joint_position:
-    case Observed::joint_speed: return plan.coordinates.size();
-    case Observed::residual: return kernels::kResidualRows;
-    case Observed::joint_force: return plan.scene.joints.size() * dim;
-    case Observed::joint_torque: return plan.scene.joints.size() * spins;
-    case Observed::ray_distance:
-    case Observed::ray_body:
-    case Observed::ray_shape: return rays;
-    case Observed::ray_normal: return rays * dim;
-    default: return 1;
+bool observes(const Observers& observers, Observer observer) {
+  if (observer == Observer::rays) return !observers.rays.empty();
+  if (observer == Observer::points) return !observers.points.empty();
+  return std::count(observers.what.begin(), observers.what.end(), observer) > 0;
+}
+
+std::size_t items_of(ObservedItem item, const PlanData& plan, const Observers& observers) {
+  switch (item) {
+    case ObservedItem::world: return 1;
+    case ObservedItem::body: return plan.bodies.size();
+    case ObservedItem::joint: return plan.scene.joints.size();
+    case ObservedItem::coordinate: return plan.coordinates.size();
+    case ObservedItem::ray: return observers.rays.size();
+    case ObservedItem::point: return observers.points.size();
   }
+  return 0;
+}
+
+std::size_t observed_size(Observed what, const PlanData& plan, const Observers& observers) {
+  return items_of(info(info(what).observer).item, plan, observers) *
+         static_cast<std::size_t>(components(what, plan.scene.space));
 }
 
 void check_observers(const Observers& observers) {
   for (std::size_t i = 0; i < observers.what.size(); ++i) {
-    checked_enum(observers.what[i], "observe.what[" + std::to_string(i) + "]");
+    const std::string place = "observe.what[" + std::to_string(i) + "]";
+    const Observer observer = checked_enum(observers.what[i], place);
+    if (is_given(info(observer).item) && !observes(observers, observer)) {
+      reject(place + " is " + to_string(observer) + ", which are observed where they are given");
+    }
   }
   if (observers.contacts_per_world < 0) {
     reject("observe.contacts_per_world is " + std::to_string(observers.contacts_per_world) +
@@ -41,33 +47,71 @@ void check_observers(const Observers& observers) {
   }
 }
 
+namespace {
+
+// Everything that is wrong with a list that users give, in one exception.
+class ListChecker {
+ public:
+  ListChecker(const char* list, const Plan& plan) : list_(list), plan_(plan) {}
+
+  void wrong(std::size_t i, const char* field, const auto& found, const std::string& expected) {
+    if (wrong_) text_ << "; ";
+    text_ << list_ << '[' << i << "]." << field << " is " << found << ", must be " << expected;
+    wrong_ = true;
+  }
+  void check_finite(std::size_t i, const char* field, const Vec3& found) {
+    if (!found.allFinite()) wrong(i, field, found.transpose(), "finite");
+  }
+  // `otherwise`: what to do where a fixed body is meant.
+  void check_moving(std::size_t i, BodyId body, int least, const char* otherwise) {
+    const int bodies = static_cast<int>(plan_.scene().bodies.size());
+    if (!body || body.index() >= bodies) {
+      const std::string from = std::to_string(least);
+      return wrong(i, "body", body.index(), from + " to " + std::to_string(bodies - 1));
+    }
+    if (plan_.find_row(body)) return;
+    wrong(i, "body", body_text(plan_.scene(), body),
+          std::string("one that can move: ") + otherwise);
+  }
+  void reject_wrong() const {
+    if (wrong_) reject(text_.str());
+  }
+
+ private:
+  const char* list_;
+  const Plan& plan_;
+  std::ostringstream text_;
+  bool wrong_ = false;
+};
+
+}  // namespace
+
 void check_rays(std::span<const Ray> rays, const Plan& plan) {
-  const Space space = plan.scene().space;
+  const bool planar = plan.scene().space == Space::planar;
+  ListChecker checker("rays", plan);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Ray& ray = rays[i];
-    const auto wrong = [&](const char* field, const auto& found, const std::string& expected) {
-      std::ostringstream text;
-      text << "rays[" << i << "]." << field << " is " << found << ", must be " << expected;
-      reject(text.str());
-    };
     Vec3 way = ray.direction;
-    if (space == Space::planar) way.z() = 0;
-    if (!ray.origin.allFinite()) wrong("origin", ray.origin.transpose(), "finite");
+    if (planar) way.z() = 0;
+    checker.check_finite(i, "origin", ray.origin);
     if (!way.allFinite() || way.isZero(0)) {
-      wrong("direction", ray.direction.transpose(),
-            space == Space::planar ? "finite and not zero in the plane" : "finite and not zero");
+      checker.wrong(i, "direction", ray.direction.transpose(),
+                    planar ? "finite and not zero in the plane" : "finite and not zero");
     }
-    if (!(ray.length > 0)) wrong("length", ray.length, "> 0 m");
+    if (!(ray.length > 0)) checker.wrong(i, "length", ray.length, "> 0 m");
     if (ray.body == BodyId()) continue;
-    const int bodies = static_cast<int>(plan.scene().bodies.size());
-    if (!ray.body || ray.body.index() >= bodies) {
-      wrong("body", ray.body.index(), "-1 to " + std::to_string(bodies - 1));
-    }
-    if (!plan.find_row(ray.body)) {
-      wrong("body", body_text(plan.scene(), ray.body),
-            "one that can move: where a fixed one stands, give the ray in the world");
-    }
+    checker.check_moving(i, ray.body, -1, "where a fixed one stands, give the ray in the world");
   }
+  checker.reject_wrong();
+}
+
+void check_points(std::span<const Point> points, const Plan& plan) {
+  ListChecker checker("points", plan);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    checker.check_finite(i, "position", points[i].position);
+    checker.check_moving(i, points[i].body, 0, "a point of a fixed one stays");
+  }
+  checker.reject_wrong();
 }
 
 template <class Real>

@@ -6,33 +6,26 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernels/data/observation.hpp"
+#include "kernels/data/observer.hpp"
 #include "manyworlds/batch.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/base/float_mode.hpp"
 #include "src/dispatch/kernels.hpp"
 #include "src/plan/plan_data.hpp"
-#include "src/scene/convex.hpp"
+#include "src/scene/shape/shape.hpp"
 
 namespace manyworlds {
 
 namespace {
 
-template <class... Kinds>
-bool is_one_of(const Geometry& g) {
-  return (std::holds_alternative<Kinds>(g) || ...);
+bool only_fixed(const Geometry& g) { return traits_of(g).ground; }
+bool is_half_space(const Geometry& g) {
+  return std::holds_alternative<Plane>(g) || std::holds_alternative<HalfPlane>(g);
 }
-bool only_fixed(const Geometry& g) {
-  return is_one_of<Plane, HalfPlane, Segment, Terrain, HeightField>(g);
-}
-bool is_half_space(const Geometry& g) { return is_one_of<Plane, HalfPlane>(g); }
 
 Space space_of(const Geometry& a, const Geometry& b, std::optional<Space> given) {
   if (given) return *given;
-  const auto planar = [](const Geometry& g) {
-    return is_one_of<Circle, Polygon, HalfPlane, Segment, Terrain>(g);
-  };
-  return planar(a) || planar(b) ? Space::planar : Space::spatial;
+  return traits_of(a).in_space && traits_of(b).in_space ? Space::spatial : Space::planar;
 }
 
 Body body_of(const char* name, const Shape& shape, const Pose& pose, Motion motion) {
@@ -68,7 +61,7 @@ Scene fixed_scene(Space space, std::initializer_list<Body> bodies) {
 double extent(const Convex& c) {
   double most = 0;
   for (const Vec3& p : c.points) most = std::max(most, (p - c.points[0]).norm());
-  return most + 2 * c.radius;
+  return std::max(most + 2 * c.radius, 2 * c.radii.maxCoeff());
 }
 
 template <class Real>
@@ -141,7 +134,8 @@ std::vector<ManifoldPoint> manifold(const Shape& a, const Pose& pose_a, const Sh
     }
   }
   scene.options.length_unit = unit;
-  scene.options.slop = std::max(scene.options.slop, margin / (4 * unit) * (1 + 1e-6));
+  scene.options.contact.slop =
+      std::max(scene.options.contact.slop, margin / (4 * unit) * (1 + 1e-6));
   BatchOptions options;
   options.threads = 1;
   options.isa = available_isas().front();
@@ -172,6 +166,16 @@ std::optional<RayHit> ray_cast(const Shape& shape, const Pose& pose, const Ray& 
   collect_fixed(plan);
   if (has_kernels(Precision::f64)) return cast(kernels_for<double>(Isa::scalar), plan, in_space);
   return cast(kernels_for<float>(Isa::scalar), plan, in_space);
+}
+
+Outline outline(const Geometry& geometry, Space space) {
+  return traits_of(geometry).outline(geometry, space);
+}
+
+Geometry resized(Geometry geometry, const Vec3& size) {
+  const GeometryTraits& kind = traits_of(geometry);
+  for (int c = 0; c < kind.sizes(); ++c) kind.resize(geometry, c, size[c]);
+  return geometry;
 }
 
 }  // namespace manyworlds

@@ -40,24 +40,20 @@ MW_ENUM_TABLE(BroadPhase, sparse, "broad_phase", "automatic", "all-pairs", "sort
 MW_ENUM_TABLE(Precision, f64, "precision", "f32", "f64");
 MW_ENUM_TABLE(Isa, avx512, "isa", "scalar", "avx2", "avx512");
 MW_ENUM_TABLE(ContactLayout, rows, "layout", "automatic", "dense", "rows");
-MW_ENUM_TABLE(Observer, residual, "observer", "contacts", "touching", "penetration", "motion",
-              "joints", "joint_loads", "residual");
-MW_ENUM_TABLE(Observed, ray_shape, "observed", "kinetic_energy", "potential_energy", "mass",
-              "momentum", "angular_momentum", "mass_center", "penetration", "contact_count",
-              "touching", "joint_position", "joint_speed", "joint_force", "joint_torque",
-              "residual", "ray_distance", "ray_normal", "ray_body", "ray_shape");
+MW_ENUM_TABLE(ItemKind, particle, "item", "body", "world", "shape", "dof", "particle");
 MW_ENUM_TABLE(Autoreset, disabled, "autoreset", "next_step", "same_step", "disabled");
+#define MW_WRITE_NAME(name, ...) "write_" #name,
 MW_ENUM_TABLE(Input, disable_joint, "input", "force", "torque", "force_at", "impulse",
               "angular_impulse", "impulse_at", "enable", "disable", "spawn", "wake",
-              "write_position", "write_orientation", "write_linear_velocity",
-              "write_angular_velocity", "reset", "restore", "set_controls", "enable_joint",
+              MW_STATE_FIELDS(MW_WRITE_NAME) "reset", "restore", "set_controls", "enable_joint",
               "disable_joint");
+#undef MW_WRITE_NAME
 #undef MW_ENUM_TABLE
 
 template <>
 struct EnumTable<Field> {
   static constexpr const char* kind = "field";
-#define MW_FIELD_NAME(name, planar, spatial, unit, meaning, writer) #name,
+#define MW_FIELD_NAME(name, ...) #name,
   static constexpr std::array names = {MW_STATE_FIELDS(MW_FIELD_NAME)};
 #undef MW_FIELD_NAME
   static_assert(names.size() == kFieldCount);
@@ -69,6 +65,21 @@ struct EnumTable<Parameter> {
   static constexpr std::array names = {MW_PARAMETERS(MW_PARAMETER_NAME)};
 #undef MW_PARAMETER_NAME
   static_assert(names.size() == kParameterCount);
+};
+
+template <>
+struct EnumTable<Observer> {
+  static constexpr const char* kind = "observer";
+#define MW_OBSERVER_NAME(name, item, of, meaning) #name,
+  static constexpr std::array names = {MW_OBSERVERS(MW_OBSERVER_NAME)};
+#undef MW_OBSERVER_NAME
+};
+template <>
+struct EnumTable<Observed> {
+  static constexpr const char* kind = "observed";
+#define MW_OBSERVED_NAME(name, observer, components, unit, meaning) #name,
+  static constexpr std::array names = {MW_OBSERVED(MW_OBSERVED_NAME)};
+#undef MW_OBSERVED_NAME
 };
 
 template <class Enum>

@@ -183,12 +183,12 @@ void compare_equalities(const Model& model, std::vector<std::string>& warnings) 
     std::snprintf(
         text, sizeof text,
         "equalities: begin up to %.3g m and %.3g rad apart; joints close that in about %g s "
-        "(Options::joint_pull_speed), in MuJoCo as slowly as solref says",
+        "(JointOptions::pull_speed), in MuJoCo as slowly as solref says",
         gap.length, gap.angle, kClosingTime);
     warnings.emplace_back(text);
   }
   const std::string stiffness =
-      " is ignored; the joint is as stiff as Options::joint_frequency says";
+      " is ignored; the joint is as stiff as JointOptions::frequency says";
 
   warn_where("is not active and left out; joints cannot be switched on",
              [&](int e) { return m.eq_active0[e] == 0; });
@@ -242,7 +242,7 @@ void add_joints(const Model& model, const std::vector<BodyId>& scene_body, Scene
     scene.add(std::move(joint));
   }
   if (const Gap gap = largest_gap(m); gap.length > 0 || gap.angle > 0) {
-    scene.options.joint_pull_speed =
+    scene.options.joint.pull_speed =
         std::max(gap.length / scene.options.length_unit, gap.angle) / kClosingTime;
   }
 }

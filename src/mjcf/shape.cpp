@@ -1,7 +1,9 @@
 #include "src/mjcf/shape.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -12,6 +14,16 @@ namespace manyworlds::mjcf {
 namespace {
 
 constexpr std::size_t kMostCorners = 64;  // of a Hull
+
+// Geoms that have a shape.
+struct GeomKind {
+  mjtGeom type;
+  const char* name;
+};
+constexpr GeomKind kGeoms[] = {{mjGEOM_SPHERE, "a sphere"},      {mjGEOM_CAPSULE, "a capsule"},
+                               {mjGEOM_CYLINDER, "a cylinder"},  {mjGEOM_BOX, "a box"},
+                               {mjGEOM_MESH, "a mesh"},          {mjGEOM_PLANE, "a plane"},
+                               {mjGEOM_HFIELD, "a height field"}};
 
 // Those that MuJoCo collides: the corners of its own hull where it made one (mesh_graph: number of
 // corners and of faces, an edge address for each corner, then the index of each among the
@@ -63,16 +75,17 @@ struct Diameter {
 }  // namespace
 
 bool has_shape(int geom_type) {
-  switch (geom_type) {
-    case mjGEOM_SPHERE:
-    case mjGEOM_CAPSULE:
-    case mjGEOM_CYLINDER:
-    case mjGEOM_BOX:
-    case mjGEOM_MESH:
-    case mjGEOM_PLANE:
-    case mjGEOM_HFIELD: return true;
-    default: return false;
+  return std::any_of(std::begin(kGeoms), std::end(kGeoms),
+                     [=](const GeomKind& g) { return g.type == geom_type; });
+}
+
+std::string shape_names() {
+  std::string out;
+  for (const GeomKind& g : kGeoms) {
+    out += &g == kGeoms ? "" : &g + 1 == std::end(kGeoms) ? " or " : ", ";
+    out += g.name;
   }
+  return out;
 }
 
 std::optional<std::string> hull_problem(const Model& model, int geom) {

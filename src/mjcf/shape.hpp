@@ -16,6 +16,8 @@ namespace manyworlds::mjcf {
 
 // Whether geoms of that type (mjtGeom) can collide here.
 bool has_shape(int geom_type);
+// "a sphere, a capsule or a box": those that can.
+std::string shape_names();
 
 // Why the geom, a mesh, cannot be a hull: "has a convex hull of ...; expected ...". Nothing if it
 // can.

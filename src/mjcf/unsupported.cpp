@@ -88,9 +88,8 @@ void check_geoms(const Model& model, std::vector<std::string>& problems) {
     if (!has_shape(type)) {
       if (model.collides(g)) {
         problems.push_back(model.geom_place(g) + ": is a " + kind +
-                           " that can collide, which is not simulated yet; expected a sphere, a "
-                           "capsule, a cylinder, a box, a mesh, a plane or a height field, or "
-                           "contype and conaffinity 0");
+                           " that can collide, which is not simulated yet; expected " +
+                           shape_names() + ", or contype and conaffinity 0");
       } else if (gives_mass(model, g)) {
         problems.push_back(model.geom_place(g) + ": is a " + kind +
                            " that does not collide but gives its body mass, which is not "

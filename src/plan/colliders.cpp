@@ -65,74 +65,13 @@ std::vector<Vec2> edge_normals(const std::vector<Vec2>& v) {
 // A shape in its body's frame: origin, axes, sizes.
 PlanCollider local_collider(const Shape& shape, const PlanData& plan) {
   PlanCollider c;
+  static_cast<ShapeForm&>(c) =
+      traits_of(shape.geometry).form(shape.geometry, {plan.rectangles, plan.rounded});
   c.material = shape.material;
-  c.offset = shape.position;
-  c.rotation = shape.rotation.normalized().toRotationMatrix();
-  if (shape.rotation.vec().isZero(0)) c.rotation.setIdentity();
-  if (const auto* s = std::get_if<Sphere>(&shape.geometry)) {
-    c.kind = ShapeKind::sphere;
-    c.radius = c.thickness = c.inner_radius = s->radius;
-  } else if (const auto* circle = std::get_if<Circle>(&shape.geometry)) {
-    c.kind = ShapeKind::circle;
-    c.radius = c.thickness = c.inner_radius = circle->radius;
-  } else if (const auto* box = std::get_if<Box>(&shape.geometry)) {
-    c.kind = ShapeKind::box;
-    c.half = box->half_extents;
-    c.radius = c.half.norm();
-    c.inner_radius = c.half.minCoeff();
-  } else if (const auto* capsule = std::get_if<Capsule>(&shape.geometry)) {
-    c.kind = ShapeKind::capsule;
-    c.half.x() = capsule->half_length;
-    c.thickness = c.inner_radius = capsule->radius;
-    c.radius = capsule->half_length + capsule->radius;
-  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
-    c.kind = ShapeKind::cylinder;
-    c.half = {cylinder->radius, cylinder->radius, cylinder->half_length};
-    c.radius = std::hypot(cylinder->radius, cylinder->half_length);
-    c.inner_radius = std::min(cylinder->radius, cylinder->half_length);
-  } else if (const auto* segment = std::get_if<Segment>(&shape.geometry)) {
-    // A capsule without thickness.
-    c.kind = ShapeKind::capsule;
-    const Vec2 middle = (segment->a + segment->b) / 2, span = segment->b - segment->a;
-    const Vec2 along = span.normalized();
-    Mat3 turn = Mat3::Identity();
-    turn.topLeftCorner<2, 2>() << along.y(), along.x(), -along.x(), along.y();
-    c.offset += c.rotation * Vec3(middle.x(), middle.y(), 0);
-    c.rotation = c.rotation * turn;
-    c.half.x() = c.radius = span.norm() / 2;
-  } else if (const auto* polygon = std::get_if<Polygon>(&shape.geometry)) {
-    const auto& v = polygon->vertices;
-    Vec2 middle = Vec2::Zero();
-    for (const Vec2& p : v) middle += p / static_cast<double>(v.size());
-    if (plan.rectangles) {
-      c.kind = ShapeKind::rectangle;
-      const Vec2 edge = v[1] - v[0];
-      c.half = {edge.norm() / 2, (v[2] - v[1]).norm() / 2, 0};
-      if (!middle.isZero(0)) c.offset += c.rotation * Vec3(middle.x(), middle.y(), 0);
-      if (edge.y() != 0 || edge.x() < 0) {
-        c.rotation =
-            c.rotation *
-            Eigen::AngleAxisd(std::atan2(edge.y(), edge.x()), Vec3::UnitZ()).toRotationMatrix();
-      }
-      c.radius = c.half.norm();
-      c.inner_radius = std::min(c.half.x(), c.half.y());
-    } else {
-      c.kind = plan.rounded ? ShapeKind::rounded : ShapeKind::polygon;
-      c.thickness = polygon->radius;
-      // Vertices about their own middle, so that rows hold small numbers.
-      c.offset += c.rotation * Vec3(middle.x(), middle.y(), 0);
-      c.inner_radius = std::numeric_limits<double>::max();
-      for (const Vec2& p : v) c.vertices.push_back(p - middle);
-      const auto normals = edge_normals(c.vertices);
-      for (std::size_t i = 0; i < v.size(); ++i) {
-        c.radius = std::max(c.radius, c.vertices[i].norm());
-        c.inner_radius = std::min(c.inner_radius, normals[i].dot(c.vertices[i]));
-      }
-      c.radius += polygon->radius, c.inner_radius += polygon->radius;
-    }
-  } else {
-    c.kind = ShapeKind::plane;
-  }
+  Mat3 rotation = shape.rotation.normalized().toRotationMatrix();
+  if (shape.rotation.vec().isZero(0)) rotation.setIdentity();
+  c.offset = c.offset.isZero(0) ? shape.position : Vec3(shape.position + rotation * c.offset);
+  c.rotation = c.rotation.isIdentity(0) ? rotation : Mat3(rotation * c.rotation);
   return c;
 }
 
@@ -145,28 +84,66 @@ void set_hull(const HullCorners& corners, PlanCollider& c) {
   c.hull_vertices = corners.vertices, c.hull_faces = corners.faces;
 }
 
+PlanFixed fixed_plane(const Vec3& normal, double offset, const Vec3& x, const Mat3& r) {
+  const Vec3 n = r * normal;
+  PlanFixed f;
+  f.kind = ShapeKind::plane;
+  f.plane = {n.x(), n.y(), n.z(), offset + n.dot(x)};
+  const Vec3 side = std::abs(n.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  const Vec3 t = (side - n * n.dot(side)).normalized();
+  append_row(kernels::PlaneRow<double>{{n.x(), n.y(), n.z()}, f.plane[3], {t.x(), t.y(), t.z()}, 0},
+             f.row);
+  return f;
+}
+
+// What lies where a box does, in a row like that of one.
+void put_box(const PlanCollider& c, const Vec3& x, const Mat3& r, PlanFixed& f) {
+  kernels::BoxRow<double> row{};
+  for (int k = 0; k < 3; ++k) row.frame[k] = {{r(0, k), r(1, k), r(2, k)}, x[k]};
+  for (int k = 0; k < 3; ++k) row.half[k] = c.half[k];
+  append_row(row, f.row);
+  const Vec3 e = r.cwiseAbs() * c.half;
+  f.low = x - e, f.high = x + e;
+}
+
+void put_polygon(const PlanCollider& c, const Vec3& x, const Mat3& r, PlanFixed& f) {
+  kernels::PolygonRow<double> row{{x.x(), x.y()},
+                                  static_cast<double>(c.vertices.size()),
+                                  c.kind == ShapeKind::rounded ? c.thickness : c.radius,
+                                  {},
+                                  {}};
+  std::vector<Vec2> v;
+  f.low.setConstant(std::numeric_limits<double>::max());
+  f.high = -f.low;
+  for (const Vec2& p : c.vertices) {
+    v.push_back((r * Vec3(p.x(), p.y(), 0)).head<2>());
+    const Vec3 at = x + Vec3(v.back().x(), v.back().y(), 0);
+    f.low = f.low.cwiseMin(at), f.high = f.high.cwiseMax(at);
+  }
+  f.low.array() -= c.thickness, f.high.array() += c.thickness;
+  const auto pad = [](const std::vector<Vec2>& list, double* out) {
+    for (std::size_t i = 0; i < kernels::kMaxVertices; ++i) {
+      const Vec2& p = list[i < list.size() ? i : 0];
+      out[2 * i] = p.x(), out[2 * i + 1] = p.y();
+    }
+  };
+  pad(v, row.vertices), pad(edge_normals(v), row.normals);
+  append_row(row, f.row);
+}
+
 // The pose row of a fixed shape, and its bounds.
 PlanFixed fixed_shape(const Body& body, const Shape& shape, const PlanData& plan) {
-  const bool planar = plan.scene.space == Space::planar;
-  PlanFixed f;
   const Mat3 body_rotation = body.rotation.normalized().toRotationMatrix();
   const auto plane = [&](const Vec3& normal, double offset) {
-    const Vec3 n = body_rotation * (shape.rotation.normalized() * normal);
-    const Vec3 origin = body.position + body_rotation * shape.position;
-    f.kind = ShapeKind::plane;
-    f.plane = {n.x(), n.y(), n.z(), offset + n.dot(origin)};
-    const Vec3 side = std::abs(n.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
-    const Vec3 t = (side - n * n.dot(side)).normalized();
-    f.row = {n.x(), n.y(), n.z(), f.plane[3], t.x(), t.y(), t.z(), 0};
+    return fixed_plane(shape.rotation.normalized() * normal, offset,
+                       body.position + body_rotation * shape.position, body_rotation);
   };
   if (const auto* p = std::get_if<Plane>(&shape.geometry)) {
-    plane(p->normal.normalized(), p->offset);
-    return f;
+    return plane(p->normal.normalized(), p->offset);
   }
   if (const auto* p = std::get_if<HalfPlane>(&shape.geometry)) {
     const Vec2 n = p->normal.normalized();
-    plane({n.x(), n.y(), 0}, p->offset);
-    return f;
+    return plane({n.x(), n.y(), 0}, p->offset);
   }
   PlanCollider c = local_collider(shape, plan);
   HullCorners corners;
@@ -176,67 +153,43 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, const PlanData& plan
   }
   const Vec3 x = body.position + body_rotation * c.offset;
   const Mat3 r = body_rotation * c.rotation;
+  PlanFixed f;
   f.kind = c.kind;
+  f.low = x.array() - c.radius, f.high = x.array() + c.radius;
   switch (c.kind) {
     case ShapeKind::sphere:
-      f.row = {x.x(), x.y(), x.z(), c.radius};
-      f.low = x.array() - c.radius, f.high = x.array() + c.radius;
+      append_row(kernels::SphereRow<double>{{x.x(), x.y(), x.z()}, c.radius}, f.row);
       break;
     case ShapeKind::circle:
-      f.row = {x.x(), x.y(), c.radius, 0};
-      f.low = x.array() - c.radius, f.high = x.array() + c.radius;
+      append_row(kernels::CircleRow<double>{{x.x(), x.y()}, c.radius, 0}, f.row);
       break;
-    case ShapeKind::box:
-    case ShapeKind::cylinder:
-    case ShapeKind::hull: {
-      for (int k = 0; k < 3; ++k) {
-        f.row.insert(f.row.end(), {r(0, k), r(1, k), r(2, k), x[k]});
-      }
-      f.row.insert(f.row.end(), {c.half.x(), c.half.y(), c.half.z(), 0});
-      const Vec3 e = r.cwiseAbs() * c.half;
-      f.low = x - e, f.high = x + e;
-      if (c.kind == ShapeKind::hull) {
-        f.row.insert(f.row.end(), {0, static_cast<double>(corners.vertices),
-                                   static_cast<double>(corners.faces), 0});
-        f.row.insert(f.row.end(), corners.rows.begin(), corners.rows.end());
-      }
-      break;
-    }
     case ShapeKind::capsule: {
-      const Vec3 axis = r.col(planar ? 1 : 2);
-      f.row = {x.x(), x.y(), x.z(), c.thickness, axis.x(), axis.y(), axis.z(), c.half.x()};
+      const Vec3 axis = r.col(plan.scene.space == Space::planar ? 1 : 2);
+      append_row(
+          kernels::CapsuleRow<double>{
+              {x.x(), x.y(), x.z()}, c.thickness, {axis.x(), axis.y(), axis.z()}, c.half.x()},
+          f.row);
       const Vec3 e = axis.cwiseAbs() * c.half.x() + Vec3::Constant(c.thickness);
       f.low = x - e, f.high = x + e;
       break;
     }
     case ShapeKind::rectangle: {
-      f.row = {x.x(), x.y(), r(0, 0), r(1, 0), c.half.x(), c.half.y(), 0, 0};
+      append_row(
+          kernels::RectangleRow<double>{
+              {x.x(), x.y()}, r(0, 0), r(1, 0), {c.half.x(), c.half.y()}, {0, 0}},
+          f.row);
       const Vec3 e = r.cwiseAbs() * c.half;
       f.low = x - e, f.high = x + e;
       break;
     }
-    default: {
-      const bool rounded = c.kind == ShapeKind::rounded;
-      f.row = {x.x(), x.y(), static_cast<double>(c.vertices.size()),
-               rounded ? c.thickness : c.radius};
-      std::vector<Vec2> v;
-      f.low.setConstant(std::numeric_limits<double>::max());
-      f.high = -f.low;
-      for (const Vec2& p : c.vertices) {
-        v.push_back((r * Vec3(p.x(), p.y(), 0)).head<2>());
-        const Vec3 at = x + Vec3(v.back().x(), v.back().y(), 0);
-        f.low = f.low.cwiseMin(at), f.high = f.high.cwiseMax(at);
-      }
-      f.low.array() -= c.thickness, f.high.array() += c.thickness;
-      for (const auto& list : {v, edge_normals(v)}) {
-        for (int i = 0; i < kernels::kMaxVertices; ++i) {
-          const Vec2& p = static_cast<std::size_t>(i) < list.size()
-                              ? list[static_cast<std::size_t>(i)]
-                              : list[0];
-          f.row.insert(f.row.end(), {p.x(), p.y()});
-        }
-      }
-    }
+    case ShapeKind::polygon:
+    case ShapeKind::rounded: put_polygon(c, x, r, f); break;
+    default: put_box(c, x, r, f);
+  }
+  if (c.kind == ShapeKind::hull) {
+    f.row.insert(f.row.end(),
+                 {0, static_cast<double>(corners.vertices), static_cast<double>(corners.faces), 0});
+    f.row.insert(f.row.end(), corners.rows.begin(), corners.rows.end());
   }
   return f;
 }
@@ -302,11 +255,10 @@ void lay_out_shapes(PlanData& plan) {
   plan.collider_is_body = plan.colliders.size() == plan.bodies.size();
   for (std::size_t i = 0; i < plan.colliders.size(); ++i) {
     PlanCollider& c = plan.colliders[i];
-    const bool round = c.kind == ShapeKind::sphere || c.kind == ShapeKind::circle;
     plan.collider_is_body = plan.collider_is_body && c.body == static_cast<int>(i) &&
-                            c.offset.isZero(0) && (round || c.rotation.isIdentity(0));
+                            c.offset.isZero(0) && (info(c.kind).ball || c.rotation.isIdentity(0));
     c.row = plan.row_block;
-    plan.row_block += kernels::pose_row_size(c.kind);
+    plan.row_block += info(c.kind).row;
   }
   plan.row_block += kernels::kDummyRow;
   // Whole cache lines per lane keep every row of every lane aligned.
@@ -317,7 +269,7 @@ void lay_out_shapes(PlanData& plan) {
     offset += static_cast<int>(f.row.size());
     plan.cast = plan.cast || (f.kind != ShapeKind::plane && f.kind != ShapeKind::tile);
   }
-  plan.cast = plan.cast && plan.scene.options.cast_against_fixed;
+  plan.cast = plan.cast && plan.scene.options.contact.cast_against_fixed;
 }
 
 }  // namespace manyworlds

@@ -27,6 +27,7 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
   collect_controls(*plan);
   collect_pairs(*plan);
   choose_features(*plan);
+  choose_stages(*plan);
   return Plan(std::move(plan));
 }
 

@@ -58,9 +58,7 @@ void choose_features(PlanData& plan) {
 
   bool round = true, isotropic = true;
   for (const PlanCollider& c : plan.colliders) {
-    const bool is_round =
-        c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;
-    round = round && is_round && c.offset.isZero(0);
+    round = round && info(c.kind).ball && c.offset.isZero(0);
   }
   for (const PlanBody& b : plan.bodies) {
     isotropic = isotropic && is_isotropic(b) && (round || !b.reshaped);

@@ -56,7 +56,7 @@ class Fingerprint {
   void add(const Struct& value) {
     Members<Struct>::visit(value, [&](const char* name, const auto& member, Counted counted = {}) {
       if (!counted.yes) return;
-      if constexpr (std::is_same_v<Struct, Options>) {  // to name the default changes nothing
+      if constexpr (std::is_same_v<Struct, SolverOptions>) {  // to name the default changes nothing
         if (std::string_view(name) == "iterations") return add(iterations_of(value));
       }
       add(member);

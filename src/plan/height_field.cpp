@@ -35,18 +35,16 @@ std::vector<PlanFixed> height_field_tiles(const Body& body, const Shape& shape,
     f.kind = kernels::ShapeKind::tile;
     f.triangles = tiles.count(), f.triangles_before = i, f.cell = field.cell;
     f.low = bounds.min(), f.high = bounds.max();
-    for (int k = 0; k < 3; ++k) {
-      f.row.insert(f.row.end(), {r(0, k), r(1, k), r(2, k), corner[k]});
-    }
-    // See TileRow in kernels/collide/tile.hpp; the margin comes with the tables.
-    f.row.insert(
-        f.row.end(),
-        {field.cell.x(), field.cell.y(), static_cast<double>(columns), 0, static_cast<double>(rows),
-         static_cast<double>(tiles.wide), static_cast<double>(tiles.deep),
-         static_cast<double>(i / 2 % tiles.wide), static_cast<double>(i / 2 / tiles.wide),
-         static_cast<double>(i % 2), 0, tile_pad(options)});
-    constexpr std::size_t kHeights = 22, kRow = 24;
-    f.row[kHeights] = static_cast<double>(kRow) - static_cast<double>(before);
+    // The margin comes with the tables.
+    kernels::TileRow<double> row{};
+    for (int k = 0; k < 3; ++k) row.frame[k] = {{r(0, k), r(1, k), r(2, k)}, corner[k]};
+    row.cell[0] = field.cell.x(), row.cell[1] = field.cell.y();
+    row.columns = columns, row.rows = rows, row.wide = tiles.wide, row.deep = tiles.deep;
+    row.column = i / 2 % tiles.wide, row.row = i / 2 / tiles.wide, row.half = i % 2;
+    constexpr std::size_t kNumbers = kernels::row_size<kernels::TileRow>;
+    row.heights = static_cast<double>(kNumbers) - static_cast<double>(before);
+    row.pad = tile_pad(options);
+    append_row(row, f.row);
     if (i == 0) f.row.insert(f.row.end(), field.heights.begin(), field.heights.end());
     while (f.row.size() % 4 != 0) f.row.push_back(0);  // rows are loaded by fours
     before += f.row.size();

@@ -4,6 +4,7 @@
 
 #include "src/base/float_mode.hpp"
 #include "src/plan/plan_data.hpp"
+#include "src/plan/soft_constraint.hpp"
 
 namespace manyworlds {
 
@@ -66,14 +67,15 @@ class Builder {
 
   RowSoftness<double> soft(double frequency, double damping_ratio) const {
     if (frequency == 0) return {0, 0, 0};
-    const double omega = 2 * kPi * frequency;
-    const double a1 = 2 * damping_ratio + h_ * omega;
-    return {omega / a1, 1 / (h_ * omega * a1), 0};
+    const SoftConstraint soft = soft_constraint(frequency, damping_ratio, h_);
+    return {soft.rate, 1 / soft.gain, 0};
   }
   RowSoftness<double> hard() const {
     const Options& o = plan_.scene.options;
-    if (has_hard_rows(o.solver) && !o.joint_frequency) return {o.push_out_share / h_, 0, 0};
-    return soft(o.joint_frequency.value_or(0.25 / h_), o.joint_damping_ratio);
+    if (has_hard_rows(o.solver.method) && !o.joint.frequency) {
+      return {o.solver.push_out_share / h_, 0, 0};
+    }
+    return soft(o.joint.frequency.value_or(0.25 / h_), o.joint.damping_ratio);
   }
   RowSoftness<double> soft(const Spring& s) const {
     if (s.frequency > 0) return soft(s.frequency, s.damping_ratio);
@@ -112,8 +114,8 @@ class Builder {
     put(b.frame, out.numbers.frame_b);
     out.numbers.soft = hard();
     const Options& o = plan_.scene.options;
-    out.numbers.pull = std::min(o.joint_pull_speed * o.length_unit, kUnlimited);
-    out.numbers.turn_pull = std::min(o.joint_pull_speed, kUnlimited);
+    out.numbers.pull = std::min(o.joint.pull_speed * o.length_unit, kUnlimited);
+    out.numbers.turn_pull = std::min(o.joint.pull_speed, kUnlimited);
     out.numbers.limit_soft = hard();
     out.numbers.most = kUnlimited;
     out.numbers.ratio = 1;

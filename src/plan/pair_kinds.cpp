@@ -64,28 +64,6 @@ ListId list_of(PairKind kind, bool fixed) {
                : (single ? ListId::pair_single : ListId::pair_multi);
 }
 
-const char* name_of(ShapeKind kind) {
-  switch (kind) {
-    case ShapeKind::sphere: return "sphere";
-    case ShapeKind::box: return "box";
-    case ShapeKind::circle: return "circle";
-    case ShapeKind::rectangle: return "rectangle";
-    case ShapeKind::polygon: return "polygon";
-    case ShapeKind::plane: return "plane";
-    case ShapeKind::capsule: return "capsule";
-    case ShapeKind::link: return "terrain";
-    case ShapeKind::cylinder: return "cylinder";
-    case ShapeKind::hull: return "hull";
-    case ShapeKind::rounded: return "rounded";
-    case ShapeKind::tile: return "field";
-  }
-  return "?";
-}
-bool is_planar(ShapeKind kind) {
-  return kind == ShapeKind::circle || kind == ShapeKind::rectangle || kind == ShapeKind::polygon ||
-         kind == ShapeKind::rounded;
-}
-
 }  // namespace
 
 KindOfPair::Place KindOfPair::place() const {
@@ -93,15 +71,15 @@ KindOfPair::Place KindOfPair::place() const {
 }
 
 KindOfPair kind_of_pair(ShapeKind a, ShapeKind b, bool fixed) {
-  const bool swapped = !fixed && kernels::rank_as_a(a) < kernels::rank_as_a(b);
+  const bool swapped = !fixed && info(a).rank < info(b).rank;
   const PairKind kind = swapped ? kernels::pair_of(b, a) : kernels::pair_of(a, b);
   return {kind, list_of(kind, fixed), swapped};
 }
 
 std::string to_string(PairKind kind) {
   const ShapeKind a = shape_a(kind), b = shape_b(kind);
-  const bool half = a == ShapeKind::plane && is_planar(b);
-  return std::string(half ? "half" : "") + name_of(a) + "-" + name_of(b);
+  const bool half = a == ShapeKind::plane && info(b).planar;
+  return std::string(half ? "half" : "") + info(a).name + "-" + info(b).name;
 }
 
 }  // namespace manyworlds

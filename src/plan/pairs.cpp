@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "kernels/data/pair_keys.hpp"
 #include "src/plan/pair_kinds.hpp"
 
 namespace manyworlds {
@@ -13,10 +14,6 @@ namespace {
 
 using kernels::ListId;
 using kernels::ShapeKind;
-
-bool filters_agree(const Filter& a, const Filter& b) {
-  return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
-}
 
 class Collector {
  public:
@@ -66,7 +63,8 @@ class Collector {
     PlanClass& c = classes_[pair.place()];
     c.kind = pair.kind;
     c.list = pair.list;
-    if (!may_touch || !filters_agree(shape_a.filter, shape_b.filter)) {
+    const Filter &of_a = shape_a.filter, &of_b = shape_b.filter;
+    if (!may_touch || !kernels::filters_agree(of_a.category, of_a.mask, of_b.category, of_b.mask)) {
       ++c.culled;
       return;
     }
@@ -114,15 +112,12 @@ int fixed_manifolds(const PlanData& plan) {
 void list_pairs(PlanData& plan) {
   Collector collector(plan);
   const int n = static_cast<int>(plan.colliders.size());
-  // A tournament (circle method): pairs of a round share no shape, so neighbouring rows of the
-  // solver do not wait for each other's velocities.
-  const int seats = n + n % 2;
-  for (int round = 0; round + 1 < seats; ++round) {
-    for (int table = 0; table < seats / 2; ++table) {
-      const int i = table == 0 ? seats - 1 : (round + table) % (seats - 1);
-      const int j = (round + seats - 1 - table) % (seats - 1);
-      if (i < n && j < n) collector.moving(std::min(i, j), std::max(i, j));
-    }
+  // Pairs of a round share no shape, so neighbouring rows of the solver do not wait for each
+  // other's velocities.
+  const auto places = static_cast<int>(kernels::places_of_tournament(n));
+  for (int place = 0; place < places; ++place) {
+    const kernels::PairOfKey pair = kernels::tournament_pair(n, place);
+    if (pair.b < n) collector.moving(pair.a, pair.b);
   }
   // Shape by shape of the fixed ones: again neighbours are about different bodies.
   for (int f = 0; f < static_cast<int>(plan.fixed.size()); ++f) {

@@ -3,13 +3,16 @@
 #pragma once
 
 #include <array>
+#include <cstring>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "kernels/data/tables.hpp"
 #include "manyworlds/plan.hpp"
+#include "src/plan/stages.hpp"
 #include "src/scene/height_field.hpp"
+#include "src/scene/shape/shape.hpp"
 #include "src/scene/variations.hpp"
 
 namespace manyworlds {
@@ -30,18 +33,11 @@ struct PlanBody {
   double core_radius = 0;             // inner sphere about the centre of mass
 };
 
-struct PlanCollider {
-  kernels::ShapeKind kind{};
+// Its frame: from the centre of mass, principal axes.
+struct PlanCollider : ShapeForm {
   int body = -1;  // state body
   int scene_body = -1, shape = -1;
-  Vec3 offset = Vec3::Zero();  // from the centre of mass, principal axes
-  Mat3 rotation = Mat3::Identity();
-  Vec3 half = Vec3::Zero();  // half extents; capsule: x is half its length
-  double thickness = 0;      // radius of what is round: sphere, circle, capsule
-  double radius = 0;         // of the bounding sphere
-  double inner_radius = 0;   // of a sphere inside
   int hull = 0, hull_vertices = 0, hull_faces = 0;  // of a hull: where its corners are, in fours
-  std::vector<Vec2> vertices;                       // about the shape's origin
   Material material;
   int row = 0;
 };
@@ -102,6 +98,7 @@ struct PlanData {
   PlanVaries varies;
   std::array<bool, kFeatureCount> in{};
   std::array<std::string, kFeatureCount> why;
+  PlanStages stages;  // what a step runs
   kernels::InertiaKind inertia_kind{};
   std::vector<PlanBody> bodies;
   std::vector<int> state_body;  // per scene body: its row; -1: fixed
@@ -126,6 +123,7 @@ struct PlanData {
   int row_block = 0;
 
   bool has(Feature f) const { return in[static_cast<std::size_t>(f)]; }
+  bool runs(StepStage s) const { return stages[static_cast<std::size_t>(s)].in; }
   kernels::Dimension dimension() const {
     return scene.space == Space::planar ? kernels::Dimension::planar : kernels::Dimension::spatial;
   }
@@ -141,6 +139,15 @@ std::set<std::pair<int, int>> joined_bodies(const Scene& scene);
 inline bool flies(const Options& o) {
   return o.integrator != Integrator::symplectic_euler ||
          o.rotation.value_or(Rotation::splitting) != Rotation::splitting;
+}
+
+// A pose row as the numbers that it is.
+template <template <class> class Row>
+void append_row(const Row<double>& row, std::vector<double>& out) {
+  static_assert(sizeof(row) == kernels::row_size<Row> * sizeof(double));
+  const std::size_t at = out.size();
+  out.resize(at + sizeof(row) / sizeof(double));
+  std::memcpy(out.data() + at, &row, sizeof(row));
 }
 
 std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // terrain.cpp
@@ -174,6 +181,7 @@ void collect_coordinates(PlanData& plan);   // coordinates.cpp
 void lay_out_shapes(PlanData& plan);        // colliders.cpp
 void collect_pairs(PlanData& plan);         // pairs.cpp, sparse_pairs.cpp
 void choose_features(PlanData& plan);       // features.cpp
+void choose_stages(PlanData& plan);         // stages.cpp
 PlanReport describe(const PlanData& plan);  // report.cpp
 
 // Bodies and shapes of a copy of a plan once more, after its scene was given the numbers of one

@@ -57,18 +57,13 @@ std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape) {
     PlanFixed f;
     f.kind = kernels::ShapeKind::link;
     f.length = 2 * half;
-    f.row = {middle.x(),
-             middle.y(),
-             axis.x(),
-             axis.y(),
-             half,
-             -half - before.reach,
-             half + after.reach,
-             static_cast<double>(i),
-             before.normal.x(),
-             before.normal.y(),
-             after.normal.x(),
-             after.normal.y()};
+    const auto put = [](const Vec2& v, double* out_xy) { out_xy[0] = v.x(), out_xy[1] = v.y(); };
+    kernels::LinkRow<double> row{};
+    put(middle, row.position), put(axis, row.axis);
+    row.half = half, row.low = -half - before.reach, row.high = half + after.reach;
+    row.index = static_cast<double>(i);
+    put(before.normal, row.before), put(after.normal, row.after);
+    append_row(row, f.row);
     f.low.head<2>() = from.cwiseMin(to);
     f.high.head<2>() = from.cwiseMax(to);
     out.push_back(std::move(f));

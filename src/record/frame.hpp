@@ -13,7 +13,7 @@
 
 namespace manyworlds::record {
 
-inline constexpr std::int32_t kFormatVersion = 1;
+inline constexpr std::int32_t kFormatVersion = 2;
 inline constexpr std::size_t kFrameSize = 512;
 inline constexpr const char* kFrameMagic = "MWRECO\r\n";
 

@@ -7,7 +7,7 @@
 
 namespace manyworlds::record {
 
-std::int64_t number_count(Input input, int bodies, const Scene& scene) {
+std::int64_t number_count(Input input, const Plan& plan) {
   switch (input) {
     case Input::force:
     case Input::torque:
@@ -16,9 +16,9 @@ std::int64_t number_count(Input input, int bodies, const Scene& scene) {
     case Input::force_at:
     case Input::impulse_at: return 6;
     case Input::spawn: return 13;
-    case Input::set_controls: return static_cast<std::int64_t>(scene.controls.size());
+    case Input::set_controls: return static_cast<std::int64_t>(plan.scene().controls.size());
     default:
-      return is_write(input) ? std::int64_t{bodies} * components(field_of(input), scene.space) : 0;
+      return is_write(input) ? static_cast<std::int64_t>(plan.numbers(written_field(input))) : 0;
   }
 }
 
@@ -87,10 +87,11 @@ void apply(Batch& batch, const InputRow& row, int world, std::span<const double>
       break;
     case Input::wake: batch.wake(world); break;
     case Input::set_controls: batch.set_controls(world, values); break;
-    case Input::write_position:
-    case Input::write_orientation:
-    case Input::write_linear_velocity:
-    case Input::write_angular_velocity: batch.write(field_of(row.input), world, values); break;
+#define MW_WRITE(name, ...) case Input::write_##name:
+      MW_STATE_FIELDS(MW_WRITE)
+      batch.write(written_field(row.input), world, values);
+      break;
+#undef MW_WRITE
     case Input::reset:
     case Input::restore: {
       std::vector<std::byte> bytes(state.size());

@@ -24,17 +24,11 @@ inline bool is_force(Input input) {
 }
 // Comes with the whole state of the world after it.
 inline bool brings_state(Input input) { return input == Input::reset || input == Input::restore; }
-inline bool is_write(Input input) {
-  return input >= Input::write_position && input <= Input::write_angular_velocity;
-}
-inline Field field_of(Input write) {
-  return static_cast<Field>(static_cast<int>(write) - static_cast<int>(Input::write_position));
-}
 inline bool is_of_joint(Input input) {
   return input == Input::enable_joint || input == Input::disable_joint;
 }
-// How many numbers come with it, for a world of this scene.
-std::int64_t number_count(Input input, int bodies, const Scene& scene);
+// How many numbers come with it, for a world of this plan.
+std::int64_t number_count(Input input, const Plan& plan);
 
 inline constexpr std::size_t kRowsInMemory = 4096;
 

@@ -45,7 +45,7 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
            std::to_string(kInputCount - 1));
   }
   const bool whole_world = row.input == Input::wake || row.input == Input::set_controls ||
-                           record::is_write(row.input) || record::brings_state(row.input);
+                           is_write(row.input) || record::brings_state(row.input);
   if (row.world < 0 || row.world >= worlds()) {
     refuse("is for world " + std::to_string(row.world) + " of " + std::to_string(worlds()));
   }
@@ -67,8 +67,7 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
     refuse("has its numbers outside of what is there: " + std::to_string(row.count) + " from " +
            std::to_string(row.begin) + " on, of " + std::to_string(most));
   }
-  const std::int64_t wanted =
-      brings ? row.count : record::number_count(row.input, bodies, plan.scene());
+  const std::int64_t wanted = brings ? row.count : record::number_count(row.input, plan);
   if (row.count != wanted) {
     refuse("has " + std::to_string(row.count) + " numbers, must have " + std::to_string(wanted));
   }

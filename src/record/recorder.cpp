@@ -142,8 +142,9 @@ template <class Real>
 void Recorder::Listener::add_fields(const Batch& batch, KindTables& kind) {
   std::vector<double> values;
   std::vector<Real> row;
-  for (const Field field : record::kFields) {
-    values.resize(static_cast<std::size_t>(kind.bodies * components(field, kind.space)));
+  for (const Field field : kFields) {
+    values.resize(kind.numbers[static_cast<std::size_t>(field)]);
+    if (values.empty()) continue;
     for (const int world : kind.worlds) {
       batch.read(field, world, values);
       row.clear();
@@ -163,7 +164,6 @@ void Recorder::Listener::sample(const Batch& batch) {
       kind.hash.add(batch.hash(world));
       kind.status.add(static_cast<std::uint32_t>(batch.status(world)));
     }
-    if (kind.bodies == 0) continue;
     batch.precision() == Precision::f32 ? add_fields<float>(batch, kind)
                                         : add_fields<double>(batch, kind);
   }

@@ -19,9 +19,8 @@ namespace record {
 
 // What is recorded of one kind of world.
 struct KindTables {
-  std::vector<int> worlds;  // of the batch
-  int bodies = 0;
-  Space space = Space::spatial;
+  std::vector<int> worlds;                         // of the batch
+  std::array<std::size_t, kFieldCount> numbers{};  // of a world
   record::Handle group;
   std::array<Table, kFieldCount> fields;
   Table hash, status;

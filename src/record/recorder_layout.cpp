@@ -39,10 +39,9 @@ void Recorder::Listener::make_kind(const Batch& batch, int index, std::vector<in
   record::write_number(kind.group, "fingerprint", plan.fingerprint());
   record::write_text_table(kind.group, "scene", scene_to_json(plan.scene()));
   record::write_text_table(kind.group, "plan_options", plan_options_to_json(plan.options()));
-  kind.bodies = plan.bodies();
-  kind.space = plan.scene().space;
+  const Space space = plan.scene().space;
 
-  const hsize_t count = worlds.size(), bodies = static_cast<hsize_t>(kind.bodies);
+  const hsize_t count = worlds.size();
   Table names = Table::create<std::int64_t>(kind.group, "world", {}, count * sizeof(std::int64_t));
   for (const int world : worlds) names.add(options_.first_world + world);
   names.flush();
@@ -50,18 +49,21 @@ void Recorder::Listener::make_kind(const Batch& batch, int index, std::vector<in
   const std::size_t chunk = options_.every == 0 ? 1 : kFieldChunk;
   kind.hash = Table::create<std::uint64_t>(kind.group, "hash", {count}, chunk);
   kind.status = Table::create<std::uint32_t>(kind.group, "status", {count}, chunk);
-  for (const Field field : record::kFields) {
-    if (bodies == 0) break;
+  for (const Field field : kFields) {
     const FieldInfo& about = info(field);
-    const record::Dims row = {count, bodies, static_cast<hsize_t>(components(field, kind.space))};
+    kind.numbers[static_cast<std::size_t>(field)] = plan.numbers(field);
+    const auto items = static_cast<hsize_t>(plan.items(about.item));
+    if (items == 0) continue;
+    const record::Dims row = {count, items, static_cast<hsize_t>(components(field, space))};
     Table& table = kind.fields[static_cast<std::size_t>(field)];
     table = batch.precision() == Precision::f32
                 ? Table::create<float>(kind.group, about.name, row, chunk)
                 : Table::create<double>(kind.group, about.name, row, chunk);
     record::write_text(table.dataset(), "unit", about.unit);
     record::write_text(table.dataset(), "frame", about.meaning);
-    record::write_text(table.dataset(), "axes", "sample world body component");
-    record::write_text(table.dataset(), "components", record::component_names(field, kind.space));
+    record::write_text(table.dataset(), "axes",
+                       std::string("sample world ") + to_string(about.item) + " component");
+    record::write_text(table.dataset(), "components", component_names(field, space));
   }
   kind.worlds = std::move(worlds);
   kinds_.push_back(std::move(kind));

@@ -138,11 +138,11 @@ void Recording::Impl::read_kind(hid_t parent, int index) {
   statuses.expect_rows(steps.size());
   kind.hashes = hashes.read_all<std::uint64_t>();
   kind.statuses = statuses.read_all<std::uint32_t>();
-  const auto bodies = static_cast<hsize_t>(kind.plan.bodies());
-  for (const Field field : record::kFields) {
-    if (bodies == 0) break;
+  for (const Field field : kFields) {
+    const auto items = static_cast<hsize_t>(kind.plan.items(info(field).item));
+    if (items == 0) continue;
     const auto width = static_cast<hsize_t>(components(field, scene.space));
-    const record::Dims row = {count, bodies, width};
+    const record::Dims row = {count, items, width};
     TableReader& table = kind.fields[static_cast<std::size_t>(field)];
     table = precision == Precision::f32 ? TableReader::open<float>(group, info(field).name, row)
                                         : TableReader::open<double>(group, info(field).name, row);
@@ -165,7 +165,7 @@ Recording::Impl::Place Recording::Impl::place(int world) const {
 std::vector<double> Recording::Impl::read(Field field, std::size_t kind, std::int64_t sample,
                                           std::int64_t world) const {
   const Kind& k = kinds[kind];
-  if (k.plan.bodies() == 0) return {};
+  if (k.plan.numbers(field) == 0) return {};
   const TableReader& table = k.fields[static_cast<std::size_t>(field)];
   const auto row = static_cast<hsize_t>(sample);
   return sound(storage.get(), [&]() -> std::vector<double> {

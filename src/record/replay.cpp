@@ -53,7 +53,7 @@ class Comparison {
   Fields read(std::size_t kind, std::int64_t sample) const {
     const record::UsingHdf5 hdf5;
     Fields out;
-    for (const Field field : record::kFields) {
+    for (const Field field : kFields) {
       out[static_cast<std::size_t>(field)] = all_.read(field, kind, sample);
     }
     return out;
@@ -65,16 +65,17 @@ class Comparison {
     const Plan& plan = all_.kinds[kind].plan;
     int first_body = -1;
     std::string what;
-    for (const Field field : record::kFields) {
+    for (const Field field : kFields) {
       const auto width = static_cast<std::size_t>(components(field, all_.space()));
-      found_.resize(static_cast<std::size_t>(plan.bodies()) * width);
+      found_.resize(plan.numbers(field));
       batch_.read(field, world, found_);
       const double* recorded = fields[static_cast<std::size_t>(field)].data() +
                                found_.size() * static_cast<std::size_t>(in_kind);
       for (std::size_t i = 0; i < found_.size(); ++i) {
         if (equal(found_[i], recorded[i])) continue;
-        const int body = static_cast<int>(i / width);
-        if (first_body >= 0 && body >= first_body) break;
+        const bool of_body = info(field).item == ItemKind::body;
+        const int body = of_body ? static_cast<int>(i / width) : first_body;
+        if (!what.empty() && body >= first_body) break;
         first_body = body;
         what = describe(field, i % width, found_[i], recorded[i]);
         break;
@@ -108,7 +109,7 @@ class Comparison {
     return text;
   }
   std::string describe(Field field, std::size_t component, double found, double recorded) const {
-    std::string names = record::component_names(field, all_.space());
+    std::string names = component_names(field, all_.space());
     for (; component > 0; --component) names.erase(0, names.find(' ') + 1);
     const std::string name = std::string(info(field).name) + "." + names.substr(0, names.find(' '));
     char text[128];

@@ -1,24 +1,36 @@
 // Scenes and plan options as JSON: their members (members.hpp), and the words for variants.
+#include <array>
+#include <string_view>
+#include <variant>
+
 #include "manyworlds/record.hpp"
 #include "src/base/float_mode.hpp"
 #include "src/record/json.hpp"
 
 namespace manyworlds::record {
 
-template <>
-struct Words<Geometry> {
-  static constexpr const char* list[] = {"sphere",  "box",        "plane",   "circle",
-                                         "polygon", "half_plane", "capsule", "segment",
-                                         "terrain", "cylinder",   "hull",    "height_field"};
-};
-static_assert(std::size(Words<Geometry>::list) == std::variant_size_v<Geometry>);
+// The alternatives of a variant by the names of their types: HalfPlane is "half_plane", HingeJoint
+// is "hinge".
+template <class T>
+constexpr std::array<char, 32> word_of() {
+  std::array<char, 32> out{};
+  std::string_view name = Members<T>::name;
+  if (name.ends_with("Joint")) name.remove_suffix(5);
+  std::size_t n = 0;
+  for (const char c : name) {
+    const bool upper = c >= 'A' && c <= 'Z';
+    if (upper && n > 0) out[n++] = '_';
+    out[n++] = upper ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return out;
+}
+template <class T>
+inline constexpr std::array<char, 32> kWord = word_of<T>();
 
-template <>
-struct Words<JointType> {
-  static constexpr const char* list[] = {"ball",     "hinge", "slider", "fixed",
-                                         "distance", "wheel", "pulley", "target"};
+template <class... Ts>
+struct Words<std::variant<Ts...>> {
+  static constexpr const char* list[] = {kWord<Ts>.data()...};
 };
-static_assert(std::size(Words<JointType>::list) == std::variant_size_v<JointType>);
 
 // A shape is named by its place in its body, which comes with it.
 template <>

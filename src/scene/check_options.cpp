@@ -60,14 +60,38 @@ void check_integrator(Checker& checker, const Options& o) {
   }
 }
 
-void check_solver(Checker& checker, const Options& o) {
-  checker.named("options.solver", o.solver);
-  if (o.iterations) checker.between("options.iterations", *o.iterations, 1, kMostIterations);
+void check_solver(Checker& checker, const SolverOptions& o) {
+  checker.named("options.solver.method", o.method);
+  if (o.iterations) checker.between("options.solver.iterations", *o.iterations, 1, kMostIterations);
   if (!(o.relaxation > 0 && o.relaxation < 2)) {
-    checker.add("options.relaxation",
+    checker.add("options.solver.relaxation",
                 "is " + number_text(o.relaxation) + ", must be more than 0 and less than 2");
   }
-  checker.between("options.push_out_share", o.push_out_share, 0, 1);
+  checker.between("options.solver.push_out_share", o.push_out_share, 0, 1);
+}
+
+void check_contact(Checker& checker, const ContactOptions& o) {
+  checker.not_negative("options.contact.frequency", o.frequency, "Hz");
+  checker.not_negative("options.contact.damping_ratio", o.damping_ratio, "");
+  checker.not_negative("options.contact.push_out_speed", o.push_out_speed, "m/s");
+  checker.positive("options.contact.slop", o.slop, "m", kSmallestSize, kLargestSize);
+  checker.not_negative("options.contact.restitution_threshold", o.restitution_threshold, "m/s");
+  checker.between("options.contact.restitution_sweeps", o.restitution_sweeps, 1,
+                  kMostRestitutionSweeps);
+}
+
+void check_joint(Checker& checker, const JointOptions& o) {
+  if (o.frequency) checker.not_negative("options.joint.frequency", *o.frequency, "Hz");
+  checker.not_negative("options.joint.damping_ratio", o.damping_ratio, "");
+  if (!(o.pull_speed >= 0)) {
+    checker.add("options.joint.pull_speed",
+                "is " + number_text(o.pull_speed) + " m/s, must be >= 0");
+  }
+}
+
+void check_sleep(Checker& checker, const SleepOptions& o) {
+  checker.not_negative("options.sleep.speed", o.speed, "m/s");
+  checker.positive("options.sleep.time", o.time, "s", kSmallestTime, kLargestFinite);
 }
 
 }  // namespace
@@ -78,28 +102,12 @@ void check_options(Checker checker, const Options& options) {
   checker.finite("options.gravity", options.gravity, "m/s^2");
   checker.finite("options.wind", options.wind, "m/s");
   check_integrator(checker, options);
-  check_solver(checker, options);
+  check_solver(checker, options.solver);
   checker.density("options.density", options.density);
   checker.size("options.length_unit", options.length_unit);
-
-  checker.not_negative("options.contact_frequency", options.contact_frequency, "Hz");
-  checker.not_negative("options.contact_damping_ratio", options.contact_damping_ratio, "");
-  checker.not_negative("options.push_out_speed", options.push_out_speed, "m/s");
-  checker.positive("options.slop", options.slop, "m", kSmallestSize, kLargestSize);
-  checker.not_negative("options.restitution_threshold", options.restitution_threshold, "m/s");
-  checker.between("options.restitution_sweeps", options.restitution_sweeps, 1,
-                  kMostRestitutionSweeps);
-  if (options.joint_frequency) {
-    checker.not_negative("options.joint_frequency", *options.joint_frequency, "Hz");
-  }
-  checker.not_negative("options.joint_damping_ratio", options.joint_damping_ratio, "");
-  if (!(options.joint_pull_speed >= 0)) {
-    checker.add("options.joint_pull_speed",
-                "is " + number_text(options.joint_pull_speed) + " m/s, must be >= 0");
-  }
-  checker.not_negative("options.sleep_speed", options.sleep_speed, "m/s");
-  checker.positive("options.time_to_sleep", options.time_to_sleep, "s", kSmallestTime,
-                   kLargestFinite);
+  check_contact(checker, options.contact);
+  check_joint(checker, options.joint);
+  check_sleep(checker, options.sleep);
   if (options.contact_capacity) {
     checker.between("options.contact_capacity", *options.contact_capacity, 1, kMostManifolds);
   }

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "src/scene/convex_hull.hpp"
 #include "src/scene/convex_search.hpp"
+#include "src/scene/shape/shape.hpp"
 
 namespace manyworlds {
 
@@ -119,85 +119,6 @@ Widest widest_gap(const Convex& a, const Convex& b) {
   return best;
 }
 
-Convex segment_of(const Vec3& from, const Vec3& to, double radius, Space space) {
-  Convex c;
-  c.points = {from, to};
-  c.edges = {{0, 1}};
-  c.radius = radius;
-  const Vec3 way = (to - from).normalized();
-  // Besides the sides: along it, for segments in one line.
-  if (space == Space::planar) {
-    c.normals = {left_of(way), way};
-  } else {
-    c.normals = {across(way), way.cross(across(way)), way};
-    c.directions = {way};
-  }
-  return c;
-}
-
-Convex hull_of(const Hull& hull, const Vec3& x, const Mat3& r) {
-  const detail::ConvexHull solid = detail::convex_hull(hull.vertices);
-  Convex c;
-  for (const Vec3& v : solid.vertices) c.points.push_back(x + r * v);
-  for (const detail::HullFace& f : solid.faces) {
-    c.normals.push_back(r * f.normal);
-    c.reach.push_back(f.offset + c.normals.back().dot(x));
-    for (std::size_t i = 0; i < f.outline.size(); ++i) {
-      const int from = f.outline[i], to = f.outline[(i + 1) % f.outline.size()];
-      if (from > to) continue;  // once from either face
-      c.edges.push_back({from, to});
-      c.directions.push_back((c.points[at(to)] - c.points[at(from)]).normalized());
-    }
-  }
-  return c;
-}
-
-// What is below a triangle, counter-clockwise seen from above, down to a level.
-Convex prism_of(const std::array<Vec3, 3>& top, double level, const Vec3& x, const Mat3& r) {
-  Convex c;
-  for (const bool lower : {false, true}) {
-    for (const Vec3& p : top) c.points.push_back(x + r * Vec3(p.x(), p.y(), lower ? level : p.z()));
-  }
-  const auto point = [&](int i) { return c.points[static_cast<std::size_t>(i)]; };
-  const auto face = [&](const Vec3& normal, const Vec3& on) {
-    c.normals.push_back(normal.normalized());
-    c.reach.push_back(c.normals.back().dot(on));
-  };
-  const auto edge = [&](int from, int to) {
-    c.edges.push_back({from, to});
-    c.directions.push_back((point(to) - point(from)).normalized());
-  };
-  face((point(1) - point(0)).cross(point(2) - point(0)), point(0));
-  face(-r.col(2), point(3));
-  for (int i = 0; i < 3; ++i) {
-    const int next = (i + 1) % 3;
-    face((point(next) - point(i)).cross(r.col(2)), point(i));
-    edge(i, next), edge(3 + i, 3 + next), edge(i, 3 + i);
-  }
-  return c;
-}
-
-// What is below each triangle of a surface, as deep as the field is wide below its lowest point.
-std::vector<Convex> prisms_of(const HeightField& field, const Vec3& x, const Mat3& r) {
-  const int columns = field.columns - 1, rows = field.rows() - 1;
-  const double wide = columns * field.cell.x(), deep = rows * field.cell.y();
-  const double level =
-      *std::min_element(field.heights.begin(), field.heights.end()) - std::hypot(wide, deep);
-  const auto corner = [&](int i, int j) {
-    const double z = field.heights[static_cast<std::size_t>(i + j * field.columns)];
-    return Vec3(i * field.cell.x() - wide / 2, j * field.cell.y() - deep / 2, z);
-  };
-  std::vector<Convex> out;
-  for (int j = 0; j < rows; ++j) {
-    for (int i = 0; i < columns; ++i) {
-      const Vec3 low = corner(i, j), high = corner(i + 1, j + 1);
-      out.push_back(prism_of({low, corner(i + 1, j), high}, level, x, r));
-      out.push_back(prism_of({low, high, corner(i, j + 1)}, level, x, r));
-    }
-  }
-  return out;
-}
-
 Separation of_half_space(const Convex& plane, const Convex& b) {
   const Vec3& n = plane.normals[0];
   const Vec3 lowest = b.support(-n);
@@ -218,91 +139,57 @@ Vec3 Convex::support(const Vec3& n) const {
   for (const Vec3& p : points) {
     if (n.dot(p) > n.dot(best)) best = p;
   }
-  // In the disc's own axes, so that it stays in the disc however little n points out of the axis.
-  const Vec2 out(n.dot(axes.col(0)), n.dot(axes.col(1)));
-  if (disc == 0 || out.isZero(0)) return best;
-  return best + axes.leftCols<2>() * (disc * out.normalized());
+  // In its own axes, so that it stays in a disc however little n points out of the disc's axis.
+  const Vec3 along = (axes.transpose() * n).cwiseProduct(radii);
+  const double length = along.norm();
+  if (length == 0) return best;
+  return best + axes * along.cwiseProduct(radii) / length;
+}
+
+Convex ball_of(const Vec3& x, double radius, Space space) {
+  Convex c;
+  c.points = {x};
+  c.normals = {Vec3::UnitX(), Vec3::UnitY()};
+  if (space == Space::spatial) c.normals.push_back(Vec3::UnitZ());
+  c.radius = radius;
+  return c;
+}
+
+Convex half_space_of(const Vec3& normal, double offset, const Vec3& x, const Mat3& r) {
+  Convex c;
+  c.half_space = true;
+  c.normals = {(r * normal).normalized()};
+  c.offset = offset + c.normals[0].dot(x);
+  return c;
+}
+
+Convex segment_of(const Vec3& from, const Vec3& to, double radius, Space space) {
+  Convex c;
+  c.points = {from, to};
+  c.edges = {{0, 1}};
+  c.radius = radius;
+  const Vec3 way = (to - from).normalized();
+  // Besides the sides: along it, for segments in one line.
+  if (space == Space::planar) {
+    c.normals = {left_of(way), way};
+  } else {
+    c.normals = {across(way), way.cross(across(way)), way};
+    c.directions = {way};
+  }
+  return c;
 }
 
 std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space space) {
   const Mat3 outer = pose.rotation.normalized().toRotationMatrix();
   const Mat3 r = outer * shape.rotation.normalized().toRotationMatrix();
   const Vec3 x = pose.position + outer * shape.position;
-  const auto place = [&](const Vec2& p) { return Vec3(x + r * Vec3(p.x(), p.y(), 0)); };
-  const auto half_space = [&](const Vec3& normal, double offset) {
-    Convex c;
-    c.half_space = true;
-    c.normals = {(r * normal).normalized()};
-    c.offset = offset + c.normals[0].dot(x);
-    return c;
-  };
-  const auto ball = [&](double radius) {
-    Convex c;
-    c.points = {x};
-    c.normals = {Vec3::UnitX(), Vec3::UnitY()};
-    if (space == Space::spatial) c.normals.push_back(Vec3::UnitZ());
-    c.radius = radius;
-    return c;
-  };
-  if (const auto* s = std::get_if<Sphere>(&shape.geometry)) return {ball(s->radius)};
-  if (const auto* s = std::get_if<Circle>(&shape.geometry)) return {ball(s->radius)};
-  if (const auto* s = std::get_if<Plane>(&shape.geometry))
-    return {half_space(s->normal, s->offset)};
-  if (const auto* s = std::get_if<HalfPlane>(&shape.geometry)) {
-    return {half_space({s->normal.x(), s->normal.y(), 0}, s->offset)};
-  }
-  if (const auto* s = std::get_if<Capsule>(&shape.geometry)) {
-    const Vec3 end = r.col(space == Space::planar ? 1 : 2) * s->half_length;
-    return {segment_of(x - end, x + end, s->radius, space)};
-  }
-  if (const auto* s = std::get_if<Segment>(&shape.geometry)) {
-    return {segment_of(place(s->a), place(s->b), 0, space)};
-  }
-  if (const auto* s = std::get_if<Terrain>(&shape.geometry)) {
-    std::vector<Convex> links;
-    const std::size_t n = s->points.size();
-    for (std::size_t i = 0; i + (s->loop ? 0 : 1) < n; ++i) {
-      links.push_back(segment_of(place(s->points[i]), place(s->points[(i + 1) % n]), 0, space));
-    }
-    return links;
-  }
-  if (const auto* s = std::get_if<HeightField>(&shape.geometry)) return prisms_of(*s, x, r);
-  if (const auto* s = std::get_if<Cylinder>(&shape.geometry)) {
-    const Vec3 end = r.col(2) * s->half_length;
-    Convex c = segment_of(x - end, x + end, 0, space);
-    c.axes = r;
-    c.disc = s->radius;
-    return {c};
-  }
-  if (const auto* s = std::get_if<Hull>(&shape.geometry)) return {hull_of(*s, x, r)};
-  Convex c;
-  if (const auto* s = std::get_if<Box>(&shape.geometry)) {
-    c.axes = r, c.center = x, c.half = s->half_extents;
-    for (int i = 0; i < 8; ++i) {
-      const Vec3 sign(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
-      c.points.push_back(x + r * sign.cwiseProduct(c.half));
-      for (const int bit : {1, 2, 4}) {
-        if (!(i & bit)) c.edges.push_back({i, i | bit});
-      }
-    }
-    for (int k = 0; k < 3; ++k) c.normals.push_back(r.col(k));
-    c.directions = c.normals;
-    return {c};
-  }
-  for (const Vec2& v : std::get<Polygon>(shape.geometry).vertices) c.points.push_back(place(v));
-  const int n = static_cast<int>(c.points.size());
-  for (int i = 0; i < n; ++i) {
-    c.edges.push_back({i, (i + 1) % n});
-    c.normals.push_back(-left_of((c.points[at((i + 1) % n)] - c.points[at(i)]).normalized()));
-  }
-  c.radius = std::get<Polygon>(shape.geometry).radius;
-  return {c};
+  return traits_of(shape.geometry).convex_parts(shape.geometry, x, r, space);
 }
 
 Separation separation(const Convex& a, const Convex& b) {
   if (a.half_space) return of_half_space(a, b);
   if (b.half_space) return turned(of_half_space(b, a));
-  if (a.disc > 0 || b.disc > 0) return search_separation(a, b);
+  if (!a.radii.isZero(0) || !b.radii.isZero(0)) return search_separation(a, b);
   const Widest widest = widest_gap(a, b);
   // Hulls that overlap: as they are when shifted until they touch.
   const double overlap = std::min(widest.gap, 0.0);

@@ -20,14 +20,20 @@ struct Convex {
   Vec3 center = Vec3::Zero(), half = Vec3::Zero();
   bool half_space = false;
   double offset = 0;  // of a half space: normals[0] . p <= offset is solid
-  // Of a cylinder: each point stands for a disc of this radius, m, across an axis, axes.col(2).
-  double disc = 0;
+  // Each point stands for an ellipsoid of these radii along the axes, m: of a cylinder for a disc.
+  Vec3 radii = Vec3::Zero();
   // Of a hull in space: the normals of its faces are all its normals; normals[i] . p <= reach[i].
   std::vector<double> reach;
 
   // The point that lies farthest along n, without the radius.
   Vec3 support(const Vec3& n) const;
 };
+
+// All points within the radius of x, or of the segment between two points.
+Convex ball_of(const Vec3& x, double radius, Space space);
+Convex segment_of(const Vec3& from, const Vec3& to, double radius, Space space);
+// normal . p <= offset in a frame that stands at x.
+Convex half_space_of(const Vec3& normal, double offset, const Vec3& x, const Mat3& r);
 
 // One part, of a terrain one for each of its segments.
 std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space space);

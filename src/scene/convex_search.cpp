@@ -66,7 +66,8 @@ Separation search_separation(const Convex& a, const Convex& b) {
   look(between);
   for (const Convex* c : {&a, &b}) {
     for (const Vec3& n : c->normals) look(n);
-    if (c->disc > 0) look(between - c->axes.col(2) * between.dot(c->axes.col(2)));
+    if (c->radii.x() > 0 && c->radii.z() == 0)
+      look(between - c->axes.col(2) * between.dot(c->axes.col(2)));
   }
   for (const Vec3& u : a.directions) {
     for (const Vec3& v : b.directions) look(u.cross(v));

@@ -3,36 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/scene/convex.hpp"
+#include "src/scene/shape/shape.hpp"
 
 namespace manyworlds {
 
-namespace {
-
-// Of a sphere about the shape's frame, m.
-double reach_of(const Geometry& geometry) {
-  if (const auto* s = std::get_if<Sphere>(&geometry)) return s->radius;
-  if (const auto* s = std::get_if<Box>(&geometry)) return s->half_extents.norm();
-  if (const auto* s = std::get_if<Capsule>(&geometry)) return s->radius + s->half_length;
-  if (const auto* s = std::get_if<Cylinder>(&geometry)) {
-    return std::hypot(s->radius, s->half_length);
-  }
-  double reach = 0;
-  if (const auto* s = std::get_if<Hull>(&geometry)) {
-    for (const Vec3& v : s->vertices) reach = std::max(reach, v.norm());
-  }
-  return reach;
-}
-
-}  // namespace
-
-double tile_pad(const Options& options) { return 4 * options.slop * options.length_unit; }
+double tile_pad(const Options& options) { return 4 * options.contact.slop * options.length_unit; }
 
 TileCount tiles_of(const HeightField& field, const Scene& scene) {
   double reach = 0;
   for (const Body& body : scene.bodies) {
     if (body.motion != Motion::dynamic) continue;
-    for (const Shape& shape : body.shapes) reach = std::max(reach, reach_of(shape.geometry));
+    for (const Shape& shape : body.shapes) {
+      reach = std::max(reach, traits_of(shape.geometry).reach(shape.geometry));
+    }
   }
   // Sizes that vary grow no more than this.
   for (const Variation& v : scene.variations) {

@@ -12,8 +12,8 @@ const char* to_string(Solver solver) { return name_of(solver); }
 bool has_hard_rows(Solver solver) {
   return solver != Solver::tgs_soft && solver != Solver::penalty;
 }
-int iterations_of(const Options& options) {
-  return options.iterations.value_or(has_hard_rows(options.solver) ? 10 : 1);
+int iterations_of(const SolverOptions& solver) {
+  return solver.iterations.value_or(has_hard_rows(solver.method) ? 10 : 1);
 }
 
 }  // namespace manyworlds

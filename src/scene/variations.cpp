@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "src/base/enum_names.hpp"
+#include "src/scene/shape/shape.hpp"
 
 namespace manyworlds {
 
@@ -21,62 +22,7 @@ const Shape& shape_of(const Scene& scene, int body, int shape) {
   return body_of(scene, body).shapes[static_cast<std::size_t>(shape)];
 }
 
-// How many numbers its size has; 0: it has none.
-int sizes_of(const Geometry& geometry) {
-  if (std::holds_alternative<Sphere>(geometry) || std::holds_alternative<Circle>(geometry))
-    return 1;
-  if (std::holds_alternative<Capsule>(geometry) || std::holds_alternative<Polygon>(geometry) ||
-      std::holds_alternative<Cylinder>(geometry)) {
-    return 2;
-  }
-  return std::holds_alternative<Box>(geometry) || std::holds_alternative<Hull>(geometry) ? 3 : 0;
-}
-
-template <class Vertices>
-double half_extent(const Vertices& vertices, int axis) {
-  const auto less = [axis](const auto& a, const auto& b) { return a[axis] < b[axis]; };
-  const auto [low, high] = std::minmax_element(vertices.begin(), vertices.end(), less);
-  return ((*high)[axis] - (*low)[axis]) / 2;
-}
-template <class Vertices>
-void stretch(Vertices& vertices, int axis, double value) {
-  const double before = half_extent(vertices, axis);
-  if (value == before) return;
-  for (auto& v : vertices) v[axis] *= value / before;
-}
-
-double get_size(const Geometry& geometry, int component) {
-  if (const auto* sphere = std::get_if<Sphere>(&geometry)) return sphere->radius;
-  if (const auto* circle = std::get_if<Circle>(&geometry)) return circle->radius;
-  if (const auto* box = std::get_if<Box>(&geometry)) return box->half_extents[component];
-  if (const auto* polygon = std::get_if<Polygon>(&geometry))
-    return half_extent(polygon->vertices, component);
-  if (const auto* hull = std::get_if<Hull>(&geometry))
-    return half_extent(hull->vertices, component);
-  if (const auto* cylinder = std::get_if<Cylinder>(&geometry))
-    return component == 0 ? cylinder->radius : cylinder->half_length;
-  const auto& capsule = std::get<Capsule>(geometry);
-  return component == 0 ? capsule.radius : capsule.half_length;
-}
-
-void set_size(Geometry& geometry, int component, double value) {
-  if (auto* sphere = std::get_if<Sphere>(&geometry)) {
-    sphere->radius = value;
-  } else if (auto* circle = std::get_if<Circle>(&geometry)) {
-    circle->radius = value;
-  } else if (auto* box = std::get_if<Box>(&geometry)) {
-    box->half_extents[component] = value;
-  } else if (auto* polygon = std::get_if<Polygon>(&geometry)) {
-    stretch(polygon->vertices, component, value);
-  } else if (auto* hull = std::get_if<Hull>(&geometry)) {
-    stretch(hull->vertices, component, value);
-  } else if (auto* cylinder = std::get_if<Cylinder>(&geometry)) {
-    (component == 0 ? cylinder->radius : cylinder->half_length) = value;
-  } else {
-    auto& capsule = std::get<Capsule>(geometry);
-    (component == 0 ? capsule.radius : capsule.half_length) = value;
-  }
-}
+int sizes_of(const Geometry& geometry) { return traits_of(geometry).sizes(); }
 
 void set_mass(Scene& scene, int body, double mass) {
   MassProperties m = mass_properties(scene, body_of(scene, body));
@@ -149,7 +95,7 @@ double get_number(const Scene& scene, Parameter parameter, int body, int shape, 
   switch (parameter) {
     case Parameter::size: {
       const Geometry& geometry = shape_of(scene, body, shape).geometry;
-      return component < sizes_of(geometry) ? get_size(geometry, component) : 0;
+      return component < sizes_of(geometry) ? traits_of(geometry).size(geometry, component) : 0;
     }
     case Parameter::density:
       return shape_of(scene, body, shape).density.value_or(scene.options.density);
@@ -169,9 +115,11 @@ double get_number(const Scene& scene, Parameter parameter, int body, int shape, 
 
 void set_number(Scene& scene, const VariedNumber& n, double value) {
   switch (n.parameter) {
-    case Parameter::size:
-      set_size(shape_of(scene, n.body, n.shape).geometry, n.component, value);
+    case Parameter::size: {
+      Geometry& geometry = shape_of(scene, n.body, n.shape).geometry;
+      traits_of(geometry).resize(geometry, n.component, value);
       break;
+    }
     case Parameter::density: shape_of(scene, n.body, n.shape).density = value; break;
     case Parameter::mass: set_mass(scene, n.body, value); break;
     case Parameter::friction: shape_of(scene, n.body, n.shape).material.friction = value; break;

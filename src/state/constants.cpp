@@ -71,9 +71,9 @@ kernels::ShapeConstants<Real> shape_constants(const PlanData& plan, const PlanCo
   out.radius = static_cast<Real>(has_thickness ? c.thickness : c.radius);
   // A speculative row holds along one normal, which is good as long as the gap is not large
   // against the shape. Round shapes keep their normals better.
-  const double least = 2 * plan.scene.options.slop * plan.scene.options.length_unit;
-  const bool round = c.kind == kernels::ShapeKind::sphere || c.kind == kernels::ShapeKind::circle;
-  out.margin_cap = static_cast<Real>(std::max(least, round ? 2 * c.radius : c.inner_radius));
+  const double least = 2 * plan.scene.options.contact.slop * plan.scene.options.length_unit;
+  out.margin_cap =
+      static_cast<Real>(std::max(least, info(c.kind).ball ? 2 * c.radius : c.inner_radius));
   return out;
 }
 

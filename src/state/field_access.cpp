@@ -1,5 +1,6 @@
 // Reading and writing fields of a world in the user's frame. The kernels hold the centre of mass
-// and the principal axes; for bodies whose own frame is just that, bits are copied.
+// and the principal axes; for bodies whose own frame is just that, and for all other fields, bits
+// are copied.
 #include <algorithm>
 #include <cmath>
 
@@ -9,165 +10,134 @@ namespace manyworlds {
 
 namespace {
 
-int planar_or_spatial(const Plan& plan, int planar, int spatial) {
-  return plan.scene().space == Space::planar ? planar : spatial;
+// A rotation as the components of Field::orientation, and back.
+Quat rotation_of(const double* q, Space space) {
+  if (space == Space::planar) {
+    return Quat(Eigen::AngleAxisd(std::atan2(q[1], q[0]), Vec3::UnitZ()));
+  }
+  return Quat(q[0], q[1], q[2], q[3]).normalized();
+}
+std::array<double, 4> components_of(const Quat& q, Space space) {
+  if (space == Space::spatial) return {q.w(), q.x(), q.y(), q.z()};
+  const Mat3 r = q.toRotationMatrix();
+  return {r(0, 0), r(1, 0), 0, 0};
+}
+
+// Whether what the kernels hold of a body is what the user sees.
+bool is_copied(Field field, const PlanBody& b, bool has_orientation, bool writes) {
+  if (field == Field::position) return b.aligned;
+  if (field == Field::orientation) {
+    return has_orientation && (writes ? b.aligned : b.principal.vec().isZero(0));
+  }
+  return true;
 }
 
 }  // namespace
 
 template <class Real>
 Quat Worlds<Real>::internal_rotation(int world, int body) const {
-  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
-  if (!tables().has_orientation) {
-    return Quat::Identity();
+  if (!layout_.has(Field::orientation)) return Quat::Identity();
+  const Space space = plan_.scene().space;
+  std::array<double, 4> q{};
+  for (int c = 0; c < components(Field::orientation, space); ++c) {
+    q[static_cast<std::size_t>(c)] =
+        static_cast<double>(number(Field::orientation, world, body, c));
   }
-  const auto value = [&](int c) {
-    return static_cast<double>(component(world, body, at.orientation + c));
-  };
-  if (plan_.scene().space == Space::planar) {
-    return Quat(Eigen::AngleAxisd(std::atan2(value(1), value(0)), Vec3::UnitZ()));
-  }
-  return Quat(value(0), value(1), value(2), value(3)).normalized();
+  return rotation_of(q.data(), space);
+}
+
+template <class Real>
+Quat Worlds<Real>::rotation(int world, int body) const {
+  const PlanBody& b = body_of(world, static_cast<std::size_t>(body));
+  return internal_rotation(world, body) * b.principal.conjugate();
 }
 
 template <class Real>
 void Worlds<Real>::set_rotation(int world, int body, const Quat& rotation) {
-  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
-  const auto put = [&](int c, double x) {
-    component(world, body, at.orientation + c) = static_cast<Real>(x);
-  };
-  if (plan_.scene().space == Space::planar) {
-    const Mat3 r = rotation.toRotationMatrix();
-    put(0, r(0, 0));
-    put(1, r(1, 0));
-    return;
+  const Space space = plan_.scene().space;
+  const auto q = components_of(rotation, space);
+  for (int c = 0; c < components(Field::orientation, space); ++c) {
+    number(Field::orientation, world, body, c) = static_cast<Real>(q[static_cast<std::size_t>(c)]);
   }
-  put(0, rotation.w());
-  put(1, rotation.x());
-  put(2, rotation.y());
-  put(3, rotation.z());
+}
+
+template <class Real>
+void Worlds<Real>::set_origin(int world, int body, const Vec3& origin, const Quat& rotation) {
+  const Vec3 x = origin + rotation * body_of(world, static_cast<std::size_t>(body)).center;
+  for (int c = 0; c < components(Field::position, plan_.scene().space); ++c) {
+    number(Field::position, world, body, c) = static_cast<Real>(x[c]);
+  }
 }
 
 template <class Real>
 template <class Out>
-void Worlds<Real>::read(Field field, int world, Out* out) const {
-  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
-  const int n = components(field, plan_.scene().space);
-  for (std::size_t i = 0; i < data().bodies.size(); ++i) {
-    const PlanBody& b = body_of(world, i);
-    const int body = static_cast<int>(i);
-    Out* to = out + i * static_cast<std::size_t>(n);
-    const auto copy = [&](int from) {
-      for (int c = 0; c < n; ++c) to[c] = static_cast<Out>(component(world, body, from + c));
-    };
-    switch (field) {
-      case Field::linear_velocity: copy(at.linear); break;
-      case Field::angular_velocity: copy(at.angular); break;
-      case Field::position:
-        if (b.aligned) {
-          copy(at.position);
-        } else {
-          const Quat q = internal_rotation(world, body) * b.principal.conjugate();
-          const Vec3 x = center_of_mass(world, body) - q * b.center;
-          for (int c = 0; c < n; ++c) to[c] = static_cast<Out>(x[c]);
-        }
-        break;
-      case Field::orientation:
-        if (tables().has_orientation && b.principal.vec().isZero(0)) {
-          copy(at.orientation);
-        } else if (plan_.scene().space == Space::planar) {
-          to[0] = Out(1), to[1] = Out(0);  // left out: reads as the identity
-        } else {
-          const Quat q = internal_rotation(world, body) * b.principal.conjugate();
-          to[0] = static_cast<Out>(q.w()), to[1] = static_cast<Out>(q.x());
-          to[2] = static_cast<Out>(q.y()), to[3] = static_cast<Out>(q.z());
-        }
-        break;
+void Worlds<Real>::read_as(Field field, int world, Out* out) const {
+  const Space space = plan_.scene().space;
+  const FieldInfo& about = info(field);
+  const int n = components(field, space), items = layout_.items[static_cast<int>(about.item)];
+  for (int i = 0; i < items; ++i, out += n) {
+    if (about.item != ItemKind::body ||
+        is_copied(field, body_of(world, static_cast<std::size_t>(i)),
+                  layout_.has(Field::orientation), false)) {
+      for (int c = 0; c < n; ++c) out[c] = static_cast<Out>(number(field, world, i, c));
+    } else if (field == Field::position) {
+      const Vec3 x = center_of_mass(world, i) -
+                     rotation(world, i) * body_of(world, static_cast<std::size_t>(i)).center;
+      for (int c = 0; c < n; ++c) out[c] = static_cast<Out>(x[c]);
+    } else {  // an orientation that was left out reads as the identity
+      const auto q = space == Space::planar ? std::array<double, 4>{1, 0}
+                                            : components_of(rotation(world, i), space);
+      for (int c = 0; c < n; ++c) out[c] = static_cast<Out>(q[static_cast<std::size_t>(c)]);
     }
   }
 }
 
 template <class Real>
 template <class In>
-void Worlds<Real>::write(Field field, int world, const In* in) {
-  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
-  const int n = components(field, plan_.scene().space);
+void Worlds<Real>::write_as(Field field, int world, const In* in) {
+  const Space space = plan_.scene().space;
+  const FieldInfo& about = info(field);
+  const int n = components(field, space), items = layout_.items[static_cast<int>(about.item)];
   // Impulses of the old pose would push at the new one.
   const bool moves = field == Field::position || field == Field::orientation;
   if (moves) storage_.clear_contacts(slot_of(world));
   if (moves) storage_.clear_joints(slot_of(world));
   storage_.wake(slot_of(world));
-  for (std::size_t i = 0; i < data().bodies.size(); ++i) {
-    const PlanBody& b = body_of(world, i);
-    const int body = static_cast<int>(i);
-    const In* from = in + i * static_cast<std::size_t>(n);
-    const auto copy = [&](int to) {
-      for (int c = 0; c < n; ++c) component(world, body, to + c) = static_cast<Real>(from[c]);
-    };
-    const auto place_origin = [&](const Vec3& origin, const Quat& q) {
-      const Vec3 x = origin + q * b.center;
-      for (int c = 0; c < planar_or_spatial(plan_, 2, 3); ++c) {
-        component(world, body, at.position + c) = static_cast<Real>(x[c]);
-      }
-    };
-    switch (field) {
-      case Field::linear_velocity: copy(at.linear); break;
-      case Field::angular_velocity: copy(at.angular); break;
-      case Field::position:
-        if (b.aligned) {
-          copy(at.position);
-        } else {
-          Vec3 origin = Vec3::Zero();
-          for (int c = 0; c < n; ++c) origin[c] = static_cast<double>(from[c]);
-          place_origin(origin, internal_rotation(world, body) * b.principal.conjugate());
-        }
-        break;
-      case Field::orientation: {
-        if (!tables().has_orientation) break;
-        if (b.aligned) {
-          copy(at.orientation);
-          break;
-        }
-        // The body turns about its own origin, so the centre of mass moves.
-        const Quat before = internal_rotation(world, body) * b.principal.conjugate();
-        const Vec3 origin = center_of_mass(world, body) - before * b.center;
-        const auto x = [&](int c) { return static_cast<double>(from[c]); };
-        Quat q;
-        if (n == 2) {
-          q = Quat(Eigen::AngleAxisd(std::atan2(x(1), x(0)), Vec3::UnitZ()));
-        } else {
-          q = Quat(x(0), x(1), x(2), x(3)).normalized();
-        }
-        set_rotation(world, body, q * b.principal);
-        place_origin(origin, q);
-        break;
-      }
+  if (!layout_.has(field)) return;
+  for (int i = 0; i < items; ++i, in += n) {
+    if (about.item != ItemKind::body ||
+        is_copied(field, body_of(world, static_cast<std::size_t>(i)), true, true)) {
+      for (int c = 0; c < n; ++c) number(field, world, i, c) = static_cast<Real>(in[c]);
+      continue;
+    }
+    std::array<double, 4> x{};
+    std::transform(in, in + n, x.begin(), [](In value) { return static_cast<double>(value); });
+    if (field == Field::position) {
+      set_origin(world, i, Vec3(x[0], x[1], x[2]), rotation(world, i));
+    } else {
+      // The body turns about its own origin, so the centre of mass moves.
+      const PlanBody& b = body_of(world, static_cast<std::size_t>(i));
+      const Vec3 origin = center_of_mass(world, i) - rotation(world, i) * b.center;
+      const Quat q = rotation_of(x.data(), space);
+      set_rotation(world, i, q * b.principal);
+      set_origin(world, i, origin, q);
     }
   }
 }
 
 template <class Real>
 LaneBlocks Worlds<Real>::lane_blocks(Field field) const {
-  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
+  const auto kind = static_cast<int>(info(field).item);
   LaneBlocks blocks;
   blocks.groups = storage_.groups();
-  blocks.bodies = tables().bodies;
+  blocks.items = layout_.items[kind];
   blocks.components = components(field, plan_.scene().space);
   blocks.lanes = storage_.lanes();
   blocks.component_stride = static_cast<std::size_t>(blocks.lanes);
-  blocks.body_stride = static_cast<std::size_t>(at.components) * blocks.component_stride;
-  blocks.group_stride = static_cast<std::size_t>(blocks.bodies) * blocks.body_stride;
-  int first = at.position;
-  switch (field) {
-    case Field::position: break;
-    case Field::orientation:
-      if (!tables().has_orientation) return blocks;
-      first = at.orientation;
-      break;
-    case Field::linear_velocity: first = at.linear; break;
-    case Field::angular_velocity: first = at.angular; break;
-  }
-  blocks.data = storage_.group(0).state + static_cast<std::ptrdiff_t>(first) * blocks.lanes;
+  blocks.item_stride = static_cast<std::size_t>(layout_.stride[kind]) * blocks.component_stride;
+  blocks.group_stride = static_cast<std::size_t>(layout_.rows) * blocks.component_stride;
+  if (!layout_.has(field)) return blocks;
+  blocks.data = &storage_.number(0, layout_.row_of(field, 0));
   return blocks;
 }
 
@@ -175,22 +145,21 @@ template <class Real>
 void Worlds<Real>::set_initial(Field field, int world, const double* in) {
   auto& values = initial_[static_cast<std::size_t>(field)];
   if (in == nullptr) return values.clear();
-  const std::size_t numbers =
-      data().bodies.size() * static_cast<std::size_t>(components(field, plan_.scene().space));
+  const std::size_t numbers = plan_.numbers(field);
   values.resize(static_cast<std::size_t>(worlds_) * numbers);
   std::copy_n(
       in, numbers,
       values.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(world) * numbers));
 }
 
-#define MW_INSTANTIATE(Real)                                            \
-  template void Worlds<Real>::read<float>(Field, int, float*) const;    \
-  template void Worlds<Real>::read<double>(Field, int, double*) const;  \
-  template void Worlds<Real>::write<float>(Field, int, const float*);   \
-  template void Worlds<Real>::write<double>(Field, int, const double*); \
-  template LaneBlocks Worlds<Real>::lane_blocks(Field) const;           \
-  template void Worlds<Real>::set_initial(Field, int, const double*);   \
-  template Quat Worlds<Real>::internal_rotation(int, int) const;        \
+#define MW_INSTANTIATE(Real)                                               \
+  template void Worlds<Real>::read_as<float>(Field, int, float*) const;    \
+  template void Worlds<Real>::read_as<double>(Field, int, double*) const;  \
+  template void Worlds<Real>::write_as<float>(Field, int, const float*);   \
+  template void Worlds<Real>::write_as<double>(Field, int, const double*); \
+  template LaneBlocks Worlds<Real>::lane_blocks(Field) const;              \
+  template void Worlds<Real>::set_initial(Field, int, const double*);      \
+  template Quat Worlds<Real>::internal_rotation(int, int) const;           \
   template void Worlds<Real>::set_rotation(int, int, const Quat&);
 MW_INSTANTIATE(float)
 MW_INSTANTIATE(double)

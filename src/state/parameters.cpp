@@ -181,11 +181,8 @@ void Worlds<Real>::write(Parameter parameter, int world, const double* in) {
   // A body whose centre of mass shifts stays where its own frame is.
   std::vector<double> positions, orientations;
   if (moves) {
-    const Space space = plan_.scene().space;
-    positions.resize(data().bodies.size() *
-                     static_cast<std::size_t>(components(Field::position, space)));
-    orientations.resize(data().bodies.size() *
-                        static_cast<std::size_t>(components(Field::orientation, space)));
+    positions.resize(plan_.numbers(Field::position));
+    orientations.resize(plan_.numbers(Field::orientation));
     read(Field::position, world, positions.data());
     read(Field::orientation, world, orientations.data());
   }

@@ -95,10 +95,9 @@ std::size_t Storage<Real>::bytes() const {
 }
 
 template <class Real>
-Real& Storage<Real>::component(int slot, int body, int component) const {
-  const auto& t = tables_;
-  const std::size_t at = index(body * t.state_stride + component);
-  return state_[(group_of(slot) * index(t.state_size) + at) * index(lanes_) + lane_of(slot)];
+Real& Storage<Real>::number(int slot, int row) const {
+  const std::size_t at = group_of(slot) * index(tables_.state_size) + index(row);
+  return state_[at * index(lanes_) + lane_of(slot)];
 }
 
 template <class Real>
@@ -286,12 +285,14 @@ void Storage<Real>::wake_island(int slot, int body) {
 template <class Real>
 void Storage<Real>::rest(int slot) {
   if (!tables_.has_sleep) return;
-  const auto at = kernels::state_offsets(tables_.dimension, tables_.has_orientation);
-  const int velocity_end = tables_.has_orientation ? at.orientation : at.components;
+  const auto at = kernels::state_offsets(tables_.dimension);
+  const bool planar = tables_.dimension == kernels::Dimension::planar;
   for (int b = 0; b < tables_.bodies; ++b) {
     put_bit(asleep_[body_at(slot, b)], lane_of(slot), true);
     // Kinematic bodies, too.
-    for (int c = at.linear; c < velocity_end; ++c) component(slot, b, c) = Real(0);
+    const int body = b * tables_.state_stride;
+    for (int c = 0; c < (planar ? 2 : 3); ++c) number(slot, body + at.linear + c) = Real(0);
+    for (int c = 0; c < (planar ? 1 : 3); ++c) number(slot, body + at.angular + c) = Real(0);
   }
   put_bit(resting_[group_of(slot)], lane_of(slot), true);
   find_idle_in(group_of(slot));

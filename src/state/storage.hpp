@@ -1,7 +1,7 @@
-// Storage: the numbers of all worlds of one kind, in groups of one lane per world. It knows places,
-// not worlds: slot s is lane s % lanes of group s / lanes, and which world lives there is its
-// owner's business.
-//   state     [group][body][component][lane]
+// Storage: the numbers of all worlds of one kind, in groups of one lane per world. It knows lanes,
+// not worlds: slot (lane index) s is lane s % lanes of group s / lanes. Which world that is, Worlds
+// says.
+//   state     [group][row][lane], rows as StateLayout has them
 //   cache     [group][lane][manifold][row], keys beside
 //   controls  [group][control][lane]
 //   joints    [group][part][impulses][lane]
@@ -34,12 +34,12 @@ class Storage {
   kernels::GroupView<Real> group(int index) const;
   std::size_t bytes() const;  // of persistent state
 
-  Real& component(int slot, int body, int component) const;
+  Real& number(int slot, int row) const;  // of the state (StateLayout)
   std::uint32_t& status(int slot) const { return status_[static_cast<std::size_t>(slot)]; }
   void clear_contacts(int slot);
   void clear_joints(int slot);  // their impulses
-  // Impulses of contacts and joints of the body and of everybody that it is in touch with or joined
-  // to, directly or not: what carried what is gone would be pushed up.
+  // Impulses of contacts and joints of the body and of all bodies that it touches or is joined to,
+  // directly or not: what carried the absent body would be pushed up.
   void drop_impulses(int slot, int body);
 
   Real* controls(int slot) const {  // lanes() apart
@@ -88,7 +88,7 @@ class Storage {
   void write_world(int slot, std::byte* to) const;
   void read_world(int slot, const std::byte* from);
   // The same for bytes of this very slot, of a moment ago: allocates nothing.
-  void put_back(int slot, const std::byte* from);
+  void restore_lane(int slot, const std::byte* from);
   // Could these bytes have come from write_world()? Says what is wrong, or nothing.
   std::string check_world(const std::byte* from) const;
 

@@ -5,20 +5,20 @@
 #include <set>
 
 #include "src/plan/pair_kinds.hpp"
+#include "src/plan/soft_constraint.hpp"
+#include "src/plan/state_layout.hpp"
 
 namespace manyworlds {
 
 namespace {
 
-// Implicit Euler of a spring of frequency f and damping ratio z as a soft constraint (Catto 2011).
 template <class Real>
 kernels::Softness<Real> softness(double frequency, double damping_ratio, double h) {
   if (frequency == 0) return {0, 1, 0};
-  const double omega = 2 * 3.14159265358979323846 * frequency;
-  const double a1 = 2 * damping_ratio + h * omega;
-  const double a2 = h * omega * a1;
-  const double a3 = 1 / (1 + a2);
-  return {static_cast<Real>(omega / a1), static_cast<Real>(a2 * a3), static_cast<Real>(a3)};
+  const SoftConstraint soft = soft_constraint(frequency, damping_ratio, h);
+  const double rest = 1 / (1 + soft.gain);
+  return {static_cast<Real>(soft.rate), static_cast<Real>(soft.gain * rest),
+          static_cast<Real>(rest)};
 }
 
 template <class Real>
@@ -59,24 +59,24 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.dimension = plan.dimension();
   t.inertia_kind = plan.inertia_kind;
   t.substeps = o.substeps;
-  t.restitution_sweeps = o.restitution_sweeps;
+  t.restitution_sweeps = o.contact.restitution_sweeps;
   t.has_orientation = plan.has(Feature::orientation);
   t.has_friction = plan.has(Feature::friction);
   t.has_restitution = plan.has(Feature::restitution);
   t.has_contacts = plan.has(Feature::contacts);
   t.has_joints = !plan.parts.empty();
-  t.has_substeps = t.has_contacts || t.has_joints || !plan.thrusts.empty();
+  t.has_substeps = plan.runs(StepStage::begin);
   t.controls = static_cast<std::int32_t>(plan.scene.controls.size());
   t.has_drag = plan.has(Feature::drag);
   t.slows = plan.slows;
   t.has_gravity = plan.has(Feature::gravity);
   t.collider_is_body = plan.collider_is_body;
-  t.friction_in_bias = o.friction_in_bias_pass;
+  t.friction_in_bias = o.contact.friction_in_bias_pass;
   t.uniform_gravity = plan.uniform_gravity;
   t.sweep = plan.sweep;
   t.sparse = plan.sparse;
   t.cast = plan.cast && t.has_contacts;
-  t.cast_moving = o.cast_between_moving && t.has_contacts;
+  t.cast_moving = o.contact.cast_between_moving && t.has_contacts;
   t.push_varies = plan.varies.push;
   t.drag_varies = plan.varies.drag;
   t.bodies_vary = plan.varies.masses;
@@ -89,36 +89,36 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.dt = static_cast<Real>(o.dt);
   t.h = static_cast<Real>(h);
   t.inv_h = static_cast<Real>(1 / h);
-  t.soft_pair = softness<Real>(o.contact_frequency, o.contact_damping_ratio, h);
-  t.soft_fixed = softness<Real>(2 * o.contact_frequency, o.contact_damping_ratio, h);
+  t.soft_pair = softness<Real>(o.contact.frequency, o.contact.damping_ratio, h);
+  t.soft_fixed = softness<Real>(2 * o.contact.frequency, o.contact.damping_ratio, h);
   add_solver(o);
-  t.push_out_speed = static_cast<Real>(o.push_out_speed * o.length_unit);
-  t.margin = static_cast<Real>(4 * o.slop * o.length_unit);
-  t.half_margin = static_cast<Real>(2 * o.slop * o.length_unit);
-  t.restitution_threshold = static_cast<Real>(o.restitution_threshold * o.length_unit);
-  t.sleep_speed = static_cast<Real>(o.sleep_speed * o.length_unit);
-  t.sleep_time = static_cast<Real>(o.time_to_sleep);
-  t.face_bias = static_cast<Real>(0.5 * o.slop * o.length_unit);
-  t.face_tie = static_cast<Real>(0.02 * o.slop * o.length_unit);
-  const auto at = kernels::state_offsets(t.dimension, t.has_orientation);
-  t.state_stride = at.components;
-  t.bodies = static_cast<std::int32_t>(plan.bodies.size());
-  t.state_size = t.bodies * at.components;
+  t.push_out_speed = static_cast<Real>(o.contact.push_out_speed * o.length_unit);
+  t.margin = static_cast<Real>(4 * o.contact.slop * o.length_unit);
+  t.half_margin = static_cast<Real>(2 * o.contact.slop * o.length_unit);
+  t.restitution_threshold = static_cast<Real>(o.contact.restitution_threshold * o.length_unit);
+  t.sleep_speed = static_cast<Real>(o.sleep.speed * o.length_unit);
+  t.sleep_time = static_cast<Real>(o.sleep.time);
+  t.face_bias = static_cast<Real>(0.5 * o.contact.slop * o.length_unit);
+  t.face_tie = static_cast<Real>(0.02 * o.contact.slop * o.length_unit);
+  const StateLayout layout = state_layout(plan);
+  t.bodies = layout.items[static_cast<int>(ItemKind::body)];
+  t.state_stride = layout.stride[static_cast<int>(ItemKind::body)];
+  t.state_size = layout.rows;
 }
 
 template <class Real>
 void TablesOf<Real>::add_solver(const Options& o) {
   static_assert(static_cast<int>(kernels::Solver::penalty) == static_cast<int>(Solver::penalty));
   auto& t = tables_;
-  t.solver.kind = static_cast<kernels::Solver>(o.solver);
-  t.solver.iterations = iterations_of(o);
-  t.solver.relaxation = static_cast<Real>(o.solver == Solver::sor ? o.relaxation : 1);
+  t.solver.kind = static_cast<kernels::Solver>(o.solver.method);
+  t.solver.iterations = iterations_of(o.solver);
+  t.solver.relaxation = static_cast<Real>(o.solver.method == Solver::sor ? o.solver.relaxation : 1);
   t.solver.relaxes = t.solver.relaxation != 1;
-  t.solver.splits = has_hard_rows(o.solver) && o.split_impulse;
-  t.solver.push_out_share = static_cast<Real>(o.push_out_share);
-  if (!has_hard_rows(o.solver)) return;
-  const double share = o.split_impulse ? 0 : o.push_out_share;
-  t.solver.slop = static_cast<Real>(o.slop * o.length_unit);
+  t.solver.splits = has_hard_rows(o.solver.method) && o.solver.split_impulse;
+  t.solver.push_out_share = static_cast<Real>(o.solver.push_out_share);
+  if (!has_hard_rows(o.solver.method)) return;
+  const double share = o.solver.split_impulse ? 0 : o.solver.push_out_share;
+  t.solver.slop = static_cast<Real>(o.contact.slop * o.length_unit);
   t.soft_pair = t.soft_fixed = {static_cast<Real>(share * o.substeps / o.dt), 1, 0};
 }
 
@@ -136,14 +136,11 @@ void TablesOf<Real>::add_flight(const PlanData& plan) {
   flight.rotation = static_cast<kernels::Rotation>(o.rotation.value_or(Rotation::exponential));
   flight.momentum = o.angular_momentum;
   flight.damped = t.has_drag;
-  bool only_springs = true;
   for (const PlanPart& p : plan.parts) {
-    only_springs = only_springs && p.what.force;
     if (!p.what.force) continue;
     ++flight.springs;
     flight.damped = flight.damped || p.numbers.damping > 0;
   }
-  if (flight.on) t.has_substeps = t.has_contacts || !only_springs;
 }
 
 template <class Real>
@@ -172,7 +169,7 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
 template <class Real>
 void TablesOf<Real>::add_shapes(const PlanData& plan) {
   auto& t = tables_;
-  const double least_margin = 2 * plan.scene.options.slop * plan.scene.options.length_unit;
+  const double least_margin = 2 * plan.scene.options.contact.slop * plan.scene.options.length_unit;
   for (const PlanCollider& c : plan.colliders) {
     const Filter& filter = filter_of(plan, c);
     const auto vertices = static_cast<std::int32_t>(c.vertices.size());
@@ -207,9 +204,9 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
     for (std::size_t k = 0; k < f.row.size(); ++k) {
       fixed_rows_[static_cast<std::size_t>(f.row_offset) + k] = static_cast<Real>(f.row[k]);
     }
-    if (f.kind == kernels::ShapeKind::box || f.kind == kernels::ShapeKind::cylinder ||
-        f.kind == kernels::ShapeKind::hull || f.kind == kernels::ShapeKind::tile) {
-      fixed_rows_[static_cast<std::size_t>(f.row_offset) + 15] = static_cast<Real>(least_margin);
+    if (info(f.kind).margin >= 0) {
+      fixed_rows_[static_cast<std::size_t>(f.row_offset + info(f.kind).margin)] =
+          static_cast<Real>(least_margin);
     }
     fixed_.push_back(out);
   }

@@ -231,18 +231,18 @@ void Storage<Real>::read_world(int slot, const std::byte* from) {
 }
 
 template <class Real>
-void Storage<Real>::put_back(int slot, const std::byte* from) {
+void Storage<Real>::restore_lane(int slot, const std::byte* from) {
   for_each_part(slot, slot, Read{from});
   if (has_activity()) find_idle_in(group_of(slot));
 }
 
-#define MW_INSTANTIATE(Real)                                       \
-  template void Storage<Real>::swap(int, int);                     \
-  template void Storage<Real>::copy(int, int);                     \
-  template std::size_t Storage<Real>::world_bytes() const;         \
-  template void Storage<Real>::write_world(int, std::byte*) const; \
-  template void Storage<Real>::read_world(int, const std::byte*);  \
-  template void Storage<Real>::put_back(int, const std::byte*);    \
+#define MW_INSTANTIATE(Real)                                        \
+  template void Storage<Real>::swap(int, int);                      \
+  template void Storage<Real>::copy(int, int);                      \
+  template std::size_t Storage<Real>::world_bytes() const;          \
+  template void Storage<Real>::write_world(int, std::byte*) const;  \
+  template void Storage<Real>::read_world(int, const std::byte*);   \
+  template void Storage<Real>::restore_lane(int, const std::byte*); \
   template std::string Storage<Real>::check_world(const std::byte*) const;
 MW_INSTANTIATE(float)
 MW_INSTANTIATE(double)

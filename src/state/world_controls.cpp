@@ -8,7 +8,7 @@ namespace manyworlds {
 
 template <class Real>
 template <class In>
-void Worlds<Real>::set_controls(int first, int count, const In* in) {
+void Worlds<Real>::set_controls_as(int first, int count, const In* in) {
   const auto& ranges = data().control_range;
   const auto lanes = static_cast<std::size_t>(storage_.lanes());
   for (int world = first; !ranges.empty() && world < first + count; ++world) {
@@ -32,7 +32,7 @@ void Worlds<Real>::set_controls(int first, int count, const In* in) {
 
 template <class Real>
 template <class Out>
-void Worlds<Real>::read_controls(int first, int count, Out* out) const {
+void Worlds<Real>::read_controls_as(int first, int count, Out* out) const {
   for (int world = first; tables().controls > 0 && world < first + count; ++world) {
     const Real* control = storage_.controls(slot_of(world));
     for (int i = 0; i < tables().controls; ++i, control += storage_.lanes()) {
@@ -41,11 +41,11 @@ void Worlds<Real>::read_controls(int first, int count, Out* out) const {
   }
 }
 
-#define MW_INSTANTIATE(Real)                                                 \
-  template void Worlds<Real>::set_controls<float>(int, int, const float*);   \
-  template void Worlds<Real>::set_controls<double>(int, int, const double*); \
-  template void Worlds<Real>::read_controls<float>(int, int, float*) const;  \
-  template void Worlds<Real>::read_controls<double>(int, int, double*) const;
+#define MW_INSTANTIATE(Real)                                                    \
+  template void Worlds<Real>::set_controls_as<float>(int, int, const float*);   \
+  template void Worlds<Real>::set_controls_as<double>(int, int, const double*); \
+  template void Worlds<Real>::read_controls_as<float>(int, int, float*) const;  \
+  template void Worlds<Real>::read_controls_as<double>(int, int, double*) const;
 MW_INSTANTIATE(float)
 MW_INSTANTIATE(double)
 #undef MW_INSTANTIATE

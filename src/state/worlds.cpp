@@ -12,6 +12,7 @@ namespace manyworlds {
 template <class Real>
 Worlds<Real>::Worlds(Plan plan, int worlds, int first, const BatchOptions& options, int lanes)
     : plan_(std::move(plan)),
+      layout_(state_layout(plan_.data())),
       tables_(std::make_unique<TablesOf<Real>>(plan_.data(), options.sleep, lanes)),
       storage_(tables(), (worlds + lanes - 1) / lanes, lanes),
       worlds_(worlds),
@@ -39,14 +40,14 @@ template <class Real>
 void Worlds<Real>::place(int world, int body, const BodyState& s) {
   const PlanBody& b = body_of(world, static_cast<std::size_t>(body));
   const bool planar = plan_.scene().space == Space::planar;
-  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
   const Vec3 x = s.position + s.rotation * b.center;
   for (int c = 0; c < (planar ? 2 : 3); ++c) {
-    component(world, body, at.position + c) = static_cast<Real>(x[c]);
-    component(world, body, at.linear + c) = static_cast<Real>(s.linear_velocity[c]);
+    number(Field::position, world, body, c) = static_cast<Real>(x[c]);
+    number(Field::linear_velocity, world, body, c) = static_cast<Real>(s.linear_velocity[c]);
   }
   for (int c = 0; c < (planar ? 1 : 3); ++c) {
-    component(world, body, at.angular + c) = static_cast<Real>(s.angular_velocity[planar ? 2 : c]);
+    number(Field::angular_velocity, world, body, c) =
+        static_cast<Real>(s.angular_velocity[planar ? 2 : c]);
   }
   if (tables().has_orientation) set_rotation(world, body, s.rotation * b.principal);
 }
@@ -60,18 +61,23 @@ void Worlds<Real>::initialise(int world) {
     draw_values(world, draws);
     apply_values(world);
   }
+  // What the scene says nothing of begins at 0.
+  for (int row = 0; row < layout_.rows; ++row) storage_.number(slot, row) = Real(0);
   for (std::size_t b = 0; b < data().bodies.size(); ++b) {
     const int scene_body = data().bodies[b].scene_body, body = static_cast<int>(b);
     const Body& described = plan_.scene().bodies[static_cast<std::size_t>(scene_body)];
     place(world, body, draw_initial_state(plan_.scene(), scene_body, draws));
     if (storage_.has_activity()) storage_.set_absent(slot, body, !described.enabled);
   }
-  // A body turns about its own origin, so orientations come first.
-  for (const Field field :
-       {Field::orientation, Field::position, Field::linear_velocity, Field::angular_velocity}) {
+  const auto write_initial = [&](Field field) {
     const auto& values = initial_[static_cast<std::size_t>(field)];
     const std::size_t numbers = values.size() / static_cast<std::size_t>(worlds_);
     if (numbers > 0) write(field, world, values.data() + static_cast<std::size_t>(world) * numbers);
+  };
+  // A body turns about its own origin, so orientations come first.
+  write_initial(Field::orientation);
+  for (const Field field : kFields) {
+    if (field != Field::orientation) write_initial(field);
   }
   if (storage_.has_activity()) storage_.find_idle(slot);
   storage_.status(slot) = 0;
@@ -134,7 +140,7 @@ void Worlds<Real>::set_enabled(int world, int body, bool enabled) {
   const int slot = slot_of(world);
   storage_.make_activity();
   if (storage_.absent(slot, body) != enabled) return;
-  // Whoever lies on a kinematic body does not share its island.
+  // A body that lies on a kinematic body does not share its island.
   const bool kinematic = data().bodies[static_cast<std::size_t>(body)].inv_mass == 0;
   kinematic ? storage_.wake(slot) : storage_.wake_island(slot, body);
   if (!enabled) storage_.drop_impulses(slot, body);
@@ -152,7 +158,7 @@ void Worlds<Real>::set_joint_enabled(int world, int joint, bool enabled) {
     if (part.joint != joint) continue;
     for (const int body : {part.body_a, part.body_b}) {
       if (body == tables().bodies) continue;
-      // Whoever is joined to a kinematic body does not share its island.
+      // A body that is joined to a kinematic body does not share its island.
       tables().body[body].kinematic ? storage_.wake(slot) : storage_.wake_island(slot, body);
       if (!enabled) storage_.drop_impulses(slot, body);
     }
@@ -180,7 +186,9 @@ template <class Real>
 Vec3 Worlds<Real>::center_of_mass(int world, int body) const {
   Vec3 x = Vec3::Zero();
   const int dim = plan_.scene().space == Space::planar ? 2 : 3;
-  for (int c = 0; c < dim; ++c) x[c] = static_cast<double>(component(world, body, c));
+  for (int c = 0; c < dim; ++c) {
+    x[c] = static_cast<double>(number(Field::position, world, body, c));
+  }
   return x;
 }
 
@@ -189,21 +197,20 @@ void Worlds<Real>::add_impulse(int world, int body, const Vec3& impulse, const V
   const PlanBody& b = body_of(world, static_cast<std::size_t>(body));
   if (b.inv_mass == 0) return;
   if (!(impulse.isZero(0) && angular.isZero(0))) storage_.wake_island(slot_of(world), body);
-  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
-  const auto add = [&](int c, double x) {
-    Real& value = component(world, body, c);
+  const auto add = [&](Field field, int c, double x) {
+    Real& value = number(field, world, body, c);
     value = static_cast<Real>(static_cast<double>(value) + x);
   };
   if (plan_.scene().space == Space::planar) {
-    for (int c = 0; c < 2; ++c) add(at.linear + c, impulse[c] * b.inv_mass);
-    add(at.angular, angular.z() * b.inv_inertia.z());
+    for (int c = 0; c < 2; ++c) add(Field::linear_velocity, c, impulse[c] * b.inv_mass);
+    add(Field::angular_velocity, 0, angular.z() * b.inv_inertia.z());
     return;
   }
   const Quat q = internal_rotation(world, body);
   const Vec3 spin = q * b.inv_inertia.cwiseProduct(q.conjugate() * angular);
   for (int c = 0; c < 3; ++c) {
-    add(at.linear + c, impulse[c] * b.inv_mass);
-    add(at.angular + c, spin[c]);
+    add(Field::linear_velocity, c, impulse[c] * b.inv_mass);
+    add(Field::angular_velocity, c, spin[c]);
   }
 }
 
@@ -215,30 +222,29 @@ Status Worlds<Real>::status(int world) const {
 template <class Real>
 std::uint64_t Worlds<Real>::hash(int world) const {
   Hasher hasher;
-  const auto& t = tables();
-  for (int b = 0; b < t.bodies; ++b) {
-    for (int c = 0; c < t.state_stride; ++c) hasher.add(component(world, b, c));
-  }
+  const int slot = slot_of(world);
+  for (int row = 0; row < layout_.rows; ++row) hasher.add(storage_.number(slot, row));
   return hasher.value();
 }
 
 template <class Real>
 Energy Worlds<Real>::energy(int world) const {
   const bool planar = plan_.scene().space == Space::planar;
-  const auto at = kernels::state_offsets(tables().dimension, tables().has_orientation);
   const Vec3 g(gravity(world, 0), gravity(world, 1), gravity(world, 2));
   Energy e;
   for (std::size_t i = 0; i < data().bodies.size(); ++i) {
     const PlanBody& b = body_of(world, i);
     const int body = static_cast<int>(i);
     if (b.inv_mass == 0 || !enabled(world, body)) continue;
-    const auto value = [&](int c) { return static_cast<double>(component(world, body, c)); };
+    const auto value = [&](Field field, int c) {
+      return static_cast<double>(number(field, world, body, c));
+    };
     Vec3 v = Vec3::Zero(), w = Vec3::Zero();
-    for (int c = 0; c < (planar ? 2 : 3); ++c) v[c] = value(at.linear + c);
+    for (int c = 0; c < (planar ? 2 : 3); ++c) v[c] = value(Field::linear_velocity, c);
     if (planar) {
-      w.z() = value(at.angular);
+      w.z() = value(Field::angular_velocity, 0);
     } else {
-      for (int c = 0; c < 3; ++c) w[c] = value(at.angular + c);
+      for (int c = 0; c < 3; ++c) w[c] = value(Field::angular_velocity, c);
       w = internal_rotation(world, body).conjugate() * w;
     }
     e.kinetic += 0.5 * b.mass * v.squaredNorm() + 0.5 * w.dot(b.inertia.cwiseProduct(w));

@@ -1,5 +1,5 @@
-// Worlds: all worlds of one kind (one Plan). It knows which slot of the storage a world lives in,
-// how worlds begin, and what a user reads and writes. World indices here are local to the kind.
+// Worlds: the worlds of one kind in one number type. It knows which slot of the storage a world
+// lives in, how worlds begin, and what a user reads and writes.
 //
 // With sleep, worlds that move are packed into as few groups as they fill, so where a world lives
 // changes; nothing that it computes does.
@@ -11,15 +11,16 @@
 #include <mutex>
 #include <vector>
 
-#include "manyworlds/batch.hpp"
+#include "src/plan/state_layout.hpp"
 #include "src/state/initial_state.hpp"
 #include "src/state/storage.hpp"
 #include "src/state/tables.hpp"
+#include "src/state/worlds_base.hpp"
 
 namespace manyworlds {
 
 template <class Real>
-class Worlds {
+class Worlds final : public WorldsBase {
  public:
   // `first` is the index of the first of these worlds in the batch: world seeds follow it.
   Worlds(Plan plan, int worlds, int first, const BatchOptions& options, int lanes);
@@ -29,37 +30,61 @@ class Worlds {
   const kernels::WorldTables<Real>& tables() const { return tables_->get(); }
   const Storage<Real>& storage() const { return storage_; }
   int count() const { return worlds_; }
-  int slot_of(int world) const { return slot_of_[static_cast<std::size_t>(world)]; }
+  int slot_of(int world) const override { return slot_of_[static_cast<std::size_t>(world)]; }
   int world_in(int slot) const { return world_in_[static_cast<std::size_t>(slot)]; }  // -1: none
 
-  void restart();                             // all worlds, first episode
-  void reset(int world);                      // next episode
-  void reset(int world, std::uint64_t seed);  // the first episode of this seed
+  void restart() override;
+  void reset(int world) override;
+  void reset(int world, std::uint64_t seed) override;
+  void set_initial(Field field, int world, const double* in) override;
 
-  // One world, canonical [body][component].
-  template <class Out>
-  void read(Field field, int world, Out* out) const;
-  template <class In>
-  void write(Field field, int world, const In* in);
-  LaneBlocks lane_blocks(Field field) const;
+  void read(Field field, int world, float* out) const override { read_as(field, world, out); }
+  void read(Field field, int world, double* out) const override { read_as(field, world, out); }
+  void write(Field field, int world, const float* in) override { write_as(field, world, in); }
+  void write(Field field, int world, const double* in) override { write_as(field, world, in); }
+  LaneBlocks lane_blocks(Field field) const override;
+  Vec3 center_of_mass(int world, int body) const override;
 
-  void add_force(int world, int body, const Vec3& force, const Vec3& torque);
+  void add_force(int world, int body, const Vec3& force, const Vec3& torque) override;
   void clear_forces() { storage_.clear_forces(); }
   void clear_forces(int world) { storage_.clear_forces(slot_of(world)); }
   void find_forces() { storage_.find_forces(); }
-  void add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular);
-  Vec3 center_of_mass(int world, int body) const;
+  void add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular) override;
+  bool forced() const override { return storage_.forced(); }
+  void set_controls(int first, int count, const float* in) override {
+    set_controls_as(first, count, in);
+  }
+  void set_controls(int first, int count, const double* in) override {
+    set_controls_as(first, count, in);
+  }
+  void read_controls(int first, int count, float* out) const override {
+    read_controls_as(first, count, out);
+  }
+  void read_controls(int first, int count, double* out) const override {
+    read_controls_as(first, count, out);
+  }
 
-  // Numbers of the scene, one world's, canonical: [scene's shape], [state body] or the world's one,
-  // times the numbers of each.
-  std::size_t parameter_size(Parameter parameter) const {
+  bool enabled(int world, int body) const override {
+    return !storage_.absent(slot_of(world), body);
+  }
+  void set_enabled(int world, int body, bool enabled) override;
+  void spawn(int world, int body, const BodyState& state) override;
+  bool joint_enabled(int world, int joint) const override {
+    return !storage_.loose(slot_of(world), joint);
+  }
+  void set_joint_enabled(int world, int joint, bool enabled) override;
+  bool asleep(int world, int body) const override;
+  bool resting(int world) const override { return storage_.resting(slot_of(world)); }
+  void wake(int world) override { storage_.wake(slot_of(world)); }
+  // Moves worlds so that those in which something moves fill as few groups as possible.
+  void pack();
+
+  std::size_t parameter_size(Parameter parameter) const override {
     return number_at_[static_cast<std::size_t>(parameter)].size();
   }
-  void read(Parameter parameter, int world, double* out) const;
-  // What is wrong with these numbers; empty: nothing.
-  std::string check(Parameter parameter, int world, const double* in) const;
-  void write(Parameter parameter, int world, const double* in);
-
+  void read(Parameter parameter, int world, double* out) const override;
+  std::string check(Parameter parameter, int world, const double* in) const override;
+  void write(Parameter parameter, int world, const double* in) override;
   // Bodies as this world's sizes, densities and masses make them.
   const PlanBody& body_of(int world, std::size_t body) const {
     return own_bodies_.empty()
@@ -67,28 +92,30 @@ class Worlds {
                : own_bodies_[static_cast<std::size_t>(world) * data().bodies.size() + body];
   }
 
-  // What a control is set to counts within its range.
-  template <class In>
-  void set_controls(int first, int count, const In* in);
-  template <class Out>
-  void read_controls(int first, int count, Out* out) const;
+  // A world as bytes: the storage's, then its own numbers.
+  std::size_t world_bytes() const override;
+  void write_world(int world, std::byte* to) const override;
+  void read_world(int world, const std::byte* from) override;
+  std::string check_world(const std::byte* from) const override;
+  void copy_world(int from, int to) override;
+  // What a step changes of the world in a slot: saved and restored, without allocating.
+  void save_lane(int slot, std::byte* to) const { storage_.write_world(slot, to); }
+  void restore_lane(int slot, const std::byte* from) { storage_.restore_lane(slot, from); }
+  std::uint32_t episode(int world) const override {
+    return episode_[static_cast<std::size_t>(world)];
+  }
+  void set_episode(int world, std::uint32_t episode) override {
+    episode_[static_cast<std::size_t>(world)] = episode;
+  }
+  std::uint64_t seed(int world) const override { return seed_[static_cast<std::size_t>(world)]; }
+  void set_seed(int world, std::uint64_t seed) override {
+    seed_[static_cast<std::size_t>(world)] = seed;
+  }
 
-  // Where the world begins from now on, instead of the scene's value and its jitter; canonical. Of
-  // all worlds or of none.
-  void set_initial(Field field, int world, const double* in);
-
-  bool enabled(int world, int body) const { return !storage_.absent(slot_of(world), body); }
-  void set_enabled(int world, int body, bool enabled);
-  bool joint_enabled(int world, int joint) const { return !storage_.loose(slot_of(world), joint); }
-  void set_joint_enabled(int world, int joint, bool enabled);
-  void spawn(int world, int body, const BodyState& state);
-
-  bool asleep(int world, int body) const;
-  bool resting(int world) const { return storage_.resting(slot_of(world)); }
-  void wake(int world) { storage_.wake(slot_of(world)); }
-  // Moves worlds so that those in which something moves fill as few groups as possible.
-  void pack();
-
+  Status status(int world) const override;
+  std::uint64_t hash(int world) const override;
+  Energy energy(int world) const override;
+  std::size_t bytes() const override { return storage_.bytes(); }
   // Bytes of a world outside of the storage.
   std::size_t own_bytes() const {
     return sizeof(std::uint64_t) + sizeof(std::uint32_t) + 2 * sizeof(int) +
@@ -96,29 +123,18 @@ class Worlds {
                static_cast<std::size_t>(worlds_);
   }
 
-  std::uint32_t episode(int world) const { return episode_[static_cast<std::size_t>(world)]; }
-  void set_episode(int world, std::uint32_t episode) {
-    episode_[static_cast<std::size_t>(world)] = episode;
-  }
-  std::uint64_t seed(int world) const { return seed_[static_cast<std::size_t>(world)]; }
-  void set_seed(int world, std::uint64_t seed) { seed_[static_cast<std::size_t>(world)] = seed; }
-  // What a step changes of the world in a slot: kept aside and put back, without allocating.
-  void put_aside(int slot, std::byte* to) const { storage_.write_world(slot, to); }
-  void put_back(int slot, const std::byte* from) { storage_.put_back(slot, from); }
-  // A world as bytes: the storage's, then its own numbers.
-  std::size_t world_bytes() const;
-  void write_world(int world, std::byte* to) const;
-  void read_world(int world, const std::byte* from);
-  std::string check_world(const std::byte* from) const;
-  void copy_world(int from, int to);
-
-  Status status(int world) const;
-  std::uint64_t hash(int world) const;
-  Energy energy(int world) const;
-
  private:
-  Real& component(int world, int body, int component) const {
-    return storage_.component(slot_of(world), body, component);
+  template <class Out>
+  void read_as(Field field, int world, Out* out) const;
+  template <class In>
+  void write_as(Field field, int world, const In* in);
+  template <class In>
+  void set_controls_as(int first, int count, const In* in);
+  template <class Out>
+  void read_controls_as(int first, int count, Out* out) const;
+  // A component of a field that the plan has.
+  Real& number(Field field, int world, int item, int component) const {
+    return storage_.number(slot_of(world), layout_.row_of(field, item) + component);
   }
   double* values_of(int world) {
     return values_.data() + static_cast<std::size_t>(world) * data().varied.size();
@@ -136,18 +152,22 @@ class Worlds {
   void initialise(int world);
   void begin(int world);
   void place(int world, int body, const BodyState& state);
+  // Of a body's principal axes, as the kernels have it, and of its own.
   Quat internal_rotation(int world, int body) const;
-  void set_rotation(int world, int body, const Quat& rotation);
+  Quat rotation(int world, int body) const;
+  void set_rotation(int world, int body, const Quat& rotation);  // of the principal axes
+  void set_origin(int world, int body, const Vec3& origin, const Quat& rotation);
   void move(int from_slot, int to_slot);
 
   Plan plan_;
+  StateLayout layout_;
   std::unique_ptr<TablesOf<Real>> tables_;
   Storage<Real> storage_;
   int worlds_, first_;
   std::vector<std::uint64_t> seed_;  // [world]
   std::vector<std::uint32_t> episode_;
   std::mutex own_plan_;  // worlds may begin on several threads, with one plan of their own numbers
-  std::array<std::vector<double>, kFieldCount> initial_;  // [world][body][component], or empty
+  std::array<std::vector<double>, kFieldCount> initial_;  // [world][item][component], or empty
   // What varies (Scene::variations).
   std::array<std::vector<int>, kParameterCount> number_at_;  // index in PlanData::varied, or -1
   std::vector<double> values_;                               // [world][PlanData::varied]

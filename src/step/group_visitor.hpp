@@ -17,7 +17,7 @@ struct VisitedGroup {
   const kernels::GroupView<Real>& view;
   Real* control;  // [control][lane]
   // Of the last step, or of the state where worlds begin; null: nothing is observed.
-  const kernels::Observation<Real>* seen;
+  const kernels::ObserverView<Real>* seen;
   bool whole;  // this visit takes all steps of the call: what this thread has put down still holds
 };
 

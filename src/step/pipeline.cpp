@@ -1,109 +1,93 @@
 #include "src/step/pipeline.hpp"
 
-#include "src/step/substep.hpp"
+#include <span>
 
 namespace manyworlds {
 
 namespace {
 
+// A group in the middle of a step.
 template <class Real>
-const kernels::SolverTable<Real>& solver_of(const GroupStep<Real>& p, kernels::Layout layout) {
-  const auto& t = p.tables;
-  return p.kernels.solver[static_cast<int>(t.inertia_kind)][t.has_friction ? 1 : 0]
-                         [layout == kernels::Layout::dense ? 0 : 1];
-}
+struct Run {
+  const GroupStep<Real>& step;
+  const kernels::GroupView<Real>& group;
+  kernels::Scratch* scratch;
+  StageClock* clock;
+
+  void lap(StepStage stage) const {
+    if (clock) clock->lap(stage);
+  }
+  void operator()(kernels::Stage<Real> call) const { call(step.tables, group, scratch); }
+  void operator()(const StageCall<Real>& call) const {
+    (*this)(call.run);
+    lap(call.stage);
+  }
+  void operator()(std::span<const StageCall<Real>> calls) const {
+    for (const StageCall<Real>& call : calls) (*this)(call);
+  }
+};
+
 // Poses, and the rows of all contacts; velocities are then in the layout of the group.
 template <class Real>
-kernels::Layout find_rows(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
-                          kernels::Scratch* scratch, StageClock* clock) {
+const StageCalls<Real>& find_rows(const Run<Real>& run) {
+  const GroupStep<Real>& p = run.step;
   const auto& t = p.tables;
-  const auto lap = [clock](StageIndex stage) {
-    if (clock) clock->lap(stage);
-  };
-  p.kernels.begin(t, group, scratch);
-  lap(kBegin);
+  run(StageCall<Real>{StepStage::begin, p.kernels.begin});
   kernels::Layout layout = kernels::Layout::dense;
   if (t.has_contacts) {
-    p.kernels.broad_phase(t, group, scratch);
-    layout = p.kernels.choose_layout(t, group, scratch, p.layout);
-    lap(kBroadPhase);
+    run(p.kernels.broad_phase);
+    layout = p.kernels.choose_layout(t, run.group, run.scratch, p.layout);
+    run.lap(StepStage::broad_phase);
   }
-  const auto& solver = solver_of(p, layout);
-  solver.enter(t, group, scratch);
+  const StageCalls<Real>& calls = p.stages[layout];
+  run(StageCall<Real>{StepStage::begin, calls.enter});
   const auto* collide = p.kernels.collide[static_cast<int>(t.dimension)];
   for (int c = 0; c < t.classes; ++c) {
-    p.kernels.set_class(scratch, c);
-    collide[static_cast<int>(t.pair_class[c].kind)](t, group, scratch);
+    p.kernels.set_class(run.scratch, c);
+    run(collide[static_cast<int>(t.pair_class[c].kind)]);
   }
-  lap(kCollide);
-  return layout;
+  if (t.has_contacts) run.lap(StepStage::collide);
+  return calls;
 }
 
+// How far the solver is from done: what one more sweep would change.
 template <class Real>
-SolverRun<Real> run_of(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
-                       kernels::Scratch* scratch, StageClock* clock, kernels::Layout layout) {
-  const int kind = static_cast<int>(p.tables.inertia_kind),
-            rows = layout == kernels::Layout::dense ? 0 : 1;
-  const auto& k = p.kernels;
-  return {p.tables,
-          group,
-          scratch,
-          clock,
-          solver_of(p, layout),
-          k.sweeps[kind][rows],
-          k.impulses[kind],
-          k.joints[kind][rows],
-          *k.observer};
+void look_at_residual(const Run<Real>& run, const StageCalls<Real>& calls,
+                      const kernels::ObserverView<Real>& wanted) {
+  const GroupStep<Real>& p = run.step;
+  const auto& observer = *p.kernels.observer;
+  observer.set_aside(p.tables, run.group, run.scratch, wanted);
+  if (calls.joint_sweep) run(calls.joint_sweep);
+  if (calls.contact_sweep) run(calls.contact_sweep);
+  observer.compare[static_cast<int>(p.tables.inertia_kind)](p.tables, run.group, run.scratch,
+                                                            wanted);
+  run.lap(StepStage::observe);
 }
 
 // Contacts and joints: rows in substeps. `wanted` in the last step of a call.
 template <class Real>
-void solver_step(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
-                 kernels::Scratch* scratch, StageClock* clock,
-                 const kernels::Observation<Real>* wanted) {
+void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted) {
+  const GroupStep<Real>& p = run.step;
   const auto& t = p.tables;
+  const auto& observer = *p.kernels.observer;
   const auto* slots = wanted && wanted->slots && t.has_contacts ? wanted : nullptr;
-  if (slots) p.kernels.observer->watch(scratch, slots->places);
-  const kernels::Layout layout = find_rows(p, group, scratch, clock);
-  if (slots) p.kernels.observer->watch(scratch, nullptr);
+  if (slots) observer.watch(run.scratch, slots->places);
+  const StageCalls<Real>& calls = find_rows(run);
+  if (slots) observer.watch(run.scratch, nullptr);
   const bool adds_up = slots && slots->totals[0];
-  SolverRun<Real> run = run_of(p, group, scratch, clock, layout);
-  const auto& flight = p.kernels.flight[static_cast<int>(t.inertia_kind)];
-  if (t.flight.on) {
-    run.run(flight.fly);
-    run.lap(kFlight);
-  }
-  run.on_joints(run.joints.prepare);
-  begin_substeps(run);
+  const std::span<const StageCall<Real>> solve = calls.solve;
+  run(calls.prepare);
   for (int s = 0; s < t.substeps; ++s) {
-    if (s + 1 == t.substeps && wanted && wanted->residual) run.residual = wanted;
-    solve_substep(run);
-    if (t.breakable > 0) run.on_joints(run.joints.bear);
-    if (t.has_restitution && t.solver.kind != kernels::Solver::tgs_soft) {
-      run.run(run.sweeps.tally);
-      run.lap(kRelax);
-    }
+    run(solve.first(calls.residual_at));
+    if (s + 1 == t.substeps && wanted && wanted->aside) look_at_residual(run, calls, *wanted);
+    run(solve.subspan(calls.residual_at));
     if (adds_up) {
-      p.kernels.observer->accumulate[static_cast<int>(t.inertia_kind)](t, group, scratch, *slots);
-      run.lap(kObserve);
+      observer.accumulate[static_cast<int>(t.inertia_kind)](t, run.group, run.scratch, *slots);
+      run.lap(StepStage::observe);
     }
-    if (s + 1 == t.substeps) break;
-    next_substep(run);
+    if (s + 1 < t.substeps) run(calls.next);
   }
-  run.on_joints(run.joints.store);
-  if (t.has_restitution) {
-    run.run(run.solver.restitute);
-    run.lap(kRestitute);
-  }
-  if (t.has_contacts) run.run(run.solver.store);
-  run.lap(kStore);
-  run.run(t.flight.on ? flight.leave[layout == kernels::Layout::dense ? 0 : 1] : run.solver.leave);
-  run.lap(kFinish);
-  if (t.breakable > 0) run.run(run.joints.break_up);
-  if (t.has_sleep) {
-    p.kernels.settle(t, group, scratch);
-    run.lap(kSettle);
-  }
+  run(calls.end);
 }
 
 template <class Real>
@@ -125,9 +109,42 @@ void observe_slots(const GroupStep<Real>& p, const kernels::GroupView<Real>& gro
   kernels::GroupView<Real> all_awake = group;
   all_awake.asleep = wanted.nobody;
   observer.watch(scratch, wanted.places);
-  find_rows<Real>(p, all_awake, scratch, nullptr);
+  find_rows(Run<Real>{p, all_awake, scratch, nullptr});
   observer.watch(scratch, nullptr);
   observer.asleep[kind](t, group, scratch, wanted);
+}
+
+// Calls visit(function, scratch) of every observer that is asked for and has one in this table.
+template <class Real, class Table, class Visit>
+void for_each_observer(const GroupStep<Real>& p, const Table& table, kernels::Scratch* scratch,
+                       Visit visit) {
+  constexpr int kRays = static_cast<int>(Observer::rays);
+  for (int i = 0; i < kObserverCount; ++i) {
+    const auto function = table[i][static_cast<int>(p.tables.inertia_kind)];
+    if (function && p.wanted->items[i] > 0) visit(function, i == kRays ? p.poses : scratch);
+  }
+}
+
+template <class Real>
+bool looks_at_start(const GroupStep<Real>& p) {
+  bool found = false;
+  if (!p.wanted) return found;
+  for_each_observer(p, p.kernels.observer->begin, nullptr, [&](auto, auto*) { found = true; });
+  return found;
+}
+// Before the last step of a call.
+template <class Real>
+void look_at_start(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
+                   kernels::Scratch* scratch) {
+  for_each_observer(p, p.kernels.observer->begin, scratch,
+                    [&](auto begin, auto* s) { begin(p.tables, group, s, *p.wanted); });
+}
+template <class Real>
+void look_at_end(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
+                 kernels::Scratch* scratch) {
+  if (p.wanted->rows[static_cast<int>(Observer::rays)]) p.kernels.begin(p.tables, group, p.poses);
+  for_each_observer(p, p.kernels.observer->look, scratch,
+                    [&](auto look, auto* s) { look(p.tables, group, s, *p.wanted); });
 }
 
 }  // namespace
@@ -135,21 +152,8 @@ void observe_slots(const GroupStep<Real>& p, const kernels::GroupView<Real>& gro
 template <class Real>
 void look_at_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                    kernels::Scratch* scratch) {
-  const auto& t = p.tables;
-  const auto& observer = *p.kernels.observer;
-  if (p.wanted->motion) {
-    observer.motion[static_cast<int>(t.inertia_kind)](t, group, scratch, *p.wanted);
-  }
-  if (p.wanted->coordinates > 0) {
-    observer.joints[static_cast<int>(t.inertia_kind)](t, group, scratch, *p.wanted);
-  }
-  if (p.wanted->joints > 0) {
-    observer.joint_loads[static_cast<int>(t.inertia_kind)](t, group, scratch, *p.wanted);
-  }
-  if (p.wanted->rays > 0) {
-    p.kernels.begin(t, group, p.poses);
-    observer.rays(t, group, p.poses, *p.wanted);
-  }
+  look_at_start(p, group, scratch);
+  look_at_end(p, group, scratch);
 }
 
 template <class Real>
@@ -160,21 +164,28 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
   if (p.tables.has_substeps) {
     if (p.wanted) p.kernels.observer->clear(p.tables, group, scratch, *p.wanted);
     for (; taken < steps && !at_rest(p, group); ++taken) {
-      solver_step(p, group, scratch, clock, taken + 1 == steps ? p.wanted : nullptr);
+      const auto* wanted = taken + 1 == steps ? p.wanted : nullptr;
+      if (wanted) look_at_start(p, group, scratch);
+      solver_step(Run<Real>{p, group, scratch, clock}, wanted);
     }
+    if (p.wanted && taken < steps) look_at_start(p, group, scratch);
     const bool slots = p.wanted && p.wanted->slots && p.tables.has_contacts;
     if (slots) observe_slots(p, group, scratch, taken == steps);
   } else {
     const auto& t = p.tables;
     const auto flight = p.kernels.flight[static_cast<int>(t.inertia_kind)].steps;
     const auto free_motion = p.kernels.free_motion[static_cast<int>(t.inertia_kind)];
-    (t.flight.on ? flight : free_motion)(t, group, scratch, steps);
-    if (clock) clock->lap(t.flight.on ? kFlight : kFreeMotion);
+    const auto move = t.flight.on ? flight : free_motion;
+    const int last = looks_at_start(p) ? 1 : 0;  // taken by itself
+    move(t, group, scratch, steps - last);
+    if (p.wanted) look_at_start(p, group, scratch);
+    if (last > 0) move(t, group, scratch, last);
+    if (clock) clock->lap(t.flight.on ? StepStage::flight : StepStage::free_motion);
     taken = steps;
   }
   if (p.wanted) {
-    look_at_group(p, group, scratch);
-    if (clock) clock->lap(kObserve);
+    look_at_end(p, group, scratch);
+    if (clock) clock->lap(StepStage::observe);
   }
   return taken;
 }
@@ -182,7 +193,7 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
 template <class Real>
 void collide_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                    kernels::Scratch* scratch) {
-  if (p.tables.has_contacts) find_rows<Real>(p, group, scratch, nullptr);
+  if (p.tables.has_contacts) find_rows(Run<Real>{p, group, scratch, nullptr});
 }
 
 template int step_group<float>(const GroupStep<float>&, const kernels::GroupView<float>&,

@@ -1,46 +1,42 @@
-// The step of one group: which stages run, in which order. No arithmetic here.
+// The step of one group: runs the stages of its plan. No arithmetic here.
 #pragma once
 
 #include <array>
 #include <chrono>
 
-#include "kernels/data/observation.hpp"
+#include "src/step/stage_list.hpp"
 
 namespace manyworlds {
 
-// Where a step's time goes; off unless somebody asked.
+// Where a step's time goes, by stage; off unless it was asked for.
 class StageClock {
  public:
-  static constexpr int kStages = 15;
-  static constexpr std::array<const char*, kStages> kNames = {
-      "free_motion", "begin", "broad_phase", "collide", "warm_start", "bias",   "advance", "relax",
-      "restitute",   "store", "finish",      "settle",  "observe",    "joints", "flight"};
-
   void start() { last_ = Clock::now(); }
-  void lap(int stage) {
+  void lap(StepStage stage) {
     const auto now = Clock::now();
     seconds_[static_cast<std::size_t>(stage)] += std::chrono::duration<double>(now - last_).count();
     last_ = now;
   }
-  std::array<double, kStages>& seconds() { return seconds_; }
+  std::array<double, kStepStages>& seconds() { return seconds_; }
 
  private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point last_;
-  std::array<double, kStages> seconds_{};
+  std::array<double, kStepStages> seconds_{};
 };
 
 template <class Real>
 struct GroupStep {
   const kernels::KernelTable<Real>& kernels;
   const kernels::WorldTables<Real>& tables;
+  const StageList<Real>& stages;
   kernels::Layout layout;
   // What batches with observers want to know after the last step, and scratch for poses of shapes.
-  const kernels::Observation<Real>* wanted = nullptr;
+  const kernels::ObserverView<Real>* wanted = nullptr;
   kernels::Scratch* poses = nullptr;
 };
 
-// `steps` whole steps of one group, fewer when all its worlds come to rest; returns how many.
+// `steps` >= 1 whole steps of one group, fewer when all its worlds come to rest; returns how many.
 // clock may be nullptr.
 template <class Real>
 int step_group(const GroupStep<Real>& plan, const kernels::GroupView<Real>& group,

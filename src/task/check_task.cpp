@@ -7,7 +7,7 @@
 
 #include "manyworlds/plan.hpp"
 #include "manyworlds/task.hpp"
-#include "src/api/observations.hpp"
+#include "src/api/observer_results.hpp"
 #include "src/base/float_mode.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/scene/checks.hpp"
@@ -46,13 +46,8 @@ class TaskChecker {
     }
     check("terminated", task_.terminated, false);
     check("truncated", task_.truncated, false);
-    if (plan_) {
-      try {
-        check_rays(task_.rays, *plan_);
-      } catch (const std::invalid_argument& error) {
-        issues_.push_back({"rays", error.what()});
-      }
-    }
+    check_list("rays", [&] { check_rays(task_.rays, *plan_); });
+    check_list("points", [&] { check_points(task_.points, *plan_); });
     return std::move(issues_);
   }
 
@@ -65,6 +60,16 @@ class TaskChecker {
   void add_range(const std::string& place, double low, double high, const char* wanted) {
     issues_.push_back({place, "has the range " + detail::number_text(low) + " to " +
                                   detail::number_text(high) + ", " + wanted});
+  }
+
+  template <class Check>
+  void check_list(const char* list, Check check_all) {
+    if (!plan_) return;
+    try {
+      check_all();
+    } catch (const std::invalid_argument& error) {
+      issues_.push_back({list, error.what()});
+    }
   }
 
   void check_actions() {
@@ -158,29 +163,54 @@ class TaskChecker {
         axis(n.of);
         body();
         break;
-      case Term::touching:
-        if (body() &&
-            task_.scene.bodies[static_cast<std::size_t>(n.index)].motion == Motion::fixed) {
-          issues_.push_back({place, to_string(e) + ": a fixed body is not observed, ask those that "
-                                                   "touch it"});
-        }
-        break;
-      case Term::joint_position:
-      case Term::joint_speed: {
-        if (!bounded(n.index, task_.scene.joints.size(), "the joint") || !plan_) break;
-        const int first = plan_->first_coordinate(JointId(n.index));
-        const auto& all = plan_->data().first_coordinate;
-        bounded(n.of, static_cast<std::size_t>(all[static_cast<std::size_t>(n.index) + 1] - first),
-                "the coordinate");
-        break;
-      }
-      case Term::ray_distance: bounded(n.index, task_.rays.size(), "the ray"); break;
+      case Term::observed: check_observed(place, e, bounded); break;
       case Term::action:
         bounded(n.index, task_.choices > 0 ? 1 : task_.actions.size(), "the action");
         break;
       case Term::control: bounded(n.index, task_.scene.controls.size(), "the control"); break;
       default: break;
     }
+  }
+
+  template <class Bounded>
+  void check_observed(const std::string& place, const Expression& e, const Bounded& bounded) {
+    const Expression::Node& n = e.node();
+    const ObservedInfo& what = *observed_by(n);
+    const Scene& scene = task_.scene;
+    const auto item = static_cast<std::size_t>(n.index);
+    switch (info(what.observer).item) {
+      case ObservedItem::world: bounded(n.index, 1, "the item"); break;
+      case ObservedItem::body:
+        if (bounded(n.index, scene.bodies.size(), "the body") &&
+            scene.bodies[item].motion == Motion::fixed) {
+          const bool touch = what.observer == Observer::touching;
+          issues_.push_back({place, to_string(e) + ": a fixed body is not observed" +
+                                        (touch ? ", ask those that touch it" : "")});
+        }
+        break;
+      case ObservedItem::joint: bounded(n.index, scene.joints.size(), "the joint"); break;
+      case ObservedItem::coordinate: {
+        if (!bounded(n.index, scene.joints.size(), "the joint") || !plan_) return;
+        const auto& first = plan_->data().first_coordinate;
+        bounded(n.axis, static_cast<std::size_t>(first[item + 1] - first[item]), "the coordinate");
+        return;
+      }
+      case ObservedItem::ray: bounded(n.index, task_.rays.size(), "the ray"); break;
+      case ObservedItem::point: bounded(n.index, task_.points.size(), "the point"); break;
+    }
+    check_component(place, e, bounded);
+  }
+  template <class Bounded>
+  void check_component(const std::string& place, const Expression& e, const Bounded& bounded) {
+    const Expression::Node& n = e.node();
+    const bool spin = observed_by(n)->components == ObservedComponents::spin;
+    if (spin && task_.scene.space == Space::planar) {
+      if (n.axis != 2)
+        issues_.push_back({place, to_string(e) + ": the axis must be 2 in the plane"});
+      return;
+    }
+    const int count = components(static_cast<Observed>(n.of), task_.scene.space);
+    bounded(n.axis, static_cast<std::size_t>(count), "the axis");
   }
 
   // A body frame that moves against its centre of mass from world to world is not to be had.

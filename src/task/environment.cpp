@@ -28,12 +28,11 @@ BatchOptions options_of(const Task& task, const TaskPrograms& programs,
   out.precision = o.precision;
   out.isa = o.isa;
   out.executor = o.executor;
-  const auto looks_at = [&](kernels::Operation what, Observer observer) {
-    if (programs.after.has(what)) out.observe.what.push_back(observer);
-  };
-  looks_at(kernels::Operation::coordinate, Observer::joints);
-  looks_at(kernels::Operation::touching, Observer::touching);
+  for (int i = 0; i < kObserverCount; ++i) {
+    if (programs.after.asks(Observer(i))) out.observe.what.push_back(Observer(i));
+  }
   out.observe.rays = task.rays;
+  out.observe.points = task.points;
   return out;
 }
 

@@ -111,13 +111,7 @@ struct Environment::Impl {
     runner->out = out;
     runner->some_begin = false;
     const Visit visit{&runner->visitor(), begins};
-    int taken = n;
-    if (go_on) {
-      taken = b.step(n, {}, go_on, visit);
-    } else {
-      b.core->step(*b.executor, n, visit);
-      b.core->end_steps();
-    }
+    const int taken = b.step(n, {}, go_on, visit);
     b.steps += taken;
     tell_step(b, taken, begins);
     steps_left = n - taken;

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "manyworlds/observe.hpp"
+#include "src/base/enum_names.hpp"
 #include "src/task/node.hpp"
 
 namespace manyworlds {
@@ -14,6 +16,18 @@ using kernels::Operation;
 
 // Expressions are walked through and destroyed by functions that call themselves.
 constexpr int kMostDepth = 2000;
+
+const char* word_of(ObservedItem item) {
+  switch (item) {
+    case ObservedItem::world: return "world";
+    case ObservedItem::body: return "body";
+    case ObservedItem::joint:
+    case ObservedItem::coordinate: return "joint";
+    case ObservedItem::ray: return "ray";
+    case ObservedItem::point: return "point";
+  }
+  return "?";
+}
 
 Expression leaf(Term term, int index = -1, int of = 0, int axis = 0) {
   Expression::Node node;
@@ -102,14 +116,9 @@ Expression angle(BodyId body) { return leaf(Term::angle, body.index()); }
 Expression direction(BodyId body, int of, int axis) {
   return leaf(Term::direction, body.index(), of, axis);
 }
-Expression joint_position(JointId joint, int coordinate) {
-  return leaf(Term::joint_position, joint.index(), coordinate);
+Expression observed(Observed what, int item, int component) {
+  return leaf(Term::observed, item, static_cast<int>(checked_enum(what)), component);
 }
-Expression joint_speed(JointId joint, int coordinate) {
-  return leaf(Term::joint_speed, joint.index(), coordinate);
-}
-Expression touching(BodyId body) { return leaf(Term::touching, body.index()); }
-Expression ray_distance(int ray) { return leaf(Term::ray_distance, ray); }
 Expression action(int index) { return leaf(Term::action, index); }
 Expression control(ControlId control) { return leaf(Term::control, control.index()); }
 Expression age() { return leaf(Term::age); }
@@ -119,6 +128,31 @@ Expression held(E condition) { return arithmetic(Operation::held, {condition}); 
 Expression largest(E value) { return arithmetic(Operation::largest, {value}); }
 
 }  // namespace terms
+
+const ObservedInfo* observed_by(const Expression::Node& node) {
+  return node.term == Term::observed ? &info(static_cast<Observed>(node.of)) : nullptr;
+}
+bool has_item(const ObservedInfo& what) { return info(what.observer).item != ObservedItem::world; }
+bool has_component(const ObservedInfo& what) {
+  return what.components != ObservedComponents::one ||
+         info(what.observer).item == ObservedItem::coordinate;
+}
+
+namespace {
+
+std::string observed_text(const Expression::Node& n) {
+  const ObservedInfo& what = *observed_by(n);
+  const ObservedItem item = info(what.observer).item;
+  std::string text = what.name;
+  if (has_item(what)) text += std::string(" of ") + word_of(item) + " " + std::to_string(n.index);
+  if (has_component(what)) {
+    text += item == ObservedItem::coordinate ? ", coordinate " : ", axis ";
+    text += std::to_string(n.axis);
+  }
+  return text;
+}
+
+}  // namespace
 
 std::string to_string(E expression) {
   const Expression::Node& n = expression.node();
@@ -133,12 +167,7 @@ std::string to_string(E expression) {
     case Term::angle: return "angle of body " + index;
     case Term::direction:
       return "direction of body " + index + "'s axis " + std::to_string(n.of) + axis;
-    case Term::joint_position:
-      return "joint_position of joint " + index + ", coordinate " + std::to_string(n.of);
-    case Term::joint_speed:
-      return "joint_speed of joint " + index + ", coordinate " + std::to_string(n.of);
-    case Term::touching: return "touching of body " + index;
-    case Term::ray_distance: return "ray_distance of ray " + index;
+    case Term::observed: return observed_text(n);
     case Term::action: return "action " + index;
     case Term::control: return "control " + index;
     case Term::age: return "age";

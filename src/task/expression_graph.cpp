@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 
+#include "manyworlds/observe.hpp"
 #include "src/task/node.hpp"
 
 namespace manyworlds {
@@ -64,10 +66,6 @@ constexpr TermName kTerms[] = {
     {Term::angular_velocity, "angular_velocity", {kIndex, kAxis}},
     {Term::angle, "angle", {kIndex}},
     {Term::direction, "direction", {kIndex, kOf, kAxis}},
-    {Term::joint_position, "joint_position", {kIndex, kOf}},
-    {Term::joint_speed, "joint_speed", {kIndex, kOf}},
-    {Term::touching, "touching", {kIndex}},
-    {Term::ray_distance, "ray_distance", {kIndex}},
     {Term::action, "action", {kIndex}},
     {Term::control, "control", {kIndex}},
     {Term::age, "age", {}},
@@ -85,9 +83,19 @@ const OperationName& name_of(Operation operation) {
   return *find(kOperations, [=](const auto& o) { return o.operation == operation; });
 }
 
-// nullptr: a number, an operation, or nothing that Python can make.
-const TermName* term_of(const Node& node) {
-  return find(kTerms, [&](const auto& t) { return t.term == node.term; });
+TermName term_of(const ObservedInfo& what) {
+  TermName out{Term::observed, what.name, {}};
+  std::size_t count = 0;
+  if (has_item(what)) out.members[count++] = kIndex;
+  if (has_component(what)) out.members[count++] = kAxis;
+  return out;
+}
+
+// None: a number, an operation, or nothing that Python can make.
+std::optional<TermName> term_of(const Node& node) {
+  if (const ObservedInfo* what = observed_by(node)) return term_of(*what);
+  const auto* found = find(kTerms, [&](const auto& t) { return t.term == node.term; });
+  return found ? std::optional(*found) : std::nullopt;
 }
 
 class Exporter {
@@ -101,7 +109,7 @@ class Exporter {
     } else if (node.term == Term::arithmetic) {
       out.name = name_of(node.operation).name;
       for (const Expression& operand : node.operands) out.arguments.push_back(add(operand));
-    } else if (const TermName* term = term_of(node)) {
+    } else if (const auto term = term_of(node)) {
       out.name = term->name;
       for (const Member member : term->members) {
         if (member != nullptr) out.arguments.push_back(node.*member);
@@ -126,6 +134,17 @@ class Exporter {
   throw std::invalid_argument("nodes[" + std::to_string(at) + "] " + what);
 }
 
+// The term of that name; sets which Observed it is, if it is one.
+std::optional<TermName> term_named(std::string_view name, Node& node) {
+  const auto named = [name](const auto& t) { return t.name == name; };
+  if (const auto* term = find(kTerms, named)) return *term;
+  const auto* what = find(kObservedInfo, named);
+  if (what == nullptr) return std::nullopt;
+  node.index = 0;
+  node.of = static_cast<int>(what - kObservedInfo);
+  return term_of(*what);
+}
+
 Expression read_node(const ExpressionGraph::Node& from, std::span<const Expression> before) {
   const std::size_t at = before.size();
   const auto count = [&](std::size_t wanted) {
@@ -139,7 +158,7 @@ Expression read_node(const ExpressionGraph::Node& from, std::span<const Expressi
     node.number = from.number;
     return make_expression(std::move(node));
   }
-  if (const auto* term = find(kTerms, [&](const auto& t) { return t.name == from.name; })) {
+  if (const auto term = term_named(from.name, node)) {
     node.term = term->term;
     const auto end = std::find(term->members.begin(), term->members.end(), nullptr);
     count(static_cast<std::size_t>(end - term->members.begin()));
@@ -185,7 +204,7 @@ class Writer {
     const Node& node = e.node();
     if (node.term == Term::number) {
       out += number_text(node.number);
-    } else if (const TermName* term = term_of(node)) {
+    } else if (const auto term = term_of(node)) {
       add_term(node, *term);
     } else if (depth < 0) {
       out += "...";
@@ -203,8 +222,9 @@ class Writer {
       if (member == nullptr) break;
       out += comma;
       const int value = node.*member;
-      const bool letter = member != kIndex && !(node.term == Term::joint_position) &&
-                          !(node.term == Term::joint_speed) && value >= 0 && value < 3;
+      const ObservedInfo* what = observed_by(node);
+      const bool counts = what && info(what->observer).item == ObservedItem::coordinate;
+      const bool letter = member != kIndex && !counts && value >= 0 && value < 3;
       out += letter ? std::string("'") + "xyz"[value] + "'" : std::to_string(value);
       comma = ", ";
     }

@@ -18,10 +18,7 @@ enum class Term {
   angular_velocity,
   angle,
   direction,
-  joint_position,
-  joint_speed,
-  touching,
-  ray_distance,
+  observed,
   action,
   control,
   age,
@@ -32,9 +29,9 @@ enum class Term {
 struct Expression::Node {
   Term term = Term::number;
   double number = 0;
-  int index = -1;  // body, joint, ray, action, control, row
-  int of = 0;      // axis of a body, coordinate of a joint
-  int axis = 0;    // of the world
+  int index = -1;  // body, action, control, row, or item of what is observed
+  int of = 0;      // axis of a body, or Observed
+  int axis = 0;    // of the world, or component of what is observed
   kernels::Operation operation{};
   std::vector<Expression> operands{};
   std::shared_ptr<const LaneFunction> function{};
@@ -49,6 +46,11 @@ inline bool remembers(kernels::Operation operation) {
   return operation == kernels::Operation::previous || operation == kernels::Operation::held ||
          operation == kernels::Operation::largest;
 }
+
+// What `observed` nodes are about; nullptr: others. Coordinates are those of a joint, Node::index.
+const ObservedInfo* observed_by(const Expression::Node& node);
+bool has_item(const ObservedInfo& what);       // is it of an item, Node::index?
+bool has_component(const ObservedInfo& what);  // of several, Node::axis?
 
 // "position of body 3, axis 1"; of what is no leaf, its kind.
 std::string to_string(const Expression& expression);

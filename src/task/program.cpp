@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "kernels/data/observation.hpp"
-#include "src/plan/plan_data.hpp"
+#include "kernels/data/observer.hpp"
+#include "src/plan/state_layout.hpp"
 
 namespace manyworlds {
 
@@ -30,15 +30,7 @@ int ProgramBuilder::add_node(const Expression::Node& n) {
     case Term::angular_velocity: return add(angular_velocity(n.index, n.axis));
     case Term::angle: return add(angle(n.index));
     case Term::direction: return add(direction(n.index, n.of, n.axis));
-    case Term::joint_position:
-    case Term::joint_speed:
-      return emit(Operation::coordinate,
-                  (plan_.first_coordinate(JointId(n.index)) + n.of) * kernels::kCoordinateRows +
-                      (n.term == Term::joint_speed ? 1 : 0));
-    case Term::touching:
-      if (!plan_.has(Feature::contacts)) return add(0);
-      return emit(Operation::touching, plan_.row(BodyId(n.index)));
-    case Term::ray_distance: return emit(Operation::ray, n.index * kernels::kHitRows);
+    case Term::observed: return add_observed(n);
     case Term::action: return emit(Operation::input, n.index);
     case Term::control: return emit(Operation::control, n.index);
     case Term::age: return emit(Operation::input, inputs_.age());
@@ -62,6 +54,22 @@ int ProgramBuilder::add_node(const Expression::Node& n) {
   std::transform(n.operands.begin(), n.operands.end(), operand,
                  [this](const Expression& e) { return add(e); });
   return emit(n.operation, operand[0], operand[1], operand[2]);
+}
+
+int ProgramBuilder::add_observed(const Expression::Node& n) {
+  const int observer = static_cast<int>(observed_by(n)->observer);
+  int item = n.index, component = n.axis;
+  switch (kObserverInfo[observer].item) {
+    case ObservedItem::body: item = plan_.row(BodyId(n.index)); break;
+    case ObservedItem::coordinate:
+      item = plan_.first_coordinate(JointId(n.index)) + n.axis;
+      component = 0;
+      break;
+    default: break;
+  }
+  const auto& rows = kernels::kObserverRows;
+  return emit(Operation::seen, item * rows.of_item[observer] + rows.first[n.of] + component,
+              observer);
 }
 
 int ProgramBuilder::add_function(const Expression::Node& n) {
@@ -91,10 +99,11 @@ int ProgramBuilder::emit(Operation operation, int a, int b, int c, double number
 
 Expression ProgramBuilder::state(int body, int component) const {
   const PlanData& plan = plan_.data();
-  const auto at = kernels::state_offsets(plan.dimension(), plan.has(Feature::orientation));
+  const StateLayout layout = state_layout(plan);
   Expression::Node node;
   node.term = Term::raw;
-  node.index = plan_.row(BodyId(body)) * at.components + component;
+  node.index =
+      plan_.row(BodyId(body)) * layout.stride[static_cast<int>(ItemKind::body)] + component;
   return make_expression(std::move(node));
 }
 
@@ -108,7 +117,7 @@ const PlanBody* moving(const Plan& plan, int body) {
   return row ? &plan.data().bodies[static_cast<std::size_t>(*row)] : nullptr;
 }
 kernels::StateOffsets offsets(const PlanData& plan) {
-  return kernels::state_offsets(plan.dimension(), plan.has(Feature::orientation));
+  return kernels::state_offsets(plan.dimension());
 }
 
 // The sum of those products whose number is not 0.

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "manyworlds/observed.hpp"
 #include "manyworlds/plan.hpp"
 #include "src/task/node.hpp"
 
@@ -33,9 +34,10 @@ struct Program {
   std::vector<kernels::Instruction<double>> instructions;
   std::vector<Call> calls;  // in the order of `at`
 
-  bool has(kernels::Operation operation) const {
-    return std::any_of(instructions.begin(), instructions.end(),
-                       [operation](const auto& i) { return i.operation == operation; });
+  bool asks(Observer observer) const {
+    return std::any_of(instructions.begin(), instructions.end(), [observer](const auto& i) {
+      return i.operation == kernels::Operation::seen && i.b == static_cast<int>(observer);
+    });
   }
 };
 
@@ -61,6 +63,7 @@ class ProgramBuilder {
 
   int add_node(const Expression::Node& node);
   int add_function(const Expression::Node& node);
+  int add_observed(const Expression::Node& node);
   int emit(kernels::Operation operation, int a = -1, int b = -1, int c = -1, double number = 0);
   int remember(int row);
   // In terms of what the kernels have.

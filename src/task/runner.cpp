@@ -23,12 +23,16 @@ std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, con
     for (const auto number : numbers) hash.add(static_cast<double>(number));
   };
   add(plan.fingerprint(), task.frame_skip, task.choices, programs.most_steps, programs.terminated,
-      programs.truncated, task.rays.size());
+      programs.truncated, task.rays.size(), task.points.size());
   for (const Ray& ray : task.rays) {
     add_all(ray.origin);
     add_all(ray.direction);
     add(ray.body ? plan.row(ray.body) : -1, ray.mask);
     hash.add(ray.length);
+  }
+  for (const Point& point : task.points) {
+    add_all(point.position);
+    add(plan.row(point.body));
   }
   for (const auto* ranges : {&programs.action_range, &programs.control_range}) {
     add(ranges->size());

@@ -187,7 +187,7 @@ TEST_CASE("taking a heavy load away makes nothing jump", "[fast][enable][stabili
     // A load of a hundred times the mass of what carries it wants stiffer contacts: the depth at
     // rest is what comes back out when it is gone.
     scene.options.substeps = 8;
-    scene.options.contact_frequency = 120;
+    scene.options.contact.frequency = 120;
     scene.add(ground(space));
     for (int i = 0; i < 3; ++i) {
       Body ball = body_of(shape_of(round_of(space, 0.5)), (0.5 + 1.0 * i) * up_of(space));

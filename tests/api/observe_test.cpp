@@ -204,7 +204,7 @@ TEST_CASE("energies and momenta are those of the state", "[fast][observe]") {
         CHECK(number(batch, Observed::kinetic_energy, w) == Approx(energy.kinetic).epsilon(near));
         CHECK(number(batch, Observed::potential_energy, w) ==
               Approx(energy.potential).epsilon(near));
-        CHECK(number(batch, Observed::mass, w) == Approx(mass).epsilon(near));
+        CHECK(number(batch, Observed::total_mass, w) == Approx(mass).epsilon(near));
         CHECK((vector(batch, Observed::mass_center, w) - center / mass).norm() < 5 * near);
         CHECK((vector(batch, Observed::momentum, w) - linear).norm() < 5 * near * mass);
       }
@@ -344,7 +344,7 @@ TEST_CASE("a frozen world touches nothing, a disabled body nobody", "[fast][obse
     CHECK(batch.step_contacts(2).size() == 2);
     CHECK_FALSE(batch.touching(2, batch.body_in_row(0)));
     CHECK(batch.touching(2, batch.body_in_row(1)));
-    CHECK(number(batch, Observed::mass, 2) == Approx(1000));
+    CHECK(number(batch, Observed::total_mass, 2) == Approx(1000));
   }
 }
 
@@ -368,12 +368,13 @@ TEST_CASE("observers that were not chosen say so", "[fast][observe]") {
   const Plan plan = compile(crowd(Space::planar));
   Batch none(plan, {.worlds = 2});
   double x = 0;
-  CHECK_THROWS_WITH(none.read(Observed::mass, 0, {&x, 1}), Catch::Contains("nothing is observed"));
+  CHECK_THROWS_WITH(none.read(Observed::total_mass, 0, {&x, 1}),
+                    Catch::Contains("nothing is observed"));
   BatchOptions options{.worlds = 2};
   options.observe.what = {Observer::penetration};
   Batch batch(plan, options);
-  CHECK_THROWS_WITH(batch.read(Observed::mass, 0, {&x, 1}),
-                    Catch::Contains("mass is not observed: give Observer::motion"));
+  CHECK_THROWS_WITH(batch.read(Observed::total_mass, 0, {&x, 1}),
+                    Catch::Contains("total_mass is not observed: give Observer::motion"));
   CHECK_THROWS_WITH(batch.step_contacts(0), Catch::Contains("Observer::contacts"));
   std::vector<double> wrong(3);
   CHECK_THROWS_WITH(batch.read(Observed::penetration, wrong),

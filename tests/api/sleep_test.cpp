@@ -77,8 +77,8 @@ Result run_disturbed(const Plan& plan, const BatchOptions& options, int first, i
 
 Scene lively_crowd(Space space) {
   Scene scene = crowd(space);
-  scene.options.time_to_sleep = 0.1;  // so that some fall asleep soon
-  scene.options.sleep_speed = 0.5;
+  scene.options.sleep.time = 0.1;  // so that some fall asleep soon
+  scene.options.sleep.speed = 0.5;
   for (Body& body : scene.bodies) body.linear_drag = body.angular_drag = 1;  // nothing rolls away
   return scene;
 }

@@ -26,8 +26,8 @@ BatchOptions with_sleep(BatchOptions options, bool sleep) {
 // A crowd of which some bodies are disabled and, where they may, asleep.
 Scene drowsy_crowd(Space space) {
   Scene scene = crowd(space);
-  scene.options.sleep_speed = 0.5;
-  scene.options.time_to_sleep = 0.1;
+  scene.options.sleep.speed = 0.5;
+  scene.options.sleep.time = 0.1;
   for (Body& body : scene.bodies) body.linear_drag = body.angular_drag = 1;
   return scene;
 }

@@ -128,11 +128,11 @@ TEST_CASE("worlds that step alone go the way that they go when all step", "[batc
 
 TEST_CASE("worlds that step alone may sleep, and be of several kinds", "[batch][fast][bits]") {
   Scene drowsy = crowd(Space::planar);
-  drowsy.options.time_to_sleep = 0.05;
-  drowsy.options.sleep_speed = 1;
+  drowsy.options.sleep.time = 0.05;
+  drowsy.options.sleep.speed = 1;
   for (Body& body : drowsy.bodies) body.linear_drag = body.angular_drag = 5;
   Scene small = crowd(Space::planar, 4);
-  small.options.time_to_sleep = 0.05;
+  small.options.sleep.time = 0.05;
   for (const Table& table : widest_tables()) {
     CAPTURE(name(table));
     BatchOptions options = watched(table, 2);

@@ -19,7 +19,7 @@ namespace {
 void check_pyramid(int base, int substeps, double frequency, bool sleep) {
   Scene scene = scenes::pyramid(base);
   scene.options.substeps = substeps;
-  scene.options.contact_frequency = frequency;
+  scene.options.contact.frequency = frequency;
   for (const Table& table : widest_tables()) {
     if (table.precision == Precision::f64) continue;
     BatchOptions options = options_of(table);

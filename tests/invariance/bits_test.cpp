@@ -127,7 +127,7 @@ TEST_CASE("bits do not depend on the instruction set, the layout or the broad ph
   for (Scene scene :
        {crowd(Space::planar, 12), crowd(Space::spatial, 12), capsule_crowd(Space::planar),
         capsule_crowd(Space::planar, true), capsule_crowd(Space::spatial)}) {
-    scene.options.cast_between_moving = true;  // the tenth body is fast enough for it
+    scene.options.contact.cast_between_moving = true;  // the tenth body is fast enough for it
     scene.bodies[11].linear_velocity = Vec3(-80, 0, 0) - 20 * up_of(scene.space);
     for (Precision precision : {Precision::f32, Precision::f64}) {
       std::vector<std::uint64_t> reference;

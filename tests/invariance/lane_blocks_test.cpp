@@ -12,9 +12,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Field kFields[] = {Field::position, Field::orientation, Field::linear_velocity,
-                             Field::angular_velocity};
-
 Scene two_crates(Space space) {
   Scene scene = empty_scene(space, 0);
   for (const double x : {0.0, 5.0}) {
@@ -32,12 +29,12 @@ std::vector<Real> gathered(Batch& batch, Field field) {
   const LaneBlocks at = batch.lane_blocks(field);
   std::vector<Real> out;
   for (int w = 0; w < batch.worlds(); ++w) {
-    const auto group = static_cast<std::size_t>(batch.slot(w) / at.lanes);
-    const auto lane = static_cast<std::size_t>(batch.slot(w) % at.lanes);
-    for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b) {
+    const auto group = static_cast<std::size_t>(batch.lane_index(w) / at.lanes);
+    const auto lane = static_cast<std::size_t>(batch.lane_index(w) % at.lanes);
+    for (std::size_t b = 0; b < static_cast<std::size_t>(at.items); ++b) {
       for (std::size_t c = 0; c < static_cast<std::size_t>(at.components); ++c) {
         out.push_back(
-            static_cast<const Real*>(at.data)[group * at.group_stride + b * at.body_stride +
+            static_cast<const Real*>(at.data)[group * at.group_stride + b * at.item_stride +
                                               c * at.component_stride + lane]);
       }
     }
@@ -72,9 +69,9 @@ TEST_CASE("lane blocks hold what read() gives, in float32 and float64", "[batch]
 TEST_CASE("what is written into lane blocks is read and stepped", "[batch][fast]") {
   Batch batch(compile(two_crates(Space::planar)), {.worlds = 3, .threads = 1});
   const LaneBlocks at = batch.lane_blocks(Field::linear_velocity);
-  const int slot = batch.slot(2);
-  static_cast<float*>(at.data)[static_cast<std::size_t>(slot / at.lanes) * at.group_stride +
-                               at.body_stride + static_cast<std::size_t>(slot % at.lanes)] = 6;
+  const int index = batch.lane_index(2);
+  static_cast<float*>(at.data)[static_cast<std::size_t>(index / at.lanes) * at.group_stride +
+                               at.item_stride + static_cast<std::size_t>(index % at.lanes)] = 6;
   std::vector<double> before(4), velocity(4), after(4);
   batch.read(Field::linear_velocity, 2, velocity);
   CHECK(velocity[2] == 6);
@@ -86,7 +83,7 @@ TEST_CASE("what is written into lane blocks is read and stepped", "[batch][fast]
 
 TEST_CASE("lane blocks follow the worlds that sleep packs together", "[batch][fast]") {
   Scene scene = two_crates(Space::spatial);
-  scene.options.time_to_sleep = 0.1;
+  scene.options.sleep.time = 0.1;
   Batch batch(compile(scene), {.worlds = 20, .threads = 1, .sleep = true});
   std::vector<double> rest(6, 0.0);
   for (int w = 0; w < 20; w += 2) {

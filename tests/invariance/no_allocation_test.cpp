@@ -177,8 +177,8 @@ TEST_CASE("stepping by any solver allocates nothing", "[fast][allocation][solver
     for (int i = 0; i <= static_cast<int>(Solver::penalty); ++i) {
       Scene scene = crowd(space);
       scene.add(joint_at(scene, BodyId(2), BodyId(3), {}, HingeJoint{}));
-      scene.options.solver = static_cast<Solver>(i);
-      scene.options.split_impulse = i % 2 == 0;
+      scene.options.solver.method = static_cast<Solver>(i);
+      scene.options.solver.split_impulse = i % 2 == 0;
       for (const Table& table : widest_tables()) {
         Batch batch(compile(scene), options_of(table, 40));
         batch.step();
@@ -209,8 +209,8 @@ TEST_CASE("steps of tasks allocate nothing, with the worlds that begin anew in t
 
 TEST_CASE("falling asleep, packing, waking and disabling allocate nothing", "[fast][allocation]") {
   Scene scene = crowd(Space::planar);
-  scene.options.time_to_sleep = 0.1;
-  scene.options.sleep_speed = 0.5;
+  scene.options.sleep.time = 0.1;
+  scene.options.sleep.speed = 0.5;
   for (const Table& table : widest_tables()) {
     BatchOptions options = options_of(table, 40);
     options.sleep = true;
@@ -232,8 +232,8 @@ TEST_CASE("observing everything allocates nothing", "[fast][allocation][observe]
   for (Space space : {Space::planar, Space::spatial}) {
     Scene scene = crowd(space);
     scene.add(joint_at(scene, BodyId(2), BodyId(3), {}, HingeJoint{}));
-    scene.options.time_to_sleep = 0.1;
-    scene.options.sleep_speed = 0.5;
+    scene.options.sleep.time = 0.1;
+    scene.options.sleep.speed = 0.5;
     for (const Table& table : widest_tables()) {
       BatchOptions options = options_of(table, 40);
       options.sleep = true;
@@ -241,6 +241,7 @@ TEST_CASE("observing everything allocates nothing", "[fast][allocation][observe]
                               Observer::motion,   Observer::joints,   Observer::joint_loads,
                               Observer::residual};
       options.observe.rays.resize(9);
+      options.observe.points.resize(5, Point{Vec3(0.1, 0.2, 0), BodyId(2)});
       std::vector<Ray> rays(9);
       Batch batch(compile(scene), options);
       batch.step();
@@ -278,6 +279,7 @@ TEST_CASE("the memory that a batch is said to need is what it takes", "[fast][al
                                 Observer::motion,   Observer::joints,   Observer::joint_loads,
                                 Observer::residual};
         options.observe.rays.resize(9);
+        options.observe.points.resize(5, Point{Vec3(0.1, 0.2, 0), plan.body_in_row(0)});
       }
       bytes = 0;
       counting = true;

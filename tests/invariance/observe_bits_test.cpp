@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "manyworlds/scenes.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/tables.hpp"
+#include "tests/support/varied.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -29,15 +31,18 @@ Observers everything(const Plan& plan) {
       ray.origin.setZero();
     }
     observers.rays.push_back(ray);
+    observers.points.push_back({Vec3(0.3, 0.1 * i, space == Space::planar ? 0 : -0.2),
+                                plan.body_in_row(i % plan.bodies())});
   }
   return observers;
 }
 
-// All that was seen of a world, in a row.
-std::vector<double> seen(const Batch& batch, int world) {
+// All that was seen of a world, in a row; `but` what this observer sees.
+std::vector<double> seen(const Batch& batch, int world, std::optional<Observer> but = {}) {
   std::vector<double> all;
   for (int i = 0; i < kObservedCount; ++i) {
     const auto what = static_cast<Observed>(i);
+    if (info(what).observer == but) continue;
     std::vector<double> v(batch.size(what) / static_cast<std::size_t>(batch.worlds()));
     batch.read(what, world, v);
     all.insert(all.end(), v.begin(), v.end());
@@ -78,6 +83,7 @@ std::vector<Scene> scenes() {
                             capsule_crowd(Space::planar, true), capsule_crowd(Space::spatial)};
   all.push_back(crowd(Space::spatial));
   for (Body& body : all.back().bodies) body.shapes[0].material.restitution = 0;
+  all.push_back(varied_crowd(Space::spatial));
   for (const char* name : {"lunar-lander", "ragdoll"}) all.push_back(scenes::find(name)->make());
   return all;
 }
@@ -161,7 +167,9 @@ TEST_CASE("a look at the state leaves what steps saw of contacts as it was", "[f
       batch.step(25);
       const auto all = [&batch] {
         Seen out;
-        for (int w = 0; w < batch.worlds(); ++w) out.push_back(seen(batch, w));
+        for (int w = 0; w < batch.worlds(); ++w) {
+          out.push_back(seen(batch, w));
+        }
         return out;
       };
       const Seen before = all();
@@ -175,8 +183,8 @@ TEST_CASE("what is seen of sleepers does not depend on who is awake beside them"
           "[fast][observe][bits]") {
   for (Space space : {Space::planar, Space::spatial}) {
     Scene scene = crowd(space);
-    scene.options.time_to_sleep = 0.1;
-    scene.options.sleep_speed = 0.5;
+    scene.options.sleep.time = 0.1;
+    scene.options.sleep.speed = 0.5;
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       INFO(name(table));

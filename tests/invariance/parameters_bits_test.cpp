@@ -99,8 +99,8 @@ TEST_CASE("bits do not depend on instruction set, batch, threads, layout or slee
           "[fast][parameters][bits]") {
   for (Space space : {Space::planar, Space::spatial}) {
     Scene scene = varied_crowd(space);
-    scene.options.time_to_sleep = 0.1;
-    scene.options.sleep_speed = 1;
+    scene.options.sleep.time = 0.1;
+    scene.options.sleep.speed = 1;
     for (Precision precision : {Precision::f32, Precision::f64}) {
       std::vector<std::uint64_t> expected[2];
       for (const Table& table : all_tables()) {

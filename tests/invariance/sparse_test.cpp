@@ -33,8 +33,8 @@ Geometry shape_number(Space space, int i, double size) {
 Scene mixture(Space space, int bodies) {
   const bool planar = space == Space::planar;
   Scene scene = empty_scene(space);
-  scene.options.sleep_speed = 1;
-  scene.options.time_to_sleep = 0.1;
+  scene.options.sleep.speed = 1;
+  scene.options.sleep.time = 0.1;
   scene.add(ground(space, 0.5, 0.2));
   const int side = planar ? 10 : 4;
   for (int i = 0; i < bodies; ++i) {
@@ -279,16 +279,16 @@ TEST_CASE("what a full list leaves out does not depend on the tables", "[fast][s
 TEST_CASE("casts between moving shapes are the same in sparse plans", "[fast][sparse][bits]") {
   for (Space space : {Space::planar, Space::spatial}) {
     Scene scene = mixture(space, 70);
-    scene.options.cast_between_moving = true;
+    scene.options.contact.cast_between_moving = true;
     for (std::size_t i = 1; i < 70; i += 7)
       scene.bodies[i].linear_velocity = Vec3(i < 35 ? 120 : -120, 0, 0) - 30 * up_of(space);
     for (const Table& table : widest_tables()) {
       const BatchOptions options = options_of(table, 9);
       const Seen listed = run(plan_of(scene, BroadPhase::all_pairs), options, 0, 20);
       CHECK(run(plan_of(scene, BroadPhase::sparse), options, 0, 20) == listed);
-      scene.options.cast_between_moving = false;
+      scene.options.contact.cast_between_moving = false;
       CHECK_FALSE(run(plan_of(scene, BroadPhase::sparse), options, 0, 20) == listed);
-      scene.options.cast_between_moving = true;
+      scene.options.contact.cast_between_moving = true;
     }
   }
 }

@@ -198,7 +198,7 @@ TEST_CASE("a slow body does not fall asleep in the step in which its joint break
           "[fast][joint]") {
   for (const Table& table : widest_tables()) {
     Scene scene = hanging(Space::spatial, DistanceJoint{1.0, {}, {}}, 20.5);
-    scene.options.time_to_sleep = 1.0 / 60;
+    scene.options.sleep.time = 1.0 / 60;
     BatchOptions options = options_of(table);
     options.sleep = true;
     Batch batch(compile(scene), options);

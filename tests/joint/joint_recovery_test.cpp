@@ -29,7 +29,7 @@ TEST_CASE("a chain whose joints begin a metre apart contracts gently", "[fast][j
   for (Space space : kSpaces) {
     // Without gravity: a hanging one lashes faster than it contracts.
     Scene scene = empty_scene(space, 0);
-    scene.options.joint_pull_speed = 1;
+    scene.options.joint.pull_speed = 1;
     scene.options.substeps = 8;
     for (int i = 0; i < 40; ++i) {
       const BodyId bead = add_bead(scene, {2.0 * i, 0, 0});
@@ -171,10 +171,10 @@ TEST_CASE("a heavy cart stands still on light wheels (B24)", "[fast][joint]") {
     // 1000 kg on two wheels of 1.6 kg each, under 22 m/s^2.
     Scene scene = empty_scene(Space::planar, 22);
     scene.options.substeps = 12;
-    scene.options.contact_frequency = 240;
-    scene.options.push_out_speed = 0.5;
-    scene.options.joint_frequency = 240;
-    scene.options.joint_damping_ratio = 0;
+    scene.options.contact.frequency = 240;
+    scene.options.contact.push_out_speed = 0.5;
+    scene.options.joint.frequency = 240;
+    scene.options.joint.damping_ratio = 0;
     scene.add(ground(Space::planar));
     Body chassis = body_of(shape_of(Polygon::box(1, 0.25)), {0, 0.6, 0});
     chassis.shapes[0].density = 1000;

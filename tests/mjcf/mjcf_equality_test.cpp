@@ -213,7 +213,7 @@ TEST_CASE("softness of equalities is a warning", "[mjcf][fast]") {
     const std::string warning = only_warning(with(weld + attribute + "/>"));
     CHECK_THAT(warning, Catch::Contains("equality 'e', line 1: " +
                                         attribute.substr(0, attribute.find('='))) &&
-                            Catch::Contains("is as stiff as Options::joint_frequency says"));
+                            Catch::Contains("is as stiff as JointOptions::frequency says"));
   }
 }
 
@@ -231,7 +231,7 @@ TEST_CASE("joints that begin apart close as slowly as in MuJoCo", "[mjcf]") {
   };
   const MjcfResult together = load_mjcf_string(xml("-.1 0 0"));
   CHECK(together.warnings.empty());
-  CHECK(std::isinf(together.scene.options.joint_pull_speed));
+  CHECK(std::isinf(together.scene.options.joint.pull_speed));
 
   const MjcfResult apart = load_mjcf_string(xml("-.1 .6 0"));
   REQUIRE(apart.warnings.size() == 1);

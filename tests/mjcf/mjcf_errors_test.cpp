@@ -183,7 +183,7 @@ TEST_CASE("meshes and height fields that cannot be are errors", "[mjcf][fast]") 
 TEST_CASE("all problems of a file are listed, one per line, with its name", "[mjcf][fast]") {
   const TemporaryFile file("manyworlds_two_problems.xml",
                            world("<body name='b'><joint name='j' type='hinge'/>"
-                                 "<geom name='g' type='ellipsoid' size='.1 .1 .1'/></body>"));
+                                 "<geom name='g' size='.1' adhesion='1'/></body>"));
   std::string text;
   try {
     load_mjcf(file.path);

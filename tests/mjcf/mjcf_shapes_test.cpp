@@ -249,7 +249,7 @@ TEST_CASE("shapes from MJCF rest where they should", "[mjcf]") {
                                pyramid))
             .scene;
     const Vec3 x = last_position(scene, 1000);
-    CHECK(std::abs(x.z() - c.height) < 4 * scene.options.slop * scene.options.length_unit);
+    CHECK(std::abs(x.z() - c.height) < 4 * scene.options.contact.slop * scene.options.length_unit);
     CHECK((x.head<2>() - Vec2(0.1, 0.2)).norm() < 0.01);
   }
 }

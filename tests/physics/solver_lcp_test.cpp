@@ -22,9 +22,9 @@ constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 Scene heap(Space space) {
   Scene scene = empty_scene(space, 10);
   scene.options.substeps = 1;
-  scene.options.push_out_share = 0;
-  scene.options.restitution_threshold = 1e6;
-  scene.options.cast_against_fixed = false;
+  scene.options.solver.push_out_share = 0;
+  scene.options.contact.restitution_threshold = 1e6;
+  scene.options.contact.cast_against_fixed = false;
   scene.add(ground(space, 0));
   const bool planar = space == Space::planar;
   for (int i = 0; i < 9; ++i) {
@@ -112,10 +112,10 @@ void sweep(const lcp::Problem& p, double relaxation, Eigen::VectorXd& z) {
 Eigen::VectorXd iterate(const lcp::Problem& p, const Options& options) {
   Eigen::VectorXd z = Eigen::VectorXd::Zero(p.q.size()), way = z;
   double square = 0;
-  for (int i = 0; i < iterations_of(options); ++i) {
+  for (int i = 0; i < iterations_of(options.solver); ++i) {
     const Eigen::VectorXd before = z;
-    sweep(p, options.solver == Solver::sor ? options.relaxation : 1, z);
-    if (options.solver != Solver::nncg || i + 1 == iterations_of(options)) continue;
+    sweep(p, options.solver.method == Solver::sor ? options.solver.relaxation : 1, z);
+    if (options.solver.method != Solver::nncg || i + 1 == iterations_of(options.solver)) continue;
     const Eigen::VectorXd step = z - before;
     const double now = step.squaredNorm(), ratio = square > 0 ? now / square : 0;
     const double beta = ratio > 1 ? 0 : ratio;
@@ -134,8 +134,8 @@ TEST_CASE("each sweep of a lane is a sweep of the dense reference", "[fast][solv
     for (Solver solver : {Solver::sequential_impulse, Solver::sor, Solver::nncg}) {
       for (int iterations : {1, 2, 3, 7, 20, 1000}) {
         Scene scene = heap(space);
-        scene.options.solver = solver;
-        scene.options.iterations = iterations;
+        scene.options.solver.method = solver;
+        scene.options.solver.iterations = iterations;
         const Plan plan = compile(scene);
         BatchOptions options = options_of(double_table());
         options.observe.what = {Observer::contacts};

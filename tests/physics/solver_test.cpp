@@ -24,7 +24,7 @@ constexpr Solver kHard[] = {Solver::sequential_impulse, Solver::sor, Solver::nnc
 // As each is usually taken: the hard ones with many sweeps and one substep, penalty with short
 // ones.
 void choose(Scene& scene, Solver solver) {
-  scene.options.solver = solver;
+  scene.options.solver.method = solver;
   if (has_hard_rows(solver)) scene.options.substeps = 1;
   if (solver == Solver::penalty) scene.options.substeps = 16;
 }
@@ -38,7 +38,7 @@ Scene everything(Space space, Solver solver) {
     scene.add(body);
   }
   choose(scene, solver);
-  scene.options.split_impulse = solver == Solver::sor;
+  scene.options.solver.split_impulse = solver == Solver::sor;
   scene.options.substeps = 2;
   return scene;
 }
@@ -53,14 +53,14 @@ TEST_CASE("hard rows remove a share of an overlap in a substep", "[fast][solver]
           Scene scene = empty_scene(space, 0);
           choose(scene, solver);
           scene.options.substeps = 2;
-          scene.options.split_impulse = split;
-          const double slop = scene.options.slop;
-          scene.options.relaxation = 1;  // a lone row is solved in one visit
+          scene.options.solver.split_impulse = split;
+          const double slop = scene.options.contact.slop;
+          scene.options.solver.relaxation = 1;  // a lone row is solved in one visit
           scene.add(ground(space, 0));
           scene.add(body_of(shape_of(round_of(space, 0.5), 0), (0.49 - slop) * up_of(space)));
           Batch batch(compile(scene), options_of(table));
           batch.step();
-          const double h = scene.options.dt / 2, share = scene.options.push_out_share;
+          const double h = scene.options.dt / 2, share = scene.options.solver.push_out_share;
           const double depth = 0.5 - up_of(space).dot(position(batch, 0, 0)),
                        speed = up_of(space).dot(velocity(batch, 0, 0));
           INFO(name(table) << ' ' << to_string(solver) << " split " << split);
@@ -83,10 +83,10 @@ TEST_CASE("penalty sags by what its springs say, joints included", "[fast][solve
   for (Space space : kSpaces) {
     Scene scene = empty_scene(space, 10);
     choose(scene, Solver::penalty);
-    scene.options.contact_frequency = 5;  // doubled against fixed shapes
-    scene.options.contact_damping_ratio = 1;
-    scene.options.joint_frequency = 3;
-    scene.options.joint_damping_ratio = 1;
+    scene.options.contact.frequency = 5;  // doubled against fixed shapes
+    scene.options.contact.damping_ratio = 1;
+    scene.options.joint.frequency = 3;
+    scene.options.joint.damping_ratio = 1;
     scene.add(ground(space));
     scene.add(body_of(shape_of(round_of(space, 0.5)), 0.5 * up_of(space)));
     const Vec3 peg = Vec3(3, 0, 0) + 2 * up_of(space);
@@ -147,7 +147,7 @@ TEST_CASE("every solver holds a stack and settles a pile", "[solver]") {
       for (Solver solver : kAll) {
         Scene stack = empty_scene(space, 10);
         choose(stack, solver);
-        if (has_hard_rows(solver)) stack.options.iterations = 30;
+        if (has_hard_rows(solver)) stack.options.solver.iterations = 30;
         stack.add(ground(space));
         for (int i = 0; i < 5; ++i) {
           Body cube = body_of(shape_of(cube_of(space, 0.5)), (0.5 + i) * up_of(space));
@@ -222,7 +222,7 @@ TEST_CASE("four substeps turn a jointed rod as four steps do", "[fast][solver]")
     for (Solver solver : kAll) {
       const auto kept = [&](double dt, int substeps) {
         Scene scene = empty_scene(space, 0);
-        scene.options.solver = solver;
+        scene.options.solver.method = solver;
         scene.options.dt = dt, scene.options.substeps = substeps;
         for (int i = 0; i < 2; ++i) {
           Body rod = uniform_rod(space, 1, 1, {0.5 + i, 0, 0});
@@ -251,7 +251,7 @@ TEST_CASE("what rests bears its weight, by any solver", "[fast][solver]") {
     for (Solver solver : kAll) {
       for (int substeps : {1, 4}) {
         Scene scene = empty_scene(space, 10);
-        scene.options.solver = solver, scene.options.substeps = substeps;
+        scene.options.solver.method = solver, scene.options.substeps = substeps;
         scene.add(ground(space));
         scene.add(body_of(shape_of(cube_of(space, 0.5)), 0.5 * up_of(space)));
         const Vec3 peg = Vec3(3, 0, 0) + 2 * up_of(space);
@@ -326,7 +326,7 @@ TEST_CASE("more sweeps leave smaller residuals, and looking changes nothing", "[
       Scene scene = everything(space, solver);
       std::vector<double> residuals;
       for (int iterations : {2, 20, 200, 2000}) {
-        scene.options.iterations = iterations;
+        scene.options.solver.iterations = iterations;
         const Plan plan = compile(scene);
         BatchOptions options = options_of(double_table(), 8);
         const auto unseen = hashes_after(plan, options, 20);

@@ -31,8 +31,8 @@ Scene stack(Space space, int boxes, double size, double gap) {
   Options& o = scene.options;
   const double root = std::sqrt(size);
   o.length_unit = size;
-  o.contact_frequency /= root;
-  o.push_out_speed *= root / size;  // given per length unit
+  o.contact.frequency /= root;
+  o.contact.push_out_speed *= root / size;  // given per length unit
   scene.add(ground(space));
   for (int i = 0; i < boxes; ++i)
     scene.add(body_of(shape_of(cube_of(space, size / 2)),

@@ -102,7 +102,7 @@ struct Volley {
 
 int stopped_bullets(Space space, const Table& table, const Volley& volley) {
   Scene scene = empty_scene(space, 0);
-  scene.options.cast_between_moving = volley.cast;
+  scene.options.contact.cast_between_moving = volley.cast;
   const Geometry ball = volley.box ? cube_of(space, 0.1) : round_of(space, 0.1);
   Body bullet = body_of(shape_of(ball), Vec3(-10, 0, 0));
   bullet.linear_velocity = Vec3(200, 0, 0);

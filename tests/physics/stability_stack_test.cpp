@@ -72,7 +72,7 @@ TEST_CASE("towers of 10, 15 and 20 boxes settle, stand and carry their weight",
         // A column of soft contacts buckles under its own weight when it is too tall for their
         // stiffness; from 15 cubes on they need more of it than 4 substeps carry.
         scene.options.substeps = 8;
-        scene.options.contact_frequency = 90;
+        scene.options.contact.frequency = 90;
       }
       const Plan plan = compile(scene);
       for (const Table& table : widest_tables()) {
@@ -101,7 +101,7 @@ TEST_CASE("a tower of 40 boxes stands and carries its weight", "[slow][stability
   for (Space space : {Space::planar, Space::spatial}) {
     Scene scene = tower(space, kBoxes);
     scene.options.substeps = 16;
-    scene.options.contact_frequency = 200;
+    scene.options.contact.frequency = 200;
     for (const Table& table : widest_tables()) {
       INFO(name(table) << (space == Space::planar ? " squares" : " cubes"));
       Batch batch(compile(scene), options_of(table, kWorlds));
@@ -166,7 +166,7 @@ TEST_CASE("bodies with one common centre separate slowly and the same way each t
       for (int count : {2, 10, 100}) {
         Scene scene = empty_scene(space, 0);
         // A hundred bodies push each other out in one row, along which the speeds of pairs add up.
-        if (count == 100) scene.options.push_out_speed = 0.15;
+        if (count == 100) scene.options.contact.push_out_speed = 0.15;
         for (int i = 0; i < count; ++i)
           scene.add(
               body_of(shape_of(boxes ? cube_of(space, 0.5) : round_of(space, 0.5)), Vec3::Zero()));

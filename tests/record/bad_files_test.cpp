@@ -107,6 +107,8 @@ TEST_CASE("files that are no recordings are refused by name", "[fast][record]") 
   framed.insert(framed.end(), foreign.begin(), foreign.end());
   record::seal(std::span(framed));
   refused(framed, "has no attribute 'format'");
+  framed[8] = std::byte{1};  // of 0.1, whose scenes had options without groups
+  refused(framed, "has format version 1, must be 2");
   Bytes junk(4096, std::byte{0x5a});
   record::seal(std::span(junk));
   refused(junk, "cannot be opened");

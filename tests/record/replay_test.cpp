@@ -134,8 +134,8 @@ TEST_CASE("steps of some worlds alone are recorded as what they come to", "[fast
 TEST_CASE("a world that is woken in a recording wakes in the replay", "[fast][record]") {
   const Folder folder;
   Scene scene = crowd(Space::spatial);
-  scene.options.sleep_speed = 0.5;
-  scene.options.time_to_sleep = 0.1;
+  scene.options.sleep.speed = 0.5;
+  scene.options.sleep.time = 0.1;
   for (Body& body : scene.bodies) body.linear_drag = body.angular_drag = 1;
   Batch batch(compile(scene), batch_options(widest_tables().front(), 3, true));
   batch.step(400);

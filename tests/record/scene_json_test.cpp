@@ -26,9 +26,9 @@ std::vector<std::string> problems_of(const std::string& json) {
 Scene awkward_scene() {
   Scene scene = capsule_crowd(Space::spatial);
   scene.name = "tab \t, quote \" and \xc3\xa4";
-  scene.options.solver = Solver::sor, scene.options.iterations = 7;
-  scene.options.relaxation = 1.1, scene.options.push_out_share = 0.3;
-  scene.options.split_impulse = true;
+  scene.options.solver.method = Solver::sor, scene.options.solver.iterations = 7;
+  scene.options.solver.relaxation = 1.1, scene.options.solver.push_out_share = 0.3;
+  scene.options.solver.split_impulse = true;
   scene.options.dt = 1.0 / 59.94;
   scene.options.contact_capacity = 77;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-1e3, -0.1, -1), Vec3(1e3, 100.1, 1.0 / 3));
@@ -42,7 +42,7 @@ Scene awkward_scene() {
   body.shapes[0].density = 1.0 / 7;
   body.shapes[0].filter = {0x80000001u, 0xfffffffeu};
   body.shapes[0].name = "hull";
-  scene.options.joint_frequency = 100.0 / 3;
+  scene.options.joint.frequency = 100.0 / 3;
   const Spring spring{1.0 / 7, 0.3, 0, 0};
   const Limit limit{-1.0 / 3, std::numeric_limits<double>::infinity(), spring};
   const Drive drive{0.1, -0.2, spring, 1e3};
@@ -136,11 +136,11 @@ TEST_CASE("every member and every bit of a scene goes through JSON", "[fast][rec
         compile(planar).fingerprint());
 
   // A scene that makes no sense is still a scene.
-  planar.options.slop = std::numeric_limits<double>::infinity();
+  planar.options.contact.slop = std::numeric_limits<double>::infinity();
   planar.options.density = -std::numeric_limits<double>::infinity();
   planar.options.dt = std::numeric_limits<double>::quiet_NaN();
   const Scene odd = scene_from_json(scene_to_json(planar));
-  CHECK(odd.options.slop == planar.options.slop);
+  CHECK(odd.options.contact.slop == planar.options.contact.slop);
   CHECK(odd.options.density == planar.options.density);
   CHECK(std::isnan(odd.options.dt));
 

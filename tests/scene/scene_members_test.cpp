@@ -31,8 +31,8 @@ TEST_CASE("a changed member changes the fingerprint, unless it is said why not",
   CHECK(has("bodies/1/jitter/angle"));
   CHECK(has("controls/0/initial"));
   CHECK(has("variations/0/high/0"));
-  CHECK(has("options/relaxation"));
-  CHECK_FALSE(has("options/solver"));
+  CHECK(has("options/solver/relaxation"));
+  CHECK_FALSE(has("options/solver/method"));
   CHECK_FALSE(has("options/dt"));
   CHECK_FALSE(has("bodies/0/shapes/4/geometry/radius"));
 }

@@ -20,6 +20,11 @@ BadInput bad(const std::string& field, double Options::*member, double value,
              const std::string& message) {
   return {field, message, [=](Scene& s) { s.options.*member = value; }};
 }
+template <class Group>
+BadInput bad(const std::string& field, Group Options::*group, double Group::*member, double value,
+             const std::string& message) {
+  return {field, message, [=](Scene& s) { (s.options.*group).*member = value; }};
+}
 
 }  // namespace
 
@@ -33,14 +38,19 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
       {"substeps", "is 0, must be between 1 and 64", [](Scene& s) { s.options.substeps = 0; }},
       {"substeps", "is -4", [](Scene& s) { s.options.substeps = -4; }},
       {"substeps", "is 65", [](Scene& s) { s.options.substeps = 65; }},
-      {"iterations", "is 0, must be between 1 and 10000",
-       [](Scene& s) { s.options.iterations = 0; }},
-      {"iterations", "is 10001", [](Scene& s) { s.options.iterations = 10001; }},
-      bad("relaxation", &Options::relaxation, 0, "is 0, must be more than 0 and less than 2"),
-      bad("relaxation", &Options::relaxation, 2, "is 2, must be more than 0 and less than 2"),
-      bad("relaxation", &Options::relaxation, kNan, "is nan, must be more than 0"),
-      bad("push_out_share", &Options::push_out_share, -0.1, "is -0.1, must be"),
-      bad("push_out_share", &Options::push_out_share, kNan, "is nan, must be"),
+      {"solver.iterations", "is 0, must be between 1 and 10000",
+       [](Scene& s) { s.options.solver.iterations = 0; }},
+      {"solver.iterations", "is 10001", [](Scene& s) { s.options.solver.iterations = 10001; }},
+      bad("solver.relaxation", &Options::solver, &SolverOptions::relaxation, 0,
+          "is 0, must be more than 0 and less than 2"),
+      bad("solver.relaxation", &Options::solver, &SolverOptions::relaxation, 2,
+          "is 2, must be more than 0 and less than 2"),
+      bad("solver.relaxation", &Options::solver, &SolverOptions::relaxation, kNan,
+          "is nan, must be more than 0"),
+      bad("solver.push_out_share", &Options::solver, &SolverOptions::push_out_share, -0.1,
+          "is -0.1, must be"),
+      bad("solver.push_out_share", &Options::solver, &SolverOptions::push_out_share, kNan,
+          "is nan, must be"),
       {"rotation", "is quaternion, verlet takes splitting only",
        [](Scene& s) {
          s.options.integrator = Integrator::verlet;
@@ -63,20 +73,29 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
       bad("density", &Options::density, kNan, "is nan kg"),
       bad("length_unit", &Options::length_unit, 0, "is 0 m, must be > 0"),
       bad("length_unit", &Options::length_unit, kNan, "is nan m"),
-      bad("contact_frequency", &Options::contact_frequency, -1, "is -1 Hz, must be >= 0"),
-      bad("contact_frequency", &Options::contact_frequency, kInf, "is inf Hz, must be finite"),
-      bad("contact_damping_ratio", &Options::contact_damping_ratio, -1, "must be >= 0"),
-      bad("contact_damping_ratio", &Options::contact_damping_ratio, kNan, "is nan"),
-      bad("push_out_speed", &Options::push_out_speed, -1, "is -1 m/s, must be >= 0"),
-      bad("push_out_speed", &Options::push_out_speed, kNan, "is nan m/s"),
-      bad("slop", &Options::slop, 0, "is 0 m, must be > 0"),
-      bad("slop", &Options::slop, -1, "is -1 m, must be > 0"),
-      bad("slop", &Options::slop, kNan, "is nan m, must be > 0"),
-      bad("restitution_threshold", &Options::restitution_threshold, -1, "is -1 m/s"),
-      bad("restitution_threshold", &Options::restitution_threshold, kNan, "is nan m/s"),
-      {"restitution_sweeps", "is 0, must be between 1 and 64",
-       [](Scene& s) { s.options.restitution_sweeps = 0; }},
-      {"restitution_sweeps", "is 65", [](Scene& s) { s.options.restitution_sweeps = 65; }},
+      bad("contact.frequency", &Options::contact, &ContactOptions::frequency, -1,
+          "is -1 Hz, must be >= 0"),
+      bad("contact.frequency", &Options::contact, &ContactOptions::frequency, kInf,
+          "is inf Hz, must be finite"),
+      bad("contact.damping_ratio", &Options::contact, &ContactOptions::damping_ratio, -1,
+          "must be >= 0"),
+      bad("contact.damping_ratio", &Options::contact, &ContactOptions::damping_ratio, kNan,
+          "is nan"),
+      bad("contact.push_out_speed", &Options::contact, &ContactOptions::push_out_speed, -1,
+          "is -1 m/s, must be >= 0"),
+      bad("contact.push_out_speed", &Options::contact, &ContactOptions::push_out_speed, kNan,
+          "is nan m/s"),
+      bad("contact.slop", &Options::contact, &ContactOptions::slop, 0, "is 0 m, must be > 0"),
+      bad("contact.slop", &Options::contact, &ContactOptions::slop, -1, "is -1 m, must be > 0"),
+      bad("contact.slop", &Options::contact, &ContactOptions::slop, kNan, "is nan m, must be > 0"),
+      bad("contact.restitution_threshold", &Options::contact,
+          &ContactOptions::restitution_threshold, -1, "is -1 m/s"),
+      bad("contact.restitution_threshold", &Options::contact,
+          &ContactOptions::restitution_threshold, kNan, "is nan m/s"),
+      {"contact.restitution_sweeps", "is 0, must be between 1 and 64",
+       [](Scene& s) { s.options.contact.restitution_sweeps = 0; }},
+      {"contact.restitution_sweeps", "is 65",
+       [](Scene& s) { s.options.contact.restitution_sweeps = 65; }},
       {"contact_capacity", "is 0, must be between 1 and 65536",
        [](Scene& s) { s.options.contact_capacity = 0; }},
       {"contact_capacity", "is 65537", [](Scene& s) { s.options.contact_capacity = 65537; }},
@@ -92,11 +111,11 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
 TEST_CASE("the ends of the option ranges are valid", "[fast][scene]") {
   Scene scene = spatial();
   Options& options = scene.options;
-  options.substeps = options.restitution_sweeps = 1;
-  options.contact_frequency = options.contact_damping_ratio = 0;
-  options.push_out_speed = options.restitution_threshold = 0;
+  options.substeps = options.contact.restitution_sweeps = 1;
+  options.contact.frequency = options.contact.damping_ratio = 0;
+  options.contact.push_out_speed = options.contact.restitution_threshold = 0;
   CHECK(validate(scene).empty());
-  options.substeps = options.restitution_sweeps = 64;
+  options.substeps = options.contact.restitution_sweeps = 64;
   CHECK(validate(scene).empty());
 }
 

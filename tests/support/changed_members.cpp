@@ -154,10 +154,10 @@ Scene scene_with_everything(bool all) {
   scene.variations.push_back(vary(Parameter::friction, 0.1, 0.9));
   scene.options.contact_capacity = 7;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-1, -2, -3), Vec3(1, 2, 3));
-  scene.options.joint_frequency = 30;
+  scene.options.joint.frequency = 30;
   if (!all) return scene;
-  scene.options.solver = Solver::sor;
-  scene.options.iterations = 7;
+  scene.options.solver.method = Solver::sor;
+  scene.options.solver.iterations = 7;
   scene.options.integrator = Integrator::runge_kutta4;
   scene.options.rotation = Rotation::exponential;
   return scene;

@@ -113,7 +113,7 @@ class Judge {
   void judge(const std::vector<Pose>& pose, const std::vector<Contact>& contacts) {
     pose_ = &pose;
     contacts_ = &contacts;
-    const double margin = 4 * scene_.options.slop * scene_.options.length_unit;
+    const double margin = 4 * scene_.options.contact.slop * scene_.options.length_unit;
     const Solid first = make_solid(scene_.bodies[0].shapes[0], pose[0], scene_.space);
     const Solid second = make_solid(scene_.bodies[1].shapes[0], pose[1], scene_.space);
     truth_ = separation(first, second);

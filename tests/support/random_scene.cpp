@@ -58,7 +58,7 @@ class Maker {
     out.rough = rough_;
     const double height = (bodies / (planar_ ? 3 : 4) + 2) * cell_;
     out.top_speed = 4 * (fastest_ + std::sqrt(2 * 1.5 * scene_.options.gravity.norm() * height)) +
-                    10 * scene_.options.push_out_speed * scene_.options.length_unit;
+                    10 * scene_.options.contact.push_out_speed * scene_.options.length_unit;
     out.scene = std::move(scene_);
     return out;
   }
@@ -85,10 +85,10 @@ class Maker {
     if (!rough_) o.dt = std::min(o.dt, std::sqrt(unit_) / 60);  // falls go with the root of lengths
     o.substeps = dice.one_of({1, 2, 4, 4, 8});
     if (dice.chance(0.15)) o.gravity.setZero();
-    if (dice.chance(0.2)) o.contact_frequency = dice.between(30, 120);
-    if (dice.chance(0.2)) o.restitution_sweeps = 1 + dice.below(16);
-    o.friction_in_bias_pass = !dice.chance(0.25);
-    o.cast_between_moving = dice.chance(0.25);
+    if (dice.chance(0.2)) o.contact.frequency = dice.between(30, 120);
+    if (dice.chance(0.2)) o.contact.restitution_sweeps = 1 + dice.below(16);
+    o.contact.friction_in_bias_pass = !dice.chance(0.25);
+    o.contact.cast_between_moving = dice.chance(0.25);
     if (dice.chance(0.1)) {
       const Vec3 far = Vec3::Constant(100 * unit_);
       o.bounds = Eigen::AlignedBox3d(-far, far);
@@ -102,11 +102,12 @@ class Maker {
     Dice dice(seed_, 1 << 20);
     Options& o = scene_.options;
     if (dice.chance(0.3)) {
-      o.solver = dice.one_of({Solver::tgs_soft, Solver::sequential_impulse, Solver::sor,
-                              Solver::nncg, Solver::penalty});
-      if (o.solver == Solver::tgs_soft || dice.chance(0.3)) o.iterations = 2 + dice.below(10);
-      o.split_impulse = dice.chance(0.5);
-      o.push_out_share = dice.between(0.1, 0.4);
+      o.solver.method = dice.one_of({Solver::tgs_soft, Solver::sequential_impulse, Solver::sor,
+                                     Solver::nncg, Solver::penalty});
+      if (o.solver.method == Solver::tgs_soft || dice.chance(0.3))
+        o.solver.iterations = 2 + dice.below(10);
+      o.solver.split_impulse = dice.chance(0.5);
+      o.solver.push_out_share = dice.between(0.1, 0.4);
       gains_nothing_ = false;
     }
     if (dice.chance(0.15)) {

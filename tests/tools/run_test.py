@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "tools/scripts"))
 import progress  # noqa: E402
 
 AVX2 = "avx2 fma bmi2"
@@ -51,7 +51,7 @@ class Checkout:
     def __init__(self, folder, flags):
         self.root = pathlib.Path(folder)
         shutil.copytree(ROOT / "tools", self.root / "tools")
-        (self.root / "tools/fetch_mujoco.sh").write_text("#!/bin/sh\n")
+        (self.root / "tools/scripts/fetch_mujoco.sh").write_text("#!/bin/sh\n")
         for name in ("CMakePresets.json", "pyproject.toml"):
             (self.root / name).write_text("{}")
         os.utime(self.root / "CMakePresets.json", (0, 0))

@@ -19,5 +19,6 @@ int report_stability_command(const ReportOptions& options);
 int report_plan_command(const ReportOptions& options);
 int report_throughput_command(const ReportOptions& options);
 int info_command(bool json);
+int list_options_command(bool json);  // those of a scene, for --set
 
 }  // namespace manyworlds::cli

@@ -14,6 +14,7 @@
 #include "commands.hpp"
 #include "recording.hpp"
 #include "scene_source.hpp"
+#include "set_option.hpp"
 #include "tools/base/machine.hpp"
 #include "tools/base/version.hpp"
 
@@ -77,6 +78,19 @@ int info_command(bool json) {
   row("precision", precision_list());
   row("mjcf", reads_mjcf() ? "yes" : "no");
   row("recordings", writes_recordings() ? "yes" : "no");
+  return kOk;
+}
+
+int list_options_command(bool json) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const OptionLine& line : option_lines(Options())) {
+    if (json) {
+      all.push_back({{"path", line.path}, {"takes", line.takes}, {"default", line.value}});
+    } else {
+      fmt::print("{:<30} {:<16} {}\n", line.path, line.value, line.takes);
+    }
+  }
+  if (json) fmt::print("{}\n", all.dump(2));
   return kOk;
 }
 

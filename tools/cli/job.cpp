@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "scene_source.hpp"
+#include "set_option.hpp"
 #include "tools/base/interrupt.hpp"
 
 namespace manyworlds::cli {
@@ -36,8 +37,13 @@ Job prepare(const JobOptions& options) {
   Scene scene = load_scene(options.scene, options.mjcf);
   if (options.dt) scene.options.dt = *options.dt;
   if (options.substeps) scene.options.substeps = *options.substeps;
-  if (options.solver) scene.options.solver = *options.solver;
-  if (options.iterations) scene.options.iterations = *options.iterations;
+  if (options.solver) scene.options.solver.method = *options.solver;
+  if (options.iterations) scene.options.solver.iterations = *options.iterations;
+  for (const std::string& one : options.set) {
+    if (const std::string wrong = set_option(scene.options, one); !wrong.empty()) {
+      throw InputError("--set: " + wrong);
+    }
+  }
   PlanOptions plan_options;
   plan_options.broad_phase = options.broad_phase;
   plan_options.keep = options.keep;

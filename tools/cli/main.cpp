@@ -33,7 +33,7 @@ using tools::kVersion, tools::tell;
 
 struct AllOptions {
   bool scenes_json = false;
-  bool info_json = false;
+  bool info_json = false, info_options = false;
   JobOptions run;
   JobOptions plan;
   BenchOptions bench;
@@ -253,8 +253,14 @@ void add_info(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command =
       app.add_subcommand("info", "Show the CPU, instruction sets, threads and versions");
   command->add_flag("--json", all.info_json, "print JSON instead of text");
-  command->footer("Examples:\n  MANYWORLDS_ISA=avx2 manyworlds info\n  manyworlds info --json");
-  command->callback([&] { code = info_command(all.info_json); });
+  command->add_flag("--options", all.info_options,
+                    "list the options of a scene, as --set takes them, and their defaults");
+  command->footer(
+      "Examples:\n  MANYWORLDS_ISA=avx2 manyworlds info\n  manyworlds info --json\n"
+      "  manyworlds info --options");
+  command->callback([&] {
+    code = all.info_options ? list_options_command(all.info_json) : info_command(all.info_json);
+  });
 }
 
 // Where memory runs out in what cannot say so, a destructor, the program still ends as it promises.

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "set_option.hpp"
+
 namespace manyworlds::cli {
 namespace {
 
@@ -220,6 +222,19 @@ void add_plan_options(CLI::App& app, JobOptions& options) {
                  "sweeps over all rows per substep, 1 to 10000 (default: the solver's)")
       ->transform(whole_number(1, 10000))
       ->type_name("N");
+  app.add_option("--set", options.set,
+                 "any option of the scene by its path, as contact.frequency=30 or "
+                 "gravity=0,0,-9.81; 'info --options' lists them; may be repeated")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            Options of_no_scene;
+            return set_option(of_no_scene, text);
+          },
+          std::string()))
+      ->type_name("PATH=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_choice<BroadPhase>(
       app, "--broad-phase", broad_phases(),
       [&options](BroadPhase value) { options.broad_phase = value; },

@@ -112,7 +112,7 @@ int plan_command(const JobOptions& options) {
       fmt::format("{} {}", scene.bodies.size(), scene.bodies.size() == 1 ? "body" : "bodies"),
       job.plan.bodies(), scene.space == Space::planar ? "planar" : "spatial", scene.options.dt,
       counted(scene.options.substeps, "substep"),
-      solver_text(scene.options.solver, iterations_of(scene.options)));
+      solver_text(scene.options.solver.method, iterations_of(scene.options.solver)));
   print_items("features", report.features);
   print_items("stages, in the order of the step", report.stages);
   print_pairs(report.pairs);

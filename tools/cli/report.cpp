@@ -43,8 +43,8 @@ Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call
   report.precision = batch.precision();
   report.dt = options.dt;
   report.substeps = options.substeps;
-  report.solver = options.solver;
-  report.iterations = iterations_of(options);
+  report.solver = options.solver.method;
+  report.iterations = iterations_of(options.solver);
   const double steps_per_s = seconds > 0 ? steps / seconds : 0;
   report.world_steps_per_s = steps_per_s * batch.worlds();
   report.body_steps_per_s = steps_per_s * total_bodies(batch);

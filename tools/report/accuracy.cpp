@@ -85,8 +85,8 @@ std::vector<Method> substeps(const std::vector<int>& counts) {
 std::vector<Method> other_solvers(bool contacts) {
   const auto method = [](const char* name, Solver solver, bool split) {
     return Method{name, [=](Options& o) {
-                    o.solver = solver, o.split_impulse = split, o.substeps = 1;
-                    if (solver != Solver::penalty) o.iterations = 10;
+                    o.solver.method = solver, o.solver.split_impulse = split, o.substeps = 1;
+                    if (solver != Solver::penalty) o.solver.iterations = 10;
                   }};
   };
   std::vector<Method> out = {

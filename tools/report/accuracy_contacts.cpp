@@ -197,7 +197,7 @@ std::vector<Case> contact_cases() {
                             "largest error of its height over four bounces", "m", 1e-2, 2.4);
   bounce.scene = [] {
     Scene scene = empty(Space::spatial);
-    scene.options.restitution_threshold = 0.1;
+    scene.options.contact.restitution_threshold = 0.1;
     scene.add(ground(Space::spatial, 0, 0.8));
     scene.add(with_shape(Sphere{0.1}, {0, 0, 1.1}, 0, 0.8));
     return scene;

@@ -23,9 +23,9 @@ Setting with_substeps(const char* name, double factor) {
 // A solver of hard rows; springs that the case gives to contacts and joints are left out.
 Setting with_solver(const char* name, Solver solver, bool split = false) {
   return {name, Precision::f32, 1, [solver, split](Options& o) {
-            o.solver = solver, o.split_impulse = split;
-            o.substeps = 1, o.iterations = 20;
-            o.joint_frequency.reset();
+            o.solver.method = solver, o.solver.split_impulse = split;
+            o.substeps = 1, o.solver.iterations = 20;
+            o.joint.frequency.reset();
           }};
 }
 
@@ -35,15 +35,15 @@ std::vector<Setting> settings(bool quick) {
                               with_substeps("twice the substeps, f32", 2)};
   if (quick) return out;
   out.push_back(with_substeps("a quarter of the substeps, f32", 0.25));
-  out.push_back(
-      {"two sweeps per substep, f32", Precision::f32, 1, [](Options& o) { o.iterations = 2; }});
+  out.push_back({"two sweeps per substep, f32", Precision::f32, 1,
+                 [](Options& o) { o.solver.iterations = 2; }});
   out.push_back({"a quarter of the step, f32", Precision::f32, 4});
   out.push_back(with_solver("sequential-impulse, 20 sweeps, f32", Solver::sequential_impulse));
   out.push_back(with_solver("split impulses, 20 sweeps, f32", Solver::sequential_impulse, true));
   out.push_back(with_solver("sor 1.3, 20 sweeps, f32", Solver::sor));
   out.push_back(with_solver("nncg, 20 sweeps, f32", Solver::nncg));
   out.push_back({"penalty, 16 substeps, f32", Precision::f32, 1,
-                 [](Options& o) { o.solver = Solver::penalty, o.substeps = 16; }});
+                 [](Options& o) { o.solver.method = Solver::penalty, o.substeps = 16; }});
   return out;
 }
 

@@ -111,7 +111,7 @@ Trial tower(Space space, int boxes) {
   if (!planar && boxes > 10) {
     t.note =
         "a tall column of soft contacts buckles under its weight: from 15 cubes on it takes 8 "
-        "substeps with Options::contact_frequency 90, for 40 cubes 16 with 200";
+        "substeps with ContactOptions::frequency 90, for 40 cubes 16 with 200";
   }
   return t;
 }
@@ -236,8 +236,8 @@ Trial scale(double size) {
     Scene scene = grounded(Space::spatial);
     // Times go as the root of the length: those of the contacts, too.
     scene.options.length_unit = size;
-    scene.options.contact_frequency /= std::sqrt(size);
-    scene.options.push_out_speed /= std::sqrt(size);
+    scene.options.contact.frequency /= std::sqrt(size);
+    scene.options.contact.push_out_speed /= std::sqrt(size);
     for (int i = 0; i < 5; ++i) scene.add(cube(size / 2, {0, 0, size * (0.5 + i)}));
     return scene;
   };

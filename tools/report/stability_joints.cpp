@@ -71,7 +71,7 @@ Trial stretched(bool gravity) {
       "speed", "m/s", 50, 3);
   t.scene = [gravity] {
     Scene scene = empty(Space::planar, gravity ? 10 : 0);
-    scene.options.joint_pull_speed = 1;
+    scene.options.joint.pull_speed = 1;
     for (int i = 0; i < 40; ++i) {
       Body bead = with_shape(Circle{0.2}, {2.0 * i, 0, 0});
       bead.shapes[0].filter.mask = 0;

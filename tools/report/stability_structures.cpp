@@ -109,8 +109,8 @@ Trial cart() {
   t.scene = [] {
     Scene scene = empty(Space::planar, 22);
     Options& o = scene.options;
-    o.substeps = 12, o.contact_frequency = 240, o.push_out_speed = 0.5;
-    o.joint_frequency = 240, o.joint_damping_ratio = 0;
+    o.substeps = 12, o.contact.frequency = 240, o.contact.push_out_speed = 0.5;
+    o.joint.frequency = 240, o.joint.damping_ratio = 0;
     scene.add(ground(Space::planar, 0.6));
     Body chassis = with_shape(Polygon::box(1, 0.25), {0, 0.6, 0}, 0.6);
     chassis.shapes[0].density = 1000, chassis.jitter.position = {0, 0.01, 0};

@@ -8,22 +8,8 @@ from typing import Any, NamedTuple, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..shapes import (
-    Box,
-    Capsule,
-    Circle,
-    Cylinder,
-    Geometry,
-    HalfPlane,
-    HeightField,
-    Hull,
-    Plane,
-    Polygon,
-    Segment,
-    Shape,
-    Sphere,
-    Terrain,
-)
+from .. import _core
+from ..shapes import Geometry, HalfPlane, HeightField, Plane, Segment, Shape, Terrain
 
 Floats = NDArray[np.float64]
 Pose = tuple[Floats, Floats]  # (rotation (3, 3), position (3,)) in the world
@@ -50,41 +36,14 @@ def corners_of(geometry: Geometry, planar: bool) -> Optional[tuple[Floats, float
 
     None for those that are not convex or have no end.
     """
-    if isinstance(geometry, (Circle, Sphere)):
-        return np.zeros((1, 3)), geometry.radius
-    if isinstance(geometry, Capsule):
-        end = np.array([0, geometry.half_length, 0] if planar else [0, 0, geometry.half_length])
-        return np.stack([-end, end]), geometry.radius
-    if isinstance(geometry, Polygon):
-        flat = np.asarray(geometry.vertices, float)
-        return np.pad(flat, ((0, 0), (0, 1))), geometry.radius
-    if isinstance(geometry, Box):
-        signs = np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
-        return signs * np.asarray(geometry.half_extents, float), 0.0
-    if isinstance(geometry, Cylinder):
-        ring = np.pad(geometry.radius * _CIRCLE, ((0, 0), (0, 1)))
-        up = np.array([0, 0, geometry.half_length])
-        return np.concatenate([ring - up, ring + up]), 0.0
-    if isinstance(geometry, Hull):
-        return np.asarray(geometry.vertices, float), 0.0
-    return None
+    found = _core.outline(geometry, planar)
+    return None if found is None else (np.array(found[0], float), found[1])
 
 
 def resized(geometry: Geometry, size: Floats) -> Geometry:
     """The geometry with other numbers of the field "size", (3,)."""
-    if isinstance(geometry, (Circle, Sphere)):
-        return type(geometry)(size[0])
-    if isinstance(geometry, Box):
-        return Box(size)
-    if isinstance(geometry, (Capsule, Cylinder)):
-        return type(geometry)(size[0], size[1])
-    if isinstance(geometry, (Polygon, Hull)):
-        vertices = np.asarray(geometry.vertices, float)
-        stretched = vertices * size[: vertices.shape[1]] / (np.ptp(vertices, axis=0) / 2)
-        return (
-            Hull(stretched) if isinstance(geometry, Hull) else Polygon(stretched, geometry.radius)
-        )
-    return geometry
+    other: Geometry = _core.resized(geometry, [float(x) for x in size])
+    return other
 
 
 def faces_of(corners: Floats) -> list[NDArray[np.intp]]:

@@ -1,0 +1,50 @@
+// The table of state fields: the one place that names them. Where they lie in the state and in
+// snapshots, the order of hashes, reading and writing, inputs that listeners hear of, recordings,
+// Python's fields and docs/conventions.md all follow from it. The kernels read it, too, so it
+// includes nothing and defines no function.
+#pragma once
+
+namespace manyworlds {
+
+// What has a value of a field: a body with state, the world, a shape of the scene, a joint
+// coordinate that is integrated (degree of freedom), a particle.
+enum class ItemKind { body, world, shape, dof, particle };
+inline constexpr int kItemKinds = 5;
+
+// When a plan has a field.
+enum class FieldPresence { always, with_orientation };  // with Feature::orientation
+
+// X(name, kind of item, presence, planar components, spatial components, unit, frame and meaning,
+//   written by)
+#define MW_STATE_FIELDS(X)                                                         \
+  X(position, body, always, "x y", "x y z", "m", "body origin, world", "finish")   \
+  X(orientation, body, with_orientation, "cos sin", "w x y z", "1",                \
+    "body frame in world; planar (cos, sin), spatial (w, x, y, z)", "finish")      \
+  X(linear_velocity, body, always, "x y", "x y z", "m/s", "centre of mass, world", \
+    "forces, solve, restitution")                                                  \
+  X(angular_velocity, body, always, "z", "x y z", "rad/s", "world", "forces, solve, restitution")
+
+#define MW_FIELD(name, ...) name,
+enum class Field { MW_STATE_FIELDS(MW_FIELD) };
+#undef MW_FIELD
+#define MW_FIELD(name, ...) Field::name,
+inline constexpr Field kFields[] = {MW_STATE_FIELDS(MW_FIELD)};
+#undef MW_FIELD
+inline constexpr int kFieldCount = sizeof kFields / sizeof kFields[0];
+
+struct FieldInfo {
+  const char* name;
+  ItemKind item;
+  FieldPresence presence;
+  const char* planar;   // names of the components, "cos sin"
+  const char* spatial;  // "w x y z"
+  const char* unit;
+  const char* meaning;
+  const char* writer;
+};
+#define MW_FIELD(name, item, presence, planar, spatial, unit, meaning, writer) \
+  {#name, ItemKind::item, FieldPresence::presence, planar, spatial, unit, meaning, writer},
+inline constexpr FieldInfo kFieldTable[kFieldCount] = {MW_STATE_FIELDS(MW_FIELD)};  // [Field]
+#undef MW_FIELD
+
+}  // namespace manyworlds

@@ -1,0 +1,109 @@
+// The list of observers and of what each sees: the one place that names them. Sizes, storage,
+// reading, terms of tasks and Python's arrays are made from it. Kernels share it: it includes
+// nothing, and defines nothing that objects could share.
+#pragma once
+
+namespace manyworlds {
+
+// X(observer, what has numbers of its own, when they are taken, what it sees)
+//   state: at the end of a call, and by Batch::look(), which needs no step
+//   step: of the last step of a call, 0 before it
+#define MW_OBSERVERS(X)                                                              \
+  X(contacts, world, step, "every contact point with the impulses of the last step") \
+  X(touching, body, step, "which bodies a contact pushed in the last step")          \
+  X(penetration, world, step, "the deepest overlap that the last step began with")   \
+  X(motion, world, state, "energies, momenta, mass centre")                          \
+  X(joints, coordinate, state, "coordinates of joints and their speeds")             \
+  X(joint_loads, joint, state, "forces and torques in joints")                       \
+  X(residual, world, step, "how far the solver was from done")                       \
+  X(rays, ray, state, "where the rays end: chosen by giving Observers::rays")        \
+  X(points, point, state, "where points of bodies are: chosen by giving Observers::points")
+
+// X(what, its observer, components, unit, meaning)
+//   vector: [2 or 3], the plane's x and y or x, y and z
+//   spin: [1 or 3], the plane's z or x, y and z
+#define MW_OBSERVED(X)                                                                            \
+  X(kinetic_energy, motion, one, "J", "")                                                         \
+  X(potential_energy, motion, one, "J", "0 at the world's origin")                                \
+  X(total_mass, motion, one, "kg", "of dynamic bodies")                                           \
+  X(momentum, motion, vector, "N s", "")                                                          \
+  X(angular_momentum, motion, spin, "N m s", "about the world's origin")                          \
+  X(mass_center, motion, vector, "m", "")                                                         \
+  X(penetration, penetration, one, "m",                                                           \
+    "deepest overlap that the last step began with, 0 if none")                                   \
+  X(contact_count, contacts, one, "1", "contact points of the last step, all of them")            \
+  X(touching, touching, one, "1", "1 where a contact pushed the body in the last step, else 0")   \
+  X(joint_position, joints, one, "m or rad", "coordinates of the joints (Plan.first_coordinate)") \
+  X(joint_speed, joints, one, "m/s or rad/s", "")                                                 \
+  X(joint_force, joint_loads, vector, "N", "on body B, world axes, last substep")                 \
+  X(joint_torque, joint_loads, spin, "N m", "on body B about its anchor, last substep")           \
+  X(residual, residual, two, "m/s, rad/s",                                                        \
+    "largest change that one more sweep of the solver would make")                                \
+  X(ray_distance, rays, one, "m", "the ray's length where it hits nothing")                       \
+  X(ray_normal, rays, vector, "1", "out of what is hit, world; 0: no hit")                        \
+  X(ray_body, rays, one, "1", "scene body, -1: no hit")                                           \
+  X(ray_shape, rays, one, "1", "index in Body.shapes, -1: no hit")                                \
+  X(point_position, points, vector, "m", "world")                                                 \
+  X(point_velocity, points, vector, "m/s", "of the point of the body, world")
+
+// What is read is [world][item of its observer][component]. A plan without orientation (every
+// moving body a centred ball) turns neither rays nor points.
+//
+// The coordinates of a joint follow one another, the joints are in their order
+// (Plan::first_coordinate):
+//   ball      cone and twist, rad        hinge  angle, rad      slider  travel, m
+//   distance  length, m                  wheel  travel, m, and angle, rad
+//   pulley    |rope at A| + ratio |rope at B|, m                fixed, target  none
+// with angles in (-pi, pi], and their speeds in m/s and rad/s. Force and torque are what B gets
+// from the joint, the torque about B's anchor, world axes; those of the last substep.
+//
+// The residual is the largest change of a component of any body's velocity, and of its spin, that
+// one more sweep of the solver over all rows would make after those of the last substep (of
+// tgs_soft: one more relaxing sweep); restitution comes after it. It is 0 where the velocities
+// solve the rows' complementarity problem, and where nothing is awake.
+enum class Observer {
+#define MW_OBSERVER_ENUM(name, item, taken, meaning) name,
+  MW_OBSERVERS(MW_OBSERVER_ENUM)
+#undef MW_OBSERVER_ENUM
+};
+enum class Observed {
+#define MW_OBSERVED_ENUM(name, observer, components, unit, meaning) name,
+  MW_OBSERVED(MW_OBSERVED_ENUM)
+#undef MW_OBSERVED_ENUM
+};
+
+// What has numbers of its own: a body is a row of state arrays (Plan::row).
+enum class ObservedItem { world, body, joint, coordinate, ray, point };
+enum class ObservedComponents { one, two, vector, spin };
+enum class ObservedOf { state, step };
+
+struct ObserverInfo {
+  const char* name;
+  ObservedItem item;
+  ObservedOf of;
+  const char* meaning;
+};
+struct ObservedInfo {
+  const char* name;
+  Observer observer;
+  ObservedComponents components;
+  const char* unit;
+  const char* meaning;
+};
+
+constexpr ObserverInfo kObserverInfo[] = {
+#define MW_OBSERVER_INFO(name, item, taken, meaning) \
+  {#name, ObservedItem::item, ObservedOf::taken, meaning},
+    MW_OBSERVERS(MW_OBSERVER_INFO)
+#undef MW_OBSERVER_INFO
+};
+constexpr ObservedInfo kObservedInfo[] = {
+#define MW_OBSERVED_INFO(name, observer, components, unit, meaning) \
+  {#name, Observer::observer, ObservedComponents::components, unit, meaning},
+    MW_OBSERVED(MW_OBSERVED_INFO)
+#undef MW_OBSERVED_INFO
+};
+inline constexpr int kObserverCount = sizeof(kObserverInfo) / sizeof(ObserverInfo);
+inline constexpr int kObservedCount = sizeof(kObservedInfo) / sizeof(ObservedInfo);
+
+}  // namespace manyworlds

@@ -1,0 +1,76 @@
+// The members of options (options.hpp) by name, as members.hpp has those of everything else.
+#pragma once
+
+#include "manyworlds/member_list.hpp"
+#include "manyworlds/options.hpp"
+
+namespace manyworlds {
+
+template <>
+struct Members<SolverOptions> {
+  static constexpr const char* name = "SolverOptions";
+  static void visit(auto& value, auto&& visit) {
+    auto& [method, iterations, relaxation, push_out_share, split_impulse] = value;
+    const Counted swept =
+        counted_if(method != Solver::tgs_soft || iterations_of(value) != 1,
+                   "the default solver is what there was before there was a choice");
+    const Counted hard = counted_if(has_hard_rows(method), "of solvers with hard rows alone");
+    visit("method", method, swept), visit("iterations", iterations, swept);
+    visit("relaxation", relaxation, counted_if(method == Solver::sor, "of sor alone"));
+    visit("push_out_share", push_out_share, hard), visit("split_impulse", split_impulse, hard);
+  }
+};
+template <>
+struct Members<ContactOptions> {
+  static constexpr const char* name = "ContactOptions";
+  static void visit(auto& value, auto&& visit) {
+    auto& [frequency, damping_ratio, push_out_speed, slop, restitution_threshold,
+           restitution_sweeps, friction_in_bias_pass, cast_against_fixed, cast_between_moving] =
+        value;
+    visit("frequency", frequency), visit("damping_ratio", damping_ratio);
+    visit("push_out_speed", push_out_speed), visit("slop", slop);
+    visit("restitution_threshold", restitution_threshold);
+    visit("restitution_sweeps", restitution_sweeps);
+    visit("friction_in_bias_pass", friction_in_bias_pass);
+    visit("cast_against_fixed", cast_against_fixed);
+    visit("cast_between_moving", cast_between_moving);
+  }
+};
+template <>
+struct Members<JointOptions> {
+  static constexpr const char* name = "JointOptions";
+  static void visit(auto& value, auto&& visit) {
+    auto& [frequency, damping_ratio, pull_speed] = value;
+    visit("frequency", frequency), visit("damping_ratio", damping_ratio);
+    visit("pull_speed", pull_speed);
+  }
+};
+template <>
+struct Members<SleepOptions> {
+  static constexpr const char* name = "SleepOptions";
+  static void visit(auto& value, auto&& visit) {
+    auto& [speed, time] = value;
+    visit("speed", speed), visit("time", time);
+  }
+};
+template <>
+struct Members<Options> {
+  static constexpr const char* name = "Options";
+  static void visit(auto& value, auto&& visit) {
+    auto& [dt, substeps, gravity, wind, density, integrator, rotation, angular_momentum,
+           length_unit, solver, contact, joint, sleep, contact_capacity, bounds] = value;
+    const Counted flown =
+        counted_if(integrator != Integrator::symplectic_euler ||
+                       rotation.value_or(Rotation::splitting) != Rotation::splitting,
+                   "the default integrator is what there was before there was a choice");
+    visit("dt", dt), visit("substeps", substeps), visit("gravity", gravity), visit("wind", wind);
+    visit("density", density), visit("length_unit", length_unit);
+    visit("contact", contact), visit("joint", joint), visit("sleep", sleep);
+    visit("contact_capacity", contact_capacity), visit("bounds", bounds);
+    visit("solver", solver);
+    visit("integrator", integrator, flown), visit("rotation", rotation, flown);
+    visit("angular_momentum", angular_momentum, flown);
+  }
+};
+
+}  // namespace manyworlds

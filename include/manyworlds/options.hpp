@@ -1,0 +1,93 @@
+// Options of a scene: the step, its solver, contacts, joints and sleep. Every option has a path
+// through these structs ("contact.slop"), which JSON, Python and error messages share.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <limits>
+#include <optional>
+
+#include "manyworlds/integrator.hpp"
+#include "manyworlds/solver.hpp"
+
+namespace manyworlds {
+
+// What runs over the rows of contacts and joints (solver.hpp).
+struct SolverOptions {
+  Solver method = Solver::tgs_soft;
+  // Sweeps over all rows per substep, of tgs_soft those before the motion. Default: 1 for tgs_soft
+  // and penalty, 10 for the others, which are usually given fewer substeps.
+  std::optional<int> iterations = {};
+  double relaxation = 1.3;  // of sor, in (0, 2)
+  // Of sequential_impulse, sor and nncg: the share of an overlap beyond slop, or of a joint's gap,
+  // that a substep removes, and whether contacts do so without leaving a speed.
+  double push_out_share = 0.2;
+  bool split_impulse = false;
+};
+// SolverOptions::iterations, or the default of the method.
+int iterations_of(const SolverOptions& solver);
+
+struct ContactOptions {
+  double frequency = 60;  // Hz, of the soft contacts of tgs_soft and penalty
+  double damping_ratio = 10;
+  // m/s per length_unit: cap on the speed at which a pair's overlap is removed. Speeds of bodies
+  // add up along a row: a row of n that overlap deeply can part at n / 4 times as much.
+  double push_out_speed = 1.5;
+  double slop = 0.005;               // m per length_unit: contact margin is 4 slop
+  double restitution_threshold = 1;  // m/s per length_unit: slower impacts do not bounce
+  int restitution_sweeps = 16;       // most repeats of the restitution pass
+  // Of tgs_soft: much less sway of tall stacks; off is a little faster.
+  bool friction_in_bias_pass = true;
+  bool cast_against_fixed = true;    // stop fast bodies at thin fixed shapes
+  bool cast_between_moving = false;  // and at moving ones; for bullets
+};
+
+// What joints hold together is pulled back as by a spring and damper. Not capped: stiffer than the
+// default may ring.
+struct JointOptions {
+  // Hz; default a quarter per substep, and hard rows in sequential_impulse, sor and nncg.
+  std::optional<double> frequency = {};
+  double damping_ratio = 2;
+  // m/s per length_unit, and rad/s: cap on the speed at which a joint closes what has come apart.
+  // For scenes whose joints begin far apart; under heavy loads a low one lets chains stretch.
+  double pull_speed = std::numeric_limits<double>::infinity();
+};
+
+// A body is at rest while |v| + |w| radius of its bounding sphere stays below speed; an island all
+// of whose bodies have been at rest for that time falls asleep (BatchOptions::sleep).
+struct SleepOptions {
+  double speed = 0.05;  // m/s per length_unit
+  double time = 0.5;    // s
+};
+
+struct Options {
+  double dt = 1.0 / 60.0;              // s, one step
+  int substeps = 4;                    // of the solver and of the integrator, per step
+  Eigen::Vector3d gravity{0, 0, -10};  // m/s^2 (planar scenes: set {0, -10, 0})
+  Eigen::Vector3d wind{0, 0, 0};       // m/s, of the air that Body::linear_drag is against
+  double density = 1000;               // kg/m^3 or kg/m^2, for shapes that give none
+  Integrator integrator = Integrator::symplectic_euler;
+  // Default: splitting with symplectic_euler and the Verlets, which take nothing else but
+  // symplectic_euler; exponential with the others.
+  std::optional<Rotation> rotation = {};
+  // Spins are integrated as angular momenta instead of angular velocities, without splitting and
+  // not by implicit_euler.
+  bool angular_momentum = false;
+  // Size of a typical body, m. Scales slop, margins and speed limits of the contact model.
+  double length_unit = 1;
+
+  SolverOptions solver = {};
+  ContactOptions contact = {};
+  JointOptions joint = {};
+  SleepOptions sleep = {};
+
+  // Manifolds between moving bodies that a world has room for, of each kind (of several points, of
+  // one). Default: 4 per shape (planar: 3) and 8 more. What exceeds it is left out of the step and
+  // flagged (Status::contact_overflow).
+  std::optional<int> contact_capacity = {};
+
+  // A world is lost when a body's position leaves this box. Default: no bounds.
+  std::optional<Eigen::AlignedBox3d> bounds = {};
+};
+
+}  // namespace manyworlds

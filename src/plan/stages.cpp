@@ -1,0 +1,66 @@
+// Which stages a plan runs, and why.
+#include "src/plan/stages.hpp"
+
+#include <algorithm>
+
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+void choose_stages(PlanData& plan) {
+  const auto why = [&](Feature f) { return plan.why[static_cast<std::size_t>(f)]; };
+  const auto set = [&](StepStage stage, bool in, std::string reason) {
+    plan.stages[static_cast<std::size_t>(stage)] = {in, std::move(reason)};
+  };
+  const Options& options = plan.scene.options;
+  const bool contacts = plan.has(Feature::contacts), flight = flies(options);
+  const bool forces_only = std::all_of(plan.parts.begin(), plan.parts.end(),
+                                       [](const PlanPart& p) { return p.what.force; });
+  const bool substeps =
+      contacts || (flight ? !forces_only : !plan.parts.empty() || !plan.thrusts.empty());
+  const bool joints = substeps && !plan.parts.empty();
+  const std::string touch = why(Feature::contacts);
+  const std::string some = contacts ? touch
+                           : joints ? why(Feature::joints)
+                                    : "controls push bodies";
+
+  set(StepStage::free_motion, !substeps && !flight,
+      substeps ? "rows need the substep loop"
+      : flight ? "bodies move by another integrator"
+               : touch);
+  set(StepStage::flight, flight,
+      flight ? to_string(options.integrator) : "bodies move as the substeps do");
+  set(StepStage::begin, substeps, substeps ? some : touch);
+  set(StepStage::broad_phase, contacts,
+      plan.sparse  ? "sort and sweep, no table of pairs"
+      : plan.sweep ? "sort and sweep"
+                   : "masked all-pairs");
+  set(StepStage::collide, contacts, touch);
+  set(StepStage::joints, joints,
+      plan.has(Feature::joints) && !joints ? "springs are forces of the flight"
+                                           : why(Feature::joints));
+  set(StepStage::warm_start, substeps, substeps ? some : touch);
+
+  const std::string solver = to_string(options.solver.method);
+  const int sweeps = iterations_of(options.solver);
+  set(StepStage::bias, contacts,
+      solver + (sweeps == 1 ? ", a sweep in every substep"
+                            : ", " + std::to_string(sweeps) + " sweeps in every substep"));
+  set(StepStage::advance, substeps, "displacement, every substep");
+  const bool soft = options.solver.method == Solver::tgs_soft;
+  set(StepStage::relax, contacts && soft,
+      !soft                         ? solver + " has no relaxing sweep"
+      : plan.has(Feature::friction) ? "normal rows and friction, every substep"
+                                    : "normal rows, every substep");
+  set(StepStage::restitute, contacts && plan.has(Feature::restitution), why(Feature::restitution));
+  set(StepStage::store, contacts, "impulses for the next step's warm start");
+  const bool moving_casts = options.contact.cast_between_moving;
+  set(StepStage::finish, substeps,
+      !substeps                                   ? "whole steps commit by themselves"
+      : !contacts || !(plan.cast || moving_casts) ? "commit"
+      : !moving_casts                             ? "commit, with casts against fixed shapes"
+      : !plan.cast                                ? "commit, with casts between moving shapes"
+                   : "commit, with casts against fixed and moving shapes");
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,97 @@
+// Height fields.
+#include <algorithm>
+#include <cmath>
+
+#include "src/scene/shape/traits.hpp"
+
+namespace manyworlds {
+namespace {
+
+using detail::Checker;
+
+void check_height_field(Checker& checker, const HeightField& field) {
+  constexpr std::size_t kMostPoints = 1000000;
+  const std::size_t n = field.heights.size();
+  checker.size("cell.x", field.cell.x());
+  checker.size("cell.y", field.cell.y());
+  if (field.columns < 2) {
+    checker.add("columns", "is " + std::to_string(field.columns) + ", must be at least 2");
+  } else if (n % static_cast<std::size_t>(field.columns) != 0 || field.rows() < 2) {
+    checker.add("heights", "are " + std::to_string(n) + ", must be two rows or more of " +
+                               std::to_string(field.columns));
+  }
+  if (n > kMostPoints) {
+    checker.add("heights",
+                "are " + std::to_string(n) + ", must be at most " + std::to_string(kMostPoints));
+    return;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    detail::check_coordinate(checker, detail::element_name("heights", i), field.heights[i]);
+  }
+}
+
+// What is below a triangle, counter-clockwise seen from above, down to a level.
+Convex prism_of(const std::array<Vec3, 3>& top, double level, const Vec3& x, const Mat3& r) {
+  Convex c;
+  for (const bool lower : {false, true}) {
+    for (const Vec3& p : top) c.points.push_back(x + r * Vec3(p.x(), p.y(), lower ? level : p.z()));
+  }
+  const auto point = [&](int i) { return c.points[static_cast<std::size_t>(i)]; };
+  const auto face = [&](const Vec3& normal, const Vec3& on) {
+    c.normals.push_back(normal.normalized());
+    c.reach.push_back(c.normals.back().dot(on));
+  };
+  const auto edge = [&](int from, int to) {
+    c.edges.push_back({from, to});
+    c.directions.push_back((point(to) - point(from)).normalized());
+  };
+  face((point(1) - point(0)).cross(point(2) - point(0)), point(0));
+  face(-r.col(2), point(3));
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    face((point(next) - point(i)).cross(r.col(2)), point(i));
+    edge(i, next), edge(3 + i, 3 + next), edge(i, 3 + i);
+  }
+  return c;
+}
+
+// What is below each triangle of a surface, as deep as the field is wide below its lowest point.
+std::vector<Convex> prisms_of(const HeightField& field, const Vec3& x, const Mat3& r) {
+  const int columns = field.columns - 1, rows = field.rows() - 1;
+  const double wide = columns * field.cell.x(), deep = rows * field.cell.y();
+  const double level =
+      *std::min_element(field.heights.begin(), field.heights.end()) - std::hypot(wide, deep);
+  const auto corner = [&](int i, int j) {
+    const double z = field.heights[static_cast<std::size_t>(i + j * field.columns)];
+    return Vec3(i * field.cell.x() - wide / 2, j * field.cell.y() - deep / 2, z);
+  };
+  std::vector<Convex> out;
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const Vec3 low = corner(i, j), high = corner(i + 1, j + 1);
+      out.push_back(prism_of({low, corner(i + 1, j), high}, level, x, r));
+      out.push_back(prism_of({low, high, corner(i, j + 1)}, level, x, r));
+    }
+  }
+  return out;
+}
+
+class HeightFieldTraits final : public TraitsOf<HeightField> {
+ public:
+  HeightFieldTraits() : TraitsOf({.name = "height field", .in_space = true, .ground = true}) {}
+
+ protected:
+  void examine(Checker& checker, const HeightField& field) const override {
+    check_height_field(checker, field);
+  }
+  std::vector<Convex> parts_of(const HeightField& field, const Vec3& x, const Mat3& r,
+                               Space) const override {
+    return prisms_of(field, x, r);
+  }
+};
+
+}  // namespace
+
+MW_GEOMETRY(HeightField)
+
+}  // namespace manyworlds

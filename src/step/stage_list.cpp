@@ -1,0 +1,177 @@
+// The passes of a substep, as each solver puts them in order (include/manyworlds/solver.hpp).
+#include "src/step/stage_list.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+using kernels::Solver;
+
+template <class Real>
+class Builder {
+ public:
+  using Call = kernels::Stage<Real>;
+  using Calls = typename StageCalls<Real>::Calls;
+
+  Builder(const PlanData& plan, const kernels::WorldTables<Real>& tables,
+          const kernels::KernelTable<Real>& k, kernels::Layout layout)
+      : plan_(plan),
+        t_(tables),
+        layout_(layout == kernels::Layout::dense ? 0 : 1),
+        solver_(k.solver[kind()][tables.has_friction ? 1 : 0][layout_]),
+        sweeps_(k.sweeps[kind()][layout_]),
+        impulses_(k.impulses[kind()]),
+        joints_(k.joints[kind()][layout_]),
+        flight_(k.flight[kind()]),
+        settle_(k.settle) {}
+
+  StageCalls<Real> build() {
+    out_.enter = solver_.enter;
+    prepare();
+    switch (t_.solver.kind) {
+      case Solver::tgs_soft: tgs_soft(); break;
+      case Solver::nncg: nncg(); break;
+      case Solver::penalty: penalty(); break;
+      default: sequential_impulse();
+    }
+    if (t_.breakable > 0) add(out_.solve, StepStage::joints, joints_.bear);
+    if (t_.solver.kind != Solver::tgs_soft) add(out_.solve, StepStage::restitute, sweeps_.tally);
+    next();
+    end();
+    return std::move(out_);
+  }
+
+ private:
+  int kind() const { return static_cast<int>(t_.inertia_kind); }
+  bool contacts() const { return plan_.runs(StepStage::collide); }
+  bool joints() const { return plan_.runs(StepStage::joints); }
+  // Impulses are those of one substep alone: nothing is carried over.
+  bool forgets() const { return t_.solver.kind == Solver::penalty; }
+
+  void add(Calls& to, StepStage stage, Call call) const {
+    if (stage == StepStage::settle ? t_.has_sleep : plan_.runs(stage)) to.push_back({stage, call});
+  }
+  // A pass over contacts that carries what it does over to the next substep.
+  void add_carried(Calls& to, StepStage stage, Call pass) const {
+    if (!contacts()) return;
+    if (joints()) add(to, stage, solver_.mark);
+    add(to, stage, pass);
+    if (joints()) add(to, stage, solver_.gather);
+  }
+  void ask_here(Call joint_sweep, Call contact_sweep) {
+    out_.residual_at = out_.solve.size();
+    out_.joint_sweep = joints() ? joint_sweep : nullptr;
+    out_.contact_sweep = contacts() ? contact_sweep : nullptr;
+  }
+
+  void prepare() {
+    Calls& to = out_.prepare;
+    add(to, StepStage::flight, flight_.fly);
+    add(to, StepStage::joints, joints_.prepare);
+    if (forgets()) add(to, StepStage::warm_start, impulses_.forget);
+    add(to, StepStage::warm_start, solver_.push);
+    add(to, StepStage::warm_start, solver_.warm_start);
+    add(to, StepStage::warm_start, solver_.open);
+    add(to, StepStage::joints, joints_.warm_start);
+  }
+
+  void tgs_soft() {
+    Calls& to = out_.solve;
+    for (int i = 0; i < t_.solver.iterations; ++i) {
+      add(to, StepStage::joints, joints_.bias);
+      add_carried(to, StepStage::bias, solver_.bias);
+    }
+    add(to, StepStage::advance, solver_.advance);
+    add(to, StepStage::joints, joints_.relax);
+    add_carried(to, StepStage::relax, solver_.relax);
+    ask_here(joints_.relax, solver_.relax);
+  }
+  void advance() {
+    Calls& to = out_.solve;
+    ask_here(joints_.bias, sweeps_.sweep);
+    add(to, StepStage::advance, solver_.advance);
+    for (int i = 0; t_.solver.splits && contacts() && i < t_.solver.iterations; ++i) {
+      add(to, StepStage::advance, sweeps_.part);
+    }
+  }
+  // Projected Gauss-Seidel, and SOR, whose rows know their relaxation.
+  void sequential_impulse() {
+    for (int i = 0; i < t_.solver.iterations; ++i) {
+      add(out_.solve, StepStage::joints, joints_.bias);
+      add_carried(out_.solve, StepStage::bias, sweeps_.sweep);
+    }
+    advance();
+  }
+  void nncg() {
+    Calls& to = out_.solve;
+    add(to, StepStage::warm_start, impulses_.begin_search);
+    for (int i = 0; i < t_.solver.iterations; ++i) {
+      const bool last = i + 1 == t_.solver.iterations;
+      if (!last) add(to, StepStage::warm_start, impulses_.remember);
+      add(to, StepStage::joints, joints_.bias);
+      add_carried(to, StepStage::bias, sweeps_.sweep);
+      if (last) break;
+      add(to, StepStage::warm_start, impulses_.turn);
+      add(to, StepStage::joints, joints_.warm_start);
+      add_carried(to, StepStage::warm_start, solver_.warm_start);
+      add(to, StepStage::warm_start, impulses_.land);
+    }
+    advance();
+  }
+  void penalty() {
+    for (int i = 0; i < t_.solver.iterations; ++i) {
+      add(out_.solve, StepStage::joints, joints_.bias);
+      add(out_.solve, StepStage::bias, sweeps_.sweep);
+    }
+    advance();
+  }
+
+  void next() {
+    Calls& to = out_.next;
+    if (forgets()) add(to, StepStage::advance, impulses_.forget);
+    // What the velocities have gained since is carried over, unless there is nothing to carry.
+    if (forgets() || !contacts()) add(to, StepStage::advance, solver_.mark);
+    add(to, StepStage::advance, solver_.next);
+    // Impulses are to act where the joints are now: at rows of the substep before they would feed
+    // energy. Relaxing sweeps have brought them there already.
+    if (t_.solver.kind != Solver::tgs_soft) add(to, StepStage::joints, joints_.follow);
+    add(to, StepStage::joints, joints_.warm_start);
+  }
+
+  void end() {
+    Calls& to = out_.end;
+    add(to, StepStage::joints, joints_.store);
+    add(to, StepStage::restitute, solver_.restitute);
+    add(to, StepStage::store, solver_.store);
+    const bool flight = plan_.runs(StepStage::flight);
+    add(to, StepStage::finish, flight ? flight_.leave[layout_] : solver_.leave);
+    if (t_.breakable > 0) add(to, StepStage::joints, joints_.break_up);
+    add(to, StepStage::settle, settle_);
+  }
+
+  const PlanData& plan_;
+  const kernels::WorldTables<Real>& t_;
+  int layout_;
+  const kernels::SolverTable<Real>& solver_;
+  const kernels::SweepTable<Real>& sweeps_;
+  const kernels::ImpulseTable<Real>& impulses_;
+  const kernels::JointSolver<Real>& joints_;
+  const kernels::FlightTable<Real>& flight_;
+  Call settle_;
+  StageCalls<Real> out_;
+};
+
+}  // namespace
+
+template <class Real>
+StageList<Real>::StageList(const PlanData& plan, const kernels::WorldTables<Real>& tables,
+                           const kernels::KernelTable<Real>& kernels) {
+  if (!tables.has_substeps) return;
+  dense_ = Builder<Real>(plan, tables, kernels, kernels::Layout::dense).build();
+  rows_ = Builder<Real>(plan, tables, kernels, kernels::Layout::rows).build();
+}
+
+template class StageList<float>;
+template class StageList<double>;
+
+}  // namespace manyworlds
