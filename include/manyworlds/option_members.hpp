@@ -24,10 +24,13 @@ template <>
 struct Members<ContactOptions> {
   static constexpr const char* name = "ContactOptions";
   static void visit(auto& value, auto&& visit) {
-    auto& [frequency, damping_ratio, push_out_speed, slop, restitution_threshold,
+    auto& [frequency, fixed_frequency, damping_ratio, push_out_speed, slop, restitution_threshold,
            restitution_sweeps, friction_in_bias_pass, cast_against_fixed, cast_between_moving] =
         value;
     visit("frequency", frequency), visit("damping_ratio", damping_ratio);
+    visit("fixed_frequency", fixed_frequency,
+          counted_if(fixed_frequency.has_value(),
+                     "the default is what there was before there was a choice"));
     visit("push_out_speed", push_out_speed), visit("slop", slop);
     visit("restitution_threshold", restitution_threshold);
     visit("restitution_sweeps", restitution_sweeps);

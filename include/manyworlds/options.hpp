@@ -29,7 +29,9 @@ int iterations_of(const SolverOptions& solver);
 
 struct ContactOptions {
   double frequency = 60;  // Hz, of the soft contacts of tgs_soft and penalty
-  double damping_ratio = 10;
+  // Hz, of those against fixed shapes; default: twice frequency.
+  std::optional<double> fixed_frequency = {};
+  double damping_ratio = 10;  // of both
   // m/s per length_unit: cap on the speed at which a pair's overlap is removed. Speeds of bodies
   // add up along a row: a row of n that overlap deeply can part at n / 4 times as much.
   double push_out_speed = 1.5;

@@ -25,6 +25,7 @@ class ContactOptions:
     """The contact model."""
 
     frequency: float = 60.0  # Hz, of tgs_soft and penalty
+    fixed_frequency: Optional[float] = None  # Hz, against fixed shapes; None: twice frequency
     damping_ratio: float = 10.0
     push_out_speed: float = 1.5  # m/s per length_unit
     slop: float = 0.005  # m per length_unit

@@ -72,6 +72,9 @@ void check_solver(Checker& checker, const SolverOptions& o) {
 
 void check_contact(Checker& checker, const ContactOptions& o) {
   checker.not_negative("options.contact.frequency", o.frequency, "Hz");
+  if (o.fixed_frequency) {
+    checker.not_negative("options.contact.fixed_frequency", *o.fixed_frequency, "Hz");
+  }
   checker.not_negative("options.contact.damping_ratio", o.damping_ratio, "");
   checker.not_negative("options.contact.push_out_speed", o.push_out_speed, "m/s");
   checker.positive("options.contact.slop", o.slop, "m", kSmallestSize, kLargestSize);

@@ -90,7 +90,8 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.h = static_cast<Real>(h);
   t.inv_h = static_cast<Real>(1 / h);
   t.soft_pair = softness<Real>(o.contact.frequency, o.contact.damping_ratio, h);
-  t.soft_fixed = softness<Real>(2 * o.contact.frequency, o.contact.damping_ratio, h);
+  t.soft_fixed = softness<Real>(o.contact.fixed_frequency.value_or(2 * o.contact.frequency),
+                                o.contact.damping_ratio, h);
   add_solver(o);
   t.push_out_speed = static_cast<Real>(o.contact.push_out_speed * o.length_unit);
   t.margin = static_cast<Real>(4 * o.contact.slop * o.length_unit);

@@ -103,6 +103,27 @@ TEST_CASE("penalty sags by what its springs say, joints included", "[fast][solve
   }
 }
 
+TEST_CASE("contacts against fixed shapes have a frequency of their own", "[fast][solver]") {
+  for (Space space : kSpaces) {
+    const auto ball_on_ground = [&](std::optional<double> fixed_frequency) {
+      Scene scene = empty_scene(space, 10);
+      choose(scene, Solver::penalty);
+      scene.options.contact.frequency = 5;
+      scene.options.contact.fixed_frequency = fixed_frequency;
+      scene.options.contact.damping_ratio = 1;
+      scene.add(ground(space));
+      scene.add(body_of(shape_of(round_of(space, 0.5)), 0.5 * up_of(space)));
+      Batch batch(compile(scene), {.threads = 1});
+      batch.step(600);
+      return std::pair(0.5 - up_of(space).dot(position(batch, 0, 0)), batch.hash());
+    };
+    const auto [sag, hash] = ball_on_ground(7);
+    CHECK(sag == Approx(10 / (4 * kPi * kPi * 49)).epsilon(1e-3));
+    CHECK(ball_on_ground({}).second == ball_on_ground(10).second);
+    CHECK(ball_on_ground({}).second != hash);
+  }
+}
+
 TEST_CASE("no solver changes momentum", "[fast][solver]") {
   if (!has_table(double_table())) return;
   constexpr int kWorlds = 8;

@@ -77,6 +77,8 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
           "is -1 Hz, must be >= 0"),
       bad("contact.frequency", &Options::contact, &ContactOptions::frequency, kInf,
           "is inf Hz, must be finite"),
+      {"contact.fixed_frequency", "is -1 Hz, must be >= 0",
+       [](Scene& s) { s.options.contact.fixed_frequency = -1; }},
       bad("contact.damping_ratio", &Options::contact, &ContactOptions::damping_ratio, -1,
           "must be >= 0"),
       bad("contact.damping_ratio", &Options::contact, &ContactOptions::damping_ratio, kNan,
