@@ -110,6 +110,7 @@ void register_observers() {
       {"touching", {Observer::touching}, 0},
       {"contacts", {Observer::contacts}, 0},
       {"residual", {Observer::residual}, 0},
+      {"acceleration", {Observer::acceleration}, 0},
       {"rays_8", {}, 8},
       {"rays_32", {}, 32},
       {"everything",

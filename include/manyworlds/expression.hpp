@@ -98,6 +98,15 @@ inline Expression joint_speed(JointId joint, int coordinate = 0) {
 inline Expression touching(BodyId body) {  // a contact pushed it in the last step
   return observed(Observed::touching, body.index());
 }
+inline Expression linear_acceleration(BodyId body, int axis) {  // m/s^2, of its centre of mass
+  return observed(Observed::linear_acceleration, body.index(), axis);
+}
+inline Expression angular_acceleration(BodyId body, int axis) {  // rad/s^2; in the plane axis 2
+  return observed(Observed::angular_acceleration, body.index(), axis);
+}
+inline Expression proper_acceleration(BodyId body, int axis) {  // m/s^2; the axis is the body's
+  return observed(Observed::proper_acceleration, body.index(), axis);
+}
 inline Expression point_position(int point, int axis) {  // m, of Task::points
   return observed(Observed::point_position, point, axis);
 }

@@ -8,15 +8,16 @@ namespace manyworlds {
 // X(observer, what has numbers of its own, when they are taken, what it sees)
 //   state: at the end of a call, and by Batch::look(), which needs no step
 //   step: of the last step of a call, 0 before it
-#define MW_OBSERVERS(X)                                                              \
-  X(contacts, world, step, "every contact point with the impulses of the last step") \
-  X(touching, body, step, "which bodies a contact pushed in the last step")          \
-  X(penetration, world, step, "the deepest overlap that the last step began with")   \
-  X(motion, world, state, "energies, momenta, mass centre")                          \
-  X(joints, coordinate, state, "coordinates of joints and their speeds")             \
-  X(joint_loads, joint, state, "forces and torques in joints")                       \
-  X(residual, world, step, "how far the solver was from done")                       \
-  X(rays, ray, state, "where the rays end: chosen by giving Observers::rays")        \
+#define MW_OBSERVERS(X)                                                                \
+  X(contacts, world, step, "every contact point with the impulses of the last step")   \
+  X(touching, body, step, "which bodies a contact pushed in the last step")            \
+  X(penetration, world, step, "the deepest overlap that the last step began with")     \
+  X(motion, world, state, "energies, momenta, mass centre")                            \
+  X(joints, coordinate, state, "coordinates of joints and their speeds")               \
+  X(joint_loads, joint, state, "forces and torques in joints")                         \
+  X(residual, world, step, "how far the solver was from done")                         \
+  X(rays, ray, state, "where the rays end: chosen by giving Observers::rays")          \
+  X(acceleration, body, state, "accelerations over the last step, and accelerometers") \
   X(points, point, state, "where points of bodies are: chosen by giving Observers::points")
 
 // X(what, its observer, components, unit, meaning)
@@ -43,6 +44,12 @@ namespace manyworlds {
   X(ray_normal, rays, vector, "1", "out of what is hit, world; 0: no hit")                        \
   X(ray_body, rays, one, "1", "scene body, -1: no hit")                                           \
   X(ray_shape, rays, one, "1", "index in Body.shapes, -1: no hit")                                \
+  X(linear_acceleration, acceleration, vector, "m/s^2",                                           \
+    "of the centre of mass over the last step, impacts included, world")                          \
+  X(angular_acceleration, acceleration, spin, "rad/s^2", "over the last step, world")             \
+  X(proper_acceleration, acceleration, vector, "m/s^2",                                           \
+    "what an accelerometer at the centre of mass tells, body axes: g upwards at rest, 0 in free " \
+    "fall")                                                                                       \
   X(point_position, points, vector, "m", "world")                                                 \
   X(point_velocity, points, vector, "m/s", "of the point of the body, world")
 
@@ -61,6 +68,12 @@ namespace manyworlds {
 // one more sweep of the solver over all rows would make after those of the last substep (of
 // tgs_soft: one more relaxing sweep); restitution comes after it. It is 0 where the velocities
 // solve the rows' complementarity problem, and where nothing is awake.
+//
+// Accelerations are the change of velocity in the last step of a call / dt: 0 of a body that is
+// asleep, disabled, kinematic or frozen, and when a state is looked at without a step. Proper
+// acceleration is that minus what gravity gives the body (times its gravity scale, attractors
+// included, nothing for kinematic bodies), as MuJoCo's accelerometer in the body's frame; 0 of a
+// body that is disabled or frozen.
 enum class Observer {
 #define MW_OBSERVER_ENUM(name, item, taken, meaning) name,
   MW_OBSERVERS(MW_OBSERVER_ENUM)

@@ -1,6 +1,7 @@
 // The observers' table of this instruction set and precision.
 #include "kernels/observe/observe.hpp"
 
+#include "kernels/observe/acceleration.hpp"
 #include "kernels/observe/joints.hpp"
 #include "kernels/observe/motion.hpp"
 #include "kernels/observe/points.hpp"
@@ -60,6 +61,8 @@ void fill(kernels::ObserverTable<Real>& out) {
   look(out, Observer::motion)[kind] = observe_motion<S>;
   look(out, Observer::rays)[kind] = observe_rays;
   look(out, Observer::points)[kind] = observe_points<S>;
+  look(out, Observer::acceleration)[kind] = observe_acceleration<S>;
+  begin(out, Observer::acceleration)[kind] = begin_acceleration<S>;
 }
 
 // Plans with joints have full tensors.

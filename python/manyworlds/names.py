@@ -43,7 +43,7 @@ Isa = Literal["scalar", "avx2", "avx512"]
 ContactLayout = Literal["automatic", "dense", "rows"]
 Observer = Literal[
     "contacts", "touching", "penetration", "motion", "joints", "joint_loads", "residual", "rays",
-    "points"
+    "acceleration", "points"
 ]
 Feature = Literal[
     "orientation", "inertia", "friction", "restitution", "contacts", "drag", "gravity", "joints"

@@ -159,6 +159,18 @@ class Terms:
         """1 where a contact pushed the body in the last step; 0 where a world begins."""
         return _x.observed("touching", self._index("body", body), 0)
 
+    def linear_acceleration(self, body: BodyRef, axis: Axis) -> Expression:
+        """m/s^2, of the centre of mass in the last physics step, impacts included; world."""
+        return _x.observed("linear_acceleration", self._index("body", body), self._axis(axis))
+
+    def angular_acceleration(self, body: BodyRef, axis: Axis = 2) -> Expression:
+        """rad/s^2, in the last physics step; in the plane about axis 2."""
+        return _x.observed("angular_acceleration", self._index("body", body), self._axis(axis))
+
+    def proper_acceleration(self, body: BodyRef, axis: Axis) -> Expression:
+        """m/s^2, what an accelerometer at the centre of mass tells; body axes, g upwards at rest."""
+        return _x.observed("proper_acceleration", self._index("body", body), self._axis(axis))
+
     def point_position(self, point: int, axis: Axis) -> Expression:
         """m, of Task.points; world."""
         return _x.observed("point_position", point, self._axis(axis))

@@ -237,9 +237,9 @@ TEST_CASE("observing everything allocates nothing", "[fast][allocation][observe]
     for (const Table& table : widest_tables()) {
       BatchOptions options = options_of(table, 40);
       options.sleep = true;
-      options.observe.what = {Observer::contacts, Observer::touching, Observer::penetration,
-                              Observer::motion,   Observer::joints,   Observer::joint_loads,
-                              Observer::residual};
+      options.observe.what = {Observer::contacts, Observer::touching,    Observer::penetration,
+                              Observer::motion,   Observer::joints,      Observer::joint_loads,
+                              Observer::residual, Observer::acceleration};
       options.observe.rays.resize(9);
       options.observe.points.resize(5, Point{Vec3(0.1, 0.2, 0), BodyId(2)});
       std::vector<Ray> rays(9);
@@ -275,9 +275,9 @@ TEST_CASE("the memory that a batch is said to need is what it takes", "[fast][al
     for (const bool observed : {false, true}) {
       BatchOptions options = options_of(widest_tables().front(), 3000);
       if (observed) {
-        options.observe.what = {Observer::contacts, Observer::touching, Observer::penetration,
-                                Observer::motion,   Observer::joints,   Observer::joint_loads,
-                                Observer::residual};
+        options.observe.what = {Observer::contacts, Observer::touching,    Observer::penetration,
+                                Observer::motion,   Observer::joints,      Observer::joint_loads,
+                                Observer::residual, Observer::acceleration};
         options.observe.rays.resize(9);
         options.observe.points.resize(5, Point{Vec3(0.1, 0.2, 0), plan.body_in_row(0)});
       }

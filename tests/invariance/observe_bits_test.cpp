@@ -17,9 +17,9 @@ namespace {
 Observers everything(const Plan& plan) {
   const Space space = plan.scene().space;
   Observers observers;
-  observers.what = {Observer::contacts, Observer::touching, Observer::penetration,
-                    Observer::motion,   Observer::joints,   Observer::joint_loads,
-                    Observer::residual};
+  observers.what = {Observer::contacts, Observer::touching,    Observer::penetration,
+                    Observer::motion,   Observer::joints,      Observer::joint_loads,
+                    Observer::residual, Observer::acceleration};
   for (int i = 0; i < 12; ++i) {
     Ray ray;
     const double angle = 2 * kPi * i / 12;
@@ -156,6 +156,7 @@ TEST_CASE("what is seen does not depend on batch size, place, threads or steps p
   }
 }
 
+// But accelerations: a state has none.
 TEST_CASE("a look at the state leaves what steps saw of contacts as it was", "[fast][observe]") {
   for (const Scene& scene : scenes()) {
     const Plan plan = compile(scene);
@@ -168,7 +169,7 @@ TEST_CASE("a look at the state leaves what steps saw of contacts as it was", "[f
       const auto all = [&batch] {
         Seen out;
         for (int w = 0; w < batch.worlds(); ++w) {
-          out.push_back(seen(batch, w));
+          out.push_back(seen(batch, w, Observer::acceleration));
         }
         return out;
       };
