@@ -119,7 +119,7 @@ Terrain SceneBytes::terrain() {
 Geometry SceneBytes::geometry(bool fixed) {
   // Of the right space and motion, but for a few.
   const bool planar = rarely() ? !planar_ : planar_;
-  const int moving = planar ? 3 : 5;
+  const int moving = planar ? 3 : 6;
   const int kinds = fixed || rarely() ? moving + (planar ? 3 : 4) : moving;
   const int kind = integer(0, kinds - 1);
   const double a = number(0.05, 1), b = number(0.05, 1);
@@ -139,9 +139,10 @@ Geometry SceneBytes::geometry(bool fixed) {
     case 2: return Capsule{a, b};
     case 3: return Cylinder{a, b};
     case 4: return hull();
-    case 5: return Plane{rarely() ? vector(2) : Vec3(0, 0, 1), a - 1};
-    case 6: return Plane{vector(1).normalized(), -b};
-    case 7: return height_field();
+    case 5: return Ellipsoid{Vec3(a, b, number(0.05, 1))};
+    case 6: return Plane{rarely() ? vector(2) : Vec3(0, 0, 1), a - 1};
+    case 7: return Plane{vector(1).normalized(), -b};
+    case 8: return height_field();
     default: return Box{Vec3(3 * a, 3 * b, 0.1)};
   }
 }

@@ -42,6 +42,9 @@ struct Cylinder {
   double radius = 0.5;       // m
   double half_length = 0.5;  // m
 };
+struct Ellipsoid {            // spatial, centred on the shape frame
+  Vec3 radii{0.5, 0.4, 0.3};  // m, along its axes
+};
 // Spatial, a convex polyhedron: the smallest convex solid around its vertices, 4 to 64 of them.
 // make_hull (hull.hpp) finds those of a cloud of points. Faces that lie in one plane are one.
 struct Hull {
@@ -84,7 +87,7 @@ struct HeightField {
   int rows() const { return columns > 0 ? static_cast<int>(heights.size()) / columns : 0; }
 };
 using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Capsule, Segment,
-                              Terrain, Cylinder, Hull, HeightField>;
+                              Terrain, Cylinder, Hull, HeightField, Ellipsoid>;
 
 struct Material {
   double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean of its two

@@ -47,6 +47,14 @@ struct Members<Cylinder> {
   }
 };
 template <>
+struct Members<Ellipsoid> {
+  static constexpr const char* name = "Ellipsoid";
+  static void visit(auto& value, auto&& visit) {
+    auto& [radii] = value;
+    visit("radii", radii);
+  }
+};
+template <>
 struct Members<Hull> {
   static constexpr const char* name = "Hull";
   static void visit(auto& value, auto&& visit) {

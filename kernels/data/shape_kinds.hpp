@@ -18,8 +18,9 @@ enum class ShapeKind : int {
   hull,
   rounded,  // polygon
   tile,     // of a height field
+  ellipsoid,
 };
-inline constexpr int kShapeKinds = 12;
+inline constexpr int kShapeKinds = 13;
 
 struct ShapeInfo {
   const char* name;
@@ -57,6 +58,12 @@ static constexpr ShapeInfo kShapeInfo[kShapeKinds] = {
     {.name = "hull", .rank = 5, .row = row_size<HullRow>, .margin = kBoxMargin, .general = true},
     {.name = "rounded", .rank = 4, .row = row_size<PolygonRow>, .planar = true},
     {.name = "field", .rank = 6, .row = row_size<TileRow>, .margin = kBoxMargin, .ground = true},
+    {.name = "ellipsoid",
+     .rank = 2,
+     .row = row_size<BoxRow>,
+     .margin = kBoxMargin,
+     .single = true,
+     .general = true},
 };
 static inline constexpr const ShapeInfo& info(ShapeKind kind) {
   return kShapeInfo[static_cast<int>(kind)];

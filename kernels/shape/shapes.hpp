@@ -7,6 +7,7 @@
 #include "kernels/shape/capsule.hpp"
 #include "kernels/shape/circle.hpp"
 #include "kernels/shape/cylinder.hpp"
+#include "kernels/shape/ellipsoid.hpp"
 #include "kernels/shape/field.hpp"
 #include "kernels/shape/hull.hpp"
 #include "kernels/shape/link.hpp"
@@ -21,7 +22,8 @@ template <class... Poses>
 struct ShapeList {};
 
 // Those that only fixed bodies have stand apart.
-using SpatialShapes = ShapeList<SpherePose, BoxPose, CapsulePose<Vec3>, CylinderPose, HullPose>;
+using SpatialShapes =
+    ShapeList<SpherePose, BoxPose, CapsulePose<Vec3>, CylinderPose, HullPose, EllipsoidPose>;
 using SpatialGround = ShapeList<PlanePose, FieldPose>;
 using PlanarShapes =
     ShapeList<CirclePose, RectanglePose, CapsulePose<Vec2>, PolygonPose, RoundedPose>;

@@ -13,6 +13,7 @@ __all__ = [
     "Capsule",
     "Circle",
     "Cylinder",
+    "Ellipsoid",
     "Filter",
     "Geometry",
     "HalfPlane",
@@ -66,6 +67,13 @@ class Cylinder:
 
     radius: float = 0.5  # m
     half_length: float = 0.5  # m
+
+
+@dataclass(slots=True)
+class Ellipsoid:
+    """An ellipsoid centred on the shape frame. Spatial."""
+
+    radii: Numbers = (0.5, 0.4, 0.3)  # m, along its axes
 
 
 @dataclass(slots=True)
@@ -145,6 +153,7 @@ Geometry = Union[
     Cylinder,
     Hull,
     HeightField,
+    Ellipsoid,
 ]
 
 

@@ -20,10 +20,10 @@ struct GeomKind {
   mjtGeom type;
   const char* name;
 };
-constexpr GeomKind kGeoms[] = {{mjGEOM_SPHERE, "a sphere"},      {mjGEOM_CAPSULE, "a capsule"},
-                               {mjGEOM_CYLINDER, "a cylinder"},  {mjGEOM_BOX, "a box"},
-                               {mjGEOM_MESH, "a mesh"},          {mjGEOM_PLANE, "a plane"},
-                               {mjGEOM_HFIELD, "a height field"}};
+constexpr GeomKind kGeoms[] = {{mjGEOM_SPHERE, "a sphere"},     {mjGEOM_CAPSULE, "a capsule"},
+                               {mjGEOM_CYLINDER, "a cylinder"}, {mjGEOM_ELLIPSOID, "an ellipsoid"},
+                               {mjGEOM_BOX, "a box"},           {mjGEOM_MESH, "a mesh"},
+                               {mjGEOM_PLANE, "a plane"},       {mjGEOM_HFIELD, "a height field"}};
 
 // Those that MuJoCo collides: the corners of its own hull where it made one (mesh_graph: number of
 // corners and of faces, an edge address for each corner, then the index of each among the
@@ -61,6 +61,7 @@ struct Diameter {
   double operator()(const Box& box) const { return 2 * box.half_extents.norm(); }
   double operator()(const Capsule& c) const { return 2 * (c.radius + c.half_length); }
   double operator()(const Cylinder& c) const { return 2 * std::hypot(c.radius, c.half_length); }
+  double operator()(const Ellipsoid& e) const { return 2 * e.radii.maxCoeff(); }
   double operator()(const Hull& hull) const {
     Eigen::AlignedBox3d box;
     for (const Vec3& v : hull.vertices) box.extend(v);
@@ -117,6 +118,7 @@ std::optional<Shape> shape_of(const Model& model, int geom, const Pose& body) {
     // Both along z, as ours.
     case mjGEOM_CAPSULE: shape.geometry = Capsule{size[0], size[1]}; break;
     case mjGEOM_CYLINDER: shape.geometry = Cylinder{size[0], size[1]}; break;
+    case mjGEOM_ELLIPSOID: shape.geometry = Ellipsoid{vec3(size)}; break;
     case mjGEOM_BOX: shape.geometry = Box{vec3(size)}; break;
     case mjGEOM_PLANE: {
       // Solid below the geom's xy plane, without end: MuJoCo's sizes are for rendering only.

@@ -101,13 +101,6 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
        world("<body name='b'>" + kFree +
              "<body name='c' gravcomp='1'><geom size='.1'/></body></body>"),
        "body 'c'", "gravcomp"},
-      {"ellipsoid", world("<geom name='g' type='ellipsoid' size='1 2 3'/>"), "geom 'g'",
-       "ellipsoid that can collide, which is not simulated yet; expected a sphere, a capsule, a "
-       "cylinder, a box, a mesh, a plane or a height field, or contype and conaffinity 0"},
-      {"seen ellipsoid that weighs",
-       world("<body name='b'><freejoint/><geom name='g' type='ellipsoid' size='.1 .2 .3' "
-             "contype='0' conaffinity='0'/></body>"),
-       "geom 'g' of body 'b'", "gives its body mass"},
       {"surface velocity", free_body("surfacevel='1 0 0 0 0 0'"), "geom 'g'", "surfacevel"},
       {"adhesion", free_body("adhesion='1'"), "geom 'g'", "adhesion"},
       {"pair",
@@ -138,7 +131,7 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
     CHECK(problems[0].find(refused.reason) != std::string::npos);
     CHECK(problems[0].find('\n') == std::string::npos);
   }
-  // What neither collides nor weighs is left out instead.
+  // What neither collides nor weighs is no problem.
   const std::string seen = "<geom type='ellipsoid' size='.1 .2 .3' contype='0' conaffinity='0'/>";
   CHECK(problems_of(world(inertial + seen + "</body>")).empty());
   CHECK(problems_of(world(seen)).empty());

@@ -121,6 +121,23 @@ TEST_CASE("cylinders keep MuJoCo's size, axis and mass", "[mjcf][fast]") {
   }
 }
 
+TEST_CASE("ellipsoids keep MuJoCo's radii, axes and mass", "[mjcf][fast]") {
+  const Scene scene =
+      load_mjcf_string(world("<body name='b'><freejoint/><geom type='ellipsoid' size='.1 .2 .3' "
+                             "density='500' pos='.1 0 0' euler='30 20 10'/></body>"))
+          .scene;
+  const Body& body = scene.bodies.at(0);
+  REQUIRE(body.shapes.size() == 1);
+  CHECK(std::get<Ellipsoid>(body.shapes[0].geometry).radii == Vec3(0.1, 0.2, 0.3));
+  Body own = body;
+  own.mass_properties.reset();
+  own.shapes[0].density = 500;
+  const MassProperties given = mass_properties(scene, body), derived = mass_properties(scene, own);
+  CHECK(derived.mass == Approx(given.mass).epsilon(1e-12));
+  CHECK((derived.center - given.center).norm() < 1e-12);
+  CHECK((derived.inertia - given.inertia).norm() < 1e-9 * given.inertia.norm());
+}
+
 TEST_CASE("a mesh is the hull of its vertices where the file has them", "[mjcf][fast]") {
   const Brick brick;
   std::vector<Vec3> points = brick.corners();

@@ -101,7 +101,9 @@ TEST_CASE("an explicit inertial element decides, whatever the geoms weigh", "[mj
   CHECK(die.mass_properties->mass == 0.9);
   CHECK(die.mass_properties->center == Vec3(0, 0, -0.02));
   CHECK((die.mass_properties->inertia - written).norm() < 1e-12);
-  REQUIRE(die.shapes.size() == 1);  // the seen ellipsoid is left out
+  REQUIRE(die.shapes.size() == 2);
+  CHECK(std::holds_alternative<Ellipsoid>(die.shapes[1].geometry));  // seen, and nothing more
+  CHECK(die.shapes[1].filter.category == 0);
   CHECK(die.shapes[0].name == "cube");
 }
 

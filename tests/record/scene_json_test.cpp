@@ -172,8 +172,8 @@ TEST_CASE("JSON that is no scene names every problem and its place", "[fast][rec
       "/bodies/4/position/1: is \"high\", must be a number",
       "/bodies/5/motion: is \"static\", must be dynamic, kinematic or fixed",
       "/bodies/6/shapes/0/geometry: is {\"cone\":null}, must be an object with one member, sphere, "
-      "box, plane, circle, polygon, half_plane, capsule, segment, terrain, cylinder, hull or "
-      "height_field",
+      "box, plane, circle, polygon, half_plane, capsule, segment, terrain, cylinder, hull, "
+      "height_field or ellipsoid",
       "/bodies/7/shapes/0/filter/mask: is -1, must be a whole number of 32 bits",
       "/bodies/8/name: is 7, must be a string",
       "/options/substeps: is 4.5, must be a whole number of 32 bits",

@@ -120,7 +120,8 @@ Scene scene_with_everything(bool all) {
                              Terrain{{{0, 0}, {1, 0}}, false},
                              Cylinder{},
                              Hull{{Vec3(1, 0, 0), Vec3(0, 1, 0)}},
-                             HeightField{{1, 2, 3, 4}, 2, {1, 1}}};
+                             HeightField{{1, 2, 3, 4}, 2, {1, 1}},
+                             Ellipsoid{}};
   static_assert(std::size(shapes) == std::variant_size_v<Geometry>);
   for (const Motion motion : {Motion::dynamic, Motion::fixed}) {
     Body body;

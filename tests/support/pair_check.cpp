@@ -20,6 +20,7 @@ double reach(const Shape& shape) {  // no point of the shape is farther from the
   if (const auto* c = std::get_if<Capsule>(&shape.geometry)) r = c->radius + c->half_length;
   if (const auto* c = std::get_if<Cylinder>(&shape.geometry))
     r = std::hypot(c->radius, c->half_length);
+  if (const auto* e = std::get_if<Ellipsoid>(&shape.geometry)) r = e->radii.maxCoeff();
   if (const auto* h = std::get_if<Hull>(&shape.geometry))
     for (const Vec3& v : h->vertices) r = std::max(r, v.norm());
   if (const auto* s = std::get_if<Segment>(&shape.geometry)) r = std::max(s->a.norm(), s->b.norm());
@@ -231,6 +232,8 @@ class Judge {
     if (const auto* circle = std::get_if<Circle>(&shape.geometry)) s << " r " << circle->radius;
     if (const auto* capsule = std::get_if<Capsule>(&shape.geometry))
       s << " r " << capsule->radius << " half " << capsule->half_length;
+    if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape.geometry))
+      s << " radii " << ellipsoid->radii.transpose();
     if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry))
       s << " disc " << cylinder->radius << " half " << cylinder->half_length;
     if (const auto* hull = std::get_if<Hull>(&shape.geometry))

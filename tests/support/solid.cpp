@@ -129,6 +129,9 @@ std::pair<double, double> extent(const Solid& s, const Vec3& d) {
     const Vec3 axis = s.axes.col(2);
     rim = s.disc * (d - axis * axis.dot(d)).norm();
   }
+  if (s.kind == Solid::Kind::ellipsoid) {
+    rim = (s.axes.transpose() * d).cwiseProduct(s.half_extents).norm();
+  }
   return {low - s.radius - rim, high + s.radius + rim};
 }
 
@@ -164,6 +167,7 @@ std::optional<Vec3> outward(const Solid& s, const Vec3& p) {
     }
     case Solid::Kind::cylinder: return outward_of_cylinder(s, p, kClear);
     case Solid::Kind::hull: return outward_of_hull(s, p, kClear);
+    case Solid::Kind::ellipsoid: return outward_of_ellipsoid(s, p, kClear);
     case Solid::Kind::polygon: {
       if (signed_distance(s, p) > -s.radius) {
         double best = kInfinity;
@@ -227,6 +231,10 @@ Solid make_solid(const Shape& shape, const Pose& body, Space space) {
     s.disc = cylinder->radius;
     const Vec3 end = cylinder->half_length * s.axes.col(2);
     s.vertices = {s.center - end, s.center + end};
+  } else if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape.geometry)) {
+    s.kind = Solid::Kind::ellipsoid;
+    s.half_extents = ellipsoid->radii;
+    s.vertices = {s.center};
   } else if (const auto* hull = std::get_if<Hull>(&shape.geometry)) {
     s.kind = Solid::Kind::hull;
     s.center.setZero();
@@ -285,6 +293,7 @@ double signed_distance(const Solid& s, const Vec3& p) {
     case Solid::Kind::capsule: return point_segment(p, s.vertices[0], s.vertices[1]) - s.radius;
     case Solid::Kind::cylinder: return distance_to_cylinder(s, p);
     case Solid::Kind::hull: return distance_to_hull(s, p);
+    case Solid::Kind::ellipsoid: return distance_to_ellipsoid(s, p);
     case Solid::Kind::polygon: {
       const auto sides = edges(s);
       const auto normals = edge_normals(s);
@@ -313,8 +322,10 @@ double separation(const Solid& a, const Solid& b) {
   if (b.kind == Solid::Kind::half_space) return separation_along(a, b, -b.normal);
   if (a.kind == Solid::Kind::round) return signed_distance(b, a.center) - a.radius;
   if (b.kind == Solid::Kind::round) return signed_distance(a, b.center) - b.radius;
-  if (a.kind == Solid::Kind::cylinder || b.kind == Solid::Kind::cylinder)
-    return searched_separation(a, b, facet_normals(a, b));
+  const auto searched = [](const Solid& s) {
+    return s.kind == Solid::Kind::cylinder || s.kind == Solid::Kind::ellipsoid;
+  };
+  if (searched(a) || searched(b)) return searched_separation(a, b, facet_normals(a, b));
   return polytope_separation(a, b) - a.radius - b.radius;
 }
 

@@ -22,13 +22,13 @@ Pose operator*(const Pose& outer, const Pose& inner);
 
 // One shape placed in the world. Planar shapes lie in z = 0.
 struct Solid {
-  enum class Kind { round, box, polygon, half_space, capsule, cylinder, hull };
+  enum class Kind { round, box, polygon, half_space, capsule, cylinder, hull, ellipsoid };
   Kind kind = Kind::round;
 
   Vec3 center = Vec3::Zero();        // round, box; else mean of the vertices
   double radius = 0;                 // round, capsule, polygon: of its rounding
   Mat3 axes = Mat3::Identity();      // box: columns are the face normals
-  Vec3 half_extents = Vec3::Zero();  // box
+  Vec3 half_extents = Vec3::Zero();  // box; ellipsoid: its radii
   std::vector<Vec3> vertices;        // box, hull: all; polygon: counter-clockwise; capsule: 2 ends
   bool planar = false;               // polygon, capsule
   double disc = 0;                   // cylinder: its radius; vertices are the ends of its axis

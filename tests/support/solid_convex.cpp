@@ -46,7 +46,8 @@ double searched_separation(Solid a, Solid b, std::vector<Vec3> looks) {
   const auto convex = [](const Solid& s) {
     Convex c;
     c.points = s.vertices;
-    c.axes = s.axes, c.disc = s.disc;
+    c.axes = s.axes;
+    c.radii = s.kind == Solid::Kind::ellipsoid ? s.half_extents : Vec3(s.disc, s.disc, 0);
     return c;
   };
   looks.push_back(search_separation(convex(a), convex(b)).normal);
@@ -178,6 +179,39 @@ std::optional<Vec3> outward_of_hull(const Solid& s, const Vec3& p, double clear)
   }
   if (second > first - clear) return std::nullopt;
   return normal;
+}
+
+namespace {
+
+// The point of an ellipsoid nearest to one in its axes: x = r^2 y / (t + r^2) with the t for which
+// it is on the surface (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a
+// hyperellipsoid"), by bisection.
+Vec3 nearest_on_ellipsoid(const Vec3& radii, const Vec3& y) {
+  const Vec3 squares = radii.cwiseAbs2();
+  const auto at = [&](double t) {
+    return Vec3(squares.cwiseProduct(y).cwiseQuotient(squares + Vec3::Constant(t)));
+  };
+  double low = -squares.minCoeff(), high = radii.maxCoeff() * y.norm() + 1;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = (low + high) / 2;
+    const bool outside = at(middle).cwiseQuotient(radii).squaredNorm() > 1;
+    (outside ? low : high) = middle;
+  }
+  return at(high);
+}
+
+}  // namespace
+
+double distance_to_ellipsoid(const Solid& s, const Vec3& p) {
+  const Vec3 y = s.axes.transpose() * (p - s.center);
+  const double distance = (y - nearest_on_ellipsoid(s.half_extents, y)).norm();
+  return y.cwiseQuotient(s.half_extents).squaredNorm() < 1 ? -distance : distance;
+}
+
+std::optional<Vec3> outward_of_ellipsoid(const Solid& s, const Vec3& p, double clear) {
+  if (distance_to_ellipsoid(s, p) < clear) return std::nullopt;  // inside there are ridges
+  const Vec3 y = s.axes.transpose() * (p - s.center);
+  return s.axes * (y - nearest_on_ellipsoid(s.half_extents, y)).normalized();
 }
 
 }  // namespace manyworlds::test
