@@ -26,7 +26,8 @@ void time_pair(benchmark::State& state, const Scenario& scenario, Isa isa, int c
   for (int g = 0; g < worlds.groups(); ++g) {
     worlds.restore(g);
     runner.run_before(Stage::warm_start, worlds.group(g));
-    if (runner.layout() != layout) return state.SkipWithError("too many slots for this layout");
+    if (runner.layout() != layout)
+      return state.SkipWithError("too many contact blocks for this layout");
     counts.add(runner.counters());
   }
   for ([[maybe_unused]] const auto _ : state) {

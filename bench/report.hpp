@@ -23,12 +23,12 @@ inline benchmark::Counter time_of_one(double per_iteration) {
 
 // Counts of the broad and narrow phase, over all groups.
 struct ContactCounts {
-  double slots = 0;       // of the dense layout
+  double blocks = 0;      // of the dense layout
   double candidates = 0;  // pairs of shapes, each in one world
   double manifolds = 0;
 
   void add(const kernels::GroupCounters& c) {
-    slots += c.dense_slots;
+    blocks += c.dense_blocks;
     candidates += c.active;
     manifolds += c.manifolds;
   }
@@ -38,7 +38,7 @@ inline void report(benchmark::State& state, const TypicalWorlds& worlds,
                    const ContactCounts& counts) {
   state.counters["lanes"] = worlds.kernels().lanes;
   state.counters["per_group"] = time_of_one(worlds.groups());
-  state.counters["slots"] = counts.slots / worlds.groups();
+  state.counters["blocks"] = counts.blocks / worlds.groups();
   state.counters["candidates"] = counts.candidates / kWorlds;
   state.counters["manifolds"] = counts.manifolds / kWorlds;
 }

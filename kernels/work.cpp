@@ -2,7 +2,7 @@
 #include "kernels/work/work.hpp"
 #include <initializer_list>
 
-#include "kernels/rows/slot.hpp"
+#include "kernels/rows/contact_block.hpp"
 #include "kernels/work/solver_tables.hpp"
 #include "kernels/work/stages.hpp"
 
@@ -26,24 +26,27 @@ class Carver {
   std::size_t used_ = 0;
 };
 
+template <class S, class A>
+void size_blocks(Work& w, ListId several, ListId one) {
+  BlockList &many = w.blocks[static_cast<int>(several)], &single = w.blocks[static_cast<int>(one)];
+  many.stride = sizeof(SidedBlock<S, S::kMulti, A>), single.stride = sizeof(SidedBlock<S, 1, A>);
+  many.bounce_stride = sizeof(Bounce<S, S::kMulti>), single.bounce_stride = sizeof(Bounce<S, 1>);
+}
 template <class S>
-void size_slots(Work& w) {
-  for (int l = 0; l < kLists; ++l) {
-    const bool multi = is_multi(static_cast<ListId>(l));
-    w.slots[l].stride = multi ? sizeof(Slot<S, S::kMulti>) : sizeof(Slot<S, 1>);
-    w.slots[l].bounce_stride = multi ? sizeof(Bounce<S, S::kMulti>) : sizeof(Bounce<S, 1>);
-  }
+void size_blocks(Work& w) {
+  size_blocks<S, Free>(w, ListId::pair_multi, ListId::pair_single);
+  size_blocks<S, Fixed>(w, ListId::fixed_multi, ListId::fixed_single);
 }
 
-// Slots of a list: classes follow one another, and each has no more candidates in a lane than
-// candidate_limit allows. One more, since a slot is written before it is known to have a point.
-int slots_needed(const Tables& t, int list) {
-  int slots = 1;
+// Blocks of a list: classes follow one another, and each has no more candidates in a lane than
+// candidate_limit allows. One more, since a block is written before it is known to have a point.
+int blocks_needed(const Tables& t, int list) {
+  int blocks = 1;
   for (int c = 0; c < t.classes; ++c) {
     if (static_cast<int>(t.pair_class[c].list) != list) continue;
-    slots += most_candidates(t, t.pair_class[c]);
+    blocks += most_candidates(t, t.pair_class[c]);
   }
-  return slots;
+  return blocks;
 }
 
 // Room for hits, and for the candidates of the longest class.
@@ -60,13 +63,13 @@ HitRoom room_of_tables(const Tables& t) {
   return room;
 }
 // Hits of a class are those of all lanes. Listed are either those of one lane, or dense ones, if
-// they fit the slots.
+// they fit the blocks.
 HitRoom room_of_sparse(const Tables& t) {
   HitRoom room;
   for (int i = 0; i < t.classes; ++i) room.hits += kLanes * most_candidates(t, t.pair_class[i]);
   for (int l = 0; l < kLists; ++l) {
-    const int slots = slots_needed(t, l);
-    room.longest = slots > room.longest ? slots : room.longest;
+    const int blocks = blocks_needed(t, l);
+    room.longest = blocks > room.longest ? blocks : room.longest;
   }
   return room;
 }
@@ -102,7 +105,7 @@ void carve_search(const Tables& t, Search& s, Carver& c) {
   for (int l = 0; t.has_contacts && l < kLists; ++l) {
     const bool several = is_multi(static_cast<ListId>(l));
     const int rows = planar ? impulses_of_list<Planar>(several) : impulses_of_list<Tensor>(several);
-    impulses += slots_needed(t, l) * rows;
+    impulses += blocks_needed(t, l) * rows;
   }
   c.take(s.before, static_cast<std::size_t>(impulses * kLanes));
   c.take(s.way, static_cast<std::size_t>(impulses * kLanes));
@@ -179,18 +182,18 @@ void carve(const Tables& t, Work& w, Carver& c) {
   }
   c.take(w.keep, count(longest));
   if (t.inertia_kind == kernels::InertiaKind::planar) {
-    size_slots<Planar>(w);
+    size_blocks<Planar>(w);
   } else if (t.inertia_kind == kernels::InertiaKind::isotropic) {
-    size_slots<Isotropic>(w);
+    size_blocks<Isotropic>(w);
   } else {
-    size_slots<Tensor>(w);
+    size_blocks<Tensor>(w);
   }
   for (int l = 0; l < kLists; ++l) {
-    SlotList& list = w.slots[l];
-    list.max_slots = slots_needed(t, l);
-    c.take(list.slots, count(list.max_slots) * list.stride);
+    BlockList& list = w.blocks[l];
+    list.max_blocks = blocks_needed(t, l);
+    c.take(list.blocks, count(list.max_blocks) * list.stride);
     list.bounces = nullptr;
-    if (t.has_restitution) c.take(list.bounces, count(list.max_slots) * list.bounce_stride);
+    if (t.has_restitution) c.take(list.bounces, count(list.max_blocks) * list.bounce_stride);
   }
 }
 

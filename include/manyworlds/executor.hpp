@@ -6,7 +6,7 @@ namespace manyworlds {
 
 class Executor {
  public:
-  using Task = void (*)(void* context, int group, int slot);
+  using Task = void (*)(void* context, int group, int worker);
 
   virtual ~Executor() = default;
 
@@ -14,9 +14,9 @@ class Executor {
   // the number must not change while a Batch uses the executor.
   virtual int threads() const = 0;
 
-  // Calls task(context, group, slot) once for every group from 0 to groups - 1, in any order and on
-  // any threads, and returns when all calls have. 0 <= slot < threads(), and calls that overlap in
-  // time have different slots. Tasks neither throw nor wait for each other.
+  // Calls task(context, group, worker) once for every group from 0 to groups - 1, in any order and
+  // on any threads, and returns when all calls have. 0 <= worker < threads(), and calls that
+  // overlap in time have different workers. Tasks neither throw nor wait for each other.
   virtual void run(int groups, Task task, void* context) = 0;
 
  protected:

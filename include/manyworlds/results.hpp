@@ -39,7 +39,7 @@ struct ContactSummary {
   double points_per_world = 0;  // points closer than 4 slop
   double manifolds_per_world = 0;
   double max_penetration = 0;  // m, measured from the shapes at the current state
-  double mean_occupancy = 0;   // active lanes / lanes of the dense pair slots, last step
+  double mean_occupancy = 0;   // active lanes / lanes of the dense contact blocks, last step
 };
 
 // One contact point at the current state, as the next step would see it.

@@ -132,7 +132,7 @@ void begin(const Tables& t, const Group& g, kernels::Scratch* scratch) {
   turn_body_rows(t, g, w);
   for (int b = 0; b <= t.bodies; ++b) w.touched[b] = 0;
   for (int list = 0; list < kLists; ++list) {
-    w.slots[list].count = 0;
+    w.blocks[list].count = 0;
     for (int l = 0; l < kLanes; ++l) w.lane_count[list][l] = w.cursor[list][l] = 0;
   }
   w.overflow = w.partly_asleep = 0;

@@ -1,5 +1,5 @@
-// Lists of candidates: dense (a slot is one pair in every lane, some lanes idle) or rows (each lane
-// has its own pairs, packed). Both keep the order of the keys inside a lane, so both give the
+// Lists of candidates: dense (a block is one pair in every lane, some lanes idle) or rows (each
+// lane has its own pairs, packed). Both keep the order of the keys inside a lane, so both give the
 // solver the same rows in the same order.
 #include "kernels/work/stages.hpp"
 
@@ -7,7 +7,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
 
-// Above this share of active lanes dense slots are faster than rows (measured,
+// Above this share of active lanes dense blocks are faster than rows (measured,
 // docs/architecture.md).
 #if defined(MW_ISA_AVX512)
 constexpr float kDenseOccupancy = 0.45f;
@@ -78,25 +78,25 @@ void limit_candidates(const Tables& t, Work& w, int at) {
 kernels::Layout choose_layout(const Tables& t, const Group&, kernels::Scratch* scratch,
                               kernels::Layout wish) {
   Work& w = work_of(scratch);
-  unsigned slots[kLists] = {}, all = 0, active = 0;
+  unsigned blocks[kLists] = {}, all = 0, active = 0;
   for (int c = 0; c < t.classes; ++c) {
     limit_candidates(t, w, c);
     const auto& pairs = t.pair_class[c];
     const int hits = w.hit_count[c];
     const std::uint32_t* masks = w.hit_masks + first_hit(t, w, c);
     for (int i = 0; i < hits; ++i) active += static_cast<unsigned>(__builtin_popcount(masks[i]));
-    slots[static_cast<int>(pairs.list)] += static_cast<unsigned>(hits);
+    blocks[static_cast<int>(pairs.list)] += static_cast<unsigned>(hits);
     all += static_cast<unsigned>(hits);
   }
-  w.counters.dense_slots = all;
+  w.counters.dense_blocks = all;
   w.counters.active = active;
   bool fits = true;
   for (int l = 0; l < kLists; ++l) {
-    fits = fits && static_cast<int>(slots[l]) < w.slots[l].max_slots;
+    fits = fits && static_cast<int>(blocks[l]) < w.blocks[l].max_blocks;
   }
   w.dense = wish == kernels::Layout::dense;
   if (wish == kernels::Layout::automatic) {
-    // Parts of joints are slots of which every lane is active.
+    // Parts of joints are blocks of which every lane is active.
     const auto parts = static_cast<unsigned>(t.parts);
     w.dense = static_cast<float>(active + parts * kLanes) >=
               kDenseOccupancy * static_cast<float>((all + parts) * kLanes);

@@ -16,7 +16,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Offsets of the pose rows of both shapes of a slot; of a fixed A in the rows of fixed shapes.
+// Offsets of the pose rows of both shapes of a block; of a fixed A in the rows of fixed shapes.
 struct PoseOffsets {
   alignas(64) std::int32_t a[kLanes], b[kLanes];
 };
@@ -47,7 +47,7 @@ MW_INLINE typename S::Vec origin_of(const Pose& pose) {
 
 template <class S, class Pair, bool kPair>
 void collide_list(const Tables& t, const Group& g, Work& w, const CandidateList& list) {
-  AddSlot<S, Pair::kPoints>* const add_slot =
+  AddContact<S, Pair::kPoints>* const add_contact =
       row_builder<S>(t, w).template add<Pair::kPoints>(kPair);
   const auto& pairs = t.pair_class[w.class_index];
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
@@ -60,8 +60,8 @@ void collide_list(const Tables& t, const Group& g, Work& w, const CandidateList&
     load_pose(w.pose_rows, o.b, b);
     Manifold<S, Pair::kPoints> m;
     Pair::collide(t, a, b, Float::load(list.axis + i * kLanes), m);
-    add_slot(t, g, w, pairs.list, pairs, m, mask_from_bits(list.mask[i]), code,
-             list.key + i * kLanes, origin_of<S>(a), b.p);
+    add_contact(t, g, w, pairs.list, pairs, m, mask_from_bits(list.mask[i]), code,
+                list.key + i * kLanes, origin_of<S>(a), b.p);
   }
 }
 
@@ -145,7 +145,7 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
   const CandidateList& list = w.candidates;
   const bool turned = has_radius(kind_a);  // the method wants what is round as B
-  AddSlot<Isotropic, N>* const add_slot = row_builder<Isotropic>(t, w).template add<N>(kPair);
+  AddContact<Isotropic, N>* const add_contact = row_builder<Isotropic>(t, w).template add<N>(kPair);
   ConvexShape a, b;
   for (int i = 0; i < list.count; ++i) {
     if (list.mask[i] == 0) continue;  // its lanes had too many candidates
@@ -187,7 +187,7 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
       }
       if (turned) turn_round(m);
     }
-    add_slot(t, g, w, pairs.list, pairs, m, active, code, list.key + i * kLanes, origin_a, b.p);
+    add_contact(t, g, w, pairs.list, pairs, m, active, code, list.key + i * kLanes, origin_a, b.p);
   }
 }
 

@@ -8,21 +8,21 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// add_slot (prepare.hpp).
+// add_contact (prepare.hpp).
 template <class G, int N>
-using AddSlot = void(const Tables& t, const Group& g, Work& w, ListId list,
-                     const kernels::PairClass<Real>& pair_class, Manifold<G, N>& m, Mask active,
-                     const std::int32_t* code, const std::int32_t* key, typename G::Vec pose_a,
-                     typename G::Vec pose_b);
+using AddContact = void(const Tables& t, const Group& g, Work& w, ListId list,
+                        const kernels::PairClass<Real>& pair_class, Manifold<G, N>& m, Mask active,
+                        const std::int32_t* code, const std::int32_t* key, typename G::Vec pose_a,
+                        typename G::Vec pose_b);
 
 // Of an inertia kind and a layout.
 template <class G>
 struct RowBuilder {
-  AddSlot<G, 1>* single[2];           // [A moves, too]
-  AddSlot<G, G::kMulti>* several[2];  // points
+  AddContact<G, 1>* single[2];           // [A moves, too]
+  AddContact<G, G::kMulti>* several[2];  // points
 
   template <int N>
-  MW_INLINE AddSlot<G, N>* add(bool pair) const {
+  MW_INLINE AddContact<G, N>* add(bool pair) const {
     if constexpr (N == 1) {
       return single[pair];
     } else {

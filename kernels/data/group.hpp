@@ -42,9 +42,9 @@ inline constexpr std::uint32_t kFrozen = kNonFinite | kOutOfRange;
 
 // What a group's step counted; the pipeline adds it up per thread.
 struct GroupCounters {
-  std::uint32_t dense_slots = 0;  // slots that the dense layout needs (or would need)
-  std::uint32_t active = 0;       // active lanes in them
-  std::uint32_t points = 0;       // contact points within 4 slop
+  std::uint32_t dense_blocks = 0;  // blocks that the dense layout needs (or would need)
+  std::uint32_t active = 0;        // active lanes in them
+  std::uint32_t points = 0;        // contact points within 4 slop
   std::uint32_t manifolds = 0;
 };
 

@@ -79,10 +79,10 @@ struct ObserverView {
   // principal axes: [body][centre 3, quaternion 4][lane]; nullptr: nowhere and none, in all lanes.
   const Real* frames;
 
-  // Beside the slots of each list: places and features of their points, impulses of the step.
-  bool slots;             // contacts, touching or penetration are asked for
-  Real* places[kLists];   // [slot][point][component][lane], [lane]
-  Real* totals[kLists];   // [slot][point, tangent, twist][lane]; plans without restitution
+  // Beside the blocks of each list: places and features of their points, impulses of the step.
+  bool of_contacts;       // contacts, touching or penetration are asked for
+  Real* places[kLists];   // [block][point][component][lane], [lane]
+  Real* totals[kLists];   // [block][point, tangent, twist][lane]; plans without restitution
   std::uint32_t* nobody;  // [body] 0
 
   ContactImpulse<Real>* contacts;  // [lane][room]
@@ -119,7 +119,7 @@ struct ObserverTable {
   void (*watch)(Scratch*, Real* const* places);
   Observe<Real> accumulate[kInertiaKinds];  // after each relax pass, in plans without restitution
   Observe<Real> clear;                      // rows of observers of steps
-  // Adds what the slots of the step tell of pairs that are awake, or, after collide has found them
+  // Adds what the blocks of the step tell of pairs that are awake, or, after collide has found them
   // again, what the stored impulses tell of pairs that are asleep.
   Observe<Real> awake[kInertiaKinds], asleep[kInertiaKinds];
   // Around one more sweep of the solver: keep what it changes; what that is, and put it back.

@@ -97,7 +97,7 @@ struct KernelTable {
 
   Stage<Real> begin;        // poses, bounds, inertia
   Stage<Real> broad_phase;  // candidate masks of every class
-  // Dense or rows for this group: by occupancy, or as wished if the slots fit.
+  // Dense or rows for this group: by occupancy, or as wished if the blocks fit.
   Layout (*choose_layout)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, Layout);
   // Narrow phase and rows of one class (set_class). [dimension: planar, spatial]
   Stage<Real> collide[2][kPairKinds];

@@ -18,14 +18,13 @@ MW_INLINE const Joint& constants_of_part(const Group& g, int part) {
 
 // What all parts have. The world is a body that has no velocity and infinite mass.
 template <class S>
-struct alignas(64) PartBodies : SlotBodies {
-  Real inv_mass_a[kLanes], inv_mass_b[kLanes];
-  Real inertia_a[S::kInertia][kLanes], inertia_b[S::kInertia][kLanes];  // inverse
+struct alignas(64) PartBodies : RowBodies {
+  SideRows<S, Free> a, b;
   Real impulse[kernels::kPartImpulses][kLanes];
 };
 
 template <class S, bool kDense>
-using PartVelocities = TwoVelocities<S, true, kDense>;
+using PartVelocities = RowVelocities<S, Free, kDense>;
 
 MW_INLINE Vec2 vector_of(Planar, const LaneNumber* v) { return {v[0], v[1]}; }
 template <class S>
@@ -144,7 +143,7 @@ MW_INLINE MovedAnchors<S> anchors_now(const Work& w, const AnchoredRows<S>& s,
   out.gap = load_as<Vec>(s.start_gap[0]);
   out.moved_a = out.moved_b = zero_of<Vec>();
   if constexpr (kMoved) {
-    const auto moved = load_two<S, true, kDense>(w.displacement, s);
+    const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
     const Turned<S> turn_a(moved.a.w), turn_b(moved.b.w);
     const Vec change_a = turn_a.change(out.arm_a), change_b = turn_b.change(out.arm_b);
     out.arm_a = out.arm_a + change_a, out.arm_b = out.arm_b + change_b;
@@ -175,26 +174,25 @@ MW_INLINE V pull_of(V error, Float rate, Float cap) {
 template <class S, bool kDense>
 MW_INLINE void push_apart(const PartBodies<S>& s, typename S::Vec p, typename S::Vec arm_a,
                           typename S::Vec arm_b, PartVelocities<S, kDense>& v) {
-  using Inertia = typename S::Inertia;
-  v.b.v = fma(p, Float::load(s.inv_mass_b), v.b.v);
-  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), cross(arm_b, p));
-  v.a.v = fnma(p, Float::load(s.inv_mass_a), v.a.v);
-  v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), cross(arm_a, p));
+  add_impulse(s.b, p, cross(arm_b, p), v.b);
+  take_impulse(s.a, p, cross(arm_a, p), v.a);
 }
 template <class S, bool kDense>
 MW_INLINE void turn_apart(const PartBodies<S>& s, typename S::Ang l, PartVelocities<S, kDense>& v) {
-  using Inertia = typename S::Inertia;
-  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), l);
-  v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), l);
+  add_moment(s.b, l, v.b);
+  take_moment(s.a, l, v.a);
 }
 
 // Inverse mass of a point at `arm` from the centre, as a matrix.
-MW_INLINE void add_point_mass(Float inv_mass, Float inertia, Vec2 r, Sym2& k) {
+MW_INLINE void add_point_mass(const SideRows<Planar, Free>& side, Vec2 r, Sym2& k) {
+  const Float inv_mass = Float::load(side.inv_mass), inertia = inertia_of(side);
   k.xx = k.xx + fma(r.y * r.y, inertia, inv_mass);
   k.xy = fnma(r.x * r.y, inertia, k.xy);
   k.yy = k.yy + fma(r.x * r.x, inertia, inv_mass);
 }
-MW_INLINE void add_point_mass(Float inv_mass, const Sym3& inertia, Vec3 r, Sym3& k) {
+MW_INLINE void add_point_mass(const SideRows<Tensor, Free>& side, Vec3 r, Sym3& k) {
+  const Float inv_mass = Float::load(side.inv_mass);
+  const Sym3 inertia = inertia_of(side);
   const Float zero(Real(0));
   const Vec3 x = mul(inertia, Vec3{zero, r.z, -r.y}), y = mul(inertia, Vec3{-r.z, zero, r.x}),
              z = mul(inertia, Vec3{r.y, -r.x, zero});

@@ -85,7 +85,7 @@ MW_INLINE void locate(const Work& w, const JointPart& part, const Joint&, Row<S,
   using Ang = typename S::Ang;
   Ang turn_a = zero_of<Ang>(), turn_b = turn_a;
   if constexpr (kMoved) {
-    const auto moved = load_two<S, true, kDense>(w.displacement, s);
+    const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
     turn_a = moved.a.w, turn_b = moved.b.w;
   }
   if constexpr (S::kDim == 2) {

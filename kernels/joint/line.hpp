@@ -29,10 +29,9 @@ void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint
 template <class S>
 MW_INLINE Float coupling(const PartBodies<S>& s, typename S::Vec arm_a, typename S::Vec arm_b,
                          typename S::Vec d, typename S::Vec e) {
-  using Inertia = typename S::Inertia;
-  const Float linear = dot(d, e) * (Float::load(s.inv_mass_a) + Float::load(s.inv_mass_b));
-  const Float of_a = dot(cross(arm_a, d), apply(load_as<Inertia>(s.inertia_a[0]), cross(arm_a, e)));
-  const Float of_b = dot(cross(arm_b, d), apply(load_as<Inertia>(s.inertia_b[0]), cross(arm_b, e)));
+  const Float linear = dot(d, e) * (Float::load(s.a.inv_mass) + Float::load(s.b.inv_mass));
+  const Float of_a = dot(cross(arm_a, d), apply(inertia_of(s.a), cross(arm_a, e)));
+  const Float of_b = dot(cross(arm_b, d), apply(inertia_of(s.b), cross(arm_b, e)));
   return linear + (of_a + of_b);
 }
 

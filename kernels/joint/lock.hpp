@@ -35,9 +35,7 @@ template <class S>
 void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
              LockRows<S>& s) {
   store(s.error[0], error_between(frames_of<S>(t, g, part, numbers)));
-  using Inertia = typename S::Inertia;
-  store(s.mass[0],
-        inverse(sum_of(load_as<Inertia>(s.inertia_a[0]), load_as<Inertia>(s.inertia_b[0]))));
+  store(s.mass[0], inverse(sum_of(inertia_of(s.a), inertia_of(s.b))));
 }
 
 // Its Jacobian stays what it is.
@@ -54,10 +52,10 @@ MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart
     return;
   }
   const auto mass = load_as<typename S::Inertia>(s.mass[0]);
-  Ang rate = v.b.w - v.a.w, after;
+  Ang rate = relative_spin(v.a, v.b), after;
   if constexpr (kPass == Pass::bias) {
-    const auto moved = load_two<S, true, kDense>(w.displacement, s);
-    const Ang error = load_as<Ang>(s.error[0]) + (moved.b.w - moved.a.w);
+    const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
+    const Ang error = load_as<Ang>(s.error[0]) + relative_spin(moved.a, moved.b);
     rate = rate + pull_of(error, numbers.soft.bias_rate, numbers.turn_pull);
     const Float rho = numbers.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
     after = before - (apply(mass, rate) + before * rho) * scale;

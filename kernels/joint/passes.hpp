@@ -62,8 +62,7 @@ struct JointPasses {
     BodyRow<S> a, b;
     load_body_row(t, w, at_a, a);
     load_body_row(t, w, at_b, b);
-    a.inv_mass.store(s.inv_mass_a), b.inv_mass.store(s.inv_mass_b);
-    store(s.inertia_a[0], a.inertia), store(s.inertia_b[0], b.inertia);
+    put_side(a, s.a), put_side(b, s.b);
     const Real* from = g.joint_impulse + index * kernels::kPartImpulses * kLanes;
     for (int i = 0; i < kernels::kPartImpulses; ++i) {
       Float::load(from + i * kLanes).store(s.impulse[i]);

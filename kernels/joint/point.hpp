@@ -57,9 +57,7 @@ MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& number
   const auto now = anchors_now<S, kDense, kMoved>(w, s);
   store(s.arm_a[0], now.arm_a), store(s.arm_b[0], now.arm_b), store(s.gap[0], now.gap);
   typename PointMass<S>::Type k{};
-  using Inertia = typename S::Inertia;
-  add_point_mass(Float::load(s.inv_mass_a), load_as<Inertia>(s.inertia_a[0]), now.arm_a, k);
-  add_point_mass(Float::load(s.inv_mass_b), load_as<Inertia>(s.inertia_b[0]), now.arm_b, k);
+  add_point_mass(s.a, now.arm_a, k), add_point_mass(s.b, now.arm_b, k);
   if (part.spring) {
     const Float rho = numbers.soft.rho, gamma = numbers.soft.gamma;
     store(s.soft_mass[0], inverse(soften(k, rho, gamma)));

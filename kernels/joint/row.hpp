@@ -38,26 +38,25 @@ template <class S, bool kLinear, bool kDense>
 MW_INLINE void apply_row(const Row<S, kLinear>& s, Float p, PartVelocities<S, kDense>& v) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  using Inertia = typename S::Inertia;
-  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), load_as<Ang>(s.arm_b[0]) * p);
-  v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), load_as<Ang>(s.arm_a[0]) * p);
+  const Ang a = load_as<Ang>(s.arm_a[0]) * p, b = load_as<Ang>(s.arm_b[0]) * p;
   if constexpr (kLinear) {
-    v.b.v = fma(load_as<Vec>(s.push_b[0]), p * Float::load(s.inv_mass_b), v.b.v);
-    v.a.v = fnma(load_as<Vec>(s.push_a[0]), p * Float::load(s.inv_mass_a), v.a.v);
+    add_impulse(s.b, load_as<Vec>(s.push_b[0]), p, b, v.b);
+    take_impulse(s.a, load_as<Vec>(s.push_a[0]), p, a, v.a);
+  } else {
+    add_moment(s.b, b, v.b);
+    take_moment(s.a, a, v.a);
   }
 }
 template <class S, bool kLinear>
 MW_INLINE void weigh_row(Row<S, kLinear>& s) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  using Inertia = typename S::Inertia;
   const Ang a = load_as<Ang>(s.arm_a[0]), b = load_as<Ang>(s.arm_b[0]);
-  Float k = dot(a, apply(load_as<Inertia>(s.inertia_a[0]), a)) +
-            dot(b, apply(load_as<Inertia>(s.inertia_b[0]), b));
+  Float k = dot(a, apply(inertia_of(s.a), a)) + dot(b, apply(inertia_of(s.b), b));
   if constexpr (kLinear) {
     const Vec push_a = load_as<Vec>(s.push_a[0]), push_b = load_as<Vec>(s.push_b[0]);
-    k = k + fma(dot(push_a, push_a), Float::load(s.inv_mass_a),
-                dot(push_b, push_b) * Float::load(s.inv_mass_b));
+    k = k + fma(dot(push_a, push_a), Float::load(s.a.inv_mass),
+                dot(push_b, push_b) * Float::load(s.b.inv_mass));
   }
   k.store(s.k);
 }

@@ -22,7 +22,7 @@ template <class S>
 struct alignas(64) SwingRows : PartBodies<S> {
   Real start_a[3][kLanes], start_b[3][kLanes];  // z axes at the start of the step
   // Of the substep.
-  Real b[3][kLanes], c[3][kLanes];
+  Real across[2][3][kLanes];  // b, c
   Real error[2][kLanes];
   Real mass[3][kLanes];
 };
@@ -38,16 +38,14 @@ template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, SwingRows<S>& s) {
   auto z_a = load_as<Vec3>(s.start_a[0]), z_b = load_as<Vec3>(s.start_b[0]);
   if constexpr (kMoved) {
-    const auto moved = load_two<S, true, kDense>(w.displacement, s);
+    const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
     z_a = z_a + Turned<S>(moved.a.w).change(z_a);
     z_b = z_b + Turned<S>(moved.b.w).change(z_b);
   }
   const Vec3 b = any_tangent(z_a), c = cross(z_a, b), lean = cross(z_a, z_b);
-  store(s.b[0], b), store(s.c[0], c);
+  store(s.across[0][0], b), store(s.across[1][0], c);
   dot(b, lean).store(s.error[0]), dot(c, lean).store(s.error[1]);
-  using Inertia = typename S::Inertia;
-  const Inertia inertia =
-      sum_of(load_as<Inertia>(s.inertia_a[0]), load_as<Inertia>(s.inertia_b[0]));
+  const auto inertia = sum_of(inertia_of(s.a), inertia_of(s.b));
   const Vec3 of_b = apply(inertia, b), of_c = apply(inertia, c);
   store(s.mass[0], inverse(Sym2{dot(b, of_b), dot(b, of_c), dot(c, of_c)}));
 }
@@ -56,7 +54,7 @@ template <class S, bool kDense, Pass kPass>
 MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart& part,
                      const Joint& numbers, SwingRows<S>& s, PartVelocities<S, kDense>& v) {
   if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
-  const auto b = load_as<Vec3>(s.b[0]), c = load_as<Vec3>(s.c[0]),
+  const auto b = load_as<Vec3>(s.across[0][0]), c = load_as<Vec3>(s.across[1][0]),
              stored = load_as<Vec3>(s.impulse[0]);
   const Vec2 before{dot(b, stored), dot(c, stored)};
   if constexpr (kPass == Pass::warm_start) {
@@ -64,7 +62,7 @@ MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart
     return;
   }
   const auto mass = load_as<Sym2>(s.mass[0]);
-  const Vec3 spin = v.b.w - v.a.w;
+  const Vec3 spin = relative_spin(v.a, v.b);
   Vec2 rate{dot(b, spin), dot(c, spin)}, after;
   if constexpr (kPass == Pass::bias) {
     rate = rate + pull_of(load_as<Vec2>(s.error[0]), numbers.soft.bias_rate, numbers.turn_pull);

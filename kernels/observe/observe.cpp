@@ -2,21 +2,21 @@
 #include "kernels/observe/observe.hpp"
 
 #include "kernels/observe/acceleration.hpp"
+#include "kernels/observe/contacts.hpp"
 #include "kernels/observe/joints.hpp"
 #include "kernels/observe/motion.hpp"
 #include "kernels/observe/points.hpp"
 #include "kernels/observe/residual.hpp"
-#include "kernels/observe/slots.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
 
-// Slots of a list times reals of a slot: `several` for those of several points, `one` for the
+// Blocks of a list times reals of a block: `several` for those of several points, `one` for the
 // others.
 std::size_t reals(kernels::Scratch* scratch, int list, int several, int one) {
   const int rows = is_multi(static_cast<ListId>(list)) ? several : one;
-  return static_cast<std::size_t>(work_of(scratch).slots[list].max_slots) *
+  return static_cast<std::size_t>(work_of(scratch).blocks[list].max_blocks) *
          static_cast<std::size_t>(rows * kLanes);
 }
 std::size_t place_reals(const Tables& t, kernels::Scratch* scratch, int list) {
@@ -55,8 +55,8 @@ template <class S>
 void fill(kernels::ObserverTable<Real>& out) {
   const int kind = static_cast<int>(S::kKind);
   out.accumulate[kind] = accumulate_totals<S>;
-  out.awake[kind] = observe_slots<S, false>;
-  out.asleep[kind] = observe_slots<S, true>;
+  out.awake[kind] = observe_contacts<S, false>;
+  out.asleep[kind] = observe_contacts<S, true>;
   out.compare[kind] = compare<S>;
   look(out, Observer::motion)[kind] = observe_motion<S>;
   look(out, Observer::rays)[kind] = observe_rays;

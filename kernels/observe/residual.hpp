@@ -22,9 +22,9 @@ void for_each_row_array(const Tables& t, const Work& w, bool all, Visit visit) {
                                                                    : part_bytes(Tensor{})));
   }
   for (int l = 0; t.has_contacts && l < kLists; ++l) {
-    const SlotList& list = w.slots[l];
-    const int count = all ? list.max_slots : list.count;
-    visit(list.slots, bytes(count, list.stride));
+    const BlockList& list = w.blocks[l];
+    const int count = all ? list.max_blocks : list.count;
+    visit(list.blocks, bytes(count, list.stride));
     if (t.has_restitution) visit(list.bounces, bytes(count, list.bounce_stride));
   }
 }

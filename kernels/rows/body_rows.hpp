@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/lane/ints.hpp"
-#include "kernels/rows/slot.hpp"
+#include "kernels/lane/space.hpp"
 #include "kernels/work/constants.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -34,15 +34,6 @@ MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t*
              r.inertia.zz, r.inv_mass, unused);
   if (!t.collider_is_body) {
     load_rows4(w.body_rows + 8, o, r.centre.x, r.centre.y, r.centre.z, unused);
-  }
-}
-
-template <class S, bool kDense>
-MW_INLINE Velocity<S> load_velocity(const Work& w, const std::int32_t* offset, int body) {
-  if constexpr (kDense) {
-    return load_velocity_dense<S>(w.velocity + body * (S::kDim + S::kAng) * kLanes);
-  } else {
-    return load_velocity_row(S{}, w.velocity, offset);
   }
 }
 

@@ -1,4 +1,4 @@
-// contact: the solver passes over one slot, written once for every space, point count and layout.
+// contact: the solver passes over one block, written once for every space, point count and layout.
 //
 // Soft contact with substeps ("TGS soft", Catto). Normal row of a point with separation s:
 //   lambda' = max(0, lambda - m (a v + bias) - i lambda)
@@ -10,6 +10,7 @@
 // arm_i).
 #pragma once
 
+#include "kernels/rows/contact_block.hpp"
 #include "kernels/rows/velocities.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -18,89 +19,86 @@ inline constexpr Real kUnlimited = Real(1e30);  // N s
 
 enum class Pass { warm_start, bias, relax };
 
-template <class S, int N, bool kPair, bool kDense>
-using SlotVelocities = TwoVelocities<S, kPair, kDense>;
-
-// Applies normal impulses d[i] at all points.
-template <class S, int N, bool kPair, bool kDense>
-MW_INLINE void apply_normal(const Slot<S, N>& s, const Float* d,
-                            SlotVelocities<S, N, kPair, kDense>& v) {
+// The moment of impulses d[i] along the normal at all points, about the centre of mass.
+template <class S, int N>
+MW_INLINE typename S::Ang normal_moment(const ContactSide<S, N, Free>& side, const Float* d) {
   using Ang = typename S::Ang;
-  using Inertia = typename S::Inertia;
-  const auto n = load_as<typename S::Vec>(s.normal[0]);
-  Float sum = d[0];
-  Ang turn_b = load_as<Ang>(s.arm_b[0][0]) * d[0];
-  for (int i = 1; i < N; ++i) {
-    sum = sum + d[i];
-    turn_b = fma(load_as<Ang>(s.arm_b[i][0]), d[i], turn_b);
-  }
-  v.b.v = fma(n, sum * Float::load(s.inv_mass_b), v.b.v);
-  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), turn_b);
-  if constexpr (kPair) {
-    Ang turn_a = load_as<Ang>(s.arm_a[0][0]) * d[0];
-    for (int i = 1; i < N; ++i) turn_a = fma(load_as<Ang>(s.arm_a[i][0]), d[i], turn_a);
-    v.a.v = fnma(n, sum * Float::load(s.inv_mass_a), v.a.v);
-    v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), turn_a);
-  }
+  Ang moment = load_as<Ang>(side.arm[0][0]) * d[0];
+  for (int i = 1; i < N; ++i) moment = fma(load_as<Ang>(side.arm[i][0]), d[i], moment);
+  return moment;
 }
 
-// Velocity of B against A along the normal at each point.
-template <class S, int N, bool kPair, bool kDense>
-MW_INLINE void normal_speeds(const Slot<S, N>& s, const SlotVelocities<S, N, kPair, kDense>& v,
-                             Float* speed) {
-  using Ang = typename S::Ang;
+// Applies normal impulses d[i] at all points.
+template <class S, int N, class A>
+MW_INLINE void apply_normal(const SidedBlock<S, N, A>& s, const Float* d, SideVelocities<S, A>& v) {
   const auto n = load_as<typename S::Vec>(s.normal[0]);
-  Float along = dot(n, v.b.v);
-  if constexpr (kPair) along = dot(n, v.b.v - v.a.v);
-  for (int i = 0; i < N; ++i) {
-    speed[i] = along + dot(load_as<Ang>(s.arm_b[i][0]), v.b.w);
-    if constexpr (kPair) speed[i] = speed[i] - dot(load_as<Ang>(s.arm_a[i][0]), v.a.w);
-  }
+  Float sum = d[0];
+  for (int i = 1; i < N; ++i) sum = sum + d[i];
+  add_impulse(s.b, n, sum, normal_moment(s.b, d), v.b);
+  if constexpr (A::kMoves) take_impulse(s.a, n, sum, normal_moment(s.a, d), v.a);
+}
+
+// The speed of B against A along the normal at point i; x: what it is on top of, along the normal.
+template <class S, int N, class A>
+MW_INLINE Float normal_speed(const SidedBlock<S, N, A>& s, int i, const SideVelocities<S, A>& v,
+                             Float x) {
+  using Ang = typename S::Ang;
+  x = x + dot(load_as<Ang>(s.b.arm[i][0]), v.b.w);
+  if constexpr (A::kMoves) x = x - dot(load_as<Ang>(s.a.arm[i][0]), v.a.w);
+  return x;
+}
+template <class S, int N, class A>
+MW_INLINE void normal_speeds(const SidedBlock<S, N, A>& s, const SideVelocities<S, A>& v,
+                             Float* speed) {
+  const Float along = dot(load_as<typename S::Vec>(s.normal[0]), relative_velocity(v.a, v.b));
+  for (int i = 0; i < N; ++i) speed[i] = normal_speed(s, i, v, along);
 }
 
 // Adds to `gaps` how far each point has moved apart since the step began. From displacements:
 // speeds seen in the middle of a pass are not those that moved the bodies.
-template <class S, int N, bool kPair, bool kDense>
-MW_INLINE void moved_apart(const Work& w, const Slot<S, N>& s, Float* gaps) {
-  using Ang = typename S::Ang;
-  const auto [a, b] = load_two<S, kPair, kDense>(w.displacement, s);
-  const auto n = load_as<typename S::Vec>(s.normal[0]);
-  Float along = dot(n, b.v);
-  if constexpr (kPair) along = dot(n, b.v - a.v);
-  for (int i = 0; i < N; ++i) {
-    gaps[i] = gaps[i] + along + dot(load_as<Ang>(s.arm_b[i][0]), b.w);
-    if constexpr (kPair) gaps[i] = gaps[i] - dot(load_as<Ang>(s.arm_a[i][0]), a.w);
-  }
+template <bool kDense, class S, int N, class A>
+MW_INLINE void moved_apart(const Work& w, const SidedBlock<S, N, A>& s, Float* gaps) {
+  const auto moved = load_sides<S, A, kDense>(w.displacement, s);
+  const Float along =
+      dot(load_as<typename S::Vec>(s.normal[0]), relative_velocity(moved.a, moved.b));
+  for (int i = 0; i < N; ++i) gaps[i] = normal_speed(s, i, moved, gaps[i] + along);
 }
 
 // Row k changed by d: the speeds of the rows after it follow.
 template <class S, int N>
-MW_INLINE void couple_following(const Slot<S, N>& s, int k, Float d, Float* speed) {
+MW_INLINE void couple_following(const ContactBlock<S, N>& s, int k, Float d, Float* speed) {
   int at = k * N - k * (k + 1) / 2;
   for (int j = k + 1; j < N; ++j) speed[j] = fma(Float::load(s.cross_k[at++]), d, speed[j]);
 }
 
-// Friction impulses as a world vector at the friction centre, plus a twist about the normal.
-template <class S, int N, bool kPair, bool kDense>
-MW_INLINE void apply_friction(const Slot<S, N>& s, const Float* d, Float twist,
-                              SlotVelocities<S, N, kPair, kDense>& v) {
+// The moment of an impulse p at the friction centre, and a twist about the normal.
+template <class S, int N>
+MW_INLINE typename S::Ang friction_moment(const ContactSide<S, N, Free>& side, typename S::Vec p,
+                                          typename S::Vec normal, Float twist) {
+  auto moment = cross(load_as<typename S::Vec>(side.centre[0]), p);
+  if constexpr (ContactBlock<S, N>::kTwist) moment = fma(normal, twist, moment);
+  return moment;
+}
+
+// Applies friction impulses along the tangents, and a twist about the normal.
+template <class S, int N, class A>
+MW_INLINE void apply_friction(const SidedBlock<S, N, A>& s, const Float* d, Float twist,
+                              SideVelocities<S, A>& v) {
   using Vec = typename S::Vec;
-  using Inertia = typename S::Inertia;
+  const Vec n = load_as<Vec>(s.normal[0]);
   Vec p = load_as<Vec>(s.tangent[0]) * d[0];
-  if constexpr (S::kDim == 3) {
-    const Vec n = load_as<Vec>(s.normal[0]);
-    p = fma(cross(n, load_as<Vec>(s.tangent[0])), d[1], p);
-  }
-  auto turn_b = cross(load_as<Vec>(s.centre_b[0]), p);
-  if constexpr (Slot<S, N>::kTwist) turn_b = fma(load_as<Vec>(s.normal[0]), twist, turn_b);
-  v.b.v = fma(p, Float::load(s.inv_mass_b), v.b.v);
-  v.b.w = v.b.w + apply(load_as<Inertia>(s.inertia_b[0]), turn_b);
-  if constexpr (kPair) {
-    auto turn_a = cross(load_as<Vec>(s.centre_a[0]), p);
-    if constexpr (Slot<S, N>::kTwist) turn_a = fma(load_as<Vec>(s.normal[0]), twist, turn_a);
-    v.a.v = fnma(p, Float::load(s.inv_mass_a), v.a.v);
-    v.a.w = v.a.w - apply(load_as<Inertia>(s.inertia_a[0]), turn_a);
-  }
+  if constexpr (S::kDim == 3) p = fma(cross(n, load_as<Vec>(s.tangent[0])), d[1], p);
+  add_impulse(s.b, p, friction_moment(s.b, p, n, twist), v.b);
+  if constexpr (A::kMoves) take_impulse(s.a, p, friction_moment(s.a, p, n, twist), v.a);
+}
+
+// The velocity of B against A at the friction centre.
+template <class S, int N, class A>
+MW_INLINE typename S::Vec slip_of(const SidedBlock<S, N, A>& s, const SideVelocities<S, A>& v) {
+  using Vec = typename S::Vec;
+  Vec slip = point_velocity(v.b, load_as<Vec>(s.b.centre[0]));
+  if constexpr (A::kMoves) slip = slip - point_velocity(v.a, load_as<Vec>(s.a.centre[0]));
+  return slip;
 }
 
 // What friction may use up: accumulated impulses before, and their bounds.
@@ -111,16 +109,13 @@ struct FrictionBudget {
 
 // Solves the friction rows; returns the accumulated impulses after. kRelaxed: what they change is
 // multiplied by `relaxation`.
-template <class S, int N, bool kPair, bool kDense, bool kRelaxed = false>
-MW_INLINE void solve_friction(const Slot<S, N>& s, const FrictionBudget& budget,
-                              SlotVelocities<S, N, kPair, kDense>& v, Float* after,
-                              Float& twist_after, Float relaxation = Real(1)) {
+template <bool kRelaxed = false, class S, int N, class A>
+MW_INLINE void solve_friction(const SidedBlock<S, N, A>& s, const FrictionBudget& budget,
+                              SideVelocities<S, A>& v, Float* after, Float& twist_after,
+                              Float relaxation = Real(1)) {
   using Vec = typename S::Vec;
   const Vec t = load_as<Vec>(s.tangent[0]);
-  Vec slip = v.b.v + cross(v.b.w, load_as<Vec>(s.centre_b[0]));
-  if constexpr (kPair) {
-    slip = slip - (v.a.v + cross(v.a.w, load_as<Vec>(s.centre_a[0])));
-  }
+  Vec slip = slip_of(s, v);
   if constexpr (kRelaxed) slip = slip * relaxation;
   Float d[2] = {Real(0), Real(0)}, twist(Real(0));
   if constexpr (S::kTangents == 1) {
@@ -141,9 +136,8 @@ MW_INLINE void solve_friction(const Slot<S, N>& s, const FrictionBudget& budget,
     after[1] = p2 * shrink;
     d[0] = after[0] - budget.before[0];
     d[1] = after[1] - budget.before[1];
-    if constexpr (Slot<S, N>::kTwist) {
-      Float spin = dot(n, v.b.w);
-      if constexpr (kPair) spin = dot(n, v.b.w - v.a.w);
+    if constexpr (ContactBlock<S, N>::kTwist) {
+      Float spin = dot(n, relative_spin(v.a, v.b));
       if constexpr (kRelaxed) spin = spin * relaxation;
       const Float p = fnma(Float::load(s.twist_mass), spin, budget.twist_before);
       twist_after = clamp(p, -budget.twist_bound, budget.twist_bound);
@@ -154,7 +148,7 @@ MW_INLINE void solve_friction(const Slot<S, N>& s, const FrictionBudget& budget,
 }
 
 template <class S, int N>
-MW_INLINE FrictionBudget friction_budget(const Slot<S, N>& s, const Float* impulse) {
+MW_INLINE FrictionBudget friction_budget(const ContactBlock<S, N>& s, const Float* impulse) {
   FrictionBudget budget;
   const Float mu = Float::load(s.friction);
   Float sum = impulse[0];
@@ -162,7 +156,7 @@ MW_INLINE FrictionBudget friction_budget(const Slot<S, N>& s, const Float* impul
   budget.bound = sum * mu;
   budget.before[0] = Float::load(s.tangent_impulse[0]);
   if constexpr (S::kTangents == 2) budget.before[1] = Float::load(s.tangent_impulse[1]);
-  if constexpr (Slot<S, N>::kTwist) {
+  if constexpr (ContactBlock<S, N>::kTwist) {
     Float arms = impulse[0] * Float::load(s.twist_arm[0]);
     for (int i = 1; i < N; ++i) arms = fma(impulse[i], Float::load(s.twist_arm[i]), arms);
     budget.twist_bound = arms * mu;
@@ -171,9 +165,9 @@ MW_INLINE FrictionBudget friction_budget(const Slot<S, N>& s, const Float* impul
   return budget;
 }
 
-template <class S, int N, bool kPair, bool kDense, bool kFriction, Pass kPass>
-MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
-  SlotVelocities<S, N, kPair, kDense> v(w, s);
+template <bool kDense, bool kFriction, Pass kPass, class S, int N, class A>
+MW_INLINE void solve_block(const Tables& t, Work& w, SidedBlock<S, N, A>& s) {
+  RowVelocities<S, A, kDense> v(w, s);
   Float impulse[N], d[N];
   for (int i = 0; i < N; ++i) impulse[i] = Float::load(s.impulse[i]);
 
@@ -182,7 +176,7 @@ MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
     if constexpr (kFriction) {
       Float f[2] = {Float::load(s.tangent_impulse[0]), Real(0)}, twist(Real(0));
       if constexpr (S::kTangents == 2) f[1] = Float::load(s.tangent_impulse[1]);
-      if constexpr (Slot<S, N>::kTwist) twist = Float::load(s.twist_impulse);
+      if constexpr (ContactBlock<S, N>::kTwist) twist = Float::load(s.twist_impulse);
       apply_friction(s, f, twist, v);
     }
   } else {
@@ -191,12 +185,12 @@ MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
     const Float zero(Real(0)), one(Real(1)), inv_h(t.inv_h);
     Float bias[N], scale[N], keep[N], most[N];
     if constexpr (kPass == Pass::bias) {
-      const auto& soft = kPair ? t.soft_pair : t.soft_fixed;
+      const auto& soft = A::kMoves ? t.soft_pair : t.soft_fixed;
       const Float rate(soft.bias_rate * soft.mass_scale), cap(-t.push_out_speed);
       Float gaps[N];
       for (int i = 0; i < N; ++i) gaps[i] = Float::load(s.separation[i]);
       if (w.substep > 0) {
-        moved_apart<S, N, kPair, kDense>(w, s, gaps);
+        moved_apart<kDense>(w, s, gaps);
         for (int i = 0; i < N; ++i) gaps[i].store(s.gap[i]);
       }
       for (int i = 0; i < N; ++i) {
@@ -239,7 +233,7 @@ MW_INLINE void solve_slot(const Tables& t, Work& w, Slot<S, N>& s) {
       solve_friction(s, friction_budget(s, impulse), v, after, twist_after);
       after[0].store(s.tangent_impulse[0]);
       if constexpr (S::kTangents == 2) after[1].store(s.tangent_impulse[1]);
-      if constexpr (Slot<S, N>::kTwist) twist_after.store(s.twist_impulse);
+      if constexpr (ContactBlock<S, N>::kTwist) twist_after.store(s.twist_impulse);
     }
   }
   v.store(w, s);

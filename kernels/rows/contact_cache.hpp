@@ -6,7 +6,7 @@
 // the format does not depend on the layout that made them.
 #pragma once
 
-#include "kernels/rows/slot.hpp"
+#include "kernels/rows/contact_block.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -19,7 +19,7 @@ class CacheWriter {
   }
 
   template <class S, int N>
-  void put(const Slot<S, N>& s, ListId list) {
+  void put(const ContactBlock<S, N>& s, ListId list) {
     const int id = static_cast<int>(list);
     const int capacity = t_.capacity[id], row = kernels::cache_row_size(t_.dimension, list);
     const std::uint32_t mask = s.mask & ~w_.frozen;
@@ -80,7 +80,7 @@ class CacheWriter {
   }
 
   template <class S>
-  void write(const Slot<S, 1>& s, Real* rows, const std::int32_t* o) {
+  void write(const ContactBlock<S, 1>& s, Real* rows, const std::int32_t* o) {
     const auto t = load_as<typename S::Vec>(s.tangent[0]);
     const Float f = Float::load(s.tangent_impulse[0]);
     if (!t_.has_friction) {
@@ -93,7 +93,7 @@ class CacheWriter {
       store_rows4(rows, o, Float::load(s.impulse[0]), p.x, p.y, p.z);
     }
   }
-  void write(const Slot<Planar, 2>& s, Real* rows, const std::int32_t* o) {
+  void write(const ContactBlock<Planar, 2>& s, Real* rows, const std::int32_t* o) {
     const Float zero(Real(0));
     const Float f = t_.has_friction ? Float::load(s.tangent_impulse[0]) : zero;
     store_rows4(rows, o, Float::load(s.feature_x[0]), Float::load(s.feature_x[1]),
@@ -101,7 +101,7 @@ class CacheWriter {
     store_rows4(rows + 4, o, Float::load(s.code), f, zero, zero);
   }
   template <class S>
-  void write(const Slot<S, 4>& s, Real* rows, const std::int32_t* o) {
+  void write(const ContactBlock<S, 4>& s, Real* rows, const std::int32_t* o) {
     const Float zero(Real(0));
     const bool friction = t_.has_friction;
     store_rows8(rows, o, Float::load(s.feature_x[0]), Float::load(s.feature_x[1]),

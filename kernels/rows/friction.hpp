@@ -1,4 +1,4 @@
-// Friction rows of a slot: at the mean of its points, along one tangent (planar) or two (spatial),
+// Friction rows of a block: at the mean of its points, along one tangent (planar) or two (spatial),
 // and for spatial manifolds of several points about the normal.
 #pragma once
 
@@ -13,37 +13,37 @@ struct FrictionCentre {
   typename S::Vec a, b;
 };
 
-template <int N, bool kPair>
-MW_INLINE void put_tangents(const Sides<Planar, kPair>& sides, const Manifold<Planar, N>&,
-                            Mask active, Vec2 normal, const FrictionCentre<Planar>& centre,
-                            Slot<Planar, N>& s) {
+template <int N, class A>
+MW_INLINE void put_tangents(const Sides<Planar, A>& sides, const Manifold<Planar, N>&, Mask active,
+                            Vec2 normal, const FrictionCentre<Planar>& centre,
+                            SidedBlock<Planar, N, A>& s) {
   const Float zero(Real(0)), one(Real(1));
   const Vec2 tangent{-normal.y, normal.x};
   store(s.tangent[0], tangent);
   const Float b = cross(centre.b, tangent);
-  Float k = sides.inv_mass() + b * apply(sides.b.inertia, b);
-  if constexpr (kPair) {
+  Float k = sides.inv_mass() + b * apply(sides.b.body.inertia, b);
+  if constexpr (A::kMoves) {
     const Float a = cross(centre.a, tangent);
-    k = k + a * apply(sides.a.inertia, a);
+    k = k + a * apply(sides.a.body.inertia, a);
   }
   select(active, one / k, zero).store(s.tangent_mass[0]);
 }
 
 // The two tangents share one effective mass, the inverse of a 2x2 matrix.
-template <class S, int N, bool kPair>
-MW_INLINE void put_tangents(const Sides<S, kPair>& sides, const Manifold<GeometryOf<S>, N>& m,
+template <class S, int N, class A>
+MW_INLINE void put_tangents(const Sides<S, A>& sides, const Manifold<GeometryOf<S>, N>& m,
                             Mask active, Vec3 normal, const FrictionCentre<S>& centre,
-                            Slot<S, N>& s) {
+                            SidedBlock<S, N, A>& s) {
   const Float zero(Real(0)), one(Real(1)), inv_mass = sides.inv_mass();
   const Vec3 tangent = select(active, m.tangent, zero_of<Vec3>());
   const Vec3 second = cross(normal, tangent);
   store(s.tangent[0], tangent);
   const Vec3 b1 = cross(centre.b, tangent), b2 = cross(centre.b, second);
-  const Vec3 i1 = apply(sides.b.inertia, b1), i2 = apply(sides.b.inertia, b2);
+  const Vec3 i1 = apply(sides.b.body.inertia, b1), i2 = apply(sides.b.body.inertia, b2);
   Float k11 = inv_mass + dot(b1, i1), k12 = dot(b1, i2), k22 = inv_mass + dot(b2, i2);
-  if constexpr (kPair) {
+  if constexpr (A::kMoves) {
     const Vec3 a1 = cross(centre.a, tangent), a2 = cross(centre.a, second);
-    const Vec3 j1 = apply(sides.a.inertia, a1), j2 = apply(sides.a.inertia, a2);
+    const Vec3 j1 = apply(sides.a.body.inertia, a1), j2 = apply(sides.a.body.inertia, a2);
     k11 = k11 + dot(a1, j1);
     k12 = k12 + dot(a1, j2);
     k22 = k22 + dot(a2, j2);
@@ -54,13 +54,13 @@ MW_INLINE void put_tangents(const Sides<S, kPair>& sides, const Manifold<Geometr
   (k11 * scale).store(s.tangent_mass[2]);
 }
 
-template <class S, int N, bool kPair>
-MW_INLINE void put_twist(const Sides<S, kPair>& sides, const Manifold<GeometryOf<S>, N>& m,
-                         Mask active, typename S::Vec normal, const FrictionCentre<S>& centre,
-                         Float impulse, Slot<S, N>& s) {
+template <class S, int N, class A>
+MW_INLINE void put_twist(const Sides<S, A>& sides, const Manifold<GeometryOf<S>, N>& m, Mask active,
+                         typename S::Vec normal, const FrictionCentre<S>& centre, Float impulse,
+                         SidedBlock<S, N, A>& s) {
   const Float zero(Real(0)), one(Real(1));
-  Float k = dot(normal, apply(sides.b.inertia, normal));
-  if constexpr (kPair) k = k + dot(normal, apply(sides.a.inertia, normal));
+  Float k = dot(normal, apply(sides.b.body.inertia, normal));
+  if constexpr (A::kMoves) k = k + dot(normal, apply(sides.a.body.inertia, normal));
   select(active, one / k, zero).store(s.twist_mass);
   select(active, impulse, zero).store(s.twist_impulse);
   for (int i = 0; i < N; ++i) {
@@ -70,21 +70,21 @@ MW_INLINE void put_twist(const Sides<S, kPair>& sides, const Manifold<GeometryOf
 }
 
 // `sum`: of the anchors of the points, of which there are `count`.
-template <class S, int N, bool kPair>
-MW_INLINE void put_friction(const Tables& t, const Group& g, const Sides<S, kPair>& sides,
+template <class S, int N, class A>
+MW_INLINE void put_friction(const Tables& t, const Group& g, const Sides<S, A>& sides,
                             const std::int32_t* code, const Manifold<GeometryOf<S>, N>& m,
                             Mask active, const FrictionCentre<S>& sum, Float count,
-                            const StoredImpulses<N>& stored, Slot<S, N>& s) {
+                            const StoredImpulses<N>& stored, SidedBlock<S, N, A>& s) {
   const Float zero(Real(0)), one(Real(1));
-  const MaterialPair mu = load_materials<kPair>(t, g, code, s.mask, &Material::friction);
+  const MaterialPair mu = load_materials<A>(t, g, code, s.mask, &Material::friction);
   sqrt(mu.a * mu.b).store(s.friction);
   const Float share = one / max(count, one);
   FrictionCentre<S> centre;
   centre.b = sum.b * share;
-  store(s.centre_b[0], centre.b);
-  if constexpr (kPair) {
+  store(s.b.centre[0], centre.b);
+  if constexpr (A::kMoves) {
     centre.a = sum.a * share;
-    store(s.centre_a[0], centre.a);
+    store(s.a.centre[0], centre.a);
   }
   const auto normal = load_as<typename S::Vec>(s.normal[0]);
   put_tangents(sides, m, active, normal, centre, s);

@@ -1,4 +1,4 @@
-// prepare: from a manifold in registers to the rows of a slot, with the stored impulses of the
+// prepare: from a manifold in registers to the rows of a block, with the stored impulses of the
 // previous step matched to its points. Contact rows for every space and point count are made here
 // and only here.
 #pragma once
@@ -11,46 +11,46 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Shapes that are off their body's centre of mass: anchors are from that centre.
-template <class S, int N, bool kPair>
-MW_INLINE void anchor_at_centres(const Sides<S, kPair>& sides, typename S::Vec pose_a,
+template <class S, int N, class A>
+MW_INLINE void anchor_at_centres(const Sides<S, A>& sides, typename S::Vec pose_a,
                                  typename S::Vec pose_b, Manifold<GeometryOf<S>, N>& m) {
-  const auto shift_b = pose_b - sides.b.centre;
+  const auto shift_b = pose_b - sides.b.body.centre;
   for (int i = 0; i < N; ++i) m.point_b[i] = m.point_b[i] + shift_b;
-  if constexpr (kPair) {
-    const auto shift_a = pose_a - sides.a.centre;
+  if constexpr (A::kMoves) {
+    const auto shift_a = pose_a - sides.a.body.centre;
     for (int i = 0; i < N; ++i) m.point_a[i] = m.point_a[i] + shift_a;
   }
 }
 
-// In the lanes of `touching` contacts may push the bodies of the slot in this step.
-template <bool kPair, bool kDense>
+// In the lanes of `touching` contacts may push the bodies of the block in this step.
+template <class A, bool kDense>
 MW_INLINE void mark_touched(Work& w, std::uint32_t touching, Ints body_a, Ints body_b,
-                            const SlotBodies& s) {
+                            const RowBodies& s) {
   if constexpr (kDense) {
     w.touched[s.body_b] |= touching;
-    if constexpr (kPair) w.touched[s.body_a] |= touching;
+    if constexpr (A::kMoves) w.touched[s.body_a] |= touching;
   } else {
     alignas(64) std::int32_t a[kLanes], b[kLanes];
     body_b.store(b);
-    if constexpr (kPair) body_a.store(a);
+    if constexpr (A::kMoves) body_a.store(a);
     for (; touching != 0; touching &= touching - 1) {
       const int lane = __builtin_ctz(touching);
       w.touched[b[lane]] |= 1u << lane;
-      if constexpr (kPair) w.touched[a[lane]] |= 1u << lane;
+      if constexpr (A::kMoves) w.touched[a[lane]] |= 1u << lane;
     }
   }
 }
 
 // Lanes outside of `mask` work on the dummy.
 template <class S>
-MW_INLINE void drop_lanes(const Tables& t, const Work& w, std::uint32_t mask, SlotBodies& s) {
+MW_INLINE void drop_lanes(const Tables& t, const Work& w, std::uint32_t mask, RowBodies& s) {
   const Ints dummy = Ints::load(w.velocity_base) + Ints(t.bodies * S::kRow);
   select(mask, Ints::load(s.offset_a), dummy).store(s.offset_a);
   select(mask, Ints::load(s.offset_b), dummy).store(s.offset_b);
   s.mask = mask;
 }
 
-// How many points a slot has in each lane, and the sums of their anchors.
+// How many points a block has in each lane, and the sums of their anchors.
 template <class S>
 struct PointSums {
   Float count;
@@ -58,35 +58,27 @@ struct PointSums {
 };
 
 // Lanes that dropped out keep harmless numbers: a zero normal and no effective mass.
-template <class S, int N, bool kPair>
-MW_INLINE PointSums<S> put_normal_rows(const Tables& t, Work& w, const Sides<S, kPair>& sides,
-                                       const Approach<S, N>& approach, Mask active,
-                                       Manifold<GeometryOf<S>, N>& m, Slot<S, N>& s) {
+template <class S, int N, class A>
+MW_INLINE PointSums<S> put_normal_rows(const Tables& t, Work& w, const Sides<S, A>& sides,
+                                       const Approach<S, N, A>& approach, Mask active,
+                                       Manifold<GeometryOf<S>, N>& m, SidedBlock<S, N, A>& s) {
   using Vec = typename S::Vec;
   const Float zero(Real(0)), one(Real(1)), margin(t.margin), inv_mass = sides.inv_mass();
   store(s.normal[0], select(active, m.normal, zero_of<Vec>()));
-  store(s.inertia_b[0], sides.b.inertia);
-  sides.b.inv_mass.store(s.inv_mass_b);
-  if constexpr (kPair) {
-    store(s.inertia_a[0], sides.a.inertia);
-    sides.a.inv_mass.store(s.inv_mass_a);
-  }
+  put_side(sides.b.body, s.b);
+  if constexpr (A::kMoves) put_side(sides.a.body, s.a);
   PointSums<S> sums{zero, {zero_of<Vec>(), zero_of<Vec>()}};
   for (int i = 0; i < N; ++i) {
     m.valid[i] = m.valid[i] & active;
-    store(s.arm_b[i][0], approach.arm_b[i]);
-    Float k = inv_mass + dot(approach.arm_b[i], approach.turned_b[i]);
-    if constexpr (kPair) {
-      store(s.arm_a[i][0], approach.arm_a[i]);
-      k = k + dot(approach.arm_a[i], approach.turned_a[i]);
-    }
-    select(m.valid[i], one / k, zero).store(s.mass[i]);
+    store(s.b.arm[i][0], approach.b.arm[i]);
+    if constexpr (A::kMoves) store(s.a.arm[i][0], approach.a.arm[i]);
+    select(m.valid[i], one / approach.coupling(inv_mass, i, i), zero).store(s.mass[i]);
     m.separation[i].store(s.separation[i]);
     m.separation[i].store(s.gap[i]);
     const Float weight = select(m.valid[i], one, zero);
     sums.count = sums.count + weight;
     sums.anchors.b = fma(m.point_b[i], weight, sums.anchors.b);
-    if constexpr (kPair) sums.anchors.a = fma(m.point_a[i], weight, sums.anchors.a);
+    if constexpr (A::kMoves) sums.anchors.a = fma(m.point_a[i], weight, sums.anchors.a);
     w.counters.points +=
         static_cast<unsigned>(__builtin_popcount(bits(m.valid[i] & (m.separation[i] < margin))));
   }
@@ -94,27 +86,25 @@ MW_INLINE PointSums<S> put_normal_rows(const Tables& t, Work& w, const Sides<S, 
 }
 
 // What an impulse at one point does to the speed of another.
-template <class S, int N, bool kPair>
-MW_INLINE void put_couplings(const Sides<S, kPair>& sides, const Approach<S, N>& approach,
-                             Slot<S, N>& s) {
+template <class S, int N, class A>
+MW_INLINE void put_couplings(const Sides<S, A>& sides, const Approach<S, N, A>& approach,
+                             SidedBlock<S, N, A>& s) {
   const Float inv_mass = sides.inv_mass();
   int at = 0;
   for (int i = 0; i < N; ++i) {
     for (int j = i + 1; j < N; ++j) {
-      Float k = inv_mass + dot(approach.arm_b[i], approach.turned_b[j]);
-      if constexpr (kPair) k = k + dot(approach.arm_a[i], approach.turned_a[j]);
-      k.store(s.cross_k[at++]);
+      approach.coupling(inv_mass, i, j).store(s.cross_k[at++]);
     }
   }
 }
 
-template <class S, int N, bool kPair>
+template <class S, int N, class A>
 MW_INLINE void put_bounce(const Tables& t, const Group& g, const std::int32_t* code,
-                          const Manifold<GeometryOf<S>, N>& m, const Approach<S, N>& approach,
+                          const Manifold<GeometryOf<S>, N>& m, const Approach<S, N, A>& approach,
                           const StoredImpulses<N>& stored, std::uint32_t mask,
                           Bounce<S, N>& bounce) {
   const Float zero(Real(0)), dt(t.dt), threshold(t.restitution_threshold);
-  const MaterialPair e = load_materials<kPair>(t, g, code, mask, &Material::restitution);
+  const MaterialPair e = load_materials<A>(t, g, code, mask, &Material::restitution);
   max(e.a, e.b).store(bounce.restitution);
   const Float pull = approach.pull.relative;
   for (int i = 0; i < N; ++i) {
@@ -131,29 +121,29 @@ MW_INLINE void put_bounce(const Tables& t, const Group& g, const std::int32_t* c
   zero.store(bounce.total_twist);
 }
 
-// Adds one slot to `list`. kPair: A moves too. `active` are the lanes that the narrow phase
+// Adds one block to `list`. `active` are the lanes that the narrow phase
 // worked on; lanes without a point close enough drop out.
-template <class S, int N, bool kPair, bool kDense>
-void add_slot(const Tables& t, const Group& g, Work& w, ListId list,
-              const kernels::PairClass<Real>& pair_class, Manifold<GeometryOf<S>, N>& m,
-              Mask active, const std::int32_t* code, const std::int32_t* key,
-              typename S::Vec pose_a, typename S::Vec pose_b) {
-  SlotList& slots = w.slots[static_cast<int>(list)];
-  auto& s = slot_at<S, N>(slots, slots.count);
-  const Sides<S, kPair> sides = find_sides<S, kPair, kDense>(t, w, code, s);
+template <class S, int N, class A, bool kDense>
+void add_contact(const Tables& t, const Group& g, Work& w, ListId list,
+                 const kernels::PairClass<Real>& pair_class, Manifold<GeometryOf<S>, N>& m,
+                 Mask active, const std::int32_t* code, const std::int32_t* key,
+                 typename S::Vec pose_a, typename S::Vec pose_b) {
+  BlockList& blocks = w.blocks[static_cast<int>(list)];
+  auto& s = block_at<SidedBlock<S, N, A>>(blocks, blocks.count);
+  const Sides<S, A> sides = find_sides<S, A, kDense>(t, w, code, s);
   if (!t.collider_is_body) anchor_at_centres(sides, pose_a, pose_b, m);
 
-  Approach<S, N> approach;
+  Approach<S, N, A> approach;
   measure_approach(t, g, sides, pair_class.kind, active, m, approach);
   std::uint32_t mask = bits(approach.near);
   if (mask == 0) return;
   mask = claim_capacity(t, w, list, mask);
   if (mask == 0) return;
   active = mask_from_bits(mask);
-  mark_touched<kPair, kDense>(w, bits(approach.touching & active), sides.body_a, sides.body_b, s);
+  mark_touched<A, kDense>(w, bits(approach.touching & active), sides.body_a, sides.body_b, s);
   drop_lanes<S>(t, w, mask, s);
   Ints::load(key).store(s.key);
-  ++slots.count;
+  ++blocks.count;
   w.counters.manifolds += static_cast<unsigned>(__builtin_popcount(mask));
 
   const PointSums<S> sums = put_normal_rows(t, w, sides, approach, active, m, s);
@@ -168,19 +158,19 @@ void add_slot(const Tables& t, const Group& g, Work& w, ListId list,
     put_friction(t, g, sides, code, m, active, sums.anchors, sums.count, stored, s);
   }
   if (t.has_restitution) {
-    auto& bounce = bounce_at<S, N>(slots, slots.count - 1);
-    put_bounce<S, N, kPair>(t, g, code, m, approach, stored, mask, bounce);
+    auto& bounce = bounce_at<S, N>(blocks, blocks.count - 1);
+    put_bounce(t, g, code, m, approach, stored, mask, bounce);
   }
   if (w.recorder) {
     record_points<S, N>(w, list, m, key, stored.normal,
-                        t.collider_is_body ? pose_b : sides.b.centre);
+                        t.collider_is_body ? pose_b : sides.b.body.centre);
   }
 }
 
 template <class S, bool kDense>
 RowBuilder<GeometryOf<S>> row_builder_of() {
-  return {{add_slot<S, 1, false, kDense>, add_slot<S, 1, true, kDense>},
-          {add_slot<S, S::kMulti, false, kDense>, add_slot<S, S::kMulti, true, kDense>}};
+  return {{add_contact<S, 1, Fixed, kDense>, add_contact<S, 1, Free, kDense>},
+          {add_contact<S, S::kMulti, Fixed, kDense>, add_contact<S, S::kMulti, Free, kDense>}};
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,4 +1,4 @@
-// Takes contact points down while slots are made: those of one lane as the user sees them, or the
+// Takes contact points down while blocks are made: those of one lane as the user sees them, or the
 // places of all for the observers.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Places of the points of a slot in all lanes, half way between the surfaces, and the code of its
+// Places of the points of a block in all lanes, half way between the surfaces, and the code of its
 // features: [point][component][lane], [lane].
 template <class S, int N>
 void record_places(const Manifold<GeometryOf<S>, N>& m, typename S::Vec origin, Real* out) {
@@ -24,8 +24,8 @@ void record_points(Work& w, ListId list, const Manifold<GeometryOf<S>, N>& m,
                    const std::int32_t* key, const Float* impulse, typename S::Vec origin) {
   Recorder& r = *w.recorder;
   if (r.places) {
-    const int id = static_cast<int>(list), slot = w.slots[id].count - 1;
-    return record_places<S, N>(m, origin, r.places[id] + slot * (N * S::kDim + 1) * kLanes);
+    const int id = static_cast<int>(list), block = w.blocks[id].count - 1;
+    return record_places<S, N>(m, origin, r.places[id] + block * (N * S::kDim + 1) * kLanes);
   }
   const auto lane_of = [&](Float x) {
     alignas(64) Real all[kLanes];

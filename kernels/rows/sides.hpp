@@ -1,50 +1,58 @@
-// The two bodies that a contact is between, as its rows need them.
+// The two sides that a contact is between, as its rows need them.
 #pragma once
 
 #include "kernels/lane/ints.hpp"
-#include "kernels/rows/body_rows.hpp"
+#include "kernels/rows/velocities.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Not kPair: A is fixed, and only `body_a` is set of it, to the dummy.
-template <class S, bool kPair>
+// A side while its rows are made.
+template <class S, class Side>
+struct SideState {};
+template <class S>
+struct SideState<S, Free> {
+  BodyRow<S> body;
+  Velocity<S> velocity;  // at the start of the step
+};
+
+template <class S, class A>
 struct Sides {
-  Ints body_a, body_b;  // the dummy in lanes without a candidate
-  BodyRow<S> a, b;
-  Velocity<S> velocity_a, velocity_b;  // at the start of the step
+  Ints body_a, body_b;  // the dummy in lanes without a candidate; A is the dummy if it is fixed
+  SideState<S, A> a;
+  SideState<S, Free> b;
 
   MW_INLINE Float inv_mass() const {
-    if constexpr (kPair) {
-      return a.inv_mass + b.inv_mass;
+    if constexpr (A::kMoves) {
+      return a.body.inv_mass + b.body.inv_mass;
     } else {
-      return b.inv_mass;
+      return b.body.inv_mass;
     }
   }
 };
 
 // The bodies of the shapes in `code`, which `s` learns, too.
-template <class S, bool kPair, bool kDense>
-MW_INLINE Sides<S, kPair> find_sides(const Tables& t, const Work& w, const std::int32_t* code,
-                                     SlotBodies& s) {
+template <class S, class A, bool kDense>
+MW_INLINE Sides<S, A> find_sides(const Tables& t, const Work& w, const std::int32_t* code,
+                                 RowBodies& s) {
   const Ints shapes = Ints::load(code), velocities = Ints::load(w.velocity_base);
-  Sides<S, kPair> out;
+  Sides<S, A> out;
   out.body_b = gather(t.collider_body, high_half(shapes));
-  out.body_a = kPair ? gather(t.collider_body, low_half(shapes)) : Ints(t.bodies);
+  out.body_a = A::kMoves ? gather(t.collider_body, low_half(shapes)) : Ints(t.bodies);
   (velocities + out.body_b * Ints(S::kRow)).store(s.offset_b);
   (velocities + out.body_a * Ints(S::kRow)).store(s.offset_a);
-  if constexpr (kDense) {  // every lane of a dense slot is about the same two bodies
+  if constexpr (kDense) {  // every lane of a dense block is about the same two bodies
     s.body_b = t.collider_body[(code[0] >> 16) & 0xffff];
-    s.body_a = kPair ? t.collider_body[code[0] & 0xffff] : t.bodies;
+    s.body_a = A::kMoves ? t.collider_body[code[0] & 0xffff] : t.bodies;
   }
   const Ints rows = Ints::load(w.body_base), size(body_row_size(S::kKind));
   alignas(64) std::int32_t at[kLanes];
   (rows + out.body_b * size).store(at);
-  load_body_row(t, w, at, out.b);
-  out.velocity_b = load_velocity<S, kDense>(w, s.offset_b, kDense ? s.body_b : 0);
-  if constexpr (kPair) {
+  load_body_row(t, w, at, out.b.body);
+  out.b.velocity = load_velocity<S, kDense>(w.velocity, s.offset_b, kDense ? s.body_b : 0);
+  if constexpr (A::kMoves) {
     (rows + out.body_a * size).store(at);
-    load_body_row(t, w, at, out.a);
-    out.velocity_a = load_velocity<S, kDense>(w, s.offset_a, kDense ? s.body_a : 0);
+    load_body_row(t, w, at, out.a.body);
+    out.a.velocity = load_velocity<S, kDense>(w.velocity, s.offset_a, kDense ? s.body_a : 0);
   }
   return out;
 }
@@ -53,11 +61,11 @@ MW_INLINE Sides<S, kPair> find_sides(const Tables& t, const Work& w, const std::
 struct MaterialPair {
   Float a, b;
 };
-template <bool kPair>
+template <class A>
 MW_INLINE MaterialPair load_materials(const Tables& t, const Group& g, const std::int32_t* code,
                                       std::uint32_t mask, LaneNumber Material::*number) {
   const Ints shapes = Ints::load(code), none(0);
-  const Ints a = low_half(shapes) + Ints(kPair ? 0 : t.colliders);
+  const Ints a = low_half(shapes) + Ints(A::kMoves ? 0 : t.colliders);
   const LaneNumber& first = materials(g)->*number;
   return {gather_numbers<Material>(first, select(mask, a, none)),
           gather_numbers<Material>(first, select(mask, high_half(shapes), none))};

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "kernels/lane/ints.hpp"
-#include "kernels/rows/slot.hpp"
+#include "kernels/rows/contact_block.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Offsets of the cache rows that hold the impulses of the lanes' keys; the zero row if none does.
-// Keys ascend in the cache and from slot to slot, so each lane's cursor only moves forward.
+// Keys ascend in the cache and from block to block, so each lane's cursor only moves forward.
 inline void find_stored(const Tables& t, const Group& g, Work& w, ListId list, std::uint32_t mask,
                         const std::int32_t* key, std::int32_t* offset) {
   const int id = static_cast<int>(list);
@@ -45,7 +45,7 @@ struct StoredImpulses {
 // A point's friction impulse is kept as a world vector, since its tangents turn with it.
 template <class S>
 MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
-                              const Manifold<GeometryOf<S>, 1>& m, Slot<S, 1>&,
+                              const Manifold<GeometryOf<S>, 1>& m, ContactBlock<S, 1>&,
                               StoredImpulses<1>& out) {
   const Float zero(Real(0));
   typename S::Vec kept;
@@ -65,7 +65,7 @@ MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
 // Points are told apart by their place on the reference feature.
 template <class S, int N>
 MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
-                              const Manifold<GeometryOf<S>, N>& m, Slot<S, N>& s,
+                              const Manifold<GeometryOf<S>, N>& m, ContactBlock<S, N>& s,
                               StoredImpulses<N>& out) {
   const Float zero(Real(0));
   Float old_x[4], old_y[4] = {zero, zero, zero, zero}, old[4], code, unused;

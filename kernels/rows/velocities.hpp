@@ -1,57 +1,61 @@
-// Velocities of the two bodies that rows act on, in either layout.
+// Velocities of the two sides that rows act on, in either layout.
 #pragma once
 
-#include "kernels/rows/slot.hpp"
+#include "kernels/rows/side.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-template <class S>
-struct VelocityPair {
-  Velocity<S> a, b;
+template <class S, bool kDense>
+MW_INLINE Velocity<S> load_velocity(const Real* array, const std::int32_t* offset, int body) {
+  if constexpr (kDense) {
+    return load_velocity_dense<S>(array + body * (S::kDim + S::kAng) * kLanes);
+  } else {
+    return load_velocity_row(S{}, array, offset);
+  }
+}
+// In the dense layout a lane outside of `mask` keeps its bits; in rows it moves the dummy.
+template <class S, bool kDense>
+MW_INLINE void store_velocity(Real* array, const std::int32_t* offset, int body, std::uint32_t mask,
+                              const Velocity<S>& v) {
+  if constexpr (kDense) {
+    Real* to = array + body * (S::kDim + S::kAng) * kLanes;
+    if (mask == kAllLanes) {
+      store_velocity_dense(to, v);
+    } else {
+      store_velocity_dense(to, select(mask_from_bits(mask), v, load_velocity_dense<S>(to)));
+    }
+  } else {
+    store_velocity_row(S{}, array, offset, v);
+  }
+}
+
+template <class S, class A>
+struct SideVelocities {
+  SideVelocity<S, A> a;
+  Velocity<S> b;
 };
 
-// From `array`, which is laid out like Work::velocity. Not kPair: A is not there.
-template <class S, bool kPair, bool kDense>
-MW_INLINE VelocityPair<S> load_two(const Real* array, const SlotBodies& s) {
-  constexpr int kBlock = (S::kDim + S::kAng) * kLanes;
-  VelocityPair<S> out;
-  if constexpr (kDense) {
-    out.b = load_velocity_dense<S>(array + s.body_b * kBlock);
-    if constexpr (kPair) out.a = load_velocity_dense<S>(array + s.body_a * kBlock);
-  } else {
-    out.b = load_velocity_row(S{}, array, s.offset_b);
-    if constexpr (kPair) out.a = load_velocity_row(S{}, array, s.offset_a);
-  }
+// From `array`, which is laid out like Work::velocity.
+template <class S, class A, bool kDense>
+MW_INLINE SideVelocities<S, A> load_sides(const Real* array, const RowBodies& s) {
+  SideVelocities<S, A> out;
+  out.b = load_velocity<S, kDense>(array, s.offset_b, s.body_b);
+  if constexpr (A::kMoves) out.a = load_velocity<S, kDense>(array, s.offset_a, s.body_a);
   return out;
 }
 
-// The two bodies of a slot, loaded once and stored once.
-template <class S, bool kPair, bool kDense>
-struct TwoVelocities : VelocityPair<S> {
-  using VelocityPair<S>::a, VelocityPair<S>::b;
+// The velocities of a block, loaded once and stored once.
+template <class S, class A, bool kDense>
+struct RowVelocities : SideVelocities<S, A> {
+  using SideVelocities<S, A>::a, SideVelocities<S, A>::b;
 
-  MW_INLINE TwoVelocities(const Work& w, const SlotBodies& s)
-      : VelocityPair<S>(load_two<S, kPair, kDense>(w.velocity, s)) {}
+  MW_INLINE RowVelocities(const Work& w, const RowBodies& s)
+      : SideVelocities<S, A>(load_sides<S, A, kDense>(w.velocity, s)) {}
 
-  // In the dense layout a lane without this contact keeps its bits; in rows it moves the dummy.
-  MW_INLINE void store(Work& w, const SlotBodies& s) const {
-    constexpr int kBlock = (S::kDim + S::kAng) * kLanes;
-    if constexpr (kDense) {
-      Real* to_b = w.velocity + s.body_b * kBlock;
-      Real* to_a = w.velocity + s.body_a * kBlock;
-      if (s.mask == kAllLanes) {
-        store_velocity_dense(to_b, b);
-        if constexpr (kPair) store_velocity_dense(to_a, a);
-      } else {
-        const Mask active = mask_from_bits(s.mask);
-        store_velocity_dense(to_b, select(active, b, load_velocity_dense<S>(to_b)));
-        if constexpr (kPair) {
-          store_velocity_dense(to_a, select(active, a, load_velocity_dense<S>(to_a)));
-        }
-      }
-    } else {
-      store_velocity_row(S{}, w.velocity, s.offset_b, b);
-      if constexpr (kPair) store_velocity_row(S{}, w.velocity, s.offset_a, a);
+  MW_INLINE void store(Work& w, const RowBodies& s) const {
+    store_velocity<S, kDense>(w.velocity, s.offset_b, s.body_b, s.mask, b);
+    if constexpr (A::kMoves) {
+      store_velocity<S, kDense>(w.velocity, s.offset_a, s.body_a, s.mask, a);
     }
   }
 };

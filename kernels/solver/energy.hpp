@@ -115,17 +115,17 @@ inline unsigned lanes_that_gained(const Tables& t, const Work& w) {
 }
 
 template <class S, int N>
-MW_INLINE int body_a_of(const Work& w, const Slot<S, N>& s, int lane) {
+MW_INLINE int body_a_of(const Work& w, const ContactBlock<S, N>& s, int lane) {
   return (s.offset_a[lane] - w.velocity_base[lane]) / S::kRow;
 }
 template <class S, int N>
-MW_INLINE int body_b_of(const Work& w, const Slot<S, N>& s, int lane) {
+MW_INLINE int body_b_of(const Work& w, const ContactBlock<S, N>& s, int lane) {
   return (s.offset_b[lane] - w.velocity_base[lane]) / S::kRow;
 }
 
-// Joins the bodies of a slot that push each other in this lane.
+// Joins the bodies of a block that push each other in this lane.
 template <class S, int N>
-MW_INLINE void join_bodies(const Tables& t, const Work& w, const Slot<S, N>& s,
+MW_INLINE void join_bodies(const Tables& t, const Work& w, const ContactBlock<S, N>& s,
                            const Bounce<S, N>& bounce, int lane) {
   if (!((s.mask >> lane) & 1u)) return;
   bool pushes = false;  // before or after restitution
@@ -135,9 +135,9 @@ MW_INLINE void join_bodies(const Tables& t, const Work& w, const Slot<S, N>& s,
   unite(w.parent, a, b);
 }
 
-// Work that kinematic bodies do at a slot by normal impulses, with friction at its centre.
-template <class S, int N, bool kDense, bool kFriction>
-MW_INLINE Float work_of_driver(const Slot<S, N>& s, const SlotVelocities<S, N, true, kDense>& v,
+// Work that kinematic bodies do at a block by normal impulses, with friction at its centre.
+template <bool kFriction, class S, int N>
+MW_INLINE Float work_of_driver(const SidedBlock<S, N, Free>& s, const SideVelocities<S, Free>& v,
                                const Real (*total)[kLanes], const Real (*tangent)[kLanes],
                                const Real* twist) {
   Float speed[N], work(Real(0));
@@ -146,14 +146,13 @@ MW_INLINE Float work_of_driver(const Slot<S, N>& s, const SlotVelocities<S, N, t
   if constexpr (kFriction) {
     using Vec = typename S::Vec;
     const Vec t = load_as<Vec>(s.tangent[0]);
-    const Vec slip = v.b.v + cross(v.b.w, load_as<Vec>(s.centre_b[0])) -
-                     (v.a.v + cross(v.a.w, load_as<Vec>(s.centre_a[0])));
+    const Vec slip = slip_of(s, v);
     work = fnma(Float::load(tangent[0]), dot(t, slip), work);
     if constexpr (S::kTangents == 2) {
       const Vec n = load_as<Vec>(s.normal[0]);
       work = fnma(Float::load(tangent[1]), dot(cross(n, t), slip), work);
-      if constexpr (Slot<S, N>::kTwist) {
-        work = fnma(Float::load(twist), dot(n, v.b.w - v.a.w), work);
+      if constexpr (ContactBlock<S, N>::kTwist) {
+        work = fnma(Float::load(twist), dot(n, relative_spin(v.a, v.b)), work);
       }
     }
   }
@@ -161,22 +160,22 @@ MW_INLINE Float work_of_driver(const Slot<S, N>& s, const SlotVelocities<S, N, t
 }
 
 // Credits the work of kinematic bodies to those that they push.
-template <class S, int N, bool kDense, bool kFriction>
-MW_INLINE void credit_driver(const Tables& t, Work& w, const Slot<S, N>& s,
+template <bool kDense, bool kFriction, class S, int N>
+MW_INLINE void credit_driver(const Tables& t, Work& w, const SidedBlock<S, N, Free>& s,
                              const Bounce<S, N>& bounce) {
   const Float zero(Real(0));
-  const Mask drives_a = Float::load(s.inv_mass_a) == zero;
-  const Mask drives_b = Float::load(s.inv_mass_b) == zero;
+  const Mask drives_a = Float::load(s.a.inv_mass) == zero;
+  const Mask drives_b = Float::load(s.b.inv_mass) == zero;
   if (!any((drives_a | drives_b) & mask_from_bits(s.mask))) return;
-  SlotVelocities<S, N, true, kDense> v(w, s);
+  RowVelocities<S, Free, kDense> v(w, s);
   const Velocity<S> still{zero_of<typename S::Vec>(), zero_of<typename S::Ang>()};
   v.a = select(drives_a, v.a, still);
   v.b = select(drives_b, v.b, still);
   alignas(64) Real found[kLanes], more[kLanes];
-  const Float before = work_of_driver<S, N, kDense, kFriction>(
-      s, v, bounce.found, bounce.found_tangent, bounce.found_twist);
-  const Float after = work_of_driver<S, N, kDense, kFriction>(
-      s, v, bounce.total, bounce.total_tangent, bounce.total_twist);
+  const Float before =
+      work_of_driver<kFriction>(s, v, bounce.found, bounce.found_tangent, bounce.found_twist);
+  const Float after =
+      work_of_driver<kFriction>(s, v, bounce.total, bounce.total_tangent, bounce.total_twist);
   (before + before).store(found);
   (after - before).store(more);
   for (int l = 0; l < kLanes; ++l) {
@@ -234,17 +233,17 @@ void keep_share_of_bodies(const Tables& t, const Work& w) {
   }
 }
 
-// The impulses of a slot, as far as its bodies keep what they did.
-template <class S, int N, bool kPair, bool kFriction>
-MW_INLINE void keep_share_of_slot(const Tables& t, const Work& w, const Slot<S, N>& s,
-                                  Bounce<S, N>& bounce) {
+// The impulses of a block, as far as its bodies keep what they did.
+template <bool kFriction, class S, int N, class A>
+MW_INLINE void keep_share_of_block(const Tables& t, const Work& w, const SidedBlock<S, N, A>& s,
+                                   Bounce<S, N>& bounce) {
   if (bounce.participants == 0) return;
   alignas(64) LaneNumber share;
   for (int l = 0; l < kLanes; ++l) {
     share.lane[l] = Real(1);
     if (!((bounce.participants >> l) & 1u)) continue;
     const int b = body_b_of(w, s, l);
-    const int body = kPair && t.body[b].kinematic ? body_a_of(w, s, l) : b;
+    const int body = A::kMoves && t.body[b].kinematic ? body_a_of(w, s, l) : b;
     share.lane[l] = account(w, body, kShare)[l];
   }
   const Float x = share;

@@ -6,6 +6,7 @@
 // The velocities follow by a warm start with beta way.
 #include "kernels/joint/body.hpp"
 #include "kernels/lane/finite.hpp"
+#include "kernels/rows/contact_block.hpp"
 #include "kernels/work/solver_tables.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -23,7 +24,7 @@ MW_INLINE void for_each_impulse(const Tables& t, Work& w, Visit visit) {
       for (auto& impulse : part.impulse) visit(impulse, part.mask);
     }
   }
-  for_each_slot<S>(w, [&](auto& s, int, SlotList&, auto) {
+  for_each_block<S>(w, [&](auto& s, int, BlockList&) {
     for (auto& impulse : s.impulse) visit(impulse, s.mask);
     if (!t.has_friction) return;
     for (auto& impulse : s.tangent_impulse) visit(impulse, s.mask);

@@ -13,9 +13,8 @@ struct Passes {
   template <Pass kPass>
   static void solve(const Tables& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
-      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-      solve_slot<S, N, decltype(pair)::value, kDense, kFriction, kPass>(t, w, s);
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      solve_block<kDense, kFriction, kPass>(t, w, s);
       if constexpr (kPass == Pass::relax) {
         if (t.has_restitution) accumulate_bounce(s, bounce_at<S, N>(list, i), kFriction);
       }
@@ -40,8 +39,7 @@ struct Passes {
   static void restitute(const Tables& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     unsigned active = 0;
-    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto) {
-      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       auto& bounce = bounce_at<S, N>(list, i);
       find_participants(t, s, bounce);
       active |= bounce.participants;
@@ -49,21 +47,17 @@ struct Passes {
     if (active == 0) return;
     for_each_register<S, kDense>(
         t, w, [&](int at, Float, Float) { Float::load(w.velocity + at).store(w.warmed + at); });
-    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
-      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-      take_back<S, N, decltype(pair)::value, kDense>(w, s, bounce_at<S, N>(list, i));
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      take_back<kDense>(w, s, bounce_at<S, N>(list, i));
     });
     for (int sweep = 0; sweep < t.restitution_sweeps && active != 0; ++sweep) {
       active = 0;
-      for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
-        constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-        active |= play_impact<S, N, decltype(pair)::value, kDense>(
-            t, w, s, bounce_at<S, N>(list, i), sweep == 0);
+      for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+        active |= play_impact<kDense>(t, w, s, bounce_at<S, N>(list, i), sweep == 0);
       });
     }
-    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
-      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-      finish_impact<S, N, decltype(pair)::value, kDense, kFriction>(w, s, bounce_at<S, N>(list, i));
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      finish_impact<kDense, kFriction>(w, s, bounce_at<S, N>(list, i));
     });
     balance(t, g, w);
   }
@@ -74,10 +68,9 @@ struct Passes {
     bool driven = false;
     for (int b = 0; b < t.bodies; ++b) driven |= t.body[b].kinematic;
     if (driven) {
-      for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
-        constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-        if constexpr (decltype(pair)::value) {
-          credit_driver<S, N, kDense, kFriction>(t, w, s, bounce_at<S, N>(list, i));
+      for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+        if constexpr (A::kMoves) {
+          credit_driver<kDense, kFriction>(t, w, s, bounce_at<S, N>(list, i));
         }
       });
     }
@@ -89,24 +82,22 @@ struct Passes {
         continue;
       }
       for (int b = 0; b < t.bodies; ++b) w.parent[b] = b;
-      for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
-        constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-        if constexpr (decltype(pair)::value) join_bodies(t, w, s, bounce_at<S, N>(list, i), l);
+      for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+        if constexpr (A::kMoves) join_bodies(t, w, s, bounce_at<S, N>(list, i), l);
       });
       share_out(t, w, l);
     }
     keep_share_of_bodies<S, kDense>(t, w);
-    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto pair) {
-      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-      keep_share_of_slot<S, N, decltype(pair)::value, kFriction>(t, w, s, bounce_at<S, N>(list, i));
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      keep_share_of_block<kFriction>(t, w, s, bounce_at<S, N>(list, i));
     });
   }
 
   static void store(const Tables& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     CacheWriter writer(t, g, w);
-    for_each_slot<S>(w, [&](auto& s, int, SlotList& list, auto) {
-      writer.put(s, static_cast<ListId>(&list - w.slots));
+    for_each_block<S>(w, [&](auto& s, int, BlockList& list) {
+      writer.put(s, static_cast<ListId>(&list - w.blocks));
     });
     writer.close();
     report_overflow(g, w);

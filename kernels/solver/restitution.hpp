@@ -17,7 +17,7 @@ inline constexpr int kBlockIterations = 8;  // of Gauss-Seidel inside one manifo
 
 // Every other row follows when row k changes by d.
 template <class S, int N>
-MW_INLINE void couple_all(const Slot<S, N>& s, int k, Float d, Float* speed) {
+MW_INLINE void couple_all(const ContactBlock<S, N>& s, int k, Float d, Float* speed) {
   for (int j = 0; j < k; ++j) {
     const int at = j * N - j * (j + 1) / 2 + (k - j - 1);
     speed[j] = fma(Float::load(s.cross_k[at]), d, speed[j]);
@@ -27,7 +27,7 @@ MW_INLINE void couple_all(const Slot<S, N>& s, int k, Float d, Float* speed) {
 
 // After each relax pass: what the substep's contact has done so far.
 template <class S, int N>
-MW_INLINE void accumulate_bounce(const Slot<S, N>& s, Bounce<S, N>& bounce, bool friction) {
+MW_INLINE void accumulate_bounce(const ContactBlock<S, N>& s, Bounce<S, N>& bounce, bool friction) {
   for (int i = 0; i < N; ++i) {
     (Float::load(bounce.total[i]) + Float::load(s.impulse[i])).store(bounce.total[i]);
   }
@@ -36,15 +36,16 @@ MW_INLINE void accumulate_bounce(const Slot<S, N>& s, Bounce<S, N>& bounce, bool
       (Float::load(bounce.total_tangent[c]) + Float::load(s.tangent_impulse[c]))
           .store(bounce.total_tangent[c]);
     }
-    if constexpr (Slot<S, N>::kTwist) {
+    if constexpr (ContactBlock<S, N>::kTwist) {
       (Float::load(bounce.total_twist) + Float::load(s.twist_impulse)).store(bounce.total_twist);
     }
   }
 }
 
-// Finds the lanes of a slot that took part in an impact.
+// Finds the lanes of a block that took part in an impact.
 template <class S, int N>
-MW_INLINE void find_participants(const Tables& t, const Slot<S, N>& s, Bounce<S, N>& bounce) {
+MW_INLINE void find_participants(const Tables& t, const ContactBlock<S, N>& s,
+                                 Bounce<S, N>& bounce) {
   const Float zero(Real(0)), threshold(t.restitution_threshold);
   const Float substeps(static_cast<Real>(t.substeps));
   Mask part = zero < zero;
@@ -60,8 +61,8 @@ MW_INLINE void find_participants(const Tables& t, const Slot<S, N>& s, Bounce<S,
 }
 
 // Takes their normal impulses back, and keeps what the substeps found.
-template <class S, int N, bool kPair, bool kDense>
-MW_INLINE void take_back(Work& w, Slot<S, N>& s, Bounce<S, N>& bounce) {
+template <bool kDense, class S, int N, class A>
+MW_INLINE void take_back(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bounce) {
   Float d[N];
   for (int i = 0; i < N; ++i) {
     const Float total = Float::load(bounce.total[i]);
@@ -74,22 +75,22 @@ MW_INLINE void take_back(Work& w, Slot<S, N>& s, Bounce<S, N>& bounce) {
   Float::load(bounce.total_twist).store(bounce.found_twist);
   if (bounce.participants == 0) return;
   const Mask part = mask_from_bits(bounce.participants);
-  SlotVelocities<S, N, kPair, kDense> v(w, s), before = v;
+  RowVelocities<S, A, kDense> v(w, s), before = v;
   apply_normal(s, d, v);
   v.b = select(part, v.b, before.b);
-  if constexpr (kPair) v.a = select(part, v.a, before.a);
+  if constexpr (A::kMoves) v.a = select(part, v.a, before.a);
   v.store(w, s);
 }
 
 // Plays one impact of a manifold. Returns the lanes in which one happened.
-template <class S, int N, bool kPair, bool kDense>
-MW_INLINE unsigned play_impact(const Tables& t, Work& w, Slot<S, N>& s, Bounce<S, N>& bounce,
-                               bool first) {
+template <bool kDense, class S, int N, class A>
+MW_INLINE unsigned play_impact(const Tables& t, Work& w, SidedBlock<S, N, A>& s,
+                               Bounce<S, N>& bounce, bool first) {
   if (bounce.participants == 0) return 0;
   const Float zero(Real(0)), one(Real(1)), threshold(t.restitution_threshold);
   const Float e = Float::load(bounce.restitution);
   const Float rest = threshold * Real(-1e-3);  // slower approaches are left to the next step
-  SlotVelocities<S, N, kPair, kDense> v(w, s), before = v;
+  RowVelocities<S, A, kDense> v(w, s), before = v;
   Float speed[N], target[N], total[N], impulse[N];
   normal_speeds(s, v, speed);
   Mask needed = zero < zero;
@@ -129,7 +130,7 @@ MW_INLINE unsigned play_impact(const Tables& t, Work& w, Slot<S, N>& s, Bounce<S
     }
     apply_normal(s, impulse, v);
     v.b = select(needed, v.b, before.b);
-    if constexpr (kPair) v.a = select(needed, v.a, before.a);
+    if constexpr (A::kMoves) v.a = select(needed, v.a, before.a);
     v.store(w, s);
   }
   // The totals of the substeps were taken back: what the impacts add up to replaces them.
@@ -145,27 +146,27 @@ MW_INLINE unsigned play_impact(const Tables& t, Work& w, Slot<S, N>& s, Bounce<S
 
 // Friction of the impacts, bounded by mu times all normal impulse of the step; and nothing of an
 // impact is carried into the next step's warm start.
-template <class S, int N, bool kPair, bool kDense, bool kFriction>
-MW_INLINE void finish_impact(Work& w, Slot<S, N>& s, Bounce<S, N>& bounce) {
+template <bool kDense, bool kFriction, class S, int N, class A>
+MW_INLINE void finish_impact(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bounce) {
   if (bounce.participants == 0) return;
   const Mask part = mask_from_bits(bounce.participants);
   const Float zero(Real(0));
   if constexpr (kFriction) {
-    SlotVelocities<S, N, kPair, kDense> v(w, s), before = v;
+    RowVelocities<S, A, kDense> v(w, s), before = v;
     Float total[N], after[2], twist_after(Real(0));
     for (int i = 0; i < N; ++i) total[i] = Float::load(bounce.total[i]);
     FrictionBudget budget = friction_budget(s, total);
     for (int c = 0; c < S::kTangents; ++c) budget.before[c] = Float::load(bounce.total_tangent[c]);
-    if constexpr (Slot<S, N>::kTwist) budget.twist_before = Float::load(bounce.total_twist);
+    if constexpr (ContactBlock<S, N>::kTwist) budget.twist_before = Float::load(bounce.total_twist);
     solve_friction(s, budget, v, after, twist_after);
     v.b = select(part, v.b, before.b);
-    if constexpr (kPair) v.a = select(part, v.a, before.a);
+    if constexpr (A::kMoves) v.a = select(part, v.a, before.a);
     v.store(w, s);
     for (int c = 0; c < S::kTangents; ++c) {
       select(part, after[c], budget.before[c]).store(bounce.total_tangent[c]);
       select(part, zero, Float::load(s.tangent_impulse[c])).store(s.tangent_impulse[c]);
     }
-    if constexpr (Slot<S, N>::kTwist) {
+    if constexpr (ContactBlock<S, N>::kTwist) {
       select(part, twist_after, budget.twist_before).store(bounce.total_twist);
       select(part, zero, Float::load(s.twist_impulse)).store(s.twist_impulse);
     }

@@ -13,12 +13,12 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-template <class S, int N, bool kPair, bool kDense>
-MW_INLINE void sweep_slot(const Tables& t, Work& w, Slot<S, N>& s) {
-  SlotVelocities<S, N, kPair, kDense> v(w, s);
+template <bool kDense, class S, int N, class A>
+MW_INLINE void sweep_block(const Tables& t, Work& w, SidedBlock<S, N, A>& s) {
+  RowVelocities<S, A, kDense> v(w, s);
   const Float zero(Real(0)), one(Real(1)), inv_h(t.inv_h), relaxation(t.solver.relaxation);
   const Float slop(t.solver.slop);
-  const auto& soft = kPair ? t.soft_pair : t.soft_fixed;
+  const auto& soft = A::kMoves ? t.soft_pair : t.soft_fixed;
   const Float rate(soft.bias_rate * soft.mass_scale), cap(-t.push_out_speed);
   Float impulse[N], d[N], gap[N], speed[N];
   for (int i = 0; i < N; ++i) {
@@ -27,7 +27,7 @@ MW_INLINE void sweep_slot(const Tables& t, Work& w, Slot<S, N>& s) {
   }
   if (w.sweep == 0 && w.substep > 0) {
     for (int i = 0; i < N; ++i) gap[i] = Float::load(s.separation[i]);
-    moved_apart<S, N, kPair, kDense>(w, s, gap);
+    moved_apart<kDense>(w, s, gap);
     for (int i = 0; i < N; ++i) gap[i].store(s.gap[i]);
   }
   normal_speeds(s, v, speed);
@@ -46,20 +46,19 @@ MW_INLINE void sweep_slot(const Tables& t, Work& w, Slot<S, N>& s) {
   apply_normal(s, d, v);
   if (t.has_friction) {
     Float after[2], twist_after(Real(0));
-    solve_friction<S, N, kPair, kDense, true>(s, friction_budget(s, impulse), v, after, twist_after,
-                                              relaxation);
+    solve_friction<true>(s, friction_budget(s, impulse), v, after, twist_after, relaxation);
     after[0].store(s.tangent_impulse[0]);
     if constexpr (S::kTangents == 2) after[1].store(s.tangent_impulse[1]);
-    if constexpr (Slot<S, N>::kTwist) twist_after.store(s.twist_impulse);
+    if constexpr (ContactBlock<S, N>::kTwist) twist_after.store(s.twist_impulse);
   }
   v.store(w, s);
 }
 
-// Moves the bodies of a slot apart by what is left of their share of the overlap that the substep
+// Moves the bodies of a block apart by what is left of their share of the overlap that the substep
 // began with; w.velocity holds displacements.
-template <class S, int N, bool kPair, bool kDense>
-MW_INLINE void part_slot(const Tables& t, Work& w, const Slot<S, N>& s) {
-  SlotVelocities<S, N, kPair, kDense> moved(w, s);
+template <bool kDense, class S, int N, class A>
+MW_INLINE void separate_block(const Tables& t, Work& w, const SidedBlock<S, N, A>& s) {
+  RowVelocities<S, A, kDense> moved(w, s);
   const Float zero(Real(0)), share(t.solver.push_out_share), most(t.push_out_speed * t.h);
   const Float slop(t.solver.slop);
   Float way[N], d[N];
@@ -80,10 +79,7 @@ template <class S, bool kDense>
 struct Sweeps {
   static void sweep(const Tables& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    for_each_slot<S>(w, [&](auto& s, int, SlotList&, auto pair) {
-      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-      sweep_slot<S, N, decltype(pair)::value, kDense>(t, w, s);
-    });
+    for_each_block<S>(w, [&](auto& s, int, BlockList&) { sweep_block<kDense>(t, w, s); });
     ++w.sweep;
   }
 
@@ -91,18 +87,14 @@ struct Sweeps {
     Work& w = work_of(scratch);
     Real* const velocity = w.velocity;
     w.velocity = w.displacement;
-    for_each_slot<S>(w, [&](auto& s, int, SlotList&, auto pair) {
-      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
-      part_slot<S, N, decltype(pair)::value, kDense>(t, w, s);
-    });
+    for_each_block<S>(w, [&](auto& s, int, BlockList&) { separate_block<kDense>(t, w, s); });
     w.velocity = velocity;
   }
 
   // What the contacts of the substep have done, for restitution.
   static void tally(const Tables& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    for_each_slot<S>(w, [&](auto& s, int i, SlotList& list, auto) {
-      constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       accumulate_bounce(s, bounce_at<S, N>(list, i), t.has_friction);
     });
   }

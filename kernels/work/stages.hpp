@@ -44,7 +44,7 @@ MW_INLINE std::int32_t code_of_hit(const Tables& t, const Work& w, int class_ind
 
 // Fills w.candidates with the hits of the class at work.
 void list_candidates(const Tables& t, Work& w);
-// Keeps of `from` the lanes in `keep[slot]`, in `to`, with their axis.
+// Keeps of `from` the lanes in `keep[block]`, in `to`, with their axis.
 void compact(const Tables& t, Work& w, const CandidateList& from, const std::uint32_t* keep,
              CandidateList& to);
 

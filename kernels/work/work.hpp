@@ -12,21 +12,21 @@ using Group = kernels::GroupView<Real>;
 using kernels::kLists;
 using kernels::ListId;
 
-// Candidates of one class, one per lane and slot. An inactive lane holds the code of the dummy.
+// Candidates of one class, one per lane and block. An inactive lane holds the code of the dummy.
 struct CandidateList {
   int count;
-  std::int32_t* code;   // [slot][lane]: a | b << 16
-  std::int32_t* key;    // [slot][lane]
-  std::uint32_t* mask;  // [slot]: active lanes
-  Real* axis;           // [slot][lane]: separating axis found so far (boxes)
+  std::int32_t* code;   // [block][lane]: a | b << 16
+  std::int32_t* key;    // [block][lane]
+  std::uint32_t* mask;  // [block]: active lanes
+  Real* axis;           // [block][lane]: separating axis found so far (boxes)
 };
 
-struct SlotList {
+struct BlockList {
   int count;
-  int max_slots;
-  std::size_t stride;         // bytes of a slot
-  std::size_t bounce_stride;  // bytes of a slot's restitution rows
-  unsigned char* slots;
+  int max_blocks;
+  std::size_t stride;         // bytes of a block
+  std::size_t bounce_stride;  // bytes of a block's restitution rows
+  unsigned char* blocks;
   unsigned char* bounces;
 };
 
@@ -91,8 +91,8 @@ struct Work {
   // narrow phase
   CandidateList candidates;  // of the class at work
   CandidateList found;       // box pairs: after the separating-axis test
-  std::uint32_t* keep;       // [slot], lanes that passed it
-  SlotList slots[kLists];
+  std::uint32_t* keep;       // [block], lanes that passed it
+  BlockList blocks[kLists];
   unsigned char* parts;                     // rows of joints (kernels/joint/)
   Real* borne;                              // [breakable joint] impulses of the step so far
   std::int32_t* reached;                    // [body] by a joint that broke

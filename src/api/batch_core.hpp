@@ -35,7 +35,7 @@ class BatchCore {
 
   // Both run the collision stages once more on the current state.
   virtual std::vector<Contact> contacts(int kind, int world) const = 0;
-  // Active share of the lanes of dense pair slots, over all groups.
+  // Active share of the lanes of dense contact blocks, over all groups.
   virtual double occupancy(int kind, const GoOn& go_on) const = 0;
 
   virtual std::int64_t group_steps() const = 0;  // executed since construction

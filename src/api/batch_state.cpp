@@ -48,7 +48,7 @@ LaneBlocks Batch::lane_blocks(Field field, int kind) {
 }
 int Batch::lane_index(int world) const {
   const auto p = impl_->find(world);
-  return impl_->worlds(p.kind).slot_of(p.world);
+  return impl_->worlds(p.kind).lane_index_of(p.world);
 }
 
 void Batch::set_enabled(int world, BodyId body, bool enabled) {

@@ -100,14 +100,14 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
   auto& view = block.view;
   const auto reals = [&](std::size_t count) { return block.reals.emplace_back(count).data(); };
   const bool impulses = has(Observer::contacts) || has(Observer::touching);
-  view.slots = impulses || has(Observer::penetration);
-  for (int l = 0; t.has_contacts && view.slots && l < kernels::kLists; ++l) {
+  view.of_contacts = impulses || has(Observer::penetration);
+  for (int l = 0; t.has_contacts && view.of_contacts && l < kernels::kLists; ++l) {
     view.places[l] = reals(observer.place_reals(t, scratch, l));
     if (impulses && !t.has_restitution) {
       view.totals[l] = reals(observer.total_reals(t, scratch, l));
     }
   }
-  if (view.slots) {
+  if (view.of_contacts) {
     block.nobody = AlignedBuffer<std::uint32_t>(bodies);
     view.nobody = block.nobody.data();
   }

@@ -146,10 +146,10 @@ std::size_t Stepper<Real>::kind_of(int active) const {
 template <class Real>
 std::uint32_t Stepper<Real>::lanes_in(std::span<const std::uint8_t> mask, int active) const {
   const std::size_t kind = kind_of(active);
-  const int slot = (active - first_group_[kind]) * kernels_.lanes;
+  const int lane_index = (active - first_group_[kind]) * kernels_.lanes;
   std::uint32_t lanes = 0;
   for (int l = 0; l < kernels_.lanes; ++l) {
-    const int world = worlds_[kind]->world_in(slot + l);
+    const int world = worlds_[kind]->world_in(lane_index + l);
     if (world >= 0 && is_in(mask, kind, world)) lanes |= 1u << l;
   }
   return lanes;
@@ -172,7 +172,7 @@ void Stepper<Real>::run_group(int index, int thread, bool steps, Work work) {
   const std::size_t kind = kind_of(active);
   auto& w = *worlds_[kind];
   const auto t = static_cast<std::size_t>(thread);
-  const int group = active - first_group_[kind], first_slot = group * kernels_.lanes;
+  const int group = active - first_group_[kind], first_lane = group * kernels_.lanes;
   GroupStep<Real> plan = group_step(kind);
   if (results_) {
     plan.wanted = &results_->ask(t, kind, group);
@@ -185,15 +185,15 @@ void Stepper<Real>::run_group(int index, int thread, bool steps, Work work) {
     std::vector<std::byte>& saved = scratch_[t].saved_lanes;
     const auto all = static_cast<std::size_t>(kernels_.lanes), bytes = saved.size() / all;
     for (std::size_t l = 0; l < all; ++l) {
-      if (!get_bit(lanes, l)) call(first_slot + static_cast<int>(l), saved.data() + l * bytes);
+      if (!get_bit(lanes, l)) call(first_lane + static_cast<int>(l), saved.data() + l * bytes);
     }
   };
-  for_each_other([&w](int slot, std::byte* to) { w.save_lane(slot, to); });
+  for_each_other([&w](int lane_index, std::byte* to) { w.save_lane(lane_index, to); });
   work(plan, view, scratch_[t].views[kind], counters_[t],
        VisitedGroup<Real>{group, thread, kernels_, w.tables(), view,
-                          w.storage().controls(first_slot), plan.wanted,
+                          w.storage().controls(first_lane), plan.wanted,
                           part_.begins && part_.ends});
-  for_each_other([&w](int slot, const std::byte* from) { w.restore_lane(slot, from); });
+  for_each_other([&w](int lane_index, const std::byte* from) { w.restore_lane(lane_index, from); });
   // The others have not been stepped: what was last seen of their steps stays.
   const std::uint32_t seen = beginning_.empty() ? lanes : lanes_in(beginning_, active);
   if (results_) results_->take(t, kind, group, seen, steps);

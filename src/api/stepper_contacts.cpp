@@ -30,11 +30,12 @@ std::vector<Contact> Stepper<Real>::contacts(int kind, int world) const {
   std::vector<kernels::ContactPoint<Real>> points(static_cast<std::size_t>(capacity) * 4);
   kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
   const FloatMode mode(FloatMode::flush);
-  const int slot = w.slot_of(world);
+  const int lane_index = w.lane_index_of(world);
   std::vector<std::uint32_t> none_asleep;
-  kernels_.record(scratch, slot % kernels_.lanes, points.data(), static_cast<int>(points.size()));
+  kernels_.record(scratch, lane_index % kernels_.lanes, points.data(),
+                  static_cast<int>(points.size()));
   collide_group<Real>(group_step(static_cast<std::size_t>(kind)),
-                      awake_view(w.storage().group(slot / kernels_.lanes), t, none_asleep),
+                      awake_view(w.storage().group(lane_index / kernels_.lanes), t, none_asleep),
                       scratch);
   points.resize(static_cast<std::size_t>(kernels_.record(scratch, 0, nullptr, 0)));
 
@@ -63,16 +64,16 @@ double Stepper<Real>::occupancy(int kind, const GoOn& go_on) const {
   if (!w.tables().has_contacts) return 0;
   const FloatMode mode(FloatMode::flush);
   kernels::Scratch* scratch = scratch_.front().views[static_cast<std::size_t>(kind)];
-  double active = 0, slots = 0;
+  double active = 0, lanes = 0;
   std::vector<std::uint32_t> none_asleep;
   for (int g = 0; g < w.storage().groups(); ++g) {
     if (!go_on()) return 0;
     collide_group<Real>(group_step(static_cast<std::size_t>(kind)),
                         awake_view(w.storage().group(g), w.tables(), none_asleep), scratch);
     active += kernels_.counters(scratch).active;
-    slots += kernels_.counters(scratch).dense_slots * static_cast<double>(kernels_.lanes);
+    lanes += kernels_.counters(scratch).dense_blocks * static_cast<double>(kernels_.lanes);
   }
-  return slots > 0 ? active / slots : 0;
+  return lanes > 0 ? active / lanes : 0;
 }
 
 template std::vector<Contact> Stepper<float>::contacts(int, int) const;

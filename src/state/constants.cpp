@@ -138,38 +138,38 @@ kernels::ConstantBlocks<Real> Constants<Real>::group(int index) const {
 
 template <class Real>
 template <class Item>
-void Constants<Real>::put(Block& block, std::size_t item, const Item& value, int slot) {
+void Constants<Real>::put(Block& block, std::size_t item, const Item& value, int lane_index) {
   constexpr std::size_t kMembers = sizeof(Item) / sizeof(Real);
   Real members[kMembers];
   std::memcpy(members, &value, sizeof value);
-  const auto lanes = static_cast<std::size_t>(lanes_), at = static_cast<std::size_t>(slot);
+  const auto lanes = static_cast<std::size_t>(lanes_), at = static_cast<std::size_t>(lane_index);
   Real* to = block.numbers.data() + ((at / lanes) * block.rows + item * kMembers) * lanes;
   for (std::size_t m = 0; m < kMembers; ++m) to[m * lanes + at % lanes] = members[m];
 }
 
 template <class Real>
-void Constants<Real>::fill(const PlanData& plan, int slot) {
+void Constants<Real>::fill(const PlanData& plan, int lane_index) {
   for (std::size_t b = 0; parts_.bodies && b < plan.bodies.size(); ++b) {
-    put(bodies_, b, body_constants<Real>(plan, plan.bodies[b]), slot);
+    put(bodies_, b, body_constants<Real>(plan, plan.bodies[b]), lane_index);
   }
   for (std::size_t c = 0; c < plan.colliders.size(); ++c) {
     const PlanCollider& shape = plan.colliders[c];
-    if (parts_.shapes) put(shapes_, c, shape_constants<Real>(plan, shape), slot);
-    if (!polygons_.numbers.empty()) put(polygons_, c, polygon_constants<Real>(shape), slot);
+    if (parts_.shapes) put(shapes_, c, shape_constants<Real>(plan, shape), lane_index);
+    if (!polygons_.numbers.empty()) put(polygons_, c, polygon_constants<Real>(shape), lane_index);
   }
   for (std::size_t p = 0; !joints_.numbers.empty() && p < plan.parts.size(); ++p) {
-    put(joints_, p, joint_constants<Real>(plan.parts[p]), slot);
+    put(joints_, p, joint_constants<Real>(plan.parts[p]), lane_index);
   }
   for (std::size_t i = 0; !thrusts_.numbers.empty() && i < plan.thrusts.size(); ++i) {
     kernels::ThrustConstants<Real> value{};
     copy_numbers(plan.thrusts[i].point, value.point);
     copy_numbers(plan.thrusts[i].direction, value.direction);
-    put(thrusts_, i, value, slot);
+    put(thrusts_, i, value, lane_index);
   }
   const auto material = [&](std::size_t item, const Material& m) {
     const kernels::MaterialOf<Real> value{static_cast<Real>(m.friction),
                                           static_cast<Real>(m.restitution)};
-    put(materials_, item, value, slot);
+    put(materials_, item, value, lane_index);
   };
   if (!parts_.materials) return;
   for (std::size_t c = 0; c < plan.colliders.size(); ++c) material(c, plan.colliders[c].material);
@@ -179,9 +179,9 @@ void Constants<Real>::fill(const PlanData& plan, int slot) {
 }
 
 template <class Real>
-void Constants<Real>::swap(int slot_a, int slot_b) {
+void Constants<Real>::swap(int first, int second) {
   const auto lanes = static_cast<std::size_t>(lanes_);
-  const auto a = static_cast<std::size_t>(slot_a), b = static_cast<std::size_t>(slot_b);
+  const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
   for_each_block([&](Block& block) {
     if (block.numbers.empty()) return;
     Real* in_a = block.numbers.data() + (a / lanes) * block.rows * lanes + a % lanes;

@@ -32,8 +32,8 @@ class Constants {
   const Parts& parts() const { return parts_; }
   kernels::ConstantBlocks<Real> group(int index) const;
   // Writes what `plan` says into a lane.
-  void fill(const PlanData& plan, int slot);
-  void swap(int slot_a, int slot_b);
+  void fill(const PlanData& plan, int lane_index);
+  void swap(int first, int second);
   void copy(int from, int to);
   std::size_t bytes() const;
 
@@ -51,7 +51,7 @@ class Constants {
   }
   // Writes one item of a lane.
   template <class Item>
-  void put(Block& block, std::size_t item, const Item& value, int slot);
+  void put(Block& block, std::size_t item, const Item& value, int lane_index);
 
   Parts parts_;
   int lanes_ = 1;

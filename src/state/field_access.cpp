@@ -100,9 +100,9 @@ void Worlds<Real>::write_as(Field field, int world, const In* in) {
   const int n = components(field, space), items = layout_.items[static_cast<int>(about.item)];
   // Impulses of the old pose would push at the new one.
   const bool moves = field == Field::position || field == Field::orientation;
-  if (moves) storage_.clear_contacts(slot_of(world));
-  if (moves) storage_.clear_joints(slot_of(world));
-  storage_.wake(slot_of(world));
+  if (moves) storage_.clear_contacts(lane_index_of(world));
+  if (moves) storage_.clear_joints(lane_index_of(world));
+  storage_.wake(lane_index_of(world));
   if (!layout_.has(field)) return;
   for (int i = 0; i < items; ++i, in += n) {
     if (about.item != ItemKind::body ||

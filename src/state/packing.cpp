@@ -1,5 +1,5 @@
 // Packing: worlds in which something moves go into as few groups as they fill, since a group costs
-// the same whether one of its lanes moves or all do. A world in its slot is nothing but numbers, so
+// the same whether one of its lanes moves or all do. A world in its lane is nothing but numbers, so
 // moving it changes no bit of what it computes.
 #include <algorithm>
 #include <bit>
@@ -9,13 +9,13 @@
 namespace manyworlds {
 
 template <class Real>
-void Worlds<Real>::move(int from_slot, int to_slot) {
-  storage_.swap(from_slot, to_slot);
-  auto& a = world_in_[static_cast<std::size_t>(from_slot)];
-  auto& b = world_in_[static_cast<std::size_t>(to_slot)];
+void Worlds<Real>::move(int from, int to) {
+  storage_.swap(from, to);
+  auto& a = world_in_[static_cast<std::size_t>(from)];
+  auto& b = world_in_[static_cast<std::size_t>(to)];
   std::swap(a, b);
-  if (a >= 0) slot_of_[static_cast<std::size_t>(a)] = from_slot;
-  if (b >= 0) slot_of_[static_cast<std::size_t>(b)] = to_slot;
+  if (a >= 0) lane_index_[static_cast<std::size_t>(a)] = from;
+  if (b >= 0) lane_index_[static_cast<std::size_t>(b)] = to;
 }
 
 template <class Real>

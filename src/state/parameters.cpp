@@ -106,7 +106,7 @@ void Worlds<Real>::apply_values(int world) {
               own_bodies_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(world) *
                                                                 own_->bodies.size()));
   }
-  storage_.set_constants(*own_, slot_of(world));
+  storage_.set_constants(*own_, lane_index_of(world));
 }
 
 template <class Real>
@@ -176,7 +176,7 @@ void Worlds<Real>::write(Parameter parameter, int world, const double* in) {
     value = in[i];
   }
   if (!changed) return;
-  const int slot = slot_of(world);
+  const int lane_index = lane_index_of(world);
   const bool moves = parameter == Parameter::size || parameter == Parameter::density;
   // A body whose centre of mass shifts stays where its own frame is.
   std::vector<double> positions, orientations;
@@ -187,10 +187,10 @@ void Worlds<Real>::write(Parameter parameter, int world, const double* in) {
     read(Field::orientation, world, orientations.data());
   }
   apply_values(world);
-  storage_.wake(slot);
+  storage_.wake(lane_index);
   if (!moves) return;
-  storage_.clear_contacts(slot);
-  storage_.clear_joints(slot);
+  storage_.clear_contacts(lane_index);
+  storage_.clear_joints(lane_index);
   const bool shifts = std::any_of(data().bodies.begin(), data().bodies.end(),
                                   [](const PlanBody& b) { return b.reshaped && !b.aligned; });
   if (!shifts) return;
@@ -221,7 +221,7 @@ std::size_t Worlds<Real>::world_bytes() const {
 
 template <class Real>
 void Worlds<Real>::write_world(int world, std::byte* to) const {
-  storage_.write_world(slot_of(world), to);
+  storage_.write_world(lane_index_of(world), to);
   if (data().varied.empty()) return;
   std::memcpy(to + storage_.world_bytes(), values_of(world), data().varied.size() * sizeof(double));
 }
@@ -242,7 +242,7 @@ std::string Worlds<Real>::check_world(const std::byte* from) const {
 
 template <class Real>
 void Worlds<Real>::read_world(int world, const std::byte* from) {
-  storage_.read_world(slot_of(world), from);
+  storage_.read_world(lane_index_of(world), from);
   if (data().varied.empty()) return;
   std::memcpy(values_of(world), from + storage_.world_bytes(),
               data().varied.size() * sizeof(double));
@@ -251,7 +251,7 @@ void Worlds<Real>::read_world(int world, const std::byte* from) {
 
 template <class Real>
 void Worlds<Real>::copy_world(int from, int to) {
-  storage_.copy(slot_of(from), slot_of(to));
+  storage_.copy(lane_index_of(from), lane_index_of(to));
   std::copy_n(values_of(from), data().varied.size(), values_of(to));
   for (std::size_t b = 0; !own_bodies_.empty() && b < data().bodies.size(); ++b) {
     own_bodies_[static_cast<std::size_t>(to) * data().bodies.size() + b] = body_of(from, b);

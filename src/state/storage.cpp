@@ -11,20 +11,21 @@ template <class Real>
 Storage<Real>::Storage(const kernels::WorldTables<Real>& tables, int groups, int lanes)
     : tables_(tables), groups_(groups), lanes_(lanes) {
   const auto& t = tables_;
-  state_ = AlignedBuffer<Real>(index(slots()) * index(t.state_size));
-  status_ = AlignedBuffer<std::uint32_t>(index(slots()));
+  state_ = AlignedBuffer<Real>(index(lane_count()) * index(t.state_size));
+  status_ = AlignedBuffer<std::uint32_t>(index(lane_count()));
   for (std::size_t l = 0; t.has_contacts && l < kernels::kLists; ++l) {
     const std::size_t capacity = index(t.capacity[l]);
     if (capacity == 0) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
-    cache_rows_[l] = AlignedBuffer<Real>(index(slots()) * (capacity + 2) * index(row));
-    cache_keys_[l] = AlignedBuffer<std::int32_t>(index(slots()) * (capacity + 1));
+    cache_rows_[l] = AlignedBuffer<Real>(index(lane_count()) * (capacity + 2) * index(row));
+    cache_keys_[l] = AlignedBuffer<std::int32_t>(index(lane_count()) * (capacity + 1));
   }
   if (t.has_joints) {
-    joint_impulse_ = AlignedBuffer<Real>(index(slots()) * index(t.parts) * kernels::kPartImpulses);
+    joint_impulse_ =
+        AlignedBuffer<Real>(index(lane_count()) * index(t.parts) * kernels::kPartImpulses);
   }
   if (t.controls > 0) {
-    control_ = AlignedBuffer<Real>(index(slots()) * index(t.controls));
+    control_ = AlignedBuffer<Real>(index(lane_count()) * index(t.controls));
   }
   if (t.has_sleep) make_activity();
   if (t.breakable > 0) make_loose();
@@ -95,42 +96,43 @@ std::size_t Storage<Real>::bytes() const {
 }
 
 template <class Real>
-Real& Storage<Real>::number(int slot, int row) const {
-  const std::size_t at = group_of(slot) * index(tables_.state_size) + index(row);
-  return state_[at * index(lanes_) + lane_of(slot)];
+Real& Storage<Real>::number(int lane_index, int row) const {
+  const std::size_t at = group_of(lane_index) * index(tables_.state_size) + index(row);
+  return state_[at * index(lanes_) + lane_of(lane_index)];
 }
 
 template <class Real>
-void Storage<Real>::clear_contacts(int slot) {
+void Storage<Real>::clear_contacts(int lane_index) {
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
-    cache_keys_[l][index(slot) * index(tables_.capacity[l] + 1)] = kernels::kEndOfKeys;
+    cache_keys_[l][index(lane_index) * index(tables_.capacity[l] + 1)] = kernels::kEndOfKeys;
   }
 }
 
 template <class Real>
-void Storage<Real>::clear_joints(int slot) {
-  for (int i = 0; i < tables_.parts; ++i) clear_part(slot, i);
+void Storage<Real>::clear_joints(int lane_index) {
+  for (int i = 0; i < tables_.parts; ++i) clear_part(lane_index, i);
 }
 
 template <class Real>
-void Storage<Real>::clear_part(int slot, int part) {
-  const std::size_t lanes = index(lanes_), at = group_of(slot) * index(tables_.parts) + index(part);
-  Real* p = joint_impulse_.data() + at * kernels::kPartImpulses * lanes + lane_of(slot);
+void Storage<Real>::clear_part(int lane_index, int part) {
+  const std::size_t lanes = index(lanes_),
+                    at = group_of(lane_index) * index(tables_.parts) + index(part);
+  Real* p = joint_impulse_.data() + at * kernels::kPartImpulses * lanes + lane_of(lane_index);
   for (std::size_t i = 0; i < kernels::kPartImpulses; ++i) p[i * lanes] = Real(0);
 }
 
 template <class Real>
 template <class Keep>
-void Storage<Real>::keep_contacts(int slot, Keep keep) {
+void Storage<Real>::keep_contacts(int lane_index, Keep keep) {
   const auto& t = tables_;
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
     const auto list = static_cast<kernels::ListId>(l);
     const std::size_t capacity = index(t.capacity[l]);
     const std::size_t row = index(kernels::cache_row_size(t.dimension, list));
-    std::int32_t* keys = cache_keys_[l].data() + index(slot) * (capacity + 1);
-    Real* rows = cache_rows_[l].data() + index(slot) * (capacity + 2) * row;
+    std::int32_t* keys = cache_keys_[l].data() + index(lane_index) * (capacity + 1);
+    Real* rows = cache_rows_[l].data() + index(lane_index) * (capacity + 2) * row;
     std::size_t kept = 0;
     for (std::size_t i = 0; keys[i] != kernels::kEndOfKeys; ++i) {
       const kernels::PairOfKey pair = kernels::pair_of_key(t, keys[i]);
@@ -144,7 +146,7 @@ void Storage<Real>::keep_contacts(int slot, Keep keep) {
 }
 
 template <class Real>
-void Storage<Real>::drop_impulses(int slot, int body) {
+void Storage<Real>::drop_impulses(int lane_index, int body) {
   std::fill(reached_.begin(), reached_.end(), false);
   reached_[index(body)] = true;
   // A kinematic body passes no impulse on.
@@ -165,23 +167,23 @@ void Storage<Real>::drop_impulses(int slot, int body) {
       }
       return true;
     };
-    keep_contacts(slot, reach_on);
+    keep_contacts(lane_index, reach_on);
     for (int i = 0; i < tables_.parts; ++i) {
-      if (!loose(slot, tables_.part[i].joint)) reach_on(moving_a(i), tables_.part[i].body_b);
+      if (!loose(lane_index, tables_.part[i].joint)) reach_on(moving_a(i), tables_.part[i].body_b);
     }
   }
-  keep_contacts(slot, [&](int a, int b) { return !reached(a) && !reached(b); });
+  keep_contacts(lane_index, [&](int a, int b) { return !reached(a) && !reached(b); });
   for (int i = 0; i < tables_.parts; ++i) {
-    if (reached(moving_a(i)) || reached(tables_.part[i].body_b)) clear_part(slot, i);
+    if (reached(moving_a(i)) || reached(tables_.part[i].body_b)) clear_part(lane_index, i);
   }
 }
 
 template <class Real>
-void Storage<Real>::add_force(int slot, int body, const Vec3& force, const Vec3& torque) {
+void Storage<Real>::add_force(int lane_index, int body, const Vec3& force, const Vec3& torque) {
   const std::size_t lanes = index(lanes_);
-  if (force_.empty()) force_ = AlignedBuffer<Real>(index(slots()) * index(tables_.bodies) * 6);
+  if (force_.empty()) force_ = AlignedBuffer<Real>(index(lane_count()) * index(tables_.bodies) * 6);
   forced_ = true;
-  Real* p = force_.data() + body_at(slot, body) * 6 * lanes + lane_of(slot);
+  Real* p = force_.data() + body_at(lane_index, body) * 6 * lanes + lane_of(lane_index);
   for (std::size_t c = 0; c < 3; ++c) {
     const auto row = static_cast<Eigen::Index>(c);
     p[c * lanes] += static_cast<Real>(force[row]);
@@ -190,10 +192,10 @@ void Storage<Real>::add_force(int slot, int body, const Vec3& force, const Vec3&
 }
 
 template <class Real>
-void Storage<Real>::clear_forces(int slot) {
+void Storage<Real>::clear_forces(int lane_index) {
   if (!forced_) return;
   const std::size_t lanes = index(lanes_);
-  Real* p = force_.data() + body_at(slot, 0) * 6 * lanes + lane_of(slot);
+  Real* p = force_.data() + body_at(lane_index, 0) * 6 * lanes + lane_of(lane_index);
   for (std::size_t i = 0; i < index(tables_.bodies) * 6; ++i) p[i * lanes] = Real(0);
 }
 
@@ -219,13 +221,13 @@ void Storage<Real>::make_activity() {
   idle_ = AlignedBuffer<std::uint32_t>(index(groups_));
   if (!tables_.has_sleep) return;
   resting_ = AlignedBuffer<std::uint32_t>(index(groups_));
-  rest_time_ = AlignedBuffer<Real>(index(slots()) * bodies);
-  island_ = AlignedBuffer<std::int32_t>(index(slots()) * bodies);
+  rest_time_ = AlignedBuffer<Real>(index(lane_count()) * bodies);
+  island_ = AlignedBuffer<std::int32_t>(index(lane_count()) * bodies);
 }
 
 template <class Real>
-void Storage<Real>::set_absent(int slot, int body, bool absent) {
-  put_bit(absent_[body_at(slot, body)], lane_of(slot), absent);
+void Storage<Real>::set_absent(int lane_index, int body, bool absent) {
+  put_bit(absent_[body_at(lane_index, body)], lane_of(lane_index), absent);
 }
 
 template <class Real>
@@ -236,13 +238,13 @@ void Storage<Real>::make_loose() {
 }
 
 template <class Real>
-void Storage<Real>::set_loose(int slot, int joint, bool loose) {
-  put_bit(loose_[joint_at(slot, joint)], lane_of(slot), loose);
+void Storage<Real>::set_loose(int lane_index, int joint, bool loose) {
+  put_bit(loose_[joint_at(lane_index, joint)], lane_of(lane_index), loose);
 }
 
 template <class Real>
-void Storage<Real>::clear_loose(int slot) {
-  for (int j = 0; !loose_.empty() && j < tables_.joints; ++j) set_loose(slot, j, false);
+void Storage<Real>::clear_loose(int lane_index) {
+  for (int j = 0; !loose_.empty() && j < tables_.joints; ++j) set_loose(lane_index, j, false);
 }
 
 template <class Real>
@@ -255,47 +257,47 @@ void Storage<Real>::find_idle_in(std::size_t group) {
 }
 
 template <class Real>
-void Storage<Real>::wake(int slot) {
+void Storage<Real>::wake(int lane_index) {
   if (!tables_.has_sleep) return;
   const std::size_t lanes = index(lanes_);
   for (int b = 0; b < tables_.bodies; ++b) {
-    put_bit(asleep_[body_at(slot, b)], lane_of(slot), false);
-    rest_time_[body_at(slot, b) * lanes + lane_of(slot)] = Real(0);
+    put_bit(asleep_[body_at(lane_index, b)], lane_of(lane_index), false);
+    rest_time_[body_at(lane_index, b) * lanes + lane_of(lane_index)] = Real(0);
   }
-  put_bit(resting_[group_of(slot)], lane_of(slot), false);
+  put_bit(resting_[group_of(lane_index)], lane_of(lane_index), false);
 }
 
 template <class Real>
-void Storage<Real>::wake_island(int slot, int body) {
+void Storage<Real>::wake_island(int lane_index, int body) {
   if (!tables_.has_sleep) return;
-  const std::size_t lanes = index(lanes_), lane = lane_of(slot);
-  const bool slept = asleep(slot, body);
-  const std::int32_t label = island_[body_at(slot, body) * lanes + lane];
+  const std::size_t lanes = index(lanes_), lane = lane_of(lane_index);
+  const bool slept = asleep(lane_index, body);
+  const std::int32_t label = island_[body_at(lane_index, body) * lanes + lane];
   for (int b = 0; b < tables_.bodies; ++b) {
-    const std::size_t at = body_at(slot, b);
-    const bool together = slept && asleep(slot, b) && island_[at * lanes + lane] == label &&
+    const std::size_t at = body_at(lane_index, b);
+    const bool together = slept && asleep(lane_index, b) && island_[at * lanes + lane] == label &&
                           !tables_.body[b].kinematic;
     if (b != body && !together) continue;
     put_bit(asleep_[at], lane, false);
     rest_time_[at * lanes + lane] = Real(0);
   }
-  put_bit(resting_[group_of(slot)], lane, false);
+  put_bit(resting_[group_of(lane_index)], lane, false);
 }
 
 template <class Real>
-void Storage<Real>::rest(int slot) {
+void Storage<Real>::rest(int lane_index) {
   if (!tables_.has_sleep) return;
   const auto at = kernels::state_offsets(tables_.dimension);
   const bool planar = tables_.dimension == kernels::Dimension::planar;
   for (int b = 0; b < tables_.bodies; ++b) {
-    put_bit(asleep_[body_at(slot, b)], lane_of(slot), true);
+    put_bit(asleep_[body_at(lane_index, b)], lane_of(lane_index), true);
     // Kinematic bodies, too.
     const int body = b * tables_.state_stride;
-    for (int c = 0; c < (planar ? 2 : 3); ++c) number(slot, body + at.linear + c) = Real(0);
-    for (int c = 0; c < (planar ? 1 : 3); ++c) number(slot, body + at.angular + c) = Real(0);
+    for (int c = 0; c < (planar ? 2 : 3); ++c) number(lane_index, body + at.linear + c) = Real(0);
+    for (int c = 0; c < (planar ? 1 : 3); ++c) number(lane_index, body + at.angular + c) = Real(0);
   }
-  put_bit(resting_[group_of(slot)], lane_of(slot), true);
-  find_idle_in(group_of(slot));
+  put_bit(resting_[group_of(lane_index)], lane_of(lane_index), true);
+  find_idle_in(group_of(lane_index));
 }
 
 template class Storage<float>;

@@ -1,5 +1,5 @@
 // Storage: the numbers of all worlds of one kind, in groups of one lane per world. It knows lanes,
-// not worlds: slot (lane index) s is lane s % lanes of group s / lanes. Which world that is, Worlds
+// not worlds: lane index i is lane i % lanes of group i / lanes. Which world that is, Worlds
 // says.
 //   state     [group][row][lane], rows as StateLayout has them
 //   cache     [group][lane][manifold][row], keys beside
@@ -30,40 +30,47 @@ class Storage {
 
   int lanes() const { return lanes_; }
   int groups() const { return groups_; }
-  int slots() const { return groups_ * lanes_; }
+  int lane_count() const { return groups_ * lanes_; }
   kernels::GroupView<Real> group(int index) const;
   std::size_t bytes() const;  // of persistent state
 
-  Real& number(int slot, int row) const;  // of the state (StateLayout)
-  std::uint32_t& status(int slot) const { return status_[static_cast<std::size_t>(slot)]; }
-  void clear_contacts(int slot);
-  void clear_joints(int slot);  // their impulses
+  Real& number(int lane_index, int row) const;  // of the state (StateLayout)
+  std::uint32_t& status(int lane_index) const {
+    return status_[static_cast<std::size_t>(lane_index)];
+  }
+  void clear_contacts(int lane_index);
+  void clear_joints(int lane_index);  // their impulses
   // Impulses of contacts and joints of the body and of all bodies that it touches or is joined to,
   // directly or not: what carried the absent body would be pushed up.
-  void drop_impulses(int slot, int body);
+  void drop_impulses(int lane_index, int body);
 
-  Real* controls(int slot) const {  // lanes() apart
-    return control_.data() + group_of(slot) * index(tables_.controls) * index(lanes_) +
-           lane_of(slot);
+  Real* controls(int lane_index) const {  // lanes() apart
+    return control_.data() + group_of(lane_index) * index(tables_.controls) * index(lanes_) +
+           lane_of(lane_index);
   }
 
-  void add_force(int slot, int body, const Vec3& force, const Vec3& torque);
+  void add_force(int lane_index, int body, const Vec3& force, const Vec3& torque);
   void clear_forces();
   bool forced() const { return forced_; }  // forces were added since they were all cleared
-  void clear_forces(int slot);
+  void clear_forces(int lane_index);
   void find_forces();  // after some were cleared: are there others?
 
   // Sleeping and disabled bodies. Without masks every body is there and awake.
   bool has_activity() const { return !asleep_.empty(); }
   void make_activity();
-  bool asleep(int slot, int body) const { return is_set(asleep_, body_at(slot, body), slot); }
-  bool absent(int slot, int body) const { return is_set(absent_, body_at(slot, body), slot); }
-  bool resting(int slot) const { return is_set(resting_, group_of(slot), slot); }
-  void set_absent(int slot, int body, bool absent);  // find_idle() when all of a slot are set
-  void find_idle(int slot) { find_idle_in(group_of(slot)); }
-  void wake(int slot);                   // every body
-  void wake_island(int slot, int body);  // those that fell asleep together with it
-  void rest(int slot);                   // a lane without a world: nothing in it ever moves
+  bool asleep(int lane_index, int body) const {
+    return is_set(asleep_, body_at(lane_index, body), lane_index);
+  }
+  bool absent(int lane_index, int body) const {
+    return is_set(absent_, body_at(lane_index, body), lane_index);
+  }
+  bool resting(int lane_index) const { return is_set(resting_, group_of(lane_index), lane_index); }
+  void set_absent(int lane_index, int body,
+                  bool absent);  // find_idle() when all of a world are set
+  void find_idle(int lane_index) { find_idle_in(group_of(lane_index)); }
+  void wake(int lane_index);                   // every body
+  void wake_island(int lane_index, int body);  // those that fell asleep together with it
+  void rest(int lane_index);                   // a lane without a world: nothing in it ever moves
   // Lanes of a group in which something may move.
   std::uint32_t moving_lanes(int group) const {
     const std::uint32_t all = (1u << lanes_) - 1;
@@ -72,49 +79,51 @@ class Storage {
 
   // Broken and disabled joints. Without masks every joint holds.
   void make_loose();
-  bool loose(int slot, int joint) const { return is_set(loose_, joint_at(slot, joint), slot); }
-  void set_loose(int slot, int joint, bool loose);
-  void clear_loose(int slot);
+  bool loose(int lane_index, int joint) const {
+    return is_set(loose_, joint_at(lane_index, joint), lane_index);
+  }
+  void set_loose(int lane_index, int joint, bool loose);
+  void clear_loose(int lane_index);
 
   // Constants of each world's own, where the plan lets some vary.
   void make_constants(const PlanData& plan);
-  void set_constants(const PlanData& plan, int slot) { constants_.fill(plan, slot); }
+  void set_constants(const PlanData& plan, int lane_index) { constants_.fill(plan, lane_index); }
 
-  void swap(int slot_a, int slot_b);  // with the forces that wait for the next step
+  void swap(int a, int b);  // with the forces that wait for the next step
   void copy(int from, int to);
 
-  // A world as bytes, the same whatever its slot, the lanes and the batch's sleep.
+  // A world as bytes, the same whatever its lane, the lanes and the batch's sleep.
   std::size_t world_bytes() const;
-  void write_world(int slot, std::byte* to) const;
-  void read_world(int slot, const std::byte* from);
-  // The same for bytes of this very slot, of a moment ago: allocates nothing.
-  void restore_lane(int slot, const std::byte* from);
+  void write_world(int lane_index, std::byte* to) const;
+  void read_world(int lane_index, const std::byte* from);
+  // The same for bytes of this very lane, of a moment ago: allocates nothing.
+  void restore_lane(int lane_index, const std::byte* from);
   // Could these bytes have come from write_world()? Says what is wrong, or nothing.
   std::string check_world(const std::byte* from) const;
 
  private:
   static constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
-  std::size_t group_of(int slot) const { return index(slot / lanes_); }
-  std::size_t lane_of(int slot) const { return index(slot % lanes_); }
-  std::size_t body_at(int slot, int body) const {
-    return group_of(slot) * index(tables_.bodies) + index(body);
+  std::size_t group_of(int lane_index) const { return index(lane_index / lanes_); }
+  std::size_t lane_of(int lane_index) const { return index(lane_index % lanes_); }
+  std::size_t body_at(int lane_index, int body) const {
+    return group_of(lane_index) * index(tables_.bodies) + index(body);
   }
-  std::size_t joint_at(int slot, int joint) const {
-    return group_of(slot) * index(tables_.joints) + index(joint);
+  std::size_t joint_at(int lane_index, int joint) const {
+    return group_of(lane_index) * index(tables_.joints) + index(joint);
   }
-  bool is_set(const AlignedBuffer<std::uint32_t>& masks, std::size_t at, int slot) const {
-    return !masks.empty() && get_bit(masks[at], lane_of(slot));
+  bool is_set(const AlignedBuffer<std::uint32_t>& masks, std::size_t at, int lane_index) const {
+    return !masks.empty() && get_bit(masks[at], lane_of(lane_index));
   }
 
   // Every number of a world, in a fixed order that does not depend on the lane, beside what lies in
-  // another slot in the same place. Parts that this storage does not have are null.
+  // another lane in the same place. Parts that this storage does not have are null.
   //   visit.numbers(part, a, b, count, stride)    visit.bit(word of a, lane of a, word of b, lane)
   template <class Visit>
-  void for_each_part(int slot_a, int slot_b, Visit&& visit) const;
+  void for_each_part(int a, int b, Visit&& visit) const;
   void find_idle_in(std::size_t group);
-  void clear_part(int slot, int part);  // of a joint, its impulses
+  void clear_part(int lane_index, int part);  // of a joint, its impulses
   template <class Keep>
-  void keep_contacts(int slot, Keep keep);  // keep(body a or -1, body b)
+  void keep_contacts(int lane_index, Keep keep);  // keep(body a or -1, body b)
 
   const kernels::WorldTables<Real>& tables_;
   int groups_, lanes_;

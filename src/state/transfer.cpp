@@ -138,19 +138,19 @@ struct Check {
 
 template <class Real>
 template <class Visit>
-void Storage<Real>::for_each_part(int slot_a, int slot_b, Visit&& visit) const {
+void Storage<Real>::for_each_part(int a, int b, Visit&& visit) const {
   const auto& t = tables_;
   const std::size_t lanes = index(lanes_);
   const auto in_lanes = [&](Part part, auto& buffer, std::size_t per_world) {
-    const auto at = [&](int slot) {
-      const std::size_t offset = group_of(slot) * per_world * lanes + lane_of(slot);
+    const auto at = [&](int lane_index) {
+      const std::size_t offset = group_of(lane_index) * per_world * lanes + lane_of(lane_index);
       return buffer.empty() ? nullptr : buffer.data() + offset;
     };
-    visit.numbers(part, at(slot_a), at(slot_b), per_world, lanes);
+    visit.numbers(part, at(a), at(b), per_world, lanes);
   };
   const auto in_row = [&](Part part, auto& buffer, std::size_t stride, std::size_t count) {
-    visit.numbers(part, buffer.data() + index(slot_a) * stride,
-                  buffer.data() + index(slot_b) * stride, count, std::size_t{1});
+    visit.numbers(part, buffer.data() + index(a) * stride, buffer.data() + index(b) * stride, count,
+                  std::size_t{1});
   };
   in_lanes(Part::state, state_, index(t.state_size));
   in_row(Part::status, status_, 1, 1);
@@ -167,29 +167,29 @@ void Storage<Real>::for_each_part(int slot_a, int slot_b, Visit&& visit) const {
   in_lanes(Part::rest_time, rest_time_, index(t.bodies));
   in_lanes(Part::island, island_, index(t.bodies));
   in_lanes(Part::force, force_, index(t.bodies) * 6);
-  const auto bit = [&](AlignedBuffer<std::uint32_t>& masks, std::size_t a, std::size_t b) {
+  const auto bit = [&](AlignedBuffer<std::uint32_t>& masks, std::size_t in_a, std::size_t in_b) {
     std::uint32_t* words = masks.empty() ? nullptr : masks.data();
-    visit.bit(words ? words + a : nullptr, lane_of(slot_a), words ? words + b : nullptr,
-              lane_of(slot_b));
+    visit.bit(words ? words + in_a : nullptr, lane_of(a), words ? words + in_b : nullptr,
+              lane_of(b));
   };
   for (int body = 0; body < t.bodies; ++body) {
-    bit(asleep_, body_at(slot_a, body), body_at(slot_b, body));
-    bit(absent_, body_at(slot_a, body), body_at(slot_b, body));
+    bit(asleep_, body_at(a, body), body_at(b, body));
+    bit(absent_, body_at(a, body), body_at(b, body));
   }
-  bit(resting_, group_of(slot_a), group_of(slot_b));
+  bit(resting_, group_of(a), group_of(b));
   for (int joint = 0; joint < t.joints; ++joint) {
-    bit(loose_, joint_at(slot_a, joint), joint_at(slot_b, joint));
+    bit(loose_, joint_at(a, joint), joint_at(b, joint));
   }
 }
 
 template <class Real>
-void Storage<Real>::swap(int slot_a, int slot_b) {
-  if (slot_a == slot_b) return;
-  for_each_part(slot_a, slot_b, Swap{});
-  constants_.swap(slot_a, slot_b);
+void Storage<Real>::swap(int a, int b) {
+  if (a == b) return;
+  for_each_part(a, b, Swap{});
+  constants_.swap(a, b);
   if (!has_activity()) return;
-  find_idle_in(group_of(slot_a));
-  find_idle_in(group_of(slot_b));
+  find_idle_in(group_of(a));
+  find_idle_in(group_of(b));
 }
 
 template <class Real>
@@ -208,8 +208,8 @@ std::size_t Storage<Real>::world_bytes() const {
 }
 
 template <class Real>
-void Storage<Real>::write_world(int slot, std::byte* to) const {
-  for_each_part(slot, slot, Write{to});
+void Storage<Real>::write_world(int lane_index, std::byte* to) const {
+  for_each_part(lane_index, lane_index, Write{to});
 }
 
 template <class Real>
@@ -220,20 +220,20 @@ std::string Storage<Real>::check_world(const std::byte* from) const {
 }
 
 template <class Real>
-void Storage<Real>::read_world(int slot, const std::byte* from) {
+void Storage<Real>::read_world(int lane_index, const std::byte* from) {
   make_activity();  // the world may have disabled bodies
   if (tables_.joints > 0) make_loose();
-  for_each_part(slot, slot, Read{from});
+  for_each_part(lane_index, lane_index, Read{from});
   for (int b = 0; !tables_.has_sleep && b < tables_.bodies; ++b) {
-    put_bit(asleep_[body_at(slot, b)], lane_of(slot), false);  // where nobody sleeps
+    put_bit(asleep_[body_at(lane_index, b)], lane_of(lane_index), false);  // where nobody sleeps
   }
-  find_idle_in(group_of(slot));
+  find_idle_in(group_of(lane_index));
 }
 
 template <class Real>
-void Storage<Real>::restore_lane(int slot, const std::byte* from) {
-  for_each_part(slot, slot, Read{from});
-  if (has_activity()) find_idle_in(group_of(slot));
+void Storage<Real>::restore_lane(int lane_index, const std::byte* from) {
+  for_each_part(lane_index, lane_index, Read{from});
+  if (has_activity()) find_idle_in(group_of(lane_index));
 }
 
 #define MW_INSTANTIATE(Real)                                        \

@@ -12,12 +12,12 @@ void Worlds<Real>::set_controls_as(int first, int count, const In* in) {
   const auto& ranges = data().control_range;
   const auto lanes = static_cast<std::size_t>(storage_.lanes());
   for (int world = first; !ranges.empty() && world < first + count; ++world) {
-    const int slot = slot_of(world);
-    Real* control = storage_.controls(slot);
+    const int lane_index = lane_index_of(world);
+    Real* control = storage_.controls(lane_index);
     bool changed = false;
     for (std::size_t i = 0; i < ranges.size(); ++i, ++in) {
       if (std::isnan(*in)) {
-        storage_.status(slot) |= kernels::kNonFinite;
+        storage_.status(lane_index) |= kernels::kNonFinite;
         continue;
       }
       const Real value = std::clamp(static_cast<Real>(*in), static_cast<Real>(ranges[i][0]),
@@ -26,7 +26,7 @@ void Worlds<Real>::set_controls_as(int first, int count, const In* in) {
       changed = changed || stored != value;
       stored = value;
     }
-    if (changed) storage_.wake(slot);
+    if (changed) storage_.wake(lane_index);
   }
 }
 
@@ -34,7 +34,7 @@ template <class Real>
 template <class Out>
 void Worlds<Real>::read_controls_as(int first, int count, Out* out) const {
   for (int world = first; tables().controls > 0 && world < first + count; ++world) {
-    const Real* control = storage_.controls(slot_of(world));
+    const Real* control = storage_.controls(lane_index_of(world));
     for (int i = 0; i < tables().controls; ++i, control += storage_.lanes()) {
       *out++ = static_cast<Out>(*control);
     }

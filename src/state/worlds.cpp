@@ -19,10 +19,10 @@ Worlds<Real>::Worlds(Plan plan, int worlds, int first, const BatchOptions& optio
       first_(first),
       seed_(static_cast<std::size_t>(worlds)),
       episode_(static_cast<std::size_t>(worlds), 0),
-      world_in_(static_cast<std::size_t>(storage_.slots()), -1),
+      world_in_(static_cast<std::size_t>(storage_.lane_count()), -1),
       by_count_(static_cast<std::size_t>(storage_.groups())) {
   for (int w = 0; w < worlds_; ++w) {
-    slot_of_.push_back(w);
+    lane_index_.push_back(w);
     seed_[static_cast<std::size_t>(w)] = options.seed + static_cast<std::uint64_t>(first_ + w);
     world_in_[static_cast<std::size_t>(w)] = w;
   }
@@ -56,18 +56,18 @@ template <class Real>
 void Worlds<Real>::initialise(int world) {
   const Draws draws(seed_[static_cast<std::size_t>(world)],
                     episode_[static_cast<std::size_t>(world)]);
-  const int slot = slot_of(world);
+  const int lane_index = lane_index_of(world);
   if (own_) {
     draw_values(world, draws);
     apply_values(world);
   }
   // What the scene says nothing of begins at 0.
-  for (int row = 0; row < layout_.rows; ++row) storage_.number(slot, row) = Real(0);
+  for (int row = 0; row < layout_.rows; ++row) storage_.number(lane_index, row) = Real(0);
   for (std::size_t b = 0; b < data().bodies.size(); ++b) {
     const int scene_body = data().bodies[b].scene_body, body = static_cast<int>(b);
     const Body& described = plan_.scene().bodies[static_cast<std::size_t>(scene_body)];
     place(world, body, draw_initial_state(plan_.scene(), scene_body, draws));
-    if (storage_.has_activity()) storage_.set_absent(slot, body, !described.enabled);
+    if (storage_.has_activity()) storage_.set_absent(lane_index, body, !described.enabled);
   }
   const auto write_initial = [&](Field field) {
     const auto& values = initial_[static_cast<std::size_t>(field)];
@@ -79,18 +79,18 @@ void Worlds<Real>::initialise(int world) {
   for (const Field field : kFields) {
     if (field != Field::orientation) write_initial(field);
   }
-  if (storage_.has_activity()) storage_.find_idle(slot);
-  storage_.status(slot) = 0;
-  storage_.clear_contacts(slot);
-  storage_.clear_joints(slot);
-  storage_.clear_loose(slot);
+  if (storage_.has_activity()) storage_.find_idle(lane_index);
+  storage_.status(lane_index) = 0;
+  storage_.clear_contacts(lane_index);
+  storage_.clear_joints(lane_index);
+  storage_.clear_loose(lane_index);
   const auto& controls = plan_.scene().controls;
   for (std::size_t i = 0; i < controls.size(); ++i) {
-    storage_.controls(slot)[i * static_cast<std::size_t>(storage_.lanes())] =
+    storage_.controls(lane_index)[i * static_cast<std::size_t>(storage_.lanes())] =
         static_cast<Real>(controls[i].initial);
   }
-  storage_.clear_forces(slot);
-  storage_.wake(slot);
+  storage_.clear_forces(lane_index);
+  storage_.wake(lane_index);
 }
 
 template <class Real>
@@ -100,13 +100,14 @@ void Worlds<Real>::restart() {
   for (int w = 0; w < worlds_; ++w) initialise(w);
   // Lanes without a world repeat the last one; where looking for pairs goes lane by lane, nothing
   // is there in them.
-  for (int slot = 0; slot < storage_.slots(); ++slot) {
-    if (world_in_[static_cast<std::size_t>(slot)] >= 0) continue;
+  for (int lane_index = 0; lane_index < storage_.lane_count(); ++lane_index) {
+    if (world_in_[static_cast<std::size_t>(lane_index)] >= 0) continue;
     if (tables().sparse) storage_.make_activity();
-    storage_.copy(slot_of(worlds_ - 1), slot);
-    for (int b = 0; tables().sparse && b < tables().bodies; ++b) storage_.set_absent(slot, b, true);
-    if (tables().sparse) storage_.find_idle(slot);
-    storage_.rest(slot);
+    storage_.copy(lane_index_of(worlds_ - 1), lane_index);
+    for (int b = 0; tables().sparse && b < tables().bodies; ++b)
+      storage_.set_absent(lane_index, b, true);
+    if (tables().sparse) storage_.find_idle(lane_index);
+    storage_.rest(lane_index);
   }
 }
 
@@ -131,26 +132,26 @@ void Worlds<Real>::reset(int world, std::uint64_t seed) {
 template <class Real>
 void Worlds<Real>::add_force(int world, int body, const Vec3& force, const Vec3& torque) {
   if (data().bodies[static_cast<std::size_t>(body)].inv_mass == 0) return;
-  if (!(force.isZero(0) && torque.isZero(0))) storage_.wake_island(slot_of(world), body);
-  storage_.add_force(slot_of(world), body, force, torque);
+  if (!(force.isZero(0) && torque.isZero(0))) storage_.wake_island(lane_index_of(world), body);
+  storage_.add_force(lane_index_of(world), body, force, torque);
 }
 
 template <class Real>
 void Worlds<Real>::set_enabled(int world, int body, bool enabled) {
-  const int slot = slot_of(world);
+  const int lane_index = lane_index_of(world);
   storage_.make_activity();
-  if (storage_.absent(slot, body) != enabled) return;
+  if (storage_.absent(lane_index, body) != enabled) return;
   // A body that lies on a kinematic body does not share its island.
   const bool kinematic = data().bodies[static_cast<std::size_t>(body)].inv_mass == 0;
-  kinematic ? storage_.wake(slot) : storage_.wake_island(slot, body);
-  if (!enabled) storage_.drop_impulses(slot, body);
-  storage_.set_absent(slot, body, !enabled);
-  storage_.find_idle(slot);
+  kinematic ? storage_.wake(lane_index) : storage_.wake_island(lane_index, body);
+  if (!enabled) storage_.drop_impulses(lane_index, body);
+  storage_.set_absent(lane_index, body, !enabled);
+  storage_.find_idle(lane_index);
 }
 
 template <class Real>
 void Worlds<Real>::set_joint_enabled(int world, int joint, bool enabled) {
-  const int slot = slot_of(world);
+  const int lane_index = lane_index_of(world);
   if (joint_enabled(world, joint) == enabled) return;
   storage_.make_loose();
   for (int i = 0; i < tables().parts; ++i) {
@@ -159,12 +160,13 @@ void Worlds<Real>::set_joint_enabled(int world, int joint, bool enabled) {
     for (const int body : {part.body_a, part.body_b}) {
       if (body == tables().bodies) continue;
       // A body that is joined to a kinematic body does not share its island.
-      tables().body[body].kinematic ? storage_.wake(slot) : storage_.wake_island(slot, body);
-      if (!enabled) storage_.drop_impulses(slot, body);
+      tables().body[body].kinematic ? storage_.wake(lane_index)
+                                    : storage_.wake_island(lane_index, body);
+      if (!enabled) storage_.drop_impulses(lane_index, body);
     }
   }
-  storage_.set_loose(slot, joint, !enabled);
-  if (storage_.has_activity()) storage_.find_idle(slot);
+  storage_.set_loose(lane_index, joint, !enabled);
+  if (storage_.has_activity()) storage_.find_idle(lane_index);
 }
 
 template <class Real>
@@ -179,7 +181,7 @@ void Worlds<Real>::spawn(int world, int body, const BodyState& state) {
 template <class Real>
 bool Worlds<Real>::asleep(int world, int body) const {
   const bool kinematic = data().bodies[static_cast<std::size_t>(body)].inv_mass == 0;
-  return !kinematic && storage_.asleep(slot_of(world), body);
+  return !kinematic && storage_.asleep(lane_index_of(world), body);
 }
 
 template <class Real>
@@ -196,7 +198,7 @@ template <class Real>
 void Worlds<Real>::add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular) {
   const PlanBody& b = body_of(world, static_cast<std::size_t>(body));
   if (b.inv_mass == 0) return;
-  if (!(impulse.isZero(0) && angular.isZero(0))) storage_.wake_island(slot_of(world), body);
+  if (!(impulse.isZero(0) && angular.isZero(0))) storage_.wake_island(lane_index_of(world), body);
   const auto add = [&](Field field, int c, double x) {
     Real& value = number(field, world, body, c);
     value = static_cast<Real>(static_cast<double>(value) + x);
@@ -216,14 +218,14 @@ void Worlds<Real>::add_impulse(int world, int body, const Vec3& impulse, const V
 
 template <class Real>
 Status Worlds<Real>::status(int world) const {
-  return static_cast<Status>(storage_.status(slot_of(world)));
+  return static_cast<Status>(storage_.status(lane_index_of(world)));
 }
 
 template <class Real>
 std::uint64_t Worlds<Real>::hash(int world) const {
   Hasher hasher;
-  const int slot = slot_of(world);
-  for (int row = 0; row < layout_.rows; ++row) hasher.add(storage_.number(slot, row));
+  const int lane_index = lane_index_of(world);
+  for (int row = 0; row < layout_.rows; ++row) hasher.add(storage_.number(lane_index, row));
   return hasher.value();
 }
 

@@ -1,4 +1,4 @@
-// Worlds: the worlds of one kind in one number type. It knows which slot of the storage a world
+// Worlds: the worlds of one kind in one number type. It knows which lane of the storage a world
 // lives in, how worlds begin, and what a user reads and writes.
 //
 // With sleep, worlds that move are packed into as few groups as they fill, so where a world lives
@@ -30,8 +30,12 @@ class Worlds final : public WorldsBase {
   const kernels::WorldTables<Real>& tables() const { return tables_->get(); }
   const Storage<Real>& storage() const { return storage_; }
   int count() const { return worlds_; }
-  int slot_of(int world) const override { return slot_of_[static_cast<std::size_t>(world)]; }
-  int world_in(int slot) const { return world_in_[static_cast<std::size_t>(slot)]; }  // -1: none
+  int lane_index_of(int world) const override {
+    return lane_index_[static_cast<std::size_t>(world)];
+  }
+  int world_in(int lane_index) const {
+    return world_in_[static_cast<std::size_t>(lane_index)];
+  }  // -1: none
 
   void restart() override;
   void reset(int world) override;
@@ -47,7 +51,7 @@ class Worlds final : public WorldsBase {
 
   void add_force(int world, int body, const Vec3& force, const Vec3& torque) override;
   void clear_forces() { storage_.clear_forces(); }
-  void clear_forces(int world) { storage_.clear_forces(slot_of(world)); }
+  void clear_forces(int world) { storage_.clear_forces(lane_index_of(world)); }
   void find_forces() { storage_.find_forces(); }
   void add_impulse(int world, int body, const Vec3& impulse, const Vec3& angular) override;
   bool forced() const override { return storage_.forced(); }
@@ -65,17 +69,17 @@ class Worlds final : public WorldsBase {
   }
 
   bool enabled(int world, int body) const override {
-    return !storage_.absent(slot_of(world), body);
+    return !storage_.absent(lane_index_of(world), body);
   }
   void set_enabled(int world, int body, bool enabled) override;
   void spawn(int world, int body, const BodyState& state) override;
   bool joint_enabled(int world, int joint) const override {
-    return !storage_.loose(slot_of(world), joint);
+    return !storage_.loose(lane_index_of(world), joint);
   }
   void set_joint_enabled(int world, int joint, bool enabled) override;
   bool asleep(int world, int body) const override;
-  bool resting(int world) const override { return storage_.resting(slot_of(world)); }
-  void wake(int world) override { storage_.wake(slot_of(world)); }
+  bool resting(int world) const override { return storage_.resting(lane_index_of(world)); }
+  void wake(int world) override { storage_.wake(lane_index_of(world)); }
   // Moves worlds so that those in which something moves fill as few groups as possible.
   void pack();
 
@@ -98,9 +102,11 @@ class Worlds final : public WorldsBase {
   void read_world(int world, const std::byte* from) override;
   std::string check_world(const std::byte* from) const override;
   void copy_world(int from, int to) override;
-  // What a step changes of the world in a slot: saved and restored, without allocating.
-  void save_lane(int slot, std::byte* to) const { storage_.write_world(slot, to); }
-  void restore_lane(int slot, const std::byte* from) { storage_.restore_lane(slot, from); }
+  // What a step changes of the world in a lane: saved and restored, without allocating.
+  void save_lane(int lane_index, std::byte* to) const { storage_.write_world(lane_index, to); }
+  void restore_lane(int lane_index, const std::byte* from) {
+    storage_.restore_lane(lane_index, from);
+  }
   std::uint32_t episode(int world) const override {
     return episode_[static_cast<std::size_t>(world)];
   }
@@ -134,7 +140,7 @@ class Worlds final : public WorldsBase {
   void read_controls_as(int first, int count, Out* out) const;
   // A component of a field that the plan has.
   Real& number(Field field, int world, int item, int component) const {
-    return storage_.number(slot_of(world), layout_.row_of(field, item) + component);
+    return storage_.number(lane_index_of(world), layout_.row_of(field, item) + component);
   }
   double* values_of(int world) {
     return values_.data() + static_cast<std::size_t>(world) * data().varied.size();
@@ -157,7 +163,7 @@ class Worlds final : public WorldsBase {
   Quat rotation(int world, int body) const;
   void set_rotation(int world, int body, const Quat& rotation);  // of the principal axes
   void set_origin(int world, int body, const Vec3& origin, const Quat& rotation);
-  void move(int from_slot, int to_slot);
+  void move(int from, int to);
 
   Plan plan_;
   StateLayout layout_;
@@ -173,8 +179,8 @@ class Worlds final : public WorldsBase {
   std::vector<double> values_;                               // [world][PlanData::varied]
   std::vector<PlanBody> own_bodies_;                         // [world][body], where masses vary
   std::unique_ptr<PlanData> own_;                            // the plan of the world at work
-  std::vector<int> slot_of_;                                 // [world]
-  std::vector<int> world_in_;                                // [slot], -1: none
+  std::vector<int> lane_index_;                              // [world]
+  std::vector<int> world_in_;                                // [lane index], -1: none
   std::vector<int> by_count_;                                // [group] scratch of pack()
 };
 

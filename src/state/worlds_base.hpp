@@ -28,7 +28,7 @@ class WorldsBase {
   virtual void write(Field field, int world, const float* in) = 0;
   virtual void write(Field field, int world, const double* in) = 0;
   virtual LaneBlocks lane_blocks(Field field) const = 0;
-  virtual int slot_of(int world) const = 0;
+  virtual int lane_index_of(int world) const = 0;
   virtual Vec3 center_of_mass(int world, int body) const = 0;  // m, world
 
   // Forces (N, N m) act until they are cleared; impulses (N s, N m s) at once.

@@ -30,8 +30,8 @@ int allowed_threads() {
   return std::max(1, CPU_COUNT(&set));
 }
 
-void run_range(int begin, int end, int slot, Executor::Task task, void* context) {
-  for (int g = begin; g < end; ++g) task(context, g, slot);
+void run_range(int begin, int end, int worker, Executor::Task task, void* context) {
+  for (int g = begin; g < end; ++g) task(context, g, worker);
 }
 
 class CallingThread final : public Executor {

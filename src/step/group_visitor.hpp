@@ -11,7 +11,7 @@ namespace manyworlds {
 template <class Real>
 struct VisitedGroup {
   int group;   // worlds without sleep: lane l is world group * lanes + l
-  int thread;  // slot of the executor
+  int thread;  // worker of the executor
   const kernels::KernelTable<Real>& kernels;
   const kernels::WorldTables<Real>& tables;
   const kernels::GroupView<Real>& view;

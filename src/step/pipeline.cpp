@@ -70,11 +70,11 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
   const GroupStep<Real>& p = run.step;
   const auto& t = p.tables;
   const auto& observer = *p.kernels.observer;
-  const auto* slots = wanted && wanted->slots && t.has_contacts ? wanted : nullptr;
-  if (slots) observer.watch(run.scratch, slots->places);
+  const auto* contacts = wanted && wanted->of_contacts && t.has_contacts ? wanted : nullptr;
+  if (contacts) observer.watch(run.scratch, contacts->places);
   const StageCalls<Real>& calls = find_rows(run);
-  if (slots) observer.watch(run.scratch, nullptr);
-  const bool adds_up = slots && slots->totals[0];
+  if (contacts) observer.watch(run.scratch, nullptr);
+  const bool adds_up = contacts && contacts->totals[0];
   const std::span<const StageCall<Real>> solve = calls.solve;
   run(calls.prepare);
   for (int s = 0; s < t.substeps; ++s) {
@@ -82,7 +82,7 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
     if (s + 1 == t.substeps && wanted && wanted->aside) look_at_residual(run, calls, *wanted);
     run(solve.subspan(calls.residual_at));
     if (adds_up) {
-      observer.accumulate[static_cast<int>(t.inertia_kind)](t, run.group, run.scratch, *slots);
+      observer.accumulate[static_cast<int>(t.inertia_kind)](t, run.group, run.scratch, *contacts);
       run.lap(StepStage::observe);
     }
     if (s + 1 < t.substeps) run(calls.next);
@@ -95,11 +95,11 @@ bool at_rest(const GroupStep<Real>& p, const kernels::GroupView<Real>& group) {
   return p.tables.has_sleep && *group.resting == (1u << p.kernels.lanes) - 1;
 }
 
-// What the slots of the last step tell, if it has just been taken, and of pairs that are asleep
+// What the contacts of the last step tell, if it has just been taken, and of pairs that are asleep
 // what waits for them.
 template <class Real>
-void observe_slots(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
-                   kernels::Scratch* scratch, bool taken) {
+void observe_contacts(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
+                      kernels::Scratch* scratch, bool taken) {
   const auto& t = p.tables;
   const auto& wanted = *p.wanted;
   const auto& observer = *p.kernels.observer;
@@ -169,8 +169,8 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
       solver_step(Run<Real>{p, group, scratch, clock}, wanted);
     }
     if (p.wanted && taken < steps) look_at_start(p, group, scratch);
-    const bool slots = p.wanted && p.wanted->slots && p.tables.has_contacts;
-    if (slots) observe_slots(p, group, scratch, taken == steps);
+    const bool contacts = p.wanted && p.wanted->of_contacts && p.tables.has_contacts;
+    if (contacts) observe_contacts(p, group, scratch, taken == steps);
   } else {
     const auto& t = p.tables;
     const auto flight = p.kernels.flight[static_cast<int>(t.inertia_kind)].steps;

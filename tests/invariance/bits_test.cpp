@@ -229,7 +229,7 @@ TEST_CASE("switched-off stages change no bits when kept", "[fast][bits]") {
   }
 }
 
-// Neighbours in the same group that keep contact slots running must not touch a world whose slots
+// Neighbours in the same group that keep contact blocks running must not touch a world whose blocks
 // are idle: not even the sign of its zeros.
 TEST_CASE("busy neighbours leave negative zeros alone", "[fast][bits]") {
   for (Space space : {Space::planar, Space::spatial}) {

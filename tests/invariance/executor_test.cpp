@@ -22,10 +22,10 @@ class CountDown final : public Executor {
   void run(int groups, Task task, void* context) override {
     std::atomic<int> next{groups};
     std::vector<std::thread> crew;
-    for (int slot = 0; slot < threads_; ++slot) {
-      crew.emplace_back([&, slot] {
+    for (int worker = 0; worker < threads_; ++worker) {
+      crew.emplace_back([&, worker] {
         for (int g = --next; g >= 0; g = --next) {
-          task(context, g, slot);
+          task(context, g, worker);
           ++tasks;
         }
       });

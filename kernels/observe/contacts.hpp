@@ -1,34 +1,34 @@
-// What the solver's slots tell when a step is over: impulses, who touches, how deep.
+// What the solver's blocks tell when a step is over: impulses, who touches, how deep.
 //
-// A pair that is asleep has no slot. Its contacts are found again where it sleeps, and each of its
+// A pair that is asleep has no block. Its contacts are found again where it sleeps, and each of its
 // impulses is what it will wake with, times the number of substeps: what a step of it would take.
 #pragma once
 
 #include "kernels/data/pair_keys.hpp"
 #include "kernels/observe/observe.hpp"
 #include "kernels/rows/body_rows.hpp"
-#include "kernels/rows/slot.hpp"
+#include "kernels/rows/contact_block.hpp"
 #include "kernels/work/activity.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Rows of a slot's totals: the points' normal impulses, then friction, then twist.
+// Rows of a block's totals: the points' normal impulses, then friction, then twist.
 template <class S, int N>
 inline constexpr int kTotals = N + S::kTangents + 1;
 template <class S, int N>
 inline constexpr int kPlaces = N* S::kDim + 1;
 
-// visit(slot, index, list) in the order of the solver; inside a lane that is the order of keys,
+// visit(block, index, list) in the order of the solver; inside a lane that is the order of keys,
 // whatever the layout.
 template <class S, class Visit>
 void for_each_observed(Work& w, Visit visit) {
   for (int id = 0; id < kLists; ++id) {
-    const SlotList& list = w.slots[id];
+    const BlockList& list = w.blocks[id];
     for (int i = 0; i < list.count; ++i) {
       if (is_multi(static_cast<ListId>(id))) {
-        visit(slot_at<S, S::kMulti>(list, i), i, id);
+        visit(block_at<ContactBlock<S, S::kMulti>>(list, i), i, id);
       } else {
-        visit(slot_at<S, 1>(list, i), i, id);
+        visit(block_at<ContactBlock<S, 1>>(list, i), i, id);
       }
     }
   }
@@ -54,7 +54,7 @@ void accumulate_totals(const Tables& t, const Group&, kernels::Scratch* scratch,
   });
 }
 
-// Impulses of a slot over a step.
+// Impulses of a block over a step.
 template <class S, int N>
 struct Totals {
   Float impulse[N], sum = Float(Real(0));
@@ -63,7 +63,8 @@ struct Totals {
 };
 
 template <class S, int N>
-MW_INLINE void set_friction(const Slot<S, N>& s, Float first, Float second, Totals<S, N>& out) {
+MW_INLINE void set_friction(const ContactBlock<S, N>& s, Float first, Float second,
+                            Totals<S, N>& out) {
   const auto tangent = load_as<typename S::Vec>(s.tangent[0]);
   out.friction = tangent * first;
   if constexpr (S::kDim == 3) {
@@ -72,9 +73,9 @@ MW_INLINE void set_friction(const Slot<S, N>& s, Float first, Float second, Tota
 }
 
 template <class S, int N, bool kAsleep>
-MW_INLINE Totals<S, N> totals_of(const Tables& t, const Work& w, const Slot<S, N>& s, int index,
-                                 int id, const ObserverView& o) {
-  constexpr bool kTwist = Slot<S, N>::kTwist;
+MW_INLINE Totals<S, N> totals_of(const Tables& t, const Work& w, const ContactBlock<S, N>& s,
+                                 int index, int id, const ObserverView& o) {
+  constexpr bool kTwist = ContactBlock<S, N>::kTwist;
   constexpr int kSecond = S::kTangents - 1;
   Totals<S, N> out;
   if constexpr (kAsleep) {
@@ -86,7 +87,7 @@ MW_INLINE Totals<S, N> totals_of(const Tables& t, const Work& w, const Slot<S, N
       if constexpr (kTwist) out.twist = Float::load(s.twist_impulse) * substeps;
     }
   } else if (t.has_restitution) {
-    const auto& bounce = bounce_at<S, N>(w.slots[id], index);
+    const auto& bounce = bounce_at<S, N>(w.blocks[id], index);
     for (int i = 0; i < N; ++i) out.impulse[i] = Float::load(bounce.total[i]);
     if (t.has_friction) {
       set_friction(s, Float::load(bounce.total_tangent[0]),
@@ -110,7 +111,7 @@ MW_INLINE Totals<S, N> totals_of(const Tables& t, const Work& w, const Slot<S, N
 template <class S, int N>
 class Features {
  public:
-  Features(const Slot<S, N>& s, const Real* codes, int lane)
+  Features(const ContactBlock<S, N>& s, const Real* codes, int lane)
       : s_(s), lane_(lane), code_(static_cast<std::int32_t>(codes[lane]) * 4) {
     for (int i = 0; N > 1 && i < N; ++i) {
       if (!(Real(0) < s.mass[i][lane])) continue;
@@ -124,7 +125,7 @@ class Features {
   }
 
  private:
-  const Slot<S, N>& s_;
+  const ContactBlock<S, N>& s_;
   int lane_;
   std::int32_t code_;
   Real x_ = 0, y_ = 0, points_ = 0;
@@ -133,7 +134,7 @@ class Features {
 // The friction of a manifold acts at its middle; each point reports the share that its normal
 // impulse has.
 template <class S, int N>
-void put_contacts(const Slot<S, N>& s, const Totals<S, N>& total, const Real* places,
+void put_contacts(const ContactBlock<S, N>& s, const Totals<S, N>& total, const Real* places,
                   std::uint32_t lanes, const ObserverView& o) {
   constexpr int kDim = S::kDim;
   const Float zero(Real(0)), one(Real(1));
@@ -181,7 +182,7 @@ inline void put_touching(const Tables& t, const std::int32_t* key, int id, std::
   }
 }
 
-// Lanes of a slot whose pair is asleep: nobody in it is awake.
+// Lanes of a block whose pair is asleep: nobody in it is awake.
 inline std::uint32_t sleeping_lanes(const Tables& t, const Group& g, const std::int32_t* key,
                                     int id, std::uint32_t lanes) {
   std::uint32_t out = 0;
@@ -196,8 +197,8 @@ inline std::uint32_t sleeping_lanes(const Tables& t, const Group& g, const std::
 }
 
 template <class S, bool kAsleep>
-void observe_slots(const Tables& t, const Group& g, kernels::Scratch* scratch,
-                   const ObserverView& o) {
+void observe_contacts(const Tables& t, const Group& g, kernels::Scratch* scratch,
+                      const ObserverView& o) {
   Work& w = work_of(scratch);
   const std::uint32_t live = ~frozen_lanes(g) & kAllLanes;
   const bool idle = t.has_sleep && has_idle_bodies(g);
