@@ -6,6 +6,12 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+using HullRow = kernels::HullRow<Real>;
+// Number `offset` of a row on.
+MW_INLINE const HullRow& hull_row(const Real* base, std::int32_t offset) {
+  return *reinterpret_cast<const HullRow*>(base + offset);
+}
+
 struct HullPose {
   static constexpr auto kKind = kernels::ShapeKind::hull;
   Mat3 r;
@@ -31,18 +37,19 @@ MW_INLINE void load_pose(const Real* base, const std::int32_t* o, const Real* hu
   h.faces.corners = hulls ? hulls : base;
   h.faces.most = 0;
   for (int l = 0; l < kLanes; ++l) {
-    const Real* row = base + o[l] + 16;
-    h.faces.first[l] = (hulls ? 4 * static_cast<std::int32_t>(row[0]) : o[l] + 20) +
-                       4 * static_cast<std::int32_t>(row[1]);
-    h.faces.count[l] = static_cast<std::int32_t>(row[2]);
+    const HullRow& row = hull_row(base, o[l]);
+    const std::int32_t corners =
+        hulls ? 4 * static_cast<std::int32_t>(row.at) : o[l] + kernels::row_size<kernels::HullRow>;
+    h.faces.first[l] = corners + 4 * static_cast<std::int32_t>(row.vertices);
+    h.faces.count[l] = static_cast<std::int32_t>(row.faces);
     h.faces.most = h.faces.count[l] > h.faces.most ? h.faces.count[l] : h.faces.most;
   }
 }
 MW_INLINE BoundsOf<Vec3> HullPose::put(const SpatialPlacement& s) {
   put_box_row(s);
   const auto& c = s.collider;
-  store_rows4(s.rows + 16, s.offset, static_cast<Real>(c.hull), static_cast<Real>(c.vertex_count),
-              static_cast<Real>(c.face_count), Real(0));
+  store_rows4(s.rows + kernels::row_size<kernels::BoxRow>, s.offset, static_cast<Real>(c.hull),
+              static_cast<Real>(c.vertex_count), static_cast<Real>(c.face_count), Real(0));
   return box_bounds(s);
 }
 MW_INLINE Vec3 inverse_of(Vec3 half) {
@@ -123,7 +130,7 @@ MW_INLINE int most_of(const std::int32_t* count) {
 inline void load_hull_vertices(const Real* base, const std::int32_t* offset, ConvexShape& s) {
   alignas(64) std::int32_t first[kLanes], count[kLanes], o[kLanes];
   for (int l = 0; l < kLanes; ++l) {
-    count[l] = static_cast<std::int32_t>(base[offset[l] + 17]);
+    count[l] = static_cast<std::int32_t>(hull_row(base, offset[l]).vertices);
     first[l] = s.faces.first[l] - 4 * count[l];
   }
   s.vertices = most_of(count);
