@@ -34,12 +34,11 @@ MW_INLINE void load_pose(const Real* base, const std::int32_t* o, EllipsoidPose&
   e = {box.r, box.p, box.half};
 }
 
+MW_INLINE Vec3 times(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 // A unit direction in the shape's axes, times the radii: as long as the shape reaches along it.
 MW_INLINE Vec3 scaled(const Mat3& r, Vec3 radii, Vec3 n) {
-  const Vec3 local = mul_transposed(r, n);
-  return {local.x * radii.x, local.y * radii.y, local.z * radii.z};
+  return times(mul_transposed(r, n), radii);
 }
-MW_INLINE Vec3 times(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
 MW_INLINE BoundsOf<Vec3> EllipsoidPose::put(const SpatialPlacement& s) {
   put_box_row(s);
