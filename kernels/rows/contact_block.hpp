@@ -53,7 +53,6 @@ struct alignas(64) ContactBlock : BlockHeader {
 };
 template <class S, int N, class A>
 struct alignas(64) SidedBlock : ContactBlock<S, N> {
-  using SideA = A;
   ContactSide<S, N, A> a;
 };
 

@@ -1,9 +1,13 @@
 // The sides of a row: what it acts on at either end. A side kind says what rows keep of it, which
 // velocity it has, how fast that is along a row, and what an impulse does to it. B of every row is
-// Free. One more kind is one more overload of each function here.
+// Free; what A adds to a row is left out where it does not move (kMoves).
 //   Fixed  nothing moves
 //   Free   a body that moves freely
+// One more kind that moves needs its overloads here, and what a contact has of it: ContactSide
+// (contact_block.hpp), SideState (sides.hpp), SideArms (approach.hpp).
 #pragma once
+
+#include <type_traits>
 
 #include "kernels/rows/body_rows.hpp"
 
@@ -94,7 +98,8 @@ MW_INLINE void add_impulse(const SideRows<S, Free>& side, typename S::Vec direct
   add_moment(side, moment, v);
 }
 
-// Takes it off: what B gets is taken off A.
+// Takes it off: what B gets is taken off A. Not by adding a negated impulse, from which the sign of
+// a zero could differ.
 template <class S>
 MW_INLINE void take_moment(const SideRows<S, Free>& side, typename S::Ang moment, Velocity<S>& v) {
   v.w = v.w - apply(inertia_of<S>(side), moment);

@@ -48,6 +48,7 @@ class Builder {
   // Impulses are those of one substep alone: nothing is carried over.
   bool forgets() const { return t_.solver.kind == Solver::penalty; }
 
+  // Sleep is chosen for a batch, so the plan cannot tell whether its bodies settle.
   void add(Calls& to, StepStage stage, Call call) const {
     if (stage == StepStage::settle ? t_.has_sleep : plan_.runs(stage)) to.push_back({stage, call});
   }
