@@ -60,7 +60,7 @@ void StageRunner::run(Stage stage, const Group& group) {
       }
       return;
     case Stage::warm_start:
-      solver.push(tables_, group, scratch_);
+      solver.apply_delta_v(tables_, group, scratch_);
       solver.warm_start(tables_, group, scratch_);
       return solver.open(tables_, group, scratch_);
     case Stage::bias: return solver.bias(tables_, group, scratch_);

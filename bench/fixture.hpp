@@ -14,8 +14,8 @@
 
 namespace manyworlds::bench {
 
-using Kernels = kernels::KernelTable<float>;
-using Tables = kernels::WorldTables<float>;
+using Kernels = kernels::Kernels<float>;
+using Tables = kernels::SceneConstants<float>;
 using Group = kernels::GroupView<float>;
 
 // Worlds of every fixture: one register of the widest instruction set. All instruction sets step

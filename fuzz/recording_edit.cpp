@@ -20,7 +20,7 @@ using record::Handle;
 using Bytes = std::vector<std::byte>;
 
 constexpr const char* kWhat = "edit";
-constexpr std::size_t kMostBytes = std::size_t{1} << 22;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 22;
 
 // A dataset or an attribute, and all its numbers as they are stored.
 class Data {
@@ -40,7 +40,7 @@ class Data {
     const hssize_t count = H5Sget_simple_extent_npoints(space);
     is_text = H5Tget_class(type) == H5T_STRING;
     size = H5Tget_size(type);
-    if (count < 1 || size == 0 || static_cast<std::size_t>(count) > kMostBytes / size ||
+    if (count < 1 || size == 0 || static_cast<std::size_t>(count) > kMaxBytes / size ||
         H5Tis_variable_str(type) > 0 || H5Tdetect_class(type, H5T_VLEN) > 0) {
       record::fail(kWhat);
     }
@@ -195,8 +195,8 @@ void RecordingEdit::resize(const Target& target, FuzzedDataProvider& in) {
   hsize_t dims[H5S_MAX_RANK] = {};
   if (H5Sget_simple_extent_dims(space, dims, nullptr) < 1) record::fail(kWhat);
   // HDF5 looks at every chunk that there could be when it makes a table shorter.
-  constexpr hsize_t kMostToShrink = hsize_t{1} << 20;
-  if (dims[0] > kMostToShrink) return;
+  constexpr hsize_t kMaxToShrink = hsize_t{1} << 20;
+  if (dims[0] > kMaxToShrink) return;
   switch (in.ConsumeIntegralInRange(0, 3)) {
     case 0: dims[0] += 1; break;
     case 1: dims[0] -= std::min<hsize_t>(dims[0], 1); break;

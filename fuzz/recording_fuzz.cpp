@@ -9,7 +9,7 @@
 namespace manyworlds::fuzz {
 namespace {
 
-constexpr std::int64_t kMostWork = 20'000;  // worlds x substeps
+constexpr std::int64_t kMaxWork = 20'000;  // worlds x substeps
 
 void check_refusal(const RecordError& error) {
   require(!error.problems().empty(), "a recording was refused without a problem");
@@ -46,7 +46,7 @@ bool short_enough(const Recording& recording) {
     if (candidates > 20'000) return false;
     cost += std::int64_t{recording.worlds_of(k)} * plan.scene().options.substeps;
   }
-  return steps <= kMostWork / std::max<std::int64_t>(cost, 1);
+  return steps <= kMaxWork / std::max<std::int64_t>(cost, 1);
 }
 
 void run(FuzzedDataProvider& in) {

@@ -12,7 +12,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 namespace {
 
 template <class S>
-void free_motion(const Tables& t, const Group& g, kernels::Scratch* scratch, int steps) {
+void free_motion(const Constants& t, const Group& g, kernels::Scratch* scratch, int steps) {
   free_motion_steps<S>(t, g, work_of(scratch), steps);
 }
 
@@ -42,9 +42,9 @@ constexpr const char* isa_name() {
 #endif
 }
 
-kernels::KernelTable<Real> make_table() {
+kernels::Kernels<Real> make_table() {
   using kernels::InertiaKind;
-  kernels::KernelTable<Real> out{};
+  kernels::Kernels<Real> out{};
   out.isa = isa_name();
   out.lanes = kLanes;
   out.scratch_bytes = scratch_bytes;
@@ -90,6 +90,6 @@ kernels::KernelTable<Real> make_table() {
 
 }  // namespace
 
-void fill_kernel_table(kernels::KernelTable<Real>& out) { out = make_table(); }
+void fill_kernel_table(kernels::Kernels<Real>& out) { out = make_table(); }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -40,11 +40,11 @@ void size_blocks(Work& w) {
 
 // Blocks of a list: classes follow one another, and each has no more candidates in a lane than
 // candidate_limit allows. One more, since a block is written before it is known to have a point.
-int blocks_needed(const Tables& t, int list) {
+int blocks_needed(const Constants& t, int list) {
   int blocks = 1;
   for (int c = 0; c < t.classes; ++c) {
     if (static_cast<int>(t.pair_class[c].list) != list) continue;
-    blocks += most_candidates(t, t.pair_class[c]);
+    blocks += max_candidates(t, t.pair_class[c]);
   }
   return blocks;
 }
@@ -53,7 +53,7 @@ int blocks_needed(const Tables& t, int list) {
 struct HitRoom {
   int hits = 1, longest = 1;
 };
-HitRoom room_of_tables(const Tables& t) {
+HitRoom room_of_tables(const Constants& t) {
   HitRoom room;
   for (int i = 0; i < t.classes; ++i) {
     const int end = t.pair_class[i].first_key + t.pair_class[i].count;
@@ -64,9 +64,9 @@ HitRoom room_of_tables(const Tables& t) {
 }
 // Hits of a class are those of all lanes. Listed are either those of one lane, or dense ones, if
 // they fit the blocks.
-HitRoom room_of_sparse(const Tables& t) {
+HitRoom room_of_sparse(const Constants& t) {
   HitRoom room;
-  for (int i = 0; i < t.classes; ++i) room.hits += kLanes * most_candidates(t, t.pair_class[i]);
+  for (int i = 0; i < t.classes; ++i) room.hits += kLanes * max_candidates(t, t.pair_class[i]);
   for (int l = 0; l < kLists; ++l) {
     const int blocks = blocks_needed(t, l);
     room.longest = blocks > room.longest ? blocks : room.longest;
@@ -74,11 +74,11 @@ HitRoom room_of_sparse(const Tables& t) {
   return room;
 }
 
-void carve_sparse(const Tables& t, SparseWork& s, Carver& c, int hits) {
+void carve_sparse(const Constants& t, SparseWork& s, Carver& c, int hits) {
   const int dim = t.dimension == kernels::Dimension::spatial ? 3 : 2;
   s.shapes = t.colliders + t.fixed_shapes;
   s.lane_room = 0;
-  for (int i = 0; i < t.classes; ++i) s.lane_room += most_candidates(t, t.pair_class[i]);
+  for (int i = 0; i < t.classes; ++i) s.lane_room += max_candidates(t, t.pair_class[i]);
   s.room = 2 * s.lane_room + 1024;
   const auto count = [](int n) { return static_cast<std::size_t>(n); };
   c.take(s.hit_start, count(t.classes));
@@ -99,7 +99,7 @@ template <class S>
 int impulses_of_list(bool several) {
   return several ? S::kMulti + S::kTangents + (S::kDim == 3 ? 1 : 0) : 1 + S::kTangents;
 }
-void carve_search(const Tables& t, Search& s, Carver& c) {
+void carve_search(const Constants& t, Search& s, Carver& c) {
   const bool planar = t.dimension == kernels::Dimension::planar;
   int impulses = t.parts * kernels::kPartImpulses;
   for (int l = 0; t.has_contacts && l < kLists; ++l) {
@@ -112,7 +112,7 @@ void carve_search(const Tables& t, Search& s, Carver& c) {
   c.take(s.square, static_cast<std::size_t>(kLanes));
 }
 
-void carve(const Tables& t, Work& w, Carver& c) {
+void carve(const Constants& t, Work& w, Carver& c) {
   const int lanes = kLanes;
   const auto count = [](int n) { return static_cast<std::size_t>(n); };
   const int dim = t.dimension == kernels::Dimension::spatial ? 3 : 2;
@@ -124,7 +124,7 @@ void carve(const Tables& t, Work& w, Carver& c) {
   const std::size_t velocities = count(rows * row * lanes);
   const int body_row = body_row_size(t.inertia_kind);
   c.take(w.body_rows, count((t.bodies + 1) * body_row * lanes));
-  c.take(w.push_storage, velocities);
+  c.take(w.delta_v_storage, velocities);
   if (t.drag_varies) c.take(w.factor_storage, velocities);
   const std::size_t state = count(t.bodies * t.state_stride * lanes);
   if (t.flight.on) {
@@ -144,7 +144,7 @@ void carve(const Tables& t, Work& w, Carver& c) {
     const std::size_t bytes =
         t.dimension == kernels::Dimension::planar ? part_bytes(Planar{}) : part_bytes(Tensor{});
     c.take(w.parts, count(t.parts) * bytes);
-    c.take(w.borne, count(t.breakable * row * lanes));
+    c.take(w.loads, count(t.breakable * row * lanes));
     if (t.breakable > 0) c.take(w.reached, count(t.bodies));
   }
   if (t.solver.kind == kernels::Solver::nncg) carve_search(t, w.search, c);
@@ -197,8 +197,8 @@ void carve(const Tables& t, Work& w, Carver& c) {
   }
 }
 
-// What never changes: lane bases, the dummy's pose, inverse masses that do not turn.
-void fill_constants(const Tables& t, Work& w) {
+// What never changes: lane bases, the dummy's pose, inverse masses that do not rotate.
+void fill_constants(const Constants& t, Work& w) {
   const int state = t.flight.on ? t.bodies * t.state_stride * kLanes : 0;
   for (int i = 0; i < state; ++i) w.flight.rate[i] = Real(0);  // not all rows of it are used
   const int row = kernels::velocity_row_size(t.dimension);
@@ -213,17 +213,17 @@ void fill_constants(const Tables& t, Work& w) {
       Real* r = w.body_rows + w.body_base[l] + b * body_row;
       for (int i = 0; i < body_row; ++i) r[i] = Real(0);
       if (b == t.bodies || t.inertia_kind == kernels::InertiaKind::tensor) continue;
-      const auto* numbers =
+      const auto* constants =
           reinterpret_cast<const kernels::BodyConstants<LaneNumber>*>(t.constants.body);
-      r[0] = numbers[b].inv_mass.lane[l];
-      r[1] = numbers[b].inv_inertia[2].lane[l];
+      r[0] = constants[b].inv_mass.lane[l];
+      r[1] = constants[b].inv_inertia[2].lane[l];
     }
   }
   if (!t.has_contacts) return;
   int start = 0;
   for (int i = 0; t.sparse && i < t.classes; ++i) {
     w.sparse.hit_start[i] = start;
-    start += kLanes * most_candidates(t, t.pair_class[i]);
+    start += kLanes * max_candidates(t, t.pair_class[i]);
   }
   for (int l = 0; l < kLanes; ++l) {
     Real* dummy = w.pose_rows + w.pose_base[l] + t.row_block - kernels::kDummyRow;
@@ -235,7 +235,7 @@ void fill_constants(const Tables& t, Work& w) {
 
 }  // namespace
 
-std::size_t scratch_bytes(const Tables& tables) {
+std::size_t scratch_bytes(const Constants& tables) {
   Work measured{};
   Carver carver(nullptr);
   Work* self = nullptr;
@@ -244,7 +244,7 @@ std::size_t scratch_bytes(const Tables& tables) {
   return carver.used();
 }
 
-kernels::Scratch* make_scratch(const Tables& tables, void* memory) {
+kernels::Scratch* make_scratch(const Constants& tables, void* memory) {
   Carver carver(static_cast<unsigned char*>(memory));
   Work* self = nullptr;
   carver.take(self, 1);

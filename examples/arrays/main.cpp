@@ -16,8 +16,8 @@ namespace mw = manyworlds;
 namespace {
 
 constexpr std::size_t kWorlds = 2048, kObservations = 4;
-constexpr double kMostLean = 0.2, kMostTravel = 2.4, kMostPush = 10;  // rad, m, N
-constexpr int kMostSteps = 500;                                       // of an episode
+constexpr double kMaxLean = 0.2, kMaxTravel = 2.4, kMaxPush = 10;  // rad, m, N
+constexpr int kMaxSteps = 500;                                     // of an episode
 
 mw::Shape bar(double half_x, double half_y, double mass) {
   mw::Shape shape;
@@ -49,7 +49,7 @@ mw::Scene cart_pole() {
   mw::Control push;
   push.kind = mw::ControlKind::thrust;  // N, along x
   push.body = base;
-  push.low = -kMostPush, push.high = kMostPush;
+  push.low = -kMaxPush, push.high = kMaxPush;
   scene.controls = {push};
   return scene;
 }
@@ -60,7 +60,7 @@ mw::Task balancing() {
   task.name = "balancing";
   task.scene = cart_pole();
   task.actions = {{"push", -1, 1}};
-  task.controls = {kMostPush * action()};
+  task.controls = {kMaxPush * action()};
   const mw::JointId rail = task.scene.joint("rail"), hinge = task.scene.joint("hinge");
   // The hinge's angle is positive to the left.
   const mw::Expression travel = joint_position(rail), lean = joint_position(hinge);
@@ -69,8 +69,8 @@ mw::Task balancing() {
                        {"lean", lean},
                        {"turn", joint_speed(hinge)}};
   task.rewards = {{"upright", 1}, {"off the middle", -0.1 * square(travel)}};
-  task.terminated = (abs(lean) > kMostLean) | (abs(travel) > kMostTravel);
-  task.most_steps = kMostSteps;
+  task.terminated = (abs(lean) > kMaxLean) | (abs(travel) > kMaxTravel);
+  task.most_steps = kMaxSteps;
   return task;
 }
 
@@ -93,7 +93,7 @@ double mean_return(float (*policy)(const float*), const char* name) {
   environment.reset(std::vector<std::uint8_t>(kWorlds, 1), observations);
   double sum = 0;
   int episodes = 0;
-  for (int step = 0; step < 2 * kMostSteps; ++step) {
+  for (int step = 0; step < 2 * kMaxSteps; ++step) {
     for (std::size_t w = 0; w < kWorlds; ++w) {
       actions[w] = policy(observations.data() + w * kObservations);
     }
@@ -116,5 +116,5 @@ double mean_return(float (*policy)(const float*), const char* name) {
 int main() {
   const double untouched = mean_return(let_go, "let go"),
                balanced = mean_return(balance, "balance");
-  return balanced > 0.9 * kMostSteps && untouched < 0.3 * kMostSteps ? 0 : 1;
+  return balanced > 0.9 * kMaxSteps && untouched < 0.3 * kMaxSteps ? 0 : 1;
 }

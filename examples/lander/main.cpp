@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kWorlds = 4096;
 constexpr int kSeconds = 25;
-constexpr float kTouch = 1.5f;      // m, the height of a lander whose legs may touch something
-constexpr float kMostSpeed = 0.8f;  // m/s, the most that they bear
+constexpr float kTouch = 1.5f;     // m, the height of a lander whose legs may touch something
+constexpr float kMaxSpeed = 0.8f;  // m/s, the most that they bear
 
 // What the controller sees of a lander, m, m/s, rad, rad/s. The pad is at x = 0.
 struct State {
@@ -79,7 +79,7 @@ int main() {
   for (int step = 0; step < steps; ++step) {
     look();
     for (std::size_t w = 0; w < kWorlds; ++w) {
-      hard[w] = hard[w] || (state[w].y < kTouch && state[w].vy < -kMostSpeed);
+      hard[w] = hard[w] || (state[w].y < kTouch && state[w].vy < -kMaxSpeed);
       fly(state[w], mass, gravity, thrust.data() + w * scene.controls.size());
     }
     batch.set_controls(thrust);

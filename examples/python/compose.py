@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 import manyworlds as mw
 from manyworlds import tasks
 
-MOST_FORCE = 10.0  # N
-MOST_TRAVEL = 2.4  # m
-MOST_LEAN = 0.20943951  # rad, 12 degrees
+MAX_FORCE = 10.0  # N
+MAX_TRAVEL = 2.4  # m
+MAX_LEAN = 0.20943951  # rad, 12 degrees
 
 
 def ghost(
@@ -48,7 +48,7 @@ def make_scene() -> mw.Scene:
     scene.add(scene.joint_at(-1, cart, mw.Frame(), mw.SliderJoint()))
     scene.add(scene.joint_at(cart, pole, mw.Frame(), mw.HingeJoint()))
     push = mw.Control(name="push", kind="thrust", body=cart, direction=(1, 0, 0))
-    push.low, push.high = -MOST_FORCE, MOST_FORCE
+    push.low, push.high = -MAX_FORCE, MAX_FORCE
     scene.add(push)
     return scene
 
@@ -56,15 +56,15 @@ def make_scene() -> mw.Scene:
 def make_task() -> mw.Task:
     task = mw.Task(name="CartPole", scene=make_scene(), choices=2, most_steps=500, solved_at=475)
     t = task.terms
-    task.controls = [tasks.where(t.action(), MOST_FORCE, -MOST_FORCE)]
+    task.controls = [tasks.where(t.action(), MAX_FORCE, -MAX_FORCE)]
     travel, speed = t.joint_position(0), t.joint_speed(0)  # of the rail
     lean, turn = t.joint_position(1), t.joint_speed(1)  # of the hinge
-    task.observe("travel", travel, -2 * MOST_TRAVEL, 2 * MOST_TRAVEL)
+    task.observe("travel", travel, -2 * MAX_TRAVEL, 2 * MAX_TRAVEL)
     task.observe("speed", speed)
-    task.observe("lean", lean, -2 * MOST_LEAN, 2 * MOST_LEAN)
+    task.observe("lean", lean, -2 * MAX_LEAN, 2 * MAX_LEAN)
     task.observe("turn", turn)
     task.reward("alive", 1)
-    task.terminated = (abs(travel) > MOST_TRAVEL) | (abs(lean) > MOST_LEAN)
+    task.terminated = (abs(travel) > MAX_TRAVEL) | (abs(lean) > MAX_LEAN)
     return task
 
 

@@ -104,7 +104,7 @@ class Batch {
   void write(Field field, int world, std::span<const double> in);
 
   // In place, without a copy. Here lie centres of mass, not bodies' origins, and principal axes,
-  // not bodies' own (read() turns one into the other). Writing here neither wakes a world nor
+  // not bodies' own (read() converts). Writing here neither wakes a world nor
   // clears its impulses, and no listener hears of it. Lanes after the last world are unused. The
   // pointer is valid until the Batch is destroyed.
   LaneBlocks lane_blocks(Field field, int kind = 0);
@@ -193,8 +193,8 @@ class Batch {
   void read(Observed what, Reals out) const;
   void read(Observed what, int world, std::span<double> out) const;
   std::vector<StepContact> step_contacts(int world) const;
-  bool touching(int world, BodyId body) const;  // a contact pushed it; not of fixed bodies
-  // A contact pushed these two apart; of those that Observer::contacts had room for.
+  bool touching(int world, BodyId body) const;  // a contact acted on it; not of fixed bodies
+  // A contact acted between these two; of those that Observer::contacts had room for.
   bool touching(int world, BodyId body_a, BodyId body_b) const;
   std::vector<RayHit> ray_hits(int world) const;
   // As many as the batch was made with. Of one world, only origin, direction and length change.

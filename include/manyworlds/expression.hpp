@@ -95,7 +95,7 @@ inline Expression joint_position(JointId joint, int coordinate = 0) {
 inline Expression joint_speed(JointId joint, int coordinate = 0) {
   return observed(Observed::joint_speed, joint.index(), coordinate);
 }
-inline Expression touching(BodyId body) {  // a contact pushed it in the last step
+inline Expression touching(BodyId body) {  // a contact acted on it in the last step
   return observed(Observed::touching, body.index());
 }
 inline Expression linear_acceleration(BodyId body, int axis) {  // m/s^2, of its centre of mass

@@ -1,4 +1,4 @@
-// How bodies move: integrators of free flight, and how they turn bodies.
+// How bodies move: integrators of free flight, and of rotation.
 //
 // A step takes Options::substeps steps of an integrator of h = dt / substeps each. Forces are
 // gravity, wind and drag, attractors, what Batch and controls give, and springs: joints that are
@@ -39,7 +39,7 @@ enum class Integrator {
 const char* to_string(Integrator integrator);
 
 enum class Rotation {
-  splitting,    // turns about one principal axis after the other; keeps |L| and bounds energy
+  splitting,    // rotates about one principal axis after the other; keeps |L| and bounds energy
   quaternion,   // q' = 1/2 w q, normalised
   exponential,  // q = exp(u) q, u' = dexp^-1(u) w (Munthe-Kaas)
 };

@@ -1,6 +1,6 @@
 // Joints: what holds two bodies of a scene together, or one to the world. Each has a frame on both
 // bodies; where the joint wants them together, they coincide or one is displaced along a coordinate
-// of the joint. A hinge turns about z of its frames, a slider slides along x.
+// of the joint. A hinge rotates about z of its frames, a slider slides along x.
 //
 // A coordinate (the angle of a hinge, rad; the travel of a slider, m; the length of a distance
 // joint, m) is what B's frame has moved against A's. It may have a limit and a drive. Angles are
@@ -61,7 +61,7 @@ struct HingeJoint {
   std::optional<Limit> limit = {};  // rad
   std::optional<Drive> drive = {};
 };
-// B's frame slides along x of A's and does not turn against it.
+// B's frame slides along x of A's and does not rotate against it.
 struct SliderJoint {
   std::optional<Limit> limit = {};  // m
   std::optional<Drive> drive = {};
@@ -75,7 +75,7 @@ struct DistanceJoint {
   std::optional<Limit> limit = {};
   std::optional<Spring> spring = {};
 };
-// B is a wheel: its frame moves along x of A's on a suspension and, in space, turns about the
+// B is a wheel: its frame moves along x of A's on a suspension and, in space, rotates about the
 // common z axis only.
 struct WheelJoint {
   Spring suspension = {};

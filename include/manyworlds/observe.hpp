@@ -19,7 +19,7 @@ struct Ray {
   Vec3 origin = Vec3::Zero();  // m, in the world or, with a body, in that body's frame
   Vec3 direction{1, 0, 0};     // need not be unit
   double length = std::numeric_limits<double>::infinity();  // m: it sees what is nearer
-  BodyId body = {};                                         // moves and turns with it; none: stays
+  BodyId body = {};                                         // fixed to it; none: stays
   std::uint32_t mask = 0xffffffffu;                         // of Filter::category
 };
 

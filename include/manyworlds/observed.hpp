@@ -10,7 +10,7 @@ namespace manyworlds {
 //   step: of the last step of a call, 0 before it
 #define MW_OBSERVERS(X)                                                                \
   X(contacts, world, step, "every contact point with the impulses of the last step")   \
-  X(touching, body, step, "which bodies a contact pushed in the last step")            \
+  X(touching, body, step, "which bodies a contact acted on in the last step")          \
   X(penetration, world, step, "the deepest overlap that the last step began with")     \
   X(motion, world, state, "energies, momenta, mass centre")                            \
   X(joints, coordinate, state, "coordinates of joints and their speeds")               \
@@ -33,7 +33,7 @@ namespace manyworlds {
   X(penetration, penetration, one, "m",                                                           \
     "deepest overlap that the last step began with, 0 if none")                                   \
   X(contact_count, contacts, one, "1", "contact points of the last step, all of them")            \
-  X(touching, touching, one, "1", "1 where a contact pushed the body in the last step, else 0")   \
+  X(touching, touching, one, "1", "1 where a contact acted on the body in the last step, else 0") \
   X(joint_position, joints, one, "m or rad", "coordinates of the joints (Plan.first_coordinate)") \
   X(joint_speed, joints, one, "m/s or rad/s", "")                                                 \
   X(joint_force, joint_loads, vector, "N", "on body B, world axes, last substep")                 \

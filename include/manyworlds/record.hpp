@@ -50,10 +50,10 @@ PlanOptions plan_options_from_json(std::string_view json);
 
 // ---- recording ---------------------------------------------------------------------------------
 
-inline constexpr int kMostWorldsByDefault = 64;
+inline constexpr int kMaxWorldsByDefault = 64;
 
 struct RecordOptions {
-  std::vector<int> worlds = {};  // of the batch; empty: the first kMostWorldsByDefault of them
+  std::vector<int> worlds = {};  // of the batch; empty: the first kMaxWorldsByDefault of them
   // A sample is taken at once, and after the first step() call that ends on or beyond each multiple
   // of `every` steps. 0: only when sample() says so.
   int every = 1;

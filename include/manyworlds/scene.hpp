@@ -1,6 +1,6 @@
 // Scene: what one world is. Plain values that a person or a loader fills in; nothing here knows
 // about lanes, batches or steps. validate() lists everything that is wrong with it, compile()
-// (plan.hpp) turns it into what the step needs.
+// (plan.hpp) compiles it for the step.
 //
 // Units are SI (m, kg, s, rad). A planar scene uses x and y, with rotations about z; a spatial
 // scene uses all three axes. Frames: "body" is the frame the user places by Body::position and

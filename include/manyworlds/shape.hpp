@@ -79,7 +79,7 @@ struct Terrain {
 // Spatial, fixed bodies only: everything below a surface of triangles over a grid of points, which
 // is centred on the shape frame. Each cell has two, on either side of the diagonal from its corner
 // of low x and y. Bodies slide and roll over its edges as over one smooth ground; at its border the
-// solid falls off at a right angle. A body that got below the surface is pushed up.
+// solid falls off at a right angle. A body that got below the surface is moved up.
 struct HeightField {
   std::vector<double> heights = {};  // m, of the points: x varies fastest
   int columns = 2;                   // points along x, 2 or more; as many rows as that leaves

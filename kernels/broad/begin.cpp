@@ -12,7 +12,7 @@ namespace {
 
 // How much a shape's bounds grow: half of 4 slop, or as far as its body moves in the step, capped.
 // Planes take what lies beyond the cap too: against a half space a far margin does no harm.
-MW_INLINE Float margin_of(const Tables& t, const Group& g, Work& w, Float speed, int index) {
+MW_INLINE Float margin_of(const Constants& t, const Group& g, Work& w, Float speed, int index) {
   const Float travel = speed * Float(t.dt);
   const Float margin = clamp(travel, Float(t.half_margin), constants_of_shape(g, index).margin_cap);
   max(travel - margin, Float(Real(0))).store(w.beyond + index * kLanes);
@@ -30,9 +30,9 @@ MW_INLINE void put_bounds(Work& w, int collider, const BoundsOf<Vec2>& bounds) {
   store(w.bounds + collider * 4 * kLanes + 2 * kLanes, bounds.half);
 }
 
-void spatial_collider(const Tables& t, const Group& g, Work& w, int index) {
+void spatial_collider(const Constants& t, const Group& g, Work& w, int index) {
   const auto& c = t.collider[index];
-  const auto& numbers = constants_of_shape(g, index);
+  const auto& constants = constants_of_shape(g, index);
   const auto at = kernels::state_offsets(t.dimension);
   const Real* state = g.state + c.body * t.state_stride * kLanes;
   Vec3 p = load_vec3(state + at.position * kLanes);
@@ -42,12 +42,12 @@ void spatial_collider(const Tables& t, const Group& g, Work& w, int index) {
   alignas(64) std::int32_t o[kLanes];
   for (int l = 0; l < kLanes; ++l) o[l] = w.pose_base[l] + c.row;
   Mat3 r;
-  const bool turned = t.has_orientation && !(t.collider_is_body && info(c.kind).ball);
-  if (turned) {
+  const bool rotated = t.has_orientation && !(t.collider_is_body && info(c.kind).ball);
+  if (rotated) {
     r = matrix(load_quat(state + at.orientation * kLanes));
     if (!t.collider_is_body) {
-      p = p + mul(r, vec3(numbers.offset));
-      const LaneNumber* axes = numbers.rotation;
+      p = p + mul(r, vec3(constants.offset));
+      const LaneNumber* axes = constants.rotation;
       r = {mul(r, vec3(axes)), mul(r, vec3(axes + 3)), mul(r, vec3(axes + 6))};
     }
     const Vec3 omega = load_vec3(state + at.angular * kLanes);
@@ -55,12 +55,12 @@ void spatial_collider(const Tables& t, const Group& g, Work& w, int index) {
   }
   const Float margin = margin_of(t, g, w, speed, index);
   put_bounds(w, index,
-             put_shape(SpatialPlacement{c, numbers, nullptr, p, r, margin, w.pose_rows, o}));
+             put_shape(SpatialPlacement{c, constants, nullptr, p, r, margin, w.pose_rows, o}));
 }
 
-void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
+void planar_collider(const Constants& t, const Group& g, Work& w, int index) {
   const auto& c = t.collider[index];
-  const auto& numbers = constants_of_shape(g, index);
+  const auto& constants = constants_of_shape(g, index);
   const auto at = kernels::state_offsets(t.dimension);
   const Real* state = g.state + c.body * t.state_stride * kLanes;
   Vec2 p = load_vec2(state + at.position * kLanes);
@@ -70,13 +70,13 @@ void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
   alignas(64) std::int32_t o[kLanes];
   for (int l = 0; l < kLanes; ++l) o[l] = w.pose_base[l] + c.row;
   Rot2 q{Real(1), Real(0)};
-  const bool turned = t.has_orientation && !(t.collider_is_body && info(c.kind).ball);
-  if (turned) {
+  const bool rotated = t.has_orientation && !(t.collider_is_body && info(c.kind).ball);
+  if (rotated) {
     q = load_rot2(state + at.orientation * kLanes);
     if (!t.collider_is_body) {
-      p = p + rotate(q, {numbers.offset[0], numbers.offset[1]});
-      q = {fms(q.c, Float(numbers.rotation[0]), q.s * Float(numbers.rotation[1])),
-           fma(q.s, Float(numbers.rotation[0]), q.c * Float(numbers.rotation[1]))};
+      p = p + rotate(q, {constants.offset[0], constants.offset[1]});
+      q = {fms(q.c, Float(constants.rotation[0]), q.s * Float(constants.rotation[1])),
+           fma(q.s, Float(constants.rotation[0]), q.c * Float(constants.rotation[1]))};
     }
     const Float omega = Float::load(state + at.angular * kLanes);
     speed = fma(abs(omega), constants_of_body(g, c.body).radius, speed);
@@ -84,12 +84,12 @@ void planar_collider(const Tables& t, const Group& g, Work& w, int index) {
   const Float margin = margin_of(t, g, w, speed, index);
   const auto* polygon = g.constants.polygon ? &constants_of_polygon(g, index) : nullptr;
   put_bounds(w, index,
-             put_shape(PlanarPlacement{c, numbers, polygon, p, q, margin, w.pose_rows, o}));
+             put_shape(PlanarPlacement{c, constants, polygon, p, q, margin, w.pose_rows, o}));
 }
 
 }  // namespace
 
-void turn_body_rows(const Tables& t, const Group& g, Work& w) {
+void rotate_body_rows(const Constants& t, const Group& g, Work& w) {
   using kernels::InertiaKind;
   const bool scalar = t.inertia_kind != InertiaKind::tensor;
   if (scalar && t.collider_is_body && !t.bodies_vary) return;  // constant
@@ -120,7 +120,7 @@ void turn_body_rows(const Tables& t, const Group& g, Work& w) {
   }
 }
 
-void begin(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+void begin(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   for (int i = 0; w.pose_rows && i < t.colliders; ++i) {
     if (t.dimension == kernels::Dimension::spatial) {
@@ -129,7 +129,7 @@ void begin(const Tables& t, const Group& g, kernels::Scratch* scratch) {
       planar_collider(t, g, w, i);
     }
   }
-  turn_body_rows(t, g, w);
+  rotate_body_rows(t, g, w);
   for (int b = 0; b <= t.bodies; ++b) w.touched[b] = 0;
   for (int list = 0; list < kLists; ++list) {
     w.blocks[list].count = 0;

@@ -35,7 +35,7 @@ struct AllLanesAllowed {
 };
 
 template <class Allowed>
-void test_pairs(const Tables& t, Work& w, int at, Allowed allowed) {
+void test_pairs(const Constants& t, Work& w, int at, Allowed allowed) {
   const auto& c = t.pair_class[at];
   if (is_fixed(c.list)) {
     test_class(
@@ -49,9 +49,9 @@ void test_pairs(const Tables& t, Work& w, int at, Allowed allowed) {
   }
 }
 
-// The same, leaving out lanes in which neither body of a pair can push the other.
+// The same, leaving out lanes in which neither body of a pair can act on the other.
 template <class Allowed>
-void test_live_pairs(const Tables& t, const Group& g, Work& w, int at, Allowed allowed) {
+void test_live_pairs(const Constants& t, const Group& g, Work& w, int at, Allowed allowed) {
   if (!has_idle_bodies(g)) return test_pairs(t, w, at, allowed);
   const auto& c = t.pair_class[at];
   const std::int32_t* body = t.collider_body;
@@ -65,7 +65,7 @@ void test_live_pairs(const Tables& t, const Group& g, Work& w, int at, Allowed a
 
 }  // namespace
 
-void broad_phase(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+void broad_phase(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   if (t.sparse) return find_sparse_pairs(t, g, w);
   if (t.sweep) sort_and_sweep(t, w);

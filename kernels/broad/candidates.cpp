@@ -15,7 +15,7 @@ constexpr float kDenseOccupancy = 0.45f;
 constexpr float kDenseOccupancy = 0.55f;
 #endif
 
-std::int32_t dummy_code(const Tables& t, bool fixed) {
+std::int32_t dummy_code(const Constants& t, bool fixed) {
   return (fixed ? 0 : t.colliders) | (t.colliders << 16);
 }
 
@@ -56,7 +56,7 @@ class RowPacker {
 namespace {
 
 // Drops the last candidates of lanes that have too many: the same ones in both layouts.
-void limit_candidates(const Tables& t, Work& w, int at) {
+void limit_candidates(const Constants& t, Work& w, int at) {
   const auto& pairs = t.pair_class[at];
   const int limit = candidate_limit(t, pairs), hits = w.hit_count[at];
   if (t.sparse || hits <= limit) return;
@@ -75,7 +75,7 @@ void limit_candidates(const Tables& t, Work& w, int at) {
 
 }  // namespace
 
-kernels::Layout choose_layout(const Tables& t, const Group&, kernels::Scratch* scratch,
+kernels::Layout choose_layout(const Constants& t, const Group&, kernels::Scratch* scratch,
                               kernels::Layout wish) {
   Work& w = work_of(scratch);
   unsigned blocks[kLists] = {}, all = 0, active = 0;
@@ -105,7 +105,7 @@ kernels::Layout choose_layout(const Tables& t, const Group&, kernels::Scratch* s
   return w.dense ? kernels::Layout::dense : kernels::Layout::rows;
 }
 
-void list_candidates(const Tables& t, Work& w) {
+void list_candidates(const Constants& t, Work& w) {
   const auto& pairs = t.pair_class[w.class_index];
   const int first = first_hit(t, w, w.class_index);
   const std::int32_t* hits = w.hits + first;
@@ -137,7 +137,7 @@ void list_candidates(const Tables& t, Work& w) {
   packer.close();
 }
 
-void compact(const Tables& t, Work& w, const CandidateList& from, const std::uint32_t* keep,
+void compact(const Constants& t, Work& w, const CandidateList& from, const std::uint32_t* keep,
              CandidateList& to) {
   const auto& pairs = t.pair_class[w.class_index];
   if (w.dense) {

@@ -11,7 +11,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class LaneSweep {
  public:
-  LaneSweep(const Tables& t, Work& w, int lane)
+  LaneSweep(const Constants& t, Work& w, int lane)
       : t_(t),
         w_(w),
         s_(w.sparse),
@@ -141,7 +141,7 @@ class LaneSweep {
   // in too many of them; counts what they hold.
   void cut(int count) {
     const float wanted = spread_[1].range / (2 * spread_[1].length);
-    strips_ = !(wanted > 1) ? 1 : wanted < kMostStrips ? static_cast<int>(wanted) : kMostStrips;
+    strips_ = !(wanted > 1) ? 1 : wanted < kMaxStrips ? static_cast<int>(wanted) : kMaxStrips;
     for (;; strips_ /= 2) {
       strips_per_length_ = static_cast<float>(strips_) / spread_[1].range;
       for (int s = 0; s <= strips_ + 1; ++s) s_.strip_start[s] = 0;
@@ -177,7 +177,7 @@ class LaneSweep {
     }
   }
 
-  const Tables& t_;
+  const Constants& t_;
   Work& w_;
   SparseWork& s_;
   int lane_, dim_, strips_ = 1;

@@ -48,7 +48,7 @@ void sort_lanes(Real* sorted, int n) {
 
 }  // namespace
 
-void sort_and_sweep(const Tables& t, Work& w) {
+void sort_and_sweep(const Constants& t, Work& w) {
   const int n = t.colliders;
   const int dim = t.dimension == kernels::Dimension::spatial ? 3 : 2;
   for (int i = 0; i < n; ++i) {

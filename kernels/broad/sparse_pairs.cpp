@@ -16,7 +16,7 @@ namespace {
 
 class LaneSearch {
  public:
-  LaneSearch(const Tables& t, const Group& g, Work& w, int lane, bool wakes)
+  LaneSearch(const Constants& t, const Group& g, Work& w, int lane, bool wakes)
       : t_(t), g_(g), w_(w), s_(w.sparse), lane_(lane), wakes_(wakes), idle_(has_idle_bodies(g)) {}
 
   void run() {
@@ -104,7 +104,7 @@ class LaneSearch {
     found_ = kept;
   }
 
-  const Tables& t_;
+  const Constants& t_;
   const Group& g_;
   Work& w_;
   SparseWork& s_;
@@ -113,7 +113,7 @@ class LaneSearch {
 };
 
 // Planes are close to all shapes or to none along them: each is tested against all, in all lanes.
-void meet_planes(const Tables& t, const Group& g, Work& w, int at) {
+void meet_planes(const Constants& t, const Group& g, Work& w, int at) {
   const auto& c = t.pair_class[at];
   const bool idle = has_idle_bodies(g);
   const int first = first_hit(t, w, at), limit = candidate_limit(t, c);
@@ -141,7 +141,7 @@ void meet_planes(const Tables& t, const Group& g, Work& w, int at) {
 }
 
 // The pairs of the lanes, each ascending, into the hits of the classes.
-void merge_lanes(const Tables& t, Work& w, std::uint32_t lanes) {
+void merge_lanes(const Constants& t, Work& w, std::uint32_t lanes) {
   SparseWork& s = w.sparse;
   const std::uint64_t *next[kLanes], *end[kLanes];
   for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
@@ -174,7 +174,7 @@ void merge_lanes(const Tables& t, Work& w, std::uint32_t lanes) {
 
 }  // namespace
 
-void find_sparse_pairs(const Tables& t, const Group& g, Work& w) {
+void find_sparse_pairs(const Constants& t, const Group& g, Work& w) {
   const bool idle = has_idle_bodies(g);
   std::uint32_t lanes = kAllLanes, mixed = 0;
   if (idle) {

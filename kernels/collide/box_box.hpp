@@ -88,7 +88,7 @@ MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out
     least_key = min(key, least_key);
     x = select(deeper, p.x[i], x), y = select(deeper, p.y[i], y), z = select(deeper, p.z[i], z);
   }
-  // What is as near as the deepest point, or within the margin, may push.
+  // What is as near as the deepest point, or within the margin, may exert a force.
   const Float limit = margin + max(z, zero);
   out.x[0] = x, out.y[0] = y, out.z[0] = z;
   out.valid[0] = z < Float(kOutOfReach);
@@ -205,7 +205,7 @@ struct BoxBox {
   using A = BoxPose;
   using B = BoxPose;
   static constexpr int kPoints = 4;
-  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float axis,
+  static MW_INLINE void collide(const Constants& t, const A& a, const B& b, Float axis,
                                 Manifold<S, 4>& m) {
     const Float zero(Real(0)), half(Real(0.5)), two(Real(2)), five(Real(5));
     const Vec3 d = b.p - a.p;

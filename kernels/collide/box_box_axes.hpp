@@ -13,7 +13,7 @@ struct BoxAxes {
   Float separation, axis;
 };
 
-MW_INLINE BoxAxes find_box_axes(const Tables& t, const BoxPose& a, const BoxPose& b) {
+MW_INLINE BoxAxes find_box_axes(const Constants& t, const BoxPose& a, const BoxPose& b) {
   const Vec3 ra[3] = {a.r.x, a.r.y, a.r.z}, rb[3] = {b.r.x, b.r.y, b.r.z};
   const Float ha[3] = {a.half.x, a.half.y, a.half.z}, hb[3] = {b.half.x, b.half.y, b.half.z};
   const Vec3 d = b.p - a.p;

@@ -72,7 +72,7 @@ struct BoxAxis {
 };
 
 // For an axis that runs through the box.
-MW_INLINE BoxAxis shallowest_axis(const Tables& t, Vec3 box, const LocalAxis& axis) {
+MW_INLINE BoxAxis shallowest_axis(const Constants& t, Vec3 box, const LocalAxis& axis) {
   const Float zero(Real(0)), one(Real(1)), usable(Real(1e-3));
   const auto face = [&](Float p, Float u, Float half) {
     return abs(p) - fma(axis.half, abs(u), half);
@@ -133,7 +133,8 @@ struct BoxCapsule {
   using A = BoxPose;
   using B = CapsulePose<Vec3>;
   static constexpr int kPoints = 4;
-  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float, Manifold<S, 4>& m) {
+  static MW_INLINE void collide(const Constants& t, const A& a, const B& b, Float,
+                                Manifold<S, 4>& m) {
     const Float zero(Real(0)), one(Real(1));
     const Vec3 d = b.p - a.p;
     LocalAxis axis{mul_transposed(a.r, d), mul_transposed(a.r, b.axis), b.half, {}};

@@ -11,7 +11,8 @@ struct BoxSphere {
   using A = BoxPose;
   using B = SpherePose;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 1>& m) {
     const Float zero(Real(0)), one(Real(1));
     const Vec3 d = b.p - a.p;
     const Vec3 local = mul_transposed(a.r, d);
@@ -51,7 +52,8 @@ struct RectangleCircle {
   using A = RectanglePose;
   using B = CirclePose;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 1>& m) {
     const Float zero(Real(0)), one(Real(1));
     const Vec2 d = b.p - a.p;
     const Vec2 local = rotate_inverse(a.q, d);

@@ -15,7 +15,8 @@ struct CapsuleCapsule {
   using A = CapsulePose<Vec3>;
   using B = CapsulePose<Vec3>;
   static constexpr int kPoints = 4;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 4>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 4>& m) {
     const Float zero(Real(0)), one(Real(1));
     const Vec3 d = b.p - a.p;
     const Float cosine = dot(a.axis, b.axis), da = dot(a.axis, d), db = dot(b.axis, d);

@@ -29,14 +29,15 @@ MW_INLINE void leave_out_points(Manifold<S, N>& m, int first) {
   }
 }
 
-// One point, at the place on the axis that is nearest to the centre. A centre on the axis is pushed
+// One point, at the place on the axis that is nearest to the centre. A centre on the axis is moved
 // out across it.
 template <class S, class Round>
 struct CapsuleRound {
   using A = CapsulePose<typename S::Vec>;
   using B = Round;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 1>& m) {
     const auto d = b.p - a.p;
     const auto nearest = a.axis * clamp(dot(a.axis, d), -a.half, a.half);
     round_round<S>(m, d - nearest, a.radius, b.radius, across(a.axis));
@@ -53,7 +54,7 @@ struct PlaneCapsule {
   using A = PlanePose;
   using B = CapsulePose<typename S::Vec>;
   static constexpr int kPoints = S::kMulti;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float,
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
                                 Manifold<S, kPoints>& m) {
     m.normal = normal_of(a, b.p);
     if constexpr (S::kDim == 3) m.tangent = a.tangent;

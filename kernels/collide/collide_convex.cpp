@@ -122,7 +122,7 @@ MW_INLINE void put_kept(const KeptPoints& kept, const Frame& f, Float radius, Ma
 
 // Clips one shape's feature against the face of the other, in the lanes of `use`: those in which
 // the face is one of `ref`. Returns the lanes in which points were found.
-Mask clip_on_face(const Tables& t, const ConvexShape& ref, const ConvexShape& inc,
+Mask clip_on_face(const Constants& t, const ConvexShape& ref, const ConvexShape& inc,
                   const ConvexAxis& axis, Vec3 d, bool flip, Mask use, Manifold<Isotropic, 4>& m) {
   const Vec3 n = flip ? -axis.face_normal : axis.face_normal, d_r = flip ? -d : d;
   Feature face, other;
@@ -244,7 +244,7 @@ Mask keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis&
 
 }  // namespace
 
-void collide_convex_pair(const Tables& t, const ConvexShape& a, const Tile* tile,
+void collide_convex_pair(const Constants& t, const ConvexShape& a, const Tile* tile,
                          const ConvexShape& b, Mask active, Manifold<Isotropic, 4>& m) {
   const Float zero(Real(0));
   const Vec3 d = b.p - a.p;
@@ -279,7 +279,7 @@ void collide_convex_pair(const Tables& t, const ConvexShape& a, const Tile* tile
   if (any(on_b)) clip_on_face(t, b, a, axis, d, true, on_b, m);
 }
 
-void collide_plane_convex(const Tables& t, const PlanePose& a, const ConvexShape& b,
+void collide_plane_convex(const Constants& t, const PlanePose& a, const ConvexShape& b,
                           Manifold<Isotropic, 4>& m) {
   const Float zero(Real(0));
   Feature f;
@@ -350,7 +350,7 @@ void collide_plane_point(const PlanePose& a, const ConvexShape& b, Manifold<Isot
   m.valid[0] = mask_from_bits(kAllLanes);
 }
 
-void collide_convex_point(const Tables& t, const ConvexShape& a, const Tile* tile,
+void collide_convex_point(const Constants& t, const ConvexShape& a, const Tile* tile,
                           const ConvexShape& b, Mask active, Manifold<Isotropic, 1>& m) {
   const Float zero(Real(0)), half(Real(0.5));
   const Vec3 d = b.p - a.p;

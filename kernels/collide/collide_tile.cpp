@@ -9,7 +9,7 @@ namespace {
 // Sine by which a normal may leave the range at an edge that sticks out: bodies at rest on the
 // neighbour lean a little.
 constexpr Real kNormalSlack = Real(1e-3);
-// Edges that turn by less count as flat.
+// Edges with a smaller dihedral angle count as flat.
 constexpr Real kFlat = Real(1e-4);
 
 // Corners of the two triangles of a cell, and the third corners of their neighbours.

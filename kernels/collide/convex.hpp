@@ -34,19 +34,19 @@ struct ConvexAxis {
   Mask face_of_b;
   Mask near;  // elsewhere the bounds' margins do not meet, and nothing else is of use
 };
-void find_convex_axis(const Tables& t, const ConvexShape& a, const ConvexShape& b, Mask active,
+void find_convex_axis(const Constants& t, const ConvexShape& a, const ConvexShape& b, Mask active,
                       ConvexAxis& out);
 
 // The manifold of two convex shapes. B is no sphere, and if one has a radius it is B. `tile`: A, or
 // nullptr (tile.hpp).
 struct Tile;
-void collide_convex_pair(const Tables& t, const ConvexShape& a, const Tile* tile,
+void collide_convex_pair(const Constants& t, const ConvexShape& a, const Tile* tile,
                          const ConvexShape& b, Mask active, Manifold<Isotropic, 4>& m);
-void collide_plane_convex(const Tables& t, const PlanePose& a, const ConvexShape& b,
+void collide_plane_convex(const Constants& t, const PlanePose& a, const ConvexShape& b,
                           Manifold<Isotropic, 4>& m);
 // Of pairs that touch at one point: B is a sphere, or one of the two is round all over. `tile`: A,
 // or nullptr; then B is no sphere.
-void collide_convex_point(const Tables& t, const ConvexShape& a, const Tile* tile,
+void collide_convex_point(const Constants& t, const ConvexShape& a, const Tile* tile,
                           const ConvexShape& b, Mask active, Manifold<Isotropic, 1>& m);
 void collide_plane_point(const PlanePose& a, const ConvexShape& b, Manifold<Isotropic, 1>& m);
 

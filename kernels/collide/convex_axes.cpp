@@ -252,7 +252,7 @@ void climb(const ConvexShape& a, const ConvexShape& b, Vec3 d, Float tolerance, 
 
 }  // namespace
 
-void find_convex_axis(const Tables& t, const ConvexShape& a, const ConvexShape& b, Mask active,
+void find_convex_axis(const Constants& t, const ConvexShape& a, const ConvexShape& b, Mask active,
                       ConvexAxis& out) {
   const Float zero(Real(0)), one(Real(1)), never(Real(-1e30));
   const Vec3 d = b.p - a.p;

@@ -40,7 +40,8 @@ struct LinkCircle {
   using A = LinkPose;
   using B = CirclePose;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 1>& m) {
     const Float zero(Real(0)), one(Real(1));
     const Vec2 d = b.p - a.p, up = across(a.axis);
     const Float place = dot(a.axis, d), height = dot(up, d);
@@ -64,7 +65,8 @@ struct LinkEdges {
   using A = LinkPose;
   using B = PoseB;
   static constexpr int kPoints = 2;
-  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float, Manifold<S, 2>& m) {
+  static MW_INLINE void collide(const Constants& t, const A& a, const B& b, Float,
+                                Manifold<S, 2>& m) {
     const Float zero(Real(0)), tie(t.face_tie);
     const Vec2 d = b.p - a.p, up = across(a.axis), end = a.axis * a.half;
     const Corners<2> ca{{-end, end}, {-up, up}};

@@ -22,7 +22,7 @@ struct PoseOffsets {
 };
 
 template <bool kPair>
-MW_INLINE PoseOffsets pose_offsets(const Tables& t, const Work& w, const std::int32_t* code) {
+MW_INLINE PoseOffsets pose_offsets(const Constants& t, const Work& w, const std::int32_t* code) {
   PoseOffsets o;
   const Ints shapes = Ints::load(code), base = Ints::load(w.pose_base);
   (base + gather(t.collider_row, high_half(shapes))).store(o.b);
@@ -46,7 +46,7 @@ MW_INLINE typename S::Vec origin_of(const Pose& pose) {
 }
 
 template <class S, class Pair, bool kPair>
-void collide_list(const Tables& t, const Group& g, Work& w, const CandidateList& list) {
+void collide_list(const Constants& t, const Group& g, Work& w, const CandidateList& list) {
   AddContact<S, Pair::kPoints>* const add_contact =
       row_builder<S>(t, w).template add<Pair::kPoints>(kPair);
   const auto& pairs = t.pair_class[w.class_index];
@@ -67,7 +67,7 @@ void collide_list(const Tables& t, const Group& g, Work& w, const CandidateList&
 
 // Boxes first drop the candidates that a separating axis keeps apart.
 template <bool kPair>
-void find_axes(const Tables& t, Work& w) {
+void find_axes(const Constants& t, Work& w) {
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
   CandidateList& list = w.candidates;
   for (int i = 0; i < list.count; ++i) {
@@ -91,7 +91,7 @@ template <class S, class Reverse>
 inline constexpr bool kOnlyFixed<Reversed<S, Reverse>> = true;
 
 template <class S, class Pair>
-void collide(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+void collide(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   const bool fixed = is_fixed(t.pair_class[w.class_index].list);
   list_candidates(t, w);
@@ -116,7 +116,7 @@ inline constexpr bool has_radius(kernels::ShapeKind kind) {
 }
 
 template <class S, int N>
-MW_INLINE void turn_round(Manifold<S, N>& m) {
+MW_INLINE void exchange_sides(Manifold<S, N>& m) {
   m.normal = -m.normal;
   for (int i = 0; i < N; ++i) {
     const auto point = m.point_a[i];
@@ -126,7 +126,7 @@ MW_INLINE void turn_round(Manifold<S, N>& m) {
 }
 
 template <int N>
-MW_INLINE void collide_tile(const Tables& t, const ConvexShape& a, const Tile& tile,
+MW_INLINE void collide_tile(const Constants& t, const ConvexShape& a, const Tile& tile,
                             const ConvexShape& b, Mask active, Manifold<Isotropic, N>& m) {
   if constexpr (N == 1) {
     if (b.kind == kernels::ShapeKind::sphere) return collide_tile_sphere(a, tile, b, m);
@@ -138,13 +138,13 @@ MW_INLINE void collide_tile(const Tables& t, const ConvexShape& a, const Tile& t
 }
 
 template <int N, bool kPair>
-void collide_convex_list(const Tables& t, const Group& g, Work& w) {
+void collide_convex_list(const Constants& t, const Group& g, Work& w) {
   using kernels::ShapeKind;
   const auto& pairs = t.pair_class[w.class_index];
   const ShapeKind kind_a = shape_a(pairs.kind), kind_b = shape_b(pairs.kind);
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
   const CandidateList& list = w.candidates;
-  const bool turned = has_radius(kind_a);  // the method wants what is round as B
+  const bool exchanged = has_radius(kind_a);  // the method wants what is round as B
   AddContact<Isotropic, N>* const add_contact = row_builder<Isotropic>(t, w).template add<N>(kPair);
   ConvexShape a, b;
   for (int i = 0; i < list.count; ++i) {
@@ -179,19 +179,19 @@ void collide_convex_list(const Tables& t, const Group& g, Work& w) {
     } else {
       load_convex(kPair ? t.hulls : nullptr, kind_a, base_a, o.a, a);
       origin_a = a.p;
-      const ConvexShape &first = turned ? b : a, &second = turned ? a : b;
+      const ConvexShape &first = exchanged ? b : a, &second = exchanged ? a : b;
       if constexpr (N == 1) {
         collide_convex_point(t, first, nullptr, second, active, m);
       } else {
         collide_convex_pair(t, first, nullptr, second, active, m);
       }
-      if (turned) turn_round(m);
+      if (exchanged) exchange_sides(m);
     }
     add_contact(t, g, w, pairs.list, pairs, m, active, code, list.key + i * kLanes, origin_a, b.p);
   }
 }
 
-inline void collide_convex(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+inline void collide_convex(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   const ListId list = t.pair_class[w.class_index].list;
   list_candidates(t, w);

@@ -13,7 +13,7 @@ inline constexpr Real kClearly = Real(0.2);
 
 // Candidate points over the reference face, as ClipPoints; each edge gives two, each corner one.
 struct Clipped {
-  static constexpr int kMost = 3 * kMostCorners + 1;
+  static constexpr int kMost = 3 * kMaxCorners + 1;
   int size = 0;
   Float x[kMost], y[kMost], z[kMost];
   MW_INLINE int count() const { return size; }
@@ -40,7 +40,7 @@ MW_INLINE Frame frame_of(Vec3 n, Vec3 along, Float height) {
 
 struct Outline {
   int count;
-  Vec3 corner[kMostCorners];  // in a frame
+  Vec3 corner[kMaxCorners];  // in a frame
   Vec3 middle;
   Float extent2;  // squared distance of the farthest corner from the middle
   bool disc;      // a cylinder's cap: all within the radius of the middle

@@ -102,7 +102,8 @@ struct RoundEdges {
   using A = PoseA;
   using B = PoseB;
   static constexpr int kPoints = 2;
-  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float, Manifold<S, 2>& m) {
+  static MW_INLINE void collide(const Constants& t, const A& a, const B& b, Float,
+                                Manifold<S, 2>& m) {
     const Float zero(Real(0)), tie(t.face_tie);
     const auto ca = load_corners(a);
     const auto cb = load_corners(b);

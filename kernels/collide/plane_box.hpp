@@ -17,7 +17,8 @@ struct PlaneBox {
   using A = PlanePose;
   using B = BoxPose;
   static constexpr int kPoints = 4;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 4>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 4>& m) {
     const BoxFace f = opposed_face(b, a.normal);
     const Vec3 corner[4] = {f.centre + f.edge1 + f.edge2, f.centre - f.edge1 + f.edge2,
                             f.centre - f.edge1 - f.edge2, f.centre + f.edge1 - f.edge2};
@@ -44,7 +45,8 @@ struct PlaneRectangle {
   using A = PlanePose;
   using B = RectanglePose;
   static constexpr int kPoints = 2;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 2>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 2>& m) {
     const Float zero(Real(0)), one(Real(1)), tie(Real(1e-3));
     const Vec2 n{a.normal.x, a.normal.y};
     const Vec2 local = rotate_inverse(b.q, n);

@@ -13,7 +13,8 @@ struct PolygonPolygon {
   using A = PolygonPose;
   using B = PolygonPose;
   static constexpr int kPoints = 2;
-  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float, Manifold<S, 2>& m) {
+  static MW_INLINE void collide(const Constants& t, const A& a, const B& b, Float,
+                                Manifold<S, 2>& m) {
     const Float half(Real(0.5)), zero(Real(0));
     const PolygonCorners ca = load_corners(a), cb = load_corners(b);
     const Vec2 d = b.p - a.p;
@@ -43,7 +44,8 @@ struct PolygonCircle {
   using A = PolygonPose;
   using B = CirclePose;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 1>& m) {
     const Float zero(Real(0)), one(Real(1));
     const PolygonCorners c = load_corners(a);
     const Vec2 d = b.p - a.p;
@@ -80,7 +82,7 @@ struct RoundedCircle {
   using A = RoundedPose;
   using B = CirclePose;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float axis,
+  static MW_INLINE void collide(const Constants& t, const A& a, const B& b, Float axis,
                                 Manifold<S, 1>& m) {
     PolygonCircle<S>::collide(t, a, {b.p, b.radius + a.radius}, axis, m);
     m.point_a[0] = fma(m.normal, a.radius, m.point_a[0]);
@@ -93,7 +95,8 @@ struct PlaneOutline {
   using A = PlanePose;
   using B = PoseB;
   static constexpr int kPoints = 2;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 2>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 2>& m) {
     const Vec2 n{a.normal.x, a.normal.y};
     const PolygonEdge e = opposed_edge(load_corners(b), n);
     const Float height = dot(n, b.p) - a.offset;

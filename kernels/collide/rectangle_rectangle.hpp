@@ -11,7 +11,8 @@ struct RectangleRectangle {
   using A = RectanglePose;
   using B = RectanglePose;
   static constexpr int kPoints = 2;
-  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float, Manifold<S, 2>& m) {
+  static MW_INLINE void collide(const Constants& t, const A& a, const B& b, Float,
+                                Manifold<S, 2>& m) {
     const Float zero(Real(0)), one(Real(1)), tie(Real(1e-3));
     const Vec2 d = b.p - a.p;
     const Vec2 in_a = rotate_inverse(a.q, d), in_b = rotate_inverse(b.q, d);

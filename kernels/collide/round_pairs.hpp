@@ -28,7 +28,7 @@ MW_INLINE void put_point(Manifold<S, 1>& m, typename S::Vec normal, Float separa
   m.valid[0] = mask_from_bits(kAllLanes);
 }
 
-// Coincident centres push apart along `fallback`.
+// Coincident centres separate along `fallback`.
 template <class S, class Vec>
 MW_INLINE void round_round(Manifold<S, 1>& m, Vec d, Float radius_a, Float radius_b, Vec fallback) {
   const Float d2 = dot(d, d);
@@ -45,7 +45,8 @@ struct SphereSphere {
   using A = SpherePose;
   using B = SpherePose;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 1>& m) {
     round_round<S>(m, b.p - a.p, a.radius, b.radius, up_vector(b.p));
   }
 };
@@ -55,18 +56,20 @@ struct CircleCircle {
   using A = CirclePose;
   using B = CirclePose;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 1>& m) {
     round_round<S>(m, b.p - a.p, a.radius, b.radius, up_vector(b.p));
   }
 };
 
-// A fixed shape that would be the kernel's B: the kernel of the reverse order, turned round.
+// A fixed shape that would be the kernel's B: the kernel of the reverse order, with its sides
+// exchanged.
 template <class S, class Reverse>
 struct Reversed {
   using A = typename Reverse::B;
   using B = typename Reverse::A;
   static constexpr int kPoints = Reverse::kPoints;
-  static MW_INLINE void collide(const Tables& t, const A& a, const B& b, Float axis,
+  static MW_INLINE void collide(const Constants& t, const A& a, const B& b, Float axis,
                                 Manifold<S, kPoints>& m) {
     Reverse::collide(t, b, a, axis, m);
     m.normal = -m.normal;
@@ -99,7 +102,8 @@ struct PlaneSphere {
   using A = PlanePose;
   using B = SpherePose;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 1>& m) {
     plane_round<S>(m, a.normal, a.tangent, a.offset, b.p, b.radius);
   }
 };
@@ -109,7 +113,8 @@ struct PlaneCircle {
   using A = PlanePose;
   using B = CirclePose;
   static constexpr int kPoints = 1;
-  static MW_INLINE void collide(const Tables&, const A& a, const B& b, Float, Manifold<S, 1>& m) {
+  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+                                Manifold<S, 1>& m) {
     const Vec2 n{a.normal.x, a.normal.y};
     plane_round<S>(m, n, n, a.offset, b.p, b.radius);
   }

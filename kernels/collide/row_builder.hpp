@@ -10,7 +10,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // add_contact (prepare.hpp).
 template <class G, int N>
-using AddContact = void(const Tables& t, const Group& g, Work& w, ListId list,
+using AddContact = void(const Constants& t, const Group& g, Work& w, ListId list,
                         const kernels::PairClass<Real>& pair_class, Manifold<G, N>& m, Mask active,
                         const std::int32_t* code, const std::int32_t* key, typename G::Vec pose_a,
                         typename G::Vec pose_b);
@@ -36,7 +36,7 @@ RowBuilder<Isotropic> isotropic_dense(), isotropic_rows(), tensor_dense(), tenso
 
 // Of the plan, in the layout of this step.
 template <class G>
-MW_INLINE RowBuilder<G> row_builder(const Tables& t, const Work& w) {
+MW_INLINE RowBuilder<G> row_builder(const Constants& t, const Work& w) {
   if constexpr (G::kDim == 2) {
     return w.dense ? planar_dense() : planar_rows();
   } else if (t.inertia_kind == kernels::InertiaKind::tensor) {

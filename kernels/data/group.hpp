@@ -23,7 +23,7 @@ struct GroupView {
   Real* joint_impulse;  // [part][kPartImpulses][lane]
   const Real* control;  // [control][lane]
   // [joint of the scene] lanes in which it is broken or disabled; nullptr: all hold in all lanes.
-  std::uint32_t* loose;
+  std::uint32_t* disabled_joints;
 
   // Which bodies take part, as lanes of each body; nullptr: all do. Sleep needs all of them,
   // disabled bodies the first three.

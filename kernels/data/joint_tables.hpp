@@ -14,7 +14,7 @@ enum class PartKind : std::int32_t {
   swing,     // the z axes are parallel (space)
   line,      // B's anchor lies on the x axis of A
   slide,     // row along x of A
-  turn,      // row about z
+  angle,     // row about z
   cone,      // row for the angle between the z axes (space)
   distance,  // row between the anchors
   pulley,    // row for the length of the rope
@@ -38,7 +38,7 @@ struct JointConstants {
   T anchor_a[3], anchor_b[3];  // from the centre of mass, principal axes, m; A the world: world
   T frame_a[4], frame_b[4];    // in principal axes; planar: cos, sin
   RowSoftness<T> soft;         // of what the part holds together
-  T pull, turn_pull;           // most speed at which it corrects errors, m/s and rad/s
+  T pull, angular_pull;        // max speed at which it corrects errors, m/s and rad/s
   T rest;                      // value that an equality row is held at
   RowSoftness<T> drive_soft;
   T target_position, target_speed;
@@ -64,7 +64,7 @@ struct ThrustTable {
 struct JointPart {
   PartKind kind;
   std::int32_t joint;           // of the scene
-  std::int32_t body_a, body_b;  // state bodies; WorldTables::bodies: the world
+  std::int32_t body_a, body_b;  // state bodies; SceneConstants::bodies: the world
   bool equality;                // a row held at its rest
   bool drive, low, high;        // what else a row has
   bool spring;                  // a point that is drawn with limited force
@@ -72,11 +72,11 @@ struct JointPart {
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
 
-// What a joint that may break bears at most. Its parts follow one another.
+// The maximum load of a joint that may break. Its parts follow one another.
 template <class T>
 struct BreakTable {
   std::int32_t joint, first_part, parts;
-  T most_force, most_torque;  // N s and N m s in a step
+  T max_force, max_torque;  // N s and N m s in a step
 };
 
 // A coordinate of a joint, for observers. Its frames are those of any part of the joint.

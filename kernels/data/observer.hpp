@@ -51,7 +51,7 @@ inline constexpr int kFrameRows = 7;
 
 // What all worlds share of a ray.
 struct RayTable {
-  std::int32_t body;   // moves and turns with it; -1: world
+  std::int32_t body;   // the sensor is fixed to it; -1: world
   std::uint32_t mask;  // of the categories that it sees
 };
 // What rays see of a shape, fixed shapes first, then those of bodies.
@@ -101,7 +101,7 @@ struct ObserverView {
 };
 
 template <class Real>
-using Observe = void (*)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*,
+using Observe = void (*)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*,
                          const ObserverView<Real>&);
 
 template <class Real>
@@ -113,8 +113,8 @@ struct ObserverTable {
   Observe<Real> begin[kObserverCount][kInertiaKinds];
 
   // Reals that places and totals of a list need in the thread's scratch.
-  std::size_t (*place_reals)(const WorldTables<Real>&, Scratch*, int list);
-  std::size_t (*total_reals)(const WorldTables<Real>&, Scratch*, int list);
+  std::size_t (*place_reals)(const SceneConstants<Real>&, Scratch*, int list);
+  std::size_t (*total_reals)(const SceneConstants<Real>&, Scratch*, int list);
   // While places are given, the collide stages put down where points are; nullptr ends it.
   void (*watch)(Scratch*, Real* const* places);
   Observe<Real> accumulate[kInertiaKinds];  // after each relax pass, in plans without restitution
@@ -123,7 +123,7 @@ struct ObserverTable {
   // again, what the stored impulses tell of pairs that are asleep.
   Observe<Real> awake[kInertiaKinds], asleep[kInertiaKinds];
   // Around one more sweep of the solver: keep what it changes; what that is, and put it back.
-  std::size_t (*aside_bytes)(const WorldTables<Real>&, Scratch*);
+  std::size_t (*aside_bytes)(const SceneConstants<Real>&, Scratch*);
   Observe<Real> set_aside, compare[kInertiaKinds];
   RunProgram<Real> run_program;  // on what is there after these
   // One ray against one fixed pose row (64-byte aligned); whether it hits. out: a hit's rows.

@@ -53,14 +53,14 @@ struct ClassOfPair {
   bool swapped;
 };
 template <class Real>
-static inline ClassOfPair class_of_moving(const WorldTables<Real>& t, std::int32_t i,
+static inline ClassOfPair class_of_moving(const SceneConstants<Real>& t, std::int32_t i,
                                           std::int32_t j) {
   const std::int32_t found =
       t.moving_class[static_cast<int>(t.collider[i].kind)][static_cast<int>(t.collider[j].kind)];
   return {found / 2, found % 2 == 1};
 }
 template <class Real>
-static inline std::int32_t class_of_fixed(const WorldTables<Real>& t, std::int32_t fixed,
+static inline std::int32_t class_of_fixed(const SceneConstants<Real>& t, std::int32_t fixed,
                                           std::int32_t j) {
   return t.fixed_class[static_cast<int>(t.fixed[fixed].kind)][static_cast<int>(t.collider[j].kind)];
 }
@@ -72,7 +72,7 @@ static inline constexpr bool filters_agree(std::uint32_t category_a, std::uint32
 
 // Does a joint keep the shapes of this body and that one from colliding?
 template <class Real>
-static inline bool joined(const WorldTables<Real>& t, std::int32_t body, std::int32_t other) {
+static inline bool joined(const SceneConstants<Real>& t, std::int32_t body, std::int32_t other) {
   if (!t.joined) return false;
   for (std::int32_t i = t.first_joined[body]; i < t.first_joined[body + 1]; ++i) {
     if (t.joined[i] == other) return true;
@@ -82,13 +82,14 @@ static inline bool joined(const WorldTables<Real>& t, std::int32_t body, std::in
 
 // Can these shapes ever touch? What a plan with tables culls when it is made.
 template <class Real>
-static inline bool may_touch(const WorldTables<Real>& t, std::int32_t i, std::int32_t j) {
+static inline bool may_touch(const SceneConstants<Real>& t, std::int32_t i, std::int32_t j) {
   const auto &a = t.collider[i], &b = t.collider[j];
   return a.body != b.body && filters_agree(a.category, a.mask, b.category, b.mask) &&
          !(t.body[a.body].kinematic && t.body[b.body].kinematic) && !joined(t, a.body, b.body);
 }
 template <class Real>
-static inline bool may_touch_fixed(const WorldTables<Real>& t, std::int32_t fixed, std::int32_t j) {
+static inline bool may_touch_fixed(const SceneConstants<Real>& t, std::int32_t fixed,
+                                   std::int32_t j) {
   const auto& a = t.fixed[fixed];
   const auto& b = t.collider[j];
   return filters_agree(a.category, a.mask, b.category, b.mask) && !t.body[b.body].kinematic &&
@@ -97,14 +98,14 @@ static inline bool may_touch_fixed(const WorldTables<Real>& t, std::int32_t fixe
 
 // Which class a key belongs to; keys outside of all give t.classes.
 template <class Real>
-static inline std::int32_t class_of_key(const WorldTables<Real>& t, std::int32_t key) {
+static inline std::int32_t class_of_key(const SceneConstants<Real>& t, std::int32_t key) {
   std::int32_t c = 0;
   while (c < t.classes && key - t.pair_class[c].first_key >= t.pair_class[c].count) ++c;
   return c;
 }
 
 template <class Real>
-static inline PairOfKey pair_of_key(const WorldTables<Real>& t, std::int32_t key) {
+static inline PairOfKey pair_of_key(const SceneConstants<Real>& t, std::int32_t key) {
   const auto& c = t.pair_class[class_of_key(t, key)];
   const std::int32_t place = key - c.first_key;
   if (!t.sparse) return {c.a[place], c.b[place]};
@@ -115,7 +116,7 @@ static inline PairOfKey pair_of_key(const WorldTables<Real>& t, std::int32_t key
 
 // Is there such a pair? For keys that come from outside.
 template <class Real>
-static inline bool is_key(const WorldTables<Real>& t, ListId list, std::int32_t key) {
+static inline bool is_key(const SceneConstants<Real>& t, ListId list, std::int32_t key) {
   if (key < 0) return false;
   const std::int32_t at = class_of_key(t, key);
   if (at == t.classes || t.pair_class[at].list != list) return false;

@@ -67,7 +67,7 @@ struct LinkRow {
 //   faces                 m.x m.y m.z c | first count 0 0 of each: m . x <= c is the hull's side of
 //                         it, not unit; its outline has `count` vertices from row 4 `first` on
 //   outlines              x y z 0 of each vertex, counter-clockwise seen from outside
-// They are 4 `at` numbers from WorldTables::hulls on; those of a fixed hull follow its row.
+// They are 4 `at` numbers from SceneConstants::hulls on; those of a fixed hull follow its row.
 template <class T>
 struct HullRow {
   BoxRow<T> box;

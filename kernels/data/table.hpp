@@ -1,4 +1,4 @@
-// KernelTable: the one door into the kernels of an instruction set and precision. src/step calls
+// Kernels: the one door into the kernels of an instruction set and precision. src/step calls
 // the stages in order; no stage allocates, throws or keeps state outside its arguments.
 #pragma once
 
@@ -15,15 +15,15 @@ struct ObserverTable;  // kernels/data/observer.hpp
 enum class Layout : int { automatic, dense, rows };
 
 template <class Real>
-using Stage = void (*)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*);
+using Stage = void (*)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*);
 
 // The solver passes over all four lists, for one inertia kind, friction or not, dense or rows.
 template <class Real>
 struct SolverTable {
-  Stage<Real> enter;       // velocities into the solver's layout
-  Stage<Real> push;        // first push of gravity and inputs
-  Stage<Real> warm_start;  // the stored impulses
-  Stage<Real> open;        // what warm starting has added is known, the first substep begins
+  Stage<Real> enter;          // velocities into the solver's layout
+  Stage<Real> apply_delta_v;  // of the first substep: gravity and inputs
+  Stage<Real> warm_start;     // the stored impulses
+  Stage<Real> open;           // what warm starting has added is known, the first substep begins
   // Around the passes of contacts, in plans with joints: their impulses alone are carried over to
   // the next substep as velocities.
   Stage<Real> mark;
@@ -31,7 +31,7 @@ struct SolverTable {
   Stage<Real> bias;     // soft normal rows
   Stage<Real> advance;  // displacement of the substep
   Stage<Real> relax;    // normal rows without bias, then friction
-  Stage<Real> next;     // push and warm start of the next substep
+  Stage<Real> next;     // delta_v and warm start of the next substep
   Stage<Real> restitute;
   Stage<Real> store;  // impulses into the cache
   Stage<Real> leave;  // commit positions, orientations, velocities
@@ -50,9 +50,9 @@ struct SweepTable {
 template <class Real>
 struct ImpulseTable {
   Stage<Real> forget;  // all of them are 0
-  // Conjugate gradients, begun with each substep: `remember` and `turn` around a sweep; then a warm
-  // start with what `turn` has put into the impulses, which `land` adds to what they were.
-  Stage<Real> begin_search, remember, turn, land;
+  // Conjugate gradients, begun with each substep: `remember` and `redirect` around a sweep; then a
+  // warm start with what `redirect` has put into the impulses, which `land` adds to what they were.
+  Stage<Real> begin_search, remember, redirect, land;
 };
 
 // The passes over joints, for one inertia kind and layout; nothing of contacts in them.
@@ -73,7 +73,7 @@ struct JointSolver {
 template <class Real>
 struct FlightTable {
   // Whole steps of plans in which nothing else moves bodies.
-  void (*steps)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, int steps);
+  void (*steps)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*, int steps);
   Stage<Real> fly;       // before the passes of the solver
   Stage<Real> leave[2];  // after them, instead of SolverTable::leave; [layout: dense, rows]
 };
@@ -88,17 +88,17 @@ struct ContactPoint {
 };
 
 template <class Real>
-struct KernelTable {
+struct Kernels {
   const char* isa;
   int lanes;
   // Bytes of scratch that these tables need, and its set-up in `memory` (64-byte aligned).
-  std::size_t (*scratch_bytes)(const WorldTables<Real>&);
-  Scratch* (*make_scratch)(const WorldTables<Real>&, void* memory);
+  std::size_t (*scratch_bytes)(const SceneConstants<Real>&);
+  Scratch* (*make_scratch)(const SceneConstants<Real>&, void* memory);
 
   Stage<Real> begin;        // poses, bounds, inertia
   Stage<Real> broad_phase;  // candidate masks of every class
   // Dense or rows for this group: by occupancy, or as wished if the blocks fit.
-  Layout (*choose_layout)(const WorldTables<Real>&, const GroupView<Real>&, Scratch*, Layout);
+  Layout (*choose_layout)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*, Layout);
   // Narrow phase and rows of one class (set_class). [dimension: planar, spatial]
   Stage<Real> collide[2][kPairKinds];
   SolverTable<Real> solver[kInertiaKinds][2][2];  // [inertia][friction][layout: dense, rows]
@@ -106,7 +106,7 @@ struct KernelTable {
   ImpulseTable<Real> impulses[kInertiaKinds];
   JointSolver<Real> joints[kInertiaKinds][2];  // [inertia: planar, tensor][layout: dense, rows]
   // Plans without contacts and joints: n whole steps of free motion.
-  void (*free_motion[kInertiaKinds])(const WorldTables<Real>&, const GroupView<Real>&, Scratch*,
+  void (*free_motion[kInertiaKinds])(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*,
                                      int steps);
 
   FlightTable<Real> flight[kInertiaKinds];
@@ -123,6 +123,6 @@ struct KernelTable {
 };
 
 // Every kernel library defines
-// manyworlds::<isa>_<precision>::fill_kernel_table(KernelTable<Real>&).
+// manyworlds::<isa>_<precision>::fill_kernel_table(Kernels<Real>&).
 
 }  // namespace manyworlds::kernels

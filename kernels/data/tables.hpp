@@ -1,6 +1,6 @@
-// WorldTables: what the kernels know of a Plan, in the kernels' number type. Every value is shared
-// by all worlds of the Plan and reaches the lanes by a broadcast load. Built once per Batch by
-// src/state/tables.cpp; plain pointers into arrays that the Batch owns.
+// SceneConstants: what the kernels know of a Plan, in the kernels' number type. Every value is
+// shared by all worlds of the Plan and reaches the lanes by a broadcast load. Built once per Batch
+// by src/state/tables.cpp; plain pointers into arrays that the Batch owns.
 #pragma once
 
 #include <cstdint>
@@ -37,12 +37,12 @@ struct MaterialOf {
 };
 
 // Free rotation of a body about its principal axes (kernels/motion/rotate.hpp). A kinematic body
-// has equal moments of 1, which turn it about its fixed axis.
+// has equal moments of 1, which rotate it about its fixed axis.
 template <class T>
-struct TopConstants {
+struct PrincipalInertia {
   T inertia[3], inverse[3];
-  T rate[3];     // dt / (2 I_x), dt / (2 I_y), dt / I_z
-  T turn_bound;  // dt / I_min: times |L|, a bound of the turn about every axis, rad
+  T rate[3];      // dt / (2 I_x), dt / (2 I_y), dt / I_z
+  T angle_bound;  // dt / I_min: times |L|, a bound of the angle about every axis, rad
 };
 
 template <class T>
@@ -53,11 +53,11 @@ struct BodyConstants {
   T gravity_scale;
   T gravity[3];                 // times gravity scale, m/s^2; 0 for kinematic bodies
   T acceleration[3];            // that and what the wind does by drag
-  T push[3];                    // h times that; never -0
+  T delta_v[3];                 // h times that; never -0
   T linear_drag, angular_drag;  // c, 1/s
   T linear_factor;              // 1 / (1 + h c), per substep
   T angular_factor;
-  TopConstants<T> top;
+  PrincipalInertia<T> principal;
   T radius;       // of the bounding sphere about the centre of mass, m
   T core_radius;  // of a sphere inside the body about its centre of mass, m; 0: never cast
 };
@@ -68,7 +68,7 @@ struct ShapeConstants {
   T rotation[9];  // shape axes in principal axes, columns; planar: [0] cos, [1] sin
   T half[3];      // half extents (box, rectangle, cylinder, hull); capsule: [0] half length
   T radius;  // sphere, circle, capsule, rounded; else of the bounding sphere about the shape origin
-  T margin_cap;  // most that the speculative margin of this shape may grow to, m
+  T margin_cap;  // the maximum to which the speculative margin of this shape may grow, m
 };
 
 template <class T>
@@ -99,17 +99,17 @@ struct ColliderTable {
   std::uint32_t category, mask;  // collision filter
   std::int32_t vertex_count;     // of a polygon or hull
   std::int32_t face_count;       // of a hull
-  std::int32_t hull;             // where its corners are, in fours, in WorldTables::hulls
+  std::int32_t hull;             // where its corners are, in fours, in SceneConstants::hulls
 };
 
 template <class Real>
 struct FixedTable {
   ShapeKind kind;
-  std::int32_t row;      // offset of its pose row in WorldTables::fixed_rows
+  std::int32_t row;      // offset of its pose row in SceneConstants::fixed_rows
   Real low[3], high[3];  // bounding box (not for planes)
   Real plane[4];         // normal, offset
   std::uint32_t category, mask;
-  std::int32_t body;  // its place in WorldTables::joined, beyond those of moving bodies
+  std::int32_t body;  // its place in SceneConstants::joined, beyond those of moving bodies
 };
 
 // Candidate pairs of one shape pair kind, all against fixed shapes or all between moving ones. In
@@ -138,7 +138,7 @@ struct AttractorTable {
 };
 
 template <class Real>
-struct WorldTables {
+struct SceneConstants {
   Dimension dimension;
   InertiaKind inertia_kind;
   std::int32_t bodies;
@@ -167,7 +167,7 @@ struct WorldTables {
   FlightOptions flight;
   SolverOptions<Real> solver;
 
-  bool push_varies, drag_varies, bodies_vary;  // from world to world
+  bool delta_v_varies, drag_varies, bodies_vary;  // from world to world
 
   const BodyTable* body;
   const ColliderTable* collider;
@@ -197,7 +197,7 @@ struct WorldTables {
   ConstantBlocks<Real> constants;
   // Pushes and factors of one substep in the order of a velocity row, of worlds that have none of
   // their own: [body + pad][row].
-  const Real* push_rows;
+  const Real* delta_v_rows;
   const Real* factor_rows;
 
   std::int32_t capacity[kLists];  // manifolds per world

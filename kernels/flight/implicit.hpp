@@ -17,12 +17,12 @@ inline constexpr Real kResidual2 = sizeof(Real) == 4 ? Real(1e-12) : Real(1e-26)
 inline constexpr Real kNoResidual2 = sizeof(Real) == 4 ? Real(1e-30) : Real(1e-280);
 
 template <class S>
-MW_INLINE Velocity<S> load_rates(const Tables& t, const Real* block, int body) {
+MW_INLINE Velocity<S> load_rates(const Constants& t, const Real* block, int body) {
   return {load_as<typename S::Vec>(component_of(t, block, body, kState<S>.linear)),
           load_as<typename S::Ang>(component_of(t, block, body, kState<S>.angular))};
 }
 template <class S>
-MW_INLINE void store_rates(const Tables& t, Real* block, int body, const Velocity<S>& u) {
+MW_INLINE void store_rates(const Constants& t, Real* block, int body, const Velocity<S>& u) {
   store(component_of(t, block, body, kState<S>.linear), u.v);
   store(component_of(t, block, body, kState<S>.angular), u.w);
 }
@@ -41,14 +41,14 @@ MW_INLINE Float dot(const Velocity<S>& a, const Velocity<S>& b) {
 
 // (1 + h drag) M u of a dynamic body, or its inverse.
 template <class S>
-MW_INLINE Velocity<S> times_mass(const Tables& t, const Body& n, const Motion<S>& m,
+MW_INLINE Velocity<S> times_mass(const Constants& t, const Body& n, const Motion<S>& m,
                                  const Velocity<S>& u) {
   const Float h(t.h), one(Real(1)), mass = one / Float(n.inv_mass);
   return {u.v * (mass * fma(h, n.linear_drag, one)),
           weigh(n.inertia, m.q, u.w) * fma(h, n.angular_drag, one)};
 }
 template <class S>
-MW_INLINE Velocity<S> over_mass(const Tables& t, const Body& n, const Motion<S>& m,
+MW_INLINE Velocity<S> over_mass(const Constants& t, const Body& n, const Motion<S>& m,
                                 const Velocity<S>& p) {
   const Float h(t.h), one(Real(1));
   return {p.v * (Float(n.inv_mass) / fma(h, n.linear_drag, one)),
@@ -56,14 +56,14 @@ MW_INLINE Velocity<S> over_mass(const Tables& t, const Body& n, const Motion<S>&
 }
 
 template <class S>
-MW_INLINE void add_to_body(const Tables& t, Real* block, int body, typename S::Vec p,
+MW_INLINE void add_to_body(const Constants& t, Real* block, int body, typename S::Vec p,
                            typename S::Vec arm) {
   if (body == t.bodies || t.body[body].kinematic) return;
   const Velocity<S> before = load_rates<S>(t, block, body);
   store_rates<S>(t, block, body, {before.v + p, before.w + cross(arm, p)});
 }
 template <class S>
-MW_INLINE typename S::Vec speed_at(const Tables& t, const Real* block, int body,
+MW_INLINE typename S::Vec speed_at(const Constants& t, const Real* block, int body,
                                    typename S::Vec arm) {
   if (body == t.bodies) return zero_of<typename S::Vec>();
   const Velocity<S> u = load_rates<S>(t, block, body);
@@ -79,7 +79,7 @@ MW_INLINE Velocity<S> of_present(const Group& g, int body, const Velocity<S>& ro
 
 // The matrix times `in`; rows of kinematic bodies are 0.
 template <class S>
-void times_matrix(const Tables& t, const Group& g, const Real* now, const Real* in, Real* out) {
+void times_matrix(const Constants& t, const Group& g, const Real* now, const Real* in, Real* out) {
   for (int b = 0; b < t.bodies; ++b) {
     Velocity<S> p = no_rates<S>();
     if (!t.body[b].kinematic) {
@@ -90,14 +90,14 @@ void times_matrix(const Tables& t, const Group& g, const Real* now, const Real* 
     store_rates<S>(t, out, b, p);
   }
   const Float h(t.h), zero(Real(0)), one(Real(1));
-  for_each_spring(t, g, [&](const JointPart& part, const Joint& numbers, int) {
-    const SpringNow<S> s = spring_now<S>(t, g, part, numbers, now);
+  for_each_spring(t, g, [&](const JointPart& part, const Joint& constants, int) {
+    const SpringNow<S> s = spring_now<S>(t, g, part, constants, now);
     const auto speed =
         speed_at<S>(t, in, part.body_b, s.arm_b) - speed_at<S>(t, in, part.body_a, s.arm_a);
-    const Float k = Float(numbers.stiffness) * (h * h), along = fma(h, numbers.damping, k);
+    const Float k = Float(constants.stiffness) * (h * h), along = fma(h, constants.damping, k);
     auto p = speed * along;
     if (part.kind != PartKind::point) {
-      const Float slack = one - Float(numbers.target_position) / max(s.length, Real(1e-12));
+      const Float slack = one - Float(constants.target_position) / max(s.length, Real(1e-12));
       const Float across = k * max(slack, zero);
       p = fma(s.along, dot(s.along, speed) * (along - across), speed * across);
     }
@@ -109,7 +109,7 @@ void times_matrix(const Tables& t, const Group& g, const Real* now, const Real* 
 
 // Conjugate gradients for the velocities in f.now; f.rate holds M u + h f.
 template <class S>
-void solve_velocities(const Tables& t, const Group& g, FlightWork& f) {
+void solve_velocities(const Constants& t, const Group& g, FlightWork& f) {
   const auto for_each_dynamic = [&](auto visit) {
     for (int b = 0; b < t.bodies; ++b) {
       if (!t.body[b].kinematic) visit(b);
@@ -162,25 +162,25 @@ void solve_velocities(const Tables& t, const Group& g, FlightWork& f) {
 }
 
 template <class S>
-void implicit_euler(const Tables& t, const Group& g, Work& w) {
+void implicit_euler(const Constants& t, const Group& g, Work& w) {
   FlightWork& f = w.flight;
   gather_forces<S, false>(t, g, f.now, f.rate);
   const Float h(t.h);
   for (int b = 0; b < t.bodies; ++b) {
     if (t.body[b].kinematic) continue;
-    const Body& numbers = constants_of_body(g, b);
+    const Body& constants = constants_of_body(g, b);
     Motion<S> m = load_motion<S>(t, f.now, b);
     if constexpr (S::kDim == 3) {
-      const Vec3 moments{numbers.inertia[0], numbers.inertia[1], numbers.inertia[2]};
+      const Vec3 moments{constants.inertia[0], constants.inertia[1], constants.inertia[2]};
       m.spin = implicit_gyroscopic(t.h, moments, matrix(m.q), m.spin);
     }
     const Velocity<S> forced = load_rates<S>(t, f.rate, b);
-    const Float mass = Float(Real(1)) / Float(numbers.inv_mass);
+    const Float mass = Float(Real(1)) / Float(constants.inv_mass);
     const Velocity<S> p{fma(forced.v, h, m.v) * mass,
-                        fma(forced.w, h, weigh(numbers.inertia, m.q, m.spin))};
+                        fma(forced.w, h, weigh(constants.inertia, m.q, m.spin))};
     store_rates<S>(t, f.rate, b, p);
     if (t.flight.springs == 0) {
-      const Velocity<S> u = over_mass<S>(t, numbers, m, p);
+      const Velocity<S> u = over_mass<S>(t, constants, m, p);
       m.v = u.v, m.spin = u.w;
     }
     store_motion(t, f.now, b, m);

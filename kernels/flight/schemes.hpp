@@ -6,14 +6,14 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 template <class S>
-void explicit_euler(const Tables& t, const Group& g, Work& w) {
+void explicit_euler(const Constants& t, const Group& g, Work& w) {
   FlightWork& f = w.flight;
   find_rates<S>(t, g, f.now, f.rate, Real(0), true);
   move_by<S>(t, f.now, f.rate, Float(t.h), f.now);
 }
 
 template <class S>
-void symplectic_euler(const Tables& t, const Group& g, Work& w) {
+void symplectic_euler(const Constants& t, const Group& g, Work& w) {
   FlightWork& f = w.flight;
   accelerate<S, true>(t, g, f.now, f.rate);
   change_velocities<S>(t, f.now, f.rate, Float(t.h), f.now);
@@ -22,7 +22,7 @@ void symplectic_euler(const Tables& t, const Group& g, Work& w) {
 
 // Free flight over `share` of h.
 template <class S>
-void drift(const Tables& t, const Group& g, FlightWork& f, Real share) {
+void drift(const Constants& t, const Group& g, FlightWork& f, Real share) {
   const Float h(t.h * share), of_step(share / static_cast<Real>(t.substeps));
   for (int b = 0; b < t.bodies; ++b) {
     Motion<S> m = load_motion<S>(t, f.now, b);
@@ -30,10 +30,10 @@ void drift(const Tables& t, const Group& g, FlightWork& f, Real share) {
     if constexpr (S::kDim == 2) {
       if (t.has_orientation) m.q = rotate_by(m.q, m.spin * h);
     } else if (t.has_orientation) {
-      Top top = constants_of_body(g, b).top;
+      PrincipalInertia top = constants_of_body(g, b).principal;
       for (int c = 0; c < 3; ++c) (Float(top.rate[c]) * of_step).store(top.rate[c].lane);
-      (Float(top.turn_bound) * of_step).store(top.turn_bound.lane);
-      const Top* tops[1] = {&top};
+      (Float(top.angle_bound) * of_step).store(top.angle_bound.lane);
+      const PrincipalInertia* tops[1] = {&top};
       const Vec3 before = m.spin;
       rotate_free<1>(tops, &m.spin, &m.q);
       if (t.body[b].kinematic) m.spin = before;
@@ -43,7 +43,7 @@ void drift(const Tables& t, const Group& g, FlightWork& f, Real share) {
 }
 // What the forces do to velocities over `share` of h; where they depend on them, by the midpoint.
 template <class S>
-void kick(const Tables& t, const Group& g, FlightWork& f, Real share) {
+void kick(const Constants& t, const Group& g, FlightWork& f, Real share) {
   const Real h = t.h * share;
   accelerate<S, false>(t, g, f.now, f.rate);
   if (t.flight.damped) {
@@ -57,20 +57,20 @@ void kick(const Tables& t, const Group& g, FlightWork& f, Real share) {
 }
 
 template <class S>
-void verlet(const Tables& t, const Group& g, Work& w) {
+void verlet(const Constants& t, const Group& g, Work& w) {
   drift<S>(t, g, w.flight, Real(0.5));
   kick<S>(t, g, w.flight, Real(1));
   drift<S>(t, g, w.flight, Real(0.5));
 }
 template <class S>
-void velocity_verlet(const Tables& t, const Group& g, Work& w) {
+void velocity_verlet(const Constants& t, const Group& g, Work& w) {
   kick<S>(t, g, w.flight, Real(0.5));
   drift<S>(t, g, w.flight, Real(1));
   kick<S>(t, g, w.flight, Real(0.5));
 }
 
 template <class S>
-void runge_kutta4(const Tables& t, const Group& g, Work& w) {
+void runge_kutta4(const Constants& t, const Group& g, Work& w) {
   FlightWork& f = w.flight;
   const Float h(t.h), half(t.h * Real(0.5));
   const int size = t.bodies * t.state_stride * kLanes;
@@ -95,7 +95,7 @@ void runge_kutta4(const Tables& t, const Group& g, Work& w) {
 }
 
 template <class S>
-MW_INLINE void step_of(kernels::Scheme scheme, const Tables& t, const Group& g, Work& w) {
+MW_INLINE void step_of(kernels::Scheme scheme, const Constants& t, const Group& g, Work& w) {
   using kernels::Scheme;
   switch (scheme) {
     case Scheme::explicit_euler: return explicit_euler<S>(t, g, w);

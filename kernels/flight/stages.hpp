@@ -10,7 +10,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // The motion at the end of the step, in FlightWork::now. The state stays.
 template <class S>
-void fly(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+void fly(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   FlightWork& f = w.flight;
   copy_motion(t, f.now, g.state);
@@ -21,12 +21,12 @@ void fly(const Tables& t, const Group& g, kernels::Scratch* scratch) {
 
 // What springs do at the end of the step, as impulses of a substep, for those who look at joints.
 template <class S>
-void store_forces(const Tables& t, const Group& g, std::uint32_t commit) {
+void store_forces(const Constants& t, const Group& g, std::uint32_t commit) {
   const Float h(t.h);
-  for_each_spring(t, g, [&](const JointPart& part, const Joint& numbers, int index) {
-    const auto turning = [](int, const Motion<S>& m) { return m.spin; };
-    const SpringNow<S> s = spring_now<S>(t, g, part, numbers, g.state, turning);
-    const auto force = elastic_force(part, numbers, s) + damping_force(part, numbers, s);
+  for_each_spring(t, g, [&](const JointPart& part, const Joint& constants, int index) {
+    const auto angular_velocity_of = [](int, const Motion<S>& m) { return m.spin; };
+    const SpringNow<S> s = spring_now<S>(t, g, part, constants, g.state, angular_velocity_of);
+    const auto force = elastic_force(part, constants, s) + damping_force(part, constants, s);
     Real* to = g.joint_impulse + index * kernels::kPartImpulses * kLanes;
     // Where both ends sleep the spring keeps what it will wake with.
     const Mask keep = mask_from_bits(commit & active_lanes(t, g, part));
@@ -51,8 +51,8 @@ struct FlightSpace<Planar> {
 
 // Where a body is at the end of the flight, as finish asks.
 template <class S>
-struct Flown {
-  const Tables& t;
+struct FlightCommit {
+  const Constants& t;
   const FlightWork& f;
   MW_INLINE auto of(int body) const {
     return load_motion<typename FlightSpace<S>::Type>(t, f.now, body);
@@ -64,7 +64,7 @@ struct Flown {
 };
 
 template <class S, bool kIdle, class Keep>
-void commit_flight(const Tables& t, const Group& g, const FlightWork& f, std::uint32_t commit,
+void commit_flight(const Constants& t, const Group& g, const FlightWork& f, std::uint32_t commit,
                    Keep keep) {
   Mask inside = mask_from_bits(kAllLanes);
   for (int b = 0; b < t.bodies; ++b) {
@@ -89,7 +89,7 @@ void commit_flight(const Tables& t, const Group& g, const FlightWork& f, std::ui
 }
 
 template <class S, bool kIdle>
-std::uint32_t judge_flight(const Tables& t, const Group& g, const FlightWork& f) {
+std::uint32_t judge_flight(const Constants& t, const Group& g, const FlightWork& f) {
   LaneCheck check;
   for (int b = 0; b < t.bodies; ++b) {
     const Motion<S> m = load_motion<S>(t, f.now, b);
@@ -101,7 +101,7 @@ std::uint32_t judge_flight(const Tables& t, const Group& g, const FlightWork& f)
 }
 
 template <class S>
-void fly_steps(const Tables& t, const Group& g, kernels::Scratch* scratch, int steps) {
+void fly_steps(const Constants& t, const Group& g, kernels::Scratch* scratch, int steps) {
   const FlightWork& f = work_of(scratch).flight;
   std::uint32_t moved = 0;  // lanes that some step was good in
   for (int step = 0; step < steps; ++step) {
@@ -120,9 +120,9 @@ void fly_steps(const Tables& t, const Group& g, kernels::Scratch* scratch, int s
 }
 
 template <class S, bool kDense>
-void leave(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+void leave(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
-  const std::uint32_t commit = leave_state<S, kDense>(t, g, w, Flown<S>{t, w.flight});
+  const std::uint32_t commit = leave_state<S, kDense>(t, g, w, FlightCommit<S>{t, w.flight});
   store_forces<typename FlightSpace<S>::Type>(t, g, commit);
 }
 

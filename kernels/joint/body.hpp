@@ -55,7 +55,7 @@ struct Place {
   typename S::Orientation orientation;
 };
 template <class S>
-MW_INLINE Place<S> place_of(const Tables& t, const Group& g, int body) {
+MW_INLINE Place<S> place_of(const Constants& t, const Group& g, int body) {
   return {load_as<typename S::Vec>(state_of(t, g, body, kState<S>.position)),
           load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation))};
 }
@@ -67,12 +67,12 @@ struct Anchors {
   typename S::Vec arm_a, arm_b, gap;
 };
 template <class S>
-MW_INLINE Anchors<S> anchors_of(const Tables& t, const Group& g, const JointPart& part,
-                                const Joint& numbers) {
+MW_INLINE Anchors<S> anchors_of(const Constants& t, const Group& g, const JointPart& part,
+                                const Joint& constants) {
   Anchors<S> out;
   const Place<S> b = place_of<S>(t, g, part.body_b);
-  out.arm_b = rotate(b.orientation, vector_of(S{}, numbers.anchor_b));
-  const auto anchor_a = vector_of(S{}, numbers.anchor_a);
+  out.arm_b = rotate(b.orientation, vector_of(S{}, constants.anchor_b));
+  const auto anchor_a = vector_of(S{}, constants.anchor_a);
   if (part.body_a == t.bodies) {
     out.arm_a = zero_of<typename S::Vec>();
     out.gap = (b.position - anchor_a) + out.arm_b;
@@ -88,23 +88,24 @@ struct Frames {
   typename S::Orientation a, b;  // in the world
 };
 template <class S>
-MW_INLINE Frames<S> frames_of(const Tables& t, const Group& g, const JointPart& part,
-                              const Joint& numbers) {
+MW_INLINE Frames<S> frames_of(const Constants& t, const Group& g, const JointPart& part,
+                              const Joint& constants) {
   Frames<S> out;
-  out.b = compose(place_of<S>(t, g, part.body_b).orientation, frame_of(S{}, numbers.frame_b));
-  out.a = frame_of(S{}, numbers.frame_a);
+  out.b = compose(place_of<S>(t, g, part.body_b).orientation, frame_of(S{}, constants.frame_b));
+  out.a = frame_of(S{}, constants.frame_a);
   if (part.body_a != t.bodies) {
     out.a = compose(place_of<S>(t, g, part.body_a).orientation, out.a);
   }
   return out;
 }
 
-// What the substeps so far have turned a body by, as finish will (rotate_by): R r - r of a vector.
+// The rotation of a body by the substeps so far, as finish will apply it (rotate_by): R r - r of a
+// vector.
 template <class S>
-struct Turned {
+struct SweptRotation {
   typename S::Ang u;
   Float scale;
-  MW_INLINE explicit Turned(typename S::Ang swept) {
+  MW_INLINE explicit SweptRotation(typename S::Ang swept) {
     u = swept * half_tangent_ratio(dot(swept, swept));
     scale = Float(Real(2)) / (Float(Real(1)) + dot(u, u));
   }
@@ -133,7 +134,7 @@ template <class S>
 struct MovedAnchors : Anchors<S> {
   typename S::Vec moved_a, moved_b;  // since the step began
 };
-// kMoved: the substeps have displaced the bodies. `axis` turns with A.
+// kMoved: the substeps have displaced the bodies. `axis` is fixed to A.
 template <class S, bool kDense, bool kMoved>
 MW_INLINE MovedAnchors<S> anchors_now(const Work& w, const AnchoredRows<S>& s,
                                       typename S::Vec& axis) {
@@ -144,12 +145,12 @@ MW_INLINE MovedAnchors<S> anchors_now(const Work& w, const AnchoredRows<S>& s,
   out.moved_a = out.moved_b = zero_of<Vec>();
   if constexpr (kMoved) {
     const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
-    const Turned<S> turn_a(moved.a.w), turn_b(moved.b.w);
-    const Vec change_a = turn_a.change(out.arm_a), change_b = turn_b.change(out.arm_b);
+    const SweptRotation<S> swept_a(moved.a.w), swept_b(moved.b.w);
+    const Vec change_a = swept_a.change(out.arm_a), change_b = swept_b.change(out.arm_b);
     out.arm_a = out.arm_a + change_a, out.arm_b = out.arm_b + change_b;
     out.moved_a = moved.a.v + change_a, out.moved_b = moved.b.v + change_b;
     out.gap = out.gap + (out.moved_b - out.moved_a);
-    axis = axis + turn_a.change(axis);
+    axis = axis + swept_a.change(axis);
   }
   return out;
 }
@@ -170,15 +171,16 @@ MW_INLINE V pull_of(V error, Float rate, Float cap) {
   return pull * (cap / max(length, cap));
 }
 
-// Gives B a push at its anchor, and A the opposite one at its own.
+// Applies an impulse to B at its anchor, and the opposite one to A at its own.
 template <class S, bool kDense>
-MW_INLINE void push_apart(const PartBodies<S>& s, typename S::Vec p, typename S::Vec arm_a,
-                          typename S::Vec arm_b, PartVelocities<S, kDense>& v) {
+MW_INLINE void apply_at_anchors(const PartBodies<S>& s, typename S::Vec p, typename S::Vec arm_a,
+                                typename S::Vec arm_b, PartVelocities<S, kDense>& v) {
   add_impulse(s.b, p, cross(arm_b, p), v.b);
   take_impulse(s.a, p, cross(arm_a, p), v.a);
 }
 template <class S, bool kDense>
-MW_INLINE void turn_apart(const PartBodies<S>& s, typename S::Ang l, PartVelocities<S, kDense>& v) {
+MW_INLINE void apply_moments(const PartBodies<S>& s, typename S::Ang l,
+                             PartVelocities<S, kDense>& v) {
   add_moment(s.b, l, v.b);
   take_moment(s.a, l, v.a);
 }

@@ -9,7 +9,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Reals of what a joint bears: impulse and angular impulse.
 template <class S>
-inline constexpr int kBorne = (S::kDim + S::kAng) * kLanes;
+inline constexpr int kLoadRows = (S::kDim + S::kAng) * kLanes;
 
 // What a part gave B in a substep.
 template <class S>
@@ -25,13 +25,13 @@ template <class S, bool kLinear>
 MW_INLINE Impulse<S> impulse_of(const Row<S, kLinear>& s) {
   Impulse<S> out{zero_of<typename S::Vec>(), zero_of<typename S::Ang>()};
   if constexpr (kLinear) {
-    out.linear = load_as<typename S::Vec>(s.push_b[0]) * along_row(s);
+    out.linear = load_as<typename S::Vec>(s.linear_b[0]) * along_row(s);
   } else {
-    out.angular = load_as<typename S::Ang>(s.arm_b[0]) * along_row(s);
+    out.angular = load_as<typename S::Ang>(s.angular_b[0]) * along_row(s);
   }
   return out;
 }
-// Points and lines keep a push, locks and swings a turn.
+// Points and lines keep a linear impulse, locks and swings an angular one.
 template <class S>
 MW_INLINE Impulse<S> impulse_of(const AnchoredRows<S>& s) {
   return {load_as<typename S::Vec>(s.impulse[0]), zero_of<typename S::Ang>()};
@@ -42,8 +42,8 @@ MW_INLINE Impulse<S> impulse_of(const PartBodies<S>& s) {
 }
 
 // Lanes in which a part acts: it holds, its bodies are there, and one of them is awake.
-MW_INLINE std::uint32_t active_lanes(const Tables& t, const Group& g, const JointPart& part) {
-  const std::uint32_t holds = kAllLanes & ~(g.loose ? g.loose[part.joint] : 0u);
+MW_INLINE std::uint32_t active_lanes(const Constants& t, const Group& g, const JointPart& part) {
+  const std::uint32_t holds = kAllLanes & ~(g.disabled_joints ? g.disabled_joints[part.joint] : 0u);
   if (!has_idle_bodies(g)) return holds;
   if (part.body_a == t.bodies) return holds & ~idle_lanes(g, part.body_b);
   return holds & live_lanes(g, part.body_a, part.body_b);
@@ -57,13 +57,15 @@ MW_INLINE Float length_of(V v) {
 
 // Joints without a broken one between them that hang together pass on what the broken one bore:
 // those of a lane forget their impulses, which would throw up what hung on it.
-MW_INLINE void forget_load(const Tables& t, const Group& g, Work& w, int body_a, int body_b,
+MW_INLINE void forget_load(const Constants& t, const Group& g, Work& w, int body_a, int body_b,
                            int lane) {
   const auto passes_on = [&](int body) { return body < t.bodies && !t.body[body].kinematic; };
   for (int b = 0; b < t.bodies; ++b) w.reached[b] = 0;
   if (passes_on(body_a)) w.reached[body_a] = 1;
   if (passes_on(body_b)) w.reached[body_b] = 1;
-  const auto holds = [&](const JointPart& part) { return !((g.loose[part.joint] >> lane) & 1u); };
+  const auto holds = [&](const JointPart& part) {
+    return !((g.disabled_joints[part.joint] >> lane) & 1u);
+  };
   const auto reached = [&](int body) { return passes_on(body) && w.reached[body] != 0; };
   for (bool grows = true; grows;) {
     grows = false;
@@ -86,20 +88,20 @@ MW_INLINE void forget_load(const Tables& t, const Group& g, Work& w, int body_a,
 }
 
 template <class S>
-void break_joints(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+void break_joints(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   const std::uint32_t frozen = frozen_lanes(g);  // also those that this step froze
   for (int i = 0; i < t.breakable; ++i) {
     const kernels::BreakTable<Real>& joint = t.breaking[i];
-    const auto* from = w.borne + i * kBorne<S>;
+    const auto* from = w.loads + i * kLoadRows<S>;
     const auto force = load_as<typename S::Vec>(from);
     const auto torque = load_as<typename S::Ang>(from + S::kDim * kLanes);
     const JointPart& part = t.part[joint.first_part];
-    const std::uint32_t lanes = bits((Float(joint.most_force) < length_of(force)) |
-                                     (Float(joint.most_torque) < length_of(torque))) &
+    const std::uint32_t lanes = bits((Float(joint.max_force) < length_of(force)) |
+                                     (Float(joint.max_torque) < length_of(torque))) &
                                 active_lanes(t, g, part) & ~frozen;
     if (lanes == 0) continue;
-    g.loose[joint.joint] |= lanes;
+    g.disabled_joints[joint.joint] |= lanes;
     // What hung on it is not held, however slow it is (kernels/sleep/sleep.cpp).
     w.touched[part.body_a] &= ~lanes;
     w.touched[part.body_b] &= ~lanes;

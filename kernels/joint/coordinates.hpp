@@ -30,102 +30,104 @@ MW_INLINE Float twist_between(const Frames<S>& f) {
 }
 
 template <class S>
-void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+void prepare(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
              Row<S, true>& s) {
   using Vec = typename S::Vec;
-  const Anchors<S> at = anchors_of<S>(t, g, part, numbers);
+  const Anchors<S> at = anchors_of<S>(t, g, part, constants);
   start_anchors(at, s);
   if (part.kind == PartKind::slide) {
-    store(s.start_axis[0], axis_x(frames_of<S>(t, g, part, numbers).a));
+    store(s.start_axis[0], axis_x(frames_of<S>(t, g, part, constants).a));
   } else if (part.kind == PartKind::pulley) {
     const Vec a = place_of<S>(t, g, part.body_a).position + at.arm_a,
               b = place_of<S>(t, g, part.body_b).position + at.arm_b;
-    store(s.start_rope_a[0], a - vector_of(S{}, numbers.ground_a));
-    store(s.start_rope_b[0], b - vector_of(S{}, numbers.ground_b));
+    store(s.start_rope_a[0], a - vector_of(S{}, constants.ground_a));
+    store(s.start_rope_b[0], b - vector_of(S{}, constants.ground_b));
   }
 }
 
 template <class S>
-void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+void prepare(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
              Row<S, false>& s) {
-  const Frames<S> f = frames_of<S>(t, g, part, numbers);
+  const Frames<S> f = frames_of<S>(t, g, part, constants);
   if constexpr (S::kDim == 3) {
     store(s.start_axis[0], axis_z(f.a)), store(s.start_axis_b[0], axis_z(f.b));
   }
-  if (part.kind == PartKind::turn) twist_between(f).store(s.start_value);
+  if (part.kind == PartKind::angle) twist_between(f).store(s.start_value);
 }
 
 template <class S, bool kDense, bool kMoved>
-MW_INLINE void locate(const Work& w, const JointPart& part, const Joint& numbers, Row<S, true>& s) {
+MW_INLINE void locate(const Work& w, const JointPart& part, const Joint& constants,
+                      Row<S, true>& s) {
   using Vec = typename S::Vec;
   auto axis = load_as<Vec>(s.start_axis[0]);
   MovedAnchors<S> now = anchors_now<S, kDense, kMoved>(w, s, axis);
-  Vec push_a, push_b;
+  Vec linear_a, linear_b;
   Float value;
   if (part.kind == PartKind::slide) {
-    push_a = push_b = axis;
+    linear_a = linear_b = axis;
     now.arm_a = now.arm_a + now.gap;
     value = dot(axis, now.gap);
   } else if (part.kind == PartKind::distance) {
-    push_a = push_b = direction_of(now.gap, value);
+    linear_a = linear_b = direction_of(now.gap, value);
   } else {
     Float rope_a, rope_b;
-    const Float ratio = numbers.ratio;
-    push_a = -direction_of(load_as<Vec>(s.start_rope_a[0]) + now.moved_a, rope_a);
-    push_b = direction_of(load_as<Vec>(s.start_rope_b[0]) + now.moved_b, rope_b) * ratio;
+    const Float ratio = constants.ratio;
+    linear_a = -direction_of(load_as<Vec>(s.start_rope_a[0]) + now.moved_a, rope_a);
+    linear_b = direction_of(load_as<Vec>(s.start_rope_b[0]) + now.moved_b, rope_b) * ratio;
     value = fma(rope_b, ratio, rope_a);
   }
-  store(s.push_a[0], push_a), store(s.push_b[0], push_b);
-  store(s.arm_a[0], cross(now.arm_a, push_a)), store(s.arm_b[0], cross(now.arm_b, push_b));
+  store(s.linear_a[0], linear_a), store(s.linear_b[0], linear_b);
+  store(s.angular_a[0], cross(now.arm_a, linear_a)),
+      store(s.angular_b[0], cross(now.arm_b, linear_b));
   value.store(s.value);
 }
 
 template <class S, bool kDense, bool kMoved>
 MW_INLINE void locate(const Work& w, const JointPart& part, const Joint&, Row<S, false>& s) {
   using Ang = typename S::Ang;
-  Ang turn_a = zero_of<Ang>(), turn_b = turn_a;
+  Ang swept_a = zero_of<Ang>(), swept_b = swept_a;
   if constexpr (kMoved) {
     const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
-    turn_a = moved.a.w, turn_b = moved.b.w;
+    swept_a = moved.a.w, swept_b = moved.b.w;
   }
   if constexpr (S::kDim == 2) {
     const Float one(Real(1)), value = Float::load(s.start_value);
-    (kMoved ? value + (turn_b - turn_a) : value).store(s.value);
-    one.store(s.arm_a[0]), one.store(s.arm_b[0]);
+    (kMoved ? value + (swept_b - swept_a) : value).store(s.value);
+    one.store(s.angular_a[0]), one.store(s.angular_b[0]);
   } else {
     auto z_a = load_as<Vec3>(s.start_axis[0]), z_b = load_as<Vec3>(s.start_axis_b[0]);
     if constexpr (kMoved) {
-      z_a = z_a + Turned<S>(turn_a).change(z_a);
-      z_b = z_b + Turned<S>(turn_b).change(z_b);
+      z_a = z_a + SweptRotation<S>(swept_a).change(z_a);
+      z_b = z_b + SweptRotation<S>(swept_b).change(z_b);
     }
     Vec3 n;
     Float value = Float::load(s.start_value), length;
-    if (part.kind == PartKind::turn) {
+    if (part.kind == PartKind::angle) {
       n = direction_of(z_a + z_b, length);
-      if constexpr (kMoved) value = value + dot(n, turn_b - turn_a);
+      if constexpr (kMoved) value = value + dot(n, swept_b - swept_a);
     } else {
       const Vec3 lean = cross(z_a, z_b);
       n = direction_of(lean, length);
       n = select(Float(Real(1e-6)) < length, n, any_tangent(z_a));
       value = arc_tangent(length, dot(z_a, z_b));
     }
-    store(s.arm_a[0], n), store(s.arm_b[0], n);
+    store(s.angular_a[0], n), store(s.angular_b[0], n);
     value.store(s.value);
   }
 }
 
 template <class S, bool kDense, bool kMoved, bool kLinear>
-MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& numbers,
+MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& constants,
                        Row<S, kLinear>& s) {
-  locate<S, kDense, kMoved>(w, part, numbers, s);
+  locate<S, kDense, kMoved>(w, part, constants, s);
   weigh_row(s);
 }
 
 template <class S, bool kDense, Pass kPass, bool kLinear>
-MW_INLINE void solve(const Tables& t, const Group& g, const Work& w, const JointPart& part,
-                     const Joint& numbers, Row<S, kLinear>& s, PartVelocities<S, kDense>& v) {
-  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
-  solve_row<S, kLinear, kDense, kPass>(t, g, part, numbers, s, v);
+MW_INLINE void solve(const Constants& t, const Group& g, const Work& w, const JointPart& part,
+                     const Joint& constants, Row<S, kLinear>& s, PartVelocities<S, kDense>& v) {
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
+  solve_row<S, kLinear, kDense, kPass>(t, g, part, constants, s, v);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

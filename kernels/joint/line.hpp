@@ -1,5 +1,5 @@
 // line: B's anchor lies on the x axis of A's frame. 1 row in the plane, 2 in space, along
-// directions d across x that turn with A. With u from A's anchor to B's:
+// directions d across x that are fixed to A. With u from A's anchor to B's:
 //   C = d . u,  C' = d . (v_B + w_B x r_B - v_A - w_A x (r_A + u))
 #pragma once
 
@@ -19,13 +19,13 @@ struct alignas(64) LineRows : AnchoredRows<S> {
 };
 
 template <class S>
-void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+void prepare(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
              LineRows<S>& s) {
-  start_anchors(anchors_of<S>(t, g, part, numbers), s);
-  store(s.start_axis[0], axis_x(frames_of<S>(t, g, part, numbers).a));
+  start_anchors(anchors_of<S>(t, g, part, constants), s);
+  store(s.start_axis[0], axis_x(frames_of<S>(t, g, part, constants).a));
 }
 
-// How a unit push along d at both anchors changes the speed along e.
+// How a unit impulse along d at both anchors changes the speed along e.
 template <class S>
 MW_INLINE Float coupling(const PartBodies<S>& s, typename S::Vec arm_a, typename S::Vec arm_b,
                          typename S::Vec d, typename S::Vec e) {
@@ -58,49 +58,50 @@ MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, LineRows<S
 }
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart& part,
-                     const Joint& numbers, LineRows<S>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointPart& part,
+                     const Joint& constants, LineRows<S>& s, PartVelocities<S, kDense>& v) {
   using Vec = typename S::Vec;
-  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
   const auto arm_a = load_as<Vec>(s.arm_a[0]), arm_b = load_as<Vec>(s.arm_b[0]),
              d = load_as<Vec>(s.direction[0][0]);
-  const Float rho = numbers.soft.rho, rate = numbers.soft.bias_rate;
+  const Float rho = constants.soft.rho, rate = constants.soft.bias_rate;
   const Float scale = Float(Real(1)) / (rho + Float(Real(1)));
   if constexpr (S::kDim == 2) {
     const Float before = dot(d, load_as<Vec>(s.impulse[0]));
     if constexpr (kPass == Pass::warm_start) {
-      push_apart<S, kDense>(s, d * before, arm_a, arm_b, v);
+      apply_at_anchors<S, kDense>(s, d * before, arm_a, arm_b, v);
       return;
     }
     Float x = dot(d, anchor_speed<S, kDense>(v, arm_a, arm_b));
     const Float mass = Float::load(s.mass[0]);
     if constexpr (kPass == Pass::bias) {
-      x = fma(mass, x + pull_of(Float::load(s.error[0]), rate, numbers.pull), before * rho) * scale;
+      x = fma(mass, x + pull_of(Float::load(s.error[0]), rate, constants.pull), before * rho) *
+          scale;
     } else {
       x = mass * x;
     }
     store(s.impulse[0], d * (before - x));
-    push_apart<S, kDense>(s, d * (-x), arm_a, arm_b, v);
+    apply_at_anchors<S, kDense>(s, d * (-x), arm_a, arm_b, v);
   } else {
     const auto e = load_as<Vec>(s.direction[1][0]);
     const auto stored = load_as<Vec>(s.impulse[0]);
     const Vec2 before{dot(d, stored), dot(e, stored)};
     if constexpr (kPass == Pass::warm_start) {
-      push_apart<S, kDense>(s, fma(e, before.y, d * before.x), arm_a, arm_b, v);
+      apply_at_anchors<S, kDense>(s, fma(e, before.y, d * before.x), arm_a, arm_b, v);
       return;
     }
     const Vec speed = anchor_speed<S, kDense>(v, arm_a, arm_b);
     const auto mass = load_as<Sym2>(s.mass[0]);
     Vec2 x{dot(d, speed), dot(e, speed)};
     if constexpr (kPass == Pass::bias) {
-      x = x + pull_of(load_as<Vec2>(s.error[0]), rate, numbers.pull);
+      x = x + pull_of(load_as<Vec2>(s.error[0]), rate, constants.pull);
       x = fma(before, rho, mul(mass, x)) * scale;
     } else {
       x = mul(mass, x);
     }
     const Vec2 after = before - x;
     store(s.impulse[0], fma(e, after.y, d * after.x));
-    push_apart<S, kDense>(s, fma(e, -x.y, d * (-x.x)), arm_a, arm_b, v);
+    apply_at_anchors<S, kDense>(s, fma(e, -x.y, d * (-x.x)), arm_a, arm_b, v);
   }
 }
 

@@ -32,9 +32,9 @@ struct alignas(64) LockRows : PartBodies<S> {
 };
 
 template <class S>
-void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+void prepare(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
              LockRows<S>& s) {
-  store(s.error[0], error_between(frames_of<S>(t, g, part, numbers)));
+  store(s.error[0], error_between(frames_of<S>(t, g, part, constants)));
   store(s.mass[0], inverse(sum_of(inertia_of(s.a), inertia_of(s.b))));
 }
 
@@ -43,12 +43,12 @@ template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work&, const JointPart&, const Joint&, LockRows<S>&) {}
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart&,
-                     const Joint& numbers, LockRows<S>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointPart&,
+                     const Joint& constants, LockRows<S>& s, PartVelocities<S, kDense>& v) {
   using Ang = typename S::Ang;
   const auto before = load_as<Ang>(s.impulse[0]);
   if constexpr (kPass == Pass::warm_start) {
-    turn_apart<S, kDense>(s, before, v);
+    apply_moments<S, kDense>(s, before, v);
     return;
   }
   const auto mass = load_as<typename S::Inertia>(s.mass[0]);
@@ -56,14 +56,14 @@ MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart
   if constexpr (kPass == Pass::bias) {
     const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
     const Ang error = load_as<Ang>(s.error[0]) + relative_spin(moved.a, moved.b);
-    rate = rate + pull_of(error, numbers.soft.bias_rate, numbers.turn_pull);
-    const Float rho = numbers.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
+    rate = rate + pull_of(error, constants.soft.bias_rate, constants.angular_pull);
+    const Float rho = constants.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
     after = before - (apply(mass, rate) + before * rho) * scale;
   } else {
     after = before - apply(mass, rate);
   }
   store(s.impulse[0], after);
-  turn_apart<S, kDense>(s, after - before, v);
+  apply_moments<S, kDense>(s, after - before, v);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

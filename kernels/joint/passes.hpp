@@ -21,7 +21,7 @@ inline constexpr std::size_t kPartBytes = [] {
 
 // Calls visit(rows of the part, part, index) for every part.
 template <class S, class Visit>
-MW_INLINE void for_each_part(const Tables& t, Work& w, int first, int end, Visit visit) {
+MW_INLINE void for_each_part(const Constants& t, Work& w, int first, int end, Visit visit) {
   for (int i = first; i < end; ++i) {
     const JointPart& part = t.part[i];
     unsigned char* at = w.parts + static_cast<std::size_t>(i) * kPartBytes<S>;
@@ -32,7 +32,7 @@ MW_INLINE void for_each_part(const Tables& t, Work& w, int first, int end, Visit
       case PartKind::swing:
         if constexpr (S::kDim == 3) visit(*reinterpret_cast<SwingRows<S>*>(at), part, i);
         break;
-      case PartKind::turn:
+      case PartKind::angle:
       case PartKind::cone: visit(*reinterpret_cast<Row<S, false>*>(at), part, i); break;
       default: visit(*reinterpret_cast<Row<S, true>*>(at), part, i);
     }
@@ -40,13 +40,13 @@ MW_INLINE void for_each_part(const Tables& t, Work& w, int first, int end, Visit
 }
 
 template <class S, class Visit>
-MW_INLINE void for_each_part(const Tables& t, Work& w, Visit visit) {
+MW_INLINE void for_each_part(const Constants& t, Work& w, Visit visit) {
   for_each_part<S>(t, w, 0, t.parts, visit);
 }
 
 template <class S, bool kDense>
 struct JointPasses {
-  static void prepare_bodies(const Tables& t, const Group& g, Work& w, const JointPart& part,
+  static void prepare_bodies(const Constants& t, const Group& g, Work& w, const JointPart& part,
                              int index, PartBodies<S>& s) {
     s.mask = active_lanes(t, g, part);
     const int body_a = part.body_a == t.bodies ? world_body(t) : part.body_a;
@@ -73,18 +73,18 @@ struct JointPasses {
   }
 
   // Rows at the start of the step, with the impulses of the last one.
-  static void prepare_parts(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  static void prepare_parts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
-      const Joint& numbers = constants_of_part(g, i);
+      const Joint& constants = constants_of_part(g, i);
       prepare_bodies(t, g, w, part, i, s);
-      prepare(t, g, part, numbers, s);
-      refresh<S, kDense, false>(w, part, numbers, s);
+      prepare(t, g, part, constants, s);
+      refresh<S, kDense, false>(w, part, constants, s);
     });
   }
 
   template <Pass kPass>
-  static void pass(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  static void pass(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       if (s.mask == 0) return;
@@ -111,7 +111,7 @@ struct JointPasses {
   }
   // Multiplies by the relaxation what the pass has changed. Impulses and velocities are linear in
   // each other.
-  static MW_INLINE void relax_change(const Tables& t, const Work& w, const PartImpulses& before,
+  static MW_INLINE void relax_change(const Constants& t, const Work& w, const PartImpulses& before,
                                      PartBodies<S>& s, PartVelocities<S, kDense>& v) {
     const Float r(t.solver.relaxation);
     for (int k = 0; k < kernels::kPartImpulses; ++k) {
@@ -122,14 +122,14 @@ struct JointPasses {
     v.b.v = fma(v.b.v - began.b.v, r, began.b.v), v.b.w = fma(v.b.w - began.b.w, r, began.b.w);
   }
 
-  static void follow(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  static void follow(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       refresh<S, kDense, true>(w, part, constants_of_part(g, i), s);
     });
   }
 
-  static void keep(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  static void keep(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     for_each_part<S>(t, w, [&](auto& s, const JointPart&, int i) {
       const Mask lanes = mask_from_bits(s.mask & ~w.frozen);
@@ -142,12 +142,12 @@ struct JointPasses {
   }
 
   // Adds what the substep made the joints that may break bear.
-  static void bear(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void bear(const Constants& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     const Float zero(Real(0));
     for (int i = 0; i < t.breakable; ++i) {
-      Real* to = w.borne + i * kBorne<S>;
-      for (int k = 0; w.substep == 0 && k < kBorne<S>; k += kLanes) zero.store(to + k);
+      Real* to = w.loads + i * kLoadRows<S>;
+      for (int k = 0; w.substep == 0 && k < kLoadRows<S>; k += kLanes) zero.store(to + k);
       const int first = t.breaking[i].first_part;
       for_each_part<S>(t, w, first, first + t.breaking[i].parts, [&](auto& s, auto&, int) {
         const Impulse<S> p = impulse_of(s);

@@ -2,9 +2,9 @@
 //   C = x_B + r_B - x_A - r_A,  C' = v_B + w_B x r_B - v_A - w_A x r_A
 //   K = (1/m_A + 1/m_B) E - [r_A] I_A^-1 [r_A] - [r_B] I_B^-1 [r_B]
 // C, the arms r and K follow the bodies in every substep, before the relax pass: velocities that
-// are solved for the arms which the substep began with gain energy from the impulses that turn them
-// (as much as explicit Euler). With a spring the anchor of B is drawn to that of A by no more than
-// a given force.
+// are solved for the arms which the substep began with gain energy from the impulses that rotate
+// them (as much as explicit Euler). With a spring the anchor of B is drawn to that of A by no more
+// than a given force.
 #pragma once
 
 #include "kernels/joint/body.hpp"
@@ -46,20 +46,20 @@ struct alignas(64) PointRows : AnchoredRows<S> {
 };
 
 template <class S>
-void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+void prepare(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
              PointRows<S>& s) {
-  start_anchors(anchors_of<S>(t, g, part, numbers), s);
+  start_anchors(anchors_of<S>(t, g, part, constants), s);
 }
 
 template <class S, bool kDense, bool kMoved>
-MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& numbers,
+MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& constants,
                        PointRows<S>& s) {
   const auto now = anchors_now<S, kDense, kMoved>(w, s);
   store(s.arm_a[0], now.arm_a), store(s.arm_b[0], now.arm_b), store(s.gap[0], now.gap);
   typename PointMass<S>::Type k{};
   add_point_mass(s.a, now.arm_a, k), add_point_mass(s.b, now.arm_b, k);
   if (part.spring) {
-    const Float rho = numbers.soft.rho, gamma = numbers.soft.gamma;
+    const Float rho = constants.soft.rho, gamma = constants.soft.gamma;
     store(s.soft_mass[0], inverse(soften(k, rho, gamma)));
     store(s.mass[0], soften(k, rho - Float(Real(1)), gamma));
   } else {
@@ -74,14 +74,14 @@ MW_INLINE typename S::Vec limit_length(typename S::Vec p, Float most) {
 }
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart& part,
-                     const Joint& numbers, PointRows<S>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointPart& part,
+                     const Joint& constants, PointRows<S>& s, PartVelocities<S, kDense>& v) {
   using Vec = typename S::Vec;
   using Mass = typename PointMass<S>::Type;
-  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
   if constexpr (kPass == Pass::warm_start) {
-    push_apart<S, kDense>(s, load_as<Vec>(s.impulse[0]), load_as<Vec>(s.arm_a[0]),
-                          load_as<Vec>(s.arm_b[0]), v);
+    apply_at_anchors<S, kDense>(s, load_as<Vec>(s.impulse[0]), load_as<Vec>(s.arm_a[0]),
+                                load_as<Vec>(s.arm_b[0]), v);
     return;
   }
   const auto arm_a = load_as<Vec>(s.arm_a[0]), arm_b = load_as<Vec>(s.arm_b[0]);
@@ -90,18 +90,18 @@ MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart
   Vec rate = anchor_speed<S, kDense>(v, arm_a, arm_b), after;
   if (part.spring) {  // its equation is the same in both passes
     if constexpr (kPass == Pass::bias) store(s.drawn[0], load_as<Vec>(s.gap[0]));
-    rate = fma(load_as<Vec>(s.drawn[0]), numbers.soft.bias_rate, rate) + mul(mass, before);
-    after = limit_length<S>(before - mul(load_as<Mass>(s.soft_mass[0]), rate), numbers.most);
+    rate = fma(load_as<Vec>(s.drawn[0]), constants.soft.bias_rate, rate) + mul(mass, before);
+    after = limit_length<S>(before - mul(load_as<Mass>(s.soft_mass[0]), rate), constants.most);
   } else if (kPass == Pass::bias) {
     // (1 + rho)^-1 of the hard row's answer, as K' is (1 + rho) K.
-    rate = rate + pull_of(load_as<Vec>(s.gap[0]), numbers.soft.bias_rate, numbers.pull);
-    const Float rho = numbers.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
+    rate = rate + pull_of(load_as<Vec>(s.gap[0]), constants.soft.bias_rate, constants.pull);
+    const Float rho = constants.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
     after = before - (mul(mass, rate) + before * rho) * scale;
   } else {
     after = before - mul(mass, rate);
   }
   store(s.impulse[0], after);
-  push_apart<S, kDense>(s, after - before, arm_a, arm_b, v);
+  apply_at_anchors<S, kDense>(s, after - before, arm_a, arm_b, v);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,8 +1,8 @@
 // A single row of a joint along a coordinate x with speed v = J (velocities): held at a value,
-// driven, limited, or some of these. Its Jacobian is [-push_a, -arm_a, push_b, arm_b] (no pushes
-// for rows about an axis), K = J M^-1 J^T.
+// driven, limited, or some of these. Its Jacobian is [-linear_a, -angular_a, linear_b, angular_b]
+// (no linear part for rows about an axis), K = J M^-1 J^T.
 //   held     C = x - rest, soft in the bias pass
-//   driven   force = k (target - x) + c (target speed - v), implicit; |impulse| <= most
+//   driven   force = k (target - x) + c (target speed - v), implicit; |impulse| <= max
 //   limited  C = x - low or high - x, lambda >= 0; speculative while C > 0, else soft
 #pragma once
 
@@ -17,8 +17,8 @@ struct alignas(64) Row : AnchoredRows<S> {
   Real start_rope_a[S::kDim][kLanes], start_rope_b[S::kDim][kLanes];  // of a pulley
   Real start_value[kLanes];
   // Of the substep.
-  Real push_a[S::kDim][kLanes], push_b[S::kDim][kLanes];
-  Real arm_a[S::kAng][kLanes], arm_b[S::kAng][kLanes];
+  Real linear_a[S::kDim][kLanes], linear_b[S::kDim][kLanes];
+  Real angular_a[S::kAng][kLanes], angular_b[S::kAng][kLanes];
   Real value[kLanes];
   Real driven[kLanes];  // the value of the bias pass
   Real k[kLanes];
@@ -28,9 +28,9 @@ template <class S, bool kLinear, class Velocities>
 MW_INLINE Float speed_of(const Row<S, kLinear>& s, const Velocities& v) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  Float x = dot(load_as<Ang>(s.arm_b[0]), v.b.w) - dot(load_as<Ang>(s.arm_a[0]), v.a.w);
+  Float x = dot(load_as<Ang>(s.angular_b[0]), v.b.w) - dot(load_as<Ang>(s.angular_a[0]), v.a.w);
   if constexpr (kLinear) {
-    x = x + (dot(load_as<Vec>(s.push_b[0]), v.b.v) - dot(load_as<Vec>(s.push_a[0]), v.a.v));
+    x = x + (dot(load_as<Vec>(s.linear_b[0]), v.b.v) - dot(load_as<Vec>(s.linear_a[0]), v.a.v));
   }
   return x;
 }
@@ -38,10 +38,10 @@ template <class S, bool kLinear, bool kDense>
 MW_INLINE void apply_row(const Row<S, kLinear>& s, Float p, PartVelocities<S, kDense>& v) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  const Ang a = load_as<Ang>(s.arm_a[0]) * p, b = load_as<Ang>(s.arm_b[0]) * p;
+  const Ang a = load_as<Ang>(s.angular_a[0]) * p, b = load_as<Ang>(s.angular_b[0]) * p;
   if constexpr (kLinear) {
-    add_impulse(s.b, load_as<Vec>(s.push_b[0]), p, b, v.b);
-    take_impulse(s.a, load_as<Vec>(s.push_a[0]), p, a, v.a);
+    add_impulse(s.b, load_as<Vec>(s.linear_b[0]), p, b, v.b);
+    take_impulse(s.a, load_as<Vec>(s.linear_a[0]), p, a, v.a);
   } else {
     add_moment(s.b, b, v.b);
     take_moment(s.a, a, v.a);
@@ -51,12 +51,12 @@ template <class S, bool kLinear>
 MW_INLINE void weigh_row(Row<S, kLinear>& s) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  const Ang a = load_as<Ang>(s.arm_a[0]), b = load_as<Ang>(s.arm_b[0]);
+  const Ang a = load_as<Ang>(s.angular_a[0]), b = load_as<Ang>(s.angular_b[0]);
   Float k = dot(a, apply(inertia_of(s.a), a)) + dot(b, apply(inertia_of(s.b), b));
   if constexpr (kLinear) {
-    const Vec push_a = load_as<Vec>(s.push_a[0]), push_b = load_as<Vec>(s.push_b[0]);
-    k = k + fma(dot(push_a, push_a), Float::load(s.a.inv_mass),
-                dot(push_b, push_b) * Float::load(s.b.inv_mass));
+    const Vec linear_a = load_as<Vec>(s.linear_a[0]), linear_b = load_as<Vec>(s.linear_b[0]);
+    k = k + fma(dot(linear_a, linear_a), Float::load(s.a.inv_mass),
+                dot(linear_b, linear_b) * Float::load(s.b.inv_mass));
   }
   k.store(s.k);
 }
@@ -75,14 +75,14 @@ MW_INLINE Float soften_row(const kernels::RowSoftness<LaneNumber>& soft, Float k
 
 // The change of a limit's impulse; `gap` >= 0 while the coordinate is within it.
 template <Pass kPass>
-MW_INLINE Float solve_limit(const Tables& t, const Joint& numbers, Float k, Float speed, Float gap,
-                            Real* stored) {
+MW_INLINE Float solve_limit(const Constants& t, const Joint& constants, Float k, Float speed,
+                            Float gap, Real* stored) {
   const Float zero(Real(0)), before = Float::load(stored);
   const Float ahead = fma(max(gap, zero), Float(t.inv_h), speed);
   const Float hard = -(ahead * inverse_or_zero(k));
   Float change = hard;
   if (kPass == Pass::bias) {
-    change = select(zero < gap, hard, soften_row(numbers.limit_soft, k, speed, gap, before));
+    change = select(zero < gap, hard, soften_row(constants.limit_soft, k, speed, gap, before));
   }
   const Float after = max(before + change, zero);
   after.store(stored);
@@ -90,8 +90,8 @@ MW_INLINE Float solve_limit(const Tables& t, const Joint& numbers, Float k, Floa
 }
 
 template <class S, bool kLinear, bool kDense, Pass kPass>
-MW_INLINE void solve_row(const Tables& t, const Group& g, const JointPart& part,
-                         const Joint& numbers, Row<S, kLinear>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve_row(const Constants& t, const Group& g, const JointPart& part,
+                         const Joint& constants, Row<S, kLinear>& s, PartVelocities<S, kDense>& v) {
   if constexpr (kPass == Pass::warm_start) {
     const Float low = Float::load(s.impulse[1]), high = Float::load(s.impulse[2]);
     apply_row<S, kLinear, kDense>(s, Float::load(s.impulse[0]) + (low - high), v);
@@ -103,21 +103,22 @@ MW_INLINE void solve_row(const Tables& t, const Group& g, const JointPart& part,
     const Float before = Float::load(s.impulse[0]), speed = speed_of(s, v);
     Float after;
     if (part.drive) {  // its equation is the same in both passes
-      Float target = numbers.target_position, target_speed = numbers.target_speed;
+      Float target = constants.target_position, target_speed = constants.target_speed;
       if (part.position_control >= 0) {
         target = Float::load(g.control + part.position_control * kLanes);
       }
       if (part.speed_control >= 0) {
         target_speed = Float::load(g.control + part.speed_control * kLanes);
       }
-      const Float most = numbers.most;
-      const Float lag = fnma(target_speed, numbers.speed_share, speed);
+      const Float most = constants.most;
+      const Float lag = fnma(target_speed, constants.speed_share, speed);
       const Float error = Float::load(s.driven) - target;
-      after = before + soften_row(numbers.drive_soft, k, lag, error, before);
+      after = before + soften_row(constants.drive_soft, k, lag, error, before);
       after = clamp(after, -most, most);
     } else if (kPass == Pass::bias) {
-      const Float pull = pull_of(value - Float(numbers.rest), numbers.soft.bias_rate, numbers.pull);
-      after = before + soften_row(numbers.soft, k, speed + pull, before);
+      const Float pull =
+          pull_of(value - Float(constants.rest), constants.soft.bias_rate, constants.pull);
+      after = before + soften_row(constants.soft, k, speed + pull, before);
     } else {
       after = fnma(speed, inverse_or_zero(k), before);
     }
@@ -125,15 +126,15 @@ MW_INLINE void solve_row(const Tables& t, const Group& g, const JointPart& part,
     apply_row<S, kLinear, kDense>(s, after - before, v);
   }
   if (part.low) {
-    const Float gap = value - Float(numbers.low);
+    const Float gap = value - Float(constants.low);
     const Float speed = speed_of(s, v);
-    apply_row<S, kLinear, kDense>(s, solve_limit<kPass>(t, numbers, k, speed, gap, s.impulse[1]),
+    apply_row<S, kLinear, kDense>(s, solve_limit<kPass>(t, constants, k, speed, gap, s.impulse[1]),
                                   v);
   }
   if (part.high) {
-    const Float gap = Float(numbers.high) - value;
+    const Float gap = Float(constants.high) - value;
     const Float speed = -speed_of(s, v);
-    apply_row<S, kLinear, kDense>(s, -solve_limit<kPass>(t, numbers, k, speed, gap, s.impulse[2]),
+    apply_row<S, kLinear, kDense>(s, -solve_limit<kPass>(t, constants, k, speed, gap, s.impulse[2]),
                                   v);
   }
 }

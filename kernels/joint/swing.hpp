@@ -28,9 +28,9 @@ struct alignas(64) SwingRows : PartBodies<S> {
 };
 
 template <class S>
-void prepare(const Tables& t, const Group& g, const JointPart& part, const Joint& numbers,
+void prepare(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
              SwingRows<S>& s) {
-  const Frames<S> f = frames_of<S>(t, g, part, numbers);
+  const Frames<S> f = frames_of<S>(t, g, part, constants);
   store(s.start_a[0], axis_z(f.a)), store(s.start_b[0], axis_z(f.b));
 }
 
@@ -39,8 +39,8 @@ MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, SwingRows<
   auto z_a = load_as<Vec3>(s.start_a[0]), z_b = load_as<Vec3>(s.start_b[0]);
   if constexpr (kMoved) {
     const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
-    z_a = z_a + Turned<S>(moved.a.w).change(z_a);
-    z_b = z_b + Turned<S>(moved.b.w).change(z_b);
+    z_a = z_a + SweptRotation<S>(moved.a.w).change(z_a);
+    z_b = z_b + SweptRotation<S>(moved.b.w).change(z_b);
   }
   const Vec3 b = any_tangent(z_a), c = cross(z_a, b), lean = cross(z_a, z_b);
   store(s.across[0][0], b), store(s.across[1][0], c);
@@ -51,29 +51,30 @@ MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, SwingRows<
 }
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Tables&, const Group&, const Work& w, const JointPart& part,
-                     const Joint& numbers, SwingRows<S>& s, PartVelocities<S, kDense>& v) {
-  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, numbers, s);
+MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointPart& part,
+                     const Joint& constants, SwingRows<S>& s, PartVelocities<S, kDense>& v) {
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
   const auto b = load_as<Vec3>(s.across[0][0]), c = load_as<Vec3>(s.across[1][0]),
              stored = load_as<Vec3>(s.impulse[0]);
   const Vec2 before{dot(b, stored), dot(c, stored)};
   if constexpr (kPass == Pass::warm_start) {
-    turn_apart<S, kDense>(s, fma(c, before.y, b * before.x), v);
+    apply_moments<S, kDense>(s, fma(c, before.y, b * before.x), v);
     return;
   }
   const auto mass = load_as<Sym2>(s.mass[0]);
   const Vec3 spin = relative_spin(v.a, v.b);
   Vec2 rate{dot(b, spin), dot(c, spin)}, after;
   if constexpr (kPass == Pass::bias) {
-    rate = rate + pull_of(load_as<Vec2>(s.error[0]), numbers.soft.bias_rate, numbers.turn_pull);
-    const Float rho = numbers.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
+    rate =
+        rate + pull_of(load_as<Vec2>(s.error[0]), constants.soft.bias_rate, constants.angular_pull);
+    const Float rho = constants.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
     after = before - (mul(mass, rate) + before * rho) * scale;
   } else {
     after = before - mul(mass, rate);
   }
   store(s.impulse[0], fma(c, after.y, b * after.x));
   const Vec2 d = after - before;
-  turn_apart<S, kDense>(s, fma(c, d.y, b * d.x), v);
+  apply_moments<S, kDense>(s, fma(c, d.y, b * d.x), v);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -96,7 +96,7 @@ MW_INLINE Quat normalize(Quat q) {
   const Float e = fma(dot(q, q), Real(-0.5), Real(0.5));
   return {fma(q.w, e, q.w), fma(q.x, e, q.x), fma(q.y, e, q.y), fma(q.z, e, q.z)};
 }
-// v turned by a unit quaternion with vector part u: t = 2 u x v, v + w t + u x t. Fewer operations
+// v rotated by a unit quaternion with vector part u: t = 2 u x v, v + w t + u x t. Fewer operations
 // than by the matrix for a vector or two.
 MW_INLINE Vec3 rotate_about(Float w, Vec3 u, Vec3 v) {
   const Vec3 half = cross(u, v), t = half + half, a = fma(t, w, v);
@@ -108,7 +108,7 @@ MW_INLINE Vec3 rotate_back(Quat q, Vec3 v) { return rotate_about(-q.w, {q.x, q.y
 
 // Rotation by the world vector phi: the quaternion (1, phi tan(|phi|/2)/|phi|), normalised, with
 // the tangent's series cut after the sixth power (exact to 2e-6 rad at |phi| = 0.5); beyond 2 rad
-// it turns less than asked but stays finite.
+// it rotates by less than asked but stays finite.
 MW_INLINE Float half_tangent_ratio(Float p2) {
   const Float x = min(p2, Real(4));
   return fma(x, fma(x, fma(x, Real(17.0 / 40320.0), Real(1.0 / 240.0)), Real(1.0 / 24.0)),
@@ -130,7 +130,7 @@ MW_INLINE Sym3 rotate_diagonal(const Mat3& r, Vec3 d) {
           fma(c.y, r.z.z, b.y * r.y.z),          fma(c.z, r.z.z, fma(b.z, r.y.z, d.x))};
 }
 
-// The same for the plane: (c, s) turned by phi.
+// The same for the plane: (c, s) rotated by phi.
 MW_INLINE Rot2 rotate_by(Rot2 q, Float phi) {
   const Float t = phi * half_tangent_ratio(phi * phi);
   const Float c0 = fnma(t, t, Real(1)), s0 = t + t;

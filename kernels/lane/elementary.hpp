@@ -51,15 +51,15 @@ MW_INLINE SineAndCosine sine_and_cosine(Float x) {
     q = fma(q, z, kCosine[i]);
   }
   const Float sine = fma(r * z, p, r), cosine = fma(z * z, q, fnma(Float(Real(0.5)), z, Real(1)));
-  // The quarter turn: k modulo 4, as -2 to 2; odd ones exchange the two.
+  // The quadrant: k modulo 4, as -2 to 2; odd ones exchange the two.
   const Float quarter = fnma(Float(Real(4)), round_to_whole(k * Float(Real(0.25))), k);
   const Float size = abs(quarter), half(Real(0.5)), one_and_half(Real(1.5));
   const Mask odd = (half < size) & (size < one_and_half), opposite = one_and_half < size;
   const Mask forward = Float(Real(0)) < quarter;
-  const Float turned_sine = select(forward, cosine, -cosine);
-  const Float turned_cosine = select(forward, -sine, sine);
-  return {select(odd, turned_sine, select(opposite, -sine, sine)),
-          select(odd, turned_cosine, select(opposite, -cosine, cosine))};
+  const Float quarter_sine = select(forward, cosine, -cosine);
+  const Float quarter_cosine = select(forward, -sine, sine);
+  return {select(odd, quarter_sine, select(opposite, -sine, sine)),
+          select(odd, quarter_cosine, select(opposite, -cosine, cosine))};
 }
 
 // 2^k of a whole k, lane by lane: exact.

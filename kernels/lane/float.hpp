@@ -1,7 +1,7 @@
 // Float and Mask: one number, or one truth value, per lane; a lane is a world.
 //
 // The only file that includes xsimd. xsimd 8.1 does not fuse on AVX-512 and plain AVX2, and cannot
-// turn a mask into bits, so those come from intrinsics here. Nothing below mixes lanes. Every
+// make bits of a mask, so those come from intrinsics here. Nothing below mixes lanes. Every
 // operation is correctly rounded or pure bit logic, so all instruction sets give the same bits:
 //   max(a, b) is (a > b ? a : b) and min(a, b) is (a < b ? a : b), also for NaN and signed zeros.
 // The build sets MW_REAL, MW_LANES, MW_KERNEL_NAMESPACE and one of MW_ISA_SCALAR/AVX2/AVX512.

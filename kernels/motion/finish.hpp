@@ -31,14 +31,14 @@ struct LaneCheck {
 
   // kIdle: some bodies do not take part; what they would do is not committed.
   template <class S, bool kIdle>
-  MW_INLINE void add(const Tables& t, const Group& g, int body, const Velocity<S>& moved,
+  MW_INLINE void add(const Constants& t, const Group& g, int body, const Velocity<S>& moved,
                      const Velocity<S>& v) {
     const auto x = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.position)) + moved.v;
     Mask ok = in_range(x, kMaxPosition) & in_range(v.v, kMaxSpeed) & in_range(v.w, kMaxSpin);
     typename S::Orientation q;
     if (t.has_orientation) {  // only a written value can be bad: steps normalise
       q = load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation));
-      // Passes that push out may turn a body far that ends up slow.
+      // Push-out passes may rotate a body far that ends up slow.
       // One without a length has no direction to normalise.
       ok = ok & in_range(q, kMaxOrientation) & in_range(moved.w, kMaxSweep) &
            (Float(kMinOrientation * kMinOrientation) <= dot(q, q));
@@ -82,22 +82,23 @@ inline void flag_outside(const Group& g, std::uint32_t lanes) {
   }
 }
 
-// What symplectic substeps fall too far: half of dt times the push of one, and where drag changes
-// it half a substep times what the velocity changed by.
+// The first-order drift error of semi-implicit Euler: half of dt times the delta_v of a substep,
+// and where drag changes it half a substep times what the velocity changed by.
 template <class S, bool kDense>
-MW_INLINE typename S::Vec drift_excess(const Tables& t, const Group& g, const Work& w, int body) {
+MW_INLINE typename S::Vec drift_excess(const Constants& t, const Group& g, const Work& w,
+                                       int body) {
   if (t.slows) {
     const auto before = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear));
     const Velocity<S> now = get_velocity<S, kDense>(w, w.velocity, body);
     return (now.v - before) * Float(t.h * Real(0.5));
   }
   const Float scale(t.dt * Real(0.5));
-  if (w.push) return get_velocity<S, kDense>(w, w.push, body).v * scale;
-  const Real* p = t.push_rows + body * S::kRow;
-  typename S::Vec push;
-  push.x = p[0], push.y = p[1];
-  if constexpr (S::kDim == 3) push.z = p[2];
-  return push * scale;
+  if (w.delta_v) return get_velocity<S, kDense>(w, w.delta_v, body).v * scale;
+  const Real* p = t.delta_v_rows + body * S::kRow;
+  typename S::Vec delta_v;
+  delta_v.x = p[0], delta_v.y = p[1];
+  if constexpr (S::kDim == 3) delta_v.z = p[2];
+  return delta_v * scale;
 }
 
 // What may be written of a body: everything, the lanes of a mask, or those of them that are not
@@ -133,33 +134,33 @@ struct NoFlight {
   }
 };
 template <class Flight>
-inline constexpr bool kFlies = !std::is_same_v<Flight, NoFlight>;
+inline constexpr bool kFreeFlight = !std::is_same_v<Flight, NoFlight>;
 
 // Orientations of bodies whose inertia is a scalar: by the angle that the substeps swept.
 template <class S, class Keep, class Flight>
-MW_INLINE void turn_body(const Tables& t, const Group& g, int body, typename S::Ang turn, Keep keep,
-                         Mask free, const Flight& flight) {
+MW_INLINE void rotate_body(const Constants& t, const Group& g, int body, typename S::Ang angle,
+                           Keep keep, Mask free, const Flight& flight) {
   Real* p = state_of(t, g, body, kState<S>.orientation);
-  const auto swept = rotate_by(load_as<typename S::Orientation>(p), turn);
+  const auto swept = rotate_by(load_as<typename S::Orientation>(p), angle);
   store(p, keep(flight.orientation(body, free, swept), p));
 }
 
 // Orientations and angular velocities of kBodies bodies from `first` whose inertia is a tensor:
-// free lanes tumble exactly, lanes in contact turn by the angle that the substeps swept.
+// free lanes tumble exactly, lanes in contact rotate by the angle that the substeps swept.
 template <bool kDense, int kBodies, class Keep, class Flight>
-MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first, Keep keep,
-                            const Flight& flight) {
-  const Top* tops[kBodies];
+MW_INLINE void rotate_tensors(const Constants& t, const Group& g, Work& w, int first, Keep keep,
+                              const Flight& flight) {
+  const PrincipalInertia* tops[kBodies];
   Vec3 omega[kBodies], tumbled[kBodies];
   Quat q[kBodies], old[kBodies];
   for (int i = 0; i < kBodies; ++i) {
-    tops[i] = &constants_of_body(g, first + i).top;
+    tops[i] = &constants_of_body(g, first + i).principal;
     omega[i] = tumbled[i] = get_velocity<Tensor, kDense>(w, w.velocity, first + i).w;
     q[i] = old[i] = load_quat(state_of(t, g, first + i, kState<Tensor>.orientation));
   }
   std::uint32_t held_everywhere = kAllLanes;
   for (int i = 0; i < kBodies; ++i) held_everywhere &= w.touched[first + i];
-  if constexpr (kFlies<Flight>) {
+  if constexpr (kFreeFlight<Flight>) {
     for (int i = 0; i < kBodies; ++i) {
       const auto end = flight.of(first + i);
       tumbled[i] = end.spin, q[i] = end.q;
@@ -198,7 +199,7 @@ MW_INLINE void turn_tensors(const Tables& t, const Group& g, Work& w, int first,
 }
 
 template <class S, bool kDense, class Keep, class Flight>
-void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit_bits, Keep keep,
+void commit_lanes(const Constants& t, const Group& g, Work& w, std::uint32_t commit_bits, Keep keep,
                   const Flight& flight) {
   constexpr bool kIdle = std::is_same_v<Keep, LiveLanes>;
   Mask inside = mask_from_bits(kAllLanes);
@@ -213,11 +214,11 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     Real* p = state_of(t, g, b, kState<S>.position);
     const auto old = load_as<typename S::Vec>(p);
     auto step = moved.v;
-    if constexpr (kFlies<Flight>) {
+    if constexpr (kFreeFlight<Flight>) {
       const auto end = flight.of(b);
       step = select(free, end.x - old, step);
       v = select(free, Velocity<S>{end.v, end.spin}, v);
-    } else if (t.has_gravity || t.slows || w.push) {
+    } else if (t.has_gravity || t.slows || w.delta_v) {
       step = select(free, step - drift_excess<S, kDense>(t, g, w, b), step);
     }
     if (t.cast) step = cast_against_fixed(t, g, b, old, step);
@@ -240,13 +241,13 @@ void commit_lanes(const Tables& t, const Group& g, Work& w, std::uint32_t commit
     if constexpr (!std::is_same_v<S, Tensor>) {
       Real* p_angular = state_of(t, g, b, kState<S>.angular);
       store(p_angular, keep_body(v.w, p_angular));
-      if (t.has_orientation) turn_body<S>(t, g, b, moved.w, keep_body, free, flight);
+      if (t.has_orientation) rotate_body<S>(t, g, b, moved.w, keep_body, free, flight);
     }
   }
   if constexpr (std::is_same_v<S, Tensor>) {
     int b = 0;
-    for (; b + 1 < t.bodies; b += 2) turn_tensors<kDense, 2>(t, g, w, b, keep, flight);
-    if (b < t.bodies) turn_tensors<kDense, 1>(t, g, w, b, keep, flight);
+    for (; b + 1 < t.bodies; b += 2) rotate_tensors<kDense, 2>(t, g, w, b, keep, flight);
+    if (b < t.bodies) rotate_tensors<kDense, 1>(t, g, w, b, keep, flight);
   }
   flag_outside(g, ~bits(inside) & commit_bits);
 }
@@ -259,12 +260,13 @@ inline void report_overflow(const Group& g, const Work& w) {
 }
 
 template <class S, bool kDense, bool kIdle, class Flight>
-std::uint32_t judge_bodies(const Tables& t, const Group& g, const Work& w, const Flight& flight) {
+std::uint32_t judge_bodies(const Constants& t, const Group& g, const Work& w,
+                           const Flight& flight) {
   LaneCheck check;
   for (int b = 0; b < t.bodies; ++b) {
     Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
     Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
-    if constexpr (kFlies<Flight>) {
+    if constexpr (kFreeFlight<Flight>) {
       const auto end = flight.of(b);
       const Mask free = mask_from_bits(~w.touched[b] & kAllLanes);
       const auto from = load_as<typename S::Vec>(state_of(t, g, b, kState<S>.position));
@@ -279,7 +281,7 @@ std::uint32_t judge_bodies(const Tables& t, const Group& g, const Work& w, const
 
 // Returns the lanes whose new state was committed.
 template <class S, bool kDense, class Flight>
-std::uint32_t leave_state(const Tables& t, const Group& g, Work& w, const Flight& flight) {
+std::uint32_t leave_state(const Constants& t, const Group& g, Work& w, const Flight& flight) {
   if (has_idle_bodies(g)) {
     const std::uint32_t commit = judge_bodies<S, kDense, true>(t, g, w, flight);
     commit_lanes<S, kDense>(t, g, w, commit, LiveLanes{g, commit}, flight);
@@ -287,7 +289,7 @@ std::uint32_t leave_state(const Tables& t, const Group& g, Work& w, const Flight
   }
   const std::uint32_t commit = judge_bodies<S, kDense, false>(t, g, w, flight);
   // The path without masks is for the default integrator: another one is compiled half as often.
-  if constexpr (!kFlies<Flight>) {
+  if constexpr (!kFreeFlight<Flight>) {
     if (commit == kAllLanes) {
       commit_lanes<S, kDense>(t, g, w, commit, AllLanes{}, flight);
       return commit;

@@ -1,30 +1,30 @@
 // Plans without contacts: each body goes through a whole step in registers and is written back in
-// place; the state before the step is kept for lanes whose new state turns out to be bad.
+// place; the state before the step is kept for lanes whose new state is bad.
 #pragma once
 
 #include "kernels/motion/finish.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Velocity at the end of the substeps, the way they went, and the push of each.
+// Velocity at the end of the substeps, the displacement by them, and the delta_v of each.
 template <class S>
 struct Flight {
-  Velocity<S> v, moved, push;
+  Velocity<S> v, moved, delta_v;
 };
 
 template <class S>
-MW_INLINE Flight<S> fly(const Tables& t, const Group& g, const Work& w, int body) {
+MW_INLINE Flight<S> fly(const Constants& t, const Group& g, const Work& w, int body) {
   const Float h(t.h);
   Flight<S> o;
   o.v = {load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear)),
          load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular))};
-  // A push of 0 turns -0 into 0; so does every step, pushed or not.
+  // A delta_v of 0 makes -0 a 0; so does every step, with forces or without.
   o.v = {o.v.v + zero_of<typename S::Vec>(), o.v.w + zero_of<typename S::Ang>()};
   const typename S::Vec start = o.v.v;
-  const auto& numbers = constants_of_body(g, body);
-  o.push.v.x = numbers.push[0], o.push.v.y = numbers.push[1];
-  if constexpr (S::kDim == 3) o.push.v.z = numbers.push[2];
-  if (w.push) o.push = push_of_body<S>(t, g, w, body);
+  const auto& constants = constants_of_body(g, body);
+  o.delta_v.v.x = constants.delta_v[0], o.delta_v.v.y = constants.delta_v[1];
+  if constexpr (S::kDim == 3) o.delta_v.v.z = constants.delta_v[2];
+  if (w.delta_v) o.delta_v = delta_v_of_body<S>(t, g, w, body);
   o.moved = {o.v.v - o.v.v, o.v.w - o.v.w};
   const auto substeps = [&](auto change) __attribute__((always_inline)) {
     for (int k = 0; k < t.substeps; ++k) {
@@ -32,23 +32,23 @@ MW_INLINE Flight<S> fly(const Tables& t, const Group& g, const Work& w, int body
       o.moved = {fma(o.v.v, h, o.moved.v), fma(o.v.w, h, o.moved.w)};
     }
   };
-  if (w.push || t.has_drag) {
-    const Float linear = t.has_drag ? Float(numbers.linear_factor) : Float(Real(1));
-    const Float angular = t.has_drag ? Float(numbers.angular_factor) : Float(Real(1));
-    if (!w.push) o.push.w = o.v.w - o.v.w;
+  if (w.delta_v || t.has_drag) {
+    const Float linear = t.has_drag ? Float(constants.linear_factor) : Float(Real(1));
+    const Float angular = t.has_drag ? Float(constants.angular_factor) : Float(Real(1));
+    if (!w.delta_v) o.delta_v.w = o.v.w - o.v.w;
     substeps([&]() __attribute__((always_inline)) {
-      o.v = {(o.v.v + o.push.v) * linear, (o.v.w + o.push.w) * angular};
+      o.v = {(o.v.v + o.delta_v.v) * linear, (o.v.w + o.delta_v.w) * angular};
     });
   } else if (t.has_gravity) {
-    substeps([&]() __attribute__((always_inline)) { o.v.v = o.v.v + o.push.v; });
+    substeps([&]() __attribute__((always_inline)) { o.v.v = o.v.v + o.delta_v.v; });
   } else {
     substeps([] {});
   }
   // What symplectic substeps fall too far.
   if (t.slows) {
     o.moved.v = o.moved.v - (o.v.v - start) * Float(t.h * Real(0.5));
-  } else if (t.has_gravity || w.push) {
-    o.moved.v = o.moved.v - o.push.v * Float(t.dt * Real(0.5));
+  } else if (t.has_gravity || w.delta_v) {
+    o.moved.v = o.moved.v - o.delta_v.v * Float(t.dt * Real(0.5));
   }
   return o;
 }
@@ -60,14 +60,14 @@ struct Outcome {
 };
 
 template <class S, int kBodies, bool kIdle>
-MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int first,
+MW_INLINE void fly_bodies(const Constants& t, const Group& g, const Work& w, int first,
                           Outcome& outcome) {
   Flight<S> flight[kBodies];
   for (int i = 0; i < kBodies; ++i) {
     const int b = first + i;
     flight[i] = fly<S>(t, g, w, b);
     Velocity<S> moved = flight[i].moved;
-    // A tensor turns by its own rule, which has a bound.
+    // A tensor is rotated by its own rule, which has a bound.
     if constexpr (std::is_same_v<S, Tensor>) moved.w = zero_of<typename S::Ang>();
     outcome.check.add<S, kIdle>(t, g, b, moved, flight[i].v);
     Real* p = state_of(t, g, b, kState<S>.position);
@@ -81,11 +81,11 @@ MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int fi
     store(state_of(t, g, b, kState<S>.linear), flight[i].v.v);
   }
   if constexpr (std::is_same_v<S, Tensor>) {
-    const Top* tops[kBodies];
+    const PrincipalInertia* tops[kBodies];
     Vec3 omega[kBodies];
     Quat q[kBodies];
     for (int i = 0; i < kBodies; ++i) {
-      tops[i] = &constants_of_body(g, first + i).top;
+      tops[i] = &constants_of_body(g, first + i).principal;
       omega[i] = flight[i].v.w;
       q[i] = load_quat(state_of(t, g, first + i, kState<S>.orientation));
     }
@@ -99,17 +99,17 @@ MW_INLINE void fly_bodies(const Tables& t, const Group& g, const Work& w, int fi
     for (int i = 0; i < kBodies; ++i) {
       store(state_of(t, g, first + i, kState<S>.angular), flight[i].v.w);
       if (!t.has_orientation) continue;
-      turn_body<S>(t, g, first + i, flight[i].moved.w, AllLanes{}, mask_from_bits(kAllLanes),
-                   NoFlight{});
+      rotate_body<S>(t, g, first + i, flight[i].moved.w, AllLanes{}, mask_from_bits(kAllLanes),
+                     NoFlight{});
     }
   }
 }
 
 template <class S, bool kIdle>
-Outcome fly_group(const Tables& t, const Group& g, Work& w) {
+Outcome fly_group(const Constants& t, const Group& g, Work& w) {
   // Bodies side by side hide the latency of the tumbling; the others have none to hide.
   constexpr int kTogether = std::is_same_v<S, Tensor> ? 4 : 1;
-  if (w.push) turn_body_rows(t, g, w);
+  if (w.delta_v) rotate_body_rows(t, g, w);
   Outcome outcome;
   int b = 0;
   for (; b + kTogether <= t.bodies; b += kTogether)
@@ -126,9 +126,9 @@ MW_INLINE void copy_state(Real* to, const Real* from, int size) {
 // enough; a group with a bad lane goes through them again with a copy for each. Disabled bodies get
 // their state back in every step, too.
 template <class S>
-void free_motion_steps(const Tables& t, const Group& g, Work& w, int steps) {
+void free_motion_steps(const Constants& t, const Group& g, Work& w, int steps) {
   const int size = t.bodies * t.state_stride * kLanes;
-  w.push = g.force || t.attractors > 0 ? w.push_storage : nullptr;
+  w.delta_v = g.force || t.attractors > 0 ? w.delta_v_storage : nullptr;
   copy_state(w.before, g.state, size);
   std::uint32_t outside = 0;
   const bool idle = has_idle_bodies(g);

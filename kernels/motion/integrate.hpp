@@ -1,4 +1,4 @@
-// The motion side of a contact step: velocities into the solver's layout, pushes, displacements.
+// The motion side of a contact step: velocities into the solver's layout, delta_v, displacements.
 //
 // Warm starting costs no pass after the first substep: Jacobians and masses are constant during a
 // step, so the velocity change that the accumulated impulses make is the difference of velocities
@@ -14,15 +14,15 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 template <class S>
 inline constexpr int kVelocityBlock = (S::kDim + S::kAng) * kLanes;  // dense, one body
 
-// Runs update(offset of a register in the velocity-like arrays, push, factor) over all of them.
+// Runs update(offset of a register in the velocity-like arrays, delta_v, factor) over all of them.
 template <class S, bool kDense, class Update>
-MW_INLINE void for_each_register(const Tables& t, const Work& w, Update update) {
+MW_INLINE void for_each_register(const Constants& t, const Work& w, Update update) {
   if constexpr (kDense) {
     for (int b = 0; b < t.bodies; ++b) {
       for (int c = 0; c < S::kDim + S::kAng; ++c) {
         const int at = b * kVelocityBlock<S> + c * kLanes;
         const int shared = b * S::kRow + c;
-        update(at, w.push ? Float::load(w.push + at) : Float(t.push_rows[shared]),
+        update(at, w.delta_v ? Float::load(w.delta_v + at) : Float(t.delta_v_rows[shared]),
                w.factor ? Float::load(w.factor + at) : Float(t.factor_rows[shared]));
       }
     }
@@ -31,9 +31,9 @@ MW_INLINE void for_each_register(const Tables& t, const Work& w, Update update) 
     for (int l = 0; l < kLanes; ++l) {
       for (int i = 0; i < block; i += kLanes) {
         const int at = l * block + i;
-        const Float push = Float::load((w.push ? w.push + l * block : t.push_rows) + i);
+        const Float delta_v = Float::load((w.delta_v ? w.delta_v + l * block : t.delta_v_rows) + i);
         const Float factor = Float::load((w.factor ? w.factor + l * block : t.factor_rows) + i);
-        update(at, push, factor);
+        update(at, delta_v, factor);
       }
     }
   }
@@ -65,20 +65,21 @@ MW_INLINE Velocity<S> get_velocity(const Work& w, const Real* array, int body) {
   }
 }
 
-// Does a control push or turn this body?
-MW_INLINE bool is_thrust(const Tables& t, int body) {
+// Does a control act on this body?
+MW_INLINE bool is_thrust(const Constants& t, int body) {
   return t.first_thrust && t.first_thrust[body] != t.first_thrust[body + 1];
 }
 
 // Force, N, and torque about the centre of mass, N m, of the inputs and the controls, for a body
-// that is turned by `orientation`.
+// that is rotated by `orientation`.
 template <class S>
 struct Load {
   typename S::Vec force;
   typename S::Ang torque;
 };
 template <class S>
-MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body, const Real* orientation) {
+MW_INLINE Load<S> load_of_body(const Constants& t, const Group& g, int body,
+                               const Real* orientation) {
   using Vec = typename S::Vec;
   Load<S> out{zero_of<Vec>(), zero_of<typename S::Ang>()};
   if (g.force) {
@@ -89,26 +90,26 @@ MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body, const 
   if (!is_thrust(t, body)) return out;
   const auto q = load_as<typename S::Orientation>(orientation);
   for (int i = t.first_thrust[body]; i < t.first_thrust[body + 1]; ++i) {
-    const auto& numbers =
+    const auto& constants =
         reinterpret_cast<const kernels::ThrustConstants<LaneNumber>*>(g.constants.thrust)[i];
     const Float control = Float::load(g.control + t.thrust[i].control * kLanes);
     if constexpr (S::kDim == 2) {
       if (t.thrust[i].torque) {
-        out.torque = fma(Float(numbers.direction[2]), control, out.torque);
+        out.torque = fma(Float(constants.direction[2]), control, out.torque);
         continue;
       }
-      const Vec push = rotate(q, {numbers.direction[0], numbers.direction[1]}) * control;
-      out.force = out.force + push;
-      out.torque = out.torque + cross(rotate(q, {numbers.point[0], numbers.point[1]}), push);
+      const Vec thrust = rotate(q, {constants.direction[0], constants.direction[1]}) * control;
+      out.force = out.force + thrust;
+      out.torque = out.torque + cross(rotate(q, {constants.point[0], constants.point[1]}), thrust);
     } else {
-      const LaneNumber *d = numbers.direction, *p = numbers.point;
-      const Vec push = rotate(q, Vec{d[0], d[1], d[2]}) * control;
+      const LaneNumber *d = constants.direction, *p = constants.point;
+      const Vec thrust = rotate(q, Vec{d[0], d[1], d[2]}) * control;
       if (t.thrust[i].torque) {
-        out.torque = out.torque + push;
+        out.torque = out.torque + thrust;
         continue;
       }
-      out.force = out.force + push;
-      out.torque = out.torque + cross(rotate(q, Vec{p[0], p[1], p[2]}), push);
+      out.force = out.force + thrust;
+      out.torque = out.torque + cross(rotate(q, Vec{p[0], p[1], p[2]}), thrust);
     }
   }
   return out;
@@ -116,32 +117,32 @@ MW_INLINE Load<S> load_of_body(const Tables& t, const Group& g, int body, const 
 
 // What gravity and the inputs add to the velocity of a body in one substep.
 template <class S>
-MW_INLINE Velocity<S> push_of_body(const Tables& t, const Group& g, const Work& w, int body) {
+MW_INLINE Velocity<S> delta_v_of_body(const Constants& t, const Group& g, const Work& w, int body) {
   // The sum starts from the same number that a group without forces adds: a world's bits must not
-  // tell whether another one is pushed.
-  const auto& numbers = constants_of_body(g, body);
-  Velocity<S> push;
-  push.v.x = numbers.push[0], push.v.y = numbers.push[1];
-  if constexpr (S::kDim == 3) push.v.z = numbers.push[2];
-  push.w = zero_of<typename S::Ang>();
+  // tell whether a force acts on another one.
+  const auto& constants = constants_of_body(g, body);
+  Velocity<S> delta_v;
+  delta_v.v.x = constants.delta_v[0], delta_v.v.y = constants.delta_v[1];
+  if constexpr (S::kDim == 3) delta_v.v.z = constants.delta_v[2];
+  delta_v.w = zero_of<typename S::Ang>();
   if (t.attractors > 0 && !t.body[body].kinematic) {
-    push.v = fma(attraction_of_body<S>(t, g, body), Float(t.h), push.v);
+    delta_v.v = fma(attraction_of_body<S>(t, g, body), Float(t.h), delta_v.v);
   }
-  if (!g.force && !is_thrust(t, body)) return push;
+  if (!g.force && !is_thrust(t, body)) return delta_v;
   const Load<S> load = load_of_body<S>(t, g, body, state_of(t, g, body, kState<S>.orientation));
   alignas(64) std::int32_t o[kLanes];
   for (int l = 0; l < kLanes; ++l) o[l] = w.body_base[l] + body * body_row_size(S::kKind);
   BodyRow<S> row;
   load_body_row(t, w, o, row);
   const Float h(t.h), scale = row.inv_mass * h;
-  push.v = fma(load.force, scale, push.v);
-  push.w = apply(row.inertia, load.torque) * h;
-  return push;
+  delta_v.v = fma(load.force, scale, delta_v.v);
+  delta_v.w = apply(row.inertia, load.torque) * h;
+  return delta_v;
 }
 
 // The dummy's row and what follows it.
 template <class S, bool kDense>
-MW_INLINE void clear_padding(const Tables& t, const Work& w, Real* array) {
+MW_INLINE void clear_padding(const Constants& t, const Work& w, Real* array) {
   if constexpr (!kDense) {
     const int block = w.rows_per_lane * S::kRow;
     for (int l = 0; l < kLanes; ++l) {
@@ -151,15 +152,15 @@ MW_INLINE void clear_padding(const Tables& t, const Work& w, Real* array) {
 }
 
 template <class S, bool kDense>
-void enter_velocities(const Tables& t, const Group& g, Work& w) {
+void enter_velocities(const Constants& t, const Group& g, Work& w) {
   const Float zero(Real(0));
   for (int b = 0; b < t.bodies; ++b) {
     const Velocity<S> v{load_as<typename S::Vec>(state_of(t, g, b, kState<S>.linear)),
                         load_as<typename S::Ang>(state_of(t, g, b, kState<S>.angular))};
     put_velocity<S, kDense>(w, w.velocity, b, v);
   }
-  const bool own = g.force || t.push_varies || t.first_thrust || t.attractors > 0;
-  w.push = own ? w.push_storage : nullptr;
+  const bool own = g.force || t.delta_v_varies || t.first_thrust || t.attractors > 0;
+  w.delta_v = own ? w.delta_v_storage : nullptr;
   w.factor = t.drag_varies ? w.factor_storage : nullptr;
   if constexpr (kDense) {
     for (int i = 0; i < t.bodies * kVelocityBlock<S>; i += kLanes) zero.store(w.displacement + i);
@@ -176,18 +177,18 @@ void enter_velocities(const Tables& t, const Group& g, Work& w) {
 
 // Velocities at the start of the first substep, before any impulse; impulse_part keeps them.
 template <class S, bool kDense>
-void first_push(const Tables& t, const Group& g, Work& w) {
-  if (w.push) {
-    clear_padding<S, kDense>(t, w, w.push);
+void apply_first_delta_v(const Constants& t, const Group& g, Work& w) {
+  if (w.delta_v) {
+    clear_padding<S, kDense>(t, w, w.delta_v);
     for (int b = 0; b < t.bodies; ++b) {
-      put_velocity<S, kDense>(w, w.push, b, push_of_body<S>(t, g, w, b));
+      put_velocity<S, kDense>(w, w.delta_v, b, delta_v_of_body<S>(t, g, w, b));
     }
   }
   if (w.factor) {
     clear_padding<S, kDense>(t, w, w.factor);
     for (int b = 0; b < t.bodies; ++b) {
-      const auto& numbers = constants_of_body(g, b);
-      const Float linear = numbers.linear_factor, angular = numbers.angular_factor;
+      const auto& constants = constants_of_body(g, b);
+      const Float linear = constants.linear_factor, angular = constants.angular_factor;
       if constexpr (S::kDim == 3) {
         put_velocity<S, kDense>(w, w.factor, b,
                                 {{linear, linear, linear}, {angular, angular, angular}});
@@ -214,8 +215,8 @@ void first_push(const Tables& t, const Group& g, Work& w) {
       put_velocity<S, kDense>(w, w.velocity, b, v);
     }
   }
-  for_each_register<S, kDense>(t, w, [&](int at, Float push, Float factor) {
-    Float v = Float::load(w.velocity + at) + push;
+  for_each_register<S, kDense>(t, w, [&](int at, Float delta_v, Float factor) {
+    Float v = Float::load(w.velocity + at) + delta_v;
     if (t.has_drag) v = v * factor;
     v.store(w.velocity + at);
     v.store(w.impulse_part + at);
@@ -223,7 +224,7 @@ void first_push(const Tables& t, const Group& g, Work& w) {
 }
 
 template <class S, bool kDense>
-void begin_substeps(const Tables& t, Work& w) {
+void begin_substeps(const Constants& t, Work& w) {
   w.substep = w.sweep = 0;
   for_each_register<S, kDense>(t, w, [&](int at, Float, Float) {
     const Float v = Float::load(w.velocity + at);
@@ -235,12 +236,12 @@ void begin_substeps(const Tables& t, Work& w) {
 // Joints warm start by themselves, since their Jacobians change from substep to substep: what they
 // have done before is left out of impulse_part.
 template <class S, bool kDense>
-void mark_velocities(const Tables& t, Work& w) {
+void mark_velocities(const Constants& t, Work& w) {
   for_each_register<S, kDense>(
       t, w, [&](int at, Float, Float) { Float::load(w.velocity + at).store(w.warmed + at); });
 }
 template <class S, bool kDense>
-void gather_impulses(const Tables& t, Work& w) {
+void gather_impulses(const Constants& t, Work& w) {
   for_each_register<S, kDense>(t, w, [&](int at, Float, Float) {
     const Float v = Float::load(w.velocity + at);
     (Float::load(w.impulse_part + at) + (v - Float::load(w.warmed + at)))
@@ -250,7 +251,7 @@ void gather_impulses(const Tables& t, Work& w) {
 }
 
 template <class S, bool kDense>
-void advance_displacement(const Tables& t, Work& w) {
+void advance_displacement(const Constants& t, Work& w) {
   const Float h(t.h);
   for_each_register<S, kDense>(t, w, [&](int at, Float, Float) {
     fma(h, Float::load(w.velocity + at), Float::load(w.displacement + at))
@@ -259,12 +260,12 @@ void advance_displacement(const Tables& t, Work& w) {
 }
 
 template <class S, bool kDense>
-void next_substep(const Tables& t, Work& w) {
+void next_substep(const Constants& t, Work& w) {
   ++w.substep, w.sweep = 0;
-  for_each_register<S, kDense>(t, w, [&](int at, Float push, Float factor) {
+  for_each_register<S, kDense>(t, w, [&](int at, Float delta_v, Float factor) {
     const Float v = Float::load(w.velocity + at);
     const Float part = Float::load(w.impulse_part + at) + (v - Float::load(w.warmed + at));
-    Float next = v + push;
+    Float next = v + delta_v;
     if (t.has_drag) next = next * factor;
     next = next + part;
     part.store(w.impulse_part + at);

@@ -24,7 +24,8 @@ struct AccelerationRows {
 };
 
 template <class S>
-void begin_acceleration(const Tables& t, const Group& g, kernels::Scratch*, const ObserverView& o) {
+void begin_acceleration(const Constants& t, const Group& g, kernels::Scratch*,
+                        const ObserverView& o) {
   for (int b = 0; b < t.bodies; ++b) {
     const AccelerationRows<S> rows(o, b);
     store(rows.linear, load_as<typename S::Vec>(state_of(t, g, b, kState<S>.linear)));
@@ -34,12 +35,12 @@ void begin_acceleration(const Tables& t, const Group& g, kernels::Scratch*, cons
 
 // Half a step before the state that there is, where the step has taken attractors.
 template <class S>
-MW_INLINE typename S::Vec gravity_of_body(const Tables& t, const Group& g, int body) {
+MW_INLINE typename S::Vec gravity_of_body(const Constants& t, const Group& g, int body) {
   using Vec = typename S::Vec;
-  const auto& numbers = constants_of_body(g, body);
+  const auto& constants = constants_of_body(g, body);
   Vec out;
-  out.x = numbers.gravity[0], out.y = numbers.gravity[1];
-  if constexpr (S::kDim == 3) out.z = numbers.gravity[2];
+  out.x = constants.gravity[0], out.y = constants.gravity[1];
+  if constexpr (S::kDim == 3) out.z = constants.gravity[2];
   if (t.attractors == 0 || t.body[body].kinematic) return out;
   const Vec x = fma(load_as<Vec>(state_of(t, g, body, kState<S>.linear)), Float(t.dt * Real(-0.5)),
                     load_as<Vec>(state_of(t, g, body, kState<S>.position)));
@@ -51,7 +52,7 @@ MW_INLINE typename S::Vec gravity_of_body(const Tables& t, const Group& g, int b
 
 // A vector of the world in the axes of the body as its user gave them.
 template <class S>
-MW_INLINE typename S::Vec in_body_axes(const Tables& t, const Group& g, const ObserverView& o,
+MW_INLINE typename S::Vec in_body_axes(const Constants& t, const Group& g, const ObserverView& o,
                                        int body, typename S::Vec a) {
   if (!t.has_orientation) return a;
   const auto q = load_as<typename S::Orientation>(state_of(t, g, body, kState<S>.orientation));
@@ -65,7 +66,7 @@ MW_INLINE typename S::Vec in_body_axes(const Tables& t, const Group& g, const Ob
 }
 
 template <class S>
-void observe_acceleration(const Tables& t, const Group& g, kernels::Scratch*,
+void observe_acceleration(const Constants& t, const Group& g, kernels::Scratch*,
                           const ObserverView& o) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;

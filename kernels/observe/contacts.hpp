@@ -35,7 +35,7 @@ void for_each_observed(Work& w, Visit visit) {
 }
 
 template <class S>
-void accumulate_totals(const Tables& t, const Group&, kernels::Scratch* scratch,
+void accumulate_totals(const Constants& t, const Group&, kernels::Scratch* scratch,
                        const ObserverView& o) {
   Work& w = work_of(scratch);
   for_each_observed<S>(w, [&](auto& s, int index, int id) {
@@ -73,7 +73,7 @@ MW_INLINE void set_friction(const ContactBlock<S, N>& s, Float first, Float seco
 }
 
 template <class S, int N, bool kAsleep>
-MW_INLINE Totals<S, N> totals_of(const Tables& t, const Work& w, const ContactBlock<S, N>& s,
+MW_INLINE Totals<S, N> totals_of(const Constants& t, const Work& w, const ContactBlock<S, N>& s,
                                  int index, int id, const ObserverView& o) {
   constexpr bool kTwist = ContactBlock<S, N>::kTwist;
   constexpr int kSecond = S::kTangents - 1;
@@ -171,7 +171,7 @@ void put_contacts(const ContactBlock<S, N>& s, const Totals<S, N>& total, const 
   }
 }
 
-inline void put_touching(const Tables& t, const std::int32_t* key, int id, std::uint32_t lanes,
+inline void put_touching(const Constants& t, const std::int32_t* key, int id, std::uint32_t lanes,
                          Real* touching) {
   for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
     const int l = __builtin_ctz(m);
@@ -183,7 +183,7 @@ inline void put_touching(const Tables& t, const std::int32_t* key, int id, std::
 }
 
 // Lanes of a block whose pair is asleep: nobody in it is awake.
-inline std::uint32_t sleeping_lanes(const Tables& t, const Group& g, const std::int32_t* key,
+inline std::uint32_t sleeping_lanes(const Constants& t, const Group& g, const std::int32_t* key,
                                     int id, std::uint32_t lanes) {
   std::uint32_t out = 0;
   for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
@@ -197,7 +197,7 @@ inline std::uint32_t sleeping_lanes(const Tables& t, const Group& g, const std::
 }
 
 template <class S, bool kAsleep>
-void observe_contacts(const Tables& t, const Group& g, kernels::Scratch* scratch,
+void observe_contacts(const Constants& t, const Group& g, kernels::Scratch* scratch,
                       const ObserverView& o) {
   Work& w = work_of(scratch);
   const std::uint32_t live = ~frozen_lanes(g) & kAllLanes;

@@ -9,13 +9,13 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // A row at the present state; what its bodies weigh is left out, since nobody solves it.
 template <class S, bool kLinear>
-MW_INLINE void row_now(const Tables& t, const Group& g, const Work& w, const JointPart& part,
-                       const Joint& numbers, Row<S, kLinear>& s) {
+MW_INLINE void row_now(const Constants& t, const Group& g, const Work& w, const JointPart& part,
+                       const Joint& constants, Row<S, kLinear>& s) {
   const Float zero(Real(0));
   zero.store(s.start_value);
   for (int i = 0; i < 3; ++i) zero.store(s.start_axis[i]);
-  prepare(t, g, part, numbers, s);
-  locate<S, true, false>(w, part, numbers, s);
+  prepare(t, g, part, constants, s);
+  locate<S, true, false>(w, part, constants, s);
 }
 
 template <class S>
@@ -23,14 +23,14 @@ struct TwoBodies {
   Velocity<S> a, b;
 };
 template <class S>
-MW_INLINE Velocity<S> velocity_of(const Tables& t, const Group& g, int body) {
+MW_INLINE Velocity<S> velocity_of(const Constants& t, const Group& g, int body) {
   if (body == t.bodies) return {zero_of<typename S::Vec>(), zero_of<typename S::Ang>()};
   return {load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear)),
           load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular))};
 }
 
 template <class S, bool kLinear>
-MW_INLINE void observe_coordinate(const Tables& t, const Group& g, const Work& w,
+MW_INLINE void observe_coordinate(const Constants& t, const Group& g, const Work& w,
                                   const kernels::JointCoordinate& c, Real* rows) {
   Row<S, kLinear> s;
   row_now(t, g, w, c.what, constants_of_part(g, c.part), s);
@@ -50,7 +50,8 @@ MW_INLINE void add_torque(Real* rows, Float l) {
 MW_INLINE void add_torque(Real* rows, Vec3 l) { add_to(rows, row_of(Observed::joint_torque), l); }
 
 template <class S>
-MW_INLINE void observe_load(const Tables& t, const Group& g, const Work& w, int part, Real* rows) {
+MW_INLINE void observe_load(const Constants& t, const Group& g, const Work& w, int part,
+                            Real* rows) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
   const JointPart& what = t.part[part];
@@ -64,22 +65,22 @@ MW_INLINE void observe_load(const Tables& t, const Group& g, const Work& w, int 
     case PartKind::line: return add_to(rows, 0, load_as<Vec>(stored) * inv_h);
     case PartKind::lock:
     case PartKind::swing: return add_torque(rows, load_as<Ang>(stored) * inv_h);
-    case PartKind::turn:
+    case PartKind::angle:
     case PartKind::cone: {
       Row<S, false> s;
       row_now(t, g, w, what, constants_of_part(g, part), s);
-      return add_torque(rows, load_as<Ang>(s.arm_b[0]) * along);
+      return add_torque(rows, load_as<Ang>(s.angular_b[0]) * along);
     }
     default: {
       Row<S, true> s;
       row_now(t, g, w, what, constants_of_part(g, part), s);
-      return add_to(rows, 0, load_as<Vec>(s.push_b[0]) * along);
+      return add_to(rows, 0, load_as<Vec>(s.linear_b[0]) * along);
     }
   }
 }
 
 template <class S>
-void observe_joints(const Tables& t, const Group& g, kernels::Scratch* scratch,
+void observe_joints(const Constants& t, const Group& g, kernels::Scratch* scratch,
                     const ObserverView& o) {
   const Work& w = work_of(scratch);
   for (int i = 0; i < items_of(o, Observer::joints); ++i) {
@@ -94,7 +95,7 @@ void observe_joints(const Tables& t, const Group& g, kernels::Scratch* scratch,
 }
 
 template <class S>
-void observe_loads(const Tables& t, const Group& g, kernels::Scratch* scratch,
+void observe_loads(const Constants& t, const Group& g, kernels::Scratch* scratch,
                    const ObserverView& o) {
   const Work& w = work_of(scratch);
   const Float zero(Real(0));

@@ -26,7 +26,7 @@ struct BodyMass {
 
 // Angular momentum about the body's own centre, and twice the energy of its spin.
 template <class S>
-MW_INLINE void spin_of(const Tables& t, const Group& g, int body, const BodyMass<S>& m,
+MW_INLINE void spin_of(const Constants& t, const Group& g, int body, const BodyMass<S>& m,
                        typename S::Ang w, typename S::Ang& momentum, Float& energy) {
   if constexpr (std::is_same_v<S, Tensor>) {
     const Quat q = load_quat(state_of(t, g, body, kState<S>.orientation));
@@ -41,7 +41,7 @@ MW_INLINE void spin_of(const Tables& t, const Group& g, int body, const BodyMass
 }
 
 template <class S>
-void observe_motion(const Tables& t, const Group& g, kernels::Scratch*, const ObserverView& o) {
+void observe_motion(const Constants& t, const Group& g, kernels::Scratch*, const ObserverView& o) {
   const Float zero(Real(0)), half(Real(0.5));
   Real* rows = rows_for(o, Observer::motion);
   for (int i = 0; i < rows_of(Observer::motion); ++i) zero.store(rows + i * kLanes);

@@ -19,12 +19,12 @@ std::size_t reals(kernels::Scratch* scratch, int list, int several, int one) {
   return static_cast<std::size_t>(work_of(scratch).blocks[list].max_blocks) *
          static_cast<std::size_t>(rows * kLanes);
 }
-std::size_t place_reals(const Tables& t, kernels::Scratch* scratch, int list) {
+std::size_t place_reals(const Constants& t, kernels::Scratch* scratch, int list) {
   return t.dimension == kernels::Dimension::planar
              ? reals(scratch, list, kPlaces<Planar, 2>, kPlaces<Planar, 1>)
              : reals(scratch, list, kPlaces<Tensor, 4>, kPlaces<Tensor, 1>);
 }
-std::size_t total_reals(const Tables& t, kernels::Scratch* scratch, int list) {
+std::size_t total_reals(const Constants& t, kernels::Scratch* scratch, int list) {
   return t.dimension == kernels::Dimension::planar
              ? reals(scratch, list, kTotals<Planar, 2>, kTotals<Planar, 1>)
              : reals(scratch, list, kTotals<Tensor, 4>, kTotals<Tensor, 1>);
@@ -36,7 +36,7 @@ void watch(kernels::Scratch* scratch, Real* const* places) {
   w.recorder = places ? &w.recorder_storage : nullptr;
 }
 
-void clear(const Tables&, const Group&, kernels::Scratch*, const ObserverView& o) {
+void clear(const Constants&, const Group&, kernels::Scratch*, const ObserverView& o) {
   for (int k = 0; k < kObserverCount; ++k) {
     if (!o.rows[k] || kObserverInfo[k].of != ObservedOf::step) continue;
     const int rows = o.items[k] * kernels::kObserverRows.of_item[k];

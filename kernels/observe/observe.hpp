@@ -21,7 +21,7 @@ MW_INLINE int items_of(const ObserverView& o, Observer observer) {
 
 const kernels::ObserverTable<Real>* observer_table();
 
-void observe_rays(const Tables& t, const Group& g, kernels::Scratch* scratch,
+void observe_rays(const Constants& t, const Group& g, kernels::Scratch* scratch,
                   const ObserverView& o);
 void run_program(const Group& g, const ObserverView* seen, const kernels::ProgramRun<Real>& run);
 bool cast_one(kernels::Dimension dimension, kernels::ShapeKind kind, const Real* row,

@@ -22,7 +22,7 @@ MW_INLINE void with_pose(ShapeKind kind, const Real* base, const std::int32_t* o
 
 // The ray in the world: one that belongs to a body goes where that goes.
 template <class S>
-RayOf<typename S::Vec> place_ray(const Tables& t, const Group& g, int body, const Real* rows) {
+RayOf<typename S::Vec> place_ray(const Constants& t, const Group& g, int body, const Real* rows) {
   RayOf<typename S::Vec> ray{load_as<typename S::Vec>(rows),
                              load_as<typename S::Vec>(rows + 3 * kLanes)};
   if (body < 0) return ray;
@@ -81,7 +81,7 @@ void cast_at(const ObserverView& o, const Target& target) {
 }
 
 template <class S>
-void cast_rays(const Tables& t, const Group& g, const Work& w, const ObserverView& o) {
+void cast_rays(const Constants& t, const Group& g, const Work& w, const ObserverView& o) {
   constexpr int kRows = rows_of(Observer::rays);
   for (int i = 0; i < items_of(o, Observer::rays); ++i) {
     const Real* rows = o.ray_rows + i * kernels::kRayRows * kLanes;
@@ -126,7 +126,7 @@ bool cast_one_in(ShapeKind kind, const Real* row, const Real* rows, Real* out) {
 
 }  // namespace
 
-void observe_rays(const Tables& t, const Group& g, kernels::Scratch* scratch,
+void observe_rays(const Constants& t, const Group& g, kernels::Scratch* scratch,
                   const ObserverView& o) {
   const Work& w = work_of(scratch);
   if (t.dimension == kernels::Dimension::planar) {

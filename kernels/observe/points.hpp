@@ -5,7 +5,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// From the centre of mass to the point, in the axes that the orientation turns.
+// From the centre of mass to the point, in the axes that the orientation rotates.
 template <class S>
 MW_INLINE typename S::Vec arm_of(const ObserverView& o, const kernels::PointTable<Real>& point) {
   typename S::Vec r;
@@ -19,7 +19,7 @@ MW_INLINE typename S::Vec arm_of(const ObserverView& o, const kernels::PointTabl
 }
 
 template <class S>
-void observe_points(const Tables& t, const Group& g, kernels::Scratch*, const ObserverView& o) {
+void observe_points(const Constants& t, const Group& g, kernels::Scratch*, const ObserverView& o) {
   using Vec = typename S::Vec;
   for (int i = 0; i < items_of(o, Observer::points); ++i) {
     const int body = o.point[i].body;

@@ -12,7 +12,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Calls visit(begin, bytes) for each array that a sweep writes to, but velocities.
 template <class Visit>
-void for_each_row_array(const Tables& t, const Work& w, bool all, Visit visit) {
+void for_each_row_array(const Constants& t, const Work& w, bool all, Visit visit) {
   const auto bytes = [](int count, std::size_t each) {
     return static_cast<std::size_t>(count) * each;
   };
@@ -29,12 +29,12 @@ void for_each_row_array(const Tables& t, const Work& w, bool all, Visit visit) {
   }
 }
 
-inline std::size_t velocity_reals(const Tables& t, const Work& w) {
+inline std::size_t velocity_reals(const Constants& t, const Work& w) {
   return static_cast<std::size_t>(w.rows_per_lane * kernels::velocity_row_size(t.dimension) *
                                   kLanes);
 }
 
-inline std::size_t aside_bytes(const Tables& t, kernels::Scratch* scratch) {
+inline std::size_t aside_bytes(const Constants& t, kernels::Scratch* scratch) {
   const Work& w = work_of(scratch);
   std::size_t out = velocity_reals(t, w) * sizeof(Real);
   for_each_row_array(t, w, true, [&](unsigned char*, std::size_t bytes) { out += bytes; });
@@ -45,7 +45,7 @@ inline void copy_bytes(const unsigned char* from, unsigned char* to, std::size_t
   for (std::size_t i = 0; i < bytes; ++i) to[i] = from[i];
 }
 
-inline void set_aside(const Tables& t, const Group&, kernels::Scratch* scratch,
+inline void set_aside(const Constants& t, const Group&, kernels::Scratch* scratch,
                       const ObserverView& o) {
   const Work& w = work_of(scratch);
   Real* velocity = reinterpret_cast<Real*>(o.aside);
@@ -63,7 +63,7 @@ MW_INLINE Float largest(Vec2 a) { return max(abs(a.x), abs(a.y)); }
 MW_INLINE Float largest(Vec3 a) { return max(max(abs(a.x), abs(a.y)), abs(a.z)); }
 
 template <class S, bool kDense>
-void find_change(const Tables& t, const Work& w, const Real* before, Float& speed, Float& spin) {
+void find_change(const Constants& t, const Work& w, const Real* before, Float& speed, Float& spin) {
   for (int b = 0; b < t.bodies; ++b) {
     const Velocity<S> now = get_velocity<S, kDense>(w, w.velocity, b),
                       was = get_velocity<S, kDense>(w, before, b);
@@ -73,7 +73,7 @@ void find_change(const Tables& t, const Work& w, const Real* before, Float& spee
 }
 
 template <class S>
-void compare(const Tables& t, const Group& g, kernels::Scratch* scratch, const ObserverView& o) {
+void compare(const Constants& t, const Group& g, kernels::Scratch* scratch, const ObserverView& o) {
   Work& w = work_of(scratch);
   const Real* velocity = reinterpret_cast<const Real*>(o.aside);
   Float speed(Real(0)), spin(Real(0));

@@ -12,7 +12,7 @@ struct Pull {
   Float relative, closing;
 };
 template <class S, class A>
-MW_INLINE Pull pull_along(const Tables& t, const Group& g, const Sides<S, A>& sides,
+MW_INLINE Pull pull_along(const Constants& t, const Group& g, const Sides<S, A>& sides,
                           typename S::Vec normal) {
   const Float zero(Real(0));
   if (!t.has_gravity && t.attractors == 0) return {zero, zero};
@@ -31,14 +31,14 @@ MW_INLINE Pull pull_along(const Tables& t, const Group& g, const Sides<S, A>& si
 // needs no speculation against a fixed shape, which could stop one that only passes by. Half spaces
 // cannot be passed by, and height fields are not cast against.
 template <class S, class A>
-MW_INLINE Float speculation_of(const Tables& t, const Group& g, const Sides<S, A>& sides,
+MW_INLINE Float speculation_of(const Constants& t, const Group& g, const Sides<S, A>& sides,
                                kernels::PairKind kind) {
   const Float zero(Real(0)), one(Real(1)), dt(t.dt);
   if (A::kMoves || !t.cast || is_plane(kind) || is_tile(kind)) return one;
-  using Constants = kernels::BodyConstants<LaneNumber>;
+  using OfBody = kernels::BodyConstants<LaneNumber>;
   const std::uint32_t real = sides.body_b < Ints(t.bodies);
   const Float core = select(mask_from_bits(real),
-                            gather_numbers<Constants>(constants_of_body(g, 0).core_radius,
+                            gather_numbers<OfBody>(constants_of_body(g, 0).core_radius,
                                                       select(real, sides.body_b, Ints(0))),
                             zero);
   const Float travel2 = dot(sides.b.velocity.v, sides.b.velocity.v) * (dt * dt);
@@ -52,14 +52,14 @@ struct SideArms {};
 template <class S, int N>
 struct SideArms<S, N, Free> {
   using Ang = typename S::Ang;
-  Ang arm[N];     // r x n
-  Ang turned[N];  // the inverse inertia times that
+  Ang arm[N];       // r x n
+  Ang response[N];  // the inverse inertia times that
 
   // Speed of point i along the normal by the rotation of this side.
   MW_INLINE Float set(int i, const SideState<S, Free>& side, typename S::Vec point,
                       typename S::Vec normal) {
     arm[i] = cross(point, normal);
-    turned[i] = apply(side.body.inertia, arm[i]);
+    response[i] = apply(side.body.inertia, arm[i]);
     return dot(arm[i], side.velocity.w);
   }
 };
@@ -74,15 +74,15 @@ struct Approach {
 
   // What an impulse at point i does to the speed of point j, by rotation and all.
   MW_INLINE Float coupling(Float inv_mass, int i, int j) const {
-    Float k = inv_mass + dot(b.arm[i], b.turned[j]);
-    if constexpr (A::kMoves) k = k + dot(a.arm[i], a.turned[j]);
+    Float k = inv_mass + dot(b.arm[i], b.response[j]);
+    if constexpr (A::kMoves) k = k + dot(a.arm[i], a.response[j]);
     return k;
   }
 };
 
 // Takes points that stay beyond the margin out of the manifold.
 template <class S, int N, class A>
-MW_INLINE void measure_approach(const Tables& t, const Group& g, const Sides<S, A>& sides,
+MW_INLINE void measure_approach(const Constants& t, const Group& g, const Sides<S, A>& sides,
                                 kernels::PairKind kind, Mask active, Manifold<GeometryOf<S>, N>& m,
                                 Approach<S, N, A>& out) {
   const Float zero(Real(0)), dt(t.dt), margin(t.margin);

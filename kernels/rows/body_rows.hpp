@@ -14,12 +14,12 @@ struct BodyRow {
   typename S::Vec centre;  // of mass, world; only when asked for
 };
 
-MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
+MW_INLINE void load_body_row(const Constants& t, const Work& w, const std::int32_t* o,
                              BodyRow<Planar>& r) {
   (void)t;
   load_rows4(w.body_rows, o, r.inv_mass, r.inertia, r.centre.x, r.centre.y);
 }
-MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
+MW_INLINE void load_body_row(const Constants& t, const Work& w, const std::int32_t* o,
                              BodyRow<Isotropic>& r) {
   Float unused0, unused1;
   load_rows4(w.body_rows, o, r.inv_mass, r.inertia, unused0, unused1);
@@ -27,7 +27,7 @@ MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t*
     load_rows4(w.body_rows + 4, o, r.centre.x, r.centre.y, r.centre.z, unused0);
   }
 }
-MW_INLINE void load_body_row(const Tables& t, const Work& w, const std::int32_t* o,
+MW_INLINE void load_body_row(const Constants& t, const Work& w, const std::int32_t* o,
                              BodyRow<Tensor>& r) {
   Float unused;
   load_rows8(w.body_rows, o, r.inertia.xx, r.inertia.xy, r.inertia.xz, r.inertia.yy, r.inertia.yz,
@@ -42,7 +42,7 @@ template <class S>
 struct Attraction {
   typename S::Vec to;        // m
   Float strength, nearness;  // with the body's gravity scale, m^3/s^2; 1 / softened distance, 1/m
-  MW_INLINE Attraction(const Tables& t, const Group& g, int body, int i, typename S::Vec x) {
+  MW_INLINE Attraction(const Constants& t, const Group& g, int body, int i, typename S::Vec x) {
     const kernels::AttractorTable<Real>& point = t.attractor[i];
     to.x = Float(point.position[0]) - x.x, to.y = Float(point.position[1]) - x.y;
     if constexpr (S::kDim == 3) to.z = Float(point.position[2]) - x.z;
@@ -57,7 +57,7 @@ struct Attraction {
 // Where the body is half a step on. With what substeps fall too far taken back (finish.hpp) that
 // makes drift, kick, drift: position Verlet, which keeps orbits.
 template <class S>
-MW_INLINE typename S::Vec attraction_of_body(const Tables& t, const Group& g, int body) {
+MW_INLINE typename S::Vec attraction_of_body(const Constants& t, const Group& g, int body) {
   using Vec = typename S::Vec;
   const Vec x = fma(load_as<Vec>(state_of(t, g, body, kState<S>.linear)), Float(t.dt * Real(0.5)),
                     load_as<Vec>(state_of(t, g, body, kState<S>.position)));
@@ -70,12 +70,12 @@ MW_INLINE typename S::Vec attraction_of_body(const Tables& t, const Group& g, in
 
 // Acceleration of the bodies of the lanes along n, from gravity and attractors.
 template <class S>
-MW_INLINE Float gravity_along(const Tables& t, const Group& g, Ints bodies, typename S::Vec n) {
-  using Constants = kernels::BodyConstants<LaneNumber>;
+MW_INLINE Float gravity_along(const Constants& t, const Group& g, Ints bodies, typename S::Vec n) {
+  using OfBody = kernels::BodyConstants<LaneNumber>;
   Float a[S::kDim];
   for (int c = 0; c < S::kDim; ++c) {
     const LaneNumber& of_first = constants_of_body(g, 0).gravity[c];
-    a[c] = t.uniform_gravity ? Float(of_first) : gather_numbers<Constants>(of_first, bodies);
+    a[c] = t.uniform_gravity ? Float(of_first) : gather_numbers<OfBody>(of_first, bodies);
   }
   typename S::Vec pull;
   pull.x = a[0], pull.y = a[1];

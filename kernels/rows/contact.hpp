@@ -130,7 +130,7 @@ MW_INLINE void solve_friction(const SidedBlock<S, N, A>& s, const FrictionBudget
     const Float p1 = fnma(m12, v2, fnma(m11, v1, budget.before[0]));
     const Float p2 = fnma(m22, v2, fnma(m12, v1, budget.before[1]));
     const Float length = sqrt(fma(p1, p1, p2 * p2));
-    // Both zero only when nothing pushes; the floor keeps 0 / 0 out.
+    // Both zero only without any impulse; the floor keeps 0 / 0 out.
     const Float shrink = budget.bound / max(length, max(budget.bound, Real(1e-30)));
     after[0] = p1 * shrink;
     after[1] = p2 * shrink;
@@ -166,7 +166,7 @@ MW_INLINE FrictionBudget friction_budget(const ContactBlock<S, N>& s, const Floa
 }
 
 template <bool kDense, bool kFriction, Pass kPass, class S, int N, class A>
-MW_INLINE void solve_block(const Tables& t, Work& w, SidedBlock<S, N, A>& s) {
+MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) {
   RowVelocities<S, A, kDense> v(w, s);
   Float impulse[N], d[N];
   for (int i = 0; i < N; ++i) impulse[i] = Float::load(s.impulse[i]);

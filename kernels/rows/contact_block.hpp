@@ -1,5 +1,5 @@
 // Contact block: the rows of one contact manifold, one manifold per lane. What the narrow phase
-// finds and prepare() turns into Jacobians and effective masses; constant during a step but for the
+// finds and prepare() makes into Jacobians and effective masses; constant during a step but for the
 // gaps and impulses.
 //
 // With A, B the bodies, n the unit normal from A to B, r the anchor of a point from the centre of

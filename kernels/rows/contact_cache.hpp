@@ -12,7 +12,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class CacheWriter {
  public:
-  CacheWriter(const Tables& t, const Group& g, const Work& w) : t_(t), g_(g), w_(w) {
+  CacheWriter(const Constants& t, const Group& g, const Work& w) : t_(t), g_(g), w_(w) {
     for (auto& list : count_) {
       for (auto& n : list) n = 0;
     }
@@ -115,7 +115,7 @@ class CacheWriter {
                 friction ? Float::load(s.twist_impulse) : zero);
   }
 
-  const Tables& t_;
+  const Constants& t_;
   const Group& g_;
   const Work& w_;
   std::int32_t count_[kLists][kLanes];

@@ -71,7 +71,7 @@ MW_INLINE void put_twist(const Sides<S, A>& sides, const Manifold<GeometryOf<S>,
 
 // `sum`: of the anchors of the points, of which there are `count`.
 template <class S, int N, class A>
-MW_INLINE void put_friction(const Tables& t, const Group& g, const Sides<S, A>& sides,
+MW_INLINE void put_friction(const Constants& t, const Group& g, const Sides<S, A>& sides,
                             const std::int32_t* code, const Manifold<GeometryOf<S>, N>& m,
                             Mask active, const FrictionCentre<S>& sum, Float count,
                             const StoredImpulses<N>& stored, SidedBlock<S, N, A>& s) {

@@ -22,7 +22,7 @@ MW_INLINE void anchor_at_centres(const Sides<S, A>& sides, typename S::Vec pose_
   }
 }
 
-// In the lanes of `touching` contacts may push the bodies of the block in this step.
+// In the lanes of `touching` contacts may act on the bodies of the block in this step.
 template <class A, bool kDense>
 MW_INLINE void mark_touched(Work& w, std::uint32_t touching, Ints body_a, Ints body_b,
                             const RowBodies& s) {
@@ -43,7 +43,7 @@ MW_INLINE void mark_touched(Work& w, std::uint32_t touching, Ints body_a, Ints b
 
 // Lanes outside of `mask` work on the dummy.
 template <class S>
-MW_INLINE void drop_lanes(const Tables& t, const Work& w, std::uint32_t mask, RowBodies& s) {
+MW_INLINE void drop_lanes(const Constants& t, const Work& w, std::uint32_t mask, RowBodies& s) {
   const Ints dummy = Ints::load(w.velocity_base) + Ints(t.bodies * S::kRow);
   select(mask, Ints::load(s.offset_a), dummy).store(s.offset_a);
   select(mask, Ints::load(s.offset_b), dummy).store(s.offset_b);
@@ -59,7 +59,7 @@ struct PointSums {
 
 // Lanes that dropped out keep harmless numbers: a zero normal and no effective mass.
 template <class S, int N, class A>
-MW_INLINE PointSums<S> put_normal_rows(const Tables& t, Work& w, const Sides<S, A>& sides,
+MW_INLINE PointSums<S> put_normal_rows(const Constants& t, Work& w, const Sides<S, A>& sides,
                                        const Approach<S, N, A>& approach, Mask active,
                                        Manifold<GeometryOf<S>, N>& m, SidedBlock<S, N, A>& s) {
   using Vec = typename S::Vec;
@@ -99,7 +99,7 @@ MW_INLINE void put_couplings(const Sides<S, A>& sides, const Approach<S, N, A>& 
 }
 
 template <class S, int N, class A>
-MW_INLINE void put_bounce(const Tables& t, const Group& g, const std::int32_t* code,
+MW_INLINE void put_bounce(const Constants& t, const Group& g, const std::int32_t* code,
                           const Manifold<GeometryOf<S>, N>& m, const Approach<S, N, A>& approach,
                           const StoredImpulses<N>& stored, std::uint32_t mask,
                           Bounce<S, N>& bounce) {
@@ -124,7 +124,7 @@ MW_INLINE void put_bounce(const Tables& t, const Group& g, const std::int32_t* c
 // Adds one block to `list`. `active` are the lanes that the narrow phase
 // worked on; lanes without a point close enough drop out.
 template <class S, int N, class A, bool kDense>
-void add_contact(const Tables& t, const Group& g, Work& w, ListId list,
+void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
                  const kernels::PairClass<Real>& pair_class, Manifold<GeometryOf<S>, N>& m,
                  Mask active, const std::int32_t* code, const std::int32_t* key,
                  typename S::Vec pose_a, typename S::Vec pose_b) {

@@ -32,7 +32,7 @@ struct Sides {
 
 // The bodies of the shapes in `code`, which `s` learns, too.
 template <class S, class A, bool kDense>
-MW_INLINE Sides<S, A> find_sides(const Tables& t, const Work& w, const std::int32_t* code,
+MW_INLINE Sides<S, A> find_sides(const Constants& t, const Work& w, const std::int32_t* code,
                                  RowBodies& s) {
   const Ints shapes = Ints::load(code), velocities = Ints::load(w.velocity_base);
   Sides<S, A> out;
@@ -62,7 +62,7 @@ struct MaterialPair {
   Float a, b;
 };
 template <class A>
-MW_INLINE MaterialPair load_materials(const Tables& t, const Group& g, const std::int32_t* code,
+MW_INLINE MaterialPair load_materials(const Constants& t, const Group& g, const std::int32_t* code,
                                       std::uint32_t mask, LaneNumber Material::*number) {
   const Ints shapes = Ints::load(code), none(0);
   const Ints a = low_half(shapes) + Ints(A::kMoves ? 0 : t.colliders);

@@ -9,8 +9,8 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Offsets of the cache rows that hold the impulses of the lanes' keys; the zero row if none does.
 // Keys ascend in the cache and from block to block, so each lane's cursor only moves forward.
-inline void find_stored(const Tables& t, const Group& g, Work& w, ListId list, std::uint32_t mask,
-                        const std::int32_t* key, std::int32_t* offset) {
+inline void find_stored(const Constants& t, const Group& g, Work& w, ListId list,
+                        std::uint32_t mask, const std::int32_t* key, std::int32_t* offset) {
   const int id = static_cast<int>(list);
   const std::int32_t capacity = t.capacity[id];
   const std::int32_t* keys = g.cache[id].keys;
@@ -27,7 +27,7 @@ inline void find_stored(const Tables& t, const Group& g, Work& w, ListId list, s
 }
 
 // Drops the lanes whose list is full and counts the others.
-inline std::uint32_t claim_capacity(const Tables& t, Work& w, ListId list, std::uint32_t mask) {
+inline std::uint32_t claim_capacity(const Constants& t, Work& w, ListId list, std::uint32_t mask) {
   std::int32_t* count = w.lane_count[static_cast<int>(list)];
   const Ints claimed = Ints::load(count);
   const std::uint32_t room = claimed < Ints(t.capacity[static_cast<int>(list)]);
@@ -42,7 +42,7 @@ struct StoredImpulses {
   Float normal[N], tangent[2], twist;
 };
 
-// A point's friction impulse is kept as a world vector, since its tangents turn with it.
+// A point's friction impulse is kept as a world vector, since its tangents rotate with it.
 template <class S>
 MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
                               const Manifold<GeometryOf<S>, 1>& m, ContactBlock<S, 1>&,

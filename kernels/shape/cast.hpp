@@ -8,7 +8,7 @@
 // advancement: the core may always move by its distance to the shape. The rest of the step's
 // motion is dropped; the velocity stays, and the next step's contact deals with it.
 //
-// A moving shape is taken to shift without turning while the step lasts: what it turns matters
+// A moving shape is taken to translate without rotation while the step lasts: its rotation matters
 // little to a body that crosses its own size meanwhile.
 #pragma once
 
@@ -19,17 +19,17 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr int kCastRounds = 32;
 
-MW_INLINE Mask within_bounds(const Tables& t, Vec2 x) {
+MW_INLINE Mask within_bounds(const Constants& t, Vec2 x) {
   return (Float(t.bounds_low[0]) <= x.x) & (x.x <= Float(t.bounds_high[0])) &
          (Float(t.bounds_low[1]) <= x.y) & (x.y <= Float(t.bounds_high[1]));
 }
-MW_INLINE Mask within_bounds(const Tables& t, Vec3 x) {
+MW_INLINE Mask within_bounds(const Constants& t, Vec3 x) {
   return within_bounds(t, Vec2{x.x, x.y}) & (Float(t.bounds_low[2]) <= x.z) &
          (x.z <= Float(t.bounds_high[2]));
 }
 
 // Does any shape of the body collide with this one, by their filters?
-MW_INLINE bool may_collide(const Tables& t, int body, const kernels::ColliderTable& other) {
+MW_INLINE bool may_collide(const Constants& t, int body, const kernels::ColliderTable& other) {
   for (int i = t.first_collider[body]; i < t.first_collider[body + 1]; ++i) {
     const auto& own = t.collider[i];
     if ((own.category & other.mask) != 0 && (other.category & own.mask) != 0) return true;
@@ -60,7 +60,8 @@ MW_INLINE Float free_share(const Pose& pose, Vec start, Vec step, Float core, Ma
 }
 
 template <class Vec>
-MW_INLINE Vec cast_against_fixed(const Tables& t, const Group& g, int body, Vec start, Vec step) {
+MW_INLINE Vec cast_against_fixed(const Constants& t, const Group& g, int body, Vec start,
+                                 Vec step) {
   const Float radius = constants_of_body(g, body).core_radius;
   const Mask fast = (Float(Real(0)) < radius) & (radius < sqrt(dot(step, step)));
   if (!any(fast)) return step;
@@ -86,7 +87,7 @@ MW_INLINE Vec cast_against_fixed(const Tables& t, const Group& g, int body, Vec 
 // Takes down the shapes of bodies that go so far in this step that others may have to be cast
 // against them, whatever those do.
 template <class Moved>
-void find_swift(const Tables& t, const Group& g, Work& w, Moved moved) {
+void find_swift(const Constants& t, const Group& g, Work& w, Moved moved) {
   Float core = Real(1e18);  // the smallest
   for (int b = 0; b < t.bodies; ++b) {
     const Float radius = constants_of_body(g, b).core_radius;
@@ -104,7 +105,7 @@ void find_swift(const Tables& t, const Group& g, Work& w, Moved moved) {
 // `moved(other)` is how far another body goes in this step. Who goes less than half its core meets
 // only the swift ones at speed. Not inlined: scenes seldom want it.
 template <class Vec, class Moved>
-__attribute__((noinline)) Vec cast_against_moving(const Tables& t, const Group& g, const Work& w,
+__attribute__((noinline)) Vec cast_against_moving(const Constants& t, const Group& g, const Work& w,
                                                   int body, Vec start, Vec step, Moved moved) {
   const Float radius = constants_of_body(g, body).core_radius;
   const Mask has_core = Float(Real(0)) < radius;

@@ -35,12 +35,12 @@ struct Extent {
 
 // What lies farthest out along a direction: a face, or an edge or a point of a shape that is round
 // there. A lane with fewer points repeats its last.
-inline constexpr int kMostCorners = kernels::kMaxHullVertices;
+inline constexpr int kMaxCorners = kernels::kMaxHullVertices;
 struct Feature {
   int count;
-  Vec3 corner[kMostCorners];  // from p, world axes; counter-clockwise seen from outside
-  Vec3 normal;                // unit, outward; of a face
-  Vec3 along;                 // unit, turns with the body: where the feature's own x axis is
+  Vec3 corner[kMaxCorners];  // from p, world axes; counter-clockwise seen from outside
+  Vec3 normal;               // unit, outward; of a face
+  Vec3 along;                // unit, fixed to the body: where the feature's own x axis is
   Float code;
   Mask face;
 };

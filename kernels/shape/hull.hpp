@@ -121,7 +121,7 @@ MW_INLINE Vec3 load_hull_corner(const ConvexShape& s, const std::int32_t* o) {
   return mul(s.r, {u.x * s.half.x, u.y * s.half.y, u.z * s.half.z});
 }
 
-MW_INLINE int most_of(const std::int32_t* count) {
+MW_INLINE int max_of(const std::int32_t* count) {
   int out = 0;
   for (int l = 0; l < kLanes; ++l) out = count[l] > out ? count[l] : out;
   return out;
@@ -133,7 +133,7 @@ inline void load_hull_vertices(const Real* base, const std::int32_t* offset, Con
     count[l] = static_cast<std::int32_t>(hull_row(base, offset[l]).vertices);
     first[l] = s.faces.first[l] - 4 * count[l];
   }
-  s.vertices = most_of(count);
+  s.vertices = max_of(count);
   for (int i = 0; i < s.vertices; ++i) {
     corner_offsets(first, count, i, 1, o);
     s.vertex[i] = load_hull_corner(s, o);
@@ -173,7 +173,7 @@ inline void HullPose::feature(const ConvexShape& s, Vec3 n, Real tie, Feature& f
     first[l] = faces.first[l] + 8 * faces.count[l] +
                (faces.count[l] > 0 ? 4 * static_cast<int>(row[4]) : 0);
   }
-  f.count = most_of(count);
+  f.count = max_of(count);
   for (int i = 0; i < f.count; ++i) {
     corner_offsets(first, count, i, 1, o);
     f.corner[i] = load_hull_corner(s, o);

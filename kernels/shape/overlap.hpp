@@ -5,7 +5,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-MW_INLINE Mask bounds_overlap(const Tables& t, const Work& w, int a, int b) {
+MW_INLINE Mask bounds_overlap(const Constants& t, const Work& w, int a, int b) {
   if (t.dimension == kernels::Dimension::spatial) {
     const Real* pa = w.bounds + a * 6 * kLanes;
     const Real* pb = w.bounds + b * 6 * kLanes;
@@ -21,7 +21,7 @@ MW_INLINE Mask bounds_overlap(const Tables& t, const Work& w, int a, int b) {
 }
 
 // Spheres and circles: their bounds' half extent is radius plus margin, so this test is exact.
-MW_INLINE Mask round_overlap(const Tables& t, const Work& w, int a, int b) {
+MW_INLINE Mask round_overlap(const Constants& t, const Work& w, int a, int b) {
   if (t.dimension == kernels::Dimension::spatial) {
     const Real* pa = w.bounds + a * 6 * kLanes;
     const Real* pb = w.bounds + b * 6 * kLanes;
@@ -36,7 +36,7 @@ MW_INLINE Mask round_overlap(const Tables& t, const Work& w, int a, int b) {
   return dot(d, d) < reach * reach;
 }
 
-MW_INLINE Mask fixed_overlap(const Tables& t, const Work& w, int fixed, int b) {
+MW_INLINE Mask fixed_overlap(const Constants& t, const Work& w, int fixed, int b) {
   const auto& f = t.fixed[fixed];
   const bool spatial = t.dimension == kernels::Dimension::spatial;
   const int dim = spatial ? 3 : 2;

@@ -18,7 +18,7 @@ MW_INLINE Vec3 any_tangent(Vec3 n) {
 MW_INLINE Vec3 across(Vec3 a) { return any_tangent(a); }
 MW_INLINE Vec2 across(Vec2 a) { return {-a.y, a.x}; }
 
-// A unit tangent to n that follows `axis` where it can, so that it turns with the body.
+// A unit tangent to n that follows `axis` where it can, so that it is fixed to the body.
 MW_INLINE Vec3 tangent_along(Vec3 axis, Vec3 n) {
   const Vec3 t = fnma(n, dot(n, axis), axis);
   const Float l2 = dot(t, t);

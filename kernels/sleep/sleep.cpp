@@ -10,12 +10,13 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
 
-MW_INLINE Mask pair_overlap(const Tables& t, const Work& w, kernels::PairKind kind, int a, int b) {
+MW_INLINE Mask pair_overlap(const Constants& t, const Work& w, kernels::PairKind kind, int a,
+                            int b) {
   return is_round(kind) ? round_overlap(t, w, a, b) : bounds_overlap(t, w, a, b);
 }
 
 // One pass over the pairs; whether it woke somebody.
-bool wake_once(const Tables& t, const Group& g, Work& w, std::uint32_t mixed) {
+bool wake_once(const Constants& t, const Group& g, Work& w, std::uint32_t mixed) {
   bool woke = false;
   for (int i = 0; i < t.classes; ++i) {
     const auto& c = t.pair_class[i];
@@ -39,14 +40,14 @@ bool wake_once(const Tables& t, const Group& g, Work& w, std::uint32_t mixed) {
 }
 
 // Lanes in which a part holds two moving bodies together.
-std::uint32_t joined_lanes(const Tables& t, const Group& g, const kernels::JointPart& part) {
+std::uint32_t joined_lanes(const Constants& t, const Group& g, const kernels::JointPart& part) {
   if (part.body_a == t.bodies) return 0;
-  const std::uint32_t loose = g.loose ? g.loose[part.joint] : 0u;
-  return kAllLanes & ~(loose | g.absent[part.body_a] | g.absent[part.body_b]);
+  const std::uint32_t disabled = g.disabled_joints ? g.disabled_joints[part.joint] : 0u;
+  return kAllLanes & ~(disabled | g.absent[part.body_a] | g.absent[part.body_b]);
 }
 
 // Does the stored manifold of this key stay as it is, because nobody in it is awake?
-bool pair_sleeps(const Tables& t, const Group& g, ListId list, std::int32_t key, int lane) {
+bool pair_sleeps(const Constants& t, const Group& g, ListId list, std::int32_t key, int lane) {
   const kernels::PairOfKey pair = kernels::pair_of_key(t, key);
   std::uint32_t lanes = g.asleep[t.collider_body[pair.b]];
   if (!is_fixed(list)) lanes &= g.asleep[t.collider_body[pair.a]];
@@ -54,7 +55,7 @@ bool pair_sleeps(const Tables& t, const Group& g, ListId list, std::int32_t key,
 }
 
 // Lanes in which a slow body may be at rest: what pulls it is held by a contact, and no force acts.
-std::uint32_t held_lanes(const Tables& t, const Group& g, const Work& w, int body) {
+std::uint32_t held_lanes(const Constants& t, const Group& g, const Work& w, int body) {
   std::uint32_t lanes = kAllLanes;
   for (const Float pull : constants_of_body(g, body).acceleration) {
     lanes &= bits(pull == Float(Real(0)));
@@ -84,7 +85,7 @@ struct Readiness {
 // Adds dt to the time at rest of bodies slower than the threshold. Of the bodies of a lane that
 // wait, the first looks for all: in the lanes of `waiting` that is another one.
 template <class S>
-Readiness rest(const Tables& t, const Group& g, const Work& w, int body, std::uint32_t waiting) {
+Readiness rest(const Constants& t, const Group& g, const Work& w, int body, std::uint32_t waiting) {
   const auto v = load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear));
   const auto spin = load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular));
   const Float zero(Real(0));
@@ -118,7 +119,7 @@ Readiness rest(const Tables& t, const Group& g, const Work& w, int body, std::ui
 }
 
 // Islands of the awake bodies of one lane: parent[] leads to the lowest body of each.
-void find_islands(const Tables& t, const Group& g, Work& w, int lane) {
+void find_islands(const Constants& t, const Group& g, Work& w, int lane) {
   for (int b = 0; b < t.bodies; ++b) w.parent[b] = b;
   for (int i = 0; i < t.classes; ++i) {
     const auto& c = t.pair_class[i];
@@ -142,7 +143,7 @@ void find_islands(const Tables& t, const Group& g, Work& w, int lane) {
 }
 
 // Puts to sleep the islands of a lane whose bodies are all ready.
-void sleep_islands(const Tables& t, const Group& g, Work& w, int lane) {
+void sleep_islands(const Constants& t, const Group& g, Work& w, int lane) {
   find_islands(t, g, w, lane);
   const auto is = [lane](std::uint32_t lanes) { return ((lanes >> lane) & 1u) != 0; };
   for (int b = 0; b < t.bodies; ++b) w.restless[b] = 0;
@@ -160,7 +161,7 @@ void sleep_islands(const Tables& t, const Group& g, Work& w, int lane) {
 }
 
 template <class S>
-void settle_bodies(const Tables& t, const Group& g, Work& w) {
+void settle_bodies(const Constants& t, const Group& g, Work& w) {
   std::uint32_t look = 0, waiting = 0;
   for (int b = 0; b < t.bodies; ++b) {
     const Readiness r = rest<S>(t, g, w, b, waiting);
@@ -176,7 +177,7 @@ void settle_bodies(const Tables& t, const Group& g, Work& w) {
 
 }  // namespace
 
-LaneActivity activity_of(const Tables& t, const Group& g) {
+LaneActivity activity_of(const Constants& t, const Group& g) {
   LaneActivity out;
   for (int b = 0; b < t.bodies; ++b) {
     out.asleep |= g.asleep[b] & ~g.absent[b];
@@ -186,7 +187,7 @@ LaneActivity activity_of(const Tables& t, const Group& g) {
   return out;
 }
 
-void wake_island(const Tables& t, const Group& g, int body, int lane) {
+void wake_island(const Constants& t, const Group& g, int body, int lane) {
   const std::int32_t label = g.island[body * kLanes + lane];
   for (int b = 0; b < t.bodies; ++b) {
     if (!((g.asleep[b] >> lane) & 1u) || t.body[b].kinematic) continue;
@@ -196,7 +197,7 @@ void wake_island(const Tables& t, const Group& g, int body, int lane) {
   }
 }
 
-void wake_touched(const Tables& t, const Group& g, Work& w) {
+void wake_touched(const Constants& t, const Group& g, Work& w) {
   const LaneActivity lanes = activity_of(t, g);
   const std::uint32_t mixed = lanes.asleep & lanes.awake & ~w.frozen;
   if (mixed == 0) return;
@@ -205,7 +206,7 @@ void wake_touched(const Tables& t, const Group& g, Work& w) {
   }
 }
 
-void wake_joined(const Tables& t, const Group& g, const Work& w) {
+void wake_joined(const Constants& t, const Group& g, const Work& w) {
   for (bool woke = true; woke;) {
     woke = false;
     for (int i = 0; i < t.parts; ++i) {
@@ -223,7 +224,7 @@ void wake_joined(const Tables& t, const Group& g, const Work& w) {
   }
 }
 
-void keep_sleeping_contacts(const Tables& t, const Group& g, Work& w) {
+void keep_sleeping_contacts(const Constants& t, const Group& g, Work& w) {
   const LaneActivity lanes = activity_of(t, g);
   w.untouched |= ~lanes.awake & kAllLanes;
   w.partly_asleep = lanes.asleep & lanes.awake & ~w.frozen;
@@ -249,7 +250,7 @@ void keep_sleeping_contacts(const Tables& t, const Group& g, Work& w) {
   }
 }
 
-void settle(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+void settle(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   if (t.dimension == kernels::Dimension::planar) {
     settle_bodies<Planar>(t, g, w);

@@ -14,22 +14,22 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 struct LaneActivity {
   std::uint32_t asleep = 0, awake = 0, idle = 0;  // lanes in which some body is
 };
-LaneActivity activity_of(const Tables& t, const Group& g);
+LaneActivity activity_of(const Constants& t, const Group& g);
 
 // Wakes the island that the body fell asleep with.
-void wake_island(const Tables& t, const Group& g, int body, int lane);
+void wake_island(const Constants& t, const Group& g, int body, int lane);
 
 // Wakes the islands that an awake body has come close to.
-void wake_touched(const Tables& t, const Group& g, Work& w);
+void wake_touched(const Constants& t, const Group& g, Work& w);
 
 // Wakes the islands that a joint holds to an awake body.
-void wake_joined(const Tables& t, const Group& g, const Work& w);
+void wake_joined(const Constants& t, const Group& g, const Work& w);
 
 // Takes the stored impulses of sleeping pairs out of the caches of lanes that are partly asleep,
 // to be merged with the new ones when the step stores those.
-void keep_sleeping_contacts(const Tables& t, const Group& g, Work& w);
+void keep_sleeping_contacts(const Constants& t, const Group& g, Work& w);
 
 // After the step: measures how long each body has been at rest and puts islands to sleep.
-void settle(const Tables& t, const Group& g, kernels::Scratch* scratch);
+void settle(const Constants& t, const Group& g, kernels::Scratch* scratch);
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -3,11 +3,11 @@
 // Newton's rule, contact after contact, can add energy where several contacts share an impact: a
 // contact takes its impulse back while a neighbour keeps the answer to it, one is struck by what
 // another has just thrown, and friction pulls at what both have moved. So every island of bodies
-// that push each other compares its energy before the step, plus the work of forces and kinematic
+// that act on each other compares its energy before the step, plus the work of forces and kinematic
 // bodies in it, with that after. Where there is more, the island keeps a share x of what
 // restitution has changed, v = v_found + x (v_bounced - v_found), as large as it can pay for.
-// A mean of two admissible sets of impulses is one: they push, keep to their friction cones, and
-// leave momentum as it was. At x = 1, nearly always, nothing is touched.
+// A mean of two admissible sets of impulses is one: they do not pull, keep to their friction cones,
+// and leave momentum as it was. At x = 1, nearly always, nothing is touched.
 #pragma once
 
 #include "kernels/motion/finish.hpp"
@@ -27,14 +27,14 @@ MW_INLINE Real* account(const Work& w, int body, int which) {
   return w.impulse_part + (body * kAccounts + which) * kLanes;
 }
 
-// a . M b of velocities whose angular parts own() has turned to the body's axes.
+// a . M b of velocities whose angular parts own() has rotated to the body's axes.
 template <class S>
 struct KineticForm {
   Float mass;
   Vec3 inertia;  // principal; planar: z
   Quat q;        // where inertia is a tensor
 
-  MW_INLINE KineticForm(const Tables& t, const Group& g, int body) {
+  MW_INLINE KineticForm(const Constants& t, const Group& g, int body) {
     const auto& b = constants_of_body(g, body);
     mass = Float(Real(1)) / b.inv_mass;
     inertia = {b.inertia[0], b.inertia[1], b.inertia[2]};
@@ -59,26 +59,26 @@ struct KineticForm {
 
 // What gravity and forces do along the way of a body in this step, twice.
 template <class S, bool kDense>
-MW_INLINE Float work_of_pushes(const Tables& t, const Group& g, const Work& w,
-                               const KineticForm<S>& form, int body) {
+MW_INLINE Float work_of_delta_v(const Constants& t, const Group& g, const Work& w,
+                                const KineticForm<S>& form, int body) {
   Velocity<S> way = form.own(get_velocity<S, kDense>(w, w.displacement, body));
   const Mask free = mask_from_bits(~w.touched[body] & kAllLanes);
   way.v = select(free, way.v - drift_excess<S, kDense>(t, g, w, body), way.v);
-  Velocity<S> push;
-  if (w.push) {
-    push = form.own(get_velocity<S, kDense>(w, w.push, body));
+  Velocity<S> delta_v;
+  if (w.delta_v) {
+    delta_v = form.own(get_velocity<S, kDense>(w, w.delta_v, body));
   } else {
-    const Real* p = t.push_rows + body * S::kRow;
-    push.v.x = p[0], push.v.y = p[1];
-    if constexpr (S::kDim == 3) push.v.z = p[2];
-    push.w = zero_of<typename S::Ang>();
+    const Real* p = t.delta_v_rows + body * S::kRow;
+    delta_v.v.x = p[0], delta_v.v.y = p[1];
+    if constexpr (S::kDim == 3) delta_v.v.z = p[2];
+    delta_v.w = zero_of<typename S::Ang>();
   }
-  return form(push, way) * (t.inv_h + t.inv_h);
+  return form(delta_v, way) * (t.inv_h + t.inv_h);
 }
 
 // Fills the accounts; `warmed` holds the velocities that the substeps found.
 template <class S, bool kDense>
-void weigh_bodies(const Tables& t, const Group& g, const Work& w) {
+void weigh_bodies(const Constants& t, const Group& g, const Work& w) {
   const Float zero(Real(0)), slack(kEnergySlack);
   const Float least(t.restitution_threshold * t.restitution_threshold);
   for (int b = 0; b < t.bodies; ++b) {
@@ -93,7 +93,7 @@ void weigh_bodies(const Tables& t, const Group& g, const Work& w) {
     const Velocity<S> found = form.own(get_velocity<S, kDense>(w, w.warmed, b));
     const Velocity<S> after = form.own(get_velocity<S, kDense>(w, w.velocity, b));
     const Velocity<S> change{after.v - found.v, after.w - found.w};
-    const Float before = form(start, start), work = work_of_pushes<S, kDense>(t, g, w, form, b);
+    const Float before = form(start, start), work = work_of_delta_v<S, kDense>(t, g, w, form, b);
     const Float rounding = slack * fma(form.mass, least, before);
     (before + work + rounding).store(account(w, b, kAllowed));
     form(found, found).store(account(w, b, kFound));
@@ -103,7 +103,7 @@ void weigh_bodies(const Tables& t, const Group& g, const Work& w) {
 }
 
 // Lanes in which a body has gained: elsewhere no island has.
-inline unsigned lanes_that_gained(const Tables& t, const Work& w) {
+inline unsigned lanes_that_gained(const Constants& t, const Work& w) {
   Mask gained = mask_from_bits(0);
   for (int b = 0; b < t.bodies; ++b) {
     const Float cross = Float::load(account(w, b, kCross));
@@ -123,9 +123,9 @@ MW_INLINE int body_b_of(const Work& w, const ContactBlock<S, N>& s, int lane) {
   return (s.offset_b[lane] - w.velocity_base[lane]) / S::kRow;
 }
 
-// Joins the bodies of a block that push each other in this lane.
+// Joins the bodies of a block that act on each other in this lane.
 template <class S, int N>
-MW_INLINE void join_bodies(const Tables& t, const Work& w, const ContactBlock<S, N>& s,
+MW_INLINE void join_bodies(const Constants& t, const Work& w, const ContactBlock<S, N>& s,
                            const Bounce<S, N>& bounce, int lane) {
   if (!((s.mask >> lane) & 1u)) return;
   bool pushes = false;  // before or after restitution
@@ -159,9 +159,9 @@ MW_INLINE Float work_of_driver(const SidedBlock<S, N, Free>& s, const SideVeloci
   return work;
 }
 
-// Credits the work of kinematic bodies to those that they push.
+// Credits the work of kinematic bodies to those that they act on.
 template <bool kDense, bool kFriction, class S, int N>
-MW_INLINE void credit_driver(const Tables& t, Work& w, const SidedBlock<S, N, Free>& s,
+MW_INLINE void credit_driver(const Constants& t, Work& w, const SidedBlock<S, N, Free>& s,
                              const Bounce<S, N>& bounce) {
   const Float zero(Real(0));
   const Mask drives_a = Float::load(s.a.inv_mass) == zero;
@@ -200,7 +200,7 @@ MW_INLINE Float affordable_share(Float allowed, Float found, Float cross, Float 
 }
 
 // Turns the accounts of a lane, whose islands are joined, into the share of each body.
-inline void share_out(const Tables& t, const Work& w, int lane) {
+inline void share_out(const Constants& t, const Work& w, int lane) {
   for (int b = 0; b < t.bodies; ++b) {
     const int root = root_of(w.parent, b);  // not after b
     if (root == b) continue;
@@ -219,7 +219,7 @@ inline void share_out(const Tables& t, const Work& w, int lane) {
 }
 
 template <class S, bool kDense>
-void keep_share_of_bodies(const Tables& t, const Work& w) {
+void keep_share_of_bodies(const Constants& t, const Work& w) {
   const Float one(Real(1));
   for (int b = 0; b < t.bodies; ++b) {
     const Float share = Float::load(account(w, b, kShare));
@@ -235,7 +235,7 @@ void keep_share_of_bodies(const Tables& t, const Work& w) {
 
 // The impulses of a block, as far as its bodies keep what they did.
 template <bool kFriction, class S, int N, class A>
-MW_INLINE void keep_share_of_block(const Tables& t, const Work& w, const SidedBlock<S, N, A>& s,
+MW_INLINE void keep_share_of_block(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
                                    Bounce<S, N>& bounce) {
   if (bounce.participants == 0) return;
   alignas(64) LaneNumber share;

@@ -16,7 +16,7 @@ namespace {
 // Calls visit(impulses, lanes) for each in the order of the solver; inside a lane the layout cannot
 // be told from it.
 template <class S, class Visit>
-MW_INLINE void for_each_impulse(const Tables& t, Work& w, Visit visit) {
+MW_INLINE void for_each_impulse(const Constants& t, Work& w, Visit visit) {
   if constexpr (S::kKind != kernels::InertiaKind::isotropic) {  // joints take full tensors
     for (int i = 0; i < t.parts; ++i) {
       unsigned char* at = w.parts + static_cast<std::size_t>(i) * part_bytes(S{});
@@ -33,12 +33,12 @@ MW_INLINE void for_each_impulse(const Tables& t, Work& w, Visit visit) {
 }
 
 template <class S>
-void forget(const Tables& t, const Group&, kernels::Scratch* scratch) {
+void forget(const Constants& t, const Group&, kernels::Scratch* scratch) {
   for_each_impulse<S>(t, work_of(scratch), [](Real* z, std::uint32_t) { Float(Real(0)).store(z); });
 }
 
 template <class S>
-void begin_search(const Tables& t, const Group&, kernels::Scratch* scratch) {
+void begin_search(const Constants& t, const Group&, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   const Float zero(Real(0));
   zero.store(w.search.square);
@@ -50,7 +50,7 @@ void begin_search(const Tables& t, const Group&, kernels::Scratch* scratch) {
 }
 
 template <class S>
-void remember(const Tables& t, const Group&, kernels::Scratch* scratch) {
+void remember(const Constants& t, const Group&, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   Real* before = w.search.before;
   for_each_impulse<S>(t, w, [&](Real* z, std::uint32_t) {
@@ -60,7 +60,7 @@ void remember(const Tables& t, const Group&, kernels::Scratch* scratch) {
 }
 
 template <class S>
-void turn(const Tables& t, const Group&, kernels::Scratch* scratch) {
+void redirect(const Constants& t, const Group&, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   const Float zero(Real(0)), one(Real(1));
   Real *before = w.search.before, *way = w.search.way;
@@ -87,7 +87,7 @@ void turn(const Tables& t, const Group&, kernels::Scratch* scratch) {
 }
 
 template <class S>
-void land(const Tables& t, const Group&, kernels::Scratch* scratch) {
+void land(const Constants& t, const Group&, kernels::Scratch* scratch) {
   Work& w = work_of(scratch);
   const Real* before = w.search.before;
   for_each_impulse<S>(t, w, [&](Real* z, std::uint32_t) {
@@ -98,7 +98,7 @@ void land(const Tables& t, const Group&, kernels::Scratch* scratch) {
 
 template <class S>
 kernels::ImpulseTable<Real> table_of() {
-  return {forget<S>, begin_search<S>, remember<S>, turn<S>, land<S>};
+  return {forget<S>, begin_search<S>, remember<S>, redirect<S>, land<S>};
 }
 
 }  // namespace

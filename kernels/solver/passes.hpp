@@ -11,7 +11,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 template <class S, bool kDense, bool kFriction>
 struct Passes {
   template <Pass kPass>
-  static void solve(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void solve(const Constants& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       solve_block<kDense, kFriction, kPass>(t, w, s);
@@ -21,22 +21,22 @@ struct Passes {
     });
   }
 
-  // Velocities after the first push are the base of warm starting.
-  static void push(const Tables& t, const Group& g, kernels::Scratch* scratch) {
-    first_push<S, kDense>(t, g, work_of(scratch));
+  // Velocities after the first delta_v are the base of warm starting.
+  static void apply_delta_v(const Constants& t, const Group& g, kernels::Scratch* scratch) {
+    apply_first_delta_v<S, kDense>(t, g, work_of(scratch));
   }
-  static void open(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void open(const Constants& t, const Group&, kernels::Scratch* scratch) {
     begin_substeps<S, kDense>(t, work_of(scratch));
   }
 
-  static void mark(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void mark(const Constants& t, const Group&, kernels::Scratch* scratch) {
     mark_velocities<S, kDense>(t, work_of(scratch));
   }
-  static void gather(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void gather(const Constants& t, const Group&, kernels::Scratch* scratch) {
     gather_impulses<S, kDense>(t, work_of(scratch));
   }
 
-  static void restitute(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  static void restitute(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     unsigned active = 0;
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
@@ -63,7 +63,7 @@ struct Passes {
   }
 
   // No island keeps more energy than it had (energy.hpp).
-  static void balance(const Tables& t, const Group& g, Work& w) {
+  static void balance(const Constants& t, const Group& g, Work& w) {
     weigh_bodies<S, kDense>(t, g, w);
     bool driven = false;
     for (int b = 0; b < t.bodies; ++b) driven |= t.body[b].kinematic;
@@ -93,7 +93,7 @@ struct Passes {
     });
   }
 
-  static void store(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  static void store(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     CacheWriter writer(t, g, w);
     for_each_block<S>(w, [&](auto& s, int, BlockList& list) {
@@ -103,23 +103,23 @@ struct Passes {
     report_overflow(g, w);
   }
 
-  static void enter(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  static void enter(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     enter_velocities<S, kDense>(t, g, work_of(scratch));
   }
-  static void advance(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void advance(const Constants& t, const Group&, kernels::Scratch* scratch) {
     advance_displacement<S, kDense>(t, work_of(scratch));
   }
-  static void next(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void next(const Constants& t, const Group&, kernels::Scratch* scratch) {
     next_substep<S, kDense>(t, work_of(scratch));
   }
-  static void leave(const Tables& t, const Group& g, kernels::Scratch* scratch) {
+  static void leave(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     leave_state<S, kDense>(t, g, work_of(scratch), NoFlight{});
   }
 
   static kernels::SolverTable<Real> table() {
     kernels::SolverTable<Real> out{};
     out.enter = enter;
-    out.push = push;
+    out.apply_delta_v = apply_delta_v;
     out.warm_start = solve<Pass::warm_start>;
     out.open = open;
     out.mark = mark;

@@ -44,7 +44,7 @@ MW_INLINE void accumulate_bounce(const ContactBlock<S, N>& s, Bounce<S, N>& boun
 
 // Finds the lanes of a block that took part in an impact.
 template <class S, int N>
-MW_INLINE void find_participants(const Tables& t, const ContactBlock<S, N>& s,
+MW_INLINE void find_participants(const Constants& t, const ContactBlock<S, N>& s,
                                  Bounce<S, N>& bounce) {
   const Float zero(Real(0)), threshold(t.restitution_threshold);
   const Float substeps(static_cast<Real>(t.substeps));
@@ -84,7 +84,7 @@ MW_INLINE void take_back(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bounce) 
 
 // Plays one impact of a manifold. Returns the lanes in which one happened.
 template <bool kDense, class S, int N, class A>
-MW_INLINE unsigned play_impact(const Tables& t, Work& w, SidedBlock<S, N, A>& s,
+MW_INLINE unsigned play_impact(const Constants& t, Work& w, SidedBlock<S, N, A>& s,
                                Bounce<S, N>& bounce, bool first) {
   if (bounce.participants == 0) return 0;
   const Float zero(Real(0)), one(Real(1)), threshold(t.restitution_threshold);

@@ -14,7 +14,7 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 template <bool kDense, class S, int N, class A>
-MW_INLINE void sweep_block(const Tables& t, Work& w, SidedBlock<S, N, A>& s) {
+MW_INLINE void sweep_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) {
   RowVelocities<S, A, kDense> v(w, s);
   const Float zero(Real(0)), one(Real(1)), inv_h(t.inv_h), relaxation(t.solver.relaxation);
   const Float slop(t.solver.slop);
@@ -57,7 +57,7 @@ MW_INLINE void sweep_block(const Tables& t, Work& w, SidedBlock<S, N, A>& s) {
 // Moves the bodies of a block apart by what is left of their share of the overlap that the substep
 // began with; w.velocity holds displacements.
 template <bool kDense, class S, int N, class A>
-MW_INLINE void separate_block(const Tables& t, Work& w, const SidedBlock<S, N, A>& s) {
+MW_INLINE void separate_block(const Constants& t, Work& w, const SidedBlock<S, N, A>& s) {
   RowVelocities<S, A, kDense> moved(w, s);
   const Float zero(Real(0)), share(t.solver.push_out_share), most(t.push_out_speed * t.h);
   const Float slop(t.solver.slop);
@@ -77,13 +77,13 @@ MW_INLINE void separate_block(const Tables& t, Work& w, const SidedBlock<S, N, A
 
 template <class S, bool kDense>
 struct Sweeps {
-  static void sweep(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void sweep(const Constants& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     for_each_block<S>(w, [&](auto& s, int, BlockList&) { sweep_block<kDense>(t, w, s); });
     ++w.sweep;
   }
 
-  static void part(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void part(const Constants& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     Real* const velocity = w.velocity;
     w.velocity = w.displacement;
@@ -92,7 +92,7 @@ struct Sweeps {
   }
 
   // What the contacts of the substep have done, for restitution.
-  static void tally(const Tables& t, const Group&, kernels::Scratch* scratch) {
+  static void tally(const Constants& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       accumulate_bounce(s, bounce_at<S, N>(list, i), t.has_friction);

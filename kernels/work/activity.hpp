@@ -23,7 +23,7 @@ MW_INLINE std::uint32_t idle_lanes(const Group& g, int body) {
   return g.asleep[body] | g.absent[body];
 }
 
-// Lanes in which two bodies can push each other: both are there and one at least is awake.
+// Lanes in which two bodies can act on each other: both are there and one at least is awake.
 MW_INLINE std::uint32_t live_lanes(const Group& g, int a, int b) {
   return ~(g.absent[a] | g.absent[b] | (g.asleep[a] & g.asleep[b]));
 }

@@ -27,7 +27,7 @@ template <class S>
 inline constexpr kernels::StateOffsets kState =
     kernels::state_offsets(S::kDim == 2 ? kernels::Dimension::planar : kernels::Dimension::spatial);
 
-MW_INLINE Real* state_of(const Tables& t, const Group& g, int body, int component) {
+MW_INLINE Real* state_of(const Constants& t, const Group& g, int body, int component) {
   return g.state + (body * t.state_stride + component) * kLanes;
 }
 

@@ -5,37 +5,37 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void begin(const Tables& t, const Group& g, kernels::Scratch* scratch);
-void broad_phase(const Tables& t, const Group& g, kernels::Scratch* scratch);
-kernels::Layout choose_layout(const Tables& t, const Group& g, kernels::Scratch* scratch,
+void begin(const Constants& t, const Group& g, kernels::Scratch* scratch);
+void broad_phase(const Constants& t, const Group& g, kernels::Scratch* scratch);
+kernels::Layout choose_layout(const Constants& t, const Group& g, kernels::Scratch* scratch,
                               kernels::Layout wish);
 
 // Inverse inertias in world axes and centres of mass, for the current orientations.
-void turn_body_rows(const Tables& t, const Group& g, Work& w);
-void sort_and_sweep(const Tables& t, Work& w);
-void find_sparse_pairs(const Tables& t, const Group& g, Work& w);
+void rotate_body_rows(const Constants& t, const Group& g, Work& w);
+void sort_and_sweep(const Constants& t, Work& w);
+void find_sparse_pairs(const Constants& t, const Group& g, Work& w);
 
-inline constexpr int kMostTileCandidates = 4096;
+inline constexpr int kMaxTileCandidates = 4096;
 
 // Most candidates of a class that a lane may have: twice the manifolds that it can keep. Tiles of a
 // height field are all candidates of who is over it.
-MW_INLINE int candidate_limit(const Tables& t, const kernels::PairClass<Real>& c) {
+MW_INLINE int candidate_limit(const Constants& t, const kernels::PairClass<Real>& c) {
   const int limit = 2 * t.capacity[static_cast<int>(c.list)];
-  if (!kernels::is_tile(c.kind) || limit > kMostTileCandidates) return limit;
-  return c.count < kMostTileCandidates ? c.count : kMostTileCandidates;
+  if (!kernels::is_tile(c.kind) || limit > kMaxTileCandidates) return limit;
+  return c.count < kMaxTileCandidates ? c.count : kMaxTileCandidates;
 }
 
 // Most candidates of a class that a lane can have.
-MW_INLINE int most_candidates(const Tables& t, const kernels::PairClass<Real>& c) {
+MW_INLINE int max_candidates(const Constants& t, const kernels::PairClass<Real>& c) {
   const int limit = candidate_limit(t, c);
   return c.count < limit ? c.count : limit;
 }
 
 // Hits of a class, the first in w.hits and w.hit_masks, and the shapes of one of them.
-MW_INLINE int first_hit(const Tables& t, const Work& w, int class_index) {
+MW_INLINE int first_hit(const Constants& t, const Work& w, int class_index) {
   return t.sparse ? w.sparse.hit_start[class_index] : t.pair_class[class_index].first_key;
 }
-MW_INLINE std::int32_t code_of_hit(const Tables& t, const Work& w, int class_index, int hit) {
+MW_INLINE std::int32_t code_of_hit(const Constants& t, const Work& w, int class_index, int hit) {
   const auto& c = t.pair_class[class_index];
   if (t.sparse) return w.sparse.hit_code[w.sparse.hit_start[class_index] + hit];
   const std::int32_t place = w.hits[c.first_key + hit];
@@ -43,9 +43,9 @@ MW_INLINE std::int32_t code_of_hit(const Tables& t, const Work& w, int class_ind
 }
 
 // Fills w.candidates with the hits of the class at work.
-void list_candidates(const Tables& t, Work& w);
+void list_candidates(const Constants& t, Work& w);
 // Keeps of `from` the lanes in `keep[block]`, in `to`, with their axis.
-void compact(const Tables& t, Work& w, const CandidateList& from, const std::uint32_t* keep,
+void compact(const Constants& t, Work& w, const CandidateList& from, const std::uint32_t* keep,
              CandidateList& to);
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -7,7 +7,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-using Tables = kernels::WorldTables<Real>;
+using Constants = kernels::SceneConstants<Real>;
 using Group = kernels::GroupView<Real>;
 using kernels::kLists;
 using kernels::ListId;
@@ -30,7 +30,7 @@ struct BlockList {
   unsigned char* bounces;
 };
 
-// Takes down contact points while the collide stages run: of one lane (KernelTable::record), or the
+// Takes down contact points while the collide stages run: of one lane (Kernels::record), or the
 // places of those of all lanes for the observers (kernels/observe/).
 struct Recorder {
   kernels::ContactPoint<Real>* out;
@@ -41,7 +41,7 @@ struct Recorder {
 // Sparse plans: where pairs are looked for, one lane after the other
 // (kernels/broad/sparse_pairs.cpp). The shapes are the colliders, then the fixed shapes. Those that
 // are there are cut into strips; on the average a shape lies in no more than kCopies of them.
-inline constexpr int kMostStrips = 256, kCopies = 3;
+inline constexpr int kMaxStrips = 256, kCopies = 3;
 struct SparseWork {
   std::int32_t* hit_start;             // [class], of its hits
   std::int32_t* hit_code;              // [hit]
@@ -50,7 +50,7 @@ struct SparseWork {
   std::uint64_t *order, *order_spare;  // [shape that is there]: lower bound, which
   float* sorted;                       // [axis][low, high][place], strip by strip
   std::int32_t *shape, *first_strip;   // [place]
-  std::int32_t strip_start[kMostStrips + 2];
+  std::int32_t strip_start[kMaxStrips + 2];
   std::uint64_t *found, *found_spare;  // [room]: key, code
   std::uint64_t* pairs;                // [lane][lane_room]: key, code; ascending
   std::int32_t shapes, room, lane_room;
@@ -94,7 +94,7 @@ struct Work {
   std::uint32_t* keep;       // [block], lanes that passed it
   BlockList blocks[kLists];
   unsigned char* parts;                     // rows of joints (kernels/joint/)
-  Real* borne;                              // [breakable joint] impulses of the step so far
+  Real* loads;                              // [breakable joint] impulses of the step so far
   std::int32_t* reached;                    // [body] by a joint that broke
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
   std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
@@ -119,8 +119,8 @@ struct Work {
   Real* warmed;        // velocity after warm start
   Real* impulse_part;  // what warm starting adds to the velocity of the next substep
   Real* displacement;
-  Real* push_storage;
-  Real* push;  // what each lane adds to velocities in a substep; nullptr: all the same
+  Real* delta_v_storage;
+  Real* delta_v;  // what each lane adds to velocities in a substep; nullptr: all the same
   Real* factor_storage;
   Real* factor;       // what drag leaves of them; nullptr: all the same
   int rows_per_lane;  // bodies + dummy + world + padding
@@ -129,7 +129,7 @@ struct Work {
   alignas(64) std::int32_t body_base[kLanes];
   std::int32_t* swift;  // colliders that go far in this step (casts between moving shapes)
   std::int32_t swift_count;
-  std::uint32_t* touched;  // [body] lanes in which a contact may push the body in this step
+  std::uint32_t* touched;  // [body] lanes in which a contact may act on the body in this step
   Recorder* recorder;      // nullptr but while contacts are recorded
   Recorder recorder_storage;
   kernels::GroupCounters counters;
@@ -137,7 +137,7 @@ struct Work {
 
 // Place of the world among velocities, for joints that hold to it. Not the dummy's, to which idle
 // lanes of contacts write.
-MW_INLINE int world_body(const Tables& t) { return t.bodies + 1; }
+MW_INLINE int world_body(const Constants& t) { return t.bodies + 1; }
 
 // Inverse mass and inertia of a body, and its centre of mass (for shapes that are off it):
 //   planar      1/m 1/I x y
@@ -151,7 +151,7 @@ inline constexpr int body_row_size(kernels::InertiaKind kind) {
 
 MW_INLINE Work& work_of(kernels::Scratch* s) { return *reinterpret_cast<Work*>(s); }
 
-std::size_t scratch_bytes(const Tables& tables);
-kernels::Scratch* make_scratch(const Tables& tables, void* memory);
+std::size_t scratch_bytes(const Constants& tables);
+kernels::Scratch* make_scratch(const Constants& tables, void* memory);
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

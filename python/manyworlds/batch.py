@@ -14,17 +14,17 @@ from .fields import Fields
 from .ids import Chooser
 from .in_memory import InMemory
 from .inputs import Inputs
-from .kinds import MOST_WORLDS, AnyScene, Kind, plans_of
+from .kinds import MAX_WORLDS, AnyScene, Kind, plans_of
 from .names import ContactLayout, Ids, Isa, Observer, Precision, Seeds
 from .results import Results
-from .rollout import MOST_STEPS, Initial, Trajectories, rollout
+from .rollout import MAX_STEPS, Initial, Trajectories, rollout
 from .scene import Point, Ray
 
-MOST_THREADS = 1024
+MAX_THREADS = 1024
 # What there is one of for each kind of world.
 _OF_A_KIND = frozenset({"plan", "_choose", "_bodies", "_controls", "_joints", "_fields"})
 
-__all__ = ["MOST_THREADS", "MOST_WORLDS", "Batch", "checked_batch"]
+__all__ = ["MAX_THREADS", "MAX_WORLDS", "Batch", "checked_batch"]
 
 
 class Batch(Fields, Inputs, Results, InMemory):
@@ -75,13 +75,13 @@ class Batch(Fields, Inputs, Results, InMemory):
     ) -> None:
         plans = plans_of(scene, worlds)
         self._worlds = sum(count for _, count in plans)
-        crew = 0 if threads is None else arrays.integer(threads, "threads", 1, MOST_THREADS)
+        count = 0 if threads is None else arrays.integer(threads, "threads", 1, MAX_THREADS)
         seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
         if not isinstance(sleep, (bool, np.bool_)):
             raise TypeError(f"sleep is of type {type(sleep).__name__}; expected a bool")
         self._held = _core.Batch(
             plans,
-            crew,
+            count,
             seed,
             precision,
             isa,
@@ -235,7 +235,7 @@ class Batch(Fields, Inputs, Results, InMemory):
         taken, and the batch goes on from there. Lanes step together: a few worlds here and there cost as much as their
         whole groups of lanes.
         """
-        n = arrays.integer(n, "n", 0, MOST_STEPS)
+        n = arrays.integer(n, "n", 0, MAX_STEPS)
         mask = None if ids is None else arrays.mask(ids, self._worlds)
         if controls is not None:
             self.set_controls(controls, ids)
@@ -253,7 +253,7 @@ class Batch(Fields, Inputs, Results, InMemory):
         if not np.isfinite(clock):
             raise ValueError(f"clock is {clock}, must be finite")
         return self._held.step_to(
-            float(clock), arrays.integer(max_steps, "max_steps", 0, MOST_STEPS)
+            float(clock), arrays.integer(max_steps, "max_steps", 0, MAX_STEPS)
         )
 
     def reset(self, mask_or_ids: Optional[Ids] = None, seeds: Optional[Seeds] = None) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core, arrays, shown, tasks
 from ._core import Snapshot
 from .arrays import Writable
-from .batch import MOST_THREADS, MOST_WORLDS, Batch
+from .batch import MAX_THREADS, MAX_WORLDS, Batch
 from .in_memory import InMemory
 from .names import Ids, Isa, Precision, Seeds
 from .plan import Plan
@@ -102,11 +102,11 @@ class Environment(InMemory):
         if issues:
             raise TaskError(issues)
         self.task = task
-        self._worlds = arrays.integer(worlds, "worlds", 1, MOST_WORLDS)
-        crew = 0 if threads is None else arrays.integer(threads, "threads", 1, MOST_THREADS)
+        self._worlds = arrays.integer(worlds, "worlds", 1, MAX_WORLDS)
+        count = 0 if threads is None else arrays.integer(threads, "threads", 1, MAX_THREADS)
         seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
         self._plan = Plan(task.scene)  # of now: the task is its maker's
-        self._held = _core.Environment(task, self._worlds, crew, seed, precision, isa, autoreset)
+        self._held = _core.Environment(task, self._worlds, count, seed, precision, isa, autoreset)
         self.autoreset: str = autoreset.replace("-", "_")
         self.discrete = task.choices > 0
         n, seen, parts = self._worlds, len(task.observations), len(task.rewards)

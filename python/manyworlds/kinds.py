@@ -16,7 +16,7 @@ from .inputs import Inputs
 from .plan import Plan
 from .scene import Scene
 
-MOST_WORLDS = 100_000_000
+MAX_WORLDS = 100_000_000
 
 AnyScene = Union[Scene, Plan, str]
 
@@ -37,7 +37,7 @@ def plans_of(
     """(plan, worlds) of each kind, from what a Batch is made of."""
     if not isinstance(scene, (list, tuple)):
         count = 1 if worlds is None else worlds
-        return [(plan_of(scene), arrays.integer(count, "worlds", 1, MOST_WORLDS))]
+        return [(plan_of(scene), arrays.integer(count, "worlds", 1, MAX_WORLDS))]
     if worlds is not None:
         raise ValueError("worlds stand with each kind, [(scene, worlds), ...], and not beside them")
     if not scene:
@@ -47,7 +47,7 @@ def plans_of(
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
             raise TypeError(f"kind {i} is {shown.short(pair)}; expected (scene, worlds)")
         plan = plan_of(pair[0], f"the scene of kind {i}")
-        plans.append((plan, arrays.integer(pair[1], f"worlds of kind {i}", 1, MOST_WORLDS)))
+        plans.append((plan, arrays.integer(pair[1], f"worlds of kind {i}", 1, MAX_WORLDS)))
     return plans
 
 

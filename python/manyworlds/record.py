@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import arrays, files, pickling
-from .batch import MOST_THREADS, Batch, checked_batch
+from .batch import MAX_THREADS, Batch, checked_batch
 from .files import File
 from .in_memory import InMemory
 from .names import ContactLayout, Ids, Isa
@@ -46,8 +46,8 @@ __all__ = [
     "unfinished_recordings",
 ]
 
-MOST_WORLDS_BY_DEFAULT = 64
-_MOST_STEPS = 2**31 - 1
+MAX_WORLDS_BY_DEFAULT = 64
+_MAX_STEPS = 2**31 - 1
 
 
 class Recorder(InMemory):
@@ -82,11 +82,11 @@ class Recorder(InMemory):
         flush_seconds: float = 5.0,
     ) -> None:
         first_world = arrays.integer(first_world, "first_world", 0, 2**62)
-        every = arrays.integer(every, "every", 0, _MOST_STEPS)
+        every = arrays.integer(every, "every", 0, _MAX_STEPS)
         flush_seconds = arrays.at_least(flush_seconds, "flush_seconds", 0)
         count = checked_batch(batch).worlds
         if worlds is None:
-            chosen = np.arange(min(count, MOST_WORLDS_BY_DEFAULT), dtype=np.int32)
+            chosen = np.arange(min(count, MAX_WORLDS_BY_DEFAULT), dtype=np.int32)
         else:
             chosen = arrays.indices(worlds, count, "worlds")
             if len(chosen) == 0:
@@ -147,8 +147,8 @@ class LostWorldDumps(InMemory):
         self._held = _record.LostWorldDumps(
             checked_batch(batch)._held,
             files.path(folder, "folder"),
-            arrays.integer(checkpoint_steps, "checkpoint_steps", 1, _MOST_STEPS),
-            arrays.integer(most, "most", 0, _MOST_STEPS),
+            arrays.integer(checkpoint_steps, "checkpoint_steps", 1, _MAX_STEPS),
+            arrays.integer(most, "most", 0, _MAX_STEPS),
             arrays.integer(first_world, "first_world", 0, 2**62),
         )
         self.files: list[Path] = []
@@ -284,8 +284,8 @@ class Recording(InMemory):
     ) -> ReplayResult:
         """Simulates it again from its first state and its inputs, without the GIL, and compares hash,
         status and fields at every sample, bit by bit."""
-        crew = 0 if threads is None else arrays.integer(threads, "threads", 1, MOST_THREADS)
-        found = self._held.replay(isa, crew, layout)
+        count = 0 if threads is None else arrays.integer(threads, "threads", 1, MAX_THREADS)
+        found = self._held.replay(isa, count, layout)
         if found["difference"] is not None:
             found["difference"] = Difference(*found["difference"])
         return ReplayResult(**found)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Initial = Union[_core.Snapshot, Mapping[str, ArrayLike], None]
 Trajectories = dict[str, NDArray[Any]]
 
-MOST_STEPS = 2**31 - 1
+MAX_STEPS = 2**31 - 1
 
 
 def rollout(
@@ -31,7 +31,7 @@ def rollout(
 ) -> Trajectories:
     """Batch.rollout: where it raises, no world has changed."""
     played, count = _controls(batch, controls, steps)
-    every = arrays.integer(every, "every", 1, MOST_STEPS)
+    every = arrays.integer(every, "every", 1, MAX_STEPS)
     names = _names(fields)
     known = [batch._field(name) for name in names]
     if out is not None and not isinstance(out, Mapping):
@@ -62,7 +62,7 @@ def _controls(
     if controls is None:
         if steps is None:
             raise ValueError("a rollout needs controls (steps, worlds, controls), or steps")
-        return None, arrays.integer(steps, "steps", 0, MOST_STEPS)
+        return None, arrays.integer(steps, "steps", 0, MAX_STEPS)
     array = arrays.reals(controls, "controls")
     count = array.shape[0] if array.ndim == 3 else -1
     if steps is not None and steps != count:

@@ -7,8 +7,8 @@ from html import escape
 from reprlib import Repr
 from typing import Any
 
-MOST_ROWS = 50  # of a table
-_MOST_LINE = 100  # characters
+MAX_ROWS = 50  # of a table
+_MAX_LINE = 100  # characters
 _short = Repr()
 _short.maxstring = _short.maxother = 32
 
@@ -30,7 +30,7 @@ def count(things: Any, one: str, many: str) -> str:
 def line(kind: str, name: Any, *parts: str) -> str:
     """ "<manyworlds.Scene 'towers': spatial, 6 bodies>"."""
     text = f"<manyworlds.{kind}{f' {short(name)}' if name else ''}: {', '.join(parts)}"
-    return (text if len(text) < _MOST_LINE else text[: _MOST_LINE - 4] + "...") + ">"
+    return (text if len(text) < _MAX_LINE else text[: _MAX_LINE - 4] + "...") + ">"
 
 
 def attempt(f: Callable[[], Any]) -> Any:
@@ -42,7 +42,7 @@ def attempt(f: Callable[[], Any]) -> Any:
 
 
 def table(caption: str, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """An HTML table of at most MOST_ROWS rows; every text in it is escaped."""
+    """An HTML table of at most MAX_ROWS rows; every text in it is escaped."""
     rows = list(rows)
     if not rows:
         return f"<p>{escape(caption)}: none</p>"
@@ -50,9 +50,9 @@ def table(caption: str, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> s
     def row(cells: Iterable[Any], tag: str) -> str:
         return "<tr>" + "".join(f"<{tag}>{escape(str(c))}</{tag}>" for c in cells) + "</tr>"
 
-    shown = [row(r, "td") for r in rows[:MOST_ROWS]]
-    if len(rows) > MOST_ROWS:
-        shown.append(f'<tr><td colspan="{len(head)}">... {len(rows) - MOST_ROWS} more</td></tr>')
+    shown = [row(r, "td") for r in rows[:MAX_ROWS]]
+    if len(rows) > MAX_ROWS:
+        shown.append(f'<tr><td colspan="{len(head)}">... {len(rows) - MAX_ROWS} more</td></tr>')
     body = "".join(shown)
     return (
         f"<table><caption>{escape(caption)}</caption><thead>{row(head, 'th')}</thead>"

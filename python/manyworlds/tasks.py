@@ -156,7 +156,7 @@ class Terms:
         return _x.observed("joint_speed", self._index("joint", joint), coordinate)
 
     def touching(self, body: BodyRef) -> Expression:
-        """1 where a contact pushed the body in the last step; 0 where a world begins."""
+        """1 where a contact acted on the body in the last step; 0 where a world begins."""
         return _x.observed("touching", self._index("body", body), 0)
 
     def linear_acceleration(self, body: BodyRef, axis: Axis) -> Expression:

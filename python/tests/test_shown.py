@@ -131,5 +131,5 @@ def test_tables_are_escaped_and_cut():
     scene.bodies[2] = "no body"
     text = scene._repr_html_()
     page = Page(text)
-    assert page.rows == 1 + shown.MOST_ROWS + 1 and "... 2950 more" in text
+    assert page.rows == 1 + shown.MAX_ROWS + 1 and "... 2950 more" in text
     assert "<script>3</script>" in page.cells and "<script>" not in text

@@ -5,7 +5,7 @@ namespace manyworlds::tasks {
 
 Task ball_balance() {
   using namespace terms;
-  constexpr double kHalfPlate = 0.5, kRadius = 0.05, kMostTorque = 4;  // m, m, N m
+  constexpr double kHalfPlate = 0.5, kRadius = 0.05, kMaxTorque = 4;  // m, m, N m
   Task task;
   task.name = "BallBalance";
   Scene& scene = task.scene = scenes::spatial_scene(task.name);
@@ -30,10 +30,10 @@ Task ball_balance() {
   gimbal.cone = 0.4;
   gimbal.twist = Limit{-0.01, 0.01, {}};
   scene.add(joint_at(scene, {}, tilted, Frame{}, gimbal));
-  scene.controls = {torque("x", tilted, kMostTorque, {1, 0, 0}),
-                    torque("y", tilted, kMostTorque, {0, 1, 0})};
+  scene.controls = {torque("x", tilted, kMaxTorque, {1, 0, 0}),
+                    torque("y", tilted, kMaxTorque, {0, 1, 0})};
   task.actions = {{"x", -1, 1}, {"y", -1, 1}};
-  task.controls = {kMostTorque * action(0), kMostTorque * action(1)};
+  task.controls = {kMaxTorque * action(0), kMaxTorque * action(1)};
   const Expression x = position(rolling, 0), y = position(rolling, 1);
   const Expression off = sqrt(square(x) + square(y));
   task.observations = {{"x", x, -1, 1},

@@ -7,7 +7,7 @@ namespace manyworlds::tasks {
 
 Task bird_sling() {
   using namespace terms;
-  constexpr double kMostSpeed = 25, kSteepest = 1.3, kLeastShift = 0.4;  // m/s, rad, m
+  constexpr double kMaxSpeed = 25, kSteepest = 1.3, kLeastShift = 0.4;  // m/s, rad, m
   Task task;
   task.name = "BirdSling";
   task.scene = scenes::find("bird-sling")->make();
@@ -28,7 +28,7 @@ Task bird_sling() {
   // The sling pulls during the first step of the task.
   const Body& slung = scene.at(bird);
   const double mass = mass_properties(scene, slung).mass;
-  const double most = mass * kMostSpeed / (scene.options.dt * task.frame_skip);
+  const double most = mass * kMaxSpeed / (scene.options.dt * task.frame_skip);
   scene.controls = {thrust("pull x", bird, Vec3::Zero(), {1, 0, 0}, 0, most),
                     thrust("pull y", bird, Vec3::Zero(), {0, 1, 0}, 0, most)};
   task.actions = {{"strength", 0, 1}, {"steepness", 0, 1}};

@@ -5,7 +5,7 @@
 namespace manyworlds::tasks {
 namespace {
 
-constexpr double kMostTravel = 2.4;  // m
+constexpr double kMaxTravel = 2.4;  // m
 
 struct CartPole {
   Scene scene;
@@ -15,7 +15,7 @@ struct CartPole {
   Expression lean = terms::joint_position(JointId(1)), turn = terms::joint_speed(JointId(1));
 };
 
-CartPole make(const Task& task, double most_force, int substeps) {
+CartPole make(const Task& task, double max_force, int substeps) {
   CartPole out;
   Scene& scene = out.scene = planar_scene(task, 0.02, 9.8);
   scene.options.substeps = substeps;
@@ -34,7 +34,7 @@ CartPole make(const Task& task, double most_force, int substeps) {
   out.pole = scene.add(pole);
   scene.add(joint_at(scene, {}, out.cart, Frame{}, SliderJoint{}));
   scene.add(joint_at(scene, out.cart, out.pole, Frame{}, HingeJoint{}));
-  scene.controls = {thrust("push", out.cart, Vec3::Zero(), {1, 0, 0}, -most_force, most_force)};
+  scene.controls = {thrust("push", out.cart, Vec3::Zero(), {1, 0, 0}, -max_force, max_force)};
   return out;
 }
 
@@ -47,16 +47,16 @@ Task cart_pole() {
   // s a pole that falls from 0.1 rad is 3 % ahead, with those 10 % behind
   // (task_catalogue_test.cpp).
   const CartPole world = make(task, 10, 1);
-  constexpr double kMostLean = 0.20943951;  // rad, 12 degrees
+  constexpr double kMaxLean = 0.20943951;  // rad, 12 degrees
   task.scene = world.scene;
   task.choices = 2;
   task.controls = {select(terms::action(), 10, -10)};
-  task.observations = {{"travel", world.travel, -2 * kMostTravel, 2 * kMostTravel},
+  task.observations = {{"travel", world.travel, -2 * kMaxTravel, 2 * kMaxTravel},
                        {"speed", world.speed},
-                       {"lean", world.lean, -2 * kMostLean, 2 * kMostLean},
+                       {"lean", world.lean, -2 * kMaxLean, 2 * kMaxLean},
                        {"turn", world.turn}};
   task.rewards = {{"alive", 1}};
-  task.terminated = (abs(world.travel) > kMostTravel) | (abs(world.lean) > kMostLean);
+  task.terminated = (abs(world.travel) > kMaxTravel) | (abs(world.lean) > kMaxLean);
   task.most_steps = 500;
   task.solved_at = 475;
   return task;
@@ -72,7 +72,7 @@ Task cart_pole_swing_up() {
   task.scene = world.scene;
   task.actions = {{"push", -1, 1}};
   task.controls = {15 * terms::action()};
-  task.observations = {{"travel", world.travel, -2 * kMostTravel, 2 * kMostTravel},
+  task.observations = {{"travel", world.travel, -2 * kMaxTravel, 2 * kMaxTravel},
                        {"speed", world.speed},
                        // The hinge counts from where the pole begins.
                        {"upright", upright, -1, 1},
@@ -80,7 +80,7 @@ Task cart_pole_swing_up() {
                        {"turn", world.turn}};
   task.rewards = {{"upright", (1 + upright) / 2 * (1 - 0.1 * square(world.travel))},
                   {"effort", -0.01 * square(terms::action())}};
-  task.terminated = abs(world.travel) > kMostTravel;
+  task.terminated = abs(world.travel) > kMaxTravel;
   task.most_steps = 500;
   task.solved_at = 350;
   return task;

@@ -8,7 +8,7 @@
 namespace manyworlds::tasks {
 namespace {
 
-constexpr double kMostTorque = 100;                                                        // N m
+constexpr double kMaxTorque = 100;                                                         // N m
 constexpr double kFootHeight = 0.06, kAnkle = 0.1, kKnee = 0.6, kHip = 1.05, kTop = 1.45;  // m
 
 BodyId add_limb(Scene& scene, const char* name, double low, double high, double radius) {
@@ -53,11 +53,11 @@ Task hopper() {
     hinge.limit = limit[i];
     scene.add(joint_at(scene, body[i], body[i + 1], frame, hinge));
     // A motor turns the lower limb and bears on the upper one.
-    scene.controls.push_back(torque(name[i], body[i + 1], kMostTorque));
-    scene.controls.push_back(torque(std::string(name[i]) + " reaction", body[i], kMostTorque));
+    scene.controls.push_back(torque(name[i], body[i + 1], kMaxTorque));
+    scene.controls.push_back(torque(std::string(name[i]) + " reaction", body[i], kMaxTorque));
     task.actions.push_back({name[i], -1, 1});
-    task.controls.push_back(kMostTorque * action(i));
-    task.controls.push_back(-kMostTorque * action(i));
+    task.controls.push_back(kMaxTorque * action(i));
+    task.controls.push_back(-kMaxTorque * action(i));
   }
 
   const Expression lean = angle(torso), up = position(torso, 1);

@@ -5,7 +5,7 @@
 namespace manyworlds::tasks {
 
 Task pendulum() {
-  constexpr double kMostTorque = 2;  // N m
+  constexpr double kMaxTorque = 2;  // N m
   Task task;
   task.name = "Pendulum";
   Scene& scene = task.scene = planar_scene(task, 0.05, 10);
@@ -17,9 +17,9 @@ Task pendulum() {
   rod.jitter.angle = 3.141592653589793;
   const BodyId body = scene.add(rod);
   scene.add(joint_at(scene, {}, body, Frame{}, HingeJoint{}));
-  scene.controls = {torque("torque", body, kMostTorque)};
+  scene.controls = {torque("torque", body, kMaxTorque)};
   const Expression angle = terms::angle(body), speed = terms::angular_velocity(body, 2);
-  task.actions = {{"torque", -kMostTorque, kMostTorque}};
+  task.actions = {{"torque", -kMaxTorque, kMaxTorque}};
   task.controls = {terms::action()};
   task.observations = {{"cos", cos(angle), -1, 1}, {"sin", sin(angle), -1, 1}, {"speed", speed}};
   // Of where the step began, as Gymnasium has it.

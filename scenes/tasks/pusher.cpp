@@ -6,7 +6,7 @@ namespace manyworlds::tasks {
 
 Task pusher() {
   using namespace terms;
-  constexpr double kHalfTable = 2, kClose = 0.15, kMostForce = 10;  // m, m, N
+  constexpr double kHalfTable = 2, kClose = 0.15, kMaxForce = 10;  // m, m, N
   Task task;
   task.name = "Pusher";
   Scene& scene = task.scene = planar_scene(task, 0.02, 0);
@@ -37,13 +37,13 @@ Task pusher() {
   mark.position = {1.2, 0, 0};
   mark.jitter.position = {0.4, 1.2, 0};
   const BodyId goal = scene.add(mark);
-  scene.controls = {thrust("x", hand, Vec3::Zero(), {1, 0, 0}, -kMostForce, kMostForce),
-                    thrust("y", hand, Vec3::Zero(), {0, 1, 0}, -kMostForce, kMostForce)};
+  scene.controls = {thrust("x", hand, Vec3::Zero(), {1, 0, 0}, -kMaxForce, kMaxForce),
+                    thrust("y", hand, Vec3::Zero(), {0, 1, 0}, -kMaxForce, kMaxForce)};
   task.actions = {{"x", -1, 1}, {"y", -1, 1}};
   // Thrusts are along the body's axes: turned back from the world's by where it has turned to.
   const Expression c = previous(direction(hand, 0, 0)), s = previous(direction(hand, 0, 1));
-  task.controls = {kMostForce * (c * action(0) + s * action(1)),
-                   kMostForce * (c * action(1) - s * action(0))};
+  task.controls = {kMaxForce * (c * action(0) + s * action(1)),
+                   kMaxForce * (c * action(1) - s * action(0))};
 
   const auto apart = [](BodyId a, BodyId b) {
     return sqrt(square(position(a, 0) - position(b, 0)) + square(position(a, 1) - position(b, 1)));

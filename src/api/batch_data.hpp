@@ -51,13 +51,13 @@ struct Batch::Impl {
     }
     check_observers(options.observe);
     int worlds = 0;
-    constexpr int kMostWorlds = std::numeric_limits<int>::max();
+    constexpr int kMaxWorlds = std::numeric_limits<int>::max();
     for (const Kind& k : kinds) {
       fingerprint.push_back(k.plan.fingerprint());
       if (k.worlds < 1) reject("worlds is " + std::to_string(k.worlds) + ", must be >= 1");
-      if (k.worlds > kMostWorlds - worlds) {
+      if (k.worlds > kMaxWorlds - worlds) {
         reject("worlds of all kinds are " + std::to_string(std::int64_t{worlds} + k.worlds) +
-               " or more, must be at most " + std::to_string(kMostWorlds));
+               " or more, must be at most " + std::to_string(kMaxWorlds));
       }
       if (k.plan.scene().space != kinds.front().plan.scene().space) {
         reject("kinds of one batch must be all planar or all spatial");

@@ -18,7 +18,7 @@ namespace {
 // What observers take for `worlds` of a kind, with the scratch of one thread.
 template <class Real>
 double observers_in(const Batch::Kind& kind, const BatchOptions& options,
-                    const kernels::KernelTable<Real>& kernels, int threads) {
+                    const kernels::Kernels<Real>& kernels, int threads) {
   // Room for contacts that somebody asks for may be more than there is.
   Observers few = options.observe;
   few.contacts_per_world = std::min(few.contacts_per_world, 1);
@@ -44,7 +44,7 @@ double observers_in(const Batch::Kind& kind, const BatchOptions& options,
 template <class Real>
 double memory_in(const std::vector<Batch::Kind>& kinds, const BatchOptions& options, Isa isa,
                  int threads) {
-  const kernels::KernelTable<Real>& kernels = kernels_for<Real>(isa);
+  const kernels::Kernels<Real>& kernels = kernels_for<Real>(isa);
   double total = 0;
   for (const Batch::Kind& kind : kinds) {
     const Worlds<Real> one(kind.plan, 1, 0, options, kernels.lanes);

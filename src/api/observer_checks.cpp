@@ -115,17 +115,17 @@ void check_points(std::span<const Point> points, const Plan& plan) {
 }
 
 template <class Real>
-PairNames names_of(const PlanData& plan, const kernels::WorldTables<Real>& t, std::int32_t key) {
+PairIds ids_of(const PlanData& plan, const kernels::SceneConstants<Real>& t, std::int32_t key) {
   const kernels::PairOfKey pair = kernels::pair_of_key(t, key);
   const auto named = [&](const auto& a) {
     const PlanCollider& b = plan.colliders[static_cast<std::size_t>(pair.b)];
-    return PairNames{{BodyId(a.scene_body), a.shape}, {BodyId(b.scene_body), b.shape}};
+    return PairIds{{BodyId(a.scene_body), a.shape}, {BodyId(b.scene_body), b.shape}};
   };
   const auto a = static_cast<std::size_t>(pair.a);
   const bool fixed = is_fixed(t.pair_class[kernels::class_of_key(t, key)].list);
   return fixed ? named(plan.fixed[a]) : named(plan.colliders[a]);
 }
-template PairNames names_of(const PlanData&, const kernels::WorldTables<float>&, std::int32_t);
-template PairNames names_of(const PlanData&, const kernels::WorldTables<double>&, std::int32_t);
+template PairIds ids_of(const PlanData&, const kernels::SceneConstants<float>&, std::int32_t);
+template PairIds ids_of(const PlanData&, const kernels::SceneConstants<double>&, std::int32_t);
 
 }  // namespace manyworlds

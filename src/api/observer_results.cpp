@@ -42,7 +42,7 @@ kernels::SeenShape seen_shape(const PlanData& plan, const Shape& s) {
 
 template <class Real>
 ObserverResultsOf<Real>::ObserverResultsOf(const AllWorlds& worlds, const Observers& observers,
-                                           const kernels::KernelTable<Real>& kernels)
+                                           const kernels::Kernels<Real>& kernels)
     : worlds_(worlds), observers_(observers), kernels_(kernels), kinds_(worlds.size()) {
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     Kind& kind = kinds_[k];
@@ -143,7 +143,7 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
   view.placed = reals(rays * 6 * lanes);
   block.poses = scratch;
   if (!t.has_contacts) {
-    block.tables = std::make_unique<kernels::WorldTables<Real>>(t);
+    block.tables = std::make_unique<kernels::SceneConstants<Real>>(t);
     block.tables->has_contacts = block.tables->has_substeps = true;
     block.pose_memory = AlignedBuffer<unsigned char>(kernels_.scratch_bytes(*block.tables));
     block.poses = kernels_.make_scratch(*block.tables, block.pose_memory.data());
@@ -276,7 +276,7 @@ void ObserverResultsOf<Real>::take(std::size_t thread, std::size_t k, int group,
   const kernels::ObserverView<Real>& view = blocks_[thread][k].view;
   Kind& kind = kinds_[k];
   const std::size_t lanes = at(kernels_.lanes);
-  std::array<std::pair<std::size_t, std::size_t>, kMostLanes> taken;  // lane, world
+  std::array<std::pair<std::size_t, std::size_t>, kMaxLanes> taken;  // lane, world
   std::size_t count = 0;
   for (std::size_t l = 0; l < lanes; ++l) {
     const int in = worlds_[k]->world_in(group * kernels_.lanes + static_cast<int>(l));

@@ -14,12 +14,11 @@
 namespace manyworlds {
 
 // The scene's names for the two shapes of a candidate pair.
-struct PairNames {
+struct PairIds {
   ShapeId a, b;
 };
 template <class Real>
-PairNames names_of(const PlanData& plan, const kernels::WorldTables<Real>& tables,
-                   std::int32_t key);
+PairIds ids_of(const PlanData& plan, const kernels::SceneConstants<Real>& tables, std::int32_t key);
 
 bool observes(const Observers& observers, Observer observer);
 inline bool observes(const Observers& o) {
@@ -52,7 +51,7 @@ class ObserverResultsOf final : public ObserverResults {
   using AllWorlds = std::vector<std::unique_ptr<Worlds<Real>>>;
 
   ObserverResultsOf(const AllWorlds& worlds, const Observers& observers,
-                    const kernels::KernelTable<Real>& kernels);
+                    const kernels::Kernels<Real>& kernels);
   // Memory of one more thread; `scratch` is that of its steps, per kind.
   void add_thread(std::span<kernels::Scratch* const> scratch);
 
@@ -92,7 +91,8 @@ class ObserverResultsOf final : public ObserverResults {
     AlignedBuffer<std::uint32_t> nobody;
     AlignedBuffer<kernels::ContactImpulse<Real>> contacts;
     kernels::ObserverView<Real> view{};
-    std::unique_ptr<kernels::WorldTables<Real>> tables;  // of a plan without contacts, with poses
+    std::unique_ptr<kernels::SceneConstants<Real>>
+        tables;  // of a plan without contacts, with poses
     AlignedBuffer<unsigned char> pose_memory, aside;
     kernels::Scratch* poses = nullptr;
     Real* ray_rows = nullptr;  // of view
@@ -116,7 +116,7 @@ class ObserverResultsOf final : public ObserverResults {
 
   const AllWorlds& worlds_;
   Observers observers_;
-  const kernels::KernelTable<Real>& kernels_;
+  const kernels::Kernels<Real>& kernels_;
   std::vector<Kind> kinds_;
   std::vector<std::vector<Block>> blocks_;  // [thread][kind]
 };

@@ -65,7 +65,7 @@ double extent(const Convex& c) {
 }
 
 template <class Real>
-std::optional<RayHit> cast(const kernels::KernelTable<Real>& kernels, const PlanData& plan,
+std::optional<RayHit> cast(const kernels::Kernels<Real>& kernels, const PlanData& plan,
                            const Ray& ray) {
   const Vec3 way = ray.direction.normalized();
   Real rows[kernels::kRayRows], hit[kernels::kHitRows];

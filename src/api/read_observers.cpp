@@ -1,4 +1,4 @@
-// What was seen of a world, in the order and the names of the scene.
+// What was seen of a world, in the order and the ids of the scene.
 #include <stdexcept>
 
 #include "src/api/batch_data.hpp"
@@ -57,9 +57,9 @@ std::vector<StepContact> ObserverResultsOf<Real>::contacts(int k, int world) con
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto& from = kind.contacts[w * at(kind.room) + i];
     StepContact& to = out[i];
-    const PairNames names = names_of(worlds_[at(k)]->data(), worlds_[at(k)]->tables(), from.key);
-    to.body_a = names.a.body(), to.shape_a = names.a;
-    to.body_b = names.b.body(), to.shape_b = names.b;
+    const PairIds ids = ids_of(worlds_[at(k)]->data(), worlds_[at(k)]->tables(), from.key);
+    to.body_a = ids.a.body(), to.shape_a = ids.a;
+    to.body_b = ids.b.body(), to.shape_b = ids.b;
     for (int c = 0; c < 3; ++c) {
       to.normal[c] = static_cast<double>(from.normal[c]);
       to.point[c] = static_cast<double>(from.point[c]);

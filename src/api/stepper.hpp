@@ -76,7 +76,7 @@ class Stepper final : public BatchCore {
   void begin_in(int index, int thread);
   void look_at(int index, int thread);
 
-  const kernels::KernelTable<Real>& kernels_;
+  const kernels::Kernels<Real>& kernels_;
   kernels::Layout layout_;
   Isa isa_ = Isa::scalar;
   int steps_ = 0;

@@ -10,7 +10,7 @@ namespace {
 // Looking at contacts looks at all of them, asleep or not.
 template <class Real>
 kernels::GroupView<Real> awake_view(kernels::GroupView<Real> view,
-                                    const kernels::WorldTables<Real>& tables,
+                                    const kernels::SceneConstants<Real>& tables,
                                     std::vector<std::uint32_t>& none_asleep) {
   if (!view.asleep) return view;
   none_asleep.assign(static_cast<std::size_t>(tables.bodies), 0);
@@ -42,10 +42,10 @@ std::vector<Contact> Stepper<Real>::contacts(int kind, int world) const {
   const PlanData& plan = w.data();
   std::vector<Contact> out;
   for (const auto& p : points) {
-    const PairNames names = names_of(plan, t, p.key);
+    const PairIds ids = ids_of(plan, t, p.key);
     Contact contact;
-    contact.body_a = names.a.body(), contact.shape_a = names.a;
-    contact.body_b = names.b.body(), contact.shape_b = names.b;
+    contact.body_a = ids.a.body(), contact.shape_a = ids.a;
+    contact.body_b = ids.b.body(), contact.shape_b = ids.b;
     for (int k = 0; k < 3; ++k) {
       contact.normal[k] = static_cast<double>(p.normal[k]);
       contact.point[k] = static_cast<double>(p.point[k]);

@@ -7,7 +7,7 @@
 namespace manyworlds {
 
 // Lanes of a group are chosen by the bits of a word.
-inline constexpr std::size_t kMostLanes = 32;
+inline constexpr std::size_t kMaxLanes = 32;
 
 inline constexpr bool get_bit(std::uint32_t word, std::size_t at) {
   return ((word >> at) & 1u) != 0;

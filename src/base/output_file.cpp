@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPart = ".part-";
 constexpr std::size_t kDigits = 16;
-constexpr int kMostLinks = 40;  // as the kernel has it
+constexpr int kMaxLinks = 40;  // as the kernel has it
 
 // "a.h5.part-": how all part files of a.h5 begin. A long name is cut, so that theirs is none too
 // long.
@@ -61,7 +61,7 @@ fs::path resolved(const fs::path& file) {
     char to[PATH_MAX];
     const ssize_t length = readlink(path.c_str(), to, sizeof to);
     if (length < 0) throw FileError(file, reason_of(errno));
-    if (links == kMostLinks) throw FileError(file, reason_of(ELOOP));
+    if (links == kMaxLinks) throw FileError(file, reason_of(ELOOP));
     path = path.parent_path() / std::string(to, static_cast<std::size_t>(length));
   }
   return path;

@@ -8,9 +8,9 @@
 
 namespace manyworlds {
 
-#define MW_DECLARE(name, Real)                             \
-  namespace name {                                         \
-  void fill_kernel_table(kernels::KernelTable<Real>& out); \
+#define MW_DECLARE(name, Real)                         \
+  namespace name {                                     \
+  void fill_kernel_table(kernels::Kernels<Real>& out); \
   }
 MW_DECLARE(scalar_f32, float)
 MW_DECLARE(scalar_f64, double)
@@ -42,9 +42,9 @@ bool cpu_has(Isa isa) {
 }
 
 template <class Real>
-const kernels::KernelTable<Real>* filled(void (*fill)(kernels::KernelTable<Real>&), Isa isa) {
+const kernels::Kernels<Real>* filled(void (*fill)(kernels::Kernels<Real>&), Isa isa) {
   if (!cpu_has(isa)) return nullptr;
-  auto* table = new kernels::KernelTable<Real>{};  // lives as long as the program
+  auto* table = new kernels::Kernels<Real>{};  // lives as long as the program
   fill(*table);
   return table;
 }
@@ -52,7 +52,7 @@ const kernels::KernelTable<Real>* filled(void (*fill)(kernels::KernelTable<Real>
 }  // namespace
 
 template <>
-const kernels::KernelTable<float>* find_kernels<float>(Isa isa) {
+const kernels::Kernels<float>* find_kernels<float>(Isa isa) {
   switch (isa) {
     case Isa::scalar: {
 #if defined(MW_HAVE_SCALAR_F32)
@@ -83,7 +83,7 @@ const kernels::KernelTable<float>* find_kernels<float>(Isa isa) {
 }
 
 template <>
-const kernels::KernelTable<double>* find_kernels<double>(Isa isa) {
+const kernels::Kernels<double>* find_kernels<double>(Isa isa) {
   switch (isa) {
     case Isa::scalar: {
 #if defined(MW_HAVE_SCALAR_F64)
@@ -107,7 +107,7 @@ const kernels::KernelTable<double>* find_kernels<double>(Isa isa) {
 }
 
 template <class Real>
-const kernels::KernelTable<Real>& kernels_for(Isa isa) {
+const kernels::Kernels<Real>& kernels_for(Isa isa) {
   for (int i = static_cast<int>(isa); i >= 0; --i) {
     if (const auto* table = find_kernels<Real>(static_cast<Isa>(i))) return *table;
   }
@@ -118,8 +118,8 @@ const kernels::KernelTable<Real>& kernels_for(Isa isa) {
   throw std::invalid_argument(std::string("no kernels in ") + (sizeof(Real) == 4 ? "f32" : "f64") +
                               ": this build has " + kBuilt);
 }
-template const kernels::KernelTable<float>& kernels_for<float>(Isa);
-template const kernels::KernelTable<double>& kernels_for<double>(Isa);
+template const kernels::Kernels<float>& kernels_for<float>(Isa);
+template const kernels::Kernels<double>& kernels_for<double>(Isa);
 
 bool has_kernels(Precision precision) {
   return std::any_of(std::begin(kIsas), std::end(kIsas), [&](Isa isa) {

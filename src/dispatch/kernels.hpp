@@ -10,12 +10,12 @@ namespace manyworlds {
 
 // The table of an ISA, or nullptr where this build or this CPU has none in this precision.
 template <class Real>
-const kernels::KernelTable<Real>* find_kernels(Isa isa);
+const kernels::Kernels<Real>* find_kernels(Isa isa);
 
 // The widest table that is not wider than `isa`; where there is none, the narrowest that is. Throws
 // std::invalid_argument when this build or this CPU has none in this precision.
 template <class Real>
-const kernels::KernelTable<Real>& kernels_for(Isa isa);
+const kernels::Kernels<Real>& kernels_for(Isa isa);
 
 // Whether there is any.
 bool has_kernels(Precision precision);

@@ -27,21 +27,21 @@ double residual(const Problem& p, const Eigen::VectorXd& z) {
   return most;
 }
 
-Solution solve_gauss_seidel(const Problem& p, double enough, int most_sweeps, double relaxation) {
+Solution solve_gauss_seidel(const Problem& p, double enough, int max_sweeps, double relaxation) {
   Solution out;
   out.z = Eigen::VectorXd::Zero(p.q.size());
-  for (; out.steps < most_sweeps && !out.solved; ++out.steps) {
+  for (; out.steps < max_sweeps && !out.solved; ++out.steps) {
     sweep(p, relaxation, out.z);
     out.solved = residual(p, out.z) <= enough;
   }
   return out;
 }
 
-Solution solve_conjugate_gradient(const Problem& p, double enough, int most_sweeps) {
+Solution solve_conjugate_gradient(const Problem& p, double enough, int max_sweeps) {
   Solution out;
   Eigen::VectorXd z = Eigen::VectorXd::Zero(p.q.size()), way = z, best = z;
   double before = 0, least = residual(p, z);  // before: square of the last step
-  for (; out.steps < most_sweeps && !out.solved; ++out.steps) {
+  for (; out.steps < max_sweeps && !out.solved; ++out.steps) {
     Eigen::VectorXd next = z;
     sweep(p, 1, next);
     const Eigen::VectorXd step = next - z;

@@ -59,11 +59,11 @@ class Tableau {
     for (Eigen::Index i = 0; i < n_; ++i) basis_[size(i)] = i;
   }
 
-  bool solve(int most_pivots, int& pivots) {
+  bool solve(int max_pivots, int& pivots) {
     Eigen::Index row = 0;
     if (rows_.col(2 * n_ + 1).minCoeff(&row) >= 0) return true;  // z = 0 solves it
     Eigen::Index entering = 2 * n_;
-    for (pivots = 0; pivots < most_pivots; ++pivots) {
+    for (pivots = 0; pivots < max_pivots; ++pivots) {
       if (pivots > 0) {
         row = leaving_row(entering);
         if (row < 0) return false;  // a ray: no solution is found
@@ -128,7 +128,7 @@ class Tableau {
 
 }  // namespace
 
-Solution solve_lemke(const Problem& problem, int most_pivots) {
+Solution solve_lemke(const Problem& problem, int max_pivots) {
   Problem finite = problem;
   // Far below what any component of a solution comes to, so that nothing sits there.
   const double far = 1e6 * std::max(1.0, problem.q.cwiseAbs().maxCoeff());
@@ -138,7 +138,7 @@ Solution solve_lemke(const Problem& problem, int most_pivots) {
   const Boxes boxes = without_boxes(finite);
   Tableau tableau(boxes.problem);
   Solution out;
-  out.solved = tableau.solve(most_pivots, out.steps);
+  out.solved = tableau.solve(max_pivots, out.steps);
   out.z = tableau.z().head(problem.q.size()) + boxes.low;
   return out;
 }

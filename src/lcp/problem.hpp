@@ -31,16 +31,16 @@ Solution solve_dantzig(const Problem& problem);
 
 // Lemke's complementary pivots (Cottle, Pang, Stone 1992, 4.4), on a problem with one variable more
 // for each bound. For any matrix of the class that it terminates on, symmetric or not;
-// `most_pivots` ends it otherwise, since cases are known that take 2^n.
-Solution solve_lemke(const Problem& problem, int most_pivots = 10000);
+// `max_pivots` ends it otherwise, since cases are known that take 2^n.
+Solution solve_lemke(const Problem& problem, int max_pivots = 10000);
 
 // Projected Gauss-Seidel, over-relaxed for `relaxation` in (1, 2), until the residual is at most
 // `enough`. Rows without a positive diagonal are left alone.
-Solution solve_gauss_seidel(const Problem& problem, double enough, int most_sweeps,
+Solution solve_gauss_seidel(const Problem& problem, double enough, int max_sweeps,
                             double relaxation = 1);
 
 // Nonsmooth nonlinear conjugate gradients of those sweeps (Silcowitz-Hansen, Niebe, Erleben 2010):
 // Fletcher-Reeves with a restart whenever the step grows.
-Solution solve_conjugate_gradient(const Problem& problem, double enough, int most_sweeps);
+Solution solve_conjugate_gradient(const Problem& problem, double enough, int max_sweeps);
 
 }  // namespace manyworlds::lcp

@@ -13,7 +13,7 @@ namespace manyworlds::mjcf {
 namespace {
 
 // Of eq_data: a connect has the anchor in body 1 and in body 2; a weld has the anchor in body 2,
-// then the pose that it holds this anchor at in body 1, and how much turning weighs.
+// then the pose that it holds this anchor at in body 1, and the weight of the angle.
 constexpr int kConnectAnchor1 = 0, kConnectAnchor2 = 3;
 constexpr int kWeldAnchor2 = 0, kWeldPosition1 = 3, kWeldRotation1 = 6, kWeldTorqueScale = 10;
 
@@ -51,7 +51,7 @@ End on_root(const mjModel& m, const End& end) {
   return {m.body_weldid[end.body], pose_in_root(m, end.body) * end.frame};
 }
 
-// A weld that does not mind turning holds a point only.
+// A weld without angular weight holds a point only.
 bool holds_rotation(const mjModel& m, int e) {
   return is_weld(m, e) && m.eq_data[mjNEQDATA * e + kWeldTorqueScale] != 0;
 }
@@ -67,7 +67,7 @@ bool has_effect(const mjModel& m, int e) {
 
 bool is_joint(const mjModel& m, int e) { return m.eq_active0[e] != 0 && has_effect(m, e); }
 
-// How far apart, m, and how much turned against each other, rad, the ends of a joint begin.
+// How far apart, m, and at which angle to each other, rad, the ends of a joint begin.
 struct Gap {
   double length = 0, angle = 0;
 };

@@ -13,7 +13,7 @@
 namespace manyworlds::mjcf {
 namespace {
 
-constexpr std::size_t kMostCorners = 64;  // of a Hull
+constexpr std::size_t kMaxCorners = 64;  // of a Hull
 
 // Geoms that have a shape.
 struct GeomKind {
@@ -97,7 +97,7 @@ std::optional<std::string> hull_problem(const Model& model, int geom) {
   } catch (const SceneError& error) {
     const Issue& issue = error.issues().front();
     const std::string place = model.place(mjOBJ_MESH, mesh);
-    if (points.size() > kMostCorners && issue.place == "vertices") {
+    if (points.size() > kMaxCorners && issue.place == "vertices") {
       return place +
              " has a convex hull of more than 64 corners; expected at most 64, to which "
              "maxhullvert=\"64\" of the mesh limits it";

@@ -13,7 +13,7 @@ bool is_thrust(const Control& c) {
 
 // The part that a joint's drive is in: a wheel's is its rotation, not its suspension.
 bool has_drive_of(const PlanPart& part, const Joint& joint) {
-  return part.what.drive && (part.what.kind == kernels::PartKind::turn ||
+  return part.what.drive && (part.what.kind == kernels::PartKind::angle ||
                              !std::holds_alternative<WheelJoint>(joint.type));
 }
 

@@ -7,12 +7,12 @@ namespace {
 
 using kernels::PartKind;
 
-std::vector<PartKind> kinds(const BallJoint&) { return {PartKind::cone, PartKind::turn}; }
-std::vector<PartKind> kinds(const HingeJoint&) { return {PartKind::turn}; }
+std::vector<PartKind> kinds(const BallJoint&) { return {PartKind::cone, PartKind::angle}; }
+std::vector<PartKind> kinds(const HingeJoint&) { return {PartKind::angle}; }
 std::vector<PartKind> kinds(const SliderJoint&) { return {PartKind::slide}; }
 std::vector<PartKind> kinds(const FixedJoint&) { return {}; }
 std::vector<PartKind> kinds(const DistanceJoint&) { return {PartKind::distance}; }
-std::vector<PartKind> kinds(const WheelJoint&) { return {PartKind::slide, PartKind::turn}; }
+std::vector<PartKind> kinds(const WheelJoint&) { return {PartKind::slide, PartKind::angle}; }
 std::vector<PartKind> kinds(const PulleyJoint&) { return {PartKind::pulley}; }
 std::vector<PartKind> kinds(const TargetJoint&) { return {}; }
 

@@ -68,17 +68,17 @@ void choose_features(PlanData& plan) {
   round = round && plan.colliders.size() >= plan.bodies.size();
   const bool thrust = !plan.thrusts.empty();
   choose.set(Feature::orientation, !(round && isotropic) || joints || thrust,
-             joints   ? "joints turn with it"
-             : thrust ? "thrust turns with it"
+             joints   ? "joint frames rotate with it"
+             : thrust ? "thrust rotates with it"
                       : "shapes or inertia depend on it",
              "every moving body is a centred ball");
   // Joints are solved with full tensors only: few jointed bodies are isotropic.
   choose.set(Feature::inertia, !planar && (!isotropic || joints),
              isotropic ? "joints are solved with it" : "some moments of inertia differ",
              planar ? "the plane has one moment per body" : "every moment of inertia is isotropic");
-  // A kept tensor needs the orientation that turns it.
+  // A kept tensor needs the orientation that rotates it.
   if (plan.has(Feature::inertia) && !plan.has(Feature::orientation)) {
-    choose.set(Feature::orientation, true, "the kept inertia tensors turn with it", "");
+    choose.set(Feature::orientation, true, "the kept inertia tensors rotate with it", "");
   }
   const bool tensor = !planar && plan.has(Feature::inertia);
   plan.inertia_kind = planar   ? kernels::InertiaKind::planar

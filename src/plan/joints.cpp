@@ -92,10 +92,10 @@ class Builder {
 
   // A joint that is nothing but this spring may be a force to the plan's integrator.
   void force(PlanPart& p, const Spring& s) const {
-    if (!flies(plan_.scene.options) || s.frequency > 0) return;
+    if (!flies_freely(plan_.scene.options) || s.frequency > 0) return;
     if (std::isfinite(joint_.break_force) || std::isfinite(joint_.break_torque)) return;
     p.what.force = true;
-    p.numbers.stiffness = s.stiffness, p.numbers.damping = s.damping;
+    p.constants.stiffness = s.stiffness, p.constants.damping = s.damping;
   }
 
   PlanPart& part(PartKind kind) {
@@ -108,17 +108,17 @@ class Builder {
     out.what.position_control = out.what.speed_control = -1;
     out.what.body_a = a.body;
     out.what.body_b = b.body;
-    put(a.anchor, out.numbers.anchor_a);
-    put(b.anchor, out.numbers.anchor_b);
-    put(a.frame, out.numbers.frame_a);
-    put(b.frame, out.numbers.frame_b);
-    out.numbers.soft = hard();
+    put(a.anchor, out.constants.anchor_a);
+    put(b.anchor, out.constants.anchor_b);
+    put(a.frame, out.constants.frame_a);
+    put(b.frame, out.constants.frame_b);
+    out.constants.soft = hard();
     const Options& o = plan_.scene.options;
-    out.numbers.pull = std::min(o.joint.pull_speed * o.length_unit, kUnlimited);
-    out.numbers.turn_pull = std::min(o.joint.pull_speed, kUnlimited);
-    out.numbers.limit_soft = hard();
-    out.numbers.most = kUnlimited;
-    out.numbers.ratio = 1;
+    out.constants.pull = std::min(o.joint.pull_speed * o.length_unit, kUnlimited);
+    out.constants.angular_pull = std::min(o.joint.pull_speed, kUnlimited);
+    out.constants.limit_soft = hard();
+    out.constants.most = kUnlimited;
+    out.constants.ratio = 1;
     return out;
   }
   static void put(const Vec3& from, double* to) { std::copy_n(from.data(), 3, to); }
@@ -135,21 +135,21 @@ class Builder {
     if (!limit) return;
     p.what.low = std::isfinite(limit->low);
     p.what.high = std::isfinite(limit->high);
-    if (p.what.low) p.numbers.low = limit->low;
-    if (p.what.high) p.numbers.high = limit->high;
-    if (limit->spring) p.numbers.limit_soft = soft(*limit->spring);
+    if (p.what.low) p.constants.low = limit->low;
+    if (p.what.high) p.constants.high = limit->high;
+    if (limit->spring) p.constants.limit_soft = soft(*limit->spring);
   }
   void drive(PlanPart& p, const std::optional<Drive>& drive) const {
     if (!drive) return;
     p.what.drive = true;
-    p.numbers.target_position = drive->target_position;
-    p.numbers.target_speed = drive->target_speed;
-    p.numbers.speed_share = 1;
+    p.constants.target_position = drive->target_position;
+    p.constants.target_speed = drive->target_speed;
+    p.constants.speed_share = 1;
     if (drive->spring) {
-      p.numbers.drive_soft = soft(*drive->spring);
-      p.numbers.speed_share = speed_share(*drive->spring);
+      p.constants.drive_soft = soft(*drive->spring);
+      p.constants.speed_share = speed_share(*drive->spring);
     }
-    p.numbers.most = std::min(h_ * drive->max_force, kUnlimited);
+    p.constants.most = std::min(h_ * drive->max_force, kUnlimited);
   }
 
   void add(const BallJoint& j) {
@@ -157,12 +157,12 @@ class Builder {
       PlanPart& p = part(PartKind::cone);
       limit(p, Limit{-std::numeric_limits<double>::infinity(), *j.cone, std::nullopt});
     }
-    if (j.twist) limit(part(PartKind::turn), j.twist);
+    if (j.twist) limit(part(PartKind::angle), j.twist);
     part(PartKind::point);
   }
   void add(const HingeJoint& j) {
     if (j.limit || j.drive) {
-      PlanPart& p = part(PartKind::turn);
+      PlanPart& p = part(PartKind::angle);
       limit(p, j.limit), drive(p, j.drive);
     }
     if (spatial()) part(PartKind::swing);
@@ -184,7 +184,7 @@ class Builder {
     const double length = j.length.value_or((anchor_b() - anchor_a()).norm());
     PlanPart& p = part(PartKind::distance);
     p.what.equality = !j.limit && !j.spring;
-    p.numbers.rest = length;
+    p.constants.rest = length;
     if (j.spring) drive(p, Drive{length, 0, j.spring});
     if (j.spring && !j.limit) force(p, *j.spring);
     limit(p, j.limit);
@@ -192,7 +192,7 @@ class Builder {
   void add(const WheelJoint& j) {
     PlanPart& s = part(PartKind::slide);
     drive(s, Drive{0, 0, j.suspension}), limit(s, j.travel);
-    if (j.drive) drive(part(PartKind::turn), j.drive);
+    if (j.drive) drive(part(PartKind::angle), j.drive);
     if (spatial()) part(PartKind::swing);
     part(PartKind::line);
   }
@@ -200,16 +200,17 @@ class Builder {
     const Vec3 a = anchor_a(), b = anchor_b();
     PlanPart& p = part(PartKind::pulley);
     p.what.equality = true;
-    put(j.ground_a, p.numbers.ground_a);
-    put(j.ground_b, p.numbers.ground_b);
-    p.numbers.ratio = j.ratio;
-    p.numbers.rest = j.length.value_or((a - j.ground_a).norm() + j.ratio * (b - j.ground_b).norm());
+    put(j.ground_a, p.constants.ground_a);
+    put(j.ground_b, p.constants.ground_b);
+    p.constants.ratio = j.ratio;
+    p.constants.rest =
+        j.length.value_or((a - j.ground_a).norm() + j.ratio * (b - j.ground_b).norm());
   }
   void add(const TargetJoint& j) {
     PlanPart& p = part(PartKind::point);
     p.what.spring = true;
-    p.numbers.soft = soft(j.spring);
-    p.numbers.most = std::min(h_ * j.max_force, kUnlimited);
+    p.constants.soft = soft(j.spring);
+    p.constants.most = std::min(h_ * j.max_force, kUnlimited);
     if (std::isinf(j.max_force)) force(p, j.spring);
   }
 

@@ -128,14 +128,14 @@ void list_pairs(PlanData& plan) {
 
 // Moving shapes up to which there are tables of pairs, and pairs with fixed shapes that are not
 // planes: a table is faster than a search as long as it is short.
-constexpr int kMostInTables = 64;
-constexpr int kMostPairsWithFixed = 1 << 15;
+constexpr int kMaxInTables = 64;
+constexpr int kMaxPairsWithFixed = 1 << 15;
 
 bool is_large(const PlanData& plan) {
   std::int64_t fixed = 0;
   for (const PlanFixed& f : plan.fixed) fixed += f.kind != ShapeKind::plane ? 1 : 0;
   const auto moving = static_cast<std::int64_t>(plan.colliders.size());
-  return moving > kMostInTables || moving * fixed > kMostPairsWithFixed;
+  return moving > kMaxInTables || moving * fixed > kMaxPairsWithFixed;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// PlanData: everything a Plan knows, in double and in plain arrays. src/state/tables.cpp turns it
+// PlanData: everything a Plan knows, in double and in plain arrays. src/state/tables.cpp makes it
 // into the kernels' number type.
 #pragma once
 
@@ -60,7 +60,7 @@ struct PlanFixed {
 struct PlanPart {
   int joint = -1;  // of the scene
   kernels::JointPart what{};
-  kernels::JointConstants<double> numbers{};
+  kernels::JointConstants<double> constants{};
 };
 
 // Thrust or torque of a control.
@@ -85,9 +85,9 @@ struct PlanVaries {
   bool masses = false;     // and inertias
   bool shapes = false;     // sizes, and places about the centre of mass
   bool materials = false;  // friction, restitution
-  bool push = false;       // gravity
+  bool delta_v = false;    // gravity
   bool drag = false;
-  bool body_constants() const { return masses || push || drag; }
+  bool body_constants() const { return masses || delta_v || drag; }
   bool any() const { return body_constants() || shapes || materials; }
 };
 
@@ -136,7 +136,7 @@ std::string body_text(const Scene& scene, BodyId body);
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene);
 
 // Whether bodies in free flight go by another integrator than the substeps of the solver.
-inline bool flies(const Options& o) {
+inline bool flies_freely(const Options& o) {
   return o.integrator != Integrator::symplectic_euler ||
          o.rotation.value_or(Rotation::splitting) != Rotation::splitting;
 }

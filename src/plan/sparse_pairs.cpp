@@ -36,7 +36,7 @@ bool may_touch(const Alike& a, const Alike& b) {
 
 class Counter {
  public:
-  explicit Counter(PlanData& plan) : plan_(plan), most_(extremes(plan).back()) {
+  explicit Counter(PlanData& plan) : plan_(plan), extreme_(extremes(plan).back()) {
     for (const PlanCollider& c : plan.colliders) {
       const bool dynamic = plan.bodies[static_cast<std::size_t>(c.body)].inv_mass > 0;
       flock_.push_back(put(moving_, alike(c, dynamic)));
@@ -61,7 +61,7 @@ class Counter {
  private:
   template <class Planned>
   Alike alike(const Planned& s, bool dynamic) const {
-    const Shape& shape = most_.bodies[static_cast<std::size_t>(s.scene_body)]
+    const Shape& shape = extreme_.bodies[static_cast<std::size_t>(s.scene_body)]
                              .shapes[static_cast<std::size_t>(s.shape)];
     return {s.kind, dynamic, shape.filter, shape.material.friction > 0,
             shape.material.restitution > 0};
@@ -132,22 +132,22 @@ class Counter {
       c.first_key = static_cast<int>(key);
       c.keys = static_cast<int>(keys);
       key += keys;
-      if (key > kMostKeys) continue;
+      if (key > kMaxKeys) continue;
       plan_.classes.push_back(std::move(c));
     }
-    if (key <= kMostKeys) return;
+    if (key <= kMaxKeys) return;
     throw SceneError(
         {{"shapes", "are " + std::to_string(n) + " that move and " +
                         std::to_string(plan_.fixed.size()) + " fixed, in " + std::to_string(kinds) +
                         " kinds of pair: " + std::to_string(key) +
-                        " pairs to tell apart, must be at most " + std::to_string(kMostKeys)}});
+                        " pairs to tell apart, must be at most " + std::to_string(kMaxKeys)}});
   }
 
-  static constexpr std::int64_t kMostKeys = std::numeric_limits<std::int32_t>::max() - 1;
+  static constexpr std::int64_t kMaxKeys = std::numeric_limits<std::int32_t>::max() - 1;
   using Places = std::map<decltype(Alike().key()), std::size_t>;
 
   PlanData& plan_;
-  Scene most_;  // with the most friction and restitution that a world may have
+  Scene extreme_;  // with the most friction and restitution that a world may have
   std::vector<Flock> moving_, fixed_;
   Places place_of_moving_, place_of_fixed_;
   int shapes_ = 0, fixed_shapes_ = 0;

@@ -13,7 +13,7 @@ void choose_stages(PlanData& plan) {
     plan.stages[static_cast<std::size_t>(stage)] = {in, std::move(reason)};
   };
   const Options& options = plan.scene.options;
-  const bool contacts = plan.has(Feature::contacts), flight = flies(options);
+  const bool contacts = plan.has(Feature::contacts), flight = flies_freely(options);
   const bool forces_only = std::all_of(plan.parts.begin(), plan.parts.end(),
                                        [](const PlanPart& p) { return p.what.force; });
   const bool substeps =
@@ -22,7 +22,7 @@ void choose_stages(PlanData& plan) {
   const std::string touch = why(Feature::contacts);
   const std::string some = contacts ? touch
                            : joints ? why(Feature::joints)
-                                    : "controls push bodies";
+                                    : "controls act on bodies";
 
   set(StepStage::free_motion, !substeps && !flight,
       substeps ? "rows need the substep loop"

@@ -21,9 +21,9 @@ void collect_variations(PlanData& plan) {
       case Parameter::friction:
       case Parameter::restitution: varies.materials = true; break;
       case Parameter::gravity:
-      case Parameter::gravity_scale: varies.push = true; break;
+      case Parameter::gravity_scale: varies.delta_v = true; break;
       case Parameter::linear_drag:
-        varies.push = varies.push || !plan.scene.options.wind.isZero(0);
+        varies.delta_v = varies.delta_v || !plan.scene.options.wind.isZero(0);
         [[fallthrough]];
       case Parameter::angular_drag: varies.drag = true; break;
     }

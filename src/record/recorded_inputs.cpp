@@ -52,10 +52,10 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
   const Plan& plan = kinds[place(row.world).kind].plan;
   const int bodies = plan.bodies();
   const bool of_joint = record::is_of_joint(row.input);
-  const int most_body = of_joint ? static_cast<int>(plan.scene().joints.size()) : bodies;
-  if (whole_world ? row.body != -1 : row.body < 0 || row.body >= most_body) {
+  const int max_body = of_joint ? static_cast<int>(plan.scene().joints.size()) : bodies;
+  if (whole_world ? row.body != -1 : row.body < 0 || row.body >= max_body) {
     refuse("is for " + std::string(of_joint ? "joint " : "body ") + std::to_string(row.body) +
-           " of " + std::to_string(most_body));
+           " of " + std::to_string(max_body));
   }
   if (row.call_steps < 0 || (row.call_steps > 0 && !record::is_force(row.input))) {
     refuse("acts for " + std::to_string(row.call_steps) + " steps, must be " +

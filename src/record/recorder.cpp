@@ -30,7 +30,7 @@ std::vector<int> checked_worlds(const Batch& batch, const RecordOptions& options
   }
   std::vector<int> worlds = options.worlds;
   if (worlds.empty()) {
-    worlds.resize(static_cast<std::size_t>(std::min(batch.worlds(), kMostWorldsByDefault)));
+    worlds.resize(static_cast<std::size_t>(std::min(batch.worlds(), kMaxWorldsByDefault)));
     std::iota(worlds.begin(), worlds.end(), 0);
   }
   for (std::size_t i = 0; i < worlds.size(); ++i) {

@@ -11,7 +11,7 @@ namespace manyworlds {
 namespace {
 
 // Room that a batch takes per byte of its snapshot, at most: a file that asks for more lies.
-constexpr std::size_t kMostBytesPerByte = 64;
+constexpr std::size_t kMaxBytesPerByte = 64;
 constexpr std::size_t kFreeBytes = std::size_t{1} << 26;
 
 Batch make_batch(const Recording::Impl& recording, const ReplayOptions& options) {
@@ -21,7 +21,7 @@ Batch make_batch(const Recording::Impl& recording, const ReplayOptions& options)
     kinds.push_back({kind.plan, static_cast<int>(kind.worlds.size())});
     bytes += kind.plan.report().bytes_per_world * kind.worlds.size();
   }
-  if (bytes > kFreeBytes && bytes / kMostBytesPerByte > recording.start.size()) {
+  if (bytes > kFreeBytes && bytes / kMaxBytesPerByte > recording.start.size()) {
     throw RecordError("the snapshot has " + std::to_string(recording.start.size()) +
                       " bytes, its worlds need some " + std::to_string(bytes));
   }

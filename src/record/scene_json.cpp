@@ -73,11 +73,11 @@ std::string to_json(Struct value) {
 }
 
 // What we write is not half as deep; to print what is wrong takes a call per level.
-constexpr int kMostLevels = 64;
+constexpr int kMaxLevels = 64;
 
 bool shallow(int depth, record::Json::parse_event_t, record::Json&) {
-  if (depth <= kMostLevels) return true;
-  throw RecordError("is nested deeper than " + std::to_string(kMostLevels) + " levels");
+  if (depth <= kMaxLevels) return true;
+  throw RecordError("is nested deeper than " + std::to_string(kMaxLevels) + " levels");
 }
 
 template <class Struct>

@@ -30,16 +30,16 @@ class Kind {
   explicit Kind(Checker& checker) : checker_(&checker) {}
 
   // Counts one more, and tells whether it is to be listed.
-  bool list() { return ++count_ <= kMostListed; }
+  bool list() { return ++count_ <= kMaxListed; }
   bool none() const { return count_ == 0; }
   // The rest: "9990 more edges", "are used once".
   void finish(const std::string& plural, const std::string& message) const {
-    if (count_ <= kMostListed) return;
-    checker_->add(std::to_string(count_ - kMostListed) + " more " + plural, message);
+    if (count_ <= kMaxListed) return;
+    checker_->add(std::to_string(count_ - kMaxListed) + " more " + plural, message);
   }
 
  private:
-  static constexpr std::size_t kMostListed = 10;
+  static constexpr std::size_t kMaxListed = 10;
 
   Checker* checker_;
   std::size_t count_ = 0;

@@ -7,10 +7,10 @@
 namespace manyworlds::detail {
 namespace {
 
-constexpr int kMostSubsteps = 64;
-constexpr int kMostRestitutionSweeps = 64;
-constexpr int kMostIterations = 10000;
-constexpr int kMostManifolds = 1 << 16;
+constexpr int kMaxSubsteps = 64;
+constexpr int kMaxRestitutionSweeps = 64;
+constexpr int kMaxIterations = 10000;
+constexpr int kMaxManifolds = 1 << 16;
 
 void check_bounds(Checker& checker, const Eigen::AlignedBox3d& bounds) {
   constexpr char kAxis[] = {'x', 'y', 'z'};
@@ -62,7 +62,7 @@ void check_integrator(Checker& checker, const Options& o) {
 
 void check_solver(Checker& checker, const SolverOptions& o) {
   checker.named("options.solver.method", o.method);
-  if (o.iterations) checker.between("options.solver.iterations", *o.iterations, 1, kMostIterations);
+  if (o.iterations) checker.between("options.solver.iterations", *o.iterations, 1, kMaxIterations);
   if (!(o.relaxation > 0 && o.relaxation < 2)) {
     checker.add("options.solver.relaxation",
                 "is " + number_text(o.relaxation) + ", must be more than 0 and less than 2");
@@ -80,7 +80,7 @@ void check_contact(Checker& checker, const ContactOptions& o) {
   checker.positive("options.contact.slop", o.slop, "m", kSmallestSize, kLargestSize);
   checker.not_negative("options.contact.restitution_threshold", o.restitution_threshold, "m/s");
   checker.between("options.contact.restitution_sweeps", o.restitution_sweeps, 1,
-                  kMostRestitutionSweeps);
+                  kMaxRestitutionSweeps);
 }
 
 void check_joint(Checker& checker, const JointOptions& o) {
@@ -101,7 +101,7 @@ void check_sleep(Checker& checker, const SleepOptions& o) {
 
 void check_options(Checker checker, const Options& options) {
   checker.positive("options.dt", options.dt, "s", kSmallestTime, kLargestFinite);
-  checker.between("options.substeps", options.substeps, 1, kMostSubsteps);
+  checker.between("options.substeps", options.substeps, 1, kMaxSubsteps);
   checker.finite("options.gravity", options.gravity, "m/s^2");
   checker.finite("options.wind", options.wind, "m/s");
   check_integrator(checker, options);
@@ -112,7 +112,7 @@ void check_options(Checker checker, const Options& options) {
   check_joint(checker, options.joint);
   check_sleep(checker, options.sleep);
   if (options.contact_capacity) {
-    checker.between("options.contact_capacity", *options.contact_capacity, 1, kMostManifolds);
+    checker.between("options.contact_capacity", *options.contact_capacity, 1, kMaxManifolds);
   }
   if (options.bounds) check_bounds(checker, *options.bounds);
 }

@@ -105,7 +105,7 @@ void check_range(Checker& checker, const Scene& scene, bool sound, const Variati
 
 // A hull that is stretched far along one axis and not along another would become flat.
 void check_hulls(Checker checker, const Scene& scene, int variation) {
-  constexpr double kMostStretch = 1000;
+  constexpr double kMaxStretch = 1000;
   std::map<std::pair<int, int>, std::pair<double, double>> range;  // of a shape's half extents
   for (const VariedNumber& n : varied_numbers(scene)) {
     if (n.variation != variation || n.parameter != Parameter::size) continue;
@@ -115,9 +115,9 @@ void check_hulls(Checker checker, const Scene& scene, int variation) {
     const std::pair<int, int> of(n.body, n.shape);
     auto& [low, high] = range.try_emplace(of, n.low, n.high).first->second;
     low = std::min(low, n.low), high = std::max(high, n.high);
-    if (high <= kMostStretch * low) continue;
+    if (high <= kMaxStretch * low) continue;
     checker.add("size", "of a hull goes from " + number_text(low) + " to " + number_text(high) +
-                            " m, must be by no more than " + number_text(kMostStretch) + " times");
+                            " m, must be by no more than " + number_text(kMaxStretch) + " times");
     return;
   }
 }

@@ -26,8 +26,8 @@ inline constexpr double kSmallestTime = 1e-9;
 // Relative error that given inertia tensors and plane normals may carry.
 inline constexpr double kInputTolerance = 1e-6;
 
-inline constexpr int kMostBodies = 32767;
-inline constexpr int kMostShapes = 32767;
+inline constexpr int kMaxBodies = 32767;
+inline constexpr int kMaxShapes = 32767;
 
 // Shortest text that reads back as the same number, in any locale; "nan" without a sign.
 std::string number_text(double value);

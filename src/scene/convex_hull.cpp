@@ -157,9 +157,9 @@ Hull make_hull(const std::vector<Vec3>& points) {
     const detail::ConvexHull hull = detail::convex_hull(points);
     if (hull.flat()) {
       checker.add("points", "lie in a plane, must enclose a volume");
-    } else if (hull.vertices.size() > detail::kMostHullVertices) {
+    } else if (hull.vertices.size() > detail::kMaxHullVertices) {
       checker.add("vertices", "are " + std::to_string(hull.vertices.size()) + ", must be at most " +
-                                  std::to_string(detail::kMostHullVertices));
+                                  std::to_string(detail::kMaxHullVertices));
     }
     out.vertices = hull.vertices;
   }

@@ -8,7 +8,7 @@
 namespace manyworlds::detail {
 
 inline constexpr std::size_t kFewestHullVertices = 4;
-inline constexpr std::size_t kMostHullVertices = 64;
+inline constexpr std::size_t kMaxHullVertices = 64;
 
 struct HullFace {
   std::vector<int> outline;  // of vertices, counter-clockwise seen from outside

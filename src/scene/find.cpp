@@ -10,7 +10,7 @@ namespace manyworlds {
 namespace {
 
 // More names than these are not read out.
-constexpr std::size_t kMostNames = 20;
+constexpr std::size_t kMaxNames = 20;
 
 template <class Handle>
 using Named = std::vector<std::pair<std::string, Handle>>;
@@ -48,11 +48,11 @@ std::string known_text(std::string_view name, const Named<Handle>& all, const ch
   }
   if (names.empty()) return std::string("; there are no ") + plural + " with names";
   std::string text = std::string("; there ") + (names.size() == 1 ? "is " : "are ");
-  for (std::size_t i = 0; i < names.size() && i < kMostNames; ++i) {
+  for (std::size_t i = 0; i < names.size() && i < kMaxNames; ++i) {
     text += (i > 0 ? ", '" : "'") + names[i] + "'";
   }
-  if (names.size() > kMostNames) {
-    text += " and " + std::to_string(names.size() - kMostNames) + " more";
+  if (names.size() > kMaxNames) {
+    text += " and " + std::to_string(names.size() - kMaxNames) + " more";
   }
   const auto near = nearest(name, names);
   return near ? text + " (nearest: '" + *near + "')" : text;
@@ -75,10 +75,10 @@ Handle find(std::string_view name, const Named<Handle>& all, const char* one, co
                                 known_text(name, all, plural));
   }
   std::string text = std::to_string(found.size()) + " " + plural + " are named " + quoted + ": ";
-  for (std::size_t i = 0; i < found.size() && i < kMostNames; ++i) {
+  for (std::size_t i = 0; i < found.size() && i < kMaxNames; ++i) {
     text += (i > 0 ? ", " : "") + number_of(found[i]);
   }
-  if (found.size() > kMostNames) text += ", ...";
+  if (found.size() > kMaxNames) text += ", ...";
   throw std::invalid_argument(text + "; give them names of their own, or take the handle");
 }
 

@@ -6,7 +6,7 @@
 
 namespace manyworlds {
 
-inline constexpr int kMostTiles = 128;  // of a height field
+inline constexpr int kMaxTiles = 128;  // of a height field
 
 struct TileCount {
   int wide = 1, deep = 1;  // cells along x and y

@@ -14,14 +14,14 @@ void check_tiles(detail::Checker& checker, const Scene& scene) {
       const auto* field = std::get_if<HeightField>(&scene.bodies[b].shapes[k].geometry);
       if (field == nullptr) continue;
       const TileCount tiles = tiles_of(*field, scene);
-      if (tiles.count() <= kMostTiles) continue;
+      if (tiles.count() <= kMaxTiles) continue;
       std::string part = "body " + std::to_string(b);
       if (!scene.bodies[b].name.empty()) part += " '" + scene.bodies[b].name + "'";
       checker.at(part + ", shape " + std::to_string(k))
           .add("cell", "is " + detail::vector_text(field->cell) +
                            " m: the largest shape that moves can lie over " +
                            std::to_string(tiles.count()) + " triangles, must be at most " +
-                           std::to_string(kMostTiles));
+                           std::to_string(kMaxTiles));
     }
   }
 }
@@ -46,15 +46,15 @@ std::vector<Issue> validate(const Scene& scene) {
       const auto* terrain = std::get_if<Terrain>(&shape.geometry);
       // A collider for every segment or tile.
       shapes += terrain != nullptr                                    ? terrain->points.size()
-                : std::holds_alternative<HeightField>(shape.geometry) ? kMostTiles
+                : std::holds_alternative<HeightField>(shape.geometry) ? kMaxTiles
                                                                       : 1;
     }
   }
-  check_count("bodies", scene.bodies.size(), detail::kMostBodies);
-  check_count("shapes", shapes, detail::kMostShapes);
-  check_count("joints", scene.joints.size(), detail::kMostBodies);
-  check_count("controls", scene.controls.size(), detail::kMostBodies);
-  check_count("attractors", scene.attractors.size(), detail::kMostBodies);
+  check_count("bodies", scene.bodies.size(), detail::kMaxBodies);
+  check_count("shapes", shapes, detail::kMaxShapes);
+  check_count("joints", scene.joints.size(), detail::kMaxBodies);
+  check_count("controls", scene.controls.size(), detail::kMaxBodies);
+  check_count("attractors", scene.attractors.size(), detail::kMaxBodies);
 
   // Needed before the bodies, whose masses depend on the default density, but listed after them.
   std::vector<Issue> option_issues;

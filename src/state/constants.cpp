@@ -14,15 +14,15 @@ void copy_numbers(const Vec3& from, Real* to) {
 }
 
 template <class Real>
-kernels::TopConstants<Real> top_of(const PlanBody& body, double dt) {
+kernels::PrincipalInertia<Real> principal_of(const PlanBody& body, double dt) {
   const bool tumbles = body.inv_inertia.z() > 0;
   const Vec3 inertia = tumbles ? body.inertia : Vec3::Ones();
   const Vec3 inverse = tumbles ? body.inv_inertia : Vec3::Ones();
-  kernels::TopConstants<Real> out{};
+  kernels::PrincipalInertia<Real> out{};
   copy_numbers(inertia, out.inertia);
   copy_numbers(inverse, out.inverse);
   copy_numbers(Vec3(inverse.cwiseProduct(Vec3(dt / 2, dt / 2, dt))), out.rate);
-  out.turn_bound = static_cast<Real>(dt * inverse.maxCoeff());
+  out.angle_bound = static_cast<Real>(dt * inverse.maxCoeff());
   return out;
 }
 
@@ -42,7 +42,7 @@ kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody
   out.inv_mass = static_cast<Real>(b.inv_mass);
   copy_numbers(b.inertia, out.inertia);
   copy_numbers(b.inv_inertia, out.inv_inertia);
-  out.top = top_of<Real>(b, options.dt);
+  out.principal = principal_of<Real>(b, options.dt);
   out.radius = static_cast<Real>(b.radius);
   out.core_radius = static_cast<Real>(b.inv_mass > 0 ? b.core_radius : 0);
   out.linear_factor = out.angular_factor = 1;
@@ -52,7 +52,7 @@ kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody
   const Vec3 g = options.gravity * body.gravity_scale + body.linear_drag * options.wind;
   copy_numbers(g, out.acceleration);
   for (int c = 0; c < (plan.scene.space == Space::planar ? 2 : 3); ++c) {
-    out.push[c] = static_cast<Real>(h * g[c]) + Real(0);  // never -0
+    out.delta_v[c] = static_cast<Real>(h * g[c]) + Real(0);  // never -0
   }
   out.linear_drag = static_cast<Real>(body.linear_drag);
   out.angular_drag = static_cast<Real>(body.angular_drag);
@@ -96,10 +96,10 @@ kernels::PolygonConstants<Real> polygon_constants(const PlanCollider& c) {
 // Every member is a number.
 template <class Real>
 kernels::JointConstants<Real> joint_constants(const PlanPart& part) {
-  constexpr std::size_t kNumbers = sizeof(part.numbers) / sizeof(double);
+  constexpr std::size_t kNumbers = sizeof(part.constants) / sizeof(double);
   double from[kNumbers];
   Real to[kNumbers];
-  std::memcpy(from, &part.numbers, sizeof part.numbers);
+  std::memcpy(from, &part.constants, sizeof part.constants);
   for (std::size_t i = 0; i < kNumbers; ++i) to[i] = static_cast<Real>(from[i]);
   kernels::JointConstants<Real> out;
   static_assert(sizeof out == sizeof to);

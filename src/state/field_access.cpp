@@ -98,7 +98,7 @@ void Worlds<Real>::write_as(Field field, int world, const In* in) {
   const Space space = plan_.scene().space;
   const FieldInfo& about = info(field);
   const int n = components(field, space), items = layout_.items[static_cast<int>(about.item)];
-  // Impulses of the old pose would push at the new one.
+  // Impulses of the old pose would act on the new one.
   const bool moves = field == Field::position || field == Field::orientation;
   if (moves) storage_.clear_contacts(lane_index_of(world));
   if (moves) storage_.clear_joints(lane_index_of(world));
@@ -115,7 +115,7 @@ void Worlds<Real>::write_as(Field field, int world, const In* in) {
     if (field == Field::position) {
       set_origin(world, i, Vec3(x[0], x[1], x[2]), rotation(world, i));
     } else {
-      // The body turns about its own origin, so the centre of mass moves.
+      // The body rotates about its own origin, so the centre of mass moves.
       const PlanBody& b = body_of(world, static_cast<std::size_t>(i));
       const Vec3 origin = center_of_mass(world, i) - rotation(world, i) * b.center;
       const Quat q = rotation_of(x.data(), space);

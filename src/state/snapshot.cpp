@@ -107,10 +107,10 @@ void check(const std::vector<std::byte>& bytes) {
     refuse("has a clock that is not finite");
   }
   // Beyond it, time is no longer told apart step by step.
-  constexpr std::int64_t kMostSteps = std::int64_t{1} << 53;
-  if (header.steps < 0 || header.steps > kMostSteps) {
+  constexpr std::int64_t kMaxSteps = std::int64_t{1} << 53;
+  if (header.steps < 0 || header.steps > kMaxSteps) {
     refuse("has taken " + std::to_string(header.steps) + " steps, must be 0 to " +
-           std::to_string(kMostSteps));
+           std::to_string(kMaxSteps));
   }
   const std::size_t room = size - sizeof(SnapshotHeader) - kChecksum;
   if (header.worlds == 0 || header.worlds > room / entry_size(header) ||

@@ -8,7 +8,7 @@
 namespace manyworlds {
 
 template <class Real>
-Storage<Real>::Storage(const kernels::WorldTables<Real>& tables, int groups, int lanes)
+Storage<Real>::Storage(const kernels::SceneConstants<Real>& tables, int groups, int lanes)
     : tables_(tables), groups_(groups), lanes_(lanes) {
   const auto& t = tables_;
   state_ = AlignedBuffer<Real>(index(lane_count()) * index(t.state_size));
@@ -28,7 +28,7 @@ Storage<Real>::Storage(const kernels::WorldTables<Real>& tables, int groups, int
     control_ = AlignedBuffer<Real>(index(lane_count()) * index(t.controls));
   }
   if (t.has_sleep) make_activity();
-  if (t.breakable > 0) make_loose();
+  if (t.breakable > 0) make_disabled_joints();
   reached_.resize(index(t.bodies));
 }
 
@@ -58,7 +58,8 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
     view.cache[l].rows = cache_rows_[l].data() + at * lanes * index(t.capacity[l] + 2) * index(row);
     view.cache[l].keys = cache_keys_[l].data() + at * lanes * index(t.capacity[l] + 1);
   }
-  if (!loose_.empty()) view.loose = loose_.data() + at * index(t.joints);
+  if (!disabled_joints_.empty())
+    view.disabled_joints = disabled_joints_.data() + at * index(t.joints);
   if (forced_) view.force = force_.data() + at * lanes * index(t.bodies) * 6;
   if (has_activity()) {
     const std::size_t bodies = index(t.bodies);
@@ -87,7 +88,7 @@ std::size_t Storage<Real>::bytes() const {
       constants_.bytes() +
       (state_.size() + joint_impulse_.size() + control_.size() + rest_time_.size()) * sizeof(Real) +
       (status_.size() + asleep_.size() + absent_.size() + resting_.size() + island_.size() +
-       loose_.size()) *
+       disabled_joints_.size()) *
           sizeof(std::uint32_t);
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     total += cache_rows_[l].size() * sizeof(Real) + cache_keys_[l].size() * sizeof(std::int32_t);
@@ -169,7 +170,8 @@ void Storage<Real>::drop_impulses(int lane_index, int body) {
     };
     keep_contacts(lane_index, reach_on);
     for (int i = 0; i < tables_.parts; ++i) {
-      if (!loose(lane_index, tables_.part[i].joint)) reach_on(moving_a(i), tables_.part[i].body_b);
+      if (!joint_disabled(lane_index, tables_.part[i].joint))
+        reach_on(moving_a(i), tables_.part[i].body_b);
     }
   }
   keep_contacts(lane_index, [&](int a, int b) { return !reached(a) && !reached(b); });
@@ -231,20 +233,21 @@ void Storage<Real>::set_absent(int lane_index, int body, bool absent) {
 }
 
 template <class Real>
-void Storage<Real>::make_loose() {
-  if (loose_.empty()) {
-    loose_ = AlignedBuffer<std::uint32_t>(index(groups_) * index(tables_.joints));
+void Storage<Real>::make_disabled_joints() {
+  if (disabled_joints_.empty()) {
+    disabled_joints_ = AlignedBuffer<std::uint32_t>(index(groups_) * index(tables_.joints));
   }
 }
 
 template <class Real>
-void Storage<Real>::set_loose(int lane_index, int joint, bool loose) {
-  put_bit(loose_[joint_at(lane_index, joint)], lane_of(lane_index), loose);
+void Storage<Real>::set_joint_disabled(int lane_index, int joint, bool disabled) {
+  put_bit(disabled_joints_[joint_at(lane_index, joint)], lane_of(lane_index), disabled);
 }
 
 template <class Real>
-void Storage<Real>::clear_loose(int lane_index) {
-  for (int j = 0; !loose_.empty() && j < tables_.joints; ++j) set_loose(lane_index, j, false);
+void Storage<Real>::enable_all_joints(int lane_index) {
+  for (int j = 0; !disabled_joints_.empty() && j < tables_.joints; ++j)
+    set_joint_disabled(lane_index, j, false);
 }
 
 template <class Real>

@@ -6,7 +6,8 @@
 //   controls  [group][control][lane]
 //   joints    [group][part][impulses][lane]
 //   activity  [group][body] lane masks of sleeping and disabled bodies, made when first needed
-//   loose     [group][joint] lane masks of broken and disabled joints, made when first needed
+//   disabled_joints     [group][joint] lane masks of broken and disabled joints, made when first
+//   needed
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@ namespace manyworlds {
 template <class Real>
 class Storage {
  public:
-  Storage(const kernels::WorldTables<Real>& tables, int groups, int lanes);
+  Storage(const kernels::SceneConstants<Real>& tables, int groups, int lanes);
 
   int lanes() const { return lanes_; }
   int groups() const { return groups_; }
@@ -41,7 +42,7 @@ class Storage {
   void clear_contacts(int lane_index);
   void clear_joints(int lane_index);  // their impulses
   // Impulses of contacts and joints of the body and of all bodies that it touches or is joined to,
-  // directly or not: what carried the absent body would be pushed up.
+  // directly or not: what carried the absent body would be thrown up.
   void drop_impulses(int lane_index, int body);
 
   Real* controls(int lane_index) const {  // lanes() apart
@@ -78,12 +79,12 @@ class Storage {
   }
 
   // Broken and disabled joints. Without masks every joint holds.
-  void make_loose();
-  bool loose(int lane_index, int joint) const {
-    return is_set(loose_, joint_at(lane_index, joint), lane_index);
+  void make_disabled_joints();
+  bool joint_disabled(int lane_index, int joint) const {
+    return is_set(disabled_joints_, joint_at(lane_index, joint), lane_index);
   }
-  void set_loose(int lane_index, int joint, bool loose);
-  void clear_loose(int lane_index);
+  void set_joint_disabled(int lane_index, int joint, bool disabled);
+  void enable_all_joints(int lane_index);
 
   // Constants of each world's own, where the plan lets some vary.
   void make_constants(const PlanData& plan);
@@ -125,7 +126,7 @@ class Storage {
   template <class Keep>
   void keep_contacts(int lane_index, Keep keep);  // keep(body a or -1, body b)
 
-  const kernels::WorldTables<Real>& tables_;
+  const kernels::SceneConstants<Real>& tables_;
   int groups_, lanes_;
   // Views hand out pointers that the step writes through.
   mutable AlignedBuffer<Real> state_;
@@ -139,7 +140,7 @@ class Storage {
   Constants<Real> constants_;
   mutable AlignedBuffer<std::uint32_t> asleep_, absent_;  // [group][body]
   mutable AlignedBuffer<std::uint32_t> idle_, resting_;   // [group]
-  mutable AlignedBuffer<std::uint32_t> loose_;            // [group][joint]
+  mutable AlignedBuffer<std::uint32_t> disabled_joints_;  // [group][joint]
   mutable AlignedBuffer<Real> rest_time_;                 // [group][body][lane]
   mutable AlignedBuffer<std::int32_t> island_;            // [group][body][lane]
   std::vector<char> reached_;                             // [body] scratch of drop_impulses

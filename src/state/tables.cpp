@@ -77,7 +77,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.sparse = plan.sparse;
   t.cast = plan.cast && t.has_contacts;
   t.cast_moving = o.contact.cast_between_moving && t.has_contacts;
-  t.push_varies = plan.varies.push;
+  t.delta_v_varies = plan.varies.delta_v;
   t.drag_varies = plan.varies.drag;
   t.bodies_vary = plan.varies.masses;
   t.has_bounds = o.bounds.has_value();
@@ -128,7 +128,7 @@ void TablesOf<Real>::add_flight(const PlanData& plan) {
   const Options& o = plan.scene.options;
   auto& t = tables_;
   auto& flight = t.flight;
-  flight.on = flies(o);
+  flight.on = flies_freely(o);
   static_assert(static_cast<int>(kernels::Scheme::runge_kutta4) ==
                     static_cast<int>(Integrator::runge_kutta4) &&
                 static_cast<int>(kernels::Rotation::exponential) ==
@@ -140,7 +140,7 @@ void TablesOf<Real>::add_flight(const PlanData& plan) {
   for (const PlanPart& p : plan.parts) {
     if (!p.what.force) continue;
     ++flight.springs;
-    flight.damped = flight.damped || p.numbers.damping > 0;
+    flight.damped = flight.damped || p.constants.damping > 0;
   }
 }
 
@@ -150,20 +150,20 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
   const std::size_t dim = plan.scene.space == Space::planar ? 2 : 3;
   const auto row = static_cast<std::size_t>(kernels::velocity_row_size(t.dimension));
   // Padded as the rows of a lane are (kernels/work.cpp): up to one register more.
-  push_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 2) * row + 16);
+  delta_v_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 2) * row + 16);
   factor_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 2) * row + 16);
   for (std::size_t i = 0; i < factor_rows_.size(); ++i) factor_rows_[i] = 1;
   for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
     const PlanBody& b = plan.bodies[i];
     bodies_.push_back({b.inv_mass == 0});
     const auto numbers = body_constants<Real>(plan, b);
-    for (std::size_t c = 0; c < dim; ++c) push_rows_[i * row + c] = numbers.push[c];
+    for (std::size_t c = 0; c < dim; ++c) delta_v_rows_[i * row + c] = numbers.delta_v[c];
     for (std::size_t c = 0; c < row; ++c) {
       factor_rows_[i * row + c] = c < dim ? numbers.linear_factor : numbers.angular_factor;
     }
   }
   t.body = bodies_.data();
-  t.push_rows = push_rows_.data();
+  t.delta_v_rows = delta_v_rows_.data();
   t.factor_rows = factor_rows_.data();
 }
 

@@ -16,7 +16,7 @@ class TablesOf {
   TablesOf(const PlanData& plan, bool sleep, int lanes);
   TablesOf(const TablesOf&) = delete;
   TablesOf& operator=(const TablesOf&) = delete;
-  const kernels::WorldTables<Real>& get() const { return tables_; }
+  const kernels::SceneConstants<Real>& get() const { return tables_; }
 
  private:
   void add_bodies(const PlanData& plan);
@@ -30,7 +30,7 @@ class TablesOf {
   void add_flight(const PlanData& plan);
   void add_solver(const Options& options);
 
-  kernels::WorldTables<Real> tables_{};
+  kernels::SceneConstants<Real> tables_{};
   Constants<Real> constants_;
   std::vector<kernels::BodyTable> bodies_;
   std::vector<kernels::ColliderTable> colliders_;
@@ -43,7 +43,7 @@ class TablesOf {
   std::vector<kernels::ThrustTable> thrusts_;
   std::vector<std::int32_t> first_thrust_;
   std::vector<std::int32_t> joined_, first_joined_;
-  AlignedBuffer<Real> fixed_rows_, hulls_, push_rows_, factor_rows_;
+  AlignedBuffer<Real> fixed_rows_, hulls_, delta_v_rows_, factor_rows_;
 };
 
 }  // namespace manyworlds

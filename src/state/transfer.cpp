@@ -91,7 +91,7 @@ struct Read {
 // Numbers that the step would use as indices must be ones that it could have made.
 template <class Real>
 struct Check {
-  const kernels::WorldTables<Real>& t;
+  const kernels::SceneConstants<Real>& t;
   const std::byte* from;
   std::string problem;
   int list = -1;  // whose keys come next
@@ -178,7 +178,7 @@ void Storage<Real>::for_each_part(int a, int b, Visit&& visit) const {
   }
   bit(resting_, group_of(a), group_of(b));
   for (int joint = 0; joint < t.joints; ++joint) {
-    bit(loose_, joint_at(a, joint), joint_at(b, joint));
+    bit(disabled_joints_, joint_at(a, joint), joint_at(b, joint));
   }
 }
 
@@ -222,7 +222,7 @@ std::string Storage<Real>::check_world(const std::byte* from) const {
 template <class Real>
 void Storage<Real>::read_world(int lane_index, const std::byte* from) {
   make_activity();  // the world may have disabled bodies
-  if (tables_.joints > 0) make_loose();
+  if (tables_.joints > 0) make_disabled_joints();
   for_each_part(lane_index, lane_index, Read{from});
   for (int b = 0; !tables_.has_sleep && b < tables_.bodies; ++b) {
     put_bit(asleep_[body_at(lane_index, b)], lane_of(lane_index), false);  // where nobody sleeps

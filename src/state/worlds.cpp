@@ -74,7 +74,7 @@ void Worlds<Real>::initialise(int world) {
     const std::size_t numbers = values.size() / static_cast<std::size_t>(worlds_);
     if (numbers > 0) write(field, world, values.data() + static_cast<std::size_t>(world) * numbers);
   };
-  // A body turns about its own origin, so orientations come first.
+  // A body rotates about its own origin, so orientations come first.
   write_initial(Field::orientation);
   for (const Field field : kFields) {
     if (field != Field::orientation) write_initial(field);
@@ -83,7 +83,7 @@ void Worlds<Real>::initialise(int world) {
   storage_.status(lane_index) = 0;
   storage_.clear_contacts(lane_index);
   storage_.clear_joints(lane_index);
-  storage_.clear_loose(lane_index);
+  storage_.enable_all_joints(lane_index);
   const auto& controls = plan_.scene().controls;
   for (std::size_t i = 0; i < controls.size(); ++i) {
     storage_.controls(lane_index)[i * static_cast<std::size_t>(storage_.lanes())] =
@@ -153,7 +153,7 @@ template <class Real>
 void Worlds<Real>::set_joint_enabled(int world, int joint, bool enabled) {
   const int lane_index = lane_index_of(world);
   if (joint_enabled(world, joint) == enabled) return;
-  storage_.make_loose();
+  storage_.make_disabled_joints();
   for (int i = 0; i < tables().parts; ++i) {
     const kernels::JointPart& part = tables().part[i];
     if (part.joint != joint) continue;
@@ -165,7 +165,7 @@ void Worlds<Real>::set_joint_enabled(int world, int joint, bool enabled) {
       if (!enabled) storage_.drop_impulses(lane_index, body);
     }
   }
-  storage_.set_loose(lane_index, joint, !enabled);
+  storage_.set_joint_disabled(lane_index, joint, !enabled);
   if (storage_.has_activity()) storage_.find_idle(lane_index);
 }
 

@@ -27,7 +27,7 @@ class Worlds final : public WorldsBase {
 
   const Plan& plan() const { return plan_; }
   const PlanData& data() const { return plan_.data(); }
-  const kernels::WorldTables<Real>& tables() const { return tables_->get(); }
+  const kernels::SceneConstants<Real>& tables() const { return tables_->get(); }
   const Storage<Real>& storage() const { return storage_; }
   int count() const { return worlds_; }
   int lane_index_of(int world) const override {
@@ -74,7 +74,7 @@ class Worlds final : public WorldsBase {
   void set_enabled(int world, int body, bool enabled) override;
   void spawn(int world, int body, const BodyState& state) override;
   bool joint_enabled(int world, int joint) const override {
-    return !storage_.loose(lane_index_of(world), joint);
+    return !storage_.joint_disabled(lane_index_of(world), joint);
   }
   void set_joint_enabled(int world, int joint, bool enabled) override;
   bool asleep(int world, int body) const override;

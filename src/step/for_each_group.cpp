@@ -44,17 +44,17 @@ class CallingThread final : public Executor {
 
 #if defined(MW_EXECUTOR_THREADS)
 
-class Crew final : public Executor {
+class Workers final : public Executor {
  public:
-  explicit Crew(int threads) : threads_(threads) {}
+  explicit Workers(int threads) : threads_(threads) {}
   int threads() const override { return threads_; }
   void run(int groups, Task task, void* context) override {
-    std::vector<std::thread> crew;
+    std::vector<std::thread> threads;
     for (int t = 0; t < threads_; ++t) {
       const int begin = groups * t / threads_, end = groups * (t + 1) / threads_;
-      crew.emplace_back([=] { run_range(begin, end, t, task, context); });
+      threads.emplace_back([=] { run_range(begin, end, t, task, context); });
     }
-    for (auto& member : crew) member.join();
+    for (auto& member : threads) member.join();
   }
 
  private:
@@ -63,9 +63,9 @@ class Crew final : public Executor {
 
 #else
 
-class Crew final : public Executor {
+class Workers final : public Executor {
  public:
-  explicit Crew(int threads) : threads_(threads), arena_(threads) {
+  explicit Workers(int threads) : threads_(threads), arena_(threads) {
     // More threads than cores only when a Batch asked for them: the limit is the whole process's,
     // so it is not touched otherwise.
     if (threads > tbb::info::default_concurrency()) {
@@ -102,7 +102,7 @@ class Crew final : public Executor {
 std::shared_ptr<Executor> make_executor(int threads) {
   if (threads == 0) threads = allowed_threads();
   if (threads == 1) return std::make_shared<CallingThread>();
-  return std::make_shared<Crew>(threads);
+  return std::make_shared<Workers>(threads);
 }
 
 }  // namespace manyworlds

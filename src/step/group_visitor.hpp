@@ -12,8 +12,8 @@ template <class Real>
 struct VisitedGroup {
   int group;   // worlds without sleep: lane l is world group * lanes + l
   int thread;  // worker of the executor
-  const kernels::KernelTable<Real>& kernels;
-  const kernels::WorldTables<Real>& tables;
+  const kernels::Kernels<Real>& kernels;
+  const kernels::SceneConstants<Real>& tables;
   const kernels::GroupView<Real>& view;
   Real* control;  // [control][lane]
   // Of the last step, or of the state where worlds begin; null: nothing is observed.

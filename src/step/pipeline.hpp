@@ -27,8 +27,8 @@ class StageClock {
 
 template <class Real>
 struct GroupStep {
-  const kernels::KernelTable<Real>& kernels;
-  const kernels::WorldTables<Real>& tables;
+  const kernels::Kernels<Real>& kernels;
+  const kernels::SceneConstants<Real>& tables;
   const StageList<Real>& stages;
   kernels::Layout layout;
   // What batches with observers want to know after the last step, and scratch for poses of shapes.

@@ -13,8 +13,8 @@ class Builder {
   using Call = kernels::Stage<Real>;
   using Calls = typename StageCalls<Real>::Calls;
 
-  Builder(const PlanData& plan, const kernels::WorldTables<Real>& tables,
-          const kernels::KernelTable<Real>& k, kernels::Layout layout)
+  Builder(const PlanData& plan, const kernels::SceneConstants<Real>& tables,
+          const kernels::Kernels<Real>& k, kernels::Layout layout)
       : plan_(plan),
         t_(tables),
         layout_(layout == kernels::Layout::dense ? 0 : 1),
@@ -70,7 +70,7 @@ class Builder {
     add(to, StepStage::flight, flight_.fly);
     add(to, StepStage::joints, joints_.prepare);
     if (forgets()) add(to, StepStage::warm_start, impulses_.forget);
-    add(to, StepStage::warm_start, solver_.push);
+    add(to, StepStage::warm_start, solver_.apply_delta_v);
     add(to, StepStage::warm_start, solver_.warm_start);
     add(to, StepStage::warm_start, solver_.open);
     add(to, StepStage::joints, joints_.warm_start);
@@ -112,7 +112,7 @@ class Builder {
       add(to, StepStage::joints, joints_.bias);
       add_carried(to, StepStage::bias, sweeps_.sweep);
       if (last) break;
-      add(to, StepStage::warm_start, impulses_.turn);
+      add(to, StepStage::warm_start, impulses_.redirect);
       add(to, StepStage::joints, joints_.warm_start);
       add_carried(to, StepStage::warm_start, solver_.warm_start);
       add(to, StepStage::warm_start, impulses_.land);
@@ -151,7 +151,7 @@ class Builder {
   }
 
   const PlanData& plan_;
-  const kernels::WorldTables<Real>& t_;
+  const kernels::SceneConstants<Real>& t_;
   int layout_;
   const kernels::SolverTable<Real>& solver_;
   const kernels::SweepTable<Real>& sweeps_;
@@ -165,8 +165,8 @@ class Builder {
 }  // namespace
 
 template <class Real>
-StageList<Real>::StageList(const PlanData& plan, const kernels::WorldTables<Real>& tables,
-                           const kernels::KernelTable<Real>& kernels) {
+StageList<Real>::StageList(const PlanData& plan, const kernels::SceneConstants<Real>& tables,
+                           const kernels::Kernels<Real>& kernels) {
   if (!tables.has_substeps) return;
   dense_ = Builder<Real>(plan, tables, kernels, kernels::Layout::dense).build();
   rows_ = Builder<Real>(plan, tables, kernels, kernels::Layout::rows).build();

@@ -36,8 +36,8 @@ struct StageCalls {
 template <class Real>
 class StageList {
  public:
-  StageList(const PlanData& plan, const kernels::WorldTables<Real>& tables,
-            const kernels::KernelTable<Real>& kernels);
+  StageList(const PlanData& plan, const kernels::SceneConstants<Real>& tables,
+            const kernels::Kernels<Real>& kernels);
 
   const StageCalls<Real>& operator[](kernels::Layout layout) const {
     return layout == kernels::Layout::dense ? dense_ : rows_;

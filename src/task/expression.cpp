@@ -15,7 +15,7 @@ namespace {
 using kernels::Operation;
 
 // Expressions are walked through and destroyed by functions that call themselves.
-constexpr int kMostDepth = 2000;
+constexpr int kMaxDepth = 2000;
 
 const char* word_of(ObservedItem item) {
   switch (item) {
@@ -42,9 +42,9 @@ Expression leaf(Term term, int index = -1, int of = 0, int axis = 0) {
 
 Expression make_expression(Expression::Node node) {
   for (const Expression& e : node.operands) node.depth = std::max(node.depth, e.node().depth + 1);
-  if (node.depth > kMostDepth) {
+  if (node.depth > kMaxDepth) {
     throw std::invalid_argument("an expression is nested " + std::to_string(node.depth) +
-                                " deep, at most " + std::to_string(kMostDepth) + " are possible");
+                                " deep, at most " + std::to_string(kMaxDepth) + " are possible");
   }
   return Expression(std::make_shared<const Expression::Node>(std::move(node)));
 }

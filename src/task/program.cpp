@@ -153,7 +153,7 @@ Expression ProgramBuilder::direction(int body, int of, int axis) const {
     if (axis == of) return c;
     return axis == 1 ? s : -s;
   }
-  // The body's axis in principal axes, turned by the quaternion of those.
+  // The body's axis in principal axes, rotated by the quaternion of those.
   const Vec3 v = b->principal.conjugate() * Vec3::Unit(of);
   const Expression w = state(body, q),
                    u[3] = {state(body, q + 1), state(body, q + 2), state(body, q + 3)};

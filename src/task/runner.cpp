@@ -269,7 +269,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   // Of the worlds `first` on, which are lanes 0 to `end`. In steps that begin an episode there is
   // no reward and no end.
   void put_rewards(const Thread& thread, int first, int end) const {
-    std::array<double, kMostLanes> sum{};
+    std::array<double, kMaxLanes> sum{};
     const std::size_t rewards = p_->rewards.size();
     for (std::size_t i = 0; i < rewards; ++i) {
       const Real* row = thread.values.data() + at(p_->rewards[i] * lanes_);

@@ -21,16 +21,16 @@ class CountDown final : public Executor {
   int threads() const override { return threads_; }
   void run(int groups, Task task, void* context) override {
     std::atomic<int> next{groups};
-    std::vector<std::thread> crew;
+    std::vector<std::thread> threads;
     for (int worker = 0; worker < threads_; ++worker) {
-      crew.emplace_back([&, worker] {
+      threads.emplace_back([&, worker] {
         for (int g = --next; g >= 0; g = --next) {
           task(context, g, worker);
           ++tasks;
         }
       });
     }
-    for (std::thread& member : crew) member.join();
+    for (std::thread& member : threads) member.join();
     ++runs;
   }
   std::atomic<int> tasks{0};

@@ -116,15 +116,15 @@ long calls_during(Work work, int rounds = 1) {
 }
 
 #if defined(__SANITIZE_THREAD__)
-constexpr int kMostThreads = 1;  // oneTBB's stand-in starts a thread anew for every step
+constexpr int kMaxThreads = 1;  // oneTBB's stand-in starts a thread anew for every step
 #else
-constexpr int kMostThreads = 2;
+constexpr int kMaxThreads = 2;
 #endif
 
 void check_scene(const Scene& scene) {
   const Plan plan = compile(scene);
   for (const Table& table : widest_tables()) {
-    for (int threads = 1; threads <= kMostThreads; ++threads) {
+    for (int threads = 1; threads <= kMaxThreads; ++threads) {
       // A second thread sets itself up when the scheduler first runs it, at whatever step that is.
       const int rounds = threads == 1 ? 1 : 10;
       Batch batch(plan, options_of(table, 100, threads));

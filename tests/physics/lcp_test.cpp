@@ -51,7 +51,7 @@ Problem murty(int n, bool fathi) {
 TEST_CASE("direct and iterative solvers find the same solution of 1,000 boxed problems",
           "[fast][lcp]") {
   Random random(99);
-  int most_sweeps = 0, most_conjugate = 0;
+  int max_sweeps = 0, max_conjugate = 0;
   for (int i = 0; i < 1000; ++i) {
     const Problem p = random_problem(random, random.integer(1, 12));
     const Solution dantzig = lcp::solve_dantzig(p), lemke = lcp::solve_lemke(p);
@@ -69,10 +69,10 @@ TEST_CASE("direct and iterative solvers find the same solution of 1,000 boxed pr
     for (const Solution* other : {&lemke, &sweeps, &relaxed, &conjugate}) {
       CHECK((dantzig.z - other->z).cwiseAbs().maxCoeff() < 1e-9);
     }
-    most_sweeps = std::max(most_sweeps, sweeps.steps);
-    most_conjugate = std::max(most_conjugate, conjugate.steps);
+    max_sweeps = std::max(max_sweeps, sweeps.steps);
+    max_conjugate = std::max(max_conjugate, conjugate.steps);
   }
-  CHECK(most_conjugate < most_sweeps);
+  CHECK(max_conjugate < max_sweeps);
 }
 
 TEST_CASE("problems that pivoting finds hard are solved or given up, never wrong (B43)",

@@ -193,7 +193,7 @@ TEST_CASE("a recording has samples where it says, and the fields of the batch", 
     recorder.close();
     CHECK(recorder.samples() == 4);
     const Recording recording = Recording::open(folder / "run.h5");
-    CHECK(recording.worlds() == kMostWorldsByDefault);
+    CHECK(recording.worlds() == kMaxWorldsByDefault);
     const std::vector<std::int64_t> steps = {0, 9, 12, 13};
     REQUIRE(recording.samples() == 4);
     for (std::int64_t s = 0; s < 4; ++s) {

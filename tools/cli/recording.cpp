@@ -29,7 +29,7 @@ namespace {
 
 using tools::counted, tools::shell_word, tools::with_prefix;
 
-constexpr std::size_t kMostLines = 1000000;  // worlds in one list
+constexpr std::size_t kMaxLines = 1000000;  // worlds in one list
 
 // A whole number at the front of `text`, which it takes off.
 std::optional<int> take_number(std::string_view& text) {
@@ -61,7 +61,7 @@ std::vector<int> parse_worlds(const std::string& list, int worlds) {
       throw InputError(
           fmt::format("--record-worlds: there is no world {}, --worlds is {}", *last, worlds));
     }
-    for (int world = *first; world <= *last && chosen.size() < kMostLines; ++world) {
+    for (int world = *first; world <= *last && chosen.size() < kMaxLines; ++world) {
       chosen.insert(world);
     }
   }
@@ -112,7 +112,7 @@ JobRecorder::JobRecorder(Batch& batch, const JobOptions& options) {
   record.flush_seconds = options.record_flush;
   const std::size_t worlds =
       record.worlds.empty()
-          ? static_cast<std::size_t>(std::min(batch.worlds(), kMostWorldsByDefault))
+          ? static_cast<std::size_t>(std::min(batch.worlds(), kMaxWorldsByDefault))
           : record.worlds.size();
   asked_by("--record", [&] {
     impl_ = std::make_unique<Impl>(Impl{Recorder(batch, options.record, record), options.record,

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLost = std::numeric_limits<double>::infinity();
 // A point is timed until it has run for so long, and this often at most; the fastest run counts.
 constexpr double kTimedSeconds = 0.05;
-constexpr int kMostRuns = 5;
+constexpr int kMaxRuns = 5;
 
 Batch make_batch(const Case& c, const Method& method, Precision precision, double step) {
   Scene scene = c.scene();
@@ -43,7 +43,7 @@ double error_of(const Case& c, Batch& batch, double step, int steps) {
 double seconds_of(const Case& c, Batch& batch, int steps) {
   using Clock = std::chrono::steady_clock;
   double best = kLost, total = 0;
-  for (int run = 0; run < kMostRuns && total < kTimedSeconds; ++run) {
+  for (int run = 0; run < kMaxRuns && total < kTimedSeconds; ++run) {
     batch.reset();
     const auto start = Clock::now();
     if (c.push) {

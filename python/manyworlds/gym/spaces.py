@@ -13,7 +13,7 @@ from .. import arrays, tasks
 from ..tasks import Task
 from .bounds import range_of
 
-MOST_EPISODE_STEPS = 2**31 - 1
+MAX_EPISODE_STEPS = 2**31 - 1
 
 
 def task_of(task: Union[Task, str], max_episode_steps: Optional[int]) -> Task:
@@ -21,7 +21,7 @@ def task_of(task: Union[Task, str], max_episode_steps: Optional[int]) -> Task:
     found = tasks.load(task) if isinstance(task, str) else task
     if max_episode_steps is None:
         return found
-    steps = arrays.integer(max_episode_steps, "max_episode_steps", 0, MOST_EPISODE_STEPS)
+    steps = arrays.integer(max_episode_steps, "max_episode_steps", 0, MAX_EPISODE_STEPS)
     return dataclasses.replace(found, most_steps=steps)
 
 

@@ -19,7 +19,7 @@ from ..tasks import Task
 from . import rendering, spaces
 
 Seed = Union[int, Sequence[Optional[int]], None]
-_MOST_SEED = 2**64 - 1
+_MAX_SEED = 2**64 - 1
 MODES = {
     AutoresetMode.NEXT_STEP: "next_step",
     AutoresetMode.SAME_STEP: "same_step",
@@ -161,11 +161,11 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
         if seed is None:
             return None
         if np.ndim(seed) == 0:
-            return arrays.integer(seed, "seed", 0, _MOST_SEED)
+            return arrays.integer(seed, "seed", 0, _MAX_SEED)
         seeds = list(seed)  # type: ignore[arg-type]
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed has {len(seeds)} numbers, expected {self.num_envs}")
-        return [None if s is None else arrays.integer(s, "a seed", 0, _MOST_SEED) for s in seeds]
+        return [None if s is None else arrays.integer(s, "a seed", 0, _MAX_SEED) for s in seeds]
 
     def _infos(self) -> dict[str, Any]:
         e, infos = self.environment, {}

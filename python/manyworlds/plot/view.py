@@ -14,7 +14,7 @@ from . import solids
 from .pieces import Eye, View
 from .solids import Floats, Pose, Solid
 
-_MOST_AROUND = 1  # times what the moving bodies take up: how far the others widen the view
+_MAX_AROUND = 1  # times what the moving bodies take up: how far the others widen the view
 _INSET = 0.15  # of the view's width and height: how near to its border the leading body comes
 
 
@@ -38,7 +38,7 @@ def view_of(
     if len(points) == 0:
         points = rest if len(rest) else np.array([[-1.0, -1.0], [1.0, 1.0]])
     low, high = points.min(axis=0), points.max(axis=0)
-    most = _MOST_AROUND * max(*(high - low), 1e-3)
+    most = _MAX_AROUND * max(*(high - low), 1e-3)
     points = np.concatenate([points, np.clip(rest, low - most, high + most)])
     low, high = points.min(axis=0), points.max(axis=0)
     # As wide or high as the picture, so that nothing is cut.

@@ -10,7 +10,7 @@ namespace {
 using detail::Checker;
 
 void check_height_field(Checker& checker, const HeightField& field) {
-  constexpr std::size_t kMostPoints = 1000000;
+  constexpr std::size_t kMaxPoints = 1000000;
   const std::size_t n = field.heights.size();
   checker.size("cell.x", field.cell.x());
   checker.size("cell.y", field.cell.y());
@@ -20,9 +20,9 @@ void check_height_field(Checker& checker, const HeightField& field) {
     checker.add("heights", "are " + std::to_string(n) + ", must be two rows or more of " +
                                std::to_string(field.columns));
   }
-  if (n > kMostPoints) {
+  if (n > kMaxPoints) {
     checker.add("heights",
-                "are " + std::to_string(n) + ", must be at most " + std::to_string(kMostPoints));
+                "are " + std::to_string(n) + ", must be at most " + std::to_string(kMaxPoints));
     return;
   }
   for (std::size_t i = 0; i < n; ++i) {

@@ -27,7 +27,7 @@ class HullTraits final : public TraitsOf<Hull> {
   void examine(Checker& checker, const Hull& hull) const override {
     const std::vector<Vec3>& vertices = hull.vertices;
     if (vertices.size() < detail::kFewestHullVertices ||
-        vertices.size() > detail::kMostHullVertices) {
+        vertices.size() > detail::kMaxHullVertices) {
       checker.add("vertices", "are " + std::to_string(vertices.size()) + ", must be 4 to 64");
       return;
     }
