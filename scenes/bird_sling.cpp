@@ -16,8 +16,8 @@ constexpr double kHalfWidth = 60;  // m, to the walls at which a bird stops
 
 Scene bird_sling() {
   Scene scene = planar_scene("bird-sling");
-  scene.options.bounds = planar_bounds(kHalfWidth);
-  Body ground = planar_bin(kHalfWidth);
+  scene.options.bounds = bounds_of(Space::planar, kHalfWidth);
+  Body ground = bin(Space::planar, kHalfWidth);
   Shape wall = shape_of(Polygon::box(0.3, 1.2));
   wall.position = {-4, 1.2, 0};
   ground.shapes.push_back(wall);

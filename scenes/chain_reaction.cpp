@@ -23,7 +23,7 @@ Shape block_at(double x, double y, double half_x, double half_y) {
 // A ramp and a shelf; the notch in which the second ball waits and a slope down from it; a wall
 // beside the cup; the marble's slope.
 void add_fixed_parts(Scene& scene) {
-  Body frame = planar_ground();
+  Body frame = ground(Space::planar);
   frame.shapes.push_back(shape_of(Polygon{{{-7, kShelf}, {-4, kShelf}, {-7, kShelf + 2}}}));
   frame.shapes.push_back(block_at(-2.785, kShelf - 0.1, 4.215, 0.1));
   frame.shapes.push_back(shape_of(

@@ -13,7 +13,7 @@ Scene crane() {
   Scene scene = planar_scene("crane");
   scene.options.density = 20;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-20, -0.5, -1), Vec3(20, 20, 1));
-  scene.add(planar_ground());
+  scene.add(ground(Space::planar));
 
   const BodyId trolley = add_body(scene, "trolley", {0, kHeight, 0}, Polygon::box(0.8, 0.3));
   scene.bodies.back().jitter.position = {2, 0, 0};

@@ -14,8 +14,8 @@ Scene domino() {
 
   Scene scene = spatial_scene("domino");
   scene.options.length_unit = 0.5;
-  scene.options.bounds = spatial_bounds(20);
-  scene.add(spatial_ground());
+  scene.options.bounds = bounds_of(Space::spatial, 20);
+  scene.add(ground(Space::spatial));
   for (int i = 0; i < 15; ++i) {
     Body domino;
     domino.name = "domino" + std::to_string(i);

@@ -14,7 +14,7 @@ Scene bridge() {
   Scene scene = planar_scene("bridge");
   scene.options.density = 20;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-20, -0.5, -1), Vec3(20, 50, 1));
-  Body banks = planar_ground();
+  Body banks = ground(Space::planar);
   banks.name = "banks";
   for (const double side : {-1.0, 1.0}) {
     Shape bank = shape_of(Polygon::box(3, kHeight / 2));
@@ -47,7 +47,7 @@ Scene ball_and_chain() {
   scene.options.density = 20;
   scene.options.substeps = 12;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-30, -0.5, -1), Vec3(30, 60, 1));
-  scene.add(planar_ground());
+  scene.add(ground(Space::planar));
   BodyId last;
   for (int i = 0; i < kLinks; ++i) {
     const BodyId link = add_body(scene, "link" + std::to_string(i), {i + 0.5, kHeight, 0},

@@ -17,8 +17,8 @@ Scene jenga() {
   scene.options.density = 600;
   scene.options.length_unit = 0.25;
   scene.options.substeps = 12;  // with 4, so high a tower of soft contacts quivers
-  scene.options.bounds = spatial_bounds(10);
-  scene.add(spatial_ground());
+  scene.options.bounds = bounds_of(Space::spatial, 10);
+  scene.add(ground(Space::spatial));
   const double half = std::sqrt(0.5);
   for (int i = 0; i < 3 * kLayers; ++i) {
     const bool drawn = i == 3 * kDrawnLayer + 1;

@@ -11,7 +11,7 @@ namespace {
 constexpr double kPlainHalfWidth = 20;  // m, of the plain
 
 void add_ground(Scene& scene) {
-  Body plain = planar_ground({0.8, 0});
+  Body plain = ground(Space::planar, {0.8, 0});
   plain.name = "plain";
   scene.add(plain);
   for (const double side : {-1.0, 1.0}) {

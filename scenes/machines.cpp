@@ -10,7 +10,7 @@ namespace manyworlds::scenes {
 Scene pulley() {
   Scene scene = planar_scene("pulley");
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-10, -0.5, -1), Vec3(10, 20, 1));
-  scene.add(planar_ground());
+  scene.add(ground(Space::planar));
   const BodyId light = add_body(scene, "light", {-1, 4, 0}, Polygon::box(0.5, 0.5));
   const BodyId heavy = add_body(scene, "heavy", {1, 4, 0}, Polygon::box(0.5, 0.6));
   for (const BodyId body : {light, heavy}) {
@@ -29,7 +29,7 @@ Scene pulley() {
 Scene elevator() {
   Scene scene = planar_scene("elevator");
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-10, -0.5, -1), Vec3(10, 30, 1));
-  scene.add(planar_ground());
+  scene.add(ground(Space::planar));
   const BodyId platform = add_body(scene, "platform", {0, 0.2, 0}, Polygon::box(2, 0.15));
   const double half = std::sqrt(0.5);
   const Frame rail{Vec3(0, 0.2, 0), Quat(half, 0, 0, half)};  // its x points up
@@ -50,8 +50,8 @@ Scene elevator() {
 // A cross turned by a motor throws balls about a box.
 Scene windmill() {
   Scene scene = planar_scene("windmill");
-  scene.options.bounds = planar_bounds(4);
-  scene.add(planar_bin(4));
+  scene.options.bounds = bounds_of(Space::planar, 4);
+  scene.add(bin(Space::planar, 4));
   const BodyId sails = add_body(scene, "sails", {0, 2.5, 0}, Polygon::box(2, 0.1));
   scene.at(sails).shapes.push_back(shape_of(Polygon::box(0.1, 2)));
   const Drive motor{0, 2, std::nullopt, 20};

@@ -54,8 +54,8 @@ Body sphere(int i) {
 Scene mixed_pile() {
   Scene scene = spatial_scene("mixed-pile");
   scene.options.length_unit = 0.8;
-  scene.options.bounds = spatial_bounds(kBinHalfWidth);
-  scene.add(spatial_bin(kBinHalfWidth));
+  scene.options.bounds = bounds_of(Space::spatial, kBinHalfWidth);
+  scene.add(bin(Space::spatial, kBinHalfWidth));
   for (int i = 0; i < 26; ++i) {
     Body body = i == 24      ? dumbbell()
                 : i == 25    ? angle_bar()

@@ -11,80 +11,40 @@ constexpr double kCeiling = 100;     // m
 }  // namespace
 
 Scene planar_scene(std::string name) {
-  Scene scene;
-  scene.name = std::move(name);
-  scene.space = Space::planar;
-  scene.options.gravity = {0, -10, 0};
+  Scene scene = empty_scene(Space::planar, 10, std::move(name));
   scene.options.density = 1;
   return scene;
 }
 
 Scene spatial_scene(std::string name) {
-  Scene scene;
-  scene.name = std::move(name);
-  scene.space = Space::spatial;
-  scene.options.gravity = {0, 0, -10};
+  Scene scene = empty_scene(Space::spatial, 10, std::move(name));
   scene.options.density = 1000;
   return scene;
 }
 
-Shape shape_of(Geometry geometry) {
-  Shape shape;
-  shape.geometry = std::move(geometry);
-  return shape;
-}
-
-Body planar_ground(const Material& material) {
-  Body ground;
-  ground.name = "ground";
-  ground.motion = Motion::fixed;
-  ground.shapes.push_back(shape_of(HalfPlane{{0, 1}, 0}));
-  ground.shapes.back().material = material;
-  return ground;
-}
-
-Body spatial_ground(const Material& material) {
-  Body ground;
-  ground.name = "ground";
-  ground.motion = Motion::fixed;
-  ground.shapes.push_back(shape_of(Plane{{0, 0, 1}, 0}));
-  ground.shapes.back().material = material;
-  return ground;
-}
-
-Body planar_bin(double half_width) {
-  Body bin = planar_ground();
+Body bin(Space space, double half_width) {
+  Body bin = ground(space);
   bin.name = "bin";
-  bin.shapes.push_back(shape_of(HalfPlane{{1, 0}, -half_width}));
-  bin.shapes.push_back(shape_of(HalfPlane{{-1, 0}, -half_width}));
+  for (double side : {1.0, -1.0}) {
+    if (space == Space::planar) bin.shapes.push_back(shape_of(HalfPlane{{side, 0}, -half_width}));
+    if (space == Space::spatial) bin.shapes.push_back(shape_of(Plane{{side, 0, 0}, -half_width}));
+  }
+  if (space == Space::spatial) {
+    bin.shapes.push_back(shape_of(Plane{{0, 1, 0}, -half_width}));
+    bin.shapes.push_back(shape_of(Plane{{0, -1, 0}, -half_width}));
+  }
   return bin;
 }
 
-Body spatial_bin(double half_width) {
-  Body bin = spatial_ground();
-  bin.name = "bin";
-  bin.shapes.push_back(shape_of(Plane{{1, 0, 0}, -half_width}));
-  bin.shapes.push_back(shape_of(Plane{{-1, 0, 0}, -half_width}));
-  bin.shapes.push_back(shape_of(Plane{{0, 1, 0}, -half_width}));
-  bin.shapes.push_back(shape_of(Plane{{0, -1, 0}, -half_width}));
-  return bin;
-}
-
-Eigen::AlignedBox3d planar_bounds(double half_width) {
+Eigen::AlignedBox3d bounds_of(Space space, double half_width) {
   const double wall = half_width + kWallMargin;
-  return {Vec3(-wall, -kWallMargin, -1), Vec3(wall, kCeiling, 1)};
-}
-
-Eigen::AlignedBox3d spatial_bounds(double half_width) {
-  const double wall = half_width + kWallMargin;
+  if (space == Space::planar) return {Vec3(-wall, -kWallMargin, -1), Vec3(wall, kCeiling, 1)};
   return {Vec3(-wall, -wall, -kWallMargin), Vec3(wall, wall, kCeiling)};
 }
 
 BodyId add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry) {
-  Body body;
+  Body body = body_of(shape_of(std::move(geometry)), position);
   body.name = std::move(name);
-  body.position = position;
-  body.shapes.push_back(shape_of(std::move(geometry)));
   return scene.add(std::move(body));
 }
 

@@ -1,10 +1,11 @@
-// What the scenes have in common: empty scenes, grounds and bins. Planar scenes have y up, spatial
-// scenes z; gravity is 10 m/s^2 down, the floor is at height 0.
+// What the scenes have in common besides the builders: bins, frames and controls. Gravity is
+// 10 m/s^2 down, the floor is at height 0.
 #pragma once
 
 #include <string>
 
 #include "manyworlds/scene.hpp"
+#include "scenes/builders.hpp"
 
 namespace manyworlds::scenes {
 
@@ -12,22 +13,13 @@ namespace manyworlds::scenes {
 Scene planar_scene(std::string name);
 Scene spatial_scene(std::string name);
 
-// A fixed half-space below height 0.
-Body planar_ground(const Material& material = {});
-Body spatial_ground(const Material& material = {});
-
 // Floor and walls whose inner faces are half_width from the middle, as planes: nothing tunnels
 // through them or leaves over the top.
-Body planar_bin(double half_width);
-Body spatial_bin(double half_width);
+Body bin(Space space, double half_width);
 
 // Bounds that a body leaves only when its centre is more than 0.5 m through the floor or a wall,
 // or 100 m up.
-Eigen::AlignedBox3d planar_bounds(double half_width);
-Eigen::AlignedBox3d spatial_bounds(double half_width);
-
-// A shape at the body frame with the default material.
-Shape shape_of(Geometry geometry);
+Eigen::AlignedBox3d bounds_of(Space space, double half_width);
 
 // Adds a dynamic body of one shape; returns it.
 BodyId add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry);

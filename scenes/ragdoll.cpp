@@ -62,7 +62,7 @@ class Doll {
 };
 
 void add_stair(Scene& scene) {
-  scene.add(spatial_ground());
+  scene.add(ground(Space::spatial));
   Body stair;
   stair.name = "stair";
   stair.motion = Motion::fixed;

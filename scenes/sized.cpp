@@ -16,8 +16,8 @@ Scene bin_of(const std::string& name, int bodies, const Geometry& geometry, bool
   while (side * side * side < bodies) ++side;
   const double half_width = 2.0 / 3.0 * side;
   Scene scene = spatial_scene(name + ":" + std::to_string(bodies));
-  scene.options.bounds = spatial_bounds(half_width);
-  scene.add(spatial_bin(half_width));
+  scene.options.bounds = bounds_of(Space::spatial, half_width);
+  scene.add(bin(Space::spatial, half_width));
   for (int i = 0; i < bodies; ++i) {
     const int k = i % (side * side), layer = i / (side * side);
     Body body;
@@ -52,9 +52,9 @@ constexpr Sized kSized[] = {{"pyramid2d", 1, 255, sized_pyramid},
 Scene pyramid(int base) {
   const double half_ground = std::max(20, base);
   Scene scene = planar_scene("pyramid2d");
-  scene.options.bounds = planar_bounds(half_ground);
+  scene.options.bounds = bounds_of(Space::planar, half_ground);
   scene.options.bounds->max().y() = std::max(scene.options.bounds->max().y(), base + 1.0);
-  scene.add(planar_ground());
+  scene.add(ground(Space::planar));
   for (int row = 0; row < base; ++row) {
     for (int k = 0; k < base - row; ++k) {
       Body box;

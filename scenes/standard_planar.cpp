@@ -11,8 +11,8 @@ namespace manyworlds::scenes {
 Scene bin2d() {
   constexpr double kHalfWidth = 5;
   Scene scene = planar_scene("bin2d");
-  scene.options.bounds = planar_bounds(kHalfWidth);
-  scene.add(planar_bin(kHalfWidth));
+  scene.options.bounds = bounds_of(Space::planar, kHalfWidth);
+  scene.add(bin(Space::planar, kHalfWidth));
   for (int i = 0; i < 40; ++i) {
     const int column = i % 8;
     const int row = i / 8;
@@ -32,8 +32,8 @@ Scene pyramid2d() { return pyramid(5); }
 
 Scene ball2d() {
   Scene scene = planar_scene("ball2d");
-  scene.options.bounds = planar_bounds(20);
-  scene.add(planar_ground());
+  scene.options.bounds = bounds_of(Space::planar, 20);
+  scene.add(ground(Space::planar));
   Body ball;
   ball.name = "ball";
   ball.position = {0, 5, 0};

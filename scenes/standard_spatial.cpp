@@ -11,8 +11,8 @@ namespace {
 Scene bin_of_twenty(const std::string& name, const Geometry& geometry, bool any_orientation) {
   constexpr double kHalfWidth = 2;
   Scene scene = spatial_scene(name);
-  scene.options.bounds = spatial_bounds(kHalfWidth);
-  scene.add(spatial_bin(kHalfWidth));
+  scene.options.bounds = bounds_of(Space::spatial, kHalfWidth);
+  scene.add(bin(Space::spatial, kHalfWidth));
   for (int i = 0; i < 20; ++i) {
     const int k = i % 9;
     const int layer = i / 9;
@@ -34,8 +34,8 @@ Scene bin_boxes() { return bin_of_twenty("bin-boxes", Box{{0.4, 0.4, 0.4}}, true
 
 Scene stack10() {
   Scene scene = spatial_scene("stack10");
-  scene.options.bounds = spatial_bounds(20);
-  scene.add(spatial_ground());
+  scene.options.bounds = bounds_of(Space::spatial, 20);
+  scene.add(ground(Space::spatial));
   for (int i = 0; i < 10; ++i) {
     Body box;
     box.name = "box" + std::to_string(i);
@@ -49,8 +49,8 @@ Scene stack10() {
 
 Scene ball3d() {
   Scene scene = spatial_scene("ball3d");
-  scene.options.bounds = spatial_bounds(20);
-  scene.add(spatial_ground());
+  scene.options.bounds = bounds_of(Space::spatial, 20);
+  scene.add(ground(Space::spatial));
   Body ball;
   ball.name = "ball";
   ball.position = {0, 0, 5};

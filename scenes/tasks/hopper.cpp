@@ -30,7 +30,7 @@ Task hopper() {
   Task task;
   task.name = "Hopper";
   Scene& scene = task.scene = planar_scene(task, 0.008, 9.81);
-  scene.add(planar_ground({.friction = 1}));
+  scene.add(ground(Space::planar, {.friction = 1}));
   const BodyId torso = add_limb(scene, "torso", kHip, kTop, 0.05);
   scene.bodies.back().jitter.position = {0, 0.005, 0};
   scene.bodies.back().jitter.linear_velocity = {0.05, 0.05, 0};

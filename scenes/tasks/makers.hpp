@@ -6,7 +6,7 @@
 
 namespace manyworlds::tasks {
 
-using scenes::planar_ground, scenes::shape_of, scenes::thrust, scenes::torque;
+using scenes::ground, scenes::shape_of, scenes::thrust, scenes::torque;
 
 Task cart_pole();
 Task cart_pole_swing_up();

@@ -12,7 +12,7 @@ Task stacking() {
   Scene& scene = task.scene = planar_scene(task, 1.0 / 60, kGravity);
   scene.options.length_unit = kSide;
   task.frame_skip = 2;
-  scene.add(planar_ground());
+  scene.add(ground(Space::planar));
   const auto box = [&](const char* name, const Vec3& place) {
     Body body;
     body.name = name;

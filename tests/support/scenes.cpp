@@ -21,11 +21,6 @@ Mat3 world_inertia(const Batch& batch, int world, int body, const MassProperties
 
 }  // namespace
 
-Geometry box_of(Space space, const Vec3& half) {
-  if (space == Space::planar) return Polygon::box(half.x(), half.y());
-  return Box{half};
-}
-
 Geometry slab_of(Space space, double side, double height) {
   if (space == Space::planar) return box_of(space, Vec3(side, height, 0));
   return box_of(space, Vec3(side, side, height));

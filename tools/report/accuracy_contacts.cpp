@@ -46,8 +46,8 @@ Case rolling(const std::string& id, const Vec3& way) {
   const double box = (150 - held - 25 * pull) / 10;
   c.over = Over::mean;
   c.error = [=](const Batch& b, double t) {
-    return (velocity(b, 0) - box * t * way).squaredNorm() +
-           (velocity(b, 1) - pull * t * way).squaredNorm();
+    return (velocity(b, 0, 0) - box * t * way).squaredNorm() +
+           (velocity(b, 0, 1) - pull * t * way).squaredNorm();
   };
   if (way.x() != 0) {
     c.published = {{"Bullet", 1e-3, 5.7e-9, 0.562},
@@ -176,7 +176,8 @@ std::vector<Case> contact_cases() {
     return scene;
   };
   roll.error = [=](const Batch& b, double t) {
-    return std::max(std::abs(velocity(b, 0).x() - a * t), std::abs(0.05 * spin(b, 0).y() - a * t)) /
+    return std::max(std::abs(velocity(b, 0, 0).x() - a * t),
+                    std::abs(0.05 * spin(b, 0, 0).y() - a * t)) /
            (a * t);
   };
   out.push_back(roll);
@@ -189,7 +190,7 @@ std::vector<Case> contact_cases() {
   };
   stop.error = [](const Batch& b, double) {
     const double distance = 25 / (2 * 0.3 * kG);
-    return std::abs(position(b, 0).x() - distance) / distance;
+    return std::abs(position(b, 0, 0).x() - distance) / distance;
   };
   out.push_back(stop);
 
@@ -212,7 +213,7 @@ std::vector<Case> contact_cases() {
       height = v * since - 0.5 * kG * since * since;
       from += 2 * v / kG;
     }
-    return std::abs(position(b, 0).z() - 0.1 - height);
+    return std::abs(position(b, 0, 0).z() - 0.1 - height);
   };
   out.push_back(bounce);
 
@@ -228,8 +229,8 @@ std::vector<Case> contact_cases() {
   };
   grip.error = [](const Batch& b, double) {
     const double along = (5 * 2 + 2 * 0.25 * -8) / 7.0;
-    const Vec3 off = velocity(b, 0) - Vec3(along, 0, 2.5);
-    return std::hypot(off.norm(), 0.25 * spin(b, 0).y() - along) / std::sqrt(29.0);
+    const Vec3 off = velocity(b, 0, 0) - Vec3(along, 0, 2.5);
+    return std::hypot(off.norm(), 0.25 * spin(b, 0, 0).y() - along) / std::sqrt(29.0);
   };
   out.push_back(grip);
   return out;

@@ -27,7 +27,7 @@ Case tumbling(const std::string& id, const std::string& title, const Vec3& momen
     scene.bodies[0].angular_velocity = spin;
     return scene;
   };
-  c.error = [=](const Batch& b, double) { return angle_between(rotation(b, 0), end); };
+  c.error = [=](const Batch& b, double) { return angle_between(rotation(b, 0, 0), end); };
   return c;
 }
 
@@ -62,7 +62,9 @@ std::vector<Case> free_cases() {
     scene.attractors = {{Vec3::Zero(), 1, 0}};
     return scene;
   };
-  kepler.error = [](const Batch& b, double) { return (position(b, 0) - Vec3(0.4, 0, 0)).norm(); };
+  kepler.error = [](const Batch& b, double) {
+    return (position(b, 0, 0) - Vec3(0.4, 0, 0)).norm();
+  };
   out.push_back(kepler);
 
   Case spring;
@@ -84,7 +86,7 @@ std::vector<Case> free_cases() {
   };
   spring.over = Over::largest;
   spring.error = [](const Batch& b, double t) {
-    return std::abs(position(b, 0).x() - std::cos(2 * kPi * t));
+    return std::abs(position(b, 0, 0).x() - std::cos(2 * kPi * t));
   };
   out.push_back(spring);
   return out;

@@ -22,7 +22,7 @@ Scene rods(int count) {
 }
 // Of a rod from hanging down, rad.
 double angle_from_down(const Batch& batch, int body) {
-  const Vec3 along = rotation(batch, body) * Vec3::UnitX();
+  const Vec3 along = rotation(batch, 0, body) * Vec3::UnitX();
   return std::atan2(along.x(), -along.y());
 }
 double turn(double angle) { return std::abs(std::remainder(angle, 2 * kPi)); }
@@ -81,7 +81,7 @@ Case long_pendulum() {
     const int k = seen_at(t, 0.5);
     if (k < 0) return 0.0;
     const double a = angles[static_cast<std::size_t>(k)];
-    return (position(b, 0) - Vec3(std::cos(a), std::sin(a), 0)).norm();
+    return (position(b, 0, 0) - Vec3(std::cos(a), std::sin(a), 0)).norm();
   };
   return c;
 }
@@ -99,7 +99,7 @@ Case heavy_top() {
     return scene;
   };
   c.error = [](const Batch& b, double) {
-    const Vec3 axis = rotation(b, 0) * Vec3::UnitZ(),
+    const Vec3 axis = rotation(b, 0, 0) * Vec3::UnitZ(),
                end(-0.488862523574039, -0.179453482747485, 0.853703625724185);
     return std::atan2(axis.cross(end).norm(), axis.dot(end));
   };
@@ -120,7 +120,7 @@ Case four_bars(int n, double seconds) {
     const int k = seen_at(t, 0.05);
     if (k < 0) return 0.0;
     const double a = angles[static_cast<std::size_t>(k)];
-    const Vec3 tip = position(b, 0) + rotation(b, 0) * Vec3(0.5, 0, 0);
+    const Vec3 tip = position(b, 0, 0) + rotation(b, 0, 0) * Vec3(0.5, 0, 0);
     return (tip - Vec3(std::cos(a), std::sin(a), 0)).norm();
   };
   return c;

@@ -1,50 +1,40 @@
-// Short ways to describe the bodies of a case, and to look at world 0.
+// Short ways to describe the bodies of a case.
 #pragma once
 
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "manyworlds/batch.hpp"
+#include "scenes/builders.hpp"
+#include "scenes/world_state.hpp"
 
 namespace manyworlds::report {
 
-inline constexpr double kPi = 3.14159265358979323846;
+using scenes::kPi;
+using scenes::position;
+using scenes::rotation;
+using scenes::spin;
+using scenes::up_of;
+using scenes::velocity;
+
 inline constexpr double kG = 9.81;  // m/s^2
 
-inline Vec3 up_of(Space space) { return space == Space::planar ? Vec3(0, 1, 0) : Vec3(0, 0, 1); }
+inline Scene empty(Space space, double gravity = kG) { return scenes::empty_scene(space, gravity); }
 
-inline Scene empty(Space space, double gravity = kG) {
-  Scene scene;
-  scene.space = space;
-  scene.options.gravity = -gravity * up_of(space);
-  return scene;
-}
-
+// Without friction unless told.
 inline Body with_shape(Geometry geometry, const Vec3& position, double friction = 0,
                        double restitution = 0) {
-  Body body;
-  Shape shape;
-  shape.geometry = std::move(geometry);
-  shape.material = {friction, restitution};
-  body.shapes = {shape};
-  body.position = position;
-  return body;
+  return scenes::body_of(scenes::shape_of(std::move(geometry), friction, restitution), position);
 }
 inline Body ground(Space space, double friction = 0, double restitution = 0) {
-  const Geometry plane = space == Space::planar ? Geometry(HalfPlane{}) : Geometry(Plane{});
-  Body body = with_shape(plane, Vec3::Zero(), friction, restitution);
-  body.motion = Motion::fixed;
-  return body;
+  return scenes::ground(space, friction, restitution);
 }
 inline void weigh(Body& body, double mass, const Vec3& moments) {
   body.mass_properties = MassProperties{mass, Vec3::Zero(), moments.asDiagonal()};
 }
 // A body that touches nothing.
 inline Body lump(Space space, double mass, const Vec3& moments, const Vec3& position) {
-  Body body = with_shape(space == Space::planar ? Geometry(Polygon::box(0.1, 0.1))
-                                                : Geometry(Box{Vec3::Constant(0.1)}),
-                         position);
+  Body body = with_shape(scenes::cube_of(space, 0.1), position);
   body.shapes[0].filter.mask = 0;
   weigh(body, mass, moments);
   return body;
@@ -74,30 +64,6 @@ inline Scene loops_of_four_bars(int n) {
   return scene;
 }
 
-inline Vec3 field_of(const Batch& batch, Field field, int body) {
-  const Space space = batch.plan().scene().space;
-  std::vector<double> all(static_cast<std::size_t>(batch.bodies(0) * components(field, space)));
-  batch.read(field, 0, all);
-  const int n = components(field, space);
-  Vec3 out = Vec3::Zero();
-  if (n == 1) {
-    out.z() = all[static_cast<std::size_t>(body)];
-  } else {
-    for (int i = 0; i < n; ++i) out[i] = all[static_cast<std::size_t>(body * n + i)];
-  }
-  return out;
-}
-inline Vec3 position(const Batch& b, int body) { return field_of(b, Field::position, body); }
-inline Vec3 velocity(const Batch& b, int body) { return field_of(b, Field::linear_velocity, body); }
-inline Vec3 spin(const Batch& b, int body) { return field_of(b, Field::angular_velocity, body); }
-inline Quat rotation(const Batch& batch, int body) {
-  const bool planar = batch.plan().scene().space == Space::planar;
-  const std::size_t n = planar ? 2 : 4, i = n * static_cast<std::size_t>(body);
-  std::vector<double> v(static_cast<std::size_t>(batch.bodies(0)) * n);
-  batch.read(Field::orientation, 0, v);
-  if (!planar) return Quat(v[i], v[i + 1], v[i + 2], v[i + 3]);
-  return Quat(Eigen::AngleAxisd(std::atan2(v[i + 1], v[i]), Vec3::UnitZ()));
-}
 inline double angle_between(const Quat& a, const Quat& b) {
   const Quat d = a.conjugate() * b;
   return 2 * std::atan2(d.vec().norm(), std::abs(d.w()));

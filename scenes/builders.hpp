@@ -1,0 +1,68 @@
+// Geometries, bodies and scenes in short, the same words in the plane and in space. Planar scenes
+// have y up, spatial ones z. Scenes, tests and reports build with these.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "manyworlds/scene.hpp"
+
+namespace manyworlds::scenes {
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+inline Vec3 up_of(Space space) { return space == Space::planar ? Vec3(0, 1, 0) : Vec3(0, 0, 1); }
+
+// Gravity in m/s^2, downward.
+inline Scene empty_scene(Space space, double gravity, std::string name = {}) {
+  Scene scene;
+  scene.name = std::move(name);
+  scene.space = space;
+  scene.options.gravity = -gravity * up_of(space) + Vec3::Zero();  // 0 instead of -0
+  return scene;
+}
+
+// A circle or sphere, a square or cube, a half-plane or plane below height 0.
+inline Geometry round_of(Space space, double radius) {
+  if (space == Space::planar) return Circle{radius};
+  return Sphere{radius};
+}
+inline Geometry box_of(Space space, const Vec3& half) {  // the plane has the first two
+  if (space == Space::planar) return Polygon::box(half.x(), half.y());
+  return Box{half};
+}
+inline Geometry cube_of(Space space, double half) { return box_of(space, Vec3::Constant(half)); }
+inline Geometry ground_of(Space space) {
+  if (space == Space::planar) return HalfPlane{};
+  return Plane{};
+}
+
+// A shape at the body frame.
+inline Shape shape_of(Geometry geometry, const Material& material = {}) {
+  Shape shape;
+  shape.geometry = std::move(geometry);
+  shape.material = material;
+  return shape;
+}
+inline Shape shape_of(Geometry geometry, double friction, double restitution = 0) {
+  return shape_of(std::move(geometry), Material{friction, restitution});
+}
+
+inline Body body_of(Shape shape, const Vec3& position, Motion motion = Motion::dynamic) {
+  Body body;
+  body.motion = motion;
+  body.position = position;
+  body.shapes.push_back(std::move(shape));
+  return body;
+}
+// Fixed, solid below height 0.
+inline Body ground(Space space, const Material& material = {}) {
+  Body body = body_of(shape_of(ground_of(space), material), Vec3::Zero(), Motion::fixed);
+  body.name = "ground";
+  return body;
+}
+inline Body ground(Space space, double friction, double restitution = 0) {
+  return ground(space, Material{friction, restitution});
+}
+
+}  // namespace manyworlds::scenes
