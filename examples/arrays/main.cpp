@@ -70,7 +70,7 @@ mw::Task balancing() {
                        {"turn", joint_speed(hinge)}};
   task.rewards = {{"upright", 1}, {"off the middle", -0.1 * square(travel)}};
   task.terminated = (abs(lean) > kMaxLean) | (abs(travel) > kMaxTravel);
-  task.most_steps = kMaxSteps;
+  task.max_steps = kMaxSteps;
   return task;
 }
 

@@ -54,7 +54,7 @@ def make_scene() -> mw.Scene:
 
 
 def make_task() -> mw.Task:
-    task = mw.Task(name="CartPole", scene=make_scene(), choices=2, most_steps=500, solved_at=475)
+    task = mw.Task(name="CartPole", scene=make_scene(), choices=2, max_steps=500, solved_at=475)
     t = task.terms
     task.controls = [tasks.where(t.action(), MAX_FORCE, -MAX_FORCE)]
     travel, speed = t.joint_position(0), t.joint_speed(0)  # of the rail

@@ -27,7 +27,7 @@ def main(argv: Sequence[str] | None = None) -> list[tuple[float, float]]:
     o = p.parse_args(argv)
 
     task = mw.tasks.load("BirdSling")
-    n, steps = o.candidates, task.most_steps
+    n, steps = o.candidates, task.max_steps
     env = mw.Environment(task, n, threads=o.threads, seed=1, autoreset="disabled")
     low, high = (np.array([getattr(a, end) for a in task.actions]) for end in ("low", "high"))
 

@@ -96,7 +96,7 @@ class LostWorldDumps {
  public:
   struct Options {
     int checkpoint_steps = 600;
-    int most = 16;                 // files; worlds lost after that are only counted
+    int max_files = 16;            // worlds lost after that are only counted
     std::int64_t first_world = 0;  // what the batch's world 0 is called in the files
   };
   // Makes the folder. Throws as Recorder does.

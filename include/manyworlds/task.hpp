@@ -48,7 +48,7 @@ struct Task {
   Expression terminated = 0;  // the episode has come to its end
   Expression truncated = 0;   // it is broken off
   // Broken off after so many steps of the task; 0: never. A world that is lost is broken off, too.
-  int most_steps = 0;
+  int max_steps = 0;
   double solved_at = std::numeric_limits<double>::infinity();  // mean return; said to people only
 
   std::vector<Ray> rays = {};      // for terms::ray_distance

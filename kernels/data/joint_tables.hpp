@@ -43,7 +43,7 @@ struct JointConstants {
   RowSoftness<T> drive_soft;
   T target_position, target_speed;
   T speed_share;  // of the target speed: c / (c + h k)
-  T most;         // of the drive or of a soft point, N s or N m s in a substep
+  T max_impulse;  // of the drive or of a soft point, N s or N m s in a substep
   RowSoftness<T> limit_soft;
   T low, high;
   T stiffness, damping;               // of a spring that is a force, N/m and N s/m

@@ -91,7 +91,8 @@ MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointP
   if (part.spring) {  // its equation is the same in both passes
     if constexpr (kPass == Pass::bias) store(s.drawn[0], load_as<Vec>(s.gap[0]));
     rate = fma(load_as<Vec>(s.drawn[0]), constants.soft.bias_rate, rate) + mul(mass, before);
-    after = limit_length<S>(before - mul(load_as<Mass>(s.soft_mass[0]), rate), constants.most);
+    after =
+        limit_length<S>(before - mul(load_as<Mass>(s.soft_mass[0]), rate), constants.max_impulse);
   } else if (kPass == Pass::bias) {
     // (1 + rho)^-1 of the hard row's answer, as K' is (1 + rho) K.
     rate = rate + pull_of(load_as<Vec>(s.gap[0]), constants.soft.bias_rate, constants.pull);

@@ -110,7 +110,7 @@ MW_INLINE void solve_row(const Constants& t, const Group& g, const JointPart& pa
       if (part.speed_control >= 0) {
         target_speed = Float::load(g.control + part.speed_control * kLanes);
       }
-      const Float most = constants.most;
+      const Float most = constants.max_impulse;
       const Float lag = fnma(target_speed, constants.speed_share, speed);
       const Float error = Float::load(s.driven) - target;
       after = before + soften_row(constants.drive_soft, k, lag, error, before);

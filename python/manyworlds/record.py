@@ -130,7 +130,7 @@ class LostWorldDumps(InMemory):
     folder            is made; the files go there
     checkpoint_steps  all worlds are saved in memory every so many steps; a dump begins at the last
                       one before the world was lost, and ends there
-    most              files; worlds lost after that are left out
+    max_files         files; worlds lost after that are left out
     first_world       what the batch's world 0 is called in the files
     """
 
@@ -141,14 +141,14 @@ class LostWorldDumps(InMemory):
         batch: Batch,
         folder: File,
         checkpoint_steps: int = 600,
-        most: int = 16,
+        max_files: int = 16,
         first_world: int = 0,
     ) -> None:
         self._held = _record.LostWorldDumps(
             checked_batch(batch)._held,
             files.path(folder, "folder"),
             arrays.integer(checkpoint_steps, "checkpoint_steps", 1, _MAX_STEPS),
-            arrays.integer(most, "most", 0, _MAX_STEPS),
+            arrays.integer(max_files, "max_files", 0, _MAX_STEPS),
             arrays.integer(first_world, "first_world", 0, 2**62),
         )
         self.files: list[Path] = []

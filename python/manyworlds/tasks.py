@@ -1,7 +1,7 @@
 """Tasks: what a policy has to do in a scene, as values; and what their expressions are made of.
 
     from manyworlds import Task, tasks
-    task = Task(name="Balance", scene=scene, choices=2, most_steps=500)
+    task = Task(name="Balance", scene=scene, choices=2, max_steps=500)
     t = task.terms                        # names of this scene's bodies, joints, controls
     task.controls = [tasks.where(t.action(), 10, -10)]
     task.observe("lean", t.angle("pole"))
@@ -244,7 +244,7 @@ class Task:
     rewards: list[Reward] = field(default_factory=list)
     terminated: Value = 0.0  # the episode has come to its end
     truncated: Value = 0.0  # it is broken off; so is a world that is lost
-    most_steps: int = 0  # broken off after so many; 0: never
+    max_steps: int = 0  # broken off after so many; 0: never
     solved_at: float = inf  # mean return; said to people only
 
     rays: list[Ray] = field(default_factory=list)  # for ray_distance
@@ -258,7 +258,7 @@ class Task:
             f"{self.choices} choices" if self.choices else actions,
             shown.count(self.observations, "observation", "observations"),
             shown.count(self.rewards, "reward", "rewards"),
-            f"most_steps {self.most_steps}",
+            f"max_steps {self.max_steps}",
         )
 
     @property

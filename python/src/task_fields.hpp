@@ -52,7 +52,7 @@ struct Described<Task> {
     visit("choices", s.choices), visit("actions", s.actions), visit("controls", s.controls);
     visit("observations", s.observations), visit("rewards", s.rewards);
     visit("terminated", s.terminated), visit("truncated", s.truncated);
-    visit("most_steps", s.most_steps), visit("solved_at", s.solved_at), visit("rays", s.rays);
+    visit("max_steps", s.max_steps), visit("solved_at", s.solved_at), visit("rays", s.rays);
     visit("points", s.points);
   }
 };

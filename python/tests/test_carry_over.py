@@ -50,7 +50,7 @@ def ours(name, policy, signs=1):
     env = mw.Environment(name, 256, seed=1, autoreset="disabled")
     total, going = np.zeros(256), np.ones(256, bool)
     seen = env.reset()
-    for _ in range(env.task.most_steps):
+    for _ in range(env.task.max_steps):
         seen, rewards, ended, truncated = env.step(policy(seen * signs))
         total[going] += rewards[going]
         going &= ~(ended | truncated)

@@ -18,9 +18,9 @@ def actions_of(env, random):
     return random.uniform(low, high, (env.worlds, len(low))).astype(np.float32)
 
 
-def hurried(name, most_steps=13):
+def hurried(name, max_steps=13):
     task = tasks.load(name)
-    task.most_steps = most_steps
+    task.max_steps = max_steps
     return task
 
 

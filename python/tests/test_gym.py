@@ -151,7 +151,7 @@ def test_a_composed_task_is_an_environment():
     task = tasks.load("Pendulum")
     task.reward("bonus", tasks.cos(task.terms.angle("rod")))
     env = VectorEnv(task, 3, max_episode_steps=5)
-    assert check_vector_env(env, 20) > 0 and task.most_steps == 200
+    assert check_vector_env(env, 20) > 0 and task.max_steps == 200
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ def steps_until_truncated(env):
 
 def test_specs_know_how_long_episodes_are():
     for name, id in zip(tasks.names(), ids()):
-        assert gymnasium.spec(id).max_episode_steps == tasks.load(name).most_steps > 0
+        assert gymnasium.spec(id).max_episode_steps == tasks.load(name).max_steps > 0
     single = gymnasium.make("manyworlds/Pendulum-v0")
     assert single.spec.max_episode_steps == 200
     assert steps_until_truncated(single) == (200, True)
@@ -44,7 +44,7 @@ def test_specs_know_how_long_episodes_are():
         assert steps_until_truncated(many) == (steps, True)
     many = gymnasium.make_vec("manyworlds/Pendulum-v0", 3)
     assert many.spec.max_episode_steps == 200 and steps_until_truncated(many) == (200, True)
-    assert Env("Pendulum").task.most_steps == 200
+    assert Env("Pendulum").task.max_steps == 200
 
 
 def test_worlds_that_gymnasium_makes_are_the_same_bits_in_every_way():

@@ -36,7 +36,7 @@ def test_gymnasiums_heuristic_lands(name):
     actions = np.zeros(env.action_shape, np.float32 if continuous else np.int64)
     seen, returns, flying = env.reset(), np.zeros(worlds), np.ones(worlds, bool)
     landed = 0
-    for _ in range(env.task.most_steps):
+    for _ in range(env.task.max_steps):
         for world in np.flatnonzero(flying):
             actions[world] = heuristic(like, seen[world])
         seen, rewards, terminated, truncated = env.step(actions)

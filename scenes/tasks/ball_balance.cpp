@@ -48,7 +48,7 @@ Task ball_balance() {
                   {"effort", -0.02 * (square(action(0)) + square(action(1)))}};
   // Down from the plate: below where it could be on the most tilted one.
   task.terminated = (off > 1.4143 * kHalfPlate) | (position(rolling, 2) < -0.3);
-  task.most_steps = 500;
+  task.max_steps = 500;
   task.solved_at = 400;
   return task;
 }

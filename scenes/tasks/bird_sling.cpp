@@ -51,7 +51,7 @@ Task bird_sling() {
   see("boxes shifted", shifted);
   task.rewards = {{"boxes", shifted - previous(shifted)},
                   {"effort", select(equal(age(), 1), -0.5 * action(0), 0)}};
-  task.most_steps = 60;
+  task.max_steps = 60;
   return task;
 }
 

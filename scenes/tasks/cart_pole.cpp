@@ -57,7 +57,7 @@ Task cart_pole() {
                        {"turn", world.turn}};
   task.rewards = {{"alive", 1}};
   task.terminated = (abs(world.travel) > kMaxTravel) | (abs(world.lean) > kMaxLean);
-  task.most_steps = 500;
+  task.max_steps = 500;
   task.solved_at = 475;
   return task;
 }
@@ -81,7 +81,7 @@ Task cart_pole_swing_up() {
   task.rewards = {{"upright", (1 + upright) / 2 * (1 - 0.1 * square(world.travel))},
                   {"effort", -0.01 * square(terms::action())}};
   task.terminated = abs(world.travel) > kMaxTravel;
-  task.most_steps = 500;
+  task.max_steps = 500;
   task.solved_at = 350;
   return task;
 }

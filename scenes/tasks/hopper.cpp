@@ -74,7 +74,7 @@ Task hopper() {
                   {"alive", 1},
                   {"effort", -1e-3 * (square(action(0)) + square(action(1)) + square(action(2)))}};
   task.terminated = (up < 0.8) | (abs(lean) > 0.4);
-  task.most_steps = 1000;
+  task.max_steps = 1000;
   return task;
 }
 

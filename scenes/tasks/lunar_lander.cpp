@@ -168,7 +168,7 @@ Task lander(const char* name, const Expression& main, const Expression& side) {
                   {"landed", select(landed, 100, 0)},
                   {"crashed", select(crashed, -100, 0)}};
   task.terminated = crashed | landed;
-  task.most_steps = 1000;
+  task.max_steps = 1000;
   task.solved_at = 200;
   return task;
 }

@@ -26,7 +26,7 @@ Task pendulum() {
   task.rewards = {{"angle", -square(terms::previous(angle))},
                   {"speed", -0.1 * square(terms::previous(speed))},
                   {"effort", -0.001 * square(terms::action())}};
-  task.most_steps = 200;
+  task.max_steps = 200;
   return task;
 }
 
@@ -69,7 +69,7 @@ Task acrobot() {
   const Expression up = -cos(first) - cos(terms::angle(lower)) > 1;
   task.rewards = {{"time", select(up, 0, -1)}};
   task.terminated = up;
-  task.most_steps = 500;
+  task.max_steps = 500;
   task.solved_at = -100;
   return task;
 }

@@ -66,7 +66,7 @@ Task pusher() {
                   {"effort", -0.01 * (square(action(0)) + square(action(1)))},
                   {"there", select(there, 10, 0)}};
   task.terminated = there;
-  task.most_steps = 200;
+  task.max_steps = 200;
   task.solved_at = 15;
   return task;
 }

@@ -68,7 +68,7 @@ Task stacking() {
                   {"stands", select(stands, 10, 0)},
                   {"fallen", select(fallen, -5, 0)}};
   task.terminated = stands | fallen | (abs(position(flown, 0)) > 6) | (position(flown, 1) > 8);
-  task.most_steps = 300;
+  task.max_steps = 300;
   task.solved_at = 10;
   return task;
 }

@@ -117,7 +117,7 @@ class Builder {
     out.constants.pull = std::min(o.joint.pull_speed * o.length_unit, kUnlimited);
     out.constants.angular_pull = std::min(o.joint.pull_speed, kUnlimited);
     out.constants.limit_soft = hard();
-    out.constants.most = kUnlimited;
+    out.constants.max_impulse = kUnlimited;
     out.constants.ratio = 1;
     return out;
   }
@@ -149,7 +149,7 @@ class Builder {
       p.constants.drive_soft = soft(*drive->spring);
       p.constants.speed_share = speed_share(*drive->spring);
     }
-    p.constants.most = std::min(h_ * drive->max_force, kUnlimited);
+    p.constants.max_impulse = std::min(h_ * drive->max_force, kUnlimited);
   }
 
   void add(const BallJoint& j) {
@@ -210,7 +210,7 @@ class Builder {
     PlanPart& p = part(PartKind::point);
     p.what.spring = true;
     p.constants.soft = soft(j.spring);
-    p.constants.most = std::min(h_ * j.max_force, kUnlimited);
+    p.constants.max_impulse = std::min(h_ * j.max_force, kUnlimited);
     if (std::isinf(j.max_force)) force(p, j.spring);
   }
 

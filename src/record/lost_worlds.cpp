@@ -16,10 +16,10 @@ namespace manyworlds {
 struct LostWorldDumps::Listener final : BatchListener {
   Listener(const Batch& batch, std::filesystem::path folder, const Options& options)
       : folder_(std::move(folder)), options_(options) {
-    if (options.checkpoint_steps < 1 || options.most < 0) {
+    if (options.checkpoint_steps < 1 || options.max_files < 0) {
       throw std::invalid_argument(
           "dumps of lost worlds: checkpoint_steps is " + std::to_string(options.checkpoint_steps) +
-          ", must be >= 1; most is " + std::to_string(options.most) + ", must be >= 0");
+          ", must be >= 1; max_files is " + std::to_string(options.max_files) + ", must be >= 0");
     }
     if (batch.forces_pending()) {
       throw std::invalid_argument(
@@ -67,7 +67,7 @@ struct LostWorldDumps::Listener final : BatchListener {
   }
 
  private:
-  bool full() const { return static_cast<int>(files_.size()) >= options_.most; }
+  bool full() const { return static_cast<int>(files_.size()) >= options_.max_files; }
 
   template <class Do>
   void guarded(Do&& what) noexcept {

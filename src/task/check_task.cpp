@@ -29,7 +29,7 @@ class TaskChecker {
 
   std::vector<Issue> check() {
     if (task_.frame_skip < 1) add("frame_skip", "is ", task_.frame_skip, ", must be >= 1");
-    if (task_.most_steps < 0) add("most_steps", "is ", task_.most_steps, ", must be >= 0");
+    if (task_.max_steps < 0) add("max_steps", "is ", task_.max_steps, ", must be >= 0");
     check_actions();
     const std::size_t controls = task_.scene.controls.size();
     if (task_.controls.size() != controls) {

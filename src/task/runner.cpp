@@ -22,7 +22,7 @@ std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, con
     add(numbers.size());
     for (const auto number : numbers) hash.add(static_cast<double>(number));
   };
-  add(plan.fingerprint(), task.frame_skip, task.choices, programs.most_steps, programs.terminated,
+  add(plan.fingerprint(), task.frame_skip, task.choices, programs.max_steps, programs.terminated,
       programs.truncated, task.rays.size(), task.points.size());
   for (const Ray& ray : task.rays) {
     add_all(ray.origin);
@@ -58,7 +58,7 @@ std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, con
 
 }  // namespace
 
-TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : most_steps(task.most_steps) {
+TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : max_steps(task.max_steps) {
   inputs.actions = task.choices > 0 ? 1 : static_cast<int>(task.actions.size());
   for (const Action& a : task.actions) action_range.push_back({a.low, a.high});
   control_range = plan.data().control_range;
@@ -285,8 +285,8 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   void end_episodes(const Thread& thread, int first, int end, const Real* age) {
     const Real* failed = thread.values.data() + at(p_->terminated * lanes_);
     const Real* broken_off = thread.values.data() + at(p_->truncated * lanes_);
-    const Real most = p_->most_steps > 0 ? static_cast<Real>(p_->most_steps)
-                                         : std::numeric_limits<Real>::infinity();
+    const Real most = p_->max_steps > 0 ? static_cast<Real>(p_->max_steps)
+                                        : std::numeric_limits<Real>::infinity();
     bool some = false;
     for (int l = 0; l < end; ++l) {
       const std::size_t world = at(first + l);

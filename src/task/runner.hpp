@@ -21,7 +21,7 @@ struct TaskPrograms {
 
   InputRows inputs;
   std::vector<std::array<double, 2>> action_range, control_range;
-  int most_steps;
+  int max_steps;
   Program before, after;
   std::vector<int> controls;               // rows of `before`
   std::vector<int> observations, rewards;  // rows of `after`

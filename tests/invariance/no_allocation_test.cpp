@@ -192,7 +192,7 @@ TEST_CASE("steps of tasks allocate nothing, with the worlds that begin anew in t
           "[fast][allocation][task]") {
   for (const tasks::Entry& entry : tasks::all()) {
     Task task = entry.make();
-    task.most_steps = 11;
+    task.max_steps = 11;
     for (const Autoreset autoreset : {Autoreset::next_step, Autoreset::same_step}) {
       Played p(task, {.worlds = 40, .threads = 1, .autoreset = autoreset});
       p.step();

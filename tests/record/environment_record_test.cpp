@@ -15,7 +15,7 @@ TEST_CASE("episodes of an environment are recorded and replayed", "[fast][record
   for (const char* name : {"LunarLander", "Pusher", "BallBalance"}) {
     for (const Autoreset autoreset : {Autoreset::next_step, Autoreset::same_step}) {
       Task task = tasks::find(name)->make();
-      task.most_steps = 13;
+      task.max_steps = 13;
       Played p(task, {.worlds = 11, .autoreset = autoreset});
       Batch& batch = p.environment.batch();
       Recorder recorder(batch, folder / "run.h5", {.every = task.frame_skip});
@@ -44,7 +44,7 @@ TEST_CASE("a step of a task that is ended early and finished is recorded as both
   const Folder folder;
   Task task = tasks::find("Pusher")->make();
   task.frame_skip = 200;
-  task.most_steps = 2;
+  task.max_steps = 2;
   Played p(task, {.worlds = 5, .autoreset = Autoreset::same_step});
   Batch& batch = p.environment.batch();
   Recorder recorder(batch, folder / "run.h5");

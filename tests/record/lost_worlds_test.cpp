@@ -61,7 +61,7 @@ TEST_CASE("dumps of lost worlds are few and small", "[fast][record]") {
   Scene scene = scenes::find("bin-boxes")->make();
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-1e3, -1e3, 0.4), Vec3(1e3, 1e3, 1e3));
   Batch batch(compile(scene), batch_options(widest_tables().front(), 8));
-  LostWorldDumps dumps(batch, folder.path(), {.most = 3});
+  LostWorldDumps dumps(batch, folder.path(), {.max_files = 3});
   batch.step(100);
   REQUIRE(batch.lost_worlds() > 3);
   const auto files = dumps.close();

@@ -23,7 +23,7 @@ GoOn times(int n) {
 // A task with long steps and short episodes.
 Task slow(Task task) {
   task.frame_skip = kFrames;
-  task.most_steps = 3;
+  task.max_steps = 3;
   return task;
 }
 

@@ -34,7 +34,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 // Ends episodes early and often, so that resets are part of what is compared.
 Task hurried(const tasks::Entry& entry) {
   Task task = entry.make();
-  task.most_steps = task.most_steps > 0 ? std::min(task.most_steps, 17) : 17;
+  task.max_steps = task.max_steps > 0 ? std::min(task.max_steps, 17) : 17;
   return task;
 }
 
@@ -293,7 +293,7 @@ TEST_CASE("a saved world goes on in another place, and nothing else is let in", 
                       "snapshot: is of another task than 'LunarLander'");
     CHECK(environment.batch().hash() == before);
   };
-  refuse([](Task& t) { t.most_steps += 1; });
+  refuse([](Task& t) { t.max_steps += 1; });
   refuse([](Task& t) { t.frame_skip += 1; });
   refuse([](Task& t) { t.choices += 1; });
   refuse([](Task& t) { t.rewards.pop_back(); });

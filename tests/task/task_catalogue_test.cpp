@@ -21,7 +21,7 @@ double mean_return(const Task& task, const Act& act) {
   int lost_ones = 0;
   const auto n = static_cast<std::size_t>(p.environment.observations()),
              m = static_cast<std::size_t>(p.environment.actions());
-  for (int step = 0; step < task.most_steps; ++step) {
+  for (int step = 0; step < task.max_steps; ++step) {
     if (act) {
       for (std::size_t w = 0; w < kWorlds; ++w) {
         act(p.observations.data() + w * n, p.actions.data() + w * m, p.choices[w]);
@@ -53,7 +53,7 @@ TEST_CASE("every named task is in order and has its name", "[task][fast]") {
     CHECK(task.name == entry.name);
     CHECK(tasks::find(entry.name) == &entry);
     for (const Issue& issue : validate(task)) FAIL_CHECK(entry.name << ": " << to_string(issue));
-    CHECK(task.most_steps > 0);
+    CHECK(task.max_steps > 0);
   }
   CHECK(tasks::find("nothing") == nullptr);
 }

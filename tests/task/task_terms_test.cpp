@@ -247,7 +247,7 @@ TEST_CASE("what tasks remember: previous, held and largest", "[task][fast]") {
                        {"highest", terms::largest(x)},
                        {"lowest", -terms::largest(-x)},
                        {"age", terms::age()}};
-  task.most_steps = 13;
+  task.max_steps = 13;
   Played p(task, {.worlds = 5, .autoreset = Autoreset::same_step});
   std::vector<float> x_of_episode{p.observations[0]};
   int fast = 0;
@@ -303,7 +303,7 @@ TEST_CASE("all that is wrong with a task is said at once", "[task][fast]") {
   Task task = falling_ball();
   task.scene.add(joint_at(task.scene, {}, BodyId(0), Frame{}, BallJoint{}));
   task.frame_skip = 0;
-  task.most_steps = -1;
+  task.max_steps = -1;
   task.choices = 2;
   task.actions = {{"a", 1, 1}};
   task.controls = {0};
@@ -320,8 +320,8 @@ TEST_CASE("all that is wrong with a task is said at once", "[task][fast]") {
   for (const Issue& issue : validate(task)) all += to_string(issue) + "\n";
   INFO(all);
   for (const char* part :
-       {"frame_skip is 0", "most_steps is -1", "actions are 1, must be none",
-        "action 0 'a' has the", "controls are 1, must be as many as the scene has: 0",
+       {"frame_skip is 0", "max_steps is -1", "actions are 1, must be none", "action 0 'a' has the",
+        "controls are 1, must be as many as the scene has: 0",
         "observation 0 'one' position of body 1, axis 0: the body must be 0 to 0",
         "observation 1 'two' position of body 0, axis 3: the axis must be 0 to 2",
         "observation 2 'three' angle of body 0: there are angles in the plane only",

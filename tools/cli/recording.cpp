@@ -159,7 +159,7 @@ LostDumps::~LostDumps() = default;
 void LostDumps::watch(Batch& batch, std::int64_t first) {
   if (!impl_) return;
   LostWorldDumps::Options options;
-  options.most -= static_cast<int>(impl_->files.size());
+  options.max_files -= static_cast<int>(impl_->files.size());
   options.first_world = first;
   impl_->dumps.emplace(batch, impl_->folder, options);
 }

@@ -44,7 +44,7 @@ def _range(name: str, rest: Sequence[Any], found: Sequence[Range], task: Task) -
         return _OPERATIONS[name](*(found[i] for i in rest))
     if name in _MOST:
         return -_MOST[name], _MOST[name]
-    steps = float(task.most_steps or inf)
+    steps = float(task.max_steps or inf)
     if name in ("age", "held"):
         return 0.0, steps
     if name == "ray_distance":

@@ -26,7 +26,7 @@ def register() -> None:
             id=id,
             entry_point="manyworlds.gym.single_env:RegisteredEnv",
             vector_entry_point="manyworlds.gym:VectorEnv",
-            max_episode_steps=task.most_steps or None,
+            max_episode_steps=task.max_steps or None,
             kwargs={"task": name},
             reward_threshold=task.solved_at if math.isfinite(task.solved_at) else None,
         )

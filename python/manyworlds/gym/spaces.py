@@ -22,7 +22,7 @@ def task_of(task: Union[Task, str], max_episode_steps: Optional[int]) -> Task:
     if max_episode_steps is None:
         return found
     steps = arrays.integer(max_episode_steps, "max_episode_steps", 0, MAX_EPISODE_STEPS)
-    return dataclasses.replace(found, most_steps=steps)
+    return dataclasses.replace(found, max_steps=steps)
 
 
 def observation_space(task: Task) -> gymnasium.spaces.Box:

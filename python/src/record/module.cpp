@@ -50,8 +50,9 @@ void make_recorder(HeldRecorder* self, const HeldBatch& batch, const std::filesy
 }
 
 void make_dumps(HeldDumps* self, const HeldBatch& batch, const std::filesystem::path& folder,
-                int checkpoint_steps, int most, std::int64_t first_world) {
-  new (self) HeldDumps(batch, folder, LostWorldDumps::Options{checkpoint_steps, most, first_world});
+                int checkpoint_steps, int max_files, std::int64_t first_world) {
+  new (self)
+      HeldDumps(batch, folder, LostWorldDumps::Options{checkpoint_steps, max_files, first_world});
 }
 
 class HeldRecording : public Held<Recording> {
@@ -173,7 +174,7 @@ void bind_writing(nb::module_& m) {
       });
   nb::class_<HeldDumps>(m, "LostWorldDumps", "Private: use manyworlds.record.LostWorldDumps.")
       .def("__init__", &make_dumps, nb::arg("batch"), nb::arg("folder"),
-           nb::arg("checkpoint_steps"), nb::arg("most"), nb::arg("first_world"))
+           nb::arg("checkpoint_steps"), nb::arg("max_files"), nb::arg("first_world"))
       .def("close", [](HeldDumps& self) {
         return self.run([](LostWorldDumps& d, Batch&) { return d.close(); });
       });
