@@ -13,7 +13,6 @@ Scene billiards() {
   constexpr double kHalfWidth = 0.635;    // m
   constexpr double kGap = 0.0005;         // m, between racked balls
   constexpr double kRackJitter = 0.0001;  // m; closes no gap
-  constexpr double kPi = 3.14159265358979323846;
   const Material material{0.05, 0.95};
 
   Scene scene = planar_scene("billiards");

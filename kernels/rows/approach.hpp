@@ -39,7 +39,7 @@ MW_INLINE Float speculation_of(const Constants& t, const Group& g, const Sides<S
   const std::uint32_t real = sides.body_b < Ints(t.bodies);
   const Float core = select(mask_from_bits(real),
                             gather_numbers<OfBody>(constants_of_body(g, 0).core_radius,
-                                                      select(real, sides.body_b, Ints(0))),
+                                                   select(real, sides.body_b, Ints(0))),
                             zero);
   const Float travel2 = dot(sides.b.velocity.v, sides.b.velocity.v) * (dt * dt);
   const Mask cast = (zero < core) & (square(core) < travel2);
