@@ -64,9 +64,9 @@ kernels::Kernels<Real> make_table() {
   fill_solver_tensor_dense(tensor[1][0], tensor[0][0]);
   fill_solver_tensor_rows(tensor[1][1], tensor[0][1]);
   auto& flat = out.joints[static_cast<int>(InertiaKind::planar)];
-  auto& turning = out.joints[static_cast<int>(InertiaKind::tensor)];
+  auto& spatial = out.joints[static_cast<int>(InertiaKind::tensor)];
   fill_joints_planar(flat[0], flat[1]);
-  fill_joints_tensor(turning[0], turning[1]);
+  fill_joints_tensor(spatial[0], spatial[1]);
   out.free_motion[static_cast<int>(InertiaKind::planar)] = free_motion<Planar>;
   out.free_motion[static_cast<int>(InertiaKind::isotropic)] = free_motion<Isotropic>;
   out.free_motion[static_cast<int>(InertiaKind::tensor)] = free_motion<Tensor>;
@@ -80,6 +80,7 @@ kernels::Kernels<Real> make_table() {
   fill_impulses(out.impulses);
   fill_flight_planar(out.flight);
   fill_flight_spatial(out.flight);
+  fill_tree(out.tree);
   out.settle = settle;
   out.set_class = set_class;
   out.counters = counters;

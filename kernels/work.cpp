@@ -3,6 +3,7 @@
 #include <initializer_list>
 
 #include "kernels/rows/contact_block.hpp"
+#include "kernels/tree/spatial.hpp"
 #include "kernels/work/solver_tables.hpp"
 #include "kernels/work/stages.hpp"
 
@@ -112,6 +113,25 @@ void carve_search(const Constants& t, Search& s, Carver& c) {
   c.take(s.square, static_cast<std::size_t>(kLanes));
 }
 
+void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
+  const auto& tree = t.tree;
+  const auto take = [&](Real*& out, int rows) {
+    c.take(out, static_cast<std::size_t>(rows * kLanes));
+  };
+  take(w.origin, 3 * tree.links), take(w.pose, 7 * tree.links);
+  take(w.axis, kTwistRows * tree.dofs);
+  take(w.velocity, kTwistRows * tree.links), take(w.rate, kTwistRows * tree.links);
+  take(w.force, kTwistRows * tree.links), take(w.inertia, kInertiaRows * tree.links);
+  take(w.matrix, tree.entries), take(w.load, tree.dofs);
+  take(w.next, tree.coordinates + tree.dofs);
+  if (tree.limits == 0) return;
+  c.take(w.limit_rows, static_cast<std::size_t>(tree.limits));
+  take(w.stiffness, tree.entries);
+  for (Real** rows : {&w.guess, &w.balance, &w.direction, &w.reach, &w.row_load}) {
+    take(*rows, tree.dofs);
+  }
+}
+
 void carve(const Constants& t, Work& w, Carver& c) {
   const int lanes = kLanes;
   const auto count = [](int n) { return static_cast<std::size_t>(n); };
@@ -131,6 +151,7 @@ void carve(const Constants& t, Work& w, Carver& c) {
     c.take(w.flight.now, state), c.take(w.flight.base, state);
     c.take(w.flight.rate, state), c.take(w.flight.sum, state);
   }
+  if (t.tree.links > 0) carve_tree(t, w.tree, c);
   if (!t.has_substeps) {
     c.take(w.before, state);
     return;

@@ -78,6 +78,14 @@ struct FlightTable {
   Stage<Real> leave[2];  // after them, instead of SolverTable::leave; [layout: dense, rows]
 };
 
+// Plans whose bodies are in joint coordinates (kernels/tree/).
+template <class Real>
+struct TreeStages {
+  // Whole steps of plans in which nothing but joints and their own forces acts on the links.
+  void (*steps)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*, int steps);
+  Stage<Real> place;  // poses and velocities of bodies from the joint coordinates
+};
+
 template <class Real>
 struct ContactPoint {
   std::int32_t list, key;    // key identifies class and candidate
@@ -110,6 +118,8 @@ struct Kernels {
                                      int steps);
 
   FlightTable<Real> flight[kInertiaKinds];
+
+  TreeStages<Real> tree;
 
   Stage<Real> settle;  // after the step: bodies at rest fall asleep (plans of batches with sleep)
 

@@ -10,6 +10,7 @@
 #include "kernels/data/shape_kinds.hpp"
 #include "kernels/data/solver_options.hpp"
 #include "kernels/data/state_layout.hpp"
+#include "kernels/data/tree_tables.hpp"
 
 namespace manyworlds::kernels {
 
@@ -48,6 +49,7 @@ struct PrincipalInertia {
 template <class T>
 struct BodyConstants {
   T inv_mass;
+  T mass;            // kg; 0 for kinematic bodies
   T inertia[3];      // principal, kg m^2 (planar: [2])
   T inv_inertia[3];  // 0 for kinematic bodies
   T gravity_scale;
@@ -178,6 +180,7 @@ struct SceneConstants {
   const Real* fixed_rows;
   const Real* hulls;  // corners of hulls that move
   const PairClass<Real>* pair_class;
+  TreeTable<Real> tree;  // no links: bodies are not in joint coordinates
   const JointPart* part;
   const BreakTable<Real>* breaking;  // [breakable]
   const AttractorTable<Real>* attractor;

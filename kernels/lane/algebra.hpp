@@ -96,6 +96,12 @@ MW_INLINE Quat normalize(Quat q) {
   const Float e = fma(dot(q, q), Real(-0.5), Real(0.5));
   return {fma(q.w, e, q.w), fma(q.x, e, q.x), fma(q.y, e, q.y), fma(q.z, e, q.z)};
 }
+MW_INLINE Quat mul(Quat a, Quat b) {
+  return {fnma(a.z, b.z, fnma(a.y, b.y, fms(a.w, b.w, a.x * b.x))),
+          fnma(a.z, b.y, fma(a.y, b.z, fma(a.x, b.w, a.w * b.x))),
+          fnma(a.x, b.z, fma(a.z, b.x, fma(a.y, b.w, a.w * b.y))),
+          fnma(a.y, b.x, fma(a.x, b.y, fma(a.z, b.w, a.w * b.z)))};
+}
 // v rotated by a unit quaternion with vector part u: t = 2 u x v, v + w t + u x t. Fewer operations
 // than by the matrix for a vector or two.
 MW_INLINE Vec3 rotate_about(Float w, Vec3 u, Vec3 v) {

@@ -73,8 +73,38 @@ struct Search {
   Real* square;  // [lane], of the last step
 };
 
+// A row of the newton solver that can only push (kernels/tree/row_force.hpp).
+struct alignas(64) TreeRow {
+  Real weight[kLanes], reference[kLanes];  // D = 1 / R, 0 where there is none; acceleration
+  Real residual[kLanes], change[kLanes];   // J a - reference, and along the search
+  std::uint32_t lanes;                     // that have it
+};
+
+// Trees (kernels/tree/), in world axes about an origin of each tree: its root's centre of mass.
+struct TreeWork {
+  Real* origin;    // [link: a root][3][lane], in the world
+  Real* pose;      // [link][rotation 4, position of its frame 3][lane]
+  Real* axis;      // [dof][twist of a unit velocity][lane]
+  Real* velocity;  // [link][twist][lane]
+  Real* rate;      // [link][twist][lane], acceleration but for those of the dofs; less gravity
+  Real* force;     // [link][wrench][lane]
+  Real* inertia;   // [link][kInertiaRows][lane], with all links beyond it
+  Real* matrix;    // [entry][lane], of the joint-space inertia, then its factors
+  Real* load;      // [dof][lane], generalised forces, then accelerations
+  Real* next;      // [coordinate, then dof][lane], the state after the step
+  // The newton solver.
+  TreeRow* limit_rows;  // [limit]
+  Real* stiffness;      // [entry][lane], M + J' D J, then its factors
+  Real* guess;          // [dof][lane], accelerations so far
+  Real* balance;        // [dof][lane], M a
+  Real* direction;      // [dof][lane]
+  Real* reach;          // [dof][lane], M times the direction
+  Real* row_load;       // [dof][lane], J' times the forces of rows
+};
+
 struct Work {
   FlightWork flight;
+  TreeWork tree;
   Real* before;  // the group's state before the step (plans without contacts only)
   // begin
   Real* pose_rows;  // [lane][row_block], the last kDummyRow of a block are the dummy's

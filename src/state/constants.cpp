@@ -39,6 +39,7 @@ kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody
   const Body& body = plan.scene.bodies[static_cast<std::size_t>(b.scene_body)];
   const double h = options.dt / options.substeps;
   kernels::BodyConstants<Real> out{};
+  out.mass = static_cast<Real>(b.mass);
   out.inv_mass = static_cast<Real>(b.inv_mass);
   copy_numbers(b.inertia, out.inertia);
   copy_numbers(b.inv_inertia, out.inv_inertia);

@@ -26,7 +26,7 @@ SCENE_SEES_KERNELS = "kernels/data/shape_kinds.hpp"
 # instruction set. What lies in kernels/ itself puts the rooms together, above all of them.
 KERNEL_ROOMS = [
     "data", "lane", "work", "shape", "sleep", "broad", "collide", "rows", "motion", "joint", "flight",
-    "solver", "observe", "program"]
+    "tree", "solver", "observe", "program"]
 MAX_KERNEL_FILES_ON_TOP = 12
 # Tables without functions, which the kernels' data shares with the public headers.
 KERNELS_SEE = {"manyworlds/field_table.hpp", "manyworlds/observed.hpp"}

@@ -1,0 +1,101 @@
+// Trees: bodies in joint coordinates. A link is a body with state; it moves against its parent, or
+// the world, by its joints, one after the other. A degree of freedom (dof) is one number of the
+// velocities; a coordinate one of the positions, of which free and ball joints have one more.
+//
+// Coordinates and velocities are MuJoCo's: a free joint has the origin of the link's frame in the
+// world and its rotation (w, x, y, z), then the velocity of that origin in world axes and the
+// angular velocity in the link's axes; a ball joint has a rotation and an angular velocity in the
+// link's axes; hinges and slides have an angle, rad, or a travel, m. The reference is the pose at
+// which the coordinates of hinges and slides are their references and balls do not rotate.
+#pragma once
+
+#include <cstdint>
+
+namespace manyworlds::kernels {
+
+enum class TreeJointKind : std::int32_t { free, ball, hinge, slide };
+static inline constexpr int dofs_of(TreeJointKind kind) {
+  return kind == TreeJointKind::free ? 6 : kind == TreeJointKind::ball ? 3 : 1;
+}
+static inline constexpr int coordinates_of(TreeJointKind kind) {
+  return kind == TreeJointKind::free ? 7 : kind == TreeJointKind::ball ? 4 : 1;
+}
+
+// Parents come before their children, and the links of a tree follow one another.
+template <class Real>
+struct TreeLink {
+  std::int32_t body;    // its row among bodies with state
+  std::int32_t parent;  // link; -1: the world
+  std::int32_t root;    // of its tree
+  std::int32_t first_joint, joints;
+  std::int32_t first_dof, dofs;   // of its own joints
+  Real position[3], rotation[4];  // of its frame in the parent's at the reference
+  Real center[3], principal[4];   // centre of mass and principal axes in its frame
+};
+
+template <class Real>
+struct TreeJoint {
+  TreeJointKind kind;
+  std::int32_t coordinate, dof;  // the first ones
+  Real anchor[3], axis[3];       // in the link's frame at the reference; the axis is unit
+  Real reference;                // of a hinge or slide
+};
+
+template <class Real>
+struct TreeDof {
+  std::int32_t link;
+  std::int32_t parent;      // the dof before it on the way to the root; -1: none
+  std::int32_t depth;       // how many those are
+  std::int32_t entry;       // its row of the inertia matrix: itself, its parent, and so on
+  std::int32_t coordinate;  // of a hinge or slide, which may have a spring
+  Real armature;            // kg m^2 or kg
+  Real damping;             // N m s/rad or N s/m
+  Real stiffness, rest;     // N m/rad or N/m; rad or m
+};
+
+// How soft a row is (MuJoCo's solref and solimp; src/plan/compliance.hpp): with the violation r and
+// the impedance d(r), the reference acceleration is -damping J v - stiffness d(r) r, and the
+// regularisation R = (1 - d) / d times the row's inverse inertia.
+template <class Real>
+struct Compliance {
+  Real stiffness, damping;     // 1/s^2, 1/s
+  Real least, gain;            // d = least + gain y(|r| inverse_width)
+  Real inverse_width, middle;  // y = rising x^power up to the middle, then the same from the end
+  Real rising, falling;
+  std::int32_t power;
+};
+
+// A hinge or slide stays on one side of `end`: side 1 above, -1 below.
+template <class Real>
+struct TreeLimit {
+  std::int32_t coordinate, dof;
+  Real side, end;
+  Real margin;          // rad or m, where the row begins
+  Real inverse_weight;  // of the dof: diagonal of the inverse of M at the reference
+  Compliance<Real> compliance;
+};
+
+// How the newton solver stops (src/plan/trees.hpp).
+template <class Real>
+struct NewtonOptions {
+  std::int32_t iterations, line_iterations;
+  Real tolerance, line_tolerance;
+  Real scale;  // 1 / (mean inertia max(1, dofs)): of gradients
+};
+
+template <class Real>
+struct TreeTable {
+  std::int32_t links, dofs, coordinates;
+  std::int32_t entries;  // of the inertia matrix
+  bool damped;           // some dof has damping
+  std::int32_t limits;
+  // Rows of the state; accelerations, of the step before, where some rows may be.
+  std::int32_t first_coordinate, first_velocity, first_acceleration;
+  NewtonOptions<Real> newton;
+  const TreeLink<Real>* link;
+  const TreeJoint<Real>* joint;
+  const TreeDof<Real>* dof;
+  const TreeLimit<Real>* limit;
+};
+
+}  // namespace manyworlds::kernels

@@ -1,0 +1,107 @@
+// Forces and inertias of trees: composite rigid bodies for the joint-space inertia, recursive
+// Newton-Euler for the forces that velocities and gravity ask for (Featherstone 2008, 5.3, 6.2).
+#pragma once
+
+#include "kernels/tree/kinematics.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+MW_INLINE Real* link_rows(Real* rows, int link, int count) { return rows + link * count * kLanes; }
+
+// Velocities of links, and the accelerations that they would have without any of the dofs. Gravity
+// is an acceleration of the world upward.
+inline void find_velocities(const Constants& t, const Group& g, const Work& w) {
+  for (int i = 0; i < t.tree.links; ++i) {
+    const TreeLink& link = t.tree.link[i];
+    Twist v{zero_of<Vec3>(), zero_of<Vec3>()}, rate = v;
+    if (link.parent >= 0) {
+      v = load_twist(link_rows(w.tree.velocity, link.parent, kTwistRows));
+      rate = load_twist(link_rows(w.tree.rate, link.parent, kTwistRows));
+    }
+    const auto gain = [&](int first, int count) {
+      Twist own{zero_of<Vec3>(), zero_of<Vec3>()};
+      for (int k = first; k < first + count; ++k) {
+        own = fma(load_twist(axis_of(w, k)), Float::load(velocity_of(t, g, k)), own);
+      }
+      return own;
+    };
+    for (int j = link.first_joint; j < link.first_joint + link.joints; ++j) {
+      const TreeJoint& joint = t.tree.joint[j];
+      int first = joint.dof, count = kernels::dofs_of(joint.kind);
+      if (joint.kind == TreeJointKind::free) {  // its first axes are the world's
+        v = v + gain(first, 3);
+        first += 3, count -= 3;
+      }
+      const Twist own = gain(first, count);
+      rate = rate + cross(v, own);
+      v = v + own;
+    }
+    store(link_rows(w.tree.velocity, i, kTwistRows), v);
+    store(link_rows(w.tree.rate, i, kTwistRows), rate);
+  }
+}
+
+// The inertia of each link by itself, and the wrench that its motion asks for, less those that act
+// on it: gravity and the inputs.
+inline void find_wrenches(const Constants& t, const Group& g, const Work& w) {
+  for (int i = 0; i < t.tree.links; ++i) {
+    const TreeLink& link = t.tree.link[i];
+    const auto& body = constants_of_body(g, link.body);
+    const FramePose at = load_pose(w, i);
+    const Vec3 c = at.x + rotate(at.q, shared(link.center));
+    const Mat3 axes = matrix(mul(at.q, shared(link.principal)));
+    const Sym3 moments = rotate_diagonal(axes, {body.inertia[0], body.inertia[1], body.inertia[2]});
+    const SpatialInertia inertia = spatial_inertia(body.mass, c, moments);
+    const Twist v = load_twist(link_rows(w.tree.velocity, i, kTwistRows));
+    const Twist rate = load_twist(link_rows(w.tree.rate, i, kTwistRows));
+    Wrench f = mul(inertia, rate) + cross(v, mul(inertia, v));
+    Vec3 pull = Vec3{body.gravity[0], body.gravity[1], body.gravity[2]} * Float(body.mass);
+    Vec3 moment = zero_of<Vec3>();
+    if (g.force) {
+      const Real* input = g.force + link.body * 6 * kLanes;
+      pull = pull + load_vec3(input);
+      moment = load_vec3(input + 3 * kLanes);
+    }
+    f = f - Wrench{moment + cross(c, pull), pull};
+    store(link_rows(w.tree.inertia, i, kInertiaRows), inertia);
+    store(link_rows(w.tree.force, i, kTwistRows), f);
+  }
+}
+
+// Generalised forces of springs and dampers.
+MW_INLINE Float passive_force(const Constants& t, const Group& g, const Dof& dof, int k) {
+  Float force = -(Float(dof.damping) * Float::load(velocity_of(t, g, k)));
+  if (dof.stiffness != 0) {
+    const Float stretch = Float::load(coordinate_of(t, g, dof.coordinate)) - Float(dof.rest);
+    force = fnma(Float(dof.stiffness), stretch, force);
+  }
+  return force;
+}
+
+// From the tips to the roots: the rows of the joint-space inertia, and the generalised forces.
+inline void project(const Constants& t, const Group& g, const Work& w) {
+  for (int i = t.tree.links - 1; i >= 0; --i) {
+    const TreeLink& link = t.tree.link[i];
+    const SpatialInertia inertia = load_inertia(link_rows(w.tree.inertia, i, kInertiaRows));
+    const Wrench wrench = load_wrench(link_rows(w.tree.force, i, kTwistRows));
+    for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
+      const Dof& dof = t.tree.dof[k];
+      const Twist axis = load_twist(axis_of(w, k));
+      const Wrench f = mul(inertia, axis);
+      Real* row = w.tree.matrix + dof.entry * kLanes;
+      (dot(axis, f) + Float(dof.armature)).store(row);
+      for (int j = dof.parent; j >= 0; j = t.tree.dof[j].parent) {
+        row += kLanes;
+        dot(load_twist(axis_of(w, j)), f).store(row);
+      }
+      (passive_force(t, g, dof, k) - dot(axis, wrench)).store(w.tree.load + k * kLanes);
+    }
+    if (link.parent < 0) continue;
+    Real* beyond = link_rows(w.tree.inertia, link.parent, kInertiaRows);
+    store(beyond, load_inertia(beyond) + inertia);
+    Real* below = link_rows(w.tree.force, link.parent, kTwistRows);
+    store(below, load_wrench(below) + wrench);
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,45 @@
+#include "src/plan/compliance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace manyworlds {
+
+namespace {
+
+constexpr double kMinImpedance = 1e-4, kMaxImpedance = 0.9999, kTiny = 1e-15;
+
+}  // namespace
+
+kernels::Compliance<double> compile(const Compliance& compliance, double dt) {
+  kernels::Compliance<double> out{};
+  const auto& given = compliance.impedance;
+  const auto clamped = [](double d) { return std::clamp(d, kMinImpedance, kMaxImpedance); };
+  const double low = clamped(given[0]), high = clamped(given[1]);
+  const double width = std::max(0.0, given[2]), middle = clamped(given[3]);
+  const double power = std::max(1.0, given[4]);
+  out.least = low, out.gain = high - low;
+  if (low == high || width <= kTiny) {
+    out.least = (low + high) / 2, out.gain = 0;
+  } else {
+    out.inverse_width = 1 / width;
+  }
+  out.middle = middle;
+  out.power = static_cast<std::int32_t>(power);
+  out.rising = std::pow(middle, 1 - power), out.falling = std::pow(1 - middle, 1 - power);
+
+  // One number of each format: MuJoCo takes its default.
+  auto [first, second] = compliance.reference;
+  if ((first > 0) != (second > 0))
+    first = Compliance{}.reference[0], second = Compliance{}.reference[1];
+  if (first <= 0) {
+    out.stiffness = -first / (high * high), out.damping = -second / high;
+    return out;
+  }
+  const double time = std::max(first, 2 * dt);
+  out.stiffness = 1 / std::max(kTiny, high * high * time * time * second * second);
+  out.damping = 2 / std::max(kTiny, high * time);
+  return out;
+}
+
+}  // namespace manyworlds

@@ -1,0 +1,91 @@
+#include "src/plan/trees.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace manyworlds {
+
+namespace {
+
+void put(const Vec3& from, double* to) { std::copy_n(from.data(), 3, to); }
+void put(const Quat& from, double* to) {
+  const Quat q = from.normalized();
+  to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
+}
+int count_of(const auto& list) { return static_cast<int>(list.size()); }
+
+// The dof that moves a link last, on the way from the world; -1: none.
+int last_dof(const PlanTrees& trees, int link) {
+  for (; link >= 0; link = trees.links[static_cast<std::size_t>(link)].parent) {
+    const auto& l = trees.links[static_cast<std::size_t>(link)];
+    if (l.dofs > 0) return l.first_dof + l.dofs - 1;
+  }
+  return -1;
+}
+
+}  // namespace
+
+int TreeBuilder::add(const NewLink& link) {
+  const int index = count_of(trees_.links);
+  auto& out = trees_.links.emplace_back();
+  out.body = link.body;
+  out.parent = link.parent;
+  out.root = link.parent < 0 ? index : trees_.links[static_cast<std::size_t>(link.parent)].root;
+  out.first_joint = count_of(trees_.joints);
+  out.first_dof = count_of(trees_.dofs);
+  put(link.position, out.position), put(link.rotation, out.rotation);
+  put(link.center, out.center), put(link.principal, out.principal);
+  links_.push_back(link);
+  return index;
+}
+
+void TreeBuilder::add(const NewTreeJoint& joint) {
+  const int index = count_of(trees_.links) - 1;
+  auto& link = trees_.links.back();
+  auto& out = trees_.joints.emplace_back();
+  out.kind = joint.kind;
+  out.coordinate = trees_.coordinates;
+  out.dof = count_of(trees_.dofs);
+  out.reference = joint.reference;
+  put(joint.anchor, out.anchor), put(joint.axis.normalized(), out.axis);
+  for (int i = 0; i < kernels::dofs_of(joint.kind); ++i) {
+    const int parent = last_dof(trees_, index);
+    auto& dof = trees_.dofs.emplace_back();
+    dof.link = index;
+    dof.parent = parent;
+    dof.depth = parent < 0 ? 0 : trees_.dofs[static_cast<std::size_t>(parent)].depth + 1;
+    dof.entry = trees_.entries;
+    dof.coordinate = out.coordinate;
+    dof.armature = joint.armature, dof.damping = joint.damping;
+    dof.stiffness = joint.stiffness, dof.rest = joint.rest;
+    trees_.entries += dof.depth + 1;
+    ++link.dofs;
+  }
+  if (joint.range) limited_.emplace_back(out.dof, joint);
+  ++link.joints;
+  trees_.coordinates += kernels::coordinates_of(joint.kind);
+}
+
+PlanTrees TreeBuilder::finish(double dt, const kernels::NewtonOptions<double>& newton) {
+  trees_.weights = weights_of(trees_, links_);
+  for (const auto& [dof, joint] : limited_) {
+    for (const int side : {1, -1}) {
+      kernels::TreeLimit<double> limit{};
+      limit.coordinate = trees_.dofs[static_cast<std::size_t>(dof)].coordinate;
+      limit.dof = dof;
+      limit.side = side;
+      limit.end = (*joint.range)[side > 0 ? 0 : 1];
+      if (!std::isfinite(limit.end)) continue;
+      limit.margin = joint.margin;
+      limit.inverse_weight = trees_.weights.dof[static_cast<std::size_t>(dof)];
+      limit.compliance = compile(joint.compliance, dt);
+      trees_.limits.push_back(limit);
+    }
+  }
+  trees_.newton = newton;
+  const double dofs = std::max<double>(1, static_cast<double>(trees_.dofs.size()));
+  trees_.newton.scale = 1 / (trees_.weights.mean_inertia * dofs);
+  return std::move(trees_);
+}
+
+}  // namespace manyworlds

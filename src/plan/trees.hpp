@@ -1,0 +1,78 @@
+// Trees of a plan: bodies in joint coordinates, as the kernels want them
+// (kernels/data/tree_tables.hpp).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "kernels/data/tree_tables.hpp"
+#include "manyworlds/scene.hpp"
+#include "src/plan/compliance.hpp"
+
+namespace manyworlds {
+
+// How easily the trees move at the reference: what MuJoCo scales its constraints by.
+struct TreeWeights {
+  std::vector<double> dof;  // of the diagonal of M^-1, alike for a joint's rotations
+  std::vector<std::array<double, 2>> link;  // of its centre of mass: 1 / kg, 1 / (kg m^2), means
+  double mean_inertia = 1;                  // of the diagonal of M
+};
+
+struct PlanTrees {
+  std::vector<kernels::TreeLink<double>> links;
+  std::vector<kernels::TreeJoint<double>> joints;
+  std::vector<kernels::TreeDof<double>> dofs;
+  std::vector<kernels::TreeLimit<double>> limits;
+  kernels::NewtonOptions<double> newton{};
+  TreeWeights weights;
+  int coordinates = 0;
+  int entries = 0;  // of the joint-space inertia
+};
+
+// A link and where it is in its parent's frame at the reference (kernels/data/tree_tables.hpp).
+struct NewLink {
+  int body = 0;     // its row among bodies with state
+  int parent = -1;  // link; -1: the world
+  Vec3 position = Vec3::Zero();
+  Quat rotation = Quat::Identity();
+  Vec3 center = Vec3::Zero();         // of mass, in the link's frame
+  Quat principal = Quat::Identity();  // axes of inertia in the link's frame
+  double mass = 1;                    // kg
+  Vec3 moments = Vec3::Ones();        // kg m^2, about the principal axes
+};
+// A joint of a link, in the link's frame at the reference. Its numbers are those of each of its
+// dofs.
+struct NewTreeJoint {
+  kernels::TreeJointKind kind = kernels::TreeJointKind::hinge;
+  Vec3 anchor = Vec3::Zero();
+  Vec3 axis = Vec3::UnitZ();  // need not be unit
+  double armature = 0, damping = 0;
+  // Of a hinge or slide.
+  double reference = 0;  // its coordinate there, rad or m
+  double stiffness = 0, rest = 0;
+  std::optional<std::array<double, 2>> range = {};  // rad or m
+  double margin = 0;                                // of the range
+  Compliance compliance = {};
+};
+
+// Adds links, each before its children and all links of a tree in a row, and the joints that move
+// a link in the order in which they do.
+class TreeBuilder {
+ public:
+  int add(const NewLink& link);
+  void add(const NewTreeJoint& joint);  // of the link that was added last
+  // `newton`: without its scale.
+  PlanTrees finish(double dt, const kernels::NewtonOptions<double>& newton);
+
+ private:
+  PlanTrees trees_;
+  std::vector<NewLink> links_;
+  std::vector<std::pair<int, NewTreeJoint>> limited_;  // dof, its joint
+};
+
+// tree_weights.cpp
+TreeWeights weights_of(const PlanTrees& trees, const std::vector<NewLink>& links);
+
+}  // namespace manyworlds

@@ -1,0 +1,84 @@
+#include "src/state/tree_tables.hpp"
+
+#include <algorithm>
+
+namespace manyworlds {
+
+namespace {
+
+template <class Real, std::size_t N>
+void copy(const double (&from)[N], Real (&to)[N]) {
+  std::transform(from, from + N, to, [](double x) { return static_cast<Real>(x); });
+}
+
+template <class Real>
+kernels::Compliance<Real> compliance(const kernels::Compliance<double>& c) {
+  return {static_cast<Real>(c.stiffness),
+          static_cast<Real>(c.damping),
+          static_cast<Real>(c.least),
+          static_cast<Real>(c.gain),
+          static_cast<Real>(c.inverse_width),
+          static_cast<Real>(c.middle),
+          static_cast<Real>(c.rising),
+          static_cast<Real>(c.falling),
+          c.power};
+}
+
+}  // namespace
+
+template <class Real>
+TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int first_velocity,
+                             int first_acceleration) {
+  for (const auto& from : trees.links) {
+    kernels::TreeLink<Real> to{from.body,   from.parent,
+                               from.root,   from.first_joint,
+                               from.joints, from.first_dof,
+                               from.dofs,   {},
+                               {},          {},
+                               {}};
+    copy(from.position, to.position), copy(from.rotation, to.rotation);
+    copy(from.center, to.center), copy(from.principal, to.principal);
+    links_.push_back(to);
+  }
+  for (const auto& from : trees.joints) {
+    kernels::TreeJoint<Real> to{
+        from.kind, from.coordinate, from.dof, {}, {}, static_cast<Real>(from.reference)};
+    copy(from.anchor, to.anchor), copy(from.axis, to.axis);
+    joints_.push_back(to);
+  }
+  for (const auto& from : trees.dofs) {
+    dofs_.push_back({from.link, from.parent, from.depth, from.entry, from.coordinate,
+                     static_cast<Real>(from.armature), static_cast<Real>(from.damping),
+                     static_cast<Real>(from.stiffness), static_cast<Real>(from.rest)});
+    table_.damped = table_.damped || from.damping > 0;
+  }
+  for (const auto& from : trees.limits) {
+    limits_.push_back({from.coordinate, from.dof, static_cast<Real>(from.side),
+                       static_cast<Real>(from.end), static_cast<Real>(from.margin),
+                       static_cast<Real>(from.inverse_weight), compliance<Real>(from.compliance)});
+  }
+  const auto& newton = trees.newton;
+  table_.newton = {newton.iterations, newton.line_iterations, static_cast<Real>(newton.tolerance),
+                   static_cast<Real>(newton.line_tolerance), static_cast<Real>(newton.scale)};
+  table_.limits = static_cast<std::int32_t>(limits_.size());
+  table_.links = static_cast<std::int32_t>(links_.size());
+  table_.dofs = static_cast<std::int32_t>(dofs_.size());
+  table_.coordinates = trees.coordinates;
+  table_.entries = trees.entries;
+  table_.first_coordinate = first_coordinate;
+  table_.first_velocity = first_velocity;
+  table_.first_acceleration = first_acceleration;
+}
+
+template <class Real>
+kernels::TreeTable<Real> TreeTables<Real>::get() const {
+  kernels::TreeTable<Real> out = table_;
+  out.link = links_.data(), out.joint = joints_.data(), out.dof = dofs_.data();
+  out.limit = limits_.data();
+  return out;
+}
+
+template class TreeTables<float>;
+template class TreeTables<double>;
+
+}  // namespace manyworlds
