@@ -127,9 +127,8 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
   if (tree.limits == 0) return;
   c.take(w.limit_rows, static_cast<std::size_t>(tree.limits));
   take(w.stiffness, tree.entries);
-  for (Real** rows : {&w.guess, &w.balance, &w.direction, &w.reach, &w.row_load}) {
-    take(*rows, tree.dofs);
-  }
+  take(w.guess, tree.dofs), take(w.balance, tree.dofs), take(w.row_load, tree.dofs);
+  take(w.direction, tree.dofs), take(w.reach, tree.dofs);
 }
 
 void carve(const Constants& t, Work& w, Carver& c) {
