@@ -124,9 +124,20 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
   take(w.force, kTwistRows * tree.links), take(w.inertia, kInertiaRows * tree.links);
   take(w.matrix, tree.entries), take(w.load, tree.dofs);
   take(w.next, tree.coordinates + tree.dofs);
-  if (tree.limits == 0) return;
+  if (tree.stages > 1) {
+    take(w.start, tree.coordinates + tree.dofs), take(w.displacement, tree.dofs);
+    take(w.stage_rate, 2 * tree.dofs), take(w.rate_sum, 2 * tree.dofs);
+  }
+  if (!tree.has_rows) return;
   c.take(w.limit_rows, static_cast<std::size_t>(tree.limits));
-  take(w.stiffness, tree.entries);
+  int contacts = 0;
+  for (int i = 0; t.has_contacts && i < t.classes; ++i) {
+    contacts += t.pair_class[i].count * (is_multi(t.pair_class[i].list) ? Isotropic::kMulti : 1);
+  }
+  c.take(w.contacts, static_cast<std::size_t>(contacts));
+  take(w.column, 3 * tree.dofs);
+  take(w.stiffness, tree.dofs * (tree.dofs + 1) / 2);
+  c.take(w.columns, static_cast<std::size_t>(tree.dofs));
   take(w.guess, tree.dofs), take(w.balance, tree.dofs), take(w.row_load, tree.dofs);
   take(w.direction, tree.dofs), take(w.reach, tree.dofs);
 }

@@ -8,10 +8,9 @@
 
 namespace manyworlds::scenes {
 
-// Values of one field of one world, as [body][component].
+// Values of one field of one world, as [item][component].
 inline std::vector<double> values(const Batch& batch, Field field, int world = 0) {
-  const Space space = batch.plan(batch.kind_of(world)).scene().space;
-  std::vector<double> v(static_cast<std::size_t>(batch.bodies(world) * components(field, space)));
+  std::vector<double> v(batch.plan(batch.kind_of(world)).numbers(field));
   batch.read(field, world, v);
   return v;
 }

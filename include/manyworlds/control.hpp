@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 
 #include "manyworlds/ids.hpp"
@@ -15,18 +16,34 @@ enum class ControlKind {
   target_speed,     // of a joint's drive, m/s or rad/s
   thrust,           // N, along `direction` at `point` of a body
   torque,           // N m, about `direction` of a body
+  joint_force,      // of Solver::newton: of an actuator on a hinge or slider
+};
+
+// A force along a joint's coordinate, N or N m. With the control u, clamped to its range, and the
+// length l = gear x and speed s = gear v of the joint's coordinate x and its speed v:
+//   gear clamp((gain.x + gain.y l + gain.z s) u + bias.x + bias.y l + bias.z s, low, high)
+// A motor has gain 1; a position servo gain kp and bias (0, -kp, -kv); a velocity servo gain kv and
+// bias (0, 0, -kv).
+struct Actuator {
+  double gear = 1;
+  Eigen::Vector3d gain{1, 0, 0}, bias{0, 0, 0};
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool operator==(const Actuator&) const = default;
 };
 
 struct Control {
   std::string name = {};
   ControlKind kind = ControlKind::target_speed;
-  JointId joint = {};                               // with a drive; target_position, target_speed
+  // With a drive (target_position, target_speed), or a hinge or slider (joint_force).
+  JointId joint = {};
   BodyId body = {};                                 // dynamic; thrust, torque
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  // m, body frame
   Eigen::Vector3d direction{1, 0, 0};  // body frame, need not be unit; a planar torque is about z
-  // Range; what is set beyond it counts as its end.
+  // Range; what is set beyond it counts as its end. Of joint_force it may be infinite.
   double low = -1, high = 1;
-  double initial = 0;  // what a world has when it begins
+  double initial = 0;      // what a world has when it begins
+  Actuator actuator = {};  // of joint_force
 };
 
 }  // namespace manyworlds

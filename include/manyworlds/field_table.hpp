@@ -6,23 +6,29 @@
 
 namespace manyworlds {
 
-// What has a value of a field: a body with state, the world, a shape of the scene, a joint
-// coordinate that is integrated (degree of freedom), a particle.
-enum class ItemKind { body, world, shape, dof, particle };
-inline constexpr int kItemKinds = 5;
+// What has a value of a field: a body with state, the world, a shape of the scene; of plans with
+// Solver::newton a joint coordinate, and a degree of freedom (dof) of the velocities; a particle.
+enum class ItemKind { body, world, shape, coordinate, dof, particle };
+inline constexpr int kItemKinds = 6;
 
 // When a plan has a field.
 enum class FieldPresence { always, with_orientation };  // with Feature::orientation
 
 // X(name, kind of item, presence, planar components, spatial components, unit, frame and meaning,
 //   written by)
-#define MW_STATE_FIELDS(X)                                                         \
-  X(position, body, always, "x y", "x y z", "m", "body origin, world", "finish")   \
-  X(orientation, body, with_orientation, "cos sin", "w x y z", "1",                \
-    "body frame in world; planar (cos, sin), spatial (w, x, y, z)", "finish")      \
-  X(linear_velocity, body, always, "x y", "x y z", "m/s", "centre of mass, world", \
-    "forces, solve, restitution")                                                  \
-  X(angular_velocity, body, always, "z", "x y z", "rad/s", "world", "forces, solve, restitution")
+#define MW_STATE_FIELDS(X)                                                                        \
+  X(position, body, always, "x y", "x y z", "m", "body origin, world", "finish")                  \
+  X(orientation, body, with_orientation, "cos sin", "w x y z", "1",                               \
+    "body frame in world; planar (cos, sin), spatial (w, x, y, z)", "finish")                     \
+  X(linear_velocity, body, always, "x y", "x y z", "m/s", "centre of mass, world",                \
+    "forces, solve, restitution")                                                                 \
+  X(angular_velocity, body, always, "z", "x y z", "rad/s", "world", "forces, solve, restitution") \
+  X(generalized_position, coordinate, always, "q", "q", "m, rad or 1",                            \
+    "MuJoCo's qpos: free x y z and w x y z, ball w x y z, hinge, slide", "tree")                  \
+  X(generalized_velocity, dof, always, "v", "v", "m/s or rad/s",                                  \
+    "MuJoCo's qvel: free world, then body axes; ball body axes", "tree")                          \
+  X(generalized_acceleration, dof, always, "a", "a", "m/s^2 or rad/s^2",                          \
+    "of the last step, before implicit dampers: its warm start", "tree")
 
 #define MW_FIELD(name, ...) name,
 enum class Field { MW_STATE_FIELDS(MW_FIELD) };

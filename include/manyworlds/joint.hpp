@@ -13,7 +13,9 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
+#include "manyworlds/compliance.hpp"
 #include "manyworlds/ids.hpp"
 
 namespace manyworlds {
@@ -38,6 +40,10 @@ struct Spring {
 struct Limit {
   double low = 0, high = 0;  // m or rad
   std::optional<Spring> spring = {};
+  // Of Solver::newton, whose limits have no spring: how soft it is, and from which distance on it
+  // acts, m or rad.
+  Compliance compliance = {};
+  double margin = 0;
 };
 
 // Pulls a coordinate x with speed v by
@@ -98,6 +104,16 @@ struct TargetJoint {
 using JointType = std::variant<BallJoint, HingeJoint, SliderJoint, FixedJoint, DistanceJoint,
                                WheelJoint, PulleyJoint, TargetJoint>;
 
+// Of Solver::newton: what acts along each coordinate of a joint, and where its zero is.
+struct JointDynamics {
+  double armature = 0;   // kg m^2 or kg, inertia of the rotor
+  double damping = 0;    // N m s/rad or N s/m, implicit
+  double stiffness = 0;  // N m/rad or N/m, of a hinge or slider, towards `rest`
+  double rest = 0;       // rad or m
+  double reference = 0;  // rad or m: the coordinate of a hinge or slider whose frames coincide
+  bool operator==(const JointDynamics&) const = default;
+};
+
 struct Joint {
   std::string name = {};
   JointType type = HingeJoint{};
@@ -110,6 +126,23 @@ struct Joint {
   // from then on and Status::joint_broken is set. The torque is that about the frames' origin.
   double break_force = std::numeric_limits<double>::infinity();   // N
   double break_torque = std::numeric_limits<double>::infinity();  // N m
+  // Of Solver::newton: a joint of the same A and B that this one comes after. The joints of such a
+  // series hold frames without mass between A and B: each moves what the one before it moves, in
+  // which its frame_a is, and the last one moves B. Hinges of a shoulder, one after the other.
+  JointId after = {};
+  JointDynamics dynamics = {};
+};
+
+// A length made of coordinates of hinges and sliders, each times its coefficient: a cord over
+// pulleys (MuJoCo's fixed tendon). Of Solver::newton, which keeps it within its limit.
+struct TendonTerm {
+  JointId joint = {};
+  double coefficient = 1;  // m/rad or 1, or any unit that the limit is in
+};
+struct Tendon {
+  std::string name = {};
+  std::vector<TendonTerm> terms = {};
+  std::optional<Limit> limit = {};
 };
 
 }  // namespace manyworlds

@@ -12,6 +12,8 @@ struct Counted {
 constexpr Counted not_counted(const char* why) { return {false, why}; }
 constexpr Counted counted_if(bool condition, const char* why_not) { return {condition, why_not}; }
 
+inline constexpr const char* kOfNewton = "the default is what there was before Solver::newton";
+
 template <class Struct>
 struct Members;  // name; visit(value, visit): visit("member", value.member[, Counted]) in turn
 template <class Struct>

@@ -78,8 +78,10 @@ template <>
 struct Members<Limit> {
   static constexpr const char* name = "Limit";
   static void visit(auto& value, auto&& visit) {
-    auto& [low, high, spring] = value;
+    auto& [low, high, spring, compliance, margin] = value;
     visit("low", low), visit("high", high), visit("spring", spring);
+    const Counted newton = counted_if(compliance != Compliance{} || margin != 0, kOfNewton);
+    visit("compliance", compliance, newton), visit("margin", margin, newton);
   }
 };
 template <>
@@ -155,15 +157,26 @@ struct Members<TargetJoint> {
   }
 };
 template <>
+struct Members<JointDynamics> {
+  static constexpr const char* name = "JointDynamics";
+  static void visit(auto& value, auto&& visit) {
+    auto& [armature, damping, stiffness, rest, reference] = value;
+    visit("armature", armature), visit("damping", damping), visit("stiffness", stiffness);
+    visit("rest", rest), visit("reference", reference);
+  }
+};
+template <>
 struct Members<Joint> {
   static constexpr const char* name = "Joint";
   static void visit(auto& value, auto&& visit) {
-    auto& [name_, type, body_a, body_b, frame_a, frame_b, collide, break_force, break_torque] =
-        value;
+    auto& [name_, type, body_a, body_b, frame_a, frame_b, collide, break_force, break_torque, after,
+           dynamics] = value;
     visit("name", name_, not_counted("names are for people"));
     visit("type", type), visit("body_a", body_a), visit("body_b", body_b);
     visit("frame_a", frame_a), visit("frame_b", frame_b), visit("collide", collide);
     visit("break_force", break_force), visit("break_torque", break_torque);
+    visit("after", after, counted_if(after != JointId(), kOfNewton));
+    visit("dynamics", dynamics, counted_if(dynamics != JointDynamics{}, kOfNewton));
   }
 };
 // -- the rest of a scene
@@ -176,15 +189,25 @@ struct Members<Attractor> {
   }
 };
 template <>
+struct Members<Actuator> {
+  static constexpr const char* name = "Actuator";
+  static void visit(auto& value, auto&& visit) {
+    auto& [gear, gain, bias, low, high] = value;
+    visit("gear", gear), visit("gain", gain), visit("bias", bias);
+    visit("low", low), visit("high", high);
+  }
+};
+template <>
 struct Members<Control> {
   static constexpr const char* name = "Control";
   static void visit(auto& value, auto&& visit) {
-    auto& [name_, kind, joint, body, point, direction, low, high, initial] = value;
+    auto& [name_, kind, joint, body, point, direction, low, high, initial, actuator] = value;
     visit("name", name_, not_counted("names are for people"));
     visit("kind", kind), visit("joint", joint), visit("body", body), visit("point", point);
     visit("direction", direction), visit("low", low), visit("high", high);
     visit("initial", initial,
           not_counted("what a world begins with does not matter to one that has begun"));
+    visit("actuator", actuator, counted_if(actuator != Actuator{}, kOfNewton));
   }
 };
 template <>
@@ -196,17 +219,46 @@ struct Members<Variation> {
     visit("high", high), visit("draw", draw), visit("together", together);
   }
 };
+template <>
+struct Members<TendonTerm> {
+  static constexpr const char* name = "TendonTerm";
+  static void visit(auto& value, auto&& visit) {
+    auto& [joint, coefficient] = value;
+    visit("joint", joint), visit("coefficient", coefficient);
+  }
+};
+template <>
+struct Members<Tendon> {
+  static constexpr const char* name = "Tendon";
+  static void visit(auto& value, auto&& visit) {
+    auto& [name_, terms, limit] = value;
+    visit("name", name_, not_counted("names are for people"));
+    visit("terms", terms), visit("limit", limit);
+  }
+};
+template <>
+struct Members<Exclusion> {
+  static constexpr const char* name = "Exclusion";
+  static void visit(auto& value, auto&& visit) {
+    auto& [body_a, body_b] = value;
+    visit("body_a", body_a), visit("body_b", body_b);
+  }
+};
 // -- the whole
 template <>
 struct Members<Scene> {
   static constexpr const char* name = "Scene";
   static void visit(auto& value, auto&& visit) {
-    auto& [name_, space, bodies, joints, controls, attractors, options, variations] = value;
+    auto& [name_, space, bodies, joints, controls, attractors, options, variations, exclusions,
+           tendons] = value;
     visit("name", name_, not_counted("names are for people"));
     visit("space", space), visit("bodies", bodies), visit("joints", joints);
     visit("controls", controls), visit("attractors", attractors), visit("options", options);
     visit("variations", variations,
           not_counted("what they vary is counted number by number, and not how it is drawn"));
+    visit("exclusions", exclusions,
+          counted_if(!exclusions.empty(), "without any it is what it was before there were some"));
+    visit("tendons", tendons, counted_if(!tendons.empty(), kOfNewton));
   }
 };
 

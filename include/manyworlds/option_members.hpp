@@ -10,7 +10,9 @@ template <>
 struct Members<SolverOptions> {
   static constexpr const char* name = "SolverOptions";
   static void visit(auto& value, auto&& visit) {
-    auto& [method, iterations, relaxation, push_out_share, split_impulse] = value;
+    auto& [method, iterations, relaxation, push_out_share, split_impulse, tolerance,
+           line_search_iterations, line_search_tolerance, impedance_ratio, implicit_damping] =
+        value;
     const Counted swept =
         counted_if(method != Solver::tgs_soft || iterations_of(value) != 1,
                    "the default solver is what there was before there was a choice");
@@ -18,6 +20,12 @@ struct Members<SolverOptions> {
     visit("method", method, swept), visit("iterations", iterations, swept);
     visit("relaxation", relaxation, counted_if(method == Solver::sor, "of sor alone"));
     visit("push_out_share", push_out_share, hard), visit("split_impulse", split_impulse, hard);
+    const Counted newton = counted_if(method == Solver::newton, "of newton alone");
+    visit("tolerance", tolerance, newton);
+    visit("line_search_iterations", line_search_iterations, newton);
+    visit("line_search_tolerance", line_search_tolerance, newton);
+    visit("impedance_ratio", impedance_ratio, newton);
+    visit("implicit_damping", implicit_damping, newton);
   }
 };
 template <>

@@ -15,14 +15,23 @@ namespace manyworlds {
 // What runs over the rows of contacts and joints (solver.hpp).
 struct SolverOptions {
   Solver method = Solver::tgs_soft;
-  // Sweeps over all rows per substep, of tgs_soft those before the motion. Default: 1 for tgs_soft
-  // and penalty, 10 for the others, which are usually given fewer substeps.
+  // Sweeps over all rows per substep, of tgs_soft those before the motion; of newton its steps at
+  // most. Default: 1 for tgs_soft and penalty, 100 for newton, 10 for the others, which are usually
+  // given fewer substeps.
   std::optional<int> iterations = {};
   double relaxation = 1.3;  // of sor, in (0, 2)
   // Of sequential_impulse, sor and nncg: the share of an overlap beyond slop, or of a joint's gap,
   // that a substep removes, and whether contacts do so without leaving a speed.
   double push_out_share = 0.2;
   bool split_impulse = false;
+  // Of newton: where it stops, relative to the mean inertia, and the same of its line search.
+  double tolerance = 1e-8;
+  int line_search_iterations = 50;
+  double line_search_tolerance = 0.01;
+  // Of newton: stiffness of friction against that of normal rows.
+  double impedance_ratio = 1;
+  // Of newton with symplectic_euler: dampers of joints act at the end of the step.
+  bool implicit_damping = true;
 };
 // SolverOptions::iterations, or the default of the method.
 int iterations_of(const SolverOptions& solver);

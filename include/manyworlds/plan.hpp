@@ -107,8 +107,9 @@ class Plan {
   int row(ShapeId shape) const;  // of arrays [shape of the scene]; all have one
   std::optional<int> find_row(BodyId body) const;
   BodyId body_in_row(int row) const;
-  int coordinates() const;                    // of all joints of the scene (observe.hpp)
-  int first_coordinate(JointId joint) const;  // where those of a joint begin
+  int coordinates() const;  // of all joints of the scene (observe.hpp)
+  // Where those of a joint begin; with Solver::newton in generalized_position.
+  int first_coordinate(JointId joint) const;
   bool has(Feature feature) const;
   // Equal for plans whose worlds can go on in each other: of everything but names and where bodies
   // begin.

@@ -78,6 +78,11 @@ struct Attractor {
   double softening = 0;          // m
 };
 
+// Two bodies whose shapes do not collide with each other.
+struct Exclusion {
+  BodyId body_a = {}, body_b = {};
+};
+
 struct Scene {
   std::string name = {};
   Space space = Space::spatial;
@@ -87,6 +92,8 @@ struct Scene {
   std::vector<Attractor> attractors = {};
   Options options = {};
   std::vector<Variation> variations = {};
+  std::vector<Exclusion> exclusions = {};  // beside those of joints (Joint::collide)
+  std::vector<Tendon> tendons = {};
 
   // Appends and returns the handle. Shape k of a body is ShapeId(body, k).
   BodyId add(Body body) {

@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "manyworlds/compliance.hpp"
+
 namespace manyworlds {
 
 using Vec2 = Eigen::Vector2d;
@@ -89,9 +91,23 @@ struct HeightField {
 using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Capsule, Segment,
                               Terrain, Cylinder, Hull, HeightField, Ellipsoid>;
 
+// Contacts of Solver::newton, as MuJoCo mixes those of two geoms: of two materials the one of
+// higher priority decides; where they are equal, friction and dimensions are the larger ones, and
+// the compliance is the mean by weight, or the smaller of two direct ones. Margins add up.
+struct SoftContact {
+  int dimensions = 3;  // 1: no friction, 3: friction along the surface
+  Compliance compliance = {};
+  double margin = 0;  // m, from which distance on a contact pushes
+  double gap = 0;     // m, by how much farther MuJoCo lists it; it moves nothing
+  int priority = 0;
+  double weight = 1;  // of the compliance
+  bool operator==(const SoftContact&) const = default;
+};
+
 struct Material {
   double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean of its two
   double restitution = 0.0;  // 0 to 1; a pair uses the larger of its two
+  SoftContact soft = {};  // of Solver::newton, which uses the larger friction and bounces nothing
 };
 
 // Two shapes collide when each one's category is in the other's mask and they are on different

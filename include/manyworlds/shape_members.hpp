@@ -114,11 +114,32 @@ struct Members<HeightField> {
   }
 };
 template <>
+struct Members<Compliance> {
+  static constexpr const char* name = "Compliance";
+  static void visit(auto& value, auto&& visit) {
+    auto& [time_constant, damping_ratio, min_impedance, max_impedance, width, midpoint, power] =
+        value;
+    visit("time_constant", time_constant), visit("damping_ratio", damping_ratio);
+    visit("min_impedance", min_impedance), visit("max_impedance", max_impedance);
+    visit("width", width), visit("midpoint", midpoint), visit("power", power);
+  }
+};
+template <>
+struct Members<SoftContact> {
+  static constexpr const char* name = "SoftContact";
+  static void visit(auto& value, auto&& visit) {
+    auto& [dimensions, compliance, margin, gap, priority, weight] = value;
+    visit("dimensions", dimensions), visit("compliance", compliance), visit("margin", margin);
+    visit("gap", gap), visit("priority", priority), visit("weight", weight);
+  }
+};
+template <>
 struct Members<Material> {
   static constexpr const char* name = "Material";
   static void visit(auto& value, auto&& visit) {
-    auto& [friction, restitution] = value;
+    auto& [friction, restitution, soft] = value;
     visit("friction", friction), visit("restitution", restitution);
+    visit("soft", soft, counted_if(soft != SoftContact{}, kOfNewton));
   }
 };
 template <>

@@ -14,6 +14,14 @@
 //
 // All but penalty begin a step with the impulses of the last one.
 //
+// newton is another method altogether: bodies are links of trees that move in the coordinates of
+// their joints (free bodies in their own), and each of the `substeps` steps of dt / substeps finds
+// the accelerations a that minimise
+//   1/2 (a - a0)' M (a - a0) + sum of s(J a - r),
+// with the joint-space inertia M, the accelerations a0 without constraints, and the cost s of
+// limits and contacts that ask for the acceleration r (Compliance). It has one minimum, which
+// Newton's method finds exactly (Todorov 2014). Models move in it as in MuJoCo.
+//
 // Hard rows of joints that have come apart by s ask for the speed SolverOptions::push_out_share
 // s / h (Baumgarte 1972), those of contacts that overlap by s for the same of s - slop, at most
 // ContactOptions::push_out_speed. That speed stays with the bodies, and its impulses count as loads
@@ -35,9 +43,10 @@ enum class Solver {
   // (Silcowitz-Hansen, Niebe, Erleben 2010). Ends with a sweep.
   nncg,
   penalty,  // implicit spring-dampers without memory
+  newton,   // trees in joint coordinates, MuJoCo's soft constraints
 };
 const char* to_string(Solver solver);
-// Whether overlaps and gaps close by a share per substep: all but tgs_soft and penalty.
+// Whether overlaps and gaps close by a share per substep: all but tgs_soft, penalty and newton.
 bool has_hard_rows(Solver solver);
 
 }  // namespace manyworlds

@@ -136,6 +136,7 @@ void begin(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     for (int l = 0; l < kLanes; ++l) w.lane_count[list][l] = w.cursor[list][l] = 0;
   }
   w.overflow = w.partly_asleep = 0;
+  w.tree.contact_count = 0;
   w.untouched = w.frozen = frozen_lanes(g);
   if (t.has_sleep && t.has_joints && has_idle_bodies(g)) wake_joined(t, g, w);
   w.counters = {};

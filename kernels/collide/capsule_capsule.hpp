@@ -1,5 +1,5 @@
 // Capsule against capsule in space: one point, between the nearest places of the two axes, or two
-// where the axes are parallel within kParallel and lie side by side: at the ends of the stretch
+// where the axes are parallel within kParallel2 and lie side by side: at the ends of the stretch
 // that they share. Two points are told apart by their place along A's axis.
 #pragma once
 
@@ -9,15 +9,18 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Square of the sine of the angle below which two axes count as parallel.
 inline constexpr Real kParallel2 = Real(4e-4);
+// Of trees, whose contacts are MuJoCo's: what float32 makes of axes that are parallel.
+inline constexpr Real kParallelOfTrees2 = Real(1e-11);
 
 template <class S>
 struct CapsuleCapsule {
   using A = CapsulePose<Vec3>;
   using B = CapsulePose<Vec3>;
   static constexpr int kPoints = 4;
-  static MW_INLINE void collide(const Constants&, const A& a, const B& b, Float,
+  static MW_INLINE void collide(const Constants& table, const A& a, const B& b, Float,
                                 Manifold<S, 4>& m) {
     const Float zero(Real(0)), one(Real(1));
+    const Float parallel2(table.tree.links > 0 ? kParallelOfTrees2 : kParallel2);
     const Vec3 d = b.p - a.p;
     const Float cosine = dot(a.axis, b.axis), da = dot(a.axis, d), db = dot(b.axis, d);
     const Vec3 product = cross(a.axis, b.axis);
@@ -41,7 +44,7 @@ struct CapsuleCapsule {
     m.tangent = tangent_along(a.axis, m.normal);
 
     const Float low = max(-a.half, da - b.half), high = min(a.half, da + b.half);
-    const Mask beside = (sine2 < Float(kParallel2)) & (low < high);
+    const Mask beside = (sine2 < parallel2) & (low < high);
     const Float place[2] = {select(beside, low, s), select(beside, high, s)};
     for (int i = 0; i < 2; ++i) {
       const Vec3 base = a.axis * place[i];

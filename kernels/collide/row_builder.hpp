@@ -33,12 +33,15 @@ struct RowBuilder {
 
 RowBuilder<Planar> planar_dense(), planar_rows();
 RowBuilder<Isotropic> isotropic_dense(), isotropic_rows(), tensor_dense(), tensor_rows();
+RowBuilder<Isotropic> tree_contacts();
 
 // Of the plan, in the layout of this step.
 template <class G>
 MW_INLINE RowBuilder<G> row_builder(const Constants& t, const Work& w) {
   if constexpr (G::kDim == 2) {
     return w.dense ? planar_dense() : planar_rows();
+  } else if (t.tree.links > 0) {
+    return tree_contacts();
   } else if (t.inertia_kind == kernels::InertiaKind::tensor) {
     return w.dense ? tensor_dense() : tensor_rows();
   } else {

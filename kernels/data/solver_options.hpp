@@ -5,7 +5,7 @@
 
 namespace manyworlds::kernels {
 
-enum class Solver : std::int32_t { tgs_soft, sequential_impulse, sor, nncg, penalty };
+enum class Solver : std::int32_t { tgs_soft, sequential_impulse, sor, nncg, penalty, newton };
 
 template <class Real>
 struct SolverOptions {

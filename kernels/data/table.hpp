@@ -81,9 +81,12 @@ struct FlightTable {
 // Plans whose bodies are in joint coordinates (kernels/tree/).
 template <class Real>
 struct TreeStages {
-  // Whole steps of plans in which nothing but joints and their own forces acts on the links.
-  void (*steps)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*, int steps);
-  Stage<Real> place;  // poses and velocities of bodies from the joint coordinates
+  // Substeps of plans without contacts.
+  void (*steps)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*, int substeps);
+  // Of the others: links and the poses of their bodies; then, when contacts are found, one substep.
+  Stage<Real> pose, step;
+  Stage<Real> runge_kutta[4];  // instead of a step, each after a pose
+  Stage<Real> place;           // poses and velocities of bodies from the joint coordinates
 };
 
 template <class Real>

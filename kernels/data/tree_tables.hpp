@@ -65,15 +65,48 @@ struct Compliance {
   std::int32_t power;
 };
 
-// A hinge or slide stays on one side of `end`: side 1 above, -1 below.
+// A length stays on one side of `end`: side 1 above, -1 below. It is the coordinate of a hinge or
+// slide, or the sum of several, each times its coefficient (a fixed tendon).
 template <class Real>
 struct TreeLimit {
-  std::int32_t coordinate, dof;
   Real side, end;
   Real margin;          // rad or m, where the row begins
-  Real inverse_weight;  // of the dof: diagonal of the inverse of M at the reference
+  Real inverse_weight;  // J M^-1 J' at the reference
   Compliance<Real> compliance;
+  std::int32_t first_term, terms;
+  std::uint64_t coupled;  // its dofs
 };
+template <class Real>
+struct TreeTerm {
+  std::int32_t coordinate, dof;  // in a limit the last dof first
+  Real coefficient;
+};
+
+// A force along a hinge's or slide's coordinate (Actuator in manyworlds/control.hpp).
+template <class Real>
+struct TreeActuator {
+  std::int32_t control, coordinate, dof;
+  Real gear, gain[3], bias[3];
+  Real low, high;  // N or N m, before the gear
+};
+
+// Contacts of two shapes (SoftContact in manyworlds/shape.hpp).
+template <class Real>
+struct TreePair {
+  std::int32_t link_a, link_b;          // -1: the world
+  std::int32_t dimensions;              // 1 or 3
+  std::int32_t material_a, material_b;  // whose friction counts: the larger one, or one twice
+  Real margin;                          // m, where a contact begins to push
+  Real inverse_weight;                  // of the rows
+  Real friction_weight;                 // times the square of the friction, added to that
+  Compliance<Real> compliance;
+  // The dofs that move one link against the other, the last one first: ~dof where they move A.
+  std::int32_t first_dof, dofs;
+  std::uint64_t coupled;  // those
+};
+
+// Dofs of a plan of trees, at most: sets of them are bits.
+inline constexpr int kMaxTreeDofs = 64;
 
 // How the newton solver stops (src/plan/trees.hpp).
 template <class Real>
@@ -87,15 +120,25 @@ template <class Real>
 struct TreeTable {
   std::int32_t links, dofs, coordinates;
   std::int32_t entries;  // of the inertia matrix
-  bool damped;           // some dof has damping
-  std::int32_t limits;
-  // Rows of the state; accelerations, of the step before, where some rows may be.
-  std::int32_t first_coordinate, first_velocity, first_acceleration;
+  bool damped;           // some dof has damping, which is implicit
+  std::int32_t stages;   // of the integrator: 1, or 4 of Runge-Kutta
+  std::int32_t limits, actuators;
+  // Rows of the state: of the coordinates, and of the dofs, each with a velocity and the
+  // acceleration of the step before.
+  std::int32_t first_coordinate, first_dof;
   NewtonOptions<Real> newton;
   const TreeLink<Real>* link;
   const TreeJoint<Real>* joint;
   const TreeDof<Real>* dof;
   const TreeLimit<Real>* limit;
+  const TreeTerm<Real>* term;  // of limits
+  const TreeActuator<Real>* actuator;
+  // Of plans with contacts, else nullptr.
+  const TreePair<Real>* pair;  // [key]
+  const std::int32_t* pair_dof;
+  const std::uint64_t* ancestors;  // [dof] those on the way to the root
+  bool has_rows;                   // there are limits or contacts
+  Real impedance_ratio;
 };
 
 }  // namespace manyworlds::kernels

@@ -78,6 +78,23 @@ MW_INLINE Float passive_force(const Constants& t, const Group& g, const Dof& dof
   return force;
 }
 
+// Adds the forces of actuators.
+inline void add_actuators(const Constants& t, const Group& g, const Work& w) {
+  for (int i = 0; i < t.tree.actuators; ++i) {
+    const auto& a = t.tree.actuator[i];
+    const Float gear(a.gear), length = gear * Float::load(coordinate_of(t, g, a.coordinate));
+    const Float speed = gear * Float::load(velocity_of(t, g, a.dof));
+    const auto affine = [&](const Real(&c)[3]) {
+      return fma(Float(c[2]), speed, fma(Float(c[1]), length, Float(c[0])));
+    };
+    const Float control = Float::load(g.control + a.control * kLanes);
+    const Float force =
+        clamp(fma(affine(a.gain), control, affine(a.bias)), Float(a.low), Float(a.high));
+    Real* load = w.tree.load + a.dof * kLanes;
+    fma(gear, force, Float::load(load)).store(load);
+  }
+}
+
 // From the tips to the roots: the rows of the joint-space inertia, and the generalised forces.
 inline void project(const Constants& t, const Group& g, const Work& w) {
   for (int i = t.tree.links - 1; i >= 0; --i) {

@@ -15,11 +15,12 @@ using kernels::TreeJointKind;
 MW_INLINE Real* coordinate_of(const Constants& t, const Group& g, int coordinate) {
   return g.state + (t.tree.first_coordinate + coordinate) * kLanes;
 }
+inline constexpr int kDofRows = 2;
 MW_INLINE Real* velocity_of(const Constants& t, const Group& g, int dof) {
-  return g.state + (t.tree.first_velocity + dof) * kLanes;
+  return g.state + (t.tree.first_dof + kDofRows * dof) * kLanes;
 }
 MW_INLINE Real* acceleration_of(const Constants& t, const Group& g, int dof) {
-  return g.state + (t.tree.first_acceleration + dof) * kLanes;
+  return velocity_of(t, g, dof) + kLanes;
 }
 MW_INLINE Real* axis_of(const Work& w, int dof) { return w.tree.axis + dof * kTwistRows * kLanes; }
 

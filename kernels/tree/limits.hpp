@@ -1,9 +1,10 @@
-// Rows of joint limits: one of a side of a coordinate, +-1 in the column of its dof. A set of rows
-// as the newton solver asks for it (newton.hpp).
+// Rows of limits of joints and tendons: one of a side of a length, with a coefficient in the column
+// of each of its dofs. A set of rows as the newton solver asks for it (newton.hpp).
 #pragma once
 
 #include "kernels/tree/compliance.hpp"
 #include "kernels/tree/row_force.hpp"
+#include "kernels/tree/stiffness.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -17,10 +18,12 @@ class LimitRows {
     for (int i = 0; i < t_.tree.limits; ++i) {
       const auto& limit = t_.tree.limit[i];
       const Float side(limit.side), margin(limit.margin);
-      const Float distance =
-          side * (Float::load(coordinate_of(t_, g, limit.coordinate)) - Float(limit.end));
+      const Float length =
+          sum(limit, [&](const Term& term) { return coordinate_of(t_, g, term.coordinate); });
+      const Float distance = side * (length - Float(limit.end));
       const Mask near = distance < margin;
-      const Float speed = side * Float::load(velocity_of(t_, g, limit.dof));
+      const Float speed =
+          side * sum(limit, [&](const Term& term) { return velocity_of(t_, g, term.dof); });
       const SoftRow soft =
           soft_row(limit.compliance, Float(limit.inverse_weight), distance - margin, speed);
       Row& row = rows_[i];
@@ -32,55 +35,93 @@ class LimitRows {
     return found;
   }
 
+  void look_at(std::uint32_t lanes) { lanes_ = lanes; }
   // J a - reference.
   MW_INLINE void start(const Real* a) const {
     for_each([&](Row& row, const Limit& limit) {
-      fms(Float(limit.side), Float::load(a + limit.dof * kLanes), Float::load(row.reference))
-          .store(row.residual);
+      fms(Float(limit.side), along(limit, a), Float::load(row.reference)).store(row.residual);
     });
   }
   // Adds J' times the forces.
   MW_INLINE void add_forces(Real* load) const {
-    for_each([&](const Row& row, const Limit& limit) {
-      const Float f = force_of(row);
-      Real* to = load + limit.dof * kLanes;
-      fma(Float(limit.side), f, Float::load(to)).store(to);
+    for_each([&](Row& row, const Limit& limit) {
+      const Float f = view(row).force();
+      const Float own = Float(limit.side) * f;
+      for (int i = 0; i < limit.terms; ++i) {
+        const Term& term = t_.tree.term[limit.first_term + i];
+        Real* to = load + term.dof * kLanes;
+        fma(Float(term.coefficient), own, Float::load(to)).store(to);
+      }
     });
   }
   // Adds J' D J of the rows that push.
-  MW_INLINE void add_stiffness(Real* matrix) const {
-    for_each([&](const Row& row, const Limit& limit) {
-      Real* diagonal = matrix + t_.tree.dof[limit.dof].entry * kLanes;
-      (Float::load(diagonal) + stiffness_of(row)).store(diagonal);
+  MW_INLINE void couple(const Stiffness& stiffness) const {
+    for_each([&](Row& row, const Limit& limit) {
+      if (limit.terms > 1 && pushes(row)) stiffness.couple(limit.coupled);
+    });
+  }
+  MW_INLINE void add_stiffness(const Stiffness& stiffness) const {
+    for_each([&](Row& row, const Limit& limit) {
+      if (!pushes(row)) return;
+      const Float own = view(row).stiffness();
+      const Term* terms = t_.tree.term + limit.first_term;
+      for (int i = 0; i < limit.terms; ++i) {
+        for (int j = i; j < limit.terms; ++j) {
+          Real* to = stiffness.entry(terms[i].dof, terms[j].dof);
+          const Float share(terms[i].coefficient * terms[j].coefficient);
+          fma(share, own, Float::load(to)).store(to);
+        }
+      }
     });
   }
   MW_INLINE void search(const Real* direction) const {
     for_each([&](Row& row, const Limit& limit) {
-      (Float(limit.side) * Float::load(direction + limit.dof * kLanes)).store(row.change);
+      (Float(limit.side) * along(limit, direction)).store(row.change);
     });
   }
   // Adds the derivatives of the cost along the search.
   MW_INLINE void along(Float step, Float& first, Float& second) const {
-    for_each([&](const Row& row, const Limit&) { add_along(row, step, first, second); });
+    for_each([&](Row& row, const Limit&) { view(row).add_along(step, first, second); });
   }
-  // Goes the step; returns lanes in which a row has begun or ceased to push.
-  MW_INLINE Mask advance(Float step) const {
+  // Goes the step but in lanes that are done; returns those in which a row has begun or ceased to
+  // push.
+  MW_INLINE Mask advance(Float step, Mask done) const {
     Mask changed = mask_from_bits(0);
-    for_each([&](Row& row, const Limit&) { changed = changed | advance_row(row, step); });
+    for_each([&](Row& row, const Limit&) { changed = changed | view(row).advance(step, done); });
     return changed;
   }
 
  private:
   using Row = TreeRow;
   using Limit = kernels::TreeLimit<Real>;
+  using Term = kernels::TreeTerm<Real>;
+  // Of what row(term) points to, each times its coefficient.
+  template <class RowOf>
+  MW_INLINE Float sum(const Limit& limit, RowOf row) const {
+    const Term* terms = t_.tree.term + limit.first_term;
+    Float out = Float(terms[0].coefficient) * Float::load(row(terms[0]));
+    for (int i = 1; i < limit.terms; ++i) {
+      out = fma(Float(terms[i].coefficient), Float::load(row(terms[i])), out);
+    }
+    return out;
+  }
+  MW_INLINE Float along(const Limit& limit, const Real* x) const {
+    return sum(limit, [&](const Term& term) { return x + term.dof * kLanes; });
+  }
+  static MW_INLINE RowView view(Row& row) { return {row.weight, row.residual, row.change}; }
   template <class Visit>
   MW_INLINE void for_each(Visit visit) const {
     for (int i = 0; i < t_.tree.limits; ++i) {
-      if (rows_[i].lanes != 0) visit(rows_[i], t_.tree.limit[i]);
+      if ((rows_[i].lanes & lanes_) != 0) visit(rows_[i], t_.tree.limit[i]);
     }
   }
 
+  MW_INLINE bool pushes(Row& row) const {
+    return (bits(Float(Real(0)) < view(row).stiffness()) & lanes_) != 0;
+  }
+
   const Constants& t_;
+  std::uint32_t lanes_ = kAllLanes;
   Row* rows_;
 };
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/tree/factor.hpp"
+#include "kernels/tree/stiffness.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -48,7 +49,7 @@ template <class Rows>
 class Minimiser {
  public:
   Minimiser(const Constants& t, const Work& w, const Rows& rows)
-      : t_(t), x_(w.tree), rows_(rows), scale_(t.tree.newton.scale) {}
+      : t_(t), x_(w.tree), rows_(rows), stiffness_(t, w), scale_(t.tree.newton.scale) {}
 
   // In the lanes of `active`. Leaves the accelerations in w.tree.guess, and in w.tree.row_load what
   // the rows push with.
@@ -58,11 +59,12 @@ class Minimiser {
     const Float tolerance(t_.tree.newton.tolerance);
     Mask done = !active;
     for (int i = 0; i < t_.tree.newton.iterations && !all(done); ++i) {
+      rows_.look_at(bits(!done));
       find_forces();
-      done = done | (find_gradient() * scale_ < tolerance);
+      done = done | !(tolerance <= find_gradient() * scale_);  // not a number: done, too
       if (all(done)) break;
       const Float slope = find_direction();
-      done = done | (slope * scale_ * Float(Real(-0.5)) < tolerance);
+      done = done | !(tolerance <= slope * scale_ * Float(Real(-0.5)));
       if (all(done)) break;
       const Float step = select(done, Real(0), find_step(slope, done));
       for_each_dof(t_, [&](int k) {
@@ -73,8 +75,9 @@ class Minimiser {
         go(x_.guess, x_.direction), go(x_.balance, x_.reach);
       });
       // Where no row has changed, the cost was the quadratic that the step has minimised.
-      done = done | !rows_.advance(step);
+      done = done | !rows_.advance(step, done);
     }
+    rows_.look_at(kAllLanes);
     find_forces();
   }
 
@@ -90,18 +93,20 @@ class Minimiser {
       const Float smooth = Float::load(x_.balance + k) - Float::load(x_.load + k);
       const Float gradient = smooth - Float::load(x_.row_load + k);
       squares = fma(gradient, gradient, squares);
-      (-gradient).store(x_.direction + k), (-gradient).store(x_.reach + k);
+      const Float down = Float(Real(0)) - gradient;  // never -0
+      down.store(x_.direction + k), down.store(x_.reach + k);
     });
     return sqrt(squares);
   }
   // The Newton step; returns the slope of the cost along it.
   Float find_direction() {
-    for (int e = 0; e < t_.tree.entries * kLanes; e += kLanes) {
-      Float::load(x_.matrix + e).store(x_.stiffness + e);
-    }
-    rows_.add_stiffness(x_.stiffness);
-    factorise(t_, x_.stiffness);
-    solve_factored(t_, x_.stiffness, x_.direction);
+    stiffness_.begin_pattern();
+    rows_.couple(stiffness_);
+    stiffness_.fill_pattern();
+    stiffness_.start(x_.matrix);
+    rows_.add_stiffness(stiffness_);
+    stiffness_.factorise();
+    stiffness_.solve(x_.direction);
     Float slope(Real(0));
     for_each_dof(t_, [&](int k) {
       slope = fnma(Float::load(x_.reach + k), Float::load(x_.direction + k), slope);
@@ -122,7 +127,8 @@ class Minimiser {
 
   const Constants& t_;
   const TreeWork& x_;
-  const Rows& rows_;
+  Rows rows_;
+  const Stiffness stiffness_;
   Float scale_;
 };
 

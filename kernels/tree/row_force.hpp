@@ -8,26 +8,36 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 MW_INLINE Float negative_part(Float x) { return min(x, Real(0)); }
 
-MW_INLINE Float force_of(const TreeRow& row) {
-  return -(Float::load(row.weight) * negative_part(Float::load(row.residual)));
-}
-MW_INLINE Float stiffness_of(const TreeRow& row) {
-  const Float zero(Real(0));
-  return select(Float::load(row.residual) < zero, Float::load(row.weight), zero);
-}
-MW_INLINE void add_along(const TreeRow& row, Float step, Float& first, Float& second) {
-  const Float zero(Real(0)), change = Float::load(row.change);
-  const Float x = fma(step, change, Float::load(row.residual));
-  const Float slope = Float::load(row.weight) * change;
-  first = fma(slope, negative_part(x), first);
-  second = second + select(x < zero, slope * change, zero);
-}
-MW_INLINE Mask advance_row(TreeRow& row, Float step) {
-  const Float zero(Real(0)), before = Float::load(row.residual);
-  const Float after = fma(step, Float::load(row.change), before);
-  after.store(row.residual);
-  const Mask pushed = before < zero, pushes = after < zero;
-  return ((pushed & !pushes) | (pushes & !pushed)) & (zero < Float::load(row.weight));
-}
+// Numbers of a row, [lane] each.
+struct RowView {
+  const Real* weight;  // D
+  Real* residual;
+  const Real* change;  // of the residual, along the search
+
+  MW_INLINE Float force() const {
+    return -(Float::load(weight) * negative_part(Float::load(residual)));
+  }
+  MW_INLINE Float stiffness() const {
+    const Float zero(Real(0));
+    return select(Float::load(residual) < zero, Float::load(weight), zero);
+  }
+  // Adds the derivatives of the cost where the step leads.
+  MW_INLINE void add_along(Float step, Float& first, Float& second) const {
+    const Float zero(Real(0)), rate = Float::load(change);
+    const Float x = fma(step, rate, Float::load(residual));
+    const Float slope = Float::load(weight) * rate;
+    first = fma(slope, negative_part(x), first);
+    second = second + select(x < zero, slope * rate, zero);
+  }
+  // Goes the step but in lanes that are done; returns those in which the row has begun or ceased to
+  // push.
+  MW_INLINE Mask advance(Float step, Mask done) const {
+    const Float zero(Real(0)), before = Float::load(residual);
+    const Float after = select(done, before, fma(step, Float::load(change), before));
+    after.store(residual);
+    const Mask pushed = before < zero, pushes = after < zero;
+    return ((pushed & !pushes) | (pushes & !pushed)) & (zero < Float::load(weight));
+  }
+};
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

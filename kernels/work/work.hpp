@@ -80,6 +80,17 @@ struct alignas(64) TreeRow {
   std::uint32_t lanes;                     // that have it
 };
 
+// A contact point between two links, or a link and the world (kernels/tree/contacts.hpp).
+struct alignas(64) TreeContact {
+  Real frame[9][kLanes];                    // normal from A to B, two tangents
+  Real arm_a[3][kLanes], arm_b[3][kLanes];  // the point from the origin of A's and B's tree, m
+  Real distance[kLanes], friction[kLanes];  // m; 1
+  Real weight[kLanes];                      // of all of its rows, see TreeRow
+  Real reference[4][kLanes], residual[4][kLanes], change[4][kLanes];
+  std::int32_t pair;    // key
+  std::uint32_t lanes;  // that have it
+};
+
 // Trees (kernels/tree/), in world axes about an origin of each tree: its root's centre of mass.
 struct TreeWork {
   Real* origin;    // [link: a root][3][lane], in the world
@@ -92,14 +103,23 @@ struct TreeWork {
   Real* matrix;    // [entry][lane], of the joint-space inertia, then its factors
   Real* load;      // [dof][lane], generalised forces, then accelerations
   Real* next;      // [coordinate, then dof][lane], the state after the step
+  // Runge-Kutta.
+  Real* start;         // [coordinate, then dof][lane], the state before the step
+  Real* displacement;  // [dof][lane], of the stage from the start
+  Real* stage_rate;    // [dof][lane] of coordinates, then of velocities
+  Real* rate_sum;      // as those
   // The newton solver.
-  TreeRow* limit_rows;  // [limit]
-  Real* stiffness;      // [entry][lane], M + J' D J, then its factors
-  Real* guess;          // [dof][lane], accelerations so far
-  Real* balance;        // [dof][lane], M a
-  Real* direction;      // [dof][lane]
-  Real* reach;          // [dof][lane], M times the direction
-  Real* row_load;       // [dof][lane], J' times the forces of rows
+  TreeRow* limit_rows;    // [limit]
+  TreeContact* contacts;  // [contact]
+  std::int32_t contact_count;
+  Real* column;     // [dof of a pair][3][lane], of its motion at a contact
+  Real* stiffness;  // [dof][dofs up to it][lane], M + J' D J, then its factors (stiffness.hpp)
+  std::uint64_t* columns;  // [dof] which of them there are
+  Real* guess;             // [dof][lane], accelerations so far
+  Real* balance;           // [dof][lane], M a
+  Real* direction;         // [dof][lane]
+  Real* reach;             // [dof][lane], M times the direction
+  Real* row_load;          // [dof][lane], J' times the forces of rows
 };
 
 struct Work {

@@ -65,6 +65,7 @@ struct Batch::Impl {
       if (k.plan.scene().options.dt != kinds.front().plan.scene().options.dt) {
         reject("kinds of one batch must have the same dt");
       }
+      check_observers(options.observe, k.plan);
       check_rays(options.observe.rays, k.plan);
       check_points(options.observe.points, k.plan);
       first_world.push_back(worlds);
@@ -133,6 +134,18 @@ struct Batch::Impl {
   BodyPlace find_any_body(int world, BodyId body) const {
     const Place p = find(world);
     return {p.kind, p.world, plan(p.kind).find_row(body).value_or(-1)};
+  }
+  // Bodies of trees are where the coordinates of their joints put them.
+  void reject_in_trees(int kind, const char* what) const {
+    if (!kinds[static_cast<std::size_t>(kind)].plan.data().has_trees()) return;
+    reject(std::string(what) + ": bodies of the newton solver are moved by generalized_position " +
+           "and generalized_velocity, and are always there");
+  }
+  void check_written(Field field, int kind) const {
+    if (info(field).item == ItemKind::body) reject_in_trees(kind, info(field).name);
+  }
+  void check_written(Field field) const {
+    for (std::size_t k = 0; k < kinds.size(); ++k) check_written(field, static_cast<int>(k));
   }
   // Of one that is not fixed; `why` that would make no sense.
   BodyPlace find_body(int world, BodyId body, const char* why) const {

@@ -49,17 +49,20 @@ void Batch::add_force_at(int world, BodyId body, const Vec3& force, const Vec3& 
 }
 void Batch::add_impulse(int world, BodyId body, const Vec3& impulse) {
   const auto p = impl_->find_body(world, body, kNoForce);
+  impl_->reject_in_trees(p.kind, "add_impulse");
   impl_->worlds(p.kind).add_impulse(p.world, p.row, impulse, Vec3::Zero());
   impl_->tell(*this, Input::impulse, world, body, {impulse});
 }
 void Batch::add_angular_impulse(int world, BodyId body, const Vec3& impulse) {
   const auto p = impl_->find_body(world, body, kNoForce);
+  impl_->reject_in_trees(p.kind, "add_angular_impulse");
   impl_->worlds(p.kind).add_impulse(p.world, p.row, Vec3::Zero(), impulse);
   impl_->tell(*this, Input::angular_impulse, world, body, {impulse});
 }
 void Batch::add_impulse_at(int world, BodyId body, const Vec3& impulse, const Vec3& point_world) {
   const FloatMode mode;
   const auto p = impl_->find_body(world, body, kNoForce);
+  impl_->reject_in_trees(p.kind, "add_impulse_at");
   const Vec3 arm = point_world - impl_->worlds(p.kind).center_of_mass(p.world, p.row);
   impl_->worlds(p.kind).add_impulse(p.world, p.row, impulse, arm.cross(impulse));
   impl_->tell(*this, Input::impulse_at, world, body, {impulse, point_world});

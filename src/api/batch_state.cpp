@@ -22,6 +22,7 @@ void Batch::write(Field field, ConstReals in) {
   std::visit(
       [&](auto from) {
         impl_->check_size(field, from.size(), size(field));
+        impl_->check_written(field);
         impl_->for_each_world(field, [&](int kind, int world, std::size_t at) {
           impl_->worlds(kind).write(field, world, from.data() + at);
         });
@@ -37,6 +38,7 @@ void Batch::read(Field field, int world, std::span<double> out) const {
 void Batch::write(Field field, int world, std::span<const double> in) {
   const auto p = impl_->find(world);
   impl_->check_size(field, in.size(), impl_->world_size(field, p.kind));
+  impl_->check_written(field, p.kind);
   impl_->worlds(p.kind).write(field, p.world, in.data());
   impl_->tell_write(*this, field, world, in);
 }
@@ -53,6 +55,7 @@ int Batch::lane_index(int world) const {
 
 void Batch::set_enabled(int world, BodyId body, bool enabled) {
   const auto p = impl_->find_body(world, body, "it is always there");
+  impl_->reject_in_trees(p.kind, "set_enabled");
   impl_->worlds(p.kind).set_enabled(p.world, p.row, enabled);
   impl_->tell(*this, enabled ? Input::enable : Input::disable, world, body);
 }
@@ -63,6 +66,7 @@ bool Batch::enabled(int world, BodyId body) const {
 void Batch::spawn(int world, BodyId body, const BodyState& state) {
   const FloatMode mode;
   const auto p = impl_->find_body(world, body, "it stays where the scene has it");
+  impl_->reject_in_trees(p.kind, "spawn");
   const double norm = state.rotation.norm();
   if (!(norm > 0) || !std::isfinite(norm)) {
     reject("spawn: the rotation has length " + std::to_string(norm) + ", must be > 0");
@@ -73,6 +77,7 @@ void Batch::spawn(int world, BodyId body, const BodyState& state) {
 
 void Batch::set_joint_enabled(int world, JointId joint, bool enabled) {
   const auto p = impl_->find_joint(world, joint);
+  impl_->reject_in_trees(p.kind, "set_joint_enabled");
   impl_->worlds(p.kind).set_joint_enabled(p.world, joint.index(), enabled);
   impl_->tell(*this, enabled ? Input::enable_joint : Input::disable_joint, world, joint);
 }
@@ -128,6 +133,7 @@ void Batch::reset(std::span<const std::uint8_t> mask, std::span<const std::uint6
 void Batch::set_initial(Field field, std::span<const double> in) {
   const bool forget = in.empty() && size(field) > 0;
   if (!forget) impl_->check_size(field, in.size(), size(field));
+  impl_->check_written(field);
   impl_->for_each_world(field, [&](int kind, int world, std::size_t at) {
     impl_->worlds(kind).set_initial(field, world, forget ? nullptr : in.data() + at);
   });

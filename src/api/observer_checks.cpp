@@ -47,6 +47,17 @@ void check_observers(const Observers& observers) {
   }
 }
 
+void check_observers(const Observers& observers, const Plan& plan) {
+  if (!plan.data().has_trees()) return;
+  for (std::size_t i = 0; i < observers.what.size(); ++i) {
+    const Observer observer = observers.what[i];
+    if (observer == Observer::motion || observer == Observer::acceleration) continue;
+    reject("observe.what[" + std::to_string(i) + "] is " + to_string(observer) +
+           ", of worlds of the newton solver motion, acceleration, rays and points are observed; "
+           "generalized_position and generalized_velocity are fields of their state");
+  }
+}
+
 namespace {
 
 // Everything that is wrong with a list that users give, in one exception.

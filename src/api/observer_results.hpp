@@ -32,6 +32,7 @@ std::size_t observed_size(Observed what, const PlanData& plan, const Observers& 
 void check_rays(std::span<const Ray> rays, const Plan& plan);
 void check_points(std::span<const Point> points, const Plan& plan);
 void check_observers(const Observers& observers);
+void check_observers(const Observers& observers, const Plan& plan);
 
 // The number type's side. Indices were checked by the caller.
 class ObserverResults {

@@ -29,9 +29,10 @@ MW_ENUM_TABLE(Motion, fixed, "motion", "dynamic", "kinematic", "fixed");
 MW_ENUM_TABLE(Integrator, runge_kutta4, "integrator", "symplectic-euler", "explicit-euler",
               "implicit-euler", "verlet", "velocity-verlet", "runge-kutta4");
 MW_ENUM_TABLE(Rotation, exponential, "rotation", "splitting", "quaternion", "exponential");
-MW_ENUM_TABLE(Solver, penalty, "solver", "tgs-soft", "sequential-impulse", "sor", "nncg",
-              "penalty");
-MW_ENUM_TABLE(ControlKind, torque, "kind", "target_position", "target_speed", "thrust", "torque");
+MW_ENUM_TABLE(Solver, newton, "solver", "tgs-soft", "sequential-impulse", "sor", "nncg", "penalty",
+              "newton");
+MW_ENUM_TABLE(ControlKind, joint_force, "kind", "target_position", "target_speed", "thrust",
+              "torque", "joint_force");
 MW_ENUM_TABLE(Draw, log_uniform, "draw", "none", "uniform", "log_uniform");
 MW_ENUM_TABLE(Feature, joints, "feature", "orientation", "inertia", "friction", "restitution",
               "contacts", "drag", "gravity", "joints");
@@ -40,7 +41,8 @@ MW_ENUM_TABLE(BroadPhase, sparse, "broad_phase", "automatic", "all-pairs", "sort
 MW_ENUM_TABLE(Precision, f64, "precision", "f32", "f64");
 MW_ENUM_TABLE(Isa, avx512, "isa", "scalar", "avx2", "avx512");
 MW_ENUM_TABLE(ContactLayout, rows, "layout", "automatic", "dense", "rows");
-MW_ENUM_TABLE(ItemKind, particle, "item", "body", "world", "shape", "dof", "particle");
+MW_ENUM_TABLE(ItemKind, particle, "item", "body", "world", "shape", "coordinate", "dof",
+              "particle");
 MW_ENUM_TABLE(Autoreset, disabled, "autoreset", "next_step", "same_step", "disabled");
 #define MW_WRITE_NAME(name, ...) "write_" #name,
 MW_ENUM_TABLE(Input, disable_joint, "input", "force", "torque", "force_at", "impulse",

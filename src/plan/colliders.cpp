@@ -272,4 +272,15 @@ void lay_out_shapes(PlanData& plan) {
   plan.cast = plan.cast && plan.scene.options.contact.cast_against_fixed;
 }
 
+double least_margin(const PlanData& plan) {
+  const double slop = plan.scene.options.contact.slop * plan.scene.options.length_unit;
+  if (!plan.has_trees()) return 2 * slop;
+  double most = 0;
+  for (const Body& body : plan.scene.bodies) {
+    for (const Shape& shape : body.shapes) most = std::max(most, shape.material.soft.margin);
+  }
+  constexpr double kRounding = 0.02;  // of slop: what just touches is found
+  return most + kRounding * slop;
+}
+
 }  // namespace manyworlds

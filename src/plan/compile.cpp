@@ -25,7 +25,9 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
   collect_joints(*plan);
   collect_coordinates(*plan);
   collect_controls(*plan);
+  collect_trees(*plan);
   collect_pairs(*plan);
+  collect_tree_pairs(*plan);
   choose_features(*plan);
   choose_stages(*plan);
   return Plan(std::move(plan));

@@ -13,11 +13,10 @@ constexpr double kMinImpedance = 1e-4, kMaxImpedance = 0.9999, kTiny = 1e-15;
 
 kernels::Compliance<double> compile(const Compliance& compliance, double dt) {
   kernels::Compliance<double> out{};
-  const auto& given = compliance.impedance;
   const auto clamped = [](double d) { return std::clamp(d, kMinImpedance, kMaxImpedance); };
-  const double low = clamped(given[0]), high = clamped(given[1]);
-  const double width = std::max(0.0, given[2]), middle = clamped(given[3]);
-  const double power = std::max(1.0, given[4]);
+  const double low = clamped(compliance.min_impedance), high = clamped(compliance.max_impedance);
+  const double width = std::max(0.0, compliance.width), middle = clamped(compliance.midpoint);
+  const double power = std::max(1.0, compliance.power);
   out.least = low, out.gain = high - low;
   if (low == high || width <= kTiny) {
     out.least = (low + high) / 2, out.gain = 0;
@@ -29,9 +28,9 @@ kernels::Compliance<double> compile(const Compliance& compliance, double dt) {
   out.rising = std::pow(middle, 1 - power), out.falling = std::pow(1 - middle, 1 - power);
 
   // One number of each format: MuJoCo takes its default.
-  auto [first, second] = compliance.reference;
+  double first = compliance.time_constant, second = compliance.damping_ratio;
   if ((first > 0) != (second > 0))
-    first = Compliance{}.reference[0], second = Compliance{}.reference[1];
+    first = Compliance{}.time_constant, second = Compliance{}.damping_ratio;
   if (first <= 0) {
     out.stiffness = -first / (high * high), out.damping = -second / high;
     return out;

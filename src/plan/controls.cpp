@@ -27,6 +27,7 @@ void collect_controls(PlanData& plan) {
     const Control& c = controls[i];
     const int index = static_cast<int>(i);
     plan.control_range.push_back({c.low, c.high});
+    if (c.kind == ControlKind::joint_force) continue;  // trees
     if (is_thrust(c)) {
       const int body = plan.state_body[static_cast<std::size_t>(c.body.index())];
       const PlanBody& b = plan.bodies[static_cast<std::size_t>(body)];

@@ -21,7 +21,8 @@ std::vector<PartKind> kinds(const TargetJoint&) { return {}; }
 void collect_coordinates(PlanData& plan) {
   plan.coordinates.clear();
   plan.first_coordinate.clear();
-  std::size_t part = 0;  // the first of the joint
+  if (plan.has_trees()) return;  // collect_trees.cpp
+  std::size_t part = 0;          // the first of the joint
   for (std::size_t i = 0; i < plan.scene.joints.size(); ++i) {
     while (plan.parts[part].joint < static_cast<int>(i)) ++part;
     plan.first_coordinate.push_back(static_cast<int>(plan.coordinates.size()));

@@ -66,15 +66,18 @@ void choose_features(PlanData& plan) {
   const bool joints = !scene.joints.empty();
   // A body without shapes has an orientation that somebody may want to look at.
   round = round && plan.colliders.size() >= plan.bodies.size();
-  const bool thrust = !plan.thrusts.empty();
-  choose.set(Feature::orientation, !(round && isotropic) || joints || thrust,
-             joints   ? "joint frames rotate with it"
+  const bool thrust = !plan.thrusts.empty(), trees = plan.has_trees();
+  choose.set(Feature::orientation, !(round && isotropic) || joints || thrust || trees,
+             trees    ? "links rotate with their joints"
+             : joints ? "joint frames rotate with it"
              : thrust ? "thrust rotates with it"
                       : "shapes or inertia depend on it",
              "every moving body is a centred ball");
   // Joints are solved with full tensors only: few jointed bodies are isotropic.
-  choose.set(Feature::inertia, !planar && (!isotropic || joints),
-             isotropic ? "joints are solved with it" : "some moments of inertia differ",
+  choose.set(Feature::inertia, !planar && (!isotropic || joints || trees),
+             trees       ? "links have it"
+             : isotropic ? "joints are solved with it"
+                         : "some moments of inertia differ",
              planar ? "the plane has one moment per body" : "every moment of inertia is isotropic");
   // A kept tensor needs the orientation that rotates it.
   if (plan.has(Feature::inertia) && !plan.has(Feature::orientation)) {

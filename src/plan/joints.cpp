@@ -224,6 +224,7 @@ class Builder {
 
 void collect_joints(PlanData& plan) {
   plan.parts.clear();
+  if (plan.has_trees()) return;
   for (std::size_t i = 0; i < plan.scene.joints.size(); ++i) {
     Builder(plan, static_cast<int>(i)).build();
   }
@@ -234,6 +235,9 @@ std::set<std::pair<int, int>> joined_bodies(const Scene& scene) {
   for (const Joint& j : scene.joints) {
     if (j.collide || !j.body_a) continue;
     out.insert(std::minmax(j.body_a.index(), j.body_b.index()));
+  }
+  for (const Exclusion& e : scene.exclusions) {
+    out.insert(std::minmax(e.body_a.index(), e.body_b.index()));
   }
   return out;
 }

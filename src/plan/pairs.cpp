@@ -142,7 +142,9 @@ bool is_large(const PlanData& plan) {
 
 void collect_pairs(PlanData& plan) {
   const BroadPhase wish = plan.options.broad_phase;
-  plan.sparse = wish == BroadPhase::sparse || (wish == BroadPhase::automatic && is_large(plan));
+  // Trees have rows for the pairs of a table.
+  plan.sparse = !plan.has_trees() &&
+                (wish == BroadPhase::sparse || (wish == BroadPhase::automatic && is_large(plan)));
   plan.sparse ? count_pairs(plan) : list_pairs(plan);
 
   // Manifolds per world. Equal spheres can touch 12 neighbours and equal circles 6, each pair
@@ -157,8 +159,8 @@ void collect_pairs(PlanData& plan) {
   const int fixed = 2 * n + 8 + fixed_manifolds(plan);
   for (int l = 0; l < kernels::kLists; ++l) {
     const int limit = is_fixed(static_cast<ListId>(l)) ? fixed : pairs;
-    plan.capacity[static_cast<std::size_t>(l)] =
-        std::min(candidates[static_cast<std::size_t>(l)], limit);
+    const int all = candidates[static_cast<std::size_t>(l)];
+    plan.capacity[static_cast<std::size_t>(l)] = plan.has_trees() ? all : std::min(all, limit);
   }
 
   // Shapes from which sort and sweep is the default. Up to 512 balls the two are within 11 % of

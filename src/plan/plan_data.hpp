@@ -11,6 +11,7 @@
 #include "kernels/data/tables.hpp"
 #include "manyworlds/plan.hpp"
 #include "src/plan/stages.hpp"
+#include "src/plan/trees.hpp"
 #include "src/scene/height_field.hpp"
 #include "src/scene/shape/shape.hpp"
 #include "src/scene/variations.hpp"
@@ -108,6 +109,7 @@ struct PlanData {
   std::vector<PlanClass> classes;
   std::vector<PlanPart> parts;                       // of joints, in their order
   std::vector<PlanThrust> thrusts;                   // by body
+  PlanTrees trees;                                   // of Solver::newton
   std::vector<std::array<double, 2>> control_range;  // [control] low, high
   std::vector<kernels::JointCoordinate> coordinates;
   std::vector<int> first_coordinate;  // [joint + 1]
@@ -122,6 +124,7 @@ struct PlanData {
   bool slows = false;  // some body may have linear drag, whatever stages are kept
   int row_block = 0;
 
+  bool has_trees() const { return scene.options.solver.method == Solver::newton; }
   bool has(Feature f) const { return in[static_cast<std::size_t>(f)]; }
   bool runs(StepStage s) const { return stages[static_cast<std::size_t>(s)].in; }
   kernels::Dimension dimension() const {
@@ -131,6 +134,9 @@ struct PlanData {
 
 // "body 3 'crate'" (rows.cpp)
 std::string body_text(const Scene& scene, BodyId body);
+
+// From how far on shapes are looked at, m; those of a pair add up (colliders.cpp).
+double least_margin(const PlanData& plan);
 
 // Scene bodies, the lower one first, that joints keep from colliding (joints.cpp).
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene);
@@ -177,6 +183,8 @@ void collect_colliders(PlanData& plan);     // colliders.cpp
 void collect_fixed(PlanData& plan);         // colliders.cpp
 void collect_joints(PlanData& plan);        // joints.cpp
 void collect_controls(PlanData& plan);      // controls.cpp
+void collect_trees(PlanData& plan);         // collect_trees.cpp
+void collect_tree_pairs(PlanData& plan);    // tree_pairs.cpp
 void collect_coordinates(PlanData& plan);   // coordinates.cpp
 void lay_out_shapes(PlanData& plan);        // colliders.cpp
 void collect_pairs(PlanData& plan);         // pairs.cpp, sparse_pairs.cpp

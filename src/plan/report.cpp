@@ -30,7 +30,8 @@ PlanReport describe(const PlanData& plan) {
   static constexpr const char* kLists[] = {
       "impulses of pairs, several points", "impulses of pairs, one point",
       "impulses against fixed, several points", "impulses against fixed, one point"};
-  for (int l = 0; plan.has(Feature::contacts) && l < kernels::kLists; ++l) {
+  const bool stores = plan.has(Feature::contacts) && !plan.has_trees();
+  for (int l = 0; stores && l < kernels::kLists; ++l) {
     const int capacity = plan.capacity[static_cast<std::size_t>(l)];
     if (capacity == 0) continue;
     const int row = kernels::cache_row_size(plan.dimension(), static_cast<kernels::ListId>(l));

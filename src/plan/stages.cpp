@@ -7,11 +7,32 @@
 
 namespace manyworlds {
 
+namespace {
+
+// Bodies in joint coordinates: contacts are found as ever, and all else is one stage.
+void choose_tree_stages(PlanData& plan) {
+  for (PlanStage& stage : plan.stages) stage = {false, "bodies move in joint coordinates"};
+  const bool contacts = plan.has(Feature::contacts);
+  const std::string touch = plan.why[static_cast<std::size_t>(Feature::contacts)];
+  for (const StepStage stage : {StepStage::begin, StepStage::broad_phase, StepStage::collide}) {
+    plan.stages[static_cast<std::size_t>(stage)] = {contacts, touch};
+  }
+  const auto count = [](std::size_t n, const char* what) { return std::to_string(n) + what; };
+  plan.stages[static_cast<std::size_t>(StepStage::tree)] = {
+      true, "newton, " + count(plan.trees.links.size(), " links, ") +
+                count(plan.trees.dofs.size(), " degrees of freedom, ") +
+                count(plan.trees.limits.size(), " limits")};
+}
+
+}  // namespace
+
 void choose_stages(PlanData& plan) {
+  if (plan.has_trees()) return choose_tree_stages(plan);
   const auto why = [&](Feature f) { return plan.why[static_cast<std::size_t>(f)]; };
   const auto set = [&](StepStage stage, bool in, std::string reason) {
     plan.stages[static_cast<std::size_t>(stage)] = {in, std::move(reason)};
   };
+  set(StepStage::tree, false, "bodies move by their own coordinates");
   const Options& options = plan.scene.options;
   const bool contacts = plan.has(Feature::contacts), flight = flies_freely(options);
   const bool forces_only = std::all_of(plan.parts.begin(), plan.parts.end(),

@@ -13,6 +13,7 @@ enum class StepStage {
   begin,
   broad_phase,
   collide,
+  tree,    // whole steps of bodies in joint coordinates, but for finding their contacts
   joints,  // all passes over rows of joints
   warm_start,
   bias,
@@ -24,10 +25,10 @@ enum class StepStage {
   settle,   // of batches with sleep
   observe,  // of batches with observers
 };
-inline constexpr int kStepStages = 15;
+inline constexpr int kStepStages = 16;
 inline constexpr std::array<const char*, kStepStages> kStepStageNames = {
-    "free_motion", "flight", "begin",     "broad_phase", "collide", "joints", "warm_start", "bias",
-    "advance",     "relax",  "restitute", "store",       "finish",  "settle", "observe"};
+    "free_motion", "flight",  "begin", "broad_phase", "collide", "tree",   "joints", "warm_start",
+    "bias",        "advance", "relax", "restitute",   "store",   "finish", "settle", "observe"};
 inline const char* to_string(StepStage stage) {
   return kStepStageNames[static_cast<std::size_t>(stage)];
 }

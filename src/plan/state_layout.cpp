@@ -14,7 +14,8 @@ int item_count(ItemKind kind, const PlanData& plan) {
       for (const Body& body : plan.scene.bodies) shapes += body.shapes.size();
       return static_cast<int>(shapes);
     }
-    case ItemKind::dof:
+    case ItemKind::coordinate: return plan.trees.coordinates;
+    case ItemKind::dof: return static_cast<int>(plan.trees.dofs.size());
     case ItemKind::particle: return 0;  // no scene has any
   }
   return 0;

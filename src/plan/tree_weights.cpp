@@ -1,40 +1,26 @@
 // Inverse weights of dofs and links, from a dense joint-space inertia at the reference.
 #include <Eigen/Dense>
 
-#include "src/plan/trees.hpp"
+#include "src/plan/tree_kinematics.hpp"
 
 namespace manyworlds {
 
 namespace {
 
-using kernels::TreeJointKind;
-
-struct Pose {
-  Mat3 rotation = Mat3::Identity();
-  Vec3 origin = Vec3::Zero();
-};
-Vec3 vector(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
-Quat rotation(const double (&q)[4]) { return Quat(q[0], q[1], q[2], q[3]); }
-
-// How fast the dof moves a point, and rotates.
-struct DofMotion {
-  Vec3 axis = Vec3::Zero(), direction = Vec3::Zero(), point = Vec3::Zero();
-  Vec3 velocity(const Vec3& at) const { return direction + axis.cross(at - point); }
-};
-
 class Weights {
  public:
   Weights(const PlanTrees& trees, const std::vector<NewLink>& links)
-      : trees_(trees), links_(links), dofs_(static_cast<Eigen::Index>(trees.dofs.size())) {
-    for (const auto& link : trees_.links) add(link);
-  }
+      : trees_(trees),
+        links_(links),
+        at_(kinematics_of(trees, reference_coordinates(trees))),
+        dofs_(static_cast<Eigen::Index>(trees.dofs.size())) {}
 
   TreeWeights find() const {
     TreeWeights out;
     Eigen::MatrixXd m = Eigen::MatrixXd::Zero(dofs_, dofs_);
     for (std::size_t i = 0; i < links_.size(); ++i) {
       const Eigen::MatrixXd j = jacobian(i);
-      const Mat3 axes = poses_[i].rotation * links_[i].principal.normalized().toRotationMatrix();
+      const Mat3 axes = (at_.rotation[i] * links_[i].principal.normalized()).toRotationMatrix();
       const Mat3 inertia = axes * links_[i].moments.asDiagonal() * axes.transpose();
       m += links_[i].mass * j.topRows<3>().transpose() * j.topRows<3>();
       m += j.bottomRows<3>().transpose() * inertia * j.bottomRows<3>();
@@ -44,6 +30,7 @@ class Weights {
     }
     if (dofs_ > 0) out.mean_inertia = m.diagonal().mean();
     const Eigen::MatrixXd inverse = m.ldlt().solve(Eigen::MatrixXd::Identity(dofs_, dofs_));
+    out.inverse = inverse;
     const Eigen::VectorXd diagonal = inverse.diagonal();
     out.dof.assign(diagonal.data(), diagonal.data() + dofs_);
     for (const auto& joint : trees_.joints) {
@@ -62,51 +49,20 @@ class Weights {
   }
 
  private:
-  void add(const kernels::TreeLink<double>& link) {
-    Pose at;
-    if (link.parent >= 0) at = poses_[static_cast<std::size_t>(link.parent)];
-    at.origin += at.rotation * vector(link.position);
-    at.rotation = at.rotation * rotation(link.rotation).toRotationMatrix();
-    poses_.push_back(at);
-    for (int j = link.first_joint; j < link.first_joint + link.joints; ++j) {
-      const auto& joint = trees_.joints[static_cast<std::size_t>(j)];
-      const Vec3 axis = at.rotation * vector(joint.axis);
-      const Vec3 point = at.origin + at.rotation * vector(joint.anchor);
-      switch (joint.kind) {
-        case TreeJointKind::slide: motions_.push_back({Vec3::Zero(), axis, point}); break;
-        case TreeJointKind::hinge: motions_.push_back({axis, Vec3::Zero(), point}); break;
-        case TreeJointKind::free:
-          for (int k = 0; k < 3; ++k) motions_.push_back({Vec3::Zero(), Vec3::Unit(k), point});
-          for (int k = 0; k < 3; ++k) {
-            motions_.push_back({at.rotation.col(k), Vec3::Zero(), at.origin});
-          }
-          break;
-        case TreeJointKind::ball:
-          for (int k = 0; k < 3; ++k) motions_.push_back({at.rotation.col(k), Vec3::Zero(), point});
-      }
-    }
-  }
-
   // Of a link's centre of mass: velocity, then angular velocity.
   Eigen::MatrixXd jacobian(std::size_t link) const {
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(6, dofs_);
-    const Vec3 center = poses_[link].origin + poses_[link].rotation * links_[link].center;
-    int i = static_cast<int>(link);
-    for (; i >= 0; i = trees_.links[static_cast<std::size_t>(i)].parent) {
-      const auto& l = trees_.links[static_cast<std::size_t>(i)];
-      for (int k = l.first_dof; k < l.first_dof + l.dofs; ++k) {
-        const DofMotion& motion = motions_[static_cast<std::size_t>(k)];
-        out.col(k) << motion.velocity(center), motion.axis;
-      }
-    }
+    for_each_dof_of(trees_, link, [&](std::size_t k) {
+      const DofMotion& motion = at_.motions[k];
+      out.col(static_cast<Eigen::Index>(k)) << motion.velocity(at_.center[link]), motion.axis;
+    });
     return out;
   }
 
   const PlanTrees& trees_;
   const std::vector<NewLink>& links_;
+  TreeKinematics at_;
   Eigen::Index dofs_;
-  std::vector<Pose> poses_;
-  std::vector<DofMotion> motions_;
 };
 
 }  // namespace

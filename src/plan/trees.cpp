@@ -61,26 +61,56 @@ void TreeBuilder::add(const NewTreeJoint& joint) {
     trees_.entries += dof.depth + 1;
     ++link.dofs;
   }
-  if (joint.range) limited_.emplace_back(out.dof, joint);
+  if (joint.range) {
+    limited_joints_.push_back(
+        {{{out.coordinate, out.dof, 1}}, *joint.range, joint.margin, joint.compliance});
+  }
   ++link.joints;
   trees_.coordinates += kernels::coordinates_of(joint.kind);
 }
 
+int TreeBuilder::dof_of(int coordinate) const {
+  const auto at = std::find_if(trees_.dofs.begin(), trees_.dofs.end(),
+                               [&](const auto& dof) { return dof.coordinate == coordinate; });
+  return static_cast<int>(at - trees_.dofs.begin());
+}
+
+void TreeBuilder::add(const NewLength& tendon) {
+  tendons_.push_back(tendon);
+  auto& terms = tendons_.back().terms;
+  std::sort(terms.begin(), terms.end(), [](const auto& a, const auto& b) { return a.dof > b.dof; });
+}
+
+void TreeBuilder::add_limits(const NewLength& length, double inverse_weight, double dt) {
+  for (const int side : {1, -1}) {
+    kernels::TreeLimit<double> limit{};
+    limit.side = side;
+    limit.end = length.range[side > 0 ? 0 : 1];
+    if (!std::isfinite(limit.end)) continue;
+    limit.margin = length.margin;
+    limit.inverse_weight = inverse_weight;
+    limit.compliance = compile(length.compliance, dt);
+    limit.first_term = count_of(trees_.terms);
+    limit.terms = count_of(length.terms);
+    for (const auto& term : length.terms) limit.coupled |= std::uint64_t{1} << term.dof;
+    trees_.terms.insert(trees_.terms.end(), length.terms.begin(), length.terms.end());
+    trees_.limits.push_back(limit);
+  }
+}
+
 PlanTrees TreeBuilder::finish(double dt, const kernels::NewtonOptions<double>& newton) {
   trees_.weights = weights_of(trees_, links_);
-  for (const auto& [dof, joint] : limited_) {
-    for (const int side : {1, -1}) {
-      kernels::TreeLimit<double> limit{};
-      limit.coordinate = trees_.dofs[static_cast<std::size_t>(dof)].coordinate;
-      limit.dof = dof;
-      limit.side = side;
-      limit.end = (*joint.range)[side > 0 ? 0 : 1];
-      if (!std::isfinite(limit.end)) continue;
-      limit.margin = joint.margin;
-      limit.inverse_weight = trees_.weights.dof[static_cast<std::size_t>(dof)];
-      limit.compliance = compile(joint.compliance, dt);
-      trees_.limits.push_back(limit);
+  for (const NewLength& joint : limited_joints_) {
+    add_limits(joint, trees_.weights.dof[static_cast<std::size_t>(joint.terms[0].dof)], dt);
+  }
+  for (const NewLength& tendon : tendons_) {
+    double weight = 0;
+    for (const auto& a : tendon.terms) {
+      for (const auto& b : tendon.terms) {
+        weight += a.coefficient * b.coefficient * trees_.weights.inverse(a.dof, b.dof);
+      }
     }
+    add_limits(tendon, weight, dt);
   }
   trees_.newton = newton;
   const double dofs = std::max<double>(1, static_cast<double>(trees_.dofs.size()));

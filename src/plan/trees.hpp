@@ -15,6 +15,7 @@ namespace manyworlds {
 
 // How easily the trees move at the reference: what MuJoCo scales its constraints by.
 struct TreeWeights {
+  Eigen::MatrixXd inverse;  // of M
   std::vector<double> dof;  // of the diagonal of M^-1, alike for a joint's rotations
   std::vector<std::array<double, 2>> link;  // of its centre of mass: 1 / kg, 1 / (kg m^2), means
   double mean_inertia = 1;                  // of the diagonal of M
@@ -25,6 +26,13 @@ struct PlanTrees {
   std::vector<kernels::TreeJoint<double>> joints;
   std::vector<kernels::TreeDof<double>> dofs;
   std::vector<kernels::TreeLimit<double>> limits;
+  std::vector<kernels::TreeTerm<double>> terms;  // of limits
+  std::vector<kernels::TreeActuator<double>> actuators;
+  std::vector<kernels::TreePair<double>> pairs;  // [key]
+  std::vector<std::int32_t> pair_dofs;
+  double impedance_ratio = 1;
+  std::vector<double> start;                          // [coordinate], as the scene begins
+  std::vector<std::pair<int, int>> joint_coordinate;  // of the scene; its first coordinate
   kernels::NewtonOptions<double> newton{};
   TreeWeights weights;
   int coordinates = 0;
@@ -57,20 +65,36 @@ struct NewTreeJoint {
   Compliance compliance = {};
 };
 
+// A length that is limited: coordinates, of hinges and slides, times their coefficients.
+struct NewLength {
+  std::vector<kernels::TreeTerm<double>> terms;
+  std::array<double, 2> range{};
+  double margin = 0;
+  Compliance compliance = {};
+};
+
 // Adds links, each before its children and all links of a tree in a row, and the joints that move
 // a link in the order in which they do.
 class TreeBuilder {
  public:
   int add(const NewLink& link);
   void add(const NewTreeJoint& joint);  // of the link that was added last
+  void add(const NewLength& tendon);
+  int dof_of(int coordinate) const;  // of a hinge or slide
   // `newton`: without its scale.
   PlanTrees finish(double dt, const kernels::NewtonOptions<double>& newton);
 
  private:
   PlanTrees trees_;
   std::vector<NewLink> links_;
-  std::vector<std::pair<int, NewTreeJoint>> limited_;  // dof, its joint
+  void add_limits(const NewLength& length, double inverse_weight, double dt);
+
+  std::vector<NewLength> limited_joints_, tendons_;
 };
+
+// Joints of each scene body to its parent, in the order in which they move it (collect_trees.cpp).
+// Precondition: they refer to bodies that there are.
+std::vector<std::vector<int>> series_of_joints(const Scene& scene);
 
 // tree_weights.cpp
 TreeWeights weights_of(const PlanTrees& trees, const std::vector<NewLink>& links);

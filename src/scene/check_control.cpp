@@ -1,4 +1,6 @@
 // Checks of one control.
+#include <cmath>
+
 #include "src/scene/checks.hpp"
 
 namespace manyworlds::detail {
@@ -40,6 +42,18 @@ void check_thrust(Checker& checker, const Scene& scene, const Control& control) 
   }
 }
 
+void check_joint_force(Checker& checker, const Scene& scene, const Control& control) {
+  check_actuator(checker, control.actuator);
+  if (!in(control.joint.index(), scene.joints.size())) {
+    checker.add("joint", index_text(control.joint.index(), scene.joints.size(), "joint"));
+    return;
+  }
+  const JointType& type = scene.at(control.joint).type;
+  if (std::holds_alternative<HingeJoint>(type) || std::holds_alternative<SliderJoint>(type)) return;
+  checker.add("joint",
+              "is " + std::to_string(control.joint.index()) + ", must be a hinge or slider");
+}
+
 void check_target(Checker& checker, const Scene& scene, std::size_t index) {
   const Control& control = scene.controls[index];
   if (!in(control.joint.index(), scene.joints.size())) {
@@ -69,11 +83,17 @@ void check_control(Checker checker, const Scene& scene, std::size_t index) {
   if (!checker.named("kind", control.kind)) return;
   if (control.kind == ControlKind::thrust || control.kind == ControlKind::torque) {
     check_thrust(checker, scene, control);
+  } else if (control.kind == ControlKind::joint_force) {
+    check_joint_force(checker, scene, control);
   } else {
     check_target(checker, scene, index);
   }
-  bool range = checker.finite("low", control.low, "");
-  range &= checker.finite("high", control.high, "");
+  const auto check_end = [&](const char* name, double end) {
+    const bool open = control.kind == ControlKind::joint_force && std::isinf(end);
+    return open || checker.finite(name, end, "");
+  };
+  bool range = check_end("low", control.low);
+  range &= check_end("high", control.high);
   if (!range) return;
   if (control.low > control.high) {
     checker.add("low", "is " + number_text(control.low) + ", must not be above high, which is " +

@@ -22,6 +22,12 @@ class JointChecker {
     std::visit([this](const auto& type) { check(type); }, joint_.type);
     check_strength("break_force", joint_.break_force, "N");
     check_strength("break_torque", joint_.break_torque, "N m");
+    check_dynamics(check_, joint_.dynamics);
+    if (joint_.after && static_cast<std::size_t>(joint_.after.index()) >= scene_.joints.size()) {
+      check_.add("after", "is " + std::to_string(joint_.after.index()) +
+                              ", must be a joint, 0 to " +
+                              std::to_string(scene_.joints.size() - 1));
+    }
     if (bodies && frames && joins_anchors()) check_gap();
   }
 
@@ -111,7 +117,8 @@ class JointChecker {
   void check(const Limit& l, const std::string& name, bool angle) {
     bool good = true;
     const auto in_range = [&](const std::string& field, double value) {
-      if (std::isnan(value) || (angle && std::abs(value) > kPi && std::isfinite(value))) {
+      const bool turns = angle && scene_.options.solver.method != Solver::newton;
+      if (std::isnan(value) || (turns && std::abs(value) > kPi && std::isfinite(value))) {
         check_.add(field, "is " + number_text(value) + (angle ? " rad" : " m") +
                               (angle ? ", must be between -pi and pi" : ", must be a number"));
         good = false;
@@ -124,6 +131,7 @@ class JointChecker {
                            ", low must not be above high");
     }
     if (l.spring) check(*l.spring, name + ".spring");
+    check_soft_limit(check_, name, l);
   }
   void check(const Drive& d, const std::string& name) {
     check_.finite(name + ".target_position", d.target_position, "");

@@ -68,6 +68,12 @@ void check_solver(Checker& checker, const SolverOptions& o) {
                 "is " + number_text(o.relaxation) + ", must be more than 0 and less than 2");
   }
   checker.between("options.solver.push_out_share", o.push_out_share, 0, 1);
+  checker.not_negative("options.solver.tolerance", o.tolerance, "");
+  checker.between("options.solver.line_search_iterations", o.line_search_iterations, 1,
+                  kMaxIterations);
+  checker.not_negative("options.solver.line_search_tolerance", o.line_search_tolerance, "");
+  checker.positive("options.solver.impedance_ratio", o.impedance_ratio, "", kSmallestSize,
+                   kLargestSize);
 }
 
 void check_contact(Checker& checker, const ContactOptions& o) {

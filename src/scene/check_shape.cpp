@@ -32,6 +32,7 @@ void check_shape(Checker checker, const Body& body, const Shape& shape) {
   checker.rotation("rotation", shape.rotation);
   if (shape.density) checker.density("density", *shape.density);
   checker.not_negative("material.friction", shape.material.friction, "");
+  check_soft_contact(checker, shape.material.soft);
   checker.between("material.restitution", shape.material.restitution, 0, 1);
 }
 

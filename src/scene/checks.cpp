@@ -147,4 +147,9 @@ bool Checker::rotation(std::string_view field, const Quat& value) {
   return true;
 }
 
+std::string named_part(const char* what, std::size_t index, const std::string& name) {
+  std::string part = std::string(what) + " " + std::to_string(index);
+  return name.empty() ? part : part + " '" + name + "'";
+}
+
 }  // namespace manyworlds::detail

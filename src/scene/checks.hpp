@@ -28,6 +28,7 @@ inline constexpr double kInputTolerance = 1e-6;
 
 inline constexpr int kMaxBodies = 32767;
 inline constexpr int kMaxShapes = 32767;
+inline constexpr int kMaxNewtonDofs = 64;  // of Solver::newton
 
 // Shortest text that reads back as the same number, in any locale; "nan" without a sign.
 std::string number_text(double value);
@@ -93,6 +94,16 @@ void check_body(Checker checker, const Scene& scene, const Body& body, bool dens
 void check_options(Checker checker, const Options& options);
 void check_joint(Checker checker, const Scene& scene, const Joint& joint);
 void check_control(Checker checker, const Scene& scene, std::size_t index);
+// Of Solver::newton (check_newton.cpp).
+void check_soft_contact(Checker& checker, const SoftContact& contact);
+void check_soft_limit(Checker& checker, const std::string& name, const Limit& limit);
+void check_dynamics(Checker& checker, const JointDynamics& dynamics);
+void check_actuator(Checker& checker, const Actuator& actuator);
+void check_newton(Checker checker, const Scene& scene, bool sound);
+// Its trees (check_trees.cpp). Precondition: the scene has no other issue.
+void check_trees(Checker checker, const Scene& scene);
+// "body 3 'crate'"
+std::string named_part(const char* what, std::size_t index, const std::string& name);
 // `sound`: whether the scene has no other issue. Only then are its extremes looked at.
 void check_variations(Checker checker, const Scene& scene, bool sound);
 

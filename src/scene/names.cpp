@@ -10,10 +10,12 @@ const char* to_string(Rotation rotation) { return name_of(rotation); }
 const char* to_string(Solver solver) { return name_of(solver); }
 
 bool has_hard_rows(Solver solver) {
-  return solver != Solver::tgs_soft && solver != Solver::penalty;
+  return solver != Solver::tgs_soft && solver != Solver::penalty && solver != Solver::newton;
 }
 int iterations_of(const SolverOptions& solver) {
-  return solver.iterations.value_or(has_hard_rows(solver.method) ? 10 : 1);
+  return solver.iterations.value_or(solver.method == Solver::newton ? 100
+                                    : has_hard_rows(solver.method)  ? 10
+                                                                    : 1);
 }
 
 }  // namespace manyworlds

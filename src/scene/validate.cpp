@@ -87,6 +87,18 @@ std::vector<Issue> validate(const Scene& scene) {
     at.finite("strength", attractor.strength, "m^3/s^2");
     at.not_negative("softening", attractor.softening, "m");
   }
+  detail::check_newton(checker, scene, issues.empty() && option_issues.empty());
+  const int bodies = static_cast<int>(scene.bodies.size());
+  for (std::size_t i = 0; i < scene.exclusions.size(); ++i) {
+    const Exclusion& exclusion = scene.exclusions[i];
+    detail::Checker at = checker.at("exclusion " + std::to_string(i));
+    const auto check = [&](const char* name, BodyId body) {
+      if (0 <= body.index() && body.index() < bodies) return;
+      at.add(name, "is " + std::to_string(body.index()) + ", must be a body, 0 to " +
+                       std::to_string(bodies - 1));
+    };
+    check("body_a", exclusion.body_a), check("body_b", exclusion.body_b);
+  }
   const bool sound = issues.empty() && option_issues.empty();
   issues.insert(issues.end(), option_issues.begin(), option_issues.end());
   check_variations(checker, scene, sound);

@@ -123,6 +123,8 @@ void Worlds<Real>::write_as(Field field, int world, const In* in) {
       set_origin(world, i, origin, q);
     }
   }
+  if (field == Field::generalized_position || field == Field::generalized_velocity)
+    place_links(world);
 }
 
 template <class Real>
@@ -136,7 +138,7 @@ LaneBlocks Worlds<Real>::lane_blocks(Field field) const {
   blocks.component_stride = static_cast<std::size_t>(blocks.lanes);
   blocks.item_stride = static_cast<std::size_t>(layout_.stride[kind]) * blocks.component_stride;
   blocks.group_stride = static_cast<std::size_t>(layout_.rows) * blocks.component_stride;
-  if (!layout_.has(field)) return blocks;
+  if (!layout_.has(field) || blocks.items == 0) return blocks;
   blocks.data = &storage_.number(0, layout_.row_of(field, 0));
   return blocks;
 }

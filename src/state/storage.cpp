@@ -13,7 +13,9 @@ Storage<Real>::Storage(const kernels::SceneConstants<Real>& tables, int groups, 
   const auto& t = tables_;
   state_ = AlignedBuffer<Real>(index(lane_count()) * index(t.state_size));
   status_ = AlignedBuffer<std::uint32_t>(index(lane_count()));
-  for (std::size_t l = 0; t.has_contacts && l < kernels::kLists; ++l) {
+  // The newton solver begins with accelerations, not with impulses.
+  const bool stores = t.has_contacts && t.tree.links == 0;
+  for (std::size_t l = 0; stores && l < kernels::kLists; ++l) {
     const std::size_t capacity = index(t.capacity[l]);
     if (capacity == 0) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));

@@ -43,9 +43,11 @@ TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep, int lanes)
   add_bodies(plan);
   // Without contacts and joints nothing comes to rest, and without bodies nothing is there to.
   tables_.has_sleep = sleep && tables_.has_substeps &&
-                      (tables_.has_contacts || tables_.has_joints) && tables_.bodies > 0;
+                      (tables_.has_contacts || tables_.has_joints) && tables_.bodies > 0 &&
+                      !plan.has_trees();
   add_shapes(plan);
   add_joints(plan);
+  add_trees(plan);
   add_attractors(plan);
   add_pairs(plan);
   for (int lane = 0; lane < lanes; ++lane) constants_.fill(plan, lane);
@@ -94,8 +96,8 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
                                 o.contact.damping_ratio, h);
   add_solver(o);
   t.push_out_speed = static_cast<Real>(o.contact.push_out_speed * o.length_unit);
-  t.margin = static_cast<Real>(4 * o.contact.slop * o.length_unit);
-  t.half_margin = static_cast<Real>(2 * o.contact.slop * o.length_unit);
+  t.margin = static_cast<Real>(2 * least_margin(plan));
+  t.half_margin = static_cast<Real>(least_margin(plan));
   t.restitution_threshold = static_cast<Real>(o.contact.restitution_threshold * o.length_unit);
   t.sleep_speed = static_cast<Real>(o.sleep.speed * o.length_unit);
   t.sleep_time = static_cast<Real>(o.sleep.time);
@@ -109,7 +111,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
 
 template <class Real>
 void TablesOf<Real>::add_solver(const Options& o) {
-  static_assert(static_cast<int>(kernels::Solver::penalty) == static_cast<int>(Solver::penalty));
+  static_assert(static_cast<int>(kernels::Solver::newton) == static_cast<int>(Solver::newton));
   auto& t = tables_;
   t.solver.kind = static_cast<kernels::Solver>(o.solver.method);
   t.solver.iterations = iterations_of(o.solver);
@@ -128,7 +130,7 @@ void TablesOf<Real>::add_flight(const PlanData& plan) {
   const Options& o = plan.scene.options;
   auto& t = tables_;
   auto& flight = t.flight;
-  flight.on = flies_freely(o);
+  flight.on = flies_freely(o) && !plan.has_trees();
   static_assert(static_cast<int>(kernels::Scheme::runge_kutta4) ==
                     static_cast<int>(Integrator::runge_kutta4) &&
                 static_cast<int>(kernels::Rotation::exponential) ==
@@ -170,7 +172,6 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
 template <class Real>
 void TablesOf<Real>::add_shapes(const PlanData& plan) {
   auto& t = tables_;
-  const double least_margin = 2 * plan.scene.options.contact.slop * plan.scene.options.length_unit;
   for (const PlanCollider& c : plan.colliders) {
     const Filter& filter = filter_of(plan, c);
     const auto vertices = static_cast<std::int32_t>(c.vertices.size());
@@ -207,7 +208,7 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
     }
     if (info(f.kind).margin >= 0) {
       fixed_rows_[static_cast<std::size_t>(f.row_offset + info(f.kind).margin)] =
-          static_cast<Real>(least_margin);
+          static_cast<Real>(least_margin(plan));
     }
     fixed_.push_back(out);
   }
@@ -279,6 +280,18 @@ void TablesOf<Real>::add_breaking(const PlanData& plan) {
   }
   t.breakable = static_cast<std::int32_t>(breaking_.size());
   t.breaking = breaking_.data();
+}
+
+template <class Real>
+void TablesOf<Real>::add_trees(const PlanData& plan) {
+  if (!plan.has_trees()) return;
+  const StateLayout layout = state_layout(plan);
+  trees_.emplace(plan.trees, layout.first[static_cast<int>(ItemKind::coordinate)],
+                 layout.first[static_cast<int>(ItemKind::dof)]);
+  tables_.tree = trees_->get();
+  const Options& o = plan.scene.options;
+  tables_.tree.stages = o.integrator == Integrator::runge_kutta4 ? 4 : 1;
+  tables_.tree.damped &= tables_.tree.stages == 1 && o.solver.implicit_damping;
 }
 
 // So that the pull of a point on itself is 0, and not 0 / 0, in float.

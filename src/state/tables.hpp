@@ -1,12 +1,14 @@
 // TablesOf: a Plan's numbers as the kernels want them, and the arrays they point into.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kernels/data/tables.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/state/constants.hpp"
+#include "src/state/tree_tables.hpp"
 
 namespace manyworlds {
 
@@ -25,6 +27,7 @@ class TablesOf {
   void add_pair_classes(const PlanData& plan);
   void add_joints(const PlanData& plan);
   void add_breaking(const PlanData& plan);
+  void add_trees(const PlanData& plan);
   void add_attractors(const PlanData& plan);
   void add_options(const PlanData& plan);
   void add_flight(const PlanData& plan);
@@ -41,6 +44,7 @@ class TablesOf {
   std::vector<kernels::BreakTable<Real>> breaking_;
   std::vector<kernels::AttractorTable<Real>> attractors_;
   std::vector<kernels::ThrustTable> thrusts_;
+  std::optional<TreeTables<Real>> trees_;
   std::vector<std::int32_t> first_thrust_;
   std::vector<std::int32_t> joined_, first_joined_;
   AlignedBuffer<Real> fixed_rows_, hulls_, delta_v_rows_, factor_rows_;

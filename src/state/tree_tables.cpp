@@ -27,8 +27,7 @@ kernels::Compliance<Real> compliance(const kernels::Compliance<double>& c) {
 }  // namespace
 
 template <class Real>
-TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int first_velocity,
-                             int first_acceleration) {
+TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int first_dof) {
   for (const auto& from : trees.links) {
     kernels::TreeLink<Real> to{from.body,   from.parent,
                                from.root,   from.first_joint,
@@ -53,10 +52,36 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     table_.damped = table_.damped || from.damping > 0;
   }
   for (const auto& from : trees.limits) {
-    limits_.push_back({from.coordinate, from.dof, static_cast<Real>(from.side),
-                       static_cast<Real>(from.end), static_cast<Real>(from.margin),
-                       static_cast<Real>(from.inverse_weight), compliance<Real>(from.compliance)});
+    limits_.push_back({static_cast<Real>(from.side), static_cast<Real>(from.end),
+                       static_cast<Real>(from.margin), static_cast<Real>(from.inverse_weight),
+                       compliance<Real>(from.compliance), from.first_term, from.terms,
+                       from.coupled});
   }
+  for (const auto& from : trees.terms) {
+    terms_.push_back({from.coordinate, from.dof, static_cast<Real>(from.coefficient)});
+  }
+  for (const auto& from : trees.actuators) {
+    kernels::TreeActuator<Real> to{from.control, from.coordinate, from.dof, {}, {}, {}, {}, {}};
+    to.gear = static_cast<Real>(from.gear);
+    copy(from.gain, to.gain), copy(from.bias, to.bias);
+    to.low = static_cast<Real>(from.low), to.high = static_cast<Real>(from.high);
+    actuators_.push_back(to);
+  }
+  for (const auto& from : trees.pairs) {
+    pairs_.push_back({from.link_a, from.link_b, from.dimensions, from.material_a, from.material_b,
+                      static_cast<Real>(from.margin), static_cast<Real>(from.inverse_weight),
+                      static_cast<Real>(from.friction_weight), compliance<Real>(from.compliance),
+                      from.first_dof, from.dofs, from.coupled});
+  }
+  pair_dofs_ = trees.pair_dofs;
+  for (const auto& dof : trees.dofs) {
+    const auto parent = static_cast<std::size_t>(dof.parent);
+    ancestors_.push_back(dof.parent < 0 ? 0 : ancestors_[parent] | std::uint64_t{1} << parent);
+  }
+  table_.has_rows = !trees.limits.empty() || !trees.pairs.empty();
+  table_.impedance_ratio = static_cast<Real>(trees.impedance_ratio);
+  table_.stages = 1;
+  table_.actuators = static_cast<std::int32_t>(actuators_.size());
   const auto& newton = trees.newton;
   table_.newton = {newton.iterations, newton.line_iterations, static_cast<Real>(newton.tolerance),
                    static_cast<Real>(newton.line_tolerance), static_cast<Real>(newton.scale)};
@@ -66,15 +91,17 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
   table_.coordinates = trees.coordinates;
   table_.entries = trees.entries;
   table_.first_coordinate = first_coordinate;
-  table_.first_velocity = first_velocity;
-  table_.first_acceleration = first_acceleration;
+  table_.first_dof = first_dof;
 }
 
 template <class Real>
 kernels::TreeTable<Real> TreeTables<Real>::get() const {
   kernels::TreeTable<Real> out = table_;
   out.link = links_.data(), out.joint = joints_.data(), out.dof = dofs_.data();
-  out.limit = limits_.data();
+  out.pair = pairs_.data(), out.pair_dof = pair_dofs_.data();
+  out.ancestors = ancestors_.data();
+  out.term = terms_.data();
+  out.limit = limits_.data(), out.actuator = actuators_.data();
   return out;
 }
 

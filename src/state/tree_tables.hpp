@@ -10,9 +10,9 @@ namespace manyworlds {
 template <class Real>
 class TreeTables {
  public:
-  // Coordinates, velocities and accelerations are rows of a world's state, from these on.
-  TreeTables(const PlanTrees& trees, int first_coordinate, int first_velocity,
-             int first_acceleration);
+  // Coordinates, and velocities and accelerations of dofs, are rows of a world's state, from these
+  // on.
+  TreeTables(const PlanTrees& trees, int first_coordinate, int first_dof);
 
   // Points into this object.
   kernels::TreeTable<Real> get() const;
@@ -23,6 +23,11 @@ class TreeTables {
   std::vector<kernels::TreeJoint<Real>> joints_;
   std::vector<kernels::TreeDof<Real>> dofs_;
   std::vector<kernels::TreeLimit<Real>> limits_;
+  std::vector<kernels::TreeTerm<Real>> terms_;
+  std::vector<kernels::TreeActuator<Real>> actuators_;
+  std::vector<kernels::TreePair<Real>> pairs_;
+  std::vector<std::int32_t> pair_dofs_;
+  std::vector<std::uint64_t> ancestors_;
 };
 
 }  // namespace manyworlds

@@ -66,9 +66,12 @@ void Worlds<Real>::initialise(int world) {
   for (std::size_t b = 0; b < data().bodies.size(); ++b) {
     const int scene_body = data().bodies[b].scene_body, body = static_cast<int>(b);
     const Body& described = plan_.scene().bodies[static_cast<std::size_t>(scene_body)];
-    place(world, body, draw_initial_state(plan_.scene(), scene_body, draws));
+    if (!data().has_trees()) {
+      place(world, body, draw_initial_state(plan_.scene(), scene_body, draws));
+    }
     if (storage_.has_activity()) storage_.set_absent(lane_index, body, !described.enabled);
   }
+  if (data().has_trees()) begin_trees(world, draws);
   const auto write_initial = [&](Field field) {
     const auto& values = initial_[static_cast<std::size_t>(field)];
     const std::size_t numbers = values.size() / static_cast<std::size_t>(worlds_);

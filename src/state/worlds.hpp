@@ -156,6 +156,9 @@ class Worlds final : public WorldsBase {
   double gravity_scale(int world, int scene_body) const;
 
   void initialise(int world);
+  // Of trees (tree_state.cpp): their coordinates as drawn; the bodies from the coordinates.
+  void begin_trees(int world, const Draws& draws);
+  void place_links(int world);
   void begin(int world);
   void place(int world, int body, const BodyState& state);
   // Of a body's principal axes, as the kernels have it, and of its own.

@@ -40,7 +40,7 @@ const StageCalls<Real>& find_rows(const Run<Real>& run) {
     run.lap(StepStage::broad_phase);
   }
   const StageCalls<Real>& calls = p.stages[layout];
-  run(StageCall<Real>{StepStage::begin, calls.enter});
+  if (calls.enter) run(StageCall<Real>{StepStage::begin, calls.enter});
   const auto* collide = p.kernels.collide[static_cast<int>(t.dimension)];
   for (int c = 0; c < t.classes; ++c) {
     p.kernels.set_class(run.scratch, c);
@@ -88,6 +88,27 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
     if (s + 1 < t.substeps) run(calls.next);
   }
   run(calls.end);
+}
+
+// Bodies in joint coordinates: a step is as many substeps, each of which finds its own contacts.
+template <class Real>
+void tree_steps(const Run<Real>& run, int steps) {
+  const GroupStep<Real>& p = run.step;
+  const auto& t = p.tables;
+  const auto& tree = p.kernels.tree;
+  if (steps == 0) return;
+  if (!t.has_contacts) {
+    tree.steps(t, run.group, run.scratch, steps * t.substeps);
+    return run.lap(StepStage::tree);
+  }
+  for (int i = 0; i < steps * t.substeps; ++i) {
+    for (int s = 0; s < t.tree.stages; ++s) {
+      run(StageCall<Real>{StepStage::tree, tree.pose});
+      find_rows(run);
+      run(StageCall<Real>{StepStage::tree, t.tree.stages == 1 ? tree.step : tree.runge_kutta[s]});
+    }
+  }
+  run(StageCall<Real>{StepStage::tree, tree.place});
 }
 
 template <class Real>
@@ -161,7 +182,14 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                kernels::Scratch* scratch, int steps, StageClock* clock) {
   if (clock) clock->start();
   int taken = 0;
-  if (p.tables.has_substeps) {
+  if (p.tables.tree.links > 0) {
+    const int last = looks_at_start(p) ? 1 : 0;  // taken by itself
+    const Run<Real> run{p, group, scratch, clock};
+    tree_steps(run, steps - last);
+    if (p.wanted) look_at_start(p, group, scratch);
+    tree_steps(run, last);
+    taken = steps;
+  } else if (p.tables.has_substeps) {
     if (p.wanted) p.kernels.observer->clear(p.tables, group, scratch, *p.wanted);
     for (; taken < steps && !at_rest(p, group); ++taken) {
       const auto* wanted = taken + 1 == steps ? p.wanted : nullptr;

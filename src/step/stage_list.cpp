@@ -167,7 +167,7 @@ class Builder {
 template <class Real>
 StageList<Real>::StageList(const PlanData& plan, const kernels::SceneConstants<Real>& tables,
                            const kernels::Kernels<Real>& kernels) {
-  if (!tables.has_substeps) return;
+  if (!tables.has_substeps || plan.has_trees()) return;
   dense_ = Builder<Real>(plan, tables, kernels, kernels::Layout::dense).build();
   rows_ = Builder<Real>(plan, tables, kernels, kernels::Layout::rows).build();
 }

@@ -117,6 +117,8 @@ TEST_CASE("what is written is read back", "[fast][batch]") {
         CHECK(batch.hash() == hash);
         // A write to one world is seen by that world only.
         std::vector<double> changed = values(batch, field, 6);
+        CHECK(changed.empty() == (info(field).item != ItemKind::body));  // of trees: there are none
+        if (changed.empty()) continue;
         if (field == Field::orientation) {
           changed[0] = -changed[0];
         } else {

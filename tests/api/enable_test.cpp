@@ -11,11 +11,12 @@
 namespace manyworlds::test {
 namespace {
 
-// The first `bodies` state bodies of every field of a world.
+// The first `bodies` state bodies of every field of bodies of a world.
 std::vector<double> head_of(const Batch& batch, int world, int bodies) {
   std::vector<double> all;
   for (int f = 0; f < kFieldCount; ++f) {
     const Field field = static_cast<Field>(f);
+    if (info(field).item != ItemKind::body) continue;
     const auto v = values(batch, field, world);
     const auto n = static_cast<std::ptrdiff_t>(components(field, space_of(batch)) * bodies);
     all.insert(all.end(), v.begin(), v.begin() + n);

@@ -89,11 +89,12 @@ const std::vector<Misuse> kEnumsInScenes = {
              [](Scene& s) { s.options.integrator = none<Integrator>(-1); }),
     in_scene("options.rotation is 3, must be splitting, quaternion or exponential",
              [](Scene& s) { s.options.rotation = none<Rotation>(3); }),
-    in_scene(
-        "options.solver.method is 99, must be tgs-soft, sequential-impulse, sor, nncg or penalty",
-        [](Scene& s) { s.options.solver.method = none<Solver>(99); }),
-    in_scene("control 0: kind is 4, must be target_position, target_speed, thrust or torque",
-             [](Scene& s) { s.controls[0].kind = none<ControlKind>(4); }),
+    in_scene("options.solver.method is 99, must be tgs-soft, sequential-impulse, sor, nncg, "
+             "penalty or newton",
+             [](Scene& s) { s.options.solver.method = none<Solver>(99); }),
+    in_scene("control 0: kind is 5, must be target_position, target_speed, thrust, torque or "
+             "joint_force",
+             [](Scene& s) { s.controls[0].kind = none<ControlKind>(5); }),
     in_scene("variation 0: parameter is 99, must be size, density, mass, ",
              [](Scene& s) { s.variations = {vary(none<Parameter>(99), 0, 1)}; }),
     in_scene("variation 0: draw is 3, must be none, uniform or log_uniform",
@@ -105,7 +106,8 @@ const std::vector<Misuse> kEnumsInScenes = {
        compile(crowd(Space::planar), {.keep = {Feature::drag, none<Feature>(8)}});
      }},
     {"feature is 8, must be", [] { plan_of().has(none<Feature>(8)); }},
-    {"field is 17, must be position, orientation, linear_velocity or angular_velocity",
+    {"field is 17, must be position, orientation, linear_velocity, angular_velocity, "
+     "generalized_position, generalized_velocity or generalized_acceleration",
      [] { components(none<Field>(17), Space::planar); }},
     {"parameter is -1, must be", [] { info(none<Parameter>(-1)); }},
 };
@@ -124,11 +126,11 @@ const std::vector<Misuse> kEnumsInBatches = {
     in_batch("field is 17, must be", [](Batch& b) { b.size(none<Field>(17)); }),
     in_batch("field is 17, must be",
              [](Batch& b) { b.read(none<Field>(17), 0, std::span<double>()); }),
-    in_batch("field is 4, must be",
-             [](Batch& b) { b.write(none<Field>(4), std::span<const double>()); }),
-    in_batch("field is 4, must be",
-             [](Batch& b) { b.set_initial(none<Field>(4), std::span<const double>()); }),
-    in_batch("field is 4, must be", [](Batch& b) { b.lane_blocks(none<Field>(4)); }),
+    in_batch("field is 7, must be",
+             [](Batch& b) { b.write(none<Field>(7), std::span<const double>()); }),
+    in_batch("field is 7, must be",
+             [](Batch& b) { b.set_initial(none<Field>(7), std::span<const double>()); }),
+    in_batch("field is 7, must be", [](Batch& b) { b.lane_blocks(none<Field>(7)); }),
     in_batch("parameter is 9, must be", [](Batch& b) { b.size(none<Parameter>(9)); }),
     in_batch("parameter is 9, must be",
              [](Batch& b) { b.read(none<Parameter>(9), 0, std::span<double>()); }),

@@ -37,8 +37,8 @@ TEST_CASE("what cannot be set is told in a line", "[cli]") {
       {"contact.slop=1e999", "--set: contact.slop must be a number, is '1e999'"},
       {"substeps=2.5", "--set: substeps must be a whole number, is '2.5'"},
       {"solver.method=sot",
-       "--set: solver.method must be tgs-soft, sequential-impulse, sor, nncg "
-       "or penalty, is 'sot'"},
+       "--set: solver.method must be tgs-soft, sequential-impulse, sor, nncg, "
+       "penalty or newton, is 'sot'"},
       {"solver.split_impulse=1", "solver.split_impulse must be true or false, is '1'"},
       {"solver.iterations=many", "must be a whole number, or default, is 'many'"},
       {"gravity=1,2", "--set: gravity must be 3 numbers, as in 0,0,-9.81, is '1,2'"},

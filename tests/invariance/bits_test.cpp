@@ -315,6 +315,7 @@ TEST_CASE("a world with a NaN is frozen and flagged, the others keep their bits"
         good.step(15);
         for (int f = 0; f < kFieldCount; ++f) {
           const Field field = static_cast<Field>(f);
+          if (plan.numbers(field) == 0) continue;  // of trees, of which there are none
           INFO(name(table) << ' ' << to_string(layout) << ' ' << info(field).name);
           Batch bad(plan, options);
           std::vector<double> v = values(bad, field, 5);

@@ -30,6 +30,7 @@ extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(con
 #include "manyworlds/tasks.hpp"
 #include "src/api/memory.hpp"
 #include "tests/support/crowd.hpp"
+#include "tests/support/newton_scenes.hpp"
 #include "tests/support/policy.hpp"
 #include "tests/support/tables.hpp"
 
@@ -184,6 +185,16 @@ TEST_CASE("stepping by any solver allocates nothing", "[fast][allocation][solver
         batch.step();
         CHECK(calls_during([&] { batch.step(100); }) == 0);
       }
+    }
+  }
+}
+
+TEST_CASE("stepping trees allocates nothing", "[fast][allocation][newton]") {
+  for (const Scene& scene : {newton_pendulum(), newton_robot()}) {
+    for (const Table& table : widest_tables()) {
+      Batch batch(compile(scene), options_of(table, 40));
+      batch.step();
+      CHECK(calls_during([&] { batch.step(100); }) == 0);
     }
   }
 }

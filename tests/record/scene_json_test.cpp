@@ -192,8 +192,8 @@ TEST_CASE("JSON that is no scene names every problem and its place", "[fast][rec
 }
 
 TEST_CASE("every member of a scene comes back from JSON", "[fast][record][json]") {
-  for (const bool all : {false, true}) {
-    const Scene scene = scene_with_everything(all);
+  for (const Solver solver : kSolversOfEverything) {
+    const Scene scene = scene_with_everything(solver);
     const std::string text = scene_to_json(scene);
     CHECK(scene_to_json(scene_from_json(text)) == text);
     for (const Change& change : changes_of(scene)) {

@@ -17,7 +17,8 @@ struct TwinRow {
 };
 
 double impedance_of(const Compliance& c, double violation) {
-  const auto [low, high, width, middle, power] = c.impedance;
+  const double low = c.min_impedance, high = c.max_impedance;
+  const double width = c.width, middle = c.midpoint, power = c.power;
   if (low == high || width == 0) return (low + high) / 2;
   const double x = std::min(1.0, std::abs(violation) / width);
   const double y = x <= middle ? std::pow(x, power) / std::pow(middle, power - 1)
@@ -32,9 +33,9 @@ TwinRow row_of(const NewTreeJoint& joint, double inverse_weight, double side, do
   const double distance = side * (q - end), violation = distance - joint.margin;
   if (distance >= joint.margin) return row;
   const Compliance& c = joint.compliance;
-  const double d = impedance_of(c, violation), high = c.impedance[1];
+  const double d = impedance_of(c, violation), high = c.max_impedance;
   row.weight = d / ((1 - d) * inverse_weight);
-  const auto [first, second] = c.reference;
+  const double first = c.time_constant, second = c.damping_ratio;
   const double time = std::max(first, 2 * dt);
   const double stiffness =
       first > 0 ? 1 / std::pow(high * time * second, 2) : -first / (high * high);
@@ -68,13 +69,14 @@ void add_limits(Random& random, std::vector<TwinLink>& links) {
       const double low = random.uniform(-1.5, 0.5);
       joint.range = {low, low + random.uniform(0.1, 1.5)};
       if (random.chance(0.3)) joint.margin = random.uniform(0, 0.2);
-      auto& impedance = joint.compliance.impedance;
+      Compliance& c = joint.compliance;
       if (random.chance(0.5)) {
-        impedance = {random.uniform(0.1, 0.9), 0.95, random.uniform(0.01, 1),
-                     random.uniform(0.2, 0.8), static_cast<double>(random.integer(1, 4))};
+        c.min_impedance = random.uniform(0.1, 0.9), c.width = random.uniform(0.01, 1);
+        c.midpoint = random.uniform(0.2, 0.8);
+        c.power = static_cast<double>(random.integer(1, 4));
       }
-      if (random.chance(0.2)) impedance[0] = impedance[1];
-      if (random.chance(0.3)) joint.compliance.reference = {-300, -20};
+      if (random.chance(0.2)) c.min_impedance = c.max_impedance;
+      if (random.chance(0.3)) c.time_constant = -300, c.damping_ratio = -20;
     }
   }
 }
@@ -162,7 +164,7 @@ TEST_CASE("trees: a rod comes to rest on its limit where the soft row carries it
   NewTreeJoint& joint = rod.joints[0];
   joint.range = {-0.1, 1};
   joint.damping = 0.5;
-  joint.compliance.impedance = {0.9, 0.95, 0.01, 0.5, 2};
+  joint.compliance.width = 0.01;
   constexpr double kDt = 0.002;
   const double inverse_weight = 3;  // of 1/3 kg m^2
   double deep = -0.2, shallow = -0.1;

@@ -64,6 +64,7 @@ TEST_CASE("the state of a world has the rows of its items, one kind after the ot
     CHECK(plan.items(ItemKind::body) == 3);
     CHECK(plan.items(ItemKind::world) == 1);
     CHECK(plan.items(ItemKind::shape) == 3);
+    CHECK(plan.items(ItemKind::coordinate) == 0);
     CHECK(plan.items(ItemKind::dof) == 0);
     CHECK(plan.items(ItemKind::particle) == 0);
     CHECK_THROWS_AS(plan.items(static_cast<ItemKind>(9)), std::invalid_argument);
@@ -86,7 +87,36 @@ TEST_CASE("the state of a world has the rows of its items, one kind after the ot
   }
 }
 
-TEST_CASE("a field that the plan leaves out moves no other", "[fields][fast]") {
+TEST_CASE("the state of the newton solver has rows of coordinates and of dofs, one after the other",
+          "[fields][fast][newton]") {
+  Scene scene = empty_scene(Space::spatial, 10);
+  scene.options.solver.method = Solver::newton;
+  for (int i = 0; i < 3; ++i) scene.add(body_of(shape_of(Sphere{}), Vec3(i, 0, 0)));
+  // A tree of a free root and a ball joint, and a free body.
+  scene.add(joint_at(scene, BodyId(0), BodyId(1), {}, BallJoint{}));
+  const Plan plan = compile(scene);
+  CHECK(plan.items(ItemKind::body) == 3);
+  CHECK(plan.items(ItemKind::coordinate) == 7 + 4 + 7);
+  CHECK(plan.items(ItemKind::dof) == 6 + 3 + 6);
+  CHECK(plan.first_coordinate(JointId(0)) == 7);
+  const StateLayout layout = state_layout(plan.data());
+  std::vector<int> rows;
+  for (const Field field : kFields) {
+    CHECK(layout.has(field));
+    for (int item = 0; item < plan.items(info(field).item); ++item) {
+      for (int c = 0; c < components(field, Space::spatial); ++c) {
+        rows.push_back(layout.row_of(field, item) + c);
+      }
+    }
+  }
+  std::sort(rows.begin(), rows.end());
+  CHECK(std::adjacent_find(rows.begin(), rows.end()) == rows.end());
+  CHECK(rows.front() == 0);
+  CHECK(rows.back() == layout.rows - 1);
+  CHECK(layout.rows == 3 * 13 + 18 + 2 * 15);
+}
+
+TEST_CASE("a field that the plan leaves out moves no other of its item", "[fields][fast]") {
   Scene scene = empty_scene(Space::spatial, 10);
   scene.add(body_of(shape_of(Sphere{}), Vec3::Zero()));
   const Plan plan = compile(scene), whole = compile(scene, {.keep = {Feature::orientation}});
@@ -94,7 +124,10 @@ TEST_CASE("a field that the plan leaves out moves no other", "[fields][fast]") {
   CHECK_FALSE(layout.has(Field::orientation));
   CHECK(all.rows == layout.rows + 4);
   for (const Field field : kFields) {
-    if (layout.has(field)) CHECK(layout.row_of(field, 0) == all.row_of(field, 0));
+    if (!layout.has(field)) continue;
+    // Those of other items come after the body's.
+    const int after = info(field).item == ItemKind::body ? 0 : 4;
+    CHECK(layout.row_of(field, 0) + after == all.row_of(field, 0));
   }
 }
 

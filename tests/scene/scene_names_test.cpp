@@ -32,6 +32,14 @@ TEST_CASE("field descriptions follow the list of fields", "[fast][scene]") {
   CHECK(components(Field::orientation, Space::spatial) == 4);
   CHECK(components(Field::angular_velocity, Space::planar) == 1);
   CHECK(components(Field::angular_velocity, Space::spatial) == 3);
+  CHECK(std::string(info(Field::generalized_velocity).unit) == "m/s or rad/s");
+  CHECK(std::string(to_string(info(Field::generalized_position).item)) == "coordinate");
+  CHECK(std::string(to_string(info(Field::generalized_acceleration).item)) == "dof");
+  for (const Field field : {Field::generalized_position, Field::generalized_velocity,
+                            Field::generalized_acceleration}) {
+    CHECK(components(field, Space::planar) == 1);
+    CHECK(components(field, Space::spatial) == 1);
+  }
 }
 
 TEST_CASE("a scene error carries and lists all issues", "[fast][scene]") {

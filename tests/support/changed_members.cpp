@@ -106,7 +106,7 @@ Joint joint_of(const JointType& type) {
 
 }  // namespace
 
-Scene scene_with_everything(bool all) {
+Scene scene_with_everything(Solver solver) {
   Scene scene;
   scene.name = "everything";
   const Geometry shapes[] = {Sphere{},
@@ -150,14 +150,29 @@ Scene scene_with_everything(bool all) {
                              TargetJoint{spring, 12}};
   static_assert(std::size(types) == std::variant_size_v<JointType>);
   for (const JointType& type : types) scene.add(joint_of(type));
+  // What counts if it is not as it always was: once as it was, and once not.
+  Joint later = joint_of(HingeJoint{Limit{-1, 1, {}, {0.1, 0.5, 0.1, 0.2, 0.3, 0.4, 3}, 0.1}, {}});
+  later.after = JointId(1);
+  later.dynamics = {1, 2, 3, 4, 5};
+  scene.add(later);
+  scene.bodies[0].shapes[0].material.soft = {1, {0.1, 0.5, 0.1, 0.2, 0.3, 0.4, 3}, 1, 2, 3, 4};
   scene.add(Control{});
+  Control force;
+  force.kind = ControlKind::joint_force, force.joint = JointId(1);
+  force.actuator = {2, {1, 2, 3}, {4, 5, 6}, -7, 8};
+  scene.add(force);
   scene.attractors.emplace_back();
   scene.variations.push_back(vary(Parameter::friction, 0.1, 0.9));
+  if (solver != Solver::tgs_soft) scene.exclusions.push_back({BodyId(0), BodyId(1)});
+  if (solver == Solver::newton) {
+    const Limit end{-1, 1, {}, {0.1, 0.5, 0.1, 0.2, 0.3, 0.4, 3}, 0.1};
+    scene.tendons.push_back({"cord", {{JointId(1), 0.5}, {JointId(2), -2}}, end});
+  }
   scene.options.contact_capacity = 7;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-1, -2, -3), Vec3(1, 2, 3));
   scene.options.joint.frequency = 30;
-  if (!all) return scene;
-  scene.options.solver.method = Solver::sor;
+  if (solver == Solver::tgs_soft) return scene;
+  scene.options.solver.method = solver;
   scene.options.solver.iterations = 7;
   scene.options.integrator = Integrator::runge_kutta4;
   scene.options.rotation = Rotation::exponential;

@@ -8,9 +8,10 @@
 
 namespace manyworlds::test {
 
-// Every shape, joint, control kind and optional member; valid or not does not matter. `all`:
-// options whose other members count, too.
-Scene scene_with_everything(bool all);
+// Every shape, joint, control kind and optional member; valid or not does not matter. With
+// Solver::tgs_soft all options have their defaults; others come with more that counts.
+inline constexpr Solver kSolversOfEverything[] = {Solver::tgs_soft, Solver::sor, Solver::newton};
+Scene scene_with_everything(Solver solver);
 
 struct Change {
   std::string member;  // "bodies/3/shapes/0/density"

@@ -26,7 +26,7 @@ class TreeGroup {
         lanes_(kernels.lanes),
         bodies_(static_cast<int>(links.size())),
         trees_(trees_of(links, dt)),
-        tables_(trees_, first(), first() + coordinates(), first() + coordinates() + dofs()),
+        tables_(trees_, first(), first() + coordinates()),
         rows_(first() + coordinates() + 2 * dofs()),
         state_(count(rows_)),
         body_constants_(count(bodies_) * sizeof(kernels::BodyConstants<Real>) / sizeof(Real)),
@@ -52,16 +52,14 @@ class TreeGroup {
   void set(int lane, const TreeTwin::Numbers& q, const TreeTwin::Numbers& v) {
     for (int c = 0; c < q.size(); ++c) at(lane, first() + c) = static_cast<Real>(q[c]);
     for (int k = 0; k < v.size(); ++k)
-      at(lane, first() + coordinates() + k) = static_cast<Real>(v[k]);
+      at(lane, first() + coordinates() + 2 * k) = static_cast<Real>(v[k]);
   }
   TreeTwin::Numbers position(int lane) const { return numbers(lane, first(), coordinates()); }
-  TreeTwin::Numbers velocity(int lane) const {
-    return numbers(lane, first() + coordinates(), dofs());
-  }
+  TreeTwin::Numbers velocity(int lane) const { return every_other(lane, first() + coordinates()); }
   const PlanTrees& trees() const { return trees_; }
   // Of the last step, before dampers.
   TreeTwin::Numbers acceleration(int lane) const {
-    return numbers(lane, first() + coordinates() + dofs(), dofs());
+    return every_other(lane, first() + coordinates() + 1);
   }
   // A field of a body, as the state has it.
   TreeTwin::Numbers body(int lane, int body, int row, int rows) const {
@@ -91,6 +89,10 @@ class TreeGroup {
       out[i] = static_cast<double>(state_[static_cast<std::size_t>((row + i) * lanes_ + lane)]);
     }
     return out;
+  }
+  TreeTwin::Numbers every_other(int lane, int row) const {
+    const TreeTwin::Numbers all = numbers(lane, row, 2 * dofs() - 1);
+    return all(Eigen::seqN(0, dofs(), 2));
   }
   kernels::GroupView<Real> group() {
     kernels::GroupView<Real> view{};

@@ -101,7 +101,7 @@ const Choices<BroadPhase>& broad_phases() {
 
 Choices<Solver> solvers() {
   Choices<Solver> choices;
-  for (int i = 0; i <= static_cast<int>(Solver::penalty); ++i) {
+  for (int i = 0; i <= static_cast<int>(Solver::newton); ++i) {
     const auto solver = static_cast<Solver>(i);
     choices.emplace_back(to_string(solver), solver);
   }

@@ -1,0 +1,40 @@
+// All rows of the newton solver as one set.
+#pragma once
+
+#include "kernels/tree/contacts.hpp"
+#include "kernels/tree/limits.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+class ConstraintRows {
+ public:
+  MW_INLINE ConstraintRows(const Constants& t, const Work& w) : limits_(t, w), contacts_(t, w) {}
+
+  Mask find(const Group& g) const { return limits_.find(g) | contacts_.find(); }
+  // From here on rows that none of these lanes has are left alone.
+  void look_at(std::uint32_t lanes) { limits_.look_at(lanes), contacts_.look_at(lanes); }
+  void start(const Real* a) const { limits_.start(a), contacts_.start(a); }
+  void add_forces(Real* load) const { limits_.add_forces(load), contacts_.add_forces(load); }
+  // Which dofs the rows couple, and J' D J of those that push.
+  void couple(const Stiffness& stiffness) const {
+    limits_.couple(stiffness), contacts_.couple(stiffness);
+  }
+  void add_stiffness(const Stiffness& stiffness) const {
+    limits_.add_stiffness(stiffness), contacts_.add_stiffness(stiffness);
+  }
+  void search(const Real* direction) const {
+    limits_.search(direction), contacts_.search(direction);
+  }
+  MW_INLINE void along(Float step, Float& first, Float& second) const {
+    limits_.along(step, first, second), contacts_.along(step, first, second);
+  }
+  Mask advance(Float step, Mask done) const {
+    return limits_.advance(step, done) | contacts_.advance(step, done);
+  }
+
+ private:
+  LimitRows limits_;
+  ContactRows contacts_;
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,229 @@
+// Rows of contacts: of a point one along the normal (dimensions 1), or four along the edges of a
+// pyramid around it, n + mu t and n - mu t for both tangents (dimensions 3; MuJoCo, "Computation",
+// pyramidal cones). A set of rows as the newton solver asks for it (newton.hpp).
+//
+// No row is stored: what accelerations do at a point comes from the motions of its links, and what
+// its forces do to the dofs from the wrenches on them.
+#pragma once
+
+#include "kernels/tree/compliance.hpp"
+#include "kernels/tree/dynamics.hpp"
+#include "kernels/tree/row_force.hpp"
+#include "kernels/tree/stiffness.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+using TreePair = kernels::TreePair<Real>;
+
+// Motions of links by accelerations, [dof][lane].
+inline void find_twists(const Constants& t, const Work& w, const Real* x, Real* twists) {
+  for (int i = 0; i < t.tree.links; ++i) {
+    const TreeLink& link = t.tree.link[i];
+    Twist v{zero_of<Vec3>(), zero_of<Vec3>()};
+    if (link.parent >= 0) v = load_twist(link_rows(twists, link.parent, kTwistRows));
+    for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
+      v = fma(load_twist(axis_of(w, k)), Float::load(x + k * kLanes), v);
+    }
+    store(link_rows(twists, i, kTwistRows), v);
+  }
+}
+
+// Adds to [dof][lane] what wrenches on the links do there. They are added up on the way.
+inline void add_wrenches(const Constants& t, const Work& w, Real* wrenches, Real* load) {
+  for (int i = t.tree.links - 1; i >= 0; --i) {
+    const TreeLink& link = t.tree.link[i];
+    const Wrench f = load_wrench(link_rows(wrenches, i, kTwistRows));
+    for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
+      Real* to = load + k * kLanes;
+      (Float::load(to) + dot(load_twist(axis_of(w, k)), f)).store(to);
+    }
+    if (link.parent < 0) continue;
+    Real* below = link_rows(wrenches, link.parent, kTwistRows);
+    store(below, load_wrench(below) + f);
+  }
+}
+
+class ContactRows {
+ public:
+  MW_INLINE ContactRows(const Constants& t, const Work& w) : t_(t), w_(w) {}
+
+  // Rows of the contacts that were found. Returns lanes that have any.
+  Mask find() const {
+    Mask found = mask_from_bits(0);
+    for_each([&](Contact& c, const TreePair& pair) {
+      const Float mu = Float::load(c.friction), friction_weight(pair.friction_weight);
+      const Float inverse_weight = fma(mu * mu, friction_weight, Float(pair.inverse_weight));
+      const Float along = pair.dimensions == 1 ? Float(Real(1))
+                                               : mu * mu * Float(Real(2) / t_.tree.impedance_ratio);
+      const Float violation = Float::load(c.distance) - Float(pair.margin);
+      const Mask near = mask_from_bits(c.lanes);
+      const Edges speed = along_edges(pair, c, relative(c, pair, w_.tree.velocity));
+      for (int e = 0; e < rows_of(pair); ++e) {
+        const SoftRow soft =
+            soft_row(pair.compliance, along * inverse_weight, violation, speed.along[e]);
+        select(near, soft.weight, Real(0)).store(c.weight);
+        select(near, soft.reference, Real(0)).store(c.reference[e]);
+      }
+      found = found | near;
+    });
+    return found;
+  }
+
+  void look_at(std::uint32_t lanes) { lanes_ = lanes; }
+  void start(const Real* a) const {
+    find_change(a, [](Contact& c, int e, Float change) {
+      (change - Float::load(c.reference[e])).store(c.residual[e]);
+    });
+  }
+  void search(const Real* direction) const {
+    find_change(direction, [](Contact& c, int e, Float change) { change.store(c.change[e]); });
+  }
+
+  void add_forces(Real* load) const {
+    if (w_.tree.contact_count == 0) return;
+    Real* wrenches = w_.tree.force;
+    for (int r = 0; r < t_.tree.links * kTwistRows; ++r) {
+      Float(Real(0)).store(wrenches + r * kLanes);
+    }
+    for_each([&](const Contact& c, const TreePair& pair) {
+      Float f[4];
+      const int rows = rows_of(pair);
+      for (int e = 0; e < rows; ++e) f[e] = row(c, e).force();
+      Vec3 force = load_vec3(c.frame[0]) * f[0];
+      if (rows > 1) {
+        const Float mu = Float::load(c.friction);
+        force = load_vec3(c.frame[0]) * ((f[0] + f[1]) + (f[2] + f[3]));
+        force = fma(load_vec3(c.frame[3]), mu * (f[0] - f[1]), force);
+        force = fma(load_vec3(c.frame[6]), mu * (f[2] - f[3]), force);
+      }
+      const Real* const arms[2] = {c.arm_b[0], c.arm_a[0]};
+      const int links[2] = {pair.link_b, pair.link_a};
+      for (int s = 0; s < 2; ++s) {
+        if (links[s] < 0) continue;
+        Real* to = link_rows(wrenches, links[s], kTwistRows);
+        const Wrench own{cross(load_vec3(arms[s]), force), force};
+        store(to, s == 0 ? load_wrench(to) + own : load_wrench(to) - own);
+      }
+    });
+    add_wrenches(t_, w_, wrenches, load);
+  }
+
+  void couple(const Stiffness& stiffness) const {
+    for_each([&](const Contact& c, const TreePair& pair) {
+      if (pair.link_a >= 0 && pushes(stiffness_of(c, pair))) stiffness.couple(pair.coupled);
+    });
+  }
+  void add_stiffness(const Stiffness& stiffness) const {
+    for_each([&](const Contact& c, const TreePair& pair) {
+      const PointStiffness k = stiffness_of(c, pair);
+      if (!pushes(k)) return;
+      const std::int32_t* dofs = t_.tree.pair_dof + pair.first_dof;
+      const Mat3 frame{load_vec3(c.frame[0]), load_vec3(c.frame[3]), load_vec3(c.frame[6])};
+      for (int i = 0; i < pair.dofs; ++i) {
+        const bool moves_a = dofs[i] < 0;
+        const Twist axis = load_twist(axis_of(w_, moves_a ? ~dofs[i] : dofs[i]));
+        Vec3 v = axis.v + cross(axis.w, load_vec3(moves_a ? c.arm_a[0] : c.arm_b[0]));
+        if (moves_a) v = -v;
+        const Vec3 own{dot(frame.x, v), dot(frame.y, v), dot(frame.z, v)};
+        store(w_.tree.column + i * 3 * kLanes, own);
+      }
+      for (int i = 0; i < pair.dofs; ++i) {
+        const Vec3 pull = k.times(load_vec3(w_.tree.column + i * 3 * kLanes), pair.dimensions);
+        const int row = dofs[i] < 0 ? ~dofs[i] : dofs[i];
+        for (int j = i; j < pair.dofs; ++j) {
+          const Vec3 other = load_vec3(w_.tree.column + j * 3 * kLanes);
+          Real* to = stiffness.entry(row, dofs[j] < 0 ? ~dofs[j] : dofs[j]);
+          Float sum = fma(pull.x, other.x, Float::load(to));
+          if (pair.dimensions > 1) sum = fma(pull.z, other.z, fma(pull.y, other.y, sum));
+          sum.store(to);
+        }
+      }
+    });
+  }
+
+  void along(Float step, Float& first, Float& second) const {
+    for_each([&](const Contact& c, const TreePair& pair) {
+      for (int e = 0; e < rows_of(pair); ++e) row(c, e).add_along(step, first, second);
+    });
+  }
+  Mask advance(Float step, Mask done) const {
+    Mask changed = mask_from_bits(0);
+    for_each([&](Contact& c, const TreePair& pair) {
+      for (int e = 0; e < rows_of(pair); ++e) changed = changed | row(c, e).advance(step, done);
+    });
+    return changed;
+  }
+
+ private:
+  using Contact = TreeContact;
+  struct Edges {
+    Float along[4];
+  };
+  // J' D J in the contact's frame, of the edges that push.
+  struct PointStiffness {
+    Float normal, normal_1, normal_2, tangent_1, tangent_2;
+    MW_INLINE Vec3 times(Vec3 v, int dimensions) const {
+      if (dimensions == 1) return {normal * v.x, v.y, v.z};
+      return {fma(normal_2, v.z, fma(normal_1, v.y, normal * v.x)),
+              fma(tangent_1, v.y, normal_1 * v.x), fma(tangent_2, v.z, normal_2 * v.x)};
+    }
+  };
+
+  template <class Visit>
+  MW_INLINE void for_each(Visit visit) const {
+    for (int i = 0; i < w_.tree.contact_count; ++i) {
+      TreeContact& c = w_.tree.contacts[i];
+      if ((c.lanes & lanes_) != 0) visit(c, t_.tree.pair[c.pair]);
+    }
+  }
+  static int rows_of(const TreePair& pair) { return pair.dimensions == 1 ? 1 : 4; }
+  static MW_INLINE RowView row(const Contact& c, int e) {
+    return {c.weight, const_cast<Real*>(c.residual[e]), c.change[e]};
+  }
+
+  // Of B against A at the point, world axes.
+  MW_INLINE Vec3 relative(const Contact& c, const TreePair& pair, const Real* twists) const {
+    const auto at = [&](int link, const Real* arm) {
+      const Twist v = load_twist(twists + link * kTwistRows * kLanes);
+      return v.v + cross(v.w, load_vec3(arm));
+    };
+    Vec3 v = pair.link_b < 0 ? zero_of<Vec3>() : at(pair.link_b, c.arm_b[0]);
+    if (pair.link_a >= 0) v = v - at(pair.link_a, c.arm_a[0]);
+    return v;
+  }
+  static MW_INLINE Edges along_edges(const TreePair& pair, const Contact& c, Vec3 v) {
+    const Float normal = dot(load_vec3(c.frame[0]), v);
+    if (pair.dimensions == 1) return {{normal, normal, normal, normal}};
+    const Float mu = Float::load(c.friction);
+    const Float one = mu * dot(load_vec3(c.frame[3]), v), two = mu * dot(load_vec3(c.frame[6]), v);
+    return {{normal + one, normal - one, normal + two, normal - two}};
+  }
+  template <class Put>
+  MW_INLINE void find_change(const Real* x, Put put) const {
+    if (w_.tree.contact_count == 0) return;
+    find_twists(t_, w_, x, w_.tree.rate);
+    for_each([&](Contact& c, const TreePair& pair) {
+      const Edges change = along_edges(pair, c, relative(c, pair, w_.tree.rate));
+      for (int e = 0; e < rows_of(pair); ++e) put(c, e, change.along[e]);
+    });
+  }
+  static MW_INLINE PointStiffness stiffness_of(const Contact& c, const TreePair& pair) {
+    const Float zero(Real(0));
+    if (pair.dimensions == 1) return {row(c, 0).stiffness(), zero, zero, zero, zero};
+    Float s[4];
+    for (int e = 0; e < 4; ++e) s[e] = row(c, e).stiffness();
+    const Float mu = Float::load(c.friction), mu2 = mu * mu;
+    return {(s[0] + s[1]) + (s[2] + s[3]), mu * (s[0] - s[1]), mu * (s[2] - s[3]),
+            mu2 * (s[0] + s[1]), mu2 * (s[2] + s[3])};
+  }
+
+  MW_INLINE bool pushes(const PointStiffness& k) const {
+    return (bits(Float(Real(0)) < k.normal) & lanes_) != 0;
+  }
+
+  const Constants& t_;
+  std::uint32_t lanes_ = kAllLanes;
+  const Work& w_;
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,238 @@
+// Trees of a scene with Solver::newton: which body is whose child, the links in their order, and
+// the coordinates that they begin with.
+#include <algorithm>
+#include <cmath>
+
+#include "src/plan/plan_data.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+using kernels::TreeJointKind;
+
+struct TreePose {
+  Vec3 position = Vec3::Zero();
+  Quat rotation = Quat::Identity();
+  TreePose operator*(const TreePose& other) const {
+    return {position + rotation * other.position, rotation * other.rotation};
+  }
+  TreePose inverse() const {
+    const Quat back = rotation.conjugate();
+    return {back * -position, back};
+  }
+};
+TreePose tree_pose(const Frame& frame) { return {frame.position, frame.rotation.normalized()}; }
+
+std::optional<TreeJointKind> tree_kind(const JointType& type) {
+  if (std::holds_alternative<BallJoint>(type)) return TreeJointKind::ball;
+  if (std::holds_alternative<HingeJoint>(type)) return TreeJointKind::hinge;
+  if (std::holds_alternative<SliderJoint>(type)) return TreeJointKind::slide;
+  return std::nullopt;  // fixed
+}
+const std::optional<Limit>* tree_limit(const JointType& type) {
+  if (const auto* hinge = std::get_if<HingeJoint>(&type)) return &hinge->limit;
+  if (const auto* slider = std::get_if<SliderJoint>(&type)) return &slider->limit;
+  return nullptr;
+}
+
+class TreeCollector {
+ public:
+  explicit TreeCollector(PlanData& plan)
+      : plan_(plan),
+        scene_(plan.scene),
+        h_(scene_.options.dt / scene_.options.substeps),
+        series_(series_of_joints(scene_)),
+        children_(scene_.bodies.size()),
+        link_(scene_.bodies.size(), -1) {}
+
+  void run() {
+    std::vector<int> roots;
+    for (const PlanBody& b : plan_.bodies) {
+      const int parent = parent_of(b.scene_body);
+      (parent < 0 ? roots : children_[static_cast<std::size_t>(parent)]).push_back(b.scene_body);
+    }
+    for (const int root : roots) add(root, -1);
+    for (const Tendon& tendon : scene_.tendons) add_tendon(tendon);
+    add_actuators();
+    const SolverOptions& o = scene_.options.solver;
+    plan_.trees = builder_.finish(
+        h_, {iterations_of(o), o.line_search_iterations, o.tolerance, o.line_search_tolerance, 0});
+    plan_.trees.actuators = std::move(actuators_);
+    plan_.trees.start = std::move(start_);
+    plan_.trees.joint_coordinate = std::move(joint_coordinate_);
+    plan_.first_coordinate.assign(scene_.joints.size() + 1, plan_.trees.coordinates);
+    for (const auto& [joint, coordinate] : plan_.trees.joint_coordinate) {
+      plan_.first_coordinate[static_cast<std::size_t>(joint)] = coordinate;
+    }
+  }
+
+ private:
+  // Scene body, -1: none that moves.
+  int parent_of(int body) const {
+    const auto& series = series_[static_cast<std::size_t>(body)];
+    if (series.empty()) return -1;
+    const BodyId a = scene_.joints[static_cast<std::size_t>(series.front())].body_a;
+    if (!a || plan_.state_body[static_cast<std::size_t>(a.index())] < 0) return -1;
+    return a.index();
+  }
+
+  void add(int body, int parent) {
+    const auto& series = series_[static_cast<std::size_t>(body)];
+    const PlanBody& b = plan_.bodies[static_cast<std::size_t>(row_of(body))];
+    const Body& described = scene_.bodies[static_cast<std::size_t>(body)];
+    const TreePose begin{described.position, described.rotation.normalized()};
+    NewLink link;
+    link.body = row_of(body);
+    link.parent = parent;
+    link.center = b.center, link.principal = b.principal;
+    link.mass = b.mass, link.moments = b.inertia;
+    TreePose at;  // of the body where all frames of its joints coincide, in its parent
+    for (const int j : series) at = at * frame_a(j) * frame_b(j).inverse();
+    if (series.empty()) at = begin;
+    link.position = at.position, link.rotation = at.rotation;
+    link_[static_cast<std::size_t>(body)] = builder_.add(link);
+    if (series.empty()) add_free(begin);
+    TreePose between;  // of the frame that a joint moves
+    for (const int j : series) {
+      between = between * frame_a(j) * frame_b(j).inverse();
+      add_joint(j, at.inverse() * between * frame_b(j), series.size() == 1);
+    }
+    const int own = link_[static_cast<std::size_t>(body)];
+    for (const int child : children_[static_cast<std::size_t>(body)]) add(child, own);
+  }
+
+  void add_free(const TreePose& begin) {
+    NewTreeJoint joint;
+    joint.kind = TreeJointKind::free;
+    builder_.add(joint);
+    start_.insert(start_.end(), begin.position.data(), begin.position.data() + 3);
+    put_start(begin.rotation);
+  }
+  void put_start(const Quat& q) { start_.insert(start_.end(), {q.w(), q.x(), q.y(), q.z()}); }
+
+  // `frame`: of the joint, in the link where its frames coincide.
+  void add_joint(int index, const TreePose& frame, bool alone) {
+    const Joint& from = scene_.joints[static_cast<std::size_t>(index)];
+    const auto kind = tree_kind(from.type);
+    if (!kind) return;
+    NewTreeJoint joint;
+    joint.kind = *kind;
+    joint.anchor = frame.position;
+    joint.axis = frame.rotation * (*kind == TreeJointKind::slide ? Vec3::UnitX() : Vec3::UnitZ());
+    const JointDynamics& d = from.dynamics;
+    joint.armature = d.armature, joint.damping = d.damping;
+    const bool single = kernels::dofs_of(*kind) == 1;
+    if (single) joint.reference = d.reference, joint.stiffness = d.stiffness, joint.rest = d.rest;
+    if (const auto* limit = tree_limit(from.type); limit && *limit) {
+      joint.range = {(*limit)->low, (*limit)->high};
+      joint.margin = (*limit)->margin;
+      joint.compliance = (*limit)->compliance;
+    }
+    joint_coordinate_.emplace_back(index, static_cast<int>(start_.size()));
+    builder_.add(joint);
+    const TreePose moved = alone ? displacement(from) : TreePose{};
+    if (*kind == TreeJointKind::ball) {
+      // Of the link's axes, not of the joint's frames.
+      put_start(frame.rotation * moved.rotation * frame.rotation.conjugate());
+    } else if (*kind == TreeJointKind::slide) {
+      start_.push_back(d.reference + moved.position.x());
+    } else {
+      start_.push_back(d.reference + 2 * std::atan2(moved.rotation.z(), moved.rotation.w()));
+    }
+  }
+  // Of B's frame against A's as the bodies begin.
+  TreePose displacement(const Joint& j) const {
+    return tree_pose(frame_in_world(scene_, j.body_a, j.frame_a)).inverse() *
+           tree_pose(frame_in_world(scene_, j.body_b, j.frame_b));
+  }
+
+  // A fixed body's frames are the world's.
+  TreePose frame_a(int joint) const {
+    const Joint& j = scene_.joints[static_cast<std::size_t>(joint)];
+    const bool fixed = j.body_a && plan_.state_body[static_cast<std::size_t>(j.body_a.index())] < 0;
+    if (!j.after && fixed) return tree_pose(frame_in_world(scene_, j.body_a, j.frame_a));
+    return tree_pose(j.frame_a);
+  }
+  TreePose frame_b(int joint) const {
+    return tree_pose(scene_.joints[static_cast<std::size_t>(joint)].frame_b);
+  }
+  int row_of(int body) const { return plan_.state_body[static_cast<std::size_t>(body)]; }
+
+  int coordinate_of(JointId joint) const {
+    const auto at = std::find_if(joint_coordinate_.begin(), joint_coordinate_.end(),
+                                 [&](const auto& j) { return j.first == joint.index(); });
+    return at->second;
+  }
+  void add_tendon(const Tendon& tendon) {
+    if (!tendon.limit) return;
+    NewLength length;
+    for (const TendonTerm& term : tendon.terms) {
+      const int coordinate = coordinate_of(term.joint);
+      length.terms.push_back({coordinate, builder_.dof_of(coordinate), term.coefficient});
+    }
+    length.range = {tendon.limit->low, tendon.limit->high};
+    length.margin = tendon.limit->margin, length.compliance = tendon.limit->compliance;
+    builder_.add(length);
+  }
+
+  void add_actuators() {
+    for (std::size_t i = 0; i < scene_.controls.size(); ++i) {
+      const Control& control = scene_.controls[i];
+      if (control.kind != ControlKind::joint_force) continue;
+      const Actuator& a = control.actuator;
+      kernels::TreeActuator<double> out{};
+      out.control = static_cast<int>(i);
+      out.coordinate = coordinate_of(control.joint);
+      out.dof = builder_.dof_of(out.coordinate);
+      out.gear = a.gear;
+      std::copy_n(a.gain.data(), 3, out.gain), std::copy_n(a.bias.data(), 3, out.bias);
+      out.low = a.low, out.high = a.high;
+      actuators_.push_back(out);
+    }
+  }
+
+  PlanData& plan_;
+  const Scene& scene_;
+  double h_;
+  std::vector<std::vector<int>> series_;    // [scene body] its joints, from its parent on
+  std::vector<std::vector<int>> children_;  // [scene body]
+  std::vector<int> link_;                   // [scene body]
+  std::vector<double> start_;
+  std::vector<std::pair<int, int>> joint_coordinate_;
+  std::vector<kernels::TreeActuator<double>> actuators_;
+  TreeBuilder builder_;
+};
+
+}  // namespace
+
+void collect_trees(PlanData& plan) {
+  if (plan.scene.options.solver.method == Solver::newton) TreeCollector(plan).run();
+}
+
+std::vector<std::vector<int>> series_of_joints(const Scene& scene) {
+  std::vector<std::vector<int>> out(scene.bodies.size());
+  // Each joint goes right behind the one that it comes after.
+  std::vector<int> waiting;
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) waiting.push_back(static_cast<int>(j));
+  for (bool found = true; found;) {
+    found = false;
+    std::vector<int> next;
+    for (const int j : waiting) {
+      const Joint& joint = scene.joints[static_cast<std::size_t>(j)];
+      auto& series = out[static_cast<std::size_t>(joint.body_b.index())];
+      const bool first = !joint.after && series.empty();
+      const bool follows = joint.after && !series.empty() && series.back() == joint.after.index();
+      if (first || follows) {
+        series.push_back(j);
+        found = true;
+      } else {
+        next.push_back(j);
+      }
+    }
+    waiting = std::move(next);
+  }
+  return out;
+}
+
+}  // namespace manyworlds

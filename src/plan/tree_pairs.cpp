@@ -1,0 +1,140 @@
+// Contacts of trees: what two materials make of one another, as MuJoCo mixes them, and which dofs
+// move the links of a pair of shapes against each other.
+#include <algorithm>
+#include <cmath>
+
+#include "src/plan/compliance.hpp"
+#include "src/plan/plan_data.hpp"
+#include "src/scene/checks.hpp"
+
+namespace manyworlds {
+
+namespace {
+
+static_assert(detail::kMaxNewtonDofs <= kernels::kMaxTreeDofs);
+
+constexpr double kLeastWeight = 1e-15;
+
+double share_of_first(const SoftContact& a, const SoftContact& b) {
+  if (a.weight < kLeastWeight && b.weight < kLeastWeight) return 0.5;
+  if (a.weight < kLeastWeight) return 0;
+  if (b.weight < kLeastWeight) return 1;
+  return a.weight / (a.weight + b.weight);
+}
+
+Compliance mixed_compliance(const SoftContact& a, const SoftContact& b) {
+  const Compliance &x = a.compliance, &y = b.compliance;
+  const double share = share_of_first(a, b);
+  const auto mean = [&](double Compliance::*member) {
+    return share * x.*member + (1 - share) * y.*member;
+  };
+  Compliance out;
+  const bool standard = x.time_constant > 0 && y.time_constant > 0;
+  for (const auto member : {&Compliance::time_constant, &Compliance::damping_ratio}) {
+    out.*member = standard ? mean(member) : std::min(x.*member, y.*member);
+  }
+  for (const auto member : {&Compliance::min_impedance, &Compliance::max_impedance,
+                            &Compliance::width, &Compliance::midpoint, &Compliance::power}) {
+    out.*member = mean(member);
+  }
+  return out;
+}
+
+class TreePairs {
+ public:
+  explicit TreePairs(PlanData& plan) : plan_(plan), trees_(plan.trees), link_(plan.bodies.size()) {
+    for (std::size_t i = 0; i < trees_.links.size(); ++i) {
+      link_[static_cast<std::size_t>(trees_.links[i].body)] = static_cast<int>(i);
+    }
+  }
+
+  void run() {
+    for (const PlanClass& c : plan_.classes) {
+      for (std::size_t i = 0; i < c.a.size(); ++i) add(c, i);
+    }
+  }
+
+ private:
+  void add(const PlanClass& c, std::size_t i) {
+    const auto a = static_cast<std::size_t>(c.a[i]), b = static_cast<std::size_t>(c.b[i]);
+    const std::size_t key = static_cast<std::size_t>(c.first_key) + i;
+    if (trees_.pairs.size() <= key) trees_.pairs.resize(key + 1);
+    auto& out = trees_.pairs[key];
+    out.link_a = is_fixed(c.list) ? -1 : link_of(a);
+    out.link_b = link_of(b);
+    const std::size_t colliders = plan_.colliders.size();
+    const SoftContact& of_a = is_fixed(c.list) ? soft(plan_.fixed[a]) : soft(plan_.colliders[a]);
+    const SoftContact& of_b = soft(plan_.colliders[b]);
+    const auto material_a = static_cast<std::int32_t>(is_fixed(c.list) ? colliders + a : a);
+    const auto material_b = static_cast<std::int32_t>(b);
+    const SoftContact* first = of_b.priority > of_a.priority ? &of_b : &of_a;
+    const bool same = of_a.priority == of_b.priority;
+    out.material_a = first == &of_b ? material_b : material_a;
+    out.material_b = same ? material_b : out.material_a;
+    out.dimensions = same ? std::max(of_a.dimensions, of_b.dimensions) : first->dimensions;
+    const Compliance compliance = same ? mixed_compliance(of_a, of_b) : first->compliance;
+    const Options& o = plan_.scene.options;
+    out.compliance = compile(compliance, o.dt / o.substeps);
+    out.margin = of_a.margin + of_b.margin;
+    const auto weight = [&](int link) {
+      return link < 0 ? 0 : trees_.weights.link[static_cast<std::size_t>(link)][0];
+    };
+    out.inverse_weight = weight(out.link_a) + weight(out.link_b);
+    out.friction_weight = out.dimensions > 1 ? out.inverse_weight : 0;
+    add_dofs(out);
+  }
+
+  int link_of(std::size_t collider) const {
+    return link_[static_cast<std::size_t>(plan_.colliders[collider].body)];
+  }
+  template <class Planned>
+  const SoftContact& soft(const Planned& s) const {
+    return plan_.scene.bodies[static_cast<std::size_t>(s.scene_body)]
+        .shapes[static_cast<std::size_t>(s.shape)]
+        .material.soft;
+  }
+
+  std::vector<int> dofs_of(int link) const {  // the last one first
+    std::vector<int> out;
+    for (int i = link; i >= 0; i = trees_.links[static_cast<std::size_t>(i)].parent) {
+      const auto& l = trees_.links[static_cast<std::size_t>(i)];
+      for (int k = l.first_dof + l.dofs - 1; k >= l.first_dof; --k) out.push_back(k);
+    }
+    return out;
+  }
+  void add_dofs(kernels::TreePair<double>& out) {
+    const std::vector<int> a = dofs_of(out.link_a), b = dofs_of(out.link_b);
+    const auto in = [](const std::vector<int>& list, int k) {
+      return std::find(list.begin(), list.end(), k) != list.end();
+    };
+    std::vector<std::pair<int, bool>> own;  // whether it moves A
+    for (const int k : a) {
+      if (!in(b, k)) own.emplace_back(k, true);
+    }
+    for (const int k : b) {
+      if (!in(a, k)) own.emplace_back(k, false);
+    }
+    std::sort(own.begin(), own.end(),
+              [](const auto& x, const auto& y) { return x.first > y.first; });
+    out.first_dof = static_cast<std::int32_t>(trees_.pair_dofs.size());
+    out.dofs = static_cast<std::int32_t>(own.size());
+    for (const auto& [k, moves_a] : own) {
+      trees_.pair_dofs.push_back(moves_a ? ~k : k);
+      out.coupled |= std::uint64_t{1} << k;
+    }
+  }
+
+  PlanData& plan_;
+  PlanTrees& trees_;
+  std::vector<int> link_;  // [body with state]
+};
+
+}  // namespace
+
+void collect_tree_pairs(PlanData& plan) {
+  if (!plan.has_trees()) return;
+  plan.trees.impedance_ratio = plan.scene.options.solver.impedance_ratio;
+  TreePairs(plan).run();
+}
+
+}  // namespace manyworlds

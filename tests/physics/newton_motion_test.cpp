@@ -1,0 +1,115 @@
+// Links of Solver::newton move as closed forms say.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "tests/support/newton_scenes.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+
+TEST_CASE("a pendulum of the newton solver has the period of its small swings", "[fast][newton]") {
+  Scene scene = newton_pendulum();
+  scene.options.dt = 0.002;
+  const double period = 2 * kPi * std::sqrt(kAboutHinge / (kMass * 10 * kLength));
+  for (const Table& table : widest_tables()) {
+    INFO(name(table));
+    Batch batch(compile(scene), options_of(table));
+    put_angle(batch, kPi / 2 + 0.01);
+    double before = 0.01, first = -1, last = -1;
+    int crossings = 0;
+    for (int i = 1; crossings < 21; ++i) {
+      REQUIRE(i < 20000);
+      batch.step();
+      const double now = of(batch, Field::generalized_position)[0] - kPi / 2;
+      if (before * now <= 0 && before != 0) {
+        last = (i - now / (now - before)) * scene.options.dt;
+        if (crossings++ == 0) first = last;
+      }
+      before = now;
+    }
+    CHECK((last - first) / 10 == Approx(period).epsilon(pick(table, 3e-4, 3e-5)));
+  }
+}
+
+TEST_CASE("motors, dampers and springs of joints act by their members", "[fast][newton]") {
+  Scene scene = newton_pendulum(0);
+  Control motor;
+  motor.kind = ControlKind::joint_force, motor.joint = JointId(0);
+  motor.low = -2, motor.high = 2, motor.initial = 1;
+  motor.actuator.gear = 5;
+  scene.add(motor);
+  const double h = scene.options.dt;
+  const auto speed_after_a_step = [&](const Scene& s, double control, double q0, double v0) {
+    Batch batch(compile(s), options_of(widest_tables().back()));
+    put_angle(batch, q0, v0);
+    const Numbers values = {control};
+    batch.set_controls(0, values);
+    batch.step();
+    return of(batch, Field::generalized_velocity)[0];
+  };
+  CHECK(speed_after_a_step(scene, 1, 0, 0) == Approx(h * 5 / kAboutHinge).epsilon(1e-5));
+  CHECK(speed_after_a_step(scene, 7, 0, 0) == Approx(h * 10 / kAboutHinge).epsilon(1e-5));
+  Scene heavy = scene;
+  heavy.joints[0].dynamics.armature = 3;
+  CHECK(speed_after_a_step(heavy, 1, 0, 0) == Approx(h * 5 / (kAboutHinge + 3)).epsilon(1e-5));
+  Scene damped = scene;
+  damped.joints[0].dynamics.damping = 4;  // implicit
+  CHECK(speed_after_a_step(damped, 0, 0, 2) ==
+        Approx(2 * kAboutHinge / (kAboutHinge + 4 * h)).epsilon(1e-5));
+  Scene sprung = scene;
+  sprung.joints[0].dynamics.stiffness = 6, sprung.joints[0].dynamics.rest = 0.5;
+  CHECK(speed_after_a_step(sprung, 0, 0.75, 0) ==
+        Approx(-h * 6 * 0.25 / kAboutHinge).epsilon(1e-5));
+  Scene servo = scene;  // to the control, with some damping
+  servo.controls[0].actuator = {1, {8, 0, 0}, {0, -8, -0.5}};
+  CHECK(speed_after_a_step(servo, 0.3, 0.1, 2) ==
+        Approx(2 + h * (8 * (0.3 - 0.1) - 0.5 * 2) / kAboutHinge).epsilon(1e-5));
+  servo.controls[0].actuator.high = 0.25;
+  CHECK(speed_after_a_step(servo, 0.3, 0.1, 0) == Approx(h * 0.25 / kAboutHinge).epsilon(1e-5));
+  // The coordinate of a hinge whose frames coincide.
+  Scene shifted = sprung;
+  shifted.joints[0].dynamics.reference = 0.75;
+  Batch batch(compile(shifted), options_of(widest_tables().back()));
+  CHECK(of(batch, Field::generalized_position)[0] == Approx(0.75));
+  CHECK((position(batch, 0, BodyId(0)) - Vec3(kLength, 0, 0)).norm() < 1e-6);
+}
+
+TEST_CASE("forces, torques and gravity scales act on links", "[fast][newton]") {
+  for (const Table& table : widest_tables()) {
+    INFO(name(table));
+    Batch swing(compile(newton_pendulum(0)), options_of(table));
+    const double h = 0.01;
+    swing.add_force(0, BodyId(0), Vec3(3, 5, -2));
+    swing.add_torque(0, BodyId(0), Vec3(1, 0.5, 0));
+    swing.step();
+    const double turn = (2 * kLength + 0.5) / kAboutHinge;
+    CHECK(of(swing, Field::generalized_velocity)[0] == Approx(h * turn).epsilon(1e-5));
+    const double kept = of(swing, Field::generalized_velocity)[0];
+    swing.step();  // they were for one call
+    CHECK(of(swing, Field::generalized_velocity)[0] == Approx(kept).epsilon(1e-5));
+    swing.add_force_at(0, BodyId(0), Vec3(0, 0, -2), Vec3(2 * kLength, 0, 0));
+    swing.step();
+    CHECK(of(swing, Field::generalized_velocity)[0] ==
+          Approx(kept + h * 4 * kLength / kAboutHinge).epsilon(1e-3));
+
+    Scene falling = newton_scene();
+    for (const double scale : {1.0, 0.25, 0.0, -1.0}) {
+      falling.add(rod_of(Space::spatial, 3, {1, 1, 1}, Vec3(5.0 * scale, 0, 0)));
+      falling.bodies.back().gravity_scale = scale;
+    }
+    falling.variations = {vary(Parameter::gravity_scale, -2, 2)};
+    Batch free(compile(falling), options_of(table, 2));
+    const Numbers scales[] = {{1, 0.25, 0, -1}, {1, 1, 1, 0.5}};
+    for (int w = 0; w < 2; ++w) free.write(Parameter::gravity_scale, w, scales[w]);
+    free.step(10);
+    for (int w = 0; w < 2; ++w) {
+      for (int b = 0; b < 4; ++b) {
+        const double scale = scales[w][static_cast<std::size_t>(b)];
+        CHECK(velocity(free, w, BodyId(b)).z() == Approx(-scale).margin(1e-5));
+      }
+    }
+  }
+}
+
+}  // namespace manyworlds::test

@@ -1,0 +1,68 @@
+// Scenes of Solver::newton, and a world's coordinates as numbers.
+#pragma once
+
+#include "tests/support/joints.hpp"
+
+namespace manyworlds::test {
+
+using Numbers = std::vector<double>;
+
+inline constexpr double kMass = 2, kLength = 0.8, kAcross = 0.3;            // kg, m, kg m^2
+inline constexpr double kAboutHinge = kAcross + kMass * kLength * kLength;  // kg m^2
+
+inline Scene newton_scene(double gravity = 10) {
+  Scene scene = empty_scene(Space::spatial, gravity);
+  scene.options.solver.method = Solver::newton;
+  scene.options.dt = 0.01, scene.options.substeps = 1;
+  return scene;
+}
+// A body on a hinge about y through the world's origin, at first along x: with the angle q it is at
+// (cos q, 0, -sin q) kLength.
+inline Scene newton_pendulum(double gravity = 10) {
+  Scene scene = newton_scene(gravity);
+  scene.add(rod_of(Space::spatial, kMass, {0.1, kAcross, 0.3}, {kLength, 0, 0}));
+  scene.add(joint_at(scene, BodyId(), BodyId(0), at(Vec3::Zero(), z_to_y()), HingeJoint{}));
+  return scene;
+}
+// A free torso that draws where it begins, an arm on a hinge and a hand on a ball joint, over a
+// ground; and a free ball.
+inline Scene newton_robot() {
+  Scene scene = newton_scene();
+  scene.add(ground(Space::spatial));
+  for (int i = 0; i < 3; ++i) {
+    scene.add(body_of(shape_of(cube_of(Space::spatial, 0.1)), Vec3(0.4 * i, 0, 1.5)));
+  }
+  scene.bodies[1].jitter.position = Vec3(0.3, 0.3, 0.1);
+  scene.bodies[1].jitter.any_orientation = true;
+  scene.bodies[1].jitter.linear_velocity = Vec3(1, 1, 1);
+  HingeJoint hinge;
+  hinge.limit = Limit{-1, 1};
+  scene.add(joint_at(scene, BodyId(1), BodyId(2), at({0.2, 0, 1.5}, z_to_y()), hinge));
+  scene.add(joint_at(scene, BodyId(2), BodyId(3), at({0.6, 0, 1.5}), BallJoint{}));
+  // Undamped, such a chain may gain energy by Euler's steps, in MuJoCo as here.
+  for (Joint& joint : scene.joints) joint.dynamics.damping = 0.5;
+  scene.add(body_of(shape_of(Sphere{0.2}), Vec3(0, 2, 0.3)));
+  Control motor;
+  motor.kind = ControlKind::joint_force, motor.joint = JointId(0);
+  motor.actuator.gear = 3;
+  scene.add(motor);
+  return scene;
+}
+// Of the robot's tree and of the ball.
+inline constexpr int kCoordinates = 7 + 1 + 4 + 7, kDofs = 6 + 1 + 3 + 6;
+
+inline Numbers of(const Batch& batch, Field field, int world = 0) {
+  const Plan& plan = batch.plan(batch.kind_of(world));
+  Numbers out(plan.numbers(field));
+  batch.read(field, world, out);
+  return out;
+}
+inline void put(Batch& batch, Field field, const Numbers& values, int world = 0) {
+  batch.write(field, world, values);
+}
+inline void put_angle(Batch& batch, double angle, double speed = 0) {
+  put(batch, Field::generalized_position, {angle});
+  put(batch, Field::generalized_velocity, {speed});
+}
+
+}  // namespace manyworlds::test
