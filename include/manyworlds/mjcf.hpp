@@ -1,12 +1,32 @@
 // Reading MJCF, MuJoCo's model format, through MuJoCo's own library. A separate, optional library:
 // link manyworlds::mjcf.
 //
-// What is read: worlds of free bodies (a free joint on a top-level body) and static geoms, made of
-// spheres, capsules, cylinders, boxes, meshes (their convex hulls, as in MuJoCo), planes and height
-// fields. Equality constraints connect and weld become ball and fixed joints. Poses, masses and
-// inertias are those that MuJoCo's compiler computes. Whatever would change the motion and is not
-// simulated here is an error; what only shapes MuJoCo's contact softness or its solver is a
-// warning; what is only seen (lights, cameras, materials, textures, sites) is ignored.
+// What is read: bodies and static geoms, made of spheres, capsules, cylinders, ellipsoids, boxes,
+// meshes (their convex hulls, as in MuJoCo), planes and height fields. Poses, masses and inertias
+// are those that MuJoCo's compiler computes. Whatever would change the motion and is not simulated
+// here is an error; what only shapes the accuracy of MuJoCo's solver is a warning; what is only
+// seen (lights, cameras, materials, textures, sites) is ignored.
+//
+// A model with any joint but free ones is articulated: its scene is one of trees for
+// Solver::newton, which moves as in MuJoCo. Read are
+//   - every body that moves, as a body of its own; those without joints are held by a fixed joint
+//     to their parent, but for those without mass, which are part of it;
+//   - joints with armature, damping, stiffness, springref, ref, range, margin and the softness of
+//     limits; several of one body are a series (Joint::after);
+//   - actuators on hinges and slides without activation, of gain fixed or affine and bias none or
+//     affine (motor, position, velocity, damper, general), as controls (ControlKind::joint_force);
+//   - friction, condim 1 and 3, softness, margin, gap, priority and solmix of geoms; which pairs
+//     collide, excludes included;
+//   - timestep, gravity, gravcomp, iterations and tolerances, impratio, and the flags that switch
+//     off constraints, limits, contacts, springs, dampers, gravity, clampctrl and filterparent.
+// The solver is Newton's, whatever the file says. Refused are other integrators than Euler and RK4,
+// elliptic cones, friction loss, limits and springs of ball joints, tendons that pull, equalities,
+// contact pairs, condim 4 and 6, mocap bodies, the drag of a medium, and all other actuators and
+// flags that change the motion.
+//
+// A model whose joints are all free is made for the default solver: what is welded to a free body
+// is part of it, equality constraints connect and weld become ball and fixed joints, and what
+// shapes the softness of MuJoCo's contacts is a warning.
 //
 // Files may come from anybody. Before MuJoCo sees one, it and all that it includes are read into
 // memory, each once, and checked: regular files alone, from the model's own folder or from those
@@ -32,9 +52,12 @@ namespace manyworlds {
 
 struct MjcfResult {
   // Bodies in MuJoCo's order: a fixed body for each static body that has geoms (the worldbody is
-  // named "world"), a dynamic body for each free one. options.dt and options.gravity are the
-  // file's; options.length_unit is the median size of the dynamic geoms; joints that begin apart
-  // get a finite JointOptions::pull_speed. Joints are those of the active equalities, in order.
+  // named "world"), a dynamic body for each that moves. options.dt and options.gravity are the
+  // file's; options.length_unit is the median size of the dynamic geoms.
+  // Of an articulated model, joints are in MuJoCo's order, with fixed ones where their bodies are,
+  // and controls in that of the actuators; worlds begin at the reference (MuJoCo's qpos0). Of other
+  // models, joints are those of the active equalities, in order; where they begin apart
+  // JointOptions::pull_speed is finite.
   Scene scene = {};
   // What was read but does not act as it does in MuJoCo, one sentence each.
   std::vector<std::string> warnings = {};

@@ -6,10 +6,16 @@
 #include <utility>
 #include <vector>
 
+#include "src/mjcf/actuators.hpp"
 #include "src/mjcf/equality.hpp"
+#include "src/mjcf/exclusions.hpp"
 #include "src/mjcf/filter.hpp"
+#include "src/mjcf/links.hpp"
+#include "src/mjcf/material.hpp"
+#include "src/mjcf/options.hpp"
 #include "src/mjcf/pose.hpp"
 #include "src/mjcf/shape.hpp"
+#include "src/mjcf/tendons.hpp"
 
 namespace manyworlds::mjcf {
 namespace {
@@ -44,56 +50,50 @@ MassProperties mass_properties_of(const mjModel& m, int root) {
   return total;
 }
 
-// Sliding friction of each geom. MuJoCo's pair has the larger condim of the two: only where every
-// geom has condim 1 is nothing frictional.
-std::vector<double> frictions(const Model& model) {
-  const mjModel& m = *model.compiled;
-  std::vector<double> friction(static_cast<std::size_t>(m.ngeom), 0.0);
-  bool frictional = false;
-  for (int g = 0; g < m.ngeom; ++g) {
-    frictional = frictional || (model.collides(g) && m.geom_condim[g] != 1);
-  }
-  if (!frictional) return friction;
-  const bool one_for_all = (m.opt.enableflags & mjENBL_OVERRIDE) != 0;
-  for (int g = 0; g < m.ngeom; ++g) {
-    friction[static_cast<std::size_t>(g)] =
-        one_for_all ? m.opt.o_friction[0] : m.geom_friction[3 * g];
-  }
-  return friction;
+// Of one body alone.
+MassProperties mass_properties_of_link(const mjModel& m, int b) {
+  const Mat3 axes = quat(m.body_iquat + 4 * b).toRotationMatrix();
+  const Mat3 inertia = axes * vec3(m.body_inertia + 3 * b).asDiagonal() * axes.transpose();
+  return {.mass = m.body_mass[b],
+          .center = vec3(m.body_ipos + 3 * b),
+          .inertia = 0.5 * (inertia + inertia.transpose())};
 }
 
-// One for each of MuJoCo's bodies. Parts of free bodies stay empty and fixed: their mass and shapes
-// are in the body that they are welded to.
+// MuJoCo computes no passive force at all, gravcomp included, where neither springs nor dampers
+// act. Free bodies have always been compensated.
+double gravity_scale(const Model& model, int b) {
+  const int neither = mjDSBL_SPRING | mjDSBL_DAMPER;
+  const bool passive =
+      !model.articulated || (model.compiled->opt.disableflags & neither) != neither;
+  return passive ? 1 - model.compiled->body_gravcomp[b] : 1;
+}
+
+// One for each of MuJoCo's bodies. Those that others carry stay empty and fixed.
 std::vector<Body> bodies_of(const Model& model) {
   const mjModel& m = *model.compiled;
   std::vector<Body> bodies(static_cast<std::size_t>(m.nbody));
   for (int b = 0; b < m.nbody; ++b) {
     Body& body = bodies[static_cast<std::size_t>(b)];
     body.name = model.name(mjOBJ_BODY, b);
-    body.motion = m.body_weldid[b] == b && b != 0 ? Motion::dynamic : Motion::fixed;
-    if (body.motion == Motion::fixed) {
-      const Pose pose = pose_in_root(m, b);
-      body.position = pose.position;
-      body.rotation = pose.rotation;
-    } else {
-      body.position = vec3(m.body_pos + 3 * b);
-      body.rotation = quat(m.body_quat + 4 * b);
-      body.mass_properties = mass_properties_of(m, b);
-      body.gravity_scale = 1 - m.body_gravcomp[b];
-    }
+    const bool moves = m.body_weldid[b] != 0 && model.carrier(b) == b;
+    body.motion = moves ? Motion::dynamic : Motion::fixed;
+    const Pose pose = pose_in(m, b, 0);
+    body.position = pose.position;
+    body.rotation = pose.rotation;
+    if (!moves) continue;
+    body.mass_properties =
+        model.articulated ? mass_properties_of_link(m, b) : mass_properties_of(m, b);
+    body.gravity_scale = gravity_scale(model, b);
   }
   const std::vector<Filter> filter = filters(model);
-  const std::vector<double> friction = frictions(model);
+  const std::vector<Material> material = materials(model);
   for (int g = 0; g < m.ngeom; ++g) {
     const int b = m.geom_bodyid[g];
-    const bool fixed = m.body_weldid[b] == 0;
-    const int owner = fixed ? b : m.body_weldid[b];
-    // A static body keeps its own frame; what is welded to a free body moves into that one's.
-    const Pose frame = fixed ? Pose{} : pose_in_root(m, b);
-    if (auto shape = shape_of(model, g, frame)) {
-      shape->material = {.friction = friction[static_cast<std::size_t>(g)], .restitution = 0};
+    const int carrier = model.carrier(b);
+    if (auto shape = shape_of(model, g, pose_in(m, b, carrier))) {
+      shape->material = material[static_cast<std::size_t>(g)];
       shape->filter = filter[static_cast<std::size_t>(g)];
-      bodies[static_cast<std::size_t>(owner)].shapes.push_back(std::move(*shape));
+      bodies[static_cast<std::size_t>(carrier)].shapes.push_back(std::move(*shape));
     }
   }
   return bodies;
@@ -105,7 +105,7 @@ double round_to_two_digits(double x) {
   return shift >= 0 ? std::round(x * scale) / scale : std::round(x / scale) * scale;
 }
 
-// Median bounding diameter of the geoms of free bodies; 1 m if there are none.
+// Median bounding diameter of the geoms of bodies that move; 1 m if there are none.
 double typical_size(const Scene& scene) {
   std::vector<double> diameters;
   for (const Body& body : scene.bodies) {
@@ -123,23 +123,27 @@ double typical_size(const Scene& scene) {
 }  // namespace
 
 Scene make_scene(const Model& model, const std::string& name) {
-  const mjModel& m = *model.compiled;
   Scene scene;
   scene.name = name;
   scene.space = Space::spatial;
-  scene.options.dt = m.opt.timestep;
-  scene.options.gravity =
-      (m.opt.disableflags & mjDSBL_GRAVITY) != 0 ? Vec3::Zero().eval() : vec3(m.opt.gravity);
+  set_options(model, scene.options);
 
   std::vector<Body> bodies = bodies_of(model);
   std::vector<BodyId> scene_body(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    // A static body that only had something to see is of no use; a part of a free body has none.
+    // A static body without geoms is of no use, and one that is carried by another has none.
     const bool moves = bodies[b].motion == Motion::dynamic;
     if (moves || !bodies[b].shapes.empty()) scene_body[b] = scene.add(std::move(bodies[b]));
   }
   scene.options.length_unit = typical_size(scene);
-  add_joints(model, scene_body, scene);
+  if (model.articulated) {
+    const std::vector<JointId> scene_joint = add_links(model, scene_body, scene);
+    add_actuators(model, scene_joint, scene);
+    add_tendons(model, scene_joint, scene);
+    add_exclusions(model, scene_body, scene);
+  } else {
+    add_joints(model, scene_body, scene);
+  }
   return scene;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/mjcf/equality.hpp"
+#include "src/mjcf/options.hpp"
 #include "src/mjcf/support.hpp"
 
 namespace manyworlds::mjcf {
@@ -88,36 +89,6 @@ void compare_height_fields(const Model& model, std::vector<std::string>& warning
   }
 }
 
-// One warning for everything that steers MuJoCo's own integrator and solver.
-void compare_solver(const Model& model, std::vector<std::string>& warnings) {
-  const mjOption& option = model.compiled->opt;
-  mjOption defaults;
-  mj_defaultOption(&defaults);
-  const std::pair<const char*, bool> attributes[] = {
-      {"integrator", option.integrator != defaults.integrator},
-      {"cone", option.cone != defaults.cone},
-      {"jacobian", option.jacobian != defaults.jacobian},
-      {"solver", option.solver != defaults.solver},
-      {"iterations", option.iterations != defaults.iterations},
-      {"tolerance", option.tolerance != defaults.tolerance},
-      {"ls_iterations", option.ls_iterations != defaults.ls_iterations},
-      {"ls_tolerance", option.ls_tolerance != defaults.ls_tolerance},
-      {"noslip_iterations", option.noslip_iterations != defaults.noslip_iterations},
-      {"noslip_tolerance", option.noslip_tolerance != defaults.noslip_tolerance},
-      {"ccd_iterations", option.ccd_iterations != defaults.ccd_iterations},
-      {"ccd_tolerance", option.ccd_tolerance != defaults.ccd_tolerance},
-      {"impratio", option.impratio != defaults.impratio},
-  };
-  std::string found;
-  for (const auto& [attribute, differs] : attributes) {
-    if (differs) found += (found.empty() ? "" : ", ") + std::string(attribute);
-  }
-  if (!found.empty()) {
-    warnings.push_back("option: " + found +
-                       " steer MuJoCo's solver and are ignored; ours is set by Options");
-  }
-}
-
 void note_ignored(const Model& model, std::vector<std::string>& warnings) {
   const mjModel& m = *model.compiled;
   const auto note = [&](mjtObj type, mjtSize count, const char* why) {
@@ -134,11 +105,13 @@ void note_ignored(const Model& model, std::vector<std::string>& warnings) {
 
 std::vector<std::string> differences(const Model& model) {
   std::vector<std::string> warnings;
-  compare_friction(model, warnings);
-  compare_softness(model, warnings);
+  if (!model.articulated) {
+    compare_friction(model, warnings);
+    compare_softness(model, warnings);
+  }
   compare_height_fields(model, warnings);
   compare_equalities(model, warnings);
-  compare_solver(model, warnings);
+  compare_options(model, warnings);
   note_ignored(model, warnings);
   return warnings;
 }

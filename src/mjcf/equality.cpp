@@ -142,6 +142,8 @@ bool any_exclude(const Model& model, const Bodies& bodies) {
 
 const char* type_name(int type) {
   switch (type) {
+    case mjEQ_CONNECT: return "a connect";
+    case mjEQ_WELD: return "a weld";
     case mjEQ_JOINT: return "a joint equality";
     case mjEQ_TENDON: return "a tendon equality";
     case mjEQ_FLEX:
@@ -156,7 +158,14 @@ const char* type_name(int type) {
 void check_equalities(const Model& model, std::vector<std::string>& problems) {
   const mjModel& m = *model.compiled;
   for (int e = 0; e < m.neq; ++e) {
-    if (m.eq_type[e] == mjEQ_CONNECT || m.eq_type[e] == mjEQ_WELD) continue;
+    const bool joins = m.eq_type[e] == mjEQ_CONNECT || m.eq_type[e] == mjEQ_WELD;
+    if (model.articulated) {
+      if (!equalities_enabled(m) || m.eq_active0[e] == 0 || (joins && !has_effect(m, e))) continue;
+      problems.push_back(model.equality_place(e) + ": is " + type_name(m.eq_type[e]) +
+                         ", which is not simulated with joints yet; expected none");
+      continue;
+    }
+    if (joins) continue;
     problems.push_back(model.equality_place(e) + ": is " + type_name(m.eq_type[e]) +
                        ", which is not simulated yet; expected connect or weld");
   }

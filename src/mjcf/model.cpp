@@ -1,5 +1,6 @@
 #include "src/mjcf/model.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string_view>
 #include <utility>
@@ -38,7 +39,10 @@ Model::Model(SpecPtr parsed, ModelPtr model)
       geoms(static_cast<std::size_t>(compiled->ngeom)),
       bodies(static_cast<std::size_t>(compiled->nbody)),
       joints(static_cast<std::size_t>(compiled->njnt)),
-      equalities(static_cast<std::size_t>(compiled->neq)) {
+      equalities(static_cast<std::size_t>(compiled->neq)),
+      actuators(static_cast<std::size_t>(compiled->nactuator)),
+      articulated(std::any_of(compiled->jnt_type, compiled->jnt_type + compiled->njnt,
+                              [](int type) { return type != mjJNT_FREE; })) {
   const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
   for_each_element(spec.get(), mjOBJ_GEOM, size(geoms),
                    [&](mjsElement* e, std::size_t id) { geoms[id] = mjs_asGeom(e); });
@@ -48,6 +52,8 @@ Model::Model(SpecPtr parsed, ModelPtr model)
                    [&](mjsElement* e, std::size_t id) { joints[id] = mjs_asJoint(e); });
   for_each_element(spec.get(), mjOBJ_EQUALITY, size(equalities),
                    [&](mjsElement* e, std::size_t id) { equalities[id] = mjs_asEquality(e); });
+  for_each_element(spec.get(), mjOBJ_ACTUATOR, size(actuators),
+                   [&](mjsElement* e, std::size_t id) { actuators[id] = mjs_asActuator(e); });
 }
 
 std::string Model::name(mjtObj type, int id) const {
@@ -83,6 +89,12 @@ std::string Model::equality_place(int equality) const {
                    written == nullptr ? nullptr : written->info);
 }
 
+std::string Model::actuator_place(int actuator) const {
+  const mjsActuator* written = actuators[static_cast<std::size_t>(actuator)];
+  return with_line(quoted("actuator", name(mjOBJ_ACTUATOR, actuator), actuator),
+                   written == nullptr ? nullptr : written->info);
+}
+
 std::string Model::place(mjtObj type, int id) const {
   return quoted(mju_type2Str(type), name(type, id), id);
 }
@@ -94,6 +106,18 @@ bool Model::contacts_enabled() const {
 bool Model::collides(int geom) const {
   return contacts_enabled() &&
          (compiled->geom_contype[geom] != 0 || compiled->geom_conaffinity[geom] != 0);
+}
+
+int Model::carrier(int body) const {
+  const mjModel& m = *compiled;
+  if (m.body_weldid[body] == 0) return body;
+  if (!articulated) return m.body_weldid[body];
+  while (m.body_mass[body] == 0 && m.body_jntnum[body] == 0) body = m.body_parentid[body];
+  return body;
+}
+
+bool any_nonzero(const mjtNum* values, int count) {
+  return std::any_of(values, values + count, [](mjtNum v) { return v != 0; });
 }
 
 const char* geom_type_name(int type) {

@@ -12,12 +12,16 @@ namespace manyworlds::mjcf {
 struct Model {
   SpecPtr spec;
   ModelPtr compiled;
-  // The spec's element of each compiled geom, body, joint and equality; null where the compiler
-  // made one.
+  // The spec's element of each compiled geom, body, joint, equality and actuator; null where the
+  // compiler made one.
   std::vector<const mjsGeom*> geoms;
   std::vector<const mjsBody*> bodies;
   std::vector<const mjsJoint*> joints;
   std::vector<const mjsEquality*> equalities;
+  std::vector<const mjsActuator*> actuators;
+  // Whether anything moves on a joint that is not free: then the scene is one of trees, for
+  // Solver::newton.
+  bool articulated;
 
   Model(SpecPtr parsed, ModelPtr model);
 
@@ -26,6 +30,7 @@ struct Model {
   std::string body_place(int body) const;
   std::string joint_place(int joint) const;
   std::string equality_place(int equality) const;
+  std::string actuator_place(int actuator) const;
   // For the other kinds that belong to no body: "tendon 'rope'".
   std::string place(mjtObj type, int id) const;
   std::string name(mjtObj type, int id) const;  // empty when unnamed
@@ -33,7 +38,14 @@ struct Model {
   bool contacts_enabled() const;
   // False for what is only seen: no other geom can touch it.
   bool collides(int geom) const;
+
+  // Which body's counterpart in the scene has the mass and the geoms of this one. A static body is
+  // its own; what is welded to a free body is part of that one. In an articulated model every body
+  // that moves is a link, but for those without mass and joints, which are part of their parents.
+  int carrier(int body) const;
 };
+
+bool any_nonzero(const mjtNum* values, int count);
 
 // "capsule", "hinge": the words that MJCF uses.
 const char* geom_type_name(int type);

@@ -1,28 +1,23 @@
-#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "src/mjcf/actuators.hpp"
 #include "src/mjcf/equality.hpp"
 #include "src/mjcf/filter.hpp"
+#include "src/mjcf/links.hpp"
+#include "src/mjcf/material.hpp"
+#include "src/mjcf/options.hpp"
 #include "src/mjcf/shape.hpp"
 #include "src/mjcf/support.hpp"
+#include "src/mjcf/tendons.hpp"
 
 namespace manyworlds::mjcf {
 namespace {
 
-bool any_nonzero(const mjtNum* values, int count) {
-  return std::any_of(values, values + count, [](mjtNum v) { return v != 0; });
-}
-
-void check_joints(const Model& model, std::vector<std::string>& problems) {
+void check_free_joints(const Model& model, std::vector<std::string>& problems) {
   const mjModel& m = *model.compiled;
   for (int j = 0; j < m.njnt; ++j) {
-    if (m.jnt_type[j] != mjJNT_FREE) {
-      problems.push_back(model.joint_place(j) + ": is a " + joint_type_name(m.jnt_type[j]) +
-                         ", which is not simulated yet: robots will come as reduced-coordinate "
-                         "articulations; expected a free joint or none");
-      continue;
-    }
+    if (m.jnt_type[j] != mjJNT_FREE) continue;  // links.hpp
     const int dof = m.jnt_dofadr[j];
     const auto refuse = [&](bool found, const char* attribute) {
       if (found) {
@@ -50,7 +45,7 @@ void check_bodies(const Model& model, std::vector<std::string>& problems) {
     }
     // A body welded to a free one becomes part of it, and one body has one gravity scale.
     const int root = m.body_weldid[b];
-    if (root != 0 && m.body_gravcomp[b] != m.body_gravcomp[root]) {
+    if (!model.articulated && root != 0 && m.body_gravcomp[b] != m.body_gravcomp[root]) {
       problems.push_back(model.body_place(b) + ": gravcomp differs from that of " +
                          model.body_place(root) + ", which it is welded to; expected the same");
     }
@@ -129,11 +124,11 @@ void check_other_elements(const Model& model, std::vector<std::string>& problems
       problems.push_back(model.place(type, i) + ": " + what + " not simulated yet; expected none");
     }
   };
-  refuse(mjOBJ_TENDON, m.ntendon, "tendons are");
-  refuse(mjOBJ_ACTUATOR, m.nactuator, "actuators are");
+  check_tendons(model, problems);
+  if (!model.articulated) refuse(mjOBJ_ACTUATOR, m.nactuator, "actuators are");
   refuse(mjOBJ_PAIR, m.npair, "contact pairs are");
   for (int x = 0; x < m.nexclude; ++x) {
-    if (excludes_joined(model, x)) continue;
+    if (model.articulated || excludes_joined(model, x)) continue;
     problems.push_back(model.place(mjOBJ_EXCLUDE, x) +
                        ": contact excludes are not simulated yet; expected none but between two "
                        "free bodies that a connect or a weld holds together");
@@ -160,10 +155,14 @@ void check_medium(const Model& model, std::vector<std::string>& problems) {
 std::vector<std::string> unsupported(const Model& model) {
   std::vector<std::string> problems;
   check_medium(model, problems);
+  check_options(model, problems);
   check_bodies(model, problems);
-  check_joints(model, problems);
+  check_free_joints(model, problems);
+  check_links(model, problems);
   check_geoms(model, problems);
+  check_materials(model, problems);
   check_equalities(model, problems);
+  check_actuators(model, problems);
   check_other_elements(model, problems);
   return problems;
 }

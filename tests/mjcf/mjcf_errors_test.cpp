@@ -67,22 +67,10 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
   const std::string inertial =
       "<body><freejoint/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
   const std::vector<Refused> table = {
-      {"hinge", world("<body name='b'><joint name='j' type='hinge'/><geom size='.1'/></body>"),
-       "joint 'j' of body 'b'",
-       "is a hinge, which is not simulated yet: robots will come as reduced-coordinate "
-       "articulations; expected a free joint or none"},
-      {"slide", world("<body name='b'><joint name='j' type='slide'/><geom size='.1'/></body>"),
-       "joint 'j' of body 'b'", "slide joint"},
-      {"ball", world("<body name='b'><joint name='j' type='ball'/><geom size='.1'/></body>"),
-       "joint 'j' of body 'b'", "ball joint"},
       {"unnamed joint, with its line",
-       "<mujoco>\n<worldbody>\n<body name='b'>\n<joint/><geom size='.1'/></body></worldbody>"
-       "</mujoco>",
-       "joint 0 of body 'b', line 4", "hinge"},
-      {"nested",
-       world("<body name='b'>" + kFree +
-             "<body name='c'><joint name='k'/><geom size='.1'/></body></body>"),
-       "joint 'k' of body 'c'", "hinge"},
+       "<mujoco>\n<worldbody>\n<body name='b'>\n<joint type='free' damping='1'/>"
+       "<geom size='.1'/></body></worldbody></mujoco>",
+       "joint 0 of body 'b', line 4", "damping"},
       {"damped free joint",
        world("<body name='b'><joint name='j' type='free' damping='1'/><geom size='.1'/></body>"),
        "joint 'j' of body 'b'", "damping"},
@@ -137,19 +125,6 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
   CHECK(problems_of(world(seen)).empty());
 }
 
-TEST_CASE("equalities of joints and tendons are errors like the joints themselves",
-          "[mjcf][fast]") {
-  const std::string body =
-      "<body name='b'><joint name='j'/><geom size='.1'/><body><joint name='k'/><geom size='.1'/>"
-      "</body></body>";
-  const std::vector<std::string> problems =
-      problems_of(with_after(body, "<equality><joint name='e' joint1='j' joint2='k'/></equality>"));
-  REQUIRE(problems.size() == 3);
-  CHECK(problems[2] ==
-        "MJCF string: equality 'e', line 1: is a joint equality, which is not simulated yet; "
-        "expected connect or weld");
-}
-
 TEST_CASE("meshes and height fields that cannot be are errors", "[mjcf][fast]") {
   const auto mesh = [](const std::string& height) {
     return problems_of(
@@ -175,7 +150,7 @@ TEST_CASE("meshes and height fields that cannot be are errors", "[mjcf][fast]") 
 
 TEST_CASE("all problems of a file are listed, one per line, with its name", "[mjcf][fast]") {
   const TemporaryFile file("manyworlds_two_problems.xml",
-                           world("<body name='b'><joint name='j' type='hinge'/>"
+                           world("<body name='b'><joint name='j' type='free' damping='1'/>"
                                  "<geom name='g' size='.1' adhesion='1'/></body>"));
   std::string text;
   try {

@@ -427,7 +427,7 @@ TEST_CASE("names that come from files, folders and lines are as in MuJoCo", "[mj
   write(folder, "sub/part.obj", kTetrahedron);
   write(folder, "sub/part.xml",
         "<mujoco>\n<!-- a\ncomment -->\n<asset><mesh file='part.obj'/></asset>\n<worldbody>\n"
-        "<geom type='mesh' mesh='part'/>\n<body name='leg'><joint\ntype='hinge'/>"
+        "<geom type='mesh' mesh='part'/>\n<body name='leg'><joint\ntype='free' damping='1'/>"
         "<geom size='.1'/></body></worldbody></mujoco>");
   const std::string meshes =
       "<mujoco><compiler meshdir='meshes'/><asset><mesh file='a/gear.obj'/>"
@@ -445,8 +445,8 @@ TEST_CASE("names that come from files, folders and lines are as in MuJoCo", "[mj
   CHECK(extent(1) == Approx(2 * extent(0)));
   // MuJoCo does not keep the lines of what is included.
   CHECK_THROWS_WITH(
-      load_mjcf(write(folder, "hinge.xml", "<mujoco>\n<include file='sub/part.xml'/></mujoco>")),
-      Contains("joint 0 of body 'leg': is a hinge"));
+      load_mjcf(write(folder, "damped.xml", "<mujoco>\n<include file='sub/part.xml'/></mujoco>")),
+      Contains("joint 0 of body 'leg': damping of a free joint"));
   // With strippath the name alone counts.
   CHECK_NOTHROW(load_mjcf(write(folder, "meshes/a/strip.xml",
                                 "<mujoco><compiler strippath='true'/><asset>"

@@ -83,8 +83,8 @@ std::vector<TwinLink> links_of(const mjModel& m) {
       if (m.jnt_limited[j]) {
         joint.range = {m.jnt_range[2 * j], m.jnt_range[2 * j + 1]};
         joint.margin = m.jnt_margin[j];
-        std::copy_n(m.jnt_solref + mjNREF * j, 2, joint.compliance.reference.begin());
-        std::copy_n(m.jnt_solimp + mjNIMP * j, 5, joint.compliance.impedance.begin());
+        const mjtNum *r = m.jnt_solref + mjNREF * j, *d = m.jnt_solimp + mjNIMP * j;
+        joint.compliance = {r[0], r[1], d[0], d[1], d[2], d[3], d[4]};
       }
       link.joints.push_back(joint);
     }
