@@ -27,13 +27,17 @@ from .plan import Plan
 from .query import Pose
 from .results import CONTACT, STEP_CONTACT, Status
 from .scene import (
+    Actuator,
     Attractor,
     Control,
+    Exclusion,
     Issue,
     Point,
     Ray,
     Scene,
     SceneError,
+    Tendon,
+    TendonTerm,
     Variation,
     make_hull,
     mesh_mass_properties,
@@ -50,6 +54,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Action",
+    "Actuator",
     "Attractor",
     "Batch",
     "Body",
@@ -60,6 +65,7 @@ __all__ = [
     "ControlId",
     "Environment",
     "EnvironmentSnapshot",
+    "Exclusion",
     "Expression",
     "Field",
     "Issue",
@@ -86,6 +92,8 @@ __all__ = [
     "Status",
     "Task",
     "TaskError",
+    "Tendon",
+    "TendonTerm",
     "Variation",
     "View",
     "__version__",

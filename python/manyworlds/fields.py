@@ -23,7 +23,7 @@ class Field:
     name: str
     group: str  # "state", "parameter" (a number of the scene) or "observed"
     observer: str  # that an observed one needs; else ""
-    item: str  # what has one: "body", "shape", "world", "joint", "coordinate", "ray"
+    item: str  # what has one: "body", "shape", "world", "joint", "coordinate", "dof", "ray"
     items: int
     components: int
     unit: str
@@ -165,7 +165,7 @@ class Fields:
         blocks = self._held.blocks(name)
         if blocks is None:
             raise ValueError(
-                f"the plan has no {name}: no body of it has any (Plan.text() says why)"
+                f"the plan has no {name}: no {field.item} of it has any (Plan.text() says why)"
             )
         return View(self._held, name, blocks)
 

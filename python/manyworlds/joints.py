@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Optional, Union
 
-from .ids import BodyRef
+from .ids import BodyRef, JointRef
 from .names import Numbers
+from .shapes import Compliance
 
 __all__ = [
     "BallJoint",
@@ -21,6 +22,7 @@ __all__ = [
     "Frame",
     "HingeJoint",
     "Joint",
+    "JointDynamics",
     "JointType",
     "Limit",
     "PulleyJoint",
@@ -51,11 +53,14 @@ class Spring:
 
 @dataclass(slots=True)
 class Limit:
-    """Keeps a coordinate between two values; hard without a spring."""
+    """Keeps a coordinate between two values; hard without a spring, but for the newton solver."""
 
     low: float = 0.0  # m or rad
     high: float = 0.0  # m or rad
     spring: Optional[Spring] = None
+    # Of the newton solver, whose limits have no spring: how soft it is, and from where on it acts.
+    compliance: Compliance = field(default_factory=Compliance)
+    margin: float = 0.0  # m or rad, from the end inwards
 
 
 @dataclass(slots=True, kw_only=True)
@@ -146,6 +151,17 @@ JointType = Union[
 
 
 @dataclass(slots=True, kw_only=True)
+class JointDynamics:
+    """Of the newton solver: what acts along each coordinate of a joint, and where its zero is."""
+
+    armature: float = 0.0  # kg m^2 or kg, inertia of the rotor
+    damping: float = 0.0  # N m s/rad or N s/m, implicit
+    stiffness: float = 0.0  # N m/rad or N/m, of a hinge or slider, towards ``rest``
+    rest: float = 0.0  # rad or m
+    reference: float = 0.0  # rad or m: the coordinate of a hinge or slider whose frames coincide
+
+
+@dataclass(slots=True, kw_only=True)
 class Joint:
     """A joint of bodies ``body_a`` and ``body_b``; -1: the world."""
 
@@ -158,3 +174,7 @@ class Joint:
     collide: bool = False  # whether shapes of A and B collide with each other
     break_force: float = inf  # N
     break_torque: float = inf  # N m
+    # Of the newton solver: a joint of the same A and B that this one comes after; -1: none. Each joint
+    # of such a series moves what the one before it moves, in which its frame_a is; the last moves B.
+    after: JointRef = -1
+    dynamics: JointDynamics = field(default_factory=JointDynamics)  # of the newton solver

@@ -24,8 +24,8 @@ Integrator = Literal[
     "runge_kutta4",
 ]
 Rotation = Literal["splitting", "quaternion", "exponential"]
-Solver = Literal["tgs_soft", "sequential_impulse", "sor", "nncg", "penalty"]
-ControlKind = Literal["target_position", "target_speed", "thrust", "torque"]
+Solver = Literal["tgs_soft", "sequential_impulse", "sor", "nncg", "penalty", "newton"]
+ControlKind = Literal["target_position", "target_speed", "thrust", "torque", "joint_force"]
 Parameter = Literal[
     "size",
     "density",

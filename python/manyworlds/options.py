@@ -14,10 +14,16 @@ class SolverOptions:
     """What runs over the rows of contacts and joints. The header ``solver.hpp`` has more."""
 
     method: Solver = "tgs_soft"
-    iterations: Optional[int] = None  # sweeps per substep; None: the method's default
+    # Sweeps per substep, of newton its steps at most; None: the method's default.
+    iterations: Optional[int] = None
     relaxation: float = 1.3  # of sor, in (0, 2)
     push_out_share: float = 0.2  # of sequential_impulse, sor, nncg
     split_impulse: bool = False  # of the same
+    tolerance: float = 1e-8  # of newton: where it stops, relative to the mean inertia
+    line_search_iterations: int = 50  # of newton
+    line_search_tolerance: float = 0.01  # of newton
+    impedance_ratio: float = 1.0  # of newton: stiffness of friction against that of normal rows
+    implicit_damping: bool = True  # of newton with symplectic_euler: dampers act at the step's end
 
 
 @dataclass(slots=True, kw_only=True)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union, overload
 from . import _core, shown
 from .bodies import Body, MassProperties
 from .ids import BodyId, BodyRef, ControlId, ControlRef, JointId, JointRef, ShapeId, ShapeRef
-from .joints import Frame, Joint, JointType
+from .joints import Frame, Joint, JointType, Limit
 from .names import BroadPhase, ControlKind, Draw, Feature, Numbers, Parameter, Space
 from .options import Options
 from .shapes import Hull
@@ -42,18 +42,38 @@ class SceneError(ValueError):
 
 
 @dataclass(slots=True, kw_only=True)
+class Actuator:
+    """A force along a joint's coordinate, N or N m, of the newton solver.
+
+    With the control u, clamped to its range, and the length l = gear x and speed s = gear v of the
+    joint's coordinate x and its speed v:
+    gear clamp((gain[0] + gain[1] l + gain[2] s) u + bias[0] + bias[1] l + bias[2] s, low, high).
+    A motor has gain 1; a position servo gain kp and bias (0, -kp, -kv); a velocity servo gain kv and
+    bias (0, 0, -kv).
+    """
+
+    gear: float = 1.0
+    gain: Numbers = (1.0, 0.0, 0.0)
+    bias: Numbers = (0.0, 0.0, 0.0)
+    low: float = -inf
+    high: float = inf
+
+
+@dataclass(slots=True, kw_only=True)
 class Control:
     """A number that each world is given from outside, and acts on until it is given another."""
 
     name: str = ""
     kind: ControlKind = "target_speed"
-    joint: JointRef = -1  # with a drive; target_position, target_speed
+    # With a drive (target_position, target_speed), or a hinge or slider (joint_force).
+    joint: JointRef = -1
     body: BodyRef = -1  # dynamic; thrust, torque
     point: Numbers = (0.0, 0.0, 0.0)  # m, body frame
     direction: Numbers = (1.0, 0.0, 0.0)  # body frame, need not be unit
-    low: float = -1.0
+    low: float = -1.0  # of joint_force it may be infinite
     high: float = 1.0
     initial: float = 0.0
+    actuator: Actuator = field(default_factory=Actuator)  # of joint_force
 
 
 @dataclass(slots=True, kw_only=True)
@@ -87,6 +107,31 @@ def vary(
 
 
 @dataclass(slots=True, kw_only=True)
+class Exclusion:
+    """Two bodies whose shapes do not collide with each other."""
+
+    body_a: BodyRef = -1
+    body_b: BodyRef = -1
+
+
+@dataclass(slots=True, kw_only=True)
+class TendonTerm:
+    """A hinge or slider, and how much of its coordinate counts in a tendon."""
+
+    joint: JointRef = -1
+    coefficient: float = 1.0  # m/rad or 1, or any unit that the limit is in
+
+
+@dataclass(slots=True, kw_only=True)
+class Tendon:
+    """A length made of coordinates of joints, kept within its limit. Of the solver newton."""
+
+    name: str = ""
+    terms: list[TendonTerm] = field(default_factory=list)
+    limit: Optional[Limit] = None
+
+
+@dataclass(slots=True, kw_only=True)
 class Ray:
     """A ray that every world casts against all of its shapes."""
 
@@ -105,7 +150,7 @@ class Point:
     body: BodyRef = -1
 
 
-Part = Union[Body, Joint, Control, Attractor, Variation]
+Part = Union[Body, Joint, Control, Attractor, Variation, Exclusion, Tendon]
 
 
 @dataclass(slots=True, kw_only=True)
@@ -120,6 +165,8 @@ class Scene:
     attractors: list[Attractor] = field(default_factory=list)
     options: Options = field(default_factory=Options)
     variations: list[Variation] = field(default_factory=list)
+    exclusions: list[Exclusion] = field(default_factory=list)  # beside those of joints
+    tendons: list[Tendon] = field(default_factory=list)
 
     def __repr__(self) -> str:
         return shown.line(
@@ -162,15 +209,17 @@ class Scene:
     @overload
     def add(self, part: Control) -> ControlId: ...
     @overload
-    def add(self, part: Union[Attractor, Variation]) -> int: ...
+    def add(self, part: Union[Attractor, Variation, Exclusion, Tendon]) -> int: ...
     def add(self, part: Part) -> int:
-        """Appends a body, joint, control, attractor or variation and returns its handle or index."""
+        """Appends a body, joint, control, ... or tendon and returns its handle or index."""
         places: list[tuple[type, list[Any], type[int]]] = [
             (Body, self.bodies, BodyId),
             (Joint, self.joints, JointId),
             (Control, self.controls, ControlId),
             (Attractor, self.attractors, int),
             (Variation, self.variations, int),
+            (Exclusion, self.exclusions, int),
+            (Tendon, self.tendons, int),
         ]
         for kind, place, handle in places:
             if isinstance(part, kind):

@@ -12,6 +12,7 @@ __all__ = [
     "Box",
     "Capsule",
     "Circle",
+    "Compliance",
     "Cylinder",
     "Ellipsoid",
     "Filter",
@@ -24,6 +25,7 @@ __all__ = [
     "Polygon",
     "Segment",
     "Shape",
+    "SoftContact",
     "Sphere",
     "Terrain",
 ]
@@ -157,12 +159,49 @@ Geometry = Union[
 ]
 
 
+@dataclass(slots=True, kw_only=True)
+class Compliance:
+    """How soft a constraint of the newton solver is: MuJoCo's solref and solimp.
+
+    A constraint that is violated by r asks for the acceleration -damping v - stiffness d(r) r, and
+    gives way to a share 1 - d(r) of what acts against it. The impedance d goes from min_impedance at 0
+    to max_impedance at ``width``, along a power curve with its inflection at ``midpoint``.
+    """
+
+    time_constant: float = 0.02  # s; negative, as the damping ratio: -stiffness, 1/s^2
+    damping_ratio: float = 1.0  # negative, as the time constant: -damping, 1/s
+    min_impedance: float = 0.9  # in (0, 1)
+    max_impedance: float = 0.95  # in (0, 1)
+    width: float = 0.001  # m or rad
+    midpoint: float = 0.5  # share of the width, in (0, 1)
+    power: float = 2.0  # whole, 1 to 100
+
+
+@dataclass(slots=True, kw_only=True)
+class SoftContact:
+    """Contacts of the newton solver, as MuJoCo mixes those of two geoms.
+
+    Of two materials the one of higher priority decides. Where they are equal, friction and dimensions
+    are the larger ones, and the compliance is the mean by weight, or the smaller of two direct ones.
+    Margins add up.
+    """
+
+    dimensions: int = 3  # 1: no friction, 3: friction along the surface
+    compliance: Compliance = field(default_factory=Compliance)
+    margin: float = 0.0  # m, from which distance on a contact pushes
+    gap: float = 0.0  # m, by how much farther MuJoCo lists it; it moves nothing
+    priority: int = 0
+    weight: float = 1.0  # of the compliance
+
+
 @dataclass(slots=True)
 class Material:
     """What two shapes feel of each other when they touch."""
 
     friction: float = 0.6  # Coulomb coefficient; a pair takes the geometric mean
     restitution: float = 0.0  # 0 to 1; a pair takes the larger
+    # Of the newton solver, which takes the larger friction and bounces nothing.
+    soft: SoftContact = field(default_factory=SoftContact)
 
 
 @dataclass(slots=True)

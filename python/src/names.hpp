@@ -38,11 +38,12 @@ MW_NAMES(Integrator, MW_NAME(symplectic_euler), MW_NAME(explicit_euler), MW_NAME
          MW_NAME(verlet), MW_NAME(velocity_verlet), MW_NAME(runge_kutta4));
 MW_NAMES(Rotation, MW_NAME(splitting), MW_NAME(quaternion), MW_NAME(exponential));
 MW_NAMES(Solver, MW_NAME(tgs_soft), MW_NAME(sequential_impulse), MW_NAME(sor), MW_NAME(nncg),
-         MW_NAME(penalty));
+         MW_NAME(penalty), MW_NAME(newton));
 MW_NAMES(Field, MW_NAME(position), MW_NAME(orientation), MW_NAME(linear_velocity),
-         MW_NAME(angular_velocity));
+         MW_NAME(angular_velocity), MW_NAME(generalized_position), MW_NAME(generalized_velocity),
+         MW_NAME(generalized_acceleration));
 MW_NAMES(ControlKind, MW_NAME(target_position), MW_NAME(target_speed), MW_NAME(thrust),
-         MW_NAME(torque));
+         MW_NAME(torque), MW_NAME(joint_force));
 MW_NAMES(Parameter, MW_NAME(size), MW_NAME(density), MW_NAME(mass), MW_NAME(friction),
          MW_NAME(restitution), MW_NAME(gravity), MW_NAME(gravity_scale), MW_NAME(linear_drag),
          MW_NAME(angular_drag));

@@ -1,4 +1,4 @@
-"""The examples of README.md and docs/python.md run."""
+"""The examples of README.md, docs/python.md and docs/robots.md run."""
 
 import importlib.util
 import re
@@ -20,6 +20,14 @@ def test_the_readme(capsys):
     code = next(e for e in examples("README.md") if "import manyworlds" in e)
     exec(code.replace("4096", "64").replace("step(300)", "step(30)"), {})
     assert "of 64 towers stand" in capsys.readouterr().out
+
+
+def test_robots():
+    places = {}
+    for code in examples("docs/robots.md"):
+        exec(code.replace("1024", "16"), places)
+    assert places["q"].shape == (16, 2, 1) and np.isfinite(places["q"]).all()
+    assert len(np.unique(places["q"])) == 2
 
 
 def test_the_manual(tmp_path, monkeypatch):

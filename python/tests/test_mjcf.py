@@ -45,7 +45,7 @@ def test_a_file_becomes_a_scene_that_steps():
     for file in (ROOT / "scenes/mjcf").glob("*.xml"):
         batch = mw.Batch(mw.mjcf.load(file), worlds=4)
         batch.step(100)
-        assert batch.bodies > 3 and not batch.lost().any()
+        assert batch.bodies > 0 and not batch.lost().any()
 
 
 def test_what_acts_otherwise_is_a_warning():
@@ -56,9 +56,9 @@ def test_what_acts_otherwise_is_a_warning():
 
 
 def test_what_is_not_simulated_is_an_error_that_names_it(tmp_path):
-    hinge = BALL.replace("<freejoint/>", '<joint name="hip" type="hinge"/>')
-    (tmp_path / "leg.xml").write_text(hinge)
-    with pytest.raises(mw.mjcf.MjcfError, match="leg.xml.*'hip'.*hinge"):
+    rough = BALL.replace("<freejoint/>", '<joint name="hip" frictionloss="1"/>')
+    (tmp_path / "leg.xml").write_text(rough)
+    with pytest.raises(mw.mjcf.MjcfError, match="leg.xml.*'hip'.*frictionloss"):
         mw.mjcf.load(tmp_path / "leg.xml")
     assert issubclass(mw.mjcf.MjcfError, ValueError)
     with pytest.raises(mw.mjcf.MjcfError, match="no such file"):

@@ -1,0 +1,111 @@
+"""Robots: trees in joint coordinates, written by hand."""
+
+import numpy as np
+import pytest
+
+import manyworlds as mw
+from conftest import crates
+from manyworlds import _core
+
+ABOUT_Y = (0.5**0.5, -(0.5**0.5), 0, 0)  # hinges turn about z of their frames
+
+
+def arm():
+    """A base on a slider, an arm on two hinges one after the other, a motor by name; a free ball."""
+    scene = mw.Scene(name="arm")
+    scene.options.solver.method = "newton"
+    scene.options.dt, scene.options.substeps = 0.005, 1
+    box = mw.Shape(geometry=mw.Box((0.1, 0.1, 0.1)))
+    base = scene.add(mw.Body(name="base", position=(0, 0, 1), shapes=[box]))
+    hand = scene.add(mw.Body(name="hand", position=(1, 0, 1), shapes=[box]))
+    rail = scene.joint_at(-1, base, mw.Frame((0, 0, 1)), mw.SliderJoint(limit=mw.Limit(-2, 2)))
+    lift = scene.joint_at(base, hand, mw.Frame((0.5, 0, 1), ABOUT_Y), mw.HingeJoint())
+    rail.name, lift.name = "rail", "lift"
+    lift.dynamics = mw.JointDynamics(armature=0.1, damping=0.2)
+    scene.add(rail)
+    scene.add(lift)
+    place = mw.Frame((-0.5, 0, 0))  # in the frame of the hand, which "lift" moves
+    scene.add(
+        mw.Joint(
+            name="turn", body_a="base", body_b="hand", frame_a=place, frame_b=place, after="lift"
+        )
+    )
+    scene.add(
+        mw.Control(kind="joint_force", joint="turn", low=-np.inf, actuator=mw.Actuator(gear=3))
+    )
+    ball = mw.Body(name="ball", position=(0, 3, 1), jitter=mw.Jitter(position=(0.5, 0, 0)))
+    ball.shapes.append(mw.Shape(geometry=mw.Sphere(0.2)))
+    ball.shapes[0].material.soft = mw.SoftContact(compliance=mw.Compliance(time_constant=0.05))
+    scene.add(ball)
+    scene.add(mw.Exclusion(body_a="ball", body_b="hand"))
+    return scene
+
+
+def test_members_go_to_the_library_and_back():
+    scene = arm()
+    assert scene.validate() == []
+    back = _core.round_trip(scene)
+    assert back.joints[2].after == 1 and back.joints[1].dynamics.damping == 0.2
+    assert back.controls[0].joint == 2 and back.controls[0].actuator == mw.Actuator(gear=3)
+    assert back.controls[0].low == -np.inf
+    assert back.exclusions == [mw.Exclusion(body_a=2, body_b=1)]
+    assert back.bodies[2].shapes[0].material.soft.compliance.time_constant == 0.05
+    scene.joints[2].after = scene.joint("lift")
+    assert _core.round_trip(scene) == back
+    scene.joints[2].after = "lft"
+    with pytest.raises(ValueError, match=r"scene.joints\[2\].after: .*nearest: 'lift'"):
+        scene.validate()
+    scene.joints[2].after = mw.BodyId(1)
+    with pytest.raises(TypeError, match="expected a JointId"):
+        scene.validate()
+
+
+def test_json_keeps_robots():
+    record = pytest.importorskip("manyworlds.record", exc_type=ImportError)
+    back = record.scene_from_json(record.scene_to_json(arm()))
+    assert back == _core.round_trip(arm())
+
+
+@pytest.mark.parametrize("precision", ["f32", "f64"])
+def test_coordinates_are_fields(precision):
+    batch = mw.Batch(arm(), worlds=5, threads=1, precision=precision)
+    q, v = batch.fields["generalized_position"], batch.fields["generalized_velocity"]
+    assert (q.group, q.item, q.items, q.components) == ("state", "coordinate", 3 + 7, 1)
+    assert (v.item, v.items, v.unit) == ("dof", 3 + 6, "m/s or rad/s")
+    assert batch.get("generalized_position").dtype == batch.dtype
+    start = batch.get("generalized_position")[..., 0]
+    np.testing.assert_array_equal(start[:, :3], 0)
+    np.testing.assert_allclose(start[:, 3:6], batch.get("position")[:, 2], rtol=1e-6)
+    assert len(np.unique(start[:, 3])) == 5
+    angle = np.linspace(-1, 1, 5)
+    start[:, 1] = angle
+    batch.set("generalized_position", start[..., None])
+    hand = batch.get("position")[:, 1]
+    want = np.stack([0.5 + 0.5 * np.cos(angle), 0 * angle, 1 - 0.5 * np.sin(angle)], 1)
+    np.testing.assert_allclose(hand, want, atol=1e-6)
+    view = batch.view("generalized_velocity")
+    assert view.shape[1:3] == (9, 1) and not view[:].any()
+    batch.randomize("generalized_velocity", -0.5, 0.5, items=[0, 1])
+    assert batch.get("linear_velocity")[:, 0, 0].any()
+    batch.set_controls(0.5)
+    batch.step(3)
+    assert batch.get("generalized_acceleration").shape == (5, 9, 1)
+    assert (batch.get("generalized_velocity")[:, 2] > 0).all()
+    with pytest.raises(ValueError, match="moved by generalized_position"):
+        batch.set("position", 0)
+    with pytest.raises(ValueError, match="motion, acceleration, rays and points are observed"):
+        mw.Batch(arm(), observe=["contacts"])
+
+
+def test_other_worlds_have_none():
+    batch = mw.Batch(crates(), worlds=2)
+    assert batch.get("generalized_position").shape == (2, 0, 1)
+    batch.set("generalized_position", np.zeros((2, 0, 1)))
+    with pytest.raises(ValueError, match="no coordinate of it has any"):
+        batch.view("generalized_position")
+    scene = arm()
+    scene.options.solver.method = "tgs-soft"
+    assert {issue.message for issue in scene.validate()} == {
+        "is given, which takes the newton solver, not tgs-soft",
+        "is joint_force, which takes the newton solver, not tgs-soft",
+    }
