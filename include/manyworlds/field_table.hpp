@@ -28,7 +28,7 @@ enum class FieldPresence { always, with_orientation };  // with Feature::orienta
   X(generalized_velocity, dof, always, "v", "v", "m/s or rad/s",                                  \
     "MuJoCo's qvel: free world, then body axes; ball body axes", "tree")                          \
   X(generalized_acceleration, dof, always, "a", "a", "m/s^2 or rad/s^2",                          \
-    "of the last step, before implicit dampers: its warm start", "tree")
+    "of the last step, where limits or contacts act before implicit dampers", "tree")
 
 #define MW_FIELD(name, ...) name,
 enum class Field { MW_STATE_FIELDS(MW_FIELD) };

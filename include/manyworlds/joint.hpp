@@ -107,7 +107,7 @@ using JointType = std::variant<BallJoint, HingeJoint, SliderJoint, FixedJoint, D
 // Of Solver::newton: what acts along each coordinate of a joint, and where its zero is.
 struct JointDynamics {
   double armature = 0;   // kg m^2 or kg, inertia of the rotor
-  double damping = 0;    // N m s/rad or N s/m, implicit
+  double damping = 0;    // N m s/rad or N s/m
   double stiffness = 0;  // N m/rad or N/m, of a hinge or slider, towards `rest`
   double rest = 0;       // rad or m
   double reference = 0;  // rad or m: the coordinate of a hinge or slider whose frames coincide

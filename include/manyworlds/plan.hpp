@@ -107,7 +107,8 @@ class Plan {
   int row(ShapeId shape) const;  // of arrays [shape of the scene]; all have one
   std::optional<int> find_row(BodyId body) const;
   BodyId body_in_row(int row) const;
-  int coordinates() const;  // of all joints of the scene (observe.hpp)
+  // Of all joints of the scene (observe.hpp); 0 with Solver::newton, see ItemKind::coordinate.
+  int coordinates() const;
   // Where those of a joint begin; with Solver::newton in generalized_position.
   int first_coordinate(JointId joint) const;
   bool has(Feature feature) const;

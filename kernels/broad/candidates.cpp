@@ -94,9 +94,8 @@ kernels::Layout choose_layout(const Constants& t, const Group&, kernels::Scratch
   for (int l = 0; l < kLists; ++l) {
     fits = fits && static_cast<int>(blocks[l]) < w.blocks[l].max_blocks;
   }
-  // Trees have rows of a pair of links, and room for all of them.
-  fits = fits || t.tree.links > 0;
-  if (t.tree.links > 0) wish = kernels::Layout::dense;
+  // Rows of trees are of one pair of shapes in all lanes, and there is room for all of them.
+  if (t.tree.links > 0) wish = kernels::Layout::dense, fits = true;
   w.dense = wish == kernels::Layout::dense;
   if (wish == kernels::Layout::automatic) {
     // Parts of joints are blocks of which every lane is active.

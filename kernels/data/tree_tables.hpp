@@ -133,11 +133,11 @@ struct TreeTable {
   const TreeLimit<Real>* limit;
   const TreeTerm<Real>* term;  // of limits
   const TreeActuator<Real>* actuator;
+  const std::uint64_t* ancestors;  // [dof] those on the way to the root
   // Of plans with contacts, else nullptr.
   const TreePair<Real>* pair;  // [key]
   const std::int32_t* pair_dof;
-  const std::uint64_t* ancestors;  // [dof] those on the way to the root
-  bool has_rows;                   // there are limits or contacts
+  bool has_rows;  // there are limits or contacts
   Real impedance_ratio;
 };
 

@@ -17,7 +17,7 @@ MW_INLINE Quat rotate_for(Quat q, Vec3 w, Float dt) {
   return normalize(mul(q, {part.cosine, v.x, v.y, v.z}));
 }
 
-constexpr Real kMaxAcceleration = Real(1e30);
+constexpr Real kMaxAcceleration = Real(1e18);  // m/s^2 or rad/s^2: its square is a float32
 
 struct Next {
   Mask good = mask_from_bits(kAllLanes), finite = mask_from_bits(kAllLanes);

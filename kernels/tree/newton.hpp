@@ -74,8 +74,10 @@ class Minimiser {
         };
         go(x_.guess, x_.direction), go(x_.balance, x_.reach);
       });
-      // Where no row has changed, the cost was the quadratic that the step has minimised.
-      done = done | !rows_.advance(step, done);
+      // Where no row has changed on a whole step, the cost was the quadratic that it minimises.
+      const Mask whole = (Float(Real(1)) <= step) & (step <= Float(Real(1)));
+      const Mask changed = rows_.advance(step, done);
+      done = done | (whole & !changed);
     }
     rows_.look_at(kAllLanes);
     find_forces();

@@ -21,7 +21,7 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
   Mask active = mask_from_bits(0);
   if (t.tree.has_rows) {
     const ConstraintRows rows(t, w);
-    active = rows.find(g);
+    active = rows.find(g) & !mask_from_bits(frozen_lanes(g));
     for (int k = 0; k < t.tree.dofs; ++k) {
       Float::load(acceleration_of(t, g, k)).store(x.guess + k * kLanes);
     }

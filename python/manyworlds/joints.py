@@ -155,7 +155,7 @@ class JointDynamics:
     """Of the newton solver: what acts along each coordinate of a joint, and where its zero is."""
 
     armature: float = 0.0  # kg m^2 or kg, inertia of the rotor
-    damping: float = 0.0  # N m s/rad or N s/m, implicit
+    damping: float = 0.0  # N m s/rad or N s/m
     stiffness: float = 0.0  # N m/rad or N/m, of a hinge or slider, towards ``rest``
     rest: float = 0.0  # rad or m
     reference: float = 0.0  # rad or m: the coordinate of a hinge or slider whose frames coincide

@@ -31,6 +31,9 @@ bool any_quick_constraint(const Model& model) {
   for (int j = 0; j < m.njnt; ++j) {
     if (m.jnt_limited[j] && quick(m.jnt_solref + mjNREF * j)) return true;
   }
+  for (int t = 0; t < m.ntendon; ++t) {
+    if (m.tendon_limited[t] && quick(m.tendon_solref_lim + mjNREF * t)) return true;
+  }
   for (int g = 0; g < m.ngeom; ++g) {
     if (model.collides(g) && quick(m.geom_solref + mjNREF * g)) return true;
   }

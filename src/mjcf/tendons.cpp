@@ -21,7 +21,7 @@ bool is_fixed_tendon(const mjModel& m, int tendon) {
   return m.wrap_type[m.tendon_adr[tendon]] == mjWRAP_JOINT;
 }
 bool limits(const mjModel& m, int tendon) {
-  return m.tendon_limited[tendon] && (m.opt.disableflags & mjDSBL_LIMIT) == 0;
+  return m.tendon_limited[tendon] && (m.opt.disableflags & (mjDSBL_LIMIT | mjDSBL_CONSTRAINT)) == 0;
 }
 
 std::string problem_of(const Model& model, int t) {

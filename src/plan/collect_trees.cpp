@@ -138,7 +138,9 @@ class TreeCollector {
     } else if (*kind == TreeJointKind::slide) {
       start_.push_back(d.reference + moved.position.x());
     } else {
-      start_.push_back(d.reference + 2 * std::atan2(moved.rotation.z(), moved.rotation.w()));
+      const Quat& q = moved.rotation;  // as is -q: the one within half a turn
+      const double half = std::atan2(std::copysign(1.0, q.w()) * q.z(), std::abs(q.w()));
+      start_.push_back(d.reference + 2 * half);
     }
   }
   // Of B's frame against A's as the bodies begin.

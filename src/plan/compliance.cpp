@@ -16,7 +16,7 @@ kernels::Compliance<double> compile(const Compliance& compliance, double dt) {
   const auto clamped = [](double d) { return std::clamp(d, kMinImpedance, kMaxImpedance); };
   const double low = clamped(compliance.min_impedance), high = clamped(compliance.max_impedance);
   const double width = std::max(0.0, compliance.width), middle = clamped(compliance.midpoint);
-  const double power = std::max(1.0, compliance.power);
+  const double power = std::max(1.0, std::round(compliance.power));  // what mixing leaves of one
   out.least = low, out.gain = high - low;
   if (low == high || width <= kTiny) {
     out.least = (low + high) / 2, out.gain = 0;

@@ -91,11 +91,13 @@ void choose_features(PlanData& plan) {
   choose.set(Feature::joints, joints, "bodies are joined", "no joints");
   const bool contacts = any_pair(plan, most, [](const auto&, const auto&) { return true; });
   choose.set(Feature::contacts, contacts, "some shapes can touch", "no pair of shapes can touch");
-  choose.set(
-      Feature::friction,
-      any_pair(plan, most,
-               [](const auto& a, const auto& b) { return a.friction > 0 && b.friction > 0; }),
-      "some pairs have friction", "no pair has friction");
+  choose.set(Feature::friction,
+             any_pair(plan, most,
+                      [trees](const auto& a, const auto& b) {
+                        return (a.friction > 0 && b.friction > 0) ||
+                               trees;  // which have the larger one
+                      }),
+             "some pairs have friction", "no pair has friction");
   choose.set(
       Feature::restitution,
       any_pair(plan, most,

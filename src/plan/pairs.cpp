@@ -17,14 +17,20 @@ using kernels::ShapeKind;
 
 class Collector {
  public:
-  explicit Collector(PlanData& plan) : plan_(plan), joined_(joined_bodies(plan.scene)) {}
+  explicit Collector(PlanData& plan)
+      : plan_(plan), joined_(joined_bodies(plan.scene)), last_dof_(plan.bodies.size(), -1) {
+    for (const auto& link : plan.trees.links) {
+      last_dof_[static_cast<std::size_t>(link.body)] = last_dof(plan.trees, link);
+    }
+  }
 
   void moving(int i, int j) {
     const PlanCollider& a = plan_.colliders[static_cast<std::size_t>(i)];
     const PlanCollider& b = plan_.colliders[static_cast<std::size_t>(j)];
     if (a.body == b.body) return;
     const KindOfPair k = kind_of_pair(a.kind, b.kind, false);
-    const bool apart = !joined_.count(std::minmax(a.scene_body, b.scene_body));
+    const bool apart = !joined_.count(std::minmax(a.scene_body, b.scene_body)) &&
+                       !(plan_.has_trees() && last_dof_of(a) == last_dof_of(b));
     const bool may_touch = apart && (plan_.bodies[static_cast<std::size_t>(a.body)].inv_mass > 0 ||
                                      plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0);
     k.swapped ? add(k, j, i, shape(b), shape(a), may_touch)
@@ -35,7 +41,8 @@ class Collector {
     const PlanCollider& b = plan_.colliders[static_cast<std::size_t>(j)];
     add(kind_of_pair(a.kind, b.kind, true), f, j, shape(a), shape(b),
         !joined_.count(std::minmax(a.scene_body, b.scene_body)) &&
-            plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0);
+            plan_.bodies[static_cast<std::size_t>(b.body)].inv_mass > 0 &&
+            !(plan_.has_trees() && last_dof_of(b) < 0));
   }
 
   void finish() {
@@ -72,8 +79,14 @@ class Collector {
     c.b.push_back(b);
   }
 
+  // Links that it moves alike are rigidly joined, -1 to the world.
+  int last_dof_of(const PlanCollider& c) const {
+    return last_dof_[static_cast<std::size_t>(c.body)];
+  }
+
   PlanData& plan_;
   std::set<std::pair<int, int>> joined_;
+  std::vector<int> last_dof_;  // [body with state]
   std::map<KindOfPair::Place, PlanClass> classes_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "src/plan/compliance.hpp"
 #include "src/plan/plan_data.hpp"
+#include "src/plan/tree_kinematics.hpp"
 #include "src/scene/checks.hpp"
 
 namespace manyworlds {
@@ -94,12 +95,11 @@ class TreePairs {
         .material.soft;
   }
 
-  std::vector<int> dofs_of(int link) const {  // the last one first
+  std::vector<int> dofs_of(int link) const {  // the last one first; -1: the world
     std::vector<int> out;
-    for (int i = link; i >= 0; i = trees_.links[static_cast<std::size_t>(i)].parent) {
-      const auto& l = trees_.links[static_cast<std::size_t>(i)];
-      for (int k = l.first_dof + l.dofs - 1; k >= l.first_dof; --k) out.push_back(k);
-    }
+    if (link < 0) return out;
+    for_each_dof_of(trees_, static_cast<std::size_t>(link),
+                    [&](std::size_t k) { out.push_back(static_cast<int>(k)); });
     return out;
   }
   void add_dofs(kernels::TreePair<double>& out) {

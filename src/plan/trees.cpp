@@ -14,16 +14,13 @@ void put(const Quat& from, double* to) {
 }
 int count_of(const auto& list) { return static_cast<int>(list.size()); }
 
-// The dof that moves a link last, on the way from the world; -1: none.
-int last_dof(const PlanTrees& trees, int link) {
-  for (; link >= 0; link = trees.links[static_cast<std::size_t>(link)].parent) {
-    const auto& l = trees.links[static_cast<std::size_t>(link)];
-    if (l.dofs > 0) return l.first_dof + l.dofs - 1;
-  }
-  return -1;
-}
-
 }  // namespace
+
+int last_dof(const PlanTrees& trees, const kernels::TreeLink<double>& link) {
+  const auto* at = &link;
+  while (at->dofs == 0 && at->parent >= 0) at = &trees.links[static_cast<std::size_t>(at->parent)];
+  return at->dofs == 0 ? -1 : at->first_dof + at->dofs - 1;
+}
 
 int TreeBuilder::add(const NewLink& link) {
   const int index = count_of(trees_.links);
@@ -49,7 +46,7 @@ void TreeBuilder::add(const NewTreeJoint& joint) {
   out.reference = joint.reference;
   put(joint.anchor, out.anchor), put(joint.axis.normalized(), out.axis);
   for (int i = 0; i < kernels::dofs_of(joint.kind); ++i) {
-    const int parent = last_dof(trees_, index);
+    const int parent = last_dof(trees_, link);
     auto& dof = trees_.dofs.emplace_back();
     dof.link = index;
     dof.parent = parent;

@@ -39,6 +39,9 @@ struct PlanTrees {
   int entries = 0;  // of the joint-space inertia
 };
 
+// The dof that moves a link last, on the way from the world; -1: none.
+int last_dof(const PlanTrees& trees, const kernels::TreeLink<double>& link);
+
 // A link and where it is in its parent's frame at the reference (kernels/data/tree_tables.hpp).
 struct NewLink {
   int body = 0;     // its row among bodies with state

@@ -93,6 +93,9 @@ class NewtonChecker {
              "symplectic-euler and runge-kutta4");
     }
     if (o.bounds) refuse(all_, "options.bounds", "are given", "none");
+    if (o.contact_capacity) {
+      refuse(all_, "options.contact_capacity", "is given", "none: there is room for all contacts");
+    }
   }
 
   void check_body(std::size_t i) {
@@ -112,15 +115,15 @@ class NewtonChecker {
     }
     if (body.motion != Motion::dynamic || !is_held(i)) return;
     if (!body.linear_velocity.isZero(0)) {
-      refuse(at, "linear_velocity", "is not 0", "one of free bodies only");
+      refuse(at, "linear_velocity", "is not 0", "it of free bodies only");
     }
     if (!body.angular_velocity.isZero(0)) {
-      refuse(at, "angular_velocity", "is not 0", "one of free bodies only");
+      refuse(at, "angular_velocity", "is not 0", "it of free bodies only");
     }
     const Jitter& j = body.jitter;
     if (!j.position.isZero(0) || !j.linear_velocity.isZero(0) || j.angle != 0 ||
         j.any_orientation || j.with) {
-      refuse(at, "jitter", "is given", "one of free bodies only: what they hold moves along");
+      refuse(at, "jitter", "is given", "it of free bodies only: what they hold moves along");
     }
   }
 

@@ -70,6 +70,13 @@ class TreeChecker {
               : std::holds_alternative<FixedJoint>(joint.type) ? 0
                                                                : 1;
     }
+    const auto links = std::count_if(scene_.bodies.begin(), scene_.bodies.end(),
+                                     [](const Body& b) { return b.motion == Motion::dynamic; });
+    if (links > kMaxNewtonLinks) {
+      all_.add("bodies", "that move are " + std::to_string(links) +
+                             ", the newton solver takes at most " +
+                             std::to_string(kMaxNewtonLinks) + " yet");
+    }
     if (dofs <= kMaxNewtonDofs) return;
     all_.add("bodies", "and joints have " + std::to_string(dofs) +
                            " degrees of freedom, the newton solver takes at most " +

@@ -28,7 +28,7 @@ inline constexpr double kInputTolerance = 1e-6;
 
 inline constexpr int kMaxBodies = 32767;
 inline constexpr int kMaxShapes = 32767;
-inline constexpr int kMaxNewtonDofs = 64;  // of Solver::newton
+inline constexpr int kMaxNewtonDofs = 64, kMaxNewtonLinks = 256;  // of Solver::newton
 
 // Shortest text that reads back as the same number, in any locale; "nan" without a sign.
 std::string number_text(double value);

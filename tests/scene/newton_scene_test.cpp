@@ -126,11 +126,11 @@ TEST_CASE("the newton solver names all that it does not take, at once",
           "body 1 'torso': angular_drag is not 0, the newton solver takes none",
           "body 1 'torso', shape 0: material.restitution is not 0, the newton solver takes 0: "
           "nothing bounces",
-          "body 2 'arm': linear_velocity is not 0, the newton solver takes one of free bodies "
+          "body 2 'arm': linear_velocity is not 0, the newton solver takes it of free bodies "
           "only",
-          "body 2 'arm': angular_velocity is not 0, the newton solver takes one of free bodies "
+          "body 2 'arm': angular_velocity is not 0, the newton solver takes it of free bodies "
           "only",
-          "body 2 'arm': jitter is given, the newton solver takes one of free bodies only: what "
+          "body 2 'arm': jitter is given, the newton solver takes it of free bodies only: what "
           "they hold moves along",
           "body 5 'lift': motion is kinematic, the newton solver takes dynamic and fixed bodies",
           "joint 0 'elbow': drive is given, the newton solver takes Joint::dynamics and controls "

@@ -1,0 +1,72 @@
+// What a plan of Solver::newton makes of a scene: where joints begin, which pairs it looks at.
+#include <numbers>
+
+#include <catch2/catch.hpp>
+
+#include "manyworlds/batch.hpp"
+#include "src/plan/compliance.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+Body box(const Vec3& position) {
+  Body body;
+  body.position = position;
+  body.shapes = {{.geometry = Box{Vec3(0.1, 0.1, 0.1)}}};
+  return body;
+}
+Scene empty_scene() {
+  Scene scene;
+  scene.options.solver.method = Solver::newton;
+  return scene;
+}
+double about_z(double degrees) { return degrees * std::numbers::pi / 180; }
+Quat turned(double degrees) { return Quat(Eigen::AngleAxisd(about_z(degrees), Vec3::UnitZ())); }
+
+int candidates(const Plan& plan) {
+  int out = 0;
+  for (const auto& pair : plan.report().pairs) out += pair.candidates;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("hinges begin within half a turn of where their frames coincide", "[robots][fast]") {
+  Scene scene = empty_scene();
+  Body a = box(Vec3::Zero()), b = box(Vec3::Zero());
+  a.rotation = turned(170), b.rotation = turned(-170);
+  scene.add(a), scene.add(b);
+  Joint hinge;
+  hinge.body_a = BodyId(0), hinge.body_b = BodyId(1);
+  hinge.dynamics.reference = 0.5;
+  scene.add(hinge);
+  Batch batch(compile(scene), {.worlds = 1, .threads = 1, .precision = Precision::f64});
+  std::vector<double> q(batch.size(Field::generalized_position));
+  batch.read(Field::generalized_position, 0, q);
+  REQUIRE(q.size() == 8);
+  CHECK(q[7] == Approx(0.5 + about_z(20)));
+}
+
+TEST_CASE("shapes that cannot move against each other are no pair", "[robots][fast]") {
+  Scene scene = empty_scene();
+  for (int i = 0; i < 4; ++i) scene.add(box(Vec3(0, 0, 0.15 * i)));
+  Body ground;
+  ground.motion = Motion::fixed;
+  ground.shapes = {{.geometry = Plane{Vec3::UnitZ(), -5}}};
+  scene.add(ground);
+  const auto fix = [&](BodyId body_a, BodyId body_b) {
+    const Frame here{scene.at(body_b).position, Quat::Identity()};
+    scene.add(joint_at(scene, body_a, body_b, here, FixedJoint{}));
+  };
+  fix(BodyId(0), BodyId(1)), fix(BodyId(0), BodyId(2)), fix(BodyId(), BodyId(3));
+  // Each of the first three with the one that the world holds, and with the ground.
+  CHECK(candidates(compile(scene)) == 3 + 3);
+}
+
+TEST_CASE("the power of an impedance is whole, whatever mixing left of it", "[robots][fast]") {
+  Compliance compliance;
+  compliance.power = 2.9999999999999996;
+  CHECK(compile(compliance, 0.002).power == 3);
+}
+
+}  // namespace manyworlds::test
