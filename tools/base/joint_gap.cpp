@@ -78,6 +78,7 @@ double max_joint_gap(const Batch& batch) {
     const Scene& scene = batch.plan(batch.kind_of(world)).scene();
     const std::vector<Joint>& joints = scene.joints;
     if (joints.empty() || frozen(batch.status(world))) continue;
+    if (scene.options.solver.method == Solver::newton) continue;
     const Poses poses(batch, world);
     for (std::size_t j = 0; j < joints.size(); ++j) {
       if (!batch.joint_enabled(world, JointId(static_cast<int>(j)))) continue;
