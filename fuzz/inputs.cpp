@@ -19,7 +19,9 @@ Input input(SceneBytes& bytes) {
   return out;
 }
 
-void apply(const Input& in, Batch& batch) {
+namespace {
+
+void change(const Input& in, Batch& batch) {
   const int world = in.world % batch.worlds();
   if (in.kind == 11) return batch.copy_world(in.world % batch.worlds(), in.body % batch.worlds());
   if (in.kind == 12) return batch.wake(world);
@@ -52,8 +54,8 @@ void apply(const Input& in, Batch& batch) {
     case 9:
     case 10: {
       const auto field = static_cast<Field>(in.body % kFieldCount);
-      const int count = batch.bodies(world) * components(field, batch.plan().scene().space);
-      std::vector<double> values(static_cast<std::size_t>(count));
+      std::vector<double> values(batch.plan(batch.kind_of(world)).numbers(field));
+      if (values.empty()) return;
       batch.read(field, world, values);
       const auto at = static_cast<std::size_t>(in.body) % values.size();
       values[at] = in.kind == 9 ? in.number : in.value.x();
@@ -62,8 +64,6 @@ void apply(const Input& in, Batch& batch) {
     default: return;
   }
 }
-
-namespace {
 
 BodyId in_row(const Batch& batch, int world, int row) {
   return batch.body_in_row(row, batch.kind_of(world));
@@ -79,6 +79,15 @@ bool all_step(const Batch& batch, int world) {
 }
 
 }  // namespace
+
+void apply(const Input& in, Batch& batch) {
+  try {
+    change(in, batch);
+  } catch (const std::invalid_argument&) {  // as the bodies of trees refuse some of it
+    const Plan& plan = batch.plan(batch.kind_of(in.world % batch.worlds()));
+    if (plan.scene().options.solver.method != Solver::newton) throw;
+  }
+}
 
 void step_and_look(Batch& batch, int steps) {
   batch.step(steps);
