@@ -35,6 +35,9 @@ enum class Integrator {
   verlet,           // position form: drift, kick, drift
   velocity_verlet,  // kick, drift, kick
   runge_kutta4,     // the classical one
+  // Of Solver::newton alone: symplectic_euler in which all that depends on velocities is implicit,
+  // but centrifugal and gyroscopic forces of links that others are jointed to.
+  implicit_fast,
 };
 const char* to_string(Integrator integrator);
 

@@ -20,8 +20,10 @@ template <>
 struct Members<MassProperties> {
   static constexpr const char* name = "MassProperties";
   static void visit(auto& value, auto&& visit) {
-    auto& [mass, center, inertia] = value;
+    auto& [mass, center, inertia, axes] = value;
     visit("mass", mass), visit("center", center), visit("inertia", inertia);
+    visit("axes", axes,
+          counted_if(axes.has_value(), "found from inertia, as before there was a choice"));
   }
 };
 template <>

@@ -17,11 +17,12 @@
 //     affine (motor, position, velocity, damper, general), as controls (ControlKind::joint_force);
 //   - friction, condim 1 and 3, softness, margin, gap, priority and solmix of geoms; which pairs
 //     collide, excludes included;
-//   - timestep, gravity, gravcomp, iterations and tolerances, impratio, and the flags that switch
-//     off constraints, limits, contacts, springs, dampers, gravity, clampctrl and filterparent.
-// The solver is Newton's, whatever the file says. Refused are other integrators than Euler and RK4,
-// elliptic cones, friction loss, limits and springs of ball joints, tendons that pull, equalities,
-// contact pairs, condim 4 and 6, mocap bodies, the drag of a medium, and all other actuators and
+//   - timestep, integrator, cone, impratio, gravity, gravcomp, wind, density and viscosity of a
+//     medium (inertia model), iterations and tolerances, and the flags that switch off constraints,
+//     limits, contacts, springs, dampers, gravity, clampctrl and filterparent.
+// The solver is Newton's, whatever the file says. Refused are other integrators than Euler, RK4
+// and implicitfast, drag of ellipsoids, friction loss, limits and springs of ball joints, tendons
+// that pull, equalities, contact pairs, condim 4 and 6, mocap bodies, and all other actuators and
 // flags that change the motion.
 //
 // A model whose joints are all free is made for the default solver: what is welded to a free body

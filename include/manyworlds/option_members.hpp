@@ -11,7 +11,7 @@ struct Members<SolverOptions> {
   static constexpr const char* name = "SolverOptions";
   static void visit(auto& value, auto&& visit) {
     auto& [method, iterations, relaxation, push_out_share, split_impulse, tolerance,
-           line_search_iterations, line_search_tolerance, impedance_ratio, implicit_damping] =
+           line_search_iterations, line_search_tolerance, impedance_ratio, cone, implicit_damping] =
         value;
     const Counted swept =
         counted_if(method != Solver::tgs_soft || iterations_of(value) != 1,
@@ -26,6 +26,9 @@ struct Members<SolverOptions> {
     visit("line_search_tolerance", line_search_tolerance, newton);
     visit("impedance_ratio", impedance_ratio, newton);
     visit("implicit_damping", implicit_damping, newton);
+    visit("cone", cone,
+          counted_if(method == Solver::newton && cone != FrictionCone::pyramidal,
+                     "pyramids are what there was before there was a choice"));
   }
 };
 template <>
@@ -65,10 +68,18 @@ struct Members<SleepOptions> {
   }
 };
 template <>
+struct Members<Medium> {
+  static constexpr const char* name = "Medium";
+  static void visit(auto& value, auto&& visit) {
+    auto& [density, viscosity] = value;
+    visit("density", density), visit("viscosity", viscosity);
+  }
+};
+template <>
 struct Members<Options> {
   static constexpr const char* name = "Options";
   static void visit(auto& value, auto&& visit) {
-    auto& [dt, substeps, gravity, wind, density, integrator, rotation, angular_momentum,
+    auto& [dt, substeps, gravity, wind, density, integrator, medium, rotation, angular_momentum,
            length_unit, solver, contact, joint, sleep, contact_capacity, bounds] = value;
     const Counted flown =
         counted_if(integrator != Integrator::symplectic_euler ||
@@ -81,6 +92,7 @@ struct Members<Options> {
     visit("solver", solver);
     visit("integrator", integrator, flown), visit("rotation", rotation, flown);
     visit("angular_momentum", angular_momentum, flown);
+    visit("medium", medium, counted_if(value.medium != Medium{}, "none by default"));
   }
 };
 

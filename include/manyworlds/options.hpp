@@ -30,6 +30,7 @@ struct SolverOptions {
   double line_search_tolerance = 0.01;
   // Of newton: stiffness of friction against that of normal rows.
   double impedance_ratio = 1;
+  FrictionCone cone = FrictionCone::pyramidal;  // of newton
   // Of newton with symplectic_euler: dampers of joints act at the end of the step.
   bool implicit_damping = true;
 };
@@ -71,13 +72,23 @@ struct SleepOptions {
   double time = 0.5;    // s
 };
 
+// Of newton: what bodies move through. Drag acts on the box of a body's mass and moments of inertia
+// (MuJoCo, "Fluid forces", inertia model).
+struct Medium {
+  double density = 0;    // kg/m^3
+  double viscosity = 0;  // Pa s
+  bool operator==(const Medium&) const = default;
+};
+
 struct Options {
   double dt = 1.0 / 60.0;              // s, one step
   int substeps = 4;                    // of the solver and of the integrator, per step
   Eigen::Vector3d gravity{0, 0, -10};  // m/s^2 (planar scenes: set {0, -10, 0})
-  Eigen::Vector3d wind{0, 0, 0};       // m/s, of the air that Body::linear_drag is against
-  double density = 1000;               // kg/m^3 or kg/m^2, for shapes that give none
+  Eigen::Vector3d wind{0, 0,
+                       0};  // m/s, of the air that Body::linear_drag is against, and the medium
+  double density = 1000;    // kg/m^3 or kg/m^2, for shapes that give none
   Integrator integrator = Integrator::symplectic_euler;
+  Medium medium = {};
   // Default: splitting with symplectic_euler and the Verlets, which take nothing else but
   // symplectic_euler; exponential with the others.
   std::optional<Rotation> rotation = {};

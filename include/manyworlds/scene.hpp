@@ -37,6 +37,9 @@ struct MassProperties {
   double mass = 1;                  // kg
   Vec3 center = Vec3::Zero();       // m, centre of mass in the body frame
   Mat3 inertia = Mat3::Identity();  // kg m^2 about the centre of mass, body axes
+  // Principal axes of inertia in the body frame (planar: without meaning). Where two moments are
+  // alike inertia does not tell them, but the drag of a medium acts along them. Default: any.
+  std::optional<Quat> axes = {};
 };
 
 // How the initial state differs from world to world: every entry is the half range of a uniform

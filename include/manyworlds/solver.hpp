@@ -46,6 +46,11 @@ enum class Solver {
   newton,   // trees in joint coordinates, MuJoCo's soft constraints
 };
 const char* to_string(Solver solver);
+
+// What friction of newton may do: stay within the four edges of a pyramid, or within a round cone.
+enum class FrictionCone { pyramidal, elliptic };
+const char* to_string(FrictionCone cone);
+
 // Whether overlaps and gaps close by a share per substep: all but tgs_soft, penalty and newton.
 bool has_hard_rows(Solver solver);
 

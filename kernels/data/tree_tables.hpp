@@ -29,6 +29,7 @@ struct TreeLink {
   std::int32_t root;    // of its tree
   std::int32_t first_joint, joints;
   std::int32_t first_dof, dofs;   // of its own joints
+  bool moves_freely;              // and nothing is jointed to it
   Real position[3], rotation[4];  // of its frame in the parent's at the reference
   Real center[3], principal[4];   // centre of mass and principal axes in its frame
 };
@@ -90,11 +91,15 @@ struct TreeActuator {
   Real low, high;  // N or N m, before the gear
 };
 
+// What friction may do at a contact, and the rows of it: the normal; the edges of a pyramid; the
+// normal and two tangents, within a round cone.
+enum class ContactCone : std::int32_t { frictionless, pyramidal, elliptic };
+
 // Contacts of two shapes (SoftContact in manyworlds/shape.hpp).
 template <class Real>
 struct TreePair {
-  std::int32_t link_a, link_b;          // -1: the world
-  std::int32_t dimensions;              // 1 or 3
+  std::int32_t link_a, link_b;  // -1: the world
+  ContactCone cone;
   std::int32_t material_a, material_b;  // whose friction counts: the larger one, or one twice
   Real margin;                          // m, where a contact begins to push
   Real inverse_weight;                  // of the rows
@@ -103,6 +108,14 @@ struct TreePair {
   // The dofs that move one link against the other, the last one first: ~dof where they move A.
   std::int32_t first_dof, dofs;
   std::uint64_t coupled;  // those
+};
+
+// Drag of a medium on a link, about its principal axes (Medium in manyworlds/options.hpp): force
+// -(viscous + speed |v|) v of the centre of mass, moment -(spin_viscous + spin |w|) w.
+template <class Real>
+struct TreeDrag {
+  Real viscous, spin_viscous;  // N s/m, N m s/rad
+  Real speed[3], spin[3];      // kg/m, kg m^2
 };
 
 // Dofs of a plan of trees, at most: sets of them are bits.
@@ -120,8 +133,9 @@ template <class Real>
 struct TreeTable {
   std::int32_t links, dofs, coordinates;
   std::int32_t entries;  // of the inertia matrix
-  bool damped;           // some dof has damping, which is implicit
-  std::int32_t stages;   // of the integrator: 1, or 4 of Runge-Kutta
+  // Some forces of velocities are implicit: dampers of dofs, and with `implicit` actuators, too.
+  bool damped, implicit;
+  std::int32_t stages;  // of the integrator: 1, or 4 of Runge-Kutta
   std::int32_t limits, actuators;
   // Rows of the state: of the coordinates, and of the dofs, each with a velocity and the
   // acceleration of the step before.
@@ -138,7 +152,10 @@ struct TreeTable {
   const TreePair<Real>* pair;  // [key]
   const std::int32_t* pair_dof;
   bool has_rows;  // there are limits or contacts
+  bool elliptic;  // the cones of contacts are
   Real impedance_ratio;
+  const TreeDrag<Real>* drag;  // [link]; without a medium nullptr
+  Real wind[3];                // m/s, of the medium
 };
 
 }  // namespace manyworlds::kernels

@@ -1,12 +1,14 @@
-// Rows of contacts: of a point one along the normal (dimensions 1), or four along the edges of a
-// pyramid around it, n + mu t and n - mu t for both tangents (dimensions 3; MuJoCo, "Computation",
-// pyramidal cones). A set of rows as the newton solver asks for it (newton.hpp).
+// Rows of contacts: of a point one along the normal, or four along the edges of a pyramid around
+// it, n + mu t and n - mu t for both tangents (MuJoCo, "Computation", pyramidal cones), or the
+// normal and two tangents within a round cone (cone.hpp). A set of rows as the newton solver asks
+// for it (newton.hpp).
 //
 // No row is stored: what accelerations do at a point comes from the motions of its links, and what
 // its forces do to the dofs from the wrenches on them.
 #pragma once
 
 #include "kernels/tree/compliance.hpp"
+#include "kernels/tree/cone.hpp"
 #include "kernels/tree/dynamics.hpp"
 #include "kernels/tree/row_force.hpp"
 #include "kernels/tree/stiffness.hpp"
@@ -14,6 +16,7 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 using TreePair = kernels::TreePair<Real>;
+using kernels::ContactCone;
 
 // Motions of links by accelerations, [dof][lane].
 inline void find_twists(const Constants& t, const Work& w, const Real* x, Real* twists) {
@@ -51,18 +54,23 @@ class ContactRows {
   Mask find() const {
     Mask found = mask_from_bits(0);
     for_each([&](Contact& c, const TreePair& pair) {
-      const Float mu = Float::load(c.friction), friction_weight(pair.friction_weight);
-      const Float inverse_weight = fma(mu * mu, friction_weight, Float(pair.inverse_weight));
-      const Float along = pair.dimensions == 1 ? Float(Real(1))
-                                               : mu * mu * Float(Real(2) / t_.tree.impedance_ratio);
+      Float inverse_weight(pair.inverse_weight);
+      if (pair.cone == ContactCone::pyramidal) {
+        const Float mu = Float::load(c.friction), friction_weight(pair.friction_weight);
+        inverse_weight = mu * mu * Float(Real(2) / t_.tree.impedance_ratio) *
+                         fma(mu * mu, friction_weight, inverse_weight);
+      }
       const Float violation = Float::load(c.distance) - Float(pair.margin);
       const Mask near = mask_from_bits(c.lanes);
       const Edges speed = along_edges(pair, c, relative(c, pair, w_.tree.velocity));
       for (int e = 0; e < rows_of(pair); ++e) {
-        const SoftRow soft =
-            soft_row(pair.compliance, along * inverse_weight, violation, speed.along[e]);
+        // The tangents of a round cone have no spring.
+        const bool tangent = pair.cone == ContactCone::elliptic && e > 0;
+        const SoftRow soft = soft_row(pair.compliance, inverse_weight, violation, speed.along[e]);
+        const Float reference =
+            tangent ? -(Float(pair.compliance.damping) * speed.along[e]) : soft.reference;
         select(near, soft.weight, Real(0)).store(c.weight);
-        select(near, soft.reference, Real(0)).store(c.reference[e]);
+        select(near, reference, Real(0)).store(c.reference[e]);
       }
       found = found | near;
     });
@@ -86,15 +94,11 @@ class ContactRows {
       Float(Real(0)).store(wrenches + r * kLanes);
     }
     for_each([&](const Contact& c, const TreePair& pair) {
-      Float f[4];
-      const int rows = rows_of(pair);
-      for (int e = 0; e < rows; ++e) f[e] = row(c, e).force();
-      Vec3 force = load_vec3(c.frame[0]) * f[0];
-      if (rows > 1) {
-        const Float mu = Float::load(c.friction);
-        force = load_vec3(c.frame[0]) * ((f[0] + f[1]) + (f[2] + f[3]));
-        force = fma(load_vec3(c.frame[3]), mu * (f[0] - f[1]), force);
-        force = fma(load_vec3(c.frame[6]), mu * (f[2] - f[3]), force);
+      const Vec3 own_force = force_of(c, pair);
+      Vec3 force = load_vec3(c.frame[0]) * own_force.x;
+      if (pair.cone != ContactCone::frictionless) {
+        force = fma(load_vec3(c.frame[3]), own_force.y, force);
+        force = fma(load_vec3(c.frame[6]), own_force.z, force);
       }
       const Real* const arms[2] = {c.arm_b[0], c.arm_a[0]};
       const int links[2] = {pair.link_b, pair.link_a};
@@ -128,13 +132,14 @@ class ContactRows {
         store(w_.tree.column + i * 3 * kLanes, own);
       }
       for (int i = 0; i < pair.dofs; ++i) {
-        const Vec3 pull = k.times(load_vec3(w_.tree.column + i * 3 * kLanes), pair.dimensions);
+        const Vec3 pull = pull_of(k, pair.cone, load_vec3(w_.tree.column + i * 3 * kLanes));
         const int row = dofs[i] < 0 ? ~dofs[i] : dofs[i];
         for (int j = i; j < pair.dofs; ++j) {
           const Vec3 other = load_vec3(w_.tree.column + j * 3 * kLanes);
           Real* to = stiffness.entry(row, dofs[j] < 0 ? ~dofs[j] : dofs[j]);
           Float sum = fma(pull.x, other.x, Float::load(to));
-          if (pair.dimensions > 1) sum = fma(pull.z, other.z, fma(pull.y, other.y, sum));
+          if (pair.cone != ContactCone::frictionless)
+            sum = fma(pull.z, other.z, fma(pull.y, other.y, sum));
           sum.store(to);
         }
       }
@@ -143,12 +148,17 @@ class ContactRows {
 
   void along(Float step, Float& first, Float& second) const {
     for_each([&](const Contact& c, const TreePair& pair) {
+      if (pair.cone == ContactCone::elliptic) return cone(c).add_along(step, first, second);
       for (int e = 0; e < rows_of(pair); ++e) row(c, e).add_along(step, first, second);
     });
   }
   Mask advance(Float step, Mask done) const {
     Mask changed = mask_from_bits(0);
     for_each([&](Contact& c, const TreePair& pair) {
+      if (pair.cone == ContactCone::elliptic) {
+        changed = changed | cone(c).advance(c.residual[0], step, done);
+        return;
+      }
       for (int e = 0; e < rows_of(pair); ++e) changed = changed | row(c, e).advance(step, done);
     });
     return changed;
@@ -159,15 +169,16 @@ class ContactRows {
   struct Edges {
     Float along[4];
   };
-  // J' D J in the contact's frame, of the edges that push.
-  struct PointStiffness {
-    Float normal, normal_1, normal_2, tangent_1, tangent_2;
-    MW_INLINE Vec3 times(Vec3 v, int dimensions) const {
-      if (dimensions == 1) return {normal * v.x, v.y, v.z};
-      return {fma(normal_2, v.z, fma(normal_1, v.y, normal * v.x)),
-              fma(tangent_1, v.y, normal_1 * v.x), fma(tangent_2, v.z, normal_2 * v.x)};
+  // Of a motion at the contact, both in its frame.
+  static MW_INLINE Vec3 pull_of(const PointStiffness& k, ContactCone cone, Vec3 v) {
+    if (cone == ContactCone::frictionless) return {k.normal * v.x, v.y, v.z};
+    Vec3 pull{fma(k.normal_2, v.z, fma(k.normal_1, v.y, k.normal * v.x)),
+              fma(k.tangent_1, v.y, k.normal_1 * v.x), fma(k.tangent_2, v.z, k.normal_2 * v.x)};
+    if (cone == ContactCone::elliptic) {
+      pull.y = fma(k.tangents, v.z, pull.y), pull.z = fma(k.tangents, v.y, pull.z);
     }
-  };
+    return pull;
+  }
 
   template <class Visit>
   MW_INLINE void for_each(Visit visit) const {
@@ -176,7 +187,11 @@ class ContactRows {
       if ((c.lanes & lanes_) != 0) visit(c, t_.tree.pair[c.pair]);
     }
   }
-  static int rows_of(const TreePair& pair) { return pair.dimensions == 1 ? 1 : 4; }
+  static int rows_of(const TreePair& pair) {
+    constexpr int kRows[] = {1, 4, 3};
+    return kRows[static_cast<int>(pair.cone)];
+  }
+  MW_INLINE Cone cone(const Contact& c) const { return {c, t_.tree.impedance_ratio}; }
   static MW_INLINE RowView row(const Contact& c, int e) {
     return {c.weight, const_cast<Real*>(c.residual[e]), c.change[e]};
   }
@@ -193,9 +208,11 @@ class ContactRows {
   }
   static MW_INLINE Edges along_edges(const TreePair& pair, const Contact& c, Vec3 v) {
     const Float normal = dot(load_vec3(c.frame[0]), v);
-    if (pair.dimensions == 1) return {{normal, normal, normal, normal}};
+    if (pair.cone == ContactCone::frictionless) return {{normal, normal, normal, normal}};
+    Float one = dot(load_vec3(c.frame[3]), v), two = dot(load_vec3(c.frame[6]), v);
+    if (pair.cone == ContactCone::elliptic) return {{normal, one, two, two}};
     const Float mu = Float::load(c.friction);
-    const Float one = mu * dot(load_vec3(c.frame[3]), v), two = mu * dot(load_vec3(c.frame[6]), v);
+    one = mu * one, two = mu * two;
     return {{normal + one, normal - one, normal + two, normal - two}};
   }
   template <class Put>
@@ -207,14 +224,27 @@ class ContactRows {
       for (int e = 0; e < rows_of(pair); ++e) put(c, e, change.along[e]);
     });
   }
-  static MW_INLINE PointStiffness stiffness_of(const Contact& c, const TreePair& pair) {
+  // In the contact's frame.
+  MW_INLINE Vec3 force_of(const Contact& c, const TreePair& pair) const {
     const Float zero(Real(0));
-    if (pair.dimensions == 1) return {row(c, 0).stiffness(), zero, zero, zero, zero};
+    if (pair.cone == ContactCone::frictionless) return {row(c, 0).force(), zero, zero};
+    if (pair.cone == ContactCone::elliptic) return cone(c).force();
+    Float f[4];
+    for (int e = 0; e < 4; ++e) f[e] = row(c, e).force();
+    const Float mu = Float::load(c.friction);
+    return {(f[0] + f[1]) + (f[2] + f[3]), mu * (f[0] - f[1]), mu * (f[2] - f[3])};
+  }
+  MW_INLINE PointStiffness stiffness_of(const Contact& c, const TreePair& pair) const {
+    const Float zero(Real(0));
+    if (pair.cone == ContactCone::frictionless) {
+      return {row(c, 0).stiffness(), zero, zero, zero, zero, zero};
+    }
+    if (pair.cone == ContactCone::elliptic) return cone(c).stiffness();
     Float s[4];
     for (int e = 0; e < 4; ++e) s[e] = row(c, e).stiffness();
     const Float mu = Float::load(c.friction), mu2 = mu * mu;
-    return {(s[0] + s[1]) + (s[2] + s[3]), mu * (s[0] - s[1]), mu * (s[2] - s[3]),
-            mu2 * (s[0] + s[1]), mu2 * (s[2] + s[3])};
+    return {(s[0] + s[1]) + (s[2] + s[3]), mu * (s[0] - s[1]),  mu * (s[2] - s[3]),
+            mu2 * (s[0] + s[1]),           mu2 * (s[2] + s[3]), zero};
   }
 
   MW_INLINE bool pushes(const PointStiffness& k) const {

@@ -41,6 +41,20 @@ inline void find_velocities(const Constants& t, const Group& g, const Work& w) {
   }
 }
 
+// What a medium at rest, or in the wind, does to a link: of the inertia box about its centre of
+// mass (MuJoCo, "Fluid forces", inertia model).
+MW_INLINE Wrench drag_of(const Constants& t, const kernels::TreeDrag<Real>& drag, const Mat3& axes,
+                         Vec3 velocity, Vec3 spin) {
+  const Vec3 flow = velocity - shared(t.tree.wind);
+  const auto along = [&](Vec3 v, Real viscous, const Real(&square)[3]) {
+    const Vec3 own = mul_transposed(axes, v);
+    const auto resist = [&](Float x, Real k) { return fma(Float(k), abs(x), Float(viscous)) * x; };
+    return -mul(axes,
+                {resist(own.x, square[0]), resist(own.y, square[1]), resist(own.z, square[2])});
+  };
+  return {along(spin, drag.spin_viscous, drag.spin), along(flow, drag.viscous, drag.speed)};
+}
+
 // The inertia of each link by itself, and the wrench that its motion asks for, less those that act
 // on it: gravity and the inputs.
 inline void find_wrenches(const Constants& t, const Group& g, const Work& w) {
@@ -62,6 +76,10 @@ inline void find_wrenches(const Constants& t, const Group& g, const Work& w) {
       pull = pull + load_vec3(input);
       moment = load_vec3(input + 3 * kLanes);
     }
+    if (t.tree.drag) {
+      const Wrench drag = drag_of(t, t.tree.drag[i], axes, v.v + cross(v.w, c), v.w);
+      moment = moment + drag.n, pull = pull + drag.f;
+    }
     f = f - Wrench{moment + cross(c, pull), pull};
     store(link_rows(w.tree.inertia, i, kInertiaRows), inertia);
     store(link_rows(w.tree.force, i, kTwistRows), f);
@@ -80,6 +98,9 @@ MW_INLINE Float passive_force(const Constants& t, const Group& g, const Dof& dof
 
 // Adds the forces of actuators.
 inline void add_actuators(const Constants& t, const Group& g, const Work& w) {
+  for (int k = 0; t.tree.implicit && k < t.tree.dofs; ++k) {
+    Float(Real(0)).store(w.tree.resistance + k * kLanes);
+  }
   for (int i = 0; i < t.tree.actuators; ++i) {
     const auto& a = t.tree.actuator[i];
     const Float gear(a.gear), length = gear * Float::load(coordinate_of(t, g, a.coordinate));
@@ -88,8 +109,14 @@ inline void add_actuators(const Constants& t, const Group& g, const Work& w) {
       return fma(Float(c[2]), speed, fma(Float(c[1]), length, Float(c[0])));
     };
     const Float control = Float::load(g.control + a.control * kLanes);
-    const Float force =
-        clamp(fma(affine(a.gain), control, affine(a.bias)), Float(a.low), Float(a.high));
+    const Float low(a.low), high(a.high), free = fma(affine(a.gain), control, affine(a.bias));
+    const Float force = clamp(free, low, high);
+    if (t.tree.implicit) {
+      const Float falls = -(gear * gear * fma(Float(a.gain[2]), control, Float(a.bias[2])));
+      Real* resistance = w.tree.resistance + a.dof * kLanes;
+      const Mask follows = (low < free) & (free < high);
+      (Float::load(resistance) + select(follows, falls, Real(0))).store(resistance);
+    }
     Real* load = w.tree.load + a.dof * kLanes;
     fma(gear, force, Float::load(load)).store(load);
   }

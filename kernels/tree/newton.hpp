@@ -9,6 +9,9 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+// Relative to a number, a change that is none.
+constexpr Real kSameStep = sizeof(Real) == 4 ? Real(2e-7) : Real(1e-15);
+
 // visit(row of dof k) of [dof][lane] arrays.
 template <class Visit>
 MW_INLINE void for_each_dof(const Constants& t, Visit visit) {
@@ -21,7 +24,6 @@ template <class Rows>
 MW_INLINE Float line_search(const Constants& t, const Rows& rows, Float slope, Float own_slope,
                             Float own_curvature, Mask done) {
   constexpr Real kFar = Real(1e30);
-  constexpr Real kSame = sizeof(Real) == 4 ? Real(2e-7) : Real(1e-15);
   const kernels::NewtonOptions<Real>& options = t.tree.newton;
   const Float zero(Real(0)), enough = abs(slope) * Float(options.line_tolerance);
   Float step(Real(1)), low = zero, high(kFar);
@@ -38,7 +40,7 @@ MW_INLINE Float line_search(const Constants& t, const Rows& rows, Float slope, F
     const Mask inside = (low < newton) & (newton < high);
     const Float middle = select(high < Float(kFar), (low + high) * Float(Real(0.5)), step);
     const Float next = select(inside, newton, middle);
-    found = found | (abs(next - step) <= abs(step) * Float(kSame));
+    found = found | (abs(next - step) <= abs(step) * Float(kSameStep));
     step = select(found, step, next);
   }
   return step;
@@ -67,6 +69,8 @@ class Minimiser {
       done = done | !(tolerance <= slope * scale_ * Float(Real(-0.5)));
       if (all(done)) break;
       const Float step = select(done, Real(0), find_step(slope, done));
+      // Round cones have no last piece: there the search ends where steps no longer tell.
+      const Mask lost = t_.tree.elliptic ? lost_in_rounding(step) : mask_from_bits(0);
       for_each_dof(t_, [&](int k) {
         const auto go = [&](Real* to, const Real* way) {
           const Float from = Float::load(to + k);
@@ -77,13 +81,21 @@ class Minimiser {
       // Where no row has changed on a whole step, the cost was the quadratic that it minimises.
       const Mask whole = (Float(Real(1)) <= step) & (step <= Float(Real(1)));
       const Mask changed = rows_.advance(step, done);
-      done = done | (whole & !changed);
+      done = done | (whole & !changed) | lost;
     }
     rows_.look_at(kAllLanes);
     find_forces();
   }
 
  private:
+  Mask lost_in_rounding(Float step) const {
+    Float moved(Real(0)), size(Real(0));
+    for_each_dof(t_, [&](int k) {
+      moved = max(moved, abs(step * Float::load(x_.direction + k)));
+      size = max(size, abs(Float::load(x_.guess + k)));
+    });
+    return moved <= size * Float(kSameStep);
+  }
   void find_forces() {
     for_each_dof(t_, [&](int k) { Float(Real(0)).store(x_.row_load + k); });
     rows_.add_forces(x_.row_load);

@@ -1,7 +1,10 @@
-// The stages of trees: semi-implicit Euler in joint coordinates, with the dampers of dofs implicit,
-// or Runge-Kutta.
+// The stages of trees: semi-implicit Euler in joint coordinates, with dampers of dofs and what else
+// is implicit (implicit.hpp) at the end of the step, or Runge-Kutta.
+#include <algorithm>
+
 #include "kernels/tree/constraints.hpp"
 #include "kernels/tree/dynamics.hpp"
+#include "kernels/tree/implicit.hpp"
 #include "kernels/tree/newton.hpp"
 #include "kernels/tree/runge_kutta.hpp"
 #include "kernels/work/solver_tables.hpp"
@@ -38,8 +41,18 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
       Real* diagonal = x.matrix + dof.entry * kLanes;
       fma(Float(t.h), Float(dof.damping), Float::load(diagonal)).store(diagonal);
     }
+    if (t.tree.implicit) {
+      add_resistance(t, w);
+      for_each_free_link(t, [&](int i) { FreeLink(t, w, i).solve(x.load, x.resistance); });
+    }
     factorise(t, x.matrix);
     solve_factored(t, x.matrix, x.load);
+    if (t.tree.implicit) {
+      for_each_free_link(t, [&](int i) {
+        const int first = t.tree.link[i].first_dof * kLanes;
+        std::copy_n(x.resistance + first, 6 * kLanes, x.load + first);
+      });
+    }
   }
   if (!t.tree.has_rows) return;
   for_each_dof(t, [&](int k) {

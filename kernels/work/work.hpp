@@ -93,16 +93,17 @@ struct alignas(64) TreeContact {
 
 // Trees (kernels/tree/), in world axes about an origin of each tree: its root's centre of mass.
 struct TreeWork {
-  Real* origin;    // [link: a root][3][lane], in the world
-  Real* pose;      // [link][rotation 4, position of its frame 3][lane]
-  Real* axis;      // [dof][twist of a unit velocity][lane]
-  Real* velocity;  // [link][twist][lane]
-  Real* rate;      // [link][twist][lane], acceleration but for those of the dofs; less gravity
-  Real* force;     // [link][wrench][lane]
-  Real* inertia;   // [link][kInertiaRows][lane], with all links beyond it
-  Real* matrix;    // [entry][lane], of the joint-space inertia, then its factors
-  Real* load;      // [dof][lane], generalised forces, then accelerations
-  Real* next;      // [coordinate, then dof][lane], the state after the step
+  Real* origin;      // [link: a root][3][lane], in the world
+  Real* pose;        // [link][rotation 4, position of its frame 3][lane]
+  Real* axis;        // [dof][twist of a unit velocity][lane]
+  Real* velocity;    // [link][twist][lane]
+  Real* rate;        // [link][twist][lane], acceleration but for those of the dofs; less gravity
+  Real* force;       // [link][wrench][lane]
+  Real* inertia;     // [link][kInertiaRows][lane], with all links beyond it
+  Real* matrix;      // [entry][lane], of the joint-space inertia, then its factors
+  Real* load;        // [dof][lane], generalised forces, then accelerations
+  Real* resistance;  // [dof][lane], of actuators, N m s/rad or N s/m; only with implicit_fast
+  Real* next;        // [coordinate, then dof][lane], the state after the step
   // Runge-Kutta.
   Real* start;         // [coordinate, then dof][lane], the state before the step
   Real* displacement;  // [dof][lane], of the stage from the start

@@ -22,7 +22,7 @@ from .fields import Field
 from .ids import BodyId, ControlId, JointId, ShapeId
 from .joints import *  # noqa: F403
 from .kinds import Kind
-from .options import ContactOptions, JointOptions, Options, SleepOptions, SolverOptions
+from .options import ContactOptions, JointOptions, Medium, Options, SleepOptions, SolverOptions
 from .plan import Plan
 from .query import Pose
 from .results import CONTACT, STEP_CONTACT, Status
@@ -74,6 +74,7 @@ __all__ = [
     "JointOptions",
     "Kind",
     "MassProperties",
+    "Medium",
     "Observation",
     "Options",
     "Plan",

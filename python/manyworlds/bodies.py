@@ -18,6 +18,9 @@ class MassProperties:
     center: Numbers = (0.0, 0.0, 0.0)  # m, centre of mass in the body frame
     # kg m^2 about the centre of mass, body axes, (3, 3)
     inertia: object = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    # Principal axes of inertia, a quaternion (w, x, y, z); drag of a medium acts along them. None:
+    # found from inertia.
+    axes: Optional[Numbers] = None
 
 
 @dataclass(slots=True, kw_only=True)

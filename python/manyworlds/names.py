@@ -22,9 +22,11 @@ Integrator = Literal[
     "verlet",
     "velocity_verlet",
     "runge_kutta4",
+    "implicit_fast",
 ]
 Rotation = Literal["splitting", "quaternion", "exponential"]
 Solver = Literal["tgs_soft", "sequential_impulse", "sor", "nncg", "penalty", "newton"]
+FrictionCone = Literal["pyramidal", "elliptic"]
 ControlKind = Literal["target_position", "target_speed", "thrust", "torque", "joint_force"]
 Parameter = Literal[
     "size",

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Optional
 
-from .names import Integrator, Numbers, Rotation, Solver
+from .names import FrictionCone, Integrator, Numbers, Rotation, Solver
 
 
 @dataclass(slots=True, kw_only=True)
@@ -23,6 +23,7 @@ class SolverOptions:
     line_search_iterations: int = 50  # of newton
     line_search_tolerance: float = 0.01  # of newton
     impedance_ratio: float = 1.0  # of newton: stiffness of friction against that of normal rows
+    cone: FrictionCone = "pyramidal"  # of newton
     implicit_damping: bool = True  # of newton with symplectic_euler: dampers act at the step's end
 
 
@@ -60,6 +61,14 @@ class SleepOptions:
 
 
 @dataclass(slots=True, kw_only=True)
+class Medium:
+    """What bodies of the newton solver move through; drag acts on their inertia boxes."""
+
+    density: float = 0.0  # kg/m^3
+    viscosity: float = 0.0  # Pa s
+
+
+@dataclass(slots=True, kw_only=True)
 class Options:
     """How worlds of a scene are stepped. The header ``options.hpp`` has more on each."""
 
@@ -69,6 +78,7 @@ class Options:
     wind: Numbers = (0.0, 0.0, 0.0)  # m/s, of the air that Body.linear_drag is against
     density: float = 1000.0  # kg/m^3 (planar: kg/m^2), of shapes that give none
     integrator: Integrator = "symplectic_euler"
+    medium: Medium = field(default_factory=Medium)
     rotation: Optional[Rotation] = None  # None: what suits the integrator
     angular_momentum: bool = False  # spins as angular momenta
     length_unit: float = 1.0  # m, size of a typical body

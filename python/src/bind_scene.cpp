@@ -62,11 +62,12 @@ void bind_scene(nb::module_& m) {
   m.def(
       "default_values",
       [] {
-        nb::dict out = default_values<Compliance, SoftContact, Material, Filter, Shape,
-                                      MassProperties, Jitter, Body, Frame, Spring, Limit, Drive,
-                                      JointDynamics, Joint, Actuator, Control, Attractor, Variation,
-                                      Exclusion, TendonTerm, Tendon, SolverOptions, ContactOptions,
-                                      JointOptions, SleepOptions, Options, Scene, Ray, Point>();
+        nb::dict out =
+            default_values<Compliance, SoftContact, Material, Filter, Shape, MassProperties, Jitter,
+                           Body, Frame, Spring, Limit, Drive, JointDynamics, Joint, Actuator,
+                           Control, Attractor, Variation, Exclusion, TendonTerm, Tendon,
+                           SolverOptions, ContactOptions, JointOptions, SleepOptions, Medium,
+                           Options, Scene, Ray, Point>();
         add_alternatives<Geometry>(out), add_alternatives<JointType>(out);
         return out;
       },

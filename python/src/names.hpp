@@ -35,10 +35,11 @@ struct Names;
 MW_NAMES(Space, MW_NAME(planar), MW_NAME(spatial));
 MW_NAMES(Motion, MW_NAME(dynamic), MW_NAME(kinematic), MW_NAME(fixed));
 MW_NAMES(Integrator, MW_NAME(symplectic_euler), MW_NAME(explicit_euler), MW_NAME(implicit_euler),
-         MW_NAME(verlet), MW_NAME(velocity_verlet), MW_NAME(runge_kutta4));
+         MW_NAME(verlet), MW_NAME(velocity_verlet), MW_NAME(runge_kutta4), MW_NAME(implicit_fast));
 MW_NAMES(Rotation, MW_NAME(splitting), MW_NAME(quaternion), MW_NAME(exponential));
 MW_NAMES(Solver, MW_NAME(tgs_soft), MW_NAME(sequential_impulse), MW_NAME(sor), MW_NAME(nncg),
          MW_NAME(penalty), MW_NAME(newton));
+MW_NAMES(FrictionCone, MW_NAME(pyramidal), MW_NAME(elliptic));
 MW_NAMES(Field, MW_NAME(position), MW_NAME(orientation), MW_NAME(linear_velocity),
          MW_NAME(angular_velocity), MW_NAME(generalized_position), MW_NAME(generalized_velocity),
          MW_NAME(generalized_acceleration));

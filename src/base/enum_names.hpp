@@ -26,11 +26,12 @@ struct EnumTable;
 
 MW_ENUM_TABLE(Space, spatial, "space", "planar", "spatial");
 MW_ENUM_TABLE(Motion, fixed, "motion", "dynamic", "kinematic", "fixed");
-MW_ENUM_TABLE(Integrator, runge_kutta4, "integrator", "symplectic-euler", "explicit-euler",
-              "implicit-euler", "verlet", "velocity-verlet", "runge-kutta4");
+MW_ENUM_TABLE(Integrator, implicit_fast, "integrator", "symplectic-euler", "explicit-euler",
+              "implicit-euler", "verlet", "velocity-verlet", "runge-kutta4", "implicit-fast");
 MW_ENUM_TABLE(Rotation, exponential, "rotation", "splitting", "quaternion", "exponential");
 MW_ENUM_TABLE(Solver, newton, "solver", "tgs-soft", "sequential-impulse", "sor", "nncg", "penalty",
               "newton");
+MW_ENUM_TABLE(FrictionCone, elliptic, "cone", "pyramidal", "elliptic");
 MW_ENUM_TABLE(ControlKind, joint_force, "kind", "target_position", "target_speed", "thrust",
               "torque", "joint_force");
 MW_ENUM_TABLE(Draw, log_uniform, "draw", "none", "uniform", "log_uniform");

@@ -54,9 +54,11 @@ MassProperties mass_properties_of(const mjModel& m, int root) {
 MassProperties mass_properties_of_link(const mjModel& m, int b) {
   const Mat3 axes = quat(m.body_iquat + 4 * b).toRotationMatrix();
   const Mat3 inertia = axes * vec3(m.body_inertia + 3 * b).asDiagonal() * axes.transpose();
-  return {.mass = m.body_mass[b],
-          .center = vec3(m.body_ipos + 3 * b),
-          .inertia = 0.5 * (inertia + inertia.transpose())};
+  MassProperties out{.mass = m.body_mass[b],
+                     .center = vec3(m.body_ipos + 3 * b),
+                     .inertia = 0.5 * (inertia + inertia.transpose())};
+  if (has_medium(m)) out.axes = quat(m.body_iquat + 4 * b);
+  return out;
 }
 
 // MuJoCo computes no passive force at all, gravcomp included, where neither springs nor dampers

@@ -1,6 +1,8 @@
 #include "src/mjcf/options.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include "src/mjcf/material.hpp"
@@ -59,6 +61,8 @@ void check_flags(const Model& model, std::vector<std::string>& problems) {
 
 }  // namespace
 
+bool has_medium(const mjModel& m) { return m.opt.density != 0 || m.opt.viscosity != 0; }
+
 void check_options(const Model& model, std::vector<std::string>& problems) {
   if (!model.articulated) return;
   const mjOption& option = model.compiled->opt;
@@ -67,9 +71,13 @@ void check_options(const Model& model, std::vector<std::string>& problems) {
     problems.push_back("option: " + what + " is not simulated with joints yet; expected " +
                        expected);
   };
-  refuse(option.integrator != mjINT_EULER && option.integrator != mjINT_RK4,
-         std::string("integrator ") + integrator_name(option.integrator), "Euler or RK4");
-  refuse(option.cone == mjCONE_ELLIPTIC && any_friction(model), "cone elliptic", "pyramidal");
+  const int integrators[] = {mjINT_EULER, mjINT_RK4, mjINT_IMPLICITFAST};
+  refuse(std::find(std::begin(integrators), std::end(integrators), option.integrator) ==
+             std::end(integrators),
+         std::string("integrator ") + integrator_name(option.integrator),
+         "Euler, implicitfast or RK4");
+  refuse(option.integrator == mjINT_IMPLICITFAST && has_medium(*model.compiled),
+         "integrator implicitfast in a medium", "Euler or RK4, or density and viscosity 0");
   refuse(option.noslip_iterations > 0, "noslip_iterations", "0");
   check_flags(model, problems);
 }
@@ -125,7 +133,12 @@ void set_options(const Model& model, Options& options) {
   solver.line_search_tolerance = m.opt.ls_tolerance;
   solver.impedance_ratio = m.opt.impratio;
   solver.implicit_damping = !is_disabled(m, mjDSBL_EULERDAMP);
+  if (m.opt.cone == mjCONE_ELLIPTIC) solver.cone = FrictionCone::elliptic;
   if (m.opt.integrator == mjINT_RK4) options.integrator = Integrator::runge_kutta4;
+  if (m.opt.integrator == mjINT_IMPLICITFAST) options.integrator = Integrator::implicit_fast;
+  if (!has_medium(m)) return;
+  options.medium = {m.opt.density, m.opt.viscosity};
+  options.wind = vec3(m.opt.wind);
 }
 
 }  // namespace manyworlds::mjcf

@@ -9,6 +9,9 @@
 
 namespace manyworlds::mjcf {
 
+// Whether bodies move through something that resists.
+bool has_medium(const mjModel& m);
+
 // Appends the options and flags that change the motion and are not simulated.
 void check_options(const Model& model, std::vector<std::string>& problems);
 

@@ -138,11 +138,20 @@ void check_other_elements(const Model& model, std::vector<std::string>& problems
 }
 
 void check_medium(const Model& model, std::vector<std::string>& problems) {
-  const mjOption& option = model.compiled->opt;
+  const mjModel& m = *model.compiled;
+  const mjOption& option = m.opt;
+  if (model.articulated) {
+    for (int g = 0; has_medium(m) && g < m.ngeom; ++g) {
+      if (m.geom_fluid[mjNFLUID * g] <= 0) continue;
+      problems.push_back(model.geom_place(g) +
+                         ": fluidshape ellipsoid is not simulated yet; expected none");
+    }
+    return;
+  }
   const auto refuse = [&](bool found, const char* attribute) {
     if (found) {
       problems.push_back(std::string("option: ") + attribute +
-                         " of the medium is not simulated yet; expected 0");
+                         " of the medium is not simulated with free bodies alone yet; expected 0");
     }
   };
   refuse(option.density != 0, "density");

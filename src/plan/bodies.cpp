@@ -9,7 +9,14 @@ namespace manyworlds {
 namespace {
 
 // Principal moments and axes. A tensor that is diagonal already keeps its axes.
-void principal_axes(const Mat3& inertia, PlanBody& body) {
+void principal_axes(const MassProperties& m, PlanBody& body) {
+  const Mat3& inertia = m.inertia;
+  if (m.axes) {
+    body.principal = m.axes->normalized();
+    const Mat3 axes = body.principal.toRotationMatrix();
+    body.inertia = Mat3(axes.transpose() * inertia * axes).diagonal();
+    return;
+  }
   const double scale = inertia.diagonal().cwiseAbs().maxCoeff();
   const Mat3 off = inertia - Mat3(inertia.diagonal().asDiagonal());
   if (off.cwiseAbs().maxCoeff() <= 1e-12 * scale) {
@@ -52,7 +59,7 @@ void collect_bodies(PlanData& plan) {
       if (scene.space == Space::planar) {
         out.inertia = Vec3::Constant(m.inertia(2, 2));
       } else {
-        principal_axes(m.inertia, out);
+        principal_axes(m, out);
       }
       out.inv_inertia = out.inertia.cwiseInverse();
     }

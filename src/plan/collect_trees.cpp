@@ -55,6 +55,8 @@ class TreeCollector {
     for (const int root : roots) add(root, -1);
     for (const Tendon& tendon : scene_.tendons) add_tendon(tendon);
     add_actuators();
+    const Medium& medium = scene_.options.medium;
+    if (medium != Medium{}) builder_.put_into(medium.density, medium.viscosity);
     const SolverOptions& o = scene_.options.solver;
     plan_.trees = builder_.finish(
         h_, {iterations_of(o), o.line_search_iterations, o.tolerance, o.line_search_tolerance, 0});

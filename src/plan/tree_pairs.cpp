@@ -14,6 +14,8 @@ namespace {
 
 static_assert(detail::kMaxNewtonDofs <= kernels::kMaxTreeDofs);
 
+using kernels::ContactCone;
+
 constexpr double kLeastWeight = 1e-15;
 
 double share_of_first(const SoftContact& a, const SoftContact& b) {
@@ -72,7 +74,10 @@ class TreePairs {
     const bool same = of_a.priority == of_b.priority;
     out.material_a = first == &of_b ? material_b : material_a;
     out.material_b = same ? material_b : out.material_a;
-    out.dimensions = same ? std::max(of_a.dimensions, of_b.dimensions) : first->dimensions;
+    const int dimensions = same ? std::max(of_a.dimensions, of_b.dimensions) : first->dimensions;
+    out.cone = dimensions == 1   ? ContactCone::frictionless
+               : trees_.elliptic ? ContactCone::elliptic
+                                 : ContactCone::pyramidal;
     const Compliance compliance = same ? mixed_compliance(of_a, of_b) : first->compliance;
     const Options& o = plan_.scene.options;
     out.compliance = compile(compliance, o.dt / o.substeps);
@@ -81,7 +86,7 @@ class TreePairs {
       return link < 0 ? 0 : trees_.weights.link[static_cast<std::size_t>(link)][0];
     };
     out.inverse_weight = weight(out.link_a) + weight(out.link_b);
-    out.friction_weight = out.dimensions > 1 ? out.inverse_weight : 0;
+    out.friction_weight = out.cone == ContactCone::pyramidal ? out.inverse_weight : 0;
     add_dofs(out);
   }
 
@@ -133,7 +138,9 @@ class TreePairs {
 
 void collect_tree_pairs(PlanData& plan) {
   if (!plan.has_trees()) return;
-  plan.trees.impedance_ratio = plan.scene.options.solver.impedance_ratio;
+  const SolverOptions& solver = plan.scene.options.solver;
+  plan.trees.impedance_ratio = solver.impedance_ratio;
+  plan.trees.elliptic = solver.cone == FrictionCone::elliptic;
   TreePairs(plan).run();
 }
 

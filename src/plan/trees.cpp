@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace manyworlds {
 
@@ -12,6 +13,7 @@ void put(const Quat& from, double* to) {
   const Quat q = from.normalized();
   to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
 }
+constexpr double kLeastMoment = 1e-15;  // kg m^2
 int count_of(const auto& list) { return static_cast<int>(list.size()); }
 
 }  // namespace
@@ -66,6 +68,25 @@ void TreeBuilder::add(const NewTreeJoint& joint) {
   trees_.coordinates += kernels::coordinates_of(joint.kind);
 }
 
+void TreeBuilder::put_into(double density, double viscosity) {
+  for (const NewLink& link : links_) {
+    auto& out = trees_.drags.emplace_back();
+    const Vec3& moments = link.moments;
+    Vec3 box;  // of the same mass and moments, m
+    for (int i = 0; i < 3; ++i) {
+      const double square = moments.sum() - 2 * moments[i];
+      box[i] = std::sqrt(std::max(square, kLeastMoment) / link.mass * 6);
+    }
+    const double size = box.mean(), viscous = std::numbers::pi * size * viscosity;
+    out.viscous = 3 * viscous, out.spin_viscous = viscous * size * size;
+    for (int i = 0; i < 3; ++i) {
+      const double a = box[(i + 1) % 3], b = box[(i + 2) % 3];
+      out.speed[i] = density * a * b / 2;
+      out.spin[i] = density * box[i] * (std::pow(a, 4) + std::pow(b, 4)) / 64;
+    }
+  }
+}
+
 int TreeBuilder::dof_of(int coordinate) const {
   const auto at = std::find_if(trees_.dofs.begin(), trees_.dofs.end(),
                                [&](const auto& dof) { return dof.coordinate == coordinate; });
@@ -108,6 +129,14 @@ PlanTrees TreeBuilder::finish(double dt, const kernels::NewtonOptions<double>& n
       }
     }
     add_limits(tendon, weight, dt);
+  }
+  for (auto& link : trees_.links) {
+    link.moves_freely = link.joints == 1 &&
+                        trees_.joints[static_cast<std::size_t>(link.first_joint)].kind ==
+                            kernels::TreeJointKind::free &&
+                        std::none_of(trees_.dofs.begin(), trees_.dofs.end(), [&](const auto& d) {
+                          return d.parent == link.first_dof + link.dofs - 1;
+                        });
   }
   trees_.newton = newton;
   const double dofs = std::max<double>(1, static_cast<double>(trees_.dofs.size()));

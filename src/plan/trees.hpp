@@ -30,7 +30,9 @@ struct PlanTrees {
   std::vector<kernels::TreeActuator<double>> actuators;
   std::vector<kernels::TreePair<double>> pairs;  // [key]
   std::vector<std::int32_t> pair_dofs;
+  bool elliptic = false;
   double impedance_ratio = 1;
+  std::vector<kernels::TreeDrag<double>> drags;       // [link], or none
   std::vector<double> start;                          // [coordinate], as the scene begins
   std::vector<std::pair<int, int>> joint_coordinate;  // of the scene; its first coordinate
   kernels::NewtonOptions<double> newton{};
@@ -84,6 +86,8 @@ class TreeBuilder {
   void add(const NewTreeJoint& joint);  // of the link that was added last
   void add(const NewLength& tendon);
   int dof_of(int coordinate) const;  // of a hinge or slide
+  // Drag of a medium of that density, kg/m^3, and viscosity, Pa s, on all links.
+  void put_into(double density, double viscosity);
   // `newton`: without its scale.
   PlanTrees finish(double dt, const kernels::NewtonOptions<double>& newton);
 

@@ -63,6 +63,15 @@ void check_spatial_inertia(Checker& checker, const Mat3& inertia) {
   }
 }
 
+void check_axes(Checker& checker, const MassProperties& given) {
+  if (!checker.rotation("mass_properties.axes", *given.axes)) return;
+  const Mat3 axes = given.axes->normalized().toRotationMatrix();
+  const Mat3 turned = axes.transpose() * given.inertia * axes;
+  const Mat3 off = turned - Mat3(turned.diagonal().asDiagonal());
+  if (off.cwiseAbs().maxCoeff() <= kInputTolerance * turned.diagonal().maxCoeff()) return;
+  checker.add("mass_properties.axes", "are not principal axes of inertia");
+}
+
 void check_mass_properties(Checker& checker, const MassProperties& given) {
   checker.positive("mass_properties.mass", given.mass, "kg", kSmallestMass, kLargestMass);
   checker.finite("mass_properties.center", given.center, "m");
@@ -70,6 +79,7 @@ void check_mass_properties(Checker& checker, const MassProperties& given) {
     checker.positive(entry_name(2, 2), given.inertia(2, 2), "kg m^2", kSmallestMass, kLargestMass);
   } else {
     check_spatial_inertia(checker, given.inertia);
+    if (given.axes) check_axes(checker, given);
   }
 }
 

@@ -1,5 +1,7 @@
 // Checks of what Solver::newton takes, and of members that are its alone.
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "src/scene/checks.hpp"
@@ -88,9 +90,14 @@ class NewtonChecker {
   void check_options() {
     const Options& o = scene_.options;
     if (scene_.space == Space::planar) refuse(all_, "space", "is planar", "spatial scenes only");
-    if (o.integrator != Integrator::symplectic_euler && o.integrator != Integrator::runge_kutta4) {
+    const Integrator taken[] = {Integrator::symplectic_euler, Integrator::runge_kutta4,
+                                Integrator::implicit_fast};
+    if (std::find(std::begin(taken), std::end(taken), o.integrator) == std::end(taken)) {
       refuse(all_, "options.integrator", std::string("is ") + to_string(o.integrator),
-             "symplectic-euler and runge-kutta4");
+             "symplectic-euler, runge-kutta4 and implicit-fast");
+    }
+    if (o.integrator == Integrator::implicit_fast && o.medium != Medium{}) {
+      refuse(all_, "options.medium", "is given", "none with implicit-fast yet");
     }
     if (o.bounds) refuse(all_, "options.bounds", "are given", "none");
     if (o.contact_capacity) {
@@ -208,11 +215,12 @@ class NewtonChecker {
 
   void check_variation(std::size_t i) {
     const Parameter p = scene_.variations[i].parameter;
-    if (p == Parameter::friction || p == Parameter::gravity || p == Parameter::gravity_scale)
-      return;
+    const Parameter taken[] = {Parameter::mass, Parameter::friction, Parameter::gravity,
+                               Parameter::gravity_scale};
+    if (std::find(std::begin(taken), std::end(taken), p) != std::end(taken)) return;
     Checker at = all_.at("variation " + std::to_string(i));
     refuse(at, "parameter", std::string("is ") + info(p).name,
-           "friction, gravity and gravity_scale");
+           "mass, friction, gravity and gravity_scale");
   }
 
   Checker all_;
@@ -278,6 +286,16 @@ void check_newton(Checker checker, const Scene& scene, bool sound) {
       }
     };
     std::visit(limit, joint.type);
+  }
+  const Options& o = scene.options;
+  if (o.integrator == Integrator::implicit_fast) {
+    checker.add("options.integrator",
+                std::string("is implicit-fast, which takes the newton solver, not ") +
+                    to_string(o.solver.method));
+  }
+  if (o.medium != Medium{}) {
+    checker.add("options.medium", std::string("is given, which takes the newton solver, not ") +
+                                      to_string(o.solver.method));
   }
   if (!scene.tendons.empty()) {
     checker.add("tendons", std::string("are given, which take the newton solver, not ") +

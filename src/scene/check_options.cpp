@@ -62,6 +62,7 @@ void check_integrator(Checker& checker, const Options& o) {
 
 void check_solver(Checker& checker, const SolverOptions& o) {
   checker.named("options.solver.method", o.method);
+  checker.named("options.solver.cone", o.cone);
   if (o.iterations) checker.between("options.solver.iterations", *o.iterations, 1, kMaxIterations);
   if (!(o.relaxation > 0 && o.relaxation < 2)) {
     checker.add("options.solver.relaxation",
@@ -110,6 +111,8 @@ void check_options(Checker checker, const Options& options) {
   checker.between("options.substeps", options.substeps, 1, kMaxSubsteps);
   checker.finite("options.gravity", options.gravity, "m/s^2");
   checker.finite("options.wind", options.wind, "m/s");
+  checker.not_negative("options.medium.density", options.medium.density, "kg/m^3");
+  checker.not_negative("options.medium.viscosity", options.medium.viscosity, "Pa s");
   check_integrator(checker, options);
   check_solver(checker, options.solver);
   checker.density("options.density", options.density);

@@ -291,7 +291,10 @@ void TablesOf<Real>::add_trees(const PlanData& plan) {
   tables_.tree = trees_->get();
   const Options& o = plan.scene.options;
   tables_.tree.stages = o.integrator == Integrator::runge_kutta4 ? 4 : 1;
+  tables_.tree.implicit = o.integrator == Integrator::implicit_fast;
   tables_.tree.damped &= tables_.tree.stages == 1 && o.solver.implicit_damping;
+  tables_.tree.damped |= tables_.tree.implicit;
+  for (int i = 0; i < 3; ++i) tables_.tree.wind[i] = static_cast<Real>(o.wind[i]);
 }
 
 // So that the pull of a point on itself is 0, and not 0 / 0, in float.

@@ -32,9 +32,9 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     kernels::TreeLink<Real> to{from.body,   from.parent,
                                from.root,   from.first_joint,
                                from.joints, from.first_dof,
-                               from.dofs,   {},
+                               from.dofs,   from.moves_freely,
                                {},          {},
-                               {}};
+                               {},          {}};
     copy(from.position, to.position), copy(from.rotation, to.rotation);
     copy(from.center, to.center), copy(from.principal, to.principal);
     links_.push_back(to);
@@ -68,10 +68,16 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     actuators_.push_back(to);
   }
   for (const auto& from : trees.pairs) {
-    pairs_.push_back({from.link_a, from.link_b, from.dimensions, from.material_a, from.material_b,
+    pairs_.push_back({from.link_a, from.link_b, from.cone, from.material_a, from.material_b,
                       static_cast<Real>(from.margin), static_cast<Real>(from.inverse_weight),
                       static_cast<Real>(from.friction_weight), compliance<Real>(from.compliance),
                       from.first_dof, from.dofs, from.coupled});
+  }
+  for (const auto& from : trees.drags) {
+    kernels::TreeDrag<Real> to{
+        static_cast<Real>(from.viscous), static_cast<Real>(from.spin_viscous), {}, {}};
+    copy(from.speed, to.speed), copy(from.spin, to.spin);
+    drags_.push_back(to);
   }
   pair_dofs_ = trees.pair_dofs;
   for (const auto& dof : trees.dofs) {
@@ -79,6 +85,7 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     ancestors_.push_back(dof.parent < 0 ? 0 : ancestors_[parent] | std::uint64_t{1} << parent);
   }
   table_.has_rows = !trees.limits.empty() || !trees.pairs.empty();
+  table_.elliptic = trees.elliptic;
   table_.impedance_ratio = static_cast<Real>(trees.impedance_ratio);
   table_.stages = 1;
   table_.actuators = static_cast<std::int32_t>(actuators_.size());
@@ -100,6 +107,7 @@ kernels::TreeTable<Real> TreeTables<Real>::get() const {
   out.link = links_.data(), out.joint = joints_.data(), out.dof = dofs_.data();
   out.pair = pairs_.data(), out.pair_dof = pair_dofs_.data();
   out.ancestors = ancestors_.data();
+  out.drag = drags_.empty() ? nullptr : drags_.data();
   out.term = terms_.data();
   out.limit = limits_.data(), out.actuator = actuators_.data();
   return out;

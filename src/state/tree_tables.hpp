@@ -26,6 +26,7 @@ class TreeTables {
   std::vector<kernels::TreeTerm<Real>> terms_;
   std::vector<kernels::TreeActuator<Real>> actuators_;
   std::vector<kernels::TreePair<Real>> pairs_;
+  std::vector<kernels::TreeDrag<Real>> drags_;
   std::vector<std::int32_t> pair_dofs_;
   std::vector<std::uint64_t> ancestors_;
 };

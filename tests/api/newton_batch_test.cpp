@@ -317,6 +317,39 @@ TEST_CASE("worlds of the newton solver go on bit by bit", "[fast][newton][bits]"
   }
 }
 
+TEST_CASE("links have another mass in every world", "[fast][newton]") {
+  const auto pendulum = [](double factor) {
+    Scene scene = newton_scene();
+    scene.add(
+        rod_of(Space::spatial, factor * kMass, factor * Vec3(0.1, kAcross, 0.3), {kLength, 0, 0}));
+    scene.add(joint_at(scene, BodyId(), BodyId(0), at(Vec3::Zero(), z_to_y()), HingeJoint{}));
+    Control motor;
+    motor.kind = ControlKind::joint_force, motor.joint = JointId(0);
+    scene.add(motor);
+    return scene;
+  };
+  Scene varied = pendulum(1);
+  varied.variations = {vary(Parameter::mass, kMass, 8 * kMass, Draw::none)};
+  for (const Table& table : all_tables()) {
+    INFO(name(table));
+    const Numbers factors = {4, 1, 8}, torques(3, 5);
+    Batch batch(compile(varied), options_of(table, 3));
+    Numbers masses;
+    for (const double factor : factors) masses.push_back(factor * kMass);
+    batch.write(Parameter::mass, std::span<const double>(masses));
+    batch.set_controls(std::span<const double>(torques));
+    batch.step(80);
+    for (int w = 0; w < 3; ++w) {
+      Batch alone(compile(pendulum(factors[static_cast<std::size_t>(w)])), options_of(table, 1));
+      alone.set_controls(std::span<const double>(torques).first(1));
+      alone.step(80);
+      CHECK(of(batch, Field::generalized_position, w) == of(alone, Field::generalized_position));
+      CHECK(of(batch, Field::generalized_velocity, w) == of(alone, Field::generalized_velocity));
+    }
+    CHECK(of(batch, Field::generalized_position, 0) != of(batch, Field::generalized_position, 2));
+  }
+}
+
 TEST_CASE("worlds of the newton solver are kinds among others", "[fast][newton]") {
   Scene balls = empty_scene(Space::spatial);
   balls.options.dt = 0.01;

@@ -138,24 +138,25 @@ TEST_CASE("an actuator that is more than a force on a hinge or slide is refused"
 
 TEST_CASE("options that change how trees move are refused", "[mjcf][robots][fast]") {
   const std::string joints = " is not simulated with joints yet; expected ";
-  for (const std::string name : {"implicit", "implicitfast"}) {
-    CHECK(problems_of(option("integrator='" + name + "'")) ==
-          std::vector<std::string>{"MJCF string: option: integrator " + name + joints +
-                                   "Euler or RK4"});
-  }
+  CHECK(problems_of(option("integrator='implicit'")) ==
+        std::vector<std::string>{"MJCF string: option: integrator implicit" + joints +
+                                 "Euler, implicitfast or RK4"});
   for (const std::string name : {"override", "sleep", "diagexact"}) {
     CHECK(problems_of(flag(name + "='enable'")) ==
           std::vector<std::string>{"MJCF string: option: flag " + name + "='enable'" + joints +
                                    "disable"});
   }
   check({
-      {option("cone='elliptic'"),
-       "option: cone elliptic is not simulated with joints yet; expected pyramidal"},
       {option("noslip_iterations='3'"),
        "option: noslip_iterations is not simulated with joints yet; expected 0"},
       {flag("actuation='disable'"),
        "option: flag actuation='disable' is not simulated with joints yet; expected enable"},
-      {option("density='1.2'"), "option: density of the medium is not simulated yet; expected 0"},
+      {option("density='1.2' integrator='implicitfast'"),
+       "option: integrator implicitfast in a medium is not simulated with joints yet; expected "
+       "Euler "
+       "or RK4, or density and viscosity 0"},
+      {around("<option viscosity='2'/>", "", "", "fluidshape='ellipsoid'"),
+       "geom 'g' of body 'b', line 1: fluidshape ellipsoid is not simulated yet; expected none"},
   });
   // Without friction, damping and actuators they change nothing.
   CHECK(problems_of(around("<default><geom condim='1'/></default><option cone='elliptic'>"
@@ -208,7 +209,7 @@ TEST_CASE("contacts and constraints that trees do not have yet are refused",
 
 TEST_CASE("all problems of a model with joints come at once", "[mjcf][robots][fast]") {
   const std::vector<std::string> problems = problems_of(
-      around("<option integrator='implicit' density='1'/>",
+      around("<option integrator='implicit' noslip_iterations='1'/>",
              "<actuator><motor site='p'/><muscle joint='j' lengthrange='0 1'/></actuator>",
              "frictionloss='1'", "condim='4'"));
   CHECK(problems.size() == 6);

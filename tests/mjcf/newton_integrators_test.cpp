@@ -83,6 +83,23 @@ TEST_CASE("Runge-Kutta in joint coordinates is of fourth order", "[mjcf][robots]
   CHECK(coarse / fine < 19);
 }
 
+// One that tumbles about no principal axis and off its centre, one with a body welded to it, and
+// one with a joint, whose gyroscopic forces stay explicit.
+TEST_CASE("implicitfast takes gyroscopic forces of free bodies as in MuJoCo",
+          "[mjcf][robots][fast]") {
+  check_steps(R"(<mujoco><option timestep="0.01" integrator="implicitfast" gravity="0 0 -1">
+      <flag contact="disable"/></option>
+    <worldbody>
+      <body pos="0 0 1" euler="10 20 30"><freejoint/><geom type="box" size="0.1 0.2 0.05"/>
+        <geom type="sphere" size="0.1" pos="0.2 0.1 -0.1"/></body>
+      <body pos="1 0 1"><freejoint/><geom type="box" size="0.2 0.1 0.05"/>
+        <body pos="0.2 0 0.1"><geom type="capsule" size="0.05 0.2"/></body></body>
+      <body pos="3 0 1"><freejoint/><geom type="box" size="0.1 0.2 0.05"/>
+        <body pos="0 0 0.2"><joint name="j" axis="0 1 0" limited="true" range="-90 90"/>
+          <geom type="capsule" size="0.05 0.1"/></body></body>
+    </worldbody><actuator><motor joint="j"/></actuator></mujoco>)");
+}
+
 TEST_CASE("dampers are explicit where the flag eulerdamp is off", "[mjcf][robots][fast]") {
   check_steps(scene_with("robot_cheetah", "<option><flag eulerdamp='disable'/></option>"));
 }

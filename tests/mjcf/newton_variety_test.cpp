@@ -98,6 +98,27 @@ const std::vector<Variant>& variants() {
       {.name = "slippery", .geom = R"(friction="0.1")"},
       {.name = "very slippery", .geom = R"(friction="0.01")", .weak = 100},
       {.name = "rough", .geom = R"(friction="3")"},
+      {.name = "elliptic cones", .option = R"(cone="elliptic")"},
+      {.name = "elliptic cones with an impratio",
+       .option = R"(cone="elliptic" impratio="10")",
+       .geom = R"(friction="1.2")"},
+      {.name = "elliptic cones, slippery",
+       .option = R"(cone="elliptic" impratio="0.5")",
+       .geom = R"(friction="0.05")"},
+      {.name = "elliptic cones, some frictionless",
+       .option = R"(cone="elliptic")",
+       .geom = R"(condim="1")",
+       .first = R"(priority="2" condim="3" friction="0.3" solref="-2000 -60")"},
+      {.name = "in water", .option = R"(density="1000" viscosity="0.001" wind="0.5 -1 0.2")"},
+      {.name = "in honey", .option = R"(viscosity="10")"},
+      {.name = "implicitfast", .option = R"(integrator="implicitfast")"},
+      {.name = "implicitfast with servos",
+       .option = R"(integrator="implicitfast" cone="elliptic")",
+       .actuators = R"(<position joint="knee_a" kp="20" kv="3" gear="2"/>
+                       <velocity joint="hip_b" kv="0.6"/><damper joint="hip_a" kv="0.3"
+                       ctrlrange="0 1"/><position joint="pole" kp="15" kv="8" forcerange="-1 1"/>
+                       <general joint="knee_b" gaintype="affine" gainprm="2 0.5 -0.2"
+                       biastype="affine" biasprm="0.3 -4 -0.1" gear="1.5"/>)"},
       {.name = "short steps", .option = R"(timestep="0.0007")"},
       {.name = "long steps", .option = R"(timestep="0.012")"},
       {.name = "oblique gravity", .option = R"(gravity="3 -2 -6")"},

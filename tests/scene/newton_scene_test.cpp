@@ -115,11 +115,13 @@ TEST_CASE("the newton solver names all that it does not take, at once",
   thrust.name = "jet", thrust.kind = ControlKind::thrust, thrust.body = BodyId(1);
   scene.add(thrust);
   scene.attractors.emplace_back();
-  scene.variations = {vary(Parameter::friction, 0.1, 1), vary(Parameter::mass, 1, 2)};
+  scene.variations = {vary(Parameter::friction, 0.1, 1), vary(Parameter::density, 500, 900)};
   CHECK(
       issues_of(scene) ==
       Issues{
-          "options.integrator is verlet, the newton solver takes symplectic-euler and runge-kutta4",
+          "options.integrator is verlet, the newton solver takes symplectic-euler, runge-kutta4 "
+          "and "
+          "implicit-fast",
           "options.bounds are given, the newton solver takes none",
           "body 1 'torso': enabled is false, the newton solver takes bodies that are always there",
           "body 1 'torso': linear_drag is not 0, the newton solver takes none",
@@ -154,7 +156,7 @@ TEST_CASE("the newton solver names all that it does not take, at once",
           "control 1: kind is target_speed, the newton solver takes joint_force only",
           "control 2 'jet': kind is thrust, the newton solver takes joint_force only",
           "attractors are given, the newton solver takes none",
-          "variation 1: parameter is mass, the newton solver takes friction, gravity and "
+          "variation 1: parameter is density, the newton solver takes mass, friction, gravity and "
           "gravity_scale",
           "joint 3: body_b is 3, which joint 1 holds already: the newton solver takes trees, or a "
           "series of joints by Joint::after",
@@ -225,6 +227,32 @@ TEST_CASE("numbers of joints and materials of the newton solver have ranges",
        {"line_search_tolerance", "is nan",
         [&](Scene& s) { solver(s).line_search_tolerance = kNan; }},
        {"impedance_ratio", "is 0, must be > 0", [&](Scene& s) { solver(s).impedance_ratio = 0; }}});
+  check_each(
+      robot(), "options.medium",
+      {{".density", "is -1 kg/m^3, must be >= 0", [](Scene& s) { s.options.medium.density = -1; }},
+       {".viscosity", "is nan Pa s", [](Scene& s) { s.options.medium.viscosity = kNan; }},
+       {"", "is given, the newton solver takes none with implicit-fast yet", [](Scene& s) {
+          s.options.medium.density = 1, s.options.integrator = Integrator::implicit_fast;
+        }}});
+  Scene other = empty_scene(Space::spatial);
+  other.add(body_of(shape_of(Sphere{1}), Vec3::Zero()));
+  check_each(other, "options.",
+             {{"medium", "is given, which takes the newton solver, not tgs-soft",
+               [](Scene& s) { s.options.medium.viscosity = 1; }},
+              {"integrator", "is implicit-fast, which takes the newton solver, not tgs-soft",
+               [](Scene& s) { s.options.integrator = Integrator::implicit_fast; }}});
+  const auto box = [](Scene& s) -> MassProperties& {
+    s.bodies[0].mass_properties = {1, Vec3::Zero(), Vec3(1, 2, 2.5).asDiagonal()};
+    return *s.bodies[0].mass_properties;
+  };
+  check_each(
+      other, "body 0: mass_properties.axes",
+      {{"", "are not principal axes of inertia",
+        [&](Scene& s) { box(s).axes = Quat(Eigen::AngleAxisd(0.1, Vec3::UnitZ())); }},
+       {"", "is a quaternion of length 0", [&](Scene& s) { box(s).axes = Quat(0, 0, 0, 0); }}});
+  Scene turned = other;
+  box(turned).axes = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
+  CHECK(issues_of(turned).empty());
   check_each(robot(), "exclusion 0: ",
              {{"body_a", "is -1, must be a body, 0 to 4",
                [](Scene& s) {

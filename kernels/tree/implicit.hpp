@@ -1,0 +1,88 @@
+// What the integrator implicit_fast takes at the end of the step, but for dampers: forces of
+// actuators that depend on velocities, and centrifugal and gyroscopic ones of links that move
+// freely with nothing jointed to them (MuJoCo, "Computation", implicitfast and gyroscopic
+// derivatives).
+#pragma once
+
+#include "kernels/tree/dynamics.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// M + h times the resistance of actuators on the diagonal.
+inline void add_resistance(const Constants& t, const Work& w) {
+  for (int k = 0; k < t.tree.dofs; ++k) {
+    Real* diagonal = w.tree.matrix + t.tree.dof[k].entry * kLanes;
+    fma(Float(t.h), Float::load(w.tree.resistance + k * kLanes), Float::load(diagonal))
+        .store(diagonal);
+  }
+}
+
+// A link that moves freely, as its six dofs have it: [linear, world axes; angular, its own axes].
+class FreeLink {
+ public:
+  MW_INLINE FreeLink(const Constants& t, const Work& w, int link)
+      : t_(t), w_(w), first_(t.tree.link[link].first_dof), link_(link) {}
+
+  // Solves (M + h dC/dv) a = load, M with dampers, and leaves a in `out`, [dof][lane].
+  void solve(const Real* load, Real* out) const {
+    const SpatialInertia inertia = load_inertia(link_rows(w_.tree.inertia, link_, kInertiaRows));
+    const FramePose at = load_pose(w_, link_);
+    const Vec3 spin = load_twist(link_rows(w_.tree.velocity, link_, kTwistRows)).w;
+    const auto momentum = [&](Vec3 x) {  // about the joint
+      const Wrench f = mul(inertia, Twist{x, cross(at.x, x)});
+      return f.n - cross(at.x, f.f);
+    };
+    const Vec3 arm = inertia.moment - at.x * inertia.mass;  // mass times that of its centre
+    const Vec3 own_momentum = momentum(spin), own_speed = cross(spin, arm);
+    const Float h(t_.h);
+    Vec3 linear[3], angular[3], mixed[3];  // columns of the angular dofs; rows of M
+    for (int j = 0; j < 3; ++j) {
+      const Vec3 axis = load_twist(axis_of(w_, first_ + 3 + j)).w;
+      const Vec3 f = cross(axis, own_speed) + cross(spin, cross(axis, arm));
+      const Vec3 n = cross(axis, own_momentum) + cross(spin, momentum(axis));
+      mixed[j] = {entry(3 + j, 0), entry(3 + j, 1), entry(3 + j, 2)};
+      linear[j] = fma(f, h, mixed[j]);
+      const Vec3 turn{dot(axis_at(0), n), dot(axis_at(1), n), dot(axis_at(2), n)};
+      angular[j] = fma(turn, h, {entry(3, 3 + j), entry(4, 3 + j), entry(5, 3 + j)});
+    }
+    // The linear block is a multiple of the unit matrix.
+    const Float inverse = Float(Real(1)) / entry(0, 0);
+    const Vec3 force = load_vec3(load + first_ * kLanes);
+    const auto through = [&](Vec3 v) {
+      return Vec3{dot(mixed[0], v), dot(mixed[1], v), dot(mixed[2], v)} * inverse;
+    };
+    for (int j = 0; j < 3; ++j) angular[j] = angular[j] - through(linear[j]);
+    const Vec3 moment = load_vec3(load + (first_ + 3) * kLanes) - through(force);
+    const Vec3 x = solve3(angular, moment);
+    const Vec3 pull = fma(linear[2], x.z, fma(linear[1], x.y, linear[0] * x.x));
+    store(out + first_ * kLanes, (force - pull) * inverse);
+    store(out + (first_ + 3) * kLanes, x);
+  }
+
+ private:
+  MW_INLINE Vec3 axis_at(int j) const { return load_twist(axis_of(w_, first_ + 3 + j)).w; }
+  MW_INLINE Float entry(int i, int j) const {
+    const int row = i > j ? i : j, before = i > j ? i - j : j - i;
+    return Float::load(w_.tree.matrix + (t_.tree.dof[first_ + row].entry + before) * kLanes);
+  }
+  // Of a matrix with these columns, by Cramer's rule.
+  static MW_INLINE Vec3 solve3(const Vec3 (&c)[3], Vec3 b) {
+    const Vec3 yz = cross(c[1], c[2]);
+    const Float inverse = Float(Real(1)) / dot(c[0], yz);
+    return Vec3{dot(b, yz), dot(b, cross(c[2], c[0])), dot(b, cross(c[0], c[1]))} * inverse;
+  }
+
+  const Constants& t_;
+  const Work& w_;
+  const int first_, link_;
+};
+
+// visit(link) of all that move freely with nothing jointed to them.
+template <class Visit>
+MW_INLINE void for_each_free_link(const Constants& t, Visit visit) {
+  for (int i = 0; i < t.tree.links; ++i) {
+    if (t.tree.link[i].moves_freely) visit(i);
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
