@@ -1,7 +1,5 @@
 // The stages of trees: semi-implicit Euler in joint coordinates, with dampers of dofs and what else
 // is implicit (implicit.hpp) at the end of the step, or Runge-Kutta.
-#include <algorithm>
-
 #include "kernels/tree/constraints.hpp"
 #include "kernels/tree/dynamics.hpp"
 #include "kernels/tree/implicit.hpp"
@@ -49,8 +47,10 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
     solve_factored(t, x.matrix, x.load);
     if (t.tree.implicit) {
       for_each_free_link(t, [&](int i) {
-        const int first = t.tree.link[i].first_dof * kLanes;
-        std::copy_n(x.resistance + first, 6 * kLanes, x.load + first);
+        const int first = t.tree.link[i].first_dof;
+        for (int k = first; k < first + 6; ++k) {
+          Float::load(x.resistance + k * kLanes).store(x.load + k * kLanes);
+        }
       });
     }
   }

@@ -218,41 +218,6 @@ TEST_CASE("numbers of joints and materials of the newton solver have ranges",
               {"margin", "is -1 m, must be >= 0", [&](Scene& s) { soft(s).margin = -1; }},
               {"gap", "is nan m", [&](Scene& s) { soft(s).gap = kNan; }},
               {"weight", "is -1, must be >= 0", [&](Scene& s) { soft(s).weight = -1; }}});
-  const auto solver = [](Scene& s) -> SolverOptions& { return s.options.solver; };
-  check_each(
-      robot(), "options.solver.",
-      {{"tolerance", "is -1, must be >= 0", [&](Scene& s) { solver(s).tolerance = -1; }},
-       {"line_search_iterations", "is 0, must be between 1 and",
-        [&](Scene& s) { solver(s).line_search_iterations = 0; }},
-       {"line_search_tolerance", "is nan",
-        [&](Scene& s) { solver(s).line_search_tolerance = kNan; }},
-       {"impedance_ratio", "is 0, must be > 0", [&](Scene& s) { solver(s).impedance_ratio = 0; }}});
-  check_each(
-      robot(), "options.medium",
-      {{".density", "is -1 kg/m^3, must be >= 0", [](Scene& s) { s.options.medium.density = -1; }},
-       {".viscosity", "is nan Pa s", [](Scene& s) { s.options.medium.viscosity = kNan; }},
-       {"", "is given, the newton solver takes none with implicit-fast yet", [](Scene& s) {
-          s.options.medium.density = 1, s.options.integrator = Integrator::implicit_fast;
-        }}});
-  Scene other = empty_scene(Space::spatial);
-  other.add(body_of(shape_of(Sphere{1}), Vec3::Zero()));
-  check_each(other, "options.",
-             {{"medium", "is given, which takes the newton solver, not tgs-soft",
-               [](Scene& s) { s.options.medium.viscosity = 1; }},
-              {"integrator", "is implicit-fast, which takes the newton solver, not tgs-soft",
-               [](Scene& s) { s.options.integrator = Integrator::implicit_fast; }}});
-  const auto box = [](Scene& s) -> MassProperties& {
-    s.bodies[0].mass_properties = {1, Vec3::Zero(), Vec3(1, 2, 2.5).asDiagonal()};
-    return *s.bodies[0].mass_properties;
-  };
-  check_each(
-      other, "body 0: mass_properties.axes",
-      {{"", "are not principal axes of inertia",
-        [&](Scene& s) { box(s).axes = Quat(Eigen::AngleAxisd(0.1, Vec3::UnitZ())); }},
-       {"", "is a quaternion of length 0", [&](Scene& s) { box(s).axes = Quat(0, 0, 0, 0); }}});
-  Scene turned = other;
-  box(turned).axes = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
-  CHECK(issues_of(turned).empty());
   check_each(robot(), "exclusion 0: ",
              {{"body_a", "is -1, must be a body, 0 to 4",
                [](Scene& s) {
