@@ -122,6 +122,7 @@ struct ObserverTable {
   // Adds what the blocks of the step tell of pairs that are awake, or, after collide has found them
   // again, what the stored impulses tell of pairs that are asleep.
   Observe<Real> awake[kInertiaKinds], asleep[kInertiaKinds];
+  Observe<Real> of_trees;  // the same of trees, whose contacts have no blocks
   // Around one more sweep of the solver: keep what it changes; what that is, and put it back.
   std::size_t (*aside_bytes)(const SceneConstants<Real>&, Scratch*);
   Observe<Real> set_aside, compare[kInertiaKinds];

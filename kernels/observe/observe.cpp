@@ -7,6 +7,7 @@
 #include "kernels/observe/motion.hpp"
 #include "kernels/observe/points.hpp"
 #include "kernels/observe/residual.hpp"
+#include "kernels/observe/tree_contacts.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -86,6 +87,7 @@ kernels::ObserverTable<Real> make_table() {
   fill<Tensor>(out);
   fill_joints<Planar>(out);
   fill_joints<Tensor>(out);
+  out.of_trees = observe_tree_contacts;
   out.run_program = run_program;
   out.cast = cast_one;
   return out;

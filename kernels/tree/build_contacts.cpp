@@ -81,6 +81,7 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
     select(near, m.separation[i], zero).store(c.distance);
     select(near, friction, zero).store(c.friction);
     c.pair = key[0];
+    c.feature = i;
     c.lanes = bits(near);
     w.counters.points += static_cast<unsigned>(__builtin_popcount(c.lanes));
   }

@@ -93,8 +93,9 @@ class ContactRows {
     for (int r = 0; r < t_.tree.links * kTwistRows; ++r) {
       Float(Real(0)).store(wrenches + r * kLanes);
     }
-    for_each([&](const Contact& c, const TreePair& pair) {
+    for_each([&](Contact& c, const TreePair& pair) {
       const Vec3 own_force = force_of(c, pair);
+      store(c.force[0], own_force);
       Vec3 force = load_vec3(c.frame[0]) * own_force.x;
       if (pair.cone != ContactCone::frictionless) {
         force = fma(load_vec3(c.frame[3]), own_force.y, force);

@@ -87,8 +87,10 @@ struct alignas(64) TreeContact {
   Real distance[kLanes], friction[kLanes];  // m; 1
   Real weight[kLanes];                      // of all of its rows, see TreeRow
   Real reference[4][kLanes], residual[4][kLanes], change[4][kLanes];
-  std::int32_t pair;    // key
-  std::uint32_t lanes;  // that have it
+  Real force[3][kLanes];  // in the frame, N
+  std::int32_t pair;      // key
+  std::int32_t feature;   // which point of the manifold
+  std::uint32_t lanes;    // that have it
 };
 
 // Trees (kernels/tree/), in world axes about an origin of each tree: its root's centre of mass.

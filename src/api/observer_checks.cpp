@@ -51,10 +51,13 @@ void check_observers(const Observers& observers, const Plan& plan) {
   if (!plan.data().has_trees()) return;
   for (std::size_t i = 0; i < observers.what.size(); ++i) {
     const Observer observer = observers.what[i];
-    if (observer == Observer::motion || observer == Observer::acceleration) continue;
+    if (observer != Observer::joints && observer != Observer::joint_loads &&
+        observer != Observer::residual) {
+      continue;
+    }
     reject("observe.what[" + std::to_string(i) + "] is " + to_string(observer) +
-           ", of worlds of the newton solver motion, acceleration, rays and points are observed; "
-           "generalized_position and generalized_velocity are fields of their state");
+           ", which worlds of the newton solver do not observe; generalized_position and "
+           "generalized_velocity are fields of their state");
   }
 }
 

@@ -91,8 +91,9 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
 }
 
 // Bodies in joint coordinates: a step is as many substeps, each of which finds its own contacts.
+// `wanted` where contacts of the last one are observed.
 template <class Real>
-void tree_steps(const Run<Real>& run, int steps) {
+void tree_steps(const Run<Real>& run, int steps, const kernels::ObserverView<Real>* wanted) {
   const GroupStep<Real>& p = run.step;
   const auto& t = p.tables;
   const auto& tree = p.kernels.tree;
@@ -107,6 +108,10 @@ void tree_steps(const Run<Real>& run, int steps) {
       find_rows(run);
       run(StageCall<Real>{StepStage::tree, t.tree.stages == 1 ? tree.step : tree.runge_kutta[s]});
     }
+  }
+  if (wanted) {
+    p.kernels.observer->of_trees(t, run.group, run.scratch, *wanted);
+    run.lap(StepStage::observe);
   }
   run(StageCall<Real>{StepStage::tree, tree.place});
 }
@@ -185,9 +190,12 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
   if (p.tables.tree.links > 0) {
     const int last = looks_at_start(p) ? 1 : 0;  // taken by itself
     const Run<Real> run{p, group, scratch, clock};
-    tree_steps(run, steps - last);
+    const bool contacts = p.wanted && p.wanted->of_contacts && p.tables.has_contacts;
+    const auto* wanted = contacts ? p.wanted : nullptr;
+    if (contacts) p.kernels.observer->clear(p.tables, group, scratch, *wanted);
+    tree_steps(run, steps - last, last == 0 ? wanted : nullptr);
     if (p.wanted) look_at_start(p, group, scratch);
-    tree_steps(run, last);
+    tree_steps(run, last, wanted);
     taken = steps;
   } else if (p.tables.has_substeps) {
     if (p.wanted) p.kernels.observer->clear(p.tables, group, scratch, *p.wanted);

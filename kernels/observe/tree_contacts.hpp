@@ -1,0 +1,75 @@
+// What the contacts of trees tell when the last substep is solved, before links move on: a force,
+// as the impulse that it has over a step.
+#pragma once
+
+#include "kernels/observe/contacts.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// World axes.
+struct TreeContactImpulse {
+  Float normal;
+  Vec3 friction;
+};
+MW_INLINE TreeContactImpulse impulse_of(const Constants& t, const TreeContact& c) {
+  const Float dt = Float(t.h) * Float(static_cast<Real>(t.substeps));
+  const Vec3 force = load_vec3(c.force[0]) * dt;
+  return {force.x, fma(load_vec3(c.frame[6]), force.z, load_vec3(c.frame[3]) * force.y)};
+}
+
+inline void put_tree_contact(const Constants& t, const Work& w, const TreeContact& c,
+                             std::uint32_t lanes, const ObserverView& o) {
+  const kernels::TreePair<Real>& pair = t.tree.pair[c.pair];
+  const int root = t.tree.link[pair.link_b].root;
+  const Vec3 place = load_vec3(w.tree.origin + 3 * root * kLanes) + load_vec3(c.arm_b[0]);
+  const TreeContactImpulse total = impulse_of(t, c);
+  alignas(64) Real point[3][kLanes], friction[3][kLanes], impulse[kLanes];
+  store(point[0], place), store(friction[0], total.friction), total.normal.store(impulse);
+  Real* count = rows_for(o, Observer::contacts);
+  for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
+    const int l = __builtin_ctz(m);
+    const auto at = static_cast<std::int32_t>(count[l]);
+    count[l] += Real(1);
+    if (at >= o.room) continue;
+    auto& out = o.contacts[l * o.room + at];
+    out.key = c.pair;
+    out.feature = c.feature;
+    for (int k = 0; k < 3; ++k) {
+      out.normal[k] = c.frame[k][l];
+      out.point[k] = point[k][l];
+      out.friction[k] = friction[k][l];
+    }
+    out.separation = c.distance[l];
+    out.impulse = impulse[l];
+    out.twist = Real(0);
+  }
+}
+
+inline void observe_tree_contacts(const Constants& t, const Group& g, kernels::Scratch* scratch,
+                                  const ObserverView& o) {
+  const Work& w = work_of(scratch);
+  const std::uint32_t live = ~frozen_lanes(g) & kAllLanes;
+  Real* const penetration = rows_for(o, Observer::penetration);
+  Real* const touching = rows_for(o, Observer::touching);
+  for (int i = 0; i < w.tree.contact_count; ++i) {
+    const TreeContact& c = w.tree.contacts[i];
+    const std::uint32_t lanes = c.lanes & live;
+    if (lanes == 0) continue;
+    if (penetration) {
+      const Float deepest = Float::load(penetration), depth = -Float::load(c.distance);
+      select(mask_from_bits(lanes), max(deepest, depth), deepest).store(penetration);
+    }
+    if (touching) {
+      const kernels::TreePair<Real>& pair = t.tree.pair[c.pair];
+      const Mask acts = mask_from_bits(lanes) & (Float(Real(0)) < Float::load(c.force[0]));
+      for (const int link : {pair.link_a, pair.link_b}) {
+        if (link < 0) continue;
+        Real* to = touching + t.tree.link[link].body * kLanes;
+        select(acts, Real(1), Float::load(to)).store(to);
+      }
+    }
+    if (o.contacts) put_tree_contact(t, w, c, lanes, o);
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
