@@ -1,0 +1,113 @@
+// What observers see of worlds of Solver::newton.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "tests/support/newton_scenes.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+
+TEST_CASE("worlds of the newton solver have some observers", "[fast][newton]") {
+  const Plan plan = compile(newton_robot());
+  BatchOptions options = options_of(widest_tables().front(), 2);
+  for (int i = 0; i < kObserverCount; ++i) {
+    const auto observer = static_cast<Observer>(i);
+    if (observer == Observer::rays || observer == Observer::points) continue;
+    INFO(to_string(observer));
+    options.observe.what = {Observer::motion, observer};
+    if (observer != Observer::joints && observer != Observer::joint_loads &&
+        observer != Observer::residual) {
+      CHECK_NOTHROW(Batch(plan, options));
+      continue;
+    }
+    CHECK_THROWS_WITH(Batch(plan, options),
+                      "observe.what[1] is " + std::string(to_string(observer)) +
+                          ", which worlds of the newton solver do not observe; "
+                          "generalized_position and generalized_velocity are fields of their "
+                          "state");
+  }
+
+  Scene swing = newton_pendulum();
+  swing.bodies[0].shapes[0].filter.mask = 0xffffffff;
+  options.observe = {};
+  options.observe.what = {Observer::motion, Observer::acceleration};
+  Ray down;
+  down.origin = Vec3(kLength, 0, 5), down.direction = Vec3(0, 0, -1);
+  options.observe.rays = {down};
+  Point tip;
+  tip.body = BodyId(0), tip.position = Vec3(0.2, 0, 0);
+  options.observe.points = {tip};
+  Batch batch(compile(swing), options);
+  batch.look();
+  CHECK(batch.ray_hits(0)[0].body == BodyId(0));
+  CHECK(batch.ray_hits(0)[0].distance == Approx(5 - 0.1).epsilon(1e-5));
+  const auto observed = [&](Observed what) {
+    Numbers out(batch.size(what) / 2);
+    batch.read(what, 0, out);
+    return out;
+  };
+  CHECK(observed(Observed::point_position)[0] == Approx(kLength + 0.2));
+  batch.step();
+  // It falls about its hinge.
+  const double turn = kMass * 10 * kLength / kAboutHinge;
+  CHECK(of(batch, Field::generalized_acceleration)[0] == Approx(turn).epsilon(1e-5));
+  CHECK(observed(Observed::angular_acceleration)[1] == Approx(turn).epsilon(1e-4));
+  CHECK(observed(Observed::kinetic_energy)[0] ==
+        Approx(kAboutHinge * std::pow(turn * 0.01, 2) / 2).epsilon(1e-3));
+}
+
+// A crate at rest on a slope, and a ball on a hinge that hangs clear of it.
+TEST_CASE("contacts of the newton solver carry what rests on them", "[fast][newton]") {
+  Scene scene = newton_scene();
+  const double slope = 0.2, friction = 0.6;
+  scene.options.gravity = 10 * Vec3(std::sin(slope), 0, -std::cos(slope));
+  Body floor = ground(Space::spatial, friction);
+  scene.add(std::move(floor));
+  scene.add(body_of(shape_of(Box{{0.3, 0.2, 0.1}}, friction), Vec3(0, 0, 0.099)));
+  scene.add(body_of(shape_of(Sphere{0.1}), Vec3(3, 0, 2)));
+  scene.add(joint_at(scene, BodyId(), BodyId(2), at({3, 0, 3}, z_to_y()), HingeJoint{}));
+  for (const int substeps : {1, 2}) {
+    scene.options.substeps = substeps;
+    for (const Table& table : widest_tables()) {
+      INFO(name(table) << ", " << substeps);
+      BatchOptions options = options_of(table, 2);
+      options.observe.what = {Observer::contacts, Observer::touching, Observer::penetration};
+      Batch batch(compile(scene), options);
+      batch.step(200);
+      const double weight =
+          batch.plan().scene().options.dt * 10 * mass_properties(scene, scene.at(BodyId(1))).mass;
+      const double slack = weight * pick(table, 0.02, 0.01);
+      for (const int world : {0, 1}) {
+        const auto contacts = batch.step_contacts(world);
+        REQUIRE(contacts.size() == 4);
+        Vec3 total = Vec3::Zero(), moment = Vec3::Zero();
+        const Vec3 center = position(batch, world, BodyId(1));
+        for (const StepContact& c : contacts) {
+          CHECK(c.body_a == BodyId(0));
+          CHECK(c.body_b == BodyId(1));
+          CHECK(c.normal_impulse > 0);
+          CHECK(c.separation < 0);
+          CHECK(std::abs(c.point.z()) < 0.01);
+          const Vec3 force = c.normal * c.normal_impulse + c.friction_impulse;
+          total += force, moment += (c.point - center).cross(force);
+        }
+        CHECK(total.z() == Approx(weight * std::cos(slope)).margin(slack));
+        CHECK(total.x() == Approx(-weight * std::sin(slope)).margin(slack));
+        CHECK(std::abs(total.y()) < slack);
+        CHECK(moment.norm() < 0.1 * slack);
+        const auto observed = [&](Observed what) {
+          Numbers out(batch.size(what) / 2);
+          batch.read(what, world, out);
+          return out;
+        };
+        CHECK(observed(Observed::touching) == Numbers{1, 0});
+        CHECK(observed(Observed::contact_count) == Numbers{4});
+        CHECK(observed(Observed::penetration)[0] > 0);
+        CHECK(observed(Observed::penetration)[0] < 0.01);
+      }
+    }
+  }
+}
+
+}  // namespace manyworlds::test
