@@ -66,6 +66,14 @@ const std::vector<Entry>& all() {
        in_float_mode<car3d>},
       {"chain-reaction", "2D: ball, dominoes, see-saw gate, marble, bucket, flag", false,
        in_float_mode<chain_reaction>},
+      {"pendulum", "3D robot: a motor swings a pole between two posts", false,
+       in_float_mode<pendulum>},
+      {"hopper", "3D robot: one leg in a plane, 3 motors", false, in_float_mode<hopper>},
+      {"cheetah", "3D robot: a runner in a plane, 6 motors", false, in_float_mode<cheetah>},
+      {"ant", "3D robot: four legs on a free trunk and a tail, 8 motors", false,
+       in_float_mode<ant>},
+      {"humanoid", "3D robot: a free humanoid of 21 hinges, motors and servos", false,
+       in_float_mode<humanoid>},
   };
   return entries;
 }

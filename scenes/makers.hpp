@@ -51,4 +51,11 @@ Scene jenga();
 Scene car3d();
 Scene chain_reaction();
 
+// robots/, one file each
+Scene pendulum();
+Scene hopper();
+Scene cheetah();
+Scene ant();
+Scene humanoid();
+
 }  // namespace manyworlds::scenes
