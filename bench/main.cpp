@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   manyworlds::bench::register_observers();
   manyworlds::bench::register_sizes();
   manyworlds::bench::register_tasks();
+  manyworlds::bench::register_robots();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -14,6 +14,7 @@ void register_batch();
 void register_observers();
 void register_sizes();
 void register_tasks();
+void register_robots();
 
 // Prints as a time: `per_iteration` things are done in each iteration, this is the time of one.
 inline benchmark::Counter time_of_one(double per_iteration) {

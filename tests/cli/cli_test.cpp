@@ -322,9 +322,52 @@ TEST_CASE("verify finds equal bits and says what it compared", "[cli]") {
   CHECK(outcome.code == 0);
   CHECK(outcome.err.empty());
   CHECK(contains(outcome.out, "comparisons equal"));
-  for (const char* what : {"alone", "position", "size", "threads", "kernels", "frozen"}) {
+  for (const char* what :
+       {"alone", "position", "size", "threads", "kernels", "masks", "saved", "frozen"}) {
     CHECK(contains(outcome.out, what));
   }
+}
+
+TEST_CASE("verify drives robots by random controls", "[cli]") {
+  const Outcome outcome = run("verify --quick --scenes pendulum");
+  CHECK(outcome.code == 0);
+  CHECK(contains(outcome.out, "comparisons equal"));
+  // Which broad phase and layout there is means nothing to them.
+  CHECK(std::regex_search(outcome.out, std::regex("pendulum +f32( +[0-9]+){4} +-( +[0-9]+){5}")));
+  // Without controls, all worlds would be the one that has no jitter.
+  const auto hash_of_all = [](const std::string& out) { return out.substr(out.find("f32")); };
+  const Outcome other = run("verify --quick --scenes pendulum --seed 2");
+  CHECK(hash_of_all(other.out) != hash_of_all(outcome.out));
+}
+
+TEST_CASE("bench drives robots, and has one hash for all its calls", "[cli]") {
+  const std::string job = "bench --scenes hopper --worlds 20 --steps 40 --repeats 1 --json";
+  const Outcome outcome = run(job + " --threads 1");
+  REQUIRE(outcome.code == 0);
+  const Json list = Json::parse(outcome.out);
+  REQUIRE(list.size() == 2);
+  CHECK(list[0]["hash"] == list[1]["hash"]);
+  CHECK(list[0]["hash"] != library_hash("hopper", 20, 100, 0));
+  // 60 steps of warm-up, then those that are timed.
+  const Outcome again = run("run hopper --worlds 20 --steps 100 --random-controls --json");
+  CHECK(Json::parse(again.out)["hash"] == list[0]["hash"]);
+}
+
+TEST_CASE("random controls lose no lost world", "[cli]") {
+  const std::string job = "soak ant --worlds 3 --seed 6 --steps 600 --random-controls";
+  CHECK(run(job).code == 0);
+  const Outcome outcome = run(job + " --dt 0.5");
+  CHECK(outcome.code == 1);
+  CHECK(std::regex_search(outcome.out, std::regex("lost worlds +3\n")));
+  const std::regex command("world 1 lost \\([^)]*\\): manyworlds (run ant .*)\n");
+  std::smatch match;
+  REQUIRE(std::regex_search(outcome.err, match, command));
+  CHECK(contains(match[1], "--random-controls"));
+  CHECK(run(match[1]).code == 1);
+
+  const Outcome none = run("run ball3d --random-controls");
+  CHECK(none.code == 2);
+  CHECK(contains(none.err, "'ball3d' has no controls"));
 }
 
 TEST_CASE("soak counts the lost and prints its seed", "[cli]") {

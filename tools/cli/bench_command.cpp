@@ -3,7 +3,8 @@
 // Every run starts from reset(), takes the warm-up steps, then the timed ones; the median of the
 // repeats counts. Each scene is run with 1 thread and with all, by step(1) calls and by step(k)
 // calls. The state is hashed after every run: a speed whose hash is not the one of all other runs
-// of that scene is no result, and ends the program with an error.
+// of that scene is no result, and ends the program with an error. Robots get random controls and
+// are reset now and then (random_controls.hpp), outside of the clock.
 #include <algorithm>
 #include <cstdio>
 #include <optional>
@@ -41,10 +42,14 @@ class HashMismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+bool is_robot(const scenes::Entry& entry) {
+  return entry.make().options.solver.method == Solver::newton;
+}
+
 std::vector<std::string> default_scenes() {
   std::vector<std::string> names;
   for (const scenes::Entry& entry : scenes::all()) {
-    if (entry.standard) names.emplace_back(entry.name);
+    if (entry.standard || is_robot(entry)) names.emplace_back(entry.name);
   }
   if (std::find(names.begin(), names.end(), "free-flight") == names.end()) {
     names.emplace_back("free-flight");
@@ -62,10 +67,13 @@ class SceneBench {
   Report time(Batch& batch, int steps_per_call) {
     progress_.set_label(fmt::format("{}, {}, step({})", job_.scene,
                                     counted(batch.threads(), "thread"), steps_per_call));
+    controls_ = {};
+    if (RandomControls::suit(job_.plan)) controls_ = {batch, options_.job.seed.value_or(0)};
     std::vector<double> seconds;
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       warm_up(batch, steps_per_call);
-      seconds.push_back(timed_steps(batch, job_.steps, steps_per_call, &progress_).seconds);
+      seconds.push_back(
+          timed_steps(batch, job_.steps, steps_per_call, &progress_, controls_).seconds);
       tools::stop_if_interrupted();
       require_same_hash(batch, steps_per_call, repeat);
     }
@@ -74,7 +82,7 @@ class SceneBench {
     lost_.collect(batch, 0, options_.job.seed.value_or(0));
     warm_up(batch, steps_per_call);
     report.stage_split =
-        profile_stages(batch, std::min(job_.steps, kProfiledSteps), steps_per_call);
+        profile_stages(batch, std::min(job_.steps, kProfiledSteps), steps_per_call, controls_);
     tools::stop_if_interrupted();
     return report;
   }
@@ -84,7 +92,7 @@ class SceneBench {
  private:
   void warm_up(Batch& batch, int steps_per_call) {
     batch.reset();
-    timed_steps(batch, options_.warm_up, steps_per_call, &progress_);
+    timed_steps(batch, options_.warm_up, steps_per_call, &progress_, controls_);
     tools::stop_if_interrupted();
   }
 
@@ -100,6 +108,7 @@ class SceneBench {
   const BenchOptions& options_;
   const Job& job_;
   Progress& progress_;
+  RandomControls controls_;
   std::optional<std::uint64_t> hash_;
   LostWorlds lost_;
 };
@@ -164,6 +173,7 @@ bool bench_scene(const BenchOptions& options, const Job& job, Progress& progress
   }
   JobOptions reproduce = job_options;
   reproduce.scene = job.scene;
+  reproduce.random_controls = RandomControls::suit(job.plan);
   print_lost(bench.lost(), reproduce, options.warm_up + job.steps, kLostShown);
   return !bench.lost().lost().empty();
 }

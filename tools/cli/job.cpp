@@ -73,14 +73,17 @@ Batch make_batch(const Job& job, const JobOptions& options, int worlds, std::uin
   }
 }
 
-Timed timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progress) {
+Timed timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progress,
+                  RandomControls controls) {
   using Clock = std::chrono::steady_clock;
   constexpr double kLongest = 0.2;  // s of a call; what it costs to make another is nothing then
   Timed done;
   int most = std::min(steps_per_call, 64);  // steps that a call may have so as not to be too long
   while (done.steps < steps && tools::interrupted() == 0) {
     const int in_call = done.steps % steps_per_call;
-    const int n = std::min({steps_per_call - in_call, steps - done.steps, most});
+    const int n = std::min({steps_per_call - in_call, steps - done.steps, most,
+                            controls.steps_until_next(batch.steps())});
+    controls.apply(batch, batch.steps());
     const Clock::time_point before = Clock::now();
     batch.step(n);
     const double spent = std::chrono::duration<double>(Clock::now() - before).count();
@@ -91,6 +94,15 @@ Timed timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progres
     if (spent > kLongest && most > 1) most /= 2;
   }
   return done;
+}
+
+RandomControls asked_controls(const Batch& batch, const JobOptions& options, std::uint64_t seed) {
+  if (!options.random_controls) return {};
+  if (batch.plan().scene().controls.empty()) {
+    throw InputError(
+        fmt::format("--random-controls: scene '{}' has no controls; expected some", options.scene));
+  }
+  return {batch, seed};
 }
 
 }  // namespace manyworlds::cli

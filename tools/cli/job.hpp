@@ -9,8 +9,11 @@
 
 #include "options.hpp"
 #include "progress.hpp"
+#include "tools/base/random_controls.hpp"
 
 namespace manyworlds::cli {
+
+using tools::RandomControls;
 
 struct Job {
   std::string scene;  // as the user wrote it
@@ -33,6 +36,11 @@ struct Timed {
 
 // Takes `steps` steps in calls of `steps_per_call`, or fewer if it is interrupted. Calls may be
 // shorter: the last one, and those that would keep an interrupt waiting. `progress` may be null.
-Timed timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progress);
+// Calls end where `controls` change; setting them is not timed.
+Timed timed_steps(Batch& batch, int steps, int steps_per_call, Progress* progress,
+                  RandomControls controls = {});
+
+// Those of --random-controls for a batch of this seed. Throws InputError where there are none.
+RandomControls asked_controls(const Batch& batch, const JobOptions& options, std::uint64_t seed);
 
 }  // namespace manyworlds::cli

@@ -69,6 +69,7 @@ void add_run(CLI::App& app, AllOptions& all, int& code) {
   add_scene_argument(*command, all.run);
   add_batch_options(*command, all.run);
   add_length_options(*command, all.run);
+  add_random_controls(*command, all.run);
   add_count(*command, "--steps-per-call", all.run.steps_per_call, 1, "n of each step(n) call");
   add_sleep_option(*command, all.run.sleep);
   add_plan_options(*command, all.run);
@@ -152,6 +153,7 @@ void add_soak(CLI::App& app, AllOptions& all, int& code) {
   add_scene_argument(*command, all.soak);
   add_batch_options(*command, all.soak);
   add_length_options(*command, all.soak);
+  add_random_controls(*command, all.soak);
   add_sleep_option(*command, all.soak.sleep);
   add_plan_options(*command, all.soak);
   add_seed(*command, all.soak.seed, "world i draws from seed + i (default: random, printed)");
@@ -160,7 +162,8 @@ void add_soak(CLI::App& app, AllOptions& all, int& code) {
       "Examples:\n"
       "  manyworlds soak bin-boxes\n"
       "  manyworlds soak mixed-pile --worlds 100000 --seconds 60\n"
-      "  manyworlds soak mixed-pile --dump-lost lost");
+      "  manyworlds soak mixed-pile --dump-lost lost\n"
+      "  manyworlds soak humanoid --worlds 4096 --steps 100000 --random-controls");
   command->callback([&] { code = soak_command(all.soak); });
 }
 

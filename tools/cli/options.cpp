@@ -283,6 +283,11 @@ void add_length_options(CLI::App& app, JobOptions& options) {
       ->excludes(steps);
 }
 
+void add_random_controls(CLI::App& app, JobOptions& options) {
+  app.add_flag("--random-controls", options.random_controls,
+               "draw controls at random every 5 steps, and reset worlds after 500 steps");
+}
+
 void add_sleep_option(CLI::App& app, bool& sleep) {
   add_choice<bool>(
       app, "--sleep", {{"off", false}, {"on", true}}, [&sleep](bool value) { sleep = value; },

@@ -61,9 +61,10 @@ Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call
   return report;
 }
 
-std::vector<Report::StageShare> profile_stages(Batch& batch, int steps, int steps_per_call) {
+std::vector<Report::StageShare> profile_stages(Batch& batch, int steps, int steps_per_call,
+                                               const RandomControls& controls) {
   batch.profile(true);
-  timed_steps(batch, steps, steps_per_call, nullptr);
+  timed_steps(batch, steps, steps_per_call, nullptr, controls);
   const std::vector<StageTime> times = batch.take_stage_times();
   batch.profile(false);
 

@@ -54,7 +54,8 @@ Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call
 
 // Takes `steps` more steps with profiling on and returns where their time went. Timed runs have
 // profiling off, because reading the clock between stages costs.
-std::vector<Report::StageShare> profile_stages(Batch& batch, int steps, int steps_per_call);
+std::vector<Report::StageShare> profile_stages(Batch& batch, int steps, int steps_per_call,
+                                               const RandomControls& controls);
 
 nlohmann::ordered_json to_json(const Report& report);
 // "tgs-soft", "sor with 10 iterations"

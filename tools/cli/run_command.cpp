@@ -86,6 +86,8 @@ int run_command(const JobOptions& options) {
   const std::uint64_t seed = options.seed.value_or(0);
   Batch batch = make_batch(job, options, options.worlds, seed, options.threads);
 
+  const RandomControls controls = asked_controls(batch, options, seed);
+
   const int call = steps_per_call(options);
   const tools::Interruptible interruptible;
   JobRecorder recorder(batch, options);
@@ -94,7 +96,7 @@ int run_command(const JobOptions& options) {
   Timed done;
   {
     Progress progress(options.scene, job.steps);
-    done = timed_steps(batch, job.steps, call, &progress);
+    done = timed_steps(batch, job.steps, call, &progress, controls);
   }
   dumps.finish();
   const std::string recorded = recorder.finish(batch);
@@ -103,8 +105,8 @@ int run_command(const JobOptions& options) {
   LostWorlds worlds;
   worlds.collect(batch, 0, seed);
   if (report.interrupted.empty()) {
-    report.stage_split =
-        profile_stages(batch, std::min(job.steps, kStepsProfiled), options.steps_per_call);
+    report.stage_split = profile_stages(batch, std::min(job.steps, kStepsProfiled),
+                                        options.steps_per_call, controls);
   }
 
   if (options.json) {

@@ -45,6 +45,7 @@ int soak_command(const JobOptions& options) {
       const int count = static_cast<int>(std::min<std::int64_t>(kWorldsAtOnce, all - first));
       const std::uint64_t batch_seed = seed + static_cast<std::uint64_t>(first);
       Batch batch = make_batch(job, options, count, batch_seed, options.threads);
+      const RandomControls controls = asked_controls(batch, options, batch_seed);
       if (first == 0) {
         fmt::print("{}: {} x {}, seed {}, {}, {}\n", options.scene,
                    counted(options.worlds, "world"), counted(job.steps, "step"), seed,
@@ -52,7 +53,7 @@ int soak_command(const JobOptions& options) {
         std::fflush(stdout);
       }
       dumps.watch(batch, first);
-      last = timed_steps(batch, job.steps, options.steps_per_call, &progress);
+      last = timed_steps(batch, job.steps, options.steps_per_call, &progress, controls);
       seconds += last.seconds;
       if (last.steps == job.steps) whole += count;
       dumps.finish();

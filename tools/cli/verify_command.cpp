@@ -24,9 +24,22 @@ using tools::counted, tools::hex;
 constexpr int kWorlds = 40;
 
 // What is varied. The order is the order of the table's columns.
-enum Column { kAlone, kPosition, kSize, kThreads, kKernels, kCalls, kReset, kFrozen, kColumns };
+enum Column {
+  kAlone,
+  kPosition,
+  kSize,
+  kThreads,
+  kKernels,
+  kCalls,
+  kMasks,
+  kSaved,
+  kReset,
+  kFrozen,
+  kColumns
+};
 constexpr std::array<const char*, kColumns> kNames = {"alone",   "position", "size",  "threads",
-                                                      "kernels", "calls",    "reset", "frozen"};
+                                                      "kernels", "calls",    "masks", "saved",
+                                                      "reset",   "frozen"};
 
 struct Tally {
   std::array<int, kColumns> compared{};
@@ -36,9 +49,10 @@ struct Tally {
 
 std::vector<std::string> chosen_scenes(const VerifyOptions& options) {
   if (!options.scenes.empty()) return options.scenes;
-  if (options.quick) return {"bin-spheres", "bin-boxes", "bin2d"};
+  if (options.quick) return {"bin-spheres", "bin-boxes", "bin2d", "ant"};
   return {"bin-spheres", "bin-boxes",   "bin2d",   "mixed-pile", "mixed-pile2d",
-          "ball3d",      "free-flight", "chain2d", "chain3d"};
+          "ball3d",      "free-flight", "chain2d", "chain3d",    "pendulum",
+          "hopper",      "cheetah",     "ant",     "humanoid"};
 }
 
 bool available(Isa isa) {
@@ -64,7 +78,8 @@ class Verifier {
     job_options_.precision = precision;
     job_options_.steps = quick_ ? 90 : 150;  // balls of the scenes touch ground after about 60
     Batch batch = batch_of(job_options_, kWorlds, 0, 1);
-    timed_steps(batch, job_options_.steps, 1, nullptr);
+    is_robot_ = RandomControls::suit(batch.plan());
+    steps(batch, 0, job_options_.steps);
     for (int world = 0; world < kWorlds; ++world) reference_.push_back(batch.hash(world));
     hash_ = batch.hash();
   }
@@ -77,7 +92,10 @@ class Verifier {
       for (int world = 0; world < kWorlds; ++world) run(kAlone, with_isa, 1, world, 1);
       for (const int shift : {1, 3, 7}) run(kPosition, with_isa, kWorlds - shift, shift, 1);
       for (const int threads : {1, 2, 3, 4}) run(kThreads, with_isa, kWorlds, 0, threads);
-      compare_kernels(with_isa);
+      for (const int n : {7, with_isa.steps}) run(kCalls, with_isa, kWorlds, 0, 1, n);
+      if (!is_robot_) compare_kernels(with_isa);
+      compare_masks(with_isa);
+      compare_saved(with_isa);
       compare_beside_frozen(with_isa);
     }
     for (int size = 1; size <= kWorlds; size += quick_ ? 3 : 1)
@@ -94,6 +112,15 @@ class Verifier {
     return make_batch(prepare(options), options, worlds, seed, threads);
   }
 
+  // Robots move by random controls, so that limits and contacts act.
+  void steps(Batch& batch, int first, int count, int steps_per_call = 1) const {
+    timed_steps(batch, count, steps_per_call, nullptr, controls_of(batch, first));
+  }
+  RandomControls controls_of(const Batch& batch, int first) const {
+    if (!is_robot_) return {};
+    return {batch, seed_ + static_cast<std::uint64_t>(first)};
+  }
+
   // A build need not have every kernel in float64 on every instruction set.
   bool supports(const JobOptions& options) const {
     try {
@@ -108,12 +135,11 @@ class Verifier {
   void run(Column column, const JobOptions& options, int worlds, int first, int threads,
            int steps_per_call = 1) {
     Batch batch = batch_of(options, worlds, first, threads);
-    timed_steps(batch, options.steps, steps_per_call, nullptr);
+    steps(batch, first, options.steps, steps_per_call);
     compare(column, batch, options, first, -1);
   }
 
   void compare_kernels(JobOptions options) {
-    for (const int n : {7, options.steps}) run(kCalls, options, kWorlds, 0, 1, n);
     for (const auto layout :
          {ContactLayout::automatic, ContactLayout::dense, ContactLayout::rows}) {
       for (const auto broad_phase :
@@ -125,6 +151,35 @@ class Verifier {
     }
   }
 
+  // A third of the worlds takes some steps, then the others take theirs.
+  void compare_masks(const JobOptions& options) {
+    Batch batch = batch_of(options, kWorlds, 0, 2);
+    RandomControls controls = controls_of(batch, 0);
+    std::vector<std::uint8_t> some(kWorlds), others(kWorlds);
+    for (std::size_t world = 0; world < kWorlds; ++world) {
+      some[world] = world % 3 == 0;
+      others[world] = world % 3 != 0;
+    }
+    for (int step = 0; step < options.steps; step += RandomControls::kPeriod) {
+      const int count = std::min(RandomControls::kPeriod, options.steps - step);
+      controls.apply(batch, step);
+      batch.step(some, count);
+      batch.step(others, count);
+    }
+    compare(kMasks, batch, options, 0, -1);
+  }
+
+  // The reference half way, in a batch of other seeds and threads.
+  void compare_saved(const JobOptions& options) {
+    const int half = options.steps / 2;
+    Batch first_half = batch_of(job_options_, kWorlds, 0, 1);
+    steps(first_half, 0, half);
+    Batch batch = batch_of(options, kWorlds, 2 * kWorlds, 2);
+    batch.restore(Snapshot::from_bytes(first_half.save().bytes()));
+    steps(batch, 0, options.steps - half);
+    compare(kSaved, batch, options, 0, -1);
+  }
+
   // One world gets a force that is not a number, half way: it must freeze, the others must not
   // notice.
   void compare_beside_frozen(const JobOptions& options) {
@@ -133,9 +188,9 @@ class Verifier {
     const BodyId body = first_dynamic_body(batch.plan());
     if (!body) return;
     const int half = options.steps / 2;
-    timed_steps(batch, half, 1, nullptr);
+    steps(batch, 0, half);
     batch.add_force(kVictim, body, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
-    timed_steps(batch, options.steps - half, 1, nullptr);
+    steps(batch, 0, options.steps - half);
     compare(kFrozen, batch, options, 0, kVictim);
     ++tally_.compared[kFrozen];
     if (frozen(batch.status(kVictim))) return;
@@ -145,9 +200,9 @@ class Verifier {
 
   void compare_reset() {
     Batch batch = batch_of(job_options_, kWorlds, 0, 1);
-    timed_steps(batch, job_options_.steps / 3, 1, nullptr);
+    steps(batch, 0, job_options_.steps / 3);
     batch.reset();
-    timed_steps(batch, job_options_.steps, 1, nullptr);
+    steps(batch, 0, job_options_.steps);
     compare(kReset, batch, job_options_, 0, -1);
   }
 
@@ -180,6 +235,7 @@ class Verifier {
   JobOptions job_options_;
   std::uint64_t seed_;
   bool quick_;
+  bool is_robot_ = false;
   std::vector<std::uint64_t> reference_;  // hash of each world
   std::uint64_t hash_ = 0;                // of all of them
   Tally tally_;
@@ -201,10 +257,13 @@ void print_head(const VerifyOptions& options) {
   fmt::print("  threads   1, 2, 3 and 4\n");
   fmt::print(
       "  kernels   layouts auto, dense, rows x broad phases all-pairs, "
-      "sort-and-sweep, sparse\n");
+      "sort-and-sweep, sparse; robots have one\n");
   fmt::print("  calls     step(7) and one call for all steps\n");
+  fmt::print("  masks     a third of the worlds takes up to 5 steps, then the others\n");
+  fmt::print("  saved     half of the steps, a snapshot, the rest in another batch\n");
   fmt::print("  reset     after a third of the run, and all over\n");
   fmt::print("  frozen    beside a world that a NaN force froze half way\n");
+  fmt::print("Robots get random controls every 5 steps, and resets after 500.\n");
   if (!missing.empty()) fmt::print("Not on this CPU or not in this build: {}\n", missing);
   fmt::print("\n{:<14}{:<6}", "scene", "");
   for (const char* name : kNames) fmt::print("{:>9}", name);
@@ -217,8 +276,10 @@ void print_row(const std::string& scene, Precision precision, const Verifier& ve
   fmt::print("{:<14}{:<6}", scene, to_string(precision));
   for (std::size_t column = 0; column < kColumns; ++column) {
     const int different = tally.different[column];
-    fmt::print("{:>9}", different == 0 ? fmt::format("{}", tally.compared[column])
-                                       : fmt::format("{} BAD", different));
+    const int compared = tally.compared[column];
+    fmt::print("{:>9}", different > 0  ? fmt::format("{} BAD", different)
+                        : compared > 0 ? fmt::format("{}", compared)
+                                       : "-");
   }
   fmt::print("  {}\n", hex(verifier.hash()));
   std::fflush(stdout);
