@@ -48,6 +48,16 @@ void recordings(const std::filesystem::path& folder) {
   }
 }
 
+// Any bytes are changes of a model, some three bytes each, and then controls. The last byte chooses
+// the model.
+void models(const std::filesystem::path& folder) {
+  for (int n = 0; n < 200; ++n) {
+    Bytes bytes = any_bytes(2000 + n, n < 20 ? 1 : 8 + n);
+    bytes.back() = static_cast<char>(n);
+    write(folder, n, bytes);
+  }
+}
+
 void snapshots(const std::filesystem::path& folder) {
   int number = 0;
   for (int index = 0; index < kBatches; ++index) {
@@ -78,4 +88,5 @@ int main(int argc, char** argv) {
   manyworlds::fuzz::scenes(folder / "scene_fuzz");
   manyworlds::fuzz::snapshots(folder / "snapshot_fuzz");
   manyworlds::fuzz::recordings(folder / "recording_fuzz");
+  manyworlds::fuzz::models(folder / "mjcf_fuzz");
 }
