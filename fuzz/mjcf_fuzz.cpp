@@ -97,6 +97,13 @@ void run(FuzzedDataProvider& in) {
   Batch batch(*plan, options);
   options.isa = available_isas().front();
   Batch twin(*plan, options);
+  // One world begins as the model says, the other one moves at once, into its limits and contacts.
+  std::vector<double> speeds(batch.size(Field::generalized_velocity) / 2);
+  for (double& v : speeds) v = in.ConsumeFloatingPointInRange<double>(-9, 9);
+  if (!speeds.empty()) {
+    batch.write(Field::generalized_velocity, 1, speeds);
+    twin.write(Field::generalized_velocity, 1, speeds);
+  }
   std::vector<double> controls(2 * plan->scene().controls.size());
   for (int step = 0; step < 10; ++step) {
     for (double& u : controls) u = in.ConsumeFloatingPointInRange<double>(-2, 2);
