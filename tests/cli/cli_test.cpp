@@ -82,7 +82,7 @@ TEST_CASE("the program explains itself and lists every scene", "[cli]") {
   CHECK(help.code == 0);
   CHECK(help.err.empty());
   for (const char* command :
-       {"scenes", "run", "plan", "bench", "verify", "soak", "replay", "info"}) {
+       {"scenes", "run", "plan", "model", "bench", "verify", "soak", "replay", "info"}) {
     CHECK(contains(help.out, command));
     const Outcome detail = run(std::string(command) + " --help");
     CHECK(detail.code == 0);

@@ -10,6 +10,7 @@ namespace manyworlds::cli {
 int scenes_command(bool json);
 int run_command(const JobOptions& options);
 int plan_command(const JobOptions& options);
+int model_command(const JobOptions& options);
 int bench_command(const BenchOptions& options);
 int verify_command(const VerifyOptions& options);
 int soak_command(const JobOptions& options);

@@ -33,8 +33,8 @@ int steps_for(double seconds, double dt) {
 
 }  // namespace
 
-Job prepare(const JobOptions& options) {
-  Scene scene = load_scene(options.scene, options.mjcf);
+Job prepare(const JobOptions& options, std::vector<std::string>* warnings) {
+  Scene scene = load_scene(options.scene, options.mjcf, warnings);
   if (options.dt) scene.options.dt = *options.dt;
   if (options.substeps) scene.options.substeps = *options.substeps;
   if (options.solver) scene.options.solver.method = *options.solver;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "manyworlds/batch.hpp"
 #include "manyworlds/plan.hpp"
@@ -21,8 +22,8 @@ struct Job {
   int steps = 0;  // --steps, or what --seconds comes to
 };
 
-// Loads, applies --dt and the like, compiles. Throws InputError and SceneError.
-Job prepare(const JobOptions& options);
+// Loads (scene_source.hpp), applies --dt and the like, compiles. Throws InputError and SceneError.
+Job prepare(const JobOptions& options, std::vector<std::string>* warnings = nullptr);
 
 // A batch of `worlds` whose world i draws from seed + i. Throws InputError when the machine does
 // not have the memory, std::invalid_argument from the library.

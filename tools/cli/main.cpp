@@ -18,8 +18,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "manyworlds/nearest.hpp"
-
+#include "command_line.hpp"
 #include "commands.hpp"
 #include "options.hpp"
 #include "src/base/output_file.hpp"
@@ -36,6 +35,7 @@ struct AllOptions {
   bool info_json = false, info_options = false;
   JobOptions run;
   JobOptions plan;
+  JobOptions model;
   BenchOptions bench;
   VerifyOptions verify;
   std::optional<std::uint64_t> verify_seed;
@@ -102,6 +102,23 @@ void add_plan(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds plan bin-boxes\n"
       "  manyworlds plan ball3d --keep friction --keep drag");
   command->callback([&] { code = plan_command(all.plan); });
+}
+
+void add_model(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command =
+      app.add_subcommand("model", "Show what was read of a model: joints, actuators, pairs");
+  add_scene_argument(*command, all.model);
+  add_plan_options(*command, all.model);
+  add_json_option(*command, all.model);
+  command->footer(
+      "Examples:\n"
+      "  manyworlds model humanoid.xml\n"
+      "  manyworlds model humanoid.xml --json\n"
+      "\n"
+      "q and v are where coordinates and velocities of a joint begin in generalized_position and\n"
+      "generalized_velocity, MuJoCo's qpos and qvel. What cannot be read is an error, as it is of\n"
+      "'run'.");
+  command->callback([&] { code = model_command(all.model); });
 }
 
 void add_bench(CLI::App& app, AllOptions& all, int& code) {
@@ -290,43 +307,6 @@ int complain(std::string_view text) {
   return kBadInput;
 }
 
-// What is wrong with the command line, and where help is unless the message already says it all.
-std::string describe(const CLI::ParseError& error, const CLI::App& app) {
-  // The innermost command that was named, and how it is called.
-  const CLI::App* command = &app;
-  std::string called = "manyworlds";
-  while (!command->get_subcommands().empty()) {
-    command = command->get_subcommands().front();
-    called += " " + command->get_name();
-  }
-  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return error.what();
-  const std::vector<std::string> rest = app.remaining(true);
-  const auto meant = [](const std::string& word, const std::vector<std::string>& known) {
-    const std::optional<std::string> near = nearest(word, known);
-    return near ? fmt::format("; did you mean '{}'?", *near) : std::string();
-  };
-  if (!rest.empty() && rest.front().starts_with("-")) {
-    const std::string option = rest.front().substr(0, rest.front().find('='));
-    std::vector<std::string> known;
-    for (const CLI::Option* one : command->get_options()) {
-      for (const std::string& name : one->get_lnames()) known.push_back("--" + name);
-    }
-    return fmt::format("unknown option '{}'{} (see '{} --help')", option, meant(option, known),
-                       called);
-  }
-  std::vector<std::string> names;
-  for (const CLI::App* one : command->get_subcommands(nullptr)) names.push_back(one->get_name());
-  if (!names.empty()) {
-    const std::string what = command == &app ? "command" : command->get_name();
-    const std::string all = fmt::format("{}", fmt::join(names, ", "));
-    if (rest.empty()) return fmt::format("a {} is missing: {}", what, all);
-    const std::string near = meant(rest.front(), names);
-    return fmt::format("unknown {} '{}'{}", what, rest.front(),
-                       near.empty() ? "; there are " + all : near);
-  }
-  return fmt::format("{} (see '{} --help')", error.what(), called);
-}
-
 // A standard stream that is closed would be the next file that is opened, and what is printed would
 // go into that. What takes its place can be neither read nor written, which is an error of those.
 void occupy_standard_streams() {
@@ -361,6 +341,7 @@ int run_program(int argc, char** argv) {
   add_scenes(app, all, code);
   add_run(app, all, code);
   add_plan(app, all, code);
+  add_model(app, all, code);
   add_bench(app, all, code);
   add_verify(app, all, code);
   add_soak(app, all, code);

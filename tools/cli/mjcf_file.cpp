@@ -200,15 +200,20 @@ void require_harmless(const MjcfFiles& files, const std::string& path, const Chi
 
 bool reads_mjcf() { return true; }
 
-Scene load_mjcf_file(const std::string& path, const MjcfArguments& arguments) {
+Scene load_mjcf_file(const std::string& path, const MjcfArguments& arguments,
+                     std::vector<std::string>* warnings) {
   const Limits limits = parse_limits(arguments);
   try {
     // Read once: what the child survives is what is compiled afterwards.
     const MjcfFiles files = MjcfFiles::read(path, limits.options);
     require_harmless(files, path, limits.child);
     MjcfResult result = files.compile();
-    for (const std::string& warning : result.warnings) {
-      tools::tell("manyworlds: warning: {}\n", warning);
+    if (warnings != nullptr) {
+      *warnings = std::move(result.warnings);
+    } else {
+      for (const std::string& warning : result.warnings) {
+        tools::tell("manyworlds: warning: {}\n", warning);
+      }
     }
     return std::move(result.scene);
   } catch (const MjcfError& error) {
@@ -227,7 +232,7 @@ namespace manyworlds::cli {
 
 bool reads_mjcf() { return false; }
 
-Scene load_mjcf_file(const std::string& path, const MjcfArguments&) {
+Scene load_mjcf_file(const std::string& path, const MjcfArguments&, std::vector<std::string>*) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw InputError(path + ": no such file");
   if (std::filesystem::is_directory(path, ignored)) {

@@ -17,8 +17,10 @@ struct MjcfArguments {
 // True when this program was built with the MJCF reader.
 bool reads_mjcf();
 
-// The scene in the file; warnings go to standard error. Throws InputError: a file that cannot be
-// read, that asks for too much, or that MuJoCo crashes on or is not done with in time.
-Scene load_mjcf_file(const std::string& path, const MjcfArguments& arguments);
+// The scene in the file; warnings go to `warnings`, or to standard error. Throws InputError: a file
+// that cannot be read, that asks for too much, or that MuJoCo crashes on or is not done with in
+// time.
+Scene load_mjcf_file(const std::string& path, const MjcfArguments& arguments,
+                     std::vector<std::string>* warnings = nullptr);
 
 }  // namespace manyworlds::cli

@@ -1,5 +1,4 @@
 // `manyworlds plan`: what the step of a scene consists of, what was left out, and why.
-#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 
 #include "commands.hpp"
 #include "job.hpp"
+#include "pair_table.hpp"
 #include "report.hpp"
 #include "tools/base/text.hpp"
 
@@ -28,13 +28,6 @@ Json to_json(const std::vector<PlanReport::Item>& items) {
 }
 
 Json to_json(const Job& job, const PlanReport& report) {
-  Json pairs = Json::array();
-  for (const auto& pair : report.pairs) {
-    pairs.push_back({{"kernel", pair.kernel},
-                     {"kind", pair.kind},
-                     {"candidates", pair.candidates},
-                     {"culled", pair.culled}});
-  }
   Json arrays = Json::array();
   for (const auto& array : report.arrays) {
     arrays.push_back(
@@ -44,19 +37,12 @@ Json to_json(const Job& job, const PlanReport& report) {
           {"bodies", job.plan.bodies()},
           {"features", to_json(report.features)},
           {"stages", to_json(report.stages)},
-          {"pairs", pairs},
+          {"pairs", pairs_json(report.pairs)},
           {"arrays", arrays},
           {"broad_phase", option_name(report.broad_phase)},
           {"pair_capacity", report.pair_capacity},
           {"fixed_capacity", report.fixed_capacity},
           {"bytes_per_world", report.bytes_per_world}};
-}
-
-template <class Items, class Name>
-std::size_t widest(const Items& items, Name name, std::size_t least) {
-  std::size_t width = least;
-  for (const auto& item : items) width = std::max(width, name(item).size());
-  return width;
 }
 
 void print_items(const char* title, const std::vector<PlanReport::Item>& items) {
@@ -65,21 +51,6 @@ void print_items(const char* title, const std::vector<PlanReport::Item>& items) 
   fmt::print("\n{}\n", title);
   for (const auto& item : items) {
     fmt::print("  {:<3}  {:<{}}  {}\n", item.in ? "in" : "out", item.name, width, item.why);
-  }
-}
-
-void print_pairs(const std::vector<PlanReport::PairClass>& pairs) {
-  fmt::print("\npairs of shapes\n");
-  if (pairs.empty()) {
-    fmt::print("  none\n");
-    return;
-  }
-  const std::size_t width = widest(
-      pairs, [](const auto& pair) { return pair.kernel; }, 6);
-  fmt::print("  {:<{}}  {:<7}{:>11}{:>11}\n", "kernel", width, "kind", "candidates", "culled");
-  for (const auto& pair : pairs) {
-    fmt::print("  {:<{}}  {:<7}{:>11}{:>11}\n", pair.kernel, width, pair.kind, pair.candidates,
-               pair.culled);
   }
 }
 

@@ -22,14 +22,15 @@ bool looks_like_a_file(const std::string& text) {
 
 }  // namespace
 
-Scene load_scene(const std::string& name_or_file, const MjcfArguments& mjcf) {
+Scene load_scene(const std::string& name_or_file, const MjcfArguments& mjcf,
+                 std::vector<std::string>* warnings) {
   if (const scenes::Entry* entry = scenes::find(name_or_file)) return entry->make();
   try {
     if (std::optional<Scene> scene = scenes::sized(name_or_file)) return std::move(*scene);
   } catch (const std::invalid_argument& error) {
     throw InputError(error.what());
   }
-  if (looks_like_a_file(name_or_file)) return load_mjcf_file(name_or_file, mjcf);
+  if (looks_like_a_file(name_or_file)) return load_mjcf_file(name_or_file, mjcf, warnings);
   std::vector<std::string> names;
   for (const scenes::Entry& entry : scenes::all()) names.emplace_back(entry.name);
   const std::optional<std::string> near = nearest(name_or_file, names);
