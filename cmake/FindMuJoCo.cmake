@@ -2,7 +2,7 @@
 #
 # Input:  MW_MUJOCO_DIR   folder with include/mujoco/mujoco.h and lib/libmujoco.so, as
 #                         tools/scripts/fetch_mujoco.sh makes it
-# Output: MuJoCo_FOUND, MuJoCo_VERSION ("3.17.0"), MuJoCo_INCLUDE_DIR, MuJoCo_LIBRARY,
+# Output: MuJoCo_FOUND, MuJoCo_VERSION ("4.0.1"), MuJoCo_INCLUDE_DIR, MuJoCo_LIBRARY,
 #         MuJoCo_LICENSE (only where it lies in MW_MUJOCO_DIR)
 set(MW_MUJOCO_DIR "" CACHE PATH "Folder with MuJoCo's include and lib (tools/scripts/fetch_mujoco.sh)")
 
@@ -11,7 +11,7 @@ find_library(MuJoCo_LIBRARY mujoco HINTS "${MW_MUJOCO_DIR}/lib")
 find_file(MuJoCo_LICENSE LICENSE PATHS "${MW_MUJOCO_DIR}" NO_DEFAULT_PATH)
 mark_as_advanced(MuJoCo_INCLUDE_DIR MuJoCo_LIBRARY MuJoCo_LICENSE)
 
-# The header has the version as one number, 3017000 for 3.17.0.
+# The header has the version as one number, 4000001 for 4.0.1.
 set(MuJoCo_VERSION "")
 if(MuJoCo_INCLUDE_DIR)
   file(STRINGS "${MuJoCo_INCLUDE_DIR}/mujoco/mujoco.h" _mujoco_line

@@ -85,7 +85,7 @@ struct MjcfLimits {
   std::int64_t files = 1000;                           // opened for one model
   std::int64_t depth = 200;         // elements inside one another, through includes and attach
   std::int64_t elements = 100000;   // written, in all files of the model
-  std::int64_t copies = 10000;      // elements that replicate, attach, composite and flexcomp make
+  std::int64_t copies = 10000;      // elements that replicate, attach and flexcomp make
   std::int64_t samples = 1 << 24;   // of a height field, rows x columns; of all sensors together
   std::int64_t vertices = 1000000;  // of a mesh
 };

@@ -110,4 +110,4 @@ def test_the_extra_is_the_mujoco_that_the_library_is_built_with():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     (extra,) = project["optional-dependencies"]["mjcf"]
     fetched = (ROOT / "tools/scripts/fetch_mujoco.sh").read_text().split("\nversion=")[1].split()[0]
-    assert extra == f"mujoco=={fetched}"
+    assert extra == f"mujoco-core=={fetched}"

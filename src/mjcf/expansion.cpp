@@ -51,7 +51,7 @@ class Scale {
       require_copies(weight.elements * times, element, label);
     } else {
       weight.add(children(element, label, times), 1);
-      if (kind == "composite" || kind == "flexcomp") {
+      if (kind == "flexcomp") {
         const double count = product(element, "count") * product(element, "cellcount");
         weight.elements *= count;
         weight.bodies += count;

@@ -1,4 +1,4 @@
-// How much a model becomes when MuJoCo makes its copies: replicate, attach, composite, flexcomp;
+// How much a model becomes when MuJoCo makes its copies: replicate, attach, flexcomp;
 // and what attributes ask for by a number alone.
 #pragma once
 

@@ -37,6 +37,7 @@ void check_joint(const Model& model, int j, std::vector<std::string>& problems) 
   }
   refuse(acts.springs && any_nonzero(m.jnt_stiffnesspoly + mjNPOLY * j, mjNPOLY),
          "stiffness with powers of the displacement", "one number");
+  refuse(acts.springs && m.jnt_springyield[j] != 0, "springyield", "0");
   refuse(acts.dampers && any_nonzero(m.dof_dampingpoly + mjNPOLY * dof, mjNPOLY),
          "damping with powers of the speed", "one number");
   refuse(acts.friction_loss && m.dof_frictionloss[dof] != 0, "frictionloss", "0");

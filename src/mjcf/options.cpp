@@ -55,7 +55,8 @@ void check_flags(const Model& model, std::vector<std::string>& problems) {
   const std::pair<const char*, int> added[] = {{"override", mjENBL_OVERRIDE},
                                                {"sleep", mjENBL_SLEEP},
                                                {"diagexact", mjENBL_DIAGEXACT},
-                                               {"ipc", mjENBL_IPC}};
+                                               {"ipc", mjENBL_IPC},
+                                               {"speculative", mjENBL_SPECULATIVE}};
   for (const auto& [flag, bit] : added) refuse((m.opt.enableflags & bit) != 0, flag, "enable");
 }
 

@@ -87,8 +87,6 @@ TEST_CASE("models that would become too large are refused, with the element and 
              kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall +
              kBall + kBall + kBall + kBall + end),
        "by replicate", "copies"},
-      {world("<composite prefix='c' type='cable' count='1000 1000 1000' size='1 1 1'/>"),
-       "composite", "copies"},
       {world("<flexcomp name='f' type='grid' count='1000 1000 1000'/>"), "flexcomp 'f'", "copies"},
       {world("<flexcomp name='f' type='grid' count='2 2 2' cellcount='9999 9999 9999'/>"),
        "flexcomp 'f'", "copies"},

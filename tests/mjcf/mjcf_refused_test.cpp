@@ -66,6 +66,8 @@ TEST_CASE("what a joint has and is not simulated is refused", "[mjcf][robots][fa
       {jointed("stiffness='1 2 0'"),
        "joint 'j' of body 'b', line 1: stiffness with powers of the displacement is not simulated "
        "yet; expected one number"},
+      {jointed("stiffness='1' springyield='0.1'"),
+       "joint 'j' of body 'b', line 1: springyield is not simulated yet; expected 0"},
       {jointed("damping='1 2 0'"),
        "joint 'j' of body 'b', line 1: damping with powers of the speed is not simulated yet; "
        "expected one number"},
@@ -157,6 +159,8 @@ TEST_CASE("options that change how trees move are refused", "[mjcf][robots][fast
        "or RK4, or density and viscosity 0"},
       {around("<option viscosity='2'/>", "", "", "fluidshape='ellipsoid'"),
        "geom 'g' of body 'b', line 1: fluidshape ellipsoid is not simulated yet; expected none"},
+      {flag("speculative='enable'"),
+       "option: flag speculative='enable' is not simulated with joints yet; expected disable"},
   });
   // Without friction, damping and actuators they change nothing.
   CHECK(problems_of(around("<default><geom condim='1'/></default><option cone='elliptic'>"

@@ -1,6 +1,5 @@
 // Integrators and tendons of trees against MuJoCo: Runge-Kutta with contacts and limits, Euler with
-// explicit dampers, limits of fixed tendons. Up to 3.17 MuJoCo's Runge-Kutta rotates free and ball
-// joints to second order only, so theirs is held against finer steps of its own.
+// explicit dampers, limits of fixed tendons.
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -71,6 +70,7 @@ std::vector<double> path_of_tumblers(double dt, double time) {
 TEST_CASE("Runge-Kutta in joint coordinates steps as MuJoCo's", "[mjcf][robots][fast]") {
   check_steps(scene_with("robot_hopper", "<option integrator='RK4'/>"));
   check_steps(scene_with("robot_cheetah", "<option integrator='RK4'/>"));
+  check_steps(scene_with("robot_ant", "<option integrator='RK4'/>"));  // has a free joint
 }
 
 TEST_CASE("Runge-Kutta in joint coordinates is of fourth order", "[mjcf][robots][fast]") {

@@ -1,13 +1,13 @@
 #!/bin/sh
 # Puts MuJoCo's headers, shared library and licences into DIR/include, DIR/lib and DIR, from the PyPI
-# wheel `mujoco`. Needs python3 with pip. Quick when DIR already has this version. Prints on standard
+# wheel `mujoco-core`. Needs python3 with pip. Quick when DIR already has this version. Prints on standard
 # error only; exit 0 done, 1 failed, 2 bad usage.
 set -eu
 
-# The last release whose `mujoco` wheel carries the library itself: from 4.0.0 on that wheel only
-# names other packages. One wheel serves every python3, because only its C part is used.
-version=3.17.0
-sha256=d66928d86a2d1b601bbaa4dc11db50214d17d5301bb8afd84721313b67ff0874
+# From 4.0.0 on `mujoco-core` carries the library, and `mujoco` only names it and others; 4.0.0 itself
+# had a wrong Hessian factor. One wheel serves every python3, because only its C part is used.
+version=4.0.1
+sha256=be28c0c7587347ef996b4de0487264e9da296282082b092bae211a9163e9aed6
 
 say() { echo "fetch_mujoco: $*" >&2; }
 fail() { say "$*"; exit 1; }
@@ -38,21 +38,21 @@ work=$(mktemp -d "$dir.XXXXXX") || fail "cannot write beside $dir"
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' INT TERM HUP
 
-say "downloading the mujoco $version wheel (26 MB)"
-echo "mujoco==$version --hash=sha256:$sha256" > "$work/requirements.txt"
+say "downloading the mujoco-core $version wheel (10 MB)"
+echo "mujoco-core==$version --hash=sha256:$sha256" > "$work/requirements.txt"
 if ! python3 -m pip download --quiet --disable-pip-version-check --no-input --no-deps \
     --only-binary=:all: --implementation cp --python-version 3.11 --abi cp311 \
     --platform manylinux_2_28_x86_64 --require-hashes --dest "$work/wheel" \
     -r "$work/requirements.txt" > "$work/log" 2>&1; then
   reason=$(grep -m 1 ERROR "$work/log" || tail -n 1 "$work/log")
-  fail "pip could not download mujoco $version: ${reason:-no reason given}"
+  fail "pip could not download mujoco-core $version: ${reason:-no reason given}"
 fi
 
 say "unpacking into $dir"
 python3 - "$work" > "$work/log" 2>&1 <<'PYTHON' ||
 import pathlib, sys, zipfile
 work = pathlib.Path(sys.argv[1])
-(wheel,) = (work / "wheel").glob("mujoco-*.whl")
+(wheel,) = (work / "wheel").glob("mujoco_core-*.whl")
 with zipfile.ZipFile(wheel) as archive:
     for name in archive.namelist():
         path = pathlib.PurePosixPath(name)
