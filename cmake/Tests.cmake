@@ -61,7 +61,7 @@ endif()
 mw_test_program(manyworlds_tests ${mw_test_sources})
 if(MW_MJCF AND mw_mjcf_test_sources)
   mw_test_program(manyworlds_mjcf_tests ${mw_mjcf_test_sources})
-  target_link_libraries(manyworlds_mjcf_tests PRIVATE manyworlds_mjcf MuJoCo::MuJoCo)
+  target_link_libraries(manyworlds_mjcf_tests PRIVATE manyworlds_compare MuJoCo::MuJoCo)
 endif()
 if(MW_RECORD)
   mw_test_program(manyworlds_record_tests ${mw_record_test_sources}

@@ -51,6 +51,10 @@
 
 namespace manyworlds {
 
+namespace mjcf {
+struct FilesAccess;
+}
+
 struct MjcfResult {
   // Bodies in MuJoCo's order: a fixed body for each static body that has geoms (the worldbody is
   // named "world"), a dynamic body for each that moves. options.dt and options.gravity are the
@@ -113,6 +117,7 @@ class MjcfFiles {
   MjcfResult compile() const;
 
  private:
+  friend struct mjcf::FilesAccess;
   struct Impl;
   explicit MjcfFiles(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
   std::shared_ptr<const Impl> impl_;

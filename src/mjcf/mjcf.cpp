@@ -6,6 +6,7 @@
 
 #include "src/base/float_mode.hpp"
 #include "src/mjcf/convert.hpp"
+#include "src/mjcf/files_access.hpp"
 #include "src/mjcf/model.hpp"
 #include "src/mjcf/mujoco_library.hpp"
 #include "src/mjcf/support.hpp"
@@ -110,6 +111,17 @@ MjcfResult MjcfFiles::compile() const {
   } catch (...) {
     // MuJoCo has a C++ library of its own, whose exceptions are none of ours.
     throw MjcfError({label + ": needs more memory than there is, or MuJoCo failed otherwise"});
+  }
+}
+
+mjcf::ModelPtr mjcf::FilesAccess::mujoco_model(const MjcfFiles& from) {
+  const VirtualFiles files(from.impl_->vetted.files);
+  const LogCapture log;
+  try {
+    return std::move(compile_model(from.impl_->vetted.xml, files.get()).compiled);
+  } catch (const MujocoFailure& failure) {
+    throw MjcfError(
+        {from.impl_->label + ": " + with_real_names(failure.what(), from.impl_->vetted.files)});
   }
 }
 

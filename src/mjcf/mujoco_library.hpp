@@ -17,8 +17,12 @@ struct SpecDeleter {
 struct ModelDeleter {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
 };
+struct DataDeleter {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
 using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
+using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
 // MuJoCo called its error function, which by default ends the process.
 class MujocoFailure : public std::runtime_error {

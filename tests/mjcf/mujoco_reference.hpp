@@ -1,7 +1,6 @@
 // MuJoCo's own model and data of an MJCF text, to compare ours with.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include <mujoco/mujoco.h>
@@ -11,14 +10,10 @@
 
 namespace manyworlds::test {
 
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
 // Posed as it begins.
 struct Reference {
   mjcf::ModelPtr model;
-  std::unique_ptr<mjData, DataDeleter> data;
+  mjcf::DataPtr data;
 
   explicit Reference(const std::string& xml) {
     char error[1000] = "";

@@ -23,15 +23,15 @@ std::string scene_with(const std::string& name, const std::string& option) {
 
 void check_steps(const std::string& xml) {
   for (const Precision precision : {Precision::f64, Precision::f32}) {
-    const auto samples = samples_of(xml, precision, 100, 1);
-    const Plan plan = compile(converged(xml, precision));
+    const compare::Pair pair = pair_of(xml);
+    const auto samples = compare::draw_samples(pair, precision, 100, 1);
     for (const Table& table : all_tables()) {
       if (table.precision != precision) continue;
-      const Comparison c = compare(plan, samples, table);
+      const compare::StateComparison c = compare::compare_states(pair, samples, kernels_of(table));
       INFO(name(table) << ": " << to_string(c));
       CHECK(c.rows + c.contacts > 0);
-      CHECK(most(c.next) < pick(table, 3e-3, 1e-10));
-      CHECK(median(c.next) < pick(table, 3e-5, 1e-12));
+      CHECK(next(c).most() < pick(table, 3e-3, 1e-10));
+      CHECK(next(c).median() < pick(table, 3e-5, 1e-12));
     }
   }
 }
@@ -62,7 +62,7 @@ std::vector<double> path_of_tumblers(double dt, double time) {
   std::copy(std::begin(spin), std::end(spin), v.begin());
   batch.write(Field::generalized_velocity, std::span<const double>(v));
   batch.step(static_cast<int>(std::lround(time / dt)));
-  return read(batch, Field::generalized_position, 0);
+  return compare::read(batch, Field::generalized_position, 0);
 }
 
 }  // namespace
@@ -75,8 +75,8 @@ TEST_CASE("Runge-Kutta in joint coordinates steps as MuJoCo's", "[mjcf][robots][
 
 TEST_CASE("Runge-Kutta in joint coordinates is of fourth order", "[mjcf][robots][fast]") {
   const auto exact = path_of_tumblers(0.0005, 0.4);
-  const double coarse = difference(path_of_tumblers(0.01, 0.4), exact);
-  const double fine = difference(path_of_tumblers(0.005, 0.4), exact);
+  const double coarse = compare::difference(path_of_tumblers(0.01, 0.4), exact);
+  const double fine = compare::difference(path_of_tumblers(0.005, 0.4), exact);
   INFO(coarse << ", " << fine);
   CHECK(coarse < 1e-4);
   CHECK(coarse / fine > 13);

@@ -1,7 +1,5 @@
 // What models can ask for, one thing at a time, in Solver::newton against MuJoCo: kinds of
 // contacts, of softness and of actuators.
-#include <cstdlib>
-
 #include <catch2/catch.hpp>
 
 #include "tests/mjcf/newton_comparison.hpp"
@@ -152,20 +150,20 @@ TEST_CASE("what models ask for is MuJoCo's, one thing at a time", "[mjcf][robots
   for (const Variant& v : variants()) {
     const std::string xml = arena(v);
     for (const Precision precision : {Precision::f64, Precision::f32}) {
-      const auto samples = samples_of(xml, precision, 60, 1, 200);
-      const Plan plan = compile(converged(xml, precision));
+      const compare::Pair pair = pair_of(xml);
+      const auto samples = compare::draw_samples(pair, precision, 60, 1, 200);
       for (const Table& table : all_tables()) {
         if (table.precision != precision) continue;
-        const Comparison c = compare(plan, samples, table);
+        const compare::StateComparison c =
+            compare::compare_states(pair, samples, kernels_of(table));
         INFO(v.name << ", " << name(table) << ": " << to_string(c));
-        if (std::getenv("MW_FIGURES")) WARN(v.name << ", " << name(table) << ": " << to_string(c));
         CHECK(2 * c.contacts > c.states);
         CHECK(c.other_contacts <= c.states / 50);
         CHECK(c.uncertain <= c.states / 20);
-        CHECK(most(c.acceleration) < v.weak * pick(table, 3e-3, 1e-10));
-        CHECK(most(c.next) < v.weak * pick(table, 3e-3, 1e-10));
-        CHECK(median(c.acceleration) < v.weak * pick(table, 3e-5, 1e-12));
-        CHECK(median(c.next) < v.weak * pick(table, 3e-5, 1e-12));
+        CHECK(acceleration(c).most() < v.weak * pick(table, 3e-3, 1e-10));
+        CHECK(next(c).most() < v.weak * pick(table, 3e-3, 1e-10));
+        CHECK(acceleration(c).median() < v.weak * pick(table, 3e-5, 1e-12));
+        CHECK(next(c).median() < v.weak * pick(table, 3e-5, 1e-12));
       }
     }
   }
@@ -188,15 +186,15 @@ TEST_CASE("flags that switch things off do so as in MuJoCo", "[mjcf][robots]") {
                              .joint = R"(stiffness="2")",
                              .actuators = R"(<motor joint="knee_a" ctrlrange="-0.5 0.5"/>)"});
     xml.insert(xml.find("<default>"), "<option><flag " + flag + "=\"disable\"/></option>");
-    const auto samples = samples_of(xml, Precision::f64, 40, 1, 150);
-    const Plan plan = compile(converged(xml, Precision::f64));
+    const compare::Pair pair = pair_of(xml);
+    const auto samples = compare::draw_samples(pair, Precision::f64, 40, 1, 150);
     for (const Table& table : all_tables()) {
       if (table.precision != Precision::f64) continue;
-      const Comparison c = compare(plan, samples, table);
+      const compare::StateComparison c = compare::compare_states(pair, samples, kernels_of(table));
       INFO(flag << ", " << name(table) << ": " << to_string(c));
       CHECK(c.other_contacts == 0);
-      CHECK(most(c.acceleration) < 1e-10);
-      CHECK(most(c.next) < 1e-10);
+      CHECK(acceleration(c).most() < 1e-10);
+      CHECK(next(c).most() < 1e-10);
     }
   }
 }

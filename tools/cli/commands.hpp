@@ -13,6 +13,7 @@ int plan_command(const JobOptions& options);
 int model_command(const JobOptions& options);
 int bench_command(const BenchOptions& options);
 int verify_command(const VerifyOptions& options);
+int compare_command(const CompareOptions& options);
 int soak_command(const JobOptions& options);
 int replay_command(const ReplayArguments& arguments);
 int report_accuracy_command(const ReportOptions& options);

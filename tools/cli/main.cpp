@@ -1,4 +1,5 @@
 // The program `manyworlds`: parsing and exit codes. What a subcommand does is in its own file.
+// It is over 400 lines because the help of every subcommand is here.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -39,6 +40,7 @@ struct AllOptions {
   BenchOptions bench;
   VerifyOptions verify;
   std::optional<std::uint64_t> verify_seed;
+  CompareOptions compare;
   JobOptions soak;
   ReplayArguments replay;
   ReportOptions report;
@@ -50,8 +52,9 @@ constexpr const char* kAppFooter =
     "  manyworlds bench --scenes bin-spheres,stack10\n"
     "  manyworlds run --help\n"
     "\n"
-    "Exit codes: 0 ok, 1 a world was lost or bits differ, 2 bad input or a file that cannot be\n"
-    "written, 130 interrupted (Ctrl-C), 143 terminated.\n"
+    "Exit codes: 0 ok, 1 a world was lost, bits differ or a gate of 'compare' fails, 2 bad input "
+    "or\n"
+    "a file that cannot be written, 130 interrupted (Ctrl-C), 143 terminated.\n"
     "Scenes in other sizes: pyramid2d:100, bin-spheres:1000, bin-boxes:1000.\n"
     "MANYWORLDS_ISA=scalar|avx2|avx512 chooses the instruction set of all commands; which there "
     "are\n"
@@ -160,6 +163,34 @@ void add_verify(CLI::App& app, AllOptions& all, int& code) {
     if (all.verify_seed) all.verify.seed = *all.verify_seed;
     code = verify_command(all.verify);
   });
+}
+
+void add_compare(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command =
+      app.add_subcommand("compare", "Hold an MJCF model's motion and speed against MuJoCo's");
+  all.compare.job.worlds = 320;
+  all.compare.job.steps = 1000;
+  command->add_option("model", all.compare.job.scene, "an MJCF file with joints")
+      ->required()
+      ->type_name("FILE.xml");
+  add_mjcf_options(*command, all.compare.job);
+  add_count(*command, "--worlds", all.compare.job.worlds, 1, "states that are compared");
+  add_count(*command, "--steps", all.compare.job.steps, 1, "of the paths");
+  add_seed(*command, all.compare.job.seed, "of states, velocities and controls (default: 0)");
+  command
+      ->add_option("--tolerance", all.compare.tolerance, "of both solvers; float32: at least 1e-7")
+      ->check(CLI::PositiveNumber)
+      ->type_name("X")
+      ->capture_default_str();
+  add_json_option(*command, all.compare.job);
+  command->footer(
+      "Examples:\n"
+      "  manyworlds compare humanoid.xml\n"
+      "  manyworlds compare humanoid.xml --worlds 2000 --steps 3000 --json\n"
+      "\n"
+      "Both sides solve with Newton's method, on one thread. Exit code 1\n"
+      "where a difference is beyond its gate (docs/robots.md).");
+  command->callback([&] { code = compare_command(all.compare); });
 }
 
 void add_soak(CLI::App& app, AllOptions& all, int& code) {
@@ -344,6 +375,7 @@ int run_program(int argc, char** argv) {
   add_model(app, all, code);
   add_bench(app, all, code);
   add_verify(app, all, code);
+  add_compare(app, all, code);
   add_soak(app, all, code);
   add_replay(app, all, code);
   add_report(app, all, code);

@@ -27,7 +27,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "manyworlds/mjcf.hpp"
 #include "tools/base/tell.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -200,13 +199,22 @@ void require_harmless(const MjcfFiles& files, const std::string& path, const Chi
 
 bool reads_mjcf() { return true; }
 
-Scene load_mjcf_file(const std::string& path, const MjcfArguments& arguments,
-                     std::vector<std::string>* warnings) {
+MjcfFiles read_mjcf_files(const std::string& path, const MjcfArguments& arguments) {
   const Limits limits = parse_limits(arguments);
   try {
     // Read once: what the child survives is what is compiled afterwards.
-    const MjcfFiles files = MjcfFiles::read(path, limits.options);
+    MjcfFiles files = MjcfFiles::read(path, limits.options);
     require_harmless(files, path, limits.child);
+    return files;
+  } catch (const MjcfError& error) {
+    throw InputError(error.what());
+  }
+}
+
+Scene load_mjcf_file(const std::string& path, const MjcfArguments& arguments,
+                     std::vector<std::string>* warnings) {
+  const MjcfFiles files = read_mjcf_files(path, arguments);
+  try {
     MjcfResult result = files.compile();
     if (warnings != nullptr) {
       *warnings = std::move(result.warnings);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "manyworlds/mjcf.hpp"
 #include "manyworlds/scene.hpp"
 
 namespace manyworlds::cli {
@@ -22,5 +23,9 @@ bool reads_mjcf();
 // time.
 Scene load_mjcf_file(const std::string& path, const MjcfArguments& arguments,
                      std::vector<std::string>* warnings = nullptr);
+
+// Its files, which a child process could compile; only of a program that reads MJCF. Throws
+// InputError.
+MjcfFiles read_mjcf_files(const std::string& path, const MjcfArguments& arguments);
 
 }  // namespace manyworlds::cli

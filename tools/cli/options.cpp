@@ -192,6 +192,10 @@ void add_scene_argument(CLI::App& app, JobOptions& options) {
                  "name of a scene, with a size for some (bin-boxes:1000), or an MJCF file (.xml)")
       ->required()
       ->type_name("NAME|NAME:SIZE|FILE.xml");
+  add_mjcf_options(app, options);
+}
+
+void add_mjcf_options(CLI::App& app, JobOptions& options) {
   app.add_option("--mjcf-root", options.mjcf.roots,
                  "folder besides the MJCF file's own that it may take files from; may be repeated")
       ->type_name("DIR")

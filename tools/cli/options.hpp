@@ -20,7 +20,8 @@ namespace manyworlds::cli {
 
 // Exit codes of the program.
 inline constexpr int kOk = 0;
-inline constexpr int kWorldLost = 1;  // or, for verify and bench, bits that differ
+inline constexpr int kWorldLost =
+    1;  // or, for verify and bench, bits that differ; for compare, numbers
 inline constexpr int kBadInput = 2;
 
 // The user asked for something that cannot be done; what() is one complete line.
@@ -81,6 +82,11 @@ struct VerifyOptions {
   bool quick = false;
 };
 
+struct CompareOptions {
+  JobOptions job;  // scene, mjcf, worlds, steps, seed and json of it
+  double tolerance = 1e-10;
+};
+
 struct ReportOptions {
   std::vector<std::string> cases;   // of accuracy and stability; empty: all
   std::vector<std::string> scenes;  // of the others; empty: the report's own
@@ -98,6 +104,7 @@ struct ReplayArguments {
 // Each adds one group of options to a subcommand; values that fail their check make CLI11's parse
 // throw with the option's name in front. The options must outlive the parse.
 void add_scene_argument(CLI::App& app, JobOptions& options);
+void add_mjcf_options(CLI::App& app, JobOptions& options);  // of add_scene_argument
 void add_plan_options(CLI::App& app, JobOptions& options);
 void add_batch_options(CLI::App& app, JobOptions& options);
 void add_kernel_options(CLI::App& app, JobOptions& options);  // those that do not change a bit

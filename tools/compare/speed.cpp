@@ -1,0 +1,101 @@
+#include "tools/compare/speed.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+
+namespace manyworlds::compare {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kHeld = 5;  // steps between new controls
+
+// Controls and velocities of all worlds, drawn before the clock starts.
+struct Inputs {
+  std::vector<double> v;               // [world][dof]
+  std::vector<std::vector<double>> u;  // [block of steps][world][control]
+};
+
+Inputs draw_inputs(const mjModel& m, std::uint64_t seed, int worlds, int steps) {
+  Random random(seed, 2);
+  Inputs inputs;
+  for (int k = 0; k < worlds * m.nv; ++k) inputs.v.push_back(random.uniform(-1, 1));
+  for (int s = 0; s < steps; s += kHeld) {
+    auto& u = inputs.u.emplace_back(static_cast<std::size_t>(worlds * m.nu));
+    for (int w = 0; w < worlds; ++w) draw_controls(m, random, u.data() + w * m.nu);
+  }
+  return inputs;
+}
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void run_ours(Batch& batch, const Inputs& inputs, Speed& speed) {
+  batch.reset();
+  batch.write(Field::generalized_velocity, std::span<const double>(inputs.v));
+  const Clock::time_point start = Clock::now();
+  for (int s = 0; s < speed.steps; s += kHeld) {
+    const auto& u = inputs.u[static_cast<std::size_t>(s / kHeld)];
+    if (!u.empty()) batch.set_controls(std::span<const double>(u));
+    batch.step(std::min(kHeld, speed.steps - s));
+  }
+  speed.ours.push_back(speed.worlds * speed.steps / since(start));
+  const std::uint64_t hash = batch.hash();
+  speed.same_hash &= speed.ours.size() == 1 || hash == speed.hash;
+  speed.hash = hash;
+  speed.contacts = 0;
+  for (int w = 0; w < speed.mujoco_worlds; ++w) {
+    speed.contacts += static_cast<double>(batch.contacts(w).size()) / speed.mujoco_worlds;
+  }
+}
+
+void run_mujoco(const mjModel& m, mjData& d, const Inputs& inputs, Speed& speed) {
+  const mjcf::LogCapture log;
+  speed.mujoco_contacts = 0;
+  double seconds = 0;
+  for (int w = 0; w < speed.mujoco_worlds; ++w) {
+    mj_resetData(&m, &d);
+    std::copy_n(inputs.v.begin() + static_cast<std::ptrdiff_t>(w) * m.nv, m.nv, d.qvel);
+    const Clock::time_point start = Clock::now();
+    for (int s = 0; s < speed.steps; ++s) {
+      if (s % kHeld == 0) {
+        std::copy_n(inputs.u[static_cast<std::size_t>(s / kHeld)].begin() +
+                        static_cast<std::ptrdiff_t>(w) * m.nu,
+                    m.nu, d.ctrl);
+      }
+      mj_step(&m, &d);
+    }
+    seconds += since(start);
+    mj_forward(&m, &d);
+    for (int c = 0; c < d.ncon; ++c) {
+      speed.mujoco_contacts += d.contact[c].exclude == 0 ? 1.0 / speed.mujoco_worlds : 0;
+    }
+  }
+  speed.mujoco.push_back(speed.mujoco_worlds * speed.steps / seconds);
+}
+
+}  // namespace
+
+Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_worlds, int steps,
+                    int turns) {
+  Speed speed;
+  speed.kernels = kernels, speed.worlds = worlds, speed.steps = steps, speed.turns = turns;
+  speed.mujoco_worlds = std::min(mujoco_worlds, worlds);
+  // What float32 reaches, too.
+  speed.tolerance = std::max(pair.settings().tolerance, 1e-6);
+  const double kept = pair.settings().tolerance;
+  pair.set_tolerance(speed.tolerance);
+  Batch batch(compile(pair.scene(kernels.precision)), options_of(kernels, worlds));
+  const mjcf::DataPtr data = pair.make_data();
+  const Inputs inputs = draw_inputs(pair.mujoco(), pair.settings().seed, worlds, steps);
+  for (int turn = 0; turn < turns; ++turn) {
+    run_ours(batch, inputs, speed);
+    run_mujoco(pair.mujoco(), *data, inputs, speed);
+  }
+  pair.set_tolerance(kept);
+  return speed;
+}
+
+}  // namespace manyworlds::compare
