@@ -15,10 +15,11 @@ std::vector<double> held(const mjtNum* from, std::ptrdiff_t size, Precision prec
   return to;
 }
 
-void read_contacts(const Pair& pair, const mjData& d, Sample& s) {
+void read_contacts(const Pair& pair, const mjData& d, Precision precision, Sample& s) {
+  const double rounding = precision == Precision::f64 ? 1e-12 : 1e-6;  // m
   for (int c = 0; c < d.ncon; ++c) {
     const mjContact& contact = d.contact[c];
-    s.uncertain |= std::abs(contact.dist - contact.includemargin) < 1e-6;
+    s.uncertain |= std::abs(contact.dist - contact.includemargin) < rounding;
     if (contact.exclude != 0) continue;
     s.other_points |= !pair.same_points(contact.geom[0], contact.geom[1]);
     s.touches.push_back({Vec3(contact.pos[0], contact.pos[1], contact.pos[2]),
@@ -68,7 +69,7 @@ std::vector<Sample> draw_samples(const Pair& pair, Precision precision, int coun
     std::copy(s.q.begin(), s.q.end(), d.qpos), std::copy(s.v.begin(), s.v.end(), d.qvel);
     std::copy(s.u.begin(), s.u.end(), d.ctrl);
     mj_forward(&m, &d);
-    read_contacts(pair, d, s);
+    read_contacts(pair, d, precision, s);
     read_links(pair, d, s);
     s.rows = static_cast<int>(d.nefc);
     const std::vector<double> a(d.qacc, d.qacc + m.nv);

@@ -166,7 +166,7 @@ StateComparison compare_states(const Pair& pair, const std::vector<Sample>& samp
       ++out.other_points;
     } else if (contacts.size() != s.touches.size()) {
       ++out.other_contacts;
-    } else if (s.uncertain && kernels.precision == Precision::f32) {
+    } else if (s.uncertain) {
       ++out.uncertain;
     } else {
       stepped.back() = true;

@@ -46,7 +46,7 @@ struct StateComparison {
   Kernels kernels;
   int states = 0, contacts = 0, rows = 0;
   int other_contacts = 0;  // states in which we find another number of them, which end there
-  int uncertain = 0;       // states of float32 that are left out
+  int uncertain = 0;       // states that are left out for that
   int other_points = 0;    // states that are left out: shapes whose points are not MuJoCo's
   std::vector<Quantity> quantities;
 
