@@ -84,7 +84,7 @@ struct VerifyOptions {
 
 struct CompareOptions {
   JobOptions job;  // scene, mjcf, worlds, steps, seed and json of it
-  double tolerance = 1e-10;
+  double tolerance = 1e-14;
 };
 
 struct ReportOptions {

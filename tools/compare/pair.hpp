@@ -14,7 +14,7 @@ namespace manyworlds::compare {
 
 struct Settings {
   // Of both solvers. Float32 stops at 1e-7 at the latest, below which it has no digits.
-  double tolerance = 1e-10;
+  double tolerance = 1e-14;
   std::uint64_t seed = 0;
   // Compare states in which shapes touch whose contact points are not MuJoCo's, too.
   bool every_shape = false;
