@@ -130,6 +130,7 @@ Json to_json(const Findings& findings, const CompareOptions& compared) {
                       {"tolerance", one.tolerance},
                       {"world_steps_per_s", one.ours},
                       {"mujoco_world_steps_per_s", one.mujoco},
+                      {"mujoco_batch_world_steps_per_s", one.mujoco_batch},
                       {"contacts_per_world", one.contacts},
                       {"mujoco_contacts_per_world", one.mujoco_contacts},
                       {"hash", hex(one.hash)}});
@@ -186,14 +187,15 @@ void print_free(const compare::FreePaths& p) {
 }
 
 void print_speed(const compare::Speed& s) {
-  const double ours = median(s.ours), theirs = median(s.mujoco);
+  const double ours = median(s.ours), loop = median(s.mujoco), batch = median(s.mujoco_batch);
   fmt::print(
       "\n{} {}, {}, 1 thread, tolerance {:.0e}, median of {} turns\n"
       "  manyworlds  {:>8} world-steps/s, {:.2f} contacts per world, hash {}\n"
-      "  MuJoCo      {:>8} world-steps/s, {:.2f} contacts per world: {:.1f} x\n",
+      "  MuJoCo      {:>8} world-steps/s, {:.2f} contacts per world: {:.1f} x\n"
+      "    by batch  {:>8} world-steps/s: {:.1f} x\n",
       to_string(s.kernels.isa), to_string(s.kernels.precision), counted(s.worlds, "world"),
-      s.tolerance, s.turns, with_prefix(ours), s.contacts, hex(s.hash), with_prefix(theirs),
-      s.mujoco_contacts, ours / theirs);
+      s.tolerance, s.turns, with_prefix(ours), s.contacts, hex(s.hash), with_prefix(loop),
+      s.mujoco_contacts, ours / loop, with_prefix(batch), ours / batch);
 }
 
 }  // namespace

@@ -36,9 +36,6 @@ Pair::Pair(const MjcfFiles& files, const Settings& settings) : settings_(setting
 
 void Pair::set_tolerance(double tolerance) {
   mjOption& option = mujoco_->opt;
-  // Costs fall with the square of what accelerations are off, and only those of pyramids are exact
-  // after the last step.
-  if (option.cone == mjCONE_ELLIPTIC) tolerance *= tolerance;
   settings_.tolerance = tolerance;
   option.solver = mjSOL_NEWTON, option.tolerance = tolerance, option.iterations = 200;
   option.ls_iterations = 100, option.ls_tolerance = 1e-8;

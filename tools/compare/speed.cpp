@@ -1,8 +1,12 @@
 #include "tools/compare/speed.hpp"
 
+#include <mujoco/mjbatch.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <memory>
+#include <string>
 
 namespace manyworlds::compare {
 namespace {
@@ -76,6 +80,42 @@ void run_mujoco(const mjModel& m, mjData& d, const Inputs& inputs, Speed& speed)
   speed.mujoco.push_back(speed.mujoco_worlds * speed.steps / seconds);
 }
 
+struct DeleteBatch {
+  void operator()(mjBatch* batch) const { mjb_deleteBatch(batch); }
+};
+using MujocoBatch = std::unique_ptr<mjBatch, DeleteBatch>;
+
+MujocoBatch make_mujoco_batch(const mjModel& m, int worlds) {
+  mjBatchConfig config;
+  mjb_defaultConfig(&config);
+  config.nthread = 1, config.persistent = 1;
+  char error[500] = "";
+  MujocoBatch batch(mjb_makeBatch(&m, worlds, &config, error, sizeof error));
+  if (!batch) throw mjcf::MujocoFailure(std::string("MuJoCo could not make a batch: ") + error);
+  return batch;
+}
+
+void run_mujoco_batch(mjBatch& batch, const Inputs& inputs, Speed& speed) {
+  const mjcf::LogCapture log;
+  mjb_reset(&batch, nullptr, 0, nullptr, mjSTAGE_NONE);
+  // A row of each world's state has this component at the same place.
+  const auto put = [&](int component, const std::vector<double>& from) {
+    int size = 0;
+    mjtNum* to = mjb_stateComponent(&batch, component, &size);
+    for (int w = 0; w < speed.mujoco_worlds; ++w) {
+      std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(w) * size, size,
+                  to + static_cast<std::ptrdiff_t>(w) * mjb_nstate(&batch));
+    }
+  };
+  put(mjSTATE_QVEL, inputs.v);
+  const Clock::time_point start = Clock::now();
+  for (int s = 0; s < speed.steps; s += kHeld) {
+    put(mjSTATE_CTRL, inputs.u[static_cast<std::size_t>(s / kHeld)]);
+    mjb_step(&batch, nullptr, 0, std::min(kHeld, speed.steps - s), mjSTAGE_NONE);
+  }
+  speed.mujoco_batch.push_back(speed.mujoco_worlds * speed.steps / since(start));
+}
+
 }  // namespace
 
 Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_worlds, int steps,
@@ -89,10 +129,12 @@ Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_w
   pair.set_tolerance(speed.tolerance);
   Batch batch(compile(pair.scene(kernels.precision)), options_of(kernels, worlds));
   const mjcf::DataPtr data = pair.make_data();
+  const MujocoBatch mujoco_batch = make_mujoco_batch(pair.mujoco(), speed.mujoco_worlds);
   const Inputs inputs = draw_inputs(pair.mujoco(), pair.settings().seed, worlds, steps);
   for (int turn = 0; turn < turns; ++turn) {
     run_ours(batch, inputs, speed);
     run_mujoco(pair.mujoco(), *data, inputs, speed);
+    run_mujoco_batch(*mujoco_batch, inputs, speed);
   }
   pair.set_tolerance(kept);
   return speed;

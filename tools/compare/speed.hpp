@@ -11,15 +11,17 @@ namespace manyworlds::compare {
 struct Speed {
   Kernels kernels;
   int worlds = 0, mujoco_worlds = 0, steps = 0, turns = 0;
-  double tolerance = 0;                      // of both
-  std::vector<double> ours, mujoco;          // world-steps/s of each turn
+  double tolerance = 0;  // of both
+  // World-steps/s of each turn: ours, MuJoCo's in a loop over worlds and by its batches.
+  std::vector<double> ours, mujoco, mujoco_batch;
   double contacts = 0, mujoco_contacts = 0;  // per world after the last step
   std::uint64_t hash = 0;                    // of our state after the last step of each turn
   bool same_hash = true;                     // over all turns
 };
 
 // From the reference pose at random velocities; controls change every 5 steps. MuJoCo steps
-// `mujoco_worlds` of the worlds, one after the other in its plain loop.
+// `mujoco_worlds` of the worlds: one after the other in a plain loop of mj_step, and as a batch on
+// one thread (mjbatch.h).
 Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_worlds, int steps,
                     int turns);
 
