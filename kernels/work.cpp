@@ -138,7 +138,9 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
   c.take(w.contacts, static_cast<std::size_t>(contacts));
   take(w.column, 3 * tree.dofs);
   take(w.stiffness, tree.dofs * (tree.dofs + 1) / 2);
-  c.take(w.columns, static_cast<std::size_t>(tree.dofs));
+  const auto dofs = static_cast<std::size_t>(tree.dofs);
+  c.take(w.coupled, dofs), c.take(w.listed, dofs), c.take(w.counts, dofs);
+  c.take(w.entries, dofs * dofs / 2);
   take(w.guess, tree.dofs), take(w.balance, tree.dofs), take(w.row_load, tree.dofs);
   take(w.direction, tree.dofs), take(w.reach, tree.dofs);
 }

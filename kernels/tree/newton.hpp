@@ -58,6 +58,7 @@ class Minimiser {
   void run(Mask active) {
     multiply(t_, x_.matrix, x_.guess, x_.balance);
     rows_.start(x_.guess);
+    stiffness_.forget_pattern();
     const Float tolerance(t_.tree.newton.tolerance);
     Mask done = !active;
     for (int i = 0; i < t_.tree.newton.iterations && !all(done); ++i) {

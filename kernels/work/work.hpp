@@ -93,6 +93,12 @@ struct alignas(64) TreeContact {
   std::uint32_t lanes;    // that have it
 };
 
+// An entry of a row of M + J' D J (kernels/tree/stiffness.hpp): where in the row, and where the row
+// of its column begins, in reals.
+struct TreeEntry {
+  std::int32_t at, row;
+};
+
 // Trees (kernels/tree/), in world axes about an origin of each tree: its root's centre of mass.
 struct TreeWork {
   Real* origin;      // [link: a root][3][lane], in the world
@@ -117,12 +123,16 @@ struct TreeWork {
   std::int32_t contact_count;
   Real* column;     // [dof of a pair][3][lane], of its motion at a contact
   Real* stiffness;  // [dof][dofs up to it][lane], M + J' D J, then its factors (stiffness.hpp)
-  std::uint64_t* columns;  // [dof] which of them there are
-  Real* guess;             // [dof][lane], accelerations so far
-  Real* balance;           // [dof][lane], M a
-  Real* direction;         // [dof][lane]
-  Real* reach;             // [dof][lane], M times the direction
-  Real* row_load;          // [dof][lane], J' times the forces of rows
+  // Of its rows: which entries rows of constraints ask for, then those that there are; what was
+  // asked for when they were listed; the list, the last dof first, and its length.
+  std::uint64_t *coupled, *listed;  // [dof]
+  TreeEntry* entries;               // [dof][dofs before it]
+  std::int32_t* counts;             // [dof]
+  Real* guess;                      // [dof][lane], accelerations so far
+  Real* balance;                    // [dof][lane], M a
+  Real* direction;                  // [dof][lane]
+  Real* reach;                      // [dof][lane], M times the direction
+  Real* row_load;                   // [dof][lane], J' times the forces of rows
 };
 
 struct Work {
