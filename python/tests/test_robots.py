@@ -94,7 +94,7 @@ def test_coordinates_are_fields(precision):
     with pytest.raises(ValueError, match="moved by generalized_position"):
         batch.set("position", 0)
     with pytest.raises(ValueError, match="worlds of the newton solver do not observe"):
-        mw.Batch(arm(), observe=["contacts"])
+        mw.Batch(arm(), observe=["joints"])
 
 
 def test_other_worlds_have_none():
