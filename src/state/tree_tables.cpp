@@ -80,7 +80,9 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     drags_.push_back(to);
   }
   pair_dofs_ = trees.pair_dofs;
+  // More dofs than bits have trees without rows alone, which need no such sets.
   for (const auto& dof : trees.dofs) {
+    if (trees.dofs.size() > kernels::kMaxTreeDofs) break;
     const auto parent = static_cast<std::size_t>(dof.parent);
     ancestors_.push_back(dof.parent < 0 ? 0 : ancestors_[parent] | std::uint64_t{1} << parent);
   }
