@@ -62,7 +62,8 @@ inline void observe_tree_contacts(const Constants& t, const Group& g, kernels::S
     if (touching) {
       const kernels::TreePair<Real>& pair = t.tree.pair[c.pair];
       const Mask acts = mask_from_bits(lanes) & (Float(Real(0)) < Float::load(c.force[0]));
-      for (const int link : {pair.link_a, pair.link_b}) {
+      const std::int32_t links[] = {pair.link_a, pair.link_b};
+      for (const std::int32_t link : links) {
         if (link < 0) continue;
         Real* to = touching + t.tree.link[link].body * kLanes;
         select(acts, Real(1), Float::load(to)).store(to);
