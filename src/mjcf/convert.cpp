@@ -61,12 +61,9 @@ MassProperties mass_properties_of_link(const mjModel& m, int b) {
   return out;
 }
 
-// MuJoCo computes no passive force at all, gravcomp included, where neither springs nor dampers
-// act. Free bodies have always been compensated.
+// Free bodies have always been compensated.
 double gravity_scale(const Model& model, int b) {
-  const int neither = mjDSBL_SPRING | mjDSBL_DAMPER;
-  const bool passive =
-      !model.articulated || (model.compiled->opt.disableflags & neither) != neither;
+  const bool passive = !model.articulated || has_passive_forces(*model.compiled);
   return passive ? 1 - model.compiled->body_gravcomp[b] : 1;
 }
 

@@ -62,7 +62,12 @@ void check_flags(const Model& model, std::vector<std::string>& problems) {
 
 }  // namespace
 
-bool has_medium(const mjModel& m) { return m.opt.density != 0 || m.opt.viscosity != 0; }
+bool has_passive_forces(const mjModel& m) {
+  return !is_disabled(m, mjDSBL_SPRING) || !is_disabled(m, mjDSBL_DAMPER);
+}
+bool has_medium(const mjModel& m) {
+  return has_passive_forces(m) && (m.opt.density != 0 || m.opt.viscosity != 0);
+}
 
 void check_options(const Model& model, std::vector<std::string>& problems) {
   if (!model.articulated) return;

@@ -9,7 +9,10 @@
 
 namespace manyworlds::mjcf {
 
-// Whether bodies move through something that resists.
+// MuJoCo computes no passive force at all, gravcomp and drag included, where neither springs nor
+// dampers act.
+bool has_passive_forces(const mjModel& m);
+// Whether bodies of models with joints move through something that resists.
 bool has_medium(const mjModel& m);
 
 // Appends the options and flags that change the motion and are not simulated.

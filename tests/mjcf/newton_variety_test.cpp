@@ -180,9 +180,12 @@ TEST_CASE("powers of impedance that mix to no whole number are an error", "[mjcf
 }
 
 TEST_CASE("flags that switch things off do so as in MuJoCo", "[mjcf][robots]") {
-  for (const std::string flag : {"constraint", "limit", "contact", "spring", "damper", "gravity",
-                                 "clampctrl", "filterparent", "warmstart"}) {
+  // Without springs and dampers MuJoCo computes no passive force at all, drag included.
+  for (const std::string flag :
+       {"constraint", "limit", "contact", "spring", "damper", "gravity", "clampctrl",
+        "filterparent", "warmstart", "spring=\"disable\" damper"}) {
     std::string xml = arena({.name = "",
+                             .option = R"(density="300" viscosity="0.2")",
                              .joint = R"(stiffness="2")",
                              .actuators = R"(<motor joint="knee_a" ctrlrange="-0.5 0.5"/>)"});
     xml.insert(xml.find("<default>"), "<option><flag " + flag + "=\"disable\"/></option>");
