@@ -124,7 +124,7 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
   take(w.force, kTwistRows * tree.links), take(w.inertia, kInertiaRows * tree.links);
   take(w.matrix, tree.entries), take(w.load, tree.dofs);
   take(w.next, tree.coordinates + tree.dofs);
-  if (tree.implicit) take(w.resistance, tree.dofs);
+  if (tree.implicit) take(w.free, tree.dofs);
   if (tree.stages > 1) {
     take(w.start, tree.coordinates + tree.dofs), take(w.displacement, tree.dofs);
     take(w.stage_rate, 2 * tree.dofs), take(w.rate_sum, 2 * tree.dofs);

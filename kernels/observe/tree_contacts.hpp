@@ -3,28 +3,20 @@
 #pragma once
 
 #include "kernels/observe/contacts.hpp"
+#include "kernels/tree/contacts.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// World axes.
-struct TreeContactImpulse {
-  Float normal;
-  Vec3 friction;
-};
-MW_INLINE TreeContactImpulse impulse_of(const Constants& t, const TreeContact& c) {
-  const Float dt = Float(t.h) * Float(static_cast<Real>(t.substeps));
-  const Vec3 force = load_vec3(c.force[0]) * dt;
-  return {force.x, fma(load_vec3(c.frame[6]), force.z, load_vec3(c.frame[3]) * force.y)};
-}
-
-inline void put_tree_contact(const Constants& t, const Work& w, const TreeContact& c,
+// `force`: in the contact's frame.
+inline void put_tree_contact(const Constants& t, const Work& w, const TreeContact& c, Vec3 force,
                              std::uint32_t lanes, const ObserverView& o) {
   const kernels::TreePair<Real>& pair = t.tree.pair[c.pair];
   const int root = t.tree.link[pair.link_b].root;
   const Vec3 place = load_vec3(w.tree.origin + 3 * root * kLanes) + load_vec3(c.arm_b[0]);
-  const TreeContactImpulse total = impulse_of(t, c);
+  const Vec3 own = force * (Float(t.h) * Float(static_cast<Real>(t.substeps)));
   alignas(64) Real point[3][kLanes], friction[3][kLanes], impulse[kLanes];
-  store(point[0], place), store(friction[0], total.friction), total.normal.store(impulse);
+  store(point[0], place), own.x.store(impulse);
+  store(friction[0], fma(load_vec3(c.frame[6]), own.z, load_vec3(c.frame[3]) * own.y));
   Real* count = rows_for(o, Observer::contacts);
   for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
     const int l = __builtin_ctz(m);
@@ -51,17 +43,19 @@ inline void observe_tree_contacts(const Constants& t, const Group& g, kernels::S
   const std::uint32_t live = ~frozen_lanes(g) & kAllLanes;
   Real* const penetration = rows_for(o, Observer::penetration);
   Real* const touching = rows_for(o, Observer::touching);
+  const ContactRows rows(t, w);
   for (int i = 0; i < w.tree.contact_count; ++i) {
     const TreeContact& c = w.tree.contacts[i];
     const std::uint32_t lanes = c.lanes & live;
     if (lanes == 0) continue;
+    const kernels::TreePair<Real>& pair = t.tree.pair[c.pair];
+    const Vec3 force = rows.force_of(c, pair);
     if (penetration) {
       const Float deepest = Float::load(penetration), depth = -Float::load(c.distance);
       select(mask_from_bits(lanes), max(deepest, depth), deepest).store(penetration);
     }
     if (touching) {
-      const kernels::TreePair<Real>& pair = t.tree.pair[c.pair];
-      const Mask acts = mask_from_bits(lanes) & (Float(Real(0)) < Float::load(c.force[0]));
+      const Mask acts = mask_from_bits(lanes) & (Float(Real(0)) < force.x);
       const std::int32_t links[] = {pair.link_a, pair.link_b};
       for (const std::int32_t link : links) {
         if (link < 0) continue;
@@ -69,7 +63,7 @@ inline void observe_tree_contacts(const Constants& t, const Group& g, kernels::S
         select(acts, Real(1), Float::load(to)).store(to);
       }
     }
-    if (o.contacts) put_tree_contact(t, w, c, lanes, o);
+    if (o.contacts) put_tree_contact(t, w, c, force, lanes, o);
   }
 }
 

@@ -93,9 +93,8 @@ class ContactRows {
     for (int r = 0; r < t_.tree.links * kTwistRows; ++r) {
       Float(Real(0)).store(wrenches + r * kLanes);
     }
-    for_each([&](Contact& c, const TreePair& pair) {
+    for_each([&](const Contact& c, const TreePair& pair) {
       const Vec3 own_force = force_of(c, pair);
-      store(c.force[0], own_force);
       Vec3 force = load_vec3(c.frame[0]) * own_force.x;
       if (pair.cone != ContactCone::frictionless) {
         force = fma(load_vec3(c.frame[3]), own_force.y, force);
@@ -111,6 +110,17 @@ class ContactRows {
       }
     });
     add_wrenches(t_, w_, wrenches, load);
+  }
+
+  // On B, in the contact's frame.
+  MW_INLINE Vec3 force_of(const TreeContact& c, const TreePair& pair) const {
+    const Float zero(Real(0));
+    if (pair.cone == ContactCone::frictionless) return {row(c, 0).force(), zero, zero};
+    if (pair.cone == ContactCone::elliptic) return cone(c).force();
+    Float f[4];
+    for (int e = 0; e < 4; ++e) f[e] = row(c, e).force();
+    const Float mu = Float::load(c.friction);
+    return {(f[0] + f[1]) + (f[2] + f[3]), mu * (f[0] - f[1]), mu * (f[2] - f[3])};
   }
 
   void couple(const Stiffness& stiffness) const {
@@ -224,16 +234,6 @@ class ContactRows {
       const Edges change = along_edges(pair, c, relative(c, pair, w_.tree.rate));
       for (int e = 0; e < rows_of(pair); ++e) put(c, e, change.along[e]);
     });
-  }
-  // In the contact's frame.
-  MW_INLINE Vec3 force_of(const Contact& c, const TreePair& pair) const {
-    const Float zero(Real(0));
-    if (pair.cone == ContactCone::frictionless) return {row(c, 0).force(), zero, zero};
-    if (pair.cone == ContactCone::elliptic) return cone(c).force();
-    Float f[4];
-    for (int e = 0; e < 4; ++e) f[e] = row(c, e).force();
-    const Float mu = Float::load(c.friction);
-    return {(f[0] + f[1]) + (f[2] + f[3]), mu * (f[0] - f[1]), mu * (f[2] - f[3])};
   }
   MW_INLINE PointStiffness stiffness_of(const Contact& c, const TreePair& pair) const {
     const Float zero(Real(0));

@@ -96,29 +96,25 @@ MW_INLINE Float passive_force(const Constants& t, const Group& g, const Dof& dof
   return force;
 }
 
+using TreeActuator = kernels::TreeActuator<Real>;
+
+// The force that an actuator asks for, before its range.
+MW_INLINE Float force_asked(const Constants& t, const Group& g, const TreeActuator& a) {
+  const Float gear(a.gear), length = gear * Float::load(coordinate_of(t, g, a.coordinate));
+  const Float speed = gear * Float::load(velocity_of(t, g, a.dof));
+  const auto affine = [&](const Real(&c)[3]) {
+    return fma(Float(c[2]), speed, fma(Float(c[1]), length, Float(c[0])));
+  };
+  return fma(affine(a.gain), Float::load(g.control + a.control * kLanes), affine(a.bias));
+}
+
 // Adds the forces of actuators.
 inline void add_actuators(const Constants& t, const Group& g, const Work& w) {
-  for (int k = 0; t.tree.implicit && k < t.tree.dofs; ++k) {
-    Float(Real(0)).store(w.tree.resistance + k * kLanes);
-  }
   for (int i = 0; i < t.tree.actuators; ++i) {
-    const auto& a = t.tree.actuator[i];
-    const Float gear(a.gear), length = gear * Float::load(coordinate_of(t, g, a.coordinate));
-    const Float speed = gear * Float::load(velocity_of(t, g, a.dof));
-    const auto affine = [&](const Real(&c)[3]) {
-      return fma(Float(c[2]), speed, fma(Float(c[1]), length, Float(c[0])));
-    };
-    const Float control = Float::load(g.control + a.control * kLanes);
-    const Float low(a.low), high(a.high), free = fma(affine(a.gain), control, affine(a.bias));
-    const Float force = clamp(free, low, high);
-    if (t.tree.implicit) {
-      const Float falls = -(gear * gear * fma(Float(a.gain[2]), control, Float(a.bias[2])));
-      Real* resistance = w.tree.resistance + a.dof * kLanes;
-      const Mask follows = (low < free) & (free < high);
-      (Float::load(resistance) + select(follows, falls, Real(0))).store(resistance);
-    }
+    const TreeActuator& a = t.tree.actuator[i];
+    const Float force = clamp(force_asked(t, g, a), Float(a.low), Float(a.high));
     Real* load = w.tree.load + a.dof * kLanes;
-    fma(gear, force, Float::load(load)).store(load);
+    fma(Float(a.gear), force, Float::load(load)).store(load);
   }
 }
 

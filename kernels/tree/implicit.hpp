@@ -8,12 +8,17 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// M + h times the resistance of actuators on the diagonal.
-inline void add_resistance(const Constants& t, const Work& w) {
-  for (int k = 0; k < t.tree.dofs; ++k) {
-    Real* diagonal = w.tree.matrix + t.tree.dof[k].entry * kLanes;
-    fma(Float(t.h), Float::load(w.tree.resistance + k * kLanes), Float::load(diagonal))
-        .store(diagonal);
+// Adds to M, h times, how much less actuators push where their dofs are faster. One at an end of
+// its range does not follow.
+inline void add_resistance(const Constants& t, const Group& g, const Work& w) {
+  for (int i = 0; i < t.tree.actuators; ++i) {
+    const TreeActuator& a = t.tree.actuator[i];
+    const Float control = Float::load(g.control + a.control * kLanes), force = force_asked(t, g, a);
+    const Float gain = -fma(Float(a.gain[2]), control, Float(a.bias[2]));
+    const Mask follows = (Float(a.low) < force) & (force < Float(a.high));
+    const Float less = Float(t.h * a.gear * a.gear) * select(follows, gain, Real(0));
+    Real* diagonal = w.tree.matrix + t.tree.dof[a.dof].entry * kLanes;
+    (Float::load(diagonal) + less).store(diagonal);
   }
 }
 

@@ -40,8 +40,8 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
       fma(Float(t.h), Float(dof.damping), Float::load(diagonal)).store(diagonal);
     }
     if (t.tree.implicit) {
-      add_resistance(t, w);
-      for_each_free_link(t, [&](int i) { FreeLink(t, w, i).solve(x.load, x.resistance); });
+      add_resistance(t, g, w);
+      for_each_free_link(t, [&](int i) { FreeLink(t, w, i).solve(x.load, x.free); });
     }
     factorise(t, x.matrix);
     solve_factored(t, x.matrix, x.load);
@@ -49,7 +49,7 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
       for_each_free_link(t, [&](int i) {
         const int first = t.tree.link[i].first_dof;
         for (int k = first; k < first + 6; ++k) {
-          Float::load(x.resistance + k * kLanes).store(x.load + k * kLanes);
+          Float::load(x.free + k * kLanes).store(x.load + k * kLanes);
         }
       });
     }

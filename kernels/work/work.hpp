@@ -87,10 +87,9 @@ struct alignas(64) TreeContact {
   Real distance[kLanes], friction[kLanes];  // m; 1
   Real weight[kLanes];                      // of all of its rows, see TreeRow
   Real reference[4][kLanes], residual[4][kLanes], change[4][kLanes];
-  Real force[3][kLanes];  // in the frame, N
-  std::int32_t pair;      // key
-  std::int32_t feature;   // which point of the manifold
-  std::uint32_t lanes;    // that have it
+  std::int32_t pair;     // key
+  std::int32_t feature;  // which point of the manifold
+  std::uint32_t lanes;   // that have it
 };
 
 // An entry of a row of M + J' D J (kernels/tree/stiffness.hpp): where in the row, and where the row
@@ -101,17 +100,17 @@ struct TreeEntry {
 
 // Trees (kernels/tree/), in world axes about an origin of each tree: its root's centre of mass.
 struct TreeWork {
-  Real* origin;      // [link: a root][3][lane], in the world
-  Real* pose;        // [link][rotation 4, position of its frame 3][lane]
-  Real* axis;        // [dof][twist of a unit velocity][lane]
-  Real* velocity;    // [link][twist][lane]
-  Real* rate;        // [link][twist][lane], acceleration but for those of the dofs; less gravity
-  Real* force;       // [link][wrench][lane]
-  Real* inertia;     // [link][kInertiaRows][lane], with all links beyond it
-  Real* matrix;      // [entry][lane], of the joint-space inertia, then its factors
-  Real* load;        // [dof][lane], generalised forces, then accelerations
-  Real* resistance;  // [dof][lane], of actuators, N m s/rad or N s/m; only with implicit_fast
-  Real* next;        // [coordinate, then dof][lane], the state after the step
+  Real* origin;    // [link: a root][3][lane], in the world
+  Real* pose;      // [link][rotation 4, position of its frame 3][lane]
+  Real* axis;      // [dof][twist of a unit velocity][lane]
+  Real* velocity;  // [link][twist][lane]
+  Real* rate;      // [link][twist][lane], acceleration but for those of the dofs; less gravity
+  Real* force;     // [link][wrench][lane]
+  Real* inertia;   // [link][kInertiaRows][lane], with all links beyond it
+  Real* matrix;    // [entry][lane], of the joint-space inertia, then its factors
+  Real* load;      // [dof][lane], generalised forces, then accelerations
+  Real* free;      // [dof][lane], accelerations of links that move freely; only with implicit_fast
+  Real* next;      // [coordinate, then dof][lane], the state after the step
   // Runge-Kutta.
   Real* start;         // [coordinate, then dof][lane], the state before the step
   Real* displacement;  // [dof][lane], of the stage from the start

@@ -192,7 +192,7 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
     const Run<Real> run{p, group, scratch, clock};
     const bool contacts = p.wanted && p.wanted->of_contacts && p.tables.has_contacts;
     const auto* wanted = contacts ? p.wanted : nullptr;
-    if (contacts) p.kernels.observer->clear(p.tables, group, scratch, *wanted);
+    if (p.wanted) p.kernels.observer->clear(p.tables, group, scratch, *p.wanted);
     tree_steps(run, steps - last, last == 0 ? wanted : nullptr);
     if (p.wanted) look_at_start(p, group, scratch);
     tree_steps(run, last, wanted);

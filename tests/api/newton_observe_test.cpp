@@ -57,6 +57,22 @@ TEST_CASE("worlds of the newton solver have some observers", "[fast][newton]") {
         Approx(kAboutHinge * std::pow(turn * 0.01, 2) / 2).epsilon(1e-3));
 }
 
+TEST_CASE("where nothing can touch, no contacts are observed", "[fast][newton]") {
+  BatchOptions options = options_of(widest_tables().front(), 2);
+  options.observe.what = {Observer::contacts, Observer::touching, Observer::penetration};
+  Batch batch(compile(newton_pendulum()), options);
+  for (int i = 0; i < 3; ++i) {
+    batch.step();
+    for (const Observed what :
+         {Observed::contact_count, Observed::touching, Observed::penetration}) {
+      Numbers out(batch.size(what));
+      batch.read(what, out);
+      CHECK(out == Numbers(out.size(), 0.0));
+    }
+    CHECK(batch.step_contacts(1).empty());
+  }
+}
+
 // A crate at rest on a slope, and a ball on a hinge that hangs clear of it.
 TEST_CASE("contacts of the newton solver carry what rests on them", "[fast][newton]") {
   Scene scene = newton_scene();
