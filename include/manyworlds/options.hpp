@@ -84,9 +84,9 @@ struct Options {
   double dt = 1.0 / 60.0;              // s, one step
   int substeps = 4;                    // of the solver and of the integrator, per step
   Eigen::Vector3d gravity{0, 0, -10};  // m/s^2 (planar scenes: set {0, -10, 0})
-  Eigen::Vector3d wind{0, 0,
-                       0};  // m/s, of the air that Body::linear_drag is against, and the medium
-  double density = 1000;    // kg/m^3 or kg/m^2, for shapes that give none
+  // m/s, of the air that Body::linear_drag is against, and of the medium.
+  Eigen::Vector3d wind{0, 0, 0};
+  double density = 1000;  // kg/m^3 or kg/m^2, for shapes that give none
   Integrator integrator = Integrator::symplectic_euler;
   Medium medium = {};
   // Default: splitting with symplectic_euler and the Verlets, which take nothing else but

@@ -56,7 +56,7 @@ class TreeCollector {
     for (const Tendon& tendon : scene_.tendons) add_tendon(tendon);
     add_actuators();
     const Medium& medium = scene_.options.medium;
-    if (medium != Medium{}) builder_.put_into(medium.density, medium.viscosity);
+    if (medium != Medium{}) builder_.add_drag(medium);
     const SolverOptions& o = scene_.options.solver;
     plan_.trees = builder_.finish(
         h_, {iterations_of(o), o.line_search_iterations, o.tolerance, o.line_search_tolerance, 0});

@@ -68,7 +68,7 @@ void TreeBuilder::add(const NewTreeJoint& joint) {
   trees_.coordinates += kernels::coordinates_of(joint.kind);
 }
 
-void TreeBuilder::put_into(double density, double viscosity) {
+void TreeBuilder::add_drag(const Medium& medium) {
   for (const NewLink& link : links_) {
     auto& out = trees_.drags.emplace_back();
     const Vec3& moments = link.moments;
@@ -77,12 +77,12 @@ void TreeBuilder::put_into(double density, double viscosity) {
       const double square = moments.sum() - 2 * moments[i];
       box[i] = std::sqrt(std::max(square, kLeastMoment) / link.mass * 6);
     }
-    const double size = box.mean(), viscous = std::numbers::pi * size * viscosity;
+    const double size = box.mean(), viscous = std::numbers::pi * size * medium.viscosity;
     out.viscous = 3 * viscous, out.spin_viscous = viscous * size * size;
     for (int i = 0; i < 3; ++i) {
       const double a = box[(i + 1) % 3], b = box[(i + 2) % 3];
-      out.speed[i] = density * a * b / 2;
-      out.spin[i] = density * box[i] * (std::pow(a, 4) + std::pow(b, 4)) / 64;
+      out.speed[i] = medium.density * a * b / 2;
+      out.spin[i] = medium.density * box[i] * (std::pow(a, 4) + std::pow(b, 4)) / 64;
     }
   }
 }

@@ -85,9 +85,8 @@ class TreeBuilder {
   int add(const NewLink& link);
   void add(const NewTreeJoint& joint);  // of the link that was added last
   void add(const NewLength& tendon);
-  int dof_of(int coordinate) const;  // of a hinge or slide
-  // Drag of a medium of that density, kg/m^3, and viscosity, Pa s, on all links.
-  void put_into(double density, double viscosity);
+  int dof_of(int coordinate) const;     // of a hinge or slide
+  void add_drag(const Medium& medium);  // on all links
   // `newton`: without its scale.
   PlanTrees finish(double dt, const kernels::NewtonOptions<double>& newton);
 

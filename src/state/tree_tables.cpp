@@ -80,13 +80,12 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     drags_.push_back(to);
   }
   pair_dofs_ = trees.pair_dofs;
-  // More dofs than bits have trees without rows alone, which need no such sets.
-  for (const auto& dof : trees.dofs) {
-    if (trees.dofs.size() > kernels::kMaxTreeDofs) break;
-    const auto parent = static_cast<std::size_t>(dof.parent);
-    ancestors_.push_back(dof.parent < 0 ? 0 : ancestors_[parent] | std::uint64_t{1} << parent);
-  }
   table_.has_rows = !trees.limits.empty() || !trees.pairs.empty();
+  for (std::size_t k = 0; table_.has_rows && k < trees.dofs.size(); ++k) {
+    const auto parent = static_cast<std::size_t>(trees.dofs[k].parent);
+    const bool first = trees.dofs[k].parent < 0;
+    ancestors_.push_back(first ? 0 : ancestors_[parent] | std::uint64_t{1} << parent);
+  }
   table_.elliptic = trees.elliptic;
   table_.impedance_ratio = static_cast<Real>(trees.impedance_ratio);
   table_.stages = 1;
