@@ -109,3 +109,23 @@ def test_other_worlds_have_none():
         "is given, which takes the newton solver, not tgs-soft",
         "is joint_force, which takes the newton solver, not tgs-soft",
     }
+
+
+def test_cones_media_and_implicit_steps():
+    scene = arm()
+    scene.options.solver.cone = "elliptic"
+    still = mw.Batch(scene, worlds=1)
+    scene.options.medium = mw.Medium(density=50, viscosity=0.1)
+    wet = mw.Batch(scene, worlds=1)
+    scene.options.integrator = "implicit_fast"
+    with pytest.raises(mw.SceneError, match="none with implicit-fast yet"):
+        mw.Batch(scene, worlds=1)
+    scene.options.medium = mw.Medium()
+    implicit = mw.Batch(scene, worlds=1)
+    speeds = []
+    for batch in (still, wet, implicit):
+        batch.set("generalized_velocity", 1.0)
+        batch.step(20)
+        assert np.isfinite(batch.get("position")).all()
+        speeds.append(np.abs(batch.get("generalized_velocity")).sum())
+    assert speeds[1] < speeds[0]

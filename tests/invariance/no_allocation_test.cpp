@@ -190,7 +190,12 @@ TEST_CASE("stepping by any solver allocates nothing", "[fast][allocation][solver
 }
 
 TEST_CASE("stepping trees allocates nothing", "[fast][allocation][newton]") {
-  for (const Scene& scene : {newton_pendulum(), newton_robot()}) {
+  Scene wet = newton_robot();
+  wet.options.solver.cone = FrictionCone::elliptic;
+  wet.options.medium = {.density = 100, .viscosity = 0.2};
+  Scene implicit = newton_robot();
+  implicit.options.integrator = Integrator::implicit_fast;
+  for (const Scene& scene : {newton_pendulum(), newton_robot(), wet, implicit}) {
     for (const Table& table : widest_tables()) {
       Batch batch(compile(scene), options_of(table, 40));
       batch.step();

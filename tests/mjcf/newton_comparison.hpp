@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <optional>
 #include <string>
 
 #include "tests/support/tables.hpp"
@@ -14,18 +13,14 @@
 namespace manyworlds::test {
 
 // Both solve until the numbers go no closer to the minimum. Costs fall with the square of what the
-// accelerations are off, and only those of pyramids are exact after the last step.
-inline constexpr compare::Settings kConverged{1e-14, 5};
-inline compare::Settings converged(const std::string& xml) {
-  if (xml.find("elliptic") == std::string::npos) return kConverged;
-  return {1e-26, 5};
-}
+// accelerations are off.
+inline constexpr compare::Settings kConverged{1e-26, 5};
 
 inline compare::Kernels kernels_of(const Table& table) { return {table.precision, table.isa}; }
 
 inline compare::Pair pair_of(const std::string& xml,
-                             const std::optional<compare::Settings>& settings = {}) {
-  return compare::Pair(MjcfFiles::of_string(xml), settings.value_or(converged(xml)));
+                             const compare::Settings& settings = kConverged) {
+  return compare::Pair(MjcfFiles::of_string(xml), settings);
 }
 
 // Of the accelerations under constraints, and of all next positions and velocities.

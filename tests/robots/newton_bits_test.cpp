@@ -119,6 +119,30 @@ TEST_CASE("a world of robots has its bits wherever it is in a batch", "[fast][bi
   }
 }
 
+TEST_CASE("robots have their bits under other options, too", "[fast][bits][robots]") {
+  constexpr int kFew = 19;
+  for (const Scene& scene : robots_of_other_options()) {
+    const Plan plan = compile(scene);
+    for (const Precision precision : {Precision::f32, Precision::f64}) {
+      std::vector<std::uint64_t> reference;
+      for (const Table& table : all_tables()) {
+        if (table.precision != precision) continue;
+        INFO(scene.name << ", " << name(table));
+        const auto result = walked(plan, options_of(table, kFew, 2), 0, 60);
+        if (reference.empty()) reference = result;
+        CHECK(result == reference);
+        for (const int first : {1, 9, 18}) {
+          const int worlds = std::min(6, kFew - first);
+          const auto part = walked(plan, options_of(table, worlds), first, 60);
+          CHECK(std::equal(part.begin(), part.end(), reference.begin() + first));
+        }
+      }
+      std::sort(reference.begin(), reference.end());
+      CHECK(std::unique(reference.begin(), reference.end()) == reference.end());
+    }
+  }
+}
+
 TEST_CASE("robots beside other kinds of worlds keep their bits", "[fast][bits][robots]") {
   Scene lone = newton_scene();
   lone.add(ground(Space::spatial, 0.7));

@@ -121,4 +121,19 @@ inline Scene robots() {
   return scene;
 }
 
+// The same with options that take other ways through the step.
+inline std::vector<Scene> robots_of_other_options() {
+  Scene wet = robots();
+  wet.name = "round cones in a medium";
+  wet.options.solver.cone = FrictionCone::elliptic;
+  wet.options.medium = {.density = 100, .viscosity = 0.2};
+  wet.options.wind = {1, 0.5, 0};
+  Scene stiff = robots();
+  stiff.name = "round cones and implicit-fast";
+  stiff.options.solver.cone = FrictionCone::elliptic;
+  stiff.options.solver.impedance_ratio = 4;
+  stiff.options.integrator = Integrator::implicit_fast;
+  return {wet, stiff};
+}
+
 }  // namespace manyworlds::test
