@@ -107,6 +107,7 @@ class Run(unittest.TestCase):
             (("run", "--json", "scenes/mjcf/box_pile.xml"), {"MW_MJCF": "ON", "MW_RECORD": "OFF"}),
             (("plan", "folder/model"), {"MW_MJCF": "ON"}),
             (("model", "robot.xml"), {"MW_MJCF": "ON"}),
+            (("compare", "robot.xml"), {"MW_MJCF": "ON", "MW_KERNELS": "avx2_f32;avx2_f64"}),
             (("report", "plan", "--quick"), {"MW_REPORT": "ON", "MW_KERNELS": every}),
             (("verify",), {"MW_KERNELS": every, "MW_REPORT": "OFF"}),
             (("run", "ball3d", "--precision", "f64"), {"MW_KERNELS": "avx2_f32;avx2_f64"}),

@@ -88,8 +88,7 @@ std::vector<OptionLine> set_options(const Options& options) {
   return out;
 }
 
-// ---- JSON
-// -----------------------------------------------------------------------------------------
+// As JSON.
 
 // An end of a range: null where it is infinite.
 Json end_json(double end) { return std::isfinite(end) ? Json(end) : Json(); }
@@ -180,8 +179,7 @@ Json to_json(const Job& job, const std::vector<std::string>& warnings) {
           {"left_out", warnings}};
 }
 
-// ---- text
-// -----------------------------------------------------------------------------------------
+// As text.
 
 std::string range_text(double low, double high) {
   return fmt::format("{:.6g} to {:.6g}", low, high);

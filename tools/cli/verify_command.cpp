@@ -263,7 +263,7 @@ void print_head(const VerifyOptions& options) {
   fmt::print("  saved     half of the steps, a snapshot, the rest in another batch\n");
   fmt::print("  reset     after a third of the run, and all over\n");
   fmt::print("  frozen    beside a world that a NaN force froze half way\n");
-  fmt::print("Robots get random controls every 5 steps, and resets after 500.\n");
+  fmt::print("Robots get random controls every 5 steps, and resets at random times.\n");
   if (!missing.empty()) fmt::print("Not on this CPU or not in this build: {}\n", missing);
   fmt::print("\n{:<14}{:<6}", "scene", "");
   for (const char* name : kNames) fmt::print("{:>9}", name);
