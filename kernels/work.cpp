@@ -122,9 +122,18 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
   take(w.axis, kTwistRows * tree.dofs);
   take(w.velocity, kTwistRows * tree.links), take(w.rate, kTwistRows * tree.links);
   take(w.force, kTwistRows * tree.links), take(w.inertia, kInertiaRows * tree.links);
-  take(w.matrix, tree.entries), take(w.load, tree.dofs);
+  take(w.load, tree.dofs), take(w.diagonal, tree.dofs);
   take(w.next, tree.coordinates + tree.dofs);
   if (tree.implicit) take(w.free, tree.dofs);
+  const auto links = static_cast<std::size_t>(tree.links);
+  const auto dofs = static_cast<std::size_t>(tree.dofs);
+  c.take(w.stale, links), c.take(w.is_held, links);
+  if (tree.by_links) {
+    take(w.beyond, kArticulatedRows * tree.links);
+    take(w.response, kTwistRows * tree.dofs), take(w.inverse, tree.dofs);
+  } else {
+    take(w.matrix, tree.entries);
+  }
   if (tree.stages > 1) {
     take(w.start, tree.coordinates + tree.dofs), take(w.displacement, tree.dofs);
     take(w.stage_rate, 2 * tree.dofs), take(w.rate_sum, 2 * tree.dofs);
@@ -136,13 +145,23 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
     contacts += t.pair_class[i].count * (is_multi(t.pair_class[i].list) ? Isotropic::kMulti : 1);
   }
   c.take(w.contacts, static_cast<std::size_t>(contacts));
-  take(w.column, 3 * tree.dofs);
-  take(w.stiffness, tree.dofs * (tree.dofs + 1) / 2);
-  const auto dofs = static_cast<std::size_t>(tree.dofs);
-  c.take(w.coupled, dofs), c.take(w.listed, dofs), c.take(w.counts, dofs);
-  c.take(w.entries, dofs * dofs / 2);
-  take(w.guess, tree.dofs), take(w.balance, tree.dofs), take(w.row_load, tree.dofs);
-  take(w.direction, tree.dofs), take(w.reach, tree.dofs);
+  take(w.guess, tree.dofs), take(w.row_load, tree.dofs);
+  take(w.direction, tree.dofs), take(w.descent, tree.dofs);
+  if (tree.by_links) {
+    take(w.held, kArticulatedRows * tree.links);
+    take(w.momentum, kTwistRows * tree.links), take(w.reaction, kTwistRows * tree.links);
+    if (tree.couplings == 0) return;
+    take(w.pending, kTwistRows * tree.dofs), take(w.scaled, tree.dofs);
+    take(w.spread, tree.couplings * tree.dofs), take(w.multiplier, tree.couplings);
+    take(w.schur, tree.couplings * (tree.couplings + 1) / 2);
+    c.take(w.reached, static_cast<std::size_t>(tree.couplings));
+  } else {
+    take(w.column, 3 * tree.dofs);
+    take(w.stiffness, tree.dofs * (tree.dofs + 1) / 2);
+    c.take(w.coupled, dofs), c.take(w.listed, dofs), c.take(w.counts, dofs);
+    c.take(w.entries, dofs * dofs / 2);
+    take(w.balance, tree.dofs), take(w.reach, tree.dofs);
+  }
 }
 
 void carve(const Constants& t, Work& w, Carver& c) {

@@ -29,6 +29,8 @@ struct TreeLink {
   std::int32_t root;    // of its tree
   std::int32_t first_joint, joints;
   std::int32_t first_dof, dofs;   // of its own joints
+  std::int32_t last_dof;          // on the way from the world; -1: none
+  std::int32_t first_child, next_child;  // links; the next one with the same parent; -1: none
   bool moves_freely;              // and nothing is jointed to it
   Real position[3], rotation[4];  // of its frame in the parent's at the reference
   Real center[3], principal[4];   // centre of mass and principal axes in its frame
@@ -136,6 +138,10 @@ struct TreeTable {
   // Some forces of velocities are implicit: dampers of dofs, and with `implicit` actuators, too.
   bool damped, implicit;
   std::int32_t stages;  // of the integrator: 1, or 4 of Runge-Kutta
+  // Newton steps by links (kernels/tree/link_space.hpp), with so many rows at most that couple
+  // branches; else in joint space.
+  bool by_links;
+  std::int32_t couplings;
   std::int32_t limits, actuators;
   // Rows of the state: of the coordinates, and of the dofs, each with a velocity and the
   // acceleration of the step before.

@@ -16,6 +16,12 @@ struct PointStiffness {
   Float normal, normal_1, normal_2, tangent_1, tangent_2, tangents;
 };
 
+// The same as a sum of squares: weights times those of motions along directions.
+struct ConeTerms {
+  Vec3 along[3];
+  Float weight[3];
+};
+
 class Cone {
  public:
   MW_INLINE Cone(const TreeContact& c, Real impedance_ratio)
@@ -52,6 +58,19 @@ class Cone {
             of(fma(radial * one, one, round), stick_),
             of(fma(radial * two, two, round), stick_),
             of(radial * one * two, zero)};
+  }
+
+  MW_INLINE ConeTerms terms() const {
+    const Point p = at(load_vec3(c_.residual[0]));
+    const Float zero(Real(0)), unit(Real(1)), one = p.one * p.inverse, two = p.two * p.inverse;
+    const auto of = [&](Float slides, Float sticks) {
+      return select(p.sticks, sticks, select(p.slides, slides, zero));
+    };
+    return {{{unit, of(-(friction_ * one), zero), of(-(friction_ * two), zero)},
+             {zero, of(-two, unit), of(one, zero)},
+             {zero, zero, unit}},
+            {of(slide_, weight_), of(-(slide_ * friction_) * p.gap * p.inverse, stick_),
+             of(zero, stick_)}};
   }
 
   // Adds the derivatives of the cost where the step leads.

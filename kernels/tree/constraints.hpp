@@ -13,23 +13,31 @@ class ConstraintRows {
   Mask find(const Group& g) const { return limits_.find(g) | contacts_.find(); }
   // From here on rows that none of these lanes has are left alone.
   void look_at(std::uint32_t lanes) { limits_.look_at(lanes), contacts_.look_at(lanes); }
-  void start(const Real* a) const { limits_.start(a), contacts_.start(a); }
+  // Of accelerations of dofs, and the twists of links that come of them.
+  void start(const Real* a, const Real* twists) const { limits_.start(a), contacts_.start(twists); }
+  void search(const Real* direction, const Real* twists) const {
+    limits_.search(direction), contacts_.search(twists);
+  }
+  const LimitRows& limits() const { return limits_; }
+  const ContactRows& contacts() const { return contacts_; }
+  MW_INLINE void along(Float step, Float& first, Float& second) const {
+    limits_.along(step, first, second), contacts_.along(step, first, second);
+  }
+  Mask advance(Float step, Mask done) const {
+    return limits_.advance(step, done) | contacts_.advance(step, done);
+  }
+  // Adds J' times the forces.
   void add_forces(Real* load) const { limits_.add_forces(load), contacts_.add_forces(load); }
-  // Which dofs the rows couple, and J' D J of those that push.
+  // In joint space: which dofs the rows couple, and J' D J of those that push.
   void couple(const Stiffness& stiffness) const {
     limits_.couple(stiffness), contacts_.couple(stiffness);
   }
   void add_stiffness(const Stiffness& stiffness) const {
     limits_.add_stiffness(stiffness), contacts_.add_stiffness(stiffness);
   }
-  void search(const Real* direction) const {
-    limits_.search(direction), contacts_.search(direction);
-  }
-  MW_INLINE void along(Float step, Float& first, Float& second) const {
-    limits_.along(step, first, second), contacts_.along(step, first, second);
-  }
-  Mask advance(Float step, Mask done) const {
-    return limits_.advance(step, done) | contacts_.advance(step, done);
+  // By links: of what couples branches.
+  void couple(Couplings& couplings) const {
+    limits_.couple(couplings), contacts_.couple(couplings);
   }
 
  private:

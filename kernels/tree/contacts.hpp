@@ -9,7 +9,7 @@
 
 #include "kernels/tree/compliance.hpp"
 #include "kernels/tree/cone.hpp"
-#include "kernels/tree/dynamics.hpp"
+#include "kernels/tree/couplings.hpp"
 #include "kernels/tree/row_force.hpp"
 #include "kernels/tree/stiffness.hpp"
 
@@ -78,18 +78,19 @@ class ContactRows {
   }
 
   void look_at(std::uint32_t lanes) { lanes_ = lanes; }
-  void start(const Real* a) const {
-    find_change(a, [](Contact& c, int e, Float change) {
+  // The twists of links by accelerations, or along the search.
+  void start(const Real* twists) const {
+    find_change(twists, [](Contact& c, int e, Float change) {
       (change - Float::load(c.reference[e])).store(c.residual[e]);
     });
   }
-  void search(const Real* direction) const {
-    find_change(direction, [](Contact& c, int e, Float change) { change.store(c.change[e]); });
+  void search(const Real* twists) const {
+    find_change(twists, [](Contact& c, int e, Float change) { change.store(c.change[e]); });
   }
 
-  void add_forces(Real* load) const {
-    if (w_.tree.contact_count == 0) return;
-    Real* wrenches = w_.tree.force;
+  bool none() const { return w_.tree.contact_count == 0; }
+  // Wrenches on links by the forces of rows, [link][wrench][lane].
+  void find_wrenches(Real* wrenches) const {
     for (int r = 0; r < t_.tree.links * kTwistRows; ++r) {
       Float(Real(0)).store(wrenches + r * kLanes);
     }
@@ -109,7 +110,11 @@ class ContactRows {
         store(to, s == 0 ? load_wrench(to) + own : load_wrench(to) - own);
       }
     });
-    add_wrenches(t_, w_, wrenches, load);
+  }
+  void add_forces(Real* load) const {
+    if (none()) return;
+    find_wrenches(w_.tree.force);
+    add_wrenches(t_, w_, w_.tree.force, load);
   }
 
   // On B, in the contact's frame.
@@ -157,6 +162,39 @@ class ContactRows {
     });
   }
 
+  // Of links against the world, where links are stale.
+  void hold(const TreeWork& x) const {
+    for (int i = 0; i < t_.tree.links; ++i) x.is_held[i] = x.is_held[i] && !x.stale[i];
+    for_each([&](const Contact& c, const TreePair& pair) {
+      if (pair.link_a >= 0 || !x.stale[pair.link_b]) return;
+      const PointStiffness k = stiffness_of(c, pair);
+      if (!pushes(k)) return;
+      Real* to = link_rows(x.held, pair.link_b, kArticulatedRows);
+      const ArticulatedInertia own = spring_at(load_vec3(c.arm_b[0]), in_world(c, pair, k));
+      bool& held = x.is_held[pair.link_b];
+      store(to, held ? load_articulated(to) + own : own);
+      held = true;
+    });
+  }
+  // Of links against links.
+  void couple(Couplings& couplings) const {
+    for_each([&](const Contact& c, const TreePair& pair) {
+      if (pair.link_a < 0) return;
+      for_each_term(c, pair, [&](Vec3 along, Float weight) {
+        const Mask acts = Float(Real(0)) < weight;
+        if ((bits(acts) & lanes_) == 0) return;
+        Vec3 v = load_vec3(c.frame[0]) * along.x;
+        if (pair.cone != ContactCone::frictionless) {
+          v = fma(load_vec3(c.frame[6]), along.z, fma(load_vec3(c.frame[3]), along.y, v));
+        }
+        v = select(acts, v, zero_of<Vec3>());
+        couplings.add_wrench(pair.link_b, {cross(load_vec3(c.arm_b[0]), v), v});
+        couplings.add_wrench(pair.link_a, {cross(v, load_vec3(c.arm_a[0])), -v});
+        couplings.finish(weight);
+      });
+    });
+  }
+
   void along(Float step, Float& first, Float& second) const {
     for_each([&](const Contact& c, const TreePair& pair) {
       if (pair.cone == ContactCone::elliptic) return cone(c).add_along(step, first, second);
@@ -166,11 +204,14 @@ class ContactRows {
   Mask advance(Float step, Mask done) const {
     Mask changed = mask_from_bits(0);
     for_each([&](Contact& c, const TreePair& pair) {
+      Mask own = mask_from_bits(0);
       if (pair.cone == ContactCone::elliptic) {
-        changed = changed | cone(c).advance(c.residual[0], step, done);
-        return;
+        own = cone(c).advance(c.residual[0], step, done);
+      } else {
+        for (int e = 0; e < rows_of(pair); ++e) own = own | row(c, e).advance(step, done);
       }
-      for (int e = 0; e < rows_of(pair); ++e) changed = changed | row(c, e).advance(step, done);
+      if (pair.link_a < 0 && any(own)) w_.tree.stale[pair.link_b] = true;
+      changed = changed | own;
     });
     return changed;
   }
@@ -227,11 +268,9 @@ class ContactRows {
     return {{normal + one, normal - one, normal + two, normal - two}};
   }
   template <class Put>
-  MW_INLINE void find_change(const Real* x, Put put) const {
-    if (w_.tree.contact_count == 0) return;
-    find_twists(t_, w_, x, w_.tree.rate);
+  MW_INLINE void find_change(const Real* twists, Put put) const {
     for_each([&](Contact& c, const TreePair& pair) {
-      const Edges change = along_edges(pair, c, relative(c, pair, w_.tree.rate));
+      const Edges change = along_edges(pair, c, relative(c, pair, twists));
       for (int e = 0; e < rows_of(pair); ++e) put(c, e, change.along[e]);
     });
   }
@@ -246,6 +285,37 @@ class ContactRows {
     const Float mu = Float::load(c.friction), mu2 = mu * mu;
     return {(s[0] + s[1]) + (s[2] + s[3]), mu * (s[0] - s[1]),  mu * (s[2] - s[3]),
             mu2 * (s[0] + s[1]),           mu2 * (s[2] + s[3]), zero};
+  }
+
+  // The same in world axes.
+  static MW_INLINE Sym3 in_world(const Contact& c, const TreePair& pair, const PointStiffness& k) {
+    const Float zero(Real(0)), minus(Real(-1));
+    const Vec3 n = load_vec3(c.frame[0]);
+    const auto add = [&](Vec3 a, Vec3 b, const Sym3& to) { return fnma(a * minus, b, to); };
+    const Sym3 none{zero, zero, zero, zero, zero, zero};
+    if (pair.cone == ContactCone::frictionless) return add(n * k.normal, n, none);
+    const Vec3 one = load_vec3(c.frame[3]), two = load_vec3(c.frame[6]);
+    Vec3 by_one = fma(one, k.tangent_1, n * k.normal_1);
+    Vec3 by_two = fma(two, k.tangent_2, n * k.normal_2);
+    if (pair.cone == ContactCone::elliptic) {
+      by_one = fma(two, k.tangents, by_one), by_two = fma(one, k.tangents, by_two);
+    }
+    const Vec3 by_n = fma(two, k.normal_2, fma(one, k.normal_1, n * k.normal));
+    return add(by_two, two, add(by_one, one, add(by_n, n, none)));
+  }
+  // visit(direction in the contact's frame, weight) of what J' D J is the sum of.
+  template <class Visit>
+  MW_INLINE void for_each_term(const Contact& c, const TreePair& pair, Visit visit) const {
+    const Float zero(Real(0)), one(Real(1));
+    if (pair.cone == ContactCone::frictionless) return visit({one, zero, zero}, row(c, 0).stiffness());
+    if (pair.cone == ContactCone::elliptic) {
+      const ConeTerms terms = cone(c).terms();
+      for (int i = 0; i < 3; ++i) visit(terms.along[i], terms.weight[i]);
+      return;
+    }
+    const Float mu = Float::load(c.friction);
+    visit({one, mu, zero}, row(c, 0).stiffness()), visit({one, -mu, zero}, row(c, 1).stiffness());
+    visit({one, zero, mu}, row(c, 2).stiffness()), visit({one, zero, -mu}, row(c, 3).stiffness());
   }
 
   MW_INLINE bool pushes(const PointStiffness& k) const {

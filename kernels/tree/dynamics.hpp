@@ -118,12 +118,26 @@ inline void add_actuators(const Constants& t, const Group& g, const Work& w) {
   }
 }
 
-// From the tips to the roots: the rows of the joint-space inertia, and the generalised forces.
-inline void project(const Constants& t, const Group& g, const Work& w) {
+// Generalised forces, from the tips to the roots.
+inline void project_wrenches(const Constants& t, const Group& g, const Work& w) {
+  for (int i = t.tree.links - 1; i >= 0; --i) {
+    const TreeLink& link = t.tree.link[i];
+    const Wrench wrench = load_wrench(link_rows(w.tree.force, i, kTwistRows));
+    for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
+      const Float passive = passive_force(t, g, t.tree.dof[k], k);
+      (passive - dot(load_twist(axis_of(w, k)), wrench)).store(w.tree.load + k * kLanes);
+    }
+    if (link.parent < 0) continue;
+    Real* below = link_rows(w.tree.force, link.parent, kTwistRows);
+    store(below, load_wrench(below) + wrench);
+  }
+}
+
+// The rows of the joint-space inertia, from composite rigid bodies.
+inline void find_matrix(const Constants& t, const Work& w) {
   for (int i = t.tree.links - 1; i >= 0; --i) {
     const TreeLink& link = t.tree.link[i];
     const SpatialInertia inertia = load_inertia(link_rows(w.tree.inertia, i, kInertiaRows));
-    const Wrench wrench = load_wrench(link_rows(w.tree.force, i, kTwistRows));
     for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
       const Dof& dof = t.tree.dof[k];
       const Twist axis = load_twist(axis_of(w, k));
@@ -134,13 +148,10 @@ inline void project(const Constants& t, const Group& g, const Work& w) {
         row += kLanes;
         dot(load_twist(axis_of(w, j)), f).store(row);
       }
-      (passive_force(t, g, dof, k) - dot(axis, wrench)).store(w.tree.load + k * kLanes);
     }
     if (link.parent < 0) continue;
     Real* beyond = link_rows(w.tree.inertia, link.parent, kInertiaRows);
     store(beyond, load_inertia(beyond) + inertia);
-    Real* below = link_rows(w.tree.force, link.parent, kTwistRows);
-    store(below, load_wrench(below) + wrench);
   }
 }
 

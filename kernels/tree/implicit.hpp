@@ -8,7 +8,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Adds to M, h times, how much less actuators push where their dofs are faster. One at an end of
+// Adds to the diagonal, h times, how much less actuators push where their dofs are faster. One at an end of
 // its range does not follow.
 inline void add_resistance(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.actuators; ++i) {
@@ -17,7 +17,7 @@ inline void add_resistance(const Constants& t, const Group& g, const Work& w) {
     const Float gain = -fma(Float(a.gain[2]), control, Float(a.bias[2]));
     const Mask follows = (Float(a.low) < force) & (force < Float(a.high));
     const Float less = Float(t.h * a.gear * a.gear) * select(follows, gain, Real(0));
-    Real* diagonal = w.tree.matrix + t.tree.dof[a.dof].entry * kLanes;
+    Real* diagonal = w.tree.diagonal + a.dof * kLanes;
     (Float::load(diagonal) + less).store(diagonal);
   }
 }
@@ -26,18 +26,21 @@ inline void add_resistance(const Constants& t, const Group& g, const Work& w) {
 class FreeLink {
  public:
   MW_INLINE FreeLink(const Constants& t, const Work& w, int link)
-      : t_(t), w_(w), first_(t.tree.link[link].first_dof), link_(link) {}
+      : t_(t),
+        w_(w),
+        inertia_(load_inertia(link_rows(w.tree.inertia, link, kInertiaRows))),
+        first_(t.tree.link[link].first_dof),
+        link_(link) {}
 
   // Solves (M + h dC/dv) a = load, M with dampers, and leaves a in `out`, [dof][lane].
   void solve(const Real* load, Real* out) const {
-    const SpatialInertia inertia = load_inertia(link_rows(w_.tree.inertia, link_, kInertiaRows));
     const FramePose at = load_pose(w_, link_);
     const Vec3 spin = load_twist(link_rows(w_.tree.velocity, link_, kTwistRows)).w;
     const auto momentum = [&](Vec3 x) {  // about the joint
-      const Wrench f = mul(inertia, Twist{x, cross(at.x, x)});
+      const Wrench f = mul(inertia_, Twist{x, cross(at.x, x)});
       return f.n - cross(at.x, f.f);
     };
-    const Vec3 arm = inertia.moment - at.x * inertia.mass;  // mass times that of its centre
+    const Vec3 arm = inertia_.moment - at.x * inertia_.mass;  // mass times that of its centre
     const Vec3 own_momentum = momentum(spin), own_speed = cross(spin, arm);
     const Float h(t_.h);
     Vec3 linear[3], angular[3], mixed[3];  // columns of the angular dofs; rows of M
@@ -67,8 +70,7 @@ class FreeLink {
  private:
   MW_INLINE Vec3 axis_at(int j) const { return load_twist(axis_of(w_, first_ + 3 + j)).w; }
   MW_INLINE Float entry(int i, int j) const {
-    const int row = i > j ? i : j, before = i > j ? i - j : j - i;
-    return Float::load(w_.tree.matrix + (t_.tree.dof[first_ + row].entry + before) * kLanes);
+    return dot(load_twist(axis_of(w_, first_ + i)), mul(inertia_, load_twist(axis_of(w_, first_ + j))));
   }
   // Of a matrix with these columns, by Cramer's rule.
   static MW_INLINE Vec3 solve3(const Vec3 (&c)[3], Vec3 b) {
@@ -79,6 +81,7 @@ class FreeLink {
 
   const Constants& t_;
   const Work& w_;
+  const SpatialInertia inertia_;
   const int first_, link_;
 };
 

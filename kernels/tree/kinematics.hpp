@@ -11,6 +11,7 @@ using TreeLink = kernels::TreeLink<Real>;
 using TreeJoint = kernels::TreeJoint<Real>;
 using Dof = kernels::TreeDof<Real>;
 using kernels::TreeJointKind;
+using DofBits = std::uint64_t;
 
 MW_INLINE Real* coordinate_of(const Constants& t, const Group& g, int coordinate) {
   return g.state + (t.tree.first_coordinate + coordinate) * kLanes;
@@ -21,6 +22,11 @@ MW_INLINE Real* velocity_of(const Constants& t, const Group& g, int dof) {
 }
 MW_INLINE Real* acceleration_of(const Constants& t, const Group& g, int dof) {
   return velocity_of(t, g, dof) + kLanes;
+}
+// visit(row of dof k) of [dof][lane] arrays.
+template <class Visit>
+MW_INLINE void for_each_dof(const Constants& t, Visit visit) {
+  for (int k = 0; k < t.tree.dofs; ++k) visit(k * kLanes);
 }
 MW_INLINE Real* axis_of(const Work& w, int dof) { return w.tree.axis + dof * kTwistRows * kLanes; }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/tree/compliance.hpp"
+#include "kernels/tree/couplings.hpp"
 #include "kernels/tree/row_force.hpp"
 #include "kernels/tree/stiffness.hpp"
 
@@ -10,7 +11,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class LimitRows {
  public:
-  MW_INLINE LimitRows(const Constants& t, const Work& w) : t_(t), rows_(w.tree.limit_rows) {}
+  MW_INLINE LimitRows(const Constants& t, const Work& w) : t_(t), rows_(w.tree.limit_rows), stale_(w.tree.stale) {}
 
   // Returns lanes that have any.
   MW_INLINE Mask find(const Group& g) const {
@@ -74,6 +75,27 @@ class LimitRows {
       }
     });
   }
+  // The same of rows of single dofs, on a diagonal [dof][lane], and of the others.
+  MW_INLINE void add_stiffness(Real* diagonal) const {
+    for_each([&](Row& row, const Limit& limit) {
+      if (limit.terms > 1 || !pushes(row)) return;
+      const Term& term = t_.tree.term[limit.first_term];
+      Real* to = diagonal + term.dof * kLanes;
+      const Float share(term.coefficient * term.coefficient);
+      fma(share, view(row).stiffness(), Float::load(to)).store(to);
+    });
+  }
+  MW_INLINE void couple(Couplings& couplings) const {
+    for_each([&](Row& row, const Limit& limit) {
+      if (limit.terms == 1 || !pushes(row)) return;
+      const Float weight = view(row).stiffness(), zero(Real(0));
+      for (int i = 0; i < limit.terms; ++i) {
+        const Term& term = t_.tree.term[limit.first_term + i];
+        couplings.add_force(term.dof, select(zero < weight, Float(term.coefficient), zero));
+      }
+      couplings.finish(weight);
+    });
+  }
   MW_INLINE void search(const Real* direction) const {
     for_each([&](Row& row, const Limit& limit) {
       (Float(limit.side) * along(limit, direction)).store(row.change);
@@ -87,7 +109,11 @@ class LimitRows {
   // push.
   MW_INLINE Mask advance(Float step, Mask done) const {
     Mask changed = mask_from_bits(0);
-    for_each([&](Row& row, const Limit&) { changed = changed | view(row).advance(step, done); });
+    for_each([&](Row& row, const Limit& limit) {
+      const Mask own = view(row).advance(step, done);
+      if (limit.terms == 1 && any(own)) stale_[t_.tree.dof[t_.tree.term[limit.first_term].dof].link] = true;
+      changed = changed | own;
+    });
     return changed;
   }
 
@@ -123,6 +149,7 @@ class LimitRows {
   const Constants& t_;
   std::uint32_t lanes_ = kAllLanes;
   Row* rows_;
+  bool* stale_;  // [link]
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

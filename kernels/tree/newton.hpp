@@ -1,35 +1,27 @@
 // The newton solver: accelerations that minimise
 //   1/2 (a - a0)' M (a - a0) + sum of the costs of rows,   M a0 = forces,
 // by Newton steps with the exact Hessian M + J' D J and an exact line search (Todorov 2014). Lanes
-// that are done keep their numbers until all are.
+// that are done keep their numbers until all are. A space (joint_space.hpp, link_space.hpp) knows M.
 #pragma once
 
-#include "kernels/tree/factor.hpp"
-#include "kernels/tree/stiffness.hpp"
+#include "kernels/tree/link_space.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Relative to a number, a change that is none.
 constexpr Real kSameStep = sizeof(Real) == 4 ? Real(2e-7) : Real(1e-15);
 
-// visit(row of dof k) of [dof][lane] arrays.
-template <class Visit>
-MW_INLINE void for_each_dof(const Constants& t, Visit visit) {
-  for (int k = 0; k < t.tree.dofs; ++k) visit(k * kLanes);
-}
-
 // The step along the search at which the cost is least: where its slope, which starts at `slope` <
 // 0 and never falls, is 0, by Newton's method within the bracket found so far.
-template <class Rows>
-MW_INLINE Float line_search(const Constants& t, const Rows& rows, Float slope, Float own_slope,
-                            Float own_curvature, Mask done) {
+inline Float line_search(const Constants& t, const ConstraintRows& rows, Float slope,
+                         const SmoothCost& smooth, Mask done) {
   constexpr Real kFar = Real(1e30);
   const kernels::NewtonOptions<Real>& options = t.tree.newton;
   const Float zero(Real(0)), enough = abs(slope) * Float(options.line_tolerance);
   Float step(Real(1)), low = zero, high(kFar);
   Mask found = done;
   for (int i = 0; i < options.line_iterations; ++i) {
-    Float first = fma(step, own_curvature, own_slope), second = own_curvature;
+    Float first = fma(step, smooth.curvature, smooth.slope), second = smooth.curvature;
     rows.along(step, first, second);
     found = found | (abs(first) <= enough);
     if (all(found)) break;
@@ -46,46 +38,41 @@ MW_INLINE Float line_search(const Constants& t, const Rows& rows, Float slope, F
   return step;
 }
 
-// One problem in w.tree: its matrix and load, from the guess in w.tree.guess.
-template <class Rows>
+// One problem in w.tree: its load, from the guess in w.tree.guess.
+template <class Space>
 class Minimiser {
  public:
-  Minimiser(const Constants& t, const Work& w, const Rows& rows)
-      : t_(t), x_(w.tree), rows_(rows), stiffness_(t, w), scale_(t.tree.newton.scale) {}
+  Minimiser(const Constants& t, const Work& w, const ConstraintRows& rows)
+      : t_(t), x_(w.tree), rows_(rows), space_(t, w) {}
 
   // In the lanes of `active`. Leaves the accelerations in w.tree.guess, and in w.tree.row_load what
   // the rows push with.
   void run(Mask active) {
-    multiply(t_, x_.matrix, x_.guess, x_.balance);
-    rows_.start(x_.guess);
-    stiffness_.forget_pattern();
-    const Float tolerance(t_.tree.newton.tolerance);
+    const Float tolerance(t_.tree.newton.tolerance), scale(t_.tree.newton.scale);
+    space_.start(rows_);
     Mask done = !active;
     for (int i = 0; i < t_.tree.newton.iterations && !all(done); ++i) {
       rows_.look_at(bits(!done));
-      find_forces();
-      done = done | !(tolerance <= find_gradient() * scale_);  // not a number: done, too
+      space_.find_gradient(rows_);
+      done = done | !(tolerance <= length_of(x_.descent) * scale);  // not a number: done, too
       if (all(done)) break;
-      const Float slope = find_direction();
-      done = done | !(tolerance <= slope * scale_ * Float(Real(-0.5)));
+      space_.find_direction(rows_);
+      const Float slope = find_slope();
+      done = done | !(tolerance <= slope * scale * Float(Real(-0.5)));
       if (all(done)) break;
-      const Float step = select(done, Real(0), find_step(slope, done));
+      const SmoothCost smooth = space_.search(rows_);
+      const Float step = select(done, Real(0), line_search(t_, rows_, slope, smooth, done));
       // Round cones have no last piece: there the search ends where steps no longer tell.
       const Mask lost = t_.tree.elliptic ? lost_in_rounding(step) : mask_from_bits(0);
-      for_each_dof(t_, [&](int k) {
-        const auto go = [&](Real* to, const Real* way) {
-          const Float from = Float::load(to + k);
-          select(done, from, fma(step, Float::load(way + k), from)).store(to + k);
-        };
-        go(x_.guess, x_.direction), go(x_.balance, x_.reach);
-      });
+      space_.advance(step, done);
       // Where no row has changed on a whole step, the cost was the quadratic that it minimises.
       const Mask whole = (Float(Real(1)) <= step) & (step <= Float(Real(1)));
       const Mask changed = rows_.advance(step, done);
       done = done | (whole & !changed) | lost;
     }
     rows_.look_at(kAllLanes);
-    find_forces();
+    for_each_dof(t_, [&](int k) { Float(Real(0)).store(x_.row_load + k); });
+    rows_.add_forces(x_.row_load);
   }
 
  private:
@@ -97,54 +84,24 @@ class Minimiser {
     });
     return moved <= size * Float(kSameStep);
   }
-  void find_forces() {
-    for_each_dof(t_, [&](int k) { Float(Real(0)).store(x_.row_load + k); });
-    rows_.add_forces(x_.row_load);
-  }
-  // Leaves its opposite in `direction` and `reach`; returns its length.
-  Float find_gradient() {
+  Float length_of(const Real* x) const {
     Float squares(Real(0));
-    for_each_dof(t_, [&](int k) {
-      const Float smooth = Float::load(x_.balance + k) - Float::load(x_.load + k);
-      const Float gradient = smooth - Float::load(x_.row_load + k);
-      squares = fma(gradient, gradient, squares);
-      const Float down = Float(Real(0)) - gradient;  // never -0
-      down.store(x_.direction + k), down.store(x_.reach + k);
-    });
+    for_each_dof(t_, [&](int k) { squares = fma(Float::load(x + k), Float::load(x + k), squares); });
     return sqrt(squares);
   }
-  // The Newton step; returns the slope of the cost along it.
-  Float find_direction() {
-    stiffness_.begin_pattern();
-    rows_.couple(stiffness_);
-    stiffness_.fill_pattern();
-    stiffness_.start(x_.matrix);
-    rows_.add_stiffness(stiffness_);
-    stiffness_.factorise();
-    stiffness_.solve(x_.direction);
+  // Of the cost along the direction.
+  Float find_slope() const {
     Float slope(Real(0));
     for_each_dof(t_, [&](int k) {
-      slope = fnma(Float::load(x_.reach + k), Float::load(x_.direction + k), slope);
+      slope = fnma(Float::load(x_.descent + k), Float::load(x_.direction + k), slope);
     });
     return slope;
-  }
-  Float find_step(Float slope, Mask done) {
-    multiply(t_, x_.matrix, x_.direction, x_.reach);
-    rows_.search(x_.direction);
-    Float own_slope(Real(0)), own_curvature(Real(0));
-    for_each_dof(t_, [&](int k) {
-      const Float d = Float::load(x_.direction + k);
-      own_slope = fma(d, Float::load(x_.balance + k) - Float::load(x_.load + k), own_slope);
-      own_curvature = fma(d, Float::load(x_.reach + k), own_curvature);
-    });
-    return line_search(t_, rows_, slope, own_slope, own_curvature, done);
   }
 
   const Constants& t_;
   const TreeWork& x_;
-  Rows rows_;
-  const Stiffness stiffness_;
-  Float scale_;
+  ConstraintRows rows_;
+  Space space_;
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

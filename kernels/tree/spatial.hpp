@@ -20,6 +20,12 @@ MW_INLINE Twist fma(const Twist& a, Float s, const Twist& c) {
 }
 MW_INLINE Wrench operator+(const Wrench& a, const Wrench& b) { return {a.n + b.n, a.f + b.f}; }
 MW_INLINE Wrench operator-(const Wrench& a, const Wrench& b) { return {a.n - b.n, a.f - b.f}; }
+MW_INLINE Wrench fma(const Wrench& a, Float s, const Wrench& c) {
+  return {fma(a.n, s, c.n), fma(a.f, s, c.f)};
+}
+MW_INLINE Wrench fnma(const Wrench& a, Float s, const Wrench& c) {
+  return {fnma(a.n, s, c.n), fnma(a.f, s, c.f)};
+}
 MW_INLINE Float dot(const Twist& a, const Wrench& b) { return dot(a.w, b.n) + dot(a.v, b.f); }
 // Rate of a twist that a body carries with it, and of a wrench.
 MW_INLINE Twist cross(const Twist& a, const Twist& b) {
@@ -54,7 +60,7 @@ MW_INLINE SpatialInertia spatial_inertia(Float mass, Vec3 c, const Sym3& moments
            fnma(h.y, c.z, moments.yz), fma(h.y, c.y, fma(h.x, c.x, moments.zz))}};
 }
 
-inline constexpr int kTwistRows = 6, kInertiaRows = 10;
+inline constexpr int kTwistRows = 6, kInertiaRows = 10, kArticulatedRows = 21;
 MW_INLINE Twist load_twist(const Real* p) { return {load_vec3(p), load_vec3(p + 3 * kLanes)}; }
 MW_INLINE void store(Real* p, const Twist& a) { store(p, a.w), store(p + 3 * kLanes, a.v); }
 MW_INLINE Wrench load_wrench(const Real* p) { return {load_vec3(p), load_vec3(p + 3 * kLanes)}; }

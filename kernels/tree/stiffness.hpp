@@ -9,8 +9,6 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-using DofBits = std::uint64_t;
-
 class Stiffness {
  public:
   MW_INLINE Stiffness(const Constants& t, const Work& w)

@@ -1,7 +1,5 @@
 // The stages of trees: semi-implicit Euler in joint coordinates, with dampers of dofs and what else
 // is implicit (implicit.hpp) at the end of the step, or Runge-Kutta.
-#include "kernels/tree/constraints.hpp"
-#include "kernels/tree/dynamics.hpp"
 #include "kernels/tree/implicit.hpp"
 #include "kernels/tree/newton.hpp"
 #include "kernels/tree/runge_kutta.hpp"
@@ -11,13 +9,34 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
 
+// (M + diagonal) a = load, in place.
+void solve_smooth(const Constants& t, const Work& w) {
+  const TreeWork& x = w.tree;
+  if (t.tree.by_links) {
+    const ArticulatedBodies bodies(t, w);
+    for (int i = 0; i < t.tree.links; ++i) x.is_held[i] = false;
+    bodies.make_stale(true);
+    bodies.factorise(x.diagonal);
+    bodies.reduce(x.load);
+    bodies.expand(x.load, x.rate);
+    return;
+  }
+  for (int k = 0; k < t.tree.dofs; ++k) {
+    Real* own = x.matrix + t.tree.dof[k].entry * kLanes;
+    (Float::load(own) + Float::load(x.diagonal + k * kLanes)).store(own);
+  }
+  factorise(t, x.matrix);
+  solve_factored(t, x.matrix, x.load);
+}
+
 // The effective acceleration of the substep, with dampers implicit, where the forces were. Where
 // links are is known.
 void find_accelerations(const Constants& t, const Group& g, const Work& w) {
   const TreeWork& x = w.tree;
   find_velocities(t, g, w);
   find_wrenches(t, g, w);
-  project(t, g, w);
+  project_wrenches(t, g, w);
+  if (!t.tree.by_links) find_matrix(t, w);
   add_actuators(t, g, w);
   Mask active = mask_from_bits(0);
   if (t.tree.has_rows) {
@@ -28,23 +47,24 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
     }
     // Where nothing pushes the sum is the same whether other lanes have rows or not.
     for_each_dof(t, [&](int k) { Float(Real(0)).store(x.row_load + k); });
-    if (any(active)) Minimiser<ConstraintRows>(t, w, rows).run(active);
+    if (any(active)) {
+      t.tree.by_links ? Minimiser<LinkSpace>(t, w, rows).run(active)
+                      : Minimiser<JointSpace>(t, w, rows).run(active);
+    }
     for_each_dof(t, [&](int k) {
       (Float::load(x.load + k) + Float::load(x.row_load + k)).store(x.load + k);
     });
   }
   if (t.tree.damped || !all(active)) {
-    for (int k = 0; t.tree.damped && k < t.tree.dofs; ++k) {
-      const Dof& dof = t.tree.dof[k];
-      Real* diagonal = x.matrix + dof.entry * kLanes;
-      fma(Float(t.h), Float(dof.damping), Float::load(diagonal)).store(diagonal);
+    for (int k = 0; k < t.tree.dofs; ++k) {
+      const Real damping = t.tree.damped ? t.tree.dof[k].damping : Real(0);
+      (Float(t.h) * Float(damping)).store(x.diagonal + k * kLanes);
     }
     if (t.tree.implicit) {
       add_resistance(t, g, w);
       for_each_free_link(t, [&](int i) { FreeLink(t, w, i).solve(x.load, x.free); });
     }
-    factorise(t, x.matrix);
-    solve_factored(t, x.matrix, x.load);
+    solve_smooth(t, w);
     if (t.tree.implicit) {
       for_each_free_link(t, [&](int i) {
         const int first = t.tree.link[i].first_dof;

@@ -106,8 +106,8 @@ struct TreeWork {
   Real* velocity;  // [link][twist][lane]
   Real* rate;      // [link][twist][lane], acceleration but for those of the dofs; less gravity
   Real* force;     // [link][wrench][lane]
-  Real* inertia;   // [link][kInertiaRows][lane], with all links beyond it
-  Real* matrix;    // [entry][lane], of the joint-space inertia, then its factors
+  Real* inertia;   // [link][kInertiaRows][lane]; in joint space with all links beyond it
+  Real* diagonal;  // [dof][lane], what is added to that of the joint-space inertia
   Real* load;      // [dof][lane], generalised forces, then accelerations
   Real* free;      // [dof][lane], accelerations of links that move freely; only with implicit_fast
   Real* next;      // [coordinate, then dof][lane], the state after the step
@@ -116,6 +116,23 @@ struct TreeWork {
   Real* displacement;  // [dof][lane], of the stage from the start
   Real* stage_rate;    // [dof][lane] of coordinates, then of velocities
   Real* rate_sum;      // as those
+  // By links (articulated.hpp).
+  Real* held;      // [link][articulated inertia][lane], of its contacts with the world
+  Real* beyond;    // [link][articulated inertia][lane], as its parent feels it
+  Real* response;  // [dof][wrench][lane], to its unit acceleration
+  Real* inverse;   // [dof][lane], 1 / D
+  bool *is_held, *stale;  // [link] it has such contacts; its numbers are to be found anew
+  Real* momentum;  // [link][wrench][lane], its inertia times its acceleration
+  Real* reaction;  // [link][wrench][lane], times that along the search
+  // Of rows that couple branches (couplings.hpp).
+  Real* pending;           // [dof][wrench][lane]
+  Real* spread;            // [row][dof][lane]
+  Real* scaled;            // [dof][lane], the last row of them times 1 / D
+  Real* schur;             // [row][rows up to it][lane]
+  Real* multiplier;        // [row][lane]
+  std::uint64_t* reached;  // [row] dofs
+  // In joint space.
+  Real* matrix;  // [entry][lane], of the joint-space inertia, then its factors
   // The newton solver.
   TreeRow* limit_rows;    // [limit]
   TreeContact* contacts;  // [contact]
@@ -130,6 +147,7 @@ struct TreeWork {
   Real* guess;                      // [dof][lane], accelerations so far
   Real* balance;                    // [dof][lane], M a
   Real* direction;                  // [dof][lane]
+  Real* descent;                    // [dof][lane], the opposite of the gradient
   Real* reach;                      // [dof][lane], M times the direction
   Real* row_load;                   // [dof][lane], J' times the forces of rows
 };

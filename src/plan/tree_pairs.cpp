@@ -17,6 +17,7 @@ static_assert(detail::kMaxNewtonDofs <= kernels::kMaxTreeDofs);
 using kernels::ContactCone;
 
 constexpr double kLeastWeight = 1e-15;
+constexpr int kMaxPoints = 4;  // of a manifold
 
 double share_of_first(const SoftContact& a, const SoftContact& b) {
   if (a.weight < kLeastWeight && b.weight < kLeastWeight) return 0.5;
@@ -57,6 +58,24 @@ class TreePairs {
     }
   }
 
+  // Rows that couple branches, at most: of contacts between links within a tree, and between trees.
+  struct Couplings {
+    int within = 0, between = 0;
+  };
+  Couplings couplings() const {
+    Couplings out;
+    for (const PlanClass& c : plan_.classes) {
+      for (std::size_t i = 0; i < c.a.size(); ++i) {
+        const auto& pair = trees_.pairs[static_cast<std::size_t>(c.first_key) + i];
+        if (pair.link_a < 0) continue;
+        constexpr int kRows[] = {1, 4, 3};  // of a cone
+        const int rows = kRows[static_cast<int>(pair.cone)] * (is_multi(c.list) ? kMaxPoints : 1);
+        (root_of(pair.link_a) == root_of(pair.link_b) ? out.within : out.between) += rows;
+      }
+    }
+    return out;
+  }
+
  private:
   void add(const PlanClass& c, std::size_t i) {
     const auto a = static_cast<std::size_t>(c.a[i]), b = static_cast<std::size_t>(c.b[i]);
@@ -90,6 +109,7 @@ class TreePairs {
     add_dofs(out);
   }
 
+  int root_of(int link) const { return trees_.links[static_cast<std::size_t>(link)].root; }
   int link_of(std::size_t collider) const {
     return link_[static_cast<std::size_t>(plan_.colliders[collider].body)];
   }
@@ -134,6 +154,17 @@ class TreePairs {
   std::vector<int> link_;  // [body with state]
 };
 
+// Newton steps by links take time for each row that couples branches that acts, in joint space for
+// each pair of dofs. Links of a tree seldom touch, trees that can touch do.
+void choose_space(PlanTrees& trees, const TreePairs::Couplings& of_contacts) {
+  constexpr int kMaxCouplings = 512, kRowsPerDof = 4;
+  const auto several = [](const auto& limit) { return limit.terms > 1; };
+  const auto limits = std::count_if(trees.limits.begin(), trees.limits.end(), several);
+  trees.couplings = of_contacts.within + of_contacts.between + static_cast<int>(limits);
+  trees.by_links = trees.couplings <= kMaxCouplings &&
+                   of_contacts.between <= kRowsPerDof * static_cast<int>(trees.dofs.size());
+}
+
 }  // namespace
 
 void collect_tree_pairs(PlanData& plan) {
@@ -141,7 +172,9 @@ void collect_tree_pairs(PlanData& plan) {
   const SolverOptions& solver = plan.scene.options.solver;
   plan.trees.impedance_ratio = solver.impedance_ratio;
   plan.trees.elliptic = solver.cone == FrictionCone::elliptic;
-  TreePairs(plan).run();
+  TreePairs pairs(plan);
+  pairs.run();
+  choose_space(plan.trees, pairs.couplings());
 }
 
 }  // namespace manyworlds

@@ -130,6 +130,14 @@ PlanTrees TreeBuilder::finish(double dt, const kernels::NewtonOptions<double>& n
     }
     add_limits(tendon, weight, dt);
   }
+  for (auto& link : trees_.links) link.first_child = link.next_child = -1;
+  for (int i = count_of(trees_.links) - 1; i >= 0; --i) {
+    auto& link = trees_.links[static_cast<std::size_t>(i)];
+    link.last_dof = last_dof(trees_, link);
+    if (link.parent < 0) continue;
+    auto& parent = trees_.links[static_cast<std::size_t>(link.parent)];
+    link.next_child = parent.first_child, parent.first_child = i;
+  }
   for (auto& link : trees_.links) {
     link.moves_freely = link.joints == 1 &&
                         trees_.joints[static_cast<std::size_t>(link.first_joint)].kind ==

@@ -39,6 +39,9 @@ struct PlanTrees {
   TreeWeights weights;
   int coordinates = 0;
   int entries = 0;  // of the joint-space inertia
+  // How the newton solver works (kernels/data/tree_tables.hpp).
+  bool by_links = true;
+  int couplings = 0;
 };
 
 // The dof that moves a link last, on the way from the world; -1: none.

@@ -32,7 +32,7 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     kernels::TreeLink<Real> to{from.body,   from.parent,
                                from.root,   from.first_joint,
                                from.joints, from.first_dof,
-                               from.dofs,   from.moves_freely,
+                               from.dofs,   from.last_dof, from.first_child, from.next_child, from.moves_freely,
                                {},          {},
                                {},          {}};
     copy(from.position, to.position), copy(from.rotation, to.rotation);
@@ -98,6 +98,8 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
   table_.dofs = static_cast<std::int32_t>(dofs_.size());
   table_.coordinates = trees.coordinates;
   table_.entries = trees.entries;
+  table_.by_links = trees.by_links;
+  table_.couplings = trees.by_links ? trees.couplings : 0;
   table_.first_coordinate = first_coordinate;
   table_.first_dof = first_dof;
 }
