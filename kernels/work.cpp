@@ -119,6 +119,7 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
     c.take(out, static_cast<std::size_t>(rows * kLanes));
   };
   take(w.origin, 3 * tree.links), take(w.pose, 7 * tree.links);
+  take(w.offset, 3 * tree.links);
   take(w.axis, kTwistRows * tree.dofs);
   take(w.velocity, kTwistRows * tree.links), take(w.rate, kTwistRows * tree.links);
   take(w.force, kTwistRows * tree.links), take(w.inertia, kInertiaRows * tree.links);

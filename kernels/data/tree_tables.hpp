@@ -28,12 +28,12 @@ struct TreeLink {
   std::int32_t parent;  // link; -1: the world
   std::int32_t root;    // of its tree
   std::int32_t first_joint, joints;
-  std::int32_t first_dof, dofs;   // of its own joints
-  std::int32_t last_dof;          // on the way from the world; -1: none
+  std::int32_t first_dof, dofs;          // of its own joints
+  std::int32_t last_dof;                 // on the way from the world; -1: none
   std::int32_t first_child, next_child;  // links; the next one with the same parent; -1: none
-  bool moves_freely;              // and nothing is jointed to it
-  Real position[3], rotation[4];  // of its frame in the parent's at the reference
-  Real center[3], principal[4];   // centre of mass and principal axes in its frame
+  bool moves_freely;                     // and nothing is jointed to it
+  Real position[3], rotation[4];         // of its frame in the parent's at the reference
+  Real center[3], principal[4];          // centre of mass and principal axes in its frame
 };
 
 template <class Real>

@@ -12,7 +12,8 @@ inline void put_tree_contact(const Constants& t, const Work& w, const TreeContac
                              std::uint32_t lanes, const ObserverView& o) {
   const kernels::TreePair<Real>& pair = t.tree.pair[c.pair];
   const int root = t.tree.link[pair.link_b].root;
-  const Vec3 place = load_vec3(w.tree.origin + 3 * root * kLanes) + load_vec3(c.arm_b[0]);
+  const Vec3 frame = load_vec3(w.tree.origin + 3 * root * kLanes) + load_pose(w, pair.link_b).x;
+  const Vec3 place = frame + load_vec3(c.arm_b[0]);
   const Vec3 own = force * (Float(t.h) * Float(static_cast<Real>(t.substeps)));
   alignas(64) Real point[3][kLanes], friction[3][kLanes], impulse[kLanes];
   store(point[0], place), own.x.store(impulse);

@@ -34,10 +34,11 @@ MW_INLINE Float friction_of(const Group& g, const kernels::TreePair<Real>& pair)
   return max(max(a, b), Float(kLeastFriction));
 }
 
-// From the origin of the link's tree.
+// From the link's frame.
 MW_INLINE Vec3 arm_of(const Constants& t, const Work& w, int link, Vec3 point) {
   if (link < 0) return zero_of<Vec3>();
-  return point - load_vec3(w.tree.origin + 3 * t.tree.link[link].root * kLanes);
+  const Vec3 origin = load_vec3(w.tree.origin + 3 * t.tree.link[link].root * kLanes);
+  return (point - origin) - load_pose(w, link).x;
 }
 
 // Capsules on a plane have their tangent along them.

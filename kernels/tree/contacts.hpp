@@ -23,7 +23,9 @@ inline void find_twists(const Constants& t, const Work& w, const Real* x, Real* 
   for (int i = 0; i < t.tree.links; ++i) {
     const TreeLink& link = t.tree.link[i];
     Twist v{zero_of<Vec3>(), zero_of<Vec3>()};
-    if (link.parent >= 0) v = load_twist(link_rows(twists, link.parent, kTwistRows));
+    if (link.parent >= 0) {
+      v = from_parent(w, i, load_twist(link_rows(twists, link.parent, kTwistRows)));
+    }
     for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
       v = fma(load_twist(axis_of(w, k)), Float::load(x + k * kLanes), v);
     }
@@ -42,7 +44,7 @@ inline void add_wrenches(const Constants& t, const Work& w, Real* wrenches, Real
     }
     if (link.parent < 0) continue;
     Real* below = link_rows(wrenches, link.parent, kTwistRows);
-    store(below, load_wrench(below) + f);
+    store(below, load_wrench(below) + to_parent(w, i, f));
   }
 }
 
@@ -141,8 +143,12 @@ class ContactRows {
       const Mat3 frame{load_vec3(c.frame[0]), load_vec3(c.frame[3]), load_vec3(c.frame[6])};
       for (int i = 0; i < pair.dofs; ++i) {
         const bool moves_a = dofs[i] < 0;
-        const Twist axis = load_twist(axis_of(w_, moves_a ? ~dofs[i] : dofs[i]));
-        Vec3 v = axis.v + cross(axis.w, load_vec3(moves_a ? c.arm_a[0] : c.arm_b[0]));
+        const int dof = moves_a ? ~dofs[i] : dofs[i];
+        const Twist axis = load_twist(axis_of(w_, dof));
+        const Vec3 from = load_pose(w_, t_.tree.dof[dof].link).x;
+        const Vec3 arm = load_vec3(moves_a ? c.arm_a[0] : c.arm_b[0]);
+        const Vec3 to = load_pose(w_, moves_a ? pair.link_a : pair.link_b).x;
+        Vec3 v = axis.v + cross(axis.w, arm + (to - from));
         if (moves_a) v = -v;
         const Vec3 own{dot(frame.x, v), dot(frame.y, v), dot(frame.z, v)};
         store(w_.tree.column + i * 3 * kLanes, own);
@@ -307,7 +313,8 @@ class ContactRows {
   template <class Visit>
   MW_INLINE void for_each_term(const Contact& c, const TreePair& pair, Visit visit) const {
     const Float zero(Real(0)), one(Real(1));
-    if (pair.cone == ContactCone::frictionless) return visit({one, zero, zero}, row(c, 0).stiffness());
+    if (pair.cone == ContactCone::frictionless)
+      return visit({one, zero, zero}, row(c, 0).stiffness());
     if (pair.cone == ContactCone::elliptic) {
       const ConeTerms terms = cone(c).terms();
       for (int i = 0; i < 3; ++i) visit(terms.along[i], terms.weight[i]);

@@ -1,6 +1,6 @@
 // Rows of the newton solver that couple branches of trees: contacts between two links, limits of
-// several dofs. Where A is what articulated bodies solve (articulated.hpp), J the rows that act and W
-// their weights,
+// several dofs. Where A is what articulated bodies solve (articulated.hpp), J the rows that act and
+// W their weights,
 //   (A + J' W J) x = load   is   A x = load - J' f,   (1 / W + J A^-1 J') f = J A^-1 load.
 // With A^-1 = E D^-1 E' a row is reduced along the ways of its links to the root, E' J', and the
 // matrix of f is 1 / W + (E' J')' D^-1 (E' J'), a sum of squares.
@@ -12,15 +12,19 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class Couplings {
  public:
-  MW_INLINE Couplings(const Constants& t, const Work& w) : t_(t), w_(w), x_(w.tree) {}
+  MW_INLINE Couplings(const Constants& t, const Work& w)
+      : t_(t), w_(w), x_(w.tree), bodies_(t, w) {}
 
   void clear() { count_ = 0, begin(); }
   bool any() const { return count_ > 0; }
 
   // A row is given by these, then finish. It has to be 0 where its weight is.
-  void add_wrench(int link, const Wrench& f) {
+  void add_wrench(int link, Wrench f) {
     const int dof = t_.tree.link[link].last_dof;
     if (dof < 0) return;
+    for (int at = link; at != t_.tree.dof[dof].link; at = t_.tree.link[at].parent) {
+      f = to_parent(w_, at, f);
+    }
     const DofBits own = DofBits(1) << dof;
     Real* to = pending(dof);
     store(to, (waiting_ & own) ? load_wrench(to) + f : f);
@@ -48,7 +52,8 @@ class Couplings {
     }
     for (int r = count_ - 1; r >= 0; --r) {
       Float own = Float::load(f + r * kLanes) * entry(r, r);
-      for (int s = r + 1; s < count_; ++s) own = fnma(entry(s, r), Float::load(f + s * kLanes), own);
+      for (int s = r + 1; s < count_; ++s)
+        own = fnma(entry(s, r), Float::load(f + s * kLanes), own);
       own.store(f + r * kLanes);
     }
     for (int r = 0; r < count_; ++r) {
@@ -85,11 +90,25 @@ class Couplings {
   void reduce() {
     Wrench f{zero_of<Vec3>(), zero_of<Vec3>()};
     int carried = -1;  // the dof that it has come to
+    DofBits done = 0;
     for_each_dof_in(reached_, [&](int k) {
+      if ((done >> k) & 1) return;
       const bool waits = (waiting_ >> k) & 1, here = carried == k;
       Wrench own{zero_of<Vec3>(), zero_of<Vec3>()};
       if (here) own = f;
       if (waits) own = here ? f + load_wrench(pending(k)) : load_wrench(pending(k));
+      const int link = t_.tree.dof[k].link;
+      if (FreeRoot::is(t_, t_.tree.link[link])) {
+        const int first = t_.tree.link[link].first_dof;
+        bodies_.root(link).reduce(own, spread(count_, first));
+        for (int d = first; d < first + FreeRoot::kSize; ++d) {
+          const Float part = Float::load(spread(count_, d));
+          (part * Float::load(x_.inverse + d * kLanes)).store(scaled(d));
+          done |= DofBits(1) << d;
+        }
+        if (here) carried = -1;
+        return;
+      }
       Real* to = spread(count_, k);
       Float force = dot(load_twist(axis_of(w_, k)), own);
       if ((direct_ >> k) & 1) force = force + Float::load(to);
@@ -100,6 +119,9 @@ class Couplings {
       if (here) carried = -1;
       if (parent < 0) return;
       own = fnma(load_wrench(x_.response + k * kTwistRows * kLanes), gives, own);
+      for (int at = link; at != t_.tree.dof[parent].link; at = t_.tree.link[at].parent) {
+        own = to_parent(w_, at, own);
+      }
       if (carried < 0) {
         f = own, carried = parent;
       } else if (carried == parent) {
@@ -123,7 +145,8 @@ class Couplings {
       });
       for (int q = 0; q < s; ++q) {
         // Up to here row `count_` holds L D.
-        sum = fnma(entry(count_, q), s < count_ ? entry(s, q) : entry(count_, q) * entry(q, q), sum);
+        sum =
+            fnma(entry(count_, q), s < count_ ? entry(s, q) : entry(count_, q) * entry(q, q), sum);
       }
       sum.store(schur(count_, s));
     }
@@ -145,6 +168,7 @@ class Couplings {
   const Constants& t_;
   const Work& w_;
   const TreeWork& x_;
+  const ArticulatedBodies bodies_;
   int count_ = 0;
   DofBits waiting_ = 0, direct_ = 0, reached_ = 0;
 };

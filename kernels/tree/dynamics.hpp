@@ -15,8 +15,8 @@ inline void find_velocities(const Constants& t, const Group& g, const Work& w) {
     const TreeLink& link = t.tree.link[i];
     Twist v{zero_of<Vec3>(), zero_of<Vec3>()}, rate = v;
     if (link.parent >= 0) {
-      v = load_twist(link_rows(w.tree.velocity, link.parent, kTwistRows));
-      rate = load_twist(link_rows(w.tree.rate, link.parent, kTwistRows));
+      v = from_parent(w, i, load_twist(link_rows(w.tree.velocity, link.parent, kTwistRows)));
+      rate = from_parent(w, i, load_twist(link_rows(w.tree.rate, link.parent, kTwistRows)));
     }
     const auto gain = [&](int first, int count) {
       Twist own{zero_of<Vec3>(), zero_of<Vec3>()};
@@ -61,9 +61,9 @@ inline void find_wrenches(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.links; ++i) {
     const TreeLink& link = t.tree.link[i];
     const auto& body = constants_of_body(g, link.body);
-    const FramePose at = load_pose(w, i);
-    const Vec3 c = at.x + rotate(at.q, shared(link.center));
-    const Mat3 axes = matrix(mul(at.q, shared(link.principal)));
+    const Quat q = load_pose(w, i).q;
+    const Vec3 c = rotate(q, shared(link.center));
+    const Mat3 axes = matrix(mul(q, shared(link.principal)));
     const Sym3 moments = rotate_diagonal(axes, {body.inertia[0], body.inertia[1], body.inertia[2]});
     const SpatialInertia inertia = spatial_inertia(body.mass, c, moments);
     const Twist v = load_twist(link_rows(w.tree.velocity, i, kTwistRows));
@@ -129,7 +129,7 @@ inline void project_wrenches(const Constants& t, const Group& g, const Work& w) 
     }
     if (link.parent < 0) continue;
     Real* below = link_rows(w.tree.force, link.parent, kTwistRows);
-    store(below, load_wrench(below) + wrench);
+    store(below, load_wrench(below) + to_parent(w, i, wrench));
   }
 }
 
@@ -141,17 +141,19 @@ inline void find_matrix(const Constants& t, const Work& w) {
     for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
       const Dof& dof = t.tree.dof[k];
       const Twist axis = load_twist(axis_of(w, k));
-      const Wrench f = mul(inertia, axis);
+      Wrench f = mul(inertia, axis);
       Real* row = w.tree.matrix + dof.entry * kLanes;
       (dot(axis, f) + Float(dof.armature)).store(row);
+      int at = i;
       for (int j = dof.parent; j >= 0; j = t.tree.dof[j].parent) {
+        for (; at != t.tree.dof[j].link; at = t.tree.link[at].parent) f = to_parent(w, at, f);
         row += kLanes;
         dot(load_twist(axis_of(w, j)), f).store(row);
       }
     }
     if (link.parent < 0) continue;
     Real* beyond = link_rows(w.tree.inertia, link.parent, kInertiaRows);
-    store(beyond, load_inertia(beyond) + inertia);
+    store(beyond, load_inertia(beyond) + moved(inertia, -load_vec3(offset_of(w, i))));
   }
 }
 

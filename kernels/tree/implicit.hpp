@@ -8,8 +8,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Adds to the diagonal, h times, how much less actuators push where their dofs are faster. One at an end of
-// its range does not follow.
+// Adds to the diagonal, h times, how much less actuators push where their dofs are faster. One at
+// an end of its range does not follow.
 inline void add_resistance(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.actuators; ++i) {
     const TreeActuator& a = t.tree.actuator[i];
@@ -34,13 +34,9 @@ class FreeLink {
 
   // Solves (M + h dC/dv) a = load, M with dampers, and leaves a in `out`, [dof][lane].
   void solve(const Real* load, Real* out) const {
-    const FramePose at = load_pose(w_, link_);
     const Vec3 spin = load_twist(link_rows(w_.tree.velocity, link_, kTwistRows)).w;
-    const auto momentum = [&](Vec3 x) {  // about the joint
-      const Wrench f = mul(inertia_, Twist{x, cross(at.x, x)});
-      return f.n - cross(at.x, f.f);
-    };
-    const Vec3 arm = inertia_.moment - at.x * inertia_.mass;  // mass times that of its centre
+    const auto momentum = [&](Vec3 x) { return mul(inertia_.rotary, x); };  // about the joint
+    const Vec3 arm = inertia_.moment;  // mass times that of its centre
     const Vec3 own_momentum = momentum(spin), own_speed = cross(spin, arm);
     const Float h(t_.h);
     Vec3 linear[3], angular[3], mixed[3];  // columns of the angular dofs; rows of M
@@ -70,7 +66,8 @@ class FreeLink {
  private:
   MW_INLINE Vec3 axis_at(int j) const { return load_twist(axis_of(w_, first_ + 3 + j)).w; }
   MW_INLINE Float entry(int i, int j) const {
-    return dot(load_twist(axis_of(w_, first_ + i)), mul(inertia_, load_twist(axis_of(w_, first_ + j))));
+    return dot(load_twist(axis_of(w_, first_ + i)),
+               mul(inertia_, load_twist(axis_of(w_, first_ + j))));
   }
   // Of a matrix with these columns, by Cramer's rule.
   static MW_INLINE Vec3 solve3(const Vec3 (&c)[3], Vec3 b) {

@@ -1,4 +1,5 @@
-// Poses of links, and the twists of their dofs, from the joint coordinates.
+// Poses of links, and the twists of their dofs, from the joint coordinates. Twists and wrenches of
+// a link are about the origin of its frame; from_parent and to_parent move them.
 #pragma once
 
 #include "kernels/lane/elementary.hpp"
@@ -33,7 +34,9 @@ MW_INLINE Real* axis_of(const Work& w, int dof) { return w.tree.axis + dof * kTw
 MW_INLINE Vec3 shared(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
 MW_INLINE Quat shared(const Real (&q)[4]) { return {q[0], q[1], q[2], q[3]}; }
 
-// Of a link's frame: in the world for a root, from the tree's origin for the others.
+MW_INLINE Real* offset_of(const Work& w, int link) { return w.tree.offset + link * 3 * kLanes; }
+
+// Of a link's frame, from the tree's origin.
 struct FramePose {
   Quat q;
   Vec3 x;
@@ -45,6 +48,14 @@ MW_INLINE FramePose load_pose(const Work& w, int link) {
 MW_INLINE void store_pose(const Work& w, int link, const FramePose& at) {
   Real* p = w.tree.pose + link * 7 * kLanes;
   store(p, at.q), store(p + 4 * kLanes, at.x);
+}
+
+// Of a link from or to its parent.
+MW_INLINE Twist from_parent(const Work& w, int link, const Twist& a) {
+  return moved(a, load_vec3(offset_of(w, link)));
+}
+MW_INLINE Wrench to_parent(const Work& w, int link, const Wrench& a) {
+  return moved(a, -load_vec3(offset_of(w, link)));
 }
 
 // Moves a link by one of its joints. Leaves in the rows of the first dof its axis, and a point on
@@ -78,15 +89,15 @@ MW_INLINE FramePose move_by(const TreeJoint& joint, const Real* c, FramePose at,
   return at;
 }
 
-// Twists of unit velocities: about axes through `point`, both from the origin.
+// Twists of unit velocities: about axes through `point`, from the link's frame.
 MW_INLINE void put_rotations(Real* rows, const Mat3& axes, Vec3 point) {
   store(rows, Twist{axes.x, cross(point, axes.x)});
   store(rows + kTwistRows * kLanes, Twist{axes.y, cross(point, axes.y)});
   store(rows + 2 * kTwistRows * kLanes, Twist{axes.z, cross(point, axes.z)});
 }
-MW_INLINE void finish_axes(const TreeJoint& joint, const FramePose& at, Vec3 origin, Real* rows) {
+MW_INLINE void finish_axes(const TreeJoint& joint, const FramePose& at, Real* rows) {
   const Vec3 zero = zero_of<Vec3>(), first = load_vec3(rows);
-  const Vec3 point = load_vec3(rows + 3 * kLanes) - origin;
+  const Vec3 point = load_vec3(rows + 3 * kLanes) - at.x;
   switch (joint.kind) {
     case TreeJointKind::slide: store(rows, Twist{zero, first}); break;
     case TreeJointKind::hinge: store(rows, Twist{first, cross(point, first)}); break;
@@ -104,10 +115,10 @@ MW_INLINE void finish_axes(const TreeJoint& joint, const FramePose& at, Vec3 ori
 inline void find_poses(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.links; ++i) {
     const TreeLink& link = t.tree.link[i];
-    FramePose at{shared(link.rotation), shared(link.position)};
+    FramePose at{shared(link.rotation), shared(link.position)};  // from the parent's frame
     if (link.parent >= 0) {
-      const FramePose parent = load_pose(w, link.parent);
-      at = {mul(parent.q, at.q), parent.x + rotate(parent.q, at.x)};
+      const Quat parent = load_pose(w, link.parent).q;
+      at = {mul(parent, at.q), rotate(parent, at.x)};
     }
     const TreeJoint* joints = t.tree.joint + link.first_joint;
     for (int j = 0; j < link.joints; ++j) {
@@ -115,17 +126,18 @@ inline void find_poses(const Constants& t, const Group& g, const Work& w) {
                    axis_of(w, joints[j].dof));
     }
     at.q = normalize(at.q);
-    Vec3 origin = zero_of<Vec3>();
+    for (int j = 0; j < link.joints; ++j) {
+      finish_axes(joints[j], at, axis_of(w, joints[j].dof));
+    }
     if (link.parent < 0) {
       const Vec3 center = rotate(at.q, shared(link.center));
-      origin = at.x + center;
-      store(w.tree.origin + 3 * i * kLanes, origin);
+      store(w.tree.origin + 3 * i * kLanes, at.x + center);
       at.x = -center;
+    } else {
+      store(offset_of(w, i), at.x);
+      at.x = load_pose(w, link.parent).x + at.x;
     }
     store_pose(w, i, at);
-    for (int j = 0; j < link.joints; ++j) {
-      finish_axes(joints[j], at, origin, axis_of(w, joints[j].dof));
-    }
   }
 }
 

@@ -11,7 +11,8 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class LimitRows {
  public:
-  MW_INLINE LimitRows(const Constants& t, const Work& w) : t_(t), rows_(w.tree.limit_rows), stale_(w.tree.stale) {}
+  MW_INLINE LimitRows(const Constants& t, const Work& w)
+      : t_(t), rows_(w.tree.limit_rows), stale_(w.tree.stale) {}
 
   // Returns lanes that have any.
   MW_INLINE Mask find(const Group& g) const {
@@ -111,7 +112,8 @@ class LimitRows {
     Mask changed = mask_from_bits(0);
     for_each([&](Row& row, const Limit& limit) {
       const Mask own = view(row).advance(step, done);
-      if (limit.terms == 1 && any(own)) stale_[t_.tree.dof[t_.tree.term[limit.first_term].dof].link] = true;
+      if (limit.terms == 1 && any(own))
+        stale_[t_.tree.dof[t_.tree.term[limit.first_term].dof].link] = true;
       changed = changed | own;
     });
     return changed;

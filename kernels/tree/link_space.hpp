@@ -1,8 +1,8 @@
 // The newton solver by links: M + J' D J is never made. What accelerations ask for are wrenches of
 // links, and the Newton step is that of articulated bodies (articulated.hpp) in which contacts with
 // the world are springs of links and limits springs of dofs; what couples branches comes on top
-// (couplings.hpp). Links whose rows have not changed keep their numbers from step to step. The other
-// way is joint_space.hpp.
+// (couplings.hpp). Links whose rows have not changed keep their numbers from step to step. The
+// other way is joint_space.hpp.
 #pragma once
 
 #include "kernels/tree/joint_space.hpp"
@@ -35,11 +35,11 @@ class LinkSpace {
       for (int c = link.first_child; c >= 0; c = t_.tree.link[c].next_child) {
         f = f + load_wrench(link_rows(x_.force, c, kTwistRows));
       }
-      store(at, f);
+      if (link.parent >= 0) store(at, to_parent(w_, i, f));
       for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
         const Float own = Float(t_.tree.dof[k].armature) * Float::load(x_.guess + k * kLanes);
-        const Float smooth = (dot(load_twist(axis_of(w_, k)), f) + own) -
-                             Float::load(x_.load + k * kLanes);
+        const Float smooth =
+            (dot(load_twist(axis_of(w_, k)), f) + own) - Float::load(x_.load + k * kLanes);
         const Float down = Float(Real(0)) - (smooth - Float::load(x_.row_load + k * kLanes));
         down.store(x_.direction + k * kLanes), down.store(x_.descent + k * kLanes);
       }

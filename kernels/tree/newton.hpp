@@ -1,7 +1,8 @@
 // The newton solver: accelerations that minimise
 //   1/2 (a - a0)' M (a - a0) + sum of the costs of rows,   M a0 = forces,
 // by Newton steps with the exact Hessian M + J' D J and an exact line search (Todorov 2014). Lanes
-// that are done keep their numbers until all are. A space (joint_space.hpp, link_space.hpp) knows M.
+// that are done keep their numbers until all are. A space (joint_space.hpp, link_space.hpp) knows
+// M.
 #pragma once
 
 #include "kernels/tree/link_space.hpp"
@@ -86,7 +87,8 @@ class Minimiser {
   }
   Float length_of(const Real* x) const {
     Float squares(Real(0));
-    for_each_dof(t_, [&](int k) { squares = fma(Float::load(x + k), Float::load(x + k), squares); });
+    for_each_dof(t_,
+                 [&](int k) { squares = fma(Float::load(x + k), Float::load(x + k), squares); });
     return sqrt(squares);
   }
   // Of the cost along the direction.

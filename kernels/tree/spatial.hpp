@@ -1,4 +1,4 @@
-// Spatial vectors and inertias in world axes about one point of a tree (Featherstone 2008).
+// Spatial vectors and inertias in world axes about a point (Featherstone 2008).
 #pragma once
 
 #include "kernels/lane/space.hpp"
@@ -58,6 +58,20 @@ MW_INLINE SpatialInertia spatial_inertia(Float mass, Vec3 c, const Sym3& moments
           {fma(h.z, c.z, fma(h.y, c.y, moments.xx)), fnma(h.x, c.y, moments.xy),
            fnma(h.x, c.z, moments.xz), fma(h.z, c.z, fma(h.x, c.x, moments.yy)),
            fnma(h.y, c.z, moments.yz), fma(h.y, c.y, fma(h.x, c.x, moments.zz))}};
+}
+
+// About a point farther by r.
+MW_INLINE Twist moved(const Twist& a, Vec3 r) { return {a.w, a.v + cross(a.w, r)}; }
+MW_INLINE Wrench moved(const Wrench& a, Vec3 r) { return {a.n + cross(a.f, r), a.f}; }
+MW_INLINE SpatialInertia moved(const SpatialInertia& i, Vec3 r) {
+  const Vec3 h = fnma(r, i.mass, i.moment), both = i.moment + h;
+  const Vec3 x = both * r.x, y = both * r.y, z = both * r.z;
+  const Float half(Real(0.5));
+  return {i.mass,
+          h,
+          {i.rotary.xx - (y.y + z.z), fma(half, x.y + y.x, i.rotary.xy),
+           fma(half, x.z + z.x, i.rotary.xz), i.rotary.yy - (x.x + z.z),
+           fma(half, y.z + z.y, i.rotary.yz), i.rotary.zz - (x.x + y.y)}};
 }
 
 inline constexpr int kTwistRows = 6, kInertiaRows = 10, kArticulatedRows = 21;

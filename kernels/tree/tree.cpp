@@ -125,7 +125,8 @@ void place(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     const Vec3 c = center_of(link, at);
     const Twist v = load_twist(link_rows(w.tree.velocity, i, kTwistRows));
     put_pose(t, g, link, at, origin_of(w, link), c);
-    put_body(t, g, link.body, kState<Tensor>.linear, v.v + cross(v.w, c));
+    const Vec3 arm = rotate(at.q, shared(link.center));
+    put_body(t, g, link.body, kState<Tensor>.linear, v.v + cross(v.w, arm));
     put_body(t, g, link.body, kState<Tensor>.angular, v.w);
   }
 }

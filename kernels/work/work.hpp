@@ -83,7 +83,7 @@ struct alignas(64) TreeRow {
 // A contact point between two links, or a link and the world (kernels/tree/contacts.hpp).
 struct alignas(64) TreeContact {
   Real frame[9][kLanes];                    // normal from A to B, two tangents
-  Real arm_a[3][kLanes], arm_b[3][kLanes];  // the point from the origin of A's and B's tree, m
+  Real arm_a[3][kLanes], arm_b[3][kLanes];  // the point from the frames of A and B, m
   Real distance[kLanes], friction[kLanes];  // m; 1
   Real weight[kLanes];                      // of all of its rows, see TreeRow
   Real reference[4][kLanes], residual[4][kLanes], change[4][kLanes];
@@ -98,10 +98,13 @@ struct TreeEntry {
   std::int32_t at, row;
 };
 
-// Trees (kernels/tree/), in world axes about an origin of each tree: its root's centre of mass.
+// Trees (kernels/tree/), in world axes. Places are from an origin of each tree, its root's centre
+// of mass; twists, wrenches and inertias of a link are about the origin of its own frame, so that
+// light links far from the root lose no digits.
 struct TreeWork {
   Real* origin;    // [link: a root][3][lane], in the world
   Real* pose;      // [link][rotation 4, position of its frame 3][lane]
+  Real* offset;    // [link][3][lane], of its frame from that of its parent
   Real* axis;      // [dof][twist of a unit velocity][lane]
   Real* velocity;  // [link][twist][lane]
   Real* rate;      // [link][twist][lane], acceleration but for those of the dofs; less gravity
@@ -117,13 +120,13 @@ struct TreeWork {
   Real* stage_rate;    // [dof][lane] of coordinates, then of velocities
   Real* rate_sum;      // as those
   // By links (articulated.hpp).
-  Real* held;      // [link][articulated inertia][lane], of its contacts with the world
-  Real* beyond;    // [link][articulated inertia][lane], as its parent feels it
-  Real* response;  // [dof][wrench][lane], to its unit acceleration
-  Real* inverse;   // [dof][lane], 1 / D
+  Real* held;             // [link][articulated inertia][lane], of its contacts with the world
+  Real* beyond;           // [link][articulated inertia][lane], as its parent feels it
+  Real* response;         // [dof][wrench][lane], to its unit acceleration
+  Real* inverse;          // [dof][lane], 1 / D
   bool *is_held, *stale;  // [link] it has such contacts; its numbers are to be found anew
-  Real* momentum;  // [link][wrench][lane], its inertia times its acceleration
-  Real* reaction;  // [link][wrench][lane], times that along the search
+  Real* momentum;         // [link][wrench][lane], its inertia times its acceleration
+  Real* reaction;         // [link][wrench][lane], times that along the search
   // Of rows that couple branches (couplings.hpp).
   Real* pending;           // [dof][wrench][lane]
   Real* spread;            // [row][dof][lane]

@@ -29,12 +29,21 @@ kernels::Compliance<Real> compliance(const kernels::Compliance<double>& c) {
 template <class Real>
 TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int first_dof) {
   for (const auto& from : trees.links) {
-    kernels::TreeLink<Real> to{from.body,   from.parent,
-                               from.root,   from.first_joint,
-                               from.joints, from.first_dof,
-                               from.dofs,   from.last_dof, from.first_child, from.next_child, from.moves_freely,
-                               {},          {},
-                               {},          {}};
+    kernels::TreeLink<Real> to{from.body,
+                               from.parent,
+                               from.root,
+                               from.first_joint,
+                               from.joints,
+                               from.first_dof,
+                               from.dofs,
+                               from.last_dof,
+                               from.first_child,
+                               from.next_child,
+                               from.moves_freely,
+                               {},
+                               {},
+                               {},
+                               {}};
     copy(from.position, to.position), copy(from.rotation, to.rotation);
     copy(from.center, to.center), copy(from.principal, to.principal);
     links_.push_back(to);
