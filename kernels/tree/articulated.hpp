@@ -163,7 +163,7 @@ class ArticulatedBodies {
         inertia = inertia + load_articulated(rows(x_.beyond, c, kArticulatedRows));
       }
       if (FreeRoot::is(t_, link)) {
-        root(i).factorise(inertia);
+        root(i).factorise(with(inertia, link, diagonal));
         continue;
       }
       for (int k = link.first_dof + link.dofs - 1; k >= link.first_dof; --k) {
@@ -235,6 +235,20 @@ class ArticulatedBodies {
   }
 
  private:
+  // With armatures and the diagonal of a free joint's dofs.
+  MW_INLINE ArticulatedInertia with(ArticulatedInertia inertia, const TreeLink& link,
+                                    const Real* diagonal) const {
+    Float own[FreeRoot::kSize];
+    for (int k = 0; k < FreeRoot::kSize; ++k) {
+      const int dof = link.first_dof + k;
+      own[k] = Float(t_.tree.dof[dof].armature) + Float::load(diagonal + dof * kLanes);
+    }
+    inertia.linear.xx = inertia.linear.xx + own[0];
+    inertia.linear.yy = inertia.linear.yy + own[1];
+    inertia.linear.zz = inertia.linear.zz + own[2];
+    inertia.rotary = inertia.rotary + rotate_diagonal(axes_of(link), {own[3], own[4], own[5]});
+    return inertia;
+  }
   // Of a free joint, whose linear dofs are those of the link's frame.
   MW_INLINE Mat3 axes_of(const TreeLink& link) const {
     const auto axis = [&](int k) { return load_vec3(axis_of(w_, link.first_dof + 3 + k)); };

@@ -28,7 +28,7 @@ class FreeLink {
   MW_INLINE FreeLink(const Constants& t, const Work& w, int link)
       : t_(t),
         w_(w),
-        inertia_(load_inertia(link_rows(w.tree.inertia, link, kInertiaRows))),
+        inertia_(inertia_of(t, w, link)),
         first_(t.tree.link[link].first_dof),
         link_(link) {}
 
@@ -64,6 +64,15 @@ class FreeLink {
   }
 
  private:
+  // With all that is welded to it, which joint space has added to it.
+  static SpatialInertia inertia_of(const Constants& t, const Work& w, int link) {
+    SpatialInertia all = load_inertia(link_rows(w.tree.inertia, link, kInertiaRows));
+    if (!t.tree.by_links) return all;
+    for (int c = t.tree.link[link].first_child; c >= 0; c = t.tree.link[c].next_child) {
+      all = all + moved(inertia_of(t, w, c), -load_vec3(offset_of(w, c)));
+    }
+    return all;
+  }
   MW_INLINE Vec3 axis_at(int j) const { return load_twist(axis_of(w_, first_ + 3 + j)).w; }
   MW_INLINE Float entry(int i, int j) const {
     return dot(load_twist(axis_of(w_, first_ + i)),
