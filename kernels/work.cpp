@@ -141,6 +141,7 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
   }
   if (!tree.has_rows) return;
   c.take(w.limit_rows, static_cast<std::size_t>(tree.limits));
+  c.take(w.ball_rows, static_cast<std::size_t>(tree.ball_limits));
   int contacts = 0;
   for (int i = 0; t.has_contacts && i < t.classes; ++i) {
     contacts += t.pair_class[i].count * (is_multi(t.pair_class[i].list) ? Isotropic::kMulti : 1);

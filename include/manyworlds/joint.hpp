@@ -61,6 +61,9 @@ struct Drive {
 struct BallJoint {
   std::optional<double> cone = {};  // rad, 0 to pi: the most that z of B leans from z of A
   std::optional<Limit> twist = {};  // rad, about z
+  // Of Solver::newton, which takes neither of the above: of the angle of the whole rotation of B's
+  // frame against A's, rad, 0 to pi. Its low is 0; a high beyond pi never acts.
+  std::optional<Limit> limit = {};
 };
 // The frames' origins coincide, and in space their z axes, too.
 struct HingeJoint {
@@ -106,10 +109,12 @@ using JointType = std::variant<BallJoint, HingeJoint, SliderJoint, FixedJoint, D
 
 // Of Solver::newton: what acts along each coordinate of a joint, and where its zero is.
 struct JointDynamics {
-  double armature = 0;   // kg m^2 or kg, inertia of the rotor
-  double damping = 0;    // N m s/rad or N s/m
-  double stiffness = 0;  // N m/rad or N/m, of a hinge or slider, towards `rest`
-  double rest = 0;       // rad or m
+  double armature = 0;  // kg m^2 or kg, inertia of the rotor
+  double damping = 0;   // N m s/rad or N s/m
+  // N m/rad or N/m. Of a hinge or slider it draws towards `rest`; of a ball joint to where the
+  // frames coincide, by the shortest rotation.
+  double stiffness = 0;
+  double rest = 0;       // rad or m, of a hinge or slider
   double reference = 0;  // rad or m: the coordinate of a hinge or slider whose frames coincide
   bool operator==(const JointDynamics&) const = default;
 };

@@ -99,8 +99,9 @@ template <>
 struct Members<BallJoint> {
   static constexpr const char* name = "BallJoint";
   static void visit(auto& value, auto&& visit) {
-    auto& [cone, twist] = value;
+    auto& [cone, twist, limit] = value;
     visit("cone", cone), visit("twist", twist);
+    visit("limit", limit, counted_if(limit.has_value(), kOfNewton));
   }
 };
 template <>

@@ -21,9 +21,8 @@
 //     medium (inertia model), iterations and tolerances, and the flags that switch off constraints,
 //     limits, contacts, springs, dampers, gravity, clampctrl and filterparent.
 // The solver is Newton's, whatever the file says. Refused are other integrators than Euler, RK4
-// and implicitfast, drag of ellipsoids, friction loss, limits and springs of ball joints, tendons
-// that pull, equalities, contact pairs, condim 4 and 6, mocap bodies, and all other actuators and
-// flags that change the motion.
+// and implicitfast, drag of ellipsoids, friction loss, tendons that pull, equalities, contact pairs,
+// condim 4 and 6, mocap bodies, and all other actuators and flags that change the motion.
 //
 // A model whose joints are all free is made for the default solver: what is welded to a free body
 // is part of it, equality constraints connect and weld become ball and fixed joints, and what

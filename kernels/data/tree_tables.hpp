@@ -85,6 +85,21 @@ struct TreeTerm {
   Real coefficient;
 };
 
+// The angle of a ball joint's rotation stays below `end`.
+template <class Real>
+struct TreeBallLimit {
+  std::int32_t coordinate, dof;  // the first ones
+  Real end, margin;              // rad; where the row begins
+  Real inverse_weight;           // of M^-1 at the reference, the mean over the joint's dofs
+  Compliance<Real> compliance;
+};
+// A torque that draws a ball joint to where its rotation is none.
+template <class Real>
+struct TreeBallSpring {
+  std::int32_t coordinate, dof;  // the first ones
+  Real stiffness;                // N m/rad
+};
+
 // A force along a hinge's or slide's coordinate (Actuator in manyworlds/control.hpp).
 template <class Real>
 struct TreeActuator {
@@ -143,6 +158,7 @@ struct TreeTable {
   bool by_links;
   std::int32_t couplings;
   std::int32_t limits, actuators;
+  std::int32_t ball_limits, ball_springs;
   // Rows of the state: of the coordinates, and of the dofs, each with a velocity and the
   // acceleration of the step before.
   std::int32_t first_coordinate, first_dof;
@@ -152,6 +168,8 @@ struct TreeTable {
   const TreeDof<Real>* dof;
   const TreeLimit<Real>* limit;
   const TreeTerm<Real>* term;  // of limits
+  const TreeBallLimit<Real>* ball_limit;
+  const TreeBallSpring<Real>* ball_spring;
   const TreeActuator<Real>* actuator;
   const std::uint64_t* ancestors;  // [dof] those on the way to the root
   // Of plans with contacts, else nullptr.

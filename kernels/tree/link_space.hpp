@@ -24,7 +24,7 @@ class LinkSpace {
   // Leaves the opposite of the gradient in `direction` and `descent`.
   void find_gradient(const ConstraintRows& rows) const {
     for_each_dof(t_, [&](int k) { Float(Real(0)).store(x_.row_load + k); });
-    rows.limits().add_forces(x_.row_load);
+    rows.add_joint_forces(x_.row_load);
     const bool touched = !rows.contacts().none();
     if (touched) rows.contacts().find_wrenches(x_.force);
     for (int i = t_.tree.links - 1; i >= 0; --i) {
@@ -48,8 +48,8 @@ class LinkSpace {
   // From there to the Newton step.
   void find_direction(const ConstraintRows& rows) {
     for_each_dof(t_, [&](int k) { Float(Real(0)).store(x_.diagonal + k); });
-    rows.limits().add_stiffness(x_.diagonal);
-    rows.contacts().hold(x_);
+    rows.add_stiffness(x_.diagonal);
+    rows.hold(x_);
     bodies_.factorise(x_.diagonal);
     bodies_.make_stale(false);
     couplings_.clear();

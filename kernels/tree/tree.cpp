@@ -1,5 +1,6 @@
 // The stages of trees: semi-implicit Euler in joint coordinates, with dampers of dofs and what else
 // is implicit (implicit.hpp) at the end of the step, or Runge-Kutta.
+#include "kernels/tree/ball_springs.hpp"
 #include "kernels/tree/implicit.hpp"
 #include "kernels/tree/newton.hpp"
 #include "kernels/tree/runge_kutta.hpp"
@@ -37,6 +38,7 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
   find_wrenches(t, g, w);
   project_wrenches(t, g, w);
   if (!t.tree.by_links) find_matrix(t, w);
+  add_ball_springs(t, g, w);
   add_actuators(t, g, w);
   Mask active = mask_from_bits(0);
   if (t.tree.has_rows) {

@@ -80,6 +80,12 @@ struct alignas(64) TreeRow {
   std::uint32_t lanes;                     // that have it
 };
 
+// The same of a ball joint's limit, and the axis of its rotation in the link's axes.
+struct alignas(64) TreeBallRow {
+  Real axis[3][kLanes];
+  TreeRow row;
+};
+
 // A contact point between two links, or a link and the world (kernels/tree/contacts.hpp).
 struct alignas(64) TreeContact {
   Real frame[9][kLanes];                    // normal from A to B, two tangents
@@ -137,8 +143,9 @@ struct TreeWork {
   // In joint space.
   Real* matrix;  // [entry][lane], of the joint-space inertia, then its factors
   // The newton solver.
-  TreeRow* limit_rows;    // [limit]
-  TreeContact* contacts;  // [contact]
+  TreeRow* limit_rows;     // [limit]
+  TreeBallRow* ball_rows;  // [ball limit]
+  TreeContact* contacts;   // [contact]
   std::int32_t contact_count;
   Real* column;     // [dof of a pair][3][lane], of its motion at a contact
   Real* stiffness;  // [dof][dofs up to it][lane], M + J' D J, then its factors (stiffness.hpp)

@@ -79,6 +79,8 @@ class BallJoint:
 
     cone: Optional[float] = None  # rad, 0 to pi: the most that z of B leans from z of A
     twist: Optional[Limit] = None  # rad, about z
+    # Of the newton solver, which takes neither of those: of the angle of the whole rotation, rad.
+    limit: Optional[Limit] = None  # low is 0
 
 
 @dataclass(slots=True, kw_only=True)
@@ -156,8 +158,9 @@ class JointDynamics:
 
     armature: float = 0.0  # kg m^2 or kg, inertia of the rotor
     damping: float = 0.0  # N m s/rad or N s/m
-    stiffness: float = 0.0  # N m/rad or N/m, of a hinge or slider, towards ``rest``
-    rest: float = 0.0  # rad or m
+    # N m/rad or N/m. A hinge or slider is drawn towards ``rest``, a ball joint to no rotation.
+    stiffness: float = 0.0
+    rest: float = 0.0  # rad or m, of a hinge or slider
     reference: float = 0.0  # rad or m: the coordinate of a hinge or slider whose frames coincide
 
 

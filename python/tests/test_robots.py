@@ -129,3 +129,25 @@ def test_cones_media_and_implicit_steps():
         assert np.isfinite(batch.get("position")).all()
         speeds.append(np.abs(batch.get("generalized_velocity")).sum())
     assert speeds[1] < speeds[0]
+
+
+def test_ball_joints_have_limits_and_springs():
+    scene = mw.Scene()
+    scene.options.solver.method = "newton"
+    scene.options.dt, scene.options.substeps = 0.005, 1
+    box = mw.Shape(geometry=mw.Box((0.1, 0.1, 0.1)), position=(0, 0, -0.3))
+    body = scene.add(mw.Body(name="bob", position=(0, 0, 1), shapes=[box]))
+    joint = scene.joint_at(-1, body, mw.Frame((0, 0, 1)), mw.BallJoint(limit=mw.Limit(0, 0.3)))
+    joint.dynamics = mw.JointDynamics(damping=0.5, stiffness=0.1)
+    scene.add(joint)
+    assert _core.round_trip(scene).joints[0].type.limit.high == 0.3
+    batch = mw.Batch(scene, worlds=3)
+    for _ in range(400):
+        batch.add_force((20, 0, 0))
+        batch.step()
+    angle = 2 * np.arccos(batch.get("generalized_position")[:, 0, 0])
+    assert angle == pytest.approx([0.3] * 3, abs=0.01)
+    scene.joints[0].type.limit.low = 0.1
+    assert [str(issue) for issue in scene.validate()] == [
+        "joint 0: limit.low is 0.1 rad, must be 0: the angle of a rotation has no sign"
+    ]

@@ -31,10 +31,6 @@ void check_joint(const Model& model, int j, std::vector<std::string>& problems) 
     problems.push_back(model.joint_place(j) + ": " + what + " is not simulated yet; expected " +
                        expected);
   };
-  if (m.jnt_type[j] == mjJNT_BALL) {
-    refuse(acts.limits && m.jnt_limited[j], "the limit of a ball joint", "none");
-    refuse(acts.springs && m.jnt_stiffness[j] != 0, "stiffness of a ball joint", "0");
-  }
   refuse(acts.springs && any_nonzero(m.jnt_stiffnesspoly + mjNPOLY * j, mjNPOLY),
          "stiffness with powers of the displacement", "one number");
   refuse(acts.springs && m.jnt_springyield[j] != 0, "springyield", "0");
@@ -64,7 +60,7 @@ JointType type_of(const mjModel& m, int j) {
   switch (m.jnt_type[j]) {
     case mjJNT_HINGE: return HingeJoint{.limit = limit};
     case mjJNT_SLIDE: return SliderJoint{.limit = limit};
-    default: return BallJoint{};
+    default: return BallJoint{.limit = limit};
   }
 }
 
@@ -73,9 +69,9 @@ JointDynamics dynamics_of(const mjModel& m, int j) {
   const int dof = m.jnt_dofadr[j];  // all of a ball joint are alike
   JointDynamics dynamics{.armature = m.dof_armature[dof],
                          .damping = acts.dampers ? m.dof_damping[dof] : 0};
+  dynamics.stiffness = acts.springs ? m.jnt_stiffness[j] : 0;
   if (m.jnt_type[j] == mjJNT_BALL) return dynamics;
   const int coordinate = m.jnt_qposadr[j];
-  dynamics.stiffness = acts.springs ? m.jnt_stiffness[j] : 0;
   dynamics.rest = m.qpos_spring[coordinate];
   dynamics.reference = m.qpos0[coordinate];
   return dynamics;

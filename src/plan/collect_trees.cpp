@@ -33,6 +33,7 @@ std::optional<TreeJointKind> tree_kind(const JointType& type) {
 const std::optional<Limit>* tree_limit(const JointType& type) {
   if (const auto* hinge = std::get_if<HingeJoint>(&type)) return &hinge->limit;
   if (const auto* slider = std::get_if<SliderJoint>(&type)) return &slider->limit;
+  if (const auto* ball = std::get_if<BallJoint>(&type)) return &ball->limit;
   return nullptr;
 }
 
@@ -123,9 +124,9 @@ class TreeCollector {
     joint.anchor = frame.position;
     joint.axis = frame.rotation * (*kind == TreeJointKind::slide ? Vec3::UnitX() : Vec3::UnitZ());
     const JointDynamics& d = from.dynamics;
-    joint.armature = d.armature, joint.damping = d.damping;
+    joint.armature = d.armature, joint.damping = d.damping, joint.stiffness = d.stiffness;
     const bool single = kernels::dofs_of(*kind) == 1;
-    if (single) joint.reference = d.reference, joint.stiffness = d.stiffness, joint.rest = d.rest;
+    if (single) joint.reference = d.reference, joint.rest = d.rest;
     if (const auto* limit = tree_limit(from.type); limit && *limit) {
       joint.range = {(*limit)->low, (*limit)->high};
       joint.margin = (*limit)->margin;

@@ -21,7 +21,7 @@ void choose_tree_stages(PlanData& plan) {
   plan.stages[static_cast<std::size_t>(StepStage::tree)] = {
       true, "newton, " + count(plan.trees.links.size(), " links, ") +
                 count(plan.trees.dofs.size(), " degrees of freedom, ") +
-                count(plan.trees.limits.size(), " limits, ") +
+                count(plan.trees.limits.size() + plan.trees.ball_limits.size(), " limits, ") +
                 (plan.trees.by_links ? "by articulated bodies" : "by the joint-space inertia")};
 }
 

@@ -17,7 +17,13 @@ static_assert(detail::kMaxNewtonDofs <= kernels::kMaxTreeDofs);
 using kernels::ContactCone;
 
 constexpr double kLeastWeight = 1e-15;
-constexpr int kMaxPoints = 4;  // of a manifold
+
+// Of a manifold.
+int max_points(const PlanClass& c) {
+  using kernels::ShapeKind;
+  if (!is_multi(c.list)) return 1;
+  return c.kind == kernels::pair_of(ShapeKind::capsule, ShapeKind::capsule) ? 2 : 4;
+}
 
 double share_of_first(const SoftContact& a, const SoftContact& b) {
   if (a.weight < kLeastWeight && b.weight < kLeastWeight) return 0.5;
@@ -69,7 +75,7 @@ class TreePairs {
         const auto& pair = trees_.pairs[static_cast<std::size_t>(c.first_key) + i];
         if (pair.link_a < 0) continue;
         constexpr int kRows[] = {1, 4, 3};  // of a cone
-        const int rows = kRows[static_cast<int>(pair.cone)] * (is_multi(c.list) ? kMaxPoints : 1);
+        const int rows = kRows[static_cast<int>(pair.cone)] * max_points(c);
         (root_of(pair.link_a) == root_of(pair.link_b) ? out.within : out.between) += rows;
       }
     }
@@ -157,10 +163,8 @@ class TreePairs {
 // Newton steps by links take time for each row that couples branches that acts, in joint space for
 // each pair of dofs. Links of a tree seldom touch, trees that can touch do.
 void choose_space(PlanTrees& trees, const TreePairs::Couplings& of_contacts) {
-  constexpr int kMaxCouplings = 512, kRowsPerDof = 4;
-  const auto several = [](const auto& limit) { return limit.terms > 1; };
-  const auto limits = std::count_if(trees.limits.begin(), trees.limits.end(), several);
-  trees.couplings = of_contacts.within + of_contacts.between + static_cast<int>(limits);
+  constexpr int kMaxCouplings = 1024, kRowsPerDof = 4;
+  trees.couplings += of_contacts.within + of_contacts.between;
   trees.by_links = trees.couplings <= kMaxCouplings &&
                    of_contacts.between <= kRowsPerDof * static_cast<int>(trees.dofs.size());
 }

@@ -56,16 +56,26 @@ void TreeBuilder::add(const NewTreeJoint& joint) {
     dof.entry = trees_.entries;
     dof.coordinate = out.coordinate;
     dof.armature = joint.armature, dof.damping = joint.damping;
-    dof.stiffness = joint.stiffness, dof.rest = joint.rest;
+    if (joint.kind != kernels::TreeJointKind::ball) dof.stiffness = joint.stiffness;
+    dof.rest = joint.rest;
     trees_.entries += dof.depth + 1;
     ++link.dofs;
   }
-  if (joint.range) {
+  if (joint.kind == kernels::TreeJointKind::ball) {
+    add_ball(joint, out.coordinate, out.dof);
+  } else if (joint.range) {
     limited_joints_.push_back(
         {{{out.coordinate, out.dof, 1}}, *joint.range, joint.margin, joint.compliance});
   }
   ++link.joints;
   trees_.coordinates += kernels::coordinates_of(joint.kind);
+}
+
+void TreeBuilder::add_ball(const NewTreeJoint& joint, int coordinate, int dof) {
+  if (joint.stiffness != 0) trees_.ball_springs.push_back({coordinate, dof, joint.stiffness});
+  // Beyond half a turn there is no angle.
+  if (!joint.range || (*joint.range)[1] - joint.margin > std::numbers::pi) return;
+  limited_balls_.push_back({{{coordinate, dof, 1}}, *joint.range, joint.margin, joint.compliance});
 }
 
 void TreeBuilder::add_drag(const Medium& medium) {
@@ -121,6 +131,12 @@ PlanTrees TreeBuilder::finish(double dt, const kernels::NewtonOptions<double>& n
   for (const NewLength& joint : limited_joints_) {
     add_limits(joint, trees_.weights.dof[static_cast<std::size_t>(joint.terms[0].dof)], dt);
   }
+  for (const NewLength& ball : limited_balls_) {
+    const auto [coordinate, dof, one] = ball.terms[0];
+    trees_.ball_limits.push_back({coordinate, dof, ball.range[1], ball.margin,
+                                  trees_.weights.dof[static_cast<std::size_t>(dof)],
+                                  compile(ball.compliance, dt)});
+  }
   for (const NewLength& tendon : tendons_) {
     double weight = 0;
     for (const auto& a : tendon.terms) {
@@ -146,6 +162,10 @@ PlanTrees TreeBuilder::finish(double dt, const kernels::NewtonOptions<double>& n
                           return d.parent == link.first_dof + link.dofs - 1;
                         });
   }
+  const auto several = [](const auto& limit) { return limit.terms > 1; };
+  trees_.couplings =
+      count_of(trees_.ball_limits) +
+      static_cast<int>(std::count_if(trees_.limits.begin(), trees_.limits.end(), several));
   trees_.newton = newton;
   const double dofs = std::max<double>(1, static_cast<double>(trees_.dofs.size()));
   trees_.newton.scale = 1 / (trees_.weights.mean_inertia * dofs);

@@ -27,6 +27,8 @@ struct PlanTrees {
   std::vector<kernels::TreeDof<double>> dofs;
   std::vector<kernels::TreeLimit<double>> limits;
   std::vector<kernels::TreeTerm<double>> terms;  // of limits
+  std::vector<kernels::TreeBallLimit<double>> ball_limits;
+  std::vector<kernels::TreeBallSpring<double>> ball_springs;
   std::vector<kernels::TreeActuator<double>> actuators;
   std::vector<kernels::TreePair<double>> pairs;  // [key]
   std::vector<std::int32_t> pair_dofs;
@@ -65,10 +67,9 @@ struct NewTreeJoint {
   Vec3 anchor = Vec3::Zero();
   Vec3 axis = Vec3::UnitZ();  // need not be unit
   double armature = 0, damping = 0;
-  // Of a hinge or slide.
-  double reference = 0;  // its coordinate there, rad or m
-  double stiffness = 0, rest = 0;
-  std::optional<std::array<double, 2>> range = {};  // rad or m
+  double stiffness = 0;                             // of a hinge, slide or ball
+  double reference = 0, rest = 0;                   // of a hinge or slide, rad or m
+  std::optional<std::array<double, 2>> range = {};  // rad or m; of a ball 0 to the largest angle
   double margin = 0;                                // of the range
   Compliance compliance = {};
 };
@@ -96,9 +97,11 @@ class TreeBuilder {
  private:
   PlanTrees trees_;
   std::vector<NewLink> links_;
+  void add_ball(const NewTreeJoint& joint, int coordinate, int dof);
   void add_limits(const NewLength& length, double inverse_weight, double dt);
 
   std::vector<NewLength> limited_joints_, tendons_;
+  std::vector<NewLength> limited_balls_;  // of one term each, the first coordinate and dof
 };
 
 // Joints of each scene body to its parent, in the order in which they move it (collect_trees.cpp).

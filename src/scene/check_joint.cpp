@@ -149,6 +149,12 @@ class JointChecker {
     }
     if (j.cone) check_.between("cone", *j.cone, 0, kPi);
     if (j.twist) check(*j.twist, "twist", true);
+    if (!j.limit) return;
+    check(*j.limit, "limit", true);
+    if (j.limit->low != 0) {
+      check_.add("limit.low", "is " + number_text(j.limit->low) +
+                                  " rad, must be 0: the angle of a rotation has no sign");
+    }
   }
   void check(const HingeJoint& j) {
     if (j.limit) check(*j.limit, "limit", true);

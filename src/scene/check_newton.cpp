@@ -150,7 +150,11 @@ class NewtonChecker {
     const JointDynamics& d = joint.dynamics;
     const bool single = std::holds_alternative<HingeJoint>(joint.type) ||
                         std::holds_alternative<SliderJoint>(joint.type);
-    if (!single && (d.stiffness != 0 || d.reference != 0 || d.rest != 0)) {
+    if (std::holds_alternative<BallJoint>(joint.type)) {
+      if (d.reference != 0 || d.rest != 0) {
+        refuse(at, "dynamics", "have a rest or reference", "those of hinges and sliders only");
+      }
+    } else if (!single && (d.stiffness != 0 || d.reference != 0 || d.rest != 0)) {
       refuse(at, "dynamics", "have a spring or reference", "those of hinges and sliders only");
     }
     if (std::holds_alternative<FixedJoint>(joint.type) && (d.armature != 0 || d.damping != 0)) {
@@ -158,8 +162,11 @@ class NewtonChecker {
     }
   }
   void check_type(Checker& at, const BallJoint& j) {
-    if (j.cone) refuse(at, "cone", "is given", "no limits of ball joints yet");
-    if (j.twist) refuse(at, "twist", "is given", "no limits of ball joints yet");
+    if (j.cone) refuse(at, "cone", "is given", "BallJoint::limit instead");
+    if (j.twist) refuse(at, "twist", "is given", "BallJoint::limit instead");
+    if (j.limit && j.limit->spring) {
+      refuse(at, "limit.spring", "is given", "Limit::compliance instead");
+    }
   }
   template <class Single>
   requires requires(const Single& j) {
@@ -280,7 +287,9 @@ void check_newton(Checker checker, const Scene& scene, bool sound) {
     if (joint.after) needs("after");
     if (joint.dynamics != JointDynamics{}) needs("dynamics");
     const auto limit = [&](const auto& type) {
-      if constexpr (requires { type.limit->margin; }) {
+      if constexpr (requires { type.cone; }) {
+        if (type.limit) needs("limit");
+      } else if constexpr (requires { type.limit->margin; }) {
         if (type.limit && type.limit->margin != 0) needs("limit.margin");
         if (type.limit && type.limit->compliance != Compliance{}) needs("limit.compliance");
       }

@@ -69,6 +69,14 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
   for (const auto& from : trees.terms) {
     terms_.push_back({from.coordinate, from.dof, static_cast<Real>(from.coefficient)});
   }
+  for (const auto& from : trees.ball_limits) {
+    ball_limits_.push_back({from.coordinate, from.dof, static_cast<Real>(from.end),
+                            static_cast<Real>(from.margin), static_cast<Real>(from.inverse_weight),
+                            compliance<Real>(from.compliance)});
+  }
+  for (const auto& from : trees.ball_springs) {
+    ball_springs_.push_back({from.coordinate, from.dof, static_cast<Real>(from.stiffness)});
+  }
   for (const auto& from : trees.actuators) {
     kernels::TreeActuator<Real> to{from.control, from.coordinate, from.dof, {}, {}, {}, {}, {}};
     to.gear = static_cast<Real>(from.gear);
@@ -89,7 +97,7 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     drags_.push_back(to);
   }
   pair_dofs_ = trees.pair_dofs;
-  table_.has_rows = !trees.limits.empty() || !trees.pairs.empty();
+  table_.has_rows = !trees.limits.empty() || !trees.ball_limits.empty() || !trees.pairs.empty();
   for (std::size_t k = 0; table_.has_rows && k < trees.dofs.size(); ++k) {
     const auto parent = static_cast<std::size_t>(trees.dofs[k].parent);
     const bool first = trees.dofs[k].parent < 0;
@@ -103,6 +111,8 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
   table_.newton = {newton.iterations, newton.line_iterations, static_cast<Real>(newton.tolerance),
                    static_cast<Real>(newton.line_tolerance), static_cast<Real>(newton.scale)};
   table_.limits = static_cast<std::int32_t>(limits_.size());
+  table_.ball_limits = static_cast<std::int32_t>(ball_limits_.size());
+  table_.ball_springs = static_cast<std::int32_t>(ball_springs_.size());
   table_.links = static_cast<std::int32_t>(links_.size());
   table_.dofs = static_cast<std::int32_t>(dofs_.size());
   table_.coordinates = trees.coordinates;
@@ -121,6 +131,7 @@ kernels::TreeTable<Real> TreeTables<Real>::get() const {
   out.ancestors = ancestors_.data();
   out.drag = drags_.empty() ? nullptr : drags_.data();
   out.term = terms_.data();
+  out.ball_limit = ball_limits_.data(), out.ball_spring = ball_springs_.data();
   out.limit = limits_.data(), out.actuator = actuators_.data();
   return out;
 }

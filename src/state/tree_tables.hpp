@@ -24,6 +24,8 @@ class TreeTables {
   std::vector<kernels::TreeDof<Real>> dofs_;
   std::vector<kernels::TreeLimit<Real>> limits_;
   std::vector<kernels::TreeTerm<Real>> terms_;
+  std::vector<kernels::TreeBallLimit<Real>> ball_limits_;
+  std::vector<kernels::TreeBallSpring<Real>> ball_springs_;
   std::vector<kernels::TreeActuator<Real>> actuators_;
   std::vector<kernels::TreePair<Real>> pairs_;
   std::vector<kernels::TreeDrag<Real>> drags_;

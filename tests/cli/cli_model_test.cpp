@@ -22,7 +22,7 @@ const char* const kRobot = R"(<mujoco>
   <body name="torso" pos="0 0 2"><freejoint/>
     <geom type="sphere" size="0.1" density="1000"/>
     <body name="arm" pos="0.3 0 0">
-      <joint name="swing" type="ball" damping="2"/>
+      <joint name="swing" type="ball" damping="2" range="0 90"/>
       <geom type="capsule" size="0.05 0.2"/>
       <body name="hand" pos="0.3 0 0">
         <joint name="wrist" axis="0 1 0" range="-60 60" armature="0.02"/>
@@ -58,7 +58,8 @@ TEST_CASE("model prints the tree of a robot and all that acts on it", "[cli]") {
   CHECK(text.err.empty());
   for (const char* line :
        {"13 coordinates (nq), 11 degrees of freedom (nv)", "\n  'torso'  4.189 kg, sphere\n",
-        "\n      free  q 0-6  v 0-5\n", "\n        ball 'swing'  q 7-10  v 6-8  damping 2\n",
+        "\n      free  q 0-6  v 0-5\n",
+        "\n        ball 'swing'  q 7-10  v 6-8  0 to 1.5708 rad  damping 2\n",
         "hinge 'wrist'  q 11  v 9  -1.0472 to 1.0472 rad  armature 0.02\n",
         "slider 'reach'  q 12  v 10  0 to 0.1 m\n", "  'world'  plane\n",
         "  'servo'  joint_force on 'wrist'  control -1 to 1  gear 1  gain (20, 0, 0)  "

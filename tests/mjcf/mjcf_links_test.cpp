@@ -44,7 +44,8 @@ constexpr const char* kRobots = R"(<mujoco>
         </body>
       </body>
       <body name="tail" pos="-0.2 0 0">
-        <joint name="tail" type="ball" pos="0.08 0 0" damping="0.1"/>
+        <joint name="tail" type="ball" pos="0.08 0 0" damping="0.1" stiffness="2" range="0 0.7"
+               margin="0.1" solreflimit="0.04 0.9" ref="0.3" springref="0.2"/>
         <geom type="box" size="0.1 0.03 0.02"/>
         <body name="tip" pos="-0.2 0 0" euler="0.4 0 0"><geom type="ellipsoid" size="0.1 0.05 0.03"
           pos="0.01 0 0"/></body>
@@ -214,7 +215,7 @@ TEST_CASE("springs, dampers, rotors and limits of joints are MuJoCo's", "[mjcf][
   CHECK(dynamics("hip y") ==
         JointDynamics{
             .armature = 0.01, .damping = 0.3, .stiffness = 9, .rest = 0.4, .reference = 0.2});
-  CHECK(dynamics("tail") == JointDynamics{.armature = 0.01, .damping = 0.1});
+  CHECK(dynamics("tail") == JointDynamics{.armature = 0.01, .damping = 0.1, .stiffness = 2});
   CHECK(dynamics("rail").reference == 0.1);
   CHECK(dynamics("lift").rest == 0.05);
 
@@ -229,6 +230,13 @@ TEST_CASE("springs, dampers, rotors and limits of joints are MuJoCo's", "[mjcf][
   CHECK(rail->low == -0.5);
   CHECK(rail->compliance == Compliance{});
   CHECK_FALSE(std::get<SliderJoint>(scene.at(scene.joint("lift")).type).limit);
+  const auto tail = std::get<BallJoint>(scene.at(scene.joint("tail")).type).limit;
+  REQUIRE(tail);
+  CHECK(tail->low == 0);
+  CHECK(tail->high == 0.7);
+  CHECK(tail->margin == 0.1);
+  CHECK(tail->compliance.time_constant == 0.04);
+  CHECK_FALSE(std::get<BallJoint>(scene.at(scene.joint("hook")).type).limit);
 }
 
 TEST_CASE("contacts of trees are as soft as MuJoCo's", "[mjcf][robots][fast]") {

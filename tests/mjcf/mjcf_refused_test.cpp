@@ -58,11 +58,9 @@ void check(const std::vector<Refused>& table) {
 
 TEST_CASE("what a joint has and is not simulated is refused", "[mjcf][robots][fast]") {
   check({
-      {jointed("type='ball' range='0 1' limited='true'"),
-       "joint 'j' of body 'b', line 1: the limit of a ball joint is not simulated yet; expected "
-       "none"},
-      {jointed("type='ball' stiffness='1'"),
-       "joint 'j' of body 'b', line 1: stiffness of a ball joint is not simulated yet; expected 0"},
+      {jointed("type='ball' stiffness='1 2 0'"),
+       "joint 'j' of body 'b', line 1: stiffness with powers of the displacement is not simulated "
+       "yet; expected one number"},
       {jointed("stiffness='1 2 0'"),
        "joint 'j' of body 'b', line 1: stiffness with powers of the displacement is not simulated "
        "yet; expected one number"},

@@ -35,7 +35,10 @@ std::string walker(const std::string& name, double x, const std::string& geom) {
          geom + R"(/></body></body>
     <body pos="-0.15 0.05 0"><joint type="ball" damping="0.1" stiffness="0"/>
       <geom size="0.04 0.12" pos="-0.05 0 -0.14" )" +
-         geom + R"(/></body></body>)";
+         geom + R"(/>
+      <body pos="-0.08 0 -0.28"><joint type="ball" range="0 0.5"/>
+        <geom size="0.03 0.06" pos="0 0 -0.08" )" +
+         geom + R"(/></body></body></body>)";
 }
 
 // Impedances of two geoms with unlike powers are mixed to powers that are not whole, which are not

@@ -35,7 +35,7 @@ constexpr const char* kRobots = R"(<mujoco>
         </body>
       </body>
       <body name="tail" pos="-0.2 0 0">
-        <joint name="tail" type="ball" pos="0.08 0 0" damping="0.1"/>
+        <joint name="tail" type="ball" pos="0.08 0 0" damping="0.1" range="0 0.4"/>
         <geom type="box" size="0.1 0.03 0.02"/>
         <body name="tip" pos="-0.2 0 0"><joint axis="0 0 1" range="-0.4 0.4"
               solreflimit="-800 -30"/><geom type="ellipsoid" size="0.1 0.05 0.03"/></body>
@@ -52,7 +52,8 @@ constexpr const char* kRobots = R"(<mujoco>
           <geom type="box" size="0.05 0.08 0.02" pos="0.02 0 0.03"/></body>
       </body>
     </body>
-    <body name="bob" pos="-2 0 2"><joint type="ball" pos="0 0 0.5"/><geom/></body>
+    <body name="bob" pos="-2 0 2"><joint type="ball" pos="0 0 0.5" stiffness="20"/><geom/>
+    </body>
   </worldbody>
 </mujoco>)";
 
@@ -76,9 +77,10 @@ std::vector<TwinLink> links_of(const mjModel& m) {
       joint.anchor = vector(m.jnt_pos + 3 * j), joint.axis = vector(m.jnt_axis + 3 * j);
       joint.armature = m.dof_armature[m.jnt_dofadr[j]];
       joint.damping = m.dof_damping[m.jnt_dofadr[j]];
+      joint.stiffness = m.jnt_stiffness[j];
       if (kernels::dofs_of(joint.kind) == 1) {
         joint.reference = m.qpos0[m.jnt_qposadr[j]];
-        joint.stiffness = m.jnt_stiffness[j], joint.rest = m.qpos_spring[m.jnt_qposadr[j]];
+        joint.rest = m.qpos_spring[m.jnt_qposadr[j]];
       }
       if (m.jnt_limited[j]) {
         joint.range = {m.jnt_range[2 * j], m.jnt_range[2 * j + 1]};

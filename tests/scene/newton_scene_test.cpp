@@ -94,8 +94,8 @@ TEST_CASE("the newton solver names all that it does not take, at once",
   const Spring spring{10, 1, 0, 0};
   hinge_of(scene) = {Limit{-1, 1, spring}, Drive{0, 0, spring, 5}};
   scene.joints[0].break_force = 10, scene.joints[0].break_torque = 20;
-  ball_of(scene) = {1.0, Limit{-1, 1}};
-  scene.joints[1].dynamics.stiffness = 1;
+  ball_of(scene) = {1.0, Limit{-1, 1}, Limit{0, 1, spring}};
+  scene.joints[1].dynamics.stiffness = 1, scene.joints[1].dynamics.rest = 0.5;
   const auto join = [&](int b, JointType type) -> Joint& {
     Joint joint;
     joint.body_a = BodyId(1), joint.body_b = BodyId(b), joint.type = std::move(type);
@@ -141,9 +141,11 @@ TEST_CASE("the newton solver names all that it does not take, at once",
           "instead",
           "joint 0 'elbow': break_force is given, the newton solver takes none",
           "joint 0 'elbow': break_torque is given, the newton solver takes none",
-          "joint 1 'wrist': cone is given, the newton solver takes no limits of ball joints yet",
-          "joint 1 'wrist': twist is given, the newton solver takes no limits of ball joints yet",
-          "joint 1 'wrist': dynamics have a spring or reference, the newton solver takes those of "
+          "joint 1 'wrist': cone is given, the newton solver takes BallJoint::limit instead",
+          "joint 1 'wrist': twist is given, the newton solver takes BallJoint::limit instead",
+          "joint 1 'wrist': limit.spring is given, the newton solver takes Limit::compliance "
+          "instead",
+          "joint 1 'wrist': dynamics have a rest or reference, the newton solver takes those of "
           "hinges and sliders only",
           "joint 3: dynamics have a spring or reference, the newton solver takes those of hinges "
           "and sliders only",

@@ -165,6 +165,8 @@ Scene scene_with_everything(Solver solver) {
   scene.variations.push_back(vary(Parameter::friction, 0.1, 0.9));
   if (solver != Solver::tgs_soft) scene.exclusions.push_back({BodyId(0), BodyId(1)});
   if (solver == Solver::newton) {
+    scene.add(
+        joint_of(BallJoint{.limit = Limit{0, 1, {}, {0.1, 0.5, 0.1, 0.2, 0.3, 0.4, 3}, 0.1}}));
     const Limit end{-1, 1, {}, {0.1, 0.5, 0.1, 0.2, 0.3, 0.4, 3}, 0.1};
     scene.tendons.push_back({"cord", {{JointId(1), 0.5}, {JointId(2), -2}}, end});
   }

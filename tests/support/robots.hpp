@@ -83,7 +83,9 @@ inline BodyId add_walker(Scene& scene, double x, double drop) {
   const BodyId trunk = build.body(Capsule{0.1, 0.15}, at(0, 0.75));
   scene.at(trunk).jitter.position = Vec3(0.2, 0.2, 0.1), scene.at(trunk).jitter.angle = 0.5;
   const BodyId head = build.body(Sphere{0.09}, at(0, 1.12), smooth);
-  build.ball(trunk, head, at(0, 1.02));
+  Joint& neck = scene.at(build.ball(trunk, head, at(0, 1.02)));
+  neck.type = BallJoint{.limit = Limit{.high = 0.3, .margin = 0.05}};
+  neck.dynamics.stiffness = 2;
   for (const double side : {-0.12, 0.12}) {
     const BodyId thigh = build.body(Capsule{0.05, 0.1}, at(side, 0.45));
     const Vec3 hip = at(side, 0.6);

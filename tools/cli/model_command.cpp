@@ -54,6 +54,7 @@ std::string label(const char* what, const std::vector<Part>& parts, int index) {
 const std::optional<Limit>* limit_of(const JointType& type) {
   if (const auto* hinge = std::get_if<HingeJoint>(&type)) return &hinge->limit;
   if (const auto* slider = std::get_if<SliderJoint>(&type)) return &slider->limit;
+  if (const auto* ball = std::get_if<BallJoint>(&type)) return &ball->limit;
   return nullptr;
 }
 
@@ -199,7 +200,7 @@ void print_joint(const Scene& scene, const ModelJoint& row, int indent) {
   std::string text = kind_of(joint.type) + " " + label("joint", scene.joints, row.joint.index());
   text += numbers_text(row);
   if (const auto* limit = limit_of(joint.type); limit != nullptr && *limit) {
-    const bool angle = std::holds_alternative<HingeJoint>(joint.type);
+    const bool angle = !std::holds_alternative<SliderJoint>(joint.type);
     text += fmt::format("  {} {}", range_text((*limit)->low, (*limit)->high), angle ? "rad" : "m");
   }
   const JointDynamics& d = joint.dynamics;
