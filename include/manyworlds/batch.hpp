@@ -59,6 +59,9 @@ class Batch {
   ShapeId shape(std::string_view name, int kind = 0) const { return plan(kind).shape(name); }
   JointId joint(std::string_view name, int kind = 0) const { return plan(kind).joint(name); }
   ControlId control(std::string_view name, int kind = 0) const { return plan(kind).control(name); }
+  KeyframeId keyframe(std::string_view name, int kind = 0) const {
+    return plan(kind).keyframe(name);
+  }
   int row(BodyId body, int kind = 0) const { return plan(kind).row(body); }
   BodyId body_in_row(int row, int kind = 0) const { return plan(kind).body_in_row(row); }
   int kind_of(int world) const;
@@ -143,6 +146,11 @@ class Batch {
   // The first episode of other seeds, one per world; those of worlds that are not reset are
   // ignored. World i of a batch of seed s has the seed s + i until then.
   void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds);
+  // To a keyframe of the scenes, by its index in each: as the resets above, and what the keyframe
+  // gives instead of what they draw. Where the scene of a world that is reset has no such keyframe
+  // they throw std::invalid_argument and reset nothing.
+  void reset(KeyframeId keyframe);
+  void reset(std::span<const std::uint8_t> mask, KeyframeId keyframe);
   // What every reset from now on gives a field, instead of the scene's value and its jitter:
   // canonical, as write(). Empty: the scene's again. Resets nothing by itself.
   void set_initial(Field field, std::span<const double> in);

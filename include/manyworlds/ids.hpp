@@ -1,6 +1,6 @@
-// Ids: which body, shape, joint or control of a scene. Handles with types of their own, so that one
-// is not taken for another, nor for the row of an array: fixed bodies are in the scene, but have no
-// row (Plan::row).
+// Ids: which body, shape, joint, control or keyframe of a scene. Handles with types of their own,
+// so that one is not taken for another, nor for the row of an array: fixed bodies are in the scene,
+// but have no row (Plan::row).
 #pragma once
 
 #include <compare>
@@ -21,9 +21,10 @@ class Id {
  private:
   int index_ = -1;
 };
-using BodyId = Id<struct BodyTag>;        // Scene::bodies
-using JointId = Id<struct JointTag>;      // Scene::joints
-using ControlId = Id<struct ControlTag>;  // Scene::controls
+using BodyId = Id<struct BodyTag>;          // Scene::bodies
+using JointId = Id<struct JointTag>;        // Scene::joints
+using ControlId = Id<struct ControlTag>;    // Scene::controls
+using KeyframeId = Id<struct KeyframeTag>;  // Scene::keyframes
 
 class ShapeId {
  public:

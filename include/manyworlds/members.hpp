@@ -247,13 +247,22 @@ struct Members<Exclusion> {
     visit("body_a", body_a), visit("body_b", body_b);
   }
 };
+template <>
+struct Members<Keyframe> {
+  static constexpr const char* name = "Keyframe";
+  static void visit(auto& value, auto&& visit) {
+    auto& [name_, generalized_position, generalized_velocity, controls] = value;
+    visit("name", name_), visit("generalized_position", generalized_position);
+    visit("generalized_velocity", generalized_velocity), visit("controls", controls);
+  }
+};
 // -- the whole
 template <>
 struct Members<Scene> {
   static constexpr const char* name = "Scene";
   static void visit(auto& value, auto&& visit) {
     auto& [name_, space, bodies, joints, controls, attractors, options, variations, exclusions,
-           tendons] = value;
+           tendons, keyframes] = value;
     visit("name", name_, not_counted("names are for people"));
     visit("space", space), visit("bodies", bodies), visit("joints", joints);
     visit("controls", controls), visit("attractors", attractors), visit("options", options);
@@ -262,6 +271,8 @@ struct Members<Scene> {
     visit("exclusions", exclusions,
           counted_if(!exclusions.empty(), "without any it is what it was before there were some"));
     visit("tendons", tendons, counted_if(!tendons.empty(), kOfNewton));
+    visit("keyframes", keyframes,
+          not_counted("what a world is reset to does not matter to one that has begun"));
   }
 };
 

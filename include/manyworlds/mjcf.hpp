@@ -17,6 +17,7 @@
 //     affine (motor, position, velocity, damper, general), as controls (ControlKind::joint_force);
 //   - friction, condim 1 and 3, softness, margin, gap, priority and solmix of geoms; which pairs
 //     collide, excludes included;
+//   - keyframes (qpos, qvel and ctrl; a time is a warning);
 //   - timestep, integrator, cone, impratio, gravity, gravcomp, wind, density and viscosity of a
 //     medium (inertia model), iterations and tolerances, and the flags that switch off constraints,
 //     limits, contacts, springs, dampers, gravity, clampctrl and filterparent.

@@ -86,6 +86,16 @@ struct Exclusion {
   BodyId body_a = {}, body_b = {};
 };
 
+// A state that worlds can be reset to (Batch::reset): generalized_position and generalized_velocity
+// of Solver::newton, as the fields of that name have them, and the controls. What is empty is as
+// any reset leaves it.
+struct Keyframe {
+  std::string name = {};                          // empty, or no other keyframe's
+  std::vector<double> generalized_position = {};  // [coordinate], m, rad or of unit quaternions
+  std::vector<double> generalized_velocity = {};  // [dof], m/s or rad/s
+  std::vector<double> controls = {};              // [control], as Batch::set_controls takes them
+};
+
 struct Scene {
   std::string name = {};
   Space space = Space::spatial;
@@ -97,6 +107,7 @@ struct Scene {
   std::vector<Variation> variations = {};
   std::vector<Exclusion> exclusions = {};  // beside those of joints (Joint::collide)
   std::vector<Tendon> tendons = {};
+  std::vector<Keyframe> keyframes = {};
 
   // Appends and returns the handle. Shape k of a body is ShapeId(body, k).
   BodyId add(Body body) {
@@ -111,6 +122,10 @@ struct Scene {
     controls.push_back(std::move(control));
     return ControlId(static_cast<int>(controls.size()) - 1);
   }
+  KeyframeId add(Keyframe keyframe) {
+    keyframes.push_back(std::move(keyframe));
+    return KeyframeId(static_cast<int>(keyframes.size()) - 1);
+  }
 
   // The one of a name. Names may be empty or shared, but then they find nothing: throw
   // std::invalid_argument, with the names that there are, for a name that none has or several have.
@@ -119,6 +134,7 @@ struct Scene {
   ShapeId shape(BodyId body, std::string_view name) const;
   JointId joint(std::string_view name) const;
   ControlId control(std::string_view name) const;
+  KeyframeId keyframe(std::string_view name) const;
 
   // What a handle stands for. Throw std::out_of_range where there is none.
   Body& at(BodyId id) { return bodies.at(static_cast<std::size_t>(id.index())); }
@@ -132,6 +148,10 @@ struct Scene {
   Control& at(ControlId id) { return controls.at(static_cast<std::size_t>(id.index())); }
   const Control& at(ControlId id) const {
     return controls.at(static_cast<std::size_t>(id.index()));
+  }
+  Keyframe& at(KeyframeId id) { return keyframes.at(static_cast<std::size_t>(id.index())); }
+  const Keyframe& at(KeyframeId id) const {
+    return keyframes.at(static_cast<std::size_t>(id.index()));
   }
 };
 

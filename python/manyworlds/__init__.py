@@ -19,7 +19,7 @@ from .batch import Batch
 from .bodies import Body, Jitter, MassProperties
 from .environment import Environment, EnvironmentSnapshot
 from .fields import Field
-from .ids import BodyId, ControlId, JointId, ShapeId
+from .ids import BodyId, ControlId, JointId, KeyframeId, ShapeId
 from .joints import *  # noqa: F403
 from .kinds import Kind
 from .options import ContactOptions, JointOptions, Medium, Options, SleepOptions, SolverOptions
@@ -32,6 +32,7 @@ from .scene import (
     Control,
     Exclusion,
     Issue,
+    Keyframe,
     Point,
     Ray,
     Scene,
@@ -72,6 +73,8 @@ __all__ = [
     "Jitter",
     "JointId",
     "JointOptions",
+    "Keyframe",
+    "KeyframeId",
     "Kind",
     "MassProperties",
     "Medium",

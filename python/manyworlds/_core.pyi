@@ -37,7 +37,7 @@ def round_trip(scene: object) -> object:
 
 def find_in_scene(scene: object, kind: str, name: object) -> int:
     """
-    Index of the body, joint or control that a name, handle or index means.
+    Index of the body, joint, control or keyframe that a name, handle or index means.
     """
 
 def find_shape_in_scene(scene: object, name: str, body: object | None) -> tuple[int, int]:
@@ -103,7 +103,7 @@ class Plan:
 
     def find(self, kind: str, name: object) -> int:
         """
-        Index of the body, joint or control that a name, handle or index means.
+        Index of the body, joint, control or keyframe that a name, handle or index means.
         """
 
     def find_shape(self, name: str, body: object | None) -> tuple[int, int]:
@@ -248,9 +248,9 @@ class Batch:
         Takes whole steps up to a time in s, without the GIL, and returns how many.
         """
 
-    def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)] | None, seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None) -> None:
+    def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)] | None, seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None, keyframe: int | None) -> None:
         """
-        All worlds from the first episode, or those in the mask: the next episode, or the first of other seeds.
+        All worlds from the first episode, or those in the mask: the next episode, or the first of other seeds. To a keyframe, without seeds.
         """
 
     def quantities(self, kind: int = 0) -> list:

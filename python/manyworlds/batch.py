@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core, arrays, shown
 from .arrays import Writable
 from .fields import Fields
-from .ids import Chooser
+from .ids import Chooser, KeyframeRef
 from .in_memory import InMemory
 from .inputs import Inputs
 from .kinds import MAX_WORLDS, AnyScene, Kind, plans_of
@@ -256,19 +256,35 @@ class Batch(Fields, Inputs, Results, InMemory):
             float(clock), arrays.integer(max_steps, "max_steps", 0, MAX_STEPS)
         )
 
-    def reset(self, mask_or_ids: Optional[Ids] = None, seeds: Optional[Seeds] = None) -> None:
+    def reset(
+        self,
+        mask_or_ids: Optional[Ids] = None,
+        seeds: Optional[Seeds] = None,
+        keyframe: Optional[KeyframeRef] = None,
+    ) -> None:
         """Begins anew with new draws of jitter and variations, in all worlds or in some.
 
         None: all worlds from their first episode, with the clock, so that it repeats the first draw
         exactly. Else the next episode of those worlds: a bool array (worlds,), or indices.
         ``seeds``: the first episode of other seeds, a number s for s + i in world i, or one for
         every world that is reset, in the order of ids; the clock goes on.
+        ``keyframe``: a KeyframeId, name or index; worlds begin with what it gives instead of what is
+        drawn, and without ``seeds``. Of several kinds of worlds, the keyframe of that index of each,
+        and a name is one of the first kind's. Raises ValueError where a world has no such keyframe,
+        and resets none then.
         """
+        if keyframe is not None:
+            if seeds is not None:
+                raise ValueError("seeds and keyframe are both given; expected one of them")
+            index = int(self._plans[0][0].keyframe(keyframe))
+            mask = None if mask_or_ids is None else arrays.mask(mask_or_ids, self._worlds)
+            self._held.reset(mask, None, index)
+            return
         if mask_or_ids is None and seeds is None:
-            self._held.reset(None, None)
+            self._held.reset(None, None, None)
             return
         mask = arrays.mask(mask_or_ids, self._worlds)
-        self._held.reset(mask, arrays.seeds(seeds, mask_or_ids, self._worlds))
+        self._held.reset(mask, arrays.seeds(seeds, mask_or_ids, self._worlds), None)
 
     def rollout(
         self,

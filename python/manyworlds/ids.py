@@ -1,4 +1,4 @@
-"""Handles: which body, shape, joint or control of a scene.
+"""Handles: which body, shape, joint, control or keyframe of a scene.
 
 ``Scene.add`` returns them, and ``body("crate")`` and the like of a Scene, Plan or Batch find them.
 Wherever one is taken, a name or a plain int is, too: an int is the index in the scene's list, never
@@ -52,6 +52,12 @@ class ControlId(_Handle):
     __slots__ = ()
 
 
+class KeyframeId(_Handle):
+    """A keyframe: its index in ``Scene.keyframes``."""
+
+    __slots__ = ()
+
+
 class ShapeId(NamedTuple):
     """A shape: its body, and its index in ``Body.shapes``."""
 
@@ -59,10 +65,11 @@ class ShapeId(NamedTuple):
     index: int
 
 
-# What is taken where a body, a shape, a joint or a control is asked for.
+# What is taken where a body, a shape, a joint, a control or a keyframe is asked for.
 BodyRef = Union[int, str]  # a BodyId is an int
 JointRef = Union[int, str]
 ControlRef = Union[int, str]
+KeyframeRef = Union[int, str]
 ShapeRef = Union[int, str, ShapeId]
 # One or several of them; a mask of bools is over the rows of arrays.
 BodyRefs = Union[BodyRef, Sequence[BodyRef], NDArray[np.integer], NDArray[np.bool_]]
@@ -130,7 +137,7 @@ class Chooser:
 
 
 class Named:
-    """What has a plan finds its bodies, shapes, joints and controls by name, and their rows."""
+    """What has a plan finds its bodies, shapes, joints, controls and keyframes by name, and their rows."""
 
     plan: Plan
 
@@ -145,6 +152,10 @@ class Named:
     def control(self, name: ControlRef) -> ControlId:
         """The control of a name: see Plan.control."""
         return self.plan.control(name)
+
+    def keyframe(self, name: KeyframeRef) -> KeyframeId:
+        """The keyframe of a name: see Plan.keyframe."""
+        return self.plan.keyframe(name)
 
     def shape(self, name: str, body: Optional[BodyRef] = None) -> ShapeId:
         """The shape of a name: see Plan.shape."""

@@ -6,7 +6,17 @@ from collections.abc import Sequence
 from typing import Any, Optional
 
 from . import _core, shown
-from .ids import BodyId, BodyRef, ControlId, ControlRef, JointId, JointRef, ShapeId
+from .ids import (
+    BodyId,
+    BodyRef,
+    ControlId,
+    ControlRef,
+    JointId,
+    JointRef,
+    KeyframeId,
+    KeyframeRef,
+    ShapeId,
+)
 from .names import BroadPhase, Feature
 from .scene import Issue, Scene, SceneError
 
@@ -58,6 +68,10 @@ class Plan(_core.Plan):
     def control(self, name: ControlRef) -> ControlId:
         """The control of a name: see body."""
         return ControlId(self.find("control", name))
+
+    def keyframe(self, name: KeyframeRef) -> KeyframeId:
+        """The keyframe of a name: see body."""
+        return KeyframeId(self.find("keyframe", name))
 
     def shape(self, name: str, body: Optional[BodyRef] = None) -> ShapeId:
         """The shape of a name, among all or among those of a body: see body."""

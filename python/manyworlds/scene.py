@@ -9,7 +9,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union, overload
 
 from . import _core, shown
 from .bodies import Body, MassProperties
-from .ids import BodyId, BodyRef, ControlId, ControlRef, JointId, JointRef, ShapeId, ShapeRef
+from .ids import (
+    BodyId,
+    BodyRef,
+    ControlId,
+    ControlRef,
+    JointId,
+    JointRef,
+    KeyframeId,
+    KeyframeRef,
+    ShapeId,
+    ShapeRef,
+)
 from .joints import Frame, Joint, JointType, Limit
 from .names import BroadPhase, ControlKind, Draw, Feature, Numbers, Parameter, Space
 from .options import Options
@@ -132,6 +143,20 @@ class Tendon:
 
 
 @dataclass(slots=True, kw_only=True)
+class Keyframe:
+    """A state that worlds can be reset to; what is empty is as any reset leaves it.
+
+    Of the solver newton ``generalized_position`` (coordinates,) and ``generalized_velocity`` (dofs,),
+    as the fields of that name have them, and ``controls`` (controls,).
+    """
+
+    name: str = ""  # empty, or no other keyframe's
+    generalized_position: Numbers = field(default_factory=list)  # m, rad, quaternions
+    generalized_velocity: Numbers = field(default_factory=list)  # m/s or rad/s
+    controls: Numbers = field(default_factory=list)
+
+
+@dataclass(slots=True, kw_only=True)
 class Ray:
     """A ray that every world casts against all of its shapes."""
 
@@ -150,7 +175,7 @@ class Point:
     body: BodyRef = -1
 
 
-Part = Union[Body, Joint, Control, Attractor, Variation, Exclusion, Tendon]
+Part = Union[Body, Joint, Control, Attractor, Variation, Exclusion, Tendon, Keyframe]
 
 
 @dataclass(slots=True, kw_only=True)
@@ -167,6 +192,7 @@ class Scene:
     variations: list[Variation] = field(default_factory=list)
     exclusions: list[Exclusion] = field(default_factory=list)  # beside those of joints
     tendons: list[Tendon] = field(default_factory=list)
+    keyframes: list[Keyframe] = field(default_factory=list)
 
     def __repr__(self) -> str:
         return shown.line(
@@ -209,9 +235,11 @@ class Scene:
     @overload
     def add(self, part: Control) -> ControlId: ...
     @overload
+    def add(self, part: Keyframe) -> KeyframeId: ...
+    @overload
     def add(self, part: Union[Attractor, Variation, Exclusion, Tendon]) -> int: ...
     def add(self, part: Part) -> int:
-        """Appends a body, joint, control, ... or tendon and returns its handle or index."""
+        """Appends a body, joint, control, ... or keyframe and returns its handle or index."""
         places: list[tuple[type, list[Any], type[int]]] = [
             (Body, self.bodies, BodyId),
             (Joint, self.joints, JointId),
@@ -220,6 +248,7 @@ class Scene:
             (Variation, self.variations, int),
             (Exclusion, self.exclusions, int),
             (Tendon, self.tendons, int),
+            (Keyframe, self.keyframes, KeyframeId),
         ]
         for kind, place, handle in places:
             if isinstance(part, kind):
@@ -241,6 +270,10 @@ class Scene:
     def control(self, name: ControlRef) -> ControlId:
         """The control of a name: see body."""
         return ControlId(_core.find_in_scene(self, "control", name))
+
+    def keyframe(self, name: KeyframeRef) -> KeyframeId:
+        """The keyframe of a name: see body."""
+        return KeyframeId(_core.find_in_scene(self, "keyframe", name))
 
     def shape(self, name: str, body: Optional[BodyRef] = None) -> ShapeId:
         """The shape of a name, among all or among those of a body: see body."""

@@ -67,9 +67,13 @@ int step_to(HeldBatch& self, double clock, int max_steps) {
 }
 
 void reset(HeldBatch& self, const std::optional<In<std::uint8_t>>& mask,
-           const std::optional<In<std::uint64_t>>& seeds) {
+           const std::optional<In<std::uint64_t>>& seeds, std::optional<int> keyframe) {
   self.run([&](Batch& b) {
-    if (mask && seeds) {
+    if (keyframe && mask) {
+      b.reset(span_of(*mask), KeyframeId(*keyframe));
+    } else if (keyframe) {
+      b.reset(KeyframeId(*keyframe));
+    } else if (mask && seeds) {
       b.reset(span_of(*mask), span_of(*seeds));
     } else if (mask) {
       b.reset(span_of(*mask));
@@ -109,9 +113,9 @@ void bind_batch(nb::module_& m) {
       .def("step_to", &step_to, nb::arg("clock"), nb::arg("max_steps"),
            "Takes whole steps up to a time in s, without the GIL, and returns how many.")
       .def(
-          "reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(),
+          "reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(), nb::arg("keyframe").none(),
           "All worlds from the first episode, or those in the mask: the next episode, or the first "
-          "of other seeds.");
+          "of other seeds. To a keyframe, without seeds.");
   bind_batch_state(c);
   bind_batch_inputs(c);
   bind_batch_results(c);

@@ -1,12 +1,12 @@
-// What callers mean by a body, a shape, a joint or a control: a handle (manyworlds/ids.py), a name
-// or an index.
+// What callers mean by a body, a shape, a joint, a control or a keyframe: a handle
+// (manyworlds/ids.py), a name or an index.
 #include "convert.hpp"
 
 namespace manyworlds::python {
 
 namespace {
 
-constexpr const char* kHandles[] = {"BodyId", "JointId", "ControlId", "ShapeId"};
+constexpr const char* kHandles[] = {"BodyId", "JointId", "ControlId", "KeyframeId", "ShapeId"};
 
 // Is it a handle of another kind?
 void refuse_others(nb::handle value, const Place& place, const char* kind) {
@@ -66,6 +66,11 @@ ControlId read_control(nb::handle value, const Place& place) {
   return read_reference<ControlId>(
       value, place, "ControlId", [](const Scene& s, const auto& name) { return s.control(name); });
 }
+KeyframeId read_keyframe(nb::handle value, const Place& place) {
+  return read_reference<KeyframeId>(
+      value, place, "KeyframeId",
+      [](const Scene& s, const auto& name) { return s.keyframe(name); });
+}
 
 ShapeId read_shape(nb::handle value, BodyId body, const Place& place) {
   if (is_dataclass(value, "ShapeId")) {
@@ -95,6 +100,9 @@ int find_in(const Scene& scene, const std::string& kind, nb::handle name) {
   const Place place{nullptr, kind.c_str(), -1, &scene};
   if (kind == "body") return checked(kind, read_body(name, place).index(), scene.bodies.size());
   if (kind == "joint") return checked(kind, read_joint(name, place).index(), scene.joints.size());
+  if (kind == "keyframe") {
+    return checked(kind, read_keyframe(name, place).index(), scene.keyframes.size());
+  }
   return checked(kind, read_control(name, place).index(), scene.controls.size());
 }
 
@@ -122,6 +130,9 @@ Scene names_of_scene(nb::handle scene) {
   });
   for_each_name(scene, "controls", [&](std::string name, nb::handle) {
     out.controls.emplace_back().name = std::move(name);
+  });
+  for_each_name(scene, "keyframes", [&](std::string name, nb::handle) {
+    out.keyframes.emplace_back().name = std::move(name);
   });
   return out;
 }

@@ -151,3 +151,59 @@ def test_ball_joints_have_limits_and_springs():
     assert [str(issue) for issue in scene.validate()] == [
         "joint 0: limit.low is 0.1 rad, must be 0: the angle of a rotation has no sign"
     ]
+
+
+def keyed_arm():
+    scene = arm()
+    position = np.arange(10) / 8
+    scene.add(mw.Keyframe(name="reach", generalized_position=position, controls=[0.5]))
+    last = scene.add(mw.Keyframe(name="fly", generalized_velocity=[0] * 8 + [3]))
+    assert last == scene.keyframe("fly") == 1 and type(last) is mw.KeyframeId
+    return scene
+
+
+def test_worlds_are_reset_to_keyframes():
+    scene = keyed_arm()
+    assert scene.validate() == []
+    assert _core.round_trip(scene).keyframes[0].controls == [0.5]
+    batch = mw.Batch(scene, worlds=4)
+    assert batch.keyframe("reach") == batch.plan.keyframe("reach") == mw.KeyframeId(0)
+    batch.step(5)
+    batch.reset(keyframe="reach")
+    assert batch.steps == 0
+    assert (batch.get("generalized_position")[:, :, 0] == np.arange(10) / 8).all()
+    assert (batch.get_controls() == 0.5).all()
+    batch.step(3)
+    hashes = batch.hashes()
+    batch.reset([1, 3], keyframe=mw.KeyframeId(0))
+    batch.step(3)
+    assert (batch.hashes() == hashes).tolist() == [False, True, False, True]
+    batch.reset([2], keyframe=1)
+    assert batch.get("generalized_velocity")[2, 8, 0] == 3
+    with pytest.raises(ValueError, match="no keyframe is named 'fli'"):
+        batch.reset(keyframe="fli")
+    with pytest.raises(IndexError, match="keyframe is 2, must be 0 to 1"):
+        batch.reset(keyframe=2)
+    with pytest.raises(TypeError, match="expected a KeyframeId, a name or an index"):
+        batch.reset(keyframe=batch.body("base"))
+    with pytest.raises(ValueError, match="seeds and keyframe are both given"):
+        batch.reset([1], seeds=3, keyframe="fly")
+    mixed = mw.Batch([(scene, 2), (arm(), 2)])
+    mixed.reset([0, 1], keyframe="reach")
+    before = mixed.hashes()
+    with pytest.raises(ValueError, match="has none"):
+        mixed.reset([1, 2], keyframe="reach")
+    assert (mixed.hashes() == before).all()
+
+
+def test_keyframes_fit_their_scene():
+    scene = keyed_arm()
+    scene.keyframes[0].generalized_position = [0.0]
+    scene.keyframes[1].name = "reach"
+    assert [str(issue) for issue in scene.validate()] == [
+        "keyframe 0 'reach': generalized_position has 1 numbers, must have 10, or none",
+        "keyframe 1 'reach': name is that of keyframe 0, must be another, or empty",
+    ]
+    scene.keyframes[0].controls = "none"
+    with pytest.raises(TypeError, match=r"scene.keyframes\[0\].controls"):
+        scene.validate()

@@ -105,6 +105,17 @@ struct Batch::Impl {
   template <class Number>
   void read_observed(Observed what, std::size_t wanted, std::span<Number> out) const;
 
+  // Whether the scene of a kind has the keyframe; throws std::invalid_argument.
+  void check_keyframe(int kind, KeyframeId keyframe) const {
+    const int keyframes = static_cast<int>(plan(kind).scene().keyframes.size());
+    if (keyframe && keyframe.index() < keyframes) return;
+    reject("keyframe is " + std::to_string(keyframe.index()) +
+           (keyframes == 0 ? ", but scene '" + plan(kind).scene().name + "' has none"
+                           : ", must be 0 to " + std::to_string(keyframes - 1)));
+  }
+  // What the keyframe gives, into a world that was reset.
+  void begin_at(int kind, int in_kind, KeyframeId keyframe);
+
   // Does world `from` of a snapshot fit this kind of world? Throws SnapshotError.
   void check_snapshot_world(const Snapshot& snapshot, std::size_t from, int kind) const;
 

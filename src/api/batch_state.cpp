@@ -130,6 +130,35 @@ void Batch::reset(std::span<const std::uint8_t> mask, std::span<const std::uint6
   });
 }
 
+void Batch::Impl::begin_at(int kind, int in_kind, KeyframeId keyframe) {
+  const Keyframe& from = plan(kind).scene().at(keyframe);
+  const auto put = [&](Field field, const std::vector<double>& numbers) {
+    if (!numbers.empty()) worlds(kind).write(field, in_kind, numbers.data());
+  };
+  put(Field::generalized_position, from.generalized_position);
+  put(Field::generalized_velocity, from.generalized_velocity);
+  if (!from.controls.empty()) worlds(kind).set_controls(in_kind, 1, from.controls.data());
+}
+void Batch::reset(KeyframeId keyframe) {
+  for (int k = 0; k < kinds(); ++k) impl_->check_keyframe(k, keyframe);
+  for (int k = 0; k < kinds(); ++k) {
+    impl_->worlds(k).restart();
+    const int count = impl_->kinds[static_cast<std::size_t>(k)].worlds;
+    for (int w = 0; w < count; ++w) impl_->begin_at(k, w, keyframe);
+  }
+  impl_->steps = 0;
+  impl_->clock = 0;
+  for (int w = 0; w < worlds(); ++w) impl_->tell(*this, Input::reset, w);
+}
+void Batch::reset(std::span<const std::uint8_t> mask, KeyframeId keyframe) {
+  impl_->for_each_masked(mask, [&](int kind, int, int) { impl_->check_keyframe(kind, keyframe); });
+  impl_->for_each_masked(mask, [&](int kind, int in_kind, int world) {
+    impl_->worlds(kind).reset(in_kind);
+    impl_->begin_at(kind, in_kind, keyframe);
+    impl_->tell(*this, Input::reset, world);
+  });
+}
+
 void Batch::set_initial(Field field, std::span<const double> in) {
   const bool forget = in.empty() && size(field) > 0;
   if (!forget) impl_->check_size(field, in.size(), size(field));

@@ -10,6 +10,7 @@
 #include "src/mjcf/equality.hpp"
 #include "src/mjcf/exclusions.hpp"
 #include "src/mjcf/filter.hpp"
+#include "src/mjcf/keyframes.hpp"
 #include "src/mjcf/links.hpp"
 #include "src/mjcf/material.hpp"
 #include "src/mjcf/options.hpp"
@@ -140,6 +141,7 @@ Scene make_scene(const Model& model, const std::string& name) {
     add_actuators(model, scene_joint, scene);
     add_tendons(model, scene_joint, scene);
     add_exclusions(model, scene_body, scene);
+    add_keyframes(model, scene);
   } else {
     add_joints(model, scene_body, scene);
   }

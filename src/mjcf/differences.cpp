@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/mjcf/equality.hpp"
+#include "src/mjcf/keyframes.hpp"
 #include "src/mjcf/options.hpp"
 #include "src/mjcf/support.hpp"
 
@@ -98,7 +99,6 @@ void note_ignored(const Model& model, std::vector<std::string>& warnings) {
     warnings.push_back(text + ": ignored; " + why);
   };
   note(mjOBJ_SENSOR, m.nsensor, "sensors are not computed");
-  note(mjOBJ_KEY, m.nkey, "worlds start at the poses of the bodies, at rest");
 }
 
 }  // namespace
@@ -113,6 +113,7 @@ std::vector<std::string> differences(const Model& model) {
   compare_equalities(model, warnings);
   compare_options(model, warnings);
   note_ignored(model, warnings);
+  compare_keyframes(model, warnings);
   return warnings;
 }
 

@@ -1,4 +1,4 @@
-// Bodies, shapes, joints and controls of a scene by name.
+// Bodies, shapes, joints, controls and keyframes of a scene by name.
 #include <stdexcept>
 #include <utility>
 
@@ -92,6 +92,9 @@ JointId Scene::joint(std::string_view wanted) const {
 }
 ControlId Scene::control(std::string_view wanted) const {
   return find(wanted, names_of<ControlId>(controls), "control", "controls");
+}
+KeyframeId Scene::keyframe(std::string_view wanted) const {
+  return find(wanted, names_of<KeyframeId>(keyframes), "keyframe", "keyframes");
 }
 ShapeId Scene::shape(std::string_view wanted) const {
   Named<ShapeId> all;

@@ -55,6 +55,7 @@ std::vector<Issue> validate(const Scene& scene) {
   check_count("joints", scene.joints.size(), detail::kMaxBodies);
   check_count("controls", scene.controls.size(), detail::kMaxBodies);
   check_count("attractors", scene.attractors.size(), detail::kMaxBodies);
+  check_count("keyframes", scene.keyframes.size(), detail::kMaxBodies);
 
   // Needed before the bodies, whose masses depend on the default density, but listed after them.
   std::vector<Issue> option_issues;
@@ -99,6 +100,7 @@ std::vector<Issue> validate(const Scene& scene) {
     };
     check("body_a", exclusion.body_a), check("body_b", exclusion.body_b);
   }
+  detail::check_keyframes(checker, scene, issues.empty() && option_issues.empty());
   const bool sound = issues.empty() && option_issues.empty();
   issues.insert(issues.end(), option_issues.begin(), option_issues.end());
   check_variations(checker, scene, sound);

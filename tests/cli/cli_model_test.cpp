@@ -36,6 +36,7 @@ const char* const kRobot = R"(<mujoco>
 <tendon><fixed name="cord" range="-1 1"><joint joint="wrist" coef="1"/>
   <joint joint="reach" coef="-2"/></fixed></tendon>
 <sensor><jointpos joint="wrist"/></sensor>
+<keyframe><key name="ready" qvel="0 0 0 0 0 0 0 0 0 0.5 0" ctrl="0.25"/></keyframe>
 </mujoco>)";
 
 bool model_reads_mjcf() {
@@ -64,8 +65,8 @@ TEST_CASE("model prints the tree of a robot and all that acts on it", "[cli]") {
         "slider 'reach'  q 12  v 10  0 to 0.1 m\n", "  'world'  plane\n",
         "  'servo'  joint_force on 'wrist'  control -1 to 1  gear 1  gain (20, 0, 0)  "
         "bias (0, -20, 0)  force -5 to 5\n",
-        "  'cord'  1 'wrist' + -2 'reach'  -1 to 1\n", "plane-sphere", "0.004\n",
-        "sensors are not computed\n", "solver PGS"}) {
+        "  'cord'  1 'wrist' + -2 'reach'  -1 to 1\n", "\nkeyframes\n  'ready'\n", "plane-sphere",
+        "0.004\n", "sensors are not computed\n", "solver PGS"}) {
     INFO(line << "\n" << text.out);
     CHECK(contains(text.out, line));
   }
@@ -87,7 +88,38 @@ TEST_CASE("model --json has the places of joints in the coordinates", "[cli]") {
   CHECK(hand["joints"][1]["range"] == nlohmann::json::array({0, 0.1}));
   CHECK(json["controls"][0]["force_range"] == nlohmann::json::array({-5, 5}));
   CHECK(json["tendons"][0]["terms"][1]["coefficient"] == -2);
+  REQUIRE(json["keyframes"].size() == 1);
+  CHECK(json["keyframes"][0]["name"] == "ready");
+  CHECK(json["keyframes"][0]["generalized_position"].size() == 13);
+  CHECK(json["keyframes"][0]["generalized_velocity"][9] == 0.5);
+  CHECK(json["keyframes"][0]["controls"] == nlohmann::json::array({0.25}));
   CHECK(json["left_out"].size() == 2);
+}
+
+TEST_CASE("run and soak begin, and reset, at a keyframe", "[cli]") {
+  if (!model_reads_mjcf()) return;
+  const ScratchFolder folder;
+  std::ofstream(folder / "robot.xml") << kRobot;
+  const auto run = [&](const std::string& arguments) {
+    return test::run_program(test::kProgram, folder, arguments);
+  };
+  const std::string job = "run robot.xml --worlds 3 --json --steps ";
+  const auto hash = [&](const std::string& arguments) {
+    const Outcome outcome = run(job + arguments);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    return nlohmann::json::parse(outcome.out)["hash"];
+  };
+  CHECK(hash("20 --keyframe ready") == hash("20 --keyframe ready"));
+  CHECK(hash("20 --keyframe ready") != hash("20"));
+  // Episodes of random controls begin anew within 500 steps.
+  CHECK(hash("510 --random-controls --keyframe ready") != hash("510 --random-controls"));
+  CHECK(run("soak robot.xml --worlds 3 --steps 5 --seed 1 --keyframe ready").code == 0);
+  const Outcome unknown = run(job + "5 --keyframe redy");
+  CHECK(unknown.code == 2);
+  CHECK(contains(unknown.err, "--keyframe: no keyframe is named 'redy'; there is 'ready'"));
+  CHECK(contains(run("run ball3d --steps 5 --keyframe ready").err,
+                 "--keyframe: no keyframe is named 'ready'; there are no keyframes with names"));
 }
 
 TEST_CASE("model takes scenes that have a name, without coordinates", "[cli]") {

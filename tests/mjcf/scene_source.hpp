@@ -38,7 +38,8 @@ class SceneSource {
     if (!scene.exclusions.empty()) {
       out += fmt::format("scene.exclusions = {};\n", text(scene.exclusions));
     }
-    if (!scene.tendons.empty() || !scene.attractors.empty() || !scene.variations.empty()) {
+    if (!scene.tendons.empty() || !scene.attractors.empty() || !scene.variations.empty() ||
+        !scene.keyframes.empty()) {
       throw std::logic_error(scene.name + " has what SceneSource does not write");
     }
     return out + "return scene;\n}\n";

@@ -297,4 +297,32 @@ TEST_CASE("a Recorder refuses what it cannot record", "[fast][record]") {
   CHECK(folder.files().empty());
 }
 
+TEST_CASE("resets to keyframes are repeated", "[fast][record][bits]") {
+  const Folder folder;
+  Scene scene = scenes::find("hopper")->make();
+  const Plan plain = compile(scene);
+  std::vector<double> pose(plain.numbers(Field::generalized_position), 0.1);
+  scene.add(
+      Keyframe{.name = "crouch", .generalized_position = pose, .controls = {0.5, -0.5, 0.25}});
+  const Plan plan = compile(scene);
+  for (const Table& table : widest_tables()) {
+    INFO(name(table));
+    Batch batch(plan, batch_options(table, 5));
+    Recorder recorder(batch, folder / "run.h5", {.every = 4});
+    batch.step(8);
+    batch.reset(std::vector<std::uint8_t>{0, 1, 0, 1, 1}, batch.keyframe("crouch"));
+    batch.step(8);
+    batch.reset(std::vector<std::uint8_t>{1, 1, 0, 0, 0}, batch.keyframe("crouch"));
+    batch.step(8);
+    recorder.close();
+    const Recording recording = Recording::open(folder / "run.h5");
+    CHECK(recording.inputs() == 5);
+    check_equal(replay(recording));
+    Batch one(plan, batch_options(table, 1));
+    one.reset(KeyframeId(0));
+    one.step(8);
+    CHECK(one.hash(0) == batch.hash(1));
+  }
+}
+
 }  // namespace manyworlds::test

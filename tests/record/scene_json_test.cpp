@@ -80,6 +80,7 @@ Scene awkward_scene() {
                      0,
                      1e3,
                      7}};
+  scene.keyframes = {{"squat", {}, {}, {1.0 / 3, -0.0}}, {"", {}, {}, {}}};
   return scene;
 }
 

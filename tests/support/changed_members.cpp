@@ -170,6 +170,7 @@ Scene scene_with_everything(Solver solver) {
     const Limit end{-1, 1, {}, {0.1, 0.5, 0.1, 0.2, 0.3, 0.4, 3}, 0.1};
     scene.tendons.push_back({"cord", {{JointId(1), 0.5}, {JointId(2), -2}}, end});
   }
+  scene.keyframes.push_back({"key", {1, 2}, {3, 4}, {5, 6}});
   scene.options.contact_capacity = 7;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-1, -2, -3), Vec3(1, 2, 3));
   scene.options.joint.frequency = 30;

@@ -43,7 +43,7 @@ void RandomControls::apply(Batch& batch, std::int64_t step) {
     mask_[w] = due && !lost(batch.status(static_cast<int>(w)));
     any = any || mask_[w] != 0;
   }
-  if (any) batch.reset(mask_);
+  if (any) keyframe_ ? batch.reset(mask_, keyframe_) : batch.reset(mask_);
   batch.set_controls(values_);
 }
 

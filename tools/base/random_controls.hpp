@@ -19,6 +19,9 @@ class RandomControls {
   // Of batches of one kind. World i has the seed `seed` + i.
   RandomControls(const Batch& batch, std::uint64_t seed);
 
+  // Resets are to this keyframe from now on.
+  void reset_to(KeyframeId keyframe) { keyframe_ = keyframe; }
+
   // Whether a scene is driven unless the user says so: robots that have motors.
   static bool suit(const Plan& plan);
 
@@ -37,6 +40,7 @@ class RandomControls {
   std::vector<Range> ranges_;  // [control]; empty: nothing is done
   std::vector<double> values_;
   std::vector<std::uint8_t> mask_;
+  KeyframeId keyframe_;  // none: as the scene begins
 };
 
 }  // namespace manyworlds::tools

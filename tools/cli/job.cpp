@@ -31,6 +31,14 @@ int steps_for(double seconds, double dt) {
   return std::max(static_cast<int>(steps), 1);
 }
 
+KeyframeId find_keyframe(const Batch& batch, const JobOptions& options) {
+  try {
+    return batch.keyframe(options.keyframe);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(std::string("--keyframe: ") + error.what());
+  }
+}
+
 }  // namespace
 
 Job prepare(const JobOptions& options, std::vector<std::string>* warnings) {
@@ -64,7 +72,9 @@ Batch make_batch(const Job& job, const JobOptions& options, int worlds, std::uin
   batch_options.layout = options.layout;
   batch_options.sleep = options.sleep;
   try {
-    return Batch(job.plan, batch_options);
+    Batch batch(job.plan, batch_options);
+    if (!options.keyframe.empty()) batch.reset(find_keyframe(batch, options));
+    return batch;
   } catch (const std::invalid_argument& error) {
     // What is said of this member is about the option of the same name.
     const std::string text = error.what();
@@ -102,7 +112,9 @@ RandomControls asked_controls(const Batch& batch, const JobOptions& options, std
     throw InputError(
         fmt::format("--random-controls: scene '{}' has no controls; expected some", options.scene));
   }
-  return {batch, seed};
+  RandomControls controls(batch, seed);
+  if (!options.keyframe.empty()) controls.reset_to(find_keyframe(batch, options));
+  return controls;
 }
 
 }  // namespace manyworlds::cli

@@ -39,6 +39,7 @@ std::string reproduce_command(const JobOptions& options, int steps, std::uint64_
   if (options.iterations) command += fmt::format(" --iterations {}", *options.iterations);
   for (const std::string& one : options.set) command += " --set " + shell_word(one);
   if (options.random_controls) command += " --random-controls";
+  if (!options.keyframe.empty()) command += " --keyframe " + shell_word(options.keyframe);
   if (options.sleep) command += " --sleep on";
   if (options.precision != Precision::f32) {
     command += fmt::format(" --precision {}", to_string(options.precision));

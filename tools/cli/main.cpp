@@ -73,6 +73,7 @@ void add_run(CLI::App& app, AllOptions& all, int& code) {
   add_batch_options(*command, all.run);
   add_length_options(*command, all.run);
   add_random_controls(*command, all.run);
+  add_keyframe(*command, all.run);
   add_count(*command, "--steps-per-call", all.run.steps_per_call, 1, "n of each step(n) call");
   add_sleep_option(*command, all.run.sleep);
   add_plan_options(*command, all.run);
@@ -202,6 +203,7 @@ void add_soak(CLI::App& app, AllOptions& all, int& code) {
   add_batch_options(*command, all.soak);
   add_length_options(*command, all.soak);
   add_random_controls(*command, all.soak);
+  add_keyframe(*command, all.soak);
   add_sleep_option(*command, all.soak.sleep);
   add_plan_options(*command, all.soak);
   add_seed(*command, all.soak.seed, "world i draws from seed + i (default: random, printed)");

@@ -1,5 +1,5 @@
 // `manyworlds model`: what was read of a model: bodies and joints, actuators, tendons, pairs of
-// shapes, options, and what of its file does not act as it says.
+// shapes, keyframes, options, and what of its file does not act as it says.
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -155,6 +155,17 @@ Json tendons_json(const Scene& scene) {
   return out;
 }
 
+Json keyframes_json(const Scene& scene) {
+  Json out = Json::array();
+  for (const Keyframe& keyframe : scene.keyframes) {
+    out.push_back({{"name", keyframe.name},
+                   {"generalized_position", keyframe.generalized_position},
+                   {"generalized_velocity", keyframe.generalized_velocity},
+                   {"controls", keyframe.controls}});
+  }
+  return out;
+}
+
 Json to_json(const Job& job, const std::vector<std::string>& warnings) {
   const Scene& scene = job.plan.scene();
   Json fixed = Json::array();
@@ -174,6 +185,7 @@ Json to_json(const Job& job, const std::vector<std::string>& warnings) {
           {"fixed_bodies", std::move(fixed)},
           {"controls", controls_json(scene)},
           {"tendons", tendons_json(scene)},
+          {"keyframes", keyframes_json(scene)},
           {"exclusions", scene.exclusions.size()},
           {"pairs", pairs_json(job.plan.report().pairs)},
           {"options", std::move(options)},
@@ -272,6 +284,14 @@ void print_tendons(const Scene& scene) {
   }
 }
 
+void print_keyframes(const Scene& scene) {
+  if (scene.keyframes.empty()) return;
+  fmt::print("\nkeyframes\n");
+  for (std::size_t i = 0; i < scene.keyframes.size(); ++i) {
+    fmt::print("  {}\n", label("keyframe", scene.keyframes, static_cast<int>(i)));
+  }
+}
+
 void print_options(const Scene& scene) {
   fmt::print("\noptions that are not as 'manyworlds info --options' has them\n");
   const std::vector<OptionLine> lines = set_options(scene.options);
@@ -303,6 +323,7 @@ int model_command(const JobOptions& options) {
   print_tree(scene, model_tree(job.plan));
   print_controls(scene);
   print_tendons(scene);
+  print_keyframes(scene);
   print_pairs(job.plan.report().pairs);
   if (!scene.exclusions.empty()) {
     fmt::print("  {} of bodies that do not collide, beside those of joints\n",

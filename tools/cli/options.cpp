@@ -292,6 +292,12 @@ void add_random_controls(CLI::App& app, JobOptions& options) {
                "draw controls at random every 5 steps, and reset worlds after 500 steps");
 }
 
+void add_keyframe(CLI::App& app, JobOptions& options) {
+  app.add_option("--keyframe", options.keyframe,
+                 "begin, and reset, at this keyframe of the scene ('manyworlds model' lists them)")
+      ->type_name("NAME");
+}
+
 void add_sleep_option(CLI::App& app, bool& sleep) {
   add_choice<bool>(
       app, "--sleep", {{"off", false}, {"on", true}}, [&sleep](bool value) { sleep = value; },

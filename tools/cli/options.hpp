@@ -57,6 +57,7 @@ struct JobOptions {
   std::optional<double> seconds;  // s, simulated; replaces steps
   int steps_per_call = 16;        // n of each step(n) call
   bool random_controls = false;   // random_controls.hpp
+  std::string keyframe;           // that worlds begin at; empty: as the scene begins
 
   bool json = false;
 
@@ -110,6 +111,7 @@ void add_batch_options(CLI::App& app, JobOptions& options);
 void add_kernel_options(CLI::App& app, JobOptions& options);  // those that do not change a bit
 void add_length_options(CLI::App& app, JobOptions& options);
 void add_random_controls(CLI::App& app, JobOptions& options);
+void add_keyframe(CLI::App& app, JobOptions& options);
 void add_sleep_option(CLI::App& app, bool& sleep);
 void add_sleep_options(CLI::App& app, std::vector<bool>& sleep);  // or both
 void add_json_option(CLI::App& app, JobOptions& options);
