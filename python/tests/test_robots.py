@@ -143,7 +143,7 @@ def test_ball_joints_have_limits_and_springs():
     assert _core.round_trip(scene).joints[0].type.limit.high == 0.3
     batch = mw.Batch(scene, worlds=3)
     for _ in range(400):
-        batch.add_force((20, 0, 0))
+        batch.add_force((60, 0, 0))
         batch.step()
     angle = 2 * np.arccos(batch.get("generalized_position")[:, 0, 0])
     assert angle == pytest.approx([0.3] * 3, abs=0.01)

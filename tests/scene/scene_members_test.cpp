@@ -50,7 +50,14 @@ TEST_CASE("a changed member changes the fingerprint, unless it is said why not",
     INFO(member);
     CHECK_FALSE(has(member));
   }
+  for (const char* member : {"keyframes", "keyframes/0/name", "keyframes/0/controls/1",
+                             "keyframes/0/generalized_position/0"}) {
+    INFO(member);
+    CHECK(has(member));
+  }
   CHECK(counts.at({Solver::newton, "exclusions/0/body_b"}));
+  CHECK(counts.at({Solver::newton, "joints/9/type/limit"}));
+  CHECK(counts.at({Solver::newton, "joints/9/type/limit/high"}));
   CHECK(counts.at({Solver::newton, "tendons/0/terms/1/coefficient"}));
   CHECK(counts.at({Solver::newton, "tendons/0/limit/margin"}));
   for (const char* member : {"tolerance", "line_search_iterations", "line_search_tolerance",
