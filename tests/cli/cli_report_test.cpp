@@ -76,7 +76,9 @@ TEST_CASE("report accuracy writes complete tables and a page", "[cli][report]") 
       {"A1", 1e-5},     {"A2", 3e-10},  {"A3", 2e-8},   {"A4", 2e-6},   {"A5", 3e-7},
       {"A6", 3e-3},     {"A7", 3e-3},   {"A8", 3e-3},   {"A10", 3e-3},  {"A11-2", 0.3},
       {"A11-40", 1e-3}, {"A15x", 1e-9}, {"A15y", 1e-9}, {"A16", 1e-20}, {"A17", 2e-5},
-      {"A17e", 1e7},    {"A19", 1e-14}, {"A20", 2e-3},  {"A21", 2e-2},  {"A22", 1e-15}};
+      {"A17e", 1e7},    {"A19", 1e-14}, {"A20", 2e-3},  {"A21", 2e-2},  {"A22", 1e-15},
+      {"A23", 2e-9},    {"A24", 1e-7},  {"A25e", 1e-8}, {"A25p", 2e-8}, {"A26e", 1e-10},
+      {"A26p", 1e-10},  {"A27", 4e-8}};
   CHECK(least.size() == expected.size());
   for (const auto& [id, most] : expected) {
     INFO(id);

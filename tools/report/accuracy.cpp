@@ -22,6 +22,7 @@ Batch make_batch(const Case& c, const Method& method, Precision precision, doubl
   BatchOptions options;
   options.threads = 1;
   options.precision = precision;
+  options.observe.what = c.observe;
   Batch one(compile(scene), options);
   options.worlds = one.lanes();  // a whole group: what a world costs in a large batch
   return Batch(compile(scene), options);
@@ -106,7 +107,7 @@ std::vector<double> halvings(double first, int count) {
 
 std::vector<Case> accuracy_cases() {
   std::vector<Case> out = free_cases();
-  for (const auto& more : {joint_cases(), contact_cases()}) {
+  for (const auto& more : {joint_cases(), contact_cases(), robot_cases()}) {
     out.insert(out.end(), more.begin(), more.end());
   }
   return out;

@@ -39,6 +39,7 @@ struct Case {
   std::vector<Method> methods;
   std::function<Scene()> scene;
   std::function<void(Batch&)> push = {};  // before each step
+  std::vector<Observer> observe = {};     // what the error asks for
   // Error of world 0 at t s; called after each step, or after the last only.
   std::function<double(const Batch&, double)> error;
   Over over = Over::end;
@@ -50,6 +51,7 @@ std::vector<Case> accuracy_cases();
 std::vector<Case> free_cases();     // A1 to A5
 std::vector<Case> joint_cases();    // A6 to A11
 std::vector<Case> contact_cases();  // A15 to A22
+std::vector<Case> robot_cases();    // A23 to A27
 
 std::vector<Method> all_integrators();
 // The default integrator with these numbers of substeps.
