@@ -34,7 +34,7 @@ namespace manyworlds {
     "deepest overlap that the last step began with, 0 if none")                                   \
   X(contact_count, contacts, one, "1", "contact points of the last step, all of them")            \
   X(touching, touching, one, "1", "1 where a contact acted on the body in the last step, else 0") \
-  X(joint_position, joints, one, "m or rad", "coordinates of the joints (Plan.first_coordinate)") \
+  X(joint_position, joints, one, "m or rad", "coordinates of the joints (Plan.first_observed)")   \
   X(joint_speed, joints, one, "m/s or rad/s", "")                                                 \
   X(joint_force, joint_loads, vector, "N", "on body B, world axes, last substep")                 \
   X(joint_torque, joint_loads, spin, "N m", "on body B about its anchor, last substep")           \
@@ -57,12 +57,21 @@ namespace manyworlds {
 // moving body a centred ball) turns neither rays nor points.
 //
 // The coordinates of a joint follow one another, the joints are in their order
-// (Plan::first_coordinate):
+// (Plan::first_observed):
 //   ball      cone and twist, rad        hinge  angle, rad      slider  travel, m
 //   distance  length, m                  wheel  travel, m, and angle, rad
 //   pulley    |rope at A| + ratio |rope at B|, m                fixed, target  none
 // with angles in (-pi, pi], and their speeds in m/s and rad/s. Force and torque are what B gets
 // from the joint, the torque about B's anchor, world axes; those of the last substep.
+//
+// With Solver::newton the angle of a hinge and the travel of a slider are their generalised
+// positions: with JointDynamics::reference, and without end. What B gets is all that passes
+// through the joint: what holds it, and its spring, damper, limits, actuators and tendons, less
+// what its rotor (armature) takes; and what all that hangs on B asks for. It is that of the
+// accelerations and contacts of the last substep, where links were as it began (Runge-Kutta: in
+// its last stage), so that with what acts from outside it gives each link the acceleration that
+// it had there. Joints of a series all carry the same, each about its own anchor on what it moves.
+// A state that is looked at without a step tells 0.
 //
 // The residual is the largest change of a component of any body's velocity, and of its spin, that
 // one more sweep of the solver over all rows would make after those of the last substep (of

@@ -108,9 +108,12 @@ class Plan {
   int row(ShapeId shape) const;  // of arrays [shape of the scene]; all have one
   std::optional<int> find_row(BodyId body) const;
   BodyId body_in_row(int row) const;
-  // Of all joints of the scene (observe.hpp); 0 with Solver::newton, see ItemKind::coordinate.
+  // Of all joints of the scene, as observers see them (observed.hpp).
   int coordinates() const;
-  // Where those of a joint begin; with Solver::newton in generalized_position.
+  // Where those of a joint begin, joint by joint in the order of the scene.
+  int first_observed(JointId joint) const;
+  // The same; with Solver::newton where it begins in generalized_position, which has other
+  // coordinates in another order (ItemKind::coordinate).
   int first_coordinate(JointId joint) const;
   bool has(Feature feature) const;
   // Equal for plans whose worlds can go on in each other: of everything but names and where bodies

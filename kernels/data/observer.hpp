@@ -70,6 +70,14 @@ struct PointTable {
   Real position[3];
 };
 
+// Where a joint of a tree holds its body B, for what it carries (kernels/observe/tree_joints.hpp):
+// on a link, or on a frame without mass that the first `joints` of its joints have moved.
+template <class Real>
+struct TreeAnchor {
+  std::int32_t link, joints;
+  Real position[3];  // m, in the link's frame at the reference
+};
+
 template <class Real>
 struct ObserverView {
   // By Observer, what it sees: [item][row][lane], and how many items there are.
@@ -92,6 +100,9 @@ struct ObserverView {
 
   const JointCoordinate* coordinate;  // [coordinate]
   const std::int32_t* joint_of_part;  // [part]
+  // Of trees whose joint_loads are asked for, else nullptr.
+  const TreeAnchor<Real>* anchor;  // [joint of the scene]
+  Real* before;                    // the group's state before the last stage
 
   const RayTable* ray;            // [ray]
   const SeenShape* seen_shape;    // [fixed shape, then collider]
@@ -123,6 +134,8 @@ struct ObserverTable {
   // again, what the stored impulses tell of pairs that are asleep.
   Observe<Real> awake[kInertiaKinds], asleep[kInertiaKinds];
   Observe<Real> of_trees;  // the same of trees, whose contacts have no blocks
+  // Around the last stage of trees: keeps the state that it begins with; what joints carry in it.
+  Observe<Real> keep_tree_state, loads_of_trees;
   // Around one more sweep of the solver: keep what it changes; what that is, and put it back.
   std::size_t (*aside_bytes)(const SceneConstants<Real>&, Scratch*);
   Observe<Real> set_aside, compare[kInertiaKinds];

@@ -8,6 +8,7 @@
 #include "kernels/observe/points.hpp"
 #include "kernels/observe/residual.hpp"
 #include "kernels/observe/tree_contacts.hpp"
+#include "kernels/observe/tree_joints.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -66,12 +67,30 @@ void fill(kernels::ObserverTable<Real>& out) {
   begin(out, Observer::acceleration)[kind] = begin_acceleration<S>;
 }
 
-// Plans with joints have full tensors.
-template <class S>
+// Plans with joints have full tensors, and so have trees.
+void look_at_joints(const Constants& t, const Group& g, kernels::Scratch* scratch,
+                    const ObserverView& o) {
+  if (t.tree.links > 0) return observe_tree_joints(t, g, o);
+  observe_joints<Tensor>(t, g, scratch, o);
+}
+// What joints of trees carry is known in the middle of a step alone; without one it is 0.
+void begin_loads(const Constants& t, const Group&, kernels::Scratch*, const ObserverView& o) {
+  if (t.tree.links == 0) return;
+  Real* rows = rows_for(o, Observer::joint_loads);
+  const int count = items_of(o, Observer::joint_loads) * rows_of(Observer::joint_loads);
+  for (int i = 0; i < count; ++i) Float(Real(0)).store(rows + i * kLanes);
+}
+void look_at_loads(const Constants& t, const Group& g, kernels::Scratch* scratch,
+                   const ObserverView& o) {
+  if (t.tree.links == 0) observe_loads<Tensor>(t, g, scratch, o);
+}
 void fill_joints(kernels::ObserverTable<Real>& out) {
-  const int kind = static_cast<int>(S::kKind);
-  look(out, Observer::joints)[kind] = observe_joints<S>;
-  look(out, Observer::joint_loads)[kind] = observe_loads<S>;
+  const int planar = static_cast<int>(Planar::kKind), tensor = static_cast<int>(Tensor::kKind);
+  look(out, Observer::joints)[planar] = observe_joints<Planar>;
+  look(out, Observer::joints)[tensor] = look_at_joints;
+  look(out, Observer::joint_loads)[planar] = observe_loads<Planar>;
+  look(out, Observer::joint_loads)[tensor] = look_at_loads;
+  begin(out, Observer::joint_loads)[tensor] = begin_loads;
 }
 
 kernels::ObserverTable<Real> make_table() {
@@ -85,9 +104,10 @@ kernels::ObserverTable<Real> make_table() {
   fill<Planar>(out);
   fill<Isotropic>(out);
   fill<Tensor>(out);
-  fill_joints<Planar>(out);
-  fill_joints<Tensor>(out);
+  fill_joints(out);
   out.of_trees = observe_tree_contacts;
+  out.keep_tree_state = keep_tree_state;
+  out.loads_of_trees = observe_tree_loads;
   out.run_program = run_program;
   out.cast = cast_one;
   return out;

@@ -110,7 +110,12 @@ class Plan:
         """(body, index) of the shape of a name, of one body or of all."""
 
     def first_coordinate(self, joint: object) -> int:
-        """Where the coordinates of a joint, by handle, name or index, begin."""
+        """
+        Where the coordinates of a joint, by handle, name or index, begin; with the newton solver in generalized_position.
+        """
+
+    def first_observed(self, joint: object) -> int:
+        """Where those of a joint begin in joint_position and joint_speed."""
 
     def has(self, feature: object) -> bool:
         """Whether the step has this feature."""

@@ -115,7 +115,15 @@ void bind_plan(nb::module_& m) {
           [](const Plan& p, nb::object joint) {
             return p.first_coordinate(JointId(find(p, "joint", joint)));
           },
-          nb::arg("joint"), "Where the coordinates of a joint, by handle, name or index, begin.")
+          nb::arg("joint"),
+          "Where the coordinates of a joint, by handle, name or index, begin; with the newton "
+          "solver in generalized_position.")
+      .def(
+          "first_observed",
+          [](const Plan& p, nb::object joint) {
+            return p.first_observed(JointId(find(p, "joint", joint)));
+          },
+          nb::arg("joint"), "Where those of a joint begin in joint_position and joint_speed.")
       .def(
           "has",
           [](const Plan& p, nb::object f) { return p.has(from_python<Feature>(f, "feature")); },

@@ -94,7 +94,21 @@ def test_coordinates_are_fields(precision):
     with pytest.raises(ValueError, match="moved by generalized_position"):
         batch.set("position", 0)
     with pytest.raises(ValueError, match="worlds of the newton solver do not observe"):
-        mw.Batch(arm(), observe=["joints"])
+        mw.Batch(arm(), observe=["residual"])
+
+
+def test_joints_are_observed():
+    batch = mw.Batch(arm(), worlds=5, observe=["joints", "joint_loads"])
+    batch.step(3)
+    angle = batch.get("joint_position")
+    assert angle.shape == (5, 3, 1) and batch.get("joint_force").shape == (5, 3, 3)
+    q = batch.get("generalized_position")
+    first = {name: batch.plan.first_coordinate(name) for name in ("rail", "lift", "turn")}
+    for name, at in first.items():
+        np.testing.assert_array_equal(angle[:, batch.plan.first_observed(name)], q[:, at])
+    # Hinges in series carry the same.
+    force = batch.get("joint_force")
+    np.testing.assert_array_equal(force[:, 1], force[:, 2])
 
 
 def test_other_worlds_have_none():

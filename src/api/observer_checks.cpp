@@ -50,14 +50,10 @@ void check_observers(const Observers& observers) {
 void check_observers(const Observers& observers, const Plan& plan) {
   if (!plan.data().has_trees()) return;
   for (std::size_t i = 0; i < observers.what.size(); ++i) {
-    const Observer observer = observers.what[i];
-    if (observer != Observer::joints && observer != Observer::joint_loads &&
-        observer != Observer::residual) {
-      continue;
-    }
-    reject("observe.what[" + std::to_string(i) + "] is " + to_string(observer) +
-           ", which worlds of the newton solver do not observe; generalized_position and "
-           "generalized_velocity are fields of their state");
+    if (observers.what[i] != Observer::residual) continue;
+    reject("observe.what[" + std::to_string(i) +
+           "] is residual, which worlds of the newton solver do not observe: they are solved to "
+           "their tolerance (SolverOptions::tolerance)");
   }
 }
 

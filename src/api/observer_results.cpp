@@ -54,6 +54,12 @@ ObserverResultsOf<Real>::ObserverResultsOf(const AllWorlds& worlds, const Observ
     }
     if (has(Observer::joint_loads)) {
       for (const PlanPart& part : plan.parts) kind.joint_of_part.push_back(part.joint);
+      for (const PlanAnchor& from : plan.trees.anchors) {
+        kind.anchors.push_back({from.link, from.joints, {}});
+        for (int c = 0; c < 3; ++c) {
+          kind.anchors.back().position[c] = static_cast<Real>(from.position[c]);
+        }
+      }
     }
     if (has(Observer::contacts)) {
       kind.room = observers_.contacts_per_world;
@@ -131,6 +137,10 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
   view.point = kind.points.data();
   view.coordinate = plan.coordinates.data();
   view.joint_of_part = kind.joint_of_part.data();
+  if (!kind.anchors.empty()) {
+    view.anchor = kind.anchors.data();
+    view.before = reals(at(t.state_size) * lanes);
+  }
   const auto shifted = [](const PlanBody& b) { return !b.aligned; };
   if (wants_frames(observers_) && std::any_of(plan.bodies.begin(), plan.bodies.end(), shifted)) {
     view.frames = block.frames = reals(bodies * kernels::kFrameRows * lanes);

@@ -83,7 +83,8 @@ class ObserverResultsOf final : public ObserverResults {
     std::vector<kernels::RayTable> rays;
     std::vector<kernels::PointTable<Real>> points;
     std::vector<std::int32_t> joint_of_part;
-    std::vector<kernels::SeenShape> seen_shapes;  // of rays
+    std::vector<kernels::TreeAnchor<Real>> anchors;  // of trees
+    std::vector<kernels::SeenShape> seen_shapes;     // of rays
     int room = 0;
     bool frames_vary = false;  // from world to world
   };

@@ -45,7 +45,8 @@ class TreeCollector {
         h_(scene_.options.dt / scene_.options.substeps),
         series_(series_of_joints(scene_)),
         children_(scene_.bodies.size()),
-        link_(scene_.bodies.size(), -1) {}
+        link_(scene_.bodies.size(), -1),
+        anchors_(scene_.joints.size()) {}
 
   void run() {
     std::vector<int> roots;
@@ -64,6 +65,7 @@ class TreeCollector {
     plan_.trees.actuators = std::move(actuators_);
     plan_.trees.start = std::move(start_);
     plan_.trees.joint_coordinate = std::move(joint_coordinate_);
+    plan_.trees.anchors = std::move(anchors_);
     plan_.first_coordinate.assign(scene_.joints.size() + 1, plan_.trees.coordinates);
     for (const auto& [joint, coordinate] : plan_.trees.joint_coordinate) {
       plan_.first_coordinate[static_cast<std::size_t>(joint)] = coordinate;
@@ -97,11 +99,14 @@ class TreeCollector {
     link_[static_cast<std::size_t>(body)] = builder_.add(link);
     if (series.empty()) add_free(begin);
     TreePose between;  // of the frame that a joint moves
+    const int own = link_[static_cast<std::size_t>(body)];
+    const int first = moving_joints_;
     for (const int j : series) {
       between = between * frame_a(j) * frame_b(j).inverse();
-      add_joint(j, at.inverse() * between * frame_b(j), series.size() == 1);
+      const TreePose frame = at.inverse() * between * frame_b(j);
+      add_joint(j, frame, series.size() == 1);
+      anchors_[static_cast<std::size_t>(j)] = {own, moving_joints_ - first, frame.position};
     }
-    const int own = link_[static_cast<std::size_t>(body)];
     for (const int child : children_[static_cast<std::size_t>(body)]) add(child, own);
   }
 
@@ -109,6 +114,7 @@ class TreeCollector {
     NewTreeJoint joint;
     joint.kind = TreeJointKind::free;
     builder_.add(joint);
+    ++moving_joints_;
     start_.insert(start_.end(), begin.position.data(), begin.position.data() + 3);
     put_start(begin.rotation);
   }
@@ -134,6 +140,7 @@ class TreeCollector {
     }
     joint_coordinate_.emplace_back(index, static_cast<int>(start_.size()));
     builder_.add(joint);
+    observe(index, moving_joints_++);
     const TreePose moved = alone ? displacement(from) : TreePose{};
     if (*kind == TreeJointKind::ball) {
       // Of the link's axes, not of the joint's frames.
@@ -144,6 +151,13 @@ class TreeCollector {
       const Quat& q = moved.rotation;  // as is -q: the one within half a turn
       const double half = std::atan2(std::copysign(1.0, q.w()) * q.z(), std::abs(q.w()));
       start_.push_back(d.reference + 2 * half);
+    }
+  }
+  // The observed coordinates of a joint of the scene are those of this joint of a tree.
+  void observe(int joint, int moving) {
+    const auto j = static_cast<std::size_t>(joint);
+    for (int c = plan_.first_observed[j]; c < plan_.first_observed[j + 1]; ++c) {
+      plan_.coordinates[static_cast<std::size_t>(c)].part = moving;
     }
   }
   // Of B's frame against A's as the bodies begin.
@@ -203,6 +217,8 @@ class TreeCollector {
   std::vector<std::vector<int>> series_;    // [scene body] its joints, from its parent on
   std::vector<std::vector<int>> children_;  // [scene body]
   std::vector<int> link_;                   // [scene body]
+  std::vector<PlanAnchor> anchors_;
+  int moving_joints_ = 0;  // of all links so far
   std::vector<double> start_;
   std::vector<std::pair<int, int>> joint_coordinate_;
   std::vector<kernels::TreeActuator<double>> actuators_;

@@ -111,8 +111,11 @@ struct PlanData {
   std::vector<PlanThrust> thrusts;                   // by body
   PlanTrees trees;                                   // of Solver::newton
   std::vector<std::array<double, 2>> control_range;  // [control] low, high
+  // Of trees `part` is the joint of a link (PlanTrees::joints), and of `what` the kind alone
+  // counts.
   std::vector<kernels::JointCoordinate> coordinates;
-  std::vector<int> first_coordinate;  // [joint + 1]
+  // [joint + 1] among `coordinates`; the same but in generalized_position where there are trees.
+  std::vector<int> first_observed, first_coordinate;
   std::array<int, kernels::kLists> capacity{};
   bool sweep = false;
   bool rectangles = true;  // every polygon is one, and stays one

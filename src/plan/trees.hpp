@@ -21,6 +21,12 @@ struct TreeWeights {
   double mean_inertia = 1;                  // of the diagonal of M
 };
 
+// Where a joint of the scene holds its body B (kernels/data/observer.hpp).
+struct PlanAnchor {
+  int link = -1, joints = 0;
+  Vec3 position = Vec3::Zero();  // m
+};
+
 struct PlanTrees {
   std::vector<kernels::TreeLink<double>> links;
   std::vector<kernels::TreeJoint<double>> joints;
@@ -37,6 +43,7 @@ struct PlanTrees {
   std::vector<kernels::TreeDrag<double>> drags;       // [link], or none
   std::vector<double> start;                          // [coordinate], as the scene begins
   std::vector<std::pair<int, int>> joint_coordinate;  // of the scene; its first coordinate
+  std::vector<PlanAnchor> anchors;                    // [joint of the scene]
   kernels::NewtonOptions<double> newton{};
   TreeWeights weights;
   int coordinates = 0;

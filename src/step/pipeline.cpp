@@ -91,26 +91,36 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
 }
 
 // Bodies in joint coordinates: a step is as many substeps, each of which finds its own contacts.
-// `wanted` where contacts of the last one are observed.
+// `wanted` where contacts of the last one are observed, or what joints carry in its last stage.
 template <class Real>
 void tree_steps(const Run<Real>& run, int steps, const kernels::ObserverView<Real>* wanted) {
   const GroupStep<Real>& p = run.step;
   const auto& t = p.tables;
   const auto& tree = p.kernels.tree;
+  const auto& observer = *p.kernels.observer;
   if (steps == 0) return;
+  const bool loads = wanted && wanted->before;
+  int substeps = steps * t.substeps;
   if (!t.has_contacts) {
-    tree.steps(t, run.group, run.scratch, steps * t.substeps);
-    return run.lap(StepStage::tree);
+    const int alone = loads ? 1 : 0;  // with a look in the middle
+    tree.steps(t, run.group, run.scratch, substeps - alone);
+    run.lap(StepStage::tree);
+    if (!loads) return;
+    substeps = alone;
   }
-  for (int i = 0; i < steps * t.substeps; ++i) {
+  for (int i = 0; i < substeps; ++i) {
     for (int s = 0; s < t.tree.stages; ++s) {
       run(StageCall<Real>{StepStage::tree, tree.pose});
-      find_rows(run);
+      if (t.has_contacts) find_rows(run);
+      const bool last = i + 1 == substeps && s + 1 == t.tree.stages;
+      if (loads && last) observer.keep_tree_state(t, run.group, run.scratch, *wanted);
       run(StageCall<Real>{StepStage::tree, t.tree.stages == 1 ? tree.step : tree.runge_kutta[s]});
     }
   }
   if (wanted) {
-    p.kernels.observer->of_trees(t, run.group, run.scratch, *wanted);
+    const bool contacts = wanted->of_contacts && t.has_contacts;
+    if (contacts) observer.of_trees(t, run.group, run.scratch, *wanted);
+    if (loads) observer.loads_of_trees(t, run.group, run.scratch, *wanted);
     run.lap(StepStage::observe);
   }
   run(StageCall<Real>{StepStage::tree, tree.place});
@@ -191,7 +201,7 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
     const int last = looks_at_start(p) ? 1 : 0;  // taken by itself
     const Run<Real> run{p, group, scratch, clock};
     const bool contacts = p.wanted && p.wanted->of_contacts && p.tables.has_contacts;
-    const auto* wanted = contacts ? p.wanted : nullptr;
+    const auto* wanted = contacts || (p.wanted && p.wanted->before) ? p.wanted : nullptr;
     if (p.wanted) p.kernels.observer->clear(p.tables, group, scratch, *p.wanted);
     tree_steps(run, steps - last, last == 0 ? wanted : nullptr);
     if (p.wanted) look_at_start(p, group, scratch);

@@ -191,12 +191,7 @@ class TaskChecker {
       case ObservedItem::joint: bounded(n.index, scene.joints.size(), "the joint"); break;
       case ObservedItem::coordinate: {
         if (!bounded(n.index, scene.joints.size(), "the joint") || !plan_) return;
-        if (plan_->data().has_trees()) {
-          issues_.push_back(
-              {place, to_string(e) + ": joints of the newton solver are not observed"});
-          return;
-        }
-        const auto& first = plan_->data().first_coordinate;
+        const auto& first = plan_->data().first_observed;
         bounded(n.axis, static_cast<std::size_t>(first[item + 1] - first[item]), "the coordinate");
         return;
       }

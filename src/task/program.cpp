@@ -62,7 +62,7 @@ int ProgramBuilder::add_observed(const Expression::Node& n) {
   switch (kObserverInfo[observer].item) {
     case ObservedItem::body: item = plan_.row(BodyId(n.index)); break;
     case ObservedItem::coordinate:
-      item = plan_.first_coordinate(JointId(n.index)) + n.axis;
+      item = plan_.first_observed(JointId(n.index)) + n.axis;
       component = 0;
       break;
     default: break;

@@ -197,9 +197,16 @@ TEST_CASE("stepping trees allocates nothing", "[fast][allocation][newton]") {
   implicit.options.integrator = Integrator::implicit_fast;
   for (const Scene& scene : {newton_pendulum(), newton_robot(), wet, implicit}) {
     for (const Table& table : widest_tables()) {
-      Batch batch(compile(scene), options_of(table, 40));
-      batch.step();
-      CHECK(calls_during([&] { batch.step(100); }) == 0);
+      BatchOptions options = options_of(table, 40);
+      for (const bool observed : {false, true}) {
+        if (observed) {
+          options.observe.what = {Observer::contacts, Observer::motion, Observer::joints,
+                                  Observer::joint_loads, Observer::acceleration};
+        }
+        Batch batch(compile(scene), options);
+        batch.step();
+        CHECK(calls_during([&] { batch.step(100); }) == 0);
+      }
     }
   }
 }

@@ -6,6 +6,7 @@
 
 #include "manyworlds/scenes.hpp"
 #include "tests/support/contraption.hpp"
+#include "tests/support/newton_scenes.hpp"
 #include "tests/support/policy.hpp"
 #include "tests/support/tables.hpp"
 
@@ -235,6 +236,35 @@ TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task
   }
   CHECK(touched > 0);
   CHECK(nearest < down.length);
+}
+
+TEST_CASE("terms of a robot's joints are what observers tell", "[fast][task][newton]") {
+  Task task;
+  task.scene = newton_robot();
+  task.controls = {0.5};
+  task.observations = {{"hinge", terms::joint_position(JointId(0))},
+                       {"twist", terms::joint_position(JointId(1), 1)},
+                       {"twist speed", terms::joint_speed(JointId(1), 1)},
+                       {"force", terms::observed(Observed::joint_force, 1, 2)}};
+  Played p(task, {.worlds = 9});
+  for (int w = 0; w < 9; ++w) {
+    CHECK(p.observations[static_cast<std::size_t>(4 * w + 3)] == 0);  // no step yet
+  }
+  for (int step = 1; step <= 40; ++step) {
+    p.step();
+    const Batch& batch = p.environment.batch();
+    for (int w = 0; w < 9; ++w) {
+      const float* o = p.observations.data() + 4 * w;
+      std::vector<double> place(3), speed(3), force(6);
+      batch.read(Observed::joint_position, w, place);
+      batch.read(Observed::joint_speed, w, speed);
+      batch.read(Observed::joint_force, w, force);
+      REQUIRE(o[0] == static_cast<float>(place[0]));
+      REQUIRE(o[1] == static_cast<float>(place[2]));
+      REQUIRE(o[2] == static_cast<float>(speed[2]));
+      REQUIRE(o[3] == static_cast<float>(force[5]));
+    }
+  }
 }
 
 TEST_CASE("what tasks remember: previous, held and largest", "[task][fast]") {
