@@ -116,7 +116,8 @@ Kept kept_at_start(const Scene& scene) {
 void add_kept(const std::string& id, const std::string& title, Scene (*scene)(),
               std::vector<Case>& out) {
   const Kept start = kept_at_start(scene());
-  Case energy = of_robots(id + "e", title, "largest |E - E0| / E0", "share", 1e-3, 10);
+  Case energy = of_robots(id + "e", title, "largest change of the energy, as a share of it",
+                          "share", 1e-3, 10);
   energy.scene = scene;
   energy.observe = {Observer::motion};
   energy.over = Over::largest;
@@ -179,8 +180,8 @@ std::vector<Case> robot_cases() {
                     turn(angle_from_down(b, 1) - 0.407362074911907));
   };
   out.push_back(angles);
-  Case energy =
-      of_robots("A24", "double pendulum in joint coordinates", "largest |E - E0|", "J", 0.1, 10);
+  Case energy = of_robots("A24", "double pendulum in joint coordinates",
+                          "largest change of the energy", "J", 0.1, 10);
   energy.scene = swinging_rods;
   energy.over = Over::largest;
   energy.error = [](const Batch& b, double) {
