@@ -259,6 +259,18 @@ TEST_CASE("what is observed of joints has the bits of its world, and changes non
       if (other.empty()) other = all;
       CHECK(std::memcmp(all.data(), other.data(), all.size() * sizeof(double)) == 0);
       CHECK(force_on_b(seen).norm() > 0);
+      // In another lane, with others beside it.
+      const Snapshot saved = seen.save();
+      Batch one(plan, observing(table));
+      seen.step(3);
+      for (const int world : {0, 7, kWorlds - 1}) {
+        one.restore(saved, world, 0);
+        one.step(3);
+        for (const Observed what : {Observed::joint_position, Observed::joint_speed,
+                                    Observed::joint_force, Observed::joint_torque}) {
+          CHECK(numbers(one, what) == numbers(seen, what, world));
+        }
+      }
     }
   }
 }
