@@ -90,11 +90,13 @@ Options parse(int argc, char** argv, const Engine& engine) {
   return options;
 }
 
-using Simulations = std::vector<std::unique_ptr<Simulation>>;
-
-void step_all(const Simulations& worlds, int steps) {
+void step_all(const Simulations& worlds, Together* together, int steps) {
   for (int s = 0; s < steps; ++s) {
-    for (const auto& world : worlds) world->step();
+    if (together != nullptr) {
+      together->step();
+    } else {
+      for (const auto& world : worlds) world->step();
+    }
   }
 }
 
@@ -118,10 +120,12 @@ void measure(const std::string& scene, const Options& options, const Engine& eng
   using Clock = std::chrono::steady_clock;
   Simulations worlds;
   for (int i = 0; i < options.worlds; ++i) worlds.push_back(engine.make(draw(scene, i)));
-  step_all(worlds, options.warm_up);
+  const auto together = engine.together ? engine.together(worlds) : nullptr;
+  step_all(worlds, together.get(), options.warm_up);
   const auto start = Clock::now();
-  step_all(worlds, options.steps);
+  step_all(worlds, together.get(), options.steps);
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  if (together) together->finish();
 
   const World world = draw(scene, 0);
   double overlap = 0, gap = 0;
@@ -146,7 +150,7 @@ void measure(const std::string& scene, const Options& options, const Engine& eng
 void print_help(const char* program, const Engine& engine) {
   std::printf(
       "usage: %s [--scenes A,B,...] [--worlds N] [--warm-up N] [--steps N] | --list\n"
-      "Steps N worlds (1024) of each scene (all) round robin on one thread with %s %s: warm-up\n"
+      "Steps N worlds (1024) of each scene (all) by turns on one thread with %s %s: warm-up\n"
       "steps (60), then timed ones (300), of 1/60 s. Prints a line of JSON for each scene.\n"
       "--list prints the scenes: %s.\n",
       program, engine.name, engine.version.c_str(), joined(scenes_of(engine)).c_str());

@@ -1,11 +1,12 @@
 // What the programs of the peers share: one engine's worlds, all on one thread, stepped round robin
-// by the protocol of `manyworlds bench`, and a line of JSON for each scene.
+// or together by the protocol of `manyworlds bench`, and a line of JSON for each scene.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/peers/scenes.hpp"
 
@@ -36,6 +37,21 @@ class Simulation {
   virtual Heights heights() = 0;
 };
 
+using Simulations = std::vector<std::unique_ptr<Simulation>>;
+
+// All worlds of a scene, at least one, stepped by one call, for engines that can.
+class Together {
+ public:
+  Together() = default;
+  virtual ~Together() = default;
+  Together(const Together&) = delete;
+  Together& operator=(const Together&) = delete;
+
+  virtual void step() = 0;  // kStep
+  // Gives the worlds their states, after the clock has stopped.
+  virtual void finish() = 0;
+};
+
 struct Engine {
   const char* name;
   std::string version;
@@ -43,6 +59,8 @@ struct Engine {
   // What is not the engine's default, and what a reader has to know of the others.
   std::function<std::string(const World&)> settings;
   std::function<std::unique_ptr<Simulation>(const World&)> make;
+  // Begins where the worlds are, which it keeps a reference to. None: each world by its step().
+  std::function<std::unique_ptr<Together>(const Simulations&)> together;
 };
 
 // main() of a peer: --scenes A,B --worlds N --warm-up N --steps N, or --list. Returns the exit
