@@ -23,12 +23,9 @@ Scene bird_sling() {
   ground.shapes.push_back(wall);
   scene.add(ground);
 
-  Body bird;
-  bird.name = "bird";
-  bird.position = {-15, 1.5, 0};
+  Body bird = named_body("bird", {-15, 1.5, 0}, Circle{0.4});
   bird.linear_velocity = {13, 6.5, 0};  // m/s: over the wall into the pile
   bird.jitter.linear_velocity = {0.5, 0.5, 0};
-  bird.shapes.push_back(shape_of(Circle{0.4}));
   bird.shapes.back().density = 8;
   scene.add(bird);
 

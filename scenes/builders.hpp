@@ -55,6 +55,18 @@ inline Body body_of(Shape shape, const Vec3& position, Motion motion = Motion::d
   body.shapes.push_back(std::move(shape));
   return body;
 }
+// A body whose mass properties are given and whose shapes touch nothing.
+inline Body lump(Space space, double mass, const Vec3& moments, const Vec3& position) {
+  Body body = body_of(shape_of(cube_of(space, 0.1)), position);
+  body.shapes[0].filter.mask = 0;
+  body.mass_properties = MassProperties{mass, Vec3::Zero(), moments.asDiagonal()};
+  return body;
+}
+// A uniform rod along x, thin but for what keeps its inertia sound.
+inline Body uniform_rod(Space space, double mass, double length, const Vec3& position) {
+  const double across = mass * length * length / 12;
+  return lump(space, mass, {across * 1e-3, across, across}, position);
+}
 // Fixed, solid below height 0.
 inline Body ground(Space space, const Material& material = {}) {
   Body body = body_of(shape_of(ground_of(space), material), Vec3::Zero(), Motion::fixed);
@@ -64,5 +76,9 @@ inline Body ground(Space space, const Material& material = {}) {
 inline Body ground(Space space, double friction, double restitution = 0) {
   return ground(space, Material{friction, restitution});
 }
+
+// A frame whose axes are the world's.
+inline Frame frame_at(const Vec3& position) { return {position, Quat::Identity()}; }
+inline Frame frame_at(double x, double y) { return frame_at({x, y, 0}); }
 
 }  // namespace manyworlds::scenes

@@ -51,11 +51,9 @@ Scene car2d() {
   const BodyId car = scene.add(chassis);
   const double quarter_turn = std::sqrt(0.5);
   for (const double x : {-1.0, 1.0}) {
-    Body wheel;
-    wheel.name = x < 0 ? "rear wheel" : "front wheel";
-    wheel.position = chassis.position + Vec3(x, -0.45, 0);
+    Body wheel = named_body(x < 0 ? "rear wheel" : "front wheel",
+                            chassis.position + Vec3(x, -0.45, 0), Circle{0.4});
     wheel.jitter.with = car;
-    wheel.shapes.push_back(shape_of(Circle{0.4}));
     wheel.shapes.back().material.friction = 0.9;
     const BodyId body = scene.add(wheel);
     WheelJoint suspension{Spring{0, 0, 3, 0.5}, Limit{-0.25, 0.25, std::nullopt}, std::nullopt};

@@ -53,12 +53,9 @@ Scene car3d() {
   scene.options.substeps = 8;  // blows of logs pull its joints apart by 10 mm, with 4 by 25 mm
   scene.add(rough_ground());
 
-  Body chassis;
-  chassis.name = "chassis";
-  chassis.position = {0, 0, 0.72};
+  Body chassis = named_body("chassis", {0, 0, 0.72}, Box{{1.6, 0.4, 0.2}});
   chassis.jitter.position = {0.5, 0.2, 0};
   chassis.jitter.angle = 0.05;
-  chassis.shapes.push_back(shape_of(Box{{1.6, 0.4, 0.2}}));
   chassis.shapes.back().density = 300;
   const BodyId car = scene.add(chassis);
 
@@ -85,11 +82,8 @@ Scene car3d() {
   for (const double side : {1.0, -1.0}) {
     const std::string name = side > 0 ? "front left" : "front right";
     const Vec3 place(1.1, 0.85 * side, 0.42);
-    Body knuckle;
-    knuckle.name = name + " knuckle";
-    knuckle.position = place;
+    Body knuckle = named_body(name + " knuckle", place, Sphere{0.2});
     knuckle.jitter.with = car;
-    knuckle.shapes.push_back(shape_of(Sphere{0.2}));
     knuckle.shapes.back().filter.mask = 0;
     const BodyId body = scene.add(knuckle);
     const HingeJoint pivot{Limit{-0.6, 0.6, std::nullopt}, Drive{0, 0, Spring{0, 0, 8, 1}}};

@@ -15,10 +15,7 @@ constexpr double kHalf = 0.5;          // m, from a link's centre to its joints
 void add_links(Scene& scene, const Quat& along_x, const Vec3& stir, const JointType& joint) {
   scene.options.bounds = Eigen::AlignedBox3d(Vec3::Constant(-kReach), Vec3::Constant(kReach));
   for (int i = 0; i < kLinks; ++i) {
-    Body link;
-    link.name = "link" + std::to_string(i);
-    link.position = {i + kHalf, 0, 0};
-    link.shapes.push_back(shape_of(Capsule{0.1, 0.4}));
+    Body link = named_body("link" + std::to_string(i), {i + kHalf, 0, 0}, Capsule{0.1, 0.4});
     link.shapes.back().rotation = along_x;
     link.shapes.back().filter.mask = 0;
     link.jitter.linear_velocity = stir;

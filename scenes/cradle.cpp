@@ -10,11 +10,9 @@ Scene newton_cradle(int moving, double gap) {
   scene.options.gravity.setZero();
   scene.options.contact.restitution_threshold = 0.01;
   for (int i = 0; i < 5; ++i) {
-    Body ball;
-    ball.name = "ball" + std::to_string(i);
-    ball.position = {i * (2 * kRadius + gap), 0, 0};
+    Body ball =
+        named_body("ball" + std::to_string(i), {i * (2 * kRadius + gap), 0, 0}, Circle{kRadius});
     ball.linear_velocity = {i < moving ? 1.0 : 0.0, 0, 0};
-    ball.shapes.push_back(shape_of(Circle{kRadius}));
     ball.shapes.back().material = {.friction = 0, .restitution = 1};
     scene.add(ball);
   }

@@ -17,20 +17,14 @@ Scene crane() {
 
   const BodyId trolley = add_body(scene, "trolley", {0, kHeight, 0}, Polygon::box(0.8, 0.3));
   scene.bodies.back().jitter.position = {2, 0, 0};
-  Body rope;
-  rope.name = "rope";
-  rope.position = {0, kHeight - kRope / 2, 0};
+  Body rope = named_body("rope", {0, kHeight - kRope / 2, 0}, Capsule{0.04, kRope / 2});
   rope.jitter.with = trolley;
   rope.jitter.linear_velocity = {0.5, 0, 0};
-  rope.shapes.push_back(shape_of(Capsule{0.04, kRope / 2}));
   rope.shapes.back().filter.mask = 0;
   const BodyId line = scene.add(rope);
-  Body load;
-  load.name = "load";
-  load.position = {0, kHeight - kRope, 0};
+  Body load = named_body("load", {0, kHeight - kRope, 0}, Polygon::box(0.5, 0.5));
   load.linear_drag = 0.3;  // what lets it come to rest
   load.jitter.with = trolley;
-  load.shapes.push_back(shape_of(Polygon::box(0.5, 0.5)));
   const BodyId hook = scene.add(load);
 
   const SliderJoint rail{Limit{-8, 8, std::nullopt}, Drive{0, 0, std::nullopt, 2000}};

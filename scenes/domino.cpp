@@ -17,10 +17,8 @@ Scene domino() {
   scene.options.bounds = bounds_of(Space::spatial, 20);
   scene.add(ground(Space::spatial));
   for (int i = 0; i < 15; ++i) {
-    Body domino;
-    domino.name = "domino" + std::to_string(i);
-    domino.position = {kSpacing * i, 0, half_extents.z()};
-    domino.shapes.push_back(shape_of(Box{half_extents}));
+    Body domino = named_body("domino" + std::to_string(i), {kSpacing * i, 0, half_extents.z()},
+                             Box{half_extents});
     domino.jitter.position = {0.01, 0.01, 0};
     domino.jitter.angle = 0.02;
     if (i == 0) {

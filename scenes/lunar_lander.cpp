@@ -48,12 +48,10 @@ Scene lunar_lander() {
   const double mass = mass_properties(scene, cabin).mass;
   for (const double side : {-1.0, 1.0}) {
     const double lean = side * 0.2;  // sine of half its angle
-    Body leg;
-    leg.name = side < 0 ? "left leg" : "right leg";
-    leg.position = cabin.position + Vec3(side * 0.75, -0.5, 0);
+    Body leg = named_body(side < 0 ? "left leg" : "right leg",
+                          cabin.position + Vec3(side * 0.75, -0.5, 0), Capsule{0.08, 0.25});
     leg.rotation = Quat(std::sqrt(1 - lean * lean), 0, 0, lean);
     leg.jitter.with = body;
-    leg.shapes.push_back(shape_of(Capsule{0.08, 0.25}));
     leg.shapes.back().material.friction = 0.8;
     const BodyId lower = scene.add(leg);
     const HingeJoint hip{Limit{-0.5, 0.5, std::nullopt}, Drive{0, 0, Spring{0, 0, 5, 0.7}}};

@@ -42,13 +42,15 @@ Eigen::AlignedBox3d bounds_of(Space space, double half_width) {
   return {Vec3(-wall, -wall, -kWallMargin), Vec3(wall, wall, kCeiling)};
 }
 
-BodyId add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry) {
+Body named_body(std::string name, const Vec3& position, Geometry geometry) {
   Body body = body_of(shape_of(std::move(geometry)), position);
   body.name = std::move(name);
-  return scene.add(std::move(body));
+  return body;
 }
 
-Frame frame_at(double x, double y) { return {Vec3(x, y, 0), Quat::Identity()}; }
+BodyId add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry) {
+  return scene.add(named_body(std::move(name), position, std::move(geometry)));
+}
 
 Control thrust(std::string name, BodyId body, const Vec3& point, const Vec3& direction, double low,
                double high) {

@@ -1,4 +1,4 @@
-// What the scenes have in common besides the builders: bins, frames and controls. Gravity is
+// What the scenes have in common besides the builders: bins and controls. Gravity is
 // 10 m/s^2 down, the floor is at height 0.
 #pragma once
 
@@ -21,14 +21,12 @@ Body bin(Space space, double half_width);
 // or 100 m up.
 Eigen::AlignedBox3d bounds_of(Space space, double half_width);
 
-// Adds a dynamic body of one shape; returns it.
+// A dynamic body of one shape.
+Body named_body(std::string name, const Vec3& position, Geometry geometry);
 BodyId add_body(Scene& scene, std::string name, const Vec3& position, Geometry geometry);
 
 // Hills about height 0, up to `height` m high, 4 m from top to top; shapes.cpp.
 HeightField rough_field(int columns, int rows, double cell, double height);
-
-// A frame at a point of the plane, its axes the world's.
-Frame frame_at(double x, double y);
 
 // Thrust along a direction at a point of a body (both in its frame), N, and torque about z or
 // another axis of the body, from -most to most, N m.

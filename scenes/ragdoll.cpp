@@ -37,10 +37,7 @@ class Doll {
 
  private:
   BodyId add(const char* name, const Vec3& at, Geometry geometry) {
-    Body body;
-    body.name = name;
-    body.position = origin_ + at;
-    body.shapes.push_back(shape_of(std::move(geometry)));
+    Body body = named_body(name, origin_ + at, std::move(geometry));
     body.linear_velocity = {2, 0, 0};
     const BodyId index = scene_.add(body);
     if (!pelvis_) {

@@ -57,10 +57,9 @@ Scene pyramid(int base) {
   scene.add(ground(Space::planar));
   for (int row = 0; row < base; ++row) {
     for (int k = 0; k < base - row; ++k) {
-      Body box;
-      box.name = "box" + std::to_string(row) + "." + std::to_string(k);
-      box.position = {(k - (base - 1 - row) / 2.0) * 1.1, 0.5 + row, 0};
-      box.shapes.push_back(shape_of(Polygon::box(0.5, 0.5)));
+      Body box =
+          named_body("box" + std::to_string(row) + "." + std::to_string(k),
+                     {(k - (base - 1 - row) / 2.0) * 1.1, 0.5 + row, 0}, Polygon::box(0.5, 0.5));
       box.jitter.position = {0.01, 0, 0};
       scene.add(box);
     }

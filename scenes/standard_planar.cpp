@@ -34,10 +34,7 @@ Scene ball2d() {
   Scene scene = planar_scene("ball2d");
   scene.options.bounds = bounds_of(Space::planar, 20);
   scene.add(ground(Space::planar));
-  Body ball;
-  ball.name = "ball";
-  ball.position = {0, 5, 0};
-  ball.shapes.push_back(shape_of(Circle{0.5}));
+  Body ball = named_body("ball", {0, 5, 0}, Circle{0.5});
   ball.shapes.back().material.restitution = 0.9;
   ball.jitter.position = {0, 1, 0};
   scene.add(ball);

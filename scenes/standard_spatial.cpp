@@ -16,10 +16,8 @@ Scene bin_of_twenty(const std::string& name, const Geometry& geometry, bool any_
   for (int i = 0; i < 20; ++i) {
     const int k = i % 9;
     const int layer = i / 9;
-    Body body;
-    body.name = "body" + std::to_string(i);
-    body.position = {(k % 3 - 1) * 1.3, (k / 3 - 1) * 1.3, 1 + 1.4 * layer};
-    body.shapes.push_back(shape_of(geometry));
+    Body body = named_body("body" + std::to_string(i),
+                           {(k % 3 - 1) * 1.3, (k / 3 - 1) * 1.3, 1 + 1.4 * layer}, geometry);
     body.jitter.position = {0.05, 0.05, 0.05};
     body.jitter.any_orientation = any_orientation;
     scene.add(body);
@@ -37,10 +35,7 @@ Scene stack10() {
   scene.options.bounds = bounds_of(Space::spatial, 20);
   scene.add(ground(Space::spatial));
   for (int i = 0; i < 10; ++i) {
-    Body box;
-    box.name = "box" + std::to_string(i);
-    box.position = {0, 0, 0.5 + i};
-    box.shapes.push_back(shape_of(Box{{0.5, 0.5, 0.5}}));
+    Body box = named_body("box" + std::to_string(i), {0, 0, 0.5 + i}, Box{{0.5, 0.5, 0.5}});
     box.jitter.position = {0.005, 0.005, 0};
     scene.add(box);
   }
@@ -51,10 +46,7 @@ Scene ball3d() {
   Scene scene = spatial_scene("ball3d");
   scene.options.bounds = bounds_of(Space::spatial, 20);
   scene.add(ground(Space::spatial));
-  Body ball;
-  ball.name = "ball";
-  ball.position = {0, 0, 5};
-  ball.shapes.push_back(shape_of(Sphere{0.5}));
+  Body ball = named_body("ball", {0, 0, 5}, Sphere{0.5});
   ball.shapes.back().material.restitution = 0.9;
   ball.jitter.position = {0, 0, 1};
   scene.add(ball);

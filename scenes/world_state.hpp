@@ -45,6 +45,12 @@ inline Quat rotation(const Batch& batch, int world, int body) {
   return Quat(Eigen::AngleAxisd(std::atan2(v[2 * i + 1], v[2 * i]), Vec3::UnitZ()));
 }
 
+// rad; neither has to be of length 1.
+inline double angle_between(const Quat& a, const Quat& b) {
+  const Quat d = a.conjugate() * b;
+  return 2 * std::atan2(d.vec().norm(), std::abs(d.w()));
+}
+
 // Of a body of the scene instead of a row.
 inline int row_of(const Batch& batch, int world, BodyId body) {
   return batch.row(body, batch.kind_of(world));

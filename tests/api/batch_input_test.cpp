@@ -8,15 +8,7 @@
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
-namespace {
-
-Scene one_crate(Space space, double gravity = 0) {
-  Scene scene = empty_scene(space, gravity);
-  scene.add(body_of(shape_of(cube_of(space, 0.5)), Vec3::Zero()));
-  return scene;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("forces act through one call of step and are cleared", "[fast][batch]") {
   for (Space space : {Space::planar, Space::spatial}) {

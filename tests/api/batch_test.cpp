@@ -15,21 +15,7 @@
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
-namespace {
-
-std::vector<double> read_all(const Batch& batch, Field field) {
-  std::vector<double> v(batch.size(field));
-  batch.read(field, std::span<double>(v));
-  return v;
-}
-
-Scene one_crate(Space space, double gravity = 0) {
-  Scene scene = empty_scene(space, gravity);
-  scene.add(body_of(shape_of(cube_of(space, 0.5)), Vec3::Zero()));
-  return scene;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("a batch tells its shape", "[fast][batch]") {
   const Plan plan = compile(crowd(Space::spatial));

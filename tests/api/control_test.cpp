@@ -36,7 +36,7 @@ Control target(ControlKind kind, int joint) {
 // A free body of 2 kg and 0.5 kg m^2 about each axis, without gravity.
 Scene free_body(Space space) {
   Scene scene = empty_scene(space, 0);
-  scene.add(rod_of(space, 2, {0.5, 0.5, 0.5}, {1, 2, 0}));
+  scene.add(lump(space, 2, {0.5, 0.5, 0.5}, {1, 2, 0}));
   return scene;
 }
 // An arm on a hinge with a drive, and nothing else.

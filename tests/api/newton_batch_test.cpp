@@ -273,7 +273,7 @@ TEST_CASE("links have another mass in every world", "[fast][newton]") {
   const auto pendulum = [](double factor) {
     Scene scene = newton_scene();
     scene.add(
-        rod_of(Space::spatial, factor * kMass, factor * Vec3(0.1, kAcross, 0.3), {kLength, 0, 0}));
+        lump(Space::spatial, factor * kMass, factor * Vec3(0.1, kAcross, 0.3), {kLength, 0, 0}));
     scene.add(joint_at(scene, BodyId(), BodyId(0), at(Vec3::Zero(), z_to_y()), HingeJoint{}));
     Control motor;
     motor.kind = ControlKind::joint_force, motor.joint = JointId(0);

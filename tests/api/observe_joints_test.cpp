@@ -38,10 +38,6 @@ Vec3 torque_on_b(const Batch& batch, std::size_t joint = 0) {
 // The axis of a hinge with hinge_axes.
 Vec3 axis_of(Space space) { return space == Space::planar ? Vec3::UnitZ() : Vec3::UnitY(); }
 
-BodyId add_ball(Scene& scene, const Vec3& position, double mass = 1) {
-  return scene.add(rod_of(scene.space, mass, Vec3::Constant(0.1 * mass), position));
-}
-
 }  // namespace
 
 TEST_CASE("a hinge tells its angle, its speed and what it carries", "[fast][observe][joint]") {

@@ -11,12 +11,6 @@ namespace {
 constexpr int kScenes = 4;  // random sizes and offsets; 2,048 poses in all
 constexpr int kPosesPerScene = 512;
 
-Geometry any_sphere(Random& r) { return Sphere{r.uniform(0.1, 0.6)}; }
-Geometry any_box(Random& r) { return random_box(r); }
-Geometry any_capsule(Random& r) { return random_capsule(r); }
-Geometry any_plane(Random& r) { return Plane{r.direction(), r.uniform(-0.5, 0.5)}; }
-Geometry any_cylinder(Random& r) { return random_cylinder(r); }
-Geometry any_hull(Random& r) { return random_hull(r, 4 + static_cast<int>(r.uniform(0, 9))); }
 Geometry any_brick(Random& r) {  // a box, as a hull
   const Vec3 half = random_box(r).half_extents;
   Hull hull;

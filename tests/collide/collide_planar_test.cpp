@@ -17,7 +17,6 @@ constexpr int kPosesPerScene = 512;  // one round of worlds: 12,288 poses in all
 Geometry any_circle(Random& r) { return Circle{r.uniform(0.1, 0.6)}; }
 Geometry any_polygon(Random& r) { return random_polygon(r, r.integer(3, 8)); }
 Geometry any_rectangle(Random& r) { return Polygon::box(r.uniform(0.1, 0.6), r.uniform(0.1, 0.6)); }
-Geometry any_capsule(Random& r) { return random_capsule(r); }
 Geometry any_rounded(Random& r) {
   Polygon polygon = random_polygon(r, r.integer(3, 8));
   polygon.radius = r.uniform(0.02, 0.3);

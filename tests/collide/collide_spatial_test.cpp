@@ -11,11 +11,6 @@ namespace {
 constexpr int kScenes = 8;            // random sizes and offsets
 constexpr int kPosesPerScene = 1536;  // three rounds of worlds: 12,288 poses in all
 
-Geometry any_sphere(Random& r) { return Sphere{r.uniform(0.1, 0.6)}; }
-Geometry any_box(Random& r) { return random_box(r); }
-Geometry any_capsule(Random& r) { return random_capsule(r); }
-Geometry any_plane(Random& r) { return Plane{r.direction(), r.uniform(-0.5, 0.5)}; }
-
 void check(ShapeMaker first, Motion first_motion, ShapeMaker second, const PairPromise& promise) {
   for (const Table& table : widest_tables()) {
     const PairResult sum = check_random_pairs({first, first_motion, second}, Space::spatial, table,

@@ -14,12 +14,6 @@ namespace {
 Geometry any_ellipsoid(Random& r) {
   return Ellipsoid{{r.uniform(0.1, 0.6), r.uniform(0.1, 0.6), r.uniform(0.1, 0.6)}};
 }
-Geometry any_sphere(Random& r) { return Sphere{r.uniform(0.1, 0.6)}; }
-Geometry any_box(Random& r) { return random_box(r); }
-Geometry any_capsule(Random& r) { return random_capsule(r); }
-Geometry any_cylinder(Random& r) { return random_cylinder(r); }
-Geometry any_hull(Random& r) { return random_hull(r, 4 + static_cast<int>(r.uniform(0, 9))); }
-Geometry any_plane(Random& r) { return Plane{r.direction(), r.uniform(-0.5, 0.5)}; }
 
 // `twin`: m, by which the twin's own search may be wrong.
 void check(ShapeMaker first, Motion first_motion, ShapeMaker second, double twin) {

@@ -14,7 +14,7 @@ constexpr double kGravity = 10;
 Scene hanging(Space space, JointType type, double break_force) {
   Scene scene = empty_scene(space, kGravity);
   const Vec3 up = up_of(space);
-  scene.add(rod_of(space, 2, {0.2, 0.2, 0.2}, -up));
+  scene.add(lump(space, 2, {0.2, 0.2, 0.2}, -up));
   Joint joint =
       joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), std::move(type));
   joint.break_force = break_force;
@@ -86,7 +86,7 @@ TEST_CASE("of a chain that is too heavy the uppermost joint breaks, and the rest
       const Vec3 up = up_of(space);
       constexpr int kLinks = 8;
       for (int i = 0; i < kLinks; ++i) {
-        scene.add(rod_of(space, 1, {0.01, 0.01, 0.01}, -(i + 0.5) * 0.2 * up));
+        scene.add(lump(space, 1, {0.01, 0.01, 0.01}, -(i + 0.5) * 0.2 * up));
         Joint joint = joint_at(scene, BodyId(i - 1), BodyId(i),
                                at(-i * 0.2 * up, hinge_axes(space)), HingeJoint{});
         joint.break_force = 75;  // the uppermost bears 80 N, the next 70
@@ -172,8 +172,8 @@ TEST_CASE("joints are taken away and put back by hand", "[fast][joint]") {
 TEST_CASE("what hangs still and asleep wakes and falls when its joint is cut", "[fast][joint]") {
   for (const Table& table : widest_tables()) {
     Scene scene = empty_scene(Space::spatial, kGravity);
-    scene.add(rod_of(Space::spatial, 2, {0.2, 0.2, 0.2}, {0, 0, -1}));
-    scene.add(rod_of(Space::spatial, 2, {0.2, 0.2, 0.2}, {0, 0, -2}));
+    scene.add(lump(Space::spatial, 2, {0.2, 0.2, 0.2}, {0, 0, -1}));
+    scene.add(lump(Space::spatial, 2, {0.2, 0.2, 0.2}, {0, 0, -2}));
     scene.add(rope(scene, -1, 0, {0, 0, 0}, {0, 0, -1}));
     scene.add(rope(scene, 0, 1, {0, 0, -1}, {0, 0, -2}));
     scene.joints[1].break_force = 25;

@@ -13,11 +13,6 @@ constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 
 Scene still_scene(Space space) { return empty_scene(space, 0); }
 
-// A ball of 1 kg at `position` in the scene.
-BodyId add_ball(Scene& scene, const Vec3& position, double mass = 1) {
-  return scene.add(rod_of(scene.space, mass, Vec3::Constant(0.1 * mass), position));
-}
-
 }  // namespace
 
 TEST_CASE("a spring follows the recurrence of implicit Euler", "[fast][joint]") {

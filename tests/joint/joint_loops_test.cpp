@@ -4,44 +4,23 @@
 
 #include <cmath>
 
+#include "scenes/known_motion.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
 
-// N + 1 upright unit links on the ground whose tips N level ones join. All loops stay parallel;
-// when they lie flat, one degree of freedom becomes N + 1.
-Scene four_bars(int n, double rate) {
-  Scene scene = empty_scene(Space::planar, 9.81);
-  scene.options.dt = 1 / rate;
-  for (int i = 0; i <= n; ++i) {
-    Body link = uniform_rod(Space::planar, 1, 1, {static_cast<double>(i), 0.5, 0});
-    link.rotation = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
-    link.angular_velocity = {0, 0, -1};
-    link.linear_velocity = {0.5, 0, 0};
-    scene.add(link);
-  }
-  for (int i = 0; i < n; ++i) {
-    Body link = uniform_rod(Space::planar, 1, 1, {i + 0.5, 1, 0});
-    link.linear_velocity = {1, 0, 0};
-    scene.add(link);
-  }
-  const auto pin = [&](int a, int b, double x, double y) {
-    scene.add(joint_at(scene, BodyId(a), BodyId(b), at({x, y, 0}), HingeJoint{}));
-  };
-  for (int i = 0; i <= n; ++i) pin(-1, i, i, 0);
-  for (int i = 0; i < n; ++i) pin(i, n + 1 + i, i, 1), pin(i + 1, n + 1 + i, i + 1, 1);
-  return scene;
-}
-
 struct LoopError {
   double tip = 0, gap = 0;  // m, largest over the run
   double gain = 0;          // of energy, largest, as a share of what moves
 };
 LoopError run(int n, double rate, double seconds) {
-  Batch batch(compile(four_bars(n, rate)), options_of(double_table()));
-  // All links turn alike, from upright; energy 0 where they hang.
+  // All loops stay parallel; when they lie flat, one degree of freedom becomes n + 1.
+  Scene scene = scenes::loops_of_four_bars(n);
+  scene.options.dt = 1 / rate;
+  Batch batch(compile(scene), options_of(double_table()));
+  // All uprights keep the same angle, from upright; energy 0 where they hang.
   Swing theta{9.81 * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n), kPi / 2, -1};
   const double start = energy_of(batch, 0), lowest = -9.81 * (0.5 * (n + 1) + n);
   LoopError out;

@@ -34,7 +34,7 @@ struct PointError {
 PointError swing_point(Space space, double rate, double seconds) {
   Scene scene = empty_scene(space, 9.81);
   scene.options.dt = 1 / rate;
-  scene.add(rod_of(space, 1, {0.01, 0.01, 0.01}, {1, 0, 0}));
+  scene.add(lump(space, 1, {0.01, 0.01, 0.01}, {1, 0, 0}));
   Joint rod;
   rod.type = DistanceJoint{};
   rod.body_b = BodyId(0);

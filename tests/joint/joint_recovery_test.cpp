@@ -104,7 +104,7 @@ TEST_CASE("every joint lives through half a minute of shaking", "[joint]") {
     for (std::size_t k = 0; k < types.size(); ++k) {
       Scene scene = empty_scene(space, 10);
       for (int i = 0; i < 3; ++i) {
-        scene.add(rod_of(space, 1, {0.1, 0.15, 0.2}, {static_cast<double>(i), 0, 0}));
+        scene.add(lump(space, 1, {0.1, 0.15, 0.2}, {static_cast<double>(i), 0, 0}));
         scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), at({i - 0.5, 0, 0}), types[k]));
         if (std::holds_alternative<DistanceJoint>(types[k])) {
           scene.joints.back().frame_b.position = {0.5, 0, 0};

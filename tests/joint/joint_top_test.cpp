@@ -17,7 +17,7 @@ Scene top(double mass, const Vec3& moments, double arm, double tilt, const Vec3&
   Scene scene = empty_scene(Space::spatial, gravity);
   scene.options.dt = 1 / rate;
   const Quat q(Eigen::AngleAxisd(tilt, Vec3::UnitX()));
-  Body body = rod_of(Space::spatial, mass, moments, q * Vec3(0, 0, arm));
+  Body body = lump(Space::spatial, mass, moments, q * Vec3(0, 0, arm));
   body.rotation = q;
   body.angular_velocity = q * spin;
   body.linear_velocity = body.angular_velocity.cross(body.position);

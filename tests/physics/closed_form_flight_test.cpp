@@ -19,11 +19,6 @@ Body rigid(double mass, const Vec3& inertia, Space space = Space::spatial) {
   return body;
 }
 
-double angle_between(const Quat& a, const Quat& b) {
-  const Quat d = a.normalized().conjugate() * b.normalized();
-  return 2 * std::atan2(d.vec().norm(), std::abs(d.w()));
-}
-
 }  // namespace
 
 TEST_CASE("a projectile follows the exact parabola", "[fast][closed_form]") {

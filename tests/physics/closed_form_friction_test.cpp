@@ -3,22 +3,14 @@
 
 #include <cmath>
 
+#include "scenes/known_motion.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
 
-constexpr double kG = 9.81;
-
-// Ground and one body at rest on it; gravity is tilted by `slope` towards +x.
-Scene incline(Space space, double slope, double friction, Geometry geometry, double height) {
-  Scene scene = empty_scene(space);
-  scene.options.gravity = kG * (std::sin(slope) * Vec3::UnitX() - std::cos(slope) * up_of(space));
-  scene.add(ground(space, friction));
-  scene.add(body_of(shape_of(std::move(geometry), friction), height * up_of(space)));
-  return scene;
-}
+using scenes::incline, scenes::kG;
 
 // Spin that goes with rolling along +x.
 double forward_spin(const Batch& batch) {

@@ -13,7 +13,7 @@ constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 
 Scene floating(Space space, const Vec3& place, const Vec3& v) {
   Scene scene = empty_scene(space, 0);
-  scene.add(rod_of(space, 2, {0.2, 0.2, 0.2}, place));
+  scene.add(lump(space, 2, {0.2, 0.2, 0.2}, place));
   scene.bodies[0].linear_velocity = v;
   return scene;
 }
@@ -147,7 +147,7 @@ TEST_CASE("a ball that bounces on a planet keeps its height", "[fast][field]") {
 TEST_CASE("a body floats above an attractor without falling asleep", "[fast][field]") {
   for (const Table& table : widest_tables()) {
     Scene scene = floating(Space::spatial, {0, 0, 30}, Vec3::Zero());
-    scene.add(rod_of(Space::spatial, 1, {1, 1, 1}, {9, 0, 0}));
+    scene.add(lump(Space::spatial, 1, {1, 1, 1}, {9, 0, 0}));
     scene.add(
         joint_at(scene, {}, BodyId(1), at({9, 0, 1}), HingeJoint{}));  // there is a solver step
     scene.attractors = {{Vec3::Zero(), 10, 1}};

@@ -32,11 +32,6 @@ Body random_compound(Random& random) {
   return body;
 }
 
-double angle_between(const Quat& a, const Quat& b) {
-  const Quat d = a.conjugate() * b;
-  return 2 * std::atan2(d.vec().norm(), std::abs(d.w()));
-}
-
 }  // namespace
 
 TEST_CASE("the free-motion twin agrees with a quad-precision reference", "[fast][twin]") {

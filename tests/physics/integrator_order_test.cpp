@@ -55,13 +55,6 @@ MovingBody start_of(const Scene& scene, int body) {
   return b;
 }
 
-Body lump(Space space, double mass, const Vec3& moments, const Vec3& position) {
-  Body body = body_of(shape_of(cube_of(space, 0.1)), position);
-  body.shapes[0].filter.mask = 0;
-  body.mass_properties = MassProperties{mass, Vec3::Zero(), moments.asDiagonal()};
-  return body;
-}
-
 // How far off the bodies are after `time`, by steps of `h`.
 double error_of(Scene scene, const Method& m, const std::vector<MovingBody>& wanted, double time,
                 double h) {

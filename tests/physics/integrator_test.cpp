@@ -26,7 +26,7 @@ void choose(Scene& scene, Integrator integrator) {
 Scene oscillator(Space space, double stiffness, double h) {
   Scene scene = empty_scene(space, 0);
   scene.options.dt = h, scene.options.substeps = 1;
-  scene.add(rod_of(space, 1, {0.1, 0.1, 0.1}, {1, 0, 0}));
+  scene.add(lump(space, 1, {0.1, 0.1, 0.1}, {1, 0, 0}));
   Joint joint;
   TargetJoint target;
   target.spring.stiffness = stiffness;
@@ -126,7 +126,7 @@ TEST_CASE("implicit Euler takes springs of any stiffness", "[fast][integrator]")
         scene.options.integrator = Integrator::implicit_euler;
         scene.options.substeps = 1;
         for (int i = 0; i < 4; ++i) {
-          scene.add(rod_of(space, 1, {0.1, 0.1, 0.1}, {0.5 + 0.7 * i, 0, 0}));
+          scene.add(lump(space, 1, {0.1, 0.1, 0.1}, {0.5 + 0.7 * i, 0, 0}));
           scene.bodies.back().linear_drag = scene.bodies.back().angular_drag = 1;
           DistanceJoint line;
           line.length = 0.3, line.spring = Spring{stiffness, 1, 0, 0};
@@ -267,7 +267,7 @@ TEST_CASE("spins as angular momenta keep them", "[fast][integrator]") {
     scene.options.dt = 1.0 / 200, scene.options.substeps = 1;
     scene.options.integrator = Integrator::explicit_euler;
     scene.options.angular_momentum = true;
-    scene.add(rod_of(Space::spatial, 1, {0.3, 0.2, 0.1}, Vec3::Zero()));
+    scene.add(lump(Space::spatial, 1, {0.3, 0.2, 0.1}, Vec3::Zero()));
     scene.bodies[0].angular_velocity = {0.1, 5, 0.1};
     Batch batch(compile(scene), options_of(table));
     const Vec3 before = momenta(batch, 0).angular;

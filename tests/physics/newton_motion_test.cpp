@@ -95,7 +95,7 @@ TEST_CASE("forces, torques and gravity scales act on links", "[fast][newton]") {
 
     Scene falling = newton_scene();
     for (const double scale : {1.0, 0.25, 0.0, -1.0}) {
-      falling.add(rod_of(Space::spatial, 3, {1, 1, 1}, Vec3(5.0 * scale, 0, 0)));
+      falling.add(lump(Space::spatial, 3, {1, 1, 1}, Vec3(5.0 * scale, 0, 0)));
       falling.bodies.back().gravity_scale = scale;
     }
     falling.variations = {vary(Parameter::gravity_scale, -2, 2)};
@@ -209,7 +209,7 @@ TEST_CASE("forces of actuators that damp are implicit in implicit-fast", "[fast]
 TEST_CASE("tumbling bodies gain no energy in implicit-fast", "[fast][newton]") {
   Scene scene = newton_scene(0);
   scene.options.integrator = Integrator::implicit_fast;
-  scene.add(rod_of(Space::spatial, kMass, {0.1, 0.3, 0.35}, Vec3::Zero()));
+  scene.add(lump(Space::spatial, kMass, {0.1, 0.3, 0.35}, Vec3::Zero()));
   for (const Table& table : widest_tables()) {
     INFO(name(table));
     Batch batch(compile(scene), options_of(table));

@@ -104,7 +104,7 @@ TEST_CASE("planar and spatial joints move alike", "[fast][planar_spatial][joint]
     Scene scene = empty_scene(space);
     scene.options.gravity = {1, -10, 0};
     const auto rod = [&](double x, double y) {
-      Body body = rod_of(space, 1.5, {0.1, 0.1, 0.1}, {x, y, 0});
+      Body body = lump(space, 1.5, {0.1, 0.1, 0.1}, {x, y, 0});
       body.angular_velocity = {0, 0, 2 - x};
       return scene.add(body);
     };

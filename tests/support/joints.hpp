@@ -7,20 +7,9 @@
 
 namespace manyworlds::test {
 
-// A body whose mass properties are given and whose shapes touch nothing.
-inline Body rod_of(Space space, double mass, const Vec3& inertia, const Vec3& position) {
-  Body body = body_of(shape_of(cube_of(space, 0.1)), position);
-  body.shapes[0].filter.mask = 0;
-  MassProperties m;
-  m.mass = mass;
-  m.inertia = inertia.asDiagonal();
-  body.mass_properties = m;
-  return body;
-}
-// A uniform rod along x, thin but for what keeps its inertia sound.
-inline Body uniform_rod(Space space, double mass, double length, const Vec3& position) {
-  const double across = mass * length * length / 12;
-  return rod_of(space, mass, {across * 1e-3, across, across}, position);
+// A ball of `mass`, kg, that touches nothing.
+inline BodyId add_ball(Scene& scene, const Vec3& position, double mass = 1) {
+  return scene.add(lump(scene.space, mass, Vec3::Constant(0.1 * mass), position));
 }
 
 inline Frame at(const Vec3& position, const Quat& rotation = Quat::Identity()) {

@@ -20,7 +20,7 @@ inline Scene newton_scene(double gravity = 10) {
 // (cos q, 0, -sin q) kLength.
 inline Scene newton_pendulum(double gravity = 10) {
   Scene scene = newton_scene(gravity);
-  scene.add(rod_of(Space::spatial, kMass, {0.1, kAcross, 0.3}, {kLength, 0, 0}));
+  scene.add(lump(Space::spatial, kMass, {0.1, kAcross, 0.3}, {kLength, 0, 0}));
   scene.add(joint_at(scene, BodyId(), BodyId(0), at(Vec3::Zero(), z_to_y()), HingeJoint{}));
   return scene;
 }
@@ -52,10 +52,7 @@ inline Scene newton_robot() {
 inline constexpr int kCoordinates = 7 + 1 + 4 + 7, kDofs = 6 + 1 + 3 + 6;
 
 inline Numbers of(const Batch& batch, Field field, int world = 0) {
-  const Plan& plan = batch.plan(batch.kind_of(world));
-  Numbers out(plan.numbers(field));
-  batch.read(field, world, out);
-  return out;
+  return values(batch, field, world);
 }
 inline void put(Batch& batch, Field field, const Numbers& values, int world = 0) {
   batch.write(field, world, values);

@@ -52,6 +52,14 @@ Hull random_hull(Random& random, int vertices);
 Body random_body(Geometry geometry, Motion motion, bool offset, Space space, Random& random);
 
 using ShapeMaker = Geometry (*)(Random&);
+inline Geometry any_sphere(Random& r) { return Sphere{r.uniform(0.1, 0.6)}; }
+inline Geometry any_box(Random& r) { return random_box(r); }
+inline Geometry any_capsule(Random& r) { return random_capsule(r); }
+inline Geometry any_cylinder(Random& r) { return random_cylinder(r); }
+inline Geometry any_hull(Random& r) {
+  return random_hull(r, 4 + static_cast<int>(r.uniform(0, 9)));
+}
+inline Geometry any_plane(Random& r) { return Plane{r.direction(), r.uniform(-0.5, 0.5)}; }
 struct RandomPair {
   ShapeMaker first;
   Motion first_motion;

@@ -1,6 +1,7 @@
 // Short ways to describe bodies and scenes in tests, and to look at one world of a Batch.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 
 namespace manyworlds::test {
 
+using scenes::angle_between;
 using scenes::body_of;
 using scenes::box_of;
 using scenes::cube_of;
@@ -17,6 +19,7 @@ using scenes::ground;
 using scenes::ground_of;
 using scenes::in_row;
 using scenes::kPi;
+using scenes::lump;
 using scenes::position;
 using scenes::rotation;
 using scenes::round_of;
@@ -24,6 +27,7 @@ using scenes::row_of;
 using scenes::shape_of;
 using scenes::space_of;
 using scenes::spin;
+using scenes::uniform_rod;
 using scenes::up_of;
 using scenes::values;
 using scenes::vector_of;
@@ -31,6 +35,12 @@ using scenes::velocity;
 
 inline Scene empty_scene(Space space, double gravity = 10) {
   return scenes::empty_scene(space, gravity, "test");
+}
+// A cube of 1 m at the origin.
+inline Scene one_crate(Space space, double gravity = 0) {
+  Scene scene = empty_scene(space, gravity);
+  scene.add(body_of(shape_of(cube_of(space, 0.5)), Vec3::Zero()));
+  return scene;
 }
 // A box `side` wide to every side and `height` high, both half extents, m.
 Geometry slab_of(Space space, double side, double height);
@@ -44,6 +54,12 @@ inline void set_vector(Batch& batch, Field field, int world, int body, const Vec
   batch.write(field, world, v);
 }
 
+// One field of all worlds.
+inline std::vector<double> read_all(const Batch& batch, Field field) {
+  std::vector<double> v(batch.size(field));
+  batch.read(field, std::span<double>(v));
+  return v;
+}
 // Every state field of one world in a row: equal exactly when the states are.
 inline std::vector<double> state(const Batch& batch, int world) {
   std::vector<double> all;

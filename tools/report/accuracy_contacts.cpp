@@ -152,15 +152,6 @@ Case elastic_heap() {
   return c;
 }
 
-// Ground and one body on it; gravity is tilted by `slope` towards +x.
-Scene incline(double slope, double friction, Geometry geometry, double height) {
-  Scene scene = empty(Space::spatial);
-  scene.options.gravity = kG * Vec3(std::sin(slope), 0, -std::cos(slope));
-  scene.add(ground(Space::spatial, friction));
-  scene.add(with_shape(std::move(geometry), {0, 0, height}, friction));
-  return scene;
-}
-
 }  // namespace
 
 std::vector<Case> contact_cases() {
@@ -171,7 +162,7 @@ std::vector<Case> contact_cases() {
   Case roll =
       of_contacts("A19", "ball that rolls down 15 degrees", "speed after 1 s", "share", 1e-3, 1);
   roll.scene = [=] {
-    Scene scene = incline(slope, 1, Sphere{0.05}, 0.05);
+    Scene scene = scenes::incline(Space::spatial, slope, 1, Sphere{0.05}, 0.05);
     scene.options.length_unit = 0.1;
     return scene;
   };
@@ -184,7 +175,7 @@ std::vector<Case> contact_cases() {
 
   Case stop = of_contacts("A20", "block that slides to a stop", "distance", "share", 1e-3, 2);
   stop.scene = [] {
-    Scene scene = incline(0, 0.3, Box{Vec3::Constant(0.25)}, 0.25);
+    Scene scene = scenes::incline(Space::spatial, 0, 0.3, Box{Vec3::Constant(0.25)}, 0.25);
     scene.bodies[1].linear_velocity = {5, 0, 0};
     return scene;
   };

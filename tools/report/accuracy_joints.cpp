@@ -14,9 +14,7 @@ Scene rods(int count) {
   Scene scene = empty(Space::planar);
   for (int i = 0; i < count; ++i) {
     scene.add(lump(Space::planar, 1, Vec3::Constant(1.0 / 12), {i + 0.5, 0, 0}));
-    Frame pin;
-    pin.position = {static_cast<double>(i), 0, 0};
-    scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), pin, HingeJoint{}));
+    scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), frame_at(i, 0), HingeJoint{}));
   }
   return scene;
 }
@@ -114,7 +112,7 @@ Case four_bars(int n, double seconds) {
   c.steps = halvings(1.0 / 60, n == 2 ? 7 : 5);
   const double rate = kG * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n);
   const std::vector<double> angles = swing(rate, kPi / 2, -1, 0.05, seconds);
-  c.scene = [n] { return loops_of_four_bars(n); };
+  c.scene = [n] { return scenes::loops_of_four_bars(n); };
   c.over = Over::largest;
   c.error = [=](const Batch& b, double t) {
     const int k = seen_at(t, 0.05);

@@ -14,9 +14,7 @@ Scene chain(int links, double half, double radius, const Body& load, double load
   Scene scene = empty(Space::planar, 10);
   scene.options.density = 20;
   const auto pin = [&](int a, int b, double x) {
-    Frame at;
-    at.position = {x, 0, 0};
-    scene.add(joint_at(scene, BodyId(a), BodyId(b), at, HingeJoint{}));
+    scene.add(joint_at(scene, BodyId(a), BodyId(b), frame_at(x, 0), HingeJoint{}));
   };
   for (int i = 0; i < links; ++i) {
     Body link = with_shape(Capsule{radius, half}, {half * (2 * i + 1), 0, 0});
@@ -190,7 +188,7 @@ Trial stiff_spring(double stiffness, Integrator integrator) {
 // A11 with large steps.
 Trial loops() {
   Trial t = trial("B25", "40 loops of four bars at 1/60 s", "speed", "m/s", 7.2, 10);
-  t.scene = [] { return loops_of_four_bars(40); };
+  t.scene = [] { return scenes::loops_of_four_bars(40); };
   t.value = [](const Seen& s, int w) { return s.fastest(w); };
   return t;
 }

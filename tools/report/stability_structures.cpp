@@ -44,9 +44,7 @@ Trial cantilever() {
       box.shapes[0].filter.mask = 0;
       box.jitter.linear_velocity = {0, 0.01, 0};
       scene.add(box);
-      Frame at;
-      at.position = {static_cast<double>(i), 0, 0};
-      scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), at, FixedJoint{}));
+      scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), frame_at(i, 0), FixedJoint{}));
     }
     return scene;
   };
