@@ -61,7 +61,7 @@ void time_new_numbers(benchmark::State& state, Parameter parameter) {
   state.counters["per_world"] = time_of_one(kManyWorlds);
 }
 
-// Every second world is kept awake by small pushes; without sleep they all are.
+// Every second world is kept awake by small forces; without sleep they all are.
 void time_half_awake(benchmark::State& state, bool sleep) {
   Batch batch = batch_of(bin_boxes(), sleep);
   batch.step(1200);

@@ -2,7 +2,7 @@
 # pkg-config read. Nothing in there names the prefix, so the whole may be moved.
 
 include(CMakePackageConfigHelpers)
-# Two parts, for who wants one of them only: cmake --install BUILD --component library, or program.
+# Two components, which can be installed alone: cmake --install BUILD --component library, or program.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME library)
 add_custom_target(mw_libraries)
 set(mw_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/manyworlds")
@@ -10,8 +10,8 @@ set(mw_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/manyworlds")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/manyworlds" TYPE INCLUDE
         FILES_MATCHING PATTERN "*.hpp")
 
-# mw_install_library(TARGET NAME): as the export set NAME-targets, one per package component: only who
-# asks for one needs what that one needs.
+# mw_install_library(TARGET NAME): as the export set NAME-targets, one per package component: its
+# dependencies are needed only where it is asked for.
 function(mw_install_library target name)
   add_dependencies(mw_libraries ${target})
   set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN")

@@ -69,7 +69,7 @@ BodyId in_row(const Batch& batch, int world, int row) {
   return batch.body_in_row(row, batch.kind_of(world));
 }
 
-// Nobody steps a body that sleeps or is disabled, and so nobody looks at its numbers.
+// A body that sleeps or is disabled is not stepped, so its state is not checked.
 bool all_step(const Batch& batch, int world) {
   for (int b = 0; b < batch.bodies(world); ++b) {
     const BodyId body = in_row(batch, world, b);

@@ -46,14 +46,14 @@ Batch batch_of(int index) {
 }
 
 // Every call that changes a world, one after the other.
-void disturb(Batch& batch, int turn) {
+void disturb(Batch& batch, int round) {
   Input in;
-  in.kind = turn % 14;
-  in.world = turn % 2;
-  in.body = in.kind == 11 ? 1 - in.world : turn;
+  in.kind = round % 14;
+  in.world = round % 2;
+  in.body = in.kind == 11 ? 1 - in.world : round;
   in.value = batch.plan().scene().space == Space::planar ? Vec3(3, 50, 0) : Vec3(3, 4, 50);
   in.point = Vec3(0.1, 1, 0);
-  in.number = turn % 28 < 14 ? -0.5 : 0.5;
+  in.number = round % 28 < 14 ? -0.5 : 0.5;
   if (in.kind == 0) return batch.restore(batch.save(std::array{in.world}), 0, 1 - in.world);
   apply(in, batch);
 }
@@ -73,10 +73,10 @@ std::vector<std::byte> make(int index) {
   batch.step(3);
   // The first writes samples as it goes, the others when told, in much smaller files.
   Recorder recorder(batch, file, {.every = index == 0 ? 3 : 0});
-  for (int turn = 0; turn < 28; ++turn) {
-    disturb(batch, turn);
-    batch.step(turn % 3);
-    if (turn % 7 == 0) recorder.sample(batch);
+  for (int round = 0; round < 28; ++round) {
+    disturb(batch, round);
+    batch.step(round % 3);
+    if (round % 7 == 0) recorder.sample(batch);
   }
   recorder.sample(batch);
   recorder.close();

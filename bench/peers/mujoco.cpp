@@ -90,7 +90,7 @@ Model compiled(const World& world) {
   return Model(model, FreeModel{});
 }
 
-// The joint velocities into which impulses at the joints would turn the links' own:
+// The joint velocities into which impulses at the joints would change those of the links:
 // M qvel = sum of J^T m v over the links.
 void start_chain(const World& from, const mjModel* m, mjData* data) {
   mj_forward(m, data);

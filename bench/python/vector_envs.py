@@ -6,7 +6,7 @@ without that, with actions made before; and the step of a task's scene alone, wi
 
     pip install "gymnasium[box2d]" envpool
     bench/python/vector_envs.py --seconds 5 --json build/vector_envs.json
-    bench/python/vector_envs.py --peers --seconds 1 --repeats 7     # one thread each, in turns
+    bench/python/vector_envs.py --peers --seconds 1 --repeats 7     # one thread each, alternately
 
 With --peers the fastest peers of each task, in one thread each, with actions made before, take turns:
 EnvPool, Gymnasium's CartPole in NumPy, SyncVectorEnv. Time is the processor's, of all threads of the
@@ -141,7 +141,7 @@ def main():
     p.add_argument("--worlds", type=int, nargs="*", default=[4096], help="of manyworlds alone")
     p.add_argument("--threads", type=int, nargs="*", default=[1, 2])
     p.add_argument("--skip-async", action="store_true")
-    p.add_argument("--peers", action="store_true", help="one thread each, in turns; see above")
+    p.add_argument("--peers", action="store_true", help="one thread each, alternately; see above")
     p.add_argument("--json")
     o = p.parse_args()
     if o.peers:

@@ -16,8 +16,8 @@ namespace mw = manyworlds;
 namespace {
 
 constexpr std::size_t kWorlds = 2048, kObservations = 4;
-constexpr double kMaxLean = 0.2, kMaxTravel = 2.4, kMaxPush = 10;  // rad, m, N
-constexpr int kMaxSteps = 500;                                     // of an episode
+constexpr double kMaxLean = 0.2, kMaxTravel = 2.4, kMaxThrust = 10;  // rad, m, N
+constexpr int kMaxSteps = 500;                                       // of an episode
 
 mw::Shape bar(double half_x, double half_y, double mass) {
   mw::Shape shape;
@@ -46,11 +46,11 @@ mw::Scene cart_pole() {
   const mw::JointId rail = scene.add(mw::joint_at(scene, {}, base, {}, mw::SliderJoint{}));
   const mw::JointId hinge = scene.add(mw::joint_at(scene, base, upper, {}, mw::HingeJoint{}));
   scene.at(rail).name = "rail", scene.at(hinge).name = "hinge";
-  mw::Control push;
-  push.kind = mw::ControlKind::thrust;  // N, along x
-  push.body = base;
-  push.low = -kMaxPush, push.high = kMaxPush;
-  scene.controls = {push};
+  mw::Control motor;
+  motor.kind = mw::ControlKind::thrust;  // N, along x
+  motor.body = base;
+  motor.low = -kMaxThrust, motor.high = kMaxThrust;
+  scene.controls = {motor};
   return scene;
 }
 
@@ -60,7 +60,7 @@ mw::Task balancing() {
   task.name = "balancing";
   task.scene = cart_pole();
   task.actions = {{"push", -1, 1}};
-  task.controls = {kMaxPush * action()};
+  task.controls = {kMaxThrust * action()};
   const mw::JointId rail = task.scene.joint("rail"), hinge = task.scene.joint("hinge");
   // The hinge's angle is positive to the left.
   const mw::Expression travel = joint_position(rail), lean = joint_position(hinge);

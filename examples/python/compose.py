@@ -73,7 +73,7 @@ def main() -> NDArray[np.int64]:
     env = mw.Environment(make_task(), worlds, seed=7)
     lengths, done = np.zeros(worlds, np.int64), np.zeros(worlds, bool)
     while not done.all():
-        # Push to where the pole falls (it leans to the left by positive angles).
+        # Accelerate to where the pole falls (it leans to the left by positive angles).
         lean, turn = env.observations[:, 2], env.observations[:, 3]
         actions = (lean + 0.3 * turn < 0).astype(np.int64)
         _, _, terminated, truncated = env.step(actions)

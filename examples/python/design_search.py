@@ -1,4 +1,4 @@
-"""Design search: the shot that pushes most boxes off their places, by CMA-ES over BirdSling.
+"""Design search: the shot that displaces most boxes, by CMA-ES over BirdSling.
 
     pip install manyworlds cma
     python design_search.py --generations 8

@@ -80,7 +80,7 @@ class Batch {
   // Allocates nothing, throws nothing (after the constructor, reset and the first force call), but
   // std::invalid_argument for n < 0, a clock that is not finite, or max_steps < 0. The calls return
   // how many steps were taken: n, unless `go_on`, which is asked between steps some 15 times a
-  // second, ends the call: for hosts that want to stay in reach. The bits are those of one call of
+  // second, ends the call: for hosts that must stay responsive. The bits are those of one call of
   // so many steps, and so is what inputs, observers and listeners see of it.
   int step(int n = 1, const GoOn& go_on = {});
   // Steps the worlds of a mask alone (one byte per world, nonzero = step): the same bits as a step
@@ -108,7 +108,7 @@ class Batch {
 
   // In place, without a copy. Here lie centres of mass, not bodies' origins, and principal axes,
   // not bodies' own (read() converts). Writing here neither wakes a world nor
-  // clears its impulses, and no listener hears of it. Lanes after the last world are unused. The
+  // clears its impulses, and no listener is notified. Lanes after the last world are unused. The
   // pointer is valid until the Batch is destroyed.
   LaneBlocks lane_blocks(Field field, int kind = 0);
   // Where a world lives in the blocks of its kind: with this index i, lane i % lanes of group
@@ -123,7 +123,7 @@ class Batch {
   void spawn(int world, BodyId body, const BodyState& state);  // enabled, with this state
 
   // Joints that come and go. A disabled joint, or one that broke, holds nothing; enabling it
-  // mends it. Its bodies should then be where it wants them: what is apart is drawn together.
+  // mends it. Its bodies should then satisfy it: what is apart is drawn together.
   // Both bodies wake. The first call allocates.
   void set_joint_enabled(int world, JointId joint, bool enabled);
   bool joint_enabled(int world, JointId joint) const;
@@ -239,8 +239,8 @@ class Batch {
   void profile(bool on);
   std::vector<StageTime> take_stage_times();
 
-  // Tells `listener` of every input and every step() call from now on, for as long as somebody
-  // else holds it. What it does then is no part of the promises of step().
+  // Tells `listener` of every input and every step() call from now on, for as long as
+  // another owner holds it. What it does then is no part of the promises of step().
   void listen(std::weak_ptr<BatchListener> listener);
 
  private:

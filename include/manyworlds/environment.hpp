@@ -20,7 +20,7 @@ namespace manyworlds {
 enum class Autoreset {
   next_step,  // the next step begins its next episode instead of stepping it: reward 0, no end
   same_step,  // the step that ends it begins the next: `final_observations` has where it ended
-  disabled,   // it steps on until somebody resets it
+  disabled,   // it steps on until it is reset
 };
 const char* to_string(Autoreset autoreset);
 
@@ -39,7 +39,7 @@ struct EnvironmentOptions {
 struct StepArrays {
   std::span<float> observations = {};  // [world][observation]
   std::span<float> final_observations =
-      {};  // same_step: of worlds that ended, the others' stay; wants observations
+      {};  // same_step: of worlds that ended, the others' stay; requires observations
   std::span<double> rewards = {};
   std::span<double> reward_terms = {};                      // [world][reward]
   std::span<std::uint8_t> terminated = {}, truncated = {};  // 1 or 0

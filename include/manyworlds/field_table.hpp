@@ -1,5 +1,5 @@
 // The table of state fields: the one place that names them. Where they lie in the state and in
-// snapshots, the order of hashes, reading and writing, inputs that listeners hear of, recordings,
+// snapshots, the order of hashes, reading and writing, inputs that listeners receive, recordings,
 // Python's fields and docs/conventions.md all follow from it. The kernels read it, too, so it
 // includes nothing and defines no function.
 #pragma once

@@ -1,5 +1,5 @@
 // Joints: what holds two bodies of a scene together, or one to the world. Each has a frame on both
-// bodies; where the joint wants them together, they coincide or one is displaced along a coordinate
+// bodies; where the joint is satisfied, they coincide or one is displaced along a coordinate
 // of the joint. A hinge rotates about z of its frames, a slider slides along x.
 //
 // A coordinate (the angle of a hinge, rad; the travel of a slider, m; the length of a distance

@@ -1,5 +1,5 @@
-// BatchListener: is told of everything that changes the worlds of a Batch from outside, so that
-// whoever records a run (record.hpp) misses nothing. Nobody listening costs nothing.
+// BatchListener: receives everything that changes the worlds of a Batch from outside, so that
+// a recorder (record.hpp) misses nothing. Without listeners it costs nothing.
 #pragma once
 
 #include <cstdint>

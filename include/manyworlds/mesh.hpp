@@ -16,9 +16,9 @@ namespace manyworlds {
 // edge belongs to two triangles, which run along it in opposite directions. Vertices are the same
 // when their indices are: those that only lie in the same place do not close a surface.
 //
-// Parts that do not hang together add up. A cavity is a surface inside another one, turned over, so
-// that its triangles run counter-clockwise seen from within the cavity. Triangles that pass through
-// one another are not looked for: space that is enclosed twice counts twice.
+// Parts that do not hang together add up. A cavity is a surface inside another one, wound the other
+// way, so that its triangles run counter-clockwise seen from within the cavity. Triangles that pass
+// through one another are not looked for: space that is enclosed twice counts twice.
 struct TriangleMesh {
   std::vector<Vec3> vertices = {};                 // m, in mesh axes; a triangle need not use all
   std::vector<std::array<int, 3>> triangles = {};  // indices into vertices

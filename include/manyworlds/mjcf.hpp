@@ -22,19 +22,19 @@
 //     medium (inertia model), iterations and tolerances, and the flags that switch off constraints,
 //     limits, contacts, springs, dampers, gravity, clampctrl and filterparent.
 // The solver is Newton's, whatever the file says. Refused are other integrators than Euler, RK4
-// and implicitfast, drag of ellipsoids, friction loss, tendons that pull, equalities, contact pairs,
-// condim 4 and 6, mocap bodies, and all other actuators and flags that change the motion.
+// and implicitfast, drag of ellipsoids, friction loss, tendons that pull, equalities, contact
+// pairs, condim 4 and 6, mocap bodies, and all other actuators and flags that change the motion.
 //
 // A model whose joints are all free is made for the default solver: what is welded to a free body
 // is part of it, equality constraints connect and weld become ball and fixed joints, and what
 // shapes the softness of MuJoCo's contacts is a warning.
 //
-// Files may come from anybody. Before MuJoCo sees one, it and all that it includes are read into
+// Files need not be trusted. Before MuJoCo reads one, it and all that it includes are read into
 // memory, each once, and checked: regular files alone, from the model's own folder or from those
 // that MjcfOptions::roots names, symbolic links followed first; root element <mujoco>; and no size
 // beyond MjcfLimits. MuJoCo opens no file itself. Textures and skins are not opened at all, since
 // nothing is drawn, and <size> and <custom> are left out. A model within the limits may still keep
-// MuJoCo busy for minutes: who reads strangers' models does so in a process of its own, with limits
+// MuJoCo busy for minutes: read untrusted models in a separate process, with limits
 // of memory and time, as the program manyworlds does.
 #pragma once
 

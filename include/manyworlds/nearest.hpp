@@ -1,4 +1,4 @@
-// What somebody may have meant by a word that is not known.
+// The known word closest to an unknown one, for error texts.
 #pragma once
 
 #include <cstddef>

@@ -48,13 +48,13 @@ namespace manyworlds {
     "of the centre of mass over the last step, impacts included, world")                          \
   X(angular_acceleration, acceleration, spin, "rad/s^2", "over the last step, world")             \
   X(proper_acceleration, acceleration, vector, "m/s^2",                                           \
-    "what an accelerometer at the centre of mass tells, body axes: g upwards at rest, 0 in free " \
+    "what an accelerometer at the centre of mass reads, body axes: g upwards at rest, 0 in free " \
     "fall")                                                                                       \
   X(point_position, points, vector, "m", "world")                                                 \
   X(point_velocity, points, vector, "m/s", "of the point of the body, world")
 
 // What is read is [world][item of its observer][component]. A plan without orientation (every
-// moving body a centred ball) turns neither rays nor points.
+// moving body a centred ball) rotates neither rays nor points.
 //
 // The coordinates of a joint follow one another, the joints are in their order
 // (Plan::first_observed):

@@ -81,7 +81,7 @@ struct Members<Options> {
   static void visit(auto& value, auto&& visit) {
     auto& [dt, substeps, gravity, wind, density, integrator, medium, rotation, angular_momentum,
            length_unit, solver, contact, joint, sleep, contact_capacity, bounds] = value;
-    const Counted flown =
+    const Counted by_integrator =
         counted_if(integrator != Integrator::symplectic_euler ||
                        rotation.value_or(Rotation::splitting) != Rotation::splitting,
                    "the default integrator is what there was before there was a choice");
@@ -90,8 +90,8 @@ struct Members<Options> {
     visit("contact", contact), visit("joint", joint), visit("sleep", sleep);
     visit("contact_capacity", contact_capacity), visit("bounds", bounds);
     visit("solver", solver);
-    visit("integrator", integrator, flown), visit("rotation", rotation, flown);
-    visit("angular_momentum", angular_momentum, flown);
+    visit("integrator", integrator, by_integrator), visit("rotation", rotation, by_integrator);
+    visit("angular_momentum", angular_momentum, by_integrator);
     visit("medium", medium, counted_if(value.medium != Medium{}, "none by default"));
   }
 };

@@ -102,7 +102,7 @@ class Plan {
   int bodies() const;              // bodies with state: dynamic and kinematic, in scene order
   int items(ItemKind kind) const;  // of a world, that have the state fields of this kind
   std::size_t numbers(Field field) const;  // of a world: items times components
-  // Where a body is in arrays [body], and who is in a row of them. Fixed bodies are in none: row()
+  // The row of a body in arrays [body], and the body of a row. Fixed bodies are in none: row()
   // throws std::invalid_argument for them, and both do for what is not there.
   int row(BodyId body) const;
   int row(ShapeId shape) const;  // of arrays [shape of the scene]; all have one

@@ -64,7 +64,7 @@ struct RecordOptions {
 };
 
 // Records from construction to close(): the state of some worlds every few steps, and every input
-// to them. The batch tells it what happens, so nothing needs to go through the Recorder.
+// to them. The batch reports every call to it, so nothing needs to go through the Recorder.
 class Recorder {
  public:
   // Throws std::invalid_argument for options that do not fit the batch and when forces were added
@@ -77,14 +77,14 @@ class Recorder {
 
   // One more sample, of the batch that is recorded as it is now.
   void sample(const Batch& batch);
-  // Finishes the file and gives it its name, so that nobody ever sees half of one; an old file of
+  // Finishes the file and gives it its name, so that a partial file is never seen; an old file of
   // that name stays until then. Throws RecordError, also for what failed since the beginning:
   // step() does not throw. What had been flushed until then is kept, and named in the error.
   void close();
   std::int64_t samples() const;
 
  private:
-  struct Listener;  // what the batch tells
+  struct Listener;  // receives the batch's calls
   struct Impl;
   Pimpl<Impl> impl_;
 };
@@ -111,13 +111,13 @@ class LostWorldDumps {
   std::vector<std::filesystem::path> close();
 
  private:
-  struct Listener;  // what the batch tells
+  struct Listener;  // receives the batch's calls
   struct Impl;
   Pimpl<Impl> impl_;
 };
 
 // What programs that were cut off (kill -9, a power cut) had recorded of `file`: the files beside
-// it, "run.h5.part-8c1f03ab5e6d7790", that hold something and that nobody writes any more, by name.
+// it, "run.h5.part-8c1f03ab5e6d7790", that have contents and no writer any more, by name.
 // Each can be opened and replayed up to where it was last flushed. Throws RecordError when `file`
 // is no name of a file.
 std::vector<std::filesystem::path> unfinished_recordings(const std::filesystem::path& file);

@@ -71,8 +71,8 @@ struct HalfPlane {    // planar, fixed bodies only: all points p with normal . p
 struct Segment {               // planar, fixed bodies only: a line that is solid from either side
   Vec2 a{-0.5, 0}, b{0.5, 0};  // m, shape frame
 };
-// Planar, fixed bodies only: a chain of segments, solid on the right of somebody who walks along
-// the points (so hills run from left to right), free on the left. Bodies slide over its vertices as
+// Planar, fixed bodies only: a chain of segments, solid on the right when going along the points
+// (so hills run from left to right), free on the left. Bodies slide over its vertices as
 // over one smooth ground. At the ends of an open chain the solid falls off at a right angle.
 struct Terrain {
   std::vector<Vec2> points = {};  // m, shape frame; 2 or more, of a loop 3 or more
@@ -97,7 +97,7 @@ using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Ca
 struct SoftContact {
   int dimensions = 3;  // 1: no friction, 3: friction along the surface
   Compliance compliance = {};
-  double margin = 0;  // m, from which distance on a contact pushes
+  double margin = 0;  // m, separation below which a contact acts
   double gap = 0;     // m, by how much farther MuJoCo lists it; it moves nothing
   int priority = 0;
   double weight = 1;  // of the compliance

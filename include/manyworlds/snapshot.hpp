@@ -2,7 +2,7 @@
 // times.
 //
 // It holds what the next step depends on: state, stored impulses, sleep, disabled bodies, status;
-// and what the next reset draws from: each world's seed and episode. It knows nothing of lanes,
+// and what the next reset draws from: each world's seed and episode. It does not depend on lanes,
 // threads, instruction sets or places, so a world continues bit by bit wherever it is restored. Not
 // in it: forces that were added for the next step.
 #pragma once
@@ -29,12 +29,12 @@ class Snapshot {
   double time() const;                                // s, that the batch had simulated
   std::size_t size() const { return bytes_.size(); }  // bytes
 
-  // Writes a file beside `file` and renames it, so that no reader ever sees half of one.
+  // Writes a file beside `file` and renames it, so that a partial file is never read.
   // Throws SnapshotError.
   void save(const std::filesystem::path& file) const;
   // Throws SnapshotError when the file cannot be read, is cut, corrupted or something else: a
   // folder, a FIFO, a device, larger than the machine's memory. Reads files of version 0.1, too,
-  // which do not know the worlds' seeds.
+  // which lack the worlds' seeds.
   static Snapshot load(const std::filesystem::path& file);
 
   // The bytes of a file: magic, version, header, worlds, checksum; little endian.

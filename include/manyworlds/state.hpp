@@ -21,7 +21,7 @@ struct BodyState {
   Vec3 angular_velocity = Vec3::Zero();  // rad/s
 };
 
-// A state field as the step keeps it, for those who read or write it in place (Batch::lane_blocks):
+// A state field as the step keeps it, for access in place (Batch::lane_blocks):
 // component c of item i (FieldInfo::item) in lane l of group g is number
 //   g group_stride + i item_stride + c component_stride + l
 // of data, which points to float or double (Batch::precision()).

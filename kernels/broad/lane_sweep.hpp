@@ -1,7 +1,7 @@
 // One lane's shapes, sorted along the axis on which they are spread most and cut into strips across
 // the next: whose bounds overlap meet once. Intervals are floats, in float64 too, and a little
-// wider than the bounds; who meets is tested again. Neither axes nor strips can be told from the
-// result.
+// wider than the bounds; pairs that meet are tested again. The result depends on neither axes nor
+// strips.
 #pragma once
 
 #include "kernels/broad/radix_sort.hpp"

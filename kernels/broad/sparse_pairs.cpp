@@ -22,7 +22,7 @@ class LaneSearch {
   void run() {
     LaneSweep sweep(t_, w_, lane_);
     sweep.prepare(g_);
-    do {  // who is woken may lie close to another island
+    do {  // a body that wakes may lie close to another island
       woke_ = false;
       found_ = 0;
       sweep.run([this](int a, int b) { meet(a, b); });

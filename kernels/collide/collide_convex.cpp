@@ -227,7 +227,7 @@ Mask keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis&
   const Vec3 n = tile.normal;
   const Vec3 lowest = support(b, -n) + d;
   const Float separation = dot(n, lowest - tile.vertex[0]);
-  // Who is below is not apart from the triangle but in the solid.
+  // A shape below the triangle is not apart from it but inside the solid.
   const Mask below = is_below(tile, d), other = below | !has_normal(tile, axis.normal);
   axis.near = axis.near | (below & tile.there);
   axis.normal = select(other, n, axis.normal);

@@ -13,9 +13,9 @@ inline constexpr Real kClearly = Real(0.2);
 
 // Candidate points over the reference face, as ClipPoints; each edge gives two, each corner one.
 struct Clipped {
-  static constexpr int kMost = 3 * kMaxCorners + 1;
+  static constexpr int kMaxPoints = 3 * kMaxCorners + 1;
   int size = 0;
-  Float x[kMost], y[kMost], z[kMost];
+  Float x[kMaxPoints], y[kMaxPoints], z[kMaxPoints];
   MW_INLINE int count() const { return size; }
   MW_INLINE void add(Float px, Float py, Float pz) {
     x[size] = px, y[size] = py, z[size] = pz;

@@ -88,15 +88,15 @@ struct ObserverView {
   const Real* frames;
 
   // Beside the blocks of each list: places and features of their points, impulses of the step.
-  bool of_contacts;       // contacts, touching or penetration are asked for
-  Real* places[kLists];   // [block][point][component][lane], [lane]
-  Real* totals[kLists];   // [block][point, tangent, twist][lane]; plans without restitution
-  std::uint32_t* nobody;  // [body] 0
+  bool of_contacts;            // contacts, touching or penetration are asked for
+  Real* places[kLists];        // [block][point][component][lane], [lane]
+  Real* totals[kLists];        // [block][point, tangent, twist][lane]; plans without restitution
+  std::uint32_t* none_asleep;  // [body] 0
 
   ContactImpulse<Real>* contacts;  // [lane][room]
   std::int32_t room;
 
-  unsigned char* aside;  // rows and velocities while one more sweep is tried
+  unsigned char* saved;  // rows and velocities while one more sweep is tried
 
   const JointCoordinate* coordinate;  // [coordinate]
   const std::int32_t* joint_of_part;  // [part]
@@ -137,8 +137,8 @@ struct ObserverTable {
   // Around the last stage of trees: keeps the state that it begins with; what joints carry in it.
   Observe<Real> keep_tree_state, loads_of_trees;
   // Around one more sweep of the solver: keep what it changes; what that is, and put it back.
-  std::size_t (*aside_bytes)(const SceneConstants<Real>&, Scratch*);
-  Observe<Real> set_aside, compare[kInertiaKinds];
+  std::size_t (*saved_bytes)(const SceneConstants<Real>&, Scratch*);
+  Observe<Real> save_rows, compare[kInertiaKinds];
   RunProgram<Real> run_program;  // on what is there after these
   // One ray against one fixed pose row (64-byte aligned); whether it hits. out: a hit's rows.
   bool (*cast)(Dimension, ShapeKind, const Real* row, const Real* ray, Real* out);

@@ -198,8 +198,8 @@ struct SceneConstants {
 
   // Where no world has its own.
   ConstantBlocks<Real> constants;
-  // Pushes and factors of one substep in the order of a velocity row, of worlds that have none of
-  // their own: [body + pad][row].
+  // delta_v and drag factors of one substep in the order of a velocity row, of worlds that have
+  // none of their own: [body + pad][row].
   const Real* delta_v_rows;
   const Real* factor_rows;
 

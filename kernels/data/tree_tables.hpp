@@ -118,7 +118,7 @@ struct TreePair {
   std::int32_t link_a, link_b;  // -1: the world
   ContactCone cone;
   std::int32_t material_a, material_b;  // whose friction counts: the larger one, or one twice
-  Real margin;                          // m, where a contact begins to push
+  Real margin;                          // m, separation below which a contact acts
   Real inverse_weight;                  // of the rows
   Real friction_weight;                 // times the square of the friction, added to that
   Compliance<Real> compliance;

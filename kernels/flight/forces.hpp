@@ -20,7 +20,7 @@ struct SpringNow {
   Mask active;   // lanes in which it holds
 };
 
-// `turning(body, motion)`: its angular velocity.
+// `angular_velocity_of(body, motion)`: of that body, rad/s.
 template <class S, class AngularVelocity>
 SpringNow<S> spring_now(const Constants& t, const Group& g, const JointPart& part,
                         const Joint& constants, const Real* motion,

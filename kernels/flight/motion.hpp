@@ -98,8 +98,8 @@ MW_INLINE Quat half_rotation_rate(Vec3 w, Quat q) {
   return {-fma(h.z, q.z, fma(h.y, q.y, h.x * q.x)), fms(h.y, q.z, fnma(h.x, q.w, h.z * q.y)),
           fms(h.z, q.x, fnma(h.y, q.w, h.x * q.z)), fms(h.x, q.y, fnma(h.z, q.w, h.y * q.x))};
 }
-// u' where exp(u(t)) q turns by w: dexp^-1(u) w, cut after the second commutator, which is enough
-// for order 4 (Munthe-Kaas 1998).
+// u' where exp(u(t)) q rotates with w: dexp^-1(u) w, cut after the second commutator, which is
+// enough for order 4 (Munthe-Kaas 1998).
 MW_INLINE Vec3 chart_rate(Vec3 u, Vec3 w) {
   const Vec3 across = cross(u, w);
   return fma(cross(u, across), Real(1.0 / 12), fnma(across, Real(0.5), w));

@@ -19,7 +19,7 @@ void fly(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   if (t.flight.momentum) end_spins<S>(t, g, f.now);
 }
 
-// What springs do at the end of the step, as impulses of a substep, for those who look at joints.
+// What springs do at the end of the step, as impulses of a substep, for observers of joints.
 template <class S>
 void store_forces(const Constants& t, const Group& g, std::uint32_t commit) {
   const Float h(t.h);
@@ -39,7 +39,7 @@ void store_forces(const Constants& t, const Group& g, std::uint32_t commit) {
   });
 }
 
-// The space that flies for plans of another.
+// The space that integrates freely for plans of another.
 template <class S>
 struct FlightSpace {
   using Type = Tensor;

@@ -67,7 +67,7 @@ struct JointPasses {
     for (int i = 0; i < kernels::kPartImpulses; ++i) {
       Float::load(from + i * kLanes).store(s.impulse[i]);
     }
-    if (part.force) return;  // whom nothing else touches goes by the integrator of the plan
+    if (part.force) return;  // bodies without other rows are integrated freely
     w.touched[part.body_a] |= s.mask;
     w.touched[part.body_b] |= s.mask;
   }

@@ -81,12 +81,11 @@ MW_INLINE Float power_of_two(Float k) {
 // Infinite beyond the largest number, 0 below the smallest.
 MW_INLINE Float exponential(Float x) {
   constexpr bool kFloat = sizeof(Real) == 4;
-  constexpr Real kMost = kFloat ? Real(88.8) : Real(709.8),
-                 kLeast = kFloat ? Real(-104) : Real(-746);
+  constexpr Real kMax = kFloat ? Real(88.8) : Real(709.8), kMin = kFloat ? Real(-104) : Real(-746);
   constexpr Real kFirst = kFloat ? Real(0.693359375) : Real(6.93147180369123816490e-01),
                  kSecond = kFloat ? Real(-2.12194440e-4) : Real(1.90821492927058770002e-10);
   const Mask sane = x == x;
-  const Float within = clamp(x, Float(kLeast), Float(kMost));
+  const Float within = clamp(x, Float(kMin), Float(kMax));
   const Float k = round_to_whole(within * Float(Real(1.4426950408889634)));
   const Float r = fnma(k, Float(kSecond), fnma(k, Float(kFirst), within));
   constexpr int kTerms = kFloat ? 7 : 13;

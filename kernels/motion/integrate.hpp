@@ -204,14 +204,14 @@ void apply_first_delta_v(const Constants& t, const Group& g, Work& w) {
       const Vec3 moments{inertia[0], inertia[1], inertia[2]};
       const Mat3 r = matrix(load_quat(state_of(t, g, b, kState<S>.orientation)));
       Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
-      Vec3 turned = implicit_gyroscopic(t.dt, moments, r, v.w);
+      Vec3 gyroscopic = implicit_gyroscopic(t.dt, moments, r, v.w);
       if (t.has_joints) {
         const Mask slight = is_slightly_gyroscopic(t.dt, moments, r, v.w);
         if (any(slight)) {
-          turned = select(slight, half_gyroscopic(t.dt, moments, r, v.w), turned);
+          gyroscopic = select(slight, half_gyroscopic(t.dt, moments, r, v.w), gyroscopic);
         }
       }
-      v.w = select(mask_from_bits(w.touched[b]), turned, v.w);
+      v.w = select(mask_from_bits(w.touched[b]), gyroscopic, v.w);
       put_velocity<S, kDense>(w, w.velocity, b, v);
     }
   }

@@ -1,4 +1,4 @@
-// What the solver's blocks tell when a step is over: impulses, who touches, how deep.
+// What the solver's blocks hold after a step: impulses, which bodies touch, penetration.
 //
 // A pair that is asleep has no block. Its contacts are found again where it sleeps, and each of its
 // impulses is what it will wake with, times the number of substeps: what a step of it would take.
@@ -182,7 +182,7 @@ inline void put_touching(const Constants& t, const std::int32_t* key, int id, st
   }
 }
 
-// Lanes of a block whose pair is asleep: nobody in it is awake.
+// Lanes of a block whose pair is asleep: neither body is awake.
 inline std::uint32_t sleeping_lanes(const Constants& t, const Group& g, const std::int32_t* key,
                                     int id, std::uint32_t lanes) {
   std::uint32_t out = 0;

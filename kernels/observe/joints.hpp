@@ -7,7 +7,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// A row at the present state; what its bodies weigh is left out, since nobody solves it.
+// A row at the present state; without effective mass, since it is not solved.
 template <class S, bool kLinear>
 MW_INLINE void row_now(const Constants& t, const Group& g, const Work& w, const JointPart& part,
                        const Joint& constants, Row<S, kLinear>& s) {

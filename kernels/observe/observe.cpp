@@ -99,8 +99,8 @@ kernels::ObserverTable<Real> make_table() {
   out.total_reals = total_reals;
   out.watch = watch;
   out.clear = clear;
-  out.aside_bytes = aside_bytes;
-  out.set_aside = set_aside;
+  out.saved_bytes = saved_bytes;
+  out.save_rows = save_rows;
   fill<Planar>(out);
   fill<Isotropic>(out);
   fill<Tensor>(out);

@@ -1,6 +1,6 @@
 // How far the solver was from done: what one more of its sweeps would change in the velocities of
-// bodies. `set_aside` keeps the rows and velocities as the step left them, the pipeline sweeps once
-// more, `compare` looks and puts everything back.
+// bodies. `save_rows` keeps the rows and velocities as the step left them, the pipeline sweeps once
+// more, `compare` takes the difference and restores them.
 #pragma once
 
 #include "kernels/motion/integrate.hpp"
@@ -34,7 +34,7 @@ inline std::size_t velocity_reals(const Constants& t, const Work& w) {
                                   kLanes);
 }
 
-inline std::size_t aside_bytes(const Constants& t, kernels::Scratch* scratch) {
+inline std::size_t saved_bytes(const Constants& t, kernels::Scratch* scratch) {
   const Work& w = work_of(scratch);
   std::size_t out = velocity_reals(t, w) * sizeof(Real);
   for_each_row_array(t, w, true, [&](unsigned char*, std::size_t bytes) { out += bytes; });
@@ -45,13 +45,13 @@ inline void copy_bytes(const unsigned char* from, unsigned char* to, std::size_t
   for (std::size_t i = 0; i < bytes; ++i) to[i] = from[i];
 }
 
-inline void set_aside(const Constants& t, const Group&, kernels::Scratch* scratch,
+inline void save_rows(const Constants& t, const Group&, kernels::Scratch* scratch,
                       const ObserverView& o) {
   const Work& w = work_of(scratch);
-  Real* velocity = reinterpret_cast<Real*>(o.aside);
+  Real* velocity = reinterpret_cast<Real*>(o.saved);
   const std::size_t reals = velocity_reals(t, w);
   for (std::size_t i = 0; i < reals; ++i) velocity[i] = w.velocity[i];
-  unsigned char* to = o.aside + reals * sizeof(Real);
+  unsigned char* to = o.saved + reals * sizeof(Real);
   for_each_row_array(t, w, false, [&](unsigned char* from, std::size_t bytes) {
     copy_bytes(from, to, bytes);
     to += bytes;
@@ -75,7 +75,7 @@ void find_change(const Constants& t, const Work& w, const Real* before, Float& s
 template <class S>
 void compare(const Constants& t, const Group& g, kernels::Scratch* scratch, const ObserverView& o) {
   Work& w = work_of(scratch);
-  const Real* velocity = reinterpret_cast<const Real*>(o.aside);
+  const Real* velocity = reinterpret_cast<const Real*>(o.saved);
   Float speed(Real(0)), spin(Real(0));
   if (w.dense || !t.has_contacts) {
     find_change<S, true>(t, w, velocity, speed, spin);
@@ -88,7 +88,7 @@ void compare(const Constants& t, const Group& g, kernels::Scratch* scratch, cons
   select(live, spin, Float(Real(0))).store(rows + kLanes);
   const std::size_t reals = velocity_reals(t, w);
   for (std::size_t i = 0; i < reals; ++i) w.velocity[i] = velocity[i];
-  const unsigned char* from = o.aside + reals * sizeof(Real);
+  const unsigned char* from = o.saved + reals * sizeof(Real);
   for_each_row_array(t, w, false, [&](unsigned char* to, std::size_t bytes) {
     copy_bytes(from, to, bytes);
     from += bytes;

@@ -201,7 +201,7 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
         keep[i] = select(apart, zero, soft.impulse_scale);
       }
     } else {
-      // The substep has moved the bodies; now remove the speed that pushing out has added. A point
+      // The substep has moved the bodies; now remove the speed that the push-out has added. A point
       // that is still apart gets no more impulse: whether it will touch is the next substep's, or
       // the next step's, business.
       const Float h(t.h), touch(t.margin * Real(1.0 / 1024));

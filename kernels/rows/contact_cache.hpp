@@ -25,7 +25,7 @@ class CacheWriter {
     const std::uint32_t mask = s.mask & ~w_.frozen;
     alignas(64) std::int32_t o[kLanes];
     for (int l = 0; l < kLanes; ++l) {
-      // Lanes without this contact write to a row that nobody reads.
+      // Lanes without this contact write to an unused row.
       int at = capacity + 1;
       if ((mask >> l) & 1u) {
         at = count_[id][l]++;

@@ -44,7 +44,7 @@ MW_INLINE Float free_share(const Pose& pose, Vec start, Vec step, Float core, Ma
   const Float zero(Real(0)), one(Real(1));
   const Float inv_length = one / max(sqrt(dot(step, step)), Real(1e-20));
   Float share = zero;
-  // As near as a cast may end, so that one who stopped there can go away again.
+  // As near as a cast may end, so that a body that stopped there can leave again.
   const Float touching = core * Float(Real(1.01));
   Mask moving = fast & (touching < distance_from(pose, start));
   const Mask outside = moving;
@@ -102,8 +102,8 @@ void find_swift(const Constants& t, const Group& g, Work& w, Moved moved) {
   }
 }
 
-// `moved(other)` is how far another body goes in this step. Who goes less than half its core meets
-// only the swift ones at speed. Not inlined: scenes seldom want it.
+// `moved(other)` is how far another body goes in this step. A body that moves less than half its
+// core is tested against the fast ones only. Not inlined: scenes seldom want it.
 template <class Vec, class Moved>
 __attribute__((noinline)) Vec cast_against_moving(const Constants& t, const Group& g, const Work& w,
                                                   int body, Vec start, Vec step, Moved moved) {

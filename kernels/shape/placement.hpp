@@ -6,7 +6,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-template <class VecType, class TurnType>
+template <class VecType, class RotationType>
 struct PlacementOf {
   using Vec = VecType;
 
@@ -14,7 +14,7 @@ struct PlacementOf {
   const kernels::ShapeConstants<LaneNumber>& constants;
   const kernels::PolygonConstants<LaneNumber>* polygon;  // nullptr in plans without polygons
   Vec p;                                                 // of the shape frame, world
-  TurnType r;
+  RotationType r;
   Float margin;  // by which bounds reach beyond the shape, m
   Real* rows;    // where its pose row goes:
   const std::int32_t* offset;

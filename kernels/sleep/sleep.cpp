@@ -15,7 +15,7 @@ MW_INLINE Mask pair_overlap(const Constants& t, const Work& w, kernels::PairKind
   return is_round(kind) ? round_overlap(t, w, a, b) : bounds_overlap(t, w, a, b);
 }
 
-// One pass over the pairs; whether it woke somebody.
+// One pass over the pairs; returns whether it woke a body.
 bool wake_once(const Constants& t, const Group& g, Work& w, std::uint32_t mixed) {
   bool woke = false;
   for (int i = 0; i < t.classes; ++i) {
@@ -46,7 +46,7 @@ std::uint32_t joined_lanes(const Constants& t, const Group& g, const kernels::Jo
   return kAllLanes & ~(disabled | g.absent[part.body_a] | g.absent[part.body_b]);
 }
 
-// Does the stored manifold of this key stay as it is, because nobody in it is awake?
+// Does the stored manifold of this key stay as it is, because neither body is awake?
 bool pair_sleeps(const Constants& t, const Group& g, ListId list, std::int32_t key, int lane) {
   const kernels::PairOfKey pair = kernels::pair_of_key(t, key);
   std::uint32_t lanes = g.asleep[t.collider_body[pair.b]];
@@ -201,7 +201,7 @@ void wake_touched(const Constants& t, const Group& g, Work& w) {
   const LaneActivity lanes = activity_of(t, g);
   const std::uint32_t mixed = lanes.asleep & lanes.awake & ~w.frozen;
   if (mixed == 0) return;
-  // Who is woken may lie close to another island.
+  // A body that wakes may lie close to another island.
   while (wake_once(t, g, w, mixed)) {
   }
 }

@@ -3,7 +3,7 @@
 //
 // An island is what hangs together by the broad phase: bodies whose bounds, grown by the way they
 // go in a step, overlap. So a body wakes before it can be touched, and what an awake body sees is
-// never a sleeping one. Kinematic bodies without velocity count as asleep, but wake nobody and are
+// never a sleeping one. Kinematic bodies without velocity count as asleep, but wake no body and are
 // in no island.
 #pragma once
 

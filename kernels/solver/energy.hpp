@@ -18,8 +18,8 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr Real kEnergySlack = Real(1e-5);  // relative, for rounding
 
-// Of each body, twice energies; [body][Account][lane] in the memory of impulse_part, which nobody
-// needs after the last substep. With v = v_found + x d: 2 E = found + 2 x cross + x^2 change.
+// Of each body, twice energies; [body][Account][lane] in the memory of impulse_part, which is
+// unused after the last substep. With v = v_found + x d: 2 E = found + 2 x cross + x^2 change.
 enum Account { kAllowed, kFound, kCross, kChange, kAccounts };
 inline constexpr Account kShare = kAllowed;  // x, in the end
 
@@ -128,10 +128,10 @@ template <class S, int N>
 MW_INLINE void join_bodies(const Constants& t, const Work& w, const ContactBlock<S, N>& s,
                            const Bounce<S, N>& bounce, int lane) {
   if (!((s.mask >> lane) & 1u)) return;
-  bool pushes = false;  // before or after restitution
-  for (int i = 0; i < N; ++i) pushes |= bounce.total[i][lane] > 0 || bounce.found[i][lane] > 0;
+  bool active = false;  // before or after restitution
+  for (int i = 0; i < N; ++i) active |= bounce.total[i][lane] > 0 || bounce.found[i][lane] > 0;
   const int a = body_a_of(w, s, lane), b = body_b_of(w, s, lane);
-  if (!pushes || t.body[a].kinematic || t.body[b].kinematic) return;
+  if (!active || t.body[a].kinematic || t.body[b].kinematic) return;
   unite(w.parent, a, b);
 }
 
@@ -181,10 +181,10 @@ MW_INLINE void credit_driver(const Constants& t, Work& w, const SidedBlock<S, N,
   for (int l = 0; l < kLanes; ++l) {
     if (!((s.mask >> l) & 1u)) continue;
     const int a = body_a_of(w, s, l), b = body_b_of(w, s, l);
-    const int pushed = t.body[a].kinematic ? b : a;
+    const int driven = t.body[a].kinematic ? b : a;
     if (!(t.body[a].kinematic || t.body[b].kinematic)) continue;
-    account(w, pushed, kAllowed)[l] += found[l];
-    account(w, pushed, kCross)[l] -= more[l];
+    account(w, driven, kAllowed)[l] += found[l];
+    account(w, driven, kCross)[l] -= more[l];
   }
 }
 
@@ -199,7 +199,7 @@ MW_INLINE Float affordable_share(Float allowed, Float found, Float cross, Float 
   return select(less, x, one);
 }
 
-// Turns the accounts of a lane, whose islands are joined, into the share of each body.
+// Converts the accounts of a lane, whose islands are joined, into the share of each body.
 inline void share_out(const Constants& t, const Work& w, int lane) {
   for (int b = 0; b < t.bodies; ++b) {
     const int root = root_of(w.parent, b);  // not after b

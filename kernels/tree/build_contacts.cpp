@@ -9,7 +9,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
 
-constexpr Real kLeastFriction = Real(1e-5);
+constexpr Real kMinFriction = Real(1e-5);
 
 // Tangents of a unit normal as MuJoCo has them: the first is what `along` leaves across the normal,
 // or y does, or z where the normal is near y. They matter, since pyramids are not round.
@@ -31,7 +31,7 @@ MW_INLINE ContactFrame contact_frame(Vec3 normal, Vec3 along) {
 MW_INLINE Float friction_of(const Group& g, const kernels::TreePair<Real>& pair) {
   const Material* of = materials(g);
   const Float a = of[pair.material_a].friction, b = of[pair.material_b].friction;
-  return max(max(a, b), Float(kLeastFriction));
+  return max(max(a, b), Float(kMinFriction));
 }
 
 // From the link's frame.

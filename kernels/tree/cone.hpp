@@ -35,9 +35,9 @@ class Cone {
   // Along the normal and the tangents.
   MW_INLINE Vec3 force() const {
     const Point p = at(load_vec3(c_.residual[0]));
-    const Float zero(Real(0)), push = slide_ * p.gap;
-    const Float normal = select(p.sticks, weight_ * p.normal, push);
-    const Float drag = select(p.sticks, stick_, -(push * friction_) * p.inverse);
+    const Float zero(Real(0)), slide_force = slide_ * p.gap;
+    const Float normal = select(p.sticks, weight_ * p.normal, slide_force);
+    const Float drag = select(p.sticks, stick_, -(slide_force * friction_) * p.inverse);
     const Mask acts = p.sticks | p.slides;
     return {select(acts, -normal, zero), select(acts, -(drag * p.one), zero),
             select(acts, -(drag * p.two), zero)};
@@ -47,7 +47,7 @@ class Cone {
     const Point p = at(load_vec3(c_.residual[0]));
     const Float zero(Real(0)), one = p.one * p.inverse, two = p.two * p.inverse;
     const Float pull = -(slide_ * friction_);
-    const Float round = pull * p.gap * p.inverse;  // of a residual that turns about the normal
+    const Float round = pull * p.gap * p.inverse;  // of a residual that rotates about the normal
     const Float radial = fma(-pull, friction_, -round);
     const auto of = [&](Float slides, Float sticks) {
       return select(p.sticks, sticks, select(p.slides, slides, zero));
@@ -78,14 +78,14 @@ class Cone {
     const Vec3 rate = load_vec3(c_.change[0]);
     const Point p = at(fma(rate, step, load_vec3(c_.residual[0])));
     const Float zero(Real(0));
-    const Float turn = fma(p.two, rate.z, p.one * rate.y);  // t . dt
+    const Float tangential = fma(p.two, rate.z, p.one * rate.y);  // t . dt
     const Float rate2 = fma(rate.z, rate.z, rate.y * rate.y);
-    const Float grows = friction_ * turn * p.inverse;
-    const Float across = turn * p.inverse;
+    const Float grows = friction_ * tangential * p.inverse;
+    const Float across = tangential * p.inverse;
     const Float bends = friction_ * max(fnma(across, across, rate2), Real(0)) * p.inverse;
     const Float closes = rate.x - grows;
-    const Float slope =
-        select(p.sticks, fma(stick_, turn, weight_ * p.normal * rate.x), slide_ * p.gap * closes);
+    const Float slope = select(p.sticks, fma(stick_, tangential, weight_ * p.normal * rate.x),
+                               slide_ * p.gap * closes);
     const Float curve = select(p.sticks, fma(stick_, rate2, weight_ * rate.x * rate.x),
                                slide_ * fnma(p.gap, bends, closes * closes));
     const Mask acts = p.sticks | p.slides;
@@ -115,14 +115,14 @@ class Cone {
     const Float zero(Real(0)), one(Real(1)), square = fma(x.z, x.z, x.y * x.y);
     const Mask moves = zero < square;
     const Float length = sqrt(square), t = friction_ * length;
-    const Mask pushes = x.x < t, sticks = pushes & (t <= -(mu2_ * x.x));
+    const Mask active = x.x < t, sticks = active & (t <= -(mu2_ * x.x));
     return {x.x,
             x.y,
             x.z,
             x.x - t,
             select(moves, one / select(moves, length, one), zero),
             sticks,
-            pushes & !sticks};
+            active & !sticks};
   }
 
   const TreeContact& c_;

@@ -37,7 +37,7 @@ class ConstraintRows {
   void add_joint_forces(Real* load) const { limits_.add_forces(load), balls_.add_forces(load); }
   const ContactRows& contacts() const { return contacts_; }
 
-  // In joint space: which dofs the rows couple, and J' D J of those that push.
+  // In joint space: which dofs the rows couple, and J' D J of the active ones.
   void couple(const Stiffness& stiffness) const {
     limits_.couple(stiffness), contacts_.couple(stiffness);
   }

@@ -132,13 +132,13 @@ class ContactRows {
 
   void couple(const Stiffness& stiffness) const {
     for_each([&](const Contact& c, const TreePair& pair) {
-      if (pair.link_a >= 0 && pushes(stiffness_of(c, pair))) stiffness.couple(pair.coupled);
+      if (pair.link_a >= 0 && is_active(stiffness_of(c, pair))) stiffness.couple(pair.coupled);
     });
   }
   void add_stiffness(const Stiffness& stiffness) const {
     for_each([&](const Contact& c, const TreePair& pair) {
       const PointStiffness k = stiffness_of(c, pair);
-      if (!pushes(k)) return;
+      if (!is_active(k)) return;
       const std::int32_t* dofs = t_.tree.pair_dof + pair.first_dof;
       const Mat3 frame{load_vec3(c.frame[0]), load_vec3(c.frame[3]), load_vec3(c.frame[6])};
       for (int i = 0; i < pair.dofs; ++i) {
@@ -174,7 +174,7 @@ class ContactRows {
     for_each([&](const Contact& c, const TreePair& pair) {
       if (pair.link_a >= 0 || !x.stale[pair.link_b]) return;
       const PointStiffness k = stiffness_of(c, pair);
-      if (!pushes(k)) return;
+      if (!is_active(k)) return;
       Real* to = link_rows(x.held, pair.link_b, kArticulatedRows);
       const ArticulatedInertia own = spring_at(load_vec3(c.arm_b[0]), in_world(c, pair, k));
       bool& held = x.is_held[pair.link_b];
@@ -325,7 +325,7 @@ class ContactRows {
     visit({one, zero, mu}, row(c, 2).stiffness()), visit({one, zero, -mu}, row(c, 3).stiffness());
   }
 
-  MW_INLINE bool pushes(const PointStiffness& k) const {
+  MW_INLINE bool is_active(const PointStiffness& k) const {
     return (bits(Float(Real(0)) < k.normal) & lanes_) != 0;
   }
 

@@ -8,7 +8,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Adds to the diagonal, h times, how much less actuators push where their dofs are faster. One at
+// Adds to the diagonal, h times, by how much actuator forces fall as their dofs move faster. One at
 // an end of its range does not follow.
 inline void add_resistance(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.actuators; ++i) {
@@ -46,8 +46,8 @@ class FreeLink {
       const Vec3 n = cross(axis, own_momentum) + cross(spin, momentum(axis));
       mixed[j] = {entry(3 + j, 0), entry(3 + j, 1), entry(3 + j, 2)};
       linear[j] = fma(f, h, mixed[j]);
-      const Vec3 turn{dot(axis_at(0), n), dot(axis_at(1), n), dot(axis_at(2), n)};
-      angular[j] = fma(turn, h, {entry(3, 3 + j), entry(4, 3 + j), entry(5, 3 + j)});
+      const Vec3 moments{dot(axis_at(0), n), dot(axis_at(1), n), dot(axis_at(2), n)};
+      angular[j] = fma(moments, h, {entry(3, 3 + j), entry(4, 3 + j), entry(5, 3 + j)});
     }
     // The linear block is a multiple of the unit matrix.
     const Float inverse = Float(Real(1)) / entry(0, 0);

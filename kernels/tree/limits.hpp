@@ -56,15 +56,15 @@ class LimitRows {
       }
     });
   }
-  // Adds J' D J of the rows that push.
+  // Adds J' D J of the active rows.
   MW_INLINE void couple(const Stiffness& stiffness) const {
     for_each([&](Row& row, const Limit& limit) {
-      if (limit.terms > 1 && pushes(row)) stiffness.couple(limit.coupled);
+      if (limit.terms > 1 && is_active(row)) stiffness.couple(limit.coupled);
     });
   }
   MW_INLINE void add_stiffness(const Stiffness& stiffness) const {
     for_each([&](Row& row, const Limit& limit) {
-      if (!pushes(row)) return;
+      if (!is_active(row)) return;
       const Float own = view(row).stiffness();
       const Term* terms = t_.tree.term + limit.first_term;
       for (int i = 0; i < limit.terms; ++i) {
@@ -79,7 +79,7 @@ class LimitRows {
   // The same of rows of single dofs, on a diagonal [dof][lane], and of the others.
   MW_INLINE void add_stiffness(Real* diagonal) const {
     for_each([&](Row& row, const Limit& limit) {
-      if (limit.terms > 1 || !pushes(row)) return;
+      if (limit.terms > 1 || !is_active(row)) return;
       const Term& term = t_.tree.term[limit.first_term];
       Real* to = diagonal + term.dof * kLanes;
       const Float share(term.coefficient * term.coefficient);
@@ -88,7 +88,7 @@ class LimitRows {
   }
   MW_INLINE void couple(Couplings& couplings) const {
     for_each([&](Row& row, const Limit& limit) {
-      if (limit.terms == 1 || !pushes(row)) return;
+      if (limit.terms == 1 || !is_active(row)) return;
       const Float weight = view(row).stiffness(), zero(Real(0));
       for (int i = 0; i < limit.terms; ++i) {
         const Term& term = t_.tree.term[limit.first_term + i];
@@ -106,8 +106,8 @@ class LimitRows {
   MW_INLINE void along(Float step, Float& first, Float& second) const {
     for_each([&](Row& row, const Limit&) { view(row).add_along(step, first, second); });
   }
-  // Goes the step but in lanes that are done; returns those in which a row has begun or ceased to
-  // push.
+  // Goes the step but in lanes that are done; returns those in which a row has become
+  // active or inactive.
   MW_INLINE Mask advance(Float step, Mask done) const {
     Mask changed = mask_from_bits(0);
     for_each([&](Row& row, const Limit& limit) {
@@ -144,7 +144,7 @@ class LimitRows {
     }
   }
 
-  MW_INLINE bool pushes(Row& row) const {
+  MW_INLINE bool is_active(Row& row) const {
     return (bits(Float(Real(0)) < view(row).stiffness()) & lanes_) != 0;
   }
 

@@ -46,8 +46,8 @@ class Minimiser {
   Minimiser(const Constants& t, const Work& w, const ConstraintRows& rows)
       : t_(t), x_(w.tree), rows_(rows), space_(t, w) {}
 
-  // In the lanes of `active`. Leaves the accelerations in w.tree.guess, and in w.tree.row_load what
-  // the rows push with.
+  // In the lanes of `active`. Leaves the accelerations in w.tree.guess, and in w.tree.row_load the
+  // forces of the rows.
   void run(Mask active) {
     const Float tolerance(t_.tree.newton.tolerance), scale(t_.tree.newton.scale);
     space_.start(rows_);

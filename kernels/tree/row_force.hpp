@@ -1,4 +1,4 @@
-// A row of the newton solver that can only push: cost 1/2 D x^2 of its residual x = J a - reference
+// A one-sided row of the newton solver: cost 1/2 D x^2 of its residual x = J a - reference
 // where that is negative, force -D x.
 #pragma once
 
@@ -29,14 +29,14 @@ struct RowView {
     first = fma(slope, negative_part(x), first);
     second = second + select(x < zero, slope * rate, zero);
   }
-  // Goes the step but in lanes that are done; returns those in which the row has begun or ceased to
-  // push.
+  // Goes the step but in lanes that are done; returns those in which the row has become
+  // active or inactive.
   MW_INLINE Mask advance(Float step, Mask done) const {
     const Float zero(Real(0)), before = Float::load(residual);
     const Float after = select(done, before, fma(step, Float::load(change), before));
     after.store(residual);
-    const Mask pushed = before < zero, pushes = after < zero;
-    return ((pushed & !pushes) | (pushes & !pushed)) & (zero < Float::load(weight));
+    const Mask was_active = before < zero, is_active = after < zero;
+    return ((was_active & !is_active) | (is_active & !was_active)) & (zero < Float::load(weight));
   }
 };
 

@@ -47,7 +47,7 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
     for (int k = 0; k < t.tree.dofs; ++k) {
       Float::load(acceleration_of(t, g, k)).store(x.guess + k * kLanes);
     }
-    // Where nothing pushes the sum is the same whether other lanes have rows or not.
+    // Where no row is active the sum is the same whether other lanes have rows or not.
     for_each_dof(t, [&](int k) { Float(Real(0)).store(x.row_load + k); });
     if (any(active)) {
       t.tree.by_links ? Minimiser<LinkSpace>(t, w, rows).run(active)
@@ -93,7 +93,7 @@ Next advance(const Constants& t, const Group& g, const Work& w) {
         fma(Float::load(w.tree.load + k * kLanes), Float(t.h), Float::load(velocity_of(t, g, k)));
     v.store(velocity + k * kLanes);
     out.check(v, kMaxSpin);
-    // Rows at an acceleration that is no number push with nothing, so velocities do not tell.
+    // Rows at an acceleration that is NaN have no force, so velocities do not show it.
     if (t.tree.has_rows) out.check(Float::load(w.tree.guess + k * kLanes), kMaxAcceleration);
   }
   integrate(t, coordinate_of(t, g, 0), velocity, Float(t.h), w.tree.next, out);

@@ -17,8 +17,8 @@ void find_sparse_pairs(const Constants& t, const Group& g, Work& w);
 
 inline constexpr int kMaxTileCandidates = 4096;
 
-// Most candidates of a class that a lane may have: twice the manifolds that it can keep. Tiles of a
-// height field are all candidates of who is over it.
+// Maximum of candidates of a class in a lane: twice the manifolds that it can keep. Tiles of a
+// height field are all candidates of any shape over it.
 MW_INLINE int candidate_limit(const Constants& t, const kernels::PairClass<Real>& c) {
   const int limit = 2 * t.capacity[static_cast<int>(c.list)];
   if (!kernels::is_tile(c.kind) || limit > kMaxTileCandidates) return limit;

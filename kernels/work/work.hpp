@@ -73,7 +73,7 @@ struct Search {
   Real* square;  // [lane], of the last step
 };
 
-// A row of the newton solver that can only push (kernels/tree/row_force.hpp).
+// A one-sided row of the newton solver (kernels/tree/row_force.hpp).
 struct alignas(64) TreeRow {
   Real weight[kLanes], reference[kLanes];  // D = 1 / R, 0 where there is none; acceleration
   Real residual[kLanes], change[kLanes];   // J a - reference, and along the search

@@ -152,7 +152,7 @@ class Snapshot:
     """
     The whole state of some worlds of a Batch, to go on from later, elsewhere or many times.
 
-    Made by Batch.save(). It knows nothing of lanes, threads or places, so a world continues bit
+    Made by Batch.save(). It does not depend on lanes, threads or places, so a world continues bit
     by bit wherever it is restored. Can be pickled.
     """
 
@@ -182,7 +182,7 @@ class Snapshot:
         """
 
     def save(self, file: str | os.PathLike) -> None:
-        """Writes a file; no reader ever sees half of one. Raises SnapshotError."""
+        """Writes a file; a partial file is never read. Raises SnapshotError."""
 
     @staticmethod
     def load(file: str | os.PathLike) -> Snapshot:
@@ -288,7 +288,7 @@ class Batch:
     def write_controls(self, numbers: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None, kind: int = 0) -> None:
         """Takes an array (worlds, controls), or that of some worlds."""
 
-    def push(self, kind: object, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], bodies: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)] | None) -> None:
+    def apply_external(self, kind: object, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], bodies: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)] | None) -> None:
         """
         Adds forces, torques or impulses, (worlds, bodies, 3); rows of zeros do nothing.
         """

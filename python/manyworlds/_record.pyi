@@ -85,7 +85,7 @@ class Recording:
 
 def unfinished_recordings(file: str | os.PathLike) -> list[pathlib.Path]:
     """
-    The part files beside a file that hold something and that nobody writes any more.
+    The part files beside a file that have contents and no writer any more.
     """
 
 def scene_to_json(scene: object | None) -> str:

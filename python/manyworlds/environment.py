@@ -68,7 +68,7 @@ class Environment(InMemory):
     autoreset    what happens to a world whose episode has ended: with "next_step" the next step
                  begins its next episode instead of stepping it (reward 0, no end), with "same_step"
                  the step that ends it begins the next and ``final_observations`` has where it ended,
-                 with "disabled" it steps on until somebody resets it
+                 with "disabled" it steps on until it is reset
     reward_terms, final_observations  whether these arrays are filled by ``step``
 
     What a world does depends on the task, its seed and its actions alone. The arrays of the last

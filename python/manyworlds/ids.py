@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class _Handle(int):
-    """An index that knows of what."""
+    """An index of one kind of item."""
 
     __slots__ = ()
 

@@ -68,13 +68,13 @@ class Inputs(Named):
         worlds. Through the centre of mass, or at ``points`` (as ``force``, m, world). Rows of zeros do
         nothing. Raises ValueError for shapes, names and fixed bodies, IndexError for indices.
         """
-        self._push("force", force, bodies, ids, points)
+        self._apply("force", force, bodies, ids, points)
 
     def add_torque(
         self, torque: ArrayLike, bodies: Optional[BodyRefs] = None, ids: Optional[Ids] = None
     ) -> None:
         """Adds torques, N m, (worlds, bodies, 3), planar 1: see add_force."""
-        self._push("torque", torque, bodies, ids)
+        self._apply("torque", torque, bodies, ids)
 
     def add_impulse(
         self,
@@ -84,15 +84,15 @@ class Inputs(Named):
         points: Optional[ArrayLike] = None,
     ) -> None:
         """Changes velocities at once by impulses, N s: see add_force."""
-        self._push("impulse", impulse, bodies, ids, points)
+        self._apply("impulse", impulse, bodies, ids, points)
 
     def add_angular_impulse(
         self, impulse: ArrayLike, bodies: Optional[BodyRefs] = None, ids: Optional[Ids] = None
     ) -> None:
         """Changes spins at once by angular impulses, N m s: see add_torque."""
-        self._push("angular_impulse", impulse, bodies, ids)
+        self._apply("angular_impulse", impulse, bodies, ids)
 
-    def _push(
+    def _apply(
         self,
         kind: str,
         values: ArrayLike,
@@ -107,7 +107,7 @@ class Inputs(Named):
         at = None
         if points is not None:
             at = self._vectors(points, (len(worlds), len(chosen)), "points", False)
-        self._held.push(kind, worlds, chosen, full, at)
+        self._held.apply_external(kind, worlds, chosen, full, at)
 
     def _vectors(
         self, values: ArrayLike, lead: tuple[int, ...], name: str, spin: bool

@@ -1,6 +1,6 @@
 """Joints: what holds two bodies together, or one to the world.
 
-A hinge turns about z of its frames, a slider slides along x. A coordinate (an angle in rad, a travel
+A hinge rotates about z of its frames, a slider slides along x. A coordinate (an angle in rad, a travel
 or length in m) is what B's frame has moved against A's; it may have a limit and a drive.
 """
 
@@ -93,7 +93,7 @@ class HingeJoint:
 
 @dataclass(slots=True, kw_only=True)
 class SliderJoint:
-    """B's frame slides along x of A's and does not turn against it."""
+    """B's frame slides along x of A's and does not rotate against it."""
 
     limit: Optional[Limit] = None  # m
     drive: Optional[Drive] = None
@@ -115,7 +115,7 @@ class DistanceJoint:
 
 @dataclass(slots=True, kw_only=True)
 class WheelJoint:
-    """B is a wheel: it moves along x of A's frame on a suspension and turns about z."""
+    """B is a wheel: it moves along x of A's frame on a suspension and rotates about z."""
 
     suspension: Spring = field(default_factory=Spring)
     travel: Optional[Limit] = None  # m, along x

@@ -89,8 +89,8 @@ class _Core:
     def write_controls(self, numbers: Any, worlds: Any) -> None:
         self._core.write_controls(numbers, worlds, self._kind)
 
-    def push(self, what: str, worlds: Any, *rest: Any) -> None:
-        self._core.push(what, self._world(worlds), *rest)
+    def apply_external(self, what: str, worlds: Any, *rest: Any) -> None:
+        self._core.apply_external(what, self._world(worlds), *rest)
 
     def spawn(self, worlds: Any, *rest: Any) -> None:
         self._core.spawn(self._world(worlds), *rest)

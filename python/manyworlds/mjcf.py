@@ -5,10 +5,10 @@ bodies and static geoms of spheres, capsules, cylinders, boxes, meshes (their co
 height fields, and the equality constraints connect and weld. Whatever else would change the motion,
 such as hinges and slides, is an error that names it.
 
-A model is read into memory and checked before MuJoCo sees it: it may take files only from its own folder
+A model is read into memory and checked before MuJoCo reads it: it may take files only from its own folder
 and from those in ``roots``, and ask for no more than ``limits`` say. An error names the limit that it
 reaches: ``mw.mjcf.load("crowd.xml", limits={"copies": 50_000})`` allows more. ``limits()`` has them all.
-Who loads strangers' models does so in a process of its own, which may be ended: within the limits, too,
+Load untrusted models in a separate process, which can be killed: even within the limits
 MuJoCo's compiler may take minutes.
 """
 

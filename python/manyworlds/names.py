@@ -1,4 +1,4 @@
-"""Names of the library's enumerations, as type checkers want them.
+"""Names of the library's enumerations, for type checkers.
 
 Every parameter that takes one accepts hyphens for underscores, too, and refuses any other string
 with a ``ValueError`` that lists the known names and the nearest. ``manyworlds.enumerations()`` gives

@@ -63,7 +63,7 @@ class Recorder(InMemory):
                  flushed, and survives the end of the process, whatever that is (see
                  unfinished_recordings); 0: at each call, inf: never
 
-    The batch tells it of every input, so nothing needs to go through the Recorder. Steps of some worlds
+    The batch reports every input to it, so nothing needs to go through the Recorder. Steps of some worlds
     alone (``ids``) are recorded as the states that they came to. As a context manager it is closed at the
     end, also after an exception. Without ``close`` no file is left, unless the process is cut off. Raises
     RecordError, a ValueError, when the file cannot be written (from ``close`` for what failed while
@@ -317,7 +317,7 @@ class Recording(InMemory):
 def unfinished_recordings(file: File) -> list[Path]:
     """What processes that were cut off (kill -9, a power cut) had recorded of ``file``, by name.
 
-    The files beside it, "run.h5.part-8c1f03ab5e6d7790", that hold something and that nobody writes any
+    The files beside it, "run.h5.part-8c1f03ab5e6d7790", that have contents and no writer any
     more. Each can be opened and replayed up to where it was last flushed (``Recorder``'s
     ``flush_seconds``); nothing deletes them. Raises RecordError when ``file`` is no name of a file.
     """

@@ -119,7 +119,7 @@ class Results:
     def step_contacts(self, world: int) -> NDArray[Any]:
         """Contact points of the last step with its impulses, structured, (contacts,) of STEP_CONTACT.
 
-        Wants a batch made with observe=["contacts"]; ValueError otherwise.
+        Requires a batch made with observe=["contacts"]; ValueError otherwise.
         """
         if "contacts" not in self._watched:
             raise ValueError("contacts are not observed; make the Batch with observe=['contacts']")

@@ -1,4 +1,4 @@
-"""Scene: what one world is. Plain values; nothing here knows about batches or steps."""
+"""Scene: what one world is. Plain values; independent of batches and steps."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ class Ray:
     origin: Numbers = (0.0, 0.0, 0.0)  # m, in the world or, with a body, in that body's frame
     direction: Numbers = (1.0, 0.0, 0.0)  # need not be unit
     length: float = inf  # m: it sees what is nearer
-    body: BodyRef = -1  # moves and turns with it; -1: stays
+    body: BodyRef = -1  # moves and rotates with it; -1: stays
     mask: int = 0xFFFFFFFF  # of Filter.category
 
 
@@ -291,7 +291,7 @@ class Scene:
         self, *, broad_phase: BroadPhase = "automatic", keep: Sequence[Feature] = ()
     ) -> Plan:
         """The Plan of this scene. Raises SceneError."""
-        from .plan import Plan  # which knows of scenes
+        from .plan import Plan  # which imports scenes
 
         return Plan(self, broad_phase=broad_phase, keep=keep)
 

@@ -7,7 +7,7 @@ from .scene import Scene
 
 
 def names() -> list[str]:
-    """The scenes that ``load`` knows. Some have sizes, too: "pyramid2d:100", "bin-boxes:1000"."""
+    """The scenes that ``load`` accepts. Some have sizes, too: "pyramid2d:100", "bin-boxes:1000"."""
     return [name for name, _ in _core.scene_names()]
 
 

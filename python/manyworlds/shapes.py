@@ -188,7 +188,7 @@ class SoftContact:
 
     dimensions: int = 3  # 1: no friction, 3: friction along the surface
     compliance: Compliance = field(default_factory=Compliance)
-    margin: float = 0.0  # m, from which distance on a contact pushes
+    margin: float = 0.0  # m, separation below which a contact acts
     gap: float = 0.0  # m, by how much farther MuJoCo lists it; it moves nothing
     priority: int = 0
     weight: float = 1.0  # of the compliance

@@ -168,7 +168,7 @@ class Terms:
         return _x.observed("angular_acceleration", self._index("body", body), self._axis(axis))
 
     def proper_acceleration(self, body: BodyRef, axis: Axis) -> Expression:
-        """m/s^2, what an accelerometer at the centre of mass tells; body axes, g upwards at rest."""
+        """m/s^2, what an accelerometer at the centre of mass reads; body axes, g upwards at rest."""
         return _x.observed("proper_acceleration", self._index("body", body), self._axis(axis))
 
     def point_position(self, point: int, axis: Axis) -> Expression:
@@ -211,7 +211,7 @@ class Action:
 
 @dataclass(slots=True, eq=False)
 class Observation:
-    """What a policy sees; the range is what it is told, the value is not clamped."""
+    """An observation; its range is declared, the value is not clamped."""
 
     name: str = ""
     value: Value = 0.0
@@ -297,7 +297,7 @@ class TaskError(SceneError):
 
 
 def names() -> list[str]:
-    """The tasks that ``load`` knows."""
+    """The tasks that ``load`` accepts."""
     return [name for name, _ in _core.task_names()]
 
 

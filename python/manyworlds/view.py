@@ -16,7 +16,7 @@ class View(InMemory):
 
     World w is lane ``i % lanes`` of group ``i // lanes``, ``i = Batch.lane_indices()[w]``; lanes after
     the last world are unused. Positions are those of centres of mass, orientations those of principal
-    axes: ``Batch.get`` turns them into the body's frame. What is written here acts at the next step;
+    axes: ``Batch.get`` converts them to the body's frame. What is written here acts at the next step;
     it wakes no body and forgets no stored impulses.
 
     ``numpy.asarray(view)``, ``view[...]`` and DLPack give arrays that share this memory and keep it

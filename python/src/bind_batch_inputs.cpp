@@ -11,16 +11,16 @@ namespace manyworlds::python {
 
 namespace {
 
-enum class Push { force, torque, impulse, angular_impulse };
+enum class External { force, torque, impulse, angular_impulse };
 
 }  // namespace
 
 template <>
-struct Names<Push> {
-  static constexpr Named<Push> all[] = {{Push::force, "force"},
-                                        {Push::torque, "torque"},
-                                        {Push::impulse, "impulse"},
-                                        {Push::angular_impulse, "angular_impulse"}};
+struct Names<External> {
+  static constexpr Named<External> all[] = {{External::force, "force"},
+                                            {External::torque, "torque"},
+                                            {External::impulse, "impulse"},
+                                            {External::angular_impulse, "angular_impulse"}};
 };
 
 namespace {
@@ -39,9 +39,9 @@ Vec3 vector_at(const In<double>& numbers, std::size_t i) {
 }
 
 // values and points: (worlds, bodies, 3).
-void push(HeldBatch& self, nb::object kind, const Ids& worlds, const Ids& bodies,
-          const In<double>& values, const std::optional<In<double>>& points) {
-  const Push what = from_python<Push>(kind, "kind");
+void apply_external(HeldBatch& self, nb::object kind, const Ids& worlds, const Ids& bodies,
+                    const In<double>& values, const std::optional<In<double>>& points) {
+  const External what = from_python<External>(kind, "kind");
   const std::size_t wanted = 3 * worlds.size() * bodies.size();
   check_size("values", values.size(), wanted);
   if (points) check_size("points", points->size(), wanted);
@@ -51,14 +51,14 @@ void push(HeldBatch& self, nb::object kind, const Ids& worlds, const Ids& bodies
       const Vec3 value = vector_at(values, i);
       if (value.isZero(0)) return;  // would wake a world for nothing
       switch (what) {
-        case Push::force:
+        case External::force:
           if (points) return b.add_force_at(world, body, value, vector_at(*points, i));
           return b.add_force(world, body, value);
-        case Push::impulse:
+        case External::impulse:
           if (points) return b.add_impulse_at(world, body, value, vector_at(*points, i));
           return b.add_impulse(world, body, value);
-        case Push::torque: return b.add_torque(world, body, value);
-        case Push::angular_impulse: return b.add_angular_impulse(world, body, value);
+        case External::torque: return b.add_torque(world, body, value);
+        case External::angular_impulse: return b.add_angular_impulse(world, body, value);
       }
     });
   });
@@ -95,7 +95,7 @@ void set_flags(HeldBatch& self, const Ids& worlds, const Ids& items, const In<bo
   });
 }
 
-// Who is in a column of an array of flags: bodies by their rows.
+// The body of a column of an array of flags: bodies by their rows.
 void in_column(const Batch& b, int world, int column, BodyId& out) {
   out = b.body_in_row(column, b.kind_of(world));
 }
@@ -143,7 +143,7 @@ void set_rays(HeldBatch& self, nb::object rays, std::optional<int> world) {
 void bind_batch_inputs(nb::class_<HeldBatch>& c) {
   const auto ids = nb::arg("worlds").noconvert();
   const auto kind = nb::arg("kind") = 0;
-  c.def("push", &push, nb::arg("kind"), ids, nb::arg("bodies").noconvert(),
+  c.def("apply_external", &apply_external, nb::arg("kind"), ids, nb::arg("bodies").noconvert(),
         nb::arg("values").noconvert(), nb::arg("points").none(),
         "Adds forces, torques or impulses, (worlds, bodies, 3); rows of zeros do nothing.")
       .def("spawn", &spawn, ids, nb::arg("body"), nb::arg("states").noconvert(),

@@ -33,7 +33,7 @@ void bind_snapshot(nb::module_& m) {
   nb::class_<Snapshot>(
       m, "Snapshot",
       "The whole state of some worlds of a Batch, to go on from later, elsewhere or many times.\n\n"
-      "Made by Batch.save(). It knows nothing of lanes, threads or places, so a world continues "
+      "Made by Batch.save(). It does not depend on lanes, threads or places, so a world continues "
       "bit\n"
       "by bit wherever it is restored. Can be pickled.")
       .def_prop_ro("worlds", &Snapshot::worlds, "How many worlds it holds.")
@@ -44,7 +44,7 @@ void bind_snapshot(nb::module_& m) {
       .def_static("from_bytes", &from_bytes, nb::arg("data"),
                   "A snapshot from bytes(). Raises SnapshotError when they are cut or damaged.")
       .def("save", &Snapshot::save, nb::arg("file"), nb::call_guard<nb::gil_scoped_release>(),
-           "Writes a file; no reader ever sees half of one. Raises SnapshotError.")
+           "Writes a file; a partial file is never read. Raises SnapshotError.")
       .def_static("load", &Snapshot::load, nb::arg("file"),
                   nb::call_guard<nb::gil_scoped_release>(),
                   "Reads a file that save() wrote. Raises SnapshotError.")

@@ -9,7 +9,7 @@ namespace manyworlds::python {
 
 namespace {
 
-constexpr int kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
+constexpr int kMin = std::numeric_limits<int>::min(), kMax = std::numeric_limits<int>::max();
 
 ExpressionGraph::Node read_node(nb::handle value, const Place& place) {
   const std::vector<nb::object> parts = read_elements(value, place, -1, "a node of an expression");
@@ -26,7 +26,7 @@ ExpressionGraph::Node read_node(nb::handle value, const Place& place) {
   }
   for (std::size_t i = 1; i < parts.size(); ++i) {
     node.arguments.push_back(
-        static_cast<int>(read_integer(parts[i], place.element(i), kLeast, kMost)));
+        static_cast<int>(read_integer(parts[i], place.element(i), kMin, kMax)));
   }
   return node;
 }
@@ -58,7 +58,7 @@ std::vector<Expression> from_values(nb::handle nodes, nb::handle roots) {
   const auto wanted = read_elements(roots, root_place, -1, "a list of integers");
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     graph.roots.push_back(
-        static_cast<int>(read_integer(wanted[i], root_place.element(i), 0, kMost)));
+        static_cast<int>(read_integer(wanted[i], root_place.element(i), 0, kMax)));
   }
   return from_graph(graph);
 }

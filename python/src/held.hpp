@@ -43,7 +43,7 @@ class Held {
     const Use use(*this);
     held_.reset();
   }
-  // For those who look into its memory.
+  // For views of its memory.
   std::shared_ptr<T> share() const { return held_; }
   const Busy& busy() const { return busy_; }
 

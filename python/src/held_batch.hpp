@@ -24,7 +24,7 @@ class HeldBatch : public Held<Batch> {
       first += kind.worlds;
     }
   }
-  // That of another object, of one kind, with which it is used in turns.
+  // That of another object, of one kind, with which it is used alternately.
   HeldBatch(std::shared_ptr<Batch> batch, Busy busy)
       : Held(std::move(batch), "Batch", std::move(busy)), ranges_{{0, 0, share()->worlds()}} {}
 

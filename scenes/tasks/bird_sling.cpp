@@ -1,5 +1,5 @@
 // The scene bird-sling as a design problem: one action, how strongly and how steeply the bird is
-// slung, and then the world runs. The reward is how many boxes are pushed off their places.
+// slung, and then the world runs. The reward is how many boxes are displaced.
 #include "manyworlds/scenes.hpp"
 #include "scenes/tasks/makers.hpp"
 
@@ -7,7 +7,7 @@ namespace manyworlds::tasks {
 
 Task bird_sling() {
   using namespace terms;
-  constexpr double kMaxSpeed = 25, kSteepest = 1.3, kLeastShift = 0.4;  // m/s, rad, m
+  constexpr double kMaxSpeed = 25, kSteepest = 1.3, kMinShift = 0.4;  // m/s, rad, m
   Task task;
   task.name = "BirdSling";
   task.scene = scenes::find("bird-sling")->make();
@@ -45,8 +45,8 @@ Task bird_sling() {
   Expression shifted = 0;
   for (const BodyId box : boxes) {
     const Vec3& home = scene.at(box).position;
-    shifted = shifted +
-              (abs(position(box, 0) - home.x()) + abs(position(box, 1) - home.y()) > kLeastShift);
+    shifted =
+        shifted + (abs(position(box, 0) - home.x()) + abs(position(box, 1) - home.y()) > kMinShift);
   }
   see("boxes shifted", shifted);
   task.rewards = {{"boxes", shifted - previous(shifted)},

@@ -1,5 +1,5 @@
 // LunarLander after Gymnasium's LunarLander-v3: its bodies, joints and engines, its start, rewards
-// and ends, so that what flies one flies the other. Lengths there are pixels, 30 to a metre.
+// and ends, so that a policy of one controls the other. Lengths there are pixels, 30 to a metre.
 //
 // Not as there: its engines sputter (each step's thrust is off by chance, by up to a half), here
 // they do not. Beside the pad, the ground there has four slopes on either side, here one. And a leg
@@ -14,10 +14,10 @@ constexpr double kPixel = 1.0 / 30;                // m
 constexpr double kWidth = 10, kHeight = 20.0 / 3;  // m, half of the view: units of x and y
 constexpr double kDt = 0.02;                       // s
 constexpr double kSpeedX = 5, kSpeedY = 7.5;       // m/s, units of the velocities
-constexpr double kTurn = 2.5;                      // rad/s, unit of the turn
+constexpr double kSpinUnit = 2.5;                  // rad/s, unit of the angular velocity
 constexpr double kPad = 2;                         // m, half the pad's width
 constexpr double kStart = 10.033;                  // m over the pad
-constexpr double kMost = 1000;                     // N for one step, either way, along x and y
+constexpr double kMaxForce = 1000;                 // N for one step, either way, along x and y
 constexpr double kFolded = 0.9, kSpread = 0.4;     // rad, of a leg against the cabin
 // The engines are impulses there, N s in a step; here forces with the same effect.
 constexpr double kMainThrust = 13 * 4 * kPixel / kDt, kSideThrust = 0.6 * 12 * kPixel / kDt;  // N
@@ -64,12 +64,12 @@ void add_ground(Scene& scene) {
 BodyId add_leg(Scene& scene, BodyId cabin, double side) {
   constexpr double kAway = 20 * kPixel, kDown = 18 * kPixel;  // m, from the hinge
   const double spread = side * kSpread;
-  const Eigen::AngleAxisd turned(spread, Vec3::UnitZ());
+  const Eigen::AngleAxisd spread_rotation(spread, Vec3::UnitZ());
   const Vec3 hip{-side * kAway, kDown, 0};
   Body leg;
   leg.name = side < 0 ? "left leg" : "right leg";
-  leg.position = scene.at(cabin).position - turned * hip;
-  leg.rotation = turned;
+  leg.position = scene.at(cabin).position - spread_rotation * hip;
+  leg.rotation = spread_rotation;
   leg.shapes = {shape_of(Polygon::box(2 * kPixel, 8 * kPixel))};
   leg.shapes[0].density = 1;
   leg.shapes[0].material.friction = 0.2;
@@ -110,7 +110,7 @@ Craft make_craft(const char* name) {
   cabin.shapes[0].material.friction = 0.1;
   cabin.shapes[0].filter = {kLander, kGround};
   // The force of the first step moves the cabin alone; its legs are drawn along.
-  const double most = kMost * kDt / mass_properties(scene, cabin).mass;
+  const double most = kMaxForce * kDt / mass_properties(scene, cabin).mass;
   cabin.jitter.linear_velocity = {most, most, 0};
   made.cabin = scene.add(cabin);
   made.left = add_leg(scene, made.cabin, -1);
@@ -144,7 +144,7 @@ Task lander(const char* name, const Expression& main, const Expression& side) {
   const double standing = 19 * kPixel;
   const Expression x = position(cabin, 0) / kWidth, y = (position(cabin, 1) - standing) / kHeight,
                    vx = velocity(cabin, 0) / kSpeedX, vy = velocity(cabin, 1) / kSpeedY,
-                   lean = angle(cabin), turn = angular_velocity(cabin, 2) / kTurn,
+                   lean = angle(cabin), turn = angular_velocity(cabin, 2) / kSpinUnit,
                    on_left = touching(left), on_right = touching(right);
   // Its first leg is the right one.
   task.observations = {{"x", x, -2.5, 2.5},

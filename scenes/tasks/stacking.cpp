@@ -33,33 +33,33 @@ Task stacking() {
   third.jitter.position = {1.5, 0.5, 0};
   third.jitter.angle = 0.3;
   third.linear_drag = 0.5, third.angular_drag = 1;
-  const BodyId flown = scene.add(third);
+  const BodyId carried = scene.add(third);
   const double mass = mass_properties(scene, third).mass, most = 2.5 * mass * kGravity;
-  scene.controls = {thrust("x", flown, Vec3::Zero(), {1, 0, 0}, -most, most),
-                    thrust("y", flown, Vec3::Zero(), {0, 1, 0}, -most, most),
-                    torque("turn", flown, 0.2 * mass * kGravity * kSide)};
+  scene.controls = {thrust("x", carried, Vec3::Zero(), {1, 0, 0}, -most, most),
+                    thrust("y", carried, Vec3::Zero(), {0, 1, 0}, -most, most),
+                    torque("turn", carried, 0.2 * mass * kGravity * kSide)};
   task.actions = {{"x", -1, 1}, {"y", -1, 1}, {"turn", -1, 1}};
   // In the world's axes, whatever way the box has turned.
-  const Expression c = previous(direction(flown, 0, 0)), s = previous(direction(flown, 0, 1));
+  const Expression c = previous(direction(carried, 0, 0)), s = previous(direction(carried, 0, 1));
   task.controls = {most * (c * action(0) + s * action(1)), most * (c * action(1) - s * action(0)),
                    scene.controls[2].high * action(2)};
 
-  const Expression dx = position(flown, 0) - position(upper, 0),
-                   dy = position(flown, 1) - (position(upper, 1) + kSide), lean = angle(flown);
+  const Expression dx = position(carried, 0) - position(upper, 0),
+                   dy = position(carried, 1) - (position(upper, 1) + kSide), lean = angle(carried);
   task.observations = {{"x off", dx},
                        {"y off", dy},
-                       {"vx", velocity(flown, 0)},
-                       {"vy", velocity(flown, 1)},
+                       {"vx", velocity(carried, 0)},
+                       {"vy", velocity(carried, 1)},
                        {"cos", cos(lean), -1, 1},
                        {"sin", sin(lean), -1, 1},
-                       {"turn", angular_velocity(flown, 2)},
-                       {"touching", touching(flown), 0, 1},
+                       {"turn", angular_velocity(carried, 2)},
+                       {"touching", touching(carried), 0, 1},
                        {"tower lean", angle(upper)},
                        {"tower x off", position(upper, 0) - position(lower, 0)}};
   const Expression effort = square(action(0)) + square(action(1)) + square(action(2));
   const Expression near = sqrt(square(dx) + square(dy));
-  const Expression on_top = touching(flown) & (abs(dx) < 0.6 * kSide) & (abs(dy) < 0.1 * kSide);
-  const Expression still = square(velocity(flown, 0)) + square(velocity(flown, 1)) < 0.01;
+  const Expression on_top = touching(carried) & (abs(dx) < 0.6 * kSide) & (abs(dy) < 0.1 * kSide);
+  const Expression still = square(velocity(carried, 0)) + square(velocity(carried, 1)) < 0.01;
   const Expression stands = held(on_top & still & (effort < 0.03)) >= 15;
   const Expression fallen = position(upper, 1) < 1.2 * kSide;
   task.rewards = {{"near", 2 * (previous(near) - near)},
@@ -67,7 +67,7 @@ Task stacking() {
                   {"effort", -0.01 * effort},
                   {"stands", select(stands, 10, 0)},
                   {"fallen", select(fallen, -5, 0)}};
-  task.terminated = stands | fallen | (abs(position(flown, 0)) > 6) | (position(flown, 1) > 8);
+  task.terminated = stands | fallen | (abs(position(carried, 0)) > 6) | (position(carried, 1) > 8);
   task.max_steps = 300;
   task.solved_at = 10;
   return task;

@@ -19,7 +19,7 @@ namespace {
 template <class Real>
 double observers_in(const Batch::Kind& kind, const BatchOptions& options,
                     const kernels::Kernels<Real>& kernels, int threads) {
-  // Room for contacts that somebody asks for may be more than there is.
+  // The room for contacts that is asked for may exceed memory.
   Observers few = options.observe;
   few.contacts_per_world = std::min(few.contacts_per_world, 1);
   typename ObserverResultsOf<Real>::AllWorlds one;

@@ -114,8 +114,8 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
     }
   }
   if (view.of_contacts) {
-    block.nobody = AlignedBuffer<std::uint32_t>(bodies);
-    view.nobody = block.nobody.data();
+    block.none_asleep = AlignedBuffer<std::uint32_t>(bodies);
+    view.none_asleep = block.none_asleep.data();
   }
   const PlanData& plan = worlds_[k]->data();
   for (int i = 0; i < kObserverCount; ++i) {
@@ -125,9 +125,9 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
     view.rows[i] = reals(items * rows_of(i) * lanes);
   }
   if (has(Observer::residual)) {
-    block.aside =
-        AlignedBuffer<unsigned char>(t.has_substeps ? observer.aside_bytes(t, scratch) : 0);
-    view.aside = block.aside.data();
+    block.saved =
+        AlignedBuffer<unsigned char>(t.has_substeps ? observer.saved_bytes(t, scratch) : 0);
+    view.saved = block.saved.data();
   }
   if (has(Observer::contacts)) {
     block.contacts = AlignedBuffer<kernels::ContactImpulse<Real>>(lanes * at(kind.room) + 1);
@@ -174,7 +174,7 @@ std::size_t ObserverResultsOf<Real>::thread_bytes() const {
   std::size_t bytes = 0;
   for (const auto& blocks : blocks_) {
     for (const Block& b : blocks) {
-      bytes += bytes_of(b.nobody, b.contacts, b.pose_memory, b.aside);
+      bytes += bytes_of(b.none_asleep, b.contacts, b.pose_memory, b.saved);
       for (const auto& reals : b.reals) bytes += bytes_of(reals);
     }
   }

@@ -90,12 +90,12 @@ class ObserverResultsOf final : public ObserverResults {
   };
   struct Block {  // of a thread and kind, in lanes
     std::vector<AlignedBuffer<Real>> reals;
-    AlignedBuffer<std::uint32_t> nobody;
+    AlignedBuffer<std::uint32_t> none_asleep;
     AlignedBuffer<kernels::ContactImpulse<Real>> contacts;
     kernels::ObserverView<Real> view{};
     std::unique_ptr<kernels::SceneConstants<Real>>
         tables;  // of a plan without contacts, with poses
-    AlignedBuffer<unsigned char> pose_memory, aside;
+    AlignedBuffer<unsigned char> pose_memory, saved;
     kernels::Scratch* poses = nullptr;
     Real* ray_rows = nullptr;  // of view
     Real* frames = nullptr;    // of view

@@ -1,5 +1,5 @@
 // FloatMode: how this thread computes while one lives. What the library computes thus depends on no
-// setting of its caller's, who gets his own back: rounding, flushing of denormals, traps, and the
+// setting of the caller, which is restored: rounding, flushing of denormals, traps, and the
 // exception flags that were raised before.
 //
 // Every public call that computes is in one, mostly by Pimpl (src/base/pimpl.hpp); steps of groups

@@ -1,4 +1,4 @@
-// What memory the machine has, for those who say no before they ask it for more.
+// How much memory the machine has, to refuse before allocating more.
 #pragma once
 
 #include <string>

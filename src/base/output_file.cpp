@@ -113,14 +113,14 @@ class NoSizeSignal {
   sigset_t size_{}, before_{};
 };
 
-// True where somebody holds the lock that a part file is written under.
+// True where a process holds the lock that a part file is written under.
 bool is_being_written(const Descriptor& folder, const std::string& name) {
   const Descriptor part(
       openat(folder.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   return part.get() >= 0 && flock(part.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
-// Part files in `folder` whose names are `wanted`, and which nobody is writing.
+// Part files in `folder` whose names are `wanted`, and that have no writer.
 template <class Wanted>
 std::vector<fs::path> leftovers(const fs::path& folder, Wanted wanted) {
   std::vector<fs::path> found;
@@ -201,8 +201,8 @@ OutputFile::OutputFile(const fs::path& file) : file_(file) {
   }
   flock(part_file_.get(), LOCK_EX | LOCK_NB);  // tells it from one that is left over
   if (exists) {
-    // Where the owner cannot be kept it is who writes; the mode comes second, since a new owner
-    // takes bits of it away.
+    // Where the owner cannot be kept it becomes the writer; the mode comes second, since a new
+    // owner takes bits of it away.
     if (old.st_uid != geteuid() || old.st_gid != getegid()) {
       [[maybe_unused]] const int kept = fchown(part_file_.get(), old.st_uid, old.st_gid);
     }

@@ -83,7 +83,7 @@ class OutputFile {
 void write_file(const std::filesystem::path& file, std::string_view text);
 void write_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
-// Part files of `file` that nobody is writing any more, since their program was cut off; in order
+// Part files of `file` without a writer, because their program was cut off; in order
 // of their names, and in the folder as the path has it.
 std::vector<std::filesystem::path> leftover_parts(const std::filesystem::path& file);
 // Of all files in a folder.

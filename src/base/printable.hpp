@@ -1,4 +1,4 @@
-// Text that came from a file or a program of somebody else's, for a line that people read.
+// Text that came from an external file or program, for a line of output.
 #pragma once
 
 #include <cstddef>

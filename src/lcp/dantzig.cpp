@@ -83,9 +83,9 @@ class Dantzig {
       if (at(k) == Place::free) change[k] = 0;
     }
     double far = kInfinity;
-    Eigen::Index who = -1;
+    Eigen::Index blocking = -1;
     const auto meet = [&](double distance, Eigen::Index k) {
-      if (distance < far) far = std::max(distance, 0.0), who = k;
+      if (distance < far) far = std::max(distance, 0.0), blocking = k;
     };
     if (sign * change[i] > kTiny) meet(-w_[i] / change[i], i);
     for (Eigen::Index k = 0; k <= i; ++k) {
@@ -98,12 +98,12 @@ class Dantzig {
         meet(-w_[k] / change[k], k);
       }
     }
-    if (who < 0) {  // nothing stops it: there is no solution
+    if (blocking < 0) {  // nothing stops it: there is no solution
       stuck_ = true;
       return false;
     }
     z_ += far * d, w_ += far * change;
-    return settle(who, i);
+    return settle(blocking, i);
   }
 
   // Component k is what ended the move of i; true when i has to go on.

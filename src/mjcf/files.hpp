@@ -31,7 +31,8 @@ class FileReader {
 
   // The file that the user names may lie anywhere; its folder becomes a root.
   File read_model(const std::filesystem::path& file);
-  // The first of the candidates that exists. `written` is the name in the model, `place` who asks.
+  // The first of the candidates that exists. `written` is the name in the model, `place` where it
+  // is asked for.
   File read_part(const std::vector<std::filesystem::path>& candidates, const std::string& written,
                  const std::string& place);
 

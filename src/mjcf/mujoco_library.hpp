@@ -1,4 +1,4 @@
-// Owning handles for MuJoCo's C objects, and its error handler turned into an exception.
+// Owning handles for MuJoCo's C objects, and its error handler as an exception.
 #pragma once
 
 #include <memory>

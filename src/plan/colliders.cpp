@@ -1,4 +1,4 @@
-// Shapes as the narrow phase wants them: relative to centre of mass and principal axes when they
+// Shapes as the narrow phase takes them: relative to centre of mass and principal axes when they
 // move, as finished pose rows when they are fixed.
 #include <algorithm>
 #include <cmath>
@@ -272,7 +272,7 @@ void lay_out_shapes(PlanData& plan) {
   plan.cast = plan.cast && plan.scene.options.contact.cast_against_fixed;
 }
 
-double least_margin(const PlanData& plan) {
+double min_margin(const PlanData& plan) {
   const double slop = plan.scene.options.contact.slop * plan.scene.options.length_unit;
   if (!plan.has_trees()) return 2 * slop;
   double most = 0;

@@ -1,4 +1,4 @@
-// Compliance as the kernels want it (MuJoCo, "Computation", constraint model).
+// Compliance as the kernels take it (MuJoCo, "Computation", constraint model).
 #pragma once
 
 #include "kernels/data/tree_tables.hpp"

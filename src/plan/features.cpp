@@ -64,7 +64,7 @@ void choose_features(PlanData& plan) {
     isotropic = isotropic && is_isotropic(b) && (round || !b.reshaped);
   }
   const bool joints = !scene.joints.empty();
-  // A body without shapes has an orientation that somebody may want to look at.
+  // A body without shapes has an orientation that users may read.
   round = round && plan.colliders.size() >= plan.bodies.size();
   const bool thrust = !plan.thrusts.empty(), trees = plan.has_trees();
   choose.set(Feature::orientation, !(round && isotropic) || joints || thrust || trees,

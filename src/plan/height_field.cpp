@@ -1,4 +1,4 @@
-// A height field as the narrow phase wants it: tiles, of which the first has the heights behind it.
+// A height field as the narrow phase takes it: tiles, of which the first has the heights behind it.
 #include <algorithm>
 
 #include "src/plan/plan_data.hpp"

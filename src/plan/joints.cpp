@@ -92,7 +92,7 @@ class Builder {
 
   // A joint that is nothing but this spring may be a force to the plan's integrator.
   void force(PlanPart& p, const Spring& s) const {
-    if (!flies_freely(plan_.scene.options) || s.frequency > 0) return;
+    if (!has_flight(plan_.scene.options) || s.frequency > 0) return;
     if (std::isfinite(joint_.break_force) || std::isfinite(joint_.break_torque)) return;
     p.what.force = true;
     p.constants.stiffness = s.stiffness, p.constants.damping = s.damping;

@@ -1,4 +1,4 @@
-// PlanData: everything a Plan knows, in double and in plain arrays. src/state/tables.cpp makes it
+// PlanData: the contents of a Plan, in double and in plain arrays. src/state/tables.cpp makes it
 // into the kernels' number type.
 #pragma once
 
@@ -139,13 +139,13 @@ struct PlanData {
 std::string body_text(const Scene& scene, BodyId body);
 
 // From how far on shapes are looked at, m; those of a pair add up (colliders.cpp).
-double least_margin(const PlanData& plan);
+double min_margin(const PlanData& plan);
 
 // Scene bodies, the lower one first, that joints keep from colliding (joints.cpp).
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene);
 
-// Whether bodies in free flight go by another integrator than the substeps of the solver.
-inline bool flies_freely(const Options& o) {
+// Whether bodies without rows have another integrator than the substeps of the solver.
+inline bool has_flight(const Options& o) {
   return o.integrator != Integrator::symplectic_euler ||
          o.rotation.value_or(Rotation::splitting) != Rotation::splitting;
 }
@@ -166,7 +166,7 @@ std::vector<PlanFixed> height_field_tiles(const Body& body, const Shape& shape,
                                           const TileCount& tiles,
                                           const Options& options);  // height_field.cpp
 
-// A hull as the kernels want it: about the middle of its bounding box, in units of half its
+// A hull as the kernels take it: about the middle of its bounding box, in units of half its
 // extents.
 struct HullCorners {
   Vec3 middle, half;                    // m, of the bounding box, shape frame

@@ -109,8 +109,8 @@ class Counter {
     PlanClass& c = classes_[k.place()];
     c.kind = k.kind;
     c.list = k.list;
-    const Alike& who = b;
-    if (!(fixed ? who.dynamic && may_touch(a, b) : may_touch(a, b))) {
+    const Alike& other = b;
+    if (!(fixed ? other.dynamic && may_touch(a, b) : may_touch(a, b))) {
       c.culled += static_cast<int>(pairs);
       return;
     }

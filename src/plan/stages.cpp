@@ -35,7 +35,7 @@ void choose_stages(PlanData& plan) {
   };
   set(StepStage::tree, false, "bodies move by their own coordinates");
   const Options& options = plan.scene.options;
-  const bool contacts = plan.has(Feature::contacts), flight = flies_freely(options);
+  const bool contacts = plan.has(Feature::contacts), flight = has_flight(options);
   const bool forces_only = std::all_of(plan.parts.begin(), plan.parts.end(),
                                        [](const PlanPart& p) { return p.what.force; });
   const bool substeps =

@@ -1,4 +1,4 @@
-// A terrain as the narrow phase wants it: one fixed link per segment, each with what it has to know
+// A terrain as the narrow phase takes it: one fixed link per segment, each with what it has to know
 // of its neighbours (kernels/collide/link_pairs.hpp).
 #include <algorithm>
 
@@ -11,19 +11,19 @@ namespace {
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 Vec2 left_of(const Vec2& a) { return {-a.y(), a.x()}; }
 
-// What a link sees of the neighbour at one of its ends: the last normal that a contact there may
+// What a link stores of the neighbour at one of its ends: the last normal that a contact there may
 // have, and how far the link reaches beyond the end.
 struct LinkEnd {
   Vec2 normal;
   double reach;
 };
-// `turn`: cross product of the unit directions before and after the end, negative where the terrain
+// `bend`: cross product of the unit directions before and after the end, negative where the terrain
 // sticks out; where it hardly does it counts as flat, so that no place is between two links.
 // `out`: unit, along the link out of this end. `away`: the neighbour, from the end on.
-LinkEnd link_end(const Vec2& normal, const Vec2& next_normal, double turn, const Vec2& out,
+LinkEnd link_end(const Vec2& normal, const Vec2& next_normal, double bend, const Vec2& out,
                  const Vec2& away) {
   constexpr double kFlat = 1e-4;
-  if (turn < -kFlat) return {next_normal, 0};
+  if (bend < -kFlat) return {next_normal, 0};
   return {normal, std::max(0.0, out.dot(away))};
 }
 
@@ -31,10 +31,11 @@ LinkEnd link_end(const Vec2& normal, const Vec2& next_normal, double turn, const
 
 std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape) {
   const auto& terrain = std::get<Terrain>(shape.geometry);
-  const Quat body_rotation = body.rotation.normalized(), turn = shape.rotation.normalized();
+  const Quat body_rotation = body.rotation.normalized(),
+             shape_rotation = shape.rotation.normalized();
   std::vector<Vec2> at;
   for (const Vec2& p : terrain.points) {
-    const Vec3 in_body = shape.position + turn * Vec3(p.x(), p.y(), 0);
+    const Vec3 in_body = shape.position + shape_rotation * Vec3(p.x(), p.y(), 0);
     at.push_back((body.position + body_rotation * in_body).head<2>());
   }
   const std::size_t n = at.size(), links = terrain.loop ? n : n - 1;

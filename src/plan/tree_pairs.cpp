@@ -16,7 +16,7 @@ static_assert(detail::kMaxNewtonDofs <= kernels::kMaxTreeDofs);
 
 using kernels::ContactCone;
 
-constexpr double kLeastWeight = 1e-15;
+constexpr double kMinWeight = 1e-15;
 
 // Of a manifold.
 int max_points(const PlanClass& c) {
@@ -26,9 +26,9 @@ int max_points(const PlanClass& c) {
 }
 
 double share_of_first(const SoftContact& a, const SoftContact& b) {
-  if (a.weight < kLeastWeight && b.weight < kLeastWeight) return 0.5;
-  if (a.weight < kLeastWeight) return 0;
-  if (b.weight < kLeastWeight) return 1;
+  if (a.weight < kMinWeight && b.weight < kMinWeight) return 0.5;
+  if (a.weight < kMinWeight) return 0;
+  if (b.weight < kMinWeight) return 1;
   return a.weight / (a.weight + b.weight);
 }
 

@@ -13,7 +13,7 @@ void put(const Quat& from, double* to) {
   const Quat q = from.normalized();
   to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
 }
-constexpr double kLeastMoment = 1e-15;  // kg m^2
+constexpr double kMinMoment = 1e-15;  // kg m^2
 int count_of(const auto& list) { return static_cast<int>(list.size()); }
 
 }  // namespace
@@ -85,7 +85,7 @@ void TreeBuilder::add_drag(const Medium& medium) {
     Vec3 box;  // of the same mass and moments, m
     for (int i = 0; i < 3; ++i) {
       const double square = moments.sum() - 2 * moments[i];
-      box[i] = std::sqrt(std::max(square, kLeastMoment) / link.mass * 6);
+      box[i] = std::sqrt(std::max(square, kMinMoment) / link.mass * 6);
     }
     const double size = box.mean(), viscous = std::numbers::pi * size * medium.viscosity;
     out.viscous = 3 * viscous, out.spin_viscous = viscous * size * size;

@@ -1,4 +1,4 @@
-// Trees of a plan: bodies in joint coordinates, as the kernels want them
+// Trees of a plan: bodies in joint coordinates, as the kernels take them
 // (kernels/data/tree_tables.hpp).
 #pragma once
 

@@ -1,4 +1,4 @@
-// The first 512 bytes of a recording, which HDF5 leaves to its users: who wrote it, how long it is,
+// The first 512 bytes of a recording, which HDF5 leaves to its users: the writer, the length,
 // and a checksum of all of it. So nothing is given to HDF5 that was cut or damaged on the way:
 //   magic (8) | format version (4) | 0 (4) | size of the file (8) | checksum (8) | 0 ...
 // little endian; the checksum is Hasher's over the words of the file, with 0 in its own place.

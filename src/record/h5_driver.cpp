@@ -95,7 +95,7 @@ constexpr H5FD_class_t make_driver() {
 
 constexpr H5FD_class_t kDriver = make_driver();
 
-// HDF5 forgets drivers where somebody has closed the whole library.
+// HDF5 forgets drivers where a program has closed the whole library.
 hid_t driver() {
   static hid_t id = -1;
   if (id < 0 || H5Iget_type(id) != H5I_VFL) id = H5FDregister(&kDriver);

@@ -1,4 +1,4 @@
-// Names in the file, for who writes and who reads it.
+// Names in the file, for writer and reader.
 #pragma once
 
 #include <array>

@@ -78,19 +78,19 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
 void Recording::Impl::check_order() const {
   std::size_t next = 0;
   std::int64_t at = 0, busy_until = 0;
-  const auto move_to = [&](std::int64_t step, const std::string& who) {
+  const auto move_to = [&](std::int64_t step, const std::string& item) {
     if (step < at || (step > at && step < busy_until)) {
-      record::fail(who + " is at step " + std::to_string(step) + ", must be at " +
+      record::fail(item + " is at step " + std::to_string(step) + ", must be at " +
                    std::to_string(std::max(at, busy_until)) + " or later");
     }
     at = step;
   };
   for (std::size_t s = 0; s < steps.size(); ++s) {
-    const std::string who = "sample " + std::to_string(s);
+    const std::string item = "sample " + std::to_string(s);
     const std::int64_t before = inputs_before[s];
     if (before < static_cast<std::int64_t>(next) ||
         before > static_cast<std::int64_t>(inputs.size())) {
-      record::fail(who + " comes after " + std::to_string(before) + " inputs of " +
+      record::fail(item + " comes after " + std::to_string(before) + " inputs of " +
                    std::to_string(inputs.size()));
     }
     for (; next < static_cast<std::size_t>(before); ++next) {
@@ -105,7 +105,7 @@ void Recording::Impl::check_order() const {
       }
       busy_until = end;
     }
-    move_to(steps[s], who);
+    move_to(steps[s], item);
   }
 }
 

@@ -104,7 +104,7 @@ void RecordingFile::write(std::uint64_t at, std::span<const std::byte> bytes, bo
   } catch (...) {
     if (!failure_) failure_ = std::current_exception();
   }
-  // HDF5 may ask for it again. A file that nobody will read can have it at once; of another the
+  // HDF5 may ask for it again. A file that will not be read can have it at once; of another the
   // last checkpoint must stay.
   if (data || has_checkpoint()) return;
   try {
@@ -162,7 +162,7 @@ void RecordingFile::checkpoint() {
 }
 
 void RecordingFile::finish() {
-  // Without an older head nobody reads the file before it is finished.
+  // Without an older head the file is not read before it is finished.
   if (checkpoints_ > 0 && !held_.pieces().empty()) checkpoint();
   guarded([&] {
     put_in_place();

@@ -1,7 +1,7 @@
 // What lies under an HDF5 file of ours instead of the file system: the bytes that HDF5 reads and
 // writes through its driver (h5_driver.cpp). HDF5 does not survive a write that fails: a file that
 // it could not close is closed once more at the program's exit, and that crashes. So nothing here
-// fails towards HDF5; the first error is kept for who asks.
+// fails towards HDF5; the first error is kept for the caller.
 #pragma once
 
 #include <cstddef>
@@ -69,7 +69,7 @@ class RecordingFile final : public Storage {
   std::exception_ptr failure_;
 };
 
-// What can only be read. What cannot be read is 0 for HDF5, and an error for who asks.
+// What can only be read. What cannot be read is 0 for HDF5, and an error for the caller.
 class ReadStorage : public Storage {
  public:
   void write(std::uint64_t, std::span<const std::byte>, bool) noexcept override {}

@@ -53,9 +53,9 @@ void check_spatial_inertia(Checker& checker, const Mat3& inertia) {
   const Vec3 moments = principal_moments(inertia);
   if (!(moments[0] > kZeroMoment * moments[2])) {
     checker.add(field, "has " + moments_text(moments) + ", must be positive definite");
-  } else if (moments[0] < kSmallestMass || moments[2] > kLargestMass) {
+  } else if (moments[0] < kMinMass || moments[2] > kLargestMass) {
     checker.add(field, "has " + moments_text(moments) + ", must be between " +
-                           number_text(kSmallestMass) + " and " + number_text(kLargestMass));
+                           number_text(kMinMass) + " and " + number_text(kLargestMass));
   } else if (moments[0] + moments[1] < (1 - kInputTolerance) * moments[2]) {
     // Ixx + Iyy - Izz is twice the integral of z^2 dm, so no mass distribution can do this.
     checker.add(field, "has " + moments_text(moments) +
@@ -66,17 +66,17 @@ void check_spatial_inertia(Checker& checker, const Mat3& inertia) {
 void check_axes(Checker& checker, const MassProperties& given) {
   if (!checker.rotation("mass_properties.axes", *given.axes)) return;
   const Mat3 axes = given.axes->normalized().toRotationMatrix();
-  const Mat3 turned = axes.transpose() * given.inertia * axes;
-  const Mat3 off = turned - Mat3(turned.diagonal().asDiagonal());
-  if (off.cwiseAbs().maxCoeff() <= kInputTolerance * turned.diagonal().maxCoeff()) return;
+  const Mat3 in_axes = axes.transpose() * given.inertia * axes;
+  const Mat3 off = in_axes - Mat3(in_axes.diagonal().asDiagonal());
+  if (off.cwiseAbs().maxCoeff() <= kInputTolerance * in_axes.diagonal().maxCoeff()) return;
   checker.add("mass_properties.axes", "are not principal axes of inertia");
 }
 
 void check_mass_properties(Checker& checker, const MassProperties& given) {
-  checker.positive("mass_properties.mass", given.mass, "kg", kSmallestMass, kLargestMass);
+  checker.positive("mass_properties.mass", given.mass, "kg", kMinMass, kLargestMass);
   checker.finite("mass_properties.center", given.center, "m");
   if (checker.planar()) {
-    checker.positive(entry_name(2, 2), given.inertia(2, 2), "kg m^2", kSmallestMass, kLargestMass);
+    checker.positive(entry_name(2, 2), given.inertia(2, 2), "kg m^2", kMinMass, kLargestMass);
   } else {
     check_spatial_inertia(checker, given.inertia);
     if (given.axes) check_axes(checker, given);
@@ -86,11 +86,9 @@ void check_mass_properties(Checker& checker, const MassProperties& given) {
 // Sizes and densities may be fine one by one and still make a body that float32 cannot hold.
 void check_derived_mass(Checker& checker, const Scene& scene, const Body& body) {
   const MassProperties derived = mass_properties(scene, body);
-  const auto in_range = [](double value) {
-    return value >= kSmallestMass && value <= kLargestMass;
-  };
+  const auto in_range = [](double value) { return value >= kMinMass && value <= kLargestMass; };
   const std::string expected =
-      ", must be between " + number_text(kSmallestMass) + " and " + number_text(kLargestMass);
+      ", must be between " + number_text(kMinMass) + " and " + number_text(kLargestMass);
   if (!in_range(derived.mass)) {
     checker.add("shapes", "make a mass of " + number_text(derived.mass) + " kg" + expected);
     return;

@@ -117,8 +117,8 @@ class JointChecker {
   void check(const Limit& l, const std::string& name, bool angle) {
     bool good = true;
     const auto in_range = [&](const std::string& field, double value) {
-      const bool turns = angle && scene_.options.solver.method != Solver::newton;
-      if (std::isnan(value) || (turns && std::abs(value) > kPi && std::isfinite(value))) {
+      const bool within_pi = angle && scene_.options.solver.method != Solver::newton;
+      if (std::isnan(value) || (within_pi && std::abs(value) > kPi && std::isfinite(value))) {
         check_.add(field, "is " + number_text(value) + (angle ? " rad" : " m") +
                               (angle ? ", must be between -pi and pi" : ", must be a number"));
         good = false;
@@ -178,7 +178,7 @@ class JointChecker {
   void check(const PulleyJoint& j) {
     check_.finite("ground_a", j.ground_a, "m");
     check_.finite("ground_b", j.ground_b, "m");
-    check_.positive("ratio", j.ratio, "", kSmallestSize, kLargestSize);
+    check_.positive("ratio", j.ratio, "", kMinSize, kLargestSize);
     if (j.length) check_.not_negative("length", *j.length, "m");
     const Body* a = body(joint_.body_a);
     if (joint_.body_a == BodyId() || (a && a->motion == Motion::fixed)) {

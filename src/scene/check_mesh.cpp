@@ -137,11 +137,11 @@ void check_edges(Checker& checker, const TriangleMesh& mesh) {
   const std::string expected = ", must be used twice, in opposite directions";
   const std::string once = "used once" + expected + " (open)";
   const std::string same =
-      "used twice in one direction" + expected + " (one of its triangles is turned over)";
+      "used twice in one direction" + expected + " (one of its triangles is wound the other way)";
   const std::string manifold = expected + " (not a manifold)";
 
   Kind open(checker);
-  Kind turned(checker);
+  Kind flipped(checker);
   Kind crowded(checker);
   const std::vector<Edge> edges = sorted_edges(mesh);
   for (auto first = edges.begin(); first != edges.end();) {
@@ -159,12 +159,12 @@ void check_edges(Checker& checker, const TriangleMesh& mesh) {
         checker.add(place, "is used " + std::to_string(uses) + " times" + manifold);
       }
     } else if (upward != 1) {
-      if (turned.list()) checker.add(place, "is " + same);
+      if (flipped.list()) checker.add(place, "is " + same);
     }
     first = last;
   }
   open.finish("edges", "are " + once);
-  turned.finish("edges", "are " + same);
+  flipped.finish("edges", "are " + same);
   crowded.finish("edges", "are used more than twice" + manifold);
 }
 

@@ -73,8 +73,7 @@ void check_solver(Checker& checker, const SolverOptions& o) {
   checker.between("options.solver.line_search_iterations", o.line_search_iterations, 1,
                   kMaxIterations);
   checker.not_negative("options.solver.line_search_tolerance", o.line_search_tolerance, "");
-  checker.positive("options.solver.impedance_ratio", o.impedance_ratio, "", kSmallestSize,
-                   kLargestSize);
+  checker.positive("options.solver.impedance_ratio", o.impedance_ratio, "", kMinSize, kLargestSize);
 }
 
 void check_contact(Checker& checker, const ContactOptions& o) {
@@ -84,7 +83,7 @@ void check_contact(Checker& checker, const ContactOptions& o) {
   }
   checker.not_negative("options.contact.damping_ratio", o.damping_ratio, "");
   checker.not_negative("options.contact.push_out_speed", o.push_out_speed, "m/s");
-  checker.positive("options.contact.slop", o.slop, "m", kSmallestSize, kLargestSize);
+  checker.positive("options.contact.slop", o.slop, "m", kMinSize, kLargestSize);
   checker.not_negative("options.contact.restitution_threshold", o.restitution_threshold, "m/s");
   checker.between("options.contact.restitution_sweeps", o.restitution_sweeps, 1,
                   kMaxRestitutionSweeps);
@@ -101,13 +100,13 @@ void check_joint(Checker& checker, const JointOptions& o) {
 
 void check_sleep(Checker& checker, const SleepOptions& o) {
   checker.not_negative("options.sleep.speed", o.speed, "m/s");
-  checker.positive("options.sleep.time", o.time, "s", kSmallestTime, kLargestFinite);
+  checker.positive("options.sleep.time", o.time, "s", kMinTime, kLargestFinite);
 }
 
 }  // namespace
 
 void check_options(Checker checker, const Options& options) {
-  checker.positive("options.dt", options.dt, "s", kSmallestTime, kLargestFinite);
+  checker.positive("options.dt", options.dt, "s", kMinTime, kLargestFinite);
   checker.between("options.substeps", options.substeps, 1, kMaxSubsteps);
   checker.finite("options.gravity", options.gravity, "m/s^2");
   checker.finite("options.wind", options.wind, "m/s");

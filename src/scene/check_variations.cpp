@@ -17,7 +17,7 @@ bool check_number(Checker& checker, const std::string& field, Parameter paramete
   switch (parameter) {
     case Parameter::size: return checker.size(field, value);
     case Parameter::density: return checker.density(field, value);
-    case Parameter::mass: return checker.positive(field, value, unit, kSmallestMass, kLargestMass);
+    case Parameter::mass: return checker.positive(field, value, unit, kMinMass, kLargestMass);
     case Parameter::restitution: return checker.between(field, value, 0, 1);
     case Parameter::gravity:
     case Parameter::gravity_scale: return checker.finite(field, value, unit);

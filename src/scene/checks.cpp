@@ -141,7 +141,7 @@ bool Checker::rotation(std::string_view field, const Quat& value) {
     return false;
   }
   if (planar() && std::hypot(value.x(), value.y()) > kAboutZ * length) {
-    add(field, "turns about another axis than z, must be about z in a planar scene");
+    add(field, "rotates about another axis than z, must be about z in a planar scene");
     return false;
   }
   return true;

@@ -17,12 +17,12 @@ namespace manyworlds::detail {
 // The step works in float32 unless asked otherwise, so a scene has to fit in it.
 inline constexpr double kLargestFinite = std::numeric_limits<float>::max();
 // Masses and moments of inertia, kg and kg m^2: their inverses must not overflow or flush to zero.
-inline constexpr double kSmallestMass = 1e-30;
+inline constexpr double kMinMass = 1e-30;
 inline constexpr double kLargestMass = 1e30;
 // Sizes, m, and times, s: their squares must neither overflow nor flush to zero.
-inline constexpr double kSmallestSize = 1e-9;
+inline constexpr double kMinSize = 1e-9;
 inline constexpr double kLargestSize = 1e8;
-inline constexpr double kSmallestTime = 1e-9;
+inline constexpr double kMinTime = 1e-9;
 // Relative error that given inertia tensors and plane normals may carry.
 inline constexpr double kInputTolerance = 1e-6;
 
@@ -58,10 +58,10 @@ class Checker {
   bool positive(std::string_view field, double value, std::string_view unit, double smallest,
                 double largest);
   bool size(std::string_view field, double value) {
-    return positive(field, value, "m", kSmallestSize, kLargestSize);
+    return positive(field, value, "m", kMinSize, kLargestSize);
   }
   bool density(std::string_view field, double value) {
-    return positive(field, value, planar() ? "kg/m^2" : "kg/m^3", kSmallestMass, kLargestMass);
+    return positive(field, value, planar() ? "kg/m^2" : "kg/m^3", kMinMass, kLargestMass);
   }
   bool between(std::string_view field, double value, double low, double high);
   // One of the values that the enumeration has.

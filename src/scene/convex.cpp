@@ -130,7 +130,7 @@ Separation of_half_space(const Convex& plane, const Convex& b) {
   return s;
 }
 
-Separation turned(const Separation& s) { return {s.distance, s.point_b, s.point_a, -s.normal}; }
+Separation swapped(const Separation& s) { return {s.distance, s.point_b, s.point_a, -s.normal}; }
 
 }  // namespace
 
@@ -188,7 +188,7 @@ std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space spa
 
 Separation separation(const Convex& a, const Convex& b) {
   if (a.half_space) return of_half_space(a, b);
-  if (b.half_space) return turned(of_half_space(b, a));
+  if (b.half_space) return swapped(of_half_space(b, a));
   if (!a.radii.isZero(0) || !b.radii.isZero(0)) return search_separation(a, b);
   const Widest widest = widest_gap(a, b);
   // Hulls that overlap: as they are when shifted until they touch.

@@ -72,7 +72,7 @@ kernels::ShapeConstants<Real> shape_constants(const PlanData& plan, const PlanCo
   out.radius = static_cast<Real>(has_thickness ? c.thickness : c.radius);
   // A speculative row holds along one normal, which is good as long as the gap is not large
   // against the shape. Round shapes keep their normals better. The newton solver has no such rows.
-  const double least = least_margin(plan), cap = info(c.kind).ball ? 2 * c.radius : c.inner_radius;
+  const double least = min_margin(plan), cap = info(c.kind).ball ? 2 * c.radius : c.inner_radius;
   out.margin_cap = static_cast<Real>(plan.has_trees() ? least : std::max(least, cap));
   return out;
 }

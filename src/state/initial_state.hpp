@@ -46,9 +46,9 @@ inline BodyState draw_initial_state(const Scene& scene, int index, const Draws& 
     const BodyState from = described_state(leader);
     BodyState to = from;
     add_jitter(leader.jitter, body.jitter.with.index(), draws, to);
-    const Quat turn = to.rotation * from.rotation.conjugate();
-    s.position = to.position + turn * (s.position - from.position);
-    s.rotation = turn * s.rotation;
+    const Quat rotation = to.rotation * from.rotation.conjugate();
+    s.position = to.position + rotation * (s.position - from.position);
+    s.rotation = rotation * s.rotation;
     s.linear_velocity += to.linear_velocity - from.linear_velocity;
   }
   add_jitter(body.jitter, index, draws, s);

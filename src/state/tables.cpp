@@ -96,8 +96,8 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
                                 o.contact.damping_ratio, h);
   add_solver(o);
   t.push_out_speed = static_cast<Real>(o.contact.push_out_speed * o.length_unit);
-  t.margin = static_cast<Real>(2 * least_margin(plan));
-  t.half_margin = static_cast<Real>(least_margin(plan));
+  t.margin = static_cast<Real>(2 * min_margin(plan));
+  t.half_margin = static_cast<Real>(min_margin(plan));
   t.restitution_threshold = static_cast<Real>(o.contact.restitution_threshold * o.length_unit);
   t.sleep_speed = static_cast<Real>(o.sleep.speed * o.length_unit);
   t.sleep_time = static_cast<Real>(o.sleep.time);
@@ -130,7 +130,7 @@ void TablesOf<Real>::add_flight(const PlanData& plan) {
   const Options& o = plan.scene.options;
   auto& t = tables_;
   auto& flight = t.flight;
-  flight.on = flies_freely(o) && !plan.has_trees();
+  flight.on = has_flight(o) && !plan.has_trees();
   static_assert(static_cast<int>(kernels::Scheme::runge_kutta4) ==
                     static_cast<int>(Integrator::runge_kutta4) &&
                 static_cast<int>(kernels::Rotation::exponential) ==
@@ -208,7 +208,7 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
     }
     if (info(f.kind).margin >= 0) {
       fixed_rows_[static_cast<std::size_t>(f.row_offset + info(f.kind).margin)] =
-          static_cast<Real>(least_margin(plan));
+          static_cast<Real>(min_margin(plan));
     }
     fixed_.push_back(out);
   }
@@ -298,7 +298,7 @@ void TablesOf<Real>::add_trees(const PlanData& plan) {
 }
 
 // So that the pull of a point on itself is 0, and not 0 / 0, in float.
-constexpr double kLeastSoftening2 = 1e-24;  // m^2
+constexpr double kMinSoftening2 = 1e-24;  // m^2
 
 template <class Real>
 void TablesOf<Real>::add_attractors(const PlanData& plan) {
@@ -306,7 +306,7 @@ void TablesOf<Real>::add_attractors(const PlanData& plan) {
     kernels::AttractorTable<Real> out{};
     copy(a.position, out.position);
     out.strength = static_cast<Real>(a.strength);
-    out.softening2 = static_cast<Real>(std::max(a.softening * a.softening, kLeastSoftening2));
+    out.softening2 = static_cast<Real>(std::max(a.softening * a.softening, kMinSoftening2));
     attractors_.push_back(out);
   }
   tables_.attractors = static_cast<std::int32_t>(attractors_.size());

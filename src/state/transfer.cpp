@@ -1,4 +1,4 @@
-// What is done with the numbers of a whole world: exchanged, copied, turned into bytes and back.
+// Operations on the state of a whole world: swap, copy, conversion to bytes and back.
 #include <array>
 #include <cstring>
 #include <utility>
@@ -225,7 +225,7 @@ void Storage<Real>::read_world(int lane_index, const std::byte* from) {
   if (tables_.joints > 0) make_disabled_joints();
   for_each_part(lane_index, lane_index, Read{from});
   for (int b = 0; !tables_.has_sleep && b < tables_.bodies; ++b) {
-    put_bit(asleep_[body_at(lane_index, b)], lane_of(lane_index), false);  // where nobody sleeps
+    put_bit(asleep_[body_at(lane_index, b)], lane_of(lane_index), false);  // where no body sleeps
   }
   find_idle_in(group_of(lane_index));
 }

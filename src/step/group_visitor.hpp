@@ -1,4 +1,4 @@
-// GroupVisitor: what somebody above wants to do with each group of worlds around its steps, on the
+// GroupVisitor: what a caller does with each group of worlds around its steps, on the
 // thread that steps it.
 #pragma once
 
@@ -26,7 +26,7 @@ class GroupVisitor {
   virtual ~GroupVisitor() = default;
 };
 
-// Who visits the groups around their steps. A call that steps in parts begins with the first of
+// Visits the groups around their steps. A call that steps in parts begins with the first of
 // them and ends with the last.
 struct Visit {
   GroupVisitor* visitor = nullptr;

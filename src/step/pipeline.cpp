@@ -56,7 +56,7 @@ void look_at_residual(const Run<Real>& run, const StageCalls<Real>& calls,
                       const kernels::ObserverView<Real>& wanted) {
   const GroupStep<Real>& p = run.step;
   const auto& observer = *p.kernels.observer;
-  observer.set_aside(p.tables, run.group, run.scratch, wanted);
+  observer.save_rows(p.tables, run.group, run.scratch, wanted);
   if (calls.joint_sweep) run(calls.joint_sweep);
   if (calls.contact_sweep) run(calls.contact_sweep);
   observer.compare[static_cast<int>(p.tables.inertia_kind)](p.tables, run.group, run.scratch,
@@ -79,7 +79,7 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
   run(calls.prepare);
   for (int s = 0; s < t.substeps; ++s) {
     run(solve.first(calls.residual_at));
-    if (s + 1 == t.substeps && wanted && wanted->aside) look_at_residual(run, calls, *wanted);
+    if (s + 1 == t.substeps && wanted && wanted->saved) look_at_residual(run, calls, *wanted);
     run(solve.subspan(calls.residual_at));
     if (adds_up) {
       observer.accumulate[static_cast<int>(t.inertia_kind)](t, run.group, run.scratch, *contacts);
@@ -143,7 +143,7 @@ void observe_contacts(const GroupStep<Real>& p, const kernels::GroupView<Real>& 
   if (taken) observer.awake[kind](t, group, scratch, wanted);
   if (!t.has_sleep || *group.idle == 0) return;
   kernels::GroupView<Real> all_awake = group;
-  all_awake.asleep = wanted.nobody;
+  all_awake.asleep = wanted.none_asleep;
   observer.watch(scratch, wanted.places);
   find_rows(Run<Real>{p, all_awake, scratch, nullptr});
   observer.watch(scratch, nullptr);

@@ -31,7 +31,7 @@ struct GroupStep {
   const kernels::SceneConstants<Real>& tables;
   const StageList<Real>& stages;
   kernels::Layout layout;
-  // What batches with observers want to know after the last step, and scratch for poses of shapes.
+  // What observers need after the last step, and scratch for poses of shapes.
   const kernels::ObserverView<Real>* wanted = nullptr;
   kernels::Scratch* poses = nullptr;
 };
@@ -42,7 +42,7 @@ template <class Real>
 int step_group(const GroupStep<Real>& plan, const kernels::GroupView<Real>& group,
                kernels::Scratch* scratch, int steps, StageClock* clock);
 
-// What the state alone tells an observer: motion and rays, not contacts.
+// What the state alone gives an observer: motion and rays, not contacts.
 template <class Real>
 void look_at_group(const GroupStep<Real>& plan, const kernels::GroupView<Real>& group,
                    kernels::Scratch* scratch);

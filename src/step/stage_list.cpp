@@ -95,7 +95,7 @@ class Builder {
       add(to, StepStage::advance, sweeps_.part);
     }
   }
-  // Projected Gauss-Seidel, and SOR, whose rows know their relaxation.
+  // Projected Gauss-Seidel, and SOR, whose rows hold their relaxation.
   void sequential_impulse() {
     for (int i = 0; i < t_.solver.iterations; ++i) {
       add(out_.solve, StepStage::joints, joints_.bias);

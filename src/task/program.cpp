@@ -140,8 +140,8 @@ class Sum {
 
 Expression ProgramBuilder::direction(int body, int of, int axis) const {
   const PlanBody* b = moving(plan_, body);
-  const bool turns = b != nullptr && plan_.has(Feature::orientation);
-  if (!turns) {
+  const bool rotates = b != nullptr && plan_.has(Feature::orientation);
+  if (!rotates) {
     const Mat3 r = b ? Mat3(Mat3::Identity())
                      : described(plan_, body).rotation.normalized().toRotationMatrix();
     return r(axis, of);

@@ -270,7 +270,7 @@ TEST_CASE("what was moved from says so", "[fast][misuse]") {
 
 TEST_CASE("more worlds than the machine has memory for are refused before it is asked for",
           "[fast][misuse]") {
-  constexpr int kMost = std::numeric_limits<int>::max();
+  constexpr int kMax = std::numeric_limits<int>::max();
   const Plan plan = compile(capsule_crowd(Space::spatial));
   const std::string expected =
       " need " + std::string("\\d+\\.\\d GB of memory, the machine has ") + "\\d+\\.\\d GB";
@@ -279,25 +279,25 @@ TEST_CASE("more worlds than the machine has memory for are refused before it is 
     CHECK_THROWS_WITH(Batch(plan, options), Catch::Matches("worlds: " + what + expected));
   };
   REQUIRE(machine_memory() < 1e12);
-  refused("2147483647 worlds of 'crowd-capsules'", {.worlds = kMost, .threads = 1});
-  refused("2147483647 worlds of 'crowd-capsules'", {.worlds = kMost, .threads = 2, .sleep = true});
+  refused("2147483647 worlds of 'crowd-capsules'", {.worlds = kMax, .threads = 1});
+  refused("2147483647 worlds of 'crowd-capsules'", {.worlds = kMax, .threads = 2, .sleep = true});
   BatchOptions observed{.worlds = 20000, .threads = 1};
   observed.observe.what = {Observer::contacts};
-  observed.observe.contacts_per_world = kMost;
+  observed.observe.contacts_per_world = kMax;
   refused("20000 worlds of 'crowd-capsules'", observed);
   Task task = tasks::find("Pendulum")->make();
-  CHECK_THROWS_WITH(Environment(task, {.worlds = kMost}),
+  CHECK_THROWS_WITH(Environment(task, {.worlds = kMax}),
                     Catch::Contains("worlds: 2147483647 worlds of 'Pendulum' need ") ||
                         Catch::Contains("worlds: 2147483647 worlds of 'pendulum' need "));
 
   // What is said is what it would have been: of a batch that fits, within a few percent.
   Batch fits(plan, {.worlds = 1024, .threads = 1});
   try {
-    Batch(plan, {.worlds = kMost, .threads = 1});
+    Batch(plan, {.worlds = kMax, .threads = 1});
   } catch (const std::invalid_argument& error) {
     const std::string text = error.what();
     const double said = std::stod(text.substr(text.find(" need ") + 6)) * 1e9;
-    CHECK(said / kMost == Approx(static_cast<double>(fits.bytes_per_world())).epsilon(0.05));
+    CHECK(said / kMax == Approx(static_cast<double>(fits.bytes_per_world())).epsilon(0.05));
   }
 }
 

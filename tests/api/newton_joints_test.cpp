@@ -77,8 +77,8 @@ TEST_CASE("a pendulum in joint coordinates tells what its hinge carries", "[fast
 TEST_CASE("joints in series and fixed ones carry what hangs on them", "[fast][newton][joint]") {
   // A body on two hinges in series, 0.5 m apart, and one fixed to it, all level and held by motors.
   Scene scene = newton_scene();
-  const BodyId arm = scene.add(rod_of(Space::spatial, 2, {0.1, 0.2, 0.3}, {1, 0, 0})),
-               tip = scene.add(rod_of(Space::spatial, 1, {0.1, 0.2, 0.3}, {2, 0, 0}));
+  const BodyId arm = scene.add(lump(Space::spatial, 2, {0.1, 0.2, 0.3}, {1, 0, 0})),
+               tip = scene.add(lump(Space::spatial, 1, {0.1, 0.2, 0.3}, {2, 0, 0}));
   const Quat about_y = z_to_y();
   const JointId first =
       scene.add(joint_at(scene, {}, arm, at(Vec3::Zero(), about_y), HingeJoint{}));
@@ -217,7 +217,7 @@ TEST_CASE("joints in joint coordinates tell where they are, in their order",
 TEST_CASE("cone and twist of a ball change by their speeds", "[fast][newton][joint]") {
   Scene scene = newton_scene(0);
   scene.options.dt = 1e-5;
-  scene.add(rod_of(Space::spatial, 1, Vec3::Constant(0.1), {0, 0, 1}));
+  scene.add(lump(Space::spatial, 1, Vec3::Constant(0.1), {0, 0, 1}));
   const Quat frame(Eigen::AngleAxisd(0.4, Vec3(1, 2, -1).normalized()));
   scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), frame), BallJoint{}));
   const Quat turned(Eigen::AngleAxisd(0.9, Vec3(1, -0.5, 0.3).normalized()));

@@ -142,7 +142,7 @@ TEST_CASE("what a body gains in a step is gravity and the impulses of its contac
       for (const Table& table : all_tables()) {
         INFO(scene.name << ' ' << name(table) << " bounces " << bounces);
         Batch batch(plan, observing(table, kEverything, 5));
-        int pushed = 0;
+        int touched_bodies = 0;
         for (int step = 0; step < 90; ++step) {
           std::vector<double> before = values(batch, Field::linear_velocity, 3);
           batch.step();
@@ -162,7 +162,7 @@ TEST_CASE("what a body gains in a step is gravity and the impulses of its contac
               touched |= c.normal_impulse > 0 && (c.body_a == body || c.body_b == body);
             }
             CHECK(batch.touching(3, body) == touched);
-            pushed += touched ? 1 : 0;
+            touched_bodies += touched ? 1 : 0;
             for (std::size_t c = 0; c < dim; ++c) {
               const std::size_t at = static_cast<std::size_t>(b) * dim + c;
               const double error =
@@ -172,7 +172,7 @@ TEST_CASE("what a body gains in a step is gravity and the impulses of its contac
           }
           CHECK(worst < pick(table, 2e-5, 1e-12));  // m/s
         }
-        CHECK(pushed > 100);
+        CHECK(touched_bodies > 100);
       }
     }
   }

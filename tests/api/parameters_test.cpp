@@ -34,7 +34,7 @@ TEST_CASE(
             pick(table, 1e-6, 1e-14));
     }
 
-    // A push along the ground stops after v^2 / (2 mu g), whatever the mass.
+    // A sliding body stops after v^2 / (2 mu g), whatever the mass.
     Scene slide = empty_scene(Space::spatial);
     slide.add(ground(Space::spatial));
     Body block = body_of(shape_of(Box{{0.5, 0.5, 0.1}}), Vec3(0, 0, 0.1));
@@ -181,7 +181,7 @@ TEST_CASE("a body keeps its place when its sizes shift its centre of mass", "[fa
         CHECK((position(batch, w, 0) - Vec3(1, 2, 0)).norm() < pick(table, 1e-6, 1e-14));
         CHECK(rotation(batch, w, 0).angularDistance(two.rotation) < pick(table, 1e-3, 1e-7));
       }
-      // A push at the centre of mass does not turn it, wherever that has gone.
+      // A force at the centre of mass does not rotate it, wherever that has gone.
       const double own = numbers(batch, Parameter::mass, 1)[0];
       batch.add_impulse(1, batch.body_in_row(0), Vec3(own, 0, 0));
       CHECK((velocity(batch, 1, 0) - Vec3(1, 0, 0)).norm() < pick(table, 1e-6, 1e-14));

@@ -44,7 +44,7 @@ std::vector<double> impulses_above(const Batch& batch, int first) {
   return all;
 }
 
-// Pushes that reach different worlds at different times, by world and not by its place.
+// Impulses that reach different worlds at different times, by world and not by its place.
 void disturb(Batch& batch, int first_world, int step) {
   for (int w = 0; w < batch.worlds(); ++w) {
     const int id = first_world + w;

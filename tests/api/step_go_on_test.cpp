@@ -24,11 +24,11 @@ struct Steps final : BatchListener {
 };
 
 // Worlds that are pushed on from the start of the next call to its end.
-struct Pushed {
+struct Driven {
   Batch batch;
   std::shared_ptr<Steps> heard = std::make_shared<Steps>();
 
-  explicit Pushed(const Scene& scene, bool sleep = false) : batch(compile(scene), options(sleep)) {
+  explicit Driven(const Scene& scene, bool sleep = false) : batch(compile(scene), options(sleep)) {
     for (int w = 0; w < kWorlds; ++w) batch.add_force(w, batch.body_in_row(1), Vec3(0.5 * w, 1, 0));
     batch.listen(heard);
   }
@@ -70,7 +70,7 @@ TEST_CASE("steps that ask whether to go on are the steps of one call", "[fast][b
   const bool sleep = GENERATE(false, true);
   const Scene scene = crowd(space);
   const int n = sleep ? 400 : 60;  // until some worlds rest
-  Pushed asked(scene, sleep), whole(scene, sleep);
+  Driven asked(scene, sleep), whole(scene, sleep);
   int questions = 0;
   CHECK(asked.batch.step(n, [&] { return ++questions > 0; }) == n);
   whole.batch.step(n);
@@ -82,7 +82,7 @@ TEST_CASE("steps that ask whether to go on are the steps of one call", "[fast][b
 
 TEST_CASE("a call that is ended early is one of so many steps", "[fast][batch]") {
   const Scene scene = crowd(Space::spatial);
-  Pushed ended(scene), whole(scene);
+  Driven ended(scene), whole(scene);
   const int taken = ended.batch.step(1'000'000, times(3));
   CHECK(taken >= 3);
   CHECK(taken < 1000);
@@ -102,7 +102,7 @@ TEST_CASE("a call that is ended early is one of so many steps", "[fast][batch]")
 TEST_CASE("steps of some worlds alone ask, too", "[fast][batch]") {
   const Scene scene = crowd(Space::planar);
   const std::vector<std::uint8_t> mask = {1, 0, 1, 1, 0, 0, 0, 1, 0};
-  Pushed ended(scene), whole(scene);
+  Driven ended(scene), whole(scene);
   const int taken = ended.batch.step(mask, 1'000'000, times(2));
   CHECK(taken < 1000);
   CHECK(ended.heard->resets == 4);

@@ -50,7 +50,7 @@ Numbers numbers_of(const Batch& batch) {
 }
 
 // What a world is given before its next step depends on it and on how many it has taken.
-void push(Batch& batch, int world, int taken) {
+void apply_force(Batch& batch, int world, int taken) {
   if ((taken + world) % 7 == 0)
     batch.add_force(world, batch.body_in_row(world % 3), Vec3(800, 0, 0));
   if ((taken + world) % 11 == 0)
@@ -62,12 +62,12 @@ void check_against_steps_of_all(const Kinds& kinds, const BatchOptions& options)
   std::vector<Numbers> path;  // [steps taken]
   for (int step = 0; step <= kSteps; ++step) {
     path.push_back(numbers_of(all));
-    for (int w = 0; w < all.worlds(); ++w) push(all, w, step);
+    for (int w = 0; w < all.worlds(); ++w) apply_force(all, w, step);
     all.step();
   }
 
   Batch some(kinds, options);
-  for (int w = 0; w < some.worlds(); ++w) push(some, w, 0);
+  for (int w = 0; w < some.worlds(); ++w) apply_force(some, w, 0);
   std::vector<int> taken(static_cast<std::size_t>(some.worlds()), 0);
   Mask mask(taken.size());
   Random random(5);
@@ -90,7 +90,7 @@ void check_against_steps_of_all(const Kinds& kinds, const BatchOptions& options)
       ++steps;
       ++taken[w];
       differ += after[w] != path[static_cast<std::size_t>(taken[w])][w];
-      push(some, static_cast<int>(w), taken[w]);
+      apply_force(some, static_cast<int>(w), taken[w]);
     }
   }
   CHECK(differ == 0);
@@ -105,7 +105,7 @@ void check_against_steps_of_all(const Kinds& kinds, const BatchOptions& options)
       mask.assign(mask.size(), 0);
       mask[w] = 1;
       some.step(mask);
-      push(some, static_cast<int>(w), ++taken[w]);
+      apply_force(some, static_cast<int>(w), ++taken[w]);
     }
   }
   some.step();

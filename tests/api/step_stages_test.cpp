@@ -55,7 +55,7 @@ TEST_CASE("sleep and observers add the stages that a plan does not decide about"
   CHECK(timed(plan, options) == expected);
 }
 
-TEST_CASE("a body that only a control pushes goes by substeps", "[fast][plan]") {
+TEST_CASE("a body on which only a control acts goes by substeps", "[fast][plan]") {
   Scene scene = empty_scene(Space::planar);
   const BodyId body = scene.add(body_of(shape_of(Circle{0.5}), Vec3::Zero()));
   Control thrust;

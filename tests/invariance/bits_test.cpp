@@ -92,14 +92,14 @@ TEST_CASE("a force in one world changes no other world's bits", "[fast][bits]") 
         const Plan plan = compile(scene);
         for (const Table& table : all_tables()) {
           INFO(name(table) << " gravity " << gravity << " contacts " << contacts);
-          Batch pushed(plan, options_of(table, 19)), quiet(plan, options_of(table, 19));
+          Batch disturbed(plan, options_of(table, 19)), quiet(plan, options_of(table, 19));
           for (int i = 0; i < 5; ++i) {
-            pushed.add_force(4, pushed.body_in_row(1), Vec3(3, 2, 0));
-            pushed.add_torque(4, pushed.body_in_row(2), Vec3(0, 0, 1));
-            pushed.step(2);
+            disturbed.add_force(4, disturbed.body_in_row(1), Vec3(3, 2, 0));
+            disturbed.add_torque(4, disturbed.body_in_row(2), Vec3(0, 0, 1));
+            disturbed.step(2);
             quiet.step(2);
           }
-          for (int w = 0; w < 19; ++w) CHECK((pushed.hash(w) == quiet.hash(w)) == (w != 4));
+          for (int w = 0; w < 19; ++w) CHECK((disturbed.hash(w) == quiet.hash(w)) == (w != 4));
         }
       }
     }

@@ -302,8 +302,7 @@ TEST_CASE("springs as forces can be looked at, let go and copied", "[fast][integ
   }
 }
 
-TEST_CASE("a push or a number that is none in one world is seen in no other",
-          "[fast][integrator]") {
+TEST_CASE("a force or a NaN in one world is seen in no other", "[fast][integrator]") {
   for (const Table& table : all_tables()) {
     for (Space space : {Space::planar, Space::spatial}) {
       for (Integrator integrator : kAll) {
@@ -314,17 +313,18 @@ TEST_CASE("a push or a number that is none in one world is seen in no other",
           if (body.motion == Motion::dynamic) body.linear_velocity.x() = -0.0;
         }
         const Plan plan = compile(scene);
-        Batch pushed(plan, options_of(table, 19)), quiet(plan, options_of(table, 19));
+        Batch disturbed(plan, options_of(table, 19)), quiet(plan, options_of(table, 19));
         for (int i = 0; i < 3; ++i) {
-          pushed.add_force(4, pushed.body_in_row(1), Vec3(3, 2, 0));
-          if (i == 1) pushed.add_force(7, pushed.body_in_row(2), Vec3::Constant(std::nan("")));
-          pushed.step(2), quiet.step(2);
+          disturbed.add_force(4, disturbed.body_in_row(1), Vec3(3, 2, 0));
+          if (i == 1)
+            disturbed.add_force(7, disturbed.body_in_row(2), Vec3::Constant(std::nan("")));
+          disturbed.step(2), quiet.step(2);
         }
         INFO(name(table) << ' ' << to_string(integrator));
-        CHECK(frozen(pushed.status(7)));
+        CHECK(frozen(disturbed.status(7)));
         for (int w = 0; w < 19; ++w) {
-          CHECK((pushed.hash(w) == quiet.hash(w)) == (w != 4 && w != 7));
-          if (w != 7) CHECK(pushed.status(w) == quiet.status(w));
+          CHECK((disturbed.hash(w) == quiet.hash(w)) == (w != 4 && w != 7));
+          if (w != 7) CHECK(disturbed.status(w) == quiet.status(w));
         }
       }
     }

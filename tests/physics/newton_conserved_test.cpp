@@ -45,7 +45,7 @@ Kept change_of(Scene scene, Integrator integrator, int rate, double seconds, con
 Scene level_rods() {
   Scene scene = newton_scene(9.81);
   for (int i = 0; i < 2; ++i) {
-    scene.add(rod_of(Space::spatial, 1, Vec3(1, 12, 12) / 144, {i + 0.5, 0, 0}));
+    scene.add(lump(Space::spatial, 1, Vec3(1, 12, 12) / 144, {i + 0.5, 0, 0}));
     scene.add(joint_at(scene, BodyId(i - 1), BodyId(i),
                        at({static_cast<double>(i), 0, 0}, z_to_y()), HingeJoint{}));
   }
@@ -57,7 +57,7 @@ Scene flying_chain() {
   Scene scene = newton_scene(0);
   const auto corner = [](int i) { return Vec3(0.8 * i, 0.3 * (i % 2), 0.2 * (i % 3)); };
   for (int i = 0; i < 5; ++i) {
-    scene.add(rod_of(Space::spatial, 1 + 0.2 * i, Vec3(0.02, 0.05, 0.06) * (1 + i),
+    scene.add(lump(Space::spatial, 1 + 0.2 * i, Vec3(0.02, 0.05, 0.06) * (1 + i),
                      (corner(i) + corner(i + 1)) / 2));
     if (i == 0) continue;
     scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), at(corner(i)), BallJoint{}));

@@ -247,8 +247,8 @@ TEST_CASE("four substeps turn a jointed rod as four steps do", "[fast][solver]")
         scene.options.dt = dt, scene.options.substeps = substeps;
         for (int i = 0; i < 2; ++i) {
           Body rod = uniform_rod(space, 1, 1, {0.5 + i, 0, 0});
-          const Vec3 turn = 5 * (hinge_axes(space) * Vec3::UnitZ());
-          rod.angular_velocity = turn, rod.linear_velocity = turn.cross(rod.position);
+          const Vec3 spin = 5 * (hinge_axes(space) * Vec3::UnitZ());
+          rod.angular_velocity = spin, rod.linear_velocity = spin.cross(rod.position);
           scene.add(rod);
           scene.add(joint_at(scene, BodyId(i - 1), BodyId(i),
                              at({1.0 * i, 0, 0}, hinge_axes(space)), HingeJoint{}));

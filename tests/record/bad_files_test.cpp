@@ -223,12 +223,12 @@ TEST_CASE("a replay tells the first world, step and body that differ", "[fast][r
   CHECK(lost.what == "status is ok, recorded out_of_bounds");
   // An input that was not: all samples after it differ.
   const double hard = 1e4;
-  const ReplayResult pushed =
+  const ReplayResult changed_force =
       replay(Recording::from_bytes(forged("inputs/values", 0, &hard, H5T_NATIVE_DOUBLE)));
-  REQUIRE(pushed.difference);
-  CHECK(pushed.difference->world == 1);
-  CHECK(pushed.difference->step == 4);
-  CHECK(pushed.different == 2);  // the world is reset before the last sample
+  REQUIRE(changed_force.difference);
+  CHECK(changed_force.difference->world == 1);
+  CHECK(changed_force.difference->step == 4);
+  CHECK(changed_force.different == 2);  // the world is reset before the last sample
 }
 
 }  // namespace manyworlds::test

@@ -20,7 +20,7 @@ inline void write_file(const fs::path& file, const Bytes& bytes) {
             static_cast<std::streamsize>(bytes.size()));
 }
 
-// A ball that falls on the ground for 12 steps, pushed at times and reset once.
+// A ball that falls on the ground for 12 steps, with impulses at times and reset once.
 inline void record_ball(const fs::path& file) {
   Scene scene = empty_scene(Space::planar);
   scene.add(ground(Space::planar));

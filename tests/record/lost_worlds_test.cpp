@@ -29,15 +29,15 @@ TEST_CASE("a lost world is dumped from the last checkpoint, with its inputs", "[
     Batch batch(compile(crowd(Space::spatial)),
                 batch_options(widest_tables().front(), 12, sleep, 2));
     LostWorldDumps dumps(batch, folder / "lost", {.checkpoint_steps = 20, .first_world = 100});
-    for (int turn = 0; turn < 16; ++turn) {
-      disturb(batch, turn);
+    for (int round = 0; round < 16; ++round) {
+      disturb(batch, round);
       batch.step(3);
       // Worlds that nothing else touches.
-      if (turn == 1) batch.add_impulse(2, batch.body_in_row(1), Vec3(100, 0, 300));
-      if (turn == 2) batch.set_enabled(2, batch.body_in_row(3), false);
-      if (turn == 4) batch.add_force(2, batch.body_in_row(2), Vec3::Constant(std::nan("")));
-      if (turn == 8) batch.copy_world(0, 5);
-      if (turn == 9) batch.add_impulse(5, batch.body_in_row(2), Vec3(1e12, 0, 0));
+      if (round == 1) batch.add_impulse(2, batch.body_in_row(1), Vec3(100, 0, 300));
+      if (round == 2) batch.set_enabled(2, batch.body_in_row(3), false);
+      if (round == 4) batch.add_force(2, batch.body_in_row(2), Vec3::Constant(std::nan("")));
+      if (round == 8) batch.copy_world(0, 5);
+      if (round == 9) batch.add_impulse(5, batch.body_in_row(2), Vec3(1e12, 0, 0));
     }
     REQUIRE(batch.lost_worlds() == 2);
     const auto files = dumps.close();

@@ -26,8 +26,8 @@ void check_equal(const ReplayResult& result) {
 // Records 96 steps of a crowd that is disturbed in every way, by calls of 3 steps.
 void record_disturbed(Batch& batch, const fs::path& file, const RecordOptions& options) {
   Recorder recorder(batch, file, options);
-  for (int turn = 0; turn < 32; ++turn) {
-    disturb(batch, turn);
+  for (int round = 0; round < 32; ++round) {
+    disturb(batch, round);
     batch.step(3);
   }
   recorder.close();
@@ -91,8 +91,8 @@ TEST_CASE("threads record, read and replay at a time", "[fast][record]") {
   const Plan plan = compile(crowd(Space::spatial));
   std::atomic<int> same = 0;
   const auto work = [&](int i) {
-    for (int turn = 0; turn < 4; ++turn) {
-      const fs::path file = folder / (std::to_string(i) + "_" + std::to_string(turn) + ".h5");
+    for (int round = 0; round < 4; ++round) {
+      const fs::path file = folder / (std::to_string(i) + "_" + std::to_string(round) + ".h5");
       BatchOptions options = batch_options(widest_tables().front(), 3);
       options.threads = 1;
       Batch batch(plan, options);
@@ -112,7 +112,7 @@ TEST_CASE("steps of some worlds alone are recorded as what they come to", "[fast
   Batch batch(compile(crowd(Space::spatial)), batch_options(widest_tables().front(), 5));
   Recorder recorder(batch, folder / "run.h5", {.every = 1});
   const std::vector<std::uint8_t> some = {1, 0, 1, 0, 0};
-  for (int turn = 0; turn < 4; ++turn) {
+  for (int round = 0; round < 4; ++round) {
     // World 0 uses its force up alone; world 1 keeps its own for the step of all.
     for (const int world : {0, 1}) batch.add_force(world, batch.body_in_row(2), Vec3(900, 0, 0));
     batch.step(some, 2);

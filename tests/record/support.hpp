@@ -64,29 +64,30 @@ inline BatchOptions batch_options(const Table& table, int worlds, bool sleep = f
 }
 
 // Every call of Batch that changes a world, spread over worlds and steps.
-inline void disturb(Batch& batch, int turn) {
+inline void disturb(Batch& batch, int round) {
   const bool planar = space_of(batch) == Space::planar;
-  const int worlds = batch.worlds(), world = (3 * turn) % worlds, body = turn % batch.bodies(world);
-  const Vec3 push = planar ? Vec3(40, 300, 0) : Vec3(40, -30, 300);
-  const Vec3 turn_by = planar ? Vec3(0, 0, 20) : Vec3(5, 6, 7);
+  const int worlds = batch.worlds(), world = (3 * round) % worlds,
+            body = round % batch.bodies(world);
+  const Vec3 impulse = planar ? Vec3(40, 300, 0) : Vec3(40, -30, 300);
+  const Vec3 angular_impulse = planar ? Vec3(0, 0, 20) : Vec3(5, 6, 7);
   const Vec3 at = position(batch, world, body) + 0.1 * Vec3(1, 1, planar ? 0 : 1);
   int other = (world + 1) % worlds;
   if (batch.kind_of(other) != batch.kind_of(world)) other = world;
-  switch (turn % 17) {
+  switch (round % 17) {
     case 16: {
       const std::vector<double> controls(static_cast<std::size_t>(batch.controls(world)), 300.0);
       batch.set_controls(world, controls);
       break;
     }
-    case 0: batch.add_force(world, in_row(batch, world, body), 20 * push); break;
-    case 1: batch.add_torque(world, in_row(batch, world, body), 20 * turn_by); break;
-    case 2: batch.add_force_at(world, in_row(batch, world, body), 20 * push, at); break;
-    case 3: batch.add_impulse(world, in_row(batch, world, body), push); break;
-    case 4: batch.add_angular_impulse(world, in_row(batch, world, body), turn_by); break;
-    case 5: batch.add_impulse_at(world, in_row(batch, world, body), push, at); break;
+    case 0: batch.add_force(world, in_row(batch, world, body), 20 * impulse); break;
+    case 1: batch.add_torque(world, in_row(batch, world, body), 20 * angular_impulse); break;
+    case 2: batch.add_force_at(world, in_row(batch, world, body), 20 * impulse, at); break;
+    case 3: batch.add_impulse(world, in_row(batch, world, body), impulse); break;
+    case 4: batch.add_angular_impulse(world, in_row(batch, world, body), angular_impulse); break;
+    case 5: batch.add_impulse_at(world, in_row(batch, world, body), impulse, at); break;
     case 6: batch.set_enabled(world, in_row(batch, world, body), false); break;
     case 7:
-      batch.set_enabled((3 * (turn - 1)) % worlds, batch.body_in_row((turn - 1) % batch.bodies()),
+      batch.set_enabled((3 * (round - 1)) % worlds, batch.body_in_row((round - 1) % batch.bodies()),
                         true);
       break;
     case 8:
@@ -95,7 +96,7 @@ inline void disturb(Batch& batch, int turn) {
       break;
     case 9: batch.wake(world); break;
     case 10: set_vector(batch, Field::position, world, body, at); break;
-    case 11: set_vector(batch, Field::linear_velocity, world, body, turn_by); break;
+    case 11: set_vector(batch, Field::linear_velocity, world, body, angular_impulse); break;
     case 12: {
       std::vector<float> spins(batch.size(Field::angular_velocity));
       batch.read(Field::angular_velocity, spins);
@@ -104,11 +105,11 @@ inline void disturb(Batch& batch, int turn) {
       break;
     }
     case 13: {  // the force before it never acts, the one after it does
-      batch.add_force(world, in_row(batch, world, body), 50 * push);
+      batch.add_force(world, in_row(batch, world, body), 50 * impulse);
       std::vector<std::uint8_t> mask(static_cast<std::size_t>(worlds), 0);
       mask[static_cast<std::size_t>(world)] = mask[static_cast<std::size_t>(other)] = 1;
       batch.reset(mask);
-      batch.add_force(other, batch.body_in_row(0), 20 * push);
+      batch.add_force(other, batch.body_in_row(0), 20 * impulse);
       break;
     }
     case 14: batch.copy_world(world, other); break;

@@ -67,16 +67,16 @@ TEST_CASE("a force on the handle that add returned moves that body", "[fast][ids
     Scene scene = empty_scene(Space::spatial, 0);
     scene.add(ground(Space::spatial));  // body 0 has no row
     scene.add(body_of(shape_of(Sphere{0.5}), {0, 0, 3}));
-    const BodyId pushed = scene.add(body_of(shape_of(Sphere{0.5}), {3, 0, 3}));
+    const BodyId accelerated = scene.add(body_of(shape_of(Sphere{0.5}), {3, 0, 3}));
     scene.add(body_of(shape_of(Sphere{0.5}), {6, 0, 3}));
     Batch batch(compile(scene), options_of(table, 3));
-    batch.add_force(1, pushed, {1000, 0, 0});
+    batch.add_force(1, accelerated, {1000, 0, 0});
     batch.step();
-    CHECK(velocity(batch, 1, pushed).x() > 0.01);
+    CHECK(velocity(batch, 1, accelerated).x() > 0.01);
     CHECK(velocity(batch, 1, 1).x() > 0.01);  // its row
     CHECK(velocity(batch, 1, 0).norm() == 0);
     CHECK(velocity(batch, 1, 2).norm() == 0);
-    CHECK(velocity(batch, 0, pushed).norm() == 0);
+    CHECK(velocity(batch, 0, accelerated).norm() == 0);
   }
 }
 

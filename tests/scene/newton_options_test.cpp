@@ -44,9 +44,9 @@ TEST_CASE("options of the newton solver have ranges", "[fast][validate][newton]"
       {{"", "are not principal axes of inertia",
         [&](Scene& s) { box(s).axes = Quat(Eigen::AngleAxisd(0.1, Vec3::UnitZ())); }},
        {"", "is a quaternion of length 0", [&](Scene& s) { box(s).axes = Quat(0, 0, 0, 0); }}});
-  Scene turned = other;
-  box(turned).axes = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
-  CHECK(validate(turned).empty());
+  Scene rotated = other;
+  box(rotated).axes = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
+  CHECK(validate(rotated).empty());
 }
 
 }  // namespace manyworlds::test

@@ -9,8 +9,8 @@ namespace {
 
 using test::body_of;
 using test::check_equal;
+using test::rotation_of;
 using test::shape;
-using test::turn;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -140,8 +140,9 @@ TEST_CASE("densities weigh the centre of mass", "[fast][scene]") {
   CHECK(got.inertia(2, 2) == Approx(4 * kPi / 2 + kPi * 9 + 3 * kPi * 1).epsilon(1e-14));
 }
 
-TEST_CASE("turning a shape turns its tensor, whatever the quaternion's length", "[fast][scene]") {
-  const Quat rotation = turn(0.7, {1, 2, -1});
+TEST_CASE("rotating a shape rotates its tensor, whatever the quaternion's length",
+          "[fast][scene]") {
+  const Quat rotation = rotation_of(0.7, {1, 2, -1});
   const Quat scaled(Eigen::Vector4d(-3.5 * rotation.coeffs()));
   const Vec3 position(0.3, -2, 1);
   const MassProperties plain = mass_properties(kSpatial, body_of({shape(Box{{1, 2, 3}})}));
@@ -152,15 +153,15 @@ TEST_CASE("turning a shape turns its tensor, whatever the quaternion's length", 
   }
 }
 
-TEST_CASE("a planar shape turns about its frame", "[fast][scene]") {
+TEST_CASE("a planar shape rotates about its frame", "[fast][scene]") {
   const Polygon polygon{{{0, 0}, {3, 0}, {0, 6}}};  // centroid (1, 2)
-  const MassProperties got =
-      mass_properties(kPlanar, body_of({shape(polygon, {10, 0, 0}, turn(kPi / 2, {0, 0, 1}))}));
+  const MassProperties got = mass_properties(
+      kPlanar, body_of({shape(polygon, {10, 0, 0}, rotation_of(kPi / 2, {0, 0, 1}))}));
   check_equal(got, {18, {8, 1, 0}, 45 * Mat3::Identity()}, 10);
 }
 
-TEST_CASE("isotropic shapes stay exactly isotropic when turned", "[fast][scene]") {
-  const Quat rotation = turn(0.7, {1, 2, -1});
+TEST_CASE("isotropic shapes stay exactly isotropic when rotated", "[fast][scene]") {
+  const Quat rotation = rotation_of(0.7, {1, 2, -1});
   for (const Geometry& geometry : {Geometry(Sphere{0.3}), Geometry(Box{{0.3, 0.3, 0.3}})}) {
     const Mat3 inertia =
         mass_properties(kSpatial, body_of({shape(geometry, {1, 2, 3}, rotation)})).inertia;
@@ -169,7 +170,7 @@ TEST_CASE("isotropic shapes stay exactly isotropic when turned", "[fast][scene]"
 }
 
 TEST_CASE("moving all shapes moves the centre and nothing else", "[fast][scene]") {
-  const Quat rotation = turn(1.1, {0, 1, 1});
+  const Quat rotation = rotation_of(1.1, {0, 1, 1});
   const std::vector<Shape> shapes = {shape(Box{{0.3, 0.1, 0.2}}, {0.1, 0, 0}, rotation),
                                      shape(Sphere{0.2}, {-0.3, 0.5, 0})};
   const MassProperties near = mass_properties(kSpatial, body_of(shapes));

@@ -17,11 +17,11 @@ using test::check_equal;
 using test::icosphere;
 using test::inside_out;
 using test::moved;
+using test::rotation_of;
 using test::shape;
 using test::tetrahedron;
 using test::together;
 using test::torus_mesh;
-using test::turn;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDensity = 700;
@@ -35,7 +35,7 @@ MassProperties of_shapes(std::vector<Shape> shapes) {
 MassProperties of_mesh(const TriangleMesh& mesh) { return mass_properties(mesh, kDensity); }
 
 Mat3 diagonal(double x, double y, double z) { return Vec3(x, y, z).asDiagonal(); }
-Mat3 turned(const Mat3& inertia, const Quat& rotation) {
+Mat3 rotated(const Mat3& inertia, const Quat& rotation) {
   const Mat3 r = rotation.normalized().toRotationMatrix();
   return r * inertia * r.transpose();
 }
@@ -47,7 +47,7 @@ double error(const MassProperties& got, const MassProperties& exact) {
                   (got.inertia - exact.inertia).norm() / exact.inertia.norm());
 }
 
-const Quat kTurn = turn(0.7, {1, 2, -1});
+const Quat kRotation = rotation_of(0.7, {1, 2, -1});
 
 }  // namespace
 
@@ -112,13 +112,13 @@ TEST_CASE("tori converge to 2 pi^2 R r^2 and m (R^2 + 3/4 r^2)", "[fast][scene]"
   CHECK(before < 1e-3);  // 65536 triangles
 }
 
-TEST_CASE("a turned and moved mesh has the turned tensor and the moved centre", "[fast][scene]") {
+TEST_CASE("a rotated and moved mesh has the rotated tensor and the moved centre", "[fast][scene]") {
   const Vec3 position(0.3, -2, 1);
   const MassProperties box = of_shapes({shape(Box{{1, 2, 3}})});
-  check_equal(of_mesh(moved(box_mesh({1, 2, 3}), position, kTurn)),
-              {box.mass, position, turned(box.inertia, kTurn)}, 3);
-  check_equal(of_mesh(moved(box_mesh({1, 2, 3}), position, kTurn)),
-              of_shapes({shape(Box{{1, 2, 3}}, position, kTurn)}), 3);
+  check_equal(of_mesh(moved(box_mesh({1, 2, 3}), position, kRotation)),
+              {box.mass, position, rotated(box.inertia, kRotation)}, 3);
+  check_equal(of_mesh(moved(box_mesh({1, 2, 3}), position, kRotation)),
+              of_shapes({shape(Box{{1, 2, 3}}, position, kRotation)}), 3);
 }
 
 TEST_CASE("a mesh 1e6 m away loses the digits of its coordinates and no others", "[fast][scene]") {
@@ -127,7 +127,7 @@ TEST_CASE("a mesh 1e6 m away loses the digits of its coordinates and no others",
   // Whole numbers: the coordinates lose nothing.
   check_equal(of_mesh(moved(box_mesh({1, 2, 3}), offset)), {box.mass, offset, box.inertia}, 1);
 
-  const TriangleMesh far = moved(icosphere(0.3, 3), offset, kTurn);
+  const TriangleMesh far = moved(icosphere(0.3, 3), offset, kRotation);
   const MassProperties there = of_mesh(far);
   // Moving back is exact: what remains is what rounding made of the coordinates.
   const MassProperties here = of_mesh(moved(far, -offset));
@@ -150,10 +150,10 @@ TEST_CASE("a concave prism equals the two boxes it is made of", "[fast][scene]")
       {shape(Box{{1, 0.5, 0.25}}, {1, 0.5, 0.25}), shape(Box{{0.5, 1, 0.25}}, {0.5, 2, 0.25})});
   CHECK(expected.inertia(0, 1) != 0);
   check_equal(of_mesh(mesh), expected);
-  check_equal(
-      of_mesh(moved(mesh, {5, 0, -3}, kTurn)),
-      {expected.mass, Vec3(5, 0, -3) + kTurn * expected.center, turned(expected.inertia, kTurn)},
-      5);
+  check_equal(of_mesh(moved(mesh, {5, 0, -3}, kRotation)),
+              {expected.mass, Vec3(5, 0, -3) + kRotation * expected.center,
+               rotated(expected.inertia, kRotation)},
+              5);
 }
 
 TEST_CASE("parts add and cavities are taken away", "[fast][scene]") {
@@ -179,8 +179,8 @@ TEST_CASE("parts add and cavities are taken away", "[fast][scene]") {
 
 TEST_CASE("mass grows with the cube of the size and inertia with its fifth power",
           "[fast][scene]") {
-  const TriangleMesh mesh =
-      moved(test::prism({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}, 1), {0.5, 0, 0}, kTurn);
+  const TriangleMesh mesh = moved(test::prism({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}, 1),
+                                  {0.5, 0, 0}, kRotation);
   const MassProperties one = of_mesh(mesh);
   for (const double s : {1e-6, 0.37, 3.0, 1e6}) {
     const MassProperties got = of_mesh(moved(mesh, Vec3::Zero(), Quat::Identity(), s));
@@ -193,8 +193,8 @@ TEST_CASE("bodies take the mass properties of meshes", "[fast][scene]") {
   const std::vector<TriangleMesh> meshes = {
       box_mesh({1, 2, 3}),
       // Plates and rods are on the edge of what the triangle inequality of the moments allows.
-      moved(box_mesh({1, 1, 1e-4}), {0.1, 0, 0}, kTurn),
-      moved(box_mesh({1, 1e-4, 1e-4}), {0.1, 0, 0}, kTurn),
+      moved(box_mesh({1, 1, 1e-4}), {0.1, 0, 0}, kRotation),
+      moved(box_mesh({1, 1e-4, 1e-4}), {0.1, 0, 0}, kRotation),
       tetrahedron({1, 0, 0}, {0, 2, 0}, {0, 0, 3}, {0, 0, 0}),
       torus_mesh(1, 0.3, 12, 6),
       together(icosphere(1, 2), inside_out(icosphere(0.9, 2))),

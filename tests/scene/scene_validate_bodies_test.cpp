@@ -81,11 +81,11 @@ TEST_CASE("planar bodies stay in the plane", "[fast][scene]") {
         [](Scene& s) { crate(s).jitter.linear_velocity.z() = 1; }},
        {"jitter.any_orientation", "must be false",
         [](Scene& s) { crate(s).jitter.any_orientation = true; }}});
-  Scene turned = planar();
-  crate(turned).rotation = {-3, 0, 0, 4};  // about z, of length 5
-  crate(turned).angular_velocity.z() = -2;
-  crate(turned).jitter.angle = 1;
-  CHECK(validate(turned).empty());
+  Scene rotated = planar();
+  crate(rotated).rotation = {-3, 0, 0, 4};  // about z, of length 5
+  crate(rotated).angular_velocity.z() = -2;
+  crate(rotated).jitter.angle = 1;
+  CHECK(validate(rotated).empty());
 }
 
 TEST_CASE("spatial bodies may jitter by angle and by orientation", "[fast][scene]") {
@@ -154,9 +154,9 @@ TEST_CASE("bad inertia tensors are named", "[fast][scene]") {
   given(scene).inertia = diagonal(2e-5, 1, 1);  // a thin rod
   CHECK(validate(scene).empty());
   // Off-diagonal entries that hide a moment above the sum of the others.
-  Mat3 turned;
-  turned << 2, 1.5, 0, 1.5, 2, 0, 0, 0, 1;  // principal moments 0.5, 1, 3.5
-  given(scene).inertia = turned;
+  Mat3 rotated;
+  rotated << 2, 1.5, 0, 1.5, 2, 0, 0, 0, 1;  // principal moments 0.5, 1, 3.5
+  given(scene).inertia = rotated;
   CHECK(test::places(scene) == std::vector<std::string>{std::string(kBody) + inertia});
 }
 

@@ -31,7 +31,7 @@ const TriangleMesh kCube = box_mesh({1, 1, 1});
 const std::string kOnce = " used once, must be used twice, in opposite directions (open)";
 const std::string kSame =
     " used twice in one direction, must be used twice, in opposite directions (one of its "
-    "triangles is turned over)";
+    "triangles is wound the other way)";
 
 }  // namespace
 
@@ -42,8 +42,10 @@ TEST_CASE("closed meshes have no issues", "[fast][scene]") {
   CHECK(lines(together(kCube, inside_out(moved(kCube, {0, 0, 0}, Quat::Identity(), 0.5)))) ==
         Lines{});
   // Thin, but solid.
-  CHECK(lines(moved(box_mesh({1, 1, 1e-9}), {1, 0, 0}, test::turn(1, {1, 2, 3}))) == Lines{});
-  CHECK(lines(moved(box_mesh({1, 1e-6, 1e-6}), {1, 0, 0}, test::turn(1, {1, 2, 3}))) == Lines{});
+  CHECK(lines(moved(box_mesh({1, 1, 1e-9}), {1, 0, 0}, test::rotation_of(1, {1, 2, 3}))) ==
+        Lines{});
+  CHECK(lines(moved(box_mesh({1, 1e-6, 1e-6}), {1, 0, 0}, test::rotation_of(1, {1, 2, 3}))) ==
+        Lines{});
 }
 
 TEST_CASE("indices out of range are named, and nothing that follows from them", "[fast][scene]") {
@@ -101,7 +103,8 @@ TEST_CASE("edges of a hole are open", "[fast][scene]") {
   CHECK(lines(mesh) == Lines{"edge 1-5 is" + kOnce, "edge 1-7 is" + kOnce, "edge 5-7 is" + kOnce});
 }
 
-TEST_CASE("edges of a triangle that is turned over run twice in one direction", "[fast][scene]") {
+TEST_CASE("edges of a triangle that is wound the other way run twice in one direction",
+          "[fast][scene]") {
   TriangleMesh mesh = kCube;
   std::swap(mesh.triangles.back()[0], mesh.triangles.back()[1]);
   CHECK(lines(mesh) == Lines{"edge 1-5 is" + kSame, "edge 1-7 is" + kSame, "edge 5-7 is" + kSame});
@@ -133,7 +136,7 @@ TEST_CASE("a mesh that is inside out or flat encloses nothing", "[fast][scene]")
   const TriangleMesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                            {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
   for (int i = 0; i < 20; ++i) {
-    CHECK(lines(moved(sheet, {0.1 * i, 0, 3}, test::turn(i, {1, 2, 0.3 * i}))) ==
+    CHECK(lines(moved(sheet, {0.1 * i, 0, 3}, test::rotation_of(i, {1, 2, 0.3 * i}))) ==
           Lines{"volume is 0 m^3 up to rounding, must be > 0"});
   }
 }
@@ -183,15 +186,15 @@ TEST_CASE("of ten thousand issues of one kind the first ten are listed", "[fast]
   CHECK(got[10] == "3990 more triangles have no area, must not be degenerate");
   CHECK(got[21] == "11990 more edges are" + kOnce);
 
-  // One sheet of a double one turned over.
-  TriangleMesh turned = test::icosphere(1, 1);
-  for (std::size_t i = 0; i < turned.triangles.size(); i += 4) {
+  // One sheet of a double one wound the other way.
+  TriangleMesh flipped = test::icosphere(1, 1);
+  for (std::size_t i = 0; i < flipped.triangles.size(); i += 4) {
     // The outer three of each four triangles.
     for (std::size_t j = i; j < i + 3; ++j) {
-      std::swap(turned.triangles[j][0], turned.triangles[j][1]);
+      std::swap(flipped.triangles[j][0], flipped.triangles[j][1]);
     }
   }
-  got = lines(turned);
+  got = lines(flipped);
   REQUIRE(got.size() == 11);
   CHECK(got[10] == "50 more edges are" + kSame);
 }

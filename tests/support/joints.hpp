@@ -15,7 +15,7 @@ inline BodyId add_ball(Scene& scene, const Vec3& position, double mass = 1) {
 inline Frame at(const Vec3& position, const Quat& rotation = Quat::Identity()) {
   return {position, rotation};
 }
-// Turns z to y: a hinge about y, for spatial scenes that swing in the plane of x and z.
+// Rotates z to y: a hinge about y, for spatial scenes that swing in the plane of x and z.
 inline Quat z_to_y() { return Quat(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX())); }
 inline Quat hinge_axes(Space space) {
   return space == Space::planar ? Quat(Quat::Identity()) : z_to_y();

@@ -22,7 +22,7 @@ inline Body body_of(std::vector<Shape> shapes) {
   body.shapes = std::move(shapes);
   return body;
 }
-inline Quat turn(double angle, const Vec3& axis) {
+inline Quat rotation_of(double angle, const Vec3& axis) {
   return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
 }
 

@@ -109,8 +109,8 @@ TriangleMesh prism(const std::vector<Vec2>& outline, double height) {
 }
 
 TriangleMesh moved(TriangleMesh mesh, const Vec3& position, const Quat& rotation, double scale) {
-  const Mat3 turned = rotation.normalized().toRotationMatrix();
-  for (Vec3& vertex : mesh.vertices) vertex = position + turned * (scale * vertex);
+  const Mat3 r = rotation.normalized().toRotationMatrix();
+  for (Vec3& vertex : mesh.vertices) vertex = position + r * (scale * vertex);
   return mesh;
 }
 

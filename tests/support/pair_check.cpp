@@ -282,9 +282,9 @@ Polygon random_polygon(Random& random, int vertices) {
   const double rx = random.uniform(0.2, 0.6), ry = random.uniform(0.2, 0.6);
   const Vec2 center(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
   Polygon p;
-  const double turn = random.uniform(0, 2 * kPi);
+  const double phase = random.uniform(0, 2 * kPi);
   for (int i = 0; i < vertices; ++i) {
-    const double angle = turn + 2 * kPi * (i + random.uniform(-0.3, 0.3)) / vertices;
+    const double angle = phase + 2 * kPi * (i + random.uniform(-0.3, 0.3)) / vertices;
     p.vertices.push_back(center + Vec2(rx * std::cos(angle), ry * std::sin(angle)));
   }
   return p;

@@ -126,9 +126,9 @@ class Maker {
   }
 
   // Of the room: everybody collides with it.
-  void add_fixed(Dice& dice, Geometry geometry, const Vec3& at, const Quat& turn) {
+  void add_fixed(Dice& dice, Geometry geometry, const Vec3& at, const Quat& orientation) {
     Body body = body_of(shape(dice, std::move(geometry)), at, Motion::fixed);
-    body.rotation = turn;
+    body.rotation = orientation;
     body.shapes[0].filter.category = 1u << 31;
     scene_.add(std::move(body));
   }
@@ -162,21 +162,21 @@ class Maker {
     for (int i = dice.below(4); i > 0; --i) {
       Vec3 at = vector(dice, wall_ - unit_);
       (planar_ ? at.y() : at.z()) = 0;
-      const Quat turn = rotation(dice);
+      const Quat orientation = rotation(dice);
       switch (dice.below(5)) {
-        case 0: add_fixed(dice, round_of(scene_.space, a), at, turn); break;
-        case 1: add_fixed(dice, box_of(scene_.space, Vec3(b, a, b)), at, turn); break;
-        case 2: add_fixed(dice, Capsule{b, a}, at, turn); break;
+        case 0: add_fixed(dice, round_of(scene_.space, a), at, orientation); break;
+        case 1: add_fixed(dice, box_of(scene_.space, Vec3(b, a, b)), at, orientation); break;
+        case 2: add_fixed(dice, Capsule{b, a}, at, orientation); break;
         case 3: {
           Geometry ramp = Segment{{-a, 0.1 * a}, {a, b}};
           if (!planar_) ramp = Cylinder{a, b};
-          add_fixed(dice, ramp, at, turn);
+          add_fixed(dice, ramp, at, orientation);
           break;
         }
         default: {
           Geometry wedge = Polygon{{{-a, -b}, {a, -b}, {0, b}}};
           if (!planar_) wedge = hull(dice, a);
-          add_fixed(dice, wedge, at, turn);
+          add_fixed(dice, wedge, at, orientation);
         }
       }
     }

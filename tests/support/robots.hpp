@@ -8,7 +8,7 @@
 
 namespace manyworlds::test {
 
-// Turns z to an axis: a hinge about it.
+// Rotates z to an axis: a hinge about it.
 inline Quat z_to(const Vec3& axis) { return Quat::FromTwoVectors(Vec3::UnitZ(), axis); }
 
 class RobotBuilder {

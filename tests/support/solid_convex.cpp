@@ -59,18 +59,18 @@ double searched_separation(Solid a, Solid b, std::vector<Vec3> looks) {
   double result = -kInfinity;
   for (std::size_t i = 0; i < starts; ++i) {
     auto [s, n] = best[i];
-    double turn = 0;
+    double phase = 0;
     for (double step = 0.2; step > 1e-9;) {
       const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
       const double before = s;
       const Vec3 from = n;
       for (int k = 0; k < 8; ++k) {
-        const double angle = turn + k * 0.7853981633974483;
+        const double angle = phase + k * 0.7853981633974483;
         const Vec3 m = (from + step * (std::cos(angle) * u + std::sin(angle) * v)).normalized();
         const double there = separation_along(a, b, m);
         if (there > s) s = there, n = m;
       }
-      turn += 0.377;
+      phase += 0.377;
       if (!(s > before)) step *= 0.6;
     }
     result = std::max(result, s);

@@ -8,7 +8,7 @@
 
 namespace manyworlds::tools {
 
-// As fmt::print, which throws where nobody can hear: nothing is lost with the words.
+// As fmt::print, which throws where output is closed: losing it is no error.
 template <class... Values>
 void tell(fmt::format_string<Values...> format, Values&&... values) {
   std::fputs(fmt::format(format, std::forward<Values>(values)...).c_str(), stderr);

@@ -30,7 +30,7 @@ using tools::counted, tools::hex, tools::median, tools::with_prefix;
 using Json = nlohmann::ordered_json;
 
 constexpr int kPaths = 16, kFreePaths = 4;
-constexpr int kSpeedWorlds = 1024, kMujocoWorlds = 16, kSpeedSteps = 100, kTurns = 5;
+constexpr int kSpeedWorlds = 1024, kMujocoWorlds = 16, kSpeedSteps = 100, kRounds = 5;
 constexpr const char* kNotCompared =
     "joint-space inertia, bias, passive and actuator forces, constraint rows and their forces: "
     "they are no fields here, and show in qacc, kinetic energy and the next state";
@@ -53,7 +53,7 @@ Findings find(const MjcfFiles& files, const CompareOptions& compared) {
   const compare::Settings settings{compared.tolerance, options.seed.value_or(0)};
   const std::vector<compare::Kernels> all = compare::kernels();
   if (all.empty() || all.front().precision != Precision::f64) {
-    // Gates that nobody looks at would hold.
+    // Gates that were not evaluated would hold.
     throw not_built("compare", "float64", "MW_KERNELS=");
   }
   compare::Pair pair(files, settings);
@@ -66,7 +66,7 @@ Findings find(const MjcfFiles& files, const CompareOptions& compared) {
     add_failures(findings, findings.states.back().failures());
     findings.paths.push_back(compare::compare_paths(pair, kernels, kPaths, options.steps));
     findings.speeds.push_back(
-        compare::compare_speed(pair, kernels, kSpeedWorlds, kMujocoWorlds, kSpeedSteps, kTurns));
+        compare::compare_speed(pair, kernels, kSpeedWorlds, kMujocoWorlds, kSpeedSteps, kRounds));
     if (!findings.speeds.back().same_hash) {
       findings.failures.push_back("the same steps from the same state ended in different hashes");
     }
@@ -194,12 +194,12 @@ void print_free(const compare::FreePaths& p) {
 void print_speed(const compare::Speed& s) {
   const double ours = median(s.ours), loop = median(s.mujoco), batch = median(s.mujoco_batch);
   fmt::print(
-      "\n{} {}, {}, 1 thread, tolerance {:.0e}, median of {} turns\n"
+      "\n{} {}, {}, 1 thread, tolerance {:.0e}, median of {} rounds\n"
       "  manyworlds  {:>8} world-steps/s, {:.2f} contacts per world, hash {}\n"
       "  MuJoCo      {:>8} world-steps/s, {:.2f} contacts per world: {:.1f} x\n"
       "    by batch  {:>8} world-steps/s: {:.1f} x\n",
       to_string(s.kernels.isa), to_string(s.kernels.precision), counted(s.worlds, "world"),
-      s.tolerance, s.turns, with_prefix(ours), s.contacts, hex(s.hash), with_prefix(loop),
+      s.tolerance, s.rounds, with_prefix(ours), s.contacts, hex(s.hash), with_prefix(loop),
       s.mujoco_contacts, ours / loop, with_prefix(batch), ours / batch);
 }
 

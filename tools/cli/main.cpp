@@ -61,14 +61,14 @@ constexpr const char* kAppFooter =
     "was chosen when the program was built (MW_ISAS=\"scalar;avx2\" tools/run).";
 
 void add_scenes(CLI::App& app, AllOptions& all, int& code) {
-  CLI::App* command = app.add_subcommand("scenes", "List the scenes that have a name");
+  CLI::App* command = app.add_subcommand("scenes", "List the named scenes");
   command->add_flag("--json", all.scenes_json, "print JSON instead of text");
   command->footer("Example:\n  manyworlds scenes");
   command->callback([&] { code = scenes_command(all.scenes_json); });
 }
 
 void add_run(CLI::App& app, AllOptions& all, int& code) {
-  CLI::App* command = app.add_subcommand("run", "Step many worlds of a scene and sum up");
+  CLI::App* command = app.add_subcommand("run", "Step many worlds of a scene and print a summary");
   add_scene_argument(*command, all.run);
   add_batch_options(*command, all.run);
   add_length_options(*command, all.run);
@@ -120,7 +120,7 @@ void add_model(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds model humanoid.xml --json\n"
       "\n"
       "q and v are where coordinates and velocities of a joint begin in generalized_position and\n"
-      "generalized_velocity, MuJoCo's qpos and qvel. What cannot be read is an error, as it is of\n"
+      "generalized_velocity, MuJoCo's qpos and qvel. What cannot be read is an error, as for\n"
       "'run'.");
   command->callback([&] { code = model_command(all.model); });
 }
@@ -168,7 +168,7 @@ void add_verify(CLI::App& app, AllOptions& all, int& code) {
 
 void add_compare(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command =
-      app.add_subcommand("compare", "Hold an MJCF model's motion and speed against MuJoCo's");
+      app.add_subcommand("compare", "Compare an MJCF model's motion and speed with MuJoCo's");
   all.compare.job.worlds = 320;
   all.compare.job.steps = 1000;
   command->add_option("model", all.compare.job.scene, "an MJCF file with joints")
@@ -195,8 +195,8 @@ void add_compare(CLI::App& app, AllOptions& all, int& code) {
 }
 
 void add_soak(CLI::App& app, AllOptions& all, int& code) {
-  CLI::App* command =
-      app.add_subcommand("soak", "Run many worlds for long from random seeds, count the lost");
+  CLI::App* command = app.add_subcommand(
+      "soak", "Run many worlds for many steps from random seeds, count lost ones");
   all.soak.worlds = 10000;
   all.soak.steps = 1000;
   add_scene_argument(*command, all.soak);
@@ -242,7 +242,8 @@ void add_report_options(CLI::App& app, ReportOptions& options, const std::string
 }
 
 void add_report(CLI::App& app, AllOptions& all, int& code) {
-  CLI::App* command = app.add_subcommand("report", "Measure what the library is worth");
+  CLI::App* command =
+      app.add_subcommand("report", "Measure accuracy, stability, plans and throughput");
   command->require_subcommand(1);
   CLI::App* accuracy =
       command->add_subcommand("accuracy", "Error against run time, where the solution is known");
@@ -282,7 +283,7 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds report plan --scenes bin-boxes,ball3d\n"
       "\n"
       "Each variant (a stage switched back on, another layout, another way to find pairs) steps\n"
-      "in turns with the batch as it is by default, on one thread, and must have its bits.");
+      "alternately with the batch as it is by default, on one thread, and must have its bits.");
   plan->callback([&] { code = report_plan_command(all.report); });
 
   CLI::App* throughput = command->add_subcommand(
@@ -297,8 +298,8 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds report throughput --scenes stack10 --json\n"
       "  manyworlds report throughput --peers build/peers/bin\n"
       "\n"
-      "Peers step the same standard scenes in turns with manyworlds, in some 20 minutes, or one\n"
-      "with --quick. One that fails is a line of the report.");
+      "Peers step the same standard scenes alternately with manyworlds, in some 20 minutes, or\n"
+      "one with --quick. A peer that fails is a line of the report.");
   throughput->callback([&] { code = report_throughput_command(all.report); });
 }
 

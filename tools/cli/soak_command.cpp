@@ -1,4 +1,4 @@
-// `manyworlds soak`: many worlds for long from seeds nobody chose, to find the one that breaks.
+// `manyworlds soak`: many worlds for many steps from random seeds, to find one that breaks.
 #include <algorithm>
 #include <cstdio>
 #include <random>

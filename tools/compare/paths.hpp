@@ -33,7 +33,7 @@ struct FreePaths {
   std::vector<double> own;   // MuJoCo's from its own, moved by kMoved
 
   double most() const;
-  // Beyond kFollowed, unless MuJoCo's own path, moved by so little, went farther: then nobody can
+  // Beyond kFollowed, unless MuJoCo's own path, moved by so little, went farther: then no path can
   // follow it.
   std::vector<std::string> failures() const;
 };

@@ -119,9 +119,9 @@ void run_mujoco_batch(mjBatch& batch, const Inputs& inputs, Speed& speed) {
 }  // namespace
 
 Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_worlds, int steps,
-                    int turns) {
+                    int rounds) {
   Speed speed;
-  speed.kernels = kernels, speed.worlds = worlds, speed.steps = steps, speed.turns = turns;
+  speed.kernels = kernels, speed.worlds = worlds, speed.steps = steps, speed.rounds = rounds;
   speed.mujoco_worlds = std::min(mujoco_worlds, worlds);
   // What float32 reaches, too.
   speed.tolerance = std::max(pair.settings().tolerance, 1e-6);
@@ -131,7 +131,7 @@ Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_w
   const mjcf::DataPtr data = pair.make_data();
   const MujocoBatch mujoco_batch = make_mujoco_batch(pair.mujoco(), speed.mujoco_worlds);
   const Inputs inputs = draw_inputs(pair.mujoco(), pair.settings().seed, worlds, steps);
-  for (int turn = 0; turn < turns; ++turn) {
+  for (int round = 0; round < rounds; ++round) {
     run_ours(batch, inputs, speed);
     run_mujoco(pair.mujoco(), *data, inputs, speed);
     run_mujoco_batch(*mujoco_batch, inputs, speed);

@@ -1,4 +1,4 @@
-// How fast each side steps the model on one thread, in turns.
+// How fast each side steps the model on one thread, alternately.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,19 @@ namespace manyworlds::compare {
 
 struct Speed {
   Kernels kernels;
-  int worlds = 0, mujoco_worlds = 0, steps = 0, turns = 0;
+  int worlds = 0, mujoco_worlds = 0, steps = 0, rounds = 0;
   double tolerance = 0;  // of both
-  // World-steps/s of each turn: ours, MuJoCo's in a loop over worlds and by its batches.
+  // World-steps/s of each round: ours, MuJoCo's in a loop over worlds and by its batches.
   std::vector<double> ours, mujoco, mujoco_batch;
   double contacts = 0, mujoco_contacts = 0;  // per world after the last step
-  std::uint64_t hash = 0;                    // of our state after the last step of each turn
-  bool same_hash = true;                     // over all turns
+  std::uint64_t hash = 0;                    // of our state after the last step of each round
+  bool same_hash = true;                     // over all rounds
 };
 
 // From the reference pose at random velocities; controls change every 5 steps. MuJoCo steps
 // `mujoco_worlds` of the worlds: one after the other in a plain loop of mj_step, and as a batch on
 // one thread (mjbatch.h).
 Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_worlds, int steps,
-                    int turns);
+                    int rounds);
 
 }  // namespace manyworlds::compare

@@ -21,7 +21,7 @@ struct Sample {
   double kinetic = 0;                             // J, of the links: without what armature holds
   std::vector<double> a;  // what is to be in generalized_acceleration; empty with Runge-Kutta
   std::vector<double> next_q, next_v;
-  std::vector<Touch> touches;  // that may push: those in the gap may not
+  std::vector<Touch> touches;  // that may act: those in the gap may not
   int rows = 0;                // of constraints
   bool uncertain = false;      // a contact is so near where contacts begin that rounding decides
   bool other_points = false;   // of shapes whose contact points are not MuJoCo's

@@ -31,7 +31,7 @@ Batch make_batch(const Case& c, const Method& method, Precision precision, doubl
 double error_of(const Case& c, Batch& batch, double step, int steps) {
   double sum = 0, largest = 0, last = 0;
   for (int i = 1; i <= steps; ++i) {
-    if (c.push) c.push(batch);
+    if (c.before_step) c.before_step(batch);
     batch.step();
     if (c.over == Over::end && i < steps) continue;
     last = c.error(batch, i * step);
@@ -47,8 +47,8 @@ double seconds_of(const Case& c, Batch& batch, int steps) {
   for (int run = 0; run < kMaxRuns && total < kTimedSeconds; ++run) {
     batch.reset();
     const auto start = Clock::now();
-    if (c.push) {
-      for (int i = 0; i < steps; ++i) c.push(batch), batch.step();
+    if (c.before_step) {
+      for (int i = 0; i < steps; ++i) c.before_step(batch), batch.step();
     } else {
       batch.step(steps);
     }

@@ -38,8 +38,8 @@ struct Case {
   std::vector<double> steps, quick_steps;  // s
   std::vector<Method> methods;
   std::function<Scene()> scene;
-  std::function<void(Batch&)> push = {};  // before each step
-  std::vector<Observer> observe = {};     // what the error asks for
+  std::function<void(Batch&)> before_step = {};  // before each step
+  std::vector<Observer> observe = {};            // what the error asks for
   // Error of world 0 at t s; called after each step, or after the last only.
   std::function<double(const Batch&, double)> error;
   Over over = Over::end;

@@ -39,7 +39,7 @@ Case rolling(const std::string& id, const Vec3& way) {
     }
     return scene;
   };
-  c.push = [way](Batch& b) {
+  c.before_step = [way](Batch& b) {
     for (int w = 0; w < b.worlds(); ++w) b.add_force(w, b.body_in_row(0), 150 * way);
   };
   const double held = 0.4 * 35 * kG, pull = ((150 - held) / 10) / (3.5 + 2.5);

@@ -7,7 +7,7 @@
 namespace manyworlds::report {
 namespace {
 
-// A body that tumbles freely from rest at q = 1, and where it has turned to at the end.
+// A body that tumbles freely from rest at q = 1, and its orientation at the end.
 Case tumbling(const std::string& id, const std::string& title, const Vec3& moments,
               const Vec3& spin, double seconds, const Quat& end) {
   Case c;

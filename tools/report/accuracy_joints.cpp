@@ -23,7 +23,7 @@ double angle_from_down(const Batch& batch, int body) {
   const Vec3 along = rotation(batch, 0, body) * Vec3::UnitX();
   return std::atan2(along.x(), -along.y());
 }
-double turn(double angle) { return std::abs(std::remainder(angle, 2 * kPi)); }
+double wrapped(double angle) { return std::abs(std::remainder(angle, 2 * kPi)); }
 
 // angle'' = -rate cos(angle), seen every `every` s from 0 to `until`, by Runge-Kutta 4 in steps
 // that leave no more than rounding.
@@ -131,7 +131,7 @@ std::vector<Case> joint_cases() {
   Case rod = of_joints("A6", "rod on a hinge", "angle at 10 s", "rad", 1e-2, 10, 10);
   rod.scene = [] { return rods(1); };
   rod.error = [](const Batch& b, double) {
-    return turn(angle_from_down(b, 0) - 0.770957622574773133);
+    return wrapped(angle_from_down(b, 0) - 0.770957622574773133);
   };
   out.push_back(rod);
   out.push_back(long_pendulum());
@@ -139,8 +139,8 @@ std::vector<Case> joint_cases() {
       of_joints("A8", "double pendulum", "larger error of the angles at 2 s", "rad", 1e-2, 2, 2);
   two.scene = [] { return rods(2); };
   two.error = [](const Batch& b, double) {
-    return std::max(turn(angle_from_down(b, 0) + 0.0827583068205708),
-                    turn(angle_from_down(b, 1) - 0.407362074911907));
+    return std::max(wrapped(angle_from_down(b, 0) + 0.0827583068205708),
+                    wrapped(angle_from_down(b, 1) - 0.407362074911907));
   };
   out.push_back(two);
   out.push_back(heavy_top());

@@ -46,8 +46,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 // JSON takes no bytes that are not text, and a line of a report is short.
 std::string printable(std::string text) {
-  constexpr std::size_t kMost = 300;
-  if (text.size() > kMost) text.resize(kMost);
+  constexpr std::size_t kMaxLength = 300;
+  if (text.size() > kMaxLength) text.resize(kMaxLength);
   for (char& c : text) c = c < ' ' || c > '~' ? '?' : c;
   return text;
 }
@@ -124,10 +124,10 @@ class Own {
   double speed() {
     using Clock = std::chrono::steady_clock;
     // What peers take seconds for may be over in milliseconds.
-    constexpr double kLeast = 0.1;  // s
+    constexpr double kMinSeconds = 0.1;  // s
     double seconds = 0;
     int runs = 0;
-    for (; seconds < kLeast; ++runs) {
+    for (; seconds < kMinSeconds; ++runs) {
       batch_.reset();
       for (int i = 0; i < kWarmUp; ++i) batch_.step();
       const auto start = Clock::now();
@@ -152,7 +152,7 @@ class Own {
   int steps_;
 };
 
-// The peers that still work, in turns with manyworlds before and after each of them: the machine
+// The peers that still work, alternately with manyworlds before and after each of them: the machine
 // drifts, and what both sides of a ratio share of it cancels.
 PeerScene compare(const std::string& scene, std::vector<Peer> peers, Peers& out) {
   PeerScene result;

@@ -1,4 +1,4 @@
-// Other engines beside manyworlds: the standard scenes by one protocol, in turns in one run.
+// Other engines beside manyworlds: the standard scenes by one protocol, alternately in one run.
 //
 // A peer is a program peer_ENGINE (bench/peers). `--list` prints the scenes that it has, and
 // `--scenes NAME --worlds N --warm-up N --steps N` a line of JSON: engine, version, settings,

@@ -59,7 +59,7 @@ WorthRow measure(const Variant& v, bool quick) {
     return processor_seconds() - start;
   };
   for (int i = 0; i < rounds; ++i) {
-    // In turns, and each first half of the time: what drifts on the machine cancels.
+    // Alternately, and each first half of the time: what drifts on the machine cancels.
     double own = 0, other = 0;
     if (i % 2 == 0) own = time_of(plain), other = time_of(changed);
     if (i % 2 == 1) other = time_of(changed), own = time_of(plain);
@@ -168,7 +168,7 @@ void add_sleep(const std::string& name, const Setup& plain, std::vector<Variant>
   Variant v{name, "at rest: without sleep, against with it", plain, plain};
   v.plain.batch.sleep = true;
   v.settle = 1200;
-  v.must_be_same = false;  // who sleeps stands still
+  v.must_be_same = false;  // sleeping bodies do not move
   out.push_back(v);
 }
 
@@ -237,7 +237,8 @@ nlohmann::ordered_json to_json(const std::vector<WorthRow>& rows) {
 
 std::string worth_page(const std::vector<WorthRow>& rows, const std::string& machine) {
   std::string body =
-      "<p>Each variant steps in turns with the batch as it is by default, on one thread; the ratio "
+      "<p>Each variant steps alternately with the batch as it is by default, on one thread; the "
+      "ratio "
       "is the median of (time of the variant / time as by default): 1.30 means that the "
       "step takes 30 % longer with it. Bits are those of positions and velocities of all "
       "worlds after the last step.</p>";

@@ -124,7 +124,7 @@ Trial grid() {
   return t;
 }
 
-// Masses that hang one below the other on springs, soft and stiff in turns.
+// Masses that hang one below the other on springs, soft and stiff alternately.
 Trial spring_chain() {
   Trial t = trial("B20", "eight masses on springs of 1000 and 1e6 N/m",
                   "extension of a spring off F / k, in F / 1000", "", 0.01, 10);

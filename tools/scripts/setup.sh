@@ -20,7 +20,7 @@ tests_packages=(catch2 libbenchmark-dev pkg-config)
 # What the Python package is built and tested with, in an environment of its own.
 python_packages=(python3-dev python3-venv)
 python_dir="$root/build/python"
-# Debian's own where there is one, since that is whom python3-dev and python3-venv belong to.
+# Debian's own where there is one, since python3-dev and python3-venv belong to it.
 system_python=/usr/bin/python3
 [[ -x $system_python ]] || system_python=python3
 

@@ -1,4 +1,4 @@
-"""Which ids Gymnasium knows: "manyworlds/<task>-v0" for every task that has a name."""
+"""The ids registered with Gymnasium: "manyworlds/<task>-v0" for every task that has a name."""
 
 from __future__ import annotations
 

@@ -23,6 +23,6 @@ __all__ = ["Camera", "Picture", "draw"]
 def draw(batch: Batch, world: int = 0, ax: Optional[Any] = None, **options: Any) -> Any:
     """Draws a world of a batch as it is now into axes of matplotlib, or new ones; returns the axes.
 
-    ``options``: those of Picture. Who draws many keeps a Picture.
+    ``options``: those of Picture. Keep a Picture to draw many.
     """
     return Picture(checked_batch(batch).plan.scene, **options).draw(batch, world, ax)

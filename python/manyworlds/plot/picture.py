@@ -141,13 +141,13 @@ class Picture:
         orientations = batch.get("orientation")[world].astype(float)
         there = batch.get_enabled()[world]
         for i in range(batch.bodies):
-            turn, place = orientations[i], positions[i]
+            orientation, place = orientations[i], positions[i]
             if self._eye.planar:
-                cos, sin = turn
+                cos, sin = orientation
                 rotation = np.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]])
                 place = np.append(place, 0.0)
             else:
-                rotation = solids.rotation_of(turn)
+                rotation = solids.rotation_of(orientation)
             near = np.isfinite(rotation).all() and (np.abs(place) < _FAR).all()
             poses[batch.plan.body_in_row(i)] = (rotation, place) if there[i] and near else None
         return poses

@@ -1,4 +1,4 @@
-"""What of a world a picture shows, when nobody says."""
+"""What of a world a picture shows by default."""
 
 from __future__ import annotations
 

@@ -232,7 +232,7 @@ NB_MODULE(_record, m) {
   bind_reading(m);
   m.def("unfinished_recordings", &unfinished_recordings, nb::arg("file"),
         nb::call_guard<nb::gil_scoped_release>(),
-        "The part files beside a file that hold something and that nobody writes any more.");
+        "The part files beside a file that have contents and no writer any more.");
   m.def(
       "scene_to_json",
       [](nb::object scene) { return scene_to_json(from_python<Scene>(scene, "scene")); },

@@ -46,10 +46,10 @@ class HullTraits final : public TraitsOf<Hull> {
     for (const detail::HullFace& f : solid.faces) {
       double low = f.offset;
       for (const Vec3& v : vertices) low = std::min(low, f.normal.dot(v));
-      if (f.offset - low >= detail::kSmallestSize) continue;
+      if (f.offset - low >= detail::kMinSize) continue;
       checker.add("vertices", "are " + detail::number_text(f.offset - low) +
                                   " m thick, must be at least " +
-                                  detail::number_text(detail::kSmallestSize));
+                                  detail::number_text(detail::kMinSize));
       return;
     }
   }

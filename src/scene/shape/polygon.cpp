@@ -11,21 +11,21 @@ namespace {
 using detail::Checker, detail::kPi;
 
 // Smallest area relative to the squared extent: a thinner polygon has no usable inside.
-constexpr double kSmallestArea = 1e-6;
+constexpr double kMinArea = 1e-6;
 
 // Precondition: vertices are distinct. sense is +1 for counter-clockwise, -1 for clockwise.
 void check_corners(Checker& checker, const std::vector<Vec2>& vertices, double sense) {
   const std::size_t n = vertices.size();
   bool good = true;
-  double turned = 0;  // rad, sum of the exterior angles
+  double winding = 0;  // rad, sum of the exterior angles
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 before = vertices[i] - vertices[(i + n - 1) % n];
     const Vec2 after = vertices[(i + 1) % n] - vertices[i];
     const double sine = sense * detail::cross(before, after) / (before.norm() * after.norm());
-    turned += std::atan2(sense * detail::cross(before, after), before.dot(after));
-    if (sine > detail::kSmallestTurn) continue;
+    winding += std::atan2(sense * detail::cross(before, after), before.dot(after));
+    if (sine > detail::kMinCornerSine) continue;
     good = false;
-    if (sine < -detail::kSmallestTurn) {
+    if (sine < -detail::kMinCornerSine) {
       checker.add(
           detail::element_name("vertices", i),
           "at " + detail::vector_text(vertices[i]) + " m bends inwards, polygons must be convex");
@@ -35,8 +35,8 @@ void check_corners(Checker& checker, const std::vector<Vec2>& vertices, double s
                       " m is on a line with its neighbours, must be a corner");
     }
   }
-  // A star turns left at every vertex, but goes around twice.
-  if (good && turned > 3 * kPi) {
+  // A star bends left at every vertex, but goes around twice.
+  if (good && winding > 3 * kPi) {
     checker.add("vertices", "go around more than once, must be the outline of a convex polygon");
   }
 }
@@ -61,8 +61,7 @@ void check_polygon(Checker& checker, const Polygon& polygon) {
     if (i + 1 < vertices.size()) area += 0.5 * detail::cross(edge, vertices[i + 1] - vertices[0]);
   }
   if (!detail::check_distinct(checker, vertices, extent)) return;
-  const double smallest =
-      std::max(kSmallestArea * extent * extent, detail::kSmallestSize * detail::kSmallestSize);
+  const double smallest = std::max(kMinArea * extent * extent, detail::kMinSize * detail::kMinSize);
   if (std::abs(area) < smallest) {
     checker.add("vertices", "enclose " + detail::number_text(std::abs(area)) +
                                 " m^2, must be at least " + detail::number_text(smallest));
@@ -74,7 +73,7 @@ void check_polygon(Checker& checker, const Polygon& polygon) {
 
 // What a radius r adds to area, centre moment and polar moment about vertex 0: a rectangle along
 // each edge of length l, with (l^2 + r^2) / 12 about its own centre, and at each corner a sector of
-// the angle a that the outline turns there, whose centre of mass is 4 r sin(a / 2) / (3 a) away
+// the exterior angle a there, whose centre of mass is 4 r sin(a / 2) / (3 a) away
 // from the corner and which has r^2 / 2 about it.
 void add_rounding(const Polygon& polygon, double& area, Vec2& first, double& second) {
   const std::vector<Vec2>& v = polygon.vertices;
@@ -90,10 +89,11 @@ void add_rounding(const Polygon& polygon, double& area, Vec2& first, double& sec
     first += length * r * middle;
     second += length * r * ((length * length + r * r) / 12 + middle.squaredNorm());
 
-    const double turn = std::atan2(before.x() * edge.y() - before.y() * edge.x(), before.dot(edge));
-    const double sector = turn * r * r / 2;
+    const double angle =
+        std::atan2(before.x() * edge.y() - before.y() * edge.x(), before.dot(edge));
+    const double sector = angle * r * r / 2;
     const Vec2 out = (normal + Vec2(before.y(), -before.x()).normalized()).normalized();
-    const Vec2 away = out * (4 * r * std::sin(turn / 2) / (3 * turn));
+    const Vec2 away = out * (4 * r * std::sin(angle / 2) / (3 * angle));
     area += sector;
     first += sector * (corner + away);
     // About the corner, shifted to vertex 0.

@@ -14,7 +14,7 @@ class SegmentTraits final : public TraitsOf<Segment> {
   void examine(Checker& checker, const Segment& s) const override {
     const bool good = detail::check_point(checker, "a", s.a);
     if (!detail::check_point(checker, "b", s.b) || !good) return;
-    if ((s.b - s.a).norm() >= detail::kSmallestSize) return;
+    if ((s.b - s.a).norm() >= detail::kMinSize) return;
     checker.add("b", "is " + detail::vector_text(s.b) + " m, the same as a; must be apart from it");
   }
   std::vector<Convex> parts_of(const Segment& s, const Vec3& x, const Mat3& r,

@@ -24,7 +24,7 @@ void check_terrain(Checker& checker, const Terrain& terrain) {
 
   double extent = 0;  // m, farthest point from point 0
   for (const Vec2& p : points) extent = std::max(extent, (p - points[0]).norm());
-  const double least = std::max(detail::kSameVertex * extent, detail::kSmallestSize);
+  const double least = std::max(detail::kSameVertex * extent, detail::kMinSize);
   for (std::size_t i = terrain.loop ? 0 : 1; i < n; ++i) {
     const std::size_t before = (i + n - 1) % n;
     if ((points[i] - points[before]).norm() > least) continue;
@@ -37,10 +37,10 @@ void check_terrain(Checker& checker, const Terrain& terrain) {
   for (std::size_t i = terrain.loop ? 0 : 1; i + (terrain.loop ? 0 : 1) < n; ++i) {
     const Vec2 before = (points[i] - points[(i + n - 1) % n]).normalized();
     const Vec2 after = (points[(i + 1) % n] - points[i]).normalized();
-    if (before.dot(after) > 0 || std::abs(detail::cross(before, after)) > detail::kSmallestTurn)
+    if (before.dot(after) > 0 || std::abs(detail::cross(before, after)) > detail::kMinCornerSine)
       continue;
     checker.add(name(i),
-                "at " + detail::vector_text(points[i]) + " m folds back, must turn by less");
+                "at " + detail::vector_text(points[i]) + " m folds back, must bend by less");
   }
 }
 

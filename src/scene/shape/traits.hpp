@@ -71,9 +71,9 @@ inline constexpr double kPi = std::numbers::pi;
 
 // Vertices closer than this share of the extent are the same to float32.
 inline constexpr double kSameVertex = 1e-6;
-// Smallest sine by which an outline turns at a vertex: below it, the normals of two edges cannot be
+// Smallest sine of the exterior angle at a vertex: below it, the normals of two edges cannot be
 // told apart and contact features would flicker between them.
-inline constexpr double kSmallestTurn = 1e-5;
+inline constexpr double kMinCornerSine = 1e-5;
 
 // |value| <= kLargestSize; for offsets and coordinates, which may have any sign.
 bool check_coordinate(Checker& checker, std::string_view field, double value);
