@@ -58,7 +58,7 @@ Scene flying_chain() {
   const auto corner = [](int i) { return Vec3(0.8 * i, 0.3 * (i % 2), 0.2 * (i % 3)); };
   for (int i = 0; i < 5; ++i) {
     scene.add(lump(Space::spatial, 1 + 0.2 * i, Vec3(0.02, 0.05, 0.06) * (1 + i),
-                     (corner(i) + corner(i + 1)) / 2));
+                   (corner(i) + corner(i + 1)) / 2));
     if (i == 0) continue;
     scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), at(corner(i)), BallJoint{}));
   }
