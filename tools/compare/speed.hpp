@@ -12,7 +12,8 @@ struct Speed {
   Kernels kernels;
   int worlds = 0, mujoco_worlds = 0, steps = 0, rounds = 0;
   double tolerance = 0;  // of both
-  // World-steps/s of each round: ours, MuJoCo's in a loop over worlds and by its batches.
+  // World-steps/s of each round: ours, MuJoCo's in a loop over worlds and by its batches, those
+  // with an mjData for each world or with one for all, whichever are faster.
   std::vector<double> ours, mujoco, mujoco_batch;
   double contacts = 0, mujoco_contacts = 0;  // per world after the last step
   std::uint64_t hash = 0;                    // of our state after the last step of each round
