@@ -27,13 +27,13 @@ std::vector<TwinLink> double_pendulum() {
 }
 
 template <class Real>
-void check_accelerations(const kernels::Kernels<Real>& kernels, double tolerance) {
+void check_accelerations(const kernels::Kernels<Real>& kernels, double tolerance, bool by_links) {
   constexpr double kDt = 0.01;
   for (int trial = 0; trial < 30; ++trial) {
-    INFO(kernels.isa << ", trial " << trial);
+    INFO(kernels.isa << ", trial " << trial << (by_links ? ", by links" : ", in joint space"));
     Random random(static_cast<std::uint64_t>(100 + trial));
     const TreeTwin twin(random_trees(random, 30, random.chance(0.5) ? 0.3 : 3), {1, -2, -9});
-    TreeGroup<Real> group(kernels, twin.links(), {1, -2, -9}, kDt);
+    TreeGroup<Real> group(kernels, twin.links(), {1, -2, -9}, kDt, by_links);
     std::vector<TreeState> states;
     for (int lane = 0; lane < group.lanes(); ++lane) {
       states.push_back(random_state(random, twin));
@@ -90,8 +90,10 @@ void check_bodies(const kernels::Kernels<Real>& kernels, double tolerance) {
 }  // namespace
 
 TEST_CASE("trees: accelerations are those of Kane's equations", "[robots][fast]") {
-  for_each_isa<double>([](const auto& k) { check_accelerations<double>(k, 1e-11); });
-  for_each_isa<float>([](const auto& k) { check_accelerations<float>(k, 2e-3); });
+  for (const bool by_links : {true, false}) {
+    for_each_isa<double>([&](const auto& k) { check_accelerations<double>(k, 1e-11, by_links); });
+    for_each_isa<float>([&](const auto& k) { check_accelerations<float>(k, 2e-3, by_links); });
+  }
 }
 
 TEST_CASE("trees: bodies are where the coordinates say", "[robots][fast]") {

@@ -97,16 +97,16 @@ double gradient_left(const TreeTwin& twin, const std::vector<TwinRow>& rows, con
 }
 
 template <class Real>
-void check_minimum(const kernels::Kernels<Real>& kernels, double tolerance) {
+void check_minimum(const kernels::Kernels<Real>& kernels, double tolerance, bool by_links) {
   constexpr double kDt = 0.005;
   int active = 0;
   for (int trial = 0; trial < 30; ++trial) {
-    INFO(kernels.isa << ", trial " << trial);
+    INFO(kernels.isa << ", trial " << trial << (by_links ? ", by links" : ", in joint space"));
     Random random(static_cast<std::uint64_t>(900 + trial));
     std::vector<TwinLink> links = random_trees(random, 20, 0.5);
     add_limits(random, links);
     const TreeTwin twin(links, {0, 0, -9.81});
-    TreeGroup<Real> group(kernels, links, {0, 0, -9.81}, kDt);
+    TreeGroup<Real> group(kernels, links, {0, 0, -9.81}, kDt, by_links);
     std::vector<TreeState> states;
     for (int lane = 0; lane < group.lanes(); ++lane) {
       states.push_back(random_state(random, twin));
@@ -150,8 +150,10 @@ TEST_CASE("trees: inverse weights are those of the inertia by Kane's equations",
 }
 
 TEST_CASE("trees: limits minimise the cost of the newton solver", "[robots][fast]") {
-  for_each_isa<double>([](const auto& k) { check_minimum<double>(k, 1e-10); });
-  for_each_isa<float>([](const auto& k) { check_minimum<float>(k, 2e-3); });
+  for (const bool by_links : {true, false}) {
+    for_each_isa<double>([&](const auto& k) { check_minimum<double>(k, 1e-10, by_links); });
+    for_each_isa<float>([&](const auto& k) { check_minimum<float>(k, 2e-3, by_links); });
+  }
 }
 
 TEST_CASE("trees: a rod comes to rest on its limit where the soft row carries it",

@@ -8,24 +8,27 @@
 
 namespace manyworlds::test {
 
-inline PlanTrees trees_of(const std::vector<TwinLink>& links, double dt) {
+// Newton steps by links or in joint space (kernels/tree/link_space.hpp, joint_space.hpp).
+inline PlanTrees trees_of(const std::vector<TwinLink>& links, double dt, bool by_links = true) {
   TreeBuilder builder;
   for (const TwinLink& link : links) {
     builder.add(link.frame);
     for (const NewTreeJoint& joint : link.joints) builder.add(joint);
   }
-  return builder.finish(dt, {100, 50, 1e-12, 1e-6, 0});
+  PlanTrees trees = builder.finish(dt, {100, 50, 1e-12, 1e-6, 0});
+  trees.by_links = by_links;
+  return trees;
 }
 
 template <class Real>
 class TreeGroup {
  public:
   TreeGroup(const kernels::Kernels<Real>& kernels, const std::vector<TwinLink>& links,
-            const Vec3& gravity, double dt)
+            const Vec3& gravity, double dt, bool by_links = true)
       : kernels_(kernels),
         lanes_(kernels.lanes),
         bodies_(static_cast<int>(links.size())),
-        trees_(trees_of(links, dt)),
+        trees_(trees_of(links, dt, by_links)),
         tables_(trees_, first(), first() + coordinates()),
         rows_(first() + coordinates() + 2 * dofs()),
         state_(count(rows_)),
