@@ -113,7 +113,8 @@ void bind_batch(nb::module_& m) {
       .def("step_to", &step_to, nb::arg("clock"), nb::arg("max_steps"),
            "Takes whole steps up to a time in s, without the GIL, and returns how many.")
       .def(
-          "reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(), nb::arg("keyframe").none(),
+          "reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(),
+          nb::arg("keyframe").none(),
           "All worlds from the first episode, or those in the mask: the next episode, or the first "
           "of other seeds. To a keyframe, without seeds.");
   bind_batch_state(c);

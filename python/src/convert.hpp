@@ -39,8 +39,8 @@ bool is_dataclass(nb::handle value, const char* name);
 template <class T>
 struct Described;  // name, and fields(visit, value): visit("member", value.member)...
 
-// Index of the "body", "joint", "control" or "keyframe" of a scene that a handle, a name or an index means, and
-// (body, index) of a shape by its name. Raise IndexError and ValueError.
+// Index of the "body", "joint", "control" or "keyframe" of a scene that a handle, a name or an
+// index means, and (body, index) of a shape by its name. Raise IndexError and ValueError.
 int find_in(const Scene& scene, const std::string& kind, nb::handle name);
 std::pair<int, int> find_shape_in(const Scene& scene, const std::string& name, nb::handle body);
 // An index from `low` to below a count, or an IndexError.
