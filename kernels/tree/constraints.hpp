@@ -7,6 +7,11 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+// The cost of accelerations without that of rows, along a search: derivatives where it begins.
+struct SmoothCost {
+  Float slope, curvature;
+};
+
 class ConstraintRows {
  public:
   MW_INLINE ConstraintRows(const Constants& t, const Work& w)

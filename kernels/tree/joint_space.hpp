@@ -7,11 +7,6 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// The cost of accelerations without that of rows, along a search: derivatives where it begins.
-struct SmoothCost {
-  Float slope, curvature;
-};
-
 class JointSpace {
  public:
   MW_INLINE JointSpace(const Constants& t, const Work& w)

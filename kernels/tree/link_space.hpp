@@ -5,7 +5,7 @@
 // other way is joint_space.hpp.
 #pragma once
 
-#include "kernels/tree/joint_space.hpp"
+#include "kernels/tree/constraints.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

@@ -5,7 +5,7 @@
 // M.
 #pragma once
 
-#include "kernels/tree/link_space.hpp"
+#include "kernels/tree/constraints.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

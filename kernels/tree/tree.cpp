@@ -2,6 +2,8 @@
 // is implicit (implicit.hpp) at the end of the step, or Runge-Kutta.
 #include "kernels/tree/ball_springs.hpp"
 #include "kernels/tree/implicit.hpp"
+#include "kernels/tree/joint_space.hpp"
+#include "kernels/tree/link_space.hpp"
 #include "kernels/tree/newton.hpp"
 #include "kernels/tree/runge_kutta.hpp"
 #include "kernels/work/solver_tables.hpp"
