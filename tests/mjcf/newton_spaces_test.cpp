@@ -51,7 +51,7 @@ std::string heap(const std::string& option) {
 }
 
 std::string stage_of(const std::string& xml) {
-  for (const auto& stage : compile(load_mjcf_string(xml).scene)->report().stages) {
+  for (const auto& stage : compile(load_mjcf_string(xml).scene).report().stages) {
     if (stage.name == "tree") return stage.why;
   }
   return "";
