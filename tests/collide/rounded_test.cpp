@@ -30,7 +30,8 @@ TEST_CASE("a rounded polygon weighs what its solid does", "[fast][scene]") {
   Capsule capsule{0.2, 0.5};
   check_equal(
       of(bar),
-      mass_properties(scene, body_of({shape(capsule, Vec3::Zero(), rotation_of(kPi / 2, Vec3::UnitZ()))})),
+      mass_properties(scene,
+                      body_of({shape(capsule, Vec3::Zero(), rotation_of(kPi / 2, Vec3::UnitZ()))})),
       1, 1e-5);
 
   // Any: summed over a grid.
