@@ -151,7 +151,7 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
   take(w.direction, tree.dofs), take(w.descent, tree.dofs);
   if (tree.by_links) {
     take(w.held, kArticulatedRows * tree.links);
-    take(w.momentum, kTwistRows * tree.links), take(w.reaction, kTwistRows * tree.links);
+    take(w.inertial, kTwistRows * tree.links), take(w.inertial_along, kTwistRows * tree.links);
     if (tree.couplings == 0) return;
     take(w.pending, kTwistRows * tree.dofs), take(w.scaled, tree.dofs);
     take(w.spread, tree.couplings * tree.dofs), take(w.multiplier, tree.couplings);

@@ -111,7 +111,7 @@ class TreeLoads {
                            fma(load_vec3(c.frame[3]), own.y, load_vec3(c.frame[0]) * own.x));
       const Vec3 force = select(mask_from_bits(c.lanes), sum, zero_of<Vec3>());
       const Vec3 arm_a = load_vec3(c.arm_a[0]), arm_b = load_vec3(c.arm_b[0]);
-      if (pair.link_b >= 0) add(pair.link_b, {cross(force, arm_b), -force});
+      add(pair.link_b, {cross(force, arm_b), -force});
       if (pair.link_a >= 0) add(pair.link_a, {cross(arm_a, force), force});
     }
   }

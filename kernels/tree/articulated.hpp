@@ -87,7 +87,10 @@ class ArticulatedBodies {
       }
       for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
         Real* at = x + k * kLanes;
-        const Float load = Float::load(at) - dot(v, load_wrench(response_of(k)));
+        // No reduced load is -0 from here on, whether rows of other lanes have been taken off or
+        // not.
+        const Float reduced = Float::load(at) + Float(Real(0));
+        const Float load = reduced - dot(v, load_wrench(response_of(k)));
         const Float own = load * Float::load(x_.inverse + k * kLanes);
         own.store(at);
         v = fma(load_twist(axis_of(w_, k)), own, v);

@@ -67,7 +67,7 @@ class BallLimitRows {
     });
   }
   // By links: its three dofs as one row.
-  MW_INLINE void couple(Couplings& couplings) const {
+  MW_INLINE void add_rows(Couplings& couplings) const {
     for_each([&](Row& row, const Limit& limit) {
       const Float weight = view(row).stiffness(), zero(Real(0));
       const Mask acts = zero < weight;

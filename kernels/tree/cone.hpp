@@ -101,7 +101,7 @@ class Cone {
     const Point before = at(from), after = at(to);
     const Mask changed =
         (before.sticks & !after.sticks) | (after.sticks & !before.sticks) | after.slides;
-    return (changed | before.slides) & (Float(Real(0)) < weight_);
+    return (changed | before.slides) & !done & (Float(Real(0)) < weight_);
   }
 
  private:

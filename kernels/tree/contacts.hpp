@@ -63,7 +63,7 @@ class ContactRows {
 
   bool none() const { return w_.tree.contact_count == 0; }
   // Wrenches on links by the forces of rows, [link][wrench][lane].
-  void find_wrenches(Real* wrenches) const {
+  void find_contact_wrenches(Real* wrenches) const {
     for (int r = 0; r < t_.tree.links * kTwistRows; ++r) {
       Float(Real(0)).store(wrenches + r * kLanes);
     }
@@ -86,7 +86,7 @@ class ContactRows {
   }
   void add_forces(Real* load) const {
     if (none()) return;
-    find_wrenches(w_.tree.force);
+    find_contact_wrenches(w_.tree.force);
     add_wrenches(t_, w_, w_.tree.force, load);
   }
 
@@ -154,7 +154,7 @@ class ContactRows {
     });
   }
   // Of links against links.
-  void couple(Couplings& couplings) const {
+  void add_rows(Couplings& couplings) const {
     for_each([&](const Contact& c, const TreePair& pair) {
       if (pair.link_a < 0) return;
       for_each_term(c, pair, [&](Vec3 along, Float weight) {
@@ -231,7 +231,7 @@ class ContactRows {
       const Twist v = load_twist(twists + link * kTwistRows * kLanes);
       return v.v + cross(v.w, load_vec3(arm));
     };
-    Vec3 v = pair.link_b < 0 ? zero_of<Vec3>() : at(pair.link_b, c.arm_b[0]);
+    Vec3 v = at(pair.link_b, c.arm_b[0]);
     if (pair.link_a >= 0) v = v - at(pair.link_a, c.arm_a[0]);
     return v;
   }

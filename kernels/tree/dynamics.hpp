@@ -8,8 +8,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 MW_INLINE Real* link_rows(Real* rows, int link, int count) { return rows + link * count * kLanes; }
 
-// Velocities of links, and the accelerations that they would have without any of the dofs. Gravity
-// is an acceleration of the world upward.
+// Velocities of links, and the accelerations that they would have without any of the dofs.
 inline void find_velocities(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.links; ++i) {
     const TreeLink& link = t.tree.link[i];

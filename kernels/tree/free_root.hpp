@@ -50,7 +50,8 @@ class FreeRoot {
   MW_INLINE Twist expand(const Real* y) const {
     Float a[kSize];
     for (int r = kSize - 1; r >= 0; --r) {
-      a[r] = Float::load(y + r * kLanes) * Float::load(inverse_ + r * kLanes);
+      const Float reduced = Float::load(y + r * kLanes) + Float(Real(0));  // never -0
+      a[r] = reduced * Float::load(inverse_ + r * kLanes);
       for (int k = r + 1; k < kSize; ++k) a[r] = fnma(entry(k, r), a[k], a[r]);
     }
     return {{a[3], a[4], a[5]}, {a[0], a[1], a[2]}};

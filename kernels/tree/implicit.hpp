@@ -32,7 +32,8 @@ class FreeLink {
         first_(t.tree.link[link].first_dof),
         link_(link) {}
 
-  // Solves (M + h dC/dv) a = load, M with dampers, and leaves a in `out`, [dof][lane].
+  // Solves (M + h dC/dv) a = load and leaves a in `out`, [dof][lane]. Free joints have neither
+  // armatures nor dampers.
   void solve(const Real* load, Real* out) const {
     const Vec3 spin = load_twist(link_rows(w_.tree.velocity, link_, kTwistRows)).w;
     const auto momentum = [&](Vec3 x) { return mul(inertia_.rotary, x); };  // about the joint

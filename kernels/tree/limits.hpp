@@ -86,7 +86,7 @@ class LimitRows {
       fma(share, view(row).stiffness(), Float::load(to)).store(to);
     });
   }
-  MW_INLINE void couple(Couplings& couplings) const {
+  MW_INLINE void add_rows(Couplings& couplings) const {
     for_each([&](Row& row, const Limit& limit) {
       if (limit.terms == 1 || !is_active(row)) return;
       const Float weight = view(row).stiffness(), zero(Real(0));

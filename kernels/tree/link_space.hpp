@@ -16,7 +16,7 @@ class LinkSpace {
 
   void start(const ConstraintRows& rows) {
     find_twists(t_, w_, x_.guess, x_.rate);
-    multiply(x_.rate, x_.momentum);
+    multiply(x_.rate, x_.inertial);
     rows.start(x_.guess, x_.rate);
     bodies_.make_stale(true);
     for (int i = 0; i < t_.tree.links; ++i) x_.is_held[i] = false;
@@ -26,11 +26,11 @@ class LinkSpace {
     for_each_dof(t_, [&](int k) { Float(Real(0)).store(x_.row_load + k); });
     rows.add_joint_forces(x_.row_load);
     const bool touched = !rows.contacts().none();
-    if (touched) rows.contacts().find_wrenches(x_.force);
+    if (touched) rows.contacts().find_contact_wrenches(x_.force);
     for (int i = t_.tree.links - 1; i >= 0; --i) {
       const TreeLink& link = t_.tree.link[i];
       Real* at = link_rows(x_.force, i, kTwistRows);
-      Wrench f = load_wrench(link_rows(x_.momentum, i, kTwistRows));
+      Wrench f = load_wrench(link_rows(x_.inertial, i, kTwistRows));
       if (touched) f = f - load_wrench(at);
       for (int c = link.first_child; c >= 0; c = t_.tree.link[c].next_child) {
         f = f + load_wrench(link_rows(x_.force, c, kTwistRows));
@@ -53,19 +53,20 @@ class LinkSpace {
     bodies_.factorise(x_.diagonal);
     bodies_.make_stale(false);
     couplings_.clear();
-    rows.couple(couplings_);
+    rows.add_rows(couplings_);
     bodies_.reduce(x_.direction);
     if (couplings_.any()) couplings_.correct(x_.direction);
     bodies_.expand(x_.direction, x_.rate);
   }
   SmoothCost search(const ConstraintRows& rows) const {
-    multiply(x_.rate, x_.reaction);
+    multiply(x_.rate, x_.inertial_along);
     rows.search(x_.direction, x_.rate);
     SmoothCost out{Real(0), Real(0)};
     for (int i = 0; i < t_.tree.links; ++i) {
       const Twist v = load_twist(link_rows(x_.rate, i, kTwistRows));
-      out.slope = out.slope + dot(v, load_wrench(link_rows(x_.momentum, i, kTwistRows)));
-      out.curvature = out.curvature + dot(v, load_wrench(link_rows(x_.reaction, i, kTwistRows)));
+      out.slope = out.slope + dot(v, load_wrench(link_rows(x_.inertial, i, kTwistRows)));
+      out.curvature =
+          out.curvature + dot(v, load_wrench(link_rows(x_.inertial_along, i, kTwistRows)));
     }
     for (int k = 0; k < t_.tree.dofs; ++k) {
       const Float d = Float::load(x_.direction + k * kLanes), armature(t_.tree.dof[k].armature);
@@ -83,7 +84,7 @@ class LinkSpace {
       }
     };
     go(x_.guess, x_.direction, t_.tree.dofs);
-    go(x_.momentum, x_.reaction, kTwistRows * t_.tree.links);
+    go(x_.inertial, x_.inertial_along, kTwistRows * t_.tree.links);
   }
 
  private:

@@ -14,7 +14,6 @@ struct Wrench {
   Vec3 n, f;
 };
 MW_INLINE Twist operator+(const Twist& a, const Twist& b) { return {a.w + b.w, a.v + b.v}; }
-MW_INLINE Twist operator*(const Twist& a, Float s) { return {a.w * s, a.v * s}; }
 MW_INLINE Twist fma(const Twist& a, Float s, const Twist& c) {
   return {fma(a.w, s, c.w), fma(a.v, s, c.v)};
 }

@@ -113,10 +113,11 @@ struct TreeWork {
   Real* offset;    // [link][3][lane], of its frame from that of its parent
   Real* axis;      // [dof][twist of a unit velocity][lane]
   Real* velocity;  // [link][twist][lane]
-  Real* rate;      // [link][twist][lane], acceleration but for those of the dofs; less gravity
+  Real* rate;      // [link][twist][lane], acceleration but for those of the dofs; then scratch of
+                   // Newton's method: twists by its accelerations, or along its search
   Real* force;     // [link][wrench][lane]
   Real* inertia;   // [link][kInertiaRows][lane]; in joint space with all links beyond it
-  Real* diagonal;  // [dof][lane], what is added to that of the joint-space inertia
+  Real* diagonal;  // [dof][lane], what is added to armatures: stiffness of limits, dampers
   Real* load;      // [dof][lane], generalised forces, then accelerations
   Real* free;      // [dof][lane], accelerations of links that move freely; only with implicit_fast
   Real* next;      // [coordinate, then dof][lane], the state after the step
@@ -125,14 +126,14 @@ struct TreeWork {
   Real* displacement;  // [dof][lane], of the stage from the start
   Real* stage_rate;    // [dof][lane] of coordinates, then of velocities
   Real* rate_sum;      // as those
-  // By links (articulated.hpp).
+  // By links (articulated.hpp). Rows mark their links as stale in either space.
   Real* held;             // [link][articulated inertia][lane], of its contacts with the world
   Real* beyond;           // [link][articulated inertia][lane], as its parent feels it
   Real* response;         // [dof][wrench][lane], to its unit acceleration
   Real* inverse;          // [dof][lane], 1 / D
   bool *is_held, *stale;  // [link] it has such contacts; its numbers are to be found anew
-  Real* momentum;         // [link][wrench][lane], its inertia times its acceleration
-  Real* reaction;         // [link][wrench][lane], times that along the search
+  Real* inertial;         // [link][wrench][lane], its inertia times its acceleration
+  Real* inertial_along;   // [link][wrench][lane], times that along the search
   // Of rows that couple branches (couplings.hpp).
   Real* pending;           // [dof][wrench][lane]
   Real* spread;            // [row][dof][lane]

@@ -22,7 +22,9 @@ constexpr double kMinWeight = 1e-15;
 int max_points(const PlanClass& c) {
   using kernels::ShapeKind;
   if (!is_multi(c.list)) return 1;
-  return c.kind == kernels::pair_of(ShapeKind::capsule, ShapeKind::capsule) ? 2 : 4;
+  const auto is = [&](ShapeKind a, ShapeKind b) { return c.kind == kernels::pair_of(a, b); };
+  return is(ShapeKind::capsule, ShapeKind::capsule) || is(ShapeKind::box, ShapeKind::capsule) ? 2
+                                                                                              : 4;
 }
 
 double share_of_first(const SoftContact& a, const SoftContact& b) {
