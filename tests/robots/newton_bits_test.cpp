@@ -143,6 +143,46 @@ TEST_CASE("robots have their bits under other options, too", "[fast][bits][robot
   }
 }
 
+TEST_CASE("these tests have robots in both spaces of the solver", "[fast][robots]") {
+  const auto space_of = [](const Scene& scene) {
+    std::string why;
+    for (const auto& stage : compile(scene).report().stages) {
+      if (stage.name == "tree") why = stage.why;
+    }
+    return why;
+  };
+  CHECK_THAT(space_of(robots()), Catch::Contains("by the joint-space inertia"));
+  CHECK_THAT(space_of(lone_walker()), Catch::Contains("by articulated bodies"));
+}
+
+// A block on which nothing acts, above one on the ground, which it touches in some worlds: where it
+// does not, its accelerations are zeros, and their signs are its own.
+TEST_CASE("a body at rest has its bits beside worlds in which it is touched",
+          "[fast][bits][robots]") {
+  constexpr int kMany = 40;
+  Scene scene = newton_scene();
+  scene.add(ground(Space::spatial, 0.9));
+  RobotBuilder build(scene);
+  build.body(Box{{0.1, 0.1, 0.1}}, {0, 0, 0.0999});
+  Body& still = scene.at(build.body(Box{{0.1, 0.08, 0.06}}, {0, 0, 0.36}));
+  still.gravity_scale = 0;
+  still.jitter.position = {0, 0, 0.1}, still.jitter.any_orientation = true;
+  const Plan plan = compile(scene);
+  const auto stepped = [&](const Table& table, int first, int worlds) {
+    BatchOptions options = options_of(table, worlds);
+    options.seed = static_cast<std::uint64_t>(first);
+    Batch batch(plan, options);
+    batch.step(3);
+    return hashes(batch);
+  };
+  for (const Table& table : widest_tables()) {
+    INFO(name(table));
+    const auto reference = stepped(table, 0, kMany);
+    for (int w = 0; w < kMany; ++w)
+      CHECK(stepped(table, w, 1).front() == reference[static_cast<std::size_t>(w)]);
+  }
+}
+
 TEST_CASE("robots beside other kinds of worlds keep their bits", "[fast][bits][robots]") {
   Scene lone = newton_scene();
   lone.add(ground(Space::spatial, 0.7));

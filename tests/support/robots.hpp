@@ -123,6 +123,17 @@ inline Scene robots() {
   return scene;
 }
 
+// One walker and a free ball: few enough to be solved by articulated bodies, where the robots above
+// are in joint space.
+inline Scene lone_walker() {
+  Scene scene = newton_scene();
+  scene.name = "one walker";
+  scene.add(ground(Space::spatial, 0.9));
+  add_walker(scene, 0, 0.08);
+  RobotBuilder(scene).body(Sphere{0.1}, {0.1, 0.05, 1.4});
+  return scene;
+}
+
 // The same with options that take other ways through the step.
 inline std::vector<Scene> robots_of_other_options() {
   Scene wet = robots();
@@ -135,7 +146,11 @@ inline std::vector<Scene> robots_of_other_options() {
   stiff.options.solver.cone = FrictionCone::elliptic;
   stiff.options.solver.impedance_ratio = 4;
   stiff.options.integrator = Integrator::implicit_fast;
-  return {wet, stiff};
+  Scene lone = lone_walker(), round = lone_walker();
+  round.name = "one walker with round cones";
+  round.options.solver.cone = FrictionCone::elliptic;
+  round.options.integrator = Integrator::implicit_fast;
+  return {wet, stiff, lone, round};
 }
 
 }  // namespace manyworlds::test
