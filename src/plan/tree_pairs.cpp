@@ -162,13 +162,15 @@ class TreePairs {
   std::vector<int> link_;  // [body with state]
 };
 
-// Newton steps by links take time for each row that couples branches that acts, in joint space for
-// each pair of dofs. Links of a tree seldom touch, trees that can touch do.
+// Newton steps by links take time for each link, and for each row that acts and couples branches;
+// in joint space for each pair of dofs, of which few robots in the plane have many. Links of a tree
+// seldom touch, trees that can touch do.
 void choose_space(PlanTrees& trees, const TreePairs::Couplings& of_contacts) {
-  constexpr int kMaxCouplings = 1024, kRowsPerDof = 4;
+  constexpr int kMaxCouplings = 1024, kRowsPerDof = 4, kFewDofs = 10;
+  const int dofs = static_cast<int>(trees.dofs.size());
   trees.couplings += of_contacts.within + of_contacts.between;
-  trees.by_links = trees.couplings <= kMaxCouplings &&
-                   of_contacts.between <= kRowsPerDof * static_cast<int>(trees.dofs.size());
+  trees.by_links = dofs > kFewDofs && trees.couplings <= kMaxCouplings &&
+                   of_contacts.between <= kRowsPerDof * dofs;
 }
 
 }  // namespace
