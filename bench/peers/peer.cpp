@@ -150,7 +150,7 @@ void measure(const std::string& scene, const Options& options, const Engine& eng
 void print_help(const char* program, const Engine& engine) {
   std::printf(
       "usage: %s [--scenes A,B,...] [--worlds N] [--warm-up N] [--steps N] | --list\n"
-      "Steps N worlds (1024) of each scene (all) alternately on one thread with %s %s: warm-up\n"
+      "Steps N worlds (1024) of each scene (all) round robin on one thread with %s %s: warm-up\n"
       "steps (60), then timed ones (300), of 1/60 s. Prints a line of JSON for each scene.\n"
       "--list prints the scenes: %s.\n",
       program, engine.name, engine.version.c_str(), joined(scenes_of(engine)).c_str());
