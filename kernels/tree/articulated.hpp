@@ -18,7 +18,7 @@ class ArticulatedBodies {
     for (int i = 0; i < t_.tree.links; ++i) x_.stale[i] = all;
   }
   // Eliminates the dofs of all stale links and of those that carry them, the last one first.
-  // `diagonal` is added to the armatures; `held`: stiffnesses of links where `is_held`.
+  // `diagonal` is added to the armatures, and contacts of links where they are held.
   void factorise(const Real* diagonal) const {
     for (int i = t_.tree.links - 1; i >= 0; --i) {
       const TreeLink& link = t_.tree.link[i];

@@ -52,7 +52,7 @@ class ConstraintRows {
   }
   // By links: of single dofs, on a diagonal [dof][lane]; of links; of what couples branches.
   void add_stiffness(Real* diagonal) const { limits_.add_stiffness(diagonal); }
-  void hold(const TreeWork& x) const { contacts_.hold(x); }
+  void hold() const { contacts_.hold(); }
   void add_rows(Couplings& couplings) const {
     limits_.add_rows(couplings), balls_.add_rows(couplings), contacts_.add_rows(couplings);
   }

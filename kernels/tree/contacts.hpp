@@ -140,7 +140,8 @@ class ContactRows {
   }
 
   // Of links against the world, where links are stale.
-  void hold(const TreeWork& x) const {
+  void hold() const {
+    const TreeWork& x = w_.tree;
     for (int i = 0; i < t_.tree.links; ++i) x.is_held[i] = x.is_held[i] && !x.stale[i];
     for_each([&](const Contact& c, const TreePair& pair) {
       if (pair.link_a >= 0 || !x.stale[pair.link_b]) return;

@@ -68,7 +68,7 @@ class Couplings {
  private:
   template <class Visit>
   static MW_INLINE void for_each_dof_in(DofBits set, Visit visit) {  // the last one first
-    for (; set != 0;) {
+    while (set != 0) {
       const int k = 63 - __builtin_clzll(set);
       set &= ~(DofBits(1) << k);
       visit(k);

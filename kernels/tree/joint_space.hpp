@@ -1,6 +1,6 @@
 // The newton solver in joint space: M as a matrix, and M + J' D J factorised. For plans in which
 // trees press on each other, whose rows are more than their dofs, or links of a robot can in more
-// ways than there is room for. The other way is link_space.hpp.
+// ways than there is room for, and for those of few dofs. The other way is link_space.hpp.
 #pragma once
 
 #include "kernels/tree/constraints.hpp"

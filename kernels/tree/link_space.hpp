@@ -49,7 +49,7 @@ class LinkSpace {
   void find_direction(const ConstraintRows& rows) {
     for_each_dof(t_, [&](int k) { Float(Real(0)).store(x_.diagonal + k); });
     rows.add_stiffness(x_.diagonal);
-    rows.hold(x_);
+    rows.hold();
     bodies_.factorise(x_.diagonal);
     bodies_.make_stale(false);
     couplings_.clear();
