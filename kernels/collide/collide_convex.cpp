@@ -85,11 +85,13 @@ void cover_corners(const Outline& ref, const Outline& incident, Vec3 n, Mask fac
 }
 
 // The place of the deepest point, where it is clearly deeper than all candidates: it may be on none
-// of the incident face's edges, or on the rim of a cap between its four points.
-void add_deepest(const Outline& ref, bool bounded, Vec3 found, Float clearly, Clipped& out) {
+// of the incident face's edges, or on the rim of a cap between its four points. `there`: lanes in
+// which it is known.
+void add_deepest(const Outline& ref, bool bounded, Vec3 found, Mask there, Float clearly,
+                 Clipped& out) {
   Float least = Real(kOutOfReach);
   for (int i = 0; i < out.size; ++i) least = min(out.z[i], least);
-  Mask over = found.z + clearly < least;
+  Mask over = there & (found.z + clearly < least);
   const Float slack = sqrt(ref.extent2) * Float(Real(0.05));
   if (bounded && ref.disc) {
     const Float x = found.x - ref.middle.x, y = found.y - ref.middle.y;
@@ -147,14 +149,15 @@ Mask clip_on_face(const Constants& t, const ConvexShape& ref, const ConvexShape&
   const Vec3 tilt{dot(frame.u, other.normal), dot(frame.v, other.normal),
                   dot(frame.n, other.normal)};
   cover_corners(outline, incident, tilt, other.face, slack, clipped);
-  add_deepest(outline, true, frame.local(flip ? axis.on_a - d : axis.on_b),
+  add_deepest(outline, true, frame.local(flip ? axis.on_a - d : axis.on_b), axis.touch,
               Float(t.face_bias) * Float(kClearly), clipped);
   KeptPoints kept;
   keep_four(clipped, Float(t.margin), extent2, kept);
-  // Where all of it is much shallower than the search says, the shapes touch beside the face.
+  // Where all of it is much shallower than the search says, the shapes touch beside the face. A
+  // tile is touched nowhere else than over its triangle.
   const Float reached = max(axis.separation, axis.face_separation);
   const Float allowed = fma(abs(reached), Real(0.05), t.face_bias);
-  const Mask good = use & kept.valid[0] & (kept.z[0] < reached + allowed);
+  const Mask good = use & kept.valid[0] & ((kept.z[0] < reached + allowed) | !axis.touch);
   put_kept(kept, frame, inc.radius, flip ? mask_from_bits(kAllLanes) : mask_from_bits(0), d, good,
            m);
   m.tangent = select(good, frame.u, m.tangent);
@@ -221,9 +224,9 @@ void put_found(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axi
   m.match_distance2 = square(a.half.x + a.half.y + a.half.z);
 }
 
-// Leaves an axis only normals that the tile's surface has; its own where there is another. Returns
-// the lanes in which the point that is then found does not touch the tile.
-Mask keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis& axis) {
+// Leaves an axis only normals that the tile's surface has; its own where there is another. The
+// point that is deepest along that may be beside the triangle, and nothing touches there.
+void keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis& axis) {
   const Vec3 n = tile.normal;
   const Vec3 lowest = support(b, -n) + d;
   const Float separation = dot(n, lowest - tile.vertex[0]);
@@ -239,7 +242,7 @@ Mask keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis&
   axis.face_separation = select(other_face, separation, axis.face_separation);
   axis.face = select(other_face, Float(Real(0)), axis.face);
   axis.face_of_b = axis.face_of_b & !other_face;
-  return other & !(is_over(tile, lowest, Real(0)) | below);
+  axis.touch = (!other) | is_over(tile, lowest, Real(0)) | below;
 }
 
 }  // namespace
@@ -251,11 +254,10 @@ void collide_convex_pair(const Constants& t, const ConvexShape& a, const Tile* t
   ConvexAxis axis;
   if (tile) active = active & tile->there;
   find_convex_axis(t, a, b, active, axis);
-  Mask bare = zero < zero;
-  if (tile) bare = keep_to_surface(*tile, b, d, axis);
+  if (tile) keep_to_surface(*tile, b, d, axis);
   put_found(a, b, axis, d, m);
   active = axis.near;
-  m.valid[0] = active & !bare;
+  m.valid[0] = active & axis.touch;
   if (!any(active)) return;
   if (is_line(a.kind) && is_line(b.kind)) put_lines(a, b, axis, d, active, m);
   // Faces win near ties. What is round around its core shows where the core is apart: there only
@@ -291,7 +293,7 @@ void collide_plane_convex(const Constants& t, const PlanePose& a, const ConvexSh
   for (int i = 0; i < f.count; ++i) {
     points.add(outline.corner[i].x, outline.corner[i].y, outline.corner[i].z);
   }
-  add_deepest(outline, false, frame.local(support(b, -a.normal)),
+  add_deepest(outline, false, frame.local(support(b, -a.normal)), mask_from_bits(kAllLanes),
               Float(t.face_bias) * Float(kClearly), points);
   KeptPoints kept;
   keep_four(points, Float(Real(1e4)), outline.extent2, kept);
@@ -364,8 +366,8 @@ void collide_convex_point(const Constants& t, const ConvexShape& a, const Tile* 
     find_convex_axis(t, a, b, active, axis);
   }
   if (tile) {
-    const Mask bare = keep_to_surface(*tile, b, d, axis);
-    m.valid[0] = axis.near & !bare;
+    keep_to_surface(*tile, b, d, axis);
+    m.valid[0] = axis.near & axis.touch;
   } else if (!sphere) {
     m.valid[0] = axis.near;
   }

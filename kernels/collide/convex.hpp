@@ -28,6 +28,7 @@ struct ConvexAxis {
   Vec3 normal;
   Float separation;
   Vec3 on_a, on_b;  // from A's p
+  Mask touch;       // lanes in which they touch there: not beside a tile (collide_convex.cpp)
   // The best of the faces' normals: the face's index and whether it is one of B.
   Vec3 face_normal;  // from A to B
   Float face_separation, face;

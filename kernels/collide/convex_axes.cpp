@@ -300,6 +300,7 @@ void find_convex_axis(const Constants& t, const ConvexShape& a, const ConvexShap
   out.separation = best.separation;
   out.on_a = s.on_a;
   out.on_b = s.on_b;
+  out.touch = mask_from_bits(kAllLanes);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE
