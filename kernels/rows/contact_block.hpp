@@ -67,7 +67,10 @@ struct alignas(64) Bounce {
   Real total_twist[kLanes];
   // The same before restitution, in steps that have any (energy.hpp).
   Real found[N][kLanes], found_tangent[S::kTangents][kLanes], found_twist[kLanes];
-  std::uint32_t participants;  // lanes that took part in an impact
+  // Of one sweep of restitution (solver/impacts.hpp).
+  Real target[N][kLanes], played[N][kLanes];  // m/s to leave with; N s so far
+  Real approach[kLanes];                      // m/s, of the point that approaches fastest
+  std::uint32_t participants, playing;        // lanes that take part in an impact; in a sweep
 };
 
 template <class Block>

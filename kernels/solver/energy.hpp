@@ -114,15 +114,6 @@ inline unsigned lanes_that_gained(const Constants& t, const Work& w) {
   return bits(gained);
 }
 
-template <class S, int N>
-MW_INLINE int body_a_of(const Work& w, const ContactBlock<S, N>& s, int lane) {
-  return (s.offset_a[lane] - w.velocity_base[lane]) / S::kRow;
-}
-template <class S, int N>
-MW_INLINE int body_b_of(const Work& w, const ContactBlock<S, N>& s, int lane) {
-  return (s.offset_b[lane] - w.velocity_base[lane]) / S::kRow;
-}
-
 // Joins the bodies of a block that act on each other in this lane.
 template <class S, int N>
 MW_INLINE void join_bodies(const Constants& t, const Work& w, const ContactBlock<S, N>& s,

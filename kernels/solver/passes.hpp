@@ -38,24 +38,14 @@ struct Passes {
 
   static void restitute(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    unsigned active = 0;
-    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      auto& bounce = bounce_at<S, N>(list, i);
-      find_participants(t, s, bounce);
-      active |= bounce.participants;
-    });
+    const unsigned active = find_participants<S, kDense>(t, w);
     if (active == 0) return;
     for_each_register<S, kDense>(
         t, w, [&](int at, Float, Float) { Float::load(w.velocity + at).store(w.warmed + at); });
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       take_back<kDense>(w, s, bounce_at<S, N>(list, i));
     });
-    for (int sweep = 0; sweep < t.restitution_sweeps && active != 0; ++sweep) {
-      active = 0;
-      for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-        active |= play_impact<kDense>(t, w, s, bounce_at<S, N>(list, i), sweep == 0);
-      });
-    }
+    play_impacts<S, kDense>(t, w, active);
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       finish_impact<kDense, kFriction>(w, s, bounce_at<S, N>(list, i));
     });

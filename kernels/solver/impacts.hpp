@@ -1,0 +1,170 @@
+// Impacts: those of one time are one system, and the strongest come first.
+//
+// In a sweep of restitution those participants play that share no body with one which approaches
+// much faster. Impacts of like strength happen at one time: solved one after the other, their order
+// would show. All of a chain at once would let it answer as one body: no cradle would work. Each
+// point shall leave with v' >= -e u, u < 0 its approach when the sweep began; projected
+// Gauss-Seidel over all that play finds impulses p >= 0 with p (v' + e u) = 0. The energy then
+// changes by sum (1 - e) p u / 2 <= 0, whatever the geometry. (Generalized reflections, as in Smith
+// et al., Reflections on Simultaneous Impact, SIGGRAPH 2012, but strongest first.)
+#pragma once
+
+#include "kernels/solver/participants.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+inline constexpr int kBlockIterations = 8;    // of Gauss-Seidel inside one manifold
+inline constexpr int kImpactIterations = 24;  // over all that play in a sweep, at most
+// An approach below this share of the fastest at one of its bodies waits. Symmetric racks have
+// ratios of 1/2, and rounding must decide nothing.
+inline constexpr Real kMuchFaster = Real(0.3);
+// Relative change of an impulse that ends the iterations, and approach, as a share of the world's
+// fastest, that is left to the next step.
+inline constexpr Real kImpactTolerance = sizeof(Real) == 4 ? Real(2e-6) : Real(1e-12);
+
+// Every other row follows when row k changes by d.
+template <class S, int N>
+MW_INLINE void couple_all(const ContactBlock<S, N>& s, int k, Float d, Float* speed) {
+  for (int j = 0; j < k; ++j) {
+    const int at = j * N - j * (j + 1) / 2 + (k - j - 1);
+    speed[j] = fma(Float::load(s.cross_k[at]), d, speed[j]);
+  }
+  couple_following(s, k, d, speed);
+}
+
+// How fast the participants among `lanes` approach, and the speeds that their points shall leave
+// with. `slow`: what approaches slower is left to the next step. Returns the fastest approach.
+template <bool kDense, class S, int N, class A>
+MW_INLINE Float weigh_impact(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
+                             Bounce<S, N>& bounce, unsigned lanes, bool first, Float slow) {
+  const Float zero(Real(0)), threshold(t.restitution_threshold);
+  lanes &= bounce.participants;
+  bounce.playing = 0;
+  if (lanes == 0) return zero;
+  const Float e = Float::load(bounce.restitution);
+  const RowVelocities<S, A, kDense> v(w, s);
+  Float speed[N], fastest = zero;
+  normal_speeds(s, v, speed);
+  for (int i = 0; i < N; ++i) {
+    const Mask there = zero < Float::load(s.mass[i]);
+    Float target = select(speed[i] < -threshold, -(e * speed[i]), zero);
+    Mask hits = there & (speed[i] < -slow);
+    if (first) {
+      // At the moment of touch it is faster than now: v^2 = v0^2 + 2 a s0.
+      const Float impact = Float::load(bounce.impact[i]);
+      const Mask struck = there & (zero < impact) & (speed[i] < zero);
+      target = select(struck, e * impact, target);
+      hits = hits | struck;
+    }
+    target.store(bounce.target[i]);
+    fastest = max(select(hits, -speed[i], zero), fastest);
+  }
+  fastest = select(mask_from_bits(lanes), fastest, zero);
+  fastest.store(bounce.approach);
+  bounce.playing = bits(zero < fastest);
+  raise_numbers<kDense>(t, w, s, fastest, bounce.playing);
+  return fastest;
+}
+
+// Chooses which of them play, and what they start from. Returns the lanes in which this one does.
+template <bool kDense, class S, int N, class A>
+MW_INLINE unsigned choose_impact(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
+                                 Bounce<S, N>& bounce, bool first) {
+  if (bounce.playing != 0) {
+    const Float fastest = largest_number<kDense>(t, w, s, bounce.playing);
+    bounce.playing &= bits(fastest * Float(kMuchFaster) <= Float::load(bounce.approach));
+  }
+  if (bounce.playing == 0 && !first) return 0;
+  const Float zero(Real(0)), one(Real(1)), e = Float::load(bounce.restitution);
+  const Mask part = mask_from_bits(bounce.participants), plays = mask_from_bits(bounce.playing);
+  for (int i = 0; i < N; ++i) {
+    const Float total = Float::load(bounce.total[i]);
+    // The substeps' impulses, scaled up, are the answer already when nothing else took part.
+    const Mask struck = plays & (zero < Float::load(bounce.impact[i]));
+    const Float guess = first ? select(struck, (one + e) * total, zero) : zero;
+    guess.store(bounce.played[i]);
+    // They were taken back: what the impacts add up to replaces them.
+    if (first) select(part, zero, total).store(bounce.total[i]);
+  }
+  return bounce.playing;
+}
+
+// One iteration over a block that plays in some of `lanes`. Returns those in which it goes on.
+template <bool kDense, class S, int N, class A>
+MW_INLINE unsigned play_impact(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bounce,
+                               unsigned lanes, bool first) {
+  lanes &= bounce.playing;
+  if (lanes == 0) return 0;
+  const Float zero(Real(0)), one(Real(1)), tolerance(kImpactTolerance);
+  const Mask plays = mask_from_bits(lanes);
+  RowVelocities<S, A, kDense> v(w, s), before = v;
+  Float speed[N], target[N], played[N], mass[N], inv_mass[N], d[N];
+  normal_speeds(s, v, speed);
+  for (int i = 0; i < N; ++i) {
+    mass[i] = Float::load(s.mass[i]);
+    inv_mass[i] = one / select(zero < mass[i], mass[i], one);
+    target[i] = Float::load(bounce.target[i]);
+    played[i] = Float::load(bounce.played[i]);
+    d[i] = first ? played[i] : zero;
+  }
+  if (first) {
+    for (int i = 0; i < N; ++i) couple_all(s, i, d[i], speed);
+    for (int i = 0; i < N; ++i) speed[i] = fma(inv_mass[i], d[i], speed[i]);
+  }
+  Mask changed = zero < zero;
+  for (int round = 0; round < (N == 1 ? 1 : kBlockIterations); ++round) {
+    for (int i = 0; i < N; ++i) {
+      const Float x = max(fma(mass[i], target[i] - speed[i], played[i]), zero);
+      const Float change = select(zero < mass[i], x - played[i], zero);
+      if (round == 0) changed = changed | (tolerance * max(x, played[i]) < abs(change));
+      played[i] = played[i] + change;
+      d[i] = d[i] + change;
+      speed[i] = fma(inv_mass[i], change, speed[i]);
+      couple_all(s, i, change, speed);
+    }
+  }
+  apply_normal(s, d, v);
+  v.b = select(plays, v.b, before.b);
+  if constexpr (A::kMoves) v.a = select(plays, v.a, before.a);
+  v.store(w, s);
+  for (int i = 0; i < N; ++i) {
+    const Float total = Float::load(bounce.total[i]);
+    select(plays, played[i], Float::load(bounce.played[i])).store(bounce.played[i]);
+    select(plays, total + d[i], total).store(bounce.total[i]);
+  }
+  return first ? lanes : bits(changed) & lanes;
+}
+
+// Plays the impacts of the lanes of `active`, sweep after sweep, until nothing approaches any more.
+template <class S, bool kDense>
+void play_impacts(const Constants& t, Work& w, unsigned active) {
+  const Float zero(Real(0));
+  Float slow(t.restitution_threshold * Real(1e-3));
+  for (int sweep = 0; sweep < t.restitution_sweeps && active != 0; ++sweep) {
+    const bool first = sweep == 0;
+    Float fastest = zero;
+    clear_numbers(t, w);
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      auto& bounce = bounce_at<S, N>(list, i);
+      fastest = max(weigh_impact<kDense>(t, w, s, bounce, active, first, slow), fastest);
+    });
+    if (first) slow = max(fastest * Float(kImpactTolerance), slow);
+    unsigned chosen = 0, coupled = 0;  // lanes in which some play, and several do
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      const unsigned plays = choose_impact<kDense>(t, w, s, bounce_at<S, N>(list, i), first);
+      coupled |= chosen & plays;
+      chosen |= plays;
+    });
+    active = chosen;
+    unsigned open = active;
+    for (int k = 0; k < kImpactIterations && open != 0; ++k) {
+      unsigned goes_on = 0;
+      for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+        goes_on |= play_impact<kDense>(w, s, bounce_at<S, N>(list, i), open, k == 0);
+      });
+      open = goes_on & coupled;
+    }
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

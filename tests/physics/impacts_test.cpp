@@ -1,0 +1,161 @@
+// Impacts that several contacts share: one system, which keeps the energy of elastic balls and the
+// symmetry of the scene.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+Body ball_at(Space space, double radius, const Vec3& position, double e = 1) {
+  return body_of(shape_of(round_of(space, radius), 0, e), position);
+}
+
+// A row of touching balls of 1 m along x; the first `moving` come at 2 m/s from `way` m off.
+Scene free_cradle(Space space, int balls, int moving, double way) {
+  Scene scene = empty_scene(space, 0);
+  for (int i = 0; i < balls; ++i) {
+    scene.add(ball_at(space, 0.5, {i < moving ? i - way : i, 0, 0}));
+    if (i < moving) scene.bodies.back().linear_velocity = {2, 0, 0};
+  }
+  return scene;
+}
+
+// Elastic balls in a closed box of 3 m that come from everywhere.
+Scene gas(Space space, int balls, double e) {
+  Scene scene = empty_scene(space, 0);
+  Random random(11);
+  for (int axis = 0; axis < (space == Space::planar ? 2 : 3); ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3 inward = -side * Vec3::Unit(axis);
+      scene.add(body_of(space == Space::planar ? shape_of(HalfPlane{inward.head<2>(), -1.5}, 0, e)
+                                               : shape_of(Plane{inward, -1.5}, 0, e),
+                        Vec3::Zero(), Motion::fixed));
+    }
+  }
+  for (int i = 0; i < balls; ++i) {
+    const Vec3 place(0.5 * (i % 5 - 2), 0.5 * (i / 5 % 5 - 1.5), 0);
+    Body ball = ball_at(space, 0.2, place, e);
+    ball.linear_velocity = random.in_cube(3);
+    if (space == Space::planar) ball.linear_velocity.z() = 0;
+    ball.jitter.position = {0.04, 0.04, space == Space::planar ? 0 : 0.04};
+    scene.add(ball);
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("as many balls leave a free cradle as come in", "[fast][closed_form]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (const int balls : {5, 7}) {
+      for (const int moving : {1, 2, 3, 4}) {
+        for (const double way : {0.1, 0.31}) {
+          const Scene scene = free_cradle(space, balls, moving, way);
+          for (const Table& table : all_tables()) {
+            Batch batch(compile(scene), options_of(table));
+            const auto check = [&](double margin) {
+              for (int i = 0; i < balls; ++i) {
+                INFO(name(table) << " ball " << i << " of " << balls << ", " << moving
+                                 << " moving, after " << batch.time() << " s");
+                CHECK(velocity(batch, 0, i).x() ==
+                      Approx(i >= balls - moving ? 2 : 0).margin(margin));
+              }
+            };
+            while (velocity(batch, 0, balls - 1).x() < 1 && batch.time() < 1) batch.step();
+            check(1e-4);
+            // What has come to overlap in that step is pushed apart.
+            batch.step(30);
+            check(0.03);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("impacts that are shared give no energy", "[fast][closed_form]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (const double e : {0.3, 0.7, 1.0}) {
+      const Scene scene = gas(space, 20, e);
+      for (const Table& table : widest_tables()) {
+        Batch batch(compile(scene), options_of(table, 4));
+        std::vector<double> before;
+        for (int w = 0; w < 4; ++w) before.push_back(kinetic_energy(batch, w));
+        double gain = 0;
+        for (int step = 0; step < 120; ++step) {
+          batch.step();
+          for (std::size_t w = 0; w < 4; ++w) {
+            const double energy = kinetic_energy(batch, static_cast<int>(w));
+            gain = std::max(gain, energy / before[w] - 1);
+            before[w] = energy;
+          }
+        }
+        INFO(name(table) << " e " << e);
+        CHECK(gain < 1e-4);
+      }
+    }
+  }
+}
+
+// A stack that has just been put down has no stored impulses: its load is no impact.
+TEST_CASE("stacks that bounce rest", "[fast][closed_form]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (const double e : {0.5, 0.9}) {
+      Scene scene = empty_scene(space);
+      scene.add(ground(space, 0.5, e));
+      for (int i = 0; i < 5; ++i) {
+        scene.add(body_of(shape_of(cube_of(space, 0.5), 0.5, e), (0.5 + i) * up_of(space)));
+        scene.bodies.back().jitter.position.x() = 1e-3;
+      }
+      for (const Table& table : widest_tables()) {
+        BatchOptions options = options_of(table, 8);
+        options.sleep = true;
+        Batch batch(compile(scene), options);
+        const double from = position(batch, 0, 4).x();
+        batch.step(180);
+        for (int w = 0; w < 8; ++w) {
+          INFO(name(table) << " e " << e << " world " << w);
+          CHECK(batch.asleep(w));
+          CHECK(std::abs(position(batch, w, 4).x() - from) < 0.01);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a break of 15 balls looks the same in the mirror", "[fast][closed_form]") {
+  Scene scene = empty_scene(Space::planar, 0);
+  constexpr double kRadius = 0.5;
+  scene.add(ball_at(Space::planar, kRadius, {-1.3, 0, 0}));
+  scene.bodies[0].linear_velocity = {5, 0, 0};
+  std::vector<int> mirror = {0};
+  for (int row = 0; row < 5; ++row) {
+    for (int k = 0; k <= row; ++k) {
+      mirror.push_back(static_cast<int>(scene.bodies.size()) + row - 2 * k);
+      scene.add(ball_at(Space::planar, kRadius,
+                        {row * 2 * kRadius * std::sqrt(0.75), 2 * kRadius * (k - row / 2.0), 0}));
+    }
+  }
+  for (const Table& table : all_tables()) {
+    Batch batch(compile(scene), options_of(table));
+    batch.step(60);
+    double off = 0;
+    for (int b = 0; b < 16; ++b) {
+      const Vec3 here = position(batch, 0, b),
+                 there = position(batch, 0, mirror[static_cast<std::size_t>(b)]);
+      off = std::max(off, (here - Vec3(there.x(), -there.y(), 0)).norm());
+    }
+    INFO(name(table) << " off by " << off);
+    CHECK(off < 0.01);
+  }
+}
+
+}  // namespace manyworlds::test
