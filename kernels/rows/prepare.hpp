@@ -7,6 +7,7 @@
 #include "kernels/rows/approach.hpp"
 #include "kernels/rows/friction.hpp"
 #include "kernels/rows/record.hpp"
+#include "kernels/rows/touch.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -131,6 +132,13 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   BlockList& blocks = w.blocks[static_cast<int>(list)];
   auto& s = block_at<SidedBlock<S, N, A>>(blocks, blocks.count);
   const Sides<S, A> sides = find_sides<S, A, kDense>(t, w, code, s);
+  if constexpr (N == 1) {
+    // Who asks for the contacts of now gets those.
+    const bool asked = w.recorder && !w.recorder->places;
+    if (t.has_restitution && kernels::is_round(pair_class.kind) && !asked) {
+      turn_to_touch(t, g, code, sides, active, pose_a, pose_b, m);
+    }
+  }
   if (!t.collider_is_body) anchor_at_centres(sides, pose_a, pose_b, m);
 
   Approach<S, N, A> approach;

@@ -81,6 +81,36 @@ TEST_CASE("as many balls leave a free cradle as come in", "[fast][closed_form]")
   }
 }
 
+// Both normals are 30 degrees off the line of motion, impulses p along them:
+// v' = v - 2 p cos 30 / m and p / m = cos 30 (v + v') with e = 1, so v' = -v / 5.
+TEST_CASE("a ball that strikes two touching ones at once comes back by a fifth",
+          "[fast][closed_form]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (const double radius : {0.5, 0.05}) {
+      for (const double way : {0.001, 0.02, 0.05, 0.08}) {
+        Scene scene = empty_scene(space, 0);
+        scene.options.length_unit = 2 * radius;
+        scene.add(ball_at(space, radius, {-std::sqrt(3.0) * radius - way, 0, 0}));
+        scene.add(ball_at(space, radius, {0, radius, 0}));
+        scene.add(ball_at(space, radius, {0, -radius, 0}));
+        scene.bodies[0].linear_velocity = {2, 0, 0};
+        for (const Table& table : all_tables()) {
+          Batch batch(compile(scene), options_of(table));
+          batch.step(10);
+          const Vec3 v = velocity(batch, 0, 0), a = velocity(batch, 0, 1),
+                     b = velocity(batch, 0, 2);
+          INFO(name(table) << " radius " << radius << " way " << way << ": " << v.transpose()
+                           << ", " << a.transpose() << ", " << b.transpose());
+          CHECK(v.x() == Approx(-0.4).epsilon(0.01));
+          CHECK(std::abs(v.y()) < 1e-4);
+          CHECK((a - Vec3(b.x(), -b.y(), b.z())).norm() < 1e-4);
+          CHECK((a + b).x() == Approx(2.4).epsilon(0.01));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("impacts that are shared give no energy", "[fast][closed_form]") {
   for (Space space : {Space::planar, Space::spatial}) {
     for (const double e : {0.3, 0.7, 1.0}) {
@@ -100,6 +130,26 @@ TEST_CASE("impacts that are shared give no energy", "[fast][closed_form]") {
         }
         INFO(name(table) << " e " << e);
         CHECK(gain < 1e-4);
+      }
+    }
+  }
+}
+
+TEST_CASE("balls that pass each other closely are not stopped", "[fast][closed_form]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (const double aside : {1.001, 1.02, 1.1}) {
+      for (const double way : {0.3, 0.9, 1.7}) {
+        Scene scene = empty_scene(space, 0);
+        scene.add(ball_at(space, 0.5, {-way, aside, 0}));
+        scene.add(ball_at(space, 0.5, {0, 0, 0}));
+        scene.bodies[0].linear_velocity = {60, 0, 0};
+        for (const Table& table : all_tables()) {
+          Batch batch(compile(scene), options_of(table));
+          batch.step(4);
+          INFO(name(table) << " aside " << aside << " way " << way);
+          CHECK(velocity(batch, 0, 0) == Vec3(60, 0, 0));
+          CHECK(velocity(batch, 0, 1) == Vec3::Zero());
+        }
       }
     }
   }
