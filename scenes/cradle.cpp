@@ -8,7 +8,6 @@ Scene newton_cradle(int moving, double gap) {
   constexpr double kRadius = 0.5;
   Scene scene = planar_scene("newton-cradle");
   scene.options.gravity.setZero();
-  scene.options.contact.restitution_threshold = 0.01;
   for (int i = 0; i < 5; ++i) {
     Body ball =
         named_body("ball" + std::to_string(i), {i * (2 * kRadius + gap), 0, 0}, Circle{kRadius});

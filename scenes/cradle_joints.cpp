@@ -14,7 +14,6 @@ Scene cradle_joints() {
   Scene scene = planar_scene("cradle-joints");
   // An impact is over within a substep; short steps keep the swing's energy.
   scene.options.dt = 1.0 / 240;
-  scene.options.contact.restitution_threshold = 0.05;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-10, -6, -1), Vec3(14, 6, 1));
   for (int i = 0; i < 5; ++i) {
     const double x = i * (2 * kRadius + kGap);

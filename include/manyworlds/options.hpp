@@ -45,9 +45,13 @@ struct ContactOptions {
   // m/s per length_unit: cap on the speed at which a pair's overlap is removed. Speeds of bodies
   // add up along a row: a row of n that overlap deeply can part at n / 4 times as much.
   double push_out_speed = 1.5;
-  double slop = 0.005;               // m per length_unit: contact margin is 4 slop
-  double restitution_threshold = 1;  // m/s per length_unit: slower impacts do not bounce
-  int restitution_sweeps = 16;       // most repeats of the restitution pass
+  double slop = 0.005;  // m per length_unit: contact margin is 4 slop
+  // m/s: slower impacts do not bounce, by the speed that gravity would bring them to in the step.
+  // Default: what gravity and attractors give in two steps, the larger of both bodies', as what
+  // rests has that of one. So nothing without: where other forces press together what shall rest,
+  // give it.
+  std::optional<double> restitution_threshold = {};
+  int restitution_sweeps = 16;  // most repeats of the restitution pass
   // Of tgs_soft: much less sway of tall stacks; off is a little faster.
   bool friction_in_bias_pass = true;
   bool cast_against_fixed = true;    // stop fast bodies at thin fixed shapes

@@ -213,10 +213,10 @@ struct SceneConstants {
   Real push_out_speed;
   Real margin;  // 4 slop, m
   Real half_margin;
-  Real restitution_threshold;
-  Real sleep_speed, sleep_time;        // a body is at rest below; an island sleeps after
-  Real bounds_low[3], bounds_high[3];  // of body positions, m
-  Real face_tie;                       // m, a face of A wins over one of B by this
+  Real restitution_threshold, restitution_time;  // m/s, and for how long gravity adds to it, s
+  Real sleep_speed, sleep_time;                  // a body is at rest below; an island sleeps after
+  Real bounds_low[3], bounds_high[3];            // of body positions, m
+  Real face_tie;                                 // m, a face of A wins over one of B by this
   Real face_bias;  // m, preference of the previous kind of axis in separating-axis tests
 };
 

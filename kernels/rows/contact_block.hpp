@@ -60,6 +60,7 @@ struct alignas(64) SidedBlock : ContactBlock<S, N> {
 template <class S, int N>
 struct alignas(64) Bounce {
   Real restitution[kLanes];
+  Real threshold[kLanes];   // m/s, slower approaches do not bounce
   Real impact[N][kLanes];   // approach speed at the moment of touch, m/s; 0: no impact
   Real carried[N][kLanes];  // impulse that the step began with
   Real total[N][kLanes];    // impulse over all substeps

@@ -7,6 +7,7 @@
 #include "kernels/rows/approach.hpp"
 #include "kernels/rows/friction.hpp"
 #include "kernels/rows/record.hpp"
+#include "kernels/rows/rest_speed.hpp"
 #include "kernels/rows/touch.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -100,11 +101,12 @@ MW_INLINE void put_couplings(const Sides<S, A>& sides, const Approach<S, N, A>& 
 }
 
 template <class S, int N, class A>
-MW_INLINE void put_bounce(const Constants& t, const Group& g, const std::int32_t* code,
-                          const Manifold<GeometryOf<S>, N>& m, const Approach<S, N, A>& approach,
-                          const StoredImpulses<N>& stored, std::uint32_t mask,
-                          Bounce<S, N>& bounce) {
-  const Float zero(Real(0)), dt(t.dt), threshold(t.restitution_threshold);
+MW_INLINE void put_bounce(const Constants& t, const Group& g, const Sides<S, A>& sides,
+                          const std::int32_t* code, const Manifold<GeometryOf<S>, N>& m,
+                          const Approach<S, N, A>& approach, const StoredImpulses<N>& stored,
+                          std::uint32_t mask, Bounce<S, N>& bounce) {
+  const Float zero(Real(0)), dt(t.dt), threshold = rest_speed(t, g, sides);
+  threshold.store(bounce.threshold);
   const MaterialPair e = load_materials<A>(t, g, code, mask, &Material::restitution);
   max(e.a, e.b).store(bounce.restitution);
   const Float pull = approach.pull.relative;
@@ -167,7 +169,7 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   }
   if (t.has_restitution) {
     auto& bounce = bounce_at<S, N>(blocks, blocks.count - 1);
-    put_bounce(t, g, code, m, approach, stored, mask, bounce);
+    put_bounce(t, g, sides, code, m, approach, stored, mask, bounce);
   }
   if (w.recorder) {
     record_points<S, N>(w, list, m, key, stored.normal,

@@ -80,7 +80,7 @@ MW_INLINE Float work_of_delta_v(const Constants& t, const Group& g, const Work& 
 template <class S, bool kDense>
 void weigh_bodies(const Constants& t, const Group& g, const Work& w) {
   const Float zero(Real(0)), slack(kEnergySlack);
-  const Float least(t.restitution_threshold * t.restitution_threshold);
+  const Float least(t.restitution_threshold), time(t.restitution_time);
   for (int b = 0; b < t.bodies; ++b) {
     if (t.body[b].kinematic) {
       for (int i = 0; i < kAccounts; ++i) zero.store(account(w, b, i));
@@ -94,7 +94,11 @@ void weigh_bodies(const Constants& t, const Group& g, const Work& w) {
     const Velocity<S> after = form.own(get_velocity<S, kDense>(w, w.velocity, b));
     const Velocity<S> change{after.v - found.v, after.w - found.w};
     const Float before = form(start, start), work = work_of_delta_v<S, kDense>(t, g, w, form, b);
-    const Float rounding = slack * fma(form.mass, least, before);
+    Float slow2 = least * least;
+    for (int c = 0; c < S::kDim; ++c) {
+      slow2 = slow2 + square(time * Float(constants_of_body(g, b).gravity[c]));
+    }
+    const Float rounding = slack * fma(form.mass, slow2, before);
     (before + work + rounding).store(account(w, b, kAllowed));
     form(found, found).store(account(w, b, kFound));
     form(found, change).store(account(w, b, kCross));

@@ -33,14 +33,17 @@ MW_INLINE void couple_all(const ContactBlock<S, N>& s, int k, Float d, Float* sp
 }
 
 // How fast the participants among `lanes` approach, and the speeds that their points shall leave
-// with. `slow`: what approaches slower is left to the next step. Returns the fastest approach.
+// with. What approaches slower than `slow`, or a thousandth of the threshold, is left to the next
+// step. Returns the fastest approach.
 template <bool kDense, class S, int N, class A>
 MW_INLINE Float weigh_impact(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
                              Bounce<S, N>& bounce, unsigned lanes, bool first, Float slow) {
-  const Float zero(Real(0)), threshold(t.restitution_threshold);
+  const Float zero(Real(0));
   lanes &= bounce.participants;
   bounce.playing = 0;
   if (lanes == 0) return zero;
+  const Float threshold = Float::load(bounce.threshold);
+  slow = max(threshold * Float(Real(1e-3)), slow);
   const Float e = Float::load(bounce.restitution);
   const RowVelocities<S, A, kDense> v(w, s);
   Float speed[N], fastest = zero;
@@ -139,7 +142,7 @@ MW_INLINE unsigned play_impact(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bo
 template <class S, bool kDense>
 void play_impacts(const Constants& t, Work& w, unsigned active) {
   const Float zero(Real(0));
-  Float slow(t.restitution_threshold * Real(1e-3));
+  Float slow = zero;
   for (int sweep = 0; sweep < t.restitution_sweeps && active != 0; ++sweep) {
     const bool first = sweep == 0;
     Float fastest = zero;
@@ -148,7 +151,7 @@ void play_impacts(const Constants& t, Work& w, unsigned active) {
       auto& bounce = bounce_at<S, N>(list, i);
       fastest = max(weigh_impact<kDense>(t, w, s, bounce, active, first, slow), fastest);
     });
-    if (first) slow = max(fastest * Float(kImpactTolerance), slow);
+    if (first) slow = fastest * Float(kImpactTolerance);
     unsigned chosen = 0, coupled = 0;  // lanes in which some play, and several do
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       const unsigned plays = choose_impact<kDense>(t, w, s, bounce_at<S, N>(list, i), first);

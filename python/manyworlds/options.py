@@ -36,7 +36,8 @@ class ContactOptions:
     damping_ratio: float = 10.0
     push_out_speed: float = 1.5  # m/s per length_unit
     slop: float = 0.005  # m per length_unit
-    restitution_threshold: float = 1.0  # m/s per length_unit: slower impacts do not bounce
+    # m/s: slower impacts do not bounce; None: what gravity gives in two steps
+    restitution_threshold: Optional[float] = None
     restitution_sweeps: int = 16
     friction_in_bias_pass: bool = True  # of tgs_soft
     cast_against_fixed: bool = True  # stop fast bodies at thin fixed shapes

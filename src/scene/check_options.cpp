@@ -84,7 +84,9 @@ void check_contact(Checker& checker, const ContactOptions& o) {
   checker.not_negative("options.contact.damping_ratio", o.damping_ratio, "");
   checker.not_negative("options.contact.push_out_speed", o.push_out_speed, "m/s");
   checker.positive("options.contact.slop", o.slop, "m", kMinSize, kLargestSize);
-  checker.not_negative("options.contact.restitution_threshold", o.restitution_threshold, "m/s");
+  if (o.restitution_threshold) {
+    checker.not_negative("options.contact.restitution_threshold", *o.restitution_threshold, "m/s");
+  }
   checker.between("options.contact.restitution_sweeps", o.restitution_sweeps, 1,
                   kMaxRestitutionSweeps);
 }

@@ -12,6 +12,9 @@ namespace manyworlds {
 
 namespace {
 
+// Of gravity: impacts that these give do not bounce (ContactOptions::restitution_threshold).
+constexpr double kStepsThatRest = 2;
+
 template <class Real>
 kernels::Softness<Real> softness(double frequency, double damping_ratio, double h) {
   if (frequency == 0) return {0, 1, 0};
@@ -98,7 +101,9 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.push_out_speed = static_cast<Real>(o.contact.push_out_speed * o.length_unit);
   t.margin = static_cast<Real>(2 * min_margin(plan));
   t.half_margin = static_cast<Real>(min_margin(plan));
-  t.restitution_threshold = static_cast<Real>(o.contact.restitution_threshold * o.length_unit);
+  const bool by_gravity = !o.contact.restitution_threshold;
+  t.restitution_threshold = static_cast<Real>(o.contact.restitution_threshold.value_or(0));
+  t.restitution_time = static_cast<Real>(by_gravity ? kStepsThatRest * o.dt : 0);
   t.sleep_speed = static_cast<Real>(o.sleep.speed * o.length_unit);
   t.sleep_time = static_cast<Real>(o.sleep.time);
   t.face_bias = static_cast<Real>(0.5 * o.contact.slop * o.length_unit);

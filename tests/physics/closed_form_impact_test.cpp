@@ -197,8 +197,7 @@ TEST_CASE("a bouncing ball keeps e^2 of its energy at each rebound", "[fast][clo
   };
   for (Space space : {Space::planar, Space::spatial}) {
     for (bool on_block : {false, true}) {
-      // Impacts faster than the threshold of 1 m/s: ten from 5 m, and from 1 m as many as there
-      // are.
+      // Impacts well above the threshold: ten from 5 m, and from 1 m as many as there are.
       for (const Drop& drop : {Drop{5, 0.9, 10, 10}, Drop{1, 0.5, 9.81, 3}, Drop{1, 0.8, 9.81, 6},
                                Drop{1, 0.9, 9.81, 10}, Drop{5, 1.0, 10, 10}}) {
         Scene scene = empty_scene(space, drop.gravity);

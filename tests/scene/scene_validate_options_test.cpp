@@ -90,10 +90,10 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
       bad("contact.slop", &Options::contact, &ContactOptions::slop, 0, "is 0 m, must be > 0"),
       bad("contact.slop", &Options::contact, &ContactOptions::slop, -1, "is -1 m, must be > 0"),
       bad("contact.slop", &Options::contact, &ContactOptions::slop, kNan, "is nan m, must be > 0"),
-      bad("contact.restitution_threshold", &Options::contact,
-          &ContactOptions::restitution_threshold, -1, "is -1 m/s"),
-      bad("contact.restitution_threshold", &Options::contact,
-          &ContactOptions::restitution_threshold, kNan, "is nan m/s"),
+      {"contact.restitution_threshold", "is -1 m/s, must be >= 0",
+       [](Scene& s) { s.options.contact.restitution_threshold = -1; }},
+      {"contact.restitution_threshold", "is nan m/s, must be >= 0",
+       [](Scene& s) { s.options.contact.restitution_threshold = kNan; }},
       {"contact.restitution_sweeps", "is 0, must be between 1 and 64",
        [](Scene& s) { s.options.contact.restitution_sweeps = 0; }},
       {"contact.restitution_sweeps", "is 65",
@@ -115,7 +115,7 @@ TEST_CASE("the ends of the option ranges are valid", "[fast][scene]") {
   Options& options = scene.options;
   options.substeps = options.contact.restitution_sweeps = 1;
   options.contact.frequency = options.contact.damping_ratio = 0;
-  options.contact.push_out_speed = options.contact.restitution_threshold = 0;
+  options.contact.push_out_speed = 0, options.contact.restitution_threshold = 0;
   CHECK(validate(scene).empty());
   options.substeps = options.contact.restitution_sweeps = 64;
   CHECK(validate(scene).empty());
