@@ -88,6 +88,7 @@ std::vector<Trial> joint_trials();      // B15 to B24
 std::vector<Trial> motion_trials();     // B26 to B32
 std::vector<Trial> structure_trials();  // B7, B19, B24, B37
 std::vector<Trial> law_trials();        // B42, B45, B46
+std::vector<Trial> impact_trials();     // C6, C7, C9
 
 struct StabilityOptions {
   std::vector<std::string> cases;  // ids; empty: all
