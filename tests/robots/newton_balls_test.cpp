@@ -14,7 +14,7 @@ namespace {
 
 // A box on a ball joint at its centre.
 Scene top(double gravity = 0) {
-  Scene scene = newton_scene(gravity);
+  Scene scene = robot_scene(gravity);
   scene.options.dt = 0.002, scene.options.substeps = 1;
   RobotBuilder build(scene);
   Joint& joint = scene.at(build.ball({}, build.body(Box{{0.1, 0.2, 0.05}}, {0, 0, 1}), {0, 0, 1}));

@@ -160,7 +160,7 @@ TEST_CASE("these tests have robots in both spaces of the solver", "[fast][robots
 TEST_CASE("a body at rest has its bits beside worlds in which it is touched",
           "[fast][bits][robots]") {
   constexpr int kMany = 40;
-  Scene scene = newton_scene();
+  Scene scene = robot_scene();
   scene.add(ground(Space::spatial, 0.9));
   RobotBuilder build(scene);
   build.body(Box{{0.1, 0.1, 0.1}}, {0, 0, 0.1003});
@@ -184,7 +184,7 @@ TEST_CASE("a body at rest has its bits beside worlds in which it is touched",
 }
 
 TEST_CASE("robots beside other kinds of worlds keep their bits", "[fast][bits][robots]") {
-  Scene lone = newton_scene();
+  Scene lone = robot_scene();
   lone.add(ground(Space::spatial, 0.7));
   add_walker(lone, 0, 0.02);
   const Plan many = compile(robots()), one = compile(lone);

@@ -66,7 +66,7 @@ class RobotBuilder {
   Scene& scene_;
 };
 
-inline Scene newton_scene(double gravity = 9.81) {
+inline Scene robot_scene(double gravity = 9.81) {
   Scene scene = empty_scene(Space::spatial, gravity);
   scene.options.solver.method = Solver::newton;
   scene.options.dt = 0.005;
@@ -105,7 +105,7 @@ inline BodyId add_walker(Scene& scene, double x, double drop) {
 // Two walkers that touch, an arm on a rail that reaches into them, a ball and a block that are
 // free, over a ground with a step.
 inline Scene robots() {
-  Scene scene = newton_scene();
+  Scene scene = robot_scene();
   Body floor = ground(Space::spatial, 0.9);
   floor.shapes.push_back(shape_of(Box{{0.3, 0.3, 0.05}}, 0.5));
   floor.shapes[1].position = {0.1, 0.1, 0.02};
@@ -126,7 +126,7 @@ inline Scene robots() {
 // One walker and a free ball: few enough to be solved by articulated bodies, where the robots above
 // are in joint space.
 inline Scene lone_walker() {
-  Scene scene = newton_scene();
+  Scene scene = robot_scene();
   scene.name = "one walker";
   scene.add(ground(Space::spatial, 0.9));
   add_walker(scene, 0, 0.08);
