@@ -221,3 +221,11 @@ def test_keyframes_fit_their_scene():
     scene.keyframes[0].controls = "none"
     with pytest.raises(TypeError, match=r"scene.keyframes\[0\].controls"):
         scene.validate()
+
+
+def test_a_keyframe_without_a_rotation_is_refused():
+    scene = arm()
+    scene.add(mw.Keyframe(name="lost", generalized_position=[0] * 10))
+    (issue,) = scene.validate()
+    assert issue.place == "keyframe 0 'lost': generalized_position of body 2 'ball'"
+    assert issue.message == "is a quaternion of length 0, must not be zero"

@@ -6,37 +6,76 @@
 namespace manyworlds::detail {
 namespace {
 
-// Numbers of a world in joint coordinates: none but with Solver::newton.
-struct Sizes {
-  std::size_t coordinates = 0, dofs = 0;
-};
-Sizes sizes_of(const Scene& scene) {
-  Sizes out;
-  if (scene.options.solver.method != Solver::newton) return out;
-  std::vector<bool> held(scene.bodies.size(), false);
-  for (const Joint& joint : scene.joints) {
-    held[static_cast<std::size_t>(joint.body_b.index())] = true;
-    if (std::holds_alternative<FixedJoint>(joint.type)) continue;
-    const bool ball = std::holds_alternative<BallJoint>(joint.type);
-    out.coordinates += ball ? 4 : 1, out.dofs += ball ? 3 : 1;
-  }
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (held[b] || scene.bodies[b].motion != Motion::dynamic) continue;
-    out.coordinates += 7, out.dofs += 6;
-  }
-  return out;
-}
+// What a world has in joint coordinates: nothing but with Solver::newton. Its trees are sound.
+class Coordinates {
+ public:
+  struct Rotation {
+    std::size_t first;  // coordinate
+    std::string of;
+  };
+  std::size_t positions = 0, velocities = 0;
+  std::vector<Rotation> rotations;
 
-// `size`: what there must be, unless there is nothing.
-void check_numbers(Checker& at, const char* name, const std::vector<double>& numbers,
+  Coordinates() = default;
+  explicit Coordinates(const Scene& scene) {
+    if (scene.options.solver.method != Solver::newton) return;
+    std::vector<std::vector<std::size_t>> joints(scene.bodies.size());
+    for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+      joints[static_cast<std::size_t>(scene.joints[j].body_b.index())].push_back(j);
+    }
+    // A body, then its descendants, children in scene order; -1: the world.
+    std::vector<std::vector<std::size_t>> children(scene.bodies.size() + 1);
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      if (scene.bodies[b].motion != Motion::dynamic) continue;
+      const BodyId a = joints[b].empty() ? BodyId() : scene.joints[joints[b].front()].body_a;
+      const bool moves = a && scene.at(a).motion == Motion::dynamic;
+      children[moves ? static_cast<std::size_t>(a.index()) + 1 : 0].push_back(b);
+    }
+    std::vector<std::size_t> waiting(children[0].rbegin(), children[0].rend());
+    while (!waiting.empty()) {
+      const std::size_t b = waiting.back();
+      waiting.pop_back();
+      add(scene, b, joints[b]);
+      waiting.insert(waiting.end(), children[b + 1].rbegin(), children[b + 1].rend());
+    }
+  }
+
+ private:
+  void add(const Scene& scene, std::size_t body, const std::vector<std::size_t>& joints) {
+    if (joints.empty()) {
+      rotations.push_back({positions + 3, named_part("body", body, scene.bodies[body].name)});
+      positions += 7, velocities += 6;
+    }
+    for (const std::size_t j : joints) {
+      const Joint& joint = scene.joints[j];
+      if (std::holds_alternative<FixedJoint>(joint.type)) continue;
+      const bool ball = std::holds_alternative<BallJoint>(joint.type);
+      if (ball) rotations.push_back({positions, named_part("joint", j, joint.name)});
+      positions += ball ? 4 : 1, velocities += ball ? 3 : 1;
+    }
+  }
+};
+
+// `size`: what there must be, unless there is nothing. Returns whether it is good.
+bool check_numbers(Checker& at, const char* name, const std::vector<double>& numbers,
                    const std::size_t* size) {
   if (size != nullptr && !numbers.empty() && numbers.size() != *size) {
     at.add(name, "has " + std::to_string(numbers.size()) + " numbers, must have " +
                      std::to_string(*size) + (*size > 0 ? ", or none" : ""));
-    return;
+    return false;
   }
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (!at.finite(element_name(name, i), numbers[i], "")) return;
+    if (!at.finite(element_name(name, i), numbers[i], "")) return false;
+  }
+  return true;
+}
+
+// Quaternions need not be unit.
+void check_rotations(Checker& at, const Coordinates& coordinates,
+                     const std::vector<double>& numbers) {
+  for (const Coordinates::Rotation& r : coordinates.rotations) {
+    const double* q = numbers.data() + r.first;
+    at.rotation("generalized_position of " + r.of, Quat(q[0], q[1], q[2], q[3]));
   }
 }
 
@@ -44,7 +83,7 @@ void check_numbers(Checker& at, const char* name, const std::vector<double>& num
 
 void check_keyframes(Checker checker, const Scene& scene, bool sound) {
   if (scene.keyframes.empty()) return;
-  const Sizes sizes = sound ? sizes_of(scene) : Sizes{};
+  const Coordinates coordinates = sound ? Coordinates(scene) : Coordinates();
   const std::size_t controls = scene.controls.size();
   std::map<std::string, std::size_t> first;  // of each name
   for (std::size_t i = 0; i < scene.keyframes.size(); ++i) {
@@ -55,10 +94,13 @@ void check_keyframes(Checker checker, const Scene& scene, bool sound) {
       at.add("name",
              "is that of keyframe " + std::to_string(same->second) + ", must be another, or empty");
     }
-    check_numbers(at, "generalized_position", keyframe.generalized_position,
-                  sound ? &sizes.coordinates : nullptr);
+    const bool good = check_numbers(at, "generalized_position", keyframe.generalized_position,
+                                    sound ? &coordinates.positions : nullptr);
+    if (good && !keyframe.generalized_position.empty()) {
+      check_rotations(at, coordinates, keyframe.generalized_position);
+    }
     check_numbers(at, "generalized_velocity", keyframe.generalized_velocity,
-                  sound ? &sizes.dofs : nullptr);
+                  sound ? &coordinates.velocities : nullptr);
     check_numbers(at, "controls", keyframe.controls, &controls);
   }
 }

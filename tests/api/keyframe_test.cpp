@@ -1,6 +1,7 @@
 // Keyframes of scenes: what is wrong with them, and worlds that are reset to them.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -34,20 +35,26 @@ Numbers controls(const Batch& batch) {
 TEST_CASE("keyframes fit their scene and have names of their own", "[fast][validate][keyframe]") {
   REQUIRE(kPose.size() == kCoordinates);
   REQUIRE(kSpeeds.size() == kDofs);
-  check_each(keyed_robot(), "keyframe 0 'leap': ",
-             {{"generalized_position", "has 18 numbers, must have 19, or none",
-               [](Scene& s) { s.keyframes[0].generalized_position.pop_back(); }},
-              {"generalized_velocity", "has 17 numbers, must have 16, or none",
-               [](Scene& s) { s.keyframes[0].generalized_velocity.push_back(0); }},
-              {"controls", "has 2 numbers, must have 1, or none",
-               [](Scene& s) { s.keyframes[0].controls.push_back(0); }},
-              {"generalized_position[4]", "is nan, must be finite",
-               [](Scene& s) {
-                 s.keyframes[0].generalized_position[4] = std::numeric_limits<double>::quiet_NaN();
-               }},
-              {"controls[0]", "is inf, must be finite", [](Scene& s) {
-                 s.keyframes[0].controls[0] = std::numeric_limits<double>::infinity();
-               }}});
+  check_each(
+      keyed_robot(), "keyframe 0 'leap': ",
+      {{"generalized_position", "has 18 numbers, must have 19, or none",
+        [](Scene& s) { s.keyframes[0].generalized_position.pop_back(); }},
+       {"generalized_velocity", "has 17 numbers, must have 16, or none",
+        [](Scene& s) { s.keyframes[0].generalized_velocity.push_back(0); }},
+       {"controls", "has 2 numbers, must have 1, or none",
+        [](Scene& s) { s.keyframes[0].controls.push_back(0); }},
+       {"generalized_position[4]", "is nan, must be finite",
+        [](Scene& s) {
+          s.keyframes[0].generalized_position[4] = std::numeric_limits<double>::quiet_NaN();
+        }},
+       {"generalized_position of body 1", "is a quaternion of length 0, must not be zero",
+        [](Scene& s) { std::fill_n(s.keyframes[0].generalized_position.begin() + 3, 4, 0.0); }},
+       {"generalized_position of joint 1", "is a quaternion of length 0, must not be zero",
+        [](Scene& s) { std::fill_n(s.keyframes[0].generalized_position.begin() + 8, 4, 0.0); }},
+       {"generalized_position of body 4", "is a quaternion of length 0, must not be zero",
+        [](Scene& s) { std::fill_n(s.keyframes[0].generalized_position.begin() + 15, 4, 0.0); }},
+       {"controls[0]", "is inf, must be finite",
+        [](Scene& s) { s.keyframes[0].controls[0] = std::numeric_limits<double>::infinity(); }}});
   check_each(keyed_robot(), "keyframe 1 'leap': ",
              {{"name", "is that of keyframe 0, must be another, or empty",
                [](Scene& s) { s.keyframes[1].name = "leap"; }}});
