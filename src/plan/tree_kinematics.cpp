@@ -65,7 +65,7 @@ class TreeMover {
       at.rotation =
           at.rotation * Quat(Eigen::AngleAxisd(*q - joint.reference, vector_of(joint.axis)));
     } else {
-      out_.motions.resize(out_.motions.size() + 3);
+      out_.motions.resize(out_.motions.size() + 3, {Vec3::Zero(), Vec3::Zero(), point});
       at.rotation = at.rotation * rotation_of(q);
     }
     at.origin = point - at.rotation * vector_of(joint.anchor);
@@ -73,10 +73,11 @@ class TreeMover {
   void add_rotations(const kernels::TreeJoint<double>& joint, const LinkPose& at) {
     if (kernels::dofs_of(joint.kind) == 1) return;
     const bool free = joint.kind == TreeJointKind::free;
-    const Vec3 point = free ? at.origin : at.origin + at.rotation * vector_of(joint.anchor);
     for (int k = 0; k < 3; ++k) {
-      out_.motions[static_cast<std::size_t>(joint.dof + (free ? 3 : 0) + k)] = {
-          at.rotation * Vec3::Unit(k), Vec3::Zero(), point};
+      DofMotion& motion = out_.motions[static_cast<std::size_t>(joint.dof + (free ? 3 : 0) + k)];
+      motion.axis = at.rotation * Vec3::Unit(k);
+      // A slider that comes after a ball leaves its centre where it is.
+      if (free) motion.point = at.origin;
     }
   }
 

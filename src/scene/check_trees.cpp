@@ -20,6 +20,7 @@ class TreeChecker {
     const std::size_t before = all_.count();
     const int bodies = static_cast<int>(scene_.bodies.size());
     std::vector<int> first(scene_.bodies.size(), -1), last(scene_.bodies.size(), -1);
+    std::vector<bool> has_ball(scene_.bodies.size(), false);
     for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
       const Joint& joint = scene_.joints[i];
       if (!is_body(joint.body_b) || joint.body_a.index() >= bodies) return;
@@ -37,6 +38,11 @@ class TreeChecker {
         if (!good) {
           at.add("after", "is " + std::to_string(joint.after.index()) +
                               ", must be the last joint before this one that has the same A and B");
+        } else if (turns(joint) && has_ball[b]) {
+          // Whose velocity is about the link's axes, which must then be the ball's own.
+          at.add("after", "is " + std::to_string(joint.after.index()) +
+                              ", where a ball joint has come: of the joints after one in a series "
+                              "the newton solver takes sliders only");
         }
       } else if (first[b] >= 0) {
         at.add("body_b", "is " + std::to_string(joint.body_b.index()) + ", which joint " +
@@ -44,6 +50,7 @@ class TreeChecker {
                              " holds already: the newton solver takes trees, or a series of "
                              "joints by Joint::after");
       }
+      has_ball[b] = has_ball[b] || std::holds_alternative<BallJoint>(joint.type);
       if (first[b] < 0) first[b] = index;
       last[b] = index;
     }
@@ -59,6 +66,10 @@ class TreeChecker {
  private:
   bool is_body(BodyId id) const {
     return 0 <= id.index() && static_cast<std::size_t>(id.index()) < scene_.bodies.size();
+  }
+  static bool turns(const Joint& joint) {
+    return std::holds_alternative<BallJoint>(joint.type) ||
+           std::holds_alternative<HingeJoint>(joint.type);
   }
   void check_size(const std::vector<int>& first) {
     int dofs = 0;

@@ -77,6 +77,22 @@ TEST_CASE("springs of ball joints are MuJoCo's", "[mjcf][robots][fast]") {
   check_balls(balls(R"(stiffness="3" range="0 0.5")"));
 }
 
+TEST_CASE("a slide that comes after a ball on one body is MuJoCo's", "[mjcf][robots][fast]") {
+  const compare::Pair pair = pair_of(R"(<mujoco><option timestep="0.004"/><worldbody>
+    <body pos="0 0 1"><joint type="ball" damping="0.1" pos="0.1 0 0"/>
+      <joint name="rod" type="slide" axis="1 0.2 0" stiffness="100" damping="1"/>
+      <geom type="box" size="0.1 0.2 0.05" pos="0.05 0.02 0"/></body></worldbody>
+    <actuator><motor joint="rod" gear="20" ctrlrange="-1 1"/></actuator></mujoco>)");
+  const auto samples = compare::draw_samples(pair, Precision::f64, 40, 1, 100);
+  for (const Table& table : all_tables()) {
+    if (table.precision != Precision::f64) continue;
+    const compare::StateComparison c = compare::compare_states(pair, samples, kernels_of(table));
+    INFO(name(table) << ": " << to_string(c));
+    CHECK(c.at("link velocity").most() < 1e-10);
+    CHECK(next(c).most() < 1e-10);
+  }
+}
+
 TEST_CASE("integrators take limits and springs of ball joints as MuJoCo's",
           "[mjcf][robots][fast]") {
   check_balls(balls(R"(range="0 0.5" stiffness="3")", R"(integrator="implicitfast")"));

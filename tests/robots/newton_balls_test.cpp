@@ -40,6 +40,32 @@ double angle_of(const std::vector<double>& q) {
 
 }  // namespace
 
+TEST_CASE("after a ball joint a series has sliders only", "[robots][fast]") {
+  const auto series = [](JointType first, JointType second, JointType third) {
+    Scene scene = robot_scene();
+    scene.add(body_of(shape_of(Sphere{0.1}), Vec3::Zero()));
+    for (JointType* type : {&first, &second, &third}) {
+      Joint joint;
+      joint.type = *type, joint.body_b = BodyId(0);
+      if (!scene.joints.empty()) joint.after = JointId(static_cast<int>(scene.joints.size()) - 1);
+      scene.add(joint);
+    }
+    std::vector<std::string> out;
+    for (const Issue& issue : validate(scene)) out.push_back(to_string(issue));
+    return out;
+  };
+  CHECK(series(HingeJoint{}, SliderJoint{}, BallJoint{}).empty());
+  CHECK(series(BallJoint{}, SliderJoint{}, SliderJoint{}).empty());
+  CHECK(series(BallJoint{}, HingeJoint{}, SliderJoint{}) ==
+        std::vector<std::string>{
+            "joint 1: after is 0, where a ball joint has come: of the joints after one in a "
+            "series the newton solver takes sliders only"});
+  CHECK(series(BallJoint{}, SliderJoint{}, BallJoint{}) ==
+        std::vector<std::string>{
+            "joint 2: after is 1, where a ball joint has come: of the joints after one in a "
+            "series the newton solver takes sliders only"});
+}
+
 TEST_CASE("a ball joint's spring swings at its frequency, far from rest, too", "[robots][fast]") {
   Scene scene = top();
   scene.options.integrator = Integrator::runge_kutta4;
