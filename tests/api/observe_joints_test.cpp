@@ -161,6 +161,30 @@ TEST_CASE("a ball joint tells its cone and its twist", "[fast][observe][joint]")
   }
 }
 
+TEST_CASE("cone and twist of a ball joint change by their speeds", "[fast][observe][joint]") {
+  constexpr double kStep = 1e-5;
+  Scene scene = empty_scene(Space::spatial, 0);
+  scene.options.dt = kStep, scene.options.substeps = 1;
+  const BodyId ball = add_ball(scene, Vec3::Zero());
+  scene.add(joint_at(scene, {}, ball, at(Vec3::Zero()), BallJoint{}));
+  scene.at(ball).angular_velocity = Vec3(1, -2, 0.7);
+  for (const double cone : {0.3, 1.2, 2.6}) {
+    scene.at(ball).rotation = Quat(Eigen::AngleAxisd(cone, Vec3(0.6, 0.8, 0))) *
+                              Quat(Eigen::AngleAxisd(-0.4, Vec3::UnitZ()));
+    if (!has_table(double_table())) return;
+    Batch batch(compile(scene), observing(double_table()));
+    batch.look();
+    const auto before = numbers(batch, Observed::joint_position),
+               speed = numbers(batch, Observed::joint_speed);
+    batch.step();
+    const auto after = numbers(batch, Observed::joint_position);
+    for (std::size_t i = 0; i < 2; ++i) {
+      INFO("cone " << cone << (i == 0 ? ", of the cone" : ", of the twist"));
+      CHECK((after[i] - before[i]) / kStep == Approx(speed[i]).epsilon(1e-3));
+    }
+  }
+}
+
 TEST_CASE("a fixed joint carries what hangs on it", "[fast][observe][joint]") {
   for (Space space : kSpaces) {
     Scene scene = empty_scene(space, 10);
