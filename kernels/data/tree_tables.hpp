@@ -116,6 +116,7 @@ enum class ContactCone : std::int32_t { frictionless, pyramidal, elliptic };
 template <class Real>
 struct TreePair {
   std::int32_t link_a, link_b;  // -1: the world
+  std::int32_t only_link;       // the one of them that has dofs on its way; -1: both have
   ContactCone cone;
   std::int32_t material_a, material_b;  // whose friction counts: the larger one, or one twice
   Real margin;                          // m, separation below which a contact acts

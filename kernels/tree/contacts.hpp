@@ -103,7 +103,7 @@ class ContactRows {
 
   void couple(const Stiffness& stiffness) const {
     for_each([&](const Contact& c, const TreePair& pair) {
-      if (pair.link_a >= 0 && is_active(stiffness_of(c, pair))) stiffness.couple(pair.coupled);
+      if (pair.only_link < 0 && is_active(stiffness_of(c, pair))) stiffness.couple(pair.coupled);
     });
   }
   void add_stiffness(const Stiffness& stiffness) const {
@@ -139,17 +139,19 @@ class ContactRows {
     });
   }
 
-  // Of links against the world, where links are stale.
+  // Of links against the world and what is welded to it, where links are stale.
   void hold() const {
     const TreeWork& x = w_.tree;
     for (int i = 0; i < t_.tree.links; ++i) x.is_held[i] = x.is_held[i] && !x.stale[i];
     for_each([&](const Contact& c, const TreePair& pair) {
-      if (pair.link_a >= 0 || !x.stale[pair.link_b]) return;
+      const int link = pair.only_link;
+      if (link < 0 || !x.stale[link]) return;
       const PointStiffness k = stiffness_of(c, pair);
       if (!is_active(k)) return;
-      Real* to = link_rows(x.held, pair.link_b, kArticulatedRows);
-      const ArticulatedInertia own = spring_at(load_vec3(c.arm_b[0]), in_world(c, pair, k));
-      bool& held = x.is_held[pair.link_b];
+      Real* to = link_rows(x.held, link, kArticulatedRows);
+      const Vec3 arm = load_vec3(link == pair.link_b ? c.arm_b[0] : c.arm_a[0]);
+      const ArticulatedInertia own = spring_at(arm, in_world(c, pair, k));
+      bool& held = x.is_held[link];
       store(to, held ? load_articulated(to) + own : own);
       held = true;
     });
@@ -157,7 +159,7 @@ class ContactRows {
   // Of links against links.
   void add_rows(Couplings& couplings) const {
     for_each([&](const Contact& c, const TreePair& pair) {
-      if (pair.link_a < 0) return;
+      if (pair.only_link >= 0) return;
       for_each_term(c, pair, [&](Vec3 along, Float weight) {
         const Mask acts = Float(Real(0)) < weight;
         if ((bits(acts) & lanes_) == 0) return;
@@ -188,7 +190,7 @@ class ContactRows {
       } else {
         for (int e = 0; e < rows_of(pair); ++e) own = own | row(c, e).advance(step, done);
       }
-      if (pair.link_a < 0 && any(own)) w_.tree.stale[pair.link_b] = true;
+      if (pair.only_link >= 0 && any(own)) w_.tree.stale[pair.only_link] = true;
       changed = changed | own;
     });
     return changed;

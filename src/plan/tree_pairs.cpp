@@ -75,7 +75,7 @@ class TreePairs {
     for (const PlanClass& c : plan_.classes) {
       for (std::size_t i = 0; i < c.a.size(); ++i) {
         const auto& pair = trees_.pairs[static_cast<std::size_t>(c.first_key) + i];
-        if (pair.link_a < 0) continue;
+        if (pair.only_link >= 0) continue;
         constexpr int kRows[] = {1, 4, 3};  // of a cone
         const int rows = kRows[static_cast<int>(pair.cone)] * max_points(c);
         (root_of(pair.link_a) == root_of(pair.link_b) ? out.within : out.between) += rows;
@@ -92,6 +92,11 @@ class TreePairs {
     auto& out = trees_.pairs[key];
     out.link_a = is_fixed(c.list) ? -1 : link_of(a);
     out.link_b = link_of(b);
+    // What is welded to the world is as the world.
+    const auto stays = [&](int link) {
+      return link < 0 || last_dof(trees_, trees_.links[static_cast<std::size_t>(link)]) < 0;
+    };
+    out.only_link = stays(out.link_a) ? out.link_b : stays(out.link_b) ? out.link_a : -1;
     const std::size_t colliders = plan_.colliders.size();
     const SoftContact& of_a = is_fixed(c.list) ? soft(plan_.fixed[a]) : soft(plan_.colliders[a]);
     const SoftContact& of_b = soft(plan_.colliders[b]);

@@ -85,8 +85,9 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     actuators_.push_back(to);
   }
   for (const auto& from : trees.pairs) {
-    pairs_.push_back({from.link_a, from.link_b, from.cone, from.material_a, from.material_b,
-                      static_cast<Real>(from.margin), static_cast<Real>(from.inverse_weight),
+    pairs_.push_back({from.link_a, from.link_b, from.only_link, from.cone, from.material_a,
+                      from.material_b, static_cast<Real>(from.margin),
+                      static_cast<Real>(from.inverse_weight),
                       static_cast<Real>(from.friction_weight), compliance<Real>(from.compliance),
                       from.first_dof, from.dofs, from.coupled});
   }

@@ -5,6 +5,8 @@
 
 #include "manyworlds/batch.hpp"
 #include "src/plan/compliance.hpp"
+#include "src/plan/plan_data.hpp"
+#include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -61,6 +63,59 @@ TEST_CASE("shapes that cannot move against each other are no pair", "[robots][fa
   fix(BodyId(0), BodyId(1)), fix(BodyId(0), BodyId(2)), fix(BodyId(), BodyId(3));
   // Each of the first three with the one that the world holds, and with the ground.
   CHECK(candidates(compile(scene)) == 3 + 3);
+}
+
+// A base of boxes that the world holds, with an arm on it, and boxes that fall onto both: contacts
+// with the base are no couplings, and the arm moves as on a base that is fixed.
+TEST_CASE("what is welded to the world counts as the world", "[robots][fast]") {
+  const auto build = [](Motion motion) {
+    Scene scene = empty_scene();
+    scene.options.dt = 0.004, scene.options.substeps = 1;
+    Body base = box(Vec3::Zero());
+    base.motion = motion;
+    base.shapes.push_back({.geometry = Box{Vec3(0.1, 0.3, 0.05)}, .position = Vec3(0.2, 0, 0.1)});
+    scene.add(base);
+    const bool welded = motion == Motion::dynamic;
+    scene.add(box(Vec3(0, 0, 0.4)));
+    scene.at(BodyId(1)).shapes[0].geometry = Capsule{0.05, 0.2};
+    const Frame hip{Vec3(0, 0, 0.15), Quat(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()))};
+    Joint hinge = joint_at(scene, BodyId(0), BodyId(1), hip, HingeJoint{});
+    hinge.dynamics.damping = 0.1;
+    scene.add(hinge);
+    for (int i = 0; i < 2; ++i) scene.add(box(Vec3(0.2, 0.4 * i - 0.2, 0.26)));
+    if (welded) scene.add(joint_at(scene, BodyId(), BodyId(0), {}, FixedJoint{}));
+    return scene;
+  };
+  const Plan fixed = compile(build(Motion::fixed)), welded = compile(build(Motion::dynamic));
+  const auto pairs_of_links = [](const Plan& plan) {
+    int out = 0;
+    for (const auto& pair : plan.data().trees.pairs) out += pair.only_link < 0 ? 1 : 0;
+    return out;
+  };
+  CHECK(pairs_of_links(fixed) == 3);  // of the arm and two boxes
+  CHECK(pairs_of_links(welded) == 3);
+  CHECK(welded.data().trees.couplings == fixed.data().trees.couplings);
+  for (const Table& table : widest_tables()) {
+    INFO(name(table));
+    Batch a(fixed, options_of(table, 1)), b(welded, options_of(table, 1));
+    const auto read = [](const Batch& batch) {
+      std::vector<double> out(batch.size(Field::generalized_position));
+      batch.read(Field::generalized_position, out);
+      return out;
+    };
+    for (Batch* batch : {&a, &b}) {
+      std::vector<double> v(batch->size(Field::generalized_velocity));
+      v.front() = 4;  // the arm falls onto the base
+      batch->write(Field::generalized_velocity, 0, v);
+      batch->step(100);
+    }
+    CHECK(a.contacts(0).size() >= 4);
+    const auto one = read(a), other = read(b);
+    REQUIRE(one.size() == other.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      CHECK(other[i] == Approx(one[i]).margin(pick(table, 1e-3, 1e-9)));
+    }
+  }
 }
 
 TEST_CASE("the power of an impedance is whole, whatever mixing left of it", "[robots][fast]") {
