@@ -227,8 +227,13 @@ Variation SceneBytes::variation(int bodies) {
   Variation out;
   out.parameter = static_cast<Parameter>(integer(0, kParameterCount - 1));
   const auto owner = info(out.parameter).owner;
-  if (rarely() || (owner != ParameterInfo::world && byte() > 128))
-    out.body = BodyId(integer(0, bodies));
+  const bool of_bodies = owner == ParameterInfo::body || owner == ParameterInfo::shape;
+  if (rarely() || (of_bodies && byte() > 128)) out.body = BodyId(integer(0, bodies));
+  if (rarely() || (owner == ParameterInfo::joint && byte() > 128))
+    out.joint = JointId(integer(0, 2));
+  if (rarely() || (owner == ParameterInfo::control && byte() > 128)) {
+    out.control = ControlId(integer(0, 2));
+  }
   if (rarely() || (owner == ParameterInfo::shape && out.body && byte() > 128)) {
     out.shape = ShapeId(out.body, integer(0, 2));
   }

@@ -180,11 +180,11 @@ class Batch {
   // ---- Parameters
 
   // Numbers of the scene that differ from world to world (Scene::variations), in double and in
-  // canonical order: [world][shape of the scene], [world][body] or [world], times
-  // info(parameter).numbers. What follows from them (inertia, centre of mass, bounds) is derived
-  // anew; a world that is written wakes. Everything can be read. Numbers outside of their declared
-  // range, and those of what does not vary that are not what read() gives, throw
-  // std::invalid_argument and change nothing.
+  // canonical order: [world][shape of the scene], [world][body], [world][joint of the scene],
+  // [world][control] or [world], times info(parameter).numbers. What follows from them (inertia,
+  // centre of mass, bounds) is derived anew; a world that is written wakes. Everything can be read.
+  // Numbers outside of their declared range, and those of what does not vary that are not what
+  // read() gives, throw std::invalid_argument and change nothing.
   std::size_t size(Parameter parameter) const;
   void read(Parameter parameter, std::span<double> out) const;
   void write(Parameter parameter, std::span<const double> in);

@@ -11,28 +11,37 @@ namespace manyworlds {
 
 // X(name, what has one, numbers of each, unit, meaning). In the order in which they are applied: a
 // mass is of the body as its sizes and densities have made it.
-#define MW_PARAMETERS(X)                                                                      \
-  X(size, shape, 3, "m",                                                                      \
-    "sphere, circle: radius; capsule: radius, half length; box: half extents; polygon: half " \
-    "extents of its bounding box about the shape frame's axes (it is stretched); others 0")   \
-  X(density, shape, 1, "kg/m^3", "kg/m^2 in the plane")                                       \
-  X(mass, body, 1, "kg", "of a dynamic body; its inertia grows in proportion")                \
-  X(friction, shape, 1, "1", "Coulomb coefficient")                                           \
-  X(restitution, shape, 1, "1", "0 to 1")                                                     \
-  X(gravity, world, 3, "m/s^2", "")                                                           \
-  X(gravity_scale, body, 1, "1", "")                                                          \
-  X(linear_drag, body, 1, "1/s", "")                                                          \
-  X(angular_drag, body, 1, "1/s", "")
+#define MW_PARAMETERS(X)                                                                       \
+  X(size, shape, 3, "m",                                                                       \
+    "sphere, circle: radius; capsule: radius, half length; box: half extents; polygon: half "  \
+    "extents of its bounding box about the shape frame's axes (it is stretched); others 0")    \
+  X(density, shape, 1, "kg/m^3", "kg/m^2 in the plane")                                        \
+  X(mass, body, 1, "kg", "of a dynamic body; its inertia grows in proportion")                 \
+  X(friction, shape, 1, "1", "Coulomb coefficient")                                            \
+  X(restitution, shape, 1, "1", "0 to 1")                                                      \
+  X(gravity, world, 3, "m/s^2", "")                                                            \
+  X(gravity_scale, body, 1, "1", "")                                                           \
+  X(linear_drag, body, 1, "1/s", "")                                                           \
+  X(angular_drag, body, 1, "1/s", "")                                                          \
+  X(armature, joint, 1, "kg m^2 or kg", "of Solver::newton: JointDynamics::armature")          \
+  X(damping, joint, 1, "N m s/rad or N s/m", "of Solver::newton: JointDynamics::damping")      \
+  X(stiffness, joint, 1, "N m/rad or N/m", "of Solver::newton: JointDynamics::stiffness")      \
+  X(rest, joint, 1, "rad or m", "of Solver::newton: JointDynamics::rest")                      \
+  X(gain, control, 3, "", "of Solver::newton: Actuator::gain")                                 \
+  X(bias, control, 3, "", "of Solver::newton: Actuator::bias")                                 \
+  X(kp, control, 1, "", "of a position servo: its gain is (kp, 0, 0), its bias (0, -kp, -kv)") \
+  X(kv, control, 1, "",                                                                        \
+    "of a position servo, or of a velocity servo: its gain is (kv, 0, 0), its bias (0, 0, -kv)")
 
 enum class Parameter {
 #define MW_PARAMETER_ENUM(name, owner, numbers, unit, meaning) name,
   MW_PARAMETERS(MW_PARAMETER_ENUM)
 #undef MW_PARAMETER_ENUM
 };
-inline constexpr int kParameterCount = 9;
+inline constexpr int kParameterCount = 17;
 
 struct ParameterInfo {
-  enum Owner { world, body, shape };
+  enum Owner { world, body, shape, joint, control };
   const char* name;
   Owner owner;
   int numbers;
@@ -52,14 +61,16 @@ struct Variation {
   Parameter parameter = Parameter::friction;
   BodyId body = {};    // none: every one that has the parameter
   ShapeId shape = {};  // one shape, which also says of which body; none: every shape
+  JointId joint = {};  // none: every one that has the parameter
+  ControlId control = {};
   // The range, inclusive, within which the number of every world must lie; [0] alone counts where
   // the parameter is one number.
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
   Draw draw = Draw::uniform;
-  bool together = false;  // one draw for all bodies and shapes of it, instead of one for each
+  bool together = false;  // one draw for all that it is about, instead of one for each
 };
 
-// A parameter of one number, of every body or shape.
+// A parameter of one number, of all that have it.
 inline Variation vary(Parameter parameter, double low, double high, Draw draw = Draw::uniform) {
   Variation v;
   v.parameter = parameter;

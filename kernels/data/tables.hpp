@@ -87,6 +87,10 @@ struct ConstantBlocks {
   const Real* material;  // [collider, then fixed shape][MaterialOf][lane]
   const Real* joint;     // [part][JointConstants][lane]
   const Real* thrust;    // [thrust][ThrustConstants][lane]
+  const Real* link;      // [link][LinkConstants][lane]
+  const Real* drag;      // [link][DragConstants][lane]; nullptr without a medium
+  const Real* dof;       // [dof][DofConstants][lane]
+  const Real* actuator;  // [actuator][ActuatorConstants][lane]
 };
 
 // What is the same in all worlds.

@@ -33,7 +33,12 @@ struct TreeLink {
   std::int32_t first_child, next_child;  // links; the next one with the same parent; -1: none
   bool moves_freely;                     // and nothing is jointed to it
   Real position[3], rotation[4];         // of its frame in the parent's at the reference
-  Real center[3], principal[4];          // centre of mass and principal axes in its frame
+};
+
+// Of a link what sizes of shapes may change from world to world (kernels/data/tables.hpp).
+template <class T>
+struct LinkConstants {
+  T center[3], principal[4];  // centre of mass and principal axes in its frame
 };
 
 template <class Real>
@@ -44,16 +49,22 @@ struct TreeJoint {
   Real reference;                // of a hinge or slide
 };
 
-template <class Real>
 struct TreeDof {
   std::int32_t link;
   std::int32_t parent;      // the dof before it on the way to the root; -1: none
   std::int32_t depth;       // how many those are
   std::int32_t entry;       // its row of the inertia matrix: itself, its parent, and so on
-  std::int32_t coordinate;  // of a hinge or slide, which may have a spring
-  Real armature;            // kg m^2 or kg
-  Real damping;             // N m s/rad or N s/m
-  Real stiffness, rest;     // N m/rad or N/m; rad or m
+  std::int32_t coordinate;  // of a hinge or slide
+  bool sprung;              // a hinge or slide that has a spring, in some world
+};
+
+// Numbers of a dof that may differ from world to world.
+template <class T>
+struct DofConstants {
+  T armature;   // kg m^2 or kg
+  T damping;    // N m s/rad or N s/m
+  T stiffness;  // N m/rad or N/m; of the first dof of a ball joint that of the joint
+  T rest;       // rad or m, of a hinge or slide
 };
 
 // How soft a row is (MuJoCo's solref and solimp; src/plan/compliance.hpp): with the violation r and
@@ -94,18 +105,20 @@ struct TreeBallLimit {
   Compliance<Real> compliance;
 };
 // A torque that draws a ball joint to where its rotation is none.
-template <class Real>
 struct TreeBallSpring {
   std::int32_t coordinate, dof;  // the first ones
-  Real stiffness;                // N m/rad
 };
 
 // A force along a hinge's or slide's coordinate (Actuator in manyworlds/control.hpp).
 template <class Real>
 struct TreeActuator {
   std::int32_t control, coordinate, dof;
-  Real gear, gain[3], bias[3];
+  Real gear;
   Real low, high;  // N or N m, before the gear
+};
+template <class T>
+struct ActuatorConstants {
+  T gain[3], bias[3];
 };
 
 // What friction may do at a contact, and the rows of it: the normal; the edges of a pyramid; the
@@ -130,10 +143,10 @@ struct TreePair {
 
 // Drag of a medium on a link, about its principal axes (Medium in manyworlds/options.hpp): force
 // -(viscous + speed |v|) v of the centre of mass, moment -(spin_viscous + spin |w|) w.
-template <class Real>
-struct TreeDrag {
-  Real viscous, spin_viscous;  // N s/m, N m s/rad
-  Real speed[3], spin[3];      // kg/m, kg m^2
+template <class T>
+struct DragConstants {
+  T viscous, spin_viscous;  // N s/m, N m s/rad
+  T speed[3], spin[3];      // kg/m, kg m^2
 };
 
 // Dofs of a plan of trees, at most: sets of them are bits.
@@ -166,11 +179,11 @@ struct TreeTable {
   NewtonOptions<Real> newton;
   const TreeLink<Real>* link;
   const TreeJoint<Real>* joint;
-  const TreeDof<Real>* dof;
+  const TreeDof* dof;
   const TreeLimit<Real>* limit;
   const TreeTerm<Real>* term;  // of limits
   const TreeBallLimit<Real>* ball_limit;
-  const TreeBallSpring<Real>* ball_spring;
+  const TreeBallSpring* ball_spring;
   const TreeActuator<Real>* actuator;
   const std::uint64_t* ancestors;  // [dof] those on the way to the root
   // Of plans with contacts, else nullptr.
@@ -179,8 +192,8 @@ struct TreeTable {
   bool has_rows;  // there are limits or contacts
   bool elliptic;  // the cones of contacts are
   Real impedance_ratio;
-  const TreeDrag<Real>* drag;  // [link]; without a medium nullptr
-  Real wind[3];                // m/s, of the medium
+  bool has_medium;  // which drags links
+  Real wind[3];     // m/s, of the medium
 };
 
 }  // namespace manyworlds::kernels

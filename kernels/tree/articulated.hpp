@@ -12,7 +12,8 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class ArticulatedBodies {
  public:
-  MW_INLINE ArticulatedBodies(const Constants& t, const Work& w) : t_(t), w_(w), x_(w.tree) {}
+  MW_INLINE ArticulatedBodies(const Constants& t, const Group& g, const Work& w)
+      : t_(t), g_(g), w_(w), x_(w.tree) {}
 
   void make_stale(bool all) const {
     for (int i = 0; i < t_.tree.links; ++i) x_.stale[i] = all;
@@ -36,7 +37,7 @@ class ArticulatedBodies {
       for (int k = link.first_dof + link.dofs - 1; k >= link.first_dof; --k) {
         const Twist axis = load_twist(axis_of(w_, k));
         const Wrench f = mul(inertia, axis);
-        const Float own = Float(t_.tree.dof[k].armature) + Float::load(diagonal + k * kLanes);
+        const Float own = armature_of(k) + Float::load(diagonal + k * kLanes);
         const Float inverse = Float(Real(1)) / (dot(axis, f) + own);
         store(response_of(k), f), inverse.store(x_.inverse + k * kLanes);
         if (t_.tree.dof[k].parent >= 0) inertia = without(inertia, f, inverse);
@@ -111,7 +112,7 @@ class ArticulatedBodies {
     Float own[FreeRoot::kSize];
     for (int k = 0; k < FreeRoot::kSize; ++k) {
       const int dof = link.first_dof + k;
-      own[k] = Float(t_.tree.dof[dof].armature) + Float::load(diagonal + dof * kLanes);
+      own[k] = armature_of(dof) + Float::load(diagonal + dof * kLanes);
     }
     inertia.linear.xx = inertia.linear.xx + own[0];
     inertia.linear.yy = inertia.linear.yy + own[1];
@@ -125,9 +126,11 @@ class ArticulatedBodies {
     return {axis(0), axis(1), axis(2)};
   }
   static MW_INLINE Real* rows(Real* of, int link, int count) { return link_rows(of, link, count); }
+  MW_INLINE Float armature_of(int dof) const { return constants_of_dof(g_, dof).armature; }
   MW_INLINE Real* response_of(int dof) const { return x_.response + dof * kTwistRows * kLanes; }
 
   const Constants& t_;
+  const Group& g_;
   const Work& w_;
   const TreeWork& x_;
 };

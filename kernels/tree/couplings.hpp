@@ -12,8 +12,8 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class Couplings {
  public:
-  MW_INLINE Couplings(const Constants& t, const Work& w)
-      : t_(t), w_(w), x_(w.tree), bodies_(t, w) {}
+  MW_INLINE Couplings(const Constants& t, const Group& g, const Work& w)
+      : t_(t), w_(w), x_(w.tree), bodies_(t, g, w) {}
 
   void clear() { count_ = 0, begin(); }
   bool any() const { return count_ > 0; }

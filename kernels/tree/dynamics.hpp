@@ -42,12 +42,12 @@ inline void find_velocities(const Constants& t, const Group& g, const Work& w) {
 
 // What a medium at rest, or in the wind, does to a link: of the inertia box about its centre of
 // mass (MuJoCo, "Fluid forces", inertia model).
-MW_INLINE Wrench drag_of(const Constants& t, const kernels::TreeDrag<Real>& drag, const Mat3& axes,
-                         Vec3 velocity, Vec3 spin) {
+MW_INLINE Wrench drag_of(const Constants& t, const kernels::DragConstants<LaneNumber>& drag,
+                         const Mat3& axes, Vec3 velocity, Vec3 spin) {
   const Vec3 flow = velocity - shared(t.tree.wind);
-  const auto along = [&](Vec3 v, Real viscous, const Real(&square)[3]) {
+  const auto along = [&](Vec3 v, Float viscous, const LaneNumber(&square)[3]) {
     const Vec3 own = mul_transposed(axes, v);
-    const auto resist = [&](Float x, Real k) { return fma(Float(k), abs(x), Float(viscous)) * x; };
+    const auto resist = [&](Float x, Float k) { return fma(k, abs(x), viscous) * x; };
     return -mul(axes,
                 {resist(own.x, square[0]), resist(own.y, square[1]), resist(own.z, square[2])});
   };
@@ -60,9 +60,10 @@ inline void find_wrenches(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.links; ++i) {
     const TreeLink& link = t.tree.link[i];
     const auto& body = constants_of_body(g, link.body);
+    const auto& frame = constants_of_link(g, i);
     const Quat q = load_pose(w, i).q;
-    const Vec3 c = rotate(q, shared(link.center));
-    const Mat3 axes = matrix(mul(q, shared(link.principal)));
+    const Vec3 c = rotate(q, of_lanes(frame.center));
+    const Mat3 axes = matrix(mul(q, of_lanes(frame.principal)));
     const Sym3 moments = rotate_diagonal(axes, {body.inertia[0], body.inertia[1], body.inertia[2]});
     const SpatialInertia inertia = spatial_inertia(body.mass, c, moments);
     const Twist v = load_twist(link_rows(w.tree.velocity, i, kTwistRows));
@@ -75,8 +76,8 @@ inline void find_wrenches(const Constants& t, const Group& g, const Work& w) {
       pull = pull + load_vec3(input);
       moment = load_vec3(input + 3 * kLanes);
     }
-    if (t.tree.drag) {
-      const Wrench drag = drag_of(t, t.tree.drag[i], axes, v.v + cross(v.w, c), v.w);
+    if (t.tree.has_medium) {
+      const Wrench drag = drag_of(t, constants_of_drag(g, i), axes, v.v + cross(v.w, c), v.w);
       moment = moment + drag.n, pull = pull + drag.f;
     }
     f = f - Wrench{moment + cross(c, pull), pull};
@@ -86,11 +87,13 @@ inline void find_wrenches(const Constants& t, const Group& g, const Work& w) {
 }
 
 // Generalised forces of springs and dampers.
-MW_INLINE Float passive_force(const Constants& t, const Group& g, const Dof& dof, int k) {
-  Float force = -(Float(dof.damping) * Float::load(velocity_of(t, g, k)));
-  if (dof.stiffness != 0) {
-    const Float stretch = Float::load(coordinate_of(t, g, dof.coordinate)) - Float(dof.rest);
-    force = fnma(Float(dof.stiffness), stretch, force);
+MW_INLINE Float passive_force(const Constants& t, const Group& g, int k) {
+  const Dof& dof = t.tree.dof[k];
+  const auto& own = constants_of_dof(g, k);
+  Float force = -(Float(own.damping) * Float::load(velocity_of(t, g, k)));
+  if (dof.sprung) {
+    const Float stretch = Float::load(coordinate_of(t, g, dof.coordinate)) - Float(own.rest);
+    force = fnma(Float(own.stiffness), stretch, force);
   }
   return force;
 }
@@ -98,20 +101,22 @@ MW_INLINE Float passive_force(const Constants& t, const Group& g, const Dof& dof
 using TreeActuator = kernels::TreeActuator<Real>;
 
 // The force that an actuator asks for, before its range.
-MW_INLINE Float force_asked(const Constants& t, const Group& g, const TreeActuator& a) {
+MW_INLINE Float force_asked(const Constants& t, const Group& g, int actuator) {
+  const TreeActuator& a = t.tree.actuator[actuator];
+  const auto& own = constants_of_actuator(g, actuator);
   const Float gear(a.gear), length = gear * Float::load(coordinate_of(t, g, a.coordinate));
   const Float speed = gear * Float::load(velocity_of(t, g, a.dof));
-  const auto affine = [&](const Real(&c)[3]) {
+  const auto affine = [&](const LaneNumber(&c)[3]) {
     return fma(Float(c[2]), speed, fma(Float(c[1]), length, Float(c[0])));
   };
-  return fma(affine(a.gain), Float::load(g.control + a.control * kLanes), affine(a.bias));
+  return fma(affine(own.gain), Float::load(g.control + a.control * kLanes), affine(own.bias));
 }
 
 // Adds the forces of actuators.
 inline void add_actuators(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.actuators; ++i) {
     const TreeActuator& a = t.tree.actuator[i];
-    const Float force = clamp(force_asked(t, g, a), Float(a.low), Float(a.high));
+    const Float force = clamp(force_asked(t, g, i), Float(a.low), Float(a.high));
     Real* load = w.tree.load + a.dof * kLanes;
     fma(Float(a.gear), force, Float::load(load)).store(load);
   }
@@ -123,7 +128,7 @@ inline void project_wrenches(const Constants& t, const Group& g, const Work& w) 
     const TreeLink& link = t.tree.link[i];
     const Wrench wrench = load_wrench(link_rows(w.tree.force, i, kTwistRows));
     for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
-      const Float passive = passive_force(t, g, t.tree.dof[k], k);
+      const Float passive = passive_force(t, g, k);
       (passive - dot(load_twist(axis_of(w, k)), wrench)).store(w.tree.load + k * kLanes);
     }
     if (link.parent < 0) continue;
@@ -133,7 +138,7 @@ inline void project_wrenches(const Constants& t, const Group& g, const Work& w) 
 }
 
 // The rows of the joint-space inertia, from composite rigid bodies.
-inline void find_matrix(const Constants& t, const Work& w) {
+inline void find_matrix(const Constants& t, const Group& g, const Work& w) {
   for (int i = t.tree.links - 1; i >= 0; --i) {
     const TreeLink& link = t.tree.link[i];
     const SpatialInertia inertia = load_inertia(link_rows(w.tree.inertia, i, kInertiaRows));
@@ -142,7 +147,7 @@ inline void find_matrix(const Constants& t, const Work& w) {
       const Twist axis = load_twist(axis_of(w, k));
       Wrench f = mul(inertia, axis);
       Real* row = w.tree.matrix + dof.entry * kLanes;
-      (dot(axis, f) + Float(dof.armature)).store(row);
+      (dot(axis, f) + Float(constants_of_dof(g, k).armature)).store(row);
       int at = i;
       for (int j = dof.parent; j >= 0; j = t.tree.dof[j].parent) {
         for (; at != t.tree.dof[j].link; at = t.tree.link[at].parent) f = to_parent(w, at, f);

@@ -13,8 +13,9 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 inline void add_resistance(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.actuators; ++i) {
     const TreeActuator& a = t.tree.actuator[i];
-    const Float control = Float::load(g.control + a.control * kLanes), force = force_asked(t, g, a);
-    const Float gain = -fma(Float(a.gain[2]), control, Float(a.bias[2]));
+    const auto& own = constants_of_actuator(g, i);
+    const Float control = Float::load(g.control + a.control * kLanes), force = force_asked(t, g, i);
+    const Float gain = -fma(Float(own.gain[2]), control, Float(own.bias[2]));
     const Mask follows = (Float(a.low) < force) & (force < Float(a.high));
     const Float less = Float(t.h * a.gear * a.gear) * select(follows, gain, Real(0));
     Real* diagonal = w.tree.diagonal + a.dof * kLanes;

@@ -10,7 +10,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class JointSpace {
  public:
-  MW_INLINE JointSpace(const Constants& t, const Work& w)
+  MW_INLINE JointSpace(const Constants& t, const Group&, const Work& w)
       : t_(t), w_(w), x_(w.tree), stiffness_(t, w) {}
 
   void start(const ConstraintRows& rows) const {

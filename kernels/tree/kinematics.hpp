@@ -10,7 +10,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 using TreeLink = kernels::TreeLink<Real>;
 using TreeJoint = kernels::TreeJoint<Real>;
-using Dof = kernels::TreeDof<Real>;
+using Dof = kernels::TreeDof;
 using kernels::TreeJointKind;
 using DofBits = std::uint64_t;
 
@@ -33,6 +33,8 @@ MW_INLINE Real* axis_of(const Work& w, int dof) { return w.tree.axis + dof * kTw
 
 MW_INLINE Vec3 shared(const Real (&v)[3]) { return {v[0], v[1], v[2]}; }
 MW_INLINE Quat shared(const Real (&q)[4]) { return {q[0], q[1], q[2], q[3]}; }
+MW_INLINE Vec3 of_lanes(const LaneNumber (&v)[3]) { return {v[0], v[1], v[2]}; }
+MW_INLINE Quat of_lanes(const LaneNumber (&q)[4]) { return {q[0], q[1], q[2], q[3]}; }
 
 MW_INLINE Real* offset_of(const Work& w, int link) { return w.tree.offset + link * 3 * kLanes; }
 
@@ -130,7 +132,7 @@ inline void find_poses(const Constants& t, const Group& g, const Work& w) {
       finish_axes(joints[j], at, axis_of(w, joints[j].dof));
     }
     if (link.parent < 0) {
-      const Vec3 center = rotate(at.q, shared(link.center));
+      const Vec3 center = rotate(at.q, of_lanes(constants_of_link(g, i).center));
       store(w.tree.origin + 3 * i * kLanes, at.x + center);
       at.x = -center;
     } else {

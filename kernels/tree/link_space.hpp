@@ -11,8 +11,8 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 class LinkSpace {
  public:
-  MW_INLINE LinkSpace(const Constants& t, const Work& w)
-      : t_(t), w_(w), x_(w.tree), bodies_(t, w), couplings_(t, w) {}
+  MW_INLINE LinkSpace(const Constants& t, const Group& g, const Work& w)
+      : t_(t), g_(g), w_(w), x_(w.tree), bodies_(t, g, w), couplings_(t, g, w) {}
 
   void start(const ConstraintRows& rows) {
     find_twists(t_, w_, x_.guess, x_.rate);
@@ -37,7 +37,8 @@ class LinkSpace {
       }
       if (link.parent >= 0) store(at, to_parent(w_, i, f));
       for (int k = link.first_dof; k < link.first_dof + link.dofs; ++k) {
-        const Float own = Float(t_.tree.dof[k].armature) * Float::load(x_.guess + k * kLanes);
+        const Float own =
+            Float(constants_of_dof(g_, k).armature) * Float::load(x_.guess + k * kLanes);
         const Float smooth =
             (dot(load_twist(axis_of(w_, k)), f) + own) - Float::load(x_.load + k * kLanes);
         const Float down = Float(Real(0)) - (smooth - Float::load(x_.row_load + k * kLanes));
@@ -69,7 +70,8 @@ class LinkSpace {
           out.curvature + dot(v, load_wrench(link_rows(x_.inertial_along, i, kTwistRows)));
     }
     for (int k = 0; k < t_.tree.dofs; ++k) {
-      const Float d = Float::load(x_.direction + k * kLanes), armature(t_.tree.dof[k].armature);
+      const Float d = Float::load(x_.direction + k * kLanes);
+      const Float armature = constants_of_dof(g_, k).armature;
       const Float asked = armature * Float::load(x_.guess + k * kLanes);
       out.slope = fma(d, asked - Float::load(x_.load + k * kLanes), out.slope);
       out.curvature = fma(armature * d, d, out.curvature);
@@ -98,6 +100,7 @@ class LinkSpace {
   }
 
   const Constants& t_;
+  const Group& g_;
   const Work& w_;
   const TreeWork& x_;
   const ArticulatedBodies bodies_;

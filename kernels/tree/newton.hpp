@@ -43,8 +43,8 @@ inline Float line_search(const Constants& t, const ConstraintRows& rows, Float s
 template <class Space>
 class Minimiser {
  public:
-  Minimiser(const Constants& t, const Work& w, const ConstraintRows& rows)
-      : t_(t), x_(w.tree), rows_(rows), space_(t, w) {}
+  Minimiser(const Constants& t, const Group& g, const Work& w, const ConstraintRows& rows)
+      : t_(t), x_(w.tree), rows_(rows), space_(t, g, w) {}
 
   // In the lanes of `active`. Leaves the accelerations in w.tree.guess, and in w.tree.row_load the
   // forces of the rows.

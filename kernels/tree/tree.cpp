@@ -13,10 +13,10 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 namespace {
 
 // (M + diagonal) a = load, in place.
-void solve_smooth(const Constants& t, const Work& w) {
+void solve_smooth(const Constants& t, const Group& g, const Work& w) {
   const TreeWork& x = w.tree;
   if (t.tree.by_links) {
-    const ArticulatedBodies bodies(t, w);
+    const ArticulatedBodies bodies(t, g, w);
     for (int i = 0; i < t.tree.links; ++i) x.is_held[i] = false;
     bodies.make_stale(true);
     bodies.factorise(x.diagonal);
@@ -39,7 +39,7 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
   find_velocities(t, g, w);
   find_wrenches(t, g, w);
   project_wrenches(t, g, w);
-  if (!t.tree.by_links) find_matrix(t, w);
+  if (!t.tree.by_links) find_matrix(t, g, w);
   add_ball_springs(t, g, w);
   add_actuators(t, g, w);
   Mask active = mask_from_bits(0);
@@ -52,8 +52,8 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
     // Where no row is active the sum is the same whether other lanes have rows or not.
     for_each_dof(t, [&](int k) { Float(Real(0)).store(x.row_load + k); });
     if (any(active)) {
-      t.tree.by_links ? Minimiser<LinkSpace>(t, w, rows).run(active)
-                      : Minimiser<JointSpace>(t, w, rows).run(active);
+      t.tree.by_links ? Minimiser<LinkSpace>(t, g, w, rows).run(active)
+                      : Minimiser<JointSpace>(t, g, w, rows).run(active);
     }
     for_each_dof(t, [&](int k) {
       (Float::load(x.load + k) + Float::load(x.row_load + k)).store(x.load + k);
@@ -61,14 +61,14 @@ void find_accelerations(const Constants& t, const Group& g, const Work& w) {
   }
   if (t.tree.damped || !all(active)) {
     for (int k = 0; k < t.tree.dofs; ++k) {
-      const Real damping = t.tree.damped ? t.tree.dof[k].damping : Real(0);
-      (Float(t.h) * Float(damping)).store(x.diagonal + k * kLanes);
+      const Float damping = t.tree.damped ? Float(constants_of_dof(g, k).damping) : Float(Real(0));
+      (Float(t.h) * damping).store(x.diagonal + k * kLanes);
     }
     if (t.tree.implicit) {
       add_resistance(t, g, w);
       for_each_free_link(t, [&](int i) { FreeLink(t, w, i).solve(x.load, x.free); });
     }
-    solve_smooth(t, w);
+    solve_smooth(t, g, w);
     if (t.tree.implicit) {
       for_each_free_link(t, [&](int i) {
         const int first = t.tree.link[i].first_dof;
@@ -106,16 +106,17 @@ template <class T>
 void put_body(const Constants& t, const Group& g, int body, int component, T value) {
   store(state_of(t, g, body, component), value);
 }
-void put_pose(const Constants& t, const Group& g, const TreeLink& link, const FramePose& at,
-              Vec3 origin, Vec3 center) {
-  put_body(t, g, link.body, kState<Tensor>.position, origin + center);
-  put_body(t, g, link.body, kState<Tensor>.orientation, mul(at.q, shared(link.principal)));
+// From a link's frame to its centre of mass.
+MW_INLINE Vec3 arm_of(const Group& g, int link, const FramePose& at) {
+  return rotate(at.q, of_lanes(constants_of_link(g, link).center));
 }
-MW_INLINE Vec3 center_of(const TreeLink& link, const FramePose& at) {
-  return at.x + rotate(at.q, shared(link.center));
-}
-MW_INLINE Vec3 origin_of(const Work& w, const TreeLink& link) {
-  return load_vec3(w.tree.origin + 3 * link.root * kLanes);
+void put_pose(const Constants& t, const Group& g, const Work& w, int index, const FramePose& at,
+              Vec3 arm) {
+  const TreeLink& link = t.tree.link[index];
+  const Vec3 origin = load_vec3(w.tree.origin + 3 * link.root * kLanes);
+  const Quat principal = of_lanes(constants_of_link(g, index).principal);
+  put_body(t, g, link.body, kState<Tensor>.position, origin + (at.x + arm));
+  put_body(t, g, link.body, kState<Tensor>.orientation, mul(at.q, principal));
 }
 
 // Bodies, as the state has them, from the coordinates and velocities.
@@ -126,10 +127,9 @@ void place(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   for (int i = 0; i < t.tree.links; ++i) {
     const TreeLink& link = t.tree.link[i];
     const FramePose at = load_pose(w, i);
-    const Vec3 c = center_of(link, at);
+    const Vec3 arm = arm_of(g, i, at);
     const Twist v = load_twist(link_rows(w.tree.velocity, i, kTwistRows));
-    put_pose(t, g, link, at, origin_of(w, link), c);
-    const Vec3 arm = rotate(at.q, shared(link.center));
+    put_pose(t, g, w, i, at, arm);
     put_body(t, g, link.body, kState<Tensor>.linear, v.v + cross(v.w, arm));
     put_body(t, g, link.body, kState<Tensor>.angular, v.w);
   }
@@ -139,9 +139,8 @@ void pose(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   const Work& w = work_of(scratch);
   find_poses(t, g, w);
   for (int i = 0; i < t.tree.links; ++i) {
-    const TreeLink& link = t.tree.link[i];
     const FramePose at = load_pose(w, i);
-    put_pose(t, g, link, at, origin_of(w, link), center_of(link, at));
+    put_pose(t, g, w, i, at, arm_of(g, i, at));
   }
 }
 

@@ -21,6 +21,20 @@ MW_INLINE const kernels::PolygonConstants<LaneNumber>& constants_of_polygon(cons
                                                                             int shape) {
   return reinterpret_cast<const kernels::PolygonConstants<LaneNumber>*>(g.constants.polygon)[shape];
 }
+MW_INLINE const kernels::LinkConstants<LaneNumber>& constants_of_link(const Group& g, int link) {
+  return reinterpret_cast<const kernels::LinkConstants<LaneNumber>*>(g.constants.link)[link];
+}
+MW_INLINE const kernels::DragConstants<LaneNumber>& constants_of_drag(const Group& g, int link) {
+  return reinterpret_cast<const kernels::DragConstants<LaneNumber>*>(g.constants.drag)[link];
+}
+MW_INLINE const kernels::DofConstants<LaneNumber>& constants_of_dof(const Group& g, int dof) {
+  return reinterpret_cast<const kernels::DofConstants<LaneNumber>*>(g.constants.dof)[dof];
+}
+MW_INLINE const kernels::ActuatorConstants<LaneNumber>& constants_of_actuator(const Group& g,
+                                                                              int actuator) {
+  using Of = kernels::ActuatorConstants<LaneNumber>;
+  return reinterpret_cast<const Of*>(g.constants.actuator)[actuator];
+}
 
 // Where the fields of a body's state are.
 template <class S>

@@ -23,7 +23,7 @@ class Field:
     name: str
     group: str  # "state", "parameter" (a number of the scene) or "observed"
     observer: str  # that an observed one needs; else ""
-    item: str  # what has one: "body", "shape", "world", "joint", "coordinate", "dof", "ray"
+    item: str  # what has one: "body", "shape", "joint", "control", "world", "coordinate", "dof", "ray"
     items: int
     components: int
     unit: str
@@ -118,9 +118,9 @@ class Fields:
         """Draws a state field or a number of the scene uniformly from ``low`` to ``high``, and sets it.
 
         ``low``, ``high``: numbers, or what broadcasts to (items, components). ``ids``: of which worlds,
-        ``items``: of which bodies or shapes (``fields[name].item``); None: all. World i draws from
-        ``seed`` + i (None: the batch's seed) and the field's name: the same numbers in a batch of any
-        size, and again by the same call; another ``seed`` draws others. Raises as ``set`` does.
+        ``items``: of which bodies, shapes, joints or controls (``fields[name].item``); None: all. World i
+        draws from ``seed`` + i (None: the batch's seed) and the field's name: the same numbers in a batch
+        of any size, and again by the same call; another ``seed`` draws others. Raises as ``set`` does.
         """
         field = self._field(name)
         worlds = arrays.indices(ids, self._worlds, "ids")

@@ -38,6 +38,14 @@ Parameter = Literal[
     "gravity_scale",
     "linear_drag",
     "angular_drag",
+    "armature",
+    "damping",
+    "stiffness",
+    "rest",
+    "gain",
+    "bias",
+    "kp",
+    "kv",
 ]
 Draw = Literal["none", "uniform", "log_uniform"]
 Precision = Literal["f32", "f64"]

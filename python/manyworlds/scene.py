@@ -103,10 +103,12 @@ class Variation:
     parameter: Parameter = "friction"
     body: BodyRef = -1  # -1: every one that has the parameter
     shape: ShapeRef = -1  # an int is one of that body; -1: every shape
+    joint: JointRef = -1  # -1: every one that has the parameter
+    control: ControlRef = -1
     low: Numbers = (0.0, 0.0, 0.0)  # [0] alone counts where the parameter is one number
     high: Numbers = (0.0, 0.0, 0.0)
     draw: Draw = "uniform"
-    together: bool = False  # one draw for all bodies and shapes, instead of one for each
+    together: bool = False  # one draw for all that it is about, instead of one for each
 
 
 def vary(

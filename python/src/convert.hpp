@@ -138,6 +138,11 @@ struct Converter<JointId> {
   static nb::object write(JointId id) { return nb::int_(id.index()); }
 };
 template <>
+struct Converter<ControlId> {
+  static ControlId read(nb::handle value, const Place& place) { return read_control(value, place); }
+  static nb::object write(ControlId id) { return nb::int_(id.index()); }
+};
+template <>
 struct Converter<ShapeId> {
   static nb::object write(ShapeId id) { return nb::int_(id.index()); }
 };

@@ -21,7 +21,14 @@ const char* word_of(ObservedItem item) {
 }
 
 const char* owner_name(ParameterInfo::Owner owner) {
-  return owner == ParameterInfo::world ? "world" : owner == ParameterInfo::body ? "body" : "shape";
+  switch (owner) {
+    case ParameterInfo::world: return "world";
+    case ParameterInfo::body: return "body";
+    case ParameterInfo::shape: return "shape";
+    case ParameterInfo::joint: return "joint";
+    case ParameterInfo::control: return "control";
+  }
+  return "?";
 }
 
 }  // namespace
@@ -33,6 +40,7 @@ std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of) {
   const auto items = [&](std::string_view item) {
     if (item == "body") return plan.bodies();
     if (item == "joint") return static_cast<int>(scene.joints.size());
+    if (item == "control") return static_cast<int>(scene.controls.size());
     if (item == "coordinate") return plan.coordinates();
     std::size_t shapes = 0;
     for (const Body& body : scene.bodies) shapes += body.shapes.size();

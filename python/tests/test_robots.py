@@ -223,6 +223,34 @@ def test_keyframes_fit_their_scene():
         scene.validate()
 
 
+def test_numbers_of_joints_and_controls_vary():
+    scene = arm()
+    scene.controls[0].name = "motor"
+    scene.add(mw.vary("armature", 0.05, 0.2))
+    scene.add(mw.vary("damping", 0.1, 1, "log_uniform", joint="lift"))
+    scene.add(mw.vary("gain", 0.5, 2, control="motor", together=True))
+    scene.add(mw.Variation(parameter="size", shape=mw.ShapeId(1, 0), low=[0.05] * 3, high=[0.2] * 3))
+    back = _core.round_trip(scene)
+    assert back.variations[1].joint == 1 and back.variations[2].control == 0
+    batch = mw.Batch(scene, worlds=6, seed=3)
+    assert batch.fields["armature"].item == "joint" and batch.fields["gain"].item == "control"
+    armature, damping, gain = (batch.get(name) for name in ("armature", "damping", "gain"))
+    assert armature.shape == (6, 3, 1) and gain.shape == (6, 1, 3)
+    assert len(np.unique(armature)) == 18 and (armature >= 0.05).all() and (armature <= 0.2).all()
+    assert len(np.unique(damping[:, 1])) == 6 and (damping[:, [0, 2]] == 0).all()
+    batch.set("armature", 0.1, ids=[2])
+    batch.randomize("damping", 0.2, 0.3, items=[1])
+    assert (batch.get("armature", ids=[2]) == 0.1).all()
+    batch.step(10)
+    batch.reset([2])
+    assert not (batch.get("armature", ids=[2]) == 0.1).any()
+    with pytest.raises(ValueError, match="damping of joint 0 is 1, must be 0: it does not vary"):
+        batch.set("damping", 1)
+    scene.variations[2].control = "mtor"
+    with pytest.raises(ValueError, match=r"variations\[2\].control: .*nearest: 'motor'"):
+        scene.validate()
+
+
 def test_a_keyframe_without_a_rotation_is_refused():
     scene = arm()
     scene.add(mw.Keyframe(name="lost", generalized_position=[0] * 10))

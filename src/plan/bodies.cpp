@@ -33,7 +33,7 @@ void principal_axes(const MassProperties& m, PlanBody& body) {
 bool may_be_reshaped(const PlanData& plan, int body) {
   const std::size_t shapes = plan.scene.bodies[static_cast<std::size_t>(body)].shapes.size();
   for (const VariedNumber& n : plan.varied) {
-    if (n.body != body) continue;
+    if (n.of.body != body) continue;
     if (n.parameter == Parameter::size) return true;
     if (n.parameter == Parameter::density && shapes > 1) return true;
   }

@@ -63,6 +63,8 @@ class TreeCollector {
     plan_.trees = builder_.finish(
         h_, {iterations_of(o), o.line_search_iterations, o.tolerance, o.line_search_tolerance, 0});
     plan_.trees.actuators = std::move(actuators_);
+    plan_.trees.actuator_numbers = std::move(actuator_numbers_);
+    plan_.trees.scene_joints = std::move(scene_joints_);
     plan_.trees.start = std::move(start_);
     plan_.trees.joint_coordinate = std::move(joint_coordinate_);
     plan_.trees.anchors = std::move(anchors_);
@@ -115,6 +117,7 @@ class TreeCollector {
     joint.kind = TreeJointKind::free;
     builder_.add(joint);
     ++moving_joints_;
+    scene_joints_.push_back(-1);
     start_.insert(start_.end(), begin.position.data(), begin.position.data() + 3);
     put_start(begin.rotation);
   }
@@ -133,6 +136,8 @@ class TreeCollector {
     joint.armature = d.armature, joint.damping = d.damping, joint.stiffness = d.stiffness;
     const bool single = kernels::dofs_of(*kind) == 1;
     if (single) joint.reference = d.reference, joint.rest = d.rest;
+    joint.sprung = may_have(Parameter::stiffness, index);
+    joint.damped = may_have(Parameter::damping, index);
     if (const auto* limit = tree_limit(from.type); limit && *limit) {
       joint.range = {(*limit)->low, (*limit)->high};
       joint.margin = (*limit)->margin;
@@ -141,6 +146,7 @@ class TreeCollector {
     joint_coordinate_.emplace_back(index, static_cast<int>(start_.size()));
     builder_.add(joint);
     observe(index, moving_joints_++);
+    scene_joints_.push_back(index);
     const TreePose moved = alone ? displacement(from) : TreePose{};
     if (*kind == TreeJointKind::ball) {
       // Of the link's axes, not of the joint's frames.
@@ -152,6 +158,12 @@ class TreeCollector {
       const double half = std::atan2(std::copysign(1.0, q.w()) * q.z(), std::abs(q.w()));
       start_.push_back(d.reference + 2 * half);
     }
+  }
+  // Whether a number of the joint is above 0 in some world.
+  bool may_have(Parameter parameter, int joint) const {
+    return std::any_of(plan_.varied.begin(), plan_.varied.end(), [&](const VariedNumber& n) {
+      return n.parameter == parameter && n.of.joint == joint && n.high > 0;
+    });
   }
   // The observed coordinates of a joint of the scene are those of this joint of a tree.
   void observe(int joint, int moving) {
@@ -205,9 +217,9 @@ class TreeCollector {
       out.coordinate = coordinate_of(control.joint);
       out.dof = builder_.dof_of(out.coordinate);
       out.gear = a.gear;
-      std::copy_n(a.gain.data(), 3, out.gain), std::copy_n(a.bias.data(), 3, out.bias);
       out.low = a.low, out.high = a.high;
       actuators_.push_back(out);
+      actuator_numbers_.push_back(actuator_numbers(a));
     }
   }
 
@@ -221,7 +233,9 @@ class TreeCollector {
   int moving_joints_ = 0;  // of all links so far
   std::vector<double> start_;
   std::vector<std::pair<int, int>> joint_coordinate_;
+  std::vector<int> scene_joints_;
   std::vector<kernels::TreeActuator<double>> actuators_;
+  std::vector<kernels::ActuatorConstants<double>> actuator_numbers_;
   TreeBuilder builder_;
 };
 

@@ -35,8 +35,8 @@ bool all_rectangles(const PlanData& plan) {
   }
   for (const VariedNumber& n : plan.varied) {
     if (n.parameter != Parameter::size) continue;
-    const Shape& shape = plan.scene.bodies[static_cast<std::size_t>(n.body)]
-                             .shapes[static_cast<std::size_t>(n.shape)];
+    const Shape& shape = plan.scene.bodies[static_cast<std::size_t>(n.of.body)]
+                             .shapes[static_cast<std::size_t>(n.of.shape)];
     const auto* polygon = std::get_if<Polygon>(&shape.geometry);
     if (polygon && !is_upright(polygon->vertices)) return false;
   }

@@ -88,8 +88,9 @@ struct PlanVaries {
   bool materials = false;  // friction, restitution
   bool delta_v = false;    // gravity
   bool drag = false;
+  // Of trees: centres of mass and principal axes of links, armatures and the like of joints, gains.
+  bool links = false, dofs = false, actuators = false;
   bool body_constants() const { return masses || delta_v || drag; }
-  bool any() const { return body_constants() || shapes || materials; }
 };
 
 struct PlanData {
@@ -195,6 +196,8 @@ void choose_features(PlanData& plan);       // features.cpp
 void choose_stages(PlanData& plan);         // stages.cpp
 PlanReport describe(const PlanData& plan);  // report.cpp
 
+// Numbers of trees once more, of those that vary (tree_numbers.cpp).
+void number_trees(PlanData& plan);
 // Bodies and shapes of a copy of a plan once more, after its scene was given the numbers of one
 // world (variations.cpp).
 void derive_again(PlanData& plan);

@@ -20,12 +20,12 @@ class TreeMover {
       : trees_(trees), q_(coordinates.data()) {}
 
   TreeKinematics find() {
-    for (const auto& link : trees_.links) add(link);
+    for (std::size_t i = 0; i < trees_.links.size(); ++i) add(trees_.links[i], i);
     return std::move(out_);
   }
 
  private:
-  void add(const kernels::TreeLink<double>& link) {
+  void add(const kernels::TreeLink<double>& link, std::size_t index) {
     LinkPose at;
     if (link.parent >= 0) at = poses_[static_cast<std::size_t>(link.parent)];
     at.origin += at.rotation * vector_of(link.position);
@@ -40,7 +40,9 @@ class TreeMover {
     at.rotation.normalize();
     poses_.push_back(at);
     out_.rotation.push_back(at.rotation);
-    out_.center.push_back(at.origin + at.rotation * vector_of(link.center));
+    out_.origin.push_back(at.origin);
+    const auto& numbers = trees_.link_numbers[index];
+    out_.center.push_back(at.origin + at.rotation * vector_of(numbers.center));
   }
 
   void move(const kernels::TreeJoint<double>& joint, LinkPose& at) {

@@ -16,7 +16,8 @@ struct DofMotion {
 
 struct TreeKinematics {
   std::vector<Quat> rotation;      // [link], of its frame
-  std::vector<Vec3> center;        // [link], of mass, world
+  std::vector<Vec3> origin;        // [link], of its frame, world
+  std::vector<Vec3> center;        // [link], of mass as the plan has it, world
   std::vector<DofMotion> motions;  // [dof]
 };
 

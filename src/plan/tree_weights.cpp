@@ -26,7 +26,7 @@ class Weights {
       m += j.bottomRows<3>().transpose() * inertia * j.bottomRows<3>();
     }
     for (Eigen::Index k = 0; k < dofs_; ++k) {
-      m(k, k) += trees_.dofs[static_cast<std::size_t>(k)].armature;
+      m(k, k) += trees_.dof_numbers[static_cast<std::size_t>(k)].armature;
     }
     if (dofs_ > 0) out.mean_inertia = m.diagonal().mean();
     const Eigen::MatrixXd inverse = m.ldlt().solve(Eigen::MatrixXd::Identity(dofs_, dofs_));

@@ -13,8 +13,8 @@ void put(const Quat& from, double* to) {
   const Quat q = from.normalized();
   to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
 }
-constexpr double kMinMoment = 1e-15;  // kg m^2
 int count_of(const auto& list) { return static_cast<int>(list.size()); }
+bool is_sprung(const NewTreeJoint& joint) { return joint.sprung || joint.stiffness != 0; }
 
 }  // namespace
 
@@ -33,7 +33,7 @@ int TreeBuilder::add(const NewLink& link) {
   out.first_joint = count_of(trees_.joints);
   out.first_dof = count_of(trees_.dofs);
   put(link.position, out.position), put(link.rotation, out.rotation);
-  put(link.center, out.center), put(link.principal, out.principal);
+  trees_.link_numbers.push_back(link_numbers(link.center, link.principal));
   links_.push_back(link);
   return index;
 }
@@ -55,9 +55,9 @@ void TreeBuilder::add(const NewTreeJoint& joint) {
     dof.depth = parent < 0 ? 0 : trees_.dofs[static_cast<std::size_t>(parent)].depth + 1;
     dof.entry = trees_.entries;
     dof.coordinate = out.coordinate;
-    dof.armature = joint.armature, dof.damping = joint.damping;
-    if (joint.kind != kernels::TreeJointKind::ball) dof.stiffness = joint.stiffness;
-    dof.rest = joint.rest;
+    dof.sprung = kernels::dofs_of(joint.kind) == 1 && is_sprung(joint);
+    trees_.dof_numbers.push_back({joint.armature, joint.damping, joint.stiffness, joint.rest});
+    trees_.damped = trees_.damped || joint.damped || joint.damping > 0;
     trees_.entries += dof.depth + 1;
     ++link.dofs;
   }
@@ -72,7 +72,7 @@ void TreeBuilder::add(const NewTreeJoint& joint) {
 }
 
 void TreeBuilder::add_ball(const NewTreeJoint& joint, int coordinate, int dof) {
-  if (joint.stiffness != 0) trees_.ball_springs.push_back({coordinate, dof, joint.stiffness});
+  if (is_sprung(joint)) trees_.ball_springs.push_back({coordinate, dof});
   // Beyond half a turn there is no angle.
   if (!joint.range || (*joint.range)[1] - joint.margin > std::numbers::pi) return;
   limited_balls_.push_back({{{coordinate, dof, 1}}, *joint.range, joint.margin, joint.compliance});
@@ -80,20 +80,7 @@ void TreeBuilder::add_ball(const NewTreeJoint& joint, int coordinate, int dof) {
 
 void TreeBuilder::add_drag(const Medium& medium) {
   for (const NewLink& link : links_) {
-    auto& out = trees_.drags.emplace_back();
-    const Vec3& moments = link.moments;
-    Vec3 box;  // of the same mass and moments, m
-    for (int i = 0; i < 3; ++i) {
-      const double square = moments.sum() - 2 * moments[i];
-      box[i] = std::sqrt(std::max(square, kMinMoment) / link.mass * 6);
-    }
-    const double size = box.mean(), viscous = std::numbers::pi * size * medium.viscosity;
-    out.viscous = 3 * viscous, out.spin_viscous = viscous * size * size;
-    for (int i = 0; i < 3; ++i) {
-      const double a = box[(i + 1) % 3], b = box[(i + 2) % 3];
-      out.speed[i] = medium.density * a * b / 2;
-      out.spin[i] = medium.density * box[i] * (std::pow(a, 4) + std::pow(b, 4)) / 64;
-    }
+    trees_.drags.push_back(drag_numbers(medium, link.mass, link.moments));
   }
 }
 

@@ -29,25 +29,30 @@ struct PlanAnchor {
 
 struct PlanTrees {
   std::vector<kernels::TreeLink<double>> links;
+  std::vector<kernels::LinkConstants<double>> link_numbers;  // [link]
   std::vector<kernels::TreeJoint<double>> joints;
-  std::vector<kernels::TreeDof<double>> dofs;
+  std::vector<int> scene_joints;  // [joint] of the scene; -1: a free body's
+  std::vector<kernels::TreeDof> dofs;
+  std::vector<kernels::DofConstants<double>> dof_numbers;  // [dof]
   std::vector<kernels::TreeLimit<double>> limits;
   std::vector<kernels::TreeTerm<double>> terms;  // of limits
   std::vector<kernels::TreeBallLimit<double>> ball_limits;
-  std::vector<kernels::TreeBallSpring<double>> ball_springs;
+  std::vector<kernels::TreeBallSpring> ball_springs;
   std::vector<kernels::TreeActuator<double>> actuators;
-  std::vector<kernels::TreePair<double>> pairs;  // [key]
+  std::vector<kernels::ActuatorConstants<double>> actuator_numbers;  // [actuator]
+  std::vector<kernels::TreePair<double>> pairs;                      // [key]
   std::vector<std::int32_t> pair_dofs;
   bool elliptic = false;
   double impedance_ratio = 1;
-  std::vector<kernels::TreeDrag<double>> drags;       // [link], or none
+  std::vector<kernels::DragConstants<double>> drags;  // [link], or none
   std::vector<double> start;                          // [coordinate], as the scene begins
   std::vector<std::pair<int, int>> joint_coordinate;  // of the scene; its first coordinate
   std::vector<PlanAnchor> anchors;                    // [joint of the scene]
   kernels::NewtonOptions<double> newton{};
   TreeWeights weights;
   int coordinates = 0;
-  int entries = 0;  // of the joint-space inertia
+  int entries = 0;      // of the joint-space inertia
+  bool damped = false;  // some joints are, in some world
   // How the newton solver works (kernels/data/tree_tables.hpp).
   bool by_links = true;
   int couplings = 0;
@@ -74,8 +79,9 @@ struct NewTreeJoint {
   Vec3 anchor = Vec3::Zero();
   Vec3 axis = Vec3::UnitZ();  // need not be unit
   double armature = 0, damping = 0;
-  double stiffness = 0;                             // of a hinge, slide or ball
-  double reference = 0, rest = 0;                   // of a hinge or slide, rad or m
+  double stiffness = 0;                 // of a hinge, slide or ball
+  bool sprung = false, damped = false;  // has a spring or damper in some world, if not in this
+  double reference = 0, rest = 0;       // of a hinge or slide, rad or m
   std::optional<std::array<double, 2>> range = {};  // rad or m; of a ball 0 to the largest angle
   double margin = 0;                                // of the range
   Compliance compliance = {};
@@ -110,6 +116,11 @@ class TreeBuilder {
   std::vector<NewLength> limited_joints_, tendons_;
   std::vector<NewLength> limited_balls_;  // of one term each, the first coordinate and dof
 };
+
+// tree_numbers.cpp
+kernels::LinkConstants<double> link_numbers(const Vec3& center, const Quat& principal);
+kernels::ActuatorConstants<double> actuator_numbers(const Actuator& actuator);
+kernels::DragConstants<double> drag_numbers(const Medium& medium, double mass, const Vec3& moments);
 
 // Joints of each scene body to its parent, in the order in which they move it (collect_trees.cpp).
 // Precondition: they refer to bodies that there are.

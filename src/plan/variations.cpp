@@ -10,11 +10,16 @@ void collect_variations(PlanData& plan) {
   PlanVaries& varies = plan.varies;
   for (const VariedNumber& n : plan.varied) {
     switch (n.parameter) {
-      case Parameter::size: varies.shapes = varies.masses = true; break;
+      case Parameter::size:
+        varies.shapes = varies.masses = true;
+        varies.links = plan.has_trees();
+        break;
       case Parameter::density: {
-        const Body& body = plan.scene.bodies[static_cast<std::size_t>(n.body)];
+        const Body& body = plan.scene.bodies[static_cast<std::size_t>(n.of.body)];
+        const bool several = body.shapes.size() > 1;  // about the centre of mass
         varies.masses = true;
-        varies.shapes = varies.shapes || body.shapes.size() > 1;  // about the centre of mass
+        varies.shapes = varies.shapes || several;
+        varies.links = varies.links || (several && plan.has_trees());
         break;
       }
       case Parameter::mass: varies.masses = true; break;
@@ -26,6 +31,14 @@ void collect_variations(PlanData& plan) {
         varies.delta_v = varies.delta_v || !plan.scene.options.wind.isZero(0);
         [[fallthrough]];
       case Parameter::angular_drag: varies.drag = true; break;
+      case Parameter::armature:
+      case Parameter::damping:
+      case Parameter::stiffness:
+      case Parameter::rest: varies.dofs = true; break;
+      case Parameter::gain:
+      case Parameter::bias:
+      case Parameter::kp:
+      case Parameter::kv: varies.actuators = true; break;
     }
   }
 }
@@ -40,6 +53,7 @@ void derive_again(PlanData& plan) {
     collect_joints(plan);
     collect_controls(plan);
   }
+  if (plan.has_trees()) number_trees(plan);
   const auto material = [&](const auto& shape) {
     return plan.scene.bodies[static_cast<std::size_t>(shape.scene_body)]
         .shapes[static_cast<std::size_t>(shape.shape)]

@@ -11,17 +11,65 @@
 namespace manyworlds::detail {
 namespace {
 
+const char* word_of(ParameterInfo::Owner owner) {
+  switch (owner) {
+    case ParameterInfo::world: return "world";
+    case ParameterInfo::body: return "body";
+    case ParameterInfo::shape: return "shape";
+    case ParameterInfo::joint: return "joint";
+    case ParameterInfo::control: return "control";
+  }
+  return "?";
+}
+bool is_of_newton(Parameter parameter) { return parameter >= Parameter::armature; }
+
+// "body 3, shape 1", "joint 2"
+std::string place_of(const NumberOwner& of) {
+  if (of.joint >= 0) return "joint " + std::to_string(of.joint);
+  if (of.control >= 0) return "control " + std::to_string(of.control);
+  if (of.body < 0) return "the world";
+  return "body " + std::to_string(of.body) +
+         (of.shape >= 0 ? ", shape " + std::to_string(of.shape) : "");
+}
+
 // Range of numbers that a scene may have, whatever else is in it.
 bool check_number(Checker& checker, const std::string& field, Parameter parameter, double value) {
-  const std::string unit = std::string(info(parameter).unit) == "1" ? "" : info(parameter).unit;
+  std::string unit = info(parameter).unit;
+  if (unit == "1" || is_of_newton(parameter)) unit.clear();  // it depends on the kind of joint
   switch (parameter) {
     case Parameter::size: return checker.size(field, value);
     case Parameter::density: return checker.density(field, value);
     case Parameter::mass: return checker.positive(field, value, unit, kMinMass, kLargestMass);
     case Parameter::restitution: return checker.between(field, value, 0, 1);
     case Parameter::gravity:
-    case Parameter::gravity_scale: return checker.finite(field, value, unit);
+    case Parameter::gravity_scale:
+    case Parameter::rest:
+    case Parameter::gain:
+    case Parameter::bias: return checker.finite(field, value, unit);
+    case Parameter::kp:
+      if (value > 0) return checker.finite(field, value, unit);
+      checker.add(field, "is " + number_text(value) + ", must be > 0");
+      return false;
     default: return checker.not_negative(field, value, unit);
+  }
+}
+
+const char* who_can(Parameter parameter) {
+  switch (parameter) {
+    case Parameter::size: return "a shape of a moving body with a size";
+    case Parameter::density: return "a dynamic body whose mass is not given";
+    case Parameter::armature:
+    case Parameter::damping:
+    case Parameter::stiffness: return "a hinge, slider or ball joint";
+    case Parameter::rest: return "a hinge or slider";
+    case Parameter::gain:
+    case Parameter::bias: return "a control of kind joint_force";
+    case Parameter::kp:
+      return "a position servo, of gain (kp, 0, 0) and bias (0, -kp, -kv), kp > 0";
+    case Parameter::kv:
+      return "a position servo, of gain (kp, 0, 0) and bias (0, -kp, -kv), kp > 0, or a velocity "
+             "servo, of gain (kv, 0, 0) and bias (0, 0, -kv), kv > 0";
+    default: return "a dynamic body";
   }
 }
 
@@ -33,38 +81,54 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
     checker.add(field, "is " + std::to_string(index) + ", must be " + expected);
     return false;
   };
-  const std::string every = std::string("-1: ") + parameter.name + " is of the ";
-  const int body = body_of(v).index(), shape = v.shape.index();
+  const std::string every =
+      std::string("-1: ") + parameter.name + " is of the " + word_of(parameter.owner);
+  const NumberOwner of{body_of(v).index(), v.shape.index(), v.joint.index(), v.control.index()};
+  const int body = of.body, shape = of.shape;
+  const bool of_shape = parameter.owner == ParameterInfo::shape;
   if (v.body && v.shape.body() && v.body != v.shape.body()) {
     return reject("shape", shape,
                   "a shape of body " + std::to_string(v.body.index()) + ", is one of body " +
                       std::to_string(body));
   }
-  if (parameter.owner == ParameterInfo::world && body != -1) {
-    return reject("body", body, every + "world");
-  }
-  if (parameter.owner != ParameterInfo::shape && shape != -1) {
-    return reject("shape", shape, every + (body < 0 ? "world" : "body"));
-  }
-  const int bodies = static_cast<int>(scene.bodies.size());
-  if (body < -1 || body >= bodies) {
-    return reject("body", body, "-1 or the index of one of " + std::to_string(bodies));
-  }
-  if (body < 0 && shape != -1) return reject("shape", shape, "-1 where body is -1");
-  if (body < 0) return true;
-  const int shapes = static_cast<int>(scene.bodies[static_cast<std::size_t>(body)].shapes.size());
-  if (shape < -1 || shape >= shapes) {
-    return reject("shape", shape, "-1 or the index of one of " + std::to_string(shapes));
-  }
-  const bool named = parameter.owner == ParameterInfo::body || shape >= 0;
-  if (named && !can_vary(scene, v.parameter, body, shape)) {
-    const char* why = v.parameter == Parameter::size      ? "a shape of a moving body with a size"
-                      : v.parameter == Parameter::density ? "a dynamic body whose mass is not given"
-                                                          : "a dynamic body";
-    checker.add(parameter.name, std::string("cannot vary here, must be of ") + why);
+  if (is_of_newton(v.parameter) && scene.options.solver.method != Solver::newton) {
+    checker.add("parameter", std::string("is ") + parameter.name +
+                                 ", which varies per world only with the newton solver, not " +
+                                 to_string(scene.options.solver.method));
     return false;
   }
-  return true;
+  if (parameter.owner != ParameterInfo::body && !of_shape && body != -1) {
+    return reject("body", body, every);
+  }
+  if (!of_shape && shape != -1) return reject("shape", shape, every);
+  if (parameter.owner != ParameterInfo::joint && of.joint != -1) {
+    return reject("joint", of.joint, every);
+  }
+  if (parameter.owner != ParameterInfo::control && of.control != -1) {
+    return reject("control", of.control, every);
+  }
+  const auto check_index = [&](const char* field, int index, std::size_t count) {
+    if (-1 <= index && index < static_cast<int>(count)) return true;
+    return reject(field, index, "-1 or the index of one of " + std::to_string(count));
+  };
+  if (!check_index("body", body, scene.bodies.size()) ||
+      !check_index("joint", of.joint, scene.joints.size()) ||
+      !check_index("control", of.control, scene.controls.size())) {
+    return false;
+  }
+  const auto can = [&] {
+    if (can_vary(scene, v.parameter, of)) return true;
+    checker.add(parameter.name,
+                std::string("cannot vary here, must be of ") + who_can(v.parameter));
+    return false;
+  };
+  if (of.joint >= 0 || of.control >= 0) return can();
+  if (body < 0 && shape != -1) return reject("shape", shape, "-1 where body is -1");
+  if (body < 0) return true;
+  if (!check_index("shape", shape, scene.bodies[static_cast<std::size_t>(body)].shapes.size())) {
+    return false;
+  }
+  return (of_shape && shape < 0) || can();
 }
 
 // Numbers that are worked out from shapes, which have to be sound for it.
@@ -87,20 +151,41 @@ void check_range(Checker& checker, const Scene& scene, bool sound, const Variati
     if (n.low != 0 || n.high != 0) checker.add(high, "must be 0 in a planar scene, as " + low);
     return;
   }
-  if (n.low > n.high) {
+  if (v.parameter == Parameter::kv && n.low <= 0 && !can_vary(scene, Parameter::kp, n.of)) {
+    checker.add(low, "is " + number_text(n.low) + ", must be > 0 for a velocity servo");
+  } else if (n.low > n.high) {
     checker.add(low, "is " + number_text(n.low) + ", must be at most " + high + ", which is " +
                          number_text(n.high));
   } else if (v.draw == Draw::log_uniform && n.low <= 0) {
     checker.add(low, "is " + number_text(n.low) + ", must be > 0 for a logarithmic draw");
   } else if (v.draw == Draw::none && (sound || !is_of_shapes(v.parameter))) {
-    const double own = get_number(scene, n.parameter, n.body, n.shape, n.component);
+    const double own = get_number(scene, n.parameter, n.of, n.component);
     if (own >= n.low && own <= n.high) return;
-    std::string place;
-    if (n.body >= 0) place = " of body " + std::to_string(n.body);
-    if (n.shape >= 0) place += ", shape " + std::to_string(n.shape);
-    checker.add("draw", "is none, but the scene's " + std::string(info(v.parameter).name) + place +
-                            ", " + number_text(own) + ", is not within " + low + " and " + high);
+    const bool of_world = info(v.parameter).owner == ParameterInfo::world;
+    checker.add("draw", "is none, but the scene's " + std::string(info(v.parameter).name) +
+                            (of_world ? "" : " of " + place_of(n.of)) + ", " + number_text(own) +
+                            ", is not within " + low + " and " + high);
   }
+}
+
+using Key = std::tuple<Parameter, int, int, int, int, int>;
+Key key_of(Parameter parameter, const VariedNumber& n) {
+  return {parameter, n.of.body, n.of.shape, n.of.joint, n.of.control, n.component};
+}
+// The variation before that has this number, or one that it is made of; -1: none.
+int already_varied(const std::map<Key, int>& seen, const VariedNumber& n) {
+  const auto variation_of = [&](Parameter parameter, int component) {
+    VariedNumber other = n;
+    other.component = component;
+    const auto at = seen.find(key_of(parameter, other));
+    return at == seen.end() ? -1 : at->second;
+  };
+  if (n.parameter == Parameter::kp || n.parameter == Parameter::kv) {
+    for (const Parameter numbers : {Parameter::gain, Parameter::bias}) {
+      if (const int v = variation_of(numbers, 0); v >= 0) return v;
+    }
+  }
+  return variation_of(n.parameter, n.component);
 }
 
 // A hull that is stretched far along one axis and not along another would become flat.
@@ -109,10 +194,10 @@ void check_hulls(Checker checker, const Scene& scene, int variation) {
   std::map<std::pair<int, int>, std::pair<double, double>> range;  // of a shape's half extents
   for (const VariedNumber& n : varied_numbers(scene)) {
     if (n.variation != variation || n.parameter != Parameter::size) continue;
-    const Shape& shape =
-        scene.bodies[static_cast<std::size_t>(n.body)].shapes[static_cast<std::size_t>(n.shape)];
+    const std::pair<int, int> of(n.of.body, n.of.shape);
+    const Shape& shape = scene.bodies[static_cast<std::size_t>(of.first)]
+                             .shapes[static_cast<std::size_t>(of.second)];
     if (!std::holds_alternative<Hull>(shape.geometry)) continue;
-    const std::pair<int, int> of(n.body, n.shape);
     auto& [low, high] = range.try_emplace(of, n.low, n.high).first->second;
     low = std::min(low, n.low), high = std::max(high, n.high);
     if (high <= kMaxStretch * low) continue;
@@ -135,22 +220,23 @@ void check_variations(Checker checker, const Scene& scene, bool sound) {
   }
   if (!found) return;
 
-  std::map<std::tuple<Parameter, int, int, int>, int> seen;
+  std::map<Key, int> seen;
   std::vector<std::size_t> numbers(scene.variations.size()), issues(scene.variations.size());
   for (const VariedNumber& n : varied_numbers(scene)) {
     const auto v = static_cast<std::size_t>(n.variation);
     Checker part = at(n.variation);
     ++numbers[v];
-    const auto [other, fresh] =
-        seen.insert({{n.parameter, n.body, n.shape, n.component}, n.variation});
+    const int other = already_varied(seen, n);
+    seen.emplace(key_of(n.parameter, n), n.variation);
     if (issues[v] > 0) continue;  // the same again for every body
     const std::size_t count = checker.count();
-    if (fresh) {
+    if (other < 0) {
       check_range(part, scene, sound, scene.variations[v], n);
     } else {
-      part.add(info(n.parameter).name, "varies already, by variation " +
-                                           std::to_string(other->second) + " (body " +
-                                           std::to_string(n.body) + ")");
+      NumberOwner of = n.of;
+      of.shape = -1;
+      part.add(info(n.parameter).name,
+               "varies already, by variation " + std::to_string(other) + " (" + place_of(of) + ")");
     }
     issues[v] += checker.count() - count;
   }

@@ -11,29 +11,58 @@ namespace manyworlds {
 
 namespace {
 
-Body& body_of(Scene& scene, int body) { return scene.bodies[static_cast<std::size_t>(body)]; }
-const Body& body_of(const Scene& scene, int body) {
-  return scene.bodies[static_cast<std::size_t>(body)];
+template <class List>
+auto& at(List& list, int index) {
+  return list[static_cast<std::size_t>(index)];
 }
-Shape& shape_of(Scene& scene, int body, int shape) {
-  return body_of(scene, body).shapes[static_cast<std::size_t>(shape)];
+auto& body_of(auto& scene, const NumberOwner& of) { return at(scene.bodies, of.body); }
+auto& shape_of(auto& scene, const NumberOwner& of) {
+  return at(body_of(scene, of).shapes, of.shape);
 }
-const Shape& shape_of(const Scene& scene, int body, int shape) {
-  return body_of(scene, body).shapes[static_cast<std::size_t>(shape)];
+auto& dynamics_of(auto& scene, const NumberOwner& of) {
+  return at(scene.joints, of.joint).dynamics;
 }
 
 int sizes_of(const Geometry& geometry) { return traits_of(geometry).sizes(); }
 
-void set_mass(Scene& scene, int body, double mass) {
-  MassProperties m = mass_properties(scene, body_of(scene, body));
+void set_mass(Scene& scene, Body& body, double mass) {
+  MassProperties m = mass_properties(scene, body);
   m.inertia *= mass / m.mass;
   m.mass = mass;
-  body_of(scene, body).mass_properties = m;
+  body.mass_properties = m;
 }
 
-int numbers_of(const Scene& scene, Parameter parameter, int body, int shape) {
-  return parameter == Parameter::size ? sizes_of(shape_of(scene, body, shape).geometry)
+int numbers_of(const Scene& scene, Parameter parameter, const NumberOwner& of) {
+  return parameter == Parameter::size ? sizes_of(shape_of(scene, of).geometry)
                                       : info(parameter).numbers;
+}
+
+// Servos are known by their numbers, which therefore stay above 0: gain (kp, 0, 0) and
+// bias (0, -kp, -kv), or gain (kv, 0, 0) and bias (0, 0, -kv).
+bool is_servo(const Actuator& a) {
+  return a.gain.x() > 0 && a.gain.y() == 0 && a.gain.z() == 0 && a.bias.x() == 0;
+}
+bool is_position_servo(const Actuator& a) { return is_servo(a) && a.bias.y() == -a.gain.x(); }
+bool is_velocity_servo(const Actuator& a) {
+  return is_servo(a) && a.bias.y() == 0 && a.bias.z() == -a.gain.x();
+}
+
+bool joint_can(const JointType& type, Parameter parameter) {
+  const bool single =
+      std::holds_alternative<HingeJoint>(type) || std::holds_alternative<SliderJoint>(type);
+  return single || (std::holds_alternative<BallJoint>(type) && parameter != Parameter::rest);
+}
+bool control_can(const Control& control, Parameter parameter) {
+  const Actuator& a = control.actuator;
+  if (control.kind != ControlKind::joint_force) return false;
+  if (parameter == Parameter::kp) return is_position_servo(a);
+  return parameter != Parameter::kv || is_position_servo(a) || is_velocity_servo(a);
+}
+
+bool is_about(const Variation& v, const NumberOwner& of) {
+  const auto is = [](auto id, int index) { return !id || id.index() == index; };
+  return is(body_of(v), of.body) && is(v.shape, of.shape) && is(v.joint, of.joint) &&
+         is(v.control, of.control);
 }
 
 }  // namespace
@@ -49,39 +78,67 @@ const ParameterInfo& info(Parameter parameter) {
   return kInfo[static_cast<std::size_t>(checked_enum(parameter))];
 }
 
-bool can_vary(const Scene& scene, Parameter parameter, int body, int shape) {
-  const auto owner = info(parameter).owner;
-  if (owner == ParameterInfo::world) return true;
-  const Body& b = body_of(scene, body);
-  if (owner == ParameterInfo::body) return b.motion == Motion::dynamic;
-  switch (parameter) {
-    case Parameter::size:
-      return b.motion != Motion::fixed && sizes_of(shape_of(scene, body, shape).geometry) > 0;
-    case Parameter::density: return b.motion == Motion::dynamic && !b.mass_properties;
-    default: return true;
+std::vector<NumberOwner> owners_of(const Scene& scene, Parameter parameter) {
+  std::vector<NumberOwner> out;
+  const auto count = [](const auto& list) { return static_cast<int>(list.size()); };
+  switch (info(parameter).owner) {
+    case ParameterInfo::world: out.emplace_back(); break;
+    case ParameterInfo::body:
+      for (int b = 0; b < count(scene.bodies); ++b) {
+        if (at(scene.bodies, b).motion != Motion::fixed) out.push_back({.body = b});
+      }
+      break;
+    case ParameterInfo::shape:
+      for (int b = 0; b < count(scene.bodies); ++b) {
+        for (int s = 0; s < count(at(scene.bodies, b).shapes); ++s) {
+          out.push_back({.body = b, .shape = s});
+        }
+      }
+      break;
+    case ParameterInfo::joint:
+      for (int j = 0; j < count(scene.joints); ++j) out.push_back({.joint = j});
+      break;
+    case ParameterInfo::control:
+      for (int c = 0; c < count(scene.controls); ++c) out.push_back({.control = c});
+      break;
   }
+  return out;
+}
+
+bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of) {
+  switch (parameter) {
+    case Parameter::gravity:
+    case Parameter::friction:
+    case Parameter::restitution: return true;
+    case Parameter::size:
+      return body_of(scene, of).motion != Motion::fixed &&
+             sizes_of(shape_of(scene, of).geometry) > 0;
+    case Parameter::density:
+      return body_of(scene, of).motion == Motion::dynamic && !body_of(scene, of).mass_properties;
+    case Parameter::mass:
+    case Parameter::gravity_scale:
+    case Parameter::linear_drag:
+    case Parameter::angular_drag: return body_of(scene, of).motion == Motion::dynamic;
+    case Parameter::armature:
+    case Parameter::damping:
+    case Parameter::stiffness:
+    case Parameter::rest: return joint_can(at(scene.joints, of.joint).type, parameter);
+    case Parameter::gain:
+    case Parameter::bias:
+    case Parameter::kp:
+    case Parameter::kv: return control_can(at(scene.controls, of.control), parameter);
+  }
+  return false;
 }
 
 std::vector<VariedNumber> varied_numbers(const Scene& scene) {
   std::vector<VariedNumber> out;
-  const auto add = [&](std::size_t i, int body, int shape) {
-    const Variation& v = scene.variations[i];
-    if (!can_vary(scene, v.parameter, body, shape)) return;
-    for (int c = 0; c < numbers_of(scene, v.parameter, body, shape); ++c) {
-      out.push_back({static_cast<int>(i), v.parameter, body, shape, c, v.low[c], v.high[c]});
-    }
-  };
   for (std::size_t i = 0; i < scene.variations.size(); ++i) {
     const Variation& v = scene.variations[i];
-    const auto owner = info(v.parameter).owner;
-    if (owner == ParameterInfo::world) add(i, -1, -1);
-    for (int b = 0; owner != ParameterInfo::world && b < static_cast<int>(scene.bodies.size());
-         ++b) {
-      if (body_of(v) && body_of(v) != BodyId(b)) continue;
-      const int shapes = static_cast<int>(body_of(scene, b).shapes.size());
-      if (owner == ParameterInfo::body) add(i, b, -1);
-      for (int s = 0; owner == ParameterInfo::shape && s < shapes; ++s) {
-        if (!v.shape || v.shape.index() == s) add(i, b, s);
+    for (const NumberOwner& of : owners_of(scene, v.parameter)) {
+      if (!is_about(v, of) || !can_vary(scene, v.parameter, of)) continue;
+      for (int c = 0; c < numbers_of(scene, v.parameter, of); ++c) {
+        out.push_back({static_cast<int>(i), v.parameter, of, c, v.low[c], v.high[c]});
       }
     }
   }
@@ -91,45 +148,81 @@ std::vector<VariedNumber> varied_numbers(const Scene& scene) {
   return out;
 }
 
-double get_number(const Scene& scene, Parameter parameter, int body, int shape, int component) {
+double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of, int component) {
   switch (parameter) {
     case Parameter::size: {
-      const Geometry& geometry = shape_of(scene, body, shape).geometry;
+      const Geometry& geometry = shape_of(scene, of).geometry;
       return component < sizes_of(geometry) ? traits_of(geometry).size(geometry, component) : 0;
     }
-    case Parameter::density:
-      return shape_of(scene, body, shape).density.value_or(scene.options.density);
+    case Parameter::density: return shape_of(scene, of).density.value_or(scene.options.density);
     case Parameter::mass:
-      return body_of(scene, body).motion == Motion::dynamic
-                 ? mass_properties(scene, body_of(scene, body)).mass
+      return body_of(scene, of).motion == Motion::dynamic
+                 ? mass_properties(scene, body_of(scene, of)).mass
                  : 0;
-    case Parameter::friction: return shape_of(scene, body, shape).material.friction;
-    case Parameter::restitution: return shape_of(scene, body, shape).material.restitution;
+    case Parameter::friction: return shape_of(scene, of).material.friction;
+    case Parameter::restitution: return shape_of(scene, of).material.restitution;
     case Parameter::gravity: return scene.options.gravity[component];
-    case Parameter::gravity_scale: return body_of(scene, body).gravity_scale;
-    case Parameter::linear_drag: return body_of(scene, body).linear_drag;
-    case Parameter::angular_drag: return body_of(scene, body).angular_drag;
+    case Parameter::gravity_scale: return body_of(scene, of).gravity_scale;
+    case Parameter::linear_drag: return body_of(scene, of).linear_drag;
+    case Parameter::angular_drag: return body_of(scene, of).angular_drag;
+    case Parameter::armature: return dynamics_of(scene, of).armature;
+    case Parameter::damping: return dynamics_of(scene, of).damping;
+    case Parameter::stiffness: return dynamics_of(scene, of).stiffness;
+    case Parameter::rest: return dynamics_of(scene, of).rest;
+    case Parameter::gain:
+    case Parameter::bias:
+    case Parameter::kp:
+    case Parameter::kv: return get_number(at(scene.controls, of.control), parameter, component);
   }
   return 0;
+}
+
+double get_number(const Control& control, Parameter parameter, int component) {
+  const Actuator& a = control.actuator;
+  if (parameter == Parameter::gain) return a.gain[component];
+  if (parameter == Parameter::bias) return a.bias[component];
+  if (!control_can(control, parameter)) return 0;
+  return parameter == Parameter::kp ? a.gain.x() : 0 - a.bias.z();  // never -0
 }
 
 void set_number(Scene& scene, const VariedNumber& n, double value) {
   switch (n.parameter) {
     case Parameter::size: {
-      Geometry& geometry = shape_of(scene, n.body, n.shape).geometry;
+      Geometry& geometry = shape_of(scene, n.of).geometry;
       traits_of(geometry).resize(geometry, n.component, value);
       break;
     }
-    case Parameter::density: shape_of(scene, n.body, n.shape).density = value; break;
-    case Parameter::mass: set_mass(scene, n.body, value); break;
-    case Parameter::friction: shape_of(scene, n.body, n.shape).material.friction = value; break;
-    case Parameter::restitution:
-      shape_of(scene, n.body, n.shape).material.restitution = value;
-      break;
+    case Parameter::density: shape_of(scene, n.of).density = value; break;
+    case Parameter::mass: set_mass(scene, body_of(scene, n.of), value); break;
+    case Parameter::friction: shape_of(scene, n.of).material.friction = value; break;
+    case Parameter::restitution: shape_of(scene, n.of).material.restitution = value; break;
     case Parameter::gravity: scene.options.gravity[n.component] = value; break;
-    case Parameter::gravity_scale: body_of(scene, n.body).gravity_scale = value; break;
-    case Parameter::linear_drag: body_of(scene, n.body).linear_drag = value; break;
-    case Parameter::angular_drag: body_of(scene, n.body).angular_drag = value; break;
+    case Parameter::gravity_scale: body_of(scene, n.of).gravity_scale = value; break;
+    case Parameter::linear_drag: body_of(scene, n.of).linear_drag = value; break;
+    case Parameter::angular_drag: body_of(scene, n.of).angular_drag = value; break;
+    case Parameter::armature: dynamics_of(scene, n.of).armature = value; break;
+    case Parameter::damping: dynamics_of(scene, n.of).damping = value; break;
+    case Parameter::stiffness: dynamics_of(scene, n.of).stiffness = value; break;
+    case Parameter::rest: dynamics_of(scene, n.of).rest = value; break;
+    case Parameter::gain:
+    case Parameter::bias:
+    case Parameter::kp:
+    case Parameter::kv:
+      set_number(at(scene.controls, n.of.control), n.parameter, n.component, value);
+      break;
+  }
+}
+
+void set_number(Control& control, Parameter parameter, int component, double value) {
+  Actuator& a = control.actuator;
+  if (parameter == Parameter::gain) {
+    a.gain[component] = value;
+  } else if (parameter == Parameter::bias) {
+    a.bias[component] = value;
+  } else {
+    const bool position = parameter == Parameter::kp;
+    if (position || is_velocity_servo(a)) a.gain.x() = value;
+    a.bias[position ? 1 : 2] = 0 - value;  // never -0
   }
 }
 

@@ -7,24 +7,39 @@
 
 namespace manyworlds {
 
+// What has a number: indices of the scene, of which those count that its ParameterInfo::owner asks
+// for; the others are -1.
+struct NumberOwner {
+  int body = -1, shape = -1, joint = -1, control = -1;
+  bool operator==(const NumberOwner&) const = default;
+};
+
 struct VariedNumber {
   int variation = 0;  // index in Scene::variations
   Parameter parameter{};
-  int body = -1, shape = -1, component = 0;  // body: of the scene; -1: of the world
+  NumberOwner of = {};
+  int component = 0;
   double low = 0, high = 0;
 };
 
 // The body that it is about: that of its shape, if it has one.
 inline BodyId body_of(const Variation& v) { return v.shape.body() ? v.shape.body() : v.body; }
 
-// In the order in which they have to be set. A variation of every body or shape leaves out those
-// that have no such number.
+// All that may have a parameter, in the order of Batch::read: bodies with state, shapes, joints,
+// controls, or the world.
+std::vector<NumberOwner> owners_of(const Scene& scene, Parameter parameter);
+
+// In the order in which they have to be set. A variation of all leaves out those that have no such
+// number.
 std::vector<VariedNumber> varied_numbers(const Scene& scene);
 
-// Has this body, or this shape of it, the parameter, and can it vary?
-bool can_vary(const Scene& scene, Parameter parameter, int body, int shape);
+// Has this owner the parameter, and can it vary?
+bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of);
 
-double get_number(const Scene& scene, Parameter parameter, int body, int shape, int component);
+double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of, int component);
 void set_number(Scene& scene, const VariedNumber& number, double value);
+// Of a control.
+double get_number(const Control& control, Parameter parameter, int component);
+void set_number(Control& control, Parameter parameter, int component, double value);
 
 }  // namespace manyworlds

@@ -94,14 +94,14 @@ kernels::PolygonConstants<Real> polygon_constants(const PlanCollider& c) {
 }
 
 // Every member is a number.
-template <class Real>
-kernels::JointConstants<Real> joint_constants(const PlanPart& part) {
-  constexpr std::size_t kNumbers = sizeof(part.constants) / sizeof(double);
+template <class Real, template <class> class Numbers>
+Numbers<Real> as_real(const Numbers<double>& numbers) {
+  constexpr std::size_t kNumbers = sizeof numbers / sizeof(double);
   double from[kNumbers];
   Real to[kNumbers];
-  std::memcpy(from, &part.constants, sizeof part.constants);
+  std::memcpy(from, &numbers, sizeof numbers);
   for (std::size_t i = 0; i < kNumbers; ++i) to[i] = static_cast<Real>(from[i]);
-  kernels::JointConstants<Real> out;
+  Numbers<Real> out;
   static_assert(sizeof out == sizeof to);
   std::memcpy(&out, to, sizeof out);
   return out;
@@ -127,13 +127,21 @@ Constants<Real>::Constants(const PlanData& plan, Parts parts, int groups, int la
        sizeof(kernels::JointConstants<Real>));
   make(thrusts_, parts.joints && !plan.thrusts.empty(), plan.thrusts.size(),
        sizeof(kernels::ThrustConstants<Real>));
+  const PlanTrees& trees = plan.trees;
+  make(links_, parts.links, trees.links.size(), sizeof(kernels::LinkConstants<Real>));
+  make(drags_, parts.links, trees.drags.size(), sizeof(kernels::DragConstants<Real>));
+  make(dofs_, parts.dofs, trees.dofs.size(), sizeof(kernels::DofConstants<Real>));
+  make(actuators_, parts.actuators, trees.actuators.size(),
+       sizeof(kernels::ActuatorConstants<Real>));
 }
 
 template <class Real>
 kernels::ConstantBlocks<Real> Constants<Real>::group(int index) const {
   const auto at = static_cast<std::size_t>(index), lanes = static_cast<std::size_t>(lanes_);
   return {bodies_.group(at, lanes),    shapes_.group(at, lanes), polygons_.group(at, lanes),
-          materials_.group(at, lanes), joints_.group(at, lanes), thrusts_.group(at, lanes)};
+          materials_.group(at, lanes), joints_.group(at, lanes), thrusts_.group(at, lanes),
+          links_.group(at, lanes),     drags_.group(at, lanes),  dofs_.group(at, lanes),
+          actuators_.group(at, lanes)};
 }
 
 template <class Real>
@@ -158,7 +166,7 @@ void Constants<Real>::fill(const PlanData& plan, int lane_index) {
     if (!polygons_.numbers.empty()) put(polygons_, c, polygon_constants<Real>(shape), lane_index);
   }
   for (std::size_t p = 0; !joints_.numbers.empty() && p < plan.parts.size(); ++p) {
-    put(joints_, p, joint_constants<Real>(plan.parts[p]), lane_index);
+    put(joints_, p, as_real<Real>(plan.parts[p].constants), lane_index);
   }
   for (std::size_t i = 0; !thrusts_.numbers.empty() && i < plan.thrusts.size(); ++i) {
     kernels::ThrustConstants<Real> value{};
@@ -166,6 +174,13 @@ void Constants<Real>::fill(const PlanData& plan, int lane_index) {
     copy_numbers(plan.thrusts[i].direction, value.direction);
     put(thrusts_, i, value, lane_index);
   }
+  const auto put_all = [&](Block& block, const auto& items) {
+    for (std::size_t i = 0; !block.numbers.empty() && i < items.size(); ++i) {
+      put(block, i, as_real<Real>(items[i]), lane_index);
+    }
+  };
+  put_all(links_, plan.trees.link_numbers), put_all(drags_, plan.trees.drags);
+  put_all(dofs_, plan.trees.dof_numbers), put_all(actuators_, plan.trees.actuator_numbers);
   const auto material = [&](std::size_t item, const Material& m) {
     const kernels::MaterialOf<Real> value{static_cast<Real>(m.friction),
                                           static_cast<Real>(m.restitution)};
@@ -182,7 +197,7 @@ template <class Real>
 void Constants<Real>::swap(int first, int second) {
   const auto lanes = static_cast<std::size_t>(lanes_);
   const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
-  for_each_block([&](Block& block) {
+  for_each_block(*this, [&](Block& block) {
     if (block.numbers.empty()) return;
     Real* in_a = block.numbers.data() + (a / lanes) * block.rows * lanes + a % lanes;
     Real* in_b = block.numbers.data() + (b / lanes) * block.rows * lanes + b % lanes;
@@ -194,7 +209,7 @@ template <class Real>
 void Constants<Real>::copy(int from, int to) {
   const auto lanes = static_cast<std::size_t>(lanes_);
   const auto a = static_cast<std::size_t>(from), b = static_cast<std::size_t>(to);
-  for_each_block([&](Block& block) {
+  for_each_block(*this, [&](Block& block) {
     if (block.numbers.empty()) return;
     const Real* source = block.numbers.data() + (a / lanes) * block.rows * lanes + a % lanes;
     Real* target = block.numbers.data() + (b / lanes) * block.rows * lanes + b % lanes;
@@ -204,9 +219,9 @@ void Constants<Real>::copy(int from, int to) {
 
 template <class Real>
 std::size_t Constants<Real>::bytes() const {
-  return (bodies_.numbers.size() + shapes_.numbers.size() + polygons_.numbers.size() +
-          materials_.numbers.size() + joints_.numbers.size() + thrusts_.numbers.size()) *
-         sizeof(Real);
+  std::size_t numbers = 0;
+  for_each_block(*this, [&](const Block& block) { numbers += block.numbers.size(); });
+  return numbers * sizeof(Real);
 }
 
 #define MW_INSTANTIATE(Real)                                                                    \

@@ -24,6 +24,7 @@ class Constants {
   // Which kinds of item there are in it; the others' pointers stay null.
   struct Parts {
     bool bodies = true, shapes = true, materials = true, joints = true;
+    bool links = true, dofs = true, actuators = true;  // of trees
   };
 
   Constants() = default;
@@ -45,9 +46,13 @@ class Constants {
       return numbers.empty() ? nullptr : numbers.data() + index * rows * lanes;
     }
   };
-  template <class Visit>
-  void for_each_block(Visit visit) {
-    for (Block* b : {&bodies_, &shapes_, &polygons_, &materials_, &joints_, &thrusts_}) visit(*b);
+  template <class Self, class Visit>
+  static void for_each_block(Self& self, Visit visit) {
+    for (auto* block :
+         {&self.bodies_, &self.shapes_, &self.polygons_, &self.materials_, &self.joints_,
+          &self.thrusts_, &self.links_, &self.drags_, &self.dofs_, &self.actuators_}) {
+      visit(*block);
+    }
   }
   // Writes one item of a lane.
   template <class Item>
@@ -56,6 +61,7 @@ class Constants {
   Parts parts_;
   int lanes_ = 1;
   Block bodies_, shapes_, polygons_, materials_, joints_, thrusts_;
+  Block links_, drags_, dofs_, actuators_;
 };
 
 }  // namespace manyworlds

@@ -28,29 +28,17 @@ template <class Real>
 void Worlds<Real>::make_parameters() {
   const Scene& scene = plan_.scene();
   const auto& varied = data().varied;
-  const auto find = [&](Parameter parameter, int body, int shape) {
-    auto& list = number_at_[static_cast<std::size_t>(parameter)];
-    for (int c = 0; c < info(parameter).numbers; ++c) list.push_back(-1);
-    const std::size_t first = list.size() - static_cast<std::size_t>(info(parameter).numbers);
+  for (std::size_t p = 0; p < number_at_.size(); ++p) {
+    const auto parameter = static_cast<Parameter>(p);
+    const auto numbers = static_cast<std::size_t>(info(parameter).numbers);
+    owners_[p] = owners_of(scene, parameter);
+    number_at_[p].assign(owners_[p].size() * numbers, -1);
     for (std::size_t i = 0; i < varied.size(); ++i) {
       const VariedNumber& n = varied[i];
-      if (n.parameter != parameter || n.body != body || n.shape != shape) continue;
-      list[first + static_cast<std::size_t>(n.component)] = static_cast<int>(i);
-    }
-  };
-  for (int p = 0; p < kParameterCount; ++p) {
-    const auto parameter = static_cast<Parameter>(p);
-    const auto owner = info(parameter).owner;
-    if (owner == ParameterInfo::world) find(parameter, -1, -1);
-    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-      const int body = static_cast<int>(b);
-      if (owner == ParameterInfo::body && scene.bodies[b].motion != Motion::fixed) {
-        find(parameter, body, -1);
-      }
-      for (std::size_t s = 0; owner == ParameterInfo::shape && s < scene.bodies[b].shapes.size();
-           ++s) {
-        find(parameter, body, static_cast<int>(s));
-      }
+      if (n.parameter != parameter) continue;
+      const auto at = std::find(owners_[p].begin(), owners_[p].end(), n.of);
+      const auto first = static_cast<std::size_t>(at - owners_[p].begin()) * numbers;
+      number_at_[p][first + static_cast<std::size_t>(n.component)] = static_cast<int>(i);
     }
   }
   if (varied.empty()) return;
@@ -64,7 +52,7 @@ void Worlds<Real>::make_parameters() {
   }
   for (std::size_t w = 0; w < worlds; ++w) {
     for (const VariedNumber& n : varied) {
-      const double own = get_number(scene, n.parameter, n.body, n.shape, n.component);
+      const double own = get_number(scene, n.parameter, n.of, n.component);
       values_.push_back(std::clamp(own, n.low, n.high));
     }
   }
@@ -90,8 +78,8 @@ void Worlds<Real>::apply_values(int world) {
   // From the scene as it is described: stretched polygons would add up their rounding, and a mass
   // that was set before would hide what sizes make.
   for (const VariedNumber& n : varied) {
-    if (n.body < 0) continue;
-    const auto b = static_cast<std::size_t>(n.body), s = static_cast<std::size_t>(n.shape);
+    if (n.of.body < 0) continue;
+    const auto b = static_cast<std::size_t>(n.of.body), s = static_cast<std::size_t>(n.of.shape);
     const Body& described = plan_.scene().bodies[b];
     Body& body = own_->scene.bodies[b];
     if (n.parameter == Parameter::size) body.shapes[s].geometry = described.shapes[s].geometry;
@@ -113,29 +101,26 @@ template <class Real>
 void Worlds<Real>::read(Parameter parameter, int world, double* out) const {
   const Scene& scene = plan_.scene();
   const auto& at = number_at_[static_cast<std::size_t>(parameter)];
-  const auto numbers = static_cast<std::size_t>(info(parameter).numbers);
   std::size_t i = 0;
-  const auto put = [&](int body, int shape) {
-    for (std::size_t c = 0; c < numbers; ++c, ++i) {
-      out[i] = at[i] >= 0 ? values_of(world)[at[i]]
-                          : get_number(scene, parameter, body, shape, static_cast<int>(c));
-    }
-  };
-  const auto owner = info(parameter).owner;
-  if (owner == ParameterInfo::world) return put(-1, -1);
-  if (owner == ParameterInfo::body) {
-    for (std::size_t b = 0; b < data().bodies.size(); ++b) {
-      put(data().bodies[b].scene_body, -1);
-      // Sizes and densities make a mass, too.
-      if (parameter == Parameter::mass) out[b] = body_of(world, b).mass;
-    }
-    return;
-  }
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    for (std::size_t s = 0; s < scene.bodies[b].shapes.size(); ++s) {
-      put(static_cast<int>(b), static_cast<int>(s));
+  for (const NumberOwner& of : owners_[static_cast<std::size_t>(parameter)]) {
+    for (int c = 0; c < info(parameter).numbers; ++c, ++i) {
+      out[i] = at[i] >= 0 ? values_of(world)[at[i]] : get_number(scene, parameter, of, c);
+      // Sizes and densities make a mass, too, and what servos have gains.
+      if (parameter == Parameter::mass) out[i] = body_of(world, i).mass;
+      if (of.control >= 0) out[i] = get_number(control_of(world, of.control), parameter, c);
     }
   }
+}
+
+template <class Real>
+Control Worlds<Real>::control_of(int world, int control) const {
+  Control out = plan_.scene().controls[static_cast<std::size_t>(control)];
+  const auto& varied = data().varied;
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    const VariedNumber& n = varied[i];
+    if (n.of.control == control) set_number(out, n.parameter, n.component, values_of(world)[i]);
+  }
+  return out;
 }
 
 template <class Real>
@@ -147,10 +132,8 @@ std::string Worlds<Real>::check(Parameter parameter, int world, const double* in
   for (std::size_t i = 0; i < at.size(); ++i) {
     std::string place = std::string(info(parameter).name);
     const auto owner = info(parameter).owner;
-    if (owner != ParameterInfo::world) {
-      place += owner == ParameterInfo::body ? " of body " : " of shape ";
-      place += std::to_string(i / numbers);
-    }
+    constexpr const char* kOf[] = {"", " of body ", " of shape ", " of joint ", " of control "};
+    if (owner != ParameterInfo::world) place += kOf[owner] + std::to_string(i / numbers);
     if (numbers > 1) place += ", number " + std::to_string(i % numbers);
     if (at[i] < 0) {
       if (in[i] == now[i]) continue;
@@ -178,6 +161,11 @@ void Worlds<Real>::write(Parameter parameter, int world, const double* in) {
   if (!changed) return;
   const int lane_index = lane_index_of(world);
   const bool moves = parameter == Parameter::size || parameter == Parameter::density;
+  if (data().has_trees()) {  // whose links stay where their coordinates are
+    apply_values(world);
+    if (moves) place_links(world);
+    return;
+  }
   // A body whose centre of mass shifts stays where its own frame is.
   std::vector<double> positions, orientations;
   if (moves) {

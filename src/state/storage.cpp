@@ -49,6 +49,10 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
   if (own.material) view.constants.material = own.material;
   if (own.joint) view.constants.joint = own.joint;
   if (own.thrust) view.constants.thrust = own.thrust;
+  if (own.link) view.constants.link = own.link;
+  if (own.drag) view.constants.drag = own.drag;
+  if (own.dof) view.constants.dof = own.dof;
+  if (own.actuator) view.constants.actuator = own.actuator;
   if (t.controls > 0) view.control = control_.data() + at * lanes * index(t.controls);
   if (t.has_joints) {
     view.joint_impulse =
@@ -80,8 +84,9 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
 template <class Real>
 void Storage<Real>::make_constants(const PlanData& plan) {
   const PlanVaries& v = plan.varies;
-  constants_ =
-      Constants<Real>(plan, {v.body_constants(), v.shapes, v.materials, v.shapes}, groups_, lanes_);
+  constants_ = Constants<Real>(
+      plan, {v.body_constants(), v.shapes, v.materials, v.shapes, v.links, v.dofs, v.actuators},
+      groups_, lanes_);
 }
 
 template <class Real>

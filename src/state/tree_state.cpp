@@ -18,7 +18,7 @@ void Worlds<Real>::begin_trees(int world, const Draws& draws) {
     const int row = trees.links[static_cast<std::size_t>(link)].body;
     const int scene_body = data().bodies[static_cast<std::size_t>(row)].scene_body;
     const BodyState s = draw_initial_state(plan_.scene(), scene_body, draws);
-    const Vec3 center = data().bodies[static_cast<std::size_t>(row)].center;
+    const Vec3 center = body_of(world, static_cast<std::size_t>(row)).center;
     const Vec3 linear = s.linear_velocity - s.angular_velocity.cross(s.rotation * center);
     const Vec3 angular = s.rotation.conjugate() * s.angular_velocity;
     const double q[] = {s.rotation.w(), s.rotation.x(), s.rotation.y(), s.rotation.z()};
@@ -48,18 +48,20 @@ void Worlds<Real>::place_links(int world) {
   const TreeKinematics at = kinematics_of(trees, q);
   for (std::size_t i = 0; i < trees.links.size(); ++i) {
     const int row = trees.links[i].body;
+    // Its centre of mass in this world.
+    const PlanBody& own = body_of(world, static_cast<std::size_t>(row));
+    const Vec3 center = at.origin[i] + at.rotation[i] * own.center;
     Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
     for_each_dof_of(trees, i, [&](std::size_t k) {
-      linear += v[k] * at.motions[k].velocity(at.center[i]);
+      linear += v[k] * at.motions[k].velocity(center);
       angular += v[k] * at.motions[k].axis;
     });
     for (int c = 0; c < 3; ++c) {
-      number(Field::position, world, row, c) = static_cast<Real>(at.center[i][c]);
+      number(Field::position, world, row, c) = static_cast<Real>(center[c]);
       number(Field::linear_velocity, world, row, c) = static_cast<Real>(linear[c]);
       number(Field::angular_velocity, world, row, c) = static_cast<Real>(angular[c]);
     }
-    set_rotation(world, row,
-                 at.rotation[i] * body_of(world, static_cast<std::size_t>(row)).principal);
+    set_rotation(world, row, at.rotation[i] * own.principal);
   }
 }
 

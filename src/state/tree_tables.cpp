@@ -41,11 +41,8 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
                                from.next_child,
                                from.moves_freely,
                                {},
-                               {},
-                               {},
                                {}};
     copy(from.position, to.position), copy(from.rotation, to.rotation);
-    copy(from.center, to.center), copy(from.principal, to.principal);
     links_.push_back(to);
   }
   for (const auto& from : trees.joints) {
@@ -54,12 +51,8 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     copy(from.anchor, to.anchor), copy(from.axis, to.axis);
     joints_.push_back(to);
   }
-  for (const auto& from : trees.dofs) {
-    dofs_.push_back({from.link, from.parent, from.depth, from.entry, from.coordinate,
-                     static_cast<Real>(from.armature), static_cast<Real>(from.damping),
-                     static_cast<Real>(from.stiffness), static_cast<Real>(from.rest)});
-    table_.damped = table_.damped || from.damping > 0;
-  }
+  dofs_ = trees.dofs;
+  table_.damped = trees.damped;
   for (const auto& from : trees.limits) {
     limits_.push_back({static_cast<Real>(from.side), static_cast<Real>(from.end),
                        static_cast<Real>(from.margin), static_cast<Real>(from.inverse_weight),
@@ -74,15 +67,10 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
                             static_cast<Real>(from.margin), static_cast<Real>(from.inverse_weight),
                             compliance<Real>(from.compliance)});
   }
-  for (const auto& from : trees.ball_springs) {
-    ball_springs_.push_back({from.coordinate, from.dof, static_cast<Real>(from.stiffness)});
-  }
+  ball_springs_ = trees.ball_springs;
   for (const auto& from : trees.actuators) {
-    kernels::TreeActuator<Real> to{from.control, from.coordinate, from.dof, {}, {}, {}, {}, {}};
-    to.gear = static_cast<Real>(from.gear);
-    copy(from.gain, to.gain), copy(from.bias, to.bias);
-    to.low = static_cast<Real>(from.low), to.high = static_cast<Real>(from.high);
-    actuators_.push_back(to);
+    actuators_.push_back({from.control, from.coordinate, from.dof, static_cast<Real>(from.gear),
+                          static_cast<Real>(from.low), static_cast<Real>(from.high)});
   }
   for (const auto& from : trees.pairs) {
     pairs_.push_back({from.link_a, from.link_b, from.only_link, from.cone, from.material_a,
@@ -90,12 +78,6 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
                       static_cast<Real>(from.inverse_weight),
                       static_cast<Real>(from.friction_weight), compliance<Real>(from.compliance),
                       from.first_dof, from.dofs, from.coupled});
-  }
-  for (const auto& from : trees.drags) {
-    kernels::TreeDrag<Real> to{
-        static_cast<Real>(from.viscous), static_cast<Real>(from.spin_viscous), {}, {}};
-    copy(from.speed, to.speed), copy(from.spin, to.spin);
-    drags_.push_back(to);
   }
   pair_dofs_ = trees.pair_dofs;
   table_.has_rows = !trees.limits.empty() || !trees.ball_limits.empty() || !trees.pairs.empty();
@@ -105,6 +87,7 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
     ancestors_.push_back(first ? 0 : ancestors_[parent] | std::uint64_t{1} << parent);
   }
   table_.elliptic = trees.elliptic;
+  table_.has_medium = !trees.drags.empty();
   table_.impedance_ratio = static_cast<Real>(trees.impedance_ratio);
   table_.stages = 1;
   table_.actuators = static_cast<std::int32_t>(actuators_.size());
@@ -130,7 +113,6 @@ kernels::TreeTable<Real> TreeTables<Real>::get() const {
   out.link = links_.data(), out.joint = joints_.data(), out.dof = dofs_.data();
   out.pair = pairs_.data(), out.pair_dof = pair_dofs_.data();
   out.ancestors = ancestors_.data();
-  out.drag = drags_.empty() ? nullptr : drags_.data();
   out.term = terms_.data();
   out.ball_limit = ball_limits_.data(), out.ball_spring = ball_springs_.data();
   out.limit = limits_.data(), out.actuator = actuators_.data();

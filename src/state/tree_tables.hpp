@@ -21,14 +21,13 @@ class TreeTables {
   kernels::TreeTable<Real> table_{};
   std::vector<kernels::TreeLink<Real>> links_;
   std::vector<kernels::TreeJoint<Real>> joints_;
-  std::vector<kernels::TreeDof<Real>> dofs_;
+  std::vector<kernels::TreeDof> dofs_;
   std::vector<kernels::TreeLimit<Real>> limits_;
   std::vector<kernels::TreeTerm<Real>> terms_;
   std::vector<kernels::TreeBallLimit<Real>> ball_limits_;
-  std::vector<kernels::TreeBallSpring<Real>> ball_springs_;
+  std::vector<kernels::TreeBallSpring> ball_springs_;
   std::vector<kernels::TreeActuator<Real>> actuators_;
   std::vector<kernels::TreePair<Real>> pairs_;
-  std::vector<kernels::TreeDrag<Real>> drags_;
   std::vector<std::int32_t> pair_dofs_;
   std::vector<std::uint64_t> ancestors_;
 };

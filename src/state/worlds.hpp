@@ -152,6 +152,7 @@ class Worlds final : public WorldsBase {
   void draw_values(int world, const Draws& draws);
   // Derives everything from the world's numbers; its bodies stay where they are.
   void apply_values(int world);
+  Control control_of(int world, int control) const;  // with this world's numbers
   double gravity(int world, int component) const;
   double gravity_scale(int world, int scene_body) const;
 
@@ -178,6 +179,7 @@ class Worlds final : public WorldsBase {
   std::mutex own_plan_;  // worlds may begin on several threads, with one plan of their own numbers
   std::array<std::vector<double>, kFieldCount> initial_;  // [world][item][component], or empty
   // What varies (Scene::variations).
+  std::array<std::vector<NumberOwner>, kParameterCount> owners_;
   std::array<std::vector<int>, kParameterCount> number_at_;  // index in PlanData::varied, or -1
   std::vector<double> values_;                               // [world][PlanData::varied]
   std::vector<PlanBody> own_bodies_;                         // [world][body], where masses vary

@@ -87,6 +87,7 @@ TEST_CASE("draws depend on the world's seed and its episode, and keep to their r
     const auto parameter = static_cast<Parameter>(p);
     // World 10 of one is world 0 of the other.
     CHECK(numbers(batch, parameter, 10) == numbers(other, parameter, 0));
+    if (batch.size(parameter) == 0) continue;  // there are neither joints nor controls
     CHECK(numbers(batch, parameter, 10) != numbers(batch, parameter, 11));
   }
   double low = 1e9, high = 0, below = 0;

@@ -211,7 +211,7 @@ TEST_CASE("robots take many steps in one call as they take them one by one",
 }
 
 TEST_CASE("robots go on from snapshots and copies bit by bit", "[fast][bits][robots]") {
-  const Plan plan = compile(robots());
+  const Plan plan = compile(GENERATE(robots(), randomized(lone_walker())));
   for (const Table& table : all_tables()) {
     INFO(name(table));
     Batch batch(plan, options_of(table, 19));

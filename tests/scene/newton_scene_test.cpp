@@ -115,7 +115,7 @@ TEST_CASE("the newton solver names all that it does not take, at once",
   thrust.name = "jet", thrust.kind = ControlKind::thrust, thrust.body = BodyId(1);
   scene.add(thrust);
   scene.attractors.emplace_back();
-  scene.variations = {vary(Parameter::friction, 0.1, 1), vary(Parameter::density, 500, 900)};
+  scene.variations = {vary(Parameter::friction, 0.1, 1), vary(Parameter::restitution, 0, 0.5)};
   CHECK(
       issues_of(scene) ==
       Issues{
@@ -158,8 +158,8 @@ TEST_CASE("the newton solver names all that it does not take, at once",
           "control 1: kind is target_speed, the newton solver takes joint_force only",
           "control 2 'jet': kind is thrust, the newton solver takes joint_force only",
           "attractors are given, the newton solver takes none",
-          "variation 1: parameter is density, the newton solver takes mass, friction, gravity and "
-          "gravity_scale",
+          "variation 1: parameter is restitution, the newton solver takes all but restitution, "
+          "linear_drag and angular_drag",
           "joint 3: body_b is 3, which joint 1 holds already: the newton solver takes trees, or a "
           "series of joints by Joint::after",
           "joint 4: body_b is 3, which joint 1 holds already: the newton solver takes trees, or a "

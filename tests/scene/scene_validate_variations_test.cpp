@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "manyworlds/plan.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/newton_scenes.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -57,6 +57,74 @@ TEST_CASE("what a variation is about must be there and able to vary", "[fast][sc
   empty.add(ground(Space::spatial));
   empty.variations = {vary(Parameter::mass, 1, 2)};
   CHECK(only_issue(empty) == "variation 0: mass is of nothing in this scene");
+}
+
+namespace {
+
+// A hinge with a motor, a position servo and a velocity servo, and a body that is welded on.
+Scene robot_with(std::vector<Variation> variations) {
+  Scene scene = newton_pendulum();
+  scene.add(lump(Space::spatial, kMass, {0.1, kAcross, 0.3}, {kLength, 0, 0}));
+  scene.add(joint_at(scene, BodyId(0), BodyId(1), at({kLength, 0, 0}), FixedJoint{}));
+  const std::pair<Vec3, Vec3> actuators[] = {
+      {{1, 0, 0}, Vec3::Zero()}, {{20, 0, 0}, {0, -20, -1}}, {{3, 0, 0}, {0, 0, -3}}};
+  for (const auto& [gain, bias] : actuators) {
+    Control control;
+    control.kind = ControlKind::joint_force, control.joint = JointId(0);
+    control.actuator.gain = gain, control.actuator.bias = bias;
+    scene.add(control);
+  }
+  scene.variations = std::move(variations);
+  return scene;
+}
+Variation of_joint(Variation v, int joint) {
+  v.joint = JointId(joint);
+  return v;
+}
+Variation of_control(Variation v, int control) {
+  v.control = ControlId(control);
+  return v;
+}
+std::string issue_of(const Variation& v) { return only_issue(robot_with({v})); }
+
+}  // namespace
+
+TEST_CASE("numbers of joints and controls vary where there are such", "[fast][scene][parameters]") {
+  for (const Parameter p : {Parameter::armature, Parameter::damping, Parameter::stiffness,
+                            Parameter::rest, Parameter::kp, Parameter::kv}) {
+    CHECK(validate(robot_with({vary(p, 0.1, 1)})).empty());
+  }
+  CHECK(issue_of(of_joint(vary(Parameter::armature, 0, 1), 2)) ==
+        "variation 0: joint is 2, must be -1 or the index of one of 2");
+  CHECK(issue_of(of_control(vary(Parameter::gain, 0, 1), 3)) ==
+        "variation 0: control is 3, must be -1 or the index of one of 3");
+  CHECK(issue_of(of_joint(vary(Parameter::gain, 0, 1), 0)) ==
+        "variation 0: joint is 0, must be -1: gain is of the control");
+  CHECK(issue_of(of_control(vary(Parameter::rest, 0, 1), 0)) ==
+        "variation 0: control is 0, must be -1: rest is of the joint");
+  CHECK(issue_of(of(vary(Parameter::damping, 0, 1), 0)) ==
+        "variation 0: body is 0, must be -1: damping is of the joint");
+  CHECK(issue_of(of_joint(vary(Parameter::armature, 0, 1), 1)) ==
+        "variation 0: armature cannot vary here, must be of a hinge, slider or ball joint");
+  CHECK(issue_of(of_control(vary(Parameter::kp, 1, 2), 0)) ==
+        "variation 0: kp cannot vary here, must be of a position servo, of gain (kp, 0, 0) and "
+        "bias (0, -kp, -kv), kp > 0");
+  CHECK(issue_of(of_control(vary(Parameter::kv, 1, 2), 0)).find("or a velocity servo") !=
+        std::string::npos);
+  CHECK(issue_of(vary(Parameter::armature, -0.1, 1)) == "variation 0: low is -0.1, must be >= 0");
+  CHECK(issue_of(vary(Parameter::kp, 0, 1)) == "variation 0: low is 0, must be > 0");
+  CHECK(issue_of(of_control(vary(Parameter::kv, 0, 1), 2)) ==
+        "variation 0: low is 0, must be > 0 for a velocity servo");
+  CHECK(validate(robot_with({of_control(vary(Parameter::kv, 0, 1), 1)})).empty());
+  CHECK(issue_of(vary(Parameter::damping, 0.5, 1, Draw::none)) ==
+        "variation 0: draw is none, but the scene's damping of joint 0, 0, is not within low and "
+        "high");
+  CHECK(only_issue(
+            robot_with({of_control(vary(Parameter::gain, 1, 2), 1), vary(Parameter::kp, 1, 2)})) ==
+        "variation 1: kp varies already, by variation 0 (control 1)");
+  CHECK(only_issue(scene_with(vary(Parameter::armature, 0, 1))) ==
+        "variation 0: parameter is armature, which varies per world only with the newton solver, "
+        "not tgs-soft");
 }
 
 TEST_CASE("ranges must be such as a scene may have", "[fast][scene][parameters]") {

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "src/scene/variations.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace manyworlds::test {
@@ -134,6 +135,36 @@ inline Scene lone_walker() {
   return scene;
 }
 
+// Every number of joints, controls and shapes another one in every world.
+inline Scene randomized(Scene scene) {
+  scene.name = "randomized " + scene.name;
+  scene.variations = {vary(Parameter::density, 600, 1500, Draw::log_uniform),
+                      vary(Parameter::friction, 0.4, 1.2),
+                      vary(Parameter::gravity_scale, 0.9, 1.1),
+                      vary(Parameter::armature, 0.005, 0.02),
+                      vary(Parameter::damping, 0.05, 0.3, Draw::log_uniform),
+                      vary(Parameter::stiffness, 0, 4),
+                      vary(Parameter::rest, -0.3, 0.3)};
+  for (std::size_t i = 0; i < scene.controls.size(); ++i) {
+    const bool servo = scene.controls[i].actuator.bias.y() != 0;
+    std::vector<Variation> own = {vary(Parameter::gain, 0.7, 1.3)};
+    if (servo) own = {vary(Parameter::kp, 5, 20), vary(Parameter::kv, 0, 0.2)};
+    for (Variation& v : own) {
+      v.control = ControlId(static_cast<int>(i));
+      scene.variations.push_back(v);
+    }
+  }
+  for (const NumberOwner& of : owners_of(scene, Parameter::size)) {
+    if (!can_vary(scene, Parameter::size, of)) continue;
+    Variation size;
+    size.parameter = Parameter::size, size.shape = ShapeId(BodyId(of.body), of.shape);
+    for (int c = 0; c < 3; ++c) size.low[c] = get_number(scene, Parameter::size, of, c);
+    size.high = 1.15 * size.low, size.low *= 0.9;
+    scene.variations.push_back(size);
+  }
+  return scene;
+}
+
 // The same with options that take other ways through the step.
 inline std::vector<Scene> robots_of_other_options() {
   Scene wet = robots();
@@ -150,7 +181,7 @@ inline std::vector<Scene> robots_of_other_options() {
   round.name = "one walker with round cones";
   round.options.solver.cone = FrictionCone::elliptic;
   round.options.integrator = Integrator::implicit_fast;
-  return {wet, stiff, lone, round};
+  return {wet, stiff, lone, round, randomized(robots()), randomized(wet), randomized(round)};
 }
 
 }  // namespace manyworlds::test

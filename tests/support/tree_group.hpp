@@ -3,6 +3,7 @@
 
 #include "src/base/aligned_buffer.hpp"
 #include "src/dispatch/kernels.hpp"
+#include "src/state/constants.hpp"
 #include "src/state/tree_tables.hpp"
 #include "tests/support/tree_twin.hpp"
 
@@ -32,6 +33,7 @@ class TreeGroup {
         tables_(trees_, first(), first() + coordinates()),
         rows_(first() + coordinates() + 2 * dofs()),
         state_(count(rows_)),
+        numbers_(plan_of(trees_), {false, false, false, false}, 1, lanes_),
         body_constants_(count(bodies_) * sizeof(kernels::BodyConstants<Real>) / sizeof(Real)),
         force_(count(bodies_ * 6)),
         status_(static_cast<std::size_t>(lanes_)) {
@@ -46,6 +48,8 @@ class TreeGroup {
     constants_.body = bodies_table_.data();
     constants_.tree = tables_.get();
     for (const TwinLink& link : links) put_constants(link, gravity);
+    for (int lane = 0; lane < lanes_; ++lane) numbers_.fill(plan_of(trees_), lane);
+    constants_.constants = numbers_.group(0);
     constants_.constants.body = body_constants_.data();
     scratch_ = AlignedBuffer<unsigned char>(kernels.scratch_bytes(constants_));
     made_ = kernels.make_scratch(constants_, scratch_.data());
@@ -81,6 +85,11 @@ class TreeGroup {
 
  private:
   static constexpr int kBodyRows = 13;
+  static PlanData plan_of(const PlanTrees& trees) {
+    PlanData out;
+    out.trees = trees;
+    return out;
+  }
   std::size_t count(int rows) const { return static_cast<std::size_t>(rows * lanes_); }
   int first() const { return bodies_ * kBodyRows; }
   int coordinates() const { return trees_.coordinates; }
@@ -133,7 +142,9 @@ class TreeGroup {
   PlanTrees trees_;
   TreeTables<Real> tables_;
   int rows_;
-  AlignedBuffer<Real> state_, body_constants_, force_;
+  AlignedBuffer<Real> state_;
+  Constants<Real> numbers_;
+  AlignedBuffer<Real> body_constants_, force_;
   AlignedBuffer<std::uint32_t> status_;
   std::vector<kernels::BodyTable> bodies_table_;
   kernels::SceneConstants<Real> constants_{};
