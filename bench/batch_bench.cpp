@@ -1,5 +1,5 @@
-// What a user does with a whole Batch between and around steps: 1024 worlds of bin-boxes on one
-// thread. docs/batch.md gives these figures.
+// What a user does with a whole Batch between and around steps: 1024 worlds of bin-boxes, or of the
+// humanoid, on one thread. docs/batch.md and docs/robots.md give these figures.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -32,14 +32,22 @@ void time_moving_steps(benchmark::State& state, bool sleep) {
   state.SetItemsProcessed(state.iterations() * kManyWorlds);
 }
 
-// The same scene with a friction and a mass of its own in every world: the numbers are the
-// scene's, so that both step the same states.
-void time_varied_steps(benchmark::State& state, bool varied) {
-  Scene scene = bin_boxes();
-  if (varied) {
-    scene.variations = {vary(Parameter::friction, 0, 2, Draw::none),
-                        vary(Parameter::mass, 1e-3, 1e6, Draw::none)};
-  }
+// The same scene with numbers of its own in every world: they are the scene's, so that both step
+// the same states.
+std::vector<Variation> friction_and_mass() {
+  return {vary(Parameter::friction, 0, 2, Draw::none),
+          vary(Parameter::mass, 1e-3, 1e6, Draw::none)};
+}
+std::vector<Variation> joints_and_gains() {
+  Variation gain = vary(Parameter::gain, 0, 0, Draw::none);
+  gain.low.setConstant(-1e6), gain.high.setConstant(1e6);
+  return {vary(Parameter::armature, 0, 1e6, Draw::none),
+          vary(Parameter::damping, 0, 1e6, Draw::none), gain};
+}
+void time_varied_steps(benchmark::State& state, const char* name,
+                       const std::vector<Variation>& variations) {
+  Scene scene = scenes::find(name)->make();
+  scene.variations = variations;
   Batch batch = batch_of(scene, false);
   batch.step(120);
   for ([[maybe_unused]] const auto _ : state) batch.step();
@@ -93,8 +101,14 @@ void register_batch() {
     benchmark::RegisterBenchmark(("batch/half_awake" + suffix).c_str(), time_half_awake, sleep)
         ->UseManualTime();
   }
-  benchmark::RegisterBenchmark("batch/varied/off", time_varied_steps, false);
-  benchmark::RegisterBenchmark("batch/varied/friction_and_mass", time_varied_steps, true);
+  using Variations = std::vector<Variation>;
+  const auto add_varied = [](const char* name, const char* scene, const Variations& variations) {
+    benchmark::RegisterBenchmark(name, time_varied_steps, scene, variations);
+  };
+  add_varied("batch/varied/off", "bin-boxes", {});
+  add_varied("batch/varied/friction_and_mass", "bin-boxes", friction_and_mass());
+  add_varied("batch/varied/humanoid_off", "humanoid", {});
+  add_varied("batch/varied/humanoid_joints_and_gains", "humanoid", joints_and_gains());
   benchmark::RegisterBenchmark("batch/write/friction", time_new_numbers, Parameter::friction);
   benchmark::RegisterBenchmark("batch/write/mass", time_new_numbers, Parameter::mass);
   const auto add = [](const char* name, auto work) {
