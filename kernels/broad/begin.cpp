@@ -10,16 +10,41 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
 
+MW_INLINE Vec3 vec3(const LaneNumber* v) { return {v[0], v[1], v[2]}; }
+MW_INLINE Float length(Vec3 v) { return sqrt(dot(v, v)); }
+
+// At most, by forces and controls: with those that pull against each other added up.
+MW_INLINE Float acceleration_of_loads(const Constants& t, const Group& g, int body) {
+  Float force(Real(0));
+  if (g.force) {
+    const Real* f = g.force + body * 6 * kLanes;
+    const Float z =
+        t.dimension == kernels::Dimension::spatial ? Float::load(f + 2 * kLanes) : Float(Real(0));
+    force = length({Float::load(f), Float::load(f + kLanes), z});
+  }
+  for (int i = t.first_thrust ? t.first_thrust[body] : 0;
+       t.first_thrust && i < t.first_thrust[body + 1]; ++i) {
+    if (t.thrust[i].torque) continue;
+    const auto& constants =
+        reinterpret_cast<const kernels::ThrustConstants<LaneNumber>*>(g.constants.thrust)[i];
+    const Float control = Float::load(g.control + t.thrust[i].control * kLanes);
+    force = fma(abs(control), length(vec3(constants.direction)), force);
+  }
+  return force * constants_of_body(g, body).inv_mass;
+}
+
 // How much a shape's bounds grow: half of 4 slop, or as far as its body moves in the step, capped.
 // Planes take what lies beyond the cap too: against a half space a far margin does no harm.
 MW_INLINE Float margin_of(const Constants& t, const Group& g, Work& w, Float speed, int index) {
-  const Float travel = speed * Float(t.dt);
+  Float travel = speed * Float(t.dt);
+  const int body = t.collider[index].body;
+  if (g.force || t.first_thrust) {
+    travel = fma(acceleration_of_loads(t, g, body), Float(t.dt * t.dt), travel);
+  }
   const Float margin = clamp(travel, Float(t.half_margin), constants_of_shape(g, index).margin_cap);
   max(travel - margin, Float(Real(0))).store(w.beyond + index * kLanes);
   return margin;
 }
-
-MW_INLINE Vec3 vec3(const LaneNumber* v) { return {v[0], v[1], v[2]}; }
 
 MW_INLINE void put_bounds(Work& w, int collider, const BoundsOf<Vec3>& bounds) {
   store(w.bounds + collider * 6 * kLanes, bounds.centre);

@@ -161,6 +161,12 @@ void enter_velocities(const Constants& t, const Group& g, Work& w) {
   }
   const bool own = g.force || t.delta_v_varies || t.first_thrust || t.attractors > 0;
   w.delta_v = own ? w.delta_v_storage : nullptr;
+  if (w.delta_v) {
+    clear_padding<S, kDense>(t, w, w.delta_v);
+    for (int b = 0; b < t.bodies; ++b) {
+      put_velocity<S, kDense>(w, w.delta_v, b, delta_v_of_body<S>(t, g, w, b));
+    }
+  }
   w.factor = t.drag_varies ? w.factor_storage : nullptr;
   if constexpr (kDense) {
     for (int i = 0; i < t.bodies * kVelocityBlock<S>; i += kLanes) zero.store(w.displacement + i);
@@ -178,12 +184,6 @@ void enter_velocities(const Constants& t, const Group& g, Work& w) {
 // Velocities at the start of the first substep, before any impulse; impulse_part keeps them.
 template <class S, bool kDense>
 void apply_first_delta_v(const Constants& t, const Group& g, Work& w) {
-  if (w.delta_v) {
-    clear_padding<S, kDense>(t, w, w.delta_v);
-    for (int b = 0; b < t.bodies; ++b) {
-      put_velocity<S, kDense>(w, w.delta_v, b, delta_v_of_body<S>(t, g, w, b));
-    }
-  }
   if (w.factor) {
     clear_padding<S, kDense>(t, w, w.factor);
     for (int b = 0; b < t.bodies; ++b) {

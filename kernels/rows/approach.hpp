@@ -6,22 +6,43 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Accelerations by gravity along the normal: of B from A, and the most that closes the gap when
-// something holds A or B.
+// What forces, controls and attractors accelerate the bodies of the lanes by, along the normal.
+// Exactly zero in lanes without any, whatever the others have.
+template <class S, bool kDense>
+MW_INLINE Float load_along(const Constants& t, const Group& g, const Work& w, Ints bodies,
+                           const std::int32_t* offset, int body, typename S::Vec normal) {
+  using OfBody = kernels::BodyConstants<LaneNumber>;
+  auto load = load_velocity<S, kDense>(w.delta_v, offset, body).v;
+  const auto& own = constants_of_body(g, 0).delta_v;
+  load.x = load.x - gather_numbers<OfBody>(own[0], bodies);
+  load.y = load.y - gather_numbers<OfBody>(own[1], bodies);
+  if constexpr (S::kDim == 3) load.z = load.z - gather_numbers<OfBody>(own[2], bodies);
+  return dot(load, normal) * Float(t.inv_h);
+}
+
+// Accelerations along the normal before any contact acts: of B from A, and the most that closes the
+// gap when something holds A or B.
 struct Pull {
   Float relative, closing;
 };
-template <class S, class A>
-MW_INLINE Pull pull_along(const Constants& t, const Group& g, const Sides<S, A>& sides,
-                          typename S::Vec normal) {
+template <class S, bool kDense, class A>
+MW_INLINE Pull pull_along(const Constants& t, const Group& g, const Work& w, const RowBodies& s,
+                          const Sides<S, A>& sides, typename S::Vec normal) {
   const Float zero(Real(0));
-  if (!t.has_gravity && t.attractors == 0) return {zero, zero};
-  const Float b = gravity_along<S>(t, g, sides.body_b, normal);
+  if (!t.has_gravity && !w.delta_v) return {zero, zero};
+  Float b = gravity_along<S>(t, g, sides.body_b, normal);
+  const Float gravity = b;
+  if (w.delta_v) {
+    b = b + load_along<S, kDense>(t, g, w, sides.body_b, s.offset_b, kDense ? s.body_b : 0, normal);
+  }
   if constexpr (!A::kMoves) {
     return {b, b};
   } else {
-    const bool uniform = t.uniform_gravity && t.attractors == 0;
-    const Float a = uniform ? b : gravity_along<S>(t, g, sides.body_a, normal);
+    Float a = t.uniform_gravity ? gravity : gravity_along<S>(t, g, sides.body_a, normal);
+    if (w.delta_v) {
+      a = a +
+          load_along<S, kDense>(t, g, w, sides.body_a, s.offset_a, kDense ? s.body_a : 0, normal);
+    }
     const Float relative = b - a;
     return {relative, min(relative, min(b, -a))};
   }
@@ -81,8 +102,9 @@ struct Approach {
 };
 
 // Takes points that stay beyond the margin out of the manifold.
-template <class S, int N, class A>
-MW_INLINE void measure_approach(const Constants& t, const Group& g, const Sides<S, A>& sides,
+template <bool kDense, class S, int N, class A>
+MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& w,
+                                const RowBodies& s, const Sides<S, A>& sides,
                                 kernels::PairKind kind, Mask active, Manifold<GeometryOf<S>, N>& m,
                                 Approach<S, N, A>& out) {
   const Float zero(Real(0)), dt(t.dt), margin(t.margin);
@@ -90,7 +112,7 @@ MW_INLINE void measure_approach(const Constants& t, const Group& g, const Sides<
   if constexpr (A::kMoves) {
     normal_speed = dot(m.normal, relative_velocity(sides.a.velocity, sides.b.velocity));
   }
-  const Pull pull = out.pull = pull_along(t, g, sides, m.normal);
+  const Pull pull = out.pull = pull_along<S, kDense>(t, g, w, s, sides, m.normal);
   const Float speculation = speculation_of(t, g, sides, kind);
   out.near = out.touching = zero < zero;
   for (int i = 0; i < N; ++i) {

@@ -68,7 +68,7 @@ MW_INLINE typename S::Vec attraction_of_body(const Constants& t, const Group& g,
   return out;
 }
 
-// Acceleration of the bodies of the lanes along n, from gravity and attractors.
+// Acceleration of the bodies of the lanes along n by gravity.
 template <class S>
 MW_INLINE Float gravity_along(const Constants& t, const Group& g, Ints bodies, typename S::Vec n) {
   using OfBody = kernels::BodyConstants<LaneNumber>;
@@ -80,19 +80,7 @@ MW_INLINE Float gravity_along(const Constants& t, const Group& g, Ints bodies, t
   typename S::Vec pull;
   pull.x = a[0], pull.y = a[1];
   if constexpr (S::kDim == 3) pull.z = a[2];
-  const Float along = dot(pull, n);
-  if (t.attractors == 0) return along;
-  // Lanes may have different bodies; few scenes have attractors.
-  alignas(64) Real out[kLanes], of_body[kLanes];
-  alignas(64) std::int32_t body[kLanes];
-  along.store(out);
-  bodies.store(body);
-  for (int l = 0; l < kLanes; ++l) {
-    if (body[l] >= t.bodies || t.body[body[l]].kinematic) continue;
-    dot(attraction_of_body<S>(t, g, body[l]), n).store(of_body);
-    out[l] += of_body[l];
-  }
-  return Float::load(out);
+  return dot(pull, n);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

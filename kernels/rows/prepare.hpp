@@ -144,7 +144,7 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   if (!t.collider_is_body) anchor_at_centres(sides, pose_a, pose_b, m);
 
   Approach<S, N, A> approach;
-  measure_approach(t, g, sides, pair_class.kind, active, m, approach);
+  measure_approach<kDense>(t, g, w, s, sides, pair_class.kind, active, m, approach);
   std::uint32_t mask = bits(approach.near);
   if (mask == 0) return;
   mask = claim_capacity(t, w, list, mask);
