@@ -126,7 +126,7 @@ TEST_CASE("report stability judges every case in every setting", "[cli][report]"
       CHECK(known.count(id) == 1);
     }
   }
-  CHECK(rows.size() == 62);
+  CHECK(rows.size() == 67);
   for (const auto& [id, settings] : rows) CHECK(settings == 3);
   CHECK(contains(content(folder.path() / "report" / "stability.html"), "pyramid spawned"));
 }

@@ -154,8 +154,8 @@ TEST_CASE("no solver changes momentum", "[fast][solver]") {
         for (int w = 0; w < kWorlds; ++w) {
           const Momenta &was = before[static_cast<std::size_t>(w)], now = momenta(batch, w);
           CHECK((now.linear - was.linear).norm() < 1e-12 * (was.linear.norm() + 1e3));
-          // Of the order of the step, since bodies turn, and of the impulses, which bounces add to; a
-          // joint that begins apart turns them, too.
+          // Of the order of the step, since bodies turn, and of the impulses, which bounces add to;
+          // a joint that begins apart turns them, too.
           if (!hinged) CHECK((now.angular - was.angular).norm() < 7.5e-4 * size);
         }
       }
