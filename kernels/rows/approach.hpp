@@ -30,7 +30,7 @@ MW_INLINE Pull pull_along(const Constants& t, const Group& g, const Work& w, con
                           const Sides<S, A>& sides, typename S::Vec normal) {
   const Float zero(Real(0));
   if (!t.has_gravity && !w.delta_v) return {zero, zero};
-  Float b = gravity_along<S>(t, g, sides.body_b, normal);
+  Float b = dot(gravity_of<S>(t, g, sides.body_b), normal);
   const Float gravity = b;
   if (w.delta_v) {
     b = b + load_along<S, kDense>(t, g, w, sides.body_b, s.offset_b, kDense ? s.body_b : 0, normal);
@@ -38,7 +38,7 @@ MW_INLINE Pull pull_along(const Constants& t, const Group& g, const Work& w, con
   if constexpr (!A::kMoves) {
     return {b, b};
   } else {
-    Float a = t.uniform_gravity ? gravity : gravity_along<S>(t, g, sides.body_a, normal);
+    Float a = t.uniform_gravity ? gravity : dot(gravity_of<S>(t, g, sides.body_a), normal);
     if (w.delta_v) {
       a = a +
           load_along<S, kDense>(t, g, w, sides.body_a, s.offset_a, kDense ? s.body_a : 0, normal);

@@ -68,9 +68,9 @@ MW_INLINE typename S::Vec attraction_of_body(const Constants& t, const Group& g,
   return out;
 }
 
-// Acceleration of the bodies of the lanes along n by gravity.
+// Acceleration of the bodies of the lanes by gravity.
 template <class S>
-MW_INLINE Float gravity_along(const Constants& t, const Group& g, Ints bodies, typename S::Vec n) {
+MW_INLINE typename S::Vec gravity_of(const Constants& t, const Group& g, Ints bodies) {
   using OfBody = kernels::BodyConstants<LaneNumber>;
   Float a[S::kDim];
   for (int c = 0; c < S::kDim; ++c) {
@@ -80,7 +80,7 @@ MW_INLINE Float gravity_along(const Constants& t, const Group& g, Ints bodies, t
   typename S::Vec pull;
   pull.x = a[0], pull.y = a[1];
   if constexpr (S::kDim == 3) pull.z = a[2];
-  return dot(pull, n);
+  return pull;
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -12,16 +12,8 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 // Square of the acceleration of the bodies of the lanes by gravity and attractors, m^2/s^4.
 template <class S>
 MW_INLINE Float pull2_of(const Constants& t, const Group& g, Ints bodies) {
-  using OfBody = kernels::BodyConstants<LaneNumber>;
   using Vec = typename S::Vec;
-  Float a[S::kDim];
-  for (int c = 0; c < S::kDim; ++c) {
-    const LaneNumber& of_first = constants_of_body(g, 0).gravity[c];
-    a[c] = t.uniform_gravity ? Float(of_first) : gather_numbers<OfBody>(of_first, bodies);
-  }
-  Vec pull;
-  pull.x = a[0], pull.y = a[1];
-  if constexpr (S::kDim == 3) pull.z = a[2];
+  Vec pull = gravity_of<S>(t, g, bodies);
   if (t.attractors > 0) {
     // Lanes may have different bodies; few scenes have attractors.
     alignas(64) Real out[S::kDim][kLanes], of_body[S::kDim][kLanes];
