@@ -22,8 +22,8 @@ MW_INLINE Float acceleration_of_loads(const Constants& t, const Group& g, int bo
         t.dimension == kernels::Dimension::spatial ? Float::load(f + 2 * kLanes) : Float(Real(0));
     force = length({Float::load(f), Float::load(f + kLanes), z});
   }
-  for (int i = t.first_thrust ? t.first_thrust[body] : 0;
-       t.first_thrust && i < t.first_thrust[body + 1]; ++i) {
+  const int thrusts = t.first_thrust ? t.first_thrust[body + 1] : 0;
+  for (int i = t.first_thrust ? t.first_thrust[body] : 0; i < thrusts; ++i) {
     if (t.thrust[i].torque) continue;
     const auto& constants =
         reinterpret_cast<const kernels::ThrustConstants<LaneNumber>*>(g.constants.thrust)[i];
@@ -33,13 +33,14 @@ MW_INLINE Float acceleration_of_loads(const Constants& t, const Group& g, int bo
   return force * constants_of_body(g, body).inv_mass;
 }
 
-// How much a shape's bounds grow: half of 4 slop, or as far as its body moves in the step, capped.
+// How much a shape's bounds grow: half of 4 slop, or as far as its body moves in the step by its
+// speed and the loads on it, capped.
 // Planes take what lies beyond the cap too: against a half space a far margin does no harm.
 MW_INLINE Float margin_of(const Constants& t, const Group& g, Work& w, Float speed, int index) {
   Float travel = speed * Float(t.dt);
-  const int body = t.collider[index].body;
   if (g.force || t.first_thrust) {
-    travel = fma(acceleration_of_loads(t, g, body), Float(t.dt * t.dt), travel);
+    const Float pull = acceleration_of_loads(t, g, t.collider[index].body);
+    travel = fma(pull, Float(t.dt * t.dt), travel);
   }
   const Float margin = clamp(travel, Float(t.half_margin), constants_of_shape(g, index).margin_cap);
   max(travel - margin, Float(Real(0))).store(w.beyond + index * kLanes);
