@@ -49,6 +49,7 @@ struct ParameterInfo {
   const char* meaning;
 };
 const ParameterInfo& info(Parameter parameter);
+const char* to_string(ParameterInfo::Owner owner);
 
 // What a world gets when it begins, at every reset anew.
 enum class Draw {

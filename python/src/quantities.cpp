@@ -20,17 +20,6 @@ const char* word_of(ObservedItem item) {
   return "?";
 }
 
-const char* owner_name(ParameterInfo::Owner owner) {
-  switch (owner) {
-    case ParameterInfo::world: return "world";
-    case ParameterInfo::body: return "body";
-    case ParameterInfo::shape: return "shape";
-    case ParameterInfo::joint: return "joint";
-    case ParameterInfo::control: return "control";
-  }
-  return "?";
-}
-
 }  // namespace
 
 std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of) {
@@ -55,7 +44,7 @@ std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of) {
   for (int i = 0; i < kParameterCount; ++i) {
     const Parameter parameter{i};
     const ParameterInfo& p = info(parameter);
-    const char* const owner = owner_name(p.owner);
+    const char* const owner = to_string(p.owner);
     out.push_back(
         {parameter, p.name, "parameter", "", owner, items(owner), p.numbers, p.unit, p.meaning});
   }

@@ -11,17 +11,10 @@
 namespace manyworlds::detail {
 namespace {
 
-const char* word_of(ParameterInfo::Owner owner) {
-  switch (owner) {
-    case ParameterInfo::world: return "world";
-    case ParameterInfo::body: return "body";
-    case ParameterInfo::shape: return "shape";
-    case ParameterInfo::joint: return "joint";
-    case ParameterInfo::control: return "control";
-  }
-  return "?";
+bool is_of_newton(Parameter parameter) {
+  const ParameterInfo::Owner owner = info(parameter).owner;
+  return owner == ParameterInfo::joint || owner == ParameterInfo::control;
 }
-bool is_of_newton(Parameter parameter) { return parameter >= Parameter::armature; }
 
 // "body 3, shape 1", "joint 2"
 std::string place_of(const NumberOwner& of) {
@@ -82,7 +75,7 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
     return false;
   };
   const std::string every =
-      std::string("-1: ") + parameter.name + " is of the " + word_of(parameter.owner);
+      std::string("-1: ") + parameter.name + " is of the " + to_string(parameter.owner);
   const NumberOwner of{body_of(v).index(), v.shape.index(), v.joint.index(), v.control.index()};
   const int body = of.body, shape = of.shape;
   const bool of_shape = parameter.owner == ParameterInfo::shape;

@@ -78,6 +78,17 @@ const ParameterInfo& info(Parameter parameter) {
   return kInfo[static_cast<std::size_t>(checked_enum(parameter))];
 }
 
+const char* to_string(ParameterInfo::Owner owner) {
+  switch (owner) {
+    case ParameterInfo::world: return "world";
+    case ParameterInfo::body: return "body";
+    case ParameterInfo::shape: return "shape";
+    case ParameterInfo::joint: return "joint";
+    case ParameterInfo::control: return "control";
+  }
+  return "?";
+}
+
 std::vector<NumberOwner> owners_of(const Scene& scene, Parameter parameter) {
   std::vector<NumberOwner> out;
   const auto count = [](const auto& list) { return static_cast<int>(list.size()); };
