@@ -17,7 +17,7 @@ void press(Batch& batch, int body, const Vec3& force, int steps) {
 
 }  // namespace
 
-// A force that begins moves a body by less than the contact margin knows of speeds alone.
+// By its speed it rests, and it was taken to be free and set back by 17 mm.
 TEST_CASE("what a force presses on something touches it", "[fast][load]") {
   for (const Table& table : widest_tables()) {
     for (Space space : {Space::planar, Space::spatial}) {
@@ -43,7 +43,7 @@ TEST_CASE("a body that a force drives at another does not pass it", "[fast][load
       scene.add(body_of(shape_of(round_of(space, 0.02)), 0.06 * up_of(space)));
       const double mass = mass_properties(scene, scene.bodies[1]).mass;
       Batch batch(compile(scene), options_of(table));
-      press(batch, 1, -300 * mass * up_of(space), 10);
+      press(batch, 1, -1000 * mass * up_of(space), 10);
       INFO(name(table));
       CHECK(up_of(space).dot(position(batch, 0, 1) - position(batch, 0, 0)) > 0.02);
     }
