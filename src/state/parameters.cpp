@@ -132,8 +132,9 @@ std::string Worlds<Real>::check(Parameter parameter, int world, const double* in
   for (std::size_t i = 0; i < at.size(); ++i) {
     std::string place = std::string(info(parameter).name);
     const auto owner = info(parameter).owner;
-    constexpr const char* kOf[] = {"", " of body ", " of shape ", " of joint ", " of control "};
-    if (owner != ParameterInfo::world) place += kOf[owner] + std::to_string(i / numbers);
+    if (owner != ParameterInfo::world) {
+      place += std::string(" of ") + to_string(owner) + ' ' + std::to_string(i / numbers);
+    }
     if (numbers > 1) place += ", number " + std::to_string(i % numbers);
     if (at[i] < 0) {
       if (in[i] == now[i]) continue;
