@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/plan/plan_data.hpp"
+#include "src/scene/tree_order.hpp"
 
 namespace manyworlds {
 
@@ -43,18 +44,12 @@ class TreeCollector {
       : plan_(plan),
         scene_(plan.scene),
         h_(scene_.options.dt / scene_.options.substeps),
-        series_(series_of_joints(scene_)),
-        children_(scene_.bodies.size()),
+        order_(tree_order(scene_)),
         link_(scene_.bodies.size(), -1),
         anchors_(scene_.joints.size()) {}
 
   void run() {
-    std::vector<int> roots;
-    for (const PlanBody& b : plan_.bodies) {
-      const int parent = parent_of(b.scene_body);
-      (parent < 0 ? roots : children_[static_cast<std::size_t>(parent)]).push_back(b.scene_body);
-    }
-    for (const int root : roots) add(root, -1);
+    for (const int body : order_.links) add(body);
     for (const Tendon& tendon : scene_.tendons) add_tendon(tendon);
     add_actuators();
     const Medium& medium = scene_.options.medium;
@@ -75,23 +70,15 @@ class TreeCollector {
   }
 
  private:
-  // Scene body, -1: none that moves.
-  int parent_of(int body) const {
-    const auto& series = series_[static_cast<std::size_t>(body)];
-    if (series.empty()) return -1;
-    const BodyId a = scene_.joints[static_cast<std::size_t>(series.front())].body_a;
-    if (!a || plan_.state_body[static_cast<std::size_t>(a.index())] < 0) return -1;
-    return a.index();
-  }
-
-  void add(int body, int parent) {
-    const auto& series = series_[static_cast<std::size_t>(body)];
+  void add(int body) {
+    const auto& series = order_.series[static_cast<std::size_t>(body)];
+    const int parent = order_.parent[static_cast<std::size_t>(body)];
     const PlanBody& b = plan_.bodies[static_cast<std::size_t>(row_of(body))];
     const Body& described = scene_.bodies[static_cast<std::size_t>(body)];
     const TreePose begin{described.position, described.rotation.normalized()};
     NewLink link;
     link.body = row_of(body);
-    link.parent = parent;
+    link.parent = parent < 0 ? -1 : link_[static_cast<std::size_t>(parent)];
     link.center = b.center, link.principal = b.principal;
     link.mass = b.mass, link.moments = b.inertia;
     TreePose at;  // of the body where all frames of its joints coincide, in its parent
@@ -109,7 +96,6 @@ class TreeCollector {
       add_joint(j, frame, series.size() == 1);
       anchors_[static_cast<std::size_t>(j)] = {own, moving_joints_ - first, frame.position};
     }
-    for (const int child : children_[static_cast<std::size_t>(body)]) add(child, own);
   }
 
   void add_free(const TreePose& begin) {
@@ -226,9 +212,8 @@ class TreeCollector {
   PlanData& plan_;
   const Scene& scene_;
   double h_;
-  std::vector<std::vector<int>> series_;    // [scene body] its joints, from its parent on
-  std::vector<std::vector<int>> children_;  // [scene body]
-  std::vector<int> link_;                   // [scene body]
+  const TreeOrder order_;
+  std::vector<int> link_;  // [scene body]
   std::vector<PlanAnchor> anchors_;
   int moving_joints_ = 0;  // of all links so far
   std::vector<double> start_;
@@ -243,31 +228,6 @@ class TreeCollector {
 
 void collect_trees(PlanData& plan) {
   if (plan.scene.options.solver.method == Solver::newton) TreeCollector(plan).run();
-}
-
-std::vector<std::vector<int>> series_of_joints(const Scene& scene) {
-  std::vector<std::vector<int>> out(scene.bodies.size());
-  // Each joint goes right behind the one that it comes after.
-  std::vector<int> waiting;
-  for (std::size_t j = 0; j < scene.joints.size(); ++j) waiting.push_back(static_cast<int>(j));
-  for (bool found = true; found;) {
-    found = false;
-    std::vector<int> next;
-    for (const int j : waiting) {
-      const Joint& joint = scene.joints[static_cast<std::size_t>(j)];
-      auto& series = out[static_cast<std::size_t>(joint.body_b.index())];
-      const bool first = !joint.after && series.empty();
-      const bool follows = joint.after && !series.empty() && series.back() == joint.after.index();
-      if (first || follows) {
-        series.push_back(j);
-        found = true;
-      } else {
-        next.push_back(j);
-      }
-    }
-    waiting = std::move(next);
-  }
-  return out;
 }
 
 }  // namespace manyworlds

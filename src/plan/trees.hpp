@@ -122,10 +122,6 @@ kernels::LinkConstants<double> link_numbers(const Vec3& center, const Quat& prin
 kernels::ActuatorConstants<double> actuator_numbers(const Actuator& actuator);
 kernels::DragConstants<double> drag_numbers(const Medium& medium, double mass, const Vec3& moments);
 
-// Joints of each scene body to its parent, in the order in which they move it (collect_trees.cpp).
-// Precondition: they refer to bodies that there are.
-std::vector<std::vector<int>> series_of_joints(const Scene& scene);
-
 // tree_weights.cpp
 TreeWeights weights_of(const PlanTrees& trees, const std::vector<NewLink>& links);
 

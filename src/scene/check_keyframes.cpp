@@ -2,6 +2,7 @@
 #include <map>
 
 #include "src/scene/checks.hpp"
+#include "src/scene/tree_order.hpp"
 
 namespace manyworlds::detail {
 namespace {
@@ -19,34 +20,21 @@ class Coordinates {
   Coordinates() = default;
   explicit Coordinates(const Scene& scene) {
     if (scene.options.solver.method != Solver::newton) return;
-    std::vector<std::vector<std::size_t>> joints(scene.bodies.size());
-    for (std::size_t j = 0; j < scene.joints.size(); ++j) {
-      joints[static_cast<std::size_t>(scene.joints[j].body_b.index())].push_back(j);
-    }
-    // A body, then its descendants, children in scene order; -1: the world.
-    std::vector<std::vector<std::size_t>> children(scene.bodies.size() + 1);
-    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-      if (scene.bodies[b].motion != Motion::dynamic) continue;
-      const BodyId a = joints[b].empty() ? BodyId() : scene.joints[joints[b].front()].body_a;
-      const bool moves = a && scene.at(a).motion == Motion::dynamic;
-      children[moves ? static_cast<std::size_t>(a.index()) + 1 : 0].push_back(b);
-    }
-    std::vector<std::size_t> waiting(children[0].rbegin(), children[0].rend());
-    while (!waiting.empty()) {
-      const std::size_t b = waiting.back();
-      waiting.pop_back();
-      add(scene, b, joints[b]);
-      waiting.insert(waiting.end(), children[b + 1].rbegin(), children[b + 1].rend());
+    const TreeOrder order = tree_order(scene);
+    for (const int link : order.links) {
+      const auto body = static_cast<std::size_t>(link);
+      add(scene, body, order.series[body]);
     }
   }
 
  private:
-  void add(const Scene& scene, std::size_t body, const std::vector<std::size_t>& joints) {
-    if (joints.empty()) {
+  void add(const Scene& scene, std::size_t body, const std::vector<int>& series) {
+    if (series.empty()) {
       rotations.push_back({positions + 3, named_part("body", body, scene.bodies[body].name)});
       positions += 7, velocities += 6;
     }
-    for (const std::size_t j : joints) {
+    for (const int index : series) {
+      const auto j = static_cast<std::size_t>(index);
       const Joint& joint = scene.joints[j];
       if (std::holds_alternative<FixedJoint>(joint.type)) continue;
       const bool ball = std::holds_alternative<BallJoint>(joint.type);
