@@ -24,9 +24,9 @@ struct ClipPoints {
   Float x[kCount], y[kCount], z[kCount];
 };
 
-// Divisor that keeps its sign and never vanishes.
-MW_INLINE Float safe_divisor(Float a) {
-  const Float least(sizeof(Real) == 4 ? Real(1e-7) : Real(1e-13));
+// Divisor that keeps its sign and never vanishes against what is usual for it.
+MW_INLINE Float safe_divisor(Float a, Float usual) {
+  const Float least = usual * (sizeof(Real) == 4 ? Real(1e-7) : Real(1e-13));
   return select(abs(a) < least, copysign(least, a), a);
 }
 
@@ -35,8 +35,10 @@ MW_INLINE void clip_face(Vec3 c, Vec3 e1, Vec3 e2, Float half_x, Float half_y, C
   const Float zero(Real(0)), one(Real(1)), two(Real(2)), out_of_reach(kOutOfReach);
   const Float inside = Real(1) + kEdgeSlack;  // corners on the very edge count
   const Vec3 corner[4] = {c + e1 + e2, c - e1 + e2, c - e1 - e2, c + e1 - e2};
-  const Float inv_1x = one / safe_divisor(e1.x * -two), inv_1y = one / safe_divisor(e1.y * -two);
-  const Float inv_2x = one / safe_divisor(e2.x * -two), inv_2y = one / safe_divisor(e2.y * -two);
+  const Float size = half_x + half_y;
+  const auto inverse = [&](Float edge) { return one / safe_divisor(edge * -two, size); };
+  const Float inv_1x = inverse(e1.x), inv_1y = inverse(e1.y);
+  const Float inv_2x = inverse(e2.x), inv_2y = inverse(e2.y);
   for (int i = 0; i < 4; ++i) {
     const bool along_1 = i % 2 == 0;  // corners go round: -2 e1, -2 e2, +2 e1, +2 e2
     const Float way = i < 2 ? -two : two;
@@ -57,7 +59,7 @@ MW_INLINE void clip_face(Vec3 c, Vec3 e1, Vec3 e2, Float half_x, Float half_y, C
     out.y[2 * i + 1] = fma(step.y, leave, corner[i].y);
     out.z[2 * i + 1] = select(crosses, fma(step.z, leave, corner[i].z), out_of_reach);
   }
-  const Float inv_det = one / safe_divisor(fms(e1.x, e2.y, e1.y * e2.x));
+  const Float inv_det = one / safe_divisor(fms(e1.x, e2.y, e1.y * e2.x), size * size);
   for (int i = 0; i < 4; ++i) {
     const Float x = i == 0 || i == 3 ? half_x : -half_x, y = i < 2 ? half_y : -half_y;
     const Float rx = x - c.x, ry = y - c.y;

@@ -144,7 +144,7 @@ struct BoxCapsule {
     const Vec3 out = outside_of(a.half, axis.at(place));
     const Float out2 = dot(out, out);
     // Nearer than this the direction is mostly rounding.
-    const Float touching(sizeof(Real) == 4 ? Real(1e-10) : Real(1e-24));
+    const Float touching = dot(a.half, a.half) * (sizeof(Real) == 4 ? Real(1e-10) : Real(1e-24));
     const Mask outside = touching < out2;
     Vec3 n = out * (one / sqrt(select(outside, out2, one)));
     Mask through_edge = zero < zero;

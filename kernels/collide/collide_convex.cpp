@@ -28,7 +28,7 @@ MW_INLINE Stretch over_sides(const Outline& ref, Float slack, Vec3 p, Vec3 q) {
     const Side side = side_of(ref, i, slack);
     const Float from = side.outside(p.x, p.y), to = side.outside(q.x, q.y);
     const Float change = from - to;
-    const Float at = from / safe_divisor(change);
+    const Float at = from / safe_divisor(change, ref.extent2);
     enter = select((zero < change) & (zero < from), max(enter, min(at, one)), enter);
     leave = select((change <= zero) & (zero < to), min(leave, max(at, zero)), leave);
     misses = misses | ((zero < from) & (zero < to));

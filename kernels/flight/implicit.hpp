@@ -171,8 +171,7 @@ void implicit_euler(const Constants& t, const Group& g, Work& w) {
     const Body& constants = constants_of_body(g, b);
     Motion<S> m = load_motion<S>(t, f.now, b);
     if constexpr (S::kDim == 3) {
-      const Vec3 moments{constants.inertia[0], constants.inertia[1], constants.inertia[2]};
-      m.spin = implicit_gyroscopic(t.h, moments, matrix(m.q), m.spin);
+      m.spin = implicit_gyroscopic(t.h, relative_moments(constants), matrix(m.q), m.spin);
     }
     const Velocity<S> forced = load_rates<S>(t, f.rate, b);
     const Float mass = Float(Real(1)) / Float(constants.inv_mass);

@@ -178,8 +178,7 @@ MW_INLINE void rotate_tensors(const Constants& t, const Group& g, Work& w, int f
       spin = select(held, omega[i], spin);
       if (t.has_joints && !t.body[first + i].kinematic) {
         const Vec3 before = load_vec3(state_of(t, g, first + i, kState<Tensor>.angular));
-        const auto& m = constants_of_body(g, first + i).inertia;
-        const Vec3 moments{m[0], m[1], m[2]};
+        const Vec3 moments = relative_moments(constants_of_body(g, first + i));
         const Mat3 r = matrix(old[i]);
         const Mask slight = held & is_slightly_gyroscopic(t.dt, moments, r, before);
         if (any(slight)) {

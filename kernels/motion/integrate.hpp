@@ -200,8 +200,7 @@ void apply_first_delta_v(const Constants& t, const Group& g, Work& w) {
   if constexpr (std::is_same_v<S, Tensor>) {
     for (int b = 0; b < t.bodies; ++b) {
       if (w.touched[b] == 0 || t.body[b].kinematic) continue;  // kinematic: no inertia
-      const auto& inertia = constants_of_body(g, b).inertia;
-      const Vec3 moments{inertia[0], inertia[1], inertia[2]};
+      const Vec3 moments = relative_moments(constants_of_body(g, b));
       const Mat3 r = matrix(load_quat(state_of(t, g, b, kState<S>.orientation)));
       Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
       Vec3 gyroscopic = implicit_gyroscopic(t.dt, moments, r, v.w);

@@ -155,6 +155,15 @@ MW_INLINE void rotate_free(const PrincipalInertia* const* tops, Vec3* omega, Qua
   }
 }
 
+// Principal moments of inertia in units of the first, which is what the gyroscopic equations below
+// need to know: those of a body of a millimetre are 1e-13 kg m^2, and the product of three
+// underflows float32.
+template <class Body>
+MW_INLINE Vec3 relative_moments(const Body& body) {
+  const Float unit = body.inv_inertia[0];
+  return {body.inertia[0] * unit, body.inertia[1] * unit, body.inertia[2] * unit};
+}
+
 // J^-1 f with J = I + k (skew(s) I - skew(I s)), body axes: what the gyroscopic term k s x I s of a
 // momentum balance adds to its derivative.
 MW_INLINE Vec3 solve_gyroscopic(Vec3 inertia, Vec3 s, Vec3 l, Float k, Vec3 f) {
