@@ -23,6 +23,9 @@ struct RoundEdgePair : EdgePair {
   Float radius, incident_radius;
 };
 
+// How much farther than the nearer end of an edge the other may be to count, in half of its length.
+inline constexpr Real kFarEnd = Real(1);
+
 // The part of the incident edge over the reference edge, at most two points. Returns the nearer
 // one's separation, or out of reach if no part is over it. What is sharp touches beside the
 // reference edge only in overlap.
@@ -34,8 +37,9 @@ MW_INLINE Float clip_edges(const Edges& e, Float margin, Manifold<S, 2>& m) {
   const Vec2 c = e.incident_middle - e.middle;
   const Float x = dot(along, c), z = dot(e.normal, c);
   const Float dx = dot(along, e.incident_half), dz = dot(e.normal, e.incident_half);
-  const Float least(sizeof(Real) == 4 ? Real(1e-6) : Real(1e-12));
-  const Float inv = one / copysign(max(abs(dx), least), dx);
+  const Float size = max(abs(dx), abs(dz));
+  const Float least = size * (sizeof(Real) == 4 ? Real(1e-6) : Real(1e-12));
+  const Float inv = one / copysign(max(abs(dx), max(least, Real(1e-30))), dx);
   const Float middle = -(x * inv), span = abs(e.half * inv);
   Float enter = max(-one, middle - span), leave = min(one, middle + span);
   // Beside the reference edge altogether: the deepest end of the incident edge is what touches.
@@ -49,7 +53,9 @@ MW_INLINE Float clip_edges(const Edges& e, Float margin, Manifold<S, 2>& m) {
     separation[i] = fma(dz, at[i], z);
     if constexpr (kRound) separation[i] = separation[i] - (e.radius + e.incident_radius);
   }
-  const Float limit = margin + max(min(separation[0], separation[1]), Real(0));
+  // A far end may touch within the step; whether it does, its speed tells (measure_approach).
+  const Float reach = max(margin, size * kFarEnd);
+  const Float limit = reach + max(min(separation[0], separation[1]), Real(0));
   m.normal = select(e.flip, -e.normal, e.normal);
   for (int i = 0; i < 2; ++i) {
     const Float place = fma(dx, at[i], x), gap = separation[i];

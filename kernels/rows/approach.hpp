@@ -49,11 +49,12 @@ MW_INLINE Pull pull_along(const Constants& t, const Group& g, const Work& w, con
 }
 
 // 1, or 0 in lanes whose rows look no farther than the gap of now. A body fast enough for a cast
-// needs no speculation against a fixed shape, which could stop one that only passes by. Half spaces
-// cannot be passed by, and height fields are not cast against.
+// needs no speculation against a fixed shape, which could stop one that only passes by; what a cast
+// has let in as far as its core does not pass by. Half spaces cannot be passed by, and height
+// fields are not cast against.
 template <class S, class A>
 MW_INLINE Float speculation_of(const Constants& t, const Group& g, const Sides<S, A>& sides,
-                               kernels::PairKind kind) {
+                               kernels::PairKind kind, Float deepest) {
   const Float zero(Real(0)), one(Real(1)), dt(t.dt);
   if (A::kMoves || !t.cast || is_plane(kind) || is_tile(kind)) return one;
   using OfBody = kernels::BodyConstants<LaneNumber>;
@@ -63,7 +64,7 @@ MW_INLINE Float speculation_of(const Constants& t, const Group& g, const Sides<S
                                                    select(real, sides.body_b, Ints(0))),
                             zero);
   const Float travel2 = dot(sides.b.velocity.v, sides.b.velocity.v) * (dt * dt);
-  const Mask cast = (zero < core) & (square(core) < travel2);
+  const Mask cast = (zero < core) & (square(core) < travel2) & (zero <= deepest);
   return select(cast, zero, one);
 }
 
@@ -113,7 +114,9 @@ MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& 
     normal_speed = dot(m.normal, relative_velocity(sides.a.velocity, sides.b.velocity));
   }
   const Pull pull = out.pull = pull_along<S, kDense>(t, g, w, s, sides, m.normal);
-  const Float speculation = speculation_of(t, g, sides, kind);
+  Float deepest = margin;
+  for (int i = 0; i < N; ++i) deepest = min(deepest, select(m.valid[i], m.separation[i], margin));
+  const Float speculation = speculation_of(t, g, sides, kind, deepest);
   out.near = out.touching = zero < zero;
   for (int i = 0; i < N; ++i) {
     Float v = normal_speed + out.b.set(i, sides.b, m.point_b[i], m.normal);
