@@ -66,7 +66,7 @@ TEST_CASE("what slides over flat triangles does not catch on their edges", "[fas
         bounce = std::max(bounce, std::abs(velocity(batch, 0, 0).z()));
       }
       INFO(name(table) << " " << sample.name);
-      CHECK((velocity(batch, 0, 0) - Vec3(3, 1.1, 0)).norm() < pick(table, 2e-3, 1e-3));
+      CHECK((velocity(batch, 0, 0).head<2>() - Vec2(3, 1.1)).norm() < 1e-4);
       CHECK(bounce < 0.06);  // it settles by a slop at first
       CHECK(spin(batch, 0, 0).norm() < 5e-3);
     }
