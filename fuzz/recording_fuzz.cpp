@@ -44,7 +44,7 @@ bool short_enough(const Recording& recording) {
     int candidates = 0;
     for (const auto& c : plan.report().pairs) candidates += c.candidates;
     if (candidates > 20'000) return false;
-    cost += std::int64_t{recording.worlds_of(k)} * plan.scene().options.substeps;
+    cost += std::int64_t{recording.worlds_of(k)} * *plan.resolved().substeps;
   }
   return steps <= kMaxWork / std::max<std::int64_t>(cost, 1);
 }

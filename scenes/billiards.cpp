@@ -17,7 +17,6 @@ Scene billiards() {
 
   Scene scene = planar_scene("billiards");
   scene.options.gravity.setZero();
-  scene.options.length_unit = 0.05;
   scene.options.density = kBallMass / (kPi * kRadius * kRadius);
   // In 1/60 s the cue ball would cross half the rack before it is looked at again.
   scene.options.dt = 1.0 / 240.0;

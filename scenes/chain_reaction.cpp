@@ -67,7 +67,6 @@ void add_bucket_and_flag(Scene& scene) {
 Scene chain_reaction() {
   Scene scene = planar_scene("chain-reaction");
   scene.options.density = 10;
-  scene.options.length_unit = 0.5;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-30, -0.5, -1), Vec3(40, 20, 1));
   add_fixed_parts(scene);
   add_body(scene, "ball", {-6, kShelf + 1.72, 0}, Circle{0.25});

@@ -13,7 +13,6 @@ Scene domino() {
   constexpr double kPush = 1;  // rad/s
 
   Scene scene = spatial_scene("domino");
-  scene.options.length_unit = 0.5;
   scene.options.bounds = bounds_of(Space::spatial, 20);
   scene.add(ground(Space::spatial));
   for (int i = 0; i < 15; ++i) {

@@ -15,7 +15,6 @@ Scene jenga() {
   constexpr double kPitch = 0.26;
   Scene scene = spatial_scene("jenga");
   scene.options.density = 600;
-  scene.options.length_unit = 0.25;
   scene.options.substeps = 12;  // with 4, so high a tower of soft contacts quivers
   scene.options.bounds = bounds_of(Space::spatial, 10);
   scene.add(ground(Space::spatial));

@@ -53,7 +53,6 @@ Body sphere(int i) {
 
 Scene mixed_pile() {
   Scene scene = spatial_scene("mixed-pile");
-  scene.options.length_unit = 0.8;
   scene.options.bounds = bounds_of(Space::spatial, kBinHalfWidth);
   scene.add(bin(Space::spatial, kBinHalfWidth));
   for (int i = 0; i < 26; ++i) {

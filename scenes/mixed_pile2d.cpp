@@ -32,7 +32,6 @@ Scene mixed_pile2d() {
   constexpr double kHalfWidth = 5;
   Scene scene = planar_scene("mixed-pile2d");
   scene.options.bounds = bounds_of(Space::planar, kHalfWidth);
-  scene.options.length_unit = 0.8;
   scene.add(bin(Space::planar, kHalfWidth));
   for (int i = 0; i < 40; ++i) {
     const int column = i % 8;

@@ -79,7 +79,6 @@ void add_stair(Scene& scene) {
 
 Scene ragdoll() {
   Scene scene = spatial_scene("ragdoll");
-  scene.options.length_unit = 0.3;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-50, -50, -0.5), Vec3(50, 50, 50));
   add_stair(scene);
 

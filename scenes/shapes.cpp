@@ -59,7 +59,6 @@ HeightField rough_field(int columns, int rows, double cell, double height) {
 Scene hills() {
   Scene scene = spatial_scene("hills");
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-9, -9, -3), Vec3(9, 9, 100));
-  scene.options.length_unit = 0.6;
   HeightField field = rough_field(33, 33, 0.6, 0.35);
   for (int j = 0; j < 33; ++j) {
     for (int i = 0; i < 33; ++i) {
@@ -87,7 +86,6 @@ Scene hills() {
 Scene pebbles() {
   Scene scene = planar_scene("pebbles");
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-8, -3, -1), Vec3(8, 100, 1));
-  scene.options.length_unit = 0.5;
   Body ground;
   ground.name = "ground";
   ground.motion = Motion::fixed;

@@ -1,5 +1,11 @@
 // Options of a scene: the step, its solver, contacts, joints and sleep. Every option has a path
 // through these structs ("contact.slop"), which JSON, Python and error messages share.
+//
+// What is empty here the plan chooses from the step, gravity and the bodies (docs/plan.md);
+// Plan::resolved says what it chose, and Plan::report why. Its speeds follow
+//   V = sqrt(g L / 10), 1 m/s for bodies of 1 m
+// with the gravity g, without any 10 m/s^2, and the length unit L, so that a scene in other units,
+// its times and masses scaled by the laws of similarity, does the same.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,14 +44,17 @@ struct SolverOptions {
 int iterations_of(const SolverOptions& solver);
 
 struct ContactOptions {
-  double frequency = 60;  // Hz, of the soft contacts of tgs_soft and penalty
+  // Hz, of the soft contacts of tgs_soft and penalty. Default: a quarter of the substeps' rate, of
+  // as many as there would be if bodies had much the same mass.
+  std::optional<double> frequency = {};
   // Hz, of those against fixed shapes; default: twice frequency.
   std::optional<double> fixed_frequency = {};
   double damping_ratio = 10;  // of both
-  // m/s per length_unit: cap on the speed at which a pair's overlap is removed. Speeds of bodies
-  // add up along a row: a row of n that overlap deeply can part at n / 4 times as much.
-  double push_out_speed = 1.5;
-  double slop = 0.005;  // m per length_unit: contact margin is 4 slop
+  // m/s: cap on the speed at which a pair's overlap is removed, but for what its load takes. Speeds
+  // of bodies add up along a row: a row of n that overlap deeply can part at n / 4 times as much.
+  // tgs_soft takes up to twice as much where a fixed shape overlaps by L / 2. Default: 1.5 V.
+  std::optional<double> push_out_speed = {};
+  std::optional<double> slop = {};  // m: contact margin is 4 slop. Default: 0.005 L
   // m/s: slower impacts do not bounce, by the speed that gravity would bring them to in the step.
   // Default: what gravity and attractors give in two steps, the larger of both bodies', as what
   // rests has that of one. So nothing without: where other forces press together what shall rest,
@@ -64,7 +73,7 @@ struct JointOptions {
   // Hz; default a quarter per substep, and hard rows in sequential_impulse, sor and nncg.
   std::optional<double> frequency = {};
   double damping_ratio = 2;
-  // m/s per length_unit, and rad/s: cap on the speed at which a joint closes what has come apart.
+  // m/s per length unit, and rad/s: cap on the speed at which a joint closes what has come apart.
   // For scenes whose joints begin far apart; under heavy loads a low one lets chains stretch.
   double pull_speed = std::numeric_limits<double>::infinity();
 };
@@ -72,8 +81,8 @@ struct JointOptions {
 // A body is at rest while |v| + |w| radius of its bounding sphere stays below speed; an island all
 // of whose bodies have been at rest for that time falls asleep (BatchOptions::sleep).
 struct SleepOptions {
-  double speed = 0.05;  // m/s per length_unit
-  double time = 0.5;    // s
+  std::optional<double> speed = {};  // m/s. Default: 0.06 V
+  double time = 0.5;                 // s
 };
 
 // Of newton: what bodies move through. Drag acts on the box of a body's mass and moments of inertia
@@ -85,8 +94,10 @@ struct Medium {
 };
 
 struct Options {
-  double dt = 1.0 / 60.0;              // s, one step
-  int substeps = 4;                    // of the solver and of the integrator, per step
+  double dt = 1.0 / 60.0;  // s, one step
+  // Of the solver and of the integrator, per step. Default: 4, and of tgs_soft more where sizes,
+  // standing columns or ratios of mass ask for it.
+  std::optional<int> substeps = {};
   Eigen::Vector3d gravity{0, 0, -10};  // m/s^2 (planar scenes: set {0, -10, 0})
   // m/s, of the air that Body::linear_drag is against, and of the medium.
   Eigen::Vector3d wind{0, 0, 0};
@@ -99,8 +110,9 @@ struct Options {
   // Spins are integrated as angular momenta instead of angular velocities, without splitting and
   // not by implicit_euler.
   bool angular_momentum = false;
-  // Size of a typical body, m. Scales slop, margins and speed limits of the contact model.
-  double length_unit = 1;
+  // L, m. Default: the size of the smallest shape that moves, the cube root of its volume (planar:
+  // the square root of its area); 1 where none does.
+  std::optional<double> length_unit = {};
 
   SolverOptions solver = {};
   ContactOptions contact = {};

@@ -72,6 +72,13 @@ struct PlanReport {
     std::string shape = {};  // "[body][3]"
     std::size_t bytes_per_world = 0;
   };
+  // What Options left to the plan.
+  struct Choice {
+    std::string option = {};  // its path, "substeps"
+    double value = 0;         // in the unit of the option
+    std::string why = {};
+  };
+  std::vector<Choice> choices = {};
   std::vector<Item> features = {};
   std::vector<Item> stages = {};  // in the order of the step
   std::vector<PairClass> pairs = {};
@@ -92,6 +99,8 @@ class Plan {
   Plan& operator=(const Plan&) = default;
   const Scene& scene() const;
   const PlanOptions& options() const;
+  // Those of the scene, with what they leave to the plan filled in.
+  const Options& resolved() const;
   // As those of its Scene: the one of a name.
   BodyId body(std::string_view name) const { return scene().body(name); }
   ShapeId shape(std::string_view name) const { return scene().shape(name); }

@@ -215,7 +215,10 @@ struct SceneConstants {
   Real dt, h, inv_h;
   Softness<Real> soft_pair, soft_fixed;
   Real push_out_speed;
-  Real margin;  // 4 slop, m
+  Real push_out_rate;  // 1/s, of an overlap with a fixed shape: between that speed and twice it
+  Real fixed_leak;     // m/s, at most given up of what presses on a fixed shape (rows/contact.hpp)
+  Real blow_speed;     // m/s, faster approaches are solved manifold by manifold
+  Real margin;         // 4 slop, m
   Real half_margin;
   Real restitution_threshold, restitution_time;  // m/s, and for how long gravity adds to it, s
   Real sleep_speed, sleep_time;                  // a body is at rest below; an island sleeps after

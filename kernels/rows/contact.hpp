@@ -1,21 +1,28 @@
 // contact: the solver passes over one block, written once for every space, point count and layout.
 //
 // Soft contact with substeps ("TGS soft", Catto). Normal row of a point with separation s:
-//   lambda' = max(0, lambda - m (a v + bias) - i lambda)
-//   s > 0: bias = s / h, a = 1, i = 0 (speculative)
-//   s <= 0: bias = max(a r s, -c), soft gains a, r, i (tables.hpp, Softness), c the push-out speed
-// The points of a manifold are solved in row space: their velocities are read once, each row's
-// change updates the others through K's off-diagonal entries, and the sum is applied once.
-// Friction: |tangent impulse| <= mu * sum(lambda), a circle; twist: |.| <= mu * sum(lambda_i
-// arm_i).
+//   lambda' = max(0, rigid - m bias - lost), rigid = lambda - m v, lost = i rigid
+//   s > 0: bias = s / h, i = 0 (speculative)
+//   s <= 0: bias = a r s, soft gains a, r, i with a = 1 - i (tables.hpp, Softness), but
+//           m bias >= -max(m c, i lambda + m c / 8)
+// with the push-out speed c, against fixed shapes up to twice as much where what they overlap is
+// half of the length unit or deeper. What a load takes comes on top, so that no load is too much.
+// A spring sags under what presses on it by F / (m w^2), however small the bodies. Against fixed
+// shapes `lost` is no more than m times the speed fixed_leak under a load of gravity and forces,
+// which sags by a hundredth of the length unit. Impacts lose as before: stiffer rows would throw
+// light bodies from under heavy ones. The points of a manifold are solved in row space: their
+// velocities are read once, each row's change updates the others through K's off-diagonal entries,
+// and the sum is applied once. Friction: |tangent impulse| <= mu * sum(lambda), a circle; twist:
+// |.| <= mu * sum(lambda_i arm_i).
 #pragma once
 
-#include "kernels/rows/contact_block.hpp"
+#include "kernels/rows/blow.hpp"
 #include "kernels/rows/velocities.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-inline constexpr Real kUnlimited = Real(1e30);  // N s
+inline constexpr Real kUnlimited = Real(1e30);       // N s
+inline constexpr Real kPushUnderLoad = Real(0.125);  // of c
 
 enum class Pass { warm_start, bias, relax };
 
@@ -62,13 +69,6 @@ MW_INLINE void moved_apart(const Work& w, const SidedBlock<S, N, A>& s, Float* g
   const Float along =
       dot(load_as<typename S::Vec>(s.normal[0]), relative_velocity(moved.a, moved.b));
   for (int i = 0; i < N; ++i) gaps[i] = normal_speed(s, i, moved, gaps[i] + along);
-}
-
-// Row k changed by d: the speeds of the rows after it follow.
-template <class S, int N>
-MW_INLINE void couple_following(const ContactBlock<S, N>& s, int k, Float d, Float* speed) {
-  int at = k * N - k * (k + 1) / 2;
-  for (int j = k + 1; j < N; ++j) speed[j] = fma(Float::load(s.cross_k[at++]), d, speed[j]);
 }
 
 // The moment of an impulse p at the friction centre, and a twist about the normal.
@@ -182,11 +182,11 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
   } else {
     Float speed[N];
     normal_speeds(s, v, speed);
-    const Float zero(Real(0)), one(Real(1)), inv_h(t.inv_h);
-    Float bias[N], scale[N], keep[N], most[N];
+    const Float zero(Real(0)), inv_h(t.inv_h);
+    Float bias[N], keep[N], most[N];  // bias: m/s, most: of the push-out's speed, or an impulse
     if constexpr (kPass == Pass::bias) {
       const auto& soft = A::kMoves ? t.soft_pair : t.soft_fixed;
-      const Float rate(soft.bias_rate * soft.mass_scale), cap(-t.push_out_speed);
+      const Float rate(soft.bias_rate * soft.mass_scale), push(t.push_out_speed);
       Float gaps[N];
       for (int i = 0; i < N; ++i) gaps[i] = Float::load(s.separation[i]);
       if (w.substep > 0) {
@@ -196,9 +196,9 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
       for (int i = 0; i < N; ++i) {
         const Float gap = gaps[i];
         const Mask apart = zero < gap;
-        bias[i] = select(apart, gap * inv_h, max(gap * rate, cap));
-        scale[i] = select(apart, one, soft.mass_scale);
+        bias[i] = gap * select(apart, inv_h, rate);
         keep[i] = select(apart, zero, soft.impulse_scale);
+        most[i] = A::kMoves ? push : clamp(gap * Float(-t.push_out_rate), push, push + push);
       }
     } else {
       // The substep has moved the bodies; now remove the speed that the push-out has added. A point
@@ -211,11 +211,33 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
         most[i] = select(touch < gap, impulse[i], kUnlimited);
       }
     }
+    if (kPass == Pass::bias && N > 1 && w.substep == 0) {  // what comes suddenly comes with a step
+      Float least = zero;
+      for (int i = 0; i < N; ++i) least = min(least, speed[i] + max(bias[i], zero));
+      const Float pressed = Float::load(s.press);  // faster ones are impacts
+      const Mask blow = (least < Float(-t.blow_speed)) & (-(pressed + pressed) < least);
+      if (any(blow)) {
+        const Blow<N> found = settle_blow(s, blow, bias, speed, impulse);
+        for (int i = 0; i < N; ++i) {
+          impulse[i] = impulse[i] + found.impulse[i], speed[i] = speed[i] + found.speed[i];
+        }
+        apply_normal(s, found.impulse, v);
+      }
+    }
     for (int i = 0; i < N; ++i) {
       const Float mass = Float::load(s.mass[i]);
       Float x;
       if constexpr (kPass == Pass::bias) {
-        x = fnma(keep[i], impulse[i], fnma(mass, fma(scale[i], speed[i], bias[i]), impulse[i]));
+        const Float rigid = fnma(mass, speed[i], impulse[i]), cap = mass * most[i];
+        const Float under_load = fma(cap, kPushUnderLoad, keep[i] * impulse[i]);
+        const Float push = min(mass * -bias[i], max(cap, under_load));
+        if constexpr (A::kMoves) {
+          x = fnma(keep[i], rigid, rigid + push);
+        } else {
+          const Float lost = keep[i] * rigid, pressed = mass * Float::load(s.press);
+          const Float struck = fnma(keep[i], pressed + pressed, lost);
+          x = rigid + (push - min(lost, max(mass * Float(t.fixed_leak), struck)));
+        }
       } else {
         x = fnma(mass, speed[i] + bias[i], impulse[i]);
       }

@@ -22,16 +22,6 @@ inline constexpr Real kMuchFaster = Real(0.3);
 // fastest, that is left to the next step.
 inline constexpr Real kImpactTolerance = sizeof(Real) == 4 ? Real(2e-6) : Real(1e-12);
 
-// Every other row follows when row k changes by d.
-template <class S, int N>
-MW_INLINE void couple_all(const ContactBlock<S, N>& s, int k, Float d, Float* speed) {
-  for (int j = 0; j < k; ++j) {
-    const int at = j * N - j * (j + 1) / 2 + (k - j - 1);
-    speed[j] = fma(Float::load(s.cross_k[at]), d, speed[j]);
-  }
-  couple_following(s, k, d, speed);
-}
-
 // How fast the participants among `lanes` approach, and the speeds that their points shall leave
 // with. What approaches slower than `slow`, or a thousandth of the threshold, is left to the next
 // step. Returns the fastest approach.

@@ -31,11 +31,11 @@ class SolverOptions:
 class ContactOptions:
     """The contact model."""
 
-    frequency: float = 60.0  # Hz, of tgs_soft and penalty
+    frequency: Optional[float] = None  # Hz, of tgs_soft and penalty; None: by the substeps
     fixed_frequency: Optional[float] = None  # Hz, against fixed shapes; None: twice frequency
     damping_ratio: float = 10.0
-    push_out_speed: float = 1.5  # m/s per length_unit
-    slop: float = 0.005  # m per length_unit
+    push_out_speed: Optional[float] = None  # m/s; None: by gravity and sizes
+    slop: Optional[float] = None  # m; None: 0.005 of the smallest size
     # m/s: slower impacts do not bounce; None: what gravity gives in two steps
     restitution_threshold: Optional[float] = None
     restitution_sweeps: int = 16
@@ -57,7 +57,7 @@ class JointOptions:
 class SleepOptions:
     """When bodies at rest fall asleep."""
 
-    speed: float = 0.05  # m/s per length_unit
+    speed: Optional[float] = None  # m/s; None: by gravity and sizes
     time: float = 0.5  # s
 
 
@@ -74,7 +74,7 @@ class Options:
     """How worlds of a scene are stepped. The header ``options.hpp`` has more on each."""
 
     dt: float = 1.0 / 60.0  # s, one step
-    substeps: int = 4
+    substeps: Optional[int] = None  # None: 4, or more where the scene needs it
     gravity: Numbers = (0.0, 0.0, -10.0)  # m/s^2; planar scenes set (0, -10, 0)
     wind: Numbers = (0.0, 0.0, 0.0)  # m/s, of the air that Body.linear_drag is against
     density: float = 1000.0  # kg/m^3 (planar: kg/m^2), of shapes that give none
@@ -82,7 +82,7 @@ class Options:
     medium: Medium = field(default_factory=Medium)
     rotation: Optional[Rotation] = None  # None: what suits the integrator
     angular_momentum: bool = False  # spins as angular momenta
-    length_unit: float = 1.0  # m, size of a typical body
+    length_unit: Optional[float] = None  # m; None: the size of the smallest body
     solver: SolverOptions = field(default_factory=SolverOptions)
     contact: ContactOptions = field(default_factory=ContactOptions)
     joint: JointOptions = field(default_factory=JointOptions)

@@ -41,8 +41,7 @@ ContactSummary Batch::measure_contacts(const GoOn& go_on) const {
   const GoOn asked = [&] { return !(ended = ended || (go_on && !go_on())); };
   double points = 0, manifolds = 0;
   for (int w = 0; w < worlds() && asked(); ++w) {
-    const Options& o = impl_->plan(kind_of(w)).scene().options;
-    const double margin = 4 * o.contact.slop * o.length_unit;
+    const double margin = 4 * *impl_->plan(kind_of(w)).resolved().contact.slop;
     std::vector<std::pair<ShapeId, ShapeId>> pairs;
     for (const Contact& c : contacts(w)) {
       if (c.separation >= margin) continue;

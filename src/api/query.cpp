@@ -12,6 +12,7 @@
 #include "src/base/float_mode.hpp"
 #include "src/dispatch/kernels.hpp"
 #include "src/plan/plan_data.hpp"
+#include "src/scene/length_unit.hpp"
 #include "src/scene/shape/shape.hpp"
 
 namespace manyworlds {
@@ -134,8 +135,7 @@ std::vector<ManifoldPoint> manifold(const Shape& a, const Pose& pose_a, const Sh
     }
   }
   scene.options.length_unit = unit;
-  scene.options.contact.slop =
-      std::max(scene.options.contact.slop, margin / (4 * unit) * (1 + 1e-6));
+  scene.options.contact.slop = std::max(slop_of(scene), margin / 4 * (1 + 1e-6));
   BatchOptions options;
   options.threads = 1;
   options.isa = available_isas().front();

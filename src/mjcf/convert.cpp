@@ -114,7 +114,7 @@ double typical_size(const Scene& scene) {
       diameters.push_back(bounding_diameter(shape.geometry));
     }
   }
-  if (diameters.empty()) return Options{}.length_unit;
+  if (diameters.empty()) return 1;
   const auto median = diameters.begin() + static_cast<std::ptrdiff_t>(diameters.size() / 2);
   std::nth_element(diameters.begin(), median, diameters.end());
   return round_to_two_digits(*median);

@@ -252,7 +252,7 @@ void add_joints(const Model& model, const std::vector<BodyId>& scene_body, Scene
   }
   if (const Gap gap = largest_gap(m); gap.length > 0 || gap.angle > 0) {
     scene.options.joint.pull_speed =
-        std::max(gap.length / scene.options.length_unit, gap.angle) / kClosingTime;
+        std::max(gap.length / *scene.options.length_unit, gap.angle) / kClosingTime;
   }
 }
 

@@ -43,7 +43,7 @@ class TreeCollector {
   explicit TreeCollector(PlanData& plan)
       : plan_(plan),
         scene_(plan.scene),
-        h_(scene_.options.dt / scene_.options.substeps),
+        h_(scene_.options.dt / *scene_.options.substeps),
         order_(tree_order(scene_)),
         link_(scene_.bodies.size(), -1),
         anchors_(scene_.joints.size()) {}

@@ -197,7 +197,7 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, const PlanData& plan
 std::vector<PlanFixed> parts_of(const Body& body, const Shape& shape, const PlanData& plan) {
   if (std::holds_alternative<Terrain>(shape.geometry)) return terrain_links(body, shape);
   if (const auto* field = std::get_if<HeightField>(&shape.geometry)) {
-    return height_field_tiles(body, shape, tiles_of(*field, plan.scene), plan.scene.options);
+    return height_field_tiles(body, shape, tiles_of(*field, plan.scene), plan.scene);
   }
   return {fixed_shape(body, shape, plan)};
 }
@@ -273,7 +273,7 @@ void lay_out_shapes(PlanData& plan) {
 }
 
 double min_margin(const PlanData& plan) {
-  const double slop = plan.scene.options.contact.slop * plan.scene.options.length_unit;
+  const double slop = *plan.scene.options.contact.slop;
   if (!plan.has_trees()) return 2 * slop;
   double most = 0;
   for (const Body& body : plan.scene.bodies) {

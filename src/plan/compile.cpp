@@ -14,9 +14,10 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
   std::vector<Issue> issues = validate(scene);
   if (!issues.empty()) throw SceneError(std::move(issues));
   auto plan = std::make_shared<PlanData>();
-  plan->scene = scene;
+  plan->described = plan->scene = scene;
   plan->options = options;
   collect_variations(*plan);
+  resolve_options(*plan);
   collect_bodies(*plan);
   choose_polygons(*plan);
   collect_colliders(*plan);
@@ -36,7 +37,8 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
 Plan::Plan(std::shared_ptr<const PlanData> data) : data_(std::move(data)) {
   if (!data_) throw std::invalid_argument("Plan: there is no data, compile() makes a plan");
 }
-const Scene& Plan::scene() const { return data_->scene; }
+const Scene& Plan::scene() const { return data_->described; }
+const Options& Plan::resolved() const { return data_->scene.options; }
 const PlanOptions& Plan::options() const { return data_->options; }
 int Plan::bodies() const { return static_cast<int>(data_->bodies.size()); }
 bool Plan::has(Feature feature) const { return data_->has(checked_enum(feature)); }

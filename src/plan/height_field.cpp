@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "src/plan/plan_data.hpp"
+#include "src/scene/length_unit.hpp"
 
 namespace manyworlds {
 
@@ -13,7 +14,7 @@ constexpr double kDepth = 1e6;
 }  // namespace
 
 std::vector<PlanFixed> height_field_tiles(const Body& body, const Shape& shape,
-                                          const TileCount& tiles, const Options& options) {
+                                          const TileCount& tiles, const Scene& scene) {
   const auto& field = std::get<HeightField>(shape.geometry);
   const Mat3 of_body = body.rotation.normalized().toRotationMatrix();
   const Mat3 r = of_body * shape.rotation.normalized().toRotationMatrix();
@@ -25,7 +26,7 @@ std::vector<PlanFixed> height_field_tiles(const Body& body, const Shape& shape,
   Eigen::AlignedBox3d bounds;
   for (int i = 0; i < 8; ++i) {
     const Vec3 at(i & 1 ? 2 * half.x() : 0, i & 2 ? 2 * half.y() : 0,
-                  i & 4 ? *high : *low - kDepth * options.length_unit);
+                  i & 4 ? *high : *low - kDepth * length_unit_of(scene));
     bounds.extend(corner + r * at);
   }
   std::vector<PlanFixed> out;
@@ -43,7 +44,7 @@ std::vector<PlanFixed> height_field_tiles(const Body& body, const Shape& shape,
     row.column = i / 2 % tiles.wide, row.row = i / 2 / tiles.wide, row.half = i % 2;
     constexpr std::size_t kNumbers = kernels::row_size<kernels::TileRow>;
     row.heights = static_cast<double>(kNumbers) - static_cast<double>(before);
-    row.pad = tile_pad(options);
+    row.pad = tile_pad(scene);
     append_row(row, f.row);
     if (i == 0) f.row.insert(f.row.end(), field.heights.begin(), field.heights.end());
     while (f.row.size() % 4 != 0) f.row.push_back(0);  // rows are loaded by fours

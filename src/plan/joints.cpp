@@ -49,7 +49,7 @@ class Builder {
       : plan_(plan),
         index_(index),
         joint_(plan.scene.joints[static_cast<std::size_t>(index)]),
-        h_(plan.scene.options.dt / plan.scene.options.substeps) {}
+        h_(plan.scene.options.dt / *plan.scene.options.substeps) {}
 
   void build() {
     std::visit([this](const auto& type) { add(type); }, joint_.type);
@@ -114,7 +114,7 @@ class Builder {
     put(b.frame, out.constants.frame_b);
     out.constants.soft = hard();
     const Options& o = plan_.scene.options;
-    out.constants.pull = std::min(o.joint.pull_speed * o.length_unit, kUnlimited);
+    out.constants.pull = std::min(o.joint.pull_speed * *o.length_unit, kUnlimited);
     out.constants.angular_pull = std::min(o.joint.pull_speed, kUnlimited);
     out.constants.limit_soft = hard();
     out.constants.max_impulse = kUnlimited;

@@ -94,7 +94,9 @@ struct PlanVaries {
 };
 
 struct PlanData {
-  Scene scene;
+  Scene described;  // as it was given
+  Scene scene;      // its options with all that they leave to the plan filled in (resolve.cpp)
+  std::vector<PlanReport::Choice> choices;
   PlanOptions options;
   std::vector<VariedNumber> varied;
   PlanVaries varies;
@@ -165,7 +167,7 @@ std::vector<PlanFixed> terrain_links(const Body& body, const Shape& shape);  // 
 // The tiles that a height field is made of (kernels/collide/tile.hpp).
 std::vector<PlanFixed> height_field_tiles(const Body& body, const Shape& shape,
                                           const TileCount& tiles,
-                                          const Options& options);  // height_field.cpp
+                                          const Scene& scene);  // height_field.cpp
 
 // A hull as the kernels take it: about the middle of its bounding box, in units of half its
 // extents.
@@ -181,6 +183,7 @@ int put_corners(PlanData& plan, const HullCorners& corners);  // hulls.cpp
 
 // The steps of compile(), in order.
 void collect_variations(PlanData& plan);    // variations.cpp
+void resolve_options(PlanData& plan);       // resolve.cpp
 void collect_bodies(PlanData& plan);        // bodies.cpp
 void choose_polygons(PlanData& plan);       // colliders.cpp
 void collect_colliders(PlanData& plan);     // colliders.cpp

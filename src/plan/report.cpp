@@ -6,6 +6,7 @@ namespace manyworlds {
 
 PlanReport describe(const PlanData& plan) {
   PlanReport out;
+  out.choices = plan.choices;
   for (int i = 0; i < kFeatureCount; ++i) {
     const auto f = static_cast<std::size_t>(i);
     out.features.push_back({to_string(static_cast<Feature>(i)), plan.in[f], plan.why[f]});

@@ -112,7 +112,7 @@ class TreePairs {
                                  : ContactCone::pyramidal;
     const Compliance compliance = same ? mixed_compliance(of_a, of_b) : first->compliance;
     const Options& o = plan_.scene.options;
-    out.compliance = compile(compliance, o.dt / o.substeps);
+    out.compliance = compile(compliance, o.dt / *o.substeps);
     out.margin = of_a.margin + of_b.margin;
     const auto weight = [&](int link) {
       return link < 0 ? 0 : trees_.weights.link[static_cast<std::size_t>(link)][0];

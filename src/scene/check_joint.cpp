@@ -92,7 +92,7 @@ class JointChecker {
     const double gap = (frame_in_world(scene_, joint_.body_a, joint_.frame_a).position -
                         frame_in_world(scene_, joint_.body_b, joint_.frame_b).position)
                            .norm();
-    const double most = kFarthest * scene_.options.length_unit;
+    const double most = kFarthest * scene_.options.length_unit.value_or(1);
     if (gap > most) {
       check_.add("frame_b.position", "is " + number_text(gap) +
                                          " m from frame_a's as the bodies begin, must be at most " +

@@ -77,13 +77,15 @@ void check_solver(Checker& checker, const SolverOptions& o) {
 }
 
 void check_contact(Checker& checker, const ContactOptions& o) {
-  checker.not_negative("options.contact.frequency", o.frequency, "Hz");
+  if (o.frequency) checker.not_negative("options.contact.frequency", *o.frequency, "Hz");
   if (o.fixed_frequency) {
     checker.not_negative("options.contact.fixed_frequency", *o.fixed_frequency, "Hz");
   }
   checker.not_negative("options.contact.damping_ratio", o.damping_ratio, "");
-  checker.not_negative("options.contact.push_out_speed", o.push_out_speed, "m/s");
-  checker.positive("options.contact.slop", o.slop, "m", kMinSize, kLargestSize);
+  if (o.push_out_speed) {
+    checker.not_negative("options.contact.push_out_speed", *o.push_out_speed, "m/s");
+  }
+  if (o.slop) checker.positive("options.contact.slop", *o.slop, "m", kMinSize, kLargestSize);
   if (o.restitution_threshold) {
     checker.not_negative("options.contact.restitution_threshold", *o.restitution_threshold, "m/s");
   }
@@ -101,7 +103,7 @@ void check_joint(Checker& checker, const JointOptions& o) {
 }
 
 void check_sleep(Checker& checker, const SleepOptions& o) {
-  checker.not_negative("options.sleep.speed", o.speed, "m/s");
+  if (o.speed) checker.not_negative("options.sleep.speed", *o.speed, "m/s");
   checker.positive("options.sleep.time", o.time, "s", kMinTime, kLargestFinite);
 }
 
@@ -109,7 +111,7 @@ void check_sleep(Checker& checker, const SleepOptions& o) {
 
 void check_options(Checker checker, const Options& options) {
   checker.positive("options.dt", options.dt, "s", kMinTime, kLargestFinite);
-  checker.between("options.substeps", options.substeps, 1, kMaxSubsteps);
+  if (options.substeps) checker.between("options.substeps", *options.substeps, 1, kMaxSubsteps);
   checker.finite("options.gravity", options.gravity, "m/s^2");
   checker.finite("options.wind", options.wind, "m/s");
   checker.not_negative("options.medium.density", options.medium.density, "kg/m^3");
@@ -117,7 +119,7 @@ void check_options(Checker checker, const Options& options) {
   check_integrator(checker, options);
   check_solver(checker, options.solver);
   checker.density("options.density", options.density);
-  checker.size("options.length_unit", options.length_unit);
+  if (options.length_unit) checker.size("options.length_unit", *options.length_unit);
   check_contact(checker, options.contact);
   check_joint(checker, options.joint);
   check_sleep(checker, options.sleep);

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/scene/length_unit.hpp"
 #include "src/scene/shape/shape.hpp"
 
 namespace manyworlds {
 
-double tile_pad(const Options& options) { return 4 * options.contact.slop * options.length_unit; }
+double tile_pad(const Scene& scene) { return 4 * slop_of(scene); }
 
 TileCount tiles_of(const HeightField& field, const Scene& scene) {
   double reach = 0;
@@ -21,7 +22,7 @@ TileCount tiles_of(const HeightField& field, const Scene& scene) {
   for (const Variation& v : scene.variations) {
     if (v.parameter == Parameter::size) reach = std::max(reach, 2 * v.high.norm());
   }
-  const double span = 2 * (reach + tile_pad(scene.options));
+  const double span = 2 * (reach + tile_pad(scene));
   const auto cells = [&](double cell, int most) {
     const double needed = std::ceil(span / cell) + 2;  // one for rounding
     return static_cast<int>(std::min(needed, static_cast<double>(std::max(most, 1))));

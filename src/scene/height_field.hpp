@@ -15,6 +15,6 @@ struct TileCount {
 // Of the shapes of a scene that may move, at their largest. Precondition: they have sound sizes.
 TileCount tiles_of(const HeightField& field, const Scene& scene);
 // m, by which the tiles that a shape looks at reach beyond it.
-double tile_pad(const Options& options);
+double tile_pad(const Scene& scene);
 
 }  // namespace manyworlds

@@ -37,7 +37,7 @@ template <class Real>
 kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody& b) {
   const Options& options = plan.scene.options;
   const Body& body = plan.scene.bodies[static_cast<std::size_t>(b.scene_body)];
-  const double h = options.dt / options.substeps;
+  const double h = options.dt / *options.substeps;
   kernels::BodyConstants<Real> out{};
   out.mass = static_cast<Real>(b.mass);
   out.inv_mass = static_cast<Real>(b.inv_mass);

@@ -7,6 +7,7 @@
 #include "src/plan/pair_kinds.hpp"
 #include "src/plan/soft_constraint.hpp"
 #include "src/plan/state_layout.hpp"
+#include "src/scene/length_unit.hpp"
 
 namespace manyworlds {
 
@@ -14,6 +15,9 @@ namespace {
 
 // Of gravity: impacts that these give do not bounce (ContactOptions::restitution_threshold).
 constexpr double kStepsThatRest = 2;
+constexpr double kMostSag = 0.01;  // of the length unit, under what presses on fixed shapes
+constexpr double kDeep = 4;        // times the speed per length unit of overlap, up to twice it
+constexpr double kBlow = 1.8;      // of the speed V (kernels/rows/contact.hpp)
 
 template <class Real>
 kernels::Softness<Real> softness(double frequency, double damping_ratio, double h) {
@@ -63,7 +67,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   auto& t = tables_;
   t.dimension = plan.dimension();
   t.inertia_kind = plan.inertia_kind;
-  t.substeps = o.substeps;
+  t.substeps = *o.substeps;
   t.restitution_sweeps = o.contact.restitution_sweeps;
   t.has_orientation = plan.has(Feature::orientation);
   t.has_friction = plan.has(Feature::friction);
@@ -90,24 +94,29 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
     copy(o.bounds->min(), t.bounds_low);
     copy(o.bounds->max(), t.bounds_high);
   }
-  const double h = o.dt / o.substeps;
+  const double h = o.dt / *o.substeps;
   t.dt = static_cast<Real>(o.dt);
   t.h = static_cast<Real>(h);
   t.inv_h = static_cast<Real>(1 / h);
-  t.soft_pair = softness<Real>(o.contact.frequency, o.contact.damping_ratio, h);
-  t.soft_fixed = softness<Real>(o.contact.fixed_frequency.value_or(2 * o.contact.frequency),
-                                o.contact.damping_ratio, h);
+  const double frequency = *o.contact.frequency;
+  t.soft_pair = softness<Real>(frequency, o.contact.damping_ratio, h);
+  t.soft_fixed =
+      softness<Real>(o.contact.fixed_frequency.value_or(2 * frequency), o.contact.damping_ratio, h);
+  t.fixed_leak = t.soft_fixed.bias_rate * t.soft_fixed.mass_scale *
+                 static_cast<Real>(kMostSag * *o.length_unit);
+  t.blow_speed = static_cast<Real>(kBlow * speed_unit(o));
   add_solver(o);
-  t.push_out_speed = static_cast<Real>(o.contact.push_out_speed * o.length_unit);
+  t.push_out_speed = static_cast<Real>(*o.contact.push_out_speed);
+  t.push_out_rate = static_cast<Real>(kDeep * *o.contact.push_out_speed / *o.length_unit);
   t.margin = static_cast<Real>(2 * min_margin(plan));
   t.half_margin = static_cast<Real>(min_margin(plan));
   const bool by_gravity = !o.contact.restitution_threshold;
   t.restitution_threshold = static_cast<Real>(o.contact.restitution_threshold.value_or(0));
   t.restitution_time = static_cast<Real>(by_gravity ? kStepsThatRest * o.dt : 0);
-  t.sleep_speed = static_cast<Real>(o.sleep.speed * o.length_unit);
+  t.sleep_speed = static_cast<Real>(*o.sleep.speed);
   t.sleep_time = static_cast<Real>(o.sleep.time);
-  t.face_bias = static_cast<Real>(0.5 * o.contact.slop * o.length_unit);
-  t.face_tie = static_cast<Real>(0.02 * o.contact.slop * o.length_unit);
+  t.face_bias = static_cast<Real>(0.5 * *o.contact.slop);
+  t.face_tie = static_cast<Real>(0.02 * *o.contact.slop);
   const StateLayout layout = state_layout(plan);
   t.bodies = layout.items[static_cast<int>(ItemKind::body)];
   t.state_stride = layout.stride[static_cast<int>(ItemKind::body)];
@@ -126,8 +135,8 @@ void TablesOf<Real>::add_solver(const Options& o) {
   t.solver.push_out_share = static_cast<Real>(o.solver.push_out_share);
   if (!has_hard_rows(o.solver.method)) return;
   const double share = o.solver.split_impulse ? 0 : o.solver.push_out_share;
-  t.solver.slop = static_cast<Real>(o.contact.slop * o.length_unit);
-  t.soft_pair = t.soft_fixed = {static_cast<Real>(share * o.substeps / o.dt), 1, 0};
+  t.solver.slop = static_cast<Real>(*o.contact.slop);
+  t.soft_pair = t.soft_fixed = {static_cast<Real>(share * *o.substeps / o.dt), 1, 0};
 }
 
 template <class Real>

@@ -130,7 +130,7 @@ TEST_CASE("contact summary agrees with the contacts", "[fast][batch]") {
     double points = 0, deepest = 0;
     for (int w = 0; w < 6; ++w) {
       for (const Contact& c : batch.contacts(w)) {
-        if (c.separation < 4 * scene.options.contact.slop) points += 1.0 / 6;
+        if (c.separation < 4 * *batch.plan().resolved().contact.slop) points += 1.0 / 6;
         deepest = std::max(deepest, -c.separation);
       }
     }

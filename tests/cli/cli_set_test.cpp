@@ -33,9 +33,9 @@ TEST_CASE("what cannot be set is told in a line", "[cli]") {
        "'contact.slop'? ('manyworlds info --options' lists all)"},
       {"qwertyuiop=1", "unknown option of a scene 'qwertyuiop' ('manyworlds info"},
       {"contact=1", "unknown option of a scene 'contact'"},
-      {"contact.slop=", "--set: contact.slop must be a number, is ''"},
-      {"contact.slop=1e999", "--set: contact.slop must be a number, is '1e999'"},
-      {"substeps=2.5", "--set: substeps must be a whole number, is '2.5'"},
+      {"contact.damping_ratio=", "--set: contact.damping_ratio must be a number, is ''"},
+      {"contact.damping_ratio=1e999", "--set: contact.damping_ratio must be a number, is '1e999'"},
+      {"substeps=2.5", "--set: substeps must be a whole number, or default, is '2.5'"},
       {"solver.method=sot",
        "--set: solver.method must be tgs-soft, sequential-impulse, sor, nncg, "
        "penalty or newton, is 'sot'"},
@@ -87,7 +87,7 @@ TEST_CASE("info --options lists what --set takes, with the defaults", "[cli]") {
   for (const Json& option : Json::parse(run("info --options --json").out)) {
     const std::string path = option["path"];
     CHECK_FALSE(option["takes"].get<std::string>().empty());
-    if (path == "contact.slop") CHECK(option["default"] == "0.005");
+    if (path == "contact.damping_ratio") CHECK(option["default"] == "10");
     if (path == "joint.pull_speed") CHECK(option["default"] == "inf");
     all += " --set " + path + "=" + option["default"].get<std::string>();
   }

@@ -44,7 +44,7 @@ PairPromise points(int n) {
 // (collide_convex.cpp); a face of A over one of B by half a slop more.
 PairPromise faces(int n, double twin) {
   PairPromise p = points(n);
-  const double half_slop = 0.5 * Options{}.contact.slop;
+  const double half_slop = 0.5 * test::kPairSlop;
   p.bias = half_slop / 0.95 + half_slop;
   p.bias_relative = 0.05 / 0.95;
   p.reach = 1.5;
@@ -55,7 +55,7 @@ PairPromise faces(int n, double twin) {
 // On a plane the points of a face count unless another is deeper by a tenth of a slop.
 PairPromise on_plane() {
   PairPromise p = points(4);
-  p.bias = p.left_out = 0.1 * Options{}.contact.slop;
+  p.bias = p.left_out = 0.1 * test::kPairSlop;
   return p;
 }
 constexpr double kSearched = 2e-6;

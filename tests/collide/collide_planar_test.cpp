@@ -71,7 +71,7 @@ void check(ShapeMaker first, Motion first_motion, ShapeMaker second, int max_poi
   PairPromise promise;
   promise.max_points = max_points;
   // Edges of one polygon win near ties with those of the other (polygon_pairs.hpp).
-  if (max_points >= 2) promise.bias = 0.5 * Options{}.contact.slop;
+  if (max_points >= 2) promise.bias = 0.5 * test::kPairSlop;
   for (const Table& table : widest_tables()) {
     const PairResult sum = check_random_pairs({first, first_motion, second}, Space::planar, table,
                                               promise, kScenes, kPosesPerScene, Random(20240602));

@@ -28,7 +28,7 @@ void check(ShapeMaker first, Motion first_motion, ShapeMaker second, const PairP
 // edge that is shallower by half a slop and 5 % of the face's depth (box_box_axes.hpp).
 PairPromise box_box_promise() {
   PairPromise p;
-  const double half_slop = 0.5 * Options{}.contact.slop;
+  const double half_slop = 0.5 * test::kPairSlop;
   p.bias = half_slop / 0.95 + half_slop;
   p.bias_relative = 0.05 / 0.95;
   p.reach = 1.5;
@@ -44,7 +44,7 @@ PairPromise points(int n) {
 // A box prefers a face to an edge that is shallower by half a slop (box_capsule.hpp).
 PairPromise box_capsule_promise() {
   PairPromise p = points(2);
-  p.bias = 0.5 * Options{}.contact.slop;
+  p.bias = 0.5 * test::kPairSlop;
   return p;
 }
 

@@ -299,7 +299,7 @@ TEST_CASE("a welded pair flies as one body", "[mjcf][fast]") {
     body.angular_velocity = spin;
   }
   Batch batch(compile(scene), one_world());
-  const double seconds = 1, substep = 0.005 / scene.options.substeps;
+  const double seconds = 1, substep = 0.005 / *compile(scene).resolved().substeps;
   batch.step(200);
   const Quat turn(Eigen::AngleAxisd(spin.z() * seconds, Vec3::UnitZ()));
   // Bodies on joints take gravity in substeps: g t (t + h) / 2.

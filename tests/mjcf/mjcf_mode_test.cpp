@@ -23,7 +23,7 @@ TEST_CASE("the caller's floating-point mode changes no bit of an MJCF scene", "[
                     out.add(body.mass_properties->mass);
                     out.add(body.mass_properties->inertia);
                   }
-                  out.add(result.scene.options.length_unit);
+                  out.add(*result.scene.options.length_unit);
                   return out;
                 }}});
 }

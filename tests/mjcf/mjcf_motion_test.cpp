@@ -157,8 +157,8 @@ TEST_CASE("boxes from MJCF come to rest above the planes of their bin", "[mjcf]"
   Scene scene =
       load_mjcf(std::filesystem::path(test::kSourceFolder) / "scenes" / "mjcf" / "box_pile.xml")
           .scene;
-  const double slop = scene.options.contact.slop * scene.options.length_unit;
   const Plan plan = compile(scene);
+  const double slop = *plan.resolved().contact.slop;
   Batch batch(plan, options(1, Precision::f32));
   batch.step(500);
   CHECK(batch.lost_worlds() == 0);

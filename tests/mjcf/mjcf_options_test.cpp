@@ -36,7 +36,7 @@ TEST_CASE("the solver of trees is set as MuJoCo's", "[mjcf][robots][fast]") {
   CHECK(options.dt == 0.003);
   CHECK(options.substeps == 1);
   CHECK(options.gravity == Eigen::Vector3d(1, 2, 3));
-  CHECK(options.length_unit == Approx(0.2));
+  CHECK(*options.length_unit == Approx(0.2));
   const SolverOptions& solver = options.solver;
   CHECK(solver.method == Solver::newton);
   CHECK(solver.iterations == 7);

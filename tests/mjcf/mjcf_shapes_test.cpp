@@ -117,7 +117,7 @@ TEST_CASE("cylinders keep MuJoCo's size, axis and mass", "[mjcf][fast]") {
     CHECK(derived.mass == Approx(given.mass).epsilon(1e-12));
     CHECK((derived.center - given.center).norm() < 1e-12);
     CHECK((derived.inertia - given.inertia).norm() < 1e-9 * given.inertia.norm());
-    CHECK(scene.options.length_unit == Approx(0.54));  // 2 sqrt(0.1^2 + 0.25^2)
+    CHECK(*scene.options.length_unit == Approx(0.54));  // 2 sqrt(0.1^2 + 0.25^2)
   }
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("a mesh is the hull of its vertices where the file has them", "[mjcf][
   own.mass_properties.reset();
   const MassProperties derived = mass_properties(scene, own);
   CHECK((derived.inertia - mass.inertia).norm() < 1e-5 * mass.inertia.norm());
-  CHECK(scene.options.length_unit == Approx(0.75).epsilon(0.2));
+  CHECK(*scene.options.length_unit == Approx(0.75).epsilon(0.2));
 }
 
 TEST_CASE("a mesh of too many corners is an error that maxhullvert mends", "[mjcf][fast]") {
@@ -266,7 +266,7 @@ TEST_CASE("shapes from MJCF rest where they should", "[mjcf]") {
                                pyramid))
             .scene;
     const Vec3 x = last_position(scene, 1000);
-    CHECK(std::abs(x.z() - c.height) < 4 * scene.options.contact.slop * scene.options.length_unit);
+    CHECK(std::abs(x.z() - c.height) < 4 * *compile(scene).resolved().contact.slop);
     CHECK((x.head<2>() - Vec2(0.1, 0.2)).norm() < 0.01);
   }
 }

@@ -168,7 +168,7 @@ TEST_CASE("capsules keep MuJoCo's size, axis and mass", "[mjcf][fast]") {
     CHECK(derived.mass == Approx(given.mass).epsilon(1e-12));
     CHECK((derived.center - given.center).norm() < 1e-12);
     CHECK((derived.inertia - given.inertia).norm() < 1e-9 * given.inertia.norm());
-    CHECK(scene.options.length_unit == Approx(0.7));
+    CHECK(*scene.options.length_unit == Approx(0.7));
   }
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("option gives time step and gravity, and flags can switch things off",
           .scene;
   CHECK(plain.options.dt == 0.004);
   CHECK(plain.options.gravity == Vec3(1, 2, -3));
-  CHECK(plain.options.length_unit == Approx(0.063).epsilon(1e-12));  // two digits of 0.0634
+  CHECK(*plain.options.length_unit == Approx(0.063).epsilon(1e-12));  // two digits of 0.0634
   CHECK(plain.bodies.at(0).shapes.at(0).material.friction == 0.3);
   CHECK(plain.bodies.at(0).shapes.at(0).material.restitution == 0);
   const Scene off =

@@ -81,9 +81,10 @@ TEST_CASE("drag follows the implicit law", "[fast][closed_form]") {
       body.angular_drag = 1.3;
       scene.add(body);
       if (ground_below) scene.add(ground(space));
-      const double dt = scene.options.dt, h = dt / scene.options.substeps;
+      const int substeps = *compile(scene).resolved().substeps;
+      const double dt = scene.options.dt, h = dt / substeps;
       const auto factor = [&](double c, bool fine) {
-        return fine ? std::pow(1 + h * c, -scene.options.substeps) : 1 / (1 + dt * c);
+        return fine ? std::pow(1 + h * c, -substeps) : 1 / (1 + dt * c);
       };
       for (const Table& table : all_tables()) {
         INFO(name(table) << " ground " << ground_below);

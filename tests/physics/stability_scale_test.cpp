@@ -25,14 +25,9 @@ Scene pyramid(int base, double size, const Vec3& origin) {
   return scene;
 }
 
-// Boxes of this size, with options that go with it: times as the root of the length, speeds too.
+// Boxes of this size.
 Scene stack(Space space, int boxes, double size, double gap) {
   Scene scene = empty_scene(space);
-  Options& o = scene.options;
-  const double root = std::sqrt(size);
-  o.length_unit = size;
-  o.contact.frequency /= root;
-  o.contact.push_out_speed *= root / size;  // given per length unit
   scene.add(ground(space));
   for (int i = 0; i < boxes; ++i)
     scene.add(body_of(shape_of(cube_of(space, size / 2)),

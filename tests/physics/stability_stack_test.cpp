@@ -52,7 +52,7 @@ void check_standing(const Batch& batch, int world, double sag, double lean) {
   CHECK(top.dot(up) == Approx(boxes - 0.5).margin(sag));
   CHECK(Vec3(top - top.dot(up) * up).norm() < lean);
   const double weight = mass_properties(scene, scene.bodies[1]).mass * 10;
-  const double h = scene.options.dt / scene.options.substeps;
+  const double h = scene.options.dt / *batch.plan().resolved().substeps;
   const auto contacts = batch.contacts(world);
   for (int i = 0; i < boxes; ++i) {
     INFO("level " << i);

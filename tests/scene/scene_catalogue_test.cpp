@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "manyworlds/plan.hpp"
 #include "manyworlds/scenes.hpp"
 #include "scenes/cradle.hpp"
 
@@ -99,7 +100,7 @@ TEST_CASE("standard scenes share gravity, density, friction and step", "[fast][s
     CHECK(scene.options.gravity == (planar ? Vec3(0, -10, 0) : Vec3(0, 0, -10)));
     CHECK(scene.options.density == (planar ? 1 : 1000));
     CHECK(scene.options.dt == 1.0 / 60.0);
-    CHECK(scene.options.substeps == 4);
+    CHECK(*compile(scene).resolved().substeps == 4);
     CHECK(scene.options.bounds.has_value());
     for (const Body& body : scene.bodies) {
       CHECK(body.linear_drag == 0);

@@ -20,8 +20,12 @@ BadInput bad(const std::string& field, double Options::*member, double value,
              const std::string& message) {
   return {field, message, [=](Scene& s) { s.options.*member = value; }};
 }
-template <class Group>
-BadInput bad(const std::string& field, Group Options::*group, double Group::*member, double value,
+BadInput bad(const std::string& field, std::optional<double> Options::*member, double value,
+             const std::string& message) {
+  return {field, message, [=](Scene& s) { s.options.*member = value; }};
+}
+template <class Group, class Member>
+BadInput bad(const std::string& field, Group Options::*group, Member Group::*member, double value,
              const std::string& message) {
   return {field, message, [=](Scene& s) { (s.options.*group).*member = value; }};
 }
@@ -114,7 +118,7 @@ TEST_CASE("the ends of the option ranges are valid", "[fast][scene]") {
   Scene scene = spatial();
   Options& options = scene.options;
   options.substeps = options.contact.restitution_sweeps = 1;
-  options.contact.frequency = options.contact.damping_ratio = 0;
+  options.contact.frequency = 0, options.contact.damping_ratio = 0;
   options.contact.push_out_speed = 0, options.contact.restitution_threshold = 0;
   CHECK(validate(scene).empty());
   options.substeps = options.contact.restitution_sweeps = 64;

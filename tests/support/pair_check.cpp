@@ -114,7 +114,7 @@ class Judge {
   void judge(const std::vector<Pose>& pose, const std::vector<Contact>& contacts) {
     pose_ = &pose;
     contacts_ = &contacts;
-    const double margin = 4 * scene_.options.contact.slop * scene_.options.length_unit;
+    const double margin = 4 * kPairSlop;
     const Solid first = make_solid(scene_.bodies[0].shapes[0], pose[0], scene_.space);
     const Solid second = make_solid(scene_.bodies[1].shapes[0], pose[1], scene_.space);
     truth_ = separation(first, second);
@@ -350,6 +350,7 @@ PairResult check_random_pairs(const RandomPair& pair, Space space, const Table& 
   PairResult sum;
   for (int i = 0; i < scenes; ++i) {
     Scene scene = empty_scene(space, 0);
+    scene.options.contact.slop = kPairSlop;
     const bool offset = i % 2 == 1;
     scene.add(random_body(pair.first(random), pair.first_motion, offset, space, random));
     scene.add(random_body(pair.second(random), Motion::dynamic, offset, space, random));

@@ -10,6 +10,8 @@
 
 namespace manyworlds::test {
 
+inline constexpr double kPairSlop = 0.005;  // m, of the scenes that are checked
+
 // What a kernel promises about the deepest point of an overlapping pair.
 struct PairPromise {
   // The normal may be any whose penetration is within bias + bias_relative x depth of the

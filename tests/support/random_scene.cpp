@@ -58,7 +58,7 @@ class Maker {
     out.rough = rough_;
     const double height = (bodies / (planar_ ? 3 : 4) + 2) * cell_;
     out.top_speed = 4 * (fastest_ + std::sqrt(2 * 1.5 * scene_.options.gravity.norm() * height)) +
-                    10 * scene_.options.contact.push_out_speed * scene_.options.length_unit;
+                    15 * unit_ * 2;
     out.scene = std::move(scene_);
     return out;
   }

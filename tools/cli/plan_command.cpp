@@ -27,6 +27,14 @@ Json to_json(const std::vector<PlanReport::Item>& items) {
   return list;
 }
 
+Json to_json(const std::vector<PlanReport::Choice>& choices) {
+  Json list = Json::array();
+  for (const auto& c : choices) {
+    list.push_back({{"option", c.option}, {"value", c.value}, {"why", c.why}});
+  }
+  return list;
+}
+
 Json to_json(const Job& job, const PlanReport& report) {
   Json arrays = Json::array();
   for (const auto& array : report.arrays) {
@@ -35,6 +43,7 @@ Json to_json(const Job& job, const PlanReport& report) {
   }
   return {{"scene", job.scene},
           {"bodies", job.plan.bodies()},
+          {"choices", to_json(report.choices)},
           {"features", to_json(report.features)},
           {"stages", to_json(report.stages)},
           {"pairs", pairs_json(report.pairs)},
@@ -51,6 +60,16 @@ void print_items(const char* title, const std::vector<PlanReport::Item>& items) 
   fmt::print("\n{}\n", title);
   for (const auto& item : items) {
     fmt::print("  {:<3}  {:<{}}  {}\n", item.in ? "in" : "out", item.name, width, item.why);
+  }
+}
+
+void print_choices(const std::vector<PlanReport::Choice>& choices) {
+  if (choices.empty()) return;
+  const std::size_t width = widest(
+      choices, [](const auto& choice) { return choice.option; }, 0);
+  fmt::print("\nchosen by the plan\n");
+  for (const auto& c : choices) {
+    fmt::print("  {:<{}}  {:<10.4g}  {}\n", c.option, width, c.value, c.why);
   }
 }
 
@@ -82,8 +101,9 @@ int plan_command(const JobOptions& options) {
       "{}: {} ({} with state), {}, dt {:.6g} s, {}, {}\n", job.scene,
       fmt::format("{} {}", scene.bodies.size(), scene.bodies.size() == 1 ? "body" : "bodies"),
       job.plan.bodies(), scene.space == Space::planar ? "planar" : "spatial", scene.options.dt,
-      counted(scene.options.substeps, "substep"),
+      counted(*job.plan.resolved().substeps, "substep"),
       solver_text(scene.options.solver.method, iterations_of(scene.options.solver)));
+  print_choices(report.choices);
   print_items("features", report.features);
   print_items("stages, in the order of the step", report.stages);
   print_pairs(report.pairs);

@@ -42,7 +42,7 @@ Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call
   report.isa = batch.isa();
   report.precision = batch.precision();
   report.dt = options.dt;
-  report.substeps = options.substeps;
+  report.substeps = *batch.plan().resolved().substeps;
   report.solver = options.solver.method;
   report.iterations = iterations_of(options.solver);
   const double steps_per_s = seconds > 0 ? steps / seconds : 0;

@@ -15,14 +15,15 @@ namespace {
 // Looked at so often, s, whatever the steps.
 constexpr double kLook = 1.0 / 60;
 
+// In those that the case or the plan gives.
 Setting with_substeps(const char* name, double factor) {
-  return {name, Precision::f32, 1, [factor](Options& o) {
-            o.substeps = std::max(1, static_cast<int>(o.substeps * factor));
-          }};
+  Setting out{name, Precision::f32};
+  out.substeps = factor;
+  return out;
 }
 // A solver of hard rows; springs that the case gives to contacts and joints are left out.
 Setting with_solver(const char* name, Solver solver, bool split = false) {
-  return {name, Precision::f32, 1, [solver, split](Options& o) {
+  return {name, Precision::f32, 1, 1, [solver, split](Options& o) {
             o.solver.method = solver, o.solver.split_impulse = split;
             o.substeps = 1, o.solver.iterations = 20;
             o.joint.frequency.reset();
@@ -35,14 +36,14 @@ std::vector<Setting> settings(bool quick) {
                               with_substeps("twice the substeps, f32", 2)};
   if (quick) return out;
   out.push_back(with_substeps("a quarter of the substeps, f32", 0.25));
-  out.push_back({"two sweeps per substep, f32", Precision::f32, 1,
+  out.push_back({"two sweeps per substep, f32", Precision::f32, 1, 1,
                  [](Options& o) { o.solver.iterations = 2; }});
   out.push_back({"a quarter of the step, f32", Precision::f32, 4});
   out.push_back(with_solver("sequential-impulse, 20 sweeps, f32", Solver::sequential_impulse));
   out.push_back(with_solver("split impulses, 20 sweeps, f32", Solver::sequential_impulse, true));
   out.push_back(with_solver("sor 1.3, 20 sweeps, f32", Solver::sor));
   out.push_back(with_solver("nncg, 20 sweeps, f32", Solver::nncg));
-  out.push_back({"penalty, 16 substeps, f32", Precision::f32, 1,
+  out.push_back({"penalty, 16 substeps, f32", Precision::f32, 1, 1,
                  [](Options& o) { o.solver.method = Solver::penalty, o.substeps = 16; }});
   return out;
 }
@@ -58,6 +59,12 @@ Verdict run_trial(const Trial& trial, const Setting& setting, int worlds) {
   Options& o = scene.options;
   o.dt = trial.dt / setting.finer;
   setting.choose(o);
+  if (setting.substeps != 1) {
+    const Options resolved = compile(scene).resolved();
+    const int given = *resolved.substeps;
+    o.contact.frequency = *resolved.contact.frequency;
+    o.substeps = std::clamp(static_cast<int>(given * setting.substeps), 1, 64);
+  }
   BatchOptions options;
   options.worlds = worlds, options.precision = setting.precision, options.seed = 1;
   const Plan plan = compile(scene);
@@ -144,8 +151,8 @@ double Seen::fastest(int world) const {
 
 std::vector<Trial> stability_trials() {
   std::vector<Trial> out = contact_trials();
-  for (const auto& more :
-       {joint_trials(), motion_trials(), structure_trials(), law_trials(), impact_trials()}) {
+  for (const auto& more : {joint_trials(), motion_trials(), structure_trials(), law_trials(),
+                           size_trials(), impact_trials()}) {
     out.insert(out.end(), more.begin(), more.end());
   }
   return out;

@@ -71,7 +71,8 @@ inline Trial trial(const std::string& id, const std::string& title, const std::s
 struct Setting {
   std::string name;
   Precision precision = Precision::f32;
-  double finer = 1;  // steps per step of the trial
+  double finer = 1;     // steps per step of the trial
+  double substeps = 1;  // times as many as otherwise
   std::function<void(Options&)> choose = [](Options&) {};
 };
 
@@ -88,6 +89,7 @@ std::vector<Trial> joint_trials();      // B15 to B24
 std::vector<Trial> motion_trials();     // B26 to B32
 std::vector<Trial> structure_trials();  // B7, B19, B24, B37
 std::vector<Trial> law_trials();        // B42, B45, B46
+std::vector<Trial> size_trials();       // C1 to C5, C8
 std::vector<Trial> impact_trials();     // C6, C7, C9
 
 struct StabilityOptions {

@@ -38,7 +38,6 @@ Trial elastic_balls() {
 // Both normals are 30 degrees off the line of motion: v' = -v / 5.
 Scene ball_on_two(double radius) {
   Scene scene = empty(Space::spatial, 0);
-  scene.options.length_unit = 2 * radius;
   for (const Vec3& place :
        {Vec3(-1.05 * std::sqrt(3.0) * radius, 0, 0), Vec3(0, radius, 0), Vec3(0, -radius, 0)}) {
     scene.add(with_shape(Sphere{radius}, place, 0, 1));

@@ -1,0 +1,68 @@
+// Blows: loads that come so suddenly that what one sweep over a manifold's points leaves over would
+// turn the body away under them. The points are solved together first: by one impulse at all of
+// them, which is the answer where the load is in their middle, and rounds of Gauss-Seidel.
+#pragma once
+
+#include "kernels/rows/couple.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+inline constexpr int kBlowRounds = 8;
+
+// What a blow changes, zero in other lanes.
+template <int N>
+struct Blow {
+  Float impulse[N], speed[N];  // N s, m/s
+};
+
+// Of the lanes of a blow, with the speeds of the points along the normal, what they are to be at
+// most, and the impulses so far. Takes copies: what a call sees stays in memory, and the rows of
+// every pass would with it.
+template <class S, int N>
+__attribute__((noinline)) Blow<N> find_blow(const ContactBlock<S, N>& s, Mask lanes,
+                                            const Float* bias, const Float* speed,
+                                            const Float* impulse) {
+  const Float zero(Real(0)), one(Real(1)), tiny(Real(1e-30));
+  Float mass[N], inv[N], response[N], closing[N];
+  Blow<N> out;
+  for (int i = 0; i < N; ++i) {
+    mass[i] = select(lanes, Float::load(s.mass[i]), zero);
+    inv[i] = select(zero < mass[i], one / max(mass[i], tiny), zero);
+    response[i] = inv[i];
+    closing[i] = speed[i] + max(bias[i], zero);
+  }
+  const auto there = [&](int i) { return select(zero < mass[i], one, zero); };
+  for (int i = 0; i < N; ++i) couple_all(s, i, there(i), response);
+  Float sum_speed = zero, sum_response = zero;
+  for (int i = 0; i < N; ++i) {
+    sum_speed = fma(closing[i], there(i), sum_speed);
+    sum_response = fma(response[i], there(i), sum_response);
+  }
+  const Float even = max(-sum_speed, zero) / max(sum_response, tiny);
+  for (int i = 0; i < N; ++i) {
+    out.impulse[i] = even * there(i);
+    closing[i] = fma(response[i], even, closing[i]);
+  }
+  for (int round = 0; round < kBlowRounds; ++round) {
+    for (int i = 0; i < N; ++i) {
+      const Float given = impulse[i] + out.impulse[i];
+      const Float change = select(lanes, max(fnma(mass[i], closing[i], given), zero) - given, zero);
+      out.impulse[i] = out.impulse[i] + change;
+      closing[i] = fma(inv[i], change, closing[i]);
+      couple_all(s, i, change, closing);
+    }
+  }
+  for (int i = 0; i < N; ++i) {
+    out.speed[i] = select(lanes, closing[i] - (speed[i] + max(bias[i], zero)), zero);
+  }
+  return out;
+}
+template <class S, int N>
+MW_INLINE Blow<N> settle_blow(const ContactBlock<S, N>& s, Mask lanes, const Float* bias,
+                              const Float* speed, const Float* impulse) {
+  Float copy[3][N];
+  for (int i = 0; i < N; ++i) copy[0][i] = bias[i], copy[1][i] = speed[i], copy[2][i] = impulse[i];
+  return find_blow(s, lanes, copy[0], copy[1], copy[2]);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
