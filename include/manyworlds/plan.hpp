@@ -44,8 +44,9 @@ const char* to_string(Feature feature);
 
 // How pairs of shapes that come close are found; all ways find the same in the same order. The
 // first two list all pairs in the plan, so that its memory grows with the square of the shapes;
-// sparse lists none. Automatic takes it above 64 moving shapes, or 32,768 pairs of moving shapes
-// with fixed ones that are not planes.
+// sparse lists none. Automatic takes it above 512 moving shapes, or 32,768 pairs of moving shapes
+// with fixed ones that are not planes; below, sort_and_sweep in the plane from 48 shapes on, else
+// all_pairs.
 enum class BroadPhase { automatic, all_pairs, sort_and_sweep, sparse };
 const char* to_string(BroadPhase broad_phase);
 

@@ -140,8 +140,10 @@ void list_pairs(PlanData& plan) {
 }
 
 // Moving shapes up to which there are tables of pairs, and pairs with fixed shapes that are not
-// planes: a table is faster than a search as long as it is short.
-constexpr int kMaxInTables = 64;
+// planes. Measured from 78 to 496 boxes, balls and squares (docs/architecture.md): a search
+// takes 1.4 to 2 times as long as a table of up to 200 shapes, and as long in the plane from 500
+// on.
+constexpr int kMaxInTables = 512;
 constexpr int kMaxPairsWithFixed = 1 << 15;
 
 bool is_large(const PlanData& plan) {
@@ -176,12 +178,12 @@ void collect_pairs(PlanData& plan) {
     plan.capacity[static_cast<std::size_t>(l)] = plan.has_trees() ? all : std::min(all, limit);
   }
 
-  // Shapes from which sort and sweep is the default. Up to 512 balls the two are within 11 % of
-  // each other (docs/architecture.md), but the sweep's cost grows more slowly.
+  // Shapes from which sort and sweep is the default in the plane, where it wins or ties. In space
+  // most shapes of a pile overlap along any one axis.
   constexpr int kSweepFrom = 48;
-  plan.sweep =
-      plan.options.broad_phase == BroadPhase::sort_and_sweep ||
-      (plan.options.broad_phase == BroadPhase::automatic && !plan.sparse && n >= kSweepFrom);
+  plan.sweep = plan.options.broad_phase == BroadPhase::sort_and_sweep ||
+               (plan.options.broad_phase == BroadPhase::automatic && !plan.sparse &&
+                n >= kSweepFrom && plan.scene.space == Space::planar);
 }
 
 }  // namespace manyworlds

@@ -196,18 +196,24 @@ TEST_CASE("the keys of a sparse plan are the pairs that others list, in their or
   }
 }
 
-TEST_CASE("the default lists pairs of up to 64 moving shapes", "[fast][sparse]") {
-  const auto balls = [](int n, int fixed) {
-    Scene scene = empty_scene(Space::spatial);
-    for (int i = 0; i < n; ++i) scene.add(body_of(shape_of(Sphere{0.5}), Vec3(1.5 * i, 0, 1)));
-    for (int i = 0; i < fixed; ++i)
-      scene.add(body_of(shape_of(Sphere{0.5}), Vec3(1.5 * i, 3, 1), Motion::fixed));
+TEST_CASE("the default lists pairs of up to 512 moving shapes", "[fast][sparse]") {
+  const auto balls = [](Space space, int n, int fixed) {
+    Scene scene = empty_scene(space);
+    for (int i = 0; i < n; ++i)
+      scene.add(body_of(shape_of(round_of(space, 0.5)), 1.5 * i * Vec3::UnitX()));
+    for (int i = 0; i < fixed; ++i) {
+      scene.add(body_of(shape_of(round_of(space, 0.5)), Vec3(1.5 * i, 3, 0), Motion::fixed));
+    }
     return compile(scene).report().broad_phase;
   };
-  CHECK(balls(47, 0) == BroadPhase::all_pairs);
-  CHECK(balls(64, 512) == BroadPhase::sort_and_sweep);
-  CHECK(balls(65, 0) == BroadPhase::sparse);
-  CHECK(balls(32, 1025) == BroadPhase::sparse);
+  CHECK(balls(Space::planar, 47, 0) == BroadPhase::all_pairs);
+  CHECK(balls(Space::planar, 48, 0) == BroadPhase::sort_and_sweep);
+  CHECK(balls(Space::spatial, 64, 512) == BroadPhase::all_pairs);
+  for (Space space : {Space::planar, Space::spatial}) {
+    CHECK(balls(space, 512, 0) != BroadPhase::sparse);
+    CHECK(balls(space, 513, 0) == BroadPhase::sparse);
+    CHECK(balls(space, 32, 1025) == BroadPhase::sparse);
+  }
 }
 
 TEST_CASE("sparse plans give the bits of plans with tables", "[fast][sparse][bits]") {
