@@ -125,11 +125,19 @@ class Columns {
     const int count = static_cast<int>(blocks_.size());
     column_.resize(blocks_.size());
     std::iota(column_.begin(), column_.end(), 0);
+    std::vector<int> by_top(column_);
+    const auto top = [this](int i) { return blocks_[at(i)].high.z(); };
+    std::sort(by_top.begin(), by_top.end(), [&](int a, int b) { return top(a) < top(b); });
     for (int j = 0; j < count; ++j) {
       const Block& b = blocks_[at(j)];
       const std::size_t first = supports_.size();
       double area = 0;
-      for (int i = 0; i < j; ++i) {
+      const double nearby = kNearby * b.height();
+      const auto begin = std::lower_bound(by_top.begin(), by_top.end(), b.low.z() - nearby,
+                                          [&](int i, double z) { return top(i) < z; });
+      for (auto it = begin; it != by_top.end() && top(*it) <= b.low.z() + nearby; ++it) {
+        const int i = *it;
+        if (i >= j) continue;
         const Block& a = blocks_[at(i)];
         const double gap = b.low.z() - a.high.z(), lower = std::min(a.height(), b.height());
         if (std::abs(gap) > kNearby * lower || b.middle(2) <= a.middle(2)) continue;

@@ -1,7 +1,6 @@
 // What Options leave to the plan: the length unit, the speeds that follow from it, substeps, and
 // how stiff contacts are.
-#include <algorithm>
-#include <cmath>
+#include <string>
 
 #include "src/plan/plan_data.hpp"
 #include "src/plan/substeps.hpp"
@@ -12,20 +11,6 @@ namespace manyworlds {
 namespace {
 
 constexpr double kFrequency = 60;  // Hz, that of four substeps of 1/60 s
-
-// Of all worlds, where numbers of the scene vary: the most.
-SubstepChoice most_substeps(const PlanData& plan) {
-  SubstepChoice out;
-  bool first = true;
-  for (const Scene& scene : extremes(plan)) {
-    const SubstepChoice here = choose_substeps(scene, *plan.scene.options.length_unit);
-    const int stiff = std::max(out.stiff, here.stiff);
-    if (first || here.substeps > out.substeps) out = here;
-    out.stiff = stiff;
-    first = false;
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -44,7 +29,7 @@ void resolve_options(PlanData& plan) {
          o.gravity.isZero(0) ? "by the length unit, m/s" : "by gravity and the length unit, m/s");
   choose("sleep.speed", o.sleep.speed, 0.06 * speed, "as the speed that pushes out, m/s");
 
-  const SubstepChoice substeps = most_substeps(plan);
+  const SubstepChoice substeps = choose_substeps(extremes(plan), *o.length_unit);
   const bool follows = !o.substeps && o.solver.method == Solver::tgs_soft;
   choose("substeps", o.substeps, substeps.substeps, substeps.why);
   if (follows) {

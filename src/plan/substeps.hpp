@@ -6,22 +6,26 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "manyworlds/scene.hpp"
+#include "src/scene/checks.hpp"
 
 namespace manyworlds {
 
-inline constexpr int kLeastSubsteps = 4, kMostSubsteps = 64;
+inline constexpr int kLeastSubsteps = 4, kMostSubsteps = detail::kMaxSubsteps;
 inline constexpr double kContactShare = 0.25;  // of the substeps' rate is the frequency of contacts
 
 struct SubstepChoice {
   int substeps = kLeastSubsteps;
-  int stiff = kLeastSubsteps;  // as many would do were masses alike: contacts are as stiff as these
-  std::string why;             // of `substeps`
+  int stiff =
+      kLeastSubsteps;  // as many would do were masses alike: contacts are as stiff as these allow
+  std::string why;     // of `substeps`
 };
 
-// Of one world's numbers. `length_unit` in m.
-SubstepChoice choose_substeps(const Scene& scene, double length_unit);
+// Of all worlds: `extremes` (plan_data.hpp) are the scene and those of its lowest and highest
+// numbers. `length_unit` in m.
+SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_unit);
 
 // w that the columns standing in a scene want, rad/s, and the body on top of the one that wants
 // most (columns.cpp).
@@ -32,5 +36,9 @@ struct ColumnNeed {
   bool leans = false;  // and not sags
 };
 ColumnNeed need_of_columns(const Scene& scene);
+
+// kg, that each joint carries: of one that parts bodies which hang together the lighter side, of
+// one between them and the world all of it. 0 where a load has other ways (carried_mass.cpp).
+std::vector<double> carried_masses(const Scene& scene);
 
 }  // namespace manyworlds

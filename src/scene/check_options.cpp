@@ -7,7 +7,6 @@
 namespace manyworlds::detail {
 namespace {
 
-constexpr int kMaxSubsteps = 64;
 constexpr int kMaxRestitutionSweeps = 64;
 constexpr int kMaxIterations = 10000;
 constexpr int kMaxManifolds = 1 << 16;

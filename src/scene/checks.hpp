@@ -1,5 +1,6 @@
 // Checks that validate() is made of: a collector of issues with the place they belong to, and one
-// function per part of a scene. Outside of src/scene only the texts of numbers are of use.
+// function per part of a scene. Outside of src/scene only limits and the texts of numbers are of
+// use.
 #pragma once
 
 #include <cstddef>
@@ -26,6 +27,7 @@ inline constexpr double kMinTime = 1e-9;
 // Relative error that given inertia tensors and plane normals may carry.
 inline constexpr double kInputTolerance = 1e-6;
 
+inline constexpr int kMaxSubsteps = 64;
 inline constexpr int kMaxBodies = 32767;
 inline constexpr int kMaxShapes = 32767;
 inline constexpr int kMaxNewtonDofs = 64, kMaxNewtonLinks = 256;  // of Solver::newton
