@@ -44,8 +44,8 @@ struct SolverOptions {
 int iterations_of(const SolverOptions& solver);
 
 struct ContactOptions {
-  // Hz, of the soft contacts of tgs_soft and penalty. Default: a quarter of the substeps' rate, of
-  // as many as there would be if bodies had much the same mass.
+  // Hz, of the soft contacts of tgs_soft and penalty. Default: a quarter of the rate of as many
+  // substeps as the plan would take if bodies had much the same mass, whatever is taken.
   std::optional<double> frequency = {};
   // Hz, of those against fixed shapes; default: twice frequency.
   std::optional<double> fixed_frequency = {};

@@ -31,7 +31,7 @@ class SolverOptions:
 class ContactOptions:
     """The contact model."""
 
-    frequency: Optional[float] = None  # Hz, of tgs_soft and penalty; None: by the substeps
+    frequency: Optional[float] = None  # Hz, of tgs_soft and penalty; None: by the substeps that the scene needs
     fixed_frequency: Optional[float] = None  # Hz, against fixed shapes; None: twice frequency
     damping_ratio: float = 10.0
     push_out_speed: Optional[float] = None  # m/s; None: by gravity and sizes

@@ -8,12 +8,6 @@
 
 namespace manyworlds {
 
-namespace {
-
-constexpr double kFrequency = 60;  // Hz, that of four substeps of 1/60 s
-
-}  // namespace
-
 void resolve_options(PlanData& plan) {
   Options& o = plan.scene.options;
   const auto choose = [&](const char* option, auto& value, auto chosen, const std::string& why) {
@@ -30,15 +24,9 @@ void resolve_options(PlanData& plan) {
   choose("sleep.speed", o.sleep.speed, 0.06 * speed, "as the speed that pushes out, m/s");
 
   const SubstepChoice substeps = choose_substeps(extremes(plan), *o.length_unit);
-  const bool follows = !o.substeps && o.solver.method == Solver::tgs_soft;
   choose("substeps", o.substeps, substeps.substeps, substeps.why);
-  if (follows) {
-    choose("contact.frequency", o.contact.frequency, kContactShare * substeps.stiff / o.dt,
-           substeps.stiff == *o.substeps
-               ? "a quarter of the substeps' rate, Hz"
-               : "a quarter of the rate of " + std::to_string(substeps.stiff) + " substeps, Hz");
-  }
-  choose("contact.frequency", o.contact.frequency, kFrequency, "as substeps are given, Hz");
+  choose("contact.frequency", o.contact.frequency, kContactShare * substeps.stiff / o.dt,
+         "a quarter of the rate of " + std::to_string(substeps.stiff) + " substeps, Hz");
 }
 
 }  // namespace manyworlds

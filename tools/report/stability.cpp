@@ -60,9 +60,7 @@ Verdict run_trial(const Trial& trial, const Setting& setting, int worlds) {
   o.dt = trial.dt / setting.finer;
   setting.choose(o);
   if (setting.substeps != 1) {
-    const Options resolved = compile(scene).resolved();
-    const int given = *resolved.substeps;
-    o.contact.frequency = *resolved.contact.frequency;
+    const int given = *compile(scene).resolved().substeps;
     o.substeps = std::clamp(static_cast<int>(given * setting.substeps), 1, 64);
   }
   BatchOptions options;
