@@ -2,12 +2,13 @@
 #include <cmath>
 
 #include "src/scene/checks.hpp"
+#include "src/scene/length_unit.hpp"
 
 namespace manyworlds::detail {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-// Anchors farther apart than this, m per length_unit, are a mistake and not a joint to be closed.
+// Anchors farther apart than this, m per checked_unit, are a mistake and not a joint to be closed.
 constexpr double kFarthest = 100;
 
 class JointChecker {
@@ -92,7 +93,7 @@ class JointChecker {
     const double gap = (frame_in_world(scene_, joint_.body_a, joint_.frame_a).position -
                         frame_in_world(scene_, joint_.body_b, joint_.frame_b).position)
                            .norm();
-    const double most = kFarthest * scene_.options.length_unit.value_or(1);
+    const double most = kFarthest * checked_unit(scene_.options);
     if (gap > most) {
       check_.add("frame_b.position", "is " + number_text(gap) +
                                          " m from frame_a's as the bodies begin, must be at most " +

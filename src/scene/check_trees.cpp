@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "src/scene/checks.hpp"
+#include "src/scene/length_unit.hpp"
 
 namespace manyworlds::detail {
 namespace {
 
 constexpr double kGap =
-    1e-6;  // m per length_unit, and rad: how exactly bodies begin in their joints
+    1e-6;  // m per checked_unit, and rad: how exactly bodies begin in their joints
 
 class TreeChecker {
  public:
@@ -147,7 +148,7 @@ class TreeChecker {
       gap = times(inverse(at), pose(joint.body_b, Frame{}));
     }
     const double distance = gap.x.norm(), angle = 2 * std::asin(std::min(1.0, gap.q.vec().norm()));
-    if (distance <= kGap * scene_.options.length_unit.value_or(1) && angle <= kGap) return;
+    if (distance <= kGap * checked_unit(scene_.options) && angle <= kGap) return;
     const auto b = static_cast<std::size_t>(joint.body_b.index());
     Checker at = all_.at(named_part("body", b, scene_.bodies[b].name));
     at.add("position", "and rotation are " + number_text(distance) + " m and " +

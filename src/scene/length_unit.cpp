@@ -36,6 +36,10 @@ double slop_of(const Scene& scene) {
   return scene.options.contact.slop.value_or(kSlop * length_unit_of(scene));
 }
 
+double checked_unit(const Options& options) {
+  return std::max(1.0, options.length_unit.value_or(1));
+}
+
 double speed_unit(const Options& options) {
   constexpr double kEarth = 10;  // m/s^2, where there is no gravity to scale by
   const double g = options.gravity.norm();

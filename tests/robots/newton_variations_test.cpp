@@ -165,7 +165,7 @@ TEST_CASE("numbers that are as in the scene change no bit, limits and contacts i
     }
     Variation gain = of_three(Parameter::gain, Vec3::Constant(-most), Vec3::Constant(most));
     gain.draw = Draw::none;
-    Variation size = of_three(Parameter::size, Vec3::Constant(0.02), Vec3::Constant(10));
+    Variation size = of_three(Parameter::size, Vec3::Constant(1e-3), Vec3::Constant(10));
     size.draw = Draw::none;
     scene.variations.insert(scene.variations.end(),
                             {gain, size, vary(Parameter::density, 1, most, Draw::none)});
