@@ -23,9 +23,6 @@ struct RoundEdgePair : EdgePair {
   Float radius, incident_radius;
 };
 
-// How much farther than the nearer end of an edge the other may be to count, in half of its length.
-inline constexpr Real kFarEnd = Real(1);
-
 // The part of the incident edge over the reference edge, at most two points. Returns the nearer
 // one's separation, or out of reach if no part is over it. What is sharp touches beside the
 // reference edge only in overlap.
@@ -53,9 +50,9 @@ MW_INLINE Float clip_edges(const Edges& e, Float margin, Manifold<S, 2>& m) {
     separation[i] = fma(dz, at[i], z);
     if constexpr (kRound) separation[i] = separation[i] - (e.radius + e.incident_radius);
   }
-  // A far end may touch within the step; whether it does, its speed tells (measure_approach).
-  const Float reach = max(margin, size * kFarEnd);
-  const Float limit = reach + max(min(separation[0], separation[1]), Real(0));
+  // The far end may touch within the step if it is no more than half of its edge away; whether it
+  // does, its speed tells (measure_approach).
+  const Float limit = max(margin, size) + max(min(separation[0], separation[1]), Real(0));
   m.normal = select(e.flip, -e.normal, e.normal);
   for (int i = 0; i < 2; ++i) {
     const Float place = fma(dx, at[i], x), gap = separation[i];

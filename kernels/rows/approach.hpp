@@ -49,9 +49,9 @@ MW_INLINE Pull pull_along(const Constants& t, const Group& g, const Work& w, con
 }
 
 // 1, or 0 in lanes whose rows look no farther than the gap of now. A body fast enough for a cast
-// needs no speculation against a fixed shape, which could stop one that only passes by; what a cast
-// has let in as far as its core does not pass by. Half spaces cannot be passed by, and height
-// fields are not cast against.
+// needs no speculation against a fixed shape, which could stop one that only passes by; one that
+// overlaps it already does not. Half spaces cannot be passed by, and height fields are not cast
+// against.
 template <class S, class A>
 MW_INLINE Float speculation_of(const Constants& t, const Group& g, const Sides<S, A>& sides,
                                kernels::PairKind kind, Float deepest) {

@@ -16,8 +16,7 @@ struct Blow {
 };
 
 // Of the lanes of a blow, with the speeds of the points along the normal, what they are to be at
-// most, and the impulses so far. Takes copies: what a call sees stays in memory, and the rows of
-// every pass would with it.
+// most, and the impulses so far.
 template <class S, int N>
 __attribute__((noinline)) Blow<N> find_blow(const ContactBlock<S, N>& s, Mask lanes,
                                             const Float* bias, const Float* speed,
@@ -57,6 +56,7 @@ __attribute__((noinline)) Blow<N> find_blow(const ContactBlock<S, N>& s, Mask la
   }
   return out;
 }
+// The same of copies, so that the arrays of the caller can stay in registers.
 template <class S, int N>
 MW_INLINE Blow<N> settle_blow(const ContactBlock<S, N>& s, Mask lanes, const Float* bias,
                               const Float* speed, const Float* impulse) {

@@ -183,7 +183,8 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
     Float speed[N];
     normal_speeds(s, v, speed);
     const Float zero(Real(0)), inv_h(t.inv_h);
-    Float bias[N], keep[N], most[N];  // bias: m/s, most: of the push-out's speed, or an impulse
+    // m/s; of rigid impulses what is given up; m/s of the push-out; N s, of relaxing rows at most.
+    Float bias[N], keep[N], push_out[N], most[N];
     if constexpr (kPass == Pass::bias) {
       const auto& soft = A::kMoves ? t.soft_pair : t.soft_fixed;
       const Float rate(soft.bias_rate * soft.mass_scale), push(t.push_out_speed);
@@ -198,7 +199,7 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
         const Mask apart = zero < gap;
         bias[i] = gap * select(apart, inv_h, rate);
         keep[i] = select(apart, zero, soft.impulse_scale);
-        most[i] = A::kMoves ? push : clamp(gap * Float(-t.push_out_rate), push, push + push);
+        push_out[i] = A::kMoves ? push : clamp(gap * Float(-t.push_out_rate), push, push + push);
       }
     } else {
       // The substep has moved the bodies; now remove the speed that the push-out has added. A point
@@ -228,7 +229,7 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
       const Float mass = Float::load(s.mass[i]);
       Float x;
       if constexpr (kPass == Pass::bias) {
-        const Float rigid = fnma(mass, speed[i], impulse[i]), cap = mass * most[i];
+        const Float rigid = fnma(mass, speed[i], impulse[i]), cap = mass * push_out[i];
         const Float under_load = fma(cap, kPushUnderLoad, keep[i] * impulse[i]);
         const Float push = min(mass * -bias[i], max(cap, under_load));
         if constexpr (A::kMoves) {

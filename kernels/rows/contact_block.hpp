@@ -45,7 +45,9 @@ struct alignas(64) ContactBlock : BlockHeader {
   Real impulse[N][kLanes];       // N s, accumulated, >= 0
   Real tangent_mass[kTangentMass][kLanes];  // inverse of the 2x2, or 1x1
   Real tangent_impulse[S::kTangents][kLanes];
-  Real press[kLanes];  // m/s, by which forces on the bodies press them together in a substep
+  // m/s, by which forces on the bodies press them together in a substep; not of single points of
+  // bodies that move.
+  Real press[kLanes];
   Real friction[kLanes];
   Real twist_mass[kLanes], twist_impulse[kLanes];
   Real twist_arm[N][kLanes];  // distance of each point from the friction centre

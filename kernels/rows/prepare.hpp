@@ -164,7 +164,9 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   StoredImpulses<N> stored;
   carry_impulses(g.cache[static_cast<int>(list)].rows, at, m, s, stored);
   for (int i = 0; i < N; ++i) stored.normal[i].store(s.impulse[i]);
-  (max(-approach.pull.relative, Real(0)) * Float(t.h)).store(s.press);
+  if constexpr (N > 1 || !A::kMoves) {
+    (max(-approach.pull.relative, Real(0)) * Float(t.h)).store(s.press);
+  }
   if (t.has_friction) {
     put_friction(t, g, sides, code, m, active, sums.anchors, sums.count, stored, s);
   }
