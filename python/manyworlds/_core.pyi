@@ -71,6 +71,12 @@ class Plan:
         """A copy of the scene."""
 
     @property
+    def resolved(self) -> object:
+        """
+        A copy of the scene's options, with what they leave to the plan filled in.
+        """
+
+    @property
     def bodies(self) -> int:
         """State bodies: dynamic and kinematic ones."""
 

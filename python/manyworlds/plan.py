@@ -18,6 +18,7 @@ from .ids import (
     ShapeId,
 )
 from .names import BroadPhase, Feature
+from .options import Options
 from .scene import Issue, Scene, SceneError
 
 
@@ -57,6 +58,12 @@ class Plan(_core.Plan):
         scene: Scene = super().scene  # type: ignore[assignment]
         return scene
 
+    @property
+    def resolved(self) -> Options:
+        """The options of the scene, with what they leave to the plan filled in. A copy."""
+        options: Options = super().resolved  # type: ignore[assignment]
+        return options
+
     def body(self, name: BodyRef) -> BodyId:
         """The body of a name, as Scene.body. Raises ValueError for none or several, IndexError."""
         return BodyId(self.find("body", name))
@@ -83,12 +90,16 @@ class Plan(_core.Plan):
         return BodyId(super().body_in_row(row))
 
     def text(self) -> str:
-        """The report for people: features and stages with their reasons, pairs, arrays."""
+        """The report for people: choices, features and stages with reasons, pairs, arrays."""
         report: dict[str, Any] = self.report()
         lines = [
             f"broad phase {report['broad_phase']}, {report['bytes_per_world']} bytes per world, "
             f"room for {report['pair_capacity']} + {report['fixed_capacity']} manifolds"
         ]
+        if report["choices"]:
+            lines.append("chosen by the plan:")
+        for choice in report["choices"]:
+            lines.append(f"  {choice['option']:<22} {choice['value']:<10.4g} {choice['why']}")
         for part in ("features", "stages"):
             lines.append(f"{part}:")
             for item in report[part]:
@@ -117,7 +128,9 @@ class Plan(_core.Plan):
     def _repr_html_(self) -> str:
         """Features, stages and pairs of shapes as tables, for notebooks."""
         report: dict[str, Any] = self.report()
-        parts = [
+        chosen = [(c["option"], f"{c['value']:.4g}", c["why"]) for c in report["choices"]]
+        parts = [shown.table("chosen by the plan", ("option", "value", "why"), chosen)]
+        parts += [
             shown.table(
                 f"Plan {self.scene.name}: {part}",
                 ("", "in", "why"),

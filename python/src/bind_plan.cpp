@@ -33,7 +33,14 @@ nb::dict report(const Plan& plan) {
     d["name"] = a.name, d["shape"] = a.shape, d["bytes_per_world"] = a.bytes_per_world;
     arrays.append(d);
   }
+  nb::list choices;
+  for (const auto& c : r.choices) {
+    nb::dict d;
+    d["option"] = c.option, d["value"] = c.value, d["why"] = c.why;
+    choices.append(d);
+  }
   nb::dict out;
+  out["choices"] = choices;
   out["features"] = items(r.features);
   out["stages"] = items(r.stages);
   out["pairs"] = pairs;
@@ -78,6 +85,9 @@ void bind_plan(nb::module_& m) {
           nb::arg("scene"), nb::arg("broad_phase") = "automatic", nb::arg("keep") = nb::tuple())
       .def_prop_ro(
           "scene", [](const Plan& p) { return to_python(p.scene()); }, "A copy of the scene.")
+      .def_prop_ro(
+          "resolved", [](const Plan& p) { return to_python(p.resolved()); },
+          "A copy of the scene's options, with what they leave to the plan filled in.")
       .def_prop_ro("bodies", &Plan::bodies, "State bodies: dynamic and kinematic ones.")
       .def_prop_ro("coordinates", &Plan::coordinates, "Coordinates of all joints.")
       .def_prop_ro("fingerprint", &Plan::fingerprint,

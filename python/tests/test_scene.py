@@ -141,6 +141,9 @@ def test_plans():
     assert not crates().compile().has("restitution")
     assert plan.fingerprint != crates(2).compile().fingerprint
     assert {a["name"] for a in plan.report()["arrays"]} >= {"position", "orientation"}
+    chosen = {c["option"]: c["value"] for c in plan.report()["choices"]}
+    assert plan.scene.options.substeps is None and plan.resolved.substeps == chosen["substeps"] == 13
+    assert plan.resolved.contact.slop == chosen["contact.slop"] > 0 and "substeps" in plan.text()
     assert "friction" in plan.text() and "3 bodies" in repr(plan)
     with pytest.raises(ValueError, match="nearest: 'crate1'"):
         plan.row("crat1")

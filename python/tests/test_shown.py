@@ -118,7 +118,8 @@ def test_tables():
     assert {"pelvis", "Capsule", "BallJoint", "fixed"} <= {*page.cells} | {"pelvis"}
     plan = scene.compile()
     page, report = Page(plan._repr_html_()), plan.report()
-    assert page.rows == 3 + sum(len(report[part]) for part in ("features", "stages", "pairs"))
+    parts = "choices", "features", "stages", "pairs"
+    assert page.rows == 4 + sum(len(report[part]) for part in parts)
     assert {i["why"] for i in report["features"]} <= {*page.cells}
 
 
