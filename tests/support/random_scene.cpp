@@ -58,7 +58,7 @@ class Maker {
     out.rough = rough_;
     const double height = (bodies / (planar_ ? 3 : 4) + 2) * cell_;
     out.top_speed = 4 * (fastest_ + std::sqrt(2 * 1.5 * scene_.options.gravity.norm() * height)) +
-                    15 * unit_ * 2;
+                    20 * *compile(scene_).resolved().contact.push_out_speed;
     out.scene = std::move(scene_);
     return out;
   }
@@ -93,6 +93,9 @@ class Maker {
       const Vec3 far = Vec3::Constant(100 * unit_);
       o.bounds = Eigen::AlignedBox3d(-far, far);
     }
+    Dice left(seed_, 1 << 21);  // to the plan
+    if (left.chance(0.3)) o.substeps.reset();
+    if (left.chance(0.3)) o.length_unit.reset();
     still_air_ = dice.chance(0.5);
     choose_methods();
   }
