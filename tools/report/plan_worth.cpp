@@ -13,6 +13,7 @@
 #include "tools/base/median.hpp"
 #include "tools/report/in_space.hpp"
 #include "tools/report/page.hpp"
+#include "tools/report/stability.hpp"
 
 namespace manyworlds::report {
 namespace {
@@ -174,17 +175,42 @@ void add_sleep(const std::string& name, const Setup& plain, std::vector<Variant>
 
 // Where finding pairs in other ways begins to pay.
 void add_crossover(bool quick, std::vector<Variant>& out) {
+  std::vector<std::string> names;
   for (const int bodies :
-       quick ? std::vector{16, 64} : std::vector{4, 8, 16, 32, 48, 64, 128, 256}) {
-    const std::string name = "bin-spheres:" + std::to_string(bodies);
+       quick ? std::vector{16, 64} : std::vector{4, 8, 16, 32, 48, 64, 128, 256, 512}) {
+    names.push_back("bin-spheres:" + std::to_string(bodies));
+  }
+  for (const int base : quick ? std::vector<int>{} : std::vector{7, 10, 12, 16, 22, 31}) {
+    names.push_back("pyramid2d:" + std::to_string(base));  // 28 to 496 squares
+  }
+  for (const std::string& name : names) {
     const Scene scene = *scenes::sized(name);
-    Setup listed = plain_setup(scene, std::max(16, 4096 / bodies));
+    Setup listed = plain_setup(scene, std::max(16, 4096 / compile(scene).bodies()));
     listed.plan.broad_phase = BroadPhase::all_pairs;
     for (const BroadPhase broad : {BroadPhase::sort_and_sweep, BroadPhase::sparse}) {
       Variant v{name, std::string(to_string(broad)) + " against all pairs", listed, listed};
       v.changed.plan.broad_phase = broad;
       out.push_back(v);
     }
+  }
+}
+
+// What it costs to be right: scenes that the plan gives more than four substeps, with four.
+void add_substeps(bool quick, std::vector<Variant>& out) {
+  const std::vector<std::string> few = {"C2 5 x 1 cm", "B3"};
+  const std::vector<std::string> all = {
+      "C1 1 m x 1000", "C1 1 mm x 30", "C3 rest 10 m", "C2 5 x 1 cm", "C2 20 x 1 m",
+      "C2 20 x 10 cm", "C2 20 x 1 cm", "C3 cards",     "C4 50 N",     "C8",
+      "C5 rest",       "B2",           "B3",           "B15",         "B16"};
+  const auto& wanted = quick ? few : all;
+  for (const Trial& trial : stability_trials()) {
+    if (std::count(wanted.begin(), wanted.end(), trial.id) == 0) continue;
+    const Scene scene = trial.scene();
+    Variant v{trial.id, "", plain_setup(scene, 16), plain_setup(scene, 16)};
+    v.name = fmt::format("4 substeps instead of {}", *compile(scene).resolved().substeps);
+    v.changed.scene.options.substeps = 4;
+    v.must_be_same = false;
+    out.push_back(v);
   }
 }
 
@@ -208,7 +234,10 @@ std::vector<WorthRow> run_worth(const WorthOptions& options,
       add_sleep(entry.name, plain, variants);
     }
   }
-  if (options.scenes.empty()) add_crossover(options.quick, variants);
+  if (options.scenes.empty()) {
+    add_substeps(options.quick, variants);
+    add_crossover(options.quick, variants);
+  }
   std::vector<WorthRow> out;
   for (const Variant& v : variants) {
     tell(v.scene + ' ' + v.name,

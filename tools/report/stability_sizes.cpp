@@ -1,6 +1,7 @@
 // Bodies of any size under any load, as they are described: nothing is set but the sizes, and sleep
 // where a case wants it (C1 to C5, C8).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
