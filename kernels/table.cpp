@@ -81,6 +81,7 @@ kernels::Kernels<Real> make_table() {
   fill_flight_planar(out.flight);
   fill_flight_spatial(out.flight);
   fill_tree(out.tree);
+  fill_audits(out.audit);
   out.settle = settle;
   out.set_class = set_class;
   out.counters = counters;

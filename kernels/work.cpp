@@ -185,6 +185,10 @@ void carve(const Constants& t, Work& w, Carver& c) {
     c.take(w.flight.now, state), c.take(w.flight.base, state);
     c.take(w.flight.rate, state), c.take(w.flight.sum, state);
   }
+  if (t.audit_every > 0) {
+    c.take(w.audit.sums, count(kAuditSums * lanes));
+    if (t.has_drives) c.take(w.audit.speed, count(t.parts * 3 * lanes));
+  }
   if (t.tree.links > 0) carve_tree(t, w.tree, c);
   if (!t.has_substeps) {
     c.take(w.before, state);

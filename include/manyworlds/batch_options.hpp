@@ -36,6 +36,11 @@ struct BatchOptions {
   // Bodies at rest fall asleep, island by island (SleepOptions::speed), and cost little until
   // something wakes them; worlds in which everything sleeps cost nothing.
   bool sleep = false;
+  // Every so many steps of its own a world's energy is audited over one step: what it gains beyond
+  // the work of forces, controls, drives and kinematic bodies adds up to Status::diverged. 0:
+  // never; at most 255. Worlds with robots, with the penalty solver, and in which nothing but free
+  // flight happens are not audited.
+  int audit_every = 16;
   Observers observe = {};                        // what to watch beside the step (observe.hpp)
   std::shared_ptr<Executor> executor = nullptr;  // step on these threads; threads must then be 0
 };

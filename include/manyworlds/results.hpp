@@ -17,9 +17,16 @@ enum class Status : std::uint32_t {
   out_of_bounds = 4,     // a body left Options::bounds; the world still steps
   contact_overflow = 8,  // more contacts than the plan's capacity; the newest were dropped
   joint_broken = 16,     // a joint bore more than it could (Joint::break_force) since the reset
+  diverged = 32,         // it gained energy that nothing gave it (BatchOptions::audit_every)
 };
 inline constexpr Status operator|(Status a, Status b) {
   return static_cast<Status>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+inline constexpr Status operator&(Status a, Status b) {
+  return static_cast<Status>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
+}
+inline constexpr Status operator~(Status a) {
+  return static_cast<Status>(~static_cast<std::uint32_t>(a));
 }
 inline constexpr bool has(Status set, Status bit) {
   return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(bit)) != 0;

@@ -17,7 +17,7 @@ template <class Real>
 struct GroupView {
   Real* state;  // [body][component][lane]
   ContactCache<Real> cache[kLists];
-  std::uint32_t* status;  // [lane], bits of Status
+  std::uint32_t* status;  // [lane], bits of Status, and of the audit
   const Real* force;      // [body][force 3, torque 3][lane], or nullptr
   ConstantBlocks<Real> constants;
   Real* joint_impulse;  // [part][kPartImpulses][lane]
@@ -37,8 +37,15 @@ struct GroupView {
 
 // Bits of the public Status (include/manyworlds/batch.hpp).
 inline constexpr std::uint32_t kNonFinite = 1, kOutOfRange = 2, kOutOfBounds = 4, kOverflow = 8,
-                               kJointBroken = 16;
+                               kJointBroken = 16, kDiverged = 32;
 inline constexpr std::uint32_t kFrozen = kNonFinite | kOutOfRange;
+// The rest of a status word belongs to the audit of energy (kernels/observe/audit.hpp): what has
+// been gained so far, and the world's steps since the last audit.
+inline constexpr std::uint32_t kPublicStatus = 0xff;
+inline constexpr int kGainShift = 8, kAuditShift = 24;
+inline constexpr std::uint32_t kMaxGain = 0xffff;
+inline constexpr std::uint32_t kAuditCount = 0xffu << kAuditShift;
+inline constexpr int kMaxAuditEvery = 255;
 
 // What a group's step counted; the pipeline adds it up per thread.
 struct GroupCounters {

@@ -67,10 +67,15 @@ struct JointPart {
   std::int32_t body_a, body_b;  // state bodies; SceneConstants::bodies: the world
   bool equality;                // a row held at its rest
   bool drive, low, high;        // what else a row has
+  bool soft_limit;              // its limits are springs
   bool spring;                  // a point that is drawn with limited force
   bool force;                   // nothing but a spring, which the integrator of the plan evaluates
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
+// May its rows give energy to the bodies?
+static inline constexpr bool gives_energy(const JointPart& p) {
+  return !p.force && (p.drive || p.spring || p.soft_limit);
+}
 
 // The maximum load of a joint that may break. Its parts follow one another.
 template <class T>

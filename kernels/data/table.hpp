@@ -67,6 +67,20 @@ struct JointSolver {
   // Of plans in which some joint may break: after relax, and at the end of the step.
   Stage<Real> bear;
   Stage<Real> break_up;
+  // For the audit of energy: after each substep of an audited step, and of the state around it.
+  Stage<Real> drive_work;
+  Stage<Real> gap_energy;
+};
+
+// The audit of energy (kernels/observe/audit.hpp).
+template <class Real>
+struct EnergyAudit {
+  // Steps up to the next one in which some world is due, that one included.
+  int (*ahead)(const SceneConstants<Real>&, const GroupView<Real>&);
+  // Counts `steps`, no more than are ahead; whether the last of them is to be audited.
+  bool (*count)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*, int steps);
+  Stage<Real> clear;       // before JointSolver::gap_energy, which comes before these:
+  Stage<Real> begin, end;  // around it
 };
 
 // Free flight by the integrator of the plan (kernels/flight/stages.hpp).
@@ -123,6 +137,8 @@ struct Kernels {
   FlightTable<Real> flight[kInertiaKinds];
 
   TreeStages<Real> tree;
+
+  EnergyAudit<Real> audit[kInertiaKinds];
 
   Stage<Real> settle;  // after the step: bodies at rest fall asleep (plans of batches with sleep)
 

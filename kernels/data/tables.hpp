@@ -170,6 +170,8 @@ struct SceneConstants {
   bool cast_moving;      // cast fast bodies against moving shapes
   bool has_bounds;
   bool has_sleep;
+  std::int32_t audit_every;  // steps of a world; 0: its energy is not audited
+  bool has_drives;           // rows of joints that may give energy
   FlightOptions flight;
   SolverOptions<Real> solver;
 

@@ -130,4 +130,16 @@ MW_INLINE void solve(const Constants& t, const Group& g, const Work& w, const Jo
   solve_row<S, kLinear, kDense, kPass>(t, g, part, constants, s, v);
 }
 
+// Of both sides of a joint in the state; the world is still.
+template <class S>
+struct TwoBodies {
+  Velocity<S> a, b;
+};
+template <class S>
+MW_INLINE Velocity<S> velocity_of(const Constants& t, const Group& g, int body) {
+  if (body == t.bodies) return {zero_of<typename S::Vec>(), zero_of<typename S::Ang>()};
+  return {load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear)),
+          load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular))};
+}
+
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -5,6 +5,7 @@
 #include <initializer_list>
 
 #include "kernels/joint/breaking.hpp"
+#include "kernels/joint/gap_energy.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -157,10 +158,33 @@ struct JointPasses {
     }
   }
 
+  static void drive_work(const Constants& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
+      add_drive_work<S, kDense>(t, g, w, part, i, s);
+    });
+  }
+
+  // Of the state, before or after a step.
+  static void gap_energy(const Constants& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    rotate_body_rows(t, g, w);
+    prepare_parts(t, g, scratch);
+    const Float zero(Real(0));
+    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
+      if (s.mask == 0 || part.force) return;
+      const Joint& constants = constants_of_part(g, i);
+      const bool limit = !part.equality && (part.low || part.high);
+      const auto& soft = limit ? constants.limit_soft : constants.soft;
+      const Float energy = energy_of(t, soft, gap_of(part, constants, s));
+      add_to(w.audit.sums, kGapEnergy, select(mask_from_bits(s.mask), energy, zero));
+    });
+  }
+
   static kernels::JointSolver<Real> table() {
     return {
         prepare_parts, pass<Pass::warm_start>, pass<Pass::bias>, pass<Pass::relax>, follow, keep,
-        bear,          break_joints<S>};
+        bear,          break_joints<S>,        drive_work,       gap_energy};
   }
 };
 

@@ -18,17 +18,6 @@ MW_INLINE void row_now(const Constants& t, const Group& g, const Work& w, const 
   locate<S, true, false>(w, part, constants, s);
 }
 
-template <class S>
-struct TwoBodies {
-  Velocity<S> a, b;
-};
-template <class S>
-MW_INLINE Velocity<S> velocity_of(const Constants& t, const Group& g, int body) {
-  if (body == t.bodies) return {zero_of<typename S::Vec>(), zero_of<typename S::Ang>()};
-  return {load_as<typename S::Vec>(state_of(t, g, body, kState<S>.linear)),
-          load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular))};
-}
-
 // How much faster a twist changes than about the axis of its row, which halves the angle between
 // the z axes: 1 / cos of half of it. With hinges there is none.
 template <class S>

@@ -17,7 +17,7 @@ struct BodyMass {
 
   MW_INLINE BodyMass(const Group& g, int body) {
     const auto& b = constants_of_body(g, body);
-    mass = Float(Real(1)) / b.inv_mass;
+    mass = b.mass;
     inertia = {b.inertia[0], b.inertia[1], b.inertia[2]};
     pull.x = b.gravity[0], pull.y = b.gravity[1];
     if constexpr (S::kDim == 3) pull.z = b.gravity[2];

@@ -14,6 +14,7 @@ FillSolver fill_solver_tensor_dense, fill_solver_tensor_rows;
 using FillSweeps = void(kernels::SweepTable<Real>& dense, kernels::SweepTable<Real>& rows);
 FillSweeps fill_sweeps_planar, fill_sweeps_isotropic, fill_sweeps_tensor;
 void fill_tree(kernels::TreeStages<Real>& out);
+void fill_audits(kernels::EnergyAudit<Real>* tables);     // [inertia]
 void fill_impulses(kernels::ImpulseTable<Real>* tables);  // [inertia]
 
 using FillJoints = void(kernels::JointSolver<Real>& dense, kernels::JointSolver<Real>& rows);

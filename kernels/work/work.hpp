@@ -163,7 +163,17 @@ struct TreeWork {
   Real* row_load;                   // [dof][lane], J' times the forces of rows
 };
 
+// Of a step in which energies are audited (kernels/observe/audit.hpp): the energy before it, what a
+// gain is compared with, what inputs may give, what drives have given, what joints hold, J.
+enum AuditSum { kEnergyBefore, kAuditScale, kGiven, kDriven, kGapEnergy, kAuditSums };
+struct AuditWork {
+  std::uint32_t due;  // lanes of it
+  Real* sums;         // [kAuditSums][lane]
+  Real* speed;        // [part][3][lane], of rows that give energy, at the end of the last substep
+};
+
 struct Work {
+  AuditWork audit;
   FlightWork flight;
   TreeWork tree;
   Real* before;  // the group's state before the step (plans without contacts only)

@@ -49,6 +49,10 @@ struct Batch::Impl {
       reject("threads is " + std::to_string(options.threads) +
              ", must be 0 where an executor brings its own");
     }
+    if (options.audit_every < 0 || options.audit_every > kernels::kMaxAuditEvery) {
+      reject("audit_every is " + std::to_string(options.audit_every) + ", must be 0 to " +
+             std::to_string(kernels::kMaxAuditEvery));
+    }
     check_observers(options.observe);
     int worlds = 0;
     constexpr int kMaxWorlds = std::numeric_limits<int>::max();

@@ -22,6 +22,7 @@ std::string to_string(Status status) {
   add(Status::out_of_bounds, "out_of_bounds");
   add(Status::contact_overflow, "contact_overflow");
   add(Status::joint_broken, "joint_broken");
+  add(Status::diverged, "diverged");
   return out.empty() ? "ok" : out;
 }
 

@@ -137,7 +137,9 @@ class Builder {
     p.what.high = std::isfinite(limit->high);
     if (p.what.low) p.constants.low = limit->low;
     if (p.what.high) p.constants.high = limit->high;
-    if (limit->spring) p.constants.limit_soft = soft(*limit->spring);
+    if (!limit->spring) return;
+    p.constants.limit_soft = soft(*limit->spring);
+    p.what.soft_limit = true;
   }
   void drive(PlanPart& p, const std::optional<Drive>& drive) const {
     if (!drive) return;

@@ -132,6 +132,13 @@ struct PlanData {
 
   bool has_trees() const { return scene.options.solver.method == Solver::newton; }
   bool has(Feature f) const { return in[static_cast<std::size_t>(f)]; }
+  // Whether the energy of its worlds can be audited (kernels/observe/audit.hpp). Overlaps of
+  // penalty hold energy that nobody knows; free motion is exact.
+  bool audited() const {
+    const bool rows = runs(StepStage::collide) || runs(StepStage::joints);
+    return !has_trees() && scene.options.solver.method != Solver::penalty &&
+           (rows || runs(StepStage::flight));
+  }
   bool runs(StepStage s) const { return stages[static_cast<std::size_t>(s)].in; }
   kernels::Dimension dimension() const {
     return scene.space == Space::planar ? kernels::Dimension::planar : kernels::Dimension::spatial;

@@ -23,12 +23,14 @@ enum class StepStage {
   store,
   finish,
   settle,   // of batches with sleep
+  audit,    // of energy, in some steps
   observe,  // of batches with observers
 };
-inline constexpr int kStepStages = 16;
+inline constexpr int kStepStages = 17;
 inline constexpr std::array<const char*, kStepStages> kStepStageNames = {
-    "free_motion", "flight",  "begin", "broad_phase", "collide", "tree",   "joints", "warm_start",
-    "bias",        "advance", "relax", "restitute",   "store",   "finish", "settle", "observe"};
+    "free_motion", "flight",     "begin",  "broad_phase", "collide", "tree",
+    "joints",      "warm_start", "bias",   "advance",     "relax",   "restitute",
+    "store",       "finish",     "settle", "audit",       "observe"};
 inline const char* to_string(StepStage stage) {
   return kStepStageNames[static_cast<std::size_t>(stage)];
 }

@@ -43,13 +43,13 @@ const Filter& filter_of(const PlanData& plan, const Planned& s) {
 }  // namespace
 
 template <class Real>
-TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep, int lanes)
+TablesOf<Real>::TablesOf(const PlanData& plan, const BatchOptions& options, int lanes)
     : constants_(plan, {}, 1, lanes) {
   add_options(plan);
   add_flight(plan);
   add_bodies(plan);
   // Without contacts and joints nothing comes to rest, and without bodies nothing is there to.
-  tables_.has_sleep = sleep && tables_.has_substeps &&
+  tables_.has_sleep = options.sleep && tables_.has_substeps &&
                       (tables_.has_contacts || tables_.has_joints) && tables_.bodies > 0 &&
                       !plan.has_trees();
   add_shapes(plan);
@@ -57,6 +57,7 @@ TablesOf<Real>::TablesOf(const PlanData& plan, bool sleep, int lanes)
   add_trees(plan);
   add_attractors(plan);
   add_pairs(plan);
+  if (plan.audited()) tables_.audit_every = options.audit_every;
   for (int lane = 0; lane < lanes; ++lane) constants_.fill(plan, lane);
   tables_.constants = constants_.group(0);
 }
@@ -249,6 +250,7 @@ void TablesOf<Real>::add_joints(const PlanData& plan) {
   add_breaking(plan);
   t.parts = static_cast<std::int32_t>(parts_.size());
   t.part = parts_.data();
+  t.has_drives = std::any_of(parts_.begin(), parts_.end(), kernels::gives_energy);
   for (const PlanThrust& p : plan.thrusts) thrusts_.push_back(p.what);
   for (int body = 0, i = 0; !thrusts_.empty() && body <= t.bodies; ++body) {
     while (i < static_cast<int>(thrusts_.size()) &&

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels/data/tables.hpp"
+#include "manyworlds/batch_options.hpp"
 #include "src/base/aligned_buffer.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/state/constants.hpp"
@@ -15,7 +16,7 @@ namespace manyworlds {
 template <class Real>
 class TablesOf {
  public:
-  TablesOf(const PlanData& plan, bool sleep, int lanes);
+  TablesOf(const PlanData& plan, const BatchOptions& options, int lanes);
   TablesOf(const TablesOf&) = delete;
   TablesOf& operator=(const TablesOf&) = delete;
   const kernels::SceneConstants<Real>& get() const { return tables_; }

@@ -13,7 +13,7 @@ template <class Real>
 Worlds<Real>::Worlds(Plan plan, int worlds, int first, const BatchOptions& options, int lanes)
     : plan_(std::move(plan)),
       layout_(state_layout(plan_.data())),
-      tables_(std::make_unique<TablesOf<Real>>(plan_.data(), options.sleep, lanes)),
+      tables_(std::make_unique<TablesOf<Real>>(plan_.data(), options, lanes)),
       storage_(tables(), (worlds + lanes - 1) / lanes, lanes),
       worlds_(worlds),
       first_(first),
@@ -83,7 +83,10 @@ void Worlds<Real>::initialise(int world) {
     if (field != Field::orientation) write_initial(field);
   }
   if (storage_.has_activity()) storage_.find_idle(lane_index);
-  storage_.status(lane_index) = 0;
+  // When its energy is audited does not change: worlds that begin anew would else be audited in
+  // turns, and each audit is one of the whole group.
+  std::uint32_t& status = storage_.status(lane_index);
+  status = (status & kernels::kFrozen) != 0 ? 0 : status & kernels::kAuditCount;
   storage_.clear_contacts(lane_index);
   storage_.clear_joints(lane_index);
   storage_.enable_all_joints(lane_index);
@@ -100,7 +103,10 @@ template <class Real>
 void Worlds<Real>::restart() {
   std::fill(episode_.begin(), episode_.end(), 0u);
   clear_forces();
-  for (int w = 0; w < worlds_; ++w) initialise(w);
+  for (int w = 0; w < worlds_; ++w) {
+    storage_.status(lane_index_of(w)) = 0;
+    initialise(w);
+  }
   // Lanes without a world repeat the last one; where looking for pairs goes lane by lane, nothing
   // is there in them.
   for (int lane_index = 0; lane_index < storage_.lane_count(); ++lane_index) {
@@ -221,7 +227,7 @@ void Worlds<Real>::add_impulse(int world, int body, const Vec3& impulse, const V
 
 template <class Real>
 Status Worlds<Real>::status(int world) const {
-  return static_cast<Status>(storage_.status(lane_index_of(world)));
+  return static_cast<Status>(storage_.status(lane_index_of(world)) & kernels::kPublicStatus);
 }
 
 template <class Real>

@@ -1,5 +1,6 @@
 #include "src/step/pipeline.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace manyworlds {
@@ -64,9 +65,53 @@ void look_at_residual(const Run<Real>& run, const StageCalls<Real>& calls,
   run.lap(StepStage::observe);
 }
 
+// The audit of a group's energies around the steps in which some world is due.
+template <class Real>
+class Audit {
+ public:
+  explicit Audit(const Run<Real>& run)
+      : run_(run), audit_(run.step.kernels.audit[static_cast<int>(run.step.tables.inertia_kind)]) {}
+
+  // Of `steps` steps those up to the next one that is audited; all where none is.
+  int ahead(int steps) const {
+    const auto& t = run_.step.tables;
+    return t.audit_every > 0 ? std::min(steps, audit_.ahead(t, run_.group)) : steps;
+  }
+  // Whether the last of as many steps as are ahead is to be audited.
+  bool count(int steps) const {
+    const auto& t = run_.step.tables;
+    return t.audit_every > 0 && audit_.count(t, run_.group, run_.scratch, steps);
+  }
+  // Whether the next step is; `left` of the call. Those that are not are counted together, but
+  // where worlds may come to rest in between.
+  bool next(int left) {
+    const auto& t = run_.step.tables;
+    if (t.audit_every == 0) return false;
+    if (counted_ == 0) {
+      counted_ = t.has_sleep ? 1 : ahead(left);
+      due_ = count(counted_);
+    }
+    return --counted_ == 0 && due_;
+  }
+  void begin() const { look(audit_.begin); }
+  void end() const { look(audit_.end); }
+
+ private:
+  void look(kernels::Stage<Real> sum) const {
+    run_(audit_.clear);
+    if (run_.step.stages.gap_energy()) run_(run_.step.stages.gap_energy());
+    run_(StageCall<Real>{StepStage::audit, sum});
+  }
+
+  const Run<Real>& run_;
+  const kernels::EnergyAudit<Real>& audit_;
+  int counted_ = 0;
+  bool due_ = false;
+};
+
 // Contacts and joints: rows in substeps. `wanted` in the last step of a call.
 template <class Real>
-void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted) {
+void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted, bool audited) {
   const GroupStep<Real>& p = run.step;
   const auto& t = p.tables;
   const auto& observer = *p.kernels.observer;
@@ -81,6 +126,7 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
     run(solve.first(calls.residual_at));
     if (s + 1 == t.substeps && wanted && wanted->saved) look_at_residual(run, calls, *wanted);
     run(solve.subspan(calls.residual_at));
+    if (audited && calls.drive_work) run(StageCall<Real>{StepStage::audit, calls.drive_work});
     if (adds_up) {
       observer.accumulate[static_cast<int>(t.inertia_kind)](t, run.group, run.scratch, *contacts);
       run.lap(StepStage::observe);
@@ -208,11 +254,16 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
     tree_steps(run, last, wanted);
     taken = steps;
   } else if (p.tables.has_substeps) {
+    const Run<Real> run{p, group, scratch, clock};
+    Audit<Real> audit(run);
     if (p.wanted) p.kernels.observer->clear(p.tables, group, scratch, *p.wanted);
     for (; taken < steps && !at_rest(p, group); ++taken) {
       const auto* wanted = taken + 1 == steps ? p.wanted : nullptr;
       if (wanted) look_at_start(p, group, scratch);
-      solver_step(Run<Real>{p, group, scratch, clock}, wanted);
+      const bool audited = audit.next(steps - taken);
+      if (audited) audit.begin();
+      solver_step(run, wanted, audited);
+      if (audited) audit.end();
     }
     if (p.wanted && taken < steps) look_at_start(p, group, scratch);
     const bool contacts = p.wanted && p.wanted->of_contacts && p.tables.has_contacts;
@@ -222,11 +273,31 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
     const auto flight = p.kernels.flight[static_cast<int>(t.inertia_kind)].steps;
     const auto free_motion = p.kernels.free_motion[static_cast<int>(t.inertia_kind)];
     const auto move = t.flight.on ? flight : free_motion;
+    const StepStage stage = t.flight.on ? StepStage::flight : StepStage::free_motion;
+    const Run<Real> run{p, group, scratch, clock};
+    const Audit<Real> audit(run);
+    const auto take = [&](int n) {
+      move(t, group, scratch, n);
+      run.lap(stage);
+    };
+    const auto audited_steps = [&](int left) {
+      while (left > 0) {
+        const int ahead = audit.ahead(left);
+        left -= ahead;
+        if (!audit.count(ahead)) {
+          take(ahead);
+          continue;
+        }
+        take(ahead - 1);
+        audit.begin();
+        take(1);
+        audit.end();
+      }
+    };
     const int last = looks_at_start(p) ? 1 : 0;  // taken by itself
-    move(t, group, scratch, steps - last);
+    audited_steps(steps - last);
     if (p.wanted) look_at_start(p, group, scratch);
-    if (last > 0) move(t, group, scratch, last);
-    if (clock) clock->lap(t.flight.on ? StepStage::flight : StepStage::free_motion);
+    audited_steps(last);
     taken = steps;
   }
   if (p.wanted) {

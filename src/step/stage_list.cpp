@@ -34,6 +34,7 @@ class Builder {
       case Solver::penalty: penalty(); break;
       default: sequential_impulse();
     }
+    if (joints() && t_.has_drives) out_.drive_work = joints_.drive_work;
     if (t_.breakable > 0) add(out_.solve, StepStage::joints, joints_.bear);
     if (t_.solver.kind != Solver::tgs_soft) add(out_.solve, StepStage::restitute, sweeps_.tally);
     next();
@@ -170,6 +171,9 @@ StageList<Real>::StageList(const PlanData& plan, const kernels::SceneConstants<R
   if (!tables.has_substeps || plan.has_trees()) return;
   dense_ = Builder<Real>(plan, tables, kernels, kernels::Layout::dense).build();
   rows_ = Builder<Real>(plan, tables, kernels, kernels::Layout::rows).build();
+  if (plan.runs(StepStage::joints)) {
+    gap_energy_ = kernels.joints[static_cast<int>(tables.inertia_kind)][0].gap_energy;
+  }
 }
 
 template class StageList<float>;

@@ -31,6 +31,8 @@ struct StageCalls {
   // sweep; nullptr: it has no such rows.
   std::size_t residual_at = 0;
   kernels::Stage<Real> joint_sweep = nullptr, contact_sweep = nullptr;
+  // After each substep of one whose energy is audited; nullptr: no joint gives any.
+  kernels::Stage<Real> drive_work = nullptr;
 };
 
 template <class Real>
@@ -42,9 +44,12 @@ class StageList {
   const StageCalls<Real>& operator[](kernels::Layout layout) const {
     return layout == kernels::Layout::dense ? dense_ : rows_;
   }
+  // What joints hold in a state; nullptr: there are none.
+  kernels::Stage<Real> gap_energy() const { return gap_energy_; }
 
  private:
   StageCalls<Real> dense_, rows_;
+  kernels::Stage<Real> gap_energy_ = nullptr;
 };
 
 }  // namespace manyworlds
