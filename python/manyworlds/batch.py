@@ -45,6 +45,8 @@ class Batch(Fields, Inputs, Results, InMemory):
     rays         Rays that every world casts, which are observed then
     points       Points of bodies, whose places and velocities are observed then
     contacts_per_world  room for observed contacts; 0: as many as the plan has room for
+    audit_every  each world's energy is audited in one of so many of its steps (Status.diverged);
+                 0: never, at most 255
 
     What a world does depends on its scene, seed and inputs alone, not on the number of worlds or
     threads. Raises SceneError, ValueError, TypeError. A batch is used by one thread at a time; calls
@@ -72,6 +74,7 @@ class Batch(Fields, Inputs, Results, InMemory):
         rays: Sequence[Ray] = (),
         contacts_per_world: int = 0,
         points: Sequence[Point] = (),
+        audit_every: int = 16,
     ) -> None:
         plans = plans_of(scene, worlds)
         self._worlds = sum(count for _, count in plans)
@@ -91,6 +94,7 @@ class Batch(Fields, Inputs, Results, InMemory):
             rays,
             points,
             contacts_per_world,
+            audit_every,
         )
         self._real = np.dtype(np.float32 if self._held.precision == "f32" else np.float64)
         self._watched = frozenset(name.replace("-", "_") for name in observe)

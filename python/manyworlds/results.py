@@ -22,6 +22,7 @@ class Status(IntFlag):
     out_of_bounds = 4  # a body left Options.bounds; the world still steps
     contact_overflow = 8  # more contacts than the plan has room for; some were dropped
     joint_broken = 16  # a joint bore more than it could
+    diverged = 32  # it gained energy that nothing gave it; the world still steps
 
     @classmethod
     def lost(cls) -> Status:

@@ -32,7 +32,8 @@ std::vector<Batch::Kind> kinds_of(nb::handle value) {
 
 void make(HeldBatch* self, nb::object plans, nb::object threads, std::uint64_t seed,
           nb::object precision, nb::object isa, nb::object layout, bool sleep, nb::object observe,
-          nb::object rays, nb::object points, nb::object contacts_per_world) {
+          nb::object rays, nb::object points, nb::object contacts_per_world,
+          nb::object audit_every) {
   BatchOptions options;
   const std::vector<Batch::Kind> kinds = kinds_of(plans);
   options.threads = from_python<int>(threads, "threads");
@@ -46,6 +47,7 @@ void make(HeldBatch* self, nb::object plans, nb::object threads, std::uint64_t s
   options.observe.rays = from_python<std::vector<Ray>>(rays, "rays", scene);
   options.observe.points = from_python<std::vector<Point>>(points, "points", scene);
   options.observe.contacts_per_world = from_python<int>(contacts_per_world, "contacts_per_world");
+  options.audit_every = from_python<int>(audit_every, "audit_every");
   const nb::gil_scoped_release release;
   new (self) HeldBatch(kinds, options);
 }
@@ -89,7 +91,8 @@ void bind_batch(nb::module_& m) {
   nb::class_<HeldBatch> c(m, "Batch", "Worlds that step together. Private: use manyworlds.Batch.");
   c.def("__init__", &make, nb::arg("kinds"), nb::arg("threads"), nb::arg("seed"),
         nb::arg("precision"), nb::arg("isa").none(), nb::arg("layout"), nb::arg("sleep"),
-        nb::arg("observe"), nb::arg("rays"), nb::arg("points"), nb::arg("contacts_per_world"))
+        nb::arg("observe"), nb::arg("rays"), nb::arg("points"), nb::arg("contacts_per_world"),
+        nb::arg("audit_every"))
       .def("close", &HeldBatch::close, "Lets go of the worlds; what follows raises ValueError.")
       .def_prop_ro("closed", &HeldBatch::closed)
       .def_prop_ro("worlds", property<&Batch::worlds>())

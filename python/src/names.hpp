@@ -58,7 +58,7 @@ MW_NAMES(Feature, MW_NAME(orientation), MW_NAME(inertia), MW_NAME(friction), MW_
 MW_NAMES(BroadPhase, MW_NAME(automatic), MW_NAME(all_pairs), MW_NAME(sort_and_sweep),
          MW_NAME(sparse));
 MW_NAMES(Status, MW_NAME(ok), MW_NAME(non_finite), MW_NAME(out_of_range), MW_NAME(out_of_bounds),
-         MW_NAME(contact_overflow), MW_NAME(joint_broken));
+         MW_NAME(contact_overflow), MW_NAME(joint_broken), MW_NAME(diverged));
 #undef MW_NAME
 #undef MW_NAMES
 
