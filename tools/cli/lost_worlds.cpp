@@ -16,7 +16,7 @@ void LostWorlds::collect(const Batch& batch, std::int64_t first, std::uint64_t s
   for (int world = 0; world < batch.worlds(); ++world) {
     const Status status = batch.status(world);
     if (has(status, Status::contact_overflow)) ++overflowed_;
-    if (!manyworlds::lost(status)) continue;
+    if (!manyworlds::lost(status) && !has(status, Status::diverged)) continue;
     lost_.push_back({first + world, seed + static_cast<std::uint64_t>(world), status});
   }
 }
@@ -41,6 +41,9 @@ std::string reproduce_command(const JobOptions& options, int steps, std::uint64_
   if (options.random_controls) command += " --random-controls";
   if (!options.keyframe.empty()) command += " --keyframe " + shell_word(options.keyframe);
   if (options.sleep) command += " --sleep on";
+  if (options.audit_every != BatchOptions{}.audit_every) {
+    command += fmt::format(" --audit-every {}", options.audit_every);
+  }
   if (options.precision != Precision::f32) {
     command += fmt::format(" --precision {}", to_string(options.precision));
   }

@@ -1,4 +1,5 @@
-// Which worlds of a batch are lost or overflowed, why, and the command that shows one again.
+// Which worlds of a batch are lost, have diverged or overflowed, why, and the command that shows
+// one again.
 #pragma once
 
 #include <cstdint>

@@ -256,6 +256,11 @@ void add_batch_options(CLI::App& app, JobOptions& options) {
       {{to_string(Precision::f32), Precision::f32}, {to_string(Precision::f64), Precision::f64}},
       [&options](Precision value) { options.precision = value; },
       "arithmetic of the step (default: f32)");
+  app.add_option("--audit-every", options.audit_every,
+                 "audit the energy of each world in one of N steps; 0: never")
+      ->transform(whole_number(0, 255))
+      ->type_name("N")
+      ->capture_default_str();
   add_kernel_options(app, options);
 }
 

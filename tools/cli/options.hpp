@@ -51,6 +51,7 @@ struct JobOptions {
   std::optional<Isa> isa;
   ContactLayout layout = ContactLayout::automatic;
   bool sleep = false;
+  int audit_every = BatchOptions{}.audit_every;
 
   // The length of the job.
   int steps = 300;

@@ -1,6 +1,6 @@
 // `manyworlds verify`: that a world's bits depend on nothing but its plan, its initial state and
-// its inputs, shown on the machine at hand. Every comparison is of one world's hash with the hash
-// that the same world has in a reference batch.
+// its inputs, shown on the machine at hand. Every comparison is of one world's hash and status with
+// those that the same world has in a reference batch.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -35,11 +35,21 @@ enum Column {
   kSaved,
   kReset,
   kFrozen,
+  kEnergy,
   kColumns
 };
 constexpr std::array<const char*, kColumns> kNames = {"alone",   "position", "size",  "threads",
                                                       "kernels", "calls",    "masks", "saved",
-                                                      "reset",   "frozen"};
+                                                      "reset",   "frozen",   "energy"};
+
+struct Outcome {
+  std::uint64_t hash = 0;
+  Status status = Status::ok;
+  bool operator==(const Outcome&) const = default;
+};
+std::string text_of(const Outcome& o) {
+  return fmt::format("hash {}, status {}", hex(o.hash), to_string(o.status));
+}
 
 struct Tally {
   std::array<int, kColumns> compared{};
@@ -76,11 +86,14 @@ class Verifier {
       : seed_(options.seed), quick_(options.quick) {
     job_options_.scene = scene;
     job_options_.precision = precision;
+    job_options_.audit_every = 1;
     job_options_.steps = quick_ ? 90 : 150;  // balls of the scenes touch ground after about 60
     Batch batch = batch_of(job_options_, kWorlds, 0, 1);
     is_robot_ = RandomControls::suit(batch.plan());
     steps(batch, 0, job_options_.steps);
-    for (int world = 0; world < kWorlds; ++world) reference_.push_back(batch.hash(world));
+    for (int world = 0; world < kWorlds; ++world) {
+      reference_.push_back({batch.hash(world), batch.status(world)});
+    }
     hash_ = batch.hash();
   }
 
@@ -101,6 +114,7 @@ class Verifier {
     for (int size = 1; size <= kWorlds; size += quick_ ? 3 : 1)
       run(kSize, job_options_, size, 0, 1);
     compare_reset();
+    find_diverged();
   }
 
   std::uint64_t hash() const { return hash_; }
@@ -206,17 +220,28 @@ class Verifier {
     compare(kReset, batch, job_options_, 0, -1);
   }
 
+  // Worlds of the reference that gained energy from nothing.
+  void find_diverged() {
+    for (std::size_t world = 0; world < reference_.size(); ++world) {
+      ++tally_.compared[kEnergy];
+      const Status status = reference_[world].status;
+      if (!has(status, Status::diverged)) continue;
+      note(kEnergy,
+           fmt::format("world {} (seed {}) is {}", world, seed_ + world, to_string(status)));
+    }
+  }
+
   void compare(Column column, const Batch& batch, const JobOptions& options, int first, int skip) {
     for (int world = 0; world < batch.worlds(); ++world) {
       if (world == skip) continue;
       ++tally_.compared[column];
-      const std::uint64_t expected = reference_[static_cast<std::size_t>(first + world)];
-      const std::uint64_t found = batch.hash(world);
+      const Outcome expected = reference_[static_cast<std::size_t>(first + world)];
+      const Outcome found{batch.hash(world), batch.status(world)};
       if (found == expected) continue;
-      note(column, fmt::format("{}: world {} (seed {}) has hash {}, the reference {}",
-                               describe(batch, options), world,
-                               seed_ + static_cast<std::uint64_t>(first + world), hex(found),
-                               hex(expected)));
+      note(column,
+           fmt::format("{}: world {} (seed {}) has {}, the reference {}", describe(batch, options),
+                       world, seed_ + static_cast<std::uint64_t>(first + world), text_of(found),
+                       text_of(expected)));
     }
   }
 
@@ -236,8 +261,8 @@ class Verifier {
   std::uint64_t seed_;
   bool quick_;
   bool is_robot_ = false;
-  std::vector<std::uint64_t> reference_;  // hash of each world
-  std::uint64_t hash_ = 0;                // of all of them
+  std::vector<Outcome> reference_;  // [world]
+  std::uint64_t hash_ = 0;          // of all of them
   Tally tally_;
 };
 
@@ -248,8 +273,9 @@ void print_head(const VerifyOptions& options) {
     std::string& list = available(isa) ? isas : missing;
     list += fmt::format("{}{}", list.empty() ? "" : ", ", to_string(isa));
   }
-  fmt::print("Hashes of single worlds, compared with those of a batch of {} (seed {}, {},\n",
-             kWorlds, options.seed, to_string(default_isa()));
+  fmt::print(
+      "Hashes and status of single worlds, compared with those of a batch of {} (seed {}, {},\n",
+      kWorlds, options.seed, to_string(default_isa()));
   fmt::print("1 thread, step(1) calls); on {}:\n", isas);
   fmt::print("  alone     each world as a batch of 1\n");
   fmt::print("  position  all worlds moved by 1, 3 and 7 places\n");
@@ -263,6 +289,7 @@ void print_head(const VerifyOptions& options) {
   fmt::print("  saved     half of the steps, a snapshot, the rest in another batch\n");
   fmt::print("  reset     after a third of the run, and all over\n");
   fmt::print("  frozen    beside a world that a NaN force froze half way\n");
+  fmt::print("  energy    worlds of the batch of {} that gain energy from nothing\n", kWorlds);
   fmt::print("Robots get random controls every 5 steps, and resets at random times.\n");
   if (!missing.empty()) fmt::print("Not on this CPU or not in this build: {}\n", missing);
   fmt::print("\n{:<14}{:<6}", "scene", "");
