@@ -171,8 +171,8 @@ TEST_CASE("the keys of a sparse plan are the pairs that others list, in their or
     for (int bodies : {20, 71}) {
       const Plan listed_plan = plan_of(mixture(space, bodies), BroadPhase::all_pairs);
       const Plan sparse_plan = plan_of(mixture(space, bodies), BroadPhase::sparse);
-      const TablesOf<float> listed_tables(listed_plan.data(), false, 1);
-      const TablesOf<float> sparse_tables(sparse_plan.data(), false, 1);
+      const TablesOf<float> listed_tables(listed_plan.data(), BatchOptions{}, 1);
+      const TablesOf<float> sparse_tables(sparse_plan.data(), BatchOptions{}, 1);
       const auto &listed = listed_tables.get(), &sparse = sparse_tables.get();
       REQUIRE(listed.classes == sparse.classes);
       for (int c = 0; c < listed.classes; ++c) {
