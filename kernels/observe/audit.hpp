@@ -181,8 +181,8 @@ void end_audit(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   const Float zero(Real(0)), most(Real(4));
   const EnergySums now = sum_energy<S, false>(t, g);
   const Float given = get(kGiven) + fma(now.power, Float(t.dt), now.terms * Float(kAuditRounding));
-  const Float after = now.energy + get(kGapEnergy);
-  const Float driven = get(kDriven), gain = (after - get(kEnergyBefore)) - (given + driven);
+  const Float energy = now.energy + get(kGapEnergy);
+  const Float driven = get(kDriven), gain = (energy - get(kEnergyBefore)) - (given + driven);
   const Float share = gain / (get(kAuditScale) + (given + abs(driven)));
   std::uint32_t sums = 0;
   for (int l = 0; l < kLanes; ++l) sums |= g.status[l];
