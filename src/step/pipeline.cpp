@@ -172,6 +172,29 @@ void tree_steps(const Run<Real>& run, int steps, const kernels::ObserverView<Rea
   run(StageCall<Real>{StepStage::tree, tree.place});
 }
 
+// Steps of plans in which bodies move by themselves.
+template <class Real, class Move>
+void whole_steps(const Run<Real>& run, Move move, int steps) {
+  const auto& t = run.step.tables;
+  const Audit<Real> audit(run);
+  const auto take = [&](int n) {
+    move(t, run.group, run.scratch, n);
+    run.lap(t.flight.on ? StepStage::flight : StepStage::free_motion);
+  };
+  while (steps > 0) {
+    const int ahead = audit.ahead(steps);
+    steps -= ahead;
+    if (!audit.count(ahead)) {
+      take(ahead);
+      continue;
+    }
+    take(ahead - 1);
+    audit.begin();
+    take(1);
+    audit.end();
+  }
+}
+
 template <class Real>
 bool at_rest(const GroupStep<Real>& p, const kernels::GroupView<Real>& group) {
   return p.tables.has_sleep && *group.resting == (1u << p.kernels.lanes) - 1;
@@ -273,31 +296,11 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
     const auto flight = p.kernels.flight[static_cast<int>(t.inertia_kind)].steps;
     const auto free_motion = p.kernels.free_motion[static_cast<int>(t.inertia_kind)];
     const auto move = t.flight.on ? flight : free_motion;
-    const StepStage stage = t.flight.on ? StepStage::flight : StepStage::free_motion;
     const Run<Real> run{p, group, scratch, clock};
-    const Audit<Real> audit(run);
-    const auto take = [&](int n) {
-      move(t, group, scratch, n);
-      run.lap(stage);
-    };
-    const auto audited_steps = [&](int left) {
-      while (left > 0) {
-        const int ahead = audit.ahead(left);
-        left -= ahead;
-        if (!audit.count(ahead)) {
-          take(ahead);
-          continue;
-        }
-        take(ahead - 1);
-        audit.begin();
-        take(1);
-        audit.end();
-      }
-    };
     const int last = looks_at_start(p) ? 1 : 0;  // taken by itself
-    audited_steps(steps - last);
+    whole_steps(run, move, steps - last);
     if (p.wanted) look_at_start(p, group, scratch);
-    audited_steps(last);
+    whole_steps(run, move, last);
     taken = steps;
   }
   if (p.wanted) {
