@@ -205,7 +205,7 @@ class Snapshot:
 class Batch:
     """Worlds that step together. Private: use manyworlds.Batch."""
 
-    def __init__(self, kinds: object, threads: object, seed: int, precision: object, isa: object | None, layout: object, sleep: bool, observe: object, rays: object, points: object, contacts_per_world: object) -> None: ...
+    def __init__(self, kinds: object, threads: object, seed: int, precision: object, isa: object | None, layout: object, sleep: bool, observe: object, rays: object, points: object, contacts_per_world: object, audit_every: object) -> None: ...
 
     def close(self) -> None:
         """Lets go of the worlds; what follows raises ValueError."""
