@@ -232,6 +232,23 @@ def test_lost_worlds_are_named():
     assert batch.lost().tolist() == [False, True, False]
 
 
+def test_energy_from_nothing_is_told():
+    scene = mw.Scene(space="planar")
+    scene.options.gravity = (0, 0, 0)
+    scene.options.integrator = "explicit_euler"
+    ball = scene.add(mw.Body(shapes=[mw.Shape(geometry=mw.Circle(0.1))], position=(1, 0, 0)))
+    spring = mw.TargetJoint(spring=mw.Spring(stiffness=3e4))
+    scene.add(mw.Joint(type=spring, body_b=ball))
+    for every, status in ((1, mw.Status.diverged), (16, mw.Status.diverged), (0, mw.Status.ok)):
+        batch = mw.Batch(scene, worlds=2, audit_every=every, precision="f64")
+        batch.step(60)
+        assert batch.status().tolist() == [status, status]
+    assert not batch.lost().any()
+    for wrong in (-1, 256):
+        with pytest.raises(ValueError, match="audit_every"):
+            mw.Batch(scene, audit_every=wrong)
+
+
 def test_a_long_step_lets_other_threads_work():
     batch = mw.Batch("bin-boxes", worlds=256, threads=1)
     batch.step(5)
