@@ -47,7 +47,8 @@ TEST_CASE("a step runs the stages of its plan and no other", "[fast][plan]") {
   }
 }
 
-TEST_CASE("sleep, audits and observers add stages that a plan does not decide about", "[fast][plan]") {
+TEST_CASE("sleep, audits and observers add stages that a plan does not decide about",
+          "[fast][plan]") {
   const Plan plan = compile(scenes::find("stack10")->make());
   BatchOptions options = options_of(widest_tables().front());
   options.sleep = true;
