@@ -1,7 +1,7 @@
 // `manyworlds report plan`: what each plan leaves out, and what that is worth. Every row is a
 // variant of a scene's batch (a stage switched back on, another layout, another way to find pairs,
 // four substeps where the plan takes more), timed alternately with the batch as it is by default;
-// positions and velocities must end with the same bits.
+// positions and velocities must end with the same bits, but with other substeps.
 #pragma once
 
 #include <functional>
