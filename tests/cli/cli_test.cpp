@@ -60,6 +60,7 @@ const std::set<std::string>& report_keys() {
                                               "energy_j",
                                               "bytes_per_world",
                                               "lost_worlds",
+                                              "diverged_worlds",
                                               "stage_split",
                                               "hash"};
   return names;

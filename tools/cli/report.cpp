@@ -57,6 +57,10 @@ Report measure(const Batch& batch, const Job& job, int steps, int steps_per_call
   report.sleep = batch.sleeps();
   report.awake_fraction = batch.awake_fraction();
   report.lost_worlds = batch.lost_worlds();
+  for (int world = 0; world < batch.worlds(); ++world) {
+    const Status status = batch.status(world);
+    report.diverged_worlds += has(status, Status::diverged) && !lost(status) ? 1 : 0;
+  }
   report.hash = batch.hash();
   return report;
 }
@@ -107,6 +111,7 @@ nlohmann::ordered_json to_json(const Report& report) {
       {"bytes_per_world", report.bytes_per_world},
       {"awake_fraction", report.awake_fraction},
       {"lost_worlds", report.lost_worlds},
+      {"diverged_worlds", report.diverged_worlds},
       {"stage_split", stages},
       {"hash", hex(report.hash)},
   };

@@ -43,6 +43,7 @@ struct Report {
   std::size_t bytes_per_world = 0;
   double awake_fraction = 1;  // of worlds
   int lost_worlds = 0;
+  int diverged_worlds = 0;  // that are not lost
   std::uint64_t hash = 0;
   std::vector<StageShare> stage_split;  // empty where it was interrupted
   std::string interrupted;              // "SIGINT"; empty: it went to its end
