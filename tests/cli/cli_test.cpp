@@ -386,6 +386,21 @@ TEST_CASE("soak counts the lost and prints its seed", "[cli]") {
   CHECK(first[1] != second[1]);
 }
 
+TEST_CASE("worlds that gain energy from nothing end with exit code 1", "[cli]") {
+  // A heavy ball on a light chain wants more than a sweep.
+  const std::string job =
+      "run ball-and-chain --solver sequential-impulse --worlds 8 --steps 200 --json ";
+  const Outcome outcome = run(job + "--iterations 1 --audit-every 1");
+  CHECK(outcome.code == 1);
+  CHECK(Json::parse(outcome.out)["diverged_worlds"] > 0);
+  CHECK(Json::parse(outcome.out)["lost_worlds"] == 0);
+  CHECK(contains(outcome.err, "flagged (diverged): manyworlds run ball-and-chain"));
+  CHECK(contains(outcome.err, "--audit-every 1"));
+  const Outcome silent = run(job + "--iterations 1 --audit-every 0");
+  CHECK(silent.code == 0);
+  CHECK(Json::parse(silent.out)["hash"] == Json::parse(outcome.out)["hash"]);
+}
+
 TEST_CASE("a lost world ends with exit code 1 and the command that shows it again", "[cli]") {
   // Bodies that fly at about 1 m/s leave the range of 1e10 m in one such step.
   const std::string job = "run free-flight --steps 2 --dt 1e12 ";

@@ -59,7 +59,8 @@ void print_lost(const LostWorlds& worlds, const JobOptions& options, int steps, 
   const std::size_t shown = std::min(most, worlds.lost().size());
   for (std::size_t i = 0; i < shown; ++i) {
     const LostWorld& lost = worlds.lost()[i];
-    tools::tell("manyworlds: world {} lost ({}): {}\n", lost.world, to_string(lost.status),
+    const char* what = manyworlds::lost(lost.status) ? "lost" : "flagged";
+    tools::tell("manyworlds: world {} {} ({}): {}\n", lost.world, what, to_string(lost.status),
                 reproduce_command(options, steps, lost.seed));
   }
   if (shown < worlds.lost().size()) {
