@@ -1,0 +1,163 @@
+// Clips one convex shape's feature against a face of the other: each of its edges against all sides
+// of the face, and the corners of the face that lie under it. Four points are kept as for boxes.
+#pragma once
+
+#include "kernels/collide/outline.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// Of the line from p to q what lies over the face, as shares of it.
+struct Stretch {
+  Float enter, leave;
+  Mask there;
+};
+MW_INLINE Stretch over_sides(const Outline& ref, Float slack, Vec3 p, Vec3 q) {
+  const Float zero(Real(0)), one(Real(1));
+  Float enter = zero, leave = one;
+  Mask misses = zero < zero;
+  for (int i = 0; i < ref.count; ++i) {
+    const Side side = side_of(ref, i, slack);
+    const Float from = side.outside(p.x, p.y), to = side.outside(q.x, q.y);
+    const Float change = from - to;
+    const Float at = from / safe_divisor(change, ref.extent2);
+    enter = select((zero < change) & (zero < from), max(enter, min(at, one)), enter);
+    leave = select((change <= zero) & (zero < to), min(leave, max(at, zero)), leave);
+    misses = misses | ((zero < from) & (zero < to));
+  }
+  return {enter, leave, (enter <= leave) & !misses};
+}
+MW_INLINE Stretch over_disc(const Outline& ref, Float slack, Vec3 p, Vec3 q) {
+  const Float zero(Real(0)), one(Real(1));
+  const Float x = p.x - ref.middle.x, y = p.y - ref.middle.y, dx = q.x - p.x, dy = q.y - p.y;
+  const Float a = max(fma(dx, dx, dy * dy), Real(1e-20)), b = fma(x, dx, y * dy);
+  const Float c = fms(x, x, square(ref.radius + slack)) + y * y;
+  const Float rest = fms(b, b, a * c), root = sqrt(max(rest, zero)), inv = one / a;
+  const Float enter = max(-(b + root) * inv, zero), leave = min((root - b) * inv, one);
+  return {min(enter, one), max(leave, zero), (zero <= rest) & (enter <= leave)};
+}
+
+// The part of incident edge from p to q over the face, at most two points.
+inline void clip_edge(const Outline& ref, Float slack, Vec3 p, Vec3 q, Mask edge, Clipped& out) {
+  const Float away(kOutOfReach);
+  const Stretch s = ref.disc ? over_disc(ref, slack, p, q) : over_sides(ref, slack, p, q);
+  const Vec3 first = fma(q - p, s.enter, p), last = fma(q - p, s.leave, p);
+  const Mask there = edge & s.there;
+  out.add(first.x, first.y, select(there, first.z, away));
+  out.add(last.x, last.y, select(there, last.z, away));
+}
+
+// The corners of the face under (over) the incident face, whose normal is n in the same frame.
+inline void cover_corners(const Outline& ref, const Outline& incident, Vec3 n, Mask face, Float slack,
+                   Clipped& out) {
+  const Float away(kOutOfReach), steep(Real(0.05));
+  Mask usable = face & (n.z < -steep);
+  // Of two caps the four points of the smaller do, always the same ones.
+  if (ref.disc && incident.disc) {
+    usable = usable & (ref.radius * Float(Real(1.01)) < incident.radius);
+  }
+  if (!any(usable)) return;
+  const Float inv = Float(Real(1)) / select(usable, n.z, Float(Real(-1)));
+  const Vec3 base = incident.corner[0];
+  for (int j = 0; j < ref.count; ++j) {
+    const Vec3 c = ref.corner[j];
+    const Float z = fnma(fma(n.x, c.x - base.x, n.y * (c.y - base.y)), inv, base.z);
+    Mask covered = usable;
+    if (incident.disc) {
+      const Vec3 reach = Vec3{c.x, c.y, z} - incident.middle;
+      covered = covered & (dot(reach, reach) <= square(incident.radius + slack));
+    }
+    for (int i = 0; i < incident.count && !incident.disc; ++i) {
+      // Seen from the reference face the incident outline runs clockwise.
+      const Side side = side_of(incident, i, -slack);
+      covered = covered & (-side.outside(c.x, c.y) <= Float(Real(0)));
+    }
+    out.add(c.x, c.y, select(covered, z, away));
+  }
+}
+
+// The place of the deepest point, where it is clearly deeper than all candidates: it may be on none
+// of the incident face's edges, or on the rim of a cap between its four points. `there`: lanes in
+// which it is known.
+inline void add_deepest(const Outline& ref, bool bounded, Vec3 found, Mask there, Float clearly,
+                 Clipped& out) {
+  Float least = Real(kOutOfReach);
+  for (int i = 0; i < out.size; ++i) least = min(out.z[i], least);
+  Mask over = there & (found.z + clearly < least);
+  const Float slack = sqrt(ref.extent2) * Float(Real(0.05));
+  if (bounded && ref.disc) {
+    const Float x = found.x - ref.middle.x, y = found.y - ref.middle.y;
+    over = over & (fma(x, x, y * y) <= square(ref.radius + slack));
+  } else if (bounded) {
+    for (int i = 0; i < ref.count; ++i) {
+      over = over & (side_of(ref, i, slack).outside(found.x, found.y) <= Float(Real(0)));
+    }
+  }
+  out.add(found.x, found.y, select(over, found.z, Float(kOutOfReach)));
+}
+
+MW_INLINE void put_kept(const KeptPoints& kept, const Frame& f, Float radius, Mask flip, Vec3 d,
+                        Mask use, Manifold<Isotropic, 4>& m) {
+  const Float zero(Real(0)), half(Real(0.5));
+  const Vec3 to_incident = select(flip, -d, d);
+  for (int i = 0; i < 4; ++i) {
+    const Float z = min(kept.z[i], Real(1e3)) - radius;
+    const Vec3 base = fma(f.v, kept.y[i], f.u * kept.x[i]);
+    const Vec3 on_ref = fma(f.n, fma(min(z, zero), half, f.height), base);
+    const Vec3 on_inc = fma(f.n, max(z, z * half) + f.height, base) - to_incident;
+    m.point_a[i] = select(use, select(flip, on_inc, on_ref), m.point_a[i]);
+    m.point_b[i] = select(use, select(flip, on_ref, on_inc), m.point_b[i]);
+    m.separation[i] = select(use, z, m.separation[i]);
+    m.feature_x[i] = select(use, kept.x[i], m.feature_x[i]);
+    m.feature_y[i] = select(use, kept.y[i], m.feature_y[i]);
+    m.valid[i] = (use & kept.valid[i]) | ((!use) & m.valid[i]);
+  }
+}
+
+// Clips one shape's feature against the face of the other, in the lanes of `use`: those in which
+// the face is one of `ref`. Returns the lanes in which points were found.
+inline Mask clip_on_face(const Constants& t, const ConvexShape& ref, const ConvexShape& inc,
+                  const ConvexAxis& axis, Vec3 d, bool flip, Mask use, Manifold<Isotropic, 4>& m) {
+  const Vec3 n = flip ? -axis.face_normal : axis.face_normal, d_r = flip ? -d : d;
+  Feature face, other;
+  feature_along(ref, n, Real(0), face);
+  feature_along(inc, -n, Real(1e-5), other);
+  const Frame frame = frame_of(n, face.along, dot(n, face.corner[0]));
+  Outline outline, incident;
+  bring(frame, ref, face, {Real(0), Real(0), Real(0)}, outline);
+  bring(frame, inc, other, d_r, incident);
+  const Float extent2 = min(outline.extent2, max(incident.extent2, outline.extent2 * Real(0.01)));
+  const Float slack = sqrt(outline.extent2) * Float(kEdgeSlack);
+  Clipped clipped;
+  for (int i = 0; i < incident.count; ++i) {
+    const int next = i + 1 < incident.count ? i + 1 : 0;
+    if (incident.count == 2 && i == 1) break;
+    // A line has one edge, and a corner that is repeated none.
+    const Vec3 p = incident.corner[i], q = incident.corner[next];
+    const Mask repeated = (p.x == q.x) & (p.y == q.y) & (p.z == q.z);
+    const Mask edge = i == 0 ? mask_from_bits(kAllLanes) : other.face & !repeated;
+    clip_edge(outline, slack, p, q, edge, clipped);
+  }
+  const Vec3 tilt{dot(frame.u, other.normal), dot(frame.v, other.normal),
+                  dot(frame.n, other.normal)};
+  cover_corners(outline, incident, tilt, other.face, slack, clipped);
+  add_deepest(outline, true, frame.local(flip ? axis.on_a - d : axis.on_b), axis.touch,
+              Float(t.face_bias) * Float(kClearly), clipped);
+  KeptPoints kept;
+  keep_four(clipped, Float(t.margin), extent2, kept);
+  // Where all of it is much shallower than the search says, the shapes touch beside the face. A
+  // tile is touched nowhere else than over its triangle.
+  const Float reached = max(axis.separation, axis.face_separation);
+  const Float allowed = fma(abs(reached), Real(0.05), t.face_bias);
+  const Mask good = use & kept.valid[0] & ((kept.z[0] < reached + allowed) | !axis.touch);
+  put_kept(kept, frame, inc.radius, flip ? mask_from_bits(kAllLanes) : mask_from_bits(0), d, good,
+           m);
+  m.tangent = select(good, frame.u, m.tangent);
+  m.normal = select(good, axis.face_normal, m.normal);
+  const Float side = flip ? Real(1) : Real(0);
+  m.code = select(good, fma(fma(axis.face, Real(2), side), Real(128), other.code), m.code);
+  m.match_distance2 =
+      select(good, match_distance2(sqrt(extent2) * Float(Real(0.7))), m.match_distance2);
+  return good;
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
