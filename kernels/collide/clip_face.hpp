@@ -47,8 +47,8 @@ inline void clip_edge(const Outline& ref, Float slack, Vec3 p, Vec3 q, Mask edge
 }
 
 // The corners of the face under (over) the incident face, whose normal is n in the same frame.
-inline void cover_corners(const Outline& ref, const Outline& incident, Vec3 n, Mask face, Float slack,
-                   Clipped& out) {
+inline void cover_corners(const Outline& ref, const Outline& incident, Vec3 n, Mask face,
+                          Float slack, Clipped& out) {
   const Float away(kOutOfReach), steep(Real(0.05));
   Mask usable = face & (n.z < -steep);
   // Of two caps the four points of the smaller do, always the same ones.
@@ -79,7 +79,7 @@ inline void cover_corners(const Outline& ref, const Outline& incident, Vec3 n, M
 // of the incident face's edges, or on the rim of a cap between its four points. `there`: lanes in
 // which it is known.
 inline void add_deepest(const Outline& ref, bool bounded, Vec3 found, Mask there, Float clearly,
-                 Clipped& out) {
+                        Clipped& out) {
   Float least = Real(kOutOfReach);
   for (int i = 0; i < out.size; ++i) least = min(out.z[i], least);
   Mask over = there & (found.z + clearly < least);
@@ -116,7 +116,8 @@ MW_INLINE void put_kept(const KeptPoints& kept, const Frame& f, Float radius, Ma
 // Clips one shape's feature against the face of the other, in the lanes of `use`: those in which
 // the face is one of `ref`. Returns the lanes in which points were found.
 inline Mask clip_on_face(const Constants& t, const ConvexShape& ref, const ConvexShape& inc,
-                  const ConvexAxis& axis, Vec3 d, bool flip, Mask use, Manifold<Isotropic, 4>& m) {
+                         const ConvexAxis& axis, Vec3 d, bool flip, Mask use,
+                         Manifold<Isotropic, 4>& m) {
   const Vec3 n = flip ? -axis.face_normal : axis.face_normal, d_r = flip ? -d : d;
   Feature face, other;
   feature_along(ref, n, Real(0), face);

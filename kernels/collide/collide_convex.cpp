@@ -111,14 +111,11 @@ void collide_convex_pair(const Constants& t, const ConvexShape& a, const Tile* t
   const bool round = b.kind == ShapeKind::capsule;
   const Real rounding = sizeof(Real) == 4 ? Real(4e-6) : Real(1e-13);
   const Float size = sqrt(dot(d, d));
-  const Float best_apart = max(face, zero);
-  const Mask apart = zero <= other;
+  const Float best_apart = max(face, zero), tie = round ? size * Float(rounding) : zero;
+  const Mask apart = tie < other;  // what just touches, with faces far inside, is apart from none
+  const Mask worse_apart = best_apart + tie < other;
   Mask worse = fma(face, Real(0.95), t.face_bias) < other;
-  if (round) {
-    worse = (worse & !apart) | (apart & (best_apart + size * Float(rounding) < other));
-  } else {
-    worse = worse & ((!apart) | (best_apart < other));
-  }
+  worse = round ? (worse & !apart) | (apart & worse_apart) : worse & (worse_apart | !apart);
   const Mask clipped = active & !worse;
   if (!any(clipped)) return;
   const Mask on_b = clipped & axis.face_of_b, on_a = clipped & !axis.face_of_b;
