@@ -76,10 +76,14 @@ struct KeptPoints {
   Mask valid[4];
 };
 
+// How far beyond the limit points are kept, in the size of the smaller face, and what they count
+// against those within it.
+inline constexpr Real kKeptBeyond = Real(1), kBeyondCounts = Real(1e-3);
+
 // extent2: of the smaller of the two faces, m^2; says what counts as a distance or an area.
 template <class Points>
 MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out) {
-  const Float zero(Real(0));
+  const Float zero(Real(0)), one(Real(1));
   // Among equally deep points one far out: a corner rather than the middle of an edge.
   const Float outward(Real(-1e-5));
   Float x = p.x[0], y = p.y[0], z = p.z[0];
@@ -90,32 +94,37 @@ MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out
     least_key = min(key, least_key);
     x = select(deeper, p.x[i], x), y = select(deeper, p.y[i], y), z = select(deeper, p.z[i], z);
   }
-  // What is as near as the deepest point, or within the margin, may exert a force.
+  // What is as near as the deepest point, or within the margin, may exert a force. What is not may
+  // come down in the same step when the bodies turn about the deepest point.
   const Float limit = margin + max(z, zero);
+  const Float beyond = fma(sqrt(extent2), Float(kKeptBeyond), limit);
   out.x[0] = x, out.y[0] = y, out.z[0] = z;
   out.valid[0] = z < Float(kOutOfReach);
   const Float x0 = x, y0 = y;
 
   // From here on x, y are relative to the first point; what does not count collapses onto it.
   Float best = extent2 * Float(Real(2e-6)), far_x = zero, far_y = zero, far_z = Real(kOutOfReach);
+  const auto counts = [&](Float height) __attribute__((always_inline)) {
+    return select(height < limit, one, Float(kBeyondCounts));
+  };
   for (int i = 0; i < p.count(); ++i) {
-    const Mask near = p.z[i] < limit;
+    const Mask near = p.z[i] < beyond;
     p.x[i] = select(near, p.x[i], x0) - x0;
     p.y[i] = select(near, p.y[i], y0) - y0;
-    const Float r2 = fma(p.x[i], p.x[i], p.y[i] * p.y[i]);
+    const Float r2 = fma(p.x[i], p.x[i], p.y[i] * p.y[i]) * counts(p.z[i]);
     const Mask farther = best < r2;
     best = max(r2, best);
     far_x = select(farther, p.x[i], far_x), far_y = select(farther, p.y[i], far_y);
     far_z = select(farther, p.z[i], far_z);
   }
   out.x[1] = far_x + x0, out.y[1] = far_y + y0, out.z[1] = far_z;
-  out.valid[1] = far_z < limit;
+  out.valid[1] = far_z < beyond;
 
   Float most = extent2 * Float(Real(2e-5)), least = -most;
   Float left_x = zero, left_y = zero, left_z = Real(kOutOfReach);
   Float right_x = zero, right_y = zero, right_z = Real(kOutOfReach);
   for (int i = 0; i < p.count(); ++i) {
-    const Float area = fms(far_x, p.y[i], far_y * p.x[i]);
+    const Float area = fms(far_x, p.y[i], far_y * p.x[i]) * counts(p.z[i]);
     const Mask is_left = most < area, is_right = area < least;
     most = max(area, most);
     left_x = select(is_left, p.x[i], left_x), left_y = select(is_left, p.y[i], left_y);
@@ -125,9 +134,9 @@ MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out
     right_z = select(is_right, p.z[i], right_z);
   }
   out.x[2] = left_x + x0, out.y[2] = left_y + y0, out.z[2] = left_z;
-  out.valid[2] = left_z < limit;
+  out.valid[2] = left_z < beyond;
   out.x[3] = right_x + x0, out.y[3] = right_y + y0, out.z[3] = right_z;
-  out.valid[3] = right_z < limit;
+  out.valid[3] = right_z < beyond;
 }
 
 MW_INLINE BoxPose select(Mask m, const BoxPose& a, const BoxPose& b) {

@@ -95,22 +95,62 @@ inline void add_deepest(const Outline& ref, bool bounded, Vec3 found, Mask there
   out.add(found.x, found.y, select(over, found.z, Float(kOutOfReach)));
 }
 
-MW_INLINE void put_kept(const KeptPoints& kept, const Frame& f, Float radius, Mask flip, Vec3 d,
-                        Mask use, Manifold<Isotropic, 4>& m) {
+// The height of a face in a frame whose normal it need not have.
+struct FacePlane {
+  Float slope_x, slope_y, base;
+  MW_INLINE Float at(Float x, Float y) const { return fma(slope_x, x, fma(slope_y, y, base)); }
+};
+
+MW_INLINE void put_kept(const KeptPoints& kept, const Frame& f, const FacePlane& face, Float radius,
+                        Mask flip, Vec3 d, Mask use, int first, Manifold<Isotropic, 4>& m) {
   const Float zero(Real(0)), half(Real(0.5));
   const Vec3 to_incident = select(flip, -d, d);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = first; i < 4; ++i) {
     const Float z = min(kept.z[i], Real(1e3)) - radius;
     const Vec3 base = fma(f.v, kept.y[i], f.u * kept.x[i]);
-    const Vec3 on_ref = fma(f.n, fma(min(z, zero), half, f.height), base);
-    const Vec3 on_inc = fma(f.n, max(z, z * half) + f.height, base) - to_incident;
+    const Float height = f.height + face.at(kept.x[i], kept.y[i]);
+    const Vec3 on_ref = fma(f.n, fma(min(z, zero), half, height), base);
+    const Vec3 on_inc = fma(f.n, max(z, z * half) + height, base) - to_incident;
     m.point_a[i] = select(use, select(flip, on_inc, on_ref), m.point_a[i]);
     m.point_b[i] = select(use, select(flip, on_ref, on_inc), m.point_b[i]);
     m.separation[i] = select(use, z, m.separation[i]);
     m.feature_x[i] = select(use, kept.x[i], m.feature_x[i]);
     m.feature_y[i] = select(use, kept.y[i], m.feature_y[i]);
     m.valid[i] = (use & kept.valid[i]) | ((!use) & m.valid[i]);
+    m.guard[i] = m.guard[i] & !use;
   }
+}
+
+// A feature of one shape over a face of the other, in a frame.
+struct FacePair {
+  Frame frame;
+  Feature face, other;
+  Outline outline, incident;
+  Float extent2;
+};
+inline void bring_together(const ConvexShape& ref, const ConvexShape& inc, Vec3 d_r, bool oblique,
+                           FacePair& p) {
+  bring(p.frame, ref, p.face, {Real(0), Real(0), Real(0)}, p.outline);
+  bring(p.frame, inc, p.other, d_r, p.incident);
+  // A disc is one in its own frame alone; elsewhere its four points stand for it.
+  if (oblique) p.outline.disc = false;
+  p.extent2 = min(p.outline.extent2, max(p.incident.extent2, p.outline.extent2 * Real(0.01)));
+}
+inline void collect_points(const FacePair& p, Clipped& clipped) {
+  const Float slack = sqrt(p.outline.extent2) * Float(kEdgeSlack);
+  const Outline& incident = p.incident;
+  for (int i = 0; i < incident.count; ++i) {
+    const int next = i + 1 < incident.count ? i + 1 : 0;
+    if (incident.count == 2 && i == 1) break;
+    // A line has one edge, and a corner that is repeated none.
+    const Vec3 from = incident.corner[i], to = incident.corner[next];
+    const Mask repeated = (from.x == to.x) & (from.y == to.y) & (from.z == to.z);
+    const Mask edge = i == 0 ? mask_from_bits(kAllLanes) : p.other.face & !repeated;
+    clip_edge(p.outline, slack, from, to, edge, clipped);
+  }
+  const Vec3 tilt{dot(p.frame.u, p.other.normal), dot(p.frame.v, p.other.normal),
+                  dot(p.frame.n, p.other.normal)};
+  cover_corners(p.outline, incident, tilt, p.other.face, slack, clipped);
 }
 
 // Clips one shape's feature against the face of the other, in the lanes of `use`: those in which
@@ -119,46 +159,83 @@ inline Mask clip_on_face(const Constants& t, const ConvexShape& ref, const Conve
                          const ConvexAxis& axis, Vec3 d, bool flip, Mask use,
                          Manifold<Isotropic, 4>& m) {
   const Vec3 n = flip ? -axis.face_normal : axis.face_normal, d_r = flip ? -d : d;
-  Feature face, other;
-  feature_along(ref, n, Real(0), face);
-  feature_along(inc, -n, Real(1e-5), other);
-  const Frame frame = frame_of(n, face.along, dot(n, face.corner[0]));
-  Outline outline, incident;
-  bring(frame, ref, face, {Real(0), Real(0), Real(0)}, outline);
-  bring(frame, inc, other, d_r, incident);
-  const Float extent2 = min(outline.extent2, max(incident.extent2, outline.extent2 * Real(0.01)));
-  const Float slack = sqrt(outline.extent2) * Float(kEdgeSlack);
+  FacePair p;
+  feature_along(ref, n, Real(0), p.face);
+  feature_along(inc, -n, Real(1e-5), p.other);
+  p.frame = frame_of(n, p.face.along, dot(n, p.face.corner[0]));
+  bring_together(ref, inc, d_r, false, p);
   Clipped clipped;
-  for (int i = 0; i < incident.count; ++i) {
-    const int next = i + 1 < incident.count ? i + 1 : 0;
-    if (incident.count == 2 && i == 1) break;
-    // A line has one edge, and a corner that is repeated none.
-    const Vec3 p = incident.corner[i], q = incident.corner[next];
-    const Mask repeated = (p.x == q.x) & (p.y == q.y) & (p.z == q.z);
-    const Mask edge = i == 0 ? mask_from_bits(kAllLanes) : other.face & !repeated;
-    clip_edge(outline, slack, p, q, edge, clipped);
-  }
-  const Vec3 tilt{dot(frame.u, other.normal), dot(frame.v, other.normal),
-                  dot(frame.n, other.normal)};
-  cover_corners(outline, incident, tilt, other.face, slack, clipped);
-  add_deepest(outline, true, frame.local(flip ? axis.on_a - d : axis.on_b), axis.touch,
+  collect_points(p, clipped);
+  add_deepest(p.outline, true, p.frame.local(flip ? axis.on_a - d : axis.on_b), axis.touch,
               Float(t.face_bias) * Float(kClearly), clipped);
   KeptPoints kept;
-  keep_four(clipped, Float(t.margin), extent2, kept);
+  keep_four(clipped, Float(t.margin), p.extent2, kept);
   // Where all of it is much shallower than the search says, the shapes touch beside the face. A
   // tile is touched nowhere else than over its triangle.
   const Float reached = max(axis.separation, axis.face_separation);
   const Float allowed = fma(abs(reached), Real(0.05), t.face_bias);
   const Mask good = use & kept.valid[0] & ((kept.z[0] < reached + allowed) | !axis.touch);
-  put_kept(kept, frame, inc.radius, flip ? mask_from_bits(kAllLanes) : mask_from_bits(0), d, good,
-           m);
-  m.tangent = select(good, frame.u, m.tangent);
+  const FacePlane flat{Real(0), Real(0), Real(0)};
+  put_kept(kept, p.frame, flat, inc.radius, flip ? mask_from_bits(kAllLanes) : mask_from_bits(0), d,
+           good, 0, m);
+  m.tangent = select(good, p.frame.u, m.tangent);
   m.normal = select(good, axis.face_normal, m.normal);
   const Float side = flip ? Real(1) : Real(0);
-  m.code = select(good, fma(fma(axis.face, Real(2), side), Real(128), other.code), m.code);
+  m.code = select(good, fma(fma(axis.face, Real(2), side), Real(128), p.other.code), m.code);
   m.match_distance2 =
-      select(good, match_distance2(sqrt(extent2) * Float(Real(0.7))), m.match_distance2);
+      select(good, match_distance2(sqrt(p.extent2) * Float(Real(0.7))), m.match_distance2);
   return good;
+}
+
+// Where an edge or a rim touches: what the shapes turn on to next. Features of both that look along
+// the normal are clipped as above, and heights are those along the normal between the two; the
+// place that the search found is the deepest and stays as it is. `use`: lanes in which `ref` has
+// the face that looks along the normal more.
+inline constexpr Real kSteepFace = Real(0.2);  // the cosine to the normal, at least
+inline constexpr Real kOffFace = Real(0.01);   // of the face's size
+inline constexpr Real kObliqueCode = Real(1000);
+
+inline void clip_along_normal(const Constants& t, const ConvexShape& ref, const ConvexShape& inc,
+                              const ConvexAxis& axis, Vec3 d, bool flip, Mask use,
+                              Manifold<Isotropic, 4>& m) {
+  const Vec3 n = flip ? -axis.normal : axis.normal, d_r = flip ? -d : d;
+  FacePair p;
+  feature_along(ref, n, Real(0), p.face);
+  feature_along(inc, -n, Real(1e-5), p.other);
+  const Float cosine = dot(p.face.normal, n), one(Real(1));
+  use = use & p.face.face & (Float(kSteepFace) < cosine);
+  if (!any(use)) return;
+  p.frame = frame_of(n, p.face.along, dot(n, flip ? axis.on_b - d : axis.on_a));
+  bring_together(ref, inc, d_r, true, p);
+  const Float inv = one / select(use, cosine, one);
+  const Vec3 corner = p.outline.corner[0];
+  FacePlane plane{-(dot(p.frame.u, p.face.normal) * inv), -(dot(p.frame.v, p.face.normal) * inv),
+                  Real(0)};
+  plane.base = corner.z - plane.at(corner.x, corner.y);
+  Clipped clipped;
+  collect_points(p, clipped);
+  for (int i = 0; i < clipped.size; ++i) {
+    clipped.z[i] = clipped.z[i] - plane.at(clipped.x[i], clipped.y[i]);
+  }
+  const Vec3 found = p.frame.local(flip ? axis.on_a - d : axis.on_b);
+  // The place that was found must be on that face, which a pointed hull's may not be.
+  const Float off = plane.at(found.x, found.y), size = sqrt(p.extent2);
+  use = use & (abs(off) < size * Float(kOffFace));
+  clipped.add(found.x, found.y, axis.separation);
+  KeptPoints kept;
+  keep_four(clipped, Float(t.margin), p.extent2, kept);
+  const Mask good = use & kept.valid[0];
+  put_kept(kept, p.frame, plane, inc.radius, flip ? mask_from_bits(kAllLanes) : mask_from_bits(0),
+           d, good, 1, m);
+  for (int k = 1; k < 4; ++k) m.guard[k] = m.guard[k] | (good & m.valid[k]);
+  m.feature_x[0] = select(good, found.x, m.feature_x[0]);
+  m.feature_y[0] = select(good, found.y, m.feature_y[0]);
+  m.tangent = select(good, p.frame.u, m.tangent);
+  const Float side = flip ? Real(1) : Real(0);
+  m.code = select(
+      good, fma(fma(p.face.code + Float(kObliqueCode), Real(2), side), Real(128), p.other.code),
+      m.code);
+  m.match_distance2 = select(good, match_distance2(size * Float(Real(0.7))), m.match_distance2);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

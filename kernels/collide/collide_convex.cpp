@@ -47,6 +47,22 @@ void put_lines(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axi
   m.match_distance2 = select(beside, match_distance2(min(a.half.z, b.half.z)), m.match_distance2);
 }
 
+// Where sides are less parallel than that.
+void put_less_parallel(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axis, Vec3 d,
+                       Mask use, Manifold<Isotropic, 4>& m) {
+  const auto side_of = [&](const ConvexShape& s, Real way, Float along) {
+    const Float radius = s.half.x + s.radius;
+    const Vec3 out = fnma(s.r.z, along, axis.normal);
+    const Float size = sqrt(max(dot(out, out), Float(Real(1) - kSideOn * kSideOn)));
+    return SideLine{s.r.z, s.half.z, radius, out * (radius * Float(way) / size)};
+  };
+  const Float along_a = dot(axis.normal, a.r.z), along_b = dot(axis.normal, b.r.z);
+  const Mask sides = use & (max(abs(along_a), abs(along_b)) < Float(kSideOn));
+  const Float nearest = dot(a.r.z, axis.on_a);
+  put_stretch_ends(side_of(a, 1, along_a), side_of(b, -1, along_b), d, nearest, sides, m);
+  m.feature_x[0] = select(sides & (m.valid[1] | m.valid[2]), nearest, m.feature_x[0]);
+}
+
 // One point, where the search ended; everywhere to begin with.
 void put_found(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axis, Vec3 d,
                Manifold<Isotropic, 4>& m) {
@@ -67,6 +83,22 @@ void put_found(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axi
   m.code = Real(60000);
   // It may wander.
   m.match_distance2 = square(a.half.x + a.half.y + a.half.z);
+}
+
+// Where no face's normal is the best, nor sides have more points than one.
+void put_oblique(const Constants& t, const ConvexShape& a, const ConvexShape& b,
+                 const ConvexAxis& axis, Vec3 d, Mask use, Manifold<Isotropic, 4>& m) {
+  use = use & !(m.valid[1] | m.valid[2]);
+  if (!any(use)) return;
+  Feature of_a, of_b;
+  feature_along(a, axis.normal, Real(0), of_a);
+  feature_along(b, -axis.normal, Real(0), of_b);
+  const Float none(Real(-2));
+  const Mask on_a = use & (select(of_b.face, -dot(of_b.normal, axis.normal), none) <=
+                           select(of_a.face, dot(of_a.normal, axis.normal), none));
+  const Mask on_b = use & !on_a;
+  if (any(on_a)) clip_along_normal(t, a, b, axis, d, false, on_a, m);
+  if (any(on_b)) clip_along_normal(t, b, a, axis, d, true, on_b, m);
 }
 
 // Leaves an axis only normals that the tile's surface has; its own where there is another. The
@@ -104,7 +136,10 @@ void collide_convex_pair(const Constants& t, const ConvexShape& a, const Tile* t
   active = axis.near;
   m.valid[0] = active & axis.touch;
   if (!any(active)) return;
-  if (is_line(a.kind) && is_line(b.kind)) put_lines(a, b, axis, d, active, m);
+  if (is_line(a.kind) && is_line(b.kind)) {
+    put_lines(a, b, axis, d, active, m);
+    put_less_parallel(a, b, axis, d, active & axis.touch & !m.valid[1], m);
+  }
   // Faces win near ties. What is round around its core shows where the core is apart: there only
   // rounding is a tie.
   const Float face = axis.face_separation, other = axis.separation;
@@ -116,6 +151,7 @@ void collide_convex_pair(const Constants& t, const ConvexShape& a, const Tile* t
   const Mask worse_apart = best_apart + tie < other;
   Mask worse = fma(face, Real(0.95), t.face_bias) < other;
   worse = round ? (worse & !apart) | (apart & worse_apart) : worse & (worse_apart | !apart);
+  if (!tile) put_oblique(t, a, b, axis, d, active & worse & axis.touch, m);
   const Mask clipped = active & !worse;
   if (!any(clipped)) return;
   const Mask on_b = clipped & axis.face_of_b, on_a = clipped & !axis.face_of_b;

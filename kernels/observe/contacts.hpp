@@ -151,7 +151,8 @@ void put_contacts(const ContactBlock<S, N>& s, const Totals<S, N>& total, const 
     const int l = __builtin_ctz(m);
     const Features<S, N> features(s, places + N * kDim * kLanes, l);
     for (int i = 0; i < N; ++i) {
-      if (!(Real(0) < s.mass[i][l])) continue;
+      const bool close = ((s.close[i] >> l) & 1u) != 0;
+      if (!(Real(0) < s.mass[i][l]) || !(close || Real(0) < impulse[i][l])) continue;
       const auto at = static_cast<std::int32_t>(count[l]);
       count[l] += Real(1);
       if (at >= o.room) continue;

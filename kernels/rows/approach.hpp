@@ -92,7 +92,8 @@ struct Approach {
   SideArms<S, N, Free> b;
   Float speed[N];  // along n at the start of the step, m/s; < 0: approaching
   Pull pull;
-  Mask near, touching;  // lanes in which some point is within the margin, or will touch
+  Mask close[N];        // in which a point is within the margin in this step
+  Mask near, touching;  // in which some point is, or will touch
 
   // What an impulse at point i does to the speed of point j, by rotation and all.
   MW_INLINE Float coupling(Float inv_mass, int i, int j) const {
@@ -102,7 +103,8 @@ struct Approach {
   }
 };
 
-// Takes points that stay beyond the margin out of the manifold.
+// A manifold that has a close point keeps the others, too: pushed at the one, bodies turn on to
+// them.
 template <bool kDense, class S, int N, class A>
 MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& w,
                                 const RowBodies& s, const Sides<S, A>& sides,
@@ -124,10 +126,11 @@ MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& 
     out.speed[i] = v;
     const Float end_speed = fma(dt, pull.relative, v);
     const Float travel = dt * min(min(v, end_speed), zero) * speculation;
-    m.valid[i] = m.valid[i] & active & (m.separation[i] + travel < margin);
-    out.near = out.near | m.valid[i];
+    m.valid[i] = m.valid[i] & active;
+    out.close[i] = (m.valid[i] & !m.guard[i]) & (m.separation[i] + travel < margin);
+    out.near = out.near | out.close[i];
     const Float fall = dt * min(min(v, fma(dt, pull.closing, v)), zero) * speculation;
-    out.touching = out.touching | (m.valid[i] & (m.separation[i] + fall < zero));
+    out.touching = out.touching | (out.close[i] & (m.separation[i] + fall < zero));
   }
 }
 

@@ -53,6 +53,7 @@ struct alignas(64) ContactBlock : BlockHeader {
   Real twist_arm[N][kLanes];  // distance of each point from the friction centre
   Real feature_x[N][kLanes], feature_y[N][kLanes];  // place on the reference feature, m
   Real code[kLanes];                                // which features touch
+  std::uint32_t close[N];  // lanes in which a point is within the margin in this step
 };
 template <class S, int N, class A>
 struct alignas(64) SidedBlock : ContactBlock<S, N> {

@@ -52,7 +52,7 @@ MW_INLINE void drop_lanes(const Constants& t, const Work& w, std::uint32_t mask,
   s.mask = mask;
 }
 
-// How many points a block has in each lane, and the sums of their anchors.
+// How many close points a block has in each lane, and the sums of their anchors.
 template <class S>
 struct PointSums {
   Float count;
@@ -77,7 +77,8 @@ MW_INLINE PointSums<S> put_normal_rows(const Constants& t, Work& w, const Sides<
     select(m.valid[i], one / approach.coupling(inv_mass, i, i), zero).store(s.mass[i]);
     m.separation[i].store(s.separation[i]);
     m.separation[i].store(s.gap[i]);
-    const Float weight = select(m.valid[i], one, zero);
+    s.close[i] = bits(approach.close[i] & active);
+    const Float weight = select(mask_from_bits(s.close[i]), one, zero);
     sums.count = sums.count + weight;
     sums.anchors.b = fma(m.point_b[i], weight, sums.anchors.b);
     if constexpr (A::kMoves) sums.anchors.a = fma(m.point_a[i], weight, sums.anchors.a);
@@ -115,7 +116,7 @@ MW_INLINE void put_bounce(const Constants& t, const Group& g, const Sides<S, A>&
     const Float speed = approach.speed[i], gap = max(m.separation[i], zero);
     const Float v2 = fnma((pull + pull), gap, speed * speed);
     const Float at_touch = sqrt(max(v2, zero));
-    const Mask hits = m.valid[i] & (min(speed, fma(dt, pull, speed)) < -threshold);
+    const Mask hits = approach.close[i] & (min(speed, fma(dt, pull, speed)) < -threshold);
     select(hits, at_touch, zero).store(bounce.impact[i]);
     stored.normal[i].store(bounce.carried[i]);
     zero.store(bounce.total[i]);
@@ -175,6 +176,7 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
     put_bounce(t, g, sides, code, m, approach, stored, mask, bounce);
   }
   if (w.recorder) {
+    for (int i = 0; i < N; ++i) m.valid[i] = m.valid[i] & mask_from_bits(s.close[i]);
     record_points<S, N>(w, list, m, key, stored.normal,
                         t.collider_is_body ? pose_b : sides.b.body.centre);
   }

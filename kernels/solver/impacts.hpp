@@ -22,6 +22,14 @@ inline constexpr Real kMuchFaster = Real(0.3);
 // fastest, that is left to the next step.
 inline constexpr Real kImpactTolerance = sizeof(Real) == 4 ? Real(2e-6) : Real(1e-12);
 
+// Where a point is one of an impact: one that only bodies which turn come to has met nothing yet.
+template <class S, int N>
+MW_INLINE Mask meets(const ContactBlock<S, N>& s, const Bounce<S, N>& bounce, int i) {
+  const Float zero(Real(0));
+  return (zero < Float::load(s.mass[i])) &
+         (mask_from_bits(s.close[i]) | (zero < Float::load(bounce.found[i])));
+}
+
 // How fast the participants among `lanes` approach, and the speeds that their points shall leave
 // with. What approaches slower than `slow`, or a thousandth of the threshold, is left to the next
 // step. Returns the fastest approach.
@@ -39,7 +47,7 @@ MW_INLINE Float weigh_impact(const Constants& t, const Work& w, const SidedBlock
   Float speed[N], fastest = zero;
   normal_speeds(s, v, speed);
   for (int i = 0; i < N; ++i) {
-    const Mask there = zero < Float::load(s.mass[i]);
+    const Mask there = meets(s, bounce, i);
     Float target = select(speed[i] < -threshold, -(e * speed[i]), zero);
     Mask hits = there & (speed[i] < -slow);
     if (first) {
@@ -94,7 +102,7 @@ MW_INLINE unsigned play_impact(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bo
   Float speed[N], target[N], played[N], mass[N], inv_mass[N], d[N];
   normal_speeds(s, v, speed);
   for (int i = 0; i < N; ++i) {
-    mass[i] = Float::load(s.mass[i]);
+    mass[i] = select(meets(s, bounce, i), Float::load(s.mass[i]), zero);
     inv_mass[i] = one / select(zero < mass[i], mass[i], one);
     target[i] = Float::load(bounce.target[i]);
     played[i] = Float::load(bounce.played[i]);

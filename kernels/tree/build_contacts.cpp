@@ -61,7 +61,7 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   const Float margin(pair.margin), zero(Real(0));
   std::uint32_t touching = 0;
   for (int i = 0; i < N; ++i) {
-    m.valid[i] = m.valid[i] & active & (m.separation[i] < margin);
+    m.valid[i] = ((m.valid[i] & !m.guard[i]) & active) & (m.separation[i] < margin);
     touching |= bits(m.valid[i]);
   }
   if (touching == 0) return;
