@@ -1,9 +1,11 @@
-// begin: the first stage of a contact step. Poses of shapes as rows, their bounds with the
-// speculative margin, and inverse inertias in world axes.
+// begin: the first stage of a contact step. Poses of shapes as rows, half a step ahead where bodies
+// turn (work/half_turn.hpp), their bounds with the speculative margin, and inverse inertias in
+// world axes.
 #include "kernels/shape/shapes.hpp"
 #include "kernels/sleep/sleep.hpp"
 #include "kernels/work/activity.hpp"
 #include "kernels/work/constants.hpp"
+#include "kernels/work/half_turn.hpp"
 #include "kernels/work/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -70,13 +72,15 @@ void spatial_collider(const Constants& t, const Group& g, Work& w, int index) {
   Mat3 r;
   const bool rotated = t.has_orientation && !(t.collider_is_body && info(c.kind).ball);
   if (rotated) {
-    r = matrix(load_quat(state + at.orientation * kLanes));
+    const Vec3 omega = load_vec3(state + at.angular * kLanes);
+    Quat q = load_quat(state + at.orientation * kLanes);
+    if (looks_ahead(t, w)) q = turned(q, half_turn(t, omega));
+    r = matrix(q);
     if (!t.collider_is_body) {
       p = p + mul(r, vec3(constants.offset));
       const LaneNumber* axes = constants.rotation;
       r = {mul(r, vec3(axes)), mul(r, vec3(axes + 3)), mul(r, vec3(axes + 6))};
     }
-    const Vec3 omega = load_vec3(state + at.angular * kLanes);
     speed = fma(sqrt(dot(omega, omega)), constants_of_body(g, c.body).radius, speed);
   }
   const Float margin = margin_of(t, g, w, speed, index);
@@ -98,13 +102,14 @@ void planar_collider(const Constants& t, const Group& g, Work& w, int index) {
   Rot2 q{Real(1), Real(0)};
   const bool rotated = t.has_orientation && !(t.collider_is_body && info(c.kind).ball);
   if (rotated) {
+    const Float omega = Float::load(state + at.angular * kLanes);
     q = load_rot2(state + at.orientation * kLanes);
+    if (looks_ahead(t, w)) q = turned(q, half_turn(t, omega));
     if (!t.collider_is_body) {
       p = p + rotate(q, {constants.offset[0], constants.offset[1]});
       q = {fms(q.c, Float(constants.rotation[0]), q.s * Float(constants.rotation[1])),
            fma(q.s, Float(constants.rotation[0]), q.c * Float(constants.rotation[1]))};
     }
-    const Float omega = Float::load(state + at.angular * kLanes);
     speed = fma(abs(omega), constants_of_body(g, c.body).radius, speed);
   }
   const Float margin = margin_of(t, g, w, speed, index);
@@ -115,7 +120,7 @@ void planar_collider(const Constants& t, const Group& g, Work& w, int index) {
 
 }  // namespace
 
-void rotate_body_rows(const Constants& t, const Group& g, Work& w) {
+void rotate_body_rows(const Constants& t, const Group& g, Work& w, bool ahead) {
   using kernels::InertiaKind;
   const bool scalar = t.inertia_kind != InertiaKind::tensor;
   if (scalar && t.collider_is_body && !t.bodies_vary) return;  // constant
@@ -131,7 +136,9 @@ void rotate_body_rows(const Constants& t, const Group& g, Work& w) {
       continue;
     }
     if (t.inertia_kind == kernels::InertiaKind::tensor) {
-      const Mat3 r = matrix(load_quat(state + at.orientation * kLanes));
+      Quat q = load_quat(state + at.orientation * kLanes);
+      if (ahead) q = orientation_of_inertia(t, w, q, load_vec3(state + at.angular * kLanes));
+      const Mat3 r = matrix(q);
       const Sym3 s = rotate_diagonal(r, vec3(body.inv_inertia));
       store_rows4(w.body_rows, o, s.xx, s.xy, s.xz, s.yy);
       store_rows4(w.body_rows + 4, o, s.yz, s.zz, body.inv_mass, Real(0));
@@ -155,7 +162,7 @@ void begin(const Constants& t, const Group& g, kernels::Scratch* scratch) {
       planar_collider(t, g, w, i);
     }
   }
-  rotate_body_rows(t, g, w);
+  rotate_body_rows(t, g, w, w.pose_rows != nullptr);
   for (int b = 0; b <= t.bodies; ++b) w.touched[b] = 0;
   for (int list = 0; list < kLists; ++list) {
     w.blocks[list].count = 0;

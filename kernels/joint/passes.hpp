@@ -168,7 +168,7 @@ struct JointPasses {
   // Of the state, before or after a step.
   static void gap_energy(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    rotate_body_rows(t, g, w);
+    rotate_body_rows(t, g, w, false);
     prepare_parts(t, g, scratch);
     const Float zero(Real(0));
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {

@@ -109,7 +109,7 @@ template <class S, bool kIdle>
 Outcome fly_group(const Constants& t, const Group& g, Work& w) {
   // Bodies side by side hide the latency of the tumbling; the others have none to hide.
   constexpr int kTogether = std::is_same_v<S, Tensor> ? 4 : 1;
-  if (w.delta_v) rotate_body_rows(t, g, w);
+  if (w.delta_v) rotate_body_rows(t, g, w, false);
   Outcome outcome;
   int b = 0;
   for (; b + kTogether <= t.bodies; b += kTogether)

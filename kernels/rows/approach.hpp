@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/rows/sides.hpp"
+#include "kernels/work/half_turn.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -86,6 +87,29 @@ struct SideArms<S, N, Free> {
   }
 };
 
+// What the sides are turned ahead by.
+template <class S, class A>
+struct SideTurns {
+  typename S::Ang a, b;
+  // Whether any lane is.
+  MW_INLINE bool find(const Constants& t, const Sides<S, A>& sides) {
+    b = half_turn(t, sides.b.velocity.w);
+    Float sum = dot(b, b);
+    if constexpr (A::kMoves) {
+      a = half_turn(t, sides.a.velocity.w);
+      sum = sum + dot(a, a);
+    }
+    return any(Float(Real(0)) < sum);
+  }
+  // By how much that moves a point along the normal.
+  template <class ArmsA, class ArmsB>
+  MW_INLINE Float along(const ArmsA& arms_a, const ArmsB& arms_b, int i) const {
+    Float x = dot(arms_b.arm[i], b);
+    if constexpr (A::kMoves) x = x - dot(arms_a.arm[i], a);
+    return x;
+  }
+};
+
 template <class S, int N, class A>
 struct Approach {
   SideArms<S, N, A> a;
@@ -120,10 +144,13 @@ MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& 
   for (int i = 0; i < N; ++i) deepest = min(deepest, select(m.valid[i], m.separation[i], margin));
   const Float speculation = speculation_of(t, g, sides, kind, deepest);
   out.near = out.touching = zero < zero;
+  SideTurns<S, A> turns;
+  const bool ahead = looks_ahead(t, w) && turns.find(t, sides);
   for (int i = 0; i < N; ++i) {
     Float v = normal_speed + out.b.set(i, sides.b, m.point_b[i], m.normal);
     if constexpr (A::kMoves) v = v - out.a.set(i, sides.a, m.point_a[i], m.normal);
     out.speed[i] = v;
+    if (ahead) m.separation[i] = m.separation[i] - turns.along(out.a, out.b, i);
     const Float end_speed = fma(dt, pull.relative, v);
     const Float travel = dt * min(min(v, end_speed), zero) * speculation;
     m.valid[i] = m.valid[i] & active;

@@ -12,6 +12,7 @@
 
 #include "kernels/motion/finish.hpp"
 #include "kernels/solver/restitution.hpp"
+#include "kernels/work/half_turn.hpp"
 #include "kernels/work/union_find.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -34,12 +35,13 @@ struct KineticForm {
   Vec3 inertia;  // principal; planar: z
   Quat q;        // where inertia is a tensor
 
-  MW_INLINE KineticForm(const Constants& t, const Group& g, int body) {
+  MW_INLINE KineticForm(const Constants& t, const Group& g, const Work& w, int body) {
     const auto& b = constants_of_body(g, body);
     mass = Float(Real(1)) / b.inv_mass;
     inertia = {b.inertia[0], b.inertia[1], b.inertia[2]};
     if constexpr (std::is_same_v<S, Tensor>) {
-      q = load_quat(state_of(t, g, body, kState<S>.orientation));
+      q = orientation_of_inertia(t, w, load_quat(state_of(t, g, body, kState<S>.orientation)),
+                                 load_vec3(state_of(t, g, body, kState<S>.angular)));
     }
   }
   MW_INLINE Velocity<S> own(Velocity<S> a) const {
@@ -86,7 +88,7 @@ void weigh_bodies(const Constants& t, const Group& g, const Work& w) {
       for (int i = 0; i < kAccounts; ++i) zero.store(account(w, b, i));
       continue;
     }
-    const KineticForm<S> form(t, g, b);
+    const KineticForm<S> form(t, g, w, b);
     const Velocity<S> start =
         form.own({load_as<typename S::Vec>(state_of(t, g, b, kState<S>.linear)),
                   load_as<typename S::Ang>(state_of(t, g, b, kState<S>.angular))});

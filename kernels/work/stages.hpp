@@ -11,7 +11,7 @@ kernels::Layout choose_layout(const Constants& t, const Group& g, kernels::Scrat
                               kernels::Layout wish);
 
 // Inverse inertias in world axes and centres of mass, for the current orientations.
-void rotate_body_rows(const Constants& t, const Group& g, Work& w);
+void rotate_body_rows(const Constants& t, const Group& g, Work& w, bool ahead);
 void sort_and_sweep(const Constants& t, Work& w);
 void find_sparse_pairs(const Constants& t, const Group& g, Work& w);
 

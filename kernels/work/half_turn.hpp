@@ -1,0 +1,53 @@
+// Contacts are found with bodies turned to where they will be half a step on.
+//
+// Rows are linear in the angle. Of a body that turns by an angle a in a step, a point at the arm r
+// leaves its tangent by r a^2 / 2 at the step's end; of the tangent half way, by r a^2 / 8 at both
+// ends. What comes down next is found better, too, and the inverse inertia is that of the middle.
+// Separations are taken back to the step's start along their rows. Bodies that turn little stay as
+// they are: at rest nothing changes and nothing is paid for it.
+#pragma once
+
+#include "kernels/work/constants.hpp"
+#include "kernels/work/work.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+inline constexpr Real kLeastTurn = Real(0.02);  // rad in half a step, below it none
+inline constexpr Real kMostTurn = Real(0.5);    // rad; who spins faster is turned by that
+
+// Whether contacts of this step are found ahead. Who asks for the contacts of now gets those.
+MW_INLINE bool looks_ahead(const Constants& t, const Work& w) {
+  return t.has_orientation && t.tree.links == 0 && !(w.recorder && !w.recorder->places);
+}
+
+// The angle that a body turns by in half a step, as rows take it; 0 in lanes that turn little.
+MW_INLINE Vec3 half_turn(const Constants& t, Vec3 spin) {
+  const Vec3 angle = spin * Float(t.dt * Real(0.5));
+  const Float square = dot(angle, angle), most(kMostTurn);
+  const Mask turns = Float(kLeastTurn * kLeastTurn) < square;
+  if (!any(turns)) return zero_of<Vec3>();
+  const Float share = most / sqrt(max(square, most * most));
+  return select(turns, angle * share, zero_of<Vec3>());
+}
+MW_INLINE Float half_turn(const Constants& t, Float spin) {
+  const Float angle = spin * Float(t.dt * Real(0.5));
+  const Mask turns = Float(kLeastTurn) < abs(angle);
+  return select(turns, clamp(angle, -kMostTurn, kMostTurn), Float(Real(0)));
+}
+
+// Turns q by it, where it is any.
+MW_INLINE Quat turned(Quat q, Vec3 angle) {
+  const Mask turns = Float(Real(0)) < dot(angle, angle);
+  return any(turns) ? select(turns, rotate_by(q, angle), q) : q;
+}
+MW_INLINE Rot2 turned(Rot2 q, Float angle) {
+  const Mask turns = Float(Real(0)) < abs(angle);
+  return any(turns) ? select(turns, rotate_by(q, angle), q) : q;
+}
+
+// Inverse inertias are those of the middle, too, but on joints, which turn their rows themselves.
+MW_INLINE Quat orientation_of_inertia(const Constants& t, const Work& w, Quat q, Vec3 spin) {
+  return t.has_joints || !looks_ahead(t, w) ? q : turned(q, half_turn(t, spin));
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
