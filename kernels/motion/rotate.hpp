@@ -176,12 +176,20 @@ MW_INLINE Vec3 solve_gyroscopic(Vec3 inertia, Vec3 s, Vec3 l, Float k, Vec3 f) {
   return {dot(f, yz) * scale, dot(jx, cross(f, jz)) * scale, dot(jx, cross(jy, f)) * scale};
 }
 
-// One Newton step of implicit Euler, I w' + h w' x I w' = I w; returns the new world omega.
+// One Newton step of implicit Euler, I w' + h w' x I w' = I w; returns the new world omega. Of what
+// turns by more than a radian in the step, one step is not enough, and may end with a thousand
+// times the energy: it is kept at what there was.
 MW_INLINE Vec3 implicit_gyroscopic(Real dt, Vec3 inertia, const Mat3& r, Vec3 omega) {
-  const Float h(dt);
+  const Float h(dt), one(Real(1));
   const Vec3 w = mul_transposed(r, omega);
   const Vec3 l{w.x * inertia.x, w.y * inertia.y, w.z * inertia.z};
-  return mul(r, w - solve_gyroscopic(inertia, w, l, h, cross(w, l) * h));
+  const Vec3 next = w - solve_gyroscopic(inertia, w, l, h, cross(w, l) * h);
+  const Float before = dot(w, l);
+  const Float after =
+      fma(next.x * next.x, inertia.x, fma(next.y * next.y, inertia.y, next.z * next.z * inertia.z));
+  const Mask gains = before < after;
+  const Float share = sqrt(before / select(gains, after, one));
+  return mul(r, next * select(gains, share, one));
 }
 
 // Two Newton steps of the implicit midpoint rule, I (w' - w) + h/4 (w + w') x I (w + w') = 0.
