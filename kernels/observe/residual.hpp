@@ -21,6 +21,9 @@ void for_each_row_array(const Constants& t, const Work& w, bool all, Visit visit
           bytes(t.parts, t.dimension == kernels::Dimension::planar ? part_bytes(Planar{})
                                                                    : part_bytes(Tensor{})));
   }
+  if (t.has_contacts) {
+    visit(reinterpret_cast<unsigned char*>(w.touched), bytes(t.bodies + 1, sizeof *w.touched));
+  }
   for (int l = 0; t.has_contacts && l < kLists; ++l) {
     const BlockList& list = w.blocks[l];
     const int count = all ? list.max_blocks : list.count;

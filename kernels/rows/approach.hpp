@@ -116,8 +116,9 @@ struct Approach {
   SideArms<S, N, Free> b;
   Float speed[N];  // along n at the start of the step, m/s; < 0: approaching
   Pull pull;
-  Mask close[N];        // in which a point is within the margin in this step
-  Mask near, touching;  // in which some point is, or will touch
+  Mask close[N];  // in which a point is within the margin in this step
+  Mask near;      // in which one may come to be
+  Mask touching;  // in which one will touch
 
   // What an impulse at point i does to the speed of point j, by rotation and all.
   MW_INLINE Float coupling(Float inv_mass, int i, int j) const {

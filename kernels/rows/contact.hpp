@@ -17,6 +17,7 @@
 #pragma once
 
 #include "kernels/rows/blow.hpp"
+#include "kernels/rows/touched.hpp"
 #include "kernels/rows/velocities.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -250,6 +251,7 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
       couple_following(s, i, d[i], speed);
     }
     apply_normal(s, d, v);
+    if constexpr (kPass == Pass::bias) mark_reached<S, A, kDense>(w, s);
     // In the bias pass friction steadies stacks, which stand on manifolds of several points.
     if (kFriction && (kPass == Pass::relax || (N > 1 && t.friction_in_bias))) {
       Float after[2], twist_after(Real(0));

@@ -25,6 +25,7 @@ struct alignas(64) ContactSide<S, N, Free> : SideRows<S, Free> {
 
 struct alignas(64) BlockHeader : RowBodies {
   std::int32_t key[kLanes];
+  std::uint32_t unsure;  // lanes in which nothing is expected to touch in this step
 };
 
 // All but side A.

@@ -9,6 +9,7 @@
 #include "kernels/rows/record.hpp"
 #include "kernels/rows/rest_speed.hpp"
 #include "kernels/rows/touch.hpp"
+#include "kernels/rows/touched.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -21,25 +22,6 @@ MW_INLINE void anchor_at_centres(const Sides<S, A>& sides, typename S::Vec pose_
   if constexpr (A::kMoves) {
     const auto shift_a = pose_a - sides.a.body.centre;
     for (int i = 0; i < N; ++i) m.point_a[i] = m.point_a[i] + shift_a;
-  }
-}
-
-// In the lanes of `touching` contacts may act on the bodies of the block in this step.
-template <class A, bool kDense>
-MW_INLINE void mark_touched(Work& w, std::uint32_t touching, Ints body_a, Ints body_b,
-                            const RowBodies& s) {
-  if constexpr (kDense) {
-    w.touched[s.body_b] |= touching;
-    if constexpr (A::kMoves) w.touched[s.body_a] |= touching;
-  } else {
-    alignas(64) std::int32_t a[kLanes], b[kLanes];
-    body_b.store(b);
-    if constexpr (A::kMoves) body_a.store(a);
-    for (; touching != 0; touching &= touching - 1) {
-      const int lane = __builtin_ctz(touching);
-      w.touched[b[lane]] |= 1u << lane;
-      if constexpr (A::kMoves) w.touched[a[lane]] |= 1u << lane;
-    }
   }
 }
 
@@ -151,7 +133,9 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   mask = claim_capacity(t, w, list, mask);
   if (mask == 0) return;
   active = mask_from_bits(mask);
-  mark_touched<A, kDense>(w, bits(approach.touching & active), sides.body_a, sides.body_b, s);
+  const std::uint32_t touching = bits(approach.touching & active);
+  mark_touched<S, A, kDense>(w, touching, s);
+  s.unsure = mask & ~touching;
   drop_lanes<S>(t, w, mask, s);
   Ints::load(key).store(s.key);
   ++blocks.count;

@@ -86,7 +86,8 @@ struct Passes {
   static void store(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     CacheWriter writer(t, g, w);
-    for_each_block<S>(w, [&](auto& s, int, BlockList& list) {
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList& list) {
+      mark_reached<S, A, kDense>(w, s);
       writer.put(s, static_cast<ListId>(&list - w.blocks));
     });
     writer.close();

@@ -1,0 +1,40 @@
+// Which bodies something touches in this step: those that contacts will meet, told when rows are
+// made, and those that an impulse has reached.
+#pragma once
+
+#include "kernels/lane/ints.hpp"
+#include "kernels/rows/side.hpp"
+#include "kernels/work/work.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// In the lanes of `touching` contacts may act on the bodies of a block in this step.
+template <class S, class A, bool kDense>
+MW_INLINE void mark_touched(const Work& w, std::uint32_t touching, const RowBodies& s) {
+  if constexpr (kDense) {
+    w.touched[s.body_b] |= touching;
+    if constexpr (A::kMoves) w.touched[s.body_a] |= touching;
+  } else {
+    for (; touching != 0; touching &= touching - 1) {
+      const int lane = __builtin_ctz(touching);
+      const auto mark = [&](std::int32_t offset) {
+        w.touched[(offset - w.velocity_base[lane]) / S::kRow] |= 1u << lane;
+      };
+      mark(s.offset_b[lane]);
+      if constexpr (A::kMoves) mark(s.offset_a[lane]);
+    }
+  }
+}
+
+// Of a block that was not sure to touch in some lanes: those in which it has an impulse after all.
+template <class S, class A, bool kDense, class Block>
+MW_INLINE void mark_reached(const Work& w, Block& s) {
+  if (s.unsure == 0) return;
+  Float most = Float::load(s.impulse[0]);
+  for (int i = 1; i < Block::kPoints; ++i) most = max(most, Float::load(s.impulse[i]));
+  const std::uint32_t reached = s.unsure & bits(Float(Real(0)) < most);
+  s.unsure &= ~reached;
+  mark_touched<S, A, kDense>(w, reached, s);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
