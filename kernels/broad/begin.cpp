@@ -49,6 +49,24 @@ MW_INLINE Float margin_of(const Constants& t, const Group& g, Work& w, Float spe
   return margin;
 }
 
+// Contacts of trees are those of the moment: no margin for what may come.
+MW_INLINE Float spatial_margin(const Constants& t, const Group& g, Work& w, int index,
+                               bool rotated) {
+  if (t.tree.links > 0) {
+    Float(Real(0)).store(w.beyond + index * kLanes);
+    return t.half_margin;
+  }
+  const auto at = kernels::state_offsets(t.dimension);
+  const int body = t.collider[index].body;
+  const Real* state = g.state + body * t.state_stride * kLanes;
+  Float speed = length(load_vec3(state + at.linear * kLanes));
+  if (rotated) {
+    const Vec3 omega = load_vec3(state + at.angular * kLanes);
+    speed = fma(length(omega), constants_of_body(g, body).radius, speed);
+  }
+  return margin_of(t, g, w, speed, index);
+}
+
 MW_INLINE void put_bounds(Work& w, int collider, const BoundsOf<Vec3>& bounds) {
   store(w.bounds + collider * 6 * kLanes, bounds.centre);
   store(w.bounds + collider * 6 * kLanes + 3 * kLanes, bounds.half);
@@ -64,9 +82,6 @@ void spatial_collider(const Constants& t, const Group& g, Work& w, int index) {
   const auto at = kernels::state_offsets(t.dimension);
   const Real* state = g.state + c.body * t.state_stride * kLanes;
   Vec3 p = load_vec3(state + at.position * kLanes);
-  const Vec3 v = load_vec3(state + at.linear * kLanes);
-  Float speed = sqrt(dot(v, v));
-
   alignas(64) std::int32_t o[kLanes];
   for (int l = 0; l < kLanes; ++l) o[l] = w.pose_base[l] + c.row;
   Mat3 r;
@@ -81,9 +96,8 @@ void spatial_collider(const Constants& t, const Group& g, Work& w, int index) {
       const LaneNumber* axes = constants.rotation;
       r = {mul(r, vec3(axes)), mul(r, vec3(axes + 3)), mul(r, vec3(axes + 6))};
     }
-    speed = fma(sqrt(dot(omega, omega)), constants_of_body(g, c.body).radius, speed);
   }
-  const Float margin = margin_of(t, g, w, speed, index);
+  const Float margin = spatial_margin(t, g, w, index, rotated);
   put_bounds(w, index,
              put_shape(SpatialPlacement{c, constants, nullptr, p, r, margin, w.pose_rows, o}));
 }
@@ -162,7 +176,7 @@ void begin(const Constants& t, const Group& g, kernels::Scratch* scratch) {
       planar_collider(t, g, w, i);
     }
   }
-  rotate_body_rows(t, g, w, w.pose_rows != nullptr);
+  if (t.tree.links == 0) rotate_body_rows(t, g, w, w.pose_rows != nullptr);
   for (int b = 0; b <= t.bodies; ++b) w.touched[b] = 0;
   for (int list = 0; list < kLists; ++list) {
     w.blocks[list].count = 0;
