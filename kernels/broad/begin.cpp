@@ -88,9 +88,7 @@ void spatial_collider(const Constants& t, const Group& g, Work& w, int index) {
   const bool rotated = t.has_orientation && !(t.collider_is_body && info(c.kind).ball);
   if (rotated) {
     const Vec3 omega = load_vec3(state + at.angular * kLanes);
-    Quat q = load_quat(state + at.orientation * kLanes);
-    if (looks_ahead(t, w)) q = turned(q, half_turn(t, omega));
-    r = matrix(q);
+    r = matrix(orientation_ahead(t, w, load_quat(state + at.orientation * kLanes), omega));
     if (!t.collider_is_body) {
       p = p + mul(r, vec3(constants.offset));
       const LaneNumber* axes = constants.rotation;
@@ -117,8 +115,7 @@ void planar_collider(const Constants& t, const Group& g, Work& w, int index) {
   const bool rotated = t.has_orientation && !(t.collider_is_body && info(c.kind).ball);
   if (rotated) {
     const Float omega = Float::load(state + at.angular * kLanes);
-    q = load_rot2(state + at.orientation * kLanes);
-    if (looks_ahead(t, w)) q = turned(q, half_turn(t, omega));
+    q = orientation_ahead(t, w, load_rot2(state + at.orientation * kLanes), omega);
     if (!t.collider_is_body) {
       p = p + rotate(q, {constants.offset[0], constants.offset[1]});
       q = {fms(q.c, Float(constants.rotation[0]), q.s * Float(constants.rotation[1])),
@@ -151,7 +148,7 @@ void rotate_body_rows(const Constants& t, const Group& g, Work& w, bool ahead) {
     }
     if (t.inertia_kind == kernels::InertiaKind::tensor) {
       Quat q = load_quat(state + at.orientation * kLanes);
-      if (ahead) q = orientation_of_inertia(t, w, q, load_vec3(state + at.angular * kLanes));
+      if (ahead) q = orientation_ahead(t, w, q, load_vec3(state + at.angular * kLanes));
       const Mat3 r = matrix(q);
       const Sym3 s = rotate_diagonal(r, vec3(body.inv_inertia));
       store_rows4(w.body_rows, o, s.xx, s.xy, s.xz, s.yy);

@@ -40,8 +40,8 @@ struct KineticForm {
     mass = Float(Real(1)) / b.inv_mass;
     inertia = {b.inertia[0], b.inertia[1], b.inertia[2]};
     if constexpr (std::is_same_v<S, Tensor>) {
-      q = orientation_of_inertia(t, w, load_quat(state_of(t, g, body, kState<S>.orientation)),
-                                 load_vec3(state_of(t, g, body, kState<S>.angular)));
+      q = orientation_ahead(t, w, load_quat(state_of(t, g, body, kState<S>.orientation)),
+                            load_vec3(state_of(t, g, body, kState<S>.angular)));
     }
   }
   MW_INLINE Velocity<S> own(Velocity<S> a) const {

@@ -22,7 +22,7 @@ inline constexpr Real kMuchFaster = Real(0.3);
 // fastest, that is left to the next step.
 inline constexpr Real kImpactTolerance = sizeof(Real) == 4 ? Real(2e-6) : Real(1e-12);
 
-// Where a point is one of an impact: one that only bodies which turn come to has met nothing yet.
+// Where a point can be one of an impact: a far point has met nothing, unless the substeps say so.
 template <class S, int N>
 MW_INLINE Mask meets(const ContactBlock<S, N>& s, const Bounce<S, N>& bounce, int i) {
   const Float zero(Real(0));

@@ -4,7 +4,9 @@
 // leaves its tangent by r a^2 / 2 at the step's end; of the tangent half way, by r a^2 / 8 at both
 // ends. What comes down next is found better, too, and the inverse inertia is that of the middle.
 // Separations are taken back to the step's start along their rows. Bodies that turn little stay as
-// they are: at rest nothing changes and nothing is paid for it.
+// they are: at rest nothing changes and nothing is paid for it. So do those of plans with joints,
+// whose rows turn with the substeps: ahead of them, wheels of car3d brake (32.9 m in 10 s, where
+// short steps say 34.7, against 35.0).
 #pragma once
 
 #include "kernels/work/constants.hpp"
@@ -13,11 +15,13 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr Real kLeastTurn = Real(0.02);  // rad in half a step, below it none
-inline constexpr Real kMostTurn = Real(0.5);    // rad; who spins faster is turned by that
+inline constexpr Real kMostTurn = Real(0.5);    // rad; what spins faster is turned by that
 
-// Whether contacts of this step are found ahead. Who asks for the contacts of now gets those.
+// Whether contacts of this step are found ahead. Contacts that are recorded for the user are those
+// of now, and so are those of robots.
 MW_INLINE bool looks_ahead(const Constants& t, const Work& w) {
-  return t.has_orientation && t.tree.links == 0 && !(w.recorder && !w.recorder->places);
+  const bool recorded = w.recorder && !w.recorder->places;
+  return t.has_orientation && !t.has_joints && t.tree.links == 0 && !recorded;
 }
 
 // The angle that a body turns by in half a step, as rows take it; 0 in lanes that turn little.
@@ -45,9 +49,11 @@ MW_INLINE Rot2 turned(Rot2 q, Float angle) {
   return any(turns) ? select(turns, rotate_by(q, angle), q) : q;
 }
 
-// Inverse inertias are those of the middle, too, but on joints, which turn their rows themselves.
-MW_INLINE Quat orientation_of_inertia(const Constants& t, const Work& w, Quat q, Vec3 spin) {
-  return t.has_joints || !looks_ahead(t, w) ? q : turned(q, half_turn(t, spin));
+// The orientation that shapes and inverse inertias of this step have.
+template <class Orientation, class Spin>
+MW_INLINE Orientation orientation_ahead(const Constants& t, const Work& w, Orientation q,
+                                        Spin spin) {
+  return looks_ahead(t, w) ? turned(q, half_turn(t, spin)) : q;
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -10,7 +10,8 @@ void broad_phase(const Constants& t, const Group& g, kernels::Scratch* scratch);
 kernels::Layout choose_layout(const Constants& t, const Group& g, kernels::Scratch* scratch,
                               kernels::Layout wish);
 
-// Inverse inertias in world axes and centres of mass, for the current orientations.
+// Inverse inertias in world axes and centres of mass, for the current orientations, or for those
+// that the contacts of a step have (half_turn.hpp).
 void rotate_body_rows(const Constants& t, const Group& g, Work& w, bool ahead);
 void sort_and_sweep(const Constants& t, Work& w);
 void find_sparse_pairs(const Constants& t, const Group& g, Work& w);
