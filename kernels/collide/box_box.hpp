@@ -73,7 +73,7 @@ MW_INLINE void clip_face(Vec3 c, Vec3 e1, Vec3 e2, Float half_x, Float half_y, C
 
 struct KeptPoints {
   Float x[4], y[4], z[4];
-  Mask valid[4];
+  Mask valid[4], guard[4];
 };
 
 // How far beyond the limit points are kept, in the size of the smaller face, and what they count
@@ -137,6 +137,7 @@ MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out
   out.valid[2] = left_z < beyond;
   out.x[3] = right_x + x0, out.y[3] = right_y + y0, out.z[3] = right_z;
   out.valid[3] = right_z < beyond;
+  for (int i = 0; i < 4; ++i) out.guard[i] = out.valid[i] & (limit <= out.z[i]);
 }
 
 MW_INLINE BoxPose select(Mask m, const BoxPose& a, const BoxPose& b) {
@@ -207,7 +208,7 @@ MW_INLINE void edge_contact(const BoxPose& a, const BoxPose& b, Vec3 d, Float ax
   for (int k = 0; k < 4; ++k) {
     m.feature_x[k] = select(use, zero, m.feature_x[k]);
     m.feature_y[k] = select(use, zero, m.feature_y[k]);
-    if (k > 0) m.valid[k] = m.valid[k] & !use;
+    if (k > 0) m.valid[k] = m.valid[k] & !use, m.guard[k] = m.guard[k] & !use;
   }
 }
 
@@ -255,6 +256,7 @@ struct BoxBox {
       m.feature_x[i] = x;
       m.feature_y[i] = y;
       m.valid[i] = kept.valid[i];
+      m.guard[i] = kept.guard[i];
     }
     m.code = fma(axis, Real(8), other.code);
     m.match_distance2 = match_distance2(min(f.half_u, f.half_v));

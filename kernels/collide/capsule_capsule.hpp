@@ -1,11 +1,11 @@
 // Capsule against capsule in space: one point, between the nearest places of the two axes, or two
 // where the axes are parallel within kParallel2 and lie side by side: at the ends of the stretch
-// that they share. Those may follow where they are less parallel, too (stretch.hpp). Points are
+// that they share. Where they are less parallel those may be guarded (side_guards.hpp). Points are
 // told apart by their place along A's axis.
 #pragma once
 
 #include "kernels/collide/capsule_pairs.hpp"
-#include "kernels/collide/stretch.hpp"
+#include "kernels/collide/side_guards.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -62,7 +62,7 @@ struct CapsuleCapsule {
     if (table.tree.links == 0) {
       const SideLine side_a{a.axis, a.half, a.radius, m.normal * a.radius};
       const SideLine side_b{b.axis, b.half, b.radius, m.normal * -b.radius};
-      put_stretch_ends(side_a, side_b, d, s, !beside, m);
+      put_side_guards(side_a, side_b, d, s, !beside, m);
     }
     m.code = select(beside, one, zero);
     // A single point may wander along the axis as the bodies roll over each other.

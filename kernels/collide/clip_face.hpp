@@ -117,7 +117,7 @@ MW_INLINE void put_kept(const KeptPoints& kept, const Frame& f, const FacePlane&
     m.feature_x[i] = select(use, kept.x[i], m.feature_x[i]);
     m.feature_y[i] = select(use, kept.y[i], m.feature_y[i]);
     m.valid[i] = (use & kept.valid[i]) | ((!use) & m.valid[i]);
-    m.guard[i] = m.guard[i] & !use;
+    m.guard[i] = (use & kept.guard[i]) | (m.guard[i] & !use);
   }
 }
 
@@ -128,6 +128,11 @@ struct FacePair {
   Outline outline, incident;
   Float extent2;
 };
+// What looks along n of `ref`, and against it of `inc`.
+inline void find_features(const ConvexShape& ref, const ConvexShape& inc, Vec3 n, FacePair& p) {
+  feature_along(ref, n, Real(0), p.face);
+  feature_along(inc, -n, Real(1e-5), p.other);
+}
 inline void bring_together(const ConvexShape& ref, const ConvexShape& inc, Vec3 d_r, bool oblique,
                            FacePair& p) {
   bring(p.frame, ref, p.face, {Real(0), Real(0), Real(0)}, p.outline);
@@ -158,12 +163,11 @@ inline void collect_points(const FacePair& p, Clipped& clipped) {
 inline Mask clip_on_face(const Constants& t, const ConvexShape& ref, const ConvexShape& inc,
                          const ConvexAxis& axis, Vec3 d, bool flip, Mask use,
                          Manifold<Isotropic, 4>& m) {
-  const Vec3 n = flip ? -axis.face_normal : axis.face_normal, d_r = flip ? -d : d;
+  const Vec3 n = flip ? -axis.face_normal : axis.face_normal;
   FacePair p;
-  feature_along(ref, n, Real(0), p.face);
-  feature_along(inc, -n, Real(1e-5), p.other);
+  find_features(ref, inc, n, p);
   p.frame = frame_of(n, p.face.along, dot(n, p.face.corner[0]));
-  bring_together(ref, inc, d_r, false, p);
+  bring_together(ref, inc, flip ? -d : d, false, p);
   Clipped clipped;
   collect_points(p, clipped);
   add_deepest(p.outline, true, p.frame.local(flip ? axis.on_a - d : axis.on_b), axis.touch,
@@ -187,26 +191,23 @@ inline Mask clip_on_face(const Constants& t, const ConvexShape& ref, const Conve
   return good;
 }
 
-// Where an edge or a rim touches: what the shapes turn on to next. Features of both that look along
-// the normal are clipped as above, and heights are those along the normal between the two; the
-// place that the search found is the deepest and stays as it is. `use`: lanes in which `ref` has
-// the face that looks along the normal more.
+// Guards (manifold.hpp) where an edge or a rim touches at one place, which the search found.
+// Features of both that look along the normal are clipped as above, and heights are those along the
+// normal between the two. `use`: lanes in which `ref` has the face that looks along it more.
 inline constexpr Real kSteepFace = Real(0.2);  // the cosine to the normal, at least
 inline constexpr Real kOffFace = Real(0.01);   // of the face's size
-inline constexpr Real kObliqueCode = Real(1000);
 
-inline void clip_along_normal(const Constants& t, const ConvexShape& ref, const ConvexShape& inc,
-                              const ConvexAxis& axis, Vec3 d, bool flip, Mask use,
-                              Manifold<Isotropic, 4>& m) {
-  const Vec3 n = flip ? -axis.normal : axis.normal, d_r = flip ? -d : d;
+inline void clip_guards(const Constants& t, const ConvexShape& ref, const ConvexShape& inc,
+                        const ConvexAxis& axis, Vec3 d, bool flip, Mask use,
+                        Manifold<Isotropic, 4>& m) {
+  const Vec3 n = flip ? -axis.normal : axis.normal;
   FacePair p;
-  feature_along(ref, n, Real(0), p.face);
-  feature_along(inc, -n, Real(1e-5), p.other);
+  find_features(ref, inc, n, p);
   const Float cosine = dot(p.face.normal, n), one(Real(1));
   use = use & p.face.face & (Float(kSteepFace) < cosine);
   if (!any(use)) return;
   p.frame = frame_of(n, p.face.along, dot(n, flip ? axis.on_b - d : axis.on_a));
-  bring_together(ref, inc, d_r, true, p);
+  bring_together(ref, inc, flip ? -d : d, true, p);
   const Float inv = one / select(use, cosine, one);
   const Vec3 corner = p.outline.corner[0];
   FacePlane plane{-(dot(p.frame.u, p.face.normal) * inv), -(dot(p.frame.v, p.face.normal) * inv),
@@ -228,14 +229,6 @@ inline void clip_along_normal(const Constants& t, const ConvexShape& ref, const 
   put_kept(kept, p.frame, plane, inc.radius, flip ? mask_from_bits(kAllLanes) : mask_from_bits(0),
            d, good, 1, m);
   for (int k = 1; k < 4; ++k) m.guard[k] = m.guard[k] | (good & m.valid[k]);
-  m.feature_x[0] = select(good, found.x, m.feature_x[0]);
-  m.feature_y[0] = select(good, found.y, m.feature_y[0]);
-  m.tangent = select(good, p.frame.u, m.tangent);
-  const Float side = flip ? Real(1) : Real(0);
-  m.code = select(
-      good, fma(fma(p.face.code + Float(kObliqueCode), Real(2), side), Real(128), p.other.code),
-      m.code);
-  m.match_distance2 = select(good, match_distance2(size * Float(Real(0.7))), m.match_distance2);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -47,9 +47,9 @@ void put_lines(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axi
   m.match_distance2 = select(beside, match_distance2(min(a.half.z, b.half.z)), m.match_distance2);
 }
 
-// Where sides are less parallel than that.
-void put_less_parallel(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axis, Vec3 d,
-                       Mask use, Manifold<Isotropic, 4>& m) {
+// Guards where sides are less parallel than that.
+void guard_sides(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axis, Vec3 d,
+                 Mask use, Manifold<Isotropic, 4>& m) {
   const auto side_of = [&](const ConvexShape& s, Real way, Float along) {
     const Float radius = s.half.x + s.radius;
     const Vec3 out = fnma(s.r.z, along, axis.normal);
@@ -59,8 +59,7 @@ void put_less_parallel(const ConvexShape& a, const ConvexShape& b, const ConvexA
   const Float along_a = dot(axis.normal, a.r.z), along_b = dot(axis.normal, b.r.z);
   const Mask sides = use & (max(abs(along_a), abs(along_b)) < Float(kSideOn));
   const Float nearest = dot(a.r.z, axis.on_a);
-  put_stretch_ends(side_of(a, 1, along_a), side_of(b, -1, along_b), d, nearest, sides, m);
-  m.feature_x[0] = select(sides & (m.valid[1] | m.valid[2]), nearest, m.feature_x[0]);
+  put_side_guards(side_of(a, 1, along_a), side_of(b, -1, along_b), d, nearest, sides, m);
 }
 
 // One point, where the search ended; everywhere to begin with.
@@ -85,8 +84,8 @@ void put_found(const ConvexShape& a, const ConvexShape& b, const ConvexAxis& axi
   m.match_distance2 = square(a.half.x + a.half.y + a.half.z);
 }
 
-// Where no face's normal is the best, nor sides have more points than one.
-void put_oblique(const Constants& t, const ConvexShape& a, const ConvexShape& b,
+// Guards where no face's normal is the best, and no sides lie beside each other.
+void guard_edges(const Constants& t, const ConvexShape& a, const ConvexShape& b,
                  const ConvexAxis& axis, Vec3 d, Mask use, Manifold<Isotropic, 4>& m) {
   use = use & !(m.valid[1] | m.valid[2]);
   if (!any(use)) return;
@@ -97,8 +96,8 @@ void put_oblique(const Constants& t, const ConvexShape& a, const ConvexShape& b,
   const Mask on_a = use & (select(of_b.face, -dot(of_b.normal, axis.normal), none) <=
                            select(of_a.face, dot(of_a.normal, axis.normal), none));
   const Mask on_b = use & !on_a;
-  if (any(on_a)) clip_along_normal(t, a, b, axis, d, false, on_a, m);
-  if (any(on_b)) clip_along_normal(t, b, a, axis, d, true, on_b, m);
+  if (any(on_a)) clip_guards(t, a, b, axis, d, false, on_a, m);
+  if (any(on_b)) clip_guards(t, b, a, axis, d, true, on_b, m);
 }
 
 // Leaves an axis only normals that the tile's surface has; its own where there is another. The
@@ -138,7 +137,7 @@ void collide_convex_pair(const Constants& t, const ConvexShape& a, const Tile* t
   if (!any(active)) return;
   if (is_line(a.kind) && is_line(b.kind)) {
     put_lines(a, b, axis, d, active, m);
-    put_less_parallel(a, b, axis, d, active & axis.touch & !m.valid[1], m);
+    if (t.tree.links == 0) guard_sides(a, b, axis, d, active & axis.touch & !m.valid[1], m);
   }
   // Faces win near ties. What is round around its core shows where the core is apart: there only
   // rounding is a tie.
@@ -151,7 +150,7 @@ void collide_convex_pair(const Constants& t, const ConvexShape& a, const Tile* t
   const Mask worse_apart = best_apart + tie < other;
   Mask worse = fma(face, Real(0.95), t.face_bias) < other;
   worse = round ? (worse & !apart) | (apart & worse_apart) : worse & (worse_apart | !apart);
-  if (!tile) put_oblique(t, a, b, axis, d, active & worse & axis.touch, m);
+  if (!tile && t.tree.links == 0) guard_edges(t, a, b, axis, d, active & worse & axis.touch, m);
   const Mask clipped = active & !worse;
   if (!any(clipped)) return;
   const Mask on_b = clipped & axis.face_of_b, on_a = clipped & !axis.face_of_b;

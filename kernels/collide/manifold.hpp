@@ -16,8 +16,9 @@ struct Manifold {
   Float separation[N];
   Float feature_x[N], feature_y[N];
   Mask valid[N];
-  // Points that touch nothing yet, but are the next to when the bodies turn about the others: rows
-  // without friction, which nobody is told of. Near enough for that, not exact.
+  // Points that touch nothing yet, but are the next to when the bodies turn about the others: near
+  // enough for normal rows, not exact. Friction acts at the middle of the other points, and what is
+  // told and carried over to the next step is theirs.
   Mask guard[N] = {};
   Float code;
   Float match_distance2;  // m^2: stored impulses are carried to points closer than this

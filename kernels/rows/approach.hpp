@@ -129,7 +129,7 @@ struct Approach {
 };
 
 // A manifold that has a close point keeps the others, too: pushed at the one, bodies turn on to
-// them.
+// them. Not guards against fixed shapes, which would brake what rolls on them.
 template <bool kDense, class S, int N, class A>
 MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& w,
                                 const RowBodies& s, const Sides<S, A>& sides,
@@ -155,6 +155,7 @@ MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& 
     const Float end_speed = fma(dt, pull.relative, v);
     const Float travel = dt * min(min(v, end_speed), zero) * speculation;
     m.valid[i] = m.valid[i] & active;
+    if constexpr (!A::kMoves) m.valid[i] = m.valid[i] & !m.guard[i];
     out.close[i] = (m.valid[i] & !m.guard[i]) & (m.separation[i] + travel < margin);
     out.near = out.near | out.close[i];
     const Float fall = dt * min(min(v, fma(dt, pull.closing, v)), zero) * speculation;

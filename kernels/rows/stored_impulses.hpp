@@ -62,7 +62,8 @@ MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
   out.normal[0] = select(m.valid[0], out.normal[0], zero);
 }
 
-// Points are told apart by their place on the reference feature.
+// Points are told apart by their place on the reference feature. Guards have none: they begin
+// without an impulse, and nothing is carried from them.
 template <class S, int N>
 MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
                               const Manifold<GeometryOf<S>, N>& m, ContactBlock<S, N>& s,
@@ -91,10 +92,10 @@ MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
       x = select(distance2 < nearest, old[j], x);
       nearest = min(distance2, nearest);
     }
-    out.normal[i] = select(same & m.valid[i], x, zero);
+    out.normal[i] = select(same & m.valid[i] & !m.guard[i], x, zero);
     sum = sum + out.normal[i];
-    m.feature_x[i].store(s.feature_x[i]);
-    m.feature_y[i].store(s.feature_y[i]);
+    select(m.guard[i], m.feature_x[0], m.feature_x[i]).store(s.feature_x[i]);
+    select(m.guard[i], m.feature_y[0], m.feature_y[i]).store(s.feature_y[i]);
   }
   const Mask carried = zero < sum;
   for (Float& impulse : out.tangent) impulse = select(carried, impulse, zero);

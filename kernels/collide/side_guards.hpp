@@ -1,5 +1,4 @@
-// The ends of the stretch along which two sides lie beside each other, as further points of a
-// manifold that has the place where they are nearest.
+// Guards (manifold.hpp) at the ends of the stretch along which two sides lie beside each other.
 //
 // Two cylinders or capsules whose axes are within some 60 degrees touch at one point. Pushed there
 // they turn, and before the next step one may come down with its other end, by as much as it turns.
@@ -25,8 +24,8 @@ struct SideLine {
 // `nearest`: the place on A's axis of the manifold's first point; d: from A to B. Writes points 1
 // and 2 in lanes of `use`.
 template <class S>
-MW_INLINE void put_stretch_ends(const SideLine& a, const SideLine& b, Vec3 d, Float nearest,
-                                Mask use, Manifold<S, 4>& m) {
+MW_INLINE void put_side_guards(const SideLine& a, const SideLine& b, Vec3 d, Float nearest,
+                               Mask use, Manifold<S, 4>& m) {
   const Float zero(Real(0)), half(Real(0.5));
   const Float cosine = dot(a.axis, b.axis), da = dot(a.axis, d), db = dot(b.axis, d);
   const Float low = max(-a.half, da - b.half), high = min(a.half, da + b.half);
