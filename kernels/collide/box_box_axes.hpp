@@ -73,7 +73,7 @@ MW_INLINE BoxAxes find_box_axes(const Constants& t, const BoxPose& a, const BoxP
   const Float edge = copysign(sqrt(abs(best_s2) / best_l2), best_s2);
   // In overlap an edge must be clearly shallower than the face; apart it must be truly farther.
   const Mask use_edge =
-      (fma(face, Real(0.95), bias) < edge) & ((edge < zero) | (max(face, zero) < edge));
+      (fma(face, Real(0.95), bias) < edge) & ((edge <= zero) | (max(face, zero) < edge));
   return {select(use_edge, edge, face), select(use_edge, axis_e, axis)};
 }
 

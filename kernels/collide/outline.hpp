@@ -2,7 +2,7 @@
 // clipped from (collide_convex.cpp).
 #pragma once
 
-#include "kernels/collide/box_box.hpp"
+#include "kernels/collide/box_faces.hpp"
 #include "kernels/collide/convex.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
