@@ -183,6 +183,7 @@ void add_compare(CLI::App& app, AllOptions& all, int& code) {
       ->check(CLI::PositiveNumber)
       ->type_name("X")
       ->capture_default_str();
+  command->add_flag("--no-speed", all.compare.no_speed, "leave out how fast both are");
   add_json_option(*command, all.compare.job);
   command->footer(
       "Examples:\n"

@@ -86,7 +86,8 @@ struct VerifyOptions {
 
 struct CompareOptions {
   JobOptions job;  // scene, mjcf, worlds, steps, seed and json of it
-  double tolerance = 1e-14;
+  double tolerance = 1e-16;
+  bool no_speed = false;
 };
 
 struct ReportOptions {

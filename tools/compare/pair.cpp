@@ -20,7 +20,8 @@ Pair::Pair(const MjcfFiles& files, const Settings& settings) : settings_(setting
         "); expected a hinge, a slide or a ball joint");
   }
   mujoco_ = mjcf::FilesAccess::mujoco_model(files);
-  set_tolerance(settings.tolerance);
+  disabled_ = mujoco_->opt.disableflags;
+  set_effort({settings.tolerance});
   // What has neither mass nor joints is part of its parent.
   int body = 0;
   for (int b = 1; b < mujoco_->nbody; ++b) {
@@ -34,20 +35,26 @@ Pair::Pair(const MjcfFiles& files, const Settings& settings) : settings_(setting
   }
 }
 
-void Pair::set_tolerance(double tolerance) {
+void Pair::set_effort(const Effort& effort) {
+  effort_ = effort;
   mjOption& option = mujoco_->opt;
-  settings_.tolerance = tolerance;
-  option.solver = mjSOL_NEWTON, option.tolerance = tolerance, option.iterations = 200;
-  option.ls_iterations = 100, option.ls_tolerance = 1e-8;
+  option.solver = mjSOL_NEWTON, option.tolerance = effort.tolerance;
+  option.iterations = effort.iterations;
+  option.ls_iterations = effort.line_search_iterations, option.ls_tolerance = 1e-8;
+  const int kept = option.disableflags & ~mjDSBL_EULERDAMP;
+  const int explicit_damping = effort.implicit_damping ? disabled_ : mjDSBL_EULERDAMP;
+  option.disableflags = kept | (explicit_damping & mjDSBL_EULERDAMP);
 }
 
 Scene Pair::scene(Precision precision) const {
   Scene scene = scene_;
   SolverOptions& solver = scene.options.solver;
   const bool doubles = precision == Precision::f64;
-  solver.tolerance = doubles ? settings_.tolerance : std::max(settings_.tolerance, 1e-7);
-  solver.iterations = 200;
-  solver.line_search_iterations = 100, solver.line_search_tolerance = doubles ? 1e-8 : 1e-6;
+  solver.tolerance = doubles ? effort_.tolerance : std::max(effort_.tolerance, 1e-7);
+  solver.iterations = effort_.iterations;
+  solver.line_search_iterations = effort_.line_search_iterations;
+  solver.implicit_damping &= effort_.implicit_damping;
+  solver.line_search_tolerance = doubles ? 1e-8 : 1e-6;
   return scene;
 }
 

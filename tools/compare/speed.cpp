@@ -15,22 +15,50 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kHeld = 5;  // steps between new controls
+constexpr int kHeld = 5;     // steps between new controls
+constexpr int kRunIn = 500;  // steps before the clock starts
 
-// Controls and velocities of all worlds, drawn before the clock starts.
+// What both sides start from, and the controls that follow, drawn before the clock starts.
 struct Inputs {
+  std::vector<double> q;               // [world][coordinate]
   std::vector<double> v;               // [world][dof]
   std::vector<std::vector<double>> u;  // [block of steps][world][control]
 };
 
-Inputs draw_inputs(const mjModel& m, std::uint64_t seed, int worlds, int steps) {
+void set_controls(Batch& batch, const std::vector<double>& u) {
+  if (!u.empty()) batch.set_controls(std::span<const double>(u));
+}
+
+std::vector<double> read_all(const Batch& batch, Field field) {
+  std::vector<double> out(batch.size(field));
+  batch.read(field, out);
+  return out;
+}
+
+Inputs draw_inputs(const mjModel& m, Batch& batch, std::uint64_t seed, int steps) {
   Random random(seed, 2);
-  Inputs inputs;
-  for (int k = 0; k < worlds * m.nv; ++k) inputs.v.push_back(random.uniform(-1, 1));
-  for (int s = 0; s < steps; s += kHeld) {
-    auto& u = inputs.u.emplace_back(static_cast<std::size_t>(worlds * m.nu));
-    for (int w = 0; w < worlds; ++w) draw_controls(m, random, u.data() + w * m.nu);
+  const auto worlds = static_cast<std::size_t>(batch.worlds());
+  std::vector<int> phases(worlds);
+  for (int& phase : phases) phase = random.integer(0, kRunIn / kHeld - 1);
+  std::vector<std::uint8_t> back(worlds);
+  std::vector<double> u(worlds * static_cast<std::size_t>(m.nu));
+  const auto draw = [&] {
+    for (std::size_t w = 0; w < worlds; ++w) {
+      draw_controls(m, random, u.data() + w * static_cast<std::size_t>(m.nu));
+    }
+  };
+  for (int block = 0; block < kRunIn / kHeld; ++block) {
+    std::transform(phases.begin(), phases.end(), back.begin(),
+                   [&](int phase) { return std::uint8_t{phase == block}; });
+    batch.reset(back);
+    draw();
+    set_controls(batch, u);
+    batch.step(kHeld);
   }
+  Inputs inputs;
+  inputs.q = read_all(batch, Field::generalized_position);
+  inputs.v = read_all(batch, Field::generalized_velocity);
+  for (int s = 0; s < steps; s += kHeld) draw(), inputs.u.push_back(u);
   return inputs;
 }
 
@@ -40,11 +68,11 @@ double since(Clock::time_point start) {
 
 void run_ours(Batch& batch, const Inputs& inputs, Speed& speed) {
   batch.reset();
+  batch.write(Field::generalized_position, std::span<const double>(inputs.q));
   batch.write(Field::generalized_velocity, std::span<const double>(inputs.v));
   const Clock::time_point start = Clock::now();
   for (int s = 0; s < speed.steps; s += kHeld) {
-    const auto& u = inputs.u[static_cast<std::size_t>(s / kHeld)];
-    if (!u.empty()) batch.set_controls(std::span<const double>(u));
+    set_controls(batch, inputs.u[static_cast<std::size_t>(s / kHeld)]);
     batch.step(std::min(kHeld, speed.steps - s));
   }
   speed.ours.push_back(speed.worlds * speed.steps / since(start));
@@ -63,6 +91,7 @@ void run_mujoco(const mjModel& m, mjData& d, const Inputs& inputs, Speed& speed)
   double seconds = 0;
   for (int w = 0; w < speed.mujoco_worlds; ++w) {
     mj_resetData(&m, &d);
+    std::copy_n(inputs.q.begin() + static_cast<std::ptrdiff_t>(w) * m.nq, m.nq, d.qpos);
     std::copy_n(inputs.v.begin() + static_cast<std::ptrdiff_t>(w) * m.nv, m.nv, d.qvel);
     const Clock::time_point start = Clock::now();
     for (int s = 0; s < speed.steps; ++s) {
@@ -109,6 +138,7 @@ double run_mujoco_batch(mjBatch& batch, const Inputs& inputs, const Speed& speed
                   to + static_cast<std::ptrdiff_t>(w) * mjb_nstate(&batch));
     }
   };
+  put(mjSTATE_QPOS, inputs.q);
   put(mjSTATE_QVEL, inputs.v);
   const Clock::time_point start = Clock::now();
   for (int s = 0; s < speed.steps; s += kHeld) {
@@ -120,15 +150,14 @@ double run_mujoco_batch(mjBatch& batch, const Inputs& inputs, const Speed& speed
 
 }  // namespace
 
-Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_worlds, int steps,
-                    int rounds) {
+Speed compare_speed(Pair& pair, const Kernels& kernels, const Effort& effort, int worlds,
+                    int mujoco_worlds, int steps, int rounds) {
   Speed speed;
   speed.kernels = kernels, speed.worlds = worlds, speed.steps = steps, speed.rounds = rounds;
   speed.mujoco_worlds = std::min(mujoco_worlds, worlds);
-  // What float32 reaches, too.
-  speed.tolerance = std::max(pair.settings().tolerance, 1e-6);
-  const double kept = pair.settings().tolerance;
-  pair.set_tolerance(speed.tolerance);
+  speed.effort = effort;
+  const Effort kept = pair.effort();
+  pair.set_effort(effort);
   Batch batch(compile(pair.scene(kernels.precision)), options_of(kernels, worlds));
   const mjcf::DataPtr data = pair.make_data();
   // With an mjData for each world, and with one for all: which is faster depends on the model.
@@ -137,7 +166,7 @@ Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_w
     batches[persistent] = make_mujoco_batch(pair.mujoco(), speed.mujoco_worlds, persistent);
   }
   std::vector<double> by_batch[2];
-  const Inputs inputs = draw_inputs(pair.mujoco(), pair.settings().seed, worlds, steps);
+  const Inputs inputs = draw_inputs(pair.mujoco(), batch, pair.settings().seed, steps);
   for (int round = 0; round < rounds; ++round) {
     run_ours(batch, inputs, speed);
     run_mujoco(pair.mujoco(), *data, inputs, speed);
@@ -148,7 +177,7 @@ Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_w
   speed.mujoco_batch = *std::max_element(by_batch, by_batch + 2, [](const auto& a, const auto& b) {
     return tools::median(a) < tools::median(b);
   });
-  pair.set_tolerance(kept);
+  pair.set_effort(kept);
   return speed;
 }
 

@@ -11,7 +11,7 @@ namespace manyworlds::compare {
 struct Speed {
   Kernels kernels;
   int worlds = 0, mujoco_worlds = 0, steps = 0, rounds = 0;
-  double tolerance = 0;  // of both
+  Effort effort;  // of both
   // World-steps/s of each round: ours, MuJoCo's in a loop over worlds and by its batches, those
   // with an mjData for each world or with one for all, whichever are faster.
   std::vector<double> ours, mujoco, mujoco_batch;
@@ -20,10 +20,10 @@ struct Speed {
   bool same_hash = true;                     // over all rounds
 };
 
-// From the reference pose at random velocities; controls change every 5 steps. MuJoCo steps
-// `mujoco_worlds` of the worlds: one after the other in a plain loop of mj_step, and as a batch on
-// one thread (mjbatch.h).
-Speed compare_speed(Pair& pair, const Kernels& kernels, int worlds, int mujoco_worlds, int steps,
-                    int rounds);
+// From states that worlds reach here in 500 steps, in which each is put back to the reference pose
+// once, at random; controls change every 5 steps. MuJoCo steps `mujoco_worlds` of the worlds: one
+// after the other in a plain loop of mj_step, and as a batch on one thread (mjbatch.h).
+Speed compare_speed(Pair& pair, const Kernels& kernels, const Effort& effort, int worlds,
+                    int mujoco_worlds, int steps, int rounds);
 
 }  // namespace manyworlds::compare
