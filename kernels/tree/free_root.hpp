@@ -1,7 +1,7 @@
 // The root of a tree that moves freely.
 #pragma once
 
-#include "kernels/tree/articulated_inertia.hpp"
+#include "kernels/lane/articulated_inertia.hpp"
 #include "kernels/tree/kinematics.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernels/lane/elementary.hpp"
-#include "kernels/tree/spatial.hpp"
+#include "kernels/lane/spatial.hpp"
 #include "kernels/work/constants.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {

@@ -2,7 +2,7 @@
 // (Featherstone 2008, 7.1).
 #pragma once
 
-#include "kernels/tree/spatial.hpp"
+#include "kernels/lane/spatial.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
