@@ -67,6 +67,10 @@ kernels::Kernels<Real> make_table() {
   auto& spatial = out.joints[static_cast<int>(InertiaKind::tensor)];
   fill_joints_planar(flat[0], flat[1]);
   fill_joints_tensor(spatial[0], spatial[1]);
+  auto& flat_trees = out.direct[static_cast<int>(InertiaKind::planar)];
+  auto& trees = out.direct[static_cast<int>(InertiaKind::tensor)];
+  fill_direct_planar(flat_trees[0], flat_trees[1]);
+  fill_direct_tensor(trees[0], trees[1]);
   out.free_motion[static_cast<int>(InertiaKind::planar)] = free_motion<Planar>;
   out.free_motion[static_cast<int>(InertiaKind::isotropic)] = free_motion<Isotropic>;
   out.free_motion[static_cast<int>(InertiaKind::tensor)] = free_motion<Tensor>;

@@ -2,8 +2,9 @@
 #include "kernels/work/work.hpp"
 #include <initializer_list>
 
+#include "kernels/lane/planar_inertia.hpp"
+#include "kernels/lane/spatial.hpp"
 #include "kernels/rows/contact_block.hpp"
-#include "kernels/tree/spatial.hpp"
 #include "kernels/work/solver_tables.hpp"
 #include "kernels/work/stages.hpp"
 
@@ -166,6 +167,20 @@ void carve_tree(const Constants& t, TreeWork& w, Carver& c) {
   }
 }
 
+void carve_joint_trees(const Constants& t, DirectWork& w, Carver& c) {
+  const bool planar = t.dimension == kernels::Dimension::planar;
+  const auto take = [&](Real*& to, int rows) {
+    c.take(to, static_cast<std::size_t>(t.bodies * rows * kLanes));
+  };
+  const int rotary = planar ? 1 : 6, twist = planar ? kPlanarTwistRows : kTwistRows;
+  take(w.rotary, rotary), take(w.stiffened, rotary), take(w.stiffness, 2);
+  take(w.inertia, planar ? kPlanarInertiaRows : kArticulatedRows);
+  take(w.given, twist), take(w.load, twist), take(w.twist, twist);
+  const std::size_t bytes = planar ? edge_bytes(Planar{}) : edge_bytes(Tensor{});
+  c.take(w.edges, static_cast<std::size_t>(t.joint_trees.edges) * bytes);
+  c.take(w.held, static_cast<std::size_t>(t.bodies));
+}
+
 void carve(const Constants& t, Work& w, Carver& c) {
   const int lanes = kLanes;
   const auto count = [](int n) { return static_cast<std::size_t>(n); };
@@ -206,6 +221,7 @@ void carve(const Constants& t, Work& w, Carver& c) {
     c.take(w.loads, count(t.breakable * row * lanes));
     if (t.breakable > 0) c.take(w.reached, count(t.bodies));
   }
+  if (t.joint_trees.edges > 0) carve_joint_trees(t, w.direct, c);
   if (t.solver.kind == kernels::Solver::nncg) carve_search(t, w.search, c);
   if (t.has_sleep || t.has_restitution) c.take(w.parent, count(t.bodies));
   if (t.has_sleep) {

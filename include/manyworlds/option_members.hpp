@@ -54,7 +54,8 @@ template <>
 struct Members<JointOptions> {
   static constexpr const char* name = "JointOptions";
   static void visit(auto& value, auto&& visit) {
-    auto& [frequency, damping_ratio, pull_speed] = value;
+    auto& [method, frequency, damping_ratio, pull_speed] = value;
+    visit("method", method, counted_if(method.has_value(), "swept over by default"));
     visit("frequency", frequency), visit("damping_ratio", damping_ratio);
     visit("pull_speed", pull_speed);
   }

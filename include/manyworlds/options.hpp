@@ -67,9 +67,19 @@ struct ContactOptions {
   bool cast_between_moving = false;  // and at moving ones; for bullets
 };
 
+// How joints are solved: one after the other in every substep (sweep), or those of a tree at once
+// (tree), in which heavy loads on light bodies hold as well as light ones. Trees are what hangs
+// together by ball joints without limits, hinges, sliders, fixed and wheel joints, without a loop,
+// on the world, on a kinematic body or on nothing; other joints are swept over. Of tgs_soft.
+enum class JointMethod { sweep, tree };
+const char* to_string(JointMethod method);
+
 // What joints hold together is pulled back as by a spring and damper. Not capped: stiffer than the
 // default may ring.
 struct JointOptions {
+  // Default: tree where all joints are of trees, nothing can touch, and sweeps would take more than
+  // four substeps or a rotation is held; else sweep.
+  std::optional<JointMethod> method = {};
   // Hz; default a quarter per substep, and hard rows in sequential_impulse, sor and nncg.
   std::optional<double> frequency = {};
   double damping_ratio = 2;

@@ -78,6 +78,7 @@ struct PlanReport {
     std::string option = {};  // its path, "substeps"
     double value = 0;         // in the unit of the option
     std::string why = {};
+    std::string name = {};  // of a value that has one, "tree"
   };
   std::vector<Choice> choices = {};
   std::vector<Item> features = {};

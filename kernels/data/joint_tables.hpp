@@ -67,15 +67,38 @@ struct JointPart {
   std::int32_t body_a, body_b;  // state bodies; SceneConstants::bodies: the world
   bool equality;                // a row held at its rest
   bool drive, low, high;        // what else a row has
+  bool springy;                 // its drive has a spring
   bool soft_limit;              // its limits are springs
   bool spring;                  // a point that is drawn with limited force
   bool force;                   // nothing but a spring, which the integrator of the plan evaluates
+  bool direct;                  // of a tree that is solved at once, not swept over
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
 // May its rows give energy to the bodies?
 static inline constexpr bool gives_energy(const JointPart& p) {
   return !p.force && (p.drive || p.spring || p.soft_limit);
 }
+
+// The joint that a body of a tree hangs on (kernels/direct/), by its parts.
+struct TreeEdge {
+  std::int32_t child, parent;  // state bodies
+  bool given;                  // the parent is the world, SceneConstants::bodies, or kinematic
+  bool reversed;               // the child is A
+  bool slides;                 // along x of A: `hold` is a line, else a point
+  bool ball;                   // rotates freely in space
+  std::int32_t hold;           // point or line
+  std::int32_t turn;           // lock or swing; -1: of a ball joint, and of a hinge in the plane
+  bool locked;                 // `turn` is a lock
+  std::int32_t slide, angle;   // rows along x and about z that drive or limit it; -1: none
+};
+// Edges follow those of their parents.
+struct JointTrees {
+  std::int32_t edges, roots, bodies;
+  std::int32_t parts;  // that edges are made of
+  const TreeEdge* edge;
+  const std::int32_t* root;  // bodies that hang on nothing
+  const std::int32_t* body;  // all that trees move
+};
 
 // The maximum load of a joint that may break. Its parts follow one another.
 template <class T>

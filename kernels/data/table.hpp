@@ -72,6 +72,17 @@ struct JointSolver {
   Stage<Real> gap_energy;
 };
 
+// Trees of joints that are solved at once (kernels/direct/), for one inertia kind and layout. Each
+// solve leaves velocities with which the joints close what is apart (bias) or hold what they have.
+template <class Real>
+struct DirectSolver {
+  Stage<Real> begin;       // after JointSolver::prepare
+  Stage<Real> bias;        // the first of a substep
+  Stage<Real> bias_again;  // after contacts
+  Stage<Real> relax;       // where the substep has taken the bodies
+  Stage<Real> relax_again;
+};
+
 // The audit of energy (kernels/observe/audit.hpp).
 template <class Real>
 struct EnergyAudit {
@@ -129,7 +140,9 @@ struct Kernels {
   SolverTable<Real> solver[kInertiaKinds][2][2];  // [inertia][friction][layout: dense, rows]
   SweepTable<Real> sweeps[kInertiaKinds][2];      // [inertia][layout: dense, rows]
   ImpulseTable<Real> impulses[kInertiaKinds];
-  JointSolver<Real> joints[kInertiaKinds][2];  // [inertia: planar, tensor][layout: dense, rows]
+  // [inertia: planar, tensor][layout: dense, rows]
+  JointSolver<Real> joints[kInertiaKinds][2];
+  DirectSolver<Real> direct[kInertiaKinds][2];
   // Plans without contacts and joints: n whole steps of free motion.
   void (*free_motion[kInertiaKinds])(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*,
                                      int steps);

@@ -36,7 +36,7 @@ MW_INLINE Float coupling(const PartBodies<S>& s, typename S::Vec arm_a, typename
 }
 
 template <class S, bool kDense, bool kMoved>
-MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, LineRows<S>& s) {
+MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, LineRows<S>& s) {
   using Vec = typename S::Vec;
   auto axis = load_as<Vec>(s.start_axis[0]);
   const MovedAnchors<S> now = anchors_now<S, kDense, kMoved>(w, s, axis);
@@ -46,11 +46,13 @@ MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, LineRows<S
     const Vec d{-axis.y, axis.x};
     store(s.direction[0][0], d);
     dot(d, gap).store(s.error[0]);
+    if (kMoved && part.direct) return;
     inverse_or_zero(coupling<S>(s, reach, arm_b, d, d)).store(s.mass[0]);
   } else {
     const Vec d = any_tangent(axis), e = cross(axis, d);
     store(s.direction[0][0], d), store(s.direction[1][0], e);
     dot(d, gap).store(s.error[0]), dot(e, gap).store(s.error[1]);
+    if (kMoved && part.direct) return;
     store(s.mass[0],
           inverse(Sym2{coupling<S>(s, reach, arm_b, d, d), coupling<S>(s, reach, arm_b, d, e),
                        coupling<S>(s, reach, arm_b, e, e)}));

@@ -20,12 +20,6 @@ template <>
 struct PointMass<Planar> {
   using Type = Sym2;
 };
-MW_INLINE void store(Real* p, const Sym2& a) {
-  a.xx.store(p), a.xy.store(p + kLanes), a.yy.store(p + 2 * kLanes);
-}
-MW_INLINE void load(const Real* p, Sym2& a) {
-  a = {Float::load(p), Float::load(p + kLanes), Float::load(p + 2 * kLanes)};
-}
 // (1 + rho) k + gamma E
 MW_INLINE Sym2 soften(const Sym2& k, Float rho, Float gamma) {
   return {fma(k.xx, rho, k.xx) + gamma, fma(k.xy, rho, k.xy), fma(k.yy, rho, k.yy) + gamma};
@@ -56,6 +50,7 @@ MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& consta
                        PointRows<S>& s) {
   const auto now = anchors_now<S, kDense, kMoved>(w, s);
   store(s.arm_a[0], now.arm_a), store(s.arm_b[0], now.arm_b), store(s.gap[0], now.gap);
+  if (kMoved && part.direct) return;
   typename PointMass<S>::Type k{};
   add_point_mass(s.a, now.arm_a, k), add_point_mass(s.b, now.arm_b, k);
   if (part.spring) {

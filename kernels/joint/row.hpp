@@ -73,6 +73,19 @@ MW_INLINE Float soften_row(const kernels::RowSoftness<LaneNumber>& soft, Float k
   return soften_row(soft, k, fma(error, soft.bias_rate, speed), before);
 }
 
+// What a drive is to reach, by its controls where it has some.
+struct DriveTarget {
+  Float position, speed;
+};
+MW_INLINE DriveTarget target_of(const Group& g, const JointPart& part, const Joint& constants) {
+  DriveTarget out{constants.target_position, constants.target_speed};
+  if (part.position_control >= 0) {
+    out.position = Float::load(g.control + part.position_control * kLanes);
+  }
+  if (part.speed_control >= 0) out.speed = Float::load(g.control + part.speed_control * kLanes);
+  return out;
+}
+
 // The change of a limit's impulse; `gap` >= 0 while the coordinate is within it.
 template <Pass kPass>
 MW_INLINE Float solve_limit(const Constants& t, const Joint& constants, Float k, Float speed,
@@ -103,16 +116,10 @@ MW_INLINE void solve_row(const Constants& t, const Group& g, const JointPart& pa
     const Float before = Float::load(s.impulse[0]), speed = speed_of(s, v);
     Float after;
     if (part.drive) {  // its equation is the same in both passes
-      Float target = constants.target_position, target_speed = constants.target_speed;
-      if (part.position_control >= 0) {
-        target = Float::load(g.control + part.position_control * kLanes);
-      }
-      if (part.speed_control >= 0) {
-        target_speed = Float::load(g.control + part.speed_control * kLanes);
-      }
+      const DriveTarget target = target_of(g, part, constants);
       const Float most = constants.max_impulse;
-      const Float lag = fnma(target_speed, constants.speed_share, speed);
-      const Float error = Float::load(s.driven) - target;
+      const Float lag = fnma(target.speed, constants.speed_share, speed);
+      const Float error = Float::load(s.driven) - target.position;
       after = before + soften_row(constants.drive_soft, k, lag, error, before);
       after = clamp(after, -most, most);
     } else if (kPass == Pass::bias) {

@@ -35,7 +35,7 @@ void prepare(const Constants& t, const Group& g, const JointPart& part, const Jo
 }
 
 template <class S, bool kDense, bool kMoved>
-MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, SwingRows<S>& s) {
+MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, SwingRows<S>& s) {
   auto z_a = load_as<Vec3>(s.start_a[0]), z_b = load_as<Vec3>(s.start_b[0]);
   if constexpr (kMoved) {
     const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
@@ -45,6 +45,7 @@ MW_INLINE void refresh(const Work& w, const JointPart&, const Joint&, SwingRows<
   const Vec3 b = any_tangent(z_a), c = cross(z_a, b), lean = cross(z_a, z_b);
   store(s.across[0][0], b), store(s.across[1][0], c);
   dot(b, lean).store(s.error[0]), dot(c, lean).store(s.error[1]);
+  if (kMoved && part.direct) return;
   const auto inertia = sum_of(inertia_of(s.a), inertia_of(s.b));
   const Vec3 of_b = apply(inertia, b), of_c = apply(inertia, c);
   store(s.mass[0], inverse(Sym2{dot(b, of_b), dot(b, of_c), dot(c, of_c)}));

@@ -10,6 +10,7 @@
 #include "kernels/data/tables.hpp"
 #include "kernels/lane/algebra.hpp"
 #include "kernels/lane/rows.hpp"
+#include "kernels/lane/solve.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -61,6 +62,9 @@ MW_INLINE void load(const Real* p, Sym3& a) {
        Float::load(p + 4 * kLanes),
        Float::load(p + 5 * kLanes)};
 }
+MW_INLINE void load(const Real* p, Sym2& a) {
+  a = {Float::load(p), Float::load(p + kLanes), Float::load(p + 2 * kLanes)};
+}
 MW_INLINE void load(const Real* p, Rot2& a) { a = load_rot2(p); }
 MW_INLINE void load(const Real* p, Quat& a) { a = load_quat(p); }
 // Adds to rows of lanes.
@@ -75,6 +79,9 @@ MW_INLINE void add_to(Real* rows, int row, Vec3 x) {
 }
 
 MW_INLINE void store(Real* p, Float a) { a.store(p); }
+MW_INLINE void store(Real* p, const Sym2& a) {
+  a.xx.store(p), a.xy.store(p + kLanes), a.yy.store(p + 2 * kLanes);
+}
 MW_INLINE void store(Real* p, const Sym3& a) {
   a.xx.store(p), a.xy.store(p + kLanes), a.xz.store(p + 2 * kLanes);
   a.yy.store(p + 3 * kLanes), a.yz.store(p + 4 * kLanes), a.zz.store(p + 5 * kLanes);

@@ -19,6 +19,11 @@ void fill_impulses(kernels::ImpulseTable<Real>* tables);  // [inertia]
 
 using FillJoints = void(kernels::JointSolver<Real>& dense, kernels::JointSolver<Real>& rows);
 FillJoints fill_joints_planar, fill_joints_tensor;
+using FillDirect = void(kernels::DirectSolver<Real>& dense, kernels::DirectSolver<Real>& rows);
+FillDirect fill_direct_planar, fill_direct_tensor;
+// Bytes of the rows of an edge.
+std::size_t edge_bytes(Planar);
+std::size_t edge_bytes(Tensor);
 using FillFlight = void(kernels::FlightTable<Real>* tables);  // [inertia]
 FillFlight fill_flight_planar, fill_flight_spatial;
 // Bytes of the rows of a part.

@@ -163,6 +163,21 @@ struct TreeWork {
   Real* row_load;                   // [dof][lane], J' times the forces of rows
 };
 
+// Trees of joints that are solved at once (kernels/direct/); twists and wrenches about centres of
+// mass.
+struct DirectWork {
+  Real* rotary;          // [body][moments of inertia][lane], world axes
+  Real* stiffened;       // the same with the geometric stiffness
+  Real* stiffness;       // [body][sum, sum times arm^2][lane], of it
+  Real* inertia;         // [body][articulated inertia][lane]
+  Real* given;           // [body][wrench][lane], load of its own
+  Real* load;            // [body][wrench][lane], with what hangs on it; then what joints did
+  Real* twist;           // [body][twist][lane], change of velocity
+  unsigned char* edges;  // rows of edges
+  std::uint32_t* held;   // [body] lanes in which a tree moves it
+  int located;           // the substep that the rows are of
+};
+
 // Of a step in which energies are audited (kernels/observe/audit.hpp): the energy before it, what a
 // gain is compared with, what inputs may give, what drives have given, what joints hold, J.
 enum AuditSum { kEnergyBefore, kAuditScale, kGiven, kDriven, kGapEnergy, kAuditSums };
@@ -176,6 +191,7 @@ struct Work {
   AuditWork audit;
   FlightWork flight;
   TreeWork tree;
+  DirectWork direct;
   Real* before;  // the group's state before the step (plans without contacts only)
   // begin
   Real* pose_rows;  // [lane][row_block], the last kDummyRow of a block are the dummy's

@@ -26,6 +26,7 @@ Integrator = Literal[
 ]
 Rotation = Literal["splitting", "quaternion", "exponential"]
 Solver = Literal["tgs_soft", "sequential_impulse", "sor", "nncg", "penalty", "newton"]
+JointMethod = Literal["sweep", "tree"]
 FrictionCone = Literal["pyramidal", "elliptic"]
 ControlKind = Literal["target_position", "target_speed", "thrust", "torque", "joint_force"]
 Parameter = Literal[

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Optional
 
-from .names import FrictionCone, Integrator, Numbers, Rotation, Solver
+from .names import FrictionCone, Integrator, JointMethod, Numbers, Rotation, Solver
 
 
 @dataclass(slots=True, kw_only=True)
@@ -48,6 +48,7 @@ class ContactOptions:
 class JointOptions:
     """How what joints hold together is pulled back."""
 
+    method: Optional[JointMethod] = None  # None: sweep
     frequency: Optional[float] = None  # Hz; None: a quarter per substep, or hard rows
     damping_ratio: float = 2.0
     pull_speed: float = inf  # m/s per length_unit, and rad/s

@@ -22,6 +22,10 @@ from .options import Options
 from .scene import Issue, Scene, SceneError
 
 
+def _value_text(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:.4g}"
+
+
 class Plan(_core.Plan):
     """What the step needs for a scene, and nothing else.
 
@@ -99,7 +103,8 @@ class Plan(_core.Plan):
         if report["choices"]:
             lines.append("chosen by the plan:")
         for choice in report["choices"]:
-            lines.append(f"  {choice['option']:<22} {choice['value']:<10.4g} {choice['why']}")
+            value = _value_text(choice["value"])
+            lines.append(f"  {choice['option']:<22} {value:<10} {choice['why']}")
         for part in ("features", "stages"):
             lines.append(f"{part}:")
             for item in report[part]:
@@ -128,7 +133,7 @@ class Plan(_core.Plan):
     def _repr_html_(self) -> str:
         """Features, stages and pairs of shapes as tables, for notebooks."""
         report: dict[str, Any] = self.report()
-        chosen = [(c["option"], f"{c['value']:.4g}", c["why"]) for c in report["choices"]]
+        chosen = [(c["option"], _value_text(c["value"]), c["why"]) for c in report["choices"]]
         parts = [shown.table("chosen by the plan", ("option", "value", "why"), chosen)]
         parts += [
             shown.table(

@@ -28,7 +28,7 @@ void bind_names(nb::module_& m) {
   m.def(
       "names",
       [] {
-        return all_names<Space, Motion, Integrator, Rotation, Solver, FrictionCone, ControlKind,
+        return all_names<Space, Motion, Integrator, Rotation, Solver, JointMethod, FrictionCone, ControlKind,
                          Parameter, Draw, Precision, Isa, ContactLayout, Observer, Feature,
                          BroadPhase, Status>();
       },

@@ -36,7 +36,12 @@ nb::dict report(const Plan& plan) {
   nb::list choices;
   for (const auto& c : r.choices) {
     nb::dict d;
-    d["option"] = c.option, d["value"] = c.value, d["why"] = c.why;
+    d["option"] = c.option, d["why"] = c.why;
+    if (c.name.empty()) {
+      d["value"] = c.value;
+    } else {
+      d["value"] = c.name;
+    }
     choices.append(d);
   }
   nb::dict out;

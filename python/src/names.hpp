@@ -39,6 +39,7 @@ MW_NAMES(Integrator, MW_NAME(symplectic_euler), MW_NAME(explicit_euler), MW_NAME
 MW_NAMES(Rotation, MW_NAME(splitting), MW_NAME(quaternion), MW_NAME(exponential));
 MW_NAMES(Solver, MW_NAME(tgs_soft), MW_NAME(sequential_impulse), MW_NAME(sor), MW_NAME(nncg),
          MW_NAME(penalty), MW_NAME(newton));
+MW_NAMES(JointMethod, MW_NAME(sweep), MW_NAME(tree));
 MW_NAMES(FrictionCone, MW_NAME(pyramidal), MW_NAME(elliptic));
 MW_NAMES(Field, MW_NAME(position), MW_NAME(orientation), MW_NAME(linear_velocity),
          MW_NAME(angular_velocity), MW_NAME(generalized_position), MW_NAME(generalized_velocity),

@@ -31,6 +31,7 @@ MW_ENUM_TABLE(Integrator, implicit_fast, "integrator", "symplectic-euler", "expl
 MW_ENUM_TABLE(Rotation, exponential, "rotation", "splitting", "quaternion", "exponential");
 MW_ENUM_TABLE(Solver, newton, "solver", "tgs-soft", "sequential-impulse", "sor", "nncg", "penalty",
               "newton");
+MW_ENUM_TABLE(JointMethod, tree, "method", "sweep", "tree");
 MW_ENUM_TABLE(FrictionCone, elliptic, "cone", "pyramidal", "elliptic");
 MW_ENUM_TABLE(ControlKind, joint_force, "kind", "target_position", "target_speed", "thrust",
               "torque", "joint_force");

@@ -144,6 +144,7 @@ class Builder {
   void drive(PlanPart& p, const std::optional<Drive>& drive) const {
     if (!drive) return;
     p.what.drive = true;
+    p.what.springy = drive->spring.has_value();
     p.constants.target_position = drive->target_position;
     p.constants.target_speed = drive->target_speed;
     p.constants.speed_share = 1;
@@ -230,6 +231,7 @@ void collect_joints(PlanData& plan) {
   for (std::size_t i = 0; i < plan.scene.joints.size(); ++i) {
     Builder(plan, static_cast<int>(i)).build();
   }
+  collect_joint_trees(plan);
 }
 
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene) {

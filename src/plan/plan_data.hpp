@@ -64,6 +64,12 @@ struct PlanPart {
   kernels::JointConstants<double> constants{};
 };
 
+// Joints that are solved at once.
+struct PlanJointTrees {
+  std::vector<kernels::TreeEdge> edges;
+  std::vector<std::int32_t> roots, bodies;
+};
+
 // Thrust or torque of a control.
 struct PlanThrust {
   kernels::ThrustTable what{};
@@ -111,6 +117,7 @@ struct PlanData {
   std::vector<double> hulls;  // corners of hulls that move (kernels/data/tables.hpp)
   std::vector<PlanClass> classes;
   std::vector<PlanPart> parts;                       // of joints, in their order
+  PlanJointTrees trees_of_joints;
   std::vector<PlanThrust> thrusts;                   // by body
   PlanTrees trees;                                   // of Solver::newton
   std::vector<std::array<double, 2>> control_range;  // [control] low, high
@@ -196,6 +203,7 @@ void choose_polygons(PlanData& plan);       // colliders.cpp
 void collect_colliders(PlanData& plan);     // colliders.cpp
 void collect_fixed(PlanData& plan);         // colliders.cpp
 void collect_joints(PlanData& plan);        // joints.cpp
+void collect_joint_trees(PlanData& plan);   // joint_trees.cpp, of which joints.cpp makes use
 void collect_controls(PlanData& plan);      // controls.cpp
 void collect_trees(PlanData& plan);         // collect_trees.cpp
 void collect_tree_pairs(PlanData& plan);    // tree_pairs.cpp

@@ -1,12 +1,39 @@
 // What Options leave to the plan: the length unit, the speeds that follow from it, substeps, and
 // how stiff contacts are.
+#include <algorithm>
 #include <string>
+#include <variant>
+#include <vector>
 
+#include "src/plan/joint_trees.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/plan/substeps.hpp"
 #include "src/scene/length_unit.hpp"
 
 namespace manyworlds {
+
+namespace {
+
+// Why joints are solved at once, if they are. Contacts do not know of trees: where something may
+// touch, a load on light legs would rest on contacts of the legs' own mass. Otherwise sweeps are
+// faster, as long as four substeps do, and no rotation is held at the end of a lever.
+std::string need_of_trees(const PlanData& plan) {
+  const Scene& scene = plan.scene;
+  if (scene.joints.empty() || scene.options.solver.method != Solver::tgs_soft) return {};
+  const std::vector<bool> in = joints_of_trees(scene);
+  if (std::count(in.begin(), in.end(), false) > 0 || !nothing_touches(scene)) return {};
+  const JointNeed need = need_of_joints(extremes(plan), *scene.options.length_unit);
+  if (need.substeps > kLeastSubsteps) return "at once, since " + need.why;
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const JointType& type = scene.joints[j].type;
+    if (std::holds_alternative<FixedJoint>(type) || std::holds_alternative<SliderJoint>(type)) {
+      return "at once, since joint " + std::to_string(j) + " holds a rotation";
+    }
+  }
+  return {};
+}
+
+}  // namespace
 
 void resolve_options(PlanData& plan) {
   Options& o = plan.scene.options;
@@ -23,6 +50,12 @@ void resolve_options(PlanData& plan) {
          o.gravity.isZero(0) ? "by the length unit, m/s" : "by gravity and the length unit, m/s");
   choose("sleep.speed", o.sleep.speed, 0.06 * speed, "as the speed that pushes out, m/s");
 
+  if (!o.joint.method) {
+    if (const std::string why = need_of_trees(plan); !why.empty()) {
+      choose("joint.method", o.joint.method, JointMethod::tree, why);
+      plan.choices.back().name = to_string(*o.joint.method);
+    }
+  }
   const SubstepChoice substeps = choose_substeps(extremes(plan), *o.length_unit);
   choose("substeps", o.substeps, substeps.substeps, substeps.why);
   choose("contact.frequency", o.contact.frequency, kContactShare * substeps.stiff / o.dt,

@@ -25,6 +25,16 @@ struct SubstepChoice {
 
 // Of all worlds: `extremes` (plan_data.hpp) are the scene and those of its lowest and highest
 // numbers. `length_unit` in m.
+// How many substeps sweeps over joints take under what these carry.
+struct JointNeed {
+  double substeps = 0;
+  std::string why = {};
+};
+JointNeed need_of_joints(const std::vector<Scene>& extremes, double length_unit);
+
+// Whether some shape of A and some of B may touch.
+bool filters_let_touch(const Body& a, const Body& b);
+
 SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_unit);
 
 // w that the columns standing in a scene want, rad/s, and the body on top of the one that wants

@@ -8,6 +8,7 @@ const char* to_string(BroadPhase broad_phase) { return name_of(broad_phase); }
 const char* to_string(Integrator integrator) { return name_of(integrator); }
 const char* to_string(Rotation rotation) { return name_of(rotation); }
 const char* to_string(Solver solver) { return name_of(solver); }
+const char* to_string(JointMethod method) { return name_of(method); }
 const char* to_string(FrictionCone cone) { return name_of(cone); }
 
 bool has_hard_rows(Solver solver) {

@@ -42,6 +42,8 @@ class TablesOf {
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
   std::vector<kernels::JointPart> parts_;
+  std::vector<kernels::TreeEdge> edges_;
+  std::vector<std::int32_t> edge_roots_, edge_bodies_;
   std::vector<kernels::BreakTable<Real>> breaking_;
   std::vector<kernels::AttractorTable<Real>> attractors_;
   std::vector<kernels::ThrustTable> thrusts_;

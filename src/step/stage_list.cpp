@@ -22,6 +22,7 @@ class Builder {
         sweeps_(k.sweeps[kind()][layout_]),
         impulses_(k.impulses[kind()]),
         joints_(k.joints[kind()][layout_]),
+        trees_(k.direct[kind()][layout_]),
         flight_(k.flight[kind()]),
         settle_(k.settle) {}
 
@@ -46,6 +47,9 @@ class Builder {
   int kind() const { return static_cast<int>(t_.inertia_kind); }
   bool contacts() const { return plan_.runs(StepStage::collide); }
   bool joints() const { return plan_.runs(StepStage::joints); }
+  bool trees() const { return joints() && t_.joint_trees.edges > 0; }
+  // Whether some parts of joints are swept over.
+  bool sweeps() const { return joints() && t_.joint_trees.parts < t_.parts; }
   // Impulses are those of one substep alone: nothing is carried over.
   bool forgets() const { return t_.solver.kind == Solver::penalty; }
 
@@ -70,6 +74,7 @@ class Builder {
     Calls& to = out_.prepare;
     add(to, StepStage::flight, flight_.fly);
     add(to, StepStage::joints, joints_.prepare);
+    if (trees()) add(to, StepStage::joints, trees_.begin);
     if (forgets()) add(to, StepStage::warm_start, impulses_.forget);
     add(to, StepStage::warm_start, solver_.apply_delta_v);
     add(to, StepStage::warm_start, solver_.warm_start);
@@ -79,13 +84,21 @@ class Builder {
 
   void tgs_soft() {
     Calls& to = out_.solve;
+    // Trees are done with one solve. What else there is spoils it, and they have the last word; it
+    // has none without their relaxing solve, which else is left to the end of the step.
+    const bool others = contacts() || sweeps();
+    if (trees()) add(to, StepStage::joints, trees_.bias);
     for (int i = 0; i < t_.solver.iterations; ++i) {
-      add(to, StepStage::joints, joints_.bias);
+      if (sweeps()) add(to, StepStage::joints, joints_.bias);
       add_carried(to, StepStage::bias, solver_.bias);
+      if (trees() && others) add(to, StepStage::joints, trees_.bias_again);
     }
     add(to, StepStage::advance, solver_.advance);
-    add(to, StepStage::joints, joints_.relax);
+    if (trees() && others) add(to, StepStage::joints, trees_.relax);
+    if (sweeps()) add(to, StepStage::joints, joints_.relax);
     add_carried(to, StepStage::relax, solver_.relax);
+    if (trees() && others) add(to, StepStage::joints, trees_.relax_again);
+    if (trees() && !others) add(out_.end, StepStage::joints, trees_.relax);
     ask_here(joints_.relax, solver_.relax);
   }
   void advance() {
@@ -158,6 +171,7 @@ class Builder {
   const kernels::SweepTable<Real>& sweeps_;
   const kernels::ImpulseTable<Real>& impulses_;
   const kernels::JointSolver<Real>& joints_;
+  const kernels::DirectSolver<Real>& trees_;
   const kernels::FlightTable<Real>& flight_;
   Call settle_;
   StageCalls<Real> out_;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <limits>
+#include <vector>
 
 #include "tests/support/contraption.hpp"
 #include "tests/support/hashes.hpp"
@@ -13,12 +14,20 @@ namespace {
 
 constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 
+std::vector<Plan> plans() {
+  std::vector<Plan> out;
+  for (const Space space : kSpaces) {
+    for (const Scene& scene : {contraption(space), joint_trees(space)})
+      out.push_back(compile(scene));
+  }
+  return out;
+}
+
 }  // namespace
 
 TEST_CASE("joints have the same bits on every instruction set, layout and thread count",
           "[fast][bits][joint]") {
-  for (Space space : kSpaces) {
-    const Plan plan = compile(contraption(space));
+  for (const Plan& plan : plans()) {
     for (Precision precision : {Precision::f32, Precision::f64}) {
       std::vector<std::uint64_t> reference;
       for (const Table& table : all_tables()) {
@@ -49,8 +58,7 @@ TEST_CASE("joints have the same bits on every instruction set, layout and thread
 }
 
 TEST_CASE("a jointed world has its bits wherever it is in a batch", "[fast][bits][joint]") {
-  for (Space space : kSpaces) {
-    const Plan plan = compile(contraption(space));
+  for (const Plan& plan : plans()) {
     const Table table = widest_tables().front();
     BatchOptions options = options_of(table, 20);
     const auto reference = hashes_after(plan, options, 30);
@@ -63,10 +71,9 @@ TEST_CASE("a jointed world has its bits wherever it is in a batch", "[fast][bits
 }
 
 TEST_CASE("jointed worlds go on from snapshots and copies bit by bit", "[fast][bits][joint]") {
-  for (Space space : kSpaces) {
+  for (const Plan& plan : plans()) {
     for (const bool sleep : {false, true}) {
-      const Plan plan = compile(contraption(space));
-      INFO((space == Space::planar ? "planar" : "spatial") << " sleep " << sleep);
+      INFO(plan.scene().joints.size() << " joints, sleep " << sleep);
       BatchOptions options = options_of(widest_tables().front(), 11);
       options.sleep = sleep;
       Batch batch(plan, options);
@@ -92,8 +99,7 @@ TEST_CASE("jointed worlds go on from snapshots and copies bit by bit", "[fast][b
 }
 
 TEST_CASE("a jointed world that goes wrong leaves its neighbours alone", "[fast][bits][joint]") {
-  for (Space space : kSpaces) {
-    const Plan plan = compile(contraption(space));
+  for (const Plan& plan : plans()) {
     for (const Table& table : all_tables()) {
       INFO(name(table));
       Batch spoilt(plan, options_of(table, 9)), sound(plan, options_of(table, 9));

@@ -30,7 +30,9 @@ Json to_json(const std::vector<PlanReport::Item>& items) {
 Json to_json(const std::vector<PlanReport::Choice>& choices) {
   Json list = Json::array();
   for (const auto& c : choices) {
-    list.push_back({{"option", c.option}, {"value", c.value}, {"why", c.why}});
+    list.push_back({{"option", c.option},
+                    {"value", c.name.empty() ? Json(c.value) : Json(c.name)},
+                    {"why", c.why}});
   }
   return list;
 }
@@ -69,7 +71,8 @@ void print_choices(const std::vector<PlanReport::Choice>& choices) {
       choices, [](const auto& choice) { return choice.option; }, 0);
   fmt::print("\nchosen by the plan\n");
   for (const auto& c : choices) {
-    fmt::print("  {:<{}}  {:<10.4g}  {}\n", c.option, width, c.value, c.why);
+    const std::string value = c.name.empty() ? fmt::format("{:.4g}", c.value) : c.name;
+    fmt::print("  {:<{}}  {:<10}  {}\n", c.option, width, value, c.why);
   }
 }
 

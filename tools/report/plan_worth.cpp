@@ -195,7 +195,8 @@ void add_crossover(bool quick, std::vector<Variant>& out) {
   }
 }
 
-// What it costs to be right: scenes that the plan gives more than four substeps, with four.
+// What it costs to be right: scenes that the plan gives more than four substeps, or joints that are
+// solved at once, with four and by sweeps.
 void add_substeps(bool quick, std::vector<Variant>& out) {
   const std::vector<std::string> few = {"C2 5 x 1 cm", "B3"};
   const std::vector<std::string> all = {
@@ -207,8 +208,11 @@ void add_substeps(bool quick, std::vector<Variant>& out) {
     if (std::count(wanted.begin(), wanted.end(), trial.id) == 0) continue;
     const Scene scene = trial.scene();
     Variant v{trial.id, "", plain_setup(scene, 16), plain_setup(scene, 16)};
-    v.name = fmt::format("4 substeps instead of {}", *compile(scene).resolved().substeps);
+    const Options chosen = compile(scene).resolved();
+    v.name = fmt::format("4 substeps{} instead of {}",
+                         chosen.joint.method ? " of sweeps over joints" : "", *chosen.substeps);
     v.changed.scene.options.substeps = 4;
+    v.changed.scene.options.joint.method = JointMethod::sweep;
     v.must_be_same = false;
     out.push_back(v);
   }

@@ -25,7 +25,7 @@ SCENE_SEES_KERNELS = "kernels/data/shape_kinds.hpp"
 # The rooms of kernels/, each a floor. Data is plain and shared with src; the others are compiled per
 # instruction set. What lies in kernels/ itself puts the rooms together, above all of them.
 KERNEL_ROOMS = [
-    "data", "lane", "work", "shape", "sleep", "broad", "collide", "rows", "motion", "joint", "flight",
+    "data", "lane", "work", "shape", "sleep", "broad", "collide", "rows", "motion", "joint", "direct", "flight",
     "tree", "solver", "observe", "program"]
 MAX_KERNEL_FILES_ON_TOP = 12
 # Tables without functions, which the kernels' data shares with the public headers.

@@ -1,0 +1,161 @@
+// Rows of the edges of trees, where the substep has taken the bodies: arms, axes and what the
+// joints are apart by, all of it from the rows of their parts (kernels/joint/).
+#pragma once
+
+#include "kernels/direct/spaces.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+using kernels::TreeEdge;
+
+// A coordinate along which a joint gives way: q of the child against the parent.
+template <class S>
+struct alignas(64) EdgeDof {
+  static constexpr int kTwist = Bodies<S>::kTwist;
+  Real response[kTwist][kLanes];  // wrench that a unit rate asks for
+  Real pivot[kLanes];             // axis . response
+  Real inverse[kLanes];           // 1 / (pivot + what drives and limits add)
+  Real load[kLanes];
+  Real began[kLanes], rate[kLanes];  // before the solve, and after
+  std::uint32_t low, high;           // lanes in which a limit acts
+  std::uint32_t above, below;        // lanes in which a drive is at its largest impulse
+};
+
+template <class S>
+struct alignas(64) EdgeRows {
+  static constexpr int kTwist = Bodies<S>::kTwist;
+  Real arm_parent[S::kDim][kLanes], arm_child[S::kDim][kLanes];  // to the point that both share
+  Real slide_axis[S::kDim][kLanes], turn_axis[S::kAng][kLanes];
+  Real target[kTwist][kLanes];  // twist of the child against the parent there that closes the joint
+  Real change[kTwist][kLanes];  // what its twist is to change by, but for the coordinates
+  EdgeDof<S> slide, turn;
+  // Of a ball joint, whose rotation is eliminated at once: inverse of the moments of inertia, what
+  // couples them with the linear velocity, and the moment.
+  Real compliance[Bodies<S>::kRotary][kLanes], mixed[3][3][kLanes], moment[S::kAng][kLanes];
+  std::uint32_t lanes;  // in which the joint holds
+};
+
+template <class S>
+MW_INLINE EdgeRows<S>& edge_rows(const Work& w, int edge) {
+  return reinterpret_cast<EdgeRows<S>*>(w.direct.edges)[edge];
+}
+template <class S, class Rows>
+MW_INLINE Rows& part_rows(const Work& w, int part) {
+  return *reinterpret_cast<Rows*>(w.parts + static_cast<std::size_t>(part) * kPartBytes<S>);
+}
+
+// Twist of B against A that closes what the parts are apart by, in a substep. Axes too.
+template <class S, bool kDense>
+class EdgeFinder {
+ public:
+  using Vec = typename S::Vec;
+  using Ang = typename S::Ang;
+  using Moving = typename Bodies<S>::Moving;
+  EdgeFinder(const Constants& t, const Group& g, Work& w) : t_(t), g_(g), w_(w) {}
+
+  // Rows of the parts where the substeps have taken the bodies.
+  void refresh_parts() const {
+    for_each_part<S>(t_, w_, [&](auto& s, const JointPart& part, int i) {
+      if (part.direct) refresh<S, kDense, true>(w_, part, constants_of_part(g_, i), s);
+    });
+  }
+  // kCloses: with the bias that closes the joints, else they keep what they have.
+  template <bool kCloses>
+  void find() const {
+    for (int i = 0; i < t_.joint_trees.edges; ++i) {
+      const TreeEdge& edge = t_.joint_trees.edge[i];
+      EdgeRows<S>& s = edge_rows<S>(w_, i);
+      Moving target{zero_of<Ang>(), zero_of<Vec>()};
+      edge.slides ? hold_line<kCloses>(edge, s, target.v) : hold_point<kCloses>(edge, s, target.v);
+      if (edge.turn >= 0) {
+        if (edge.locked) {
+          if constexpr (kCloses) target.w = close_lock(edge);
+        } else if constexpr (S::kDim == 3) {
+          hold_swing<kCloses>(edge, s, target.w);
+        }
+      }
+      if constexpr (S::kDim == 2) Float(Real(1)).store(s.turn_axis[0]);
+      if constexpr (kCloses) {
+        if (edge.reversed) target = {-target.w, -target.v};
+        store(s.target[0], target);
+      }
+    }
+  }
+
+ private:
+  const Joint& numbers(int part) const { return constants_of_part(g_, part); }
+
+  template <class Rows>
+  static MW_INLINE void put_arms(const TreeEdge& edge, const Rows& from, EdgeRows<S>& s) {
+    const auto a = load_as<Vec>(from.arm_a[0]), b = load_as<Vec>(from.arm_b[0]);
+    store(s.arm_parent[0], edge.reversed ? b : a), store(s.arm_child[0], edge.reversed ? a : b);
+    s.lanes = from.mask;
+  }
+  template <bool kCloses>
+  MW_INLINE void hold_point(const TreeEdge& edge, EdgeRows<S>& s, Vec& target) const {
+    const auto& from = part_rows<S, PointRows<S>>(w_, edge.hold);
+    put_arms(edge, from, s);
+    const Joint& c = numbers(edge.hold);
+    if constexpr (kCloses) {
+      target = -pull_of(load_as<Vec>(from.gap[0]), c.soft.bias_rate, c.pull);
+    }
+  }
+  template <bool kCloses>
+  MW_INLINE void hold_line(const TreeEdge& edge, EdgeRows<S>& s, Vec& target) const {
+    const auto& from = part_rows<S, LineRows<S>>(w_, edge.hold);
+    put_arms(edge, from, s);
+    const Joint& c = numbers(edge.hold);
+    const auto d = load_as<Vec>(from.direction[0][0]);
+    if constexpr (S::kDim == 2) {
+      store(s.slide_axis[0], Vec{d.y, -d.x});
+      if constexpr (kCloses) {
+        target = d * -pull_of(Float::load(from.error[0]), c.soft.bias_rate, c.pull);
+      }
+    } else {
+      const auto e = load_as<Vec>(from.direction[1][0]);
+      store(s.slide_axis[0], cross(d, e));
+      if constexpr (kCloses) {
+        const Vec2 x = pull_of(load_as<Vec2>(from.error[0]), c.soft.bias_rate, c.pull);
+        target = -fma(e, x.y, d * x.x);
+      }
+    }
+  }
+  MW_INLINE Ang close_lock(const TreeEdge& edge) const {
+    const auto& from = part_rows<S, LockRows<S>>(w_, edge.turn);
+    const Joint& c = numbers(edge.turn);
+    const auto moved = load_sides<S, Free, kDense>(w_.displacement, from);
+    const Ang error = load_as<Ang>(from.error[0]) + relative_spin(moved.a, moved.b);
+    return -pull_of(error, c.soft.bias_rate, c.angular_pull);
+  }
+  template <bool kCloses>
+  MW_INLINE void hold_swing(const TreeEdge& edge, EdgeRows<S>& s, Vec3& target) const {
+    const auto& from = part_rows<S, SwingRows<S>>(w_, edge.turn);
+    const auto b = load_as<Vec3>(from.across[0][0]), c = load_as<Vec3>(from.across[1][0]);
+    store(s.turn_axis[0], cross(b, c));
+    if constexpr (kCloses) {
+      const Joint& k = numbers(edge.turn);
+      const Vec2 x = pull_of(load_as<Vec2>(from.error[0]), k.soft.bias_rate, k.angular_pull);
+      target = -fma(c, x.y, b * x.x);
+    }
+  }
+
+  const Constants& t_;
+  const Group& g_;
+  Work& w_;
+};
+
+// Axes of the coordinates.
+template <class S>
+MW_INLINE auto axis_of_slide(const EdgeRows<S>& s) {
+  return typename Bodies<S>::Moving{zero_of<typename S::Ang>(),
+                                    load_as<typename S::Vec>(s.slide_axis[0])};
+}
+template <class S>
+MW_INLINE auto axis_of_turn(const EdgeRows<S>& s) {
+  return typename Bodies<S>::Moving{load_as<typename S::Ang>(s.turn_axis[0]),
+                                    zero_of<typename S::Vec>()};
+}
+// Whether a joint gives way about z alone.
+MW_INLINE bool hinges(const TreeEdge& edge) { return !edge.ball && !edge.locked; }
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,300 @@
+// The joints of trees solved at once: the velocities nearest to those that there are, in the
+// measure of kinetic energy, with which every joint does what it asks for. Articulated bodies
+// (Featherstone 2008, 7.3) in the coordinates of free bodies: what hangs on a joint is felt at its
+// anchor as an inertia and a load, from which the coordinates along which the joint gives way are
+// eliminated. Nothing fills in, whatever the branching, and nothing is warm started. All numbers
+// are changes of velocity, so that rounding is of what the joints do, and momenta are kept as well.
+//
+// Lanes in which a joint does not hold cut the tree there: the child is a root in those.
+#pragma once
+
+#include "kernels/direct/bounds.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S, bool kDense>
+class TreeSolve {
+ public:
+  using Vec = typename S::Vec;
+  using Ang = typename S::Ang;
+  using Moving = typename Bodies<S>::Moving;
+  using Pushing = typename Bodies<S>::Pushing;
+  using Inertia = typename Bodies<S>::Inertia;
+  static constexpr int kTwist = Bodies<S>::kTwist, kEntries = Bodies<S>::kEntries;
+
+  // `rotary`: moments of inertia [body][rotary][lane], with what resists as inertia does; `closes`:
+  // see Bound; `first` solve of a substep.
+  TreeSolve(const Constants& t, const Group& g, Work& w, const Real* rotary, bool closes,
+            bool first)
+      : t_(t), g_(g), w_(w), d_(w.direct), rotary_(rotary), closes_(closes), first_(first) {}
+
+  // Until the sets of bounds stay as they are. The angular momenta that there are are those of the
+  // moments `before`.
+  void run(const Real* before) const {
+    for_each_body([&](int b) {
+      Pushing p{zero_of<Ang>(), zero_of<Vec>()};
+      if (before != rotary_) {
+        const Velocity<S> v = get_velocity<S, kDense>(w_, w_.velocity, b);
+        p.n = apply(moments(before, b), v.w) - apply(moments(rotary_, b), v.w);
+      }
+      store(row(d_.given, b, kTwist), p);
+    });
+    for (int i = 0; i < kMostSets; ++i) {
+      fold();
+      unfold();
+      if (!correct_bounds()) break;
+    }
+    leave();
+  }
+
+  // Sets of bounds to begin a step with.
+  void guess_bounds() const {
+    for_each_bound([](const auto& bound, const EdgeDof<S>&, const EdgeRows<S>&) { bound.guess(); });
+  }
+
+ private:
+  using Rotary = std::conditional_t<S::kDim == 2, Float, Sym3>;
+  static constexpr int kMostSets = 4;
+
+  // From the leaves to the roots.
+  void fold() const {
+    for_each_body([&](int b) {
+      store(row(d_.inertia, b, kEntries), rigid_body(mass_of(b), moments(rotary_, b)));
+      store(row(d_.load, b, kTwist), load_as<Pushing>(row(d_.given, b, kTwist)));
+    });
+    for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
+      const TreeEdge& edge = t_.joint_trees.edge[i];
+      EdgeRows<S>& s = edge_rows<S>(w_, i);
+      const auto arm = load_as<Vec>(s.arm_child[0]);
+      Inertia inertia = moved_back(load_as<Inertia>(row(d_.inertia, edge.child, kEntries)), -arm);
+      Pushing load = moved(load_as<Pushing>(row(d_.load, edge.child, kTwist)), arm);
+      const Moving change = find_change(edge, s);
+      store(s.change[0], change);
+      load = load - mul(inertia, change);
+      if (edge.slides) eliminate(edge, edge.slide, s.slide, axis_of_slide(s), inertia, load);
+      if (hinges(edge)) eliminate(edge, edge.angle, s.turn, axis_of_turn(s), inertia, load);
+      if constexpr (S::kDim == 3) {
+        if (edge.ball) eliminate_rotation(s, inertia, load);
+      }
+      if (edge.given) continue;
+      const auto back = load_as<Vec>(s.arm_parent[0]);
+      add_in_lanes<kEntries>(row(d_.inertia, edge.parent, kEntries), moved_back(inertia, back),
+                             s.lanes);
+      add_in_lanes<kTwist>(row(d_.load, edge.parent, kTwist), moved(load, -back), s.lanes);
+    }
+  }
+  // And back.
+  void unfold() const {
+    for (int i = 0; i < t_.joint_trees.roots; ++i) solve_alone(t_.joint_trees.root[i]);
+    for (int i = 0; i < t_.joint_trees.edges; ++i) {
+      const TreeEdge& edge = t_.joint_trees.edge[i];
+      EdgeRows<S>& s = edge_rows<S>(w_, i);
+      Moving v{zero_of<Ang>(), zero_of<Vec>()};
+      if (!edge.given) {
+        v = moved(load_as<Moving>(row(d_.twist, edge.parent, kTwist)),
+                  load_as<Vec>(s.arm_parent[0]));
+      }
+      if (hinges(edge)) v = expand(s.turn, axis_of_turn(s), v);
+      if constexpr (S::kDim == 3) {
+        if (edge.ball) {
+          v.w = mul(load_as<Sym3>(s.compliance[0]), load_vec3(s.moment[0]) - mul(mixed_of(s), v.v));
+        }
+      }
+      if (edge.slides) v = expand(s.slide, axis_of_slide(s), v);
+      v = moved(v + load_as<Moving>(s.change[0]), -load_as<Vec>(s.arm_child[0]));
+      Real* to = row(d_.twist, edge.child, kTwist);
+      if (s.lanes == kAllLanes) {
+        store(to, v);
+      } else {
+        solve_alone(edge.child);
+        store(to, select(mask_from_bits(s.lanes), v, load_as<Moving>(to)));
+      }
+    }
+  }
+
+  // What the twist of the child against the parent is to change by at the anchor, but for the
+  // coordinates, whose rates go to their rows.
+  MW_INLINE Moving find_change(const TreeEdge& edge, EdgeRows<S>& s) const {
+    const Velocity<S> b = get_velocity<S, kDense>(w_, w_.velocity, edge.child);
+    Moving v = moved(Moving{b.w, b.v}, load_as<Vec>(s.arm_child[0]));
+    if (edge.parent != t_.bodies) {
+      const Velocity<S> a = get_velocity<S, kDense>(w_, w_.velocity, edge.parent);
+      const Moving of_parent = moved(Moving{a.w, a.v}, load_as<Vec>(s.arm_parent[0]));
+      v = {v.w - of_parent.w, v.v - of_parent.v};
+    }
+    if (edge.slides) {
+      const auto axis = load_as<Vec>(s.slide_axis[0]);
+      const Float rate = dot(axis, v.v);
+      rate.store(s.slide.began);
+      v.v = fnma(axis, rate, v.v);
+    }
+    if (hinges(edge)) {
+      if constexpr (S::kDim == 2) {
+        v.w.store(s.turn.began);
+        v.w = Real(0);
+      } else {
+        const auto axis = load_vec3(s.turn_axis[0]);
+        const Float rate = dot(axis, v.w);
+        rate.store(s.turn.began);
+        v.w = fnma(axis, rate, v.w);
+      }
+    }
+    Moving change{-v.w, -v.v};
+    if (closes_) change = change + load_as<Moving>(s.target[0]);
+    if (edge.ball) change.w = zero_of<Ang>();
+    return change;
+  }
+
+  MW_INLINE void eliminate(const TreeEdge& edge, int part, EdgeDof<S>& dof, const Moving& axis,
+                           Inertia& inertia, Pushing& load) const {
+    const Pushing f = mul(inertia, axis);
+    const Float pivot = dot(axis, f);
+    Float stiffness(Real(0)), push(Real(0));
+    with_bound(edge, part, dof, [&](const auto& bound) {
+      bound.add(pivot, stiffness, push);
+      push = fnma(stiffness, Float::load(dof.began), push);
+    });
+    const Float inverse = inverse_or_zero(pivot + stiffness), own = dot(axis, load) + push;
+    store(dof.response[0], f);
+    pivot.store(dof.pivot), inverse.store(dof.inverse), own.store(dof.load);
+    inertia = without(inertia, f, inverse);
+    load = fnma(f, own * inverse, load);
+  }
+  MW_INLINE void eliminate_rotation(EdgeRows<S>& s, Inertia& inertia, Pushing& load) const
+      requires(S::kDim == 3) {
+    const Sym3 compliance = inverse(inertia.rotary);
+    const Mat3 m = inertia.mixed;
+    const Mat3 by{mul(compliance, m.x), mul(compliance, m.y), mul(compliance, m.z)};
+    const Sym3& a = inertia.linear;
+    store(s.compliance[0], compliance), store(s.moment[0], load.n);
+    store(s.mixed[0][0], m.x), store(s.mixed[1][0], m.y), store(s.mixed[2][0], m.z);
+    const Sym3 left{a.xx - dot(m.x, by.x), a.xy - dot(m.x, by.y), a.xz - dot(m.x, by.z),
+                    a.yy - dot(m.y, by.y), a.yz - dot(m.y, by.z), a.zz - dot(m.z, by.z)};
+    const Float zero(Real(0));
+    const Vec3 none{zero, zero, zero};
+    inertia = {{zero, zero, zero, zero, zero, zero}, {none, none, none}, left};
+    load = {none, load.f - mul_transposed(by, load.n)};
+  }
+  static MW_INLINE Mat3 mixed_of(const EdgeRows<S>& s) {
+    return {load_vec3(s.mixed[0][0]), load_vec3(s.mixed[1][0]), load_vec3(s.mixed[2][0])};
+  }
+  // Leaves the rate that there is then.
+  static MW_INLINE Moving expand(EdgeDof<S>& dof, const Moving& axis, const Moving& v) {
+    const Float load = Float::load(dof.load) - dot(v, load_as<Pushing>(dof.response[0]));
+    const Float change = load * Float::load(dof.inverse);
+    (Float::load(dof.began) + change).store(dof.rate);
+    return fma(axis, change, v);
+  }
+
+  // Returns whether the sets of some edge have changed.
+  bool correct_bounds() const {
+    std::uint32_t changed = 0;
+    for_each_bound([&](const auto& bound, const EdgeDof<S>& dof, const EdgeRows<S>& s) {
+      changed |= bound.correct(Float::load(dof.rate)) & s.lanes;
+    });
+    return changed != 0;
+  }
+
+  // Velocities, and what joints did.
+  void leave() const {
+    for_each_body([&](int b) {
+      const auto change = load_as<Moving>(row(d_.twist, b, kTwist));
+      const auto given = load_as<Pushing>(row(d_.given, b, kTwist));
+      store(row(d_.load, b, kTwist),
+            Pushing{apply(moments(rotary_, b), change.w) - given.n, change.v * mass_of(b)});
+      const Velocity<S> old = get_velocity<S, kDense>(w_, w_.velocity, b);
+      const Velocity<S> now{old.v + change.v, old.w + change.w};
+      const std::uint32_t held = d_.held[b];
+      if (held == kAllLanes) {
+        put_velocity<S, kDense>(w_, w_.velocity, b, now);
+      } else {
+        put_velocity<S, kDense>(w_, w_.velocity, b, select(mask_from_bits(held), now, old));
+      }
+    });
+    for_each_bound([&](const auto& bound, const EdgeDof<S>& dof, const EdgeRows<S>&) {
+      bound.keep(Float::load(dof.rate));
+    });
+    for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
+      const TreeEdge& edge = t_.joint_trees.edge[i];
+      const EdgeRows<S>& s = edge_rows<S>(w_, i);
+      const Pushing p =
+          moved(load_as<Pushing>(row(d_.load, edge.child, kTwist)), load_as<Vec>(s.arm_child[0]));
+      keep_impulse(edge, s, p);
+      if (edge.given) continue;
+      add_in_lanes<kTwist>(row(d_.load, edge.parent, kTwist),
+                           moved(p, -load_as<Vec>(s.arm_parent[0])), s.lanes);
+    }
+  }
+  // On B, without what acts along the coordinates.
+  MW_INLINE void keep_impulse(const TreeEdge& edge, const EdgeRows<S>& s, Pushing p) const {
+    if (edge.slides) {
+      const auto axis = load_as<Vec>(s.slide_axis[0]);
+      p.f = fnma(axis, dot(axis, p.f), p.f);
+      keep(part_rows<S, LineRows<S>>(w_, edge.hold), edge, s, p.f);
+    } else {
+      keep(part_rows<S, PointRows<S>>(w_, edge.hold), edge, s, p.f);
+    }
+    if (edge.turn < 0) return;
+    if (edge.locked) return keep(part_rows<S, LockRows<S>>(w_, edge.turn), edge, s, p.n);
+    if constexpr (S::kDim == 3) {
+      const auto axis = load_vec3(s.turn_axis[0]);
+      keep(part_rows<S, SwingRows<S>>(w_, edge.turn), edge, s, fnma(axis, dot(axis, p.n), p.n));
+    }
+  }
+  template <class Rows, class V>
+  MW_INLINE void keep(Rows& to, const TreeEdge& edge, const EdgeRows<S>& s, V p) const {
+    if (edge.reversed) p = -p;
+    if (!first_) p = load_as<V>(to.impulse[0]) + p;
+    const Mask holds = mask_from_bits(s.lanes);
+    store(to.impulse[0], select(holds, p, zero_of<V>()));
+  }
+
+  // Of a root, or of what hangs on nothing in some lanes.
+  MW_INLINE void solve_alone(int body) const {
+    store(row(d_.twist, body, kTwist), solve(load_as<Inertia>(row(d_.inertia, body, kEntries)),
+                                             load_as<Pushing>(row(d_.load, body, kTwist))));
+  }
+  MW_INLINE Float mass_of(int body) const {
+    return Float(Real(1)) / Float(constants_of_body(g_, body).inv_mass);
+  }
+  static MW_INLINE Rotary moments(const Real* of, int body) {
+    return load_as<Rotary>(of + body * Bodies<S>::kRotary * kLanes);
+  }
+  static MW_INLINE Real* row(Real* of, int body, int rows) { return of + body * rows * kLanes; }
+
+  template <class Visit>
+  MW_INLINE void for_each_body(Visit visit) const {
+    for (int i = 0; i < t_.joint_trees.bodies; ++i) visit(t_.joint_trees.body[i]);
+  }
+  template <class Visit>
+  MW_INLINE void with_bound(const TreeEdge& edge, int part, EdgeDof<S>& dof, Visit visit) const {
+    if (part < 0) return;
+    const JointPart& what = t_.part[part];
+    const Joint& c = constants_of_part(g_, part);
+    if (what.kind == PartKind::slide) {
+      visit(Bound<S, true>(t_, g_, what, c, part_rows<S, Row<S, true>>(w_, part), dof,
+                           edge.reversed, closes_, first_));
+    } else {
+      visit(Bound<S, false>(t_, g_, what, c, part_rows<S, Row<S, false>>(w_, part), dof,
+                            edge.reversed, closes_, first_));
+    }
+  }
+  template <class Visit>
+  MW_INLINE void for_each_bound(Visit visit) const {
+    for (int i = 0; i < t_.joint_trees.edges; ++i) {
+      const TreeEdge& edge = t_.joint_trees.edge[i];
+      EdgeRows<S>& s = edge_rows<S>(w_, i);
+      with_bound(edge, edge.slide, s.slide, [&](const auto& b) { visit(b, s.slide, s); });
+      with_bound(edge, edge.angle, s.turn, [&](const auto& b) { visit(b, s.turn, s); });
+    }
+  }
+
+  const Constants& t_;
+  const Group& g_;
+  Work& w_;
+  DirectWork& d_;
+  const Real* rotary_;
+  const bool closes_, first_;
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

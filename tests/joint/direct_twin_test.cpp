@@ -1,0 +1,109 @@
+// Trees of joints solved at once, against the whole system of equations in double precision.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/joint_twin.hpp"
+#include "tests/support/joints.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+JointType random_type(Random& random, Space space) {
+  const Spring spring{random.uniform(0, 500), random.uniform(0.1, 20), 0, 0};
+  std::optional<Drive> drive;
+  if (random.chance(0.4)) drive = Drive{random.uniform(-1, 1), random.uniform(-1, 1), spring};
+  switch (random.integer(space == Space::planar ? 1 : 0, 4)) {
+    case 0: return BallJoint{};
+    case 1: return HingeJoint{std::nullopt, drive};
+    case 2: return SliderJoint{std::nullopt, drive};
+    case 3: return FixedJoint{};
+    default: return HingeJoint{};
+  }
+}
+
+// Up to 20 bodies that branch, on the world or free, with the child on either side of its joint;
+// somewhat apart, and in motion.
+Scene random_tree(Random& random, Space space) {
+  Scene scene = empty_scene(space, 10);
+  scene.options.dt = 1e-3, scene.options.substeps = 1;
+  scene.options.joint.method = JointMethod::tree;
+  const bool planar = space == Space::planar;
+  const int bodies = random.integer(1, 20);
+  const bool anchored = bodies == 1 || random.chance(0.6);
+  const auto place = [&](double size) {
+    Vec3 p = random.in_cube(size);
+    if (planar) p.z() = 0;
+    return p;
+  };
+  const auto turn = [&] {
+    return planar ? Quat(Eigen::AngleAxisd(random.uniform(-3, 3), Vec3::UnitZ()))
+                  : random.rotation();
+  };
+  std::vector<Vec3> places;
+  for (int i = 0; i < bodies; ++i) {
+    const int hangs_on = i == 0 ? -1 : random.integer(0, i - 1);
+    const Vec3 on = hangs_on < 0 ? Vec3::Zero() : places[static_cast<std::size_t>(hangs_on)];
+    const Vec3 at = on + place(1);
+    places.push_back(at);
+    const double mass = std::pow(10, random.uniform(-1, 1.5));
+    Vec3 inertia = Vec3::Constant(mass * std::pow(10, random.uniform(-3, -0.5)));
+    inertia.x() *= random.uniform(1, 1.8);
+    const BodyId body = scene.add(lump(space, mass, inertia, at));
+    scene.bodies.back().rotation = turn();
+    if (hangs_on < 0 && !anchored) continue;
+    const BodyId other = hangs_on < 0 ? BodyId{} : BodyId(hangs_on);
+    const Frame frame{on + place(0.5), turn()};
+    const JointType type = random_type(random, space);
+    const bool reversed = other && random.chance(0.5);
+    scene.add(reversed ? joint_at(scene, body, other, frame, type)
+                       : joint_at(scene, other, body, frame, type));
+  }
+  for (Body& body : scene.bodies) {
+    body.position += place(1e-3);
+    body.linear_velocity = place(1);
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("trees of joints move as the whole system of equations says", "[fast][joint]") {
+  Random random(20);
+  for (const Space space : {Space::planar, Space::spatial}) {
+    for (int k = 0; k < 60; ++k) {
+      const Scene scene = random_tree(random, space);
+      JointTwin twin(scene);
+      const double dt = scene.options.dt;
+      twin.step(dt);
+      double fastest = 1;
+      for (const TwinBody& b : twin.closing()) fastest = std::max(fastest, b.linear.norm());
+      for (const Table& table : widest_tables()) {
+        Batch batch(compile(scene), options_of(table));
+        REQUIRE(batch.plan().resolved().joint.method == JointMethod::tree);
+        batch.step();
+        double moved = 0, turned = 0, speed = 0;
+        for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+          const auto& start = scene.bodies[static_cast<std::size_t>(i)];
+          const TwinBody& closing = twin.closing()[static_cast<std::size_t>(i)];
+          const TwinBody& end = twin.bodies()[static_cast<std::size_t>(i)];
+          moved = std::max(moved,
+                           (position(batch, 0, i) - start.position - dt * closing.linear).norm());
+          const Quat off = rotation(batch, 0, i) * end.rotation.conjugate();
+          turned = std::max(turned, 2 * off.vec().norm());
+          speed = std::max(speed, (velocity(batch, 0, i) - end.linear).norm());
+        }
+        INFO(name(table) << ' ' << (space == Space::planar ? "planar" : "spatial") << " tree " << k
+                         << " of " << scene.bodies.size() << ", fastest " << fastest);
+        CHECK(moved < pick(table, 2e-6, 1e-11) * fastest);
+        CHECK(turned < pick(table, 2e-4, 1e-7) * fastest);
+        CHECK(speed < pick(table, 5e-4, 1e-8) * fastest);
+      }
+    }
+  }
+}
+
+}  // namespace manyworlds::test

@@ -1,0 +1,203 @@
+#include "tests/support/joint_twin.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <variant>
+
+namespace manyworlds::test {
+
+namespace {
+
+constexpr int kSize = 6;  // velocities of a body: linear, angular
+
+Vec3 across(const Vec3& n) { return n.unitOrthogonal(); }
+
+const Drive* drive_of(const Joint& joint) {
+  if (const auto* hinge = std::get_if<HingeJoint>(&joint.type)) {
+    return hinge->drive ? &*hinge->drive : nullptr;
+  }
+  if (const auto* slider = std::get_if<SliderJoint>(&joint.type)) {
+    return slider->drive ? &*slider->drive : nullptr;
+  }
+  return nullptr;
+}
+bool is_slider(const Joint& joint) { return std::holds_alternative<SliderJoint>(joint.type); }
+
+}  // namespace
+
+JointTwin::JointTwin(const Scene& scene) : scene_(scene) {
+  for (const Body& body : scene.bodies) {
+    TwinBody out;
+    const MassProperties m = mass_properties(scene, body);
+    out.rotation = body.rotation.normalized();
+    const Mat3 r = out.rotation.toRotationMatrix();
+    out.mass = m.mass, out.inertia = r * m.inertia * r.transpose();
+    out.position = body.position;
+    out.linear = body.linear_velocity, out.angular = body.angular_velocity;
+    bodies_.push_back(out);
+  }
+}
+
+Vec3 JointTwin::anchor(BodyId body, const Frame& frame) const {
+  if (!body) return frame.position;
+  const TwinBody& b = bodies_[static_cast<std::size_t>(body.index())];
+  return b.position + b.rotation * frame.position;
+}
+Quat JointTwin::axes(BodyId body, const Frame& frame) const {
+  const Quat own = frame.rotation.normalized();
+  return body ? Quat(bodies_[static_cast<std::size_t>(body.index())].rotation * own) : own;
+}
+
+void JointTwin::add_point(Eigen::VectorXd& j, BodyId body, const Vec3& place, const Vec3& d,
+                          double sign) const {
+  if (!body) return;
+  const TwinBody& b = bodies_[static_cast<std::size_t>(body.index())];
+  j.segment<3>(kSize * body.index()) += sign * d;
+  j.segment<3>(kSize * body.index() + 3) += sign * (place - b.position).cross(d);
+}
+void JointTwin::add_spin(Eigen::VectorXd& j, BodyId body, const Vec3& d, double sign) const {
+  if (body) j.segment<3>(kSize * body.index() + 3) += sign * d;
+}
+Eigen::VectorXd JointTwin::about(const Joint& joint, const Vec3& d) const {
+  Eigen::VectorXd j = Eigen::VectorXd::Zero(kSize * static_cast<int>(bodies_.size()));
+  add_spin(j, joint.body_b, d, 1), add_spin(j, joint.body_a, d, -1);
+  return j;
+}
+// Along a direction that A carries, at the anchor of B.
+Eigen::VectorXd JointTwin::along(const Joint& joint, const Vec3& d) const {
+  Eigen::VectorXd j = Eigen::VectorXd::Zero(kSize * static_cast<int>(bodies_.size()));
+  const Vec3 place = anchor(joint.body_b, joint.frame_b);
+  add_point(j, joint.body_b, place, d, 1), add_point(j, joint.body_a, place, d, -1);
+  return j;
+}
+
+std::vector<JointTwin::Row> JointTwin::rows() const {
+  std::vector<Row> out;
+  for (const Joint& joint : scene_.joints) {
+    const Vec3 a = anchor(joint.body_a, joint.frame_a), b = anchor(joint.body_b, joint.frame_b);
+    const Quat qa = axes(joint.body_a, joint.frame_a), qb = axes(joint.body_b, joint.frame_b);
+    const bool wheel = std::holds_alternative<WheelJoint>(joint.type);
+    const bool fixed = std::holds_alternative<FixedJoint>(joint.type);
+    if (wheel || is_slider(joint)) {
+      const Vec3 x = qa * Vec3::UnitX(), d = across(x);
+      for (const Vec3& way : {d, Vec3(x.cross(d))}) {
+        out.push_back({along(joint, way), way.dot(b - a)});
+      }
+    } else {
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 way = Vec3::Unit(k);
+        Eigen::VectorXd j = Eigen::VectorXd::Zero(kSize * static_cast<int>(bodies_.size()));
+        add_point(j, joint.body_b, b, way, 1), add_point(j, joint.body_a, a, way, -1);
+        out.push_back({j, (b - a)(k)});
+      }
+    }
+    if (fixed || is_slider(joint)) {
+      const Quat turn = qb * qa.conjugate();
+      const Vec3 error = (turn.w() < 0 ? -2.0 : 2.0) * turn.vec();
+      for (int k = 0; k < 3; ++k) out.push_back({about(joint, Vec3::Unit(k)), error(k)});
+    } else if (wheel || std::holds_alternative<HingeJoint>(joint.type)) {
+      const Vec3 z = qa * Vec3::UnitZ(), d = across(z), lean = z.cross(qb * Vec3::UnitZ());
+      for (const Vec3& way : {d, Vec3(z.cross(d))}) {
+        out.push_back({about(joint, way), way.dot(lean)});
+      }
+    }
+  }
+  if (scene_.space == Space::planar) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      for (const int k : {2, 3, 4}) {
+        Eigen::VectorXd j = Eigen::VectorXd::Zero(kSize * static_cast<int>(bodies_.size()));
+        j(kSize * static_cast<int>(i) + k) = 1;
+        out.push_back({j, 0});
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<Eigen::VectorXd> JointTwin::drive_axes() const {
+  std::vector<Eigen::VectorXd> out;
+  for (const Joint& joint : scene_.joints) {
+    if (!drive_of(joint)) continue;
+    const Quat qa = axes(joint.body_a, joint.frame_a);
+    out.push_back(is_slider(joint) ? along(joint, qa * Vec3::UnitX())
+                                   : about(joint, qa * Vec3::UnitZ()));
+  }
+  return out;
+}
+// p = h (k (target - x) + c (target speed - v)) with x a step ahead.
+void JointTwin::find_drives(double dt) {
+  drives_.clear();
+  const std::vector<Eigen::VectorXd> j = drive_axes();
+  for (const Joint& joint : scene_.joints) {
+    const Drive* drive = drive_of(joint);
+    if (!drive) continue;
+    const Quat qa = axes(joint.body_a, joint.frame_a), qb = axes(joint.body_b, joint.frame_b);
+    double x;
+    if (is_slider(joint)) {
+      x = (qa * Vec3::UnitX())
+              .dot(anchor(joint.body_b, joint.frame_b) - anchor(joint.body_a, joint.frame_a));
+    } else {
+      const Quat turn = qa.conjugate() * qb;
+      x = 2 * std::atan2(turn.w() < 0 ? -turn.z() : turn.z(), std::abs(turn.w()));
+    }
+    const Spring& spring = *drive->spring;
+    DriveRow out;
+    out.j = j[drives_.size()];
+    out.stiffness = dt * (spring.damping + dt * spring.stiffness);
+    out.push = dt * (spring.stiffness * (drive->target_position - x) +
+                     spring.damping * drive->target_speed);
+    drives_.push_back(out);
+  }
+}
+
+void JointTwin::solve(double rate, bool first) {
+  const int n = kSize * static_cast<int>(bodies_.size());
+  const std::vector<Row> all = rows();
+  const int m = static_cast<int>(all.size());
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + m, n + m);
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(n), load = Eigen::VectorXd::Zero(n + m);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const int at = kSize * static_cast<int>(i);
+    system.block<3, 3>(at, at) = bodies_[i].mass * Mat3::Identity();
+    system.block<3, 3>(at + 3, at + 3) = bodies_[i].inertia;
+    v.segment<3>(at) = bodies_[i].linear, v.segment<3>(at + 3) = bodies_[i].angular;
+  }
+  load.head(n) = system.topLeftCorner(n, n) * v;
+  const std::vector<Eigen::VectorXd> j = drive_axes();
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    DriveRow& drive = drives_[i];
+    drive.j = j[i];
+    system.topLeftCorner(n, n) += drive.stiffness * drive.j * drive.j.transpose();
+    load.head(n) += (drive.push - (first ? 0 : drive.impulse)) * drive.j;
+  }
+  for (int k = 0; k < m; ++k) {
+    const auto& row = all[static_cast<std::size_t>(k)];
+    system.row(n + k).head(n) = row.j.transpose();
+    system.col(n + k).head(n) = row.j;
+    load(n + k) = -rate * row.error;
+  }
+  const Eigen::VectorXd x = system.fullPivLu().solve(load);
+  for (DriveRow& drive : drives_)
+    drive.impulse = drive.push - drive.stiffness * drive.j.dot(x.head(n));
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const int at = kSize * static_cast<int>(i);
+    bodies_[i].linear = x.segment<3>(at), bodies_[i].angular = x.segment<3>(at + 3);
+  }
+}
+
+void JointTwin::step(double dt) {
+  for (TwinBody& b : bodies_) b.linear += dt * scene_.options.gravity;
+  find_drives(dt);
+  solve(1 / dt, true);
+  closing_ = bodies_;
+  for (TwinBody& b : bodies_) {
+    b.position += dt * b.linear;
+    const Vec3 turn = dt * b.angular;
+    if (turn.norm() > 0) {
+      b.rotation = Quat(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * b.rotation;
+    }
+  }
+  solve(0, false);
+}
+
+}  // namespace manyworlds::test

@@ -1,0 +1,60 @@
+// An independent solve of joints in double precision: the whole system of equations of bodies and
+// joints at once, dense, with a Lagrange multiplier for every row.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "manyworlds/scene.hpp"
+
+namespace manyworlds::test {
+
+struct TwinBody {
+  double mass = 1;
+  Mat3 inertia = Mat3::Identity();  // world axes
+  Vec3 position = Vec3::Zero();
+  Quat rotation = Quat::Identity();
+  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+};
+
+// Ball joints, hinges, sliders, fixed and wheel joints between bodies that begin as the scene says,
+// with drives that are springs; neither limits nor bounds of drives.
+class JointTwin {
+ public:
+  explicit JointTwin(const Scene& scene);
+
+  // One step of dt, s, without substeps: velocities that close what is apart, bodies moved by them,
+  // velocities that keep what is left.
+  void step(double dt);
+  // As found by the last step before it moved the bodies; then as it left them.
+  const std::vector<TwinBody>& closing() const { return closing_; }
+  const std::vector<TwinBody>& bodies() const { return bodies_; }
+
+ private:
+  struct Row {
+    Eigen::VectorXd j;  // by velocities of all bodies
+    double error = 0;
+  };
+  struct DriveRow {
+    Eigen::VectorXd j;
+    double stiffness = 0, push = 0, impulse = 0;  // impulse = push - stiffness j v
+  };
+  std::vector<Row> rows() const;
+  Vec3 anchor(BodyId body, const Frame& frame) const;
+  Quat axes(BodyId body, const Frame& frame) const;
+  // j += d . velocity of the point at `place` of a body, times sign.
+  void add_point(Eigen::VectorXd& j, BodyId body, const Vec3& place, const Vec3& d,
+                 double sign) const;
+  void add_spin(Eigen::VectorXd& j, BodyId body, const Vec3& d, double sign) const;
+  Eigen::VectorXd about(const Joint& joint, const Vec3& d) const;
+  Eigen::VectorXd along(const Joint& joint, const Vec3& d) const;
+  std::vector<Eigen::VectorXd> drive_axes() const;
+  void find_drives(double dt);
+  void solve(double rate, bool first);
+
+  Scene scene_;
+  std::vector<TwinBody> bodies_, closing_;
+  std::vector<DriveRow> drives_;
+};
+
+}  // namespace manyworlds::test
