@@ -70,6 +70,11 @@ TEST_CASE("setting an option with --set does what its flag does", "[cli]") {
   CHECK(set["hash"] == flags["hash"]);
   CHECK(set["solver"] == "sor");
   CHECK(json("--dt 0.01 --set dt=0.02")["dt"] == 0.02);  // the last word
+  const auto chain = [](const std::string& joints) {
+    return Json::parse(run("run chain3d --worlds 2 --steps 20 --json " + joints).out)["hash"];
+  };
+  CHECK(chain("--joints tree") == chain("--set joint.method=tree"));
+  CHECK(chain("--joints tree") != chain("--joints sweep"));
   CHECK(json("--set gravity=0,0,-1.6")["hash"] != json("")["hash"]);
   CHECK(json("--set solver.iterations=default --set bounds=-90,-90,-90,90,90,90")["hash"] ==
         json("")["hash"]);

@@ -47,6 +47,7 @@ Job prepare(const JobOptions& options, std::vector<std::string>* warnings) {
   if (options.substeps) scene.options.substeps = *options.substeps;
   if (options.solver) scene.options.solver.method = *options.solver;
   if (options.iterations) scene.options.solver.iterations = *options.iterations;
+  if (options.joints) scene.options.joint.method = *options.joints;
   for (const std::string& one : options.set) {
     if (const std::string wrong = set_option(scene.options, one); !wrong.empty()) {
       throw InputError("--set: " + wrong);

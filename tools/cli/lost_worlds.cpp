@@ -37,6 +37,7 @@ std::string reproduce_command(const JobOptions& options, int steps, std::uint64_
   if (options.substeps) command += fmt::format(" --substeps {}", *options.substeps);
   if (options.solver) command += fmt::format(" --solver {}", to_string(*options.solver));
   if (options.iterations) command += fmt::format(" --iterations {}", *options.iterations);
+  if (options.joints) command += fmt::format(" --joints {}", to_string(*options.joints));
   for (const std::string& one : options.set) command += " --set " + shell_word(one);
   if (options.random_controls) command += " --random-controls";
   if (!options.keyframe.empty()) command += " --keyframe " + shell_word(options.keyframe);

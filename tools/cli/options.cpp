@@ -226,6 +226,11 @@ void add_plan_options(CLI::App& app, JobOptions& options) {
                  "sweeps over all rows per substep, 1 to 10000 (default: the solver's)")
       ->transform(whole_number(1, 10000))
       ->type_name("N");
+  const Choices<JointMethod> methods{{to_string(JointMethod::sweep), JointMethod::sweep},
+                                     {to_string(JointMethod::tree), JointMethod::tree}};
+  add_choice<JointMethod>(
+      app, "--joints", methods, [&options](JointMethod value) { options.joints = value; },
+      "swept over one after the other, or those of a tree at once (default: the scene's)");
   app.add_option("--set", options.set,
                  "any option of the scene by its path, as contact.frequency=30 or "
                  "gravity=0,0,-9.81; 'info --options' lists them; may be repeated")
