@@ -55,7 +55,9 @@ struct Members<JointOptions> {
   static constexpr const char* name = "JointOptions";
   static void visit(auto& value, auto&& visit) {
     auto& [method, frequency, damping_ratio, pull_speed] = value;
-    visit("method", method, counted_if(method.has_value(), "swept over by default"));
+    visit("method", method,
+          counted_if(method == JointMethod::tree,
+                     "sweeps are what there was before there was a choice"));
     visit("frequency", frequency), visit("damping_ratio", damping_ratio);
     visit("pull_speed", pull_speed);
   }

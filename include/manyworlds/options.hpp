@@ -77,10 +77,13 @@ const char* to_string(JointMethod method);
 // What joints hold together is pulled back as by a spring and damper. Not capped: stiffer than the
 // default may ring.
 struct JointOptions {
-  // Default: tree where all joints are of trees, nothing can touch, and sweeps would take more than
-  // four substeps or a rotation is held; else sweep.
+  // Default: tree where all joints are of trees that hang on something, nothing can touch, no
+  // frequency is given, and sweeps would take more than four substeps or a rotation is held; else
+  // sweep.
   std::optional<JointMethod> method = {};
-  // Hz; default a quarter per substep, and hard rows in sequential_impulse, sor and nncg.
+  // Hz; default a quarter per substep, and hard rows in sequential_impulse, sor and nncg. Trees are
+  // hard whatever it is, and close what is apart at the rate of such a spring; by default in a
+  // substep.
   std::optional<double> frequency = {};
   double damping_ratio = 2;
   // m/s per length unit, and rad/s: cap on the speed at which a joint closes what has come apart.

@@ -1,40 +1,48 @@
 // What drives and limits do along a coordinate of an edge. They stand in its pivot, so that they
-// are as implicit as the joint itself: an impulse of push - stiffness q along the rate q of the
-// child against the parent, with v = q, or -q where the child is A.
-//   drive, spring  p = -(v - share target speed + bias_rate C) / c,  c = rho K + gamma
-//   (RowSoftness) motor          v = target speed, hard limit          v >= v_low or v <= v_high,
-//   hard or as such a spring, p of one sign
-// Which limits act, and which drives are at their largest impulse, is a set that is guessed by the
-// last solve and corrected by this one. Impulses are those of the substep so far.
+// are as implicit as the joint itself: an impulse p along the rate q of the child against the
+// parent, where v = q, or -q where the child is A, has been v0 before the solve.
+//
+//   spring of a drive   p = k (share target speed - bias_rate C - v),  1 / k = rho K + gamma
+//   motor               the same with v = target speed and a k that is hard against the pivot
+//   limit               p = k (bound - v) of one sign, hard or as such a spring
+//
+// (RowSoftness). p = k (w - v0) - k (v - v0): of v itself float would have no digits left. Which
+// limits act, and which drives are at their largest impulse, is the active set: guessed by the last
+// solve, corrected by this one. Impulses are those of the substep so far.
 #pragma once
 
 #include "kernels/direct/edges.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-inline constexpr Real kHardRow = Real(1e4);  // times the pivot
+// Times the pivot. A limit outdoes a motor that drives into it.
+inline constexpr Real kHardMotor = Real(1e3), kHardLimit = Real(1e6);
 
 template <class S, bool kLinear>
 class Bound {
  public:
-  // kCloses: limits are closed, too. `first`: the substep has no impulses yet.
+  // closes: limits are closed, too. `first`: the substep has no impulses yet.
   MW_INLINE Bound(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
                   Row<S, kLinear>& s, EdgeDof<S>& dof, bool reversed, bool closes, bool first)
       : part_(part), c_(constants), s_(s), dof_(dof), closes_(closes), first_(first) {
     sign_ = reversed ? Real(-1) : Real(1);
+    began_ = Float::load(dof.began) * sign_;
     const Float value = Float::load(s.value);
     if (first) value.store(s.driven);
     inv_h_ = t.inv_h;
     if (part.drive) {
       const DriveTarget target = target_of(g, part, constants);
-      speed_ = target.speed * Float(constants.speed_share);
-      error_ = Float::load(s.driven) - target.position;
+      wanted_ = target.speed * Float(constants.speed_share);
+      if (part.springy) {
+        const Float error = Float::load(s.driven) - target.position;
+        wanted_ = fnma(error, Float(constants.drive_soft.bias_rate), wanted_);
+      }
     }
-    if (part.low) gap_low_ = value - Float(constants.low);
-    if (part.high) gap_high_ = Float(constants.high) - value;
+    if (part.low) low_ = bound(value - Float(constants.low));
+    if (part.high) high_ = bound(Float(constants.high) - value);
   }
 
-  // Sets to begin a step with: what acted at the end of the last one.
+  // The active set to begin a step with: what acted at the end of the last one.
   MW_INLINE void guess() const {
     const Float zero(Real(0));
     dof_.above = dof_.below = 0;
@@ -42,51 +50,42 @@ class Bound {
     dof_.high = bits(zero < Float::load(s_.impulse[2]));
   }
 
-  // Adds to the pivot, and to the load, by the sets.
+  // Adds to the pivot, and to the load.
   MW_INLINE void add(Float pivot, Float& stiffness, Float& push) const {
-    const Float zero(Real(0)), hard = pivot * Float(kHardRow);
+    const Float zero(Real(0));
     if (part_.drive) {
       const Mask above = mask_from_bits(dof_.above), below = mask_from_bits(dof_.below);
-      const Float most = c_.max_impulse, so_far = before(0);
-      const Float k = drive_stiffness(hard);
-      Float p = drive_push(k) - (is_motor() ? zero : so_far);
+      const Float k = drive_stiffness(pivot), most = c_.max_impulse, so_far = before(0);
+      Float p = k * (wanted_ - began_) - (part_.springy ? so_far : zero);
       p = select(above, most - so_far, select(below, zero - most - so_far, p));
       stiffness = stiffness + select(above | below, zero, k), push = fma(p, sign_, push);
     }
-    if (part_.low) {
-      const Mask acts = mask_from_bits(dof_.low);
-      const Float k = limit_stiffness(hard);
-      const Float p = limit_push(k, gap_low_) - (part_.soft_limit ? before(1) : zero);
+    const auto limit = [&](std::uint32_t active, Float least, Float speed, int which) {
+      const Mask acts = mask_from_bits(active);
+      const Float k = limit_stiffness(pivot);
+      const Float p = k * (least - speed) - (part_.soft_limit ? before(which) : zero);
       stiffness = stiffness + select(acts, k, zero);
-      push = fma(select(acts, p, zero - before(1)), sign_, push);
-    }
-    if (part_.high) {
-      const Mask acts = mask_from_bits(dof_.high);
-      const Float k = limit_stiffness(hard);
-      const Float p = limit_push(k, gap_high_) - (part_.soft_limit ? before(2) : zero);
-      stiffness = stiffness + select(acts, k, zero);
-      push = fnma(select(acts, p, zero - before(2)), sign_, push);
-    }
+      return select(acts, p, zero - before(which));
+    };
+    if (part_.low) push = fma(limit(dof_.low, low_, began_, 1), sign_, push);
+    if (part_.high) push = fnma(limit(dof_.high, high_, zero - began_, 2), sign_, push);
   }
 
-  // Corrects the sets by the rate that came of them; returns the lanes in which they change.
-  MW_INLINE std::uint32_t correct(Float rate) const {
-    const Totals p = totals(rate);
-    const Float zero(Real(0)), v = rate * sign_;
+  // Corrects the active set by what came of it; returns the lanes in which it changes.
+  MW_INLINE std::uint32_t correct() const {
+    const Impulses p = impulses();
+    const Float zero(Real(0)), change = change_of_speed(), v = began_ + change;
     const std::uint32_t old[4] = {dof_.low, dof_.high, dof_.above, dof_.below};
     if (part_.low) {
       const Mask acts = mask_from_bits(dof_.low);
-      dof_.low = bits((acts & (zero < p.low)) | ((v < bound(gap_low_)) & !acts));
+      dof_.low = bits((acts & (zero < p.low)) | ((v < low_) & !acts));
     }
     if (part_.high) {
       const Mask acts = mask_from_bits(dof_.high);
-      dof_.high = bits((acts & (zero < p.high)) | ((zero - v < bound(gap_high_)) & !acts));
+      dof_.high = bits((acts & (zero < p.high)) | ((zero - v < high_) & !acts));
     }
     if (part_.drive) {
-      // What the drive would do if nothing bounded it.
-      const Float hard = Float::load(dof_.pivot) * Float(kHardRow), most = c_.max_impulse;
-      const Float k = drive_stiffness(hard);
-      const Float free = drive_push(k) - k * v + (is_motor() ? before(0) : zero);
+      const Float free = unbounded_drive(change), most = c_.max_impulse;
       dof_.above = bits(most < free), dof_.below = bits(free < zero - most);
     }
     return (dof_.low ^ old[0]) | (dof_.high ^ old[1]) | (dof_.above ^ old[2]) |
@@ -94,59 +93,56 @@ class Bound {
   }
 
   // Keeps the impulses of the substep.
-  MW_INLINE void keep(Float rate) const {
-    const Totals p = totals(rate);
+  MW_INLINE void keep() const {
+    const Impulses p = impulses();
     p.drive.store(s_.impulse[0]), p.low.store(s_.impulse[1]), p.high.store(s_.impulse[2]);
   }
 
  private:
-  struct Totals {
+  struct Impulses {
     Float drive, low, high;
   };
   MW_INLINE Float before(int which) const {
     return first_ ? Float(Real(0)) : Float::load(s_.impulse[which]);
   }
-  MW_INLINE bool is_motor() const { return !part_.springy; }
-  MW_INLINE Float drive_stiffness(Float hard) const {
-    return is_motor() ? hard : one_over(c_.drive_soft);
-  }
-  MW_INLINE Float drive_push(Float stiffness) const {
-    if (is_motor()) return stiffness * speed_;
-    return stiffness * fnma(error_, Float(c_.drive_soft.bias_rate), speed_);
-  }
-  MW_INLINE Float limit_stiffness(Float hard) const {
-    return part_.soft_limit ? one_over(c_.limit_soft) : hard;
-  }
-  // Along the way back from the limit.
-  MW_INLINE Float limit_push(Float stiffness, Float gap) const { return stiffness * bound(gap); }
-  // The least speed towards the inside.
-  MW_INLINE Float bound(Float gap) const {
-    const Float zero(Real(0)), ahead = zero - gap * inv_h_;
-    if (part_.soft_limit) return min(zero, ahead) - min(gap, zero) * Float(c_.limit_soft.bias_rate);
-    if (!closes_) return min(ahead, zero);
-    return select(zero < gap, ahead, zero - gap * Float(c_.limit_soft.bias_rate));
-  }
+  MW_INLINE Float change_of_speed() const { return Float::load(dof_.change) * sign_; }
   MW_INLINE Float one_over(const kernels::RowSoftness<LaneNumber>& soft) const {
     return inverse_or_zero(fma(Float::load(s_.k), Float(soft.rho), soft.gamma));
   }
-  // Of the substep with this rate, by the sets.
-  MW_INLINE Totals totals(Float rate) const {
-    const Float zero(Real(0)), v = rate * sign_;
-    const Float hard = Float::load(dof_.pivot) * Float(kHardRow);
-    Totals out{before(0), zero, zero};
+  MW_INLINE Float drive_stiffness(Float pivot) const {
+    return part_.springy ? one_over(c_.drive_soft) : pivot * Float(kHardMotor);
+  }
+  MW_INLINE Float limit_stiffness(Float pivot) const {
+    return part_.soft_limit ? one_over(c_.limit_soft) : pivot * Float(kHardLimit);
+  }
+  // The least speed towards the inside, by the distance to the limit.
+  MW_INLINE Float bound(Float gap) const {
+    const Float zero(Real(0)), ahead = zero - gap * inv_h_;
+    if (!closes_ && !part_.soft_limit) return min(ahead, zero);
+    return select(zero < gap, ahead, zero - gap * Float(c_.limit_soft.bias_rate));
+  }
+  // Of the substep, if nothing bounded it.
+  MW_INLINE Float unbounded_drive(Float change) const {
+    const Float k = drive_stiffness(Float::load(dof_.pivot)), zero(Real(0));
+    return k * ((wanted_ - began_) - change) + (part_.springy ? zero : before(0));
+  }
+  // Of the substep, by the active set.
+  MW_INLINE Impulses impulses() const {
+    const Float zero(Real(0)), change = change_of_speed();
+    Impulses out{before(0), zero, zero};
     if (part_.drive) {
-      const Float k = drive_stiffness(hard), most = c_.max_impulse;
-      out.drive = drive_push(k) - k * v + (is_motor() ? before(0) : zero);
+      const Float most = c_.max_impulse;
       out.drive = select(mask_from_bits(dof_.above), most,
-                         select(mask_from_bits(dof_.below), zero - most, out.drive));
+                         select(mask_from_bits(dof_.below), zero - most, unbounded_drive(change)));
     }
-    const auto limit = [&](std::uint32_t acts, Float gap, Float speed, int which) {
-      const Float k = limit_stiffness(hard);
-      const Float p = limit_push(k, gap) - k * speed + (part_.soft_limit ? zero : before(which));
-      return select(mask_from_bits(acts), p, zero);
+    const auto limit = [&](std::uint32_t active, Float least, Float speed, Float faster,
+                           int which) {
+      const Float k = limit_stiffness(Float::load(dof_.pivot));
+      const Float p = k * ((least - speed) - faster) + (part_.soft_limit ? zero : before(which));
+      return select(mask_from_bits(active), p, zero);
     };
-    if (part_.low) out.low = limit(dof_.low, gap_low_, v, 1);
-    if (part_.high) out.high = limit(dof_.high, gap_high_, zero - v, 2);
+    if (part_.low) out.low = limit(dof_.low, low_, began_, change, 1);
+    if (part_.high) out.high = limit(dof_.high, high_, zero - began_, zero - change, 2);
     return out;
   }
 
@@ -155,8 +151,9 @@ class Bound {
   Row<S, kLinear>& s_;
   EdgeDof<S>& dof_;
   bool closes_, first_;
-  Float sign_ = Real(1), inv_h_ = Real(0);
-  Float speed_ = Real(0), error_ = Real(0), gap_low_ = Real(0), gap_high_ = Real(0);
+  Float sign_ = Real(1), inv_h_ = Real(0), began_ = Real(0);
+  Float wanted_ = Real(0);                // speed of a drive
+  Float low_ = Real(0), high_ = Real(0);  // bounds of limits
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -16,9 +16,9 @@ struct alignas(64) EdgeDof {
   Real pivot[kLanes];             // axis . response
   Real inverse[kLanes];           // 1 / (pivot + what drives and limits add)
   Real load[kLanes];
-  Real began[kLanes], rate[kLanes];  // before the solve, and after
-  std::uint32_t low, high;           // lanes in which a limit acts
-  std::uint32_t above, below;        // lanes in which a drive is at its largest impulse
+  Real began[kLanes], change[kLanes];  // rate before the solve, and what it changes by
+  std::uint32_t low, high;             // lanes in which a limit acts
+  std::uint32_t above, below;          // lanes in which a drive is at its largest impulse
 };
 
 template <class S>

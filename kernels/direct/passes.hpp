@@ -24,7 +24,7 @@ struct DirectPasses {
       w.direct.held[edge.child] |= lanes;
       if (!edge.given) w.direct.held[edge.parent] |= lanes;
     }
-    TreeSolve<S, kDense>(t, g, w, w.direct.rotary, true, false).guess_bounds();
+    TreeSolve<S, kDense>(t, g, w, w.direct.rotary, true, false).guess_active_sets();
   }
 
   static void bias(const Constants& t, const Group& g, kernels::Scratch* scratch) {

@@ -3,7 +3,8 @@
 // (Featherstone 2008, 7.3) in the coordinates of free bodies: what hangs on a joint is felt at its
 // anchor as an inertia and a load, from which the coordinates along which the joint gives way are
 // eliminated. Nothing fills in, whatever the branching, and nothing is warm started. All numbers
-// are changes of velocity, so that rounding is of what the joints do, and momenta are kept as well.
+// are changes of velocity, so that rounding is of what the joints do, and linear momentum is kept
+// as well.
 //
 // Lanes in which a joint does not hold cut the tree there: the child is a root in those.
 #pragma once
@@ -28,7 +29,7 @@ class TreeSolve {
             bool first)
       : t_(t), g_(g), w_(w), d_(w.direct), rotary_(rotary), closes_(closes), first_(first) {}
 
-  // Until the sets of bounds stay as they are. The angular momenta that there are are those of the
+  // Until the active sets stay as they are. The angular momenta that there are are those of the
   // moments `before`.
   void run(const Real* before) const {
     for_each_body([&](int b) {
@@ -39,25 +40,26 @@ class TreeSolve {
       }
       store(row(d_.given, b, kTwist), p);
     });
-    for (int i = 0; i < kMostSets; ++i) {
-      fold();
-      unfold();
-      if (!correct_bounds()) break;
+    for (int i = 0; i < kMostSolves; ++i) {
+      eliminate_all();
+      substitute_back();
+      // What the last solve did is what is kept.
+      if (i + 1 == kMostSolves || !correct_active_sets()) break;
     }
     leave();
   }
 
-  // Sets of bounds to begin a step with.
-  void guess_bounds() const {
-    for_each_bound([](const auto& bound, const EdgeDof<S>&, const EdgeRows<S>&) { bound.guess(); });
+  // Active sets to begin a step with.
+  void guess_active_sets() const {
+    for_each_bound([](const auto& bound, const EdgeRows<S>&) { bound.guess(); });
   }
 
  private:
   using Rotary = std::conditional_t<S::kDim == 2, Float, Sym3>;
-  static constexpr int kMostSets = 4;
+  static constexpr int kMostSolves = 4;
 
   // From the leaves to the roots.
-  void fold() const {
+  void eliminate_all() const {
     for_each_body([&](int b) {
       store(row(d_.inertia, b, kEntries), rigid_body(mass_of(b), moments(rotary_, b)));
       store(row(d_.load, b, kTwist), load_as<Pushing>(row(d_.given, b, kTwist)));
@@ -84,7 +86,7 @@ class TreeSolve {
     }
   }
   // And back.
-  void unfold() const {
+  void substitute_back() const {
     for (int i = 0; i < t_.joint_trees.roots; ++i) solve_alone(t_.joint_trees.root[i]);
     for (int i = 0; i < t_.joint_trees.edges; ++i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
@@ -150,10 +152,7 @@ class TreeSolve {
     const Pushing f = mul(inertia, axis);
     const Float pivot = dot(axis, f);
     Float stiffness(Real(0)), push(Real(0));
-    with_bound(edge, part, dof, [&](const auto& bound) {
-      bound.add(pivot, stiffness, push);
-      push = fnma(stiffness, Float::load(dof.began), push);
-    });
+    with_bound(edge, part, dof, [&](const auto& bound) { bound.add(pivot, stiffness, push); });
     const Float inverse = inverse_or_zero(pivot + stiffness), own = dot(axis, load) + push;
     store(dof.response[0], f);
     pivot.store(dof.pivot), inverse.store(dof.inverse), own.store(dof.load);
@@ -178,20 +177,18 @@ class TreeSolve {
   static MW_INLINE Mat3 mixed_of(const EdgeRows<S>& s) {
     return {load_vec3(s.mixed[0][0]), load_vec3(s.mixed[1][0]), load_vec3(s.mixed[2][0])};
   }
-  // Leaves the rate that there is then.
   static MW_INLINE Moving expand(EdgeDof<S>& dof, const Moving& axis, const Moving& v) {
     const Float load = Float::load(dof.load) - dot(v, load_as<Pushing>(dof.response[0]));
     const Float change = load * Float::load(dof.inverse);
-    (Float::load(dof.began) + change).store(dof.rate);
+    change.store(dof.change);
     return fma(axis, change, v);
   }
 
-  // Returns whether the sets of some edge have changed.
-  bool correct_bounds() const {
+  // Returns whether that of some edge has changed.
+  bool correct_active_sets() const {
     std::uint32_t changed = 0;
-    for_each_bound([&](const auto& bound, const EdgeDof<S>& dof, const EdgeRows<S>& s) {
-      changed |= bound.correct(Float::load(dof.rate)) & s.lanes;
-    });
+    for_each_bound(
+        [&](const auto& bound, const EdgeRows<S>& s) { changed |= bound.correct() & s.lanes; });
     return changed != 0;
   }
 
@@ -211,9 +208,7 @@ class TreeSolve {
         put_velocity<S, kDense>(w_, w_.velocity, b, select(mask_from_bits(held), now, old));
       }
     });
-    for_each_bound([&](const auto& bound, const EdgeDof<S>& dof, const EdgeRows<S>&) {
-      bound.keep(Float::load(dof.rate));
-    });
+    for_each_bound([&](const auto& bound, const EdgeRows<S>&) { bound.keep(); });
     for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       const EdgeRows<S>& s = edge_rows<S>(w_, i);
@@ -284,8 +279,8 @@ class TreeSolve {
     for (int i = 0; i < t_.joint_trees.edges; ++i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       EdgeRows<S>& s = edge_rows<S>(w_, i);
-      with_bound(edge, edge.slide, s.slide, [&](const auto& b) { visit(b, s.slide, s); });
-      with_bound(edge, edge.angle, s.turn, [&](const auto& b) { visit(b, s.turn, s); });
+      with_bound(edge, edge.slide, s.slide, [&](const auto& b) { visit(b, s); });
+      with_bound(edge, edge.angle, s.turn, [&](const auto& b) { visit(b, s); });
     }
   }
 

@@ -72,7 +72,9 @@ class GeometricStiffness {
     for_each_arm([&](int b, Vec r, Vec p) {
       const Float share = Float::load(sums(b)) * Float(t_.h);
       const auto own = load_as<Rotary>(rotary(d_.stiffened, b));
-      store(rotary(d_.stiffened, b), own + scaled(stiffness_of(r, p), share));
+      // Lanes without any keep the sign of their zeros, whatever others have.
+      store(rotary(d_.stiffened, b),
+            select(Float(Real(0)) < share, own + scaled(stiffness_of(r, p), share), own));
     });
   }
 

@@ -131,6 +131,10 @@ MW_INLINE void store_velocity_row(S, Real* base, const std::int32_t* o, const Ve
   store_rows8(base, o, a.v.x, a.v.y, a.v.z, a.w.x, a.w.y, a.w.z, Real(0), Real(0));
 }
 
+MW_INLINE Sym3 select(Mask m, const Sym3& a, const Sym3& b) {
+  return {select(m, a.xx, b.xx), select(m, a.xy, b.xy), select(m, a.xz, b.xz),
+          select(m, a.yy, b.yy), select(m, a.yz, b.yz), select(m, a.zz, b.zz)};
+}
 template <class S>
 MW_INLINE Velocity<S> select(Mask m, const Velocity<S>& a, const Velocity<S>& b) {
   return {select(m, a.v, b.v), select(m, a.w, b.w)};

@@ -48,7 +48,7 @@ class ContactOptions:
 class JointOptions:
     """How what joints hold together is pulled back."""
 
-    method: Optional[JointMethod] = None  # None: sweep
+    method: Optional[JointMethod] = None  # None: the plan chooses
     frequency: Optional[float] = None  # Hz; None: a quarter per substep, or hard rows
     damping_ratio: float = 2.0
     pull_speed: float = inf  # m/s per length_unit, and rad/s

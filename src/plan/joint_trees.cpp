@@ -40,7 +40,7 @@ class JointTreeBuilder {
   explicit JointTreeBuilder(PlanData& plan)
       : plan_(plan), joints_(plan.scene.joints.size()), in_tree_(joints_of_trees(plan.scene)) {
     const auto bodies = plan.bodies.size();
-    at_.resize(bodies), component_.assign(bodies, -1);
+    at_.resize(bodies), component_.assign(bodies, -1), placed_.assign(bodies, false);
     for (std::size_t i = 0; i < plan.parts.size(); ++i) {
       TreeJoint& joint = joints_[static_cast<std::size_t>(plan.parts[i].joint)];
       joint.parts.push_back(static_cast<int>(i));
@@ -93,11 +93,14 @@ class JointTreeBuilder {
   // From what is given, or else from the heaviest body on.
   void grow(const std::vector<int>& bodies) {
     std::vector<int> order;
+    const auto place = [&](int body) {
+      order.push_back(body), placed_[static_cast<std::size_t>(body)] = true;
+    };
     for (const int body : bodies) {
       for (const int j : at_[static_cast<std::size_t>(body)]) {
         const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
         if (given(joint.body_a) || given(joint.body_b)) {
-          add_edge(j, body), order.push_back(body);
+          add_edge(j, body), place(body);
         }
       }
     }
@@ -106,15 +109,15 @@ class JointTreeBuilder {
         return plan_.bodies[static_cast<std::size_t>(a)].mass <
                plan_.bodies[static_cast<std::size_t>(b)].mass;
       };
-      order.push_back(*std::max_element(bodies.begin(), bodies.end(), lighter));
+      place(*std::max_element(bodies.begin(), bodies.end(), lighter));
       plan_.trees_of_joints.roots.push_back(order.front());
     }
     for (std::size_t i = 0; i < order.size(); ++i) {
       for (const int j : at_[static_cast<std::size_t>(order[i])]) {
         const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
         const int next = joint.body_a == order[i] ? joint.body_b : joint.body_a;
-        if (given(next) || std::find(order.begin(), order.end(), next) != order.end()) continue;
-        add_edge(j, next), order.push_back(next);
+        if (given(next) || placed_[static_cast<std::size_t>(next)]) continue;
+        add_edge(j, next), place(next);
       }
     }
     auto& all = plan_.trees_of_joints.bodies;
@@ -151,7 +154,9 @@ class JointTreeBuilder {
     part.constants.soft = {1 / h, 0, 0};
     if (o.joint.frequency) {
       part.constants.soft.bias_rate =
-          soft_constraint(*o.joint.frequency, o.joint.damping_ratio, h).rate;
+          *o.joint.frequency > 0
+              ? soft_constraint(*o.joint.frequency, o.joint.damping_ratio, h).rate
+              : 0;
     }
   }
 
@@ -160,6 +165,7 @@ class JointTreeBuilder {
   std::vector<bool> in_tree_;         // [joint]
   std::vector<std::vector<int>> at_;  // [body] joints
   std::vector<int> component_;        // [body] its first body
+  std::vector<bool> placed_;          // [body] in its tree
 };
 
 }  // namespace

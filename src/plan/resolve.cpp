@@ -1,6 +1,7 @@
 // What Options leave to the plan: the length unit, the speeds that follow from it, substeps, and
 // how stiff contacts are.
 #include <algorithm>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -14,23 +15,39 @@ namespace manyworlds {
 
 namespace {
 
-// Why joints are solved at once, if they are. Contacts do not know of trees: where something may
-// touch, a load on light legs would rest on contacts of the legs' own mass. Otherwise sweeps are
-// faster, as long as four substeps do, and no rotation is held at the end of a lever.
-std::string need_of_trees(const PlanData& plan) {
-  const Scene& scene = plan.scene;
-  if (scene.joints.empty() || scene.options.solver.method != Solver::tgs_soft) return {};
+// Whether all joints are of trees, and each tree hangs on something: then there are as many joints
+// as bodies that have some.
+bool all_anchored(const Scene& scene) {
   const std::vector<bool> in = joints_of_trees(scene);
-  if (std::count(in.begin(), in.end(), false) > 0 || !nothing_touches(scene)) return {};
-  const JointNeed need = need_of_joints(extremes(plan), *scene.options.length_unit);
-  if (need.substeps > kLeastSubsteps) return "at once, since " + need.why;
-  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
-    const JointType& type = scene.joints[j].type;
-    if (std::holds_alternative<FixedJoint>(type) || std::holds_alternative<SliderJoint>(type)) {
-      return "at once, since joint " + std::to_string(j) + " holds a rotation";
+  if (std::count(in.begin(), in.end(), false) > 0) return false;
+  std::set<int> bodies;
+  for (const Joint& joint : scene.joints) {
+    for (const BodyId body : {joint.body_a, joint.body_b}) {
+      if (body && scene.at(body).motion == Motion::dynamic) bodies.insert(body.index());
     }
   }
-  return {};
+  return bodies.size() == scene.joints.size();
+}
+
+// Why joints are solved at once, if they are. Contacts do not know of trees: where something may
+// touch, a load on light legs would rest on contacts of the legs' own mass. Free trees spin down by
+// their geometric stiffness (kernels/direct/stiffness.hpp). Otherwise sweeps are faster, as long as
+// four substeps do, and no rotation is held at the end of a lever.
+std::string need_of_trees(const PlanData& plan) {
+  const Scene& scene = plan.scene;
+  const Options& o = scene.options;
+  if (scene.joints.empty() || o.solver.method != Solver::tgs_soft || o.joint.frequency) return {};
+  if (!all_anchored(scene)) return {};
+  std::string why;
+  const JointNeed need = need_of_joints(extremes(plan), *o.length_unit);
+  if (need.substeps > kLeastSubsteps) why = "at once, since " + need.why;
+  for (std::size_t j = 0; why.empty() && j < scene.joints.size(); ++j) {
+    const JointType& type = scene.joints[j].type;
+    if (std::holds_alternative<FixedJoint>(type) || std::holds_alternative<SliderJoint>(type)) {
+      why = "at once, since joint " + std::to_string(j) + " holds a rotation";
+    }
+  }
+  return !why.empty() && nothing_touches(scene) ? why : std::string();
 }
 
 }  // namespace

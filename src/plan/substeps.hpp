@@ -23,8 +23,6 @@ struct SubstepChoice {
   std::string why;     // of `substeps`
 };
 
-// Of all worlds: `extremes` (plan_data.hpp) are the scene and those of its lowest and highest
-// numbers. `length_unit` in m.
 // How many substeps sweeps over joints take under what these carry.
 struct JointNeed {
   double substeps = 0;
@@ -35,6 +33,8 @@ JointNeed need_of_joints(const std::vector<Scene>& extremes, double length_unit)
 // Whether some shape of A and some of B may touch.
 bool filters_let_touch(const Body& a, const Body& b);
 
+// Of all worlds: `extremes` (plan_data.hpp) are the scene and those of its lowest and highest
+// numbers. `length_unit` in m.
 SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_unit);
 
 // w that the columns standing in a scene want, rad/s, and the body on top of the one that wants

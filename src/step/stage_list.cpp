@@ -84,21 +84,19 @@ class Builder {
 
   void tgs_soft() {
     Calls& to = out_.solve;
-    // Trees are done with one solve. What else there is spoils it, and they have the last word; it
-    // has none without their relaxing solve, which else is left to the end of the step.
-    const bool others = contacts() || sweeps();
+    // Trees are done with one solve, but for what contacts spoil.
+    const bool again = trees() && contacts();
     if (trees()) add(to, StepStage::joints, trees_.bias);
     for (int i = 0; i < t_.solver.iterations; ++i) {
       if (sweeps()) add(to, StepStage::joints, joints_.bias);
       add_carried(to, StepStage::bias, solver_.bias);
-      if (trees() && others) add(to, StepStage::joints, trees_.bias_again);
+      if (again) add(to, StepStage::joints, trees_.bias_again);
     }
     add(to, StepStage::advance, solver_.advance);
-    if (trees() && others) add(to, StepStage::joints, trees_.relax);
+    if (trees()) add(to, StepStage::joints, trees_.relax);
     if (sweeps()) add(to, StepStage::joints, joints_.relax);
     add_carried(to, StepStage::relax, solver_.relax);
-    if (trees() && others) add(to, StepStage::joints, trees_.relax_again);
-    if (trees() && !others) add(out_.end, StepStage::joints, trees_.relax);
+    if (again) add(to, StepStage::joints, trees_.relax_again);
     ask_here(joints_.relax, solver_.relax);
   }
   void advance() {
@@ -144,8 +142,9 @@ class Builder {
   void next() {
     Calls& to = out_.next;
     if (forgets()) add(to, StepStage::advance, impulses_.forget);
-    // What the velocities have gained since is carried over, unless there is nothing to carry.
-    if (forgets() || !contacts()) add(to, StepStage::advance, solver_.mark);
+    // What the velocities have gained since is carried over, unless there is nothing to carry, or
+    // it is what trees did.
+    if (forgets() || !contacts() || trees()) add(to, StepStage::advance, solver_.mark);
     add(to, StepStage::advance, solver_.next);
     // Impulses are to act where the joints are now: at rows of the substep before they would feed
     // energy. Relaxing sweeps have brought them there already.

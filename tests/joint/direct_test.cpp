@@ -52,8 +52,9 @@ TEST_CASE("chains of light links keep together under any load", "[joint][slow]")
         }
         INFO(name(table) << " load " << load << " gap " << gap << " gain " << gain);
         CHECK(batch.status(0) == Status::ok);
-        CHECK(gap < (load < 50 ? 0.02 : 0.01) * 0.5);  // light ones lash
-        CHECK(gain < 2e-3 * (9 + load) * 10 * 5);
+        CHECK(gap < (load < 50 ? 0.03 : 0.01) * 0.5);  // light ones lash
+        // Symplectic Euler's energy swings by m g v h / 2, and falls at 8 m/s.
+        CHECK(gain < 3.5e-3 * (9 + load) * 10 * 5);
       }
     }
   }
@@ -100,6 +101,34 @@ TEST_CASE("a chain that hangs bears its weight from the first step on", "[joint]
   }
 }
 
+TEST_CASE("what whirls bears m w^2 r", "[joint][fast]") {
+  constexpr double kSpeed = 3, kRadius = 1.5, kMass = 2;
+  for (const Space space : kSpaces) {
+    for (const int substeps : {1, 4, 8}) {
+      for (const double share : {0.97, 1.03}) {
+        Scene scene = tree_scene(space);
+        scene.options.gravity.setZero();
+        scene.options.substeps = substeps;
+        Body body = lump(space, kMass, Vec3::Constant(0.3), {kRadius, 0, 0});
+        const Vec3 axis = hinge_axes(space) * Vec3::UnitZ();
+        body.angular_velocity = kSpeed * axis;
+        body.linear_velocity = body.angular_velocity.cross(body.position);
+        scene.add(body);
+        Joint joint =
+            joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), HingeJoint{});
+        joint.break_force = share * kMass * kSpeed * kSpeed * kRadius;
+        scene.add(joint);
+        for (const Table& table : widest_tables()) {
+          Batch batch(compile(scene), options_of(table));
+          batch.step(120);
+          INFO(name(table) << " substeps " << substeps << " share " << share);
+          CHECK(batch.joint_enabled(0, JointId(0)) == (share > 1));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("arms of ten driven hinges hold loads with any gain", "[joint][fast]") {
   for (const Space space : kSpaces) {
     for (const double gain : {200.0, 2000.0, 20000.0}) {
@@ -126,9 +155,10 @@ TEST_CASE("arms of ten driven hinges hold loads with any gain", "[joint][fast]")
 }
 
 TEST_CASE("a motor in a tree turns with what it has, up to its speed", "[joint][fast]") {
-  constexpr double kMoment = 0.5, kTorque = 2, kSpeed = 3;
+  constexpr double kMoment = 0.5, kTorque = 2;
   for (const Space space : kSpaces) {
-    for (const double way : {1.0, -1.0}) {
+    for (const double way : {1.0, -1.0, 10.0}) {
+      const double kSpeed = 3;
       for (const bool reversed : {false, true}) {
         Scene scene = tree_scene(space);
         scene.options.gravity.setZero();
@@ -152,8 +182,9 @@ TEST_CASE("a motor in a tree turns with what it has, up to its speed", "[joint][
           };
           INFO(name(table) << " way " << way << " reversed " << reversed);
           batch.step(30);
-          CHECK(rate() == Approx(sign * kTorque / kMoment * 0.5).epsilon(1e-3));
-          batch.step(60);
+          const double torque_way = sign > 0 ? kTorque : -kTorque;
+          CHECK(rate() == Approx(torque_way / kMoment * 0.5).epsilon(1e-3));
+          batch.step(570);
           CHECK(rate() == Approx(sign * kSpeed).epsilon(1e-3));
         }
       }
@@ -186,6 +217,30 @@ TEST_CASE("limits in a tree stop what falls on them", "[joint][fast]") {
         CHECK(deepest < 0.01);
         CHECK(Eigen::AngleAxisd(rotation(batch, 0, 0)).angle() == Approx(0.5).margin(5e-3));
         CHECK(max_speed(batch, 0) < 1e-2);
+      }
+    }
+  }
+}
+
+TEST_CASE("a motor does not drive through a limit", "[joint][fast]") {
+  for (const Space space : kSpaces) {
+    for (const double most : {5.0, std::numeric_limits<double>::infinity()}) {
+      Scene scene = tree_scene(space);
+      scene.options.gravity.setZero();
+      scene.add(lump(space, 1, Vec3::Constant(0.5), Vec3::Zero()));
+      const HingeJoint hinge{Limit{-1, 0.5, std::nullopt}, Drive{0, 3, std::nullopt, most}};
+      scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), hinge));
+      for (const Table& table : widest_tables()) {
+        Batch batch(compile(scene), options_of(table));
+        double farthest = 0;
+        for (int i = 0; i < 180; ++i) {
+          batch.step();
+          farthest = std::max(farthest, Eigen::AngleAxisd(rotation(batch, 0, 0)).angle());
+        }
+        INFO(name(table) << " most " << most << " farthest " << farthest);
+        CHECK(farthest < 0.505);
+        CHECK(farthest > 0.49);
+        CHECK(spin(batch, 0, 0).norm() < 0.02);
       }
     }
   }

@@ -21,7 +21,7 @@ JointType random_type(Random& random, Space space) {
     case 1: return HingeJoint{std::nullopt, drive};
     case 2: return SliderJoint{std::nullopt, drive};
     case 3: return FixedJoint{};
-    default: return HingeJoint{};
+    default: return WheelJoint{spring};
   }
 }
 

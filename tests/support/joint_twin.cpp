@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <optional>
 #include <variant>
 
 namespace manyworlds::test {
@@ -12,16 +13,17 @@ constexpr int kSize = 6;  // velocities of a body: linear, angular
 
 Vec3 across(const Vec3& n) { return n.unitOrthogonal(); }
 
-const Drive* drive_of(const Joint& joint) {
-  if (const auto* hinge = std::get_if<HingeJoint>(&joint.type)) {
-    return hinge->drive ? &*hinge->drive : nullptr;
+std::optional<Drive> drive_of(const Joint& joint) {
+  if (const auto* hinge = std::get_if<HingeJoint>(&joint.type)) return hinge->drive;
+  if (const auto* slider = std::get_if<SliderJoint>(&joint.type)) return slider->drive;
+  if (const auto* wheel = std::get_if<WheelJoint>(&joint.type)) {
+    return Drive{0, 0, wheel->suspension};
   }
-  if (const auto* slider = std::get_if<SliderJoint>(&joint.type)) {
-    return slider->drive ? &*slider->drive : nullptr;
-  }
-  return nullptr;
+  return std::nullopt;
 }
+bool is_wheel(const Joint& joint) { return std::holds_alternative<WheelJoint>(joint.type); }
 bool is_slider(const Joint& joint) { return std::holds_alternative<SliderJoint>(joint.type); }
+bool slides(const Joint& joint) { return is_slider(joint) || is_wheel(joint); }
 
 }  // namespace
 
@@ -76,7 +78,7 @@ std::vector<JointTwin::Row> JointTwin::rows() const {
   for (const Joint& joint : scene_.joints) {
     const Vec3 a = anchor(joint.body_a, joint.frame_a), b = anchor(joint.body_b, joint.frame_b);
     const Quat qa = axes(joint.body_a, joint.frame_a), qb = axes(joint.body_b, joint.frame_b);
-    const bool wheel = std::holds_alternative<WheelJoint>(joint.type);
+    const bool wheel = is_wheel(joint);
     const bool fixed = std::holds_alternative<FixedJoint>(joint.type);
     if (wheel || is_slider(joint)) {
       const Vec3 x = qa * Vec3::UnitX(), d = across(x);
@@ -119,8 +121,8 @@ std::vector<Eigen::VectorXd> JointTwin::drive_axes() const {
   for (const Joint& joint : scene_.joints) {
     if (!drive_of(joint)) continue;
     const Quat qa = axes(joint.body_a, joint.frame_a);
-    out.push_back(is_slider(joint) ? along(joint, qa * Vec3::UnitX())
-                                   : about(joint, qa * Vec3::UnitZ()));
+    out.push_back(slides(joint) ? along(joint, qa * Vec3::UnitX())
+                                : about(joint, qa * Vec3::UnitZ()));
   }
   return out;
 }
@@ -129,11 +131,11 @@ void JointTwin::find_drives(double dt) {
   drives_.clear();
   const std::vector<Eigen::VectorXd> j = drive_axes();
   for (const Joint& joint : scene_.joints) {
-    const Drive* drive = drive_of(joint);
+    const std::optional<Drive> drive = drive_of(joint);
     if (!drive) continue;
     const Quat qa = axes(joint.body_a, joint.frame_a), qb = axes(joint.body_b, joint.frame_b);
     double x;
-    if (is_slider(joint)) {
+    if (slides(joint)) {
       x = (qa * Vec3::UnitX())
               .dot(anchor(joint.body_b, joint.frame_b) - anchor(joint.body_a, joint.frame_a));
     } else {

@@ -40,7 +40,7 @@ struct JobOptions {
   std::optional<Solver> solver;
   std::optional<int> iterations;  // per substep
   std::optional<JointMethod> joints;
-  std::vector<std::string> set;   // "contact.slop=0.01" (set_option.hpp), after those above
+  std::vector<std::string> set;  // "contact.slop=0.01" (set_option.hpp), after those above
   BroadPhase broad_phase = BroadPhase::automatic;
   std::vector<Feature> keep;
 
