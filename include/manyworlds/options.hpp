@@ -78,7 +78,7 @@ const char* to_string(JointMethod method);
 // default may ring.
 struct JointOptions {
   // Default: tree where all joints are of trees that hang on something, nothing can touch, no
-  // frequency is given, and sweeps would take more than four substeps or a rotation is held; else
+  // frequency is given, and sweeps would take more than four substeps or a joint is fixed; else
   // sweep.
   std::optional<JointMethod> method = {};
   // Hz; default a quarter per substep, and hard rows in sequential_impulse, sor and nncg. Trees are

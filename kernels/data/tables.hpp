@@ -188,7 +188,7 @@ struct SceneConstants {
   const PairClass<Real>* pair_class;
   TreeTable<Real> tree;  // no links: bodies are not in joint coordinates
   const JointPart* part;
-  JointTrees joint_trees;  // no edges: none is solved at once
+  JointTrees joint_trees;            // no edges: none is solved at once
   const BreakTable<Real>* breaking;  // [breakable]
   const AttractorTable<Real>* attractor;
   const ThrustTable* thrust;         // ordered by body

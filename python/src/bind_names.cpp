@@ -28,9 +28,9 @@ void bind_names(nb::module_& m) {
   m.def(
       "names",
       [] {
-        return all_names<Space, Motion, Integrator, Rotation, Solver, JointMethod, FrictionCone, ControlKind,
-                         Parameter, Draw, Precision, Isa, ContactLayout, Observer, Feature,
-                         BroadPhase, Status>();
+        return all_names<Space, Motion, Integrator, Rotation, Solver, JointMethod, FrictionCone,
+                         ControlKind, Parameter, Draw, Precision, Isa, ContactLayout, Observer,
+                         Feature, BroadPhase, Status>();
       },
       "Names of the values of every enumeration, by its name.");
   m.def("unknown_name", &unknown_name, nb::arg("found"), nb::arg("known"),

@@ -116,7 +116,7 @@ struct PlanData {
   std::vector<PlanFixed> fixed;
   std::vector<double> hulls;  // corners of hulls that move (kernels/data/tables.hpp)
   std::vector<PlanClass> classes;
-  std::vector<PlanPart> parts;                       // of joints, in their order
+  std::vector<PlanPart> parts;  // of joints, in their order
   PlanJointTrees trees_of_joints;
   std::vector<PlanThrust> thrusts;                   // by body
   PlanTrees trees;                                   // of Solver::newton

@@ -32,7 +32,7 @@ bool all_anchored(const Scene& scene) {
 // Why joints are solved at once, if they are. Contacts do not know of trees: where something may
 // touch, a load on light legs would rest on contacts of the legs' own mass. Free trees spin down by
 // their geometric stiffness (kernels/direct/stiffness.hpp). Otherwise sweeps are faster, as long as
-// four substeps do, and no rotation is held at the end of a lever.
+// four substeps do, and no fixed joint holds a lever.
 std::string need_of_trees(const PlanData& plan) {
   const Scene& scene = plan.scene;
   const Options& o = scene.options;
@@ -42,9 +42,8 @@ std::string need_of_trees(const PlanData& plan) {
   const JointNeed need = need_of_joints(extremes(plan), *o.length_unit);
   if (need.substeps > kLeastSubsteps) why = "at once, since " + need.why;
   for (std::size_t j = 0; why.empty() && j < scene.joints.size(); ++j) {
-    const JointType& type = scene.joints[j].type;
-    if (std::holds_alternative<FixedJoint>(type) || std::holds_alternative<SliderJoint>(type)) {
-      why = "at once, since joint " + std::to_string(j) + " holds a rotation";
+    if (std::holds_alternative<FixedJoint>(scene.joints[j].type)) {
+      why = "at once, since joint " + std::to_string(j) + " is fixed";
     }
   }
   return !why.empty() && nothing_touches(scene) ? why : std::string();

@@ -99,7 +99,7 @@ inline Scene joint_trees(Space space) {
         const bool reversed = last && i % 3 == 2;
         Joint joint = reversed ? joint_at(scene, body, last, frame, types[i])
                                : joint_at(scene, last, body, frame, types[i]);
-        joint.break_force = 2e4, joint.break_torque = 2e4;
+        joint.break_force = 1e5, joint.break_torque = 1e5;
         scene.add(joint);
       }
       if (i != 3) last = body;  // what comes after the third hangs on the second, too

@@ -24,8 +24,8 @@ struct Settings {
 struct Effort {
   double tolerance = 0;
   int iterations = 200, line_search_iterations = 100;
-  // Under Euler, as the model has it. What is not solved to the end has accelerations that no forces
-  // of rows belong to, and the implicit step goes by the forces: paths burst, on both sides.
+  // Under Euler, as the model has it. What is not solved to the end has accelerations that no
+  // forces of rows belong to, and the implicit step goes by the forces: paths burst, on both sides.
   bool implicit_damping = true;
 };
 
