@@ -64,7 +64,9 @@ class JointTreeBuilder {
     }
     for (const kernels::TreeEdge& edge : plan_.trees_of_joints.edges) {
       for (const int part : {edge.hold, edge.turn, edge.slide, edge.angle}) {
-        if (part >= 0) solve_at_once(plan_.parts[static_cast<std::size_t>(part)]);
+        if (part < 0) continue;
+        solve_at_once(plan_.parts[static_cast<std::size_t>(part)]);
+        ++plan_.trees_of_joints.parts;
       }
     }
   }

@@ -68,6 +68,7 @@ struct PlanPart {
 struct PlanJointTrees {
   std::vector<kernels::TreeEdge> edges;
   std::vector<std::int32_t> roots, bodies;
+  std::int32_t parts = 0;  // that edges are made of
 };
 
 // Thrust or torque of a control.

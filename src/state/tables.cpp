@@ -253,14 +253,8 @@ void TablesOf<Real>::add_joints(const PlanData& plan) {
   const PlanJointTrees& trees = plan.trees_of_joints;
   edges_ = trees.edges, edge_roots_ = trees.roots, edge_bodies_ = trees.bodies;
   const auto count = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
-  t.joint_trees = {count(edges_),
-                   count(edge_roots_),
-                   count(edge_bodies_),
-                   static_cast<std::int32_t>(std::count_if(parts_.begin(), parts_.end(),
-                                                           [](const auto& p) { return p.direct; })),
-                   edges_.data(),
-                   edge_roots_.data(),
-                   edge_bodies_.data()};
+  t.joint_trees = {count(edges_), count(edge_roots_), count(edge_bodies_), trees.parts,
+                   edges_.data(), edge_roots_.data(), edge_bodies_.data()};
   t.has_drives = std::any_of(parts_.begin(), parts_.end(), kernels::gives_energy);
   for (const PlanThrust& p : plan.thrusts) thrusts_.push_back(p.what);
   for (int body = 0, i = 0; !thrusts_.empty() && body <= t.bodies; ++body) {
