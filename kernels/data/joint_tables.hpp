@@ -82,7 +82,7 @@ static inline constexpr bool gives_energy(const JointPart& p) {
 // The joint that a body of a tree hangs on (kernels/direct/), by its parts.
 struct TreeEdge {
   std::int32_t child, parent;  // state bodies
-  bool given;                  // the parent is the world, SceneConstants::bodies, or kinematic
+  bool prescribed;             // the parent is the world, SceneConstants::bodies, or kinematic
   bool reversed;               // the child is A
   bool slides;                 // along x of A: `hold` is a line, else a point
   bool ball;                   // rotates freely in space

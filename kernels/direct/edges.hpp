@@ -11,10 +11,9 @@ using kernels::TreeEdge;
 // A coordinate along which a joint gives way: q of the child against the parent.
 template <class S>
 struct alignas(64) EdgeDof {
-  static constexpr int kTwist = Bodies<S>::kTwist;
-  Real response[kTwist][kLanes];  // wrench that a unit rate asks for
-  Real pivot[kLanes];             // axis . response
-  Real inverse[kLanes];           // 1 / (pivot + what drives and limits add)
+  Real response[kTwistRowsOf<S>][kLanes];  // wrench that a unit rate asks for
+  Real pivot[kLanes];                      // axis . response
+  Real inverse[kLanes];                    // 1 / (pivot + what drives and limits add)
   Real load[kLanes];
   Real began[kLanes], change[kLanes];  // rate before the solve, and what it changes by
   std::uint32_t low, high;             // lanes in which a limit acts
@@ -23,15 +22,15 @@ struct alignas(64) EdgeDof {
 
 template <class S>
 struct alignas(64) EdgeRows {
-  static constexpr int kTwist = Bodies<S>::kTwist;
   Real arm_parent[S::kDim][kLanes], arm_child[S::kDim][kLanes];  // to the point that both share
   Real slide_axis[S::kDim][kLanes], turn_axis[S::kAng][kLanes];
-  Real target[kTwist][kLanes];  // twist of the child against the parent there that closes the joint
-  Real change[kTwist][kLanes];  // what its twist is to change by, but for the coordinates
+  Real target[kTwistRowsOf<S>]
+             [kLanes];  // twist of the child against the parent there that closes the joint
+  Real change[kTwistRowsOf<S>][kLanes];  // what its twist is to change by, but for the coordinates
   EdgeDof<S> slide, turn;
   // Of a ball joint, whose rotation is eliminated at once: inverse of the moments of inertia, what
   // couples them with the linear velocity, and the moment.
-  Real compliance[Bodies<S>::kRotary][kLanes], mixed[3][3][kLanes], moment[S::kAng][kLanes];
+  Real compliance[S::kInertia][kLanes], mixed[3][3][kLanes], moment[S::kAng][kLanes];
   std::uint32_t lanes;  // in which the joint holds
 };
 
@@ -50,7 +49,6 @@ class EdgeFinder {
  public:
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  using Moving = typename Bodies<S>::Moving;
   EdgeFinder(const Constants& t, const Group& g, Work& w) : t_(t), g_(g), w_(w) {}
 
   // Rows of the parts where the substeps have taken the bodies.
@@ -65,7 +63,7 @@ class EdgeFinder {
     for (int i = 0; i < t_.joint_trees.edges; ++i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       EdgeRows<S>& s = edge_rows<S>(w_, i);
-      Moving target{zero_of<Ang>(), zero_of<Vec>()};
+      TwistOf<S> target{zero_of<Ang>(), zero_of<Vec>()};
       edge.slides ? hold_line<kCloses>(edge, s, target.v) : hold_point<kCloses>(edge, s, target.v);
       if (edge.turn >= 0) {
         if (edge.locked) {
@@ -147,13 +145,11 @@ class EdgeFinder {
 // Axes of the coordinates.
 template <class S>
 MW_INLINE auto axis_of_slide(const EdgeRows<S>& s) {
-  return typename Bodies<S>::Moving{zero_of<typename S::Ang>(),
-                                    load_as<typename S::Vec>(s.slide_axis[0])};
+  return TwistOf<S>{zero_of<typename S::Ang>(), load_as<typename S::Vec>(s.slide_axis[0])};
 }
 template <class S>
 MW_INLINE auto axis_of_turn(const EdgeRows<S>& s) {
-  return typename Bodies<S>::Moving{load_as<typename S::Ang>(s.turn_axis[0]),
-                                    zero_of<typename S::Vec>()};
+  return TwistOf<S>{load_as<typename S::Ang>(s.turn_axis[0]), zero_of<typename S::Vec>()};
 }
 // Whether a joint gives way about z alone.
 MW_INLINE bool hinges(const TreeEdge& edge) { return !edge.ball && !edge.locked; }

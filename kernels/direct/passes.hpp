@@ -17,12 +17,11 @@ struct DirectPasses {
       w.direct.held[b] = 0;
       put_moments(t, g, w, b);
     }
-    EdgeFinder<S, kDense>(t, g, w).template find<true>();
     for (int i = 0; i < t.joint_trees.edges; ++i) {
       const TreeEdge& edge = t.joint_trees.edge[i];
-      const std::uint32_t lanes = edge_rows<S>(w, i).lanes;
+      const std::uint32_t lanes = part_rows<S, PartBodies<S>>(w, edge.hold).mask;
       w.direct.held[edge.child] |= lanes;
-      if (!edge.given) w.direct.held[edge.parent] |= lanes;
+      if (!edge.prescribed) w.direct.held[edge.parent] |= lanes;
     }
     TreeSolve<S, kDense>(t, g, w, w.direct.rotary, true, false).guess_active_sets();
   }
@@ -59,7 +58,7 @@ struct DirectPasses {
  private:
   static MW_INLINE void put_moments(const Constants& t, const Group& g, Work& w, int b) {
     const auto& constants = constants_of_body(g, b);
-    Real* to = w.direct.rotary + b * Bodies<S>::kRotary * kLanes;
+    Real* to = w.direct.rotary + b * S::kInertia * kLanes;
     if constexpr (S::kDim == 2) {
       Float(constants.inertia[2]).store(to);
     } else {

@@ -18,10 +18,6 @@ class TreeSolve {
  public:
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  using Moving = typename Bodies<S>::Moving;
-  using Pushing = typename Bodies<S>::Pushing;
-  using Inertia = typename Bodies<S>::Inertia;
-  static constexpr int kTwist = Bodies<S>::kTwist, kEntries = Bodies<S>::kEntries;
 
   // `rotary`: moments of inertia [body][rotary][lane], with what resists as inertia does; `closes`:
   // see Bound; `first` solve of a substep.
@@ -32,13 +28,13 @@ class TreeSolve {
   // Until the active sets stay as they are. The angular momenta that there are are those of the
   // moments `before`.
   void run(const Real* before) const {
-    for_each_body([&](int b) {
-      Pushing p{zero_of<Ang>(), zero_of<Vec>()};
+    for_each_tree_body(t_, [&](int b) {
+      WrenchOf<S> p{zero_of<Ang>(), zero_of<Vec>()};
       if (before != rotary_) {
         const Velocity<S> v = get_velocity<S, kDense>(w_, w_.velocity, b);
         p.n = apply(moments(before, b), v.w) - apply(moments(rotary_, b), v.w);
       }
-      store(row(d_.given, b, kTwist), p);
+      store(row(d_.own_load, b, kTwistRowsOf<S>), p);
     });
     for (int i = 0; i < kMostSolves; ++i) {
       eliminate_all();
@@ -46,7 +42,7 @@ class TreeSolve {
       // What the last solve did is what is kept.
       if (i + 1 == kMostSolves || !correct_active_sets()) break;
     }
-    leave();
+    commit();
   }
 
   // Active sets to begin a step with.
@@ -55,22 +51,24 @@ class TreeSolve {
   }
 
  private:
-  using Rotary = std::conditional_t<S::kDim == 2, Float, Sym3>;
   static constexpr int kMostSolves = 4;
 
   // From the leaves to the roots.
   void eliminate_all() const {
-    for_each_body([&](int b) {
-      store(row(d_.inertia, b, kEntries), rigid_body(mass_of(b), moments(rotary_, b)));
-      store(row(d_.load, b, kTwist), load_as<Pushing>(row(d_.given, b, kTwist)));
+    for_each_tree_body(t_, [&](int b) {
+      store(row(d_.inertia, b, kArticulatedRowsOf<S>), rigid_body(mass_of(b), moments(rotary_, b)));
+      store(row(d_.load, b, kTwistRowsOf<S>),
+            load_as<WrenchOf<S>>(row(d_.own_load, b, kTwistRowsOf<S>)));
     });
     for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       EdgeRows<S>& s = edge_rows<S>(w_, i);
       const auto arm = load_as<Vec>(s.arm_child[0]);
-      Inertia inertia = moved_back(load_as<Inertia>(row(d_.inertia, edge.child, kEntries)), -arm);
-      Pushing load = moved(load_as<Pushing>(row(d_.load, edge.child, kTwist)), arm);
-      const Moving change = find_change(edge, s);
+      ArticulatedOf<S> inertia = moved_back(
+          load_as<ArticulatedOf<S>>(row(d_.inertia, edge.child, kArticulatedRowsOf<S>)), -arm);
+      WrenchOf<S> load =
+          moved(load_as<WrenchOf<S>>(row(d_.load, edge.child, kTwistRowsOf<S>)), arm);
+      const TwistOf<S> change = find_change(edge, s);
       store(s.change[0], change);
       load = load - mul(inertia, change);
       if (edge.slides) eliminate(edge, edge.slide, s.slide, axis_of_slide(s), inertia, load);
@@ -78,11 +76,12 @@ class TreeSolve {
       if constexpr (S::kDim == 3) {
         if (edge.ball) eliminate_rotation(s, inertia, load);
       }
-      if (edge.given) continue;
+      if (edge.prescribed) continue;
       const auto back = load_as<Vec>(s.arm_parent[0]);
-      add_in_lanes<kEntries>(row(d_.inertia, edge.parent, kEntries), moved_back(inertia, back),
-                             s.lanes);
-      add_in_lanes<kTwist>(row(d_.load, edge.parent, kTwist), moved(load, -back), s.lanes);
+      add_in_lanes<kArticulatedRowsOf<S>>(row(d_.inertia, edge.parent, kArticulatedRowsOf<S>),
+                                          moved_back(inertia, back), s.lanes);
+      add_in_lanes<kTwistRowsOf<S>>(row(d_.load, edge.parent, kTwistRowsOf<S>), moved(load, -back),
+                                    s.lanes);
     }
   }
   // And back.
@@ -91,9 +90,9 @@ class TreeSolve {
     for (int i = 0; i < t_.joint_trees.edges; ++i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       EdgeRows<S>& s = edge_rows<S>(w_, i);
-      Moving v{zero_of<Ang>(), zero_of<Vec>()};
-      if (!edge.given) {
-        v = moved(load_as<Moving>(row(d_.twist, edge.parent, kTwist)),
+      TwistOf<S> v{zero_of<Ang>(), zero_of<Vec>()};
+      if (!edge.prescribed) {
+        v = moved(load_as<TwistOf<S>>(row(d_.twist, edge.parent, kTwistRowsOf<S>)),
                   load_as<Vec>(s.arm_parent[0]));
       }
       if (hinges(edge)) v = expand(s.turn, axis_of_turn(s), v);
@@ -103,25 +102,25 @@ class TreeSolve {
         }
       }
       if (edge.slides) v = expand(s.slide, axis_of_slide(s), v);
-      v = moved(v + load_as<Moving>(s.change[0]), -load_as<Vec>(s.arm_child[0]));
-      Real* to = row(d_.twist, edge.child, kTwist);
+      v = moved(v + load_as<TwistOf<S>>(s.change[0]), -load_as<Vec>(s.arm_child[0]));
+      Real* to = row(d_.twist, edge.child, kTwistRowsOf<S>);
       if (s.lanes == kAllLanes) {
         store(to, v);
       } else {
         solve_alone(edge.child);
-        store(to, select(mask_from_bits(s.lanes), v, load_as<Moving>(to)));
+        store(to, select(mask_from_bits(s.lanes), v, load_as<TwistOf<S>>(to)));
       }
     }
   }
 
   // What the twist of the child against the parent is to change by at the anchor, but for the
   // coordinates, whose rates go to their rows.
-  MW_INLINE Moving find_change(const TreeEdge& edge, EdgeRows<S>& s) const {
+  MW_INLINE TwistOf<S> find_change(const TreeEdge& edge, EdgeRows<S>& s) const {
     const Velocity<S> b = get_velocity<S, kDense>(w_, w_.velocity, edge.child);
-    Moving v = moved(Moving{b.w, b.v}, load_as<Vec>(s.arm_child[0]));
+    TwistOf<S> v = moved(TwistOf<S>{b.w, b.v}, load_as<Vec>(s.arm_child[0]));
     if (edge.parent != t_.bodies) {
       const Velocity<S> a = get_velocity<S, kDense>(w_, w_.velocity, edge.parent);
-      const Moving of_parent = moved(Moving{a.w, a.v}, load_as<Vec>(s.arm_parent[0]));
+      const TwistOf<S> of_parent = moved(TwistOf<S>{a.w, a.v}, load_as<Vec>(s.arm_parent[0]));
       v = {v.w - of_parent.w, v.v - of_parent.v};
     }
     if (edge.slides) {
@@ -141,15 +140,15 @@ class TreeSolve {
         v.w = fnma(axis, rate, v.w);
       }
     }
-    Moving change{-v.w, -v.v};
-    if (closes_) change = change + load_as<Moving>(s.target[0]);
+    TwistOf<S> change{-v.w, -v.v};
+    if (closes_) change = change + load_as<TwistOf<S>>(s.target[0]);
     if (edge.ball) change.w = zero_of<Ang>();
     return change;
   }
 
-  MW_INLINE void eliminate(const TreeEdge& edge, int part, EdgeDof<S>& dof, const Moving& axis,
-                           Inertia& inertia, Pushing& load) const {
-    const Pushing f = mul(inertia, axis);
+  MW_INLINE void eliminate(const TreeEdge& edge, int part, EdgeDof<S>& dof, const TwistOf<S>& axis,
+                           ArticulatedOf<S>& inertia, WrenchOf<S>& load) const {
+    const WrenchOf<S> f = mul(inertia, axis);
     const Float pivot = dot(axis, f);
     Float stiffness(Real(0)), push(Real(0));
     with_bound(edge, part, dof, [&](const auto& bound) { bound.add(pivot, stiffness, push); });
@@ -159,8 +158,8 @@ class TreeSolve {
     inertia = without(inertia, f, inverse);
     load = fnma(f, own * inverse, load);
   }
-  MW_INLINE void eliminate_rotation(EdgeRows<S>& s, Inertia& inertia, Pushing& load) const
-      requires(S::kDim == 3) {
+  MW_INLINE void eliminate_rotation(EdgeRows<S>& s, ArticulatedOf<S>& inertia,
+                                    WrenchOf<S>& load) const requires(S::kDim == 3) {
     const Sym3 compliance = inverse(inertia.rotary);
     const Mat3 m = inertia.mixed;
     const Mat3 by{mul(compliance, m.x), mul(compliance, m.y), mul(compliance, m.z)};
@@ -177,8 +176,8 @@ class TreeSolve {
   static MW_INLINE Mat3 mixed_of(const EdgeRows<S>& s) {
     return {load_vec3(s.mixed[0][0]), load_vec3(s.mixed[1][0]), load_vec3(s.mixed[2][0])};
   }
-  static MW_INLINE Moving expand(EdgeDof<S>& dof, const Moving& axis, const Moving& v) {
-    const Float load = Float::load(dof.load) - dot(v, load_as<Pushing>(dof.response[0]));
+  static MW_INLINE TwistOf<S> expand(EdgeDof<S>& dof, const TwistOf<S>& axis, const TwistOf<S>& v) {
+    const Float load = Float::load(dof.load) - dot(v, load_as<WrenchOf<S>>(dof.response[0]));
     const Float change = load * Float::load(dof.inverse);
     change.store(dof.change);
     return fma(axis, change, v);
@@ -193,12 +192,12 @@ class TreeSolve {
   }
 
   // Velocities, and what joints did.
-  void leave() const {
-    for_each_body([&](int b) {
-      const auto change = load_as<Moving>(row(d_.twist, b, kTwist));
-      const auto given = load_as<Pushing>(row(d_.given, b, kTwist));
-      store(row(d_.load, b, kTwist),
-            Pushing{apply(moments(rotary_, b), change.w) - given.n, change.v * mass_of(b)});
+  void commit() const {
+    for_each_tree_body(t_, [&](int b) {
+      const auto change = load_as<TwistOf<S>>(row(d_.twist, b, kTwistRowsOf<S>));
+      const auto own_load = load_as<WrenchOf<S>>(row(d_.own_load, b, kTwistRowsOf<S>));
+      store(row(d_.load, b, kTwistRowsOf<S>),
+            WrenchOf<S>{apply(moments(rotary_, b), change.w) - own_load.n, change.v * mass_of(b)});
       const Velocity<S> old = get_velocity<S, kDense>(w_, w_.velocity, b);
       const Velocity<S> now{old.v + change.v, old.w + change.w};
       const std::uint32_t held = d_.held[b];
@@ -212,16 +211,16 @@ class TreeSolve {
     for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       const EdgeRows<S>& s = edge_rows<S>(w_, i);
-      const Pushing p =
-          moved(load_as<Pushing>(row(d_.load, edge.child, kTwist)), load_as<Vec>(s.arm_child[0]));
+      const WrenchOf<S> p = moved(load_as<WrenchOf<S>>(row(d_.load, edge.child, kTwistRowsOf<S>)),
+                                  load_as<Vec>(s.arm_child[0]));
       keep_impulse(edge, s, p);
-      if (edge.given) continue;
-      add_in_lanes<kTwist>(row(d_.load, edge.parent, kTwist),
-                           moved(p, -load_as<Vec>(s.arm_parent[0])), s.lanes);
+      if (edge.prescribed) continue;
+      add_in_lanes<kTwistRowsOf<S>>(row(d_.load, edge.parent, kTwistRowsOf<S>),
+                                    moved(p, -load_as<Vec>(s.arm_parent[0])), s.lanes);
     }
   }
   // On B, without what acts along the coordinates.
-  MW_INLINE void keep_impulse(const TreeEdge& edge, const EdgeRows<S>& s, Pushing p) const {
+  MW_INLINE void keep_impulse(const TreeEdge& edge, const EdgeRows<S>& s, WrenchOf<S> p) const {
     if (edge.slides) {
       const auto axis = load_as<Vec>(s.slide_axis[0]);
       p.f = fnma(axis, dot(axis, p.f), p.f);
@@ -246,21 +245,18 @@ class TreeSolve {
 
   // Of a root, or of what hangs on nothing in some lanes.
   MW_INLINE void solve_alone(int body) const {
-    store(row(d_.twist, body, kTwist), solve(load_as<Inertia>(row(d_.inertia, body, kEntries)),
-                                             load_as<Pushing>(row(d_.load, body, kTwist))));
+    store(row(d_.twist, body, kTwistRowsOf<S>),
+          solve(load_as<ArticulatedOf<S>>(row(d_.inertia, body, kArticulatedRowsOf<S>)),
+                load_as<WrenchOf<S>>(row(d_.load, body, kTwistRowsOf<S>))));
   }
   MW_INLINE Float mass_of(int body) const {
     return Float(Real(1)) / Float(constants_of_body(g_, body).inv_mass);
   }
-  static MW_INLINE Rotary moments(const Real* of, int body) {
-    return load_as<Rotary>(of + body * Bodies<S>::kRotary * kLanes);
+  static MW_INLINE MomentsOf<S> moments(const Real* of, int body) {
+    return load_as<MomentsOf<S>>(of + body * S::kInertia * kLanes);
   }
   static MW_INLINE Real* row(Real* of, int body, int rows) { return of + body * rows * kLanes; }
 
-  template <class Visit>
-  MW_INLINE void for_each_body(Visit visit) const {
-    for (int i = 0; i < t_.joint_trees.bodies; ++i) visit(t_.joint_trees.body[i]);
-  }
   template <class Visit>
   MW_INLINE void with_bound(const TreeEdge& edge, int part, EdgeDof<S>& dof, Visit visit) const {
     if (part < 0) return;

@@ -9,19 +9,25 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 template <class S>
-struct Bodies {
-  using Moving = Twist;
-  using Pushing = Wrench;
-  using Inertia = ArticulatedInertia;
-  static constexpr int kTwist = kTwistRows, kEntries = kArticulatedRows, kRotary = 6;
-};
-template <>
-struct Bodies<Planar> {
-  using Moving = PlanarTwist;
-  using Pushing = PlanarWrench;
-  using Inertia = PlanarInertia;
-  static constexpr int kTwist = kPlanarTwistRows, kEntries = kPlanarInertiaRows, kRotary = 1;
-};
+inline constexpr bool kPlane = S::kDim == 2;
+template <class S>
+using TwistOf = std::conditional_t<kPlane<S>, PlanarTwist, Twist>;
+template <class S>
+using WrenchOf = std::conditional_t<kPlane<S>, PlanarWrench, Wrench>;
+template <class S>
+using ArticulatedOf = std::conditional_t<kPlane<S>, PlanarInertia, ArticulatedInertia>;
+template <class S>
+using MomentsOf = std::conditional_t<kPlane<S>, Float, Sym3>;  // of inertia
+template <class S>
+inline constexpr int kTwistRowsOf = S::kDim + S::kAng;
+template <class S>
+inline constexpr int kArticulatedRowsOf = kPlane<S> ? kPlanarInertiaRows : kArticulatedRows;
+
+// Calls visit(body) for all that trees move.
+template <class Visit>
+MW_INLINE void for_each_tree_body(const Constants& t, Visit visit) {
+  for (int i = 0; i < t.joint_trees.bodies; ++i) visit(t.joint_trees.body[i]);
+}
 
 MW_INLINE void load(const Real* p, Twist& a) { a = load_twist(p); }
 MW_INLINE void load(const Real* p, Wrench& a) { a = load_wrench(p); }

@@ -12,7 +12,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-inline constexpr Real kOfMoments = Real(0.5);  // below that share of a body's moments it has none
+inline constexpr Real kStiffShare = Real(0.5);  // below that share of a body's moments it has none
 
 MW_INLINE Sym3 scaled(const Sym3& a, Float s) {
   return {a.xx * s, a.xy * s, a.xz * s, a.yy * s, a.yz * s, a.zz * s};
@@ -47,23 +47,21 @@ template <class S>
 class GeometricStiffness {
  public:
   using Vec = typename S::Vec;
-  using Rotary = std::conditional_t<S::kDim == 2, Float, Sym3>;
-  static constexpr int kRotary = Bodies<S>::kRotary;
   GeometricStiffness(const Constants& t, const Group& g, const Work& w)
       : t_(t), g_(g), w_(w), d_(w.direct) {}
 
   void find() const {
-    for_each_body([&](int b) {
+    for_each_tree_body(t_, [&](int b) {
       const Float zero(Real(0));
       zero.store(sums(b)), zero.store(sums(b) + kLanes);
-      store(rotary(d_.stiffened, b), load_as<Rotary>(rotary(d_.rotary, b)));
+      store(rotary(d_.stiffened, b), load_as<MomentsOf<S>>(rotary(d_.rotary, b)));
     });
     for_each_arm([&](int b, Vec r, Vec p) {
       const ArmStiffness k(r, p);
       add_to(sums(b), 0, k.sum), add_to(sums(b), 1, k.sum * k.arm2);
     });
     std::uint32_t stiff = 0;
-    for_each_body([&](int b) {
+    for_each_tree_body(t_, [&](int b) {
       const Float share = share_of(b);
       stiff |= bits(Float(Real(0)) < share);
       share.store(sums(b));
@@ -71,7 +69,7 @@ class GeometricStiffness {
     if (stiff == 0) return;
     for_each_arm([&](int b, Vec r, Vec p) {
       const Float share = Float::load(sums(b)) * Float(t_.h);
-      const auto own = load_as<Rotary>(rotary(d_.stiffened, b));
+      const auto own = load_as<MomentsOf<S>>(rotary(d_.stiffened, b));
       // Lanes without any keep the sign of their zeros, whatever others have.
       store(rotary(d_.stiffened, b),
             select(Float(Real(0)) < share, own + scaled(stiffness_of(r, p), share), own));
@@ -84,12 +82,8 @@ class GeometricStiffness {
     const Float sum = Float::load(sums(b)) * Float(t_.h), by_sum = inverse_or_zero(sum);
     const Float mass = one / Float(constants_of_body(g_, b).inv_mass);
     const Float arms = mass * Float::load(sums(b) + kLanes) * Float(t_.h) * by_sum;
-    const Float moment = arms + transverse(load_as<Rotary>(rotary(d_.rotary, b)));
-    return select(zero < sum, max(zero, fnma(Float(kOfMoments) * moment, by_sum, one)), zero);
-  }
-  template <class Visit>
-  MW_INLINE void for_each_body(Visit visit) const {
-    for (int i = 0; i < t_.joint_trees.bodies; ++i) visit(t_.joint_trees.body[i]);
+    const Float moment = arms + transverse(load_as<MomentsOf<S>>(rotary(d_.rotary, b)));
+    return select(zero < sum, max(zero, fnma(Float(kStiffShare) * moment, by_sum, one)), zero);
   }
   // visit(body, arm, impulse on it) for both sides of every edge.
   template <class Visit>
@@ -102,11 +96,11 @@ class GeometricStiffness {
       if (edge.reversed) p = -p;
       p = select(mask_from_bits(s.lanes), p, zero_of<Vec>());
       visit(edge.child, load_as<Vec>(s.arm_child[0]), p);
-      if (!edge.given) visit(edge.parent, load_as<Vec>(s.arm_parent[0]), -p);
+      if (!edge.prescribed) visit(edge.parent, load_as<Vec>(s.arm_parent[0]), -p);
     }
   }
   MW_INLINE Real* sums(int body) const { return d_.stiffness + body * 2 * kLanes; }
-  static MW_INLINE Real* rotary(Real* of, int body) { return of + body * kRotary * kLanes; }
+  static MW_INLINE Real* rotary(Real* of, int body) { return of + body * S::kInertia * kLanes; }
 
   const Constants& t_;
   const Group& g_;

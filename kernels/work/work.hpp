@@ -170,7 +170,7 @@ struct DirectWork {
   Real* stiffened;       // the same with the geometric stiffness
   Real* stiffness;       // [body][sum, sum times arm^2][lane], of it
   Real* inertia;         // [body][articulated inertia][lane]
-  Real* given;           // [body][wrench][lane], load of its own
+  Real* own_load;        // [body][wrench][lane]
   Real* load;            // [body][wrench][lane], with what hangs on it; then what joints did
   Real* twist;           // [body][twist][lane], change of velocity
   unsigned char* edges;  // rows of edges

@@ -49,7 +49,7 @@ class JointTreeBuilder {
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       if (joints_[j].parts.empty()) continue;
       for (const int body : {joints_[j].body_a, joints_[j].body_b}) {
-        if (!given(body)) at_[static_cast<std::size_t>(body)].push_back(static_cast<int>(j));
+        if (!prescribed(body)) at_[static_cast<std::size_t>(body)].push_back(static_cast<int>(j));
       }
     }
   }
@@ -57,7 +57,7 @@ class JointTreeBuilder {
   void build() {
     const auto bodies = static_cast<int>(plan_.bodies.size());
     for (int b = 0; b < bodies; ++b) {
-      if (given(b) || component_[static_cast<std::size_t>(b)] >= 0) continue;
+      if (prescribed(b) || component_[static_cast<std::size_t>(b)] >= 0) continue;
       const std::vector<int> component = gather(b);
       const auto& joints = at_[static_cast<std::size_t>(b)];
       if (!joints.empty() && in_tree_[static_cast<std::size_t>(joints.front())]) grow(component);
@@ -73,7 +73,7 @@ class JointTreeBuilder {
 
  private:
   // The world and kinematic bodies move as they are told.
-  bool given(int body) const {
+  bool prescribed(int body) const {
     return body == static_cast<int>(plan_.bodies.size()) ||
            plan_.bodies[static_cast<std::size_t>(body)].inv_mass == 0;
   }
@@ -84,7 +84,7 @@ class JointTreeBuilder {
       for (const int j : at_[static_cast<std::size_t>(out[i])]) {
         const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
         for (const int body : {joint.body_a, joint.body_b}) {
-          if (given(body) || component_[static_cast<std::size_t>(body)] >= 0) continue;
+          if (prescribed(body) || component_[static_cast<std::size_t>(body)] >= 0) continue;
           component_[static_cast<std::size_t>(body)] = first;
           out.push_back(body);
         }
@@ -101,7 +101,7 @@ class JointTreeBuilder {
     for (const int body : bodies) {
       for (const int j : at_[static_cast<std::size_t>(body)]) {
         const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
-        if (given(joint.body_a) || given(joint.body_b)) {
+        if (prescribed(joint.body_a) || prescribed(joint.body_b)) {
           add_edge(j, body), place(body);
         }
       }
@@ -118,7 +118,7 @@ class JointTreeBuilder {
       for (const int j : at_[static_cast<std::size_t>(order[i])]) {
         const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
         const int next = joint.body_a == order[i] ? joint.body_b : joint.body_a;
-        if (given(next) || placed_[static_cast<std::size_t>(next)]) continue;
+        if (prescribed(next) || placed_[static_cast<std::size_t>(next)]) continue;
         add_edge(j, next), place(next);
       }
     }
@@ -132,7 +132,7 @@ class JointTreeBuilder {
     edge.child = child;
     edge.reversed = joint.body_a == child;
     edge.parent = edge.reversed ? joint.body_b : joint.body_a;
-    edge.given = given(edge.parent);
+    edge.prescribed = prescribed(edge.parent);
     edge.hold = edge.turn = edge.slide = edge.angle = -1;
     for (const int part : joint.parts) {
       switch (plan_.parts[static_cast<std::size_t>(part)].what.kind) {
