@@ -210,6 +210,11 @@ std::vector<bool> joints_of_trees(const Scene& scene) {
   return out;
 }
 
+bool all_in_trees(const Scene& scene) {
+  const std::vector<bool> in = joints_of_trees(scene);
+  return std::all_of(in.begin(), in.end(), [](bool one) { return one; });
+}
+
 bool nothing_touches(const Scene& scene) {
   const auto joined = joined_bodies(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {

@@ -1,6 +1,5 @@
-// What Options leave to the plan: the length unit, the speeds that follow from it, substeps, and
-// how stiff contacts are.
-#include <algorithm>
+// What Options leave to the plan: the length unit, the speeds that follow from it, how joints are
+// solved, substeps, and how stiff contacts are.
 #include <set>
 #include <string>
 #include <variant>
@@ -18,8 +17,7 @@ namespace {
 // Whether all joints are of trees, and each tree hangs on something: then there are as many joints
 // as bodies that have some.
 bool all_anchored(const Scene& scene) {
-  const std::vector<bool> in = joints_of_trees(scene);
-  if (std::count(in.begin(), in.end(), false) > 0) return false;
+  if (!all_in_trees(scene)) return false;
   std::set<int> bodies;
   for (const Joint& joint : scene.joints) {
     for (const BodyId body : {joint.body_a, joint.body_b}) {
@@ -39,7 +37,7 @@ std::string need_of_trees(const PlanData& plan) {
   if (scene.joints.empty() || o.solver.method != Solver::tgs_soft || o.joint.frequency) return {};
   if (!all_anchored(scene)) return {};
   std::string why;
-  const JointNeed need = need_of_joints(extremes(plan), *o.length_unit);
+  const SubstepNeed need = need_of_joints(extremes(plan), *o.length_unit);
   if (need.substeps > kLeastSubsteps) why = "at once, since " + need.why;
   for (std::size_t j = 0; why.empty() && j < scene.joints.size(); ++j) {
     if (std::holds_alternative<FixedJoint>(scene.joints[j].type)) {

@@ -21,10 +21,7 @@ std::string short_text(double x) {
   return text;
 }
 
-struct Need {
-  double substeps = 0;
-  std::string why;
-};
+using Need = SubstepNeed;
 void at_least(Need& need, double substeps, const std::string& why) {
   if (substeps > need.substeps) need = {substeps, why};
 }
@@ -54,7 +51,7 @@ Need need_of_standing(const Scene& scene) {
 // The gap of a joint under its load stays below a hundredth of a body's size, as a spring of a
 // quarter of the substeps' rate. Loads of more than some thousand times the lighter body want more
 // than substeps.
-Need need_of_joints(const Scene& scene, double length_unit) {
+Need need_of_loads(const Scene& scene, double length_unit) {
   constexpr double kGap = 0.01;  // of the length unit
   Need out;
   const std::vector<double> carried = carried_masses(scene);
@@ -123,11 +120,6 @@ Need need_of_ratios(const std::vector<Scene>& extremes) {
   return {kLeastSubsteps * std::sqrt(ratio / kFourSubsteps), why};
 }
 
-bool all_in_trees(const Scene& scene) {
-  const std::vector<bool> in = joints_of_trees(scene);
-  return std::all_of(in.begin(), in.end(), [](bool one) { return one; });
-}
-
 // A frequency that is given keeps its share.
 Need need_of_frequency(const Options& o) {
   if (!o.contact.frequency) return {};
@@ -153,14 +145,14 @@ bool filters_let_touch(const Body& a, const Body& b) {
   return false;
 }
 
-JointNeed need_of_joints(const std::vector<Scene>& extremes, double length_unit) {
+Need need_of_joints(const std::vector<Scene>& extremes, double length_unit) {
   Need out;
   for (const Scene& scene : extremes) {
     if (scene.options.gravity.isZero(0)) continue;
-    const Need of = need_of_joints(scene, length_unit);
+    const Need of = need_of_loads(scene, length_unit);
     at_least(out, of.substeps, of.why);
   }
-  return {out.substeps, out.why};
+  return out;
 }
 
 SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_unit) {
@@ -178,7 +170,7 @@ SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_
     for (const Need& of : {need_of_sizes(scene, length_unit), need_of_standing(scene),
                            o.joint.method == JointMethod::tree && all_in_trees(scene)
                                ? Need{}
-                               : need_of_joints(scene, length_unit)}) {
+                               : need_of_loads(scene, length_unit)}) {
       at_least(need, of.substeps, of.why);
     }
   }

@@ -23,12 +23,13 @@ struct SubstepChoice {
   std::string why;     // of `substeps`
 };
 
-// How many substeps sweeps over joints take under what these carry.
-struct JointNeed {
+// Substeps that something asks for, and why.
+struct SubstepNeed {
   double substeps = 0;
   std::string why = {};
 };
-JointNeed need_of_joints(const std::vector<Scene>& extremes, double length_unit);
+// Of sweeps over joints under what these carry, in the worst of the scenes.
+SubstepNeed need_of_joints(const std::vector<Scene>& extremes, double length_unit);
 
 // Whether some shape of A and some of B may touch.
 bool filters_let_touch(const Body& a, const Body& b);
