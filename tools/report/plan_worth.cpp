@@ -198,7 +198,7 @@ void add_crossover(bool quick, std::vector<Variant>& out) {
 // What it costs to be right: scenes that the plan gives more than four substeps, or joints that are
 // solved at once, with four and by sweeps.
 void add_substeps(bool quick, std::vector<Variant>& out) {
-  const std::vector<std::string> few = {"C2 5 x 1 cm", "B3"};
+  const std::vector<std::string> few = {"C2 5 x 1 cm", "B3", "B15", "B16"};
   const std::vector<std::string> all = {
       "C1 1 m x 1000", "C1 1 mm x 30", "C3 rest 10 m", "C2 5 x 1 cm", "C2 20 x 1 m",
       "C2 20 x 10 cm", "C2 20 x 1 cm", "C3 cards",     "C4 50 N",     "C8",
