@@ -37,8 +37,8 @@ MW_INLINE typename S::Ang normal_moment(const ContactSide<S, N, Free>& side, con
 }
 
 // Applies normal impulses d[i] at all points.
-template <class S, int N, class A>
-MW_INLINE void apply_normal(const SidedBlock<S, N, A>& s, const Float* d, SideVelocities<S, A>& v) {
+template <class S, int N, class A, class Velocities>
+MW_INLINE void apply_normal(const SidedBlock<S, N, A>& s, const Float* d, Velocities& v) {
   const auto n = load_as<typename S::Vec>(s.normal[0]);
   Float sum = d[0];
   for (int i = 1; i < N; ++i) sum = sum + d[i];
@@ -47,17 +47,15 @@ MW_INLINE void apply_normal(const SidedBlock<S, N, A>& s, const Float* d, SideVe
 }
 
 // The speed of B against A along the normal at point i; x: what it is on top of, along the normal.
-template <class S, int N, class A>
-MW_INLINE Float normal_speed(const SidedBlock<S, N, A>& s, int i, const SideVelocities<S, A>& v,
-                             Float x) {
+template <class S, int N, class A, class Velocities>
+MW_INLINE Float normal_speed(const SidedBlock<S, N, A>& s, int i, const Velocities& v, Float x) {
   using Ang = typename S::Ang;
   x = x + dot(load_as<Ang>(s.b.arm[i][0]), v.b.w);
   if constexpr (A::kMoves) x = x - dot(load_as<Ang>(s.a.arm[i][0]), v.a.w);
   return x;
 }
-template <class S, int N, class A>
-MW_INLINE void normal_speeds(const SidedBlock<S, N, A>& s, const SideVelocities<S, A>& v,
-                             Float* speed) {
+template <class S, int N, class A, class Velocities>
+MW_INLINE void normal_speeds(const SidedBlock<S, N, A>& s, const Velocities& v, Float* speed) {
   const Float along = dot(load_as<typename S::Vec>(s.normal[0]), relative_velocity(v.a, v.b));
   for (int i = 0; i < N; ++i) speed[i] = normal_speed(s, i, v, along);
 }
@@ -82,9 +80,9 @@ MW_INLINE typename S::Ang friction_moment(const ContactSide<S, N, Free>& side, t
 }
 
 // Applies friction impulses along the tangents, and a twist about the normal.
-template <class S, int N, class A>
+template <class S, int N, class A, class Velocities>
 MW_INLINE void apply_friction(const SidedBlock<S, N, A>& s, const Float* d, Float twist,
-                              SideVelocities<S, A>& v) {
+                              Velocities& v) {
   using Vec = typename S::Vec;
   const Vec n = load_as<Vec>(s.normal[0]);
   Vec p = load_as<Vec>(s.tangent[0]) * d[0];
@@ -94,8 +92,8 @@ MW_INLINE void apply_friction(const SidedBlock<S, N, A>& s, const Float* d, Floa
 }
 
 // The velocity of B against A at the friction centre.
-template <class S, int N, class A>
-MW_INLINE typename S::Vec slip_of(const SidedBlock<S, N, A>& s, const SideVelocities<S, A>& v) {
+template <class S, int N, class A, class Velocities>
+MW_INLINE typename S::Vec slip_of(const SidedBlock<S, N, A>& s, const Velocities& v) {
   using Vec = typename S::Vec;
   Vec slip = point_velocity(v.b, load_as<Vec>(s.b.centre[0]));
   if constexpr (A::kMoves) slip = slip - point_velocity(v.a, load_as<Vec>(s.a.centre[0]));
@@ -110,9 +108,9 @@ struct FrictionBudget {
 
 // Solves the friction rows; returns the accumulated impulses after. kRelaxed: what they change is
 // multiplied by `relaxation`.
-template <bool kRelaxed = false, class S, int N, class A>
+template <bool kRelaxed = false, class S, int N, class A, class Velocities>
 MW_INLINE void solve_friction(const SidedBlock<S, N, A>& s, const FrictionBudget& budget,
-                              SideVelocities<S, A>& v, Float* after, Float& twist_after,
+                              Velocities& v, Float* after, Float& twist_after,
                               Float relaxation = Real(1)) {
   using Vec = typename S::Vec;
   const Vec t = load_as<Vec>(s.tangent[0]);
@@ -166,9 +164,9 @@ MW_INLINE FrictionBudget friction_budget(const ContactBlock<S, N>& s, const Floa
   return budget;
 }
 
-template <bool kDense, bool kFriction, Pass kPass, class S, int N, class A>
-MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) {
-  RowVelocities<S, A, kDense> v(w, s);
+// `v`: the velocities of its sides, as they are loaded and as impulses change them.
+template <bool kDense, bool kFriction, Pass kPass, class S, int N, class A, class Velocities>
+MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, Velocities& v) {
   Float impulse[N], d[N];
   for (int i = 0; i < N; ++i) impulse[i] = Float::load(s.impulse[i]);
 
@@ -261,6 +259,12 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
       if constexpr (ContactBlock<S, N>::kTwist) twist_after.store(s.twist_impulse);
     }
   }
+}
+
+template <bool kDense, bool kFriction, Pass kPass, class S, int N, class A>
+MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) {
+  RowVelocities<S, A, kDense> v(w, s);
+  solve_rows<kDense, kFriction, kPass>(t, w, s, v);
   v.store(w, s);
 }
 

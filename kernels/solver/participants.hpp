@@ -8,29 +8,13 @@
 // come, keeps what the substeps found.
 #pragma once
 
+#include "kernels/rows/bounce_totals.hpp"
 #include "kernels/solver/body_numbers.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr Real kSharedImpact = Real(1.0 / 128);  // of the impact's speed: a share of it
 inline constexpr Real kTouch = Real(1.0 / 64);          // of the margin: a gap that counts as none
-
-// After each relax pass: what the substep's contact has done so far.
-template <class S, int N>
-MW_INLINE void accumulate_bounce(const ContactBlock<S, N>& s, Bounce<S, N>& bounce, bool friction) {
-  for (int i = 0; i < N; ++i) {
-    (Float::load(bounce.total[i]) + Float::load(s.impulse[i])).store(bounce.total[i]);
-  }
-  if (friction) {
-    for (int c = 0; c < S::kTangents; ++c) {
-      (Float::load(bounce.total_tangent[c]) + Float::load(s.tangent_impulse[c]))
-          .store(bounce.total_tangent[c]);
-    }
-    if constexpr (ContactBlock<S, N>::kTwist) {
-      (Float::load(bounce.total_twist) + Float::load(s.twist_impulse)).store(bounce.total_twist);
-    }
-  }
-}
 
 // Finds the lanes in which impacts begin at a block, whether or not it bounces. Returns how fast it
 // approached, 0 elsewhere.
