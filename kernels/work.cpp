@@ -174,11 +174,15 @@ void carve_joint_trees(const Constants& t, DirectWork& w, Carver& c) {
   };
   const int rotary = planar ? 1 : 6, twist = planar ? kPlanarTwistRows : kTwistRows;
   take(w.rotary, rotary), take(w.stiffened, rotary), take(w.stiffness, 2);
-  take(w.inertia, planar ? kPlanarInertiaRows : kArticulatedRows);
+  take(w.inertia, 2 * (planar ? kPlanarInertiaRows : kArticulatedRows));
   take(w.own_load, twist), take(w.load, twist), take(w.twist, twist);
   const std::size_t bytes = planar ? edge_bytes(Planar{}) : edge_bytes(Tensor{});
   c.take(w.edges, static_cast<std::size_t>(t.joint_trees.edges) * bytes);
   c.take(w.held, static_cast<std::size_t>(t.bodies));
+  take(w.compliance, planar ? kPlanarInertiaRows : kArticulatedRows);
+  take(w.pending, twist), take(w.least, 1);
+  c.take(w.path, static_cast<std::size_t>(t.joint_trees.edges));
+  c.take(w.touched, static_cast<std::size_t>(t.bodies) + 1);
 }
 
 void carve(const Constants& t, Work& w, Carver& c) {

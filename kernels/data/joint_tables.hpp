@@ -96,8 +96,9 @@ struct JointTrees {
   std::int32_t edges, roots, bodies;
   std::int32_t parts;  // that edges are made of
   const TreeEdge* edge;
-  const std::int32_t* root;  // bodies that hang on nothing
-  const std::int32_t* body;  // all that trees move
+  const std::int32_t* root;     // bodies that hang on nothing
+  const std::int32_t* body;     // all that trees move
+  const std::int32_t* edge_of;  // [body] that it hangs on; -1: none
 };
 
 // The maximum load of a joint that may break. Its parts follow one another.

@@ -81,6 +81,10 @@ struct DirectSolver {
   Stage<Real> bias_again;  // after contacts
   Stage<Real> relax;       // where the substep has taken the bodies
   Stage<Real> relax_again;
+  // Contacts by how trees give way, in place of SolverTable's passes, with solves around them; then
+  // effective masses as of free bodies again.
+  Stage<Real> bias_contacts, relax_contacts;
+  Stage<Real> weigh_alone;
 };
 
 // The audit of energy (kernels/observe/audit.hpp).

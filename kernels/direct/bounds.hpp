@@ -16,6 +16,9 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Times the pivot. A limit outdoes a motor that drives into it.
+inline constexpr Real kBounded = Real(1e30);  // N s or N m s: more is no bound
+// What rounding leaves of speeds does not change active sets.
+inline constexpr Real kActiveSlack = sizeof(Real) == 4 ? Real(1e-5) : Real(1e-12);
 inline constexpr Real kHardMotor = Real(1e3), kHardLimit = Real(1e6);
 
 template <class S, bool kLinear>
@@ -50,52 +53,91 @@ class Bound {
     dof_.high = bits(zero < Float::load(s_.impulse[2]));
   }
 
-  // Adds to the pivot, and to the load.
-  MW_INLINE void add(Float pivot, Float& stiffness, Float& push) const {
+  // What it adds to the pivot; in lanes that are not `firm` only what has no bound.
+  MW_INLINE Float stiffness(Float pivot, std::uint32_t firm) const {
     const Float zero(Real(0));
+    Float sum = zero;
+    if (part_.drive) {
+      Mask yields = mask_from_bits(dof_.above | dof_.below);
+      if (firm != kAllLanes) {
+        yields = yields | ((Float(c_.max_impulse) < Float(kBounded)) & mask_from_bits(~firm));
+      }
+      sum = select(yields, zero, drive_stiffness(pivot));
+    }
+    const Float of_limit = limit_stiffness(pivot);
+    if (part_.low) sum = sum + select(mask_from_bits(dof_.low & firm), of_limit, zero);
+    if (part_.high) sum = sum + select(mask_from_bits(dof_.high & firm), of_limit, zero);
+    return sum;
+  }
+
+  // And to the load.
+  MW_INLINE Float push() const {
+    const Float zero(Real(0)), pivot = Float::load(dof_.factors[kOfSolves].pivot);
+    Float sum = zero;
     if (part_.drive) {
       const Mask above = mask_from_bits(dof_.above), below = mask_from_bits(dof_.below);
       const Float k = drive_stiffness(pivot), most = c_.max_impulse, so_far = before(0);
       Float p = k * (wanted_ - began_) - (part_.springy ? so_far : zero);
       p = select(above, most - so_far, select(below, zero - most - so_far, p));
-      stiffness = stiffness + select(above | below, zero, k), push = fma(p, sign_, push);
+      sum = fma(p, sign_, sum);
     }
     const auto limit = [&](std::uint32_t active, Float least, Float speed, int which) {
-      const Mask acts = mask_from_bits(active);
       const Float k = limit_stiffness(pivot);
       const Float p = k * (least - speed) - (part_.soft_limit ? before(which) : zero);
-      stiffness = stiffness + select(acts, k, zero);
-      return select(acts, p, zero - before(which));
+      return select(mask_from_bits(active), p, zero - before(which));
     };
-    if (part_.low) push = fma(limit(dof_.low, low_, began_, 1), sign_, push);
-    if (part_.high) push = fnma(limit(dof_.high, high_, zero - began_, 2), sign_, push);
+    if (part_.low) sum = fma(limit(dof_.low, low_, began_, 1), sign_, sum);
+    if (part_.high) sum = fnma(limit(dof_.high, high_, zero - began_, 2), sign_, sum);
+    return sum;
   }
 
-  // Corrects the active set by what came of it; returns the lanes in which it changes.
-  MW_INLINE std::uint32_t correct() const {
-    const Impulses p = impulses();
-    const Float zero(Real(0)), change = change_of_speed(), v = began_ + change;
-    const std::uint32_t old[4] = {dof_.low, dof_.high, dof_.above, dof_.below};
-    if (part_.low) {
-      const Mask acts = mask_from_bits(dof_.low);
-      dof_.low = bits((acts & (zero < p.low)) | ((v < low_) & !acts));
-    }
-    if (part_.high) {
-      const Mask acts = mask_from_bits(dof_.high);
-      dof_.high = bits((acts & (zero < p.high)) | ((zero - v < high_) & !acts));
-    }
-    if (part_.drive) {
-      const Float free = unbounded_drive(change), most = c_.max_impulse;
-      dof_.above = bits(most < free), dof_.below = bits(free < zero - most);
-    }
-    return (dof_.low ^ old[0]) | (dof_.high ^ old[1]) | (dof_.above ^ old[2]) |
-           (dof_.below ^ old[3]);
+  // Whether the pivot was found with this active set.
+  MW_INLINE bool is_factored() const {
+    return dof_.factored[0] == dof_.low && dof_.factored[1] == dof_.high &&
+           dof_.factored[2] == dof_.above && dof_.factored[3] == dof_.below;
+  }
+  MW_INLINE void mark_before() const {
+    dof_.before[0] = dof_.low, dof_.before[1] = dof_.high;
+    dof_.before[2] = dof_.above, dof_.before[3] = dof_.below;
+  }
+  // Lanes in which a limit has let go since, or a drive has given way.
+  MW_INLINE std::uint32_t gave_way() const {
+    return (dof_.before[0] & ~dof_.low) | (dof_.before[1] & ~dof_.high) |
+           (dof_.above & ~dof_.before[2]) | (dof_.below & ~dof_.before[3]);
+  }
+  MW_INLINE void mark_factored() const {
+    dof_.factored[0] = dof_.low, dof_.factored[1] = dof_.high;
+    dof_.factored[2] = dof_.above, dof_.factored[3] = dof_.below;
   }
 
-  // Keeps the impulses of the substep.
-  MW_INLINE void keep() const {
+  // Of `lanes` those in which what came of it does not agree with the active set.
+  struct Wrong {
+    std::uint32_t limit, drive;
+  };
+  MW_INLINE Wrong wrong(std::uint32_t lanes) const {
+    const ActiveSet now = found();
+    return {lanes & ((now.low ^ dof_.low) | (now.high ^ dof_.high)),
+            lanes & ((now.above ^ dof_.above) | (now.below ^ dof_.below))};
+  }
+  // Corrects it in some lanes.
+  MW_INLINE void correct(const Wrong& lanes) const {
+    const ActiveSet now = found();
+    const auto put = [](std::uint32_t& to, std::uint32_t from, std::uint32_t in) {
+      to = (to & ~in) | (from & in);
+    };
+    put(dof_.low, now.low, lanes.limit), put(dof_.high, now.high, lanes.limit);
+    put(dof_.above, now.above, lanes.drive), put(dof_.below, now.below, lanes.drive);
+  }
+
+  // Keeps the impulses of the substep, in some lanes.
+  MW_INLINE void keep(std::uint32_t lanes) const {
     const Impulses p = impulses();
-    p.drive.store(s_.impulse[0]), p.low.store(s_.impulse[1]), p.high.store(s_.impulse[2]);
+    const Mask mask = mask_from_bits(lanes);
+    const Float zero(Real(0));
+    const Float of[3] = {p.drive, max(p.low, zero), max(p.high, zero)};
+    for (int i = 0; i < 3; ++i) {
+      select(mask, of[i], Float::load(s_.impulse[i])).store(s_.impulse[i]);
+    }
   }
 
  private:
@@ -123,10 +165,11 @@ class Bound {
   }
   // Of the substep, if nothing bounded it.
   MW_INLINE Float unbounded_drive(Float change) const {
-    const Float k = drive_stiffness(Float::load(dof_.pivot)), zero(Real(0));
+    const Float k = drive_stiffness(Float::load(dof_.factors[kOfSolves].pivot)), zero(Real(0));
     return k * ((wanted_ - began_) - change) + (part_.springy ? zero : before(0));
   }
-  // Of the substep, by the active set.
+  // Of the substep, by the active set. What limits do is what the pivot lacks: by their own
+  // stiffness float would have no digits left.
   MW_INLINE Impulses impulses() const {
     const Float zero(Real(0)), change = change_of_speed();
     Impulses out{before(0), zero, zero};
@@ -135,14 +178,41 @@ class Bound {
       out.drive = select(mask_from_bits(dof_.above), most,
                          select(mask_from_bits(dof_.below), zero - most, unbounded_drive(change)));
     }
-    const auto limit = [&](std::uint32_t active, Float least, Float speed, Float faster,
-                           int which) {
-      const Float k = limit_stiffness(Float::load(dof_.pivot));
-      const Float p = k * ((least - speed) - faster) + (part_.soft_limit ? zero : before(which));
-      return select(mask_from_bits(active), p, zero);
-    };
-    if (part_.low) out.low = limit(dof_.low, low_, began_, change, 1);
-    if (part_.high) out.high = limit(dof_.high, high_, zero - began_, zero - change, 2);
+    if (!part_.low && !part_.high) return out;
+    const Float all = fms(Float::load(dof_.factors[kOfSolves].pivot), Float::load(dof_.change),
+                          Float::load(dof_.load));
+    const Float low = fms(all, sign_, out.drive - before(0)) + (before(1) - before(2));
+    out.low = select(mask_from_bits(dof_.low), low, zero);
+    out.high = select(mask_from_bits(dof_.high), zero - low, zero);
+    return out;
+  }
+  struct ActiveSet {
+    std::uint32_t low, high, above, below;
+  };
+  MW_INLINE ActiveSet found() const {
+    const Impulses p = impulses();
+    const Float zero(Real(0)), change = change_of_speed(), v = began_ + change;
+    const Float slack = (abs(began_) + abs(change)) * Float(kActiveSlack);
+    const Float slack_p = slack * Float::load(dof_.factors[kOfSolves].pivot);
+    ActiveSet out{0, 0, 0, 0};
+    if (part_.low) {
+      const Mask acts = mask_from_bits(dof_.low);
+      out.low = bits((acts & (zero - slack_p < p.low)) | ((v < low_ - slack) & !acts));
+    }
+    if (part_.high) {
+      const Mask acts = mask_from_bits(dof_.high);
+      out.high = bits((acts & (zero - slack_p < p.high)) | ((zero - v < high_ - slack) & !acts));
+    }
+    if (part_.drive) {
+      const Float free = unbounded_drive(change), most = c_.max_impulse;
+      const Float speeds = abs(began_) + abs(change) + abs(wanted_);
+      const Float slack_f = speeds * (drive_stiffness(Float::load(dof_.factors[kOfSolves].pivot)) *
+                                      Float(Real(0.1) * kActiveSlack));
+      const auto ends = [&](Float x, std::uint32_t at) {
+        return bits(most + select(mask_from_bits(at), zero - slack_f, slack_f) < x);
+      };
+      out.above = ends(free, dof_.above), out.below = ends(zero - free, dof_.below);
+    }
     return out;
   }
 
@@ -154,6 +224,55 @@ class Bound {
   Float sign_ = Real(1), inv_h_ = Real(0), began_ = Real(0);
   Float wanted_ = Real(0);                // speed of a drive
   Float low_ = Real(0), high_ = Real(0);  // bounds of limits
+};
+
+// The bounds of all edges, for one solve (Bound).
+template <class S>
+class EdgeBounds {
+ public:
+  MW_INLINE EdgeBounds(const Constants& t, const Group& g, const Work& w, bool closes, bool first)
+      : t_(t), g_(g), w_(w), closes_(closes), first_(first) {}
+
+  // Whether there are any.
+  bool some() const {
+    for (int i = 0; i < t_.joint_trees.edges; ++i) {
+      const TreeEdge& edge = t_.joint_trees.edge[i];
+      if (edge.slide >= 0 || edge.angle >= 0) return true;
+    }
+    return false;
+  }
+  // look(bound) at a part of an edge, -1: none.
+  template <class Look>
+  MW_INLINE void visit(const TreeEdge& edge, int part, EdgeDof<S>& dof, Look look) const {
+    if (part < 0) return;
+    const JointPart& what = t_.part[part];
+    const Joint& c = constants_of_part(g_, part);
+    if (what.kind == PartKind::slide) {
+      look(Bound<S, true>(t_, g_, what, c, part_rows<S, Row<S, true>>(w_, part), dof, edge.reversed,
+                          closes_, first_));
+    } else {
+      look(Bound<S, false>(t_, g_, what, c, part_rows<S, Row<S, false>>(w_, part), dof,
+                           edge.reversed, closes_, first_));
+    }
+  }
+  // look(bound, rows of its edge) at all of them.
+  template <bool kBackwards = false, class Look>
+  MW_INLINE void for_each(Look look) const {
+    const int edges = t_.joint_trees.edges;
+    for (int k = 0; k < edges; ++k) {
+      const int i = kBackwards ? edges - 1 - k : k;
+      const TreeEdge& edge = t_.joint_trees.edge[i];
+      EdgeRows<S>& s = edge_rows<S>(w_, i);
+      visit(edge, edge.slide, s.slide, [&](const auto& bound) { look(bound, s); });
+      visit(edge, edge.angle, s.turn, [&](const auto& bound) { look(bound, s); });
+    }
+  }
+
+ private:
+  const Constants& t_;
+  const Group& g_;
+  const Work& w_;
+  const bool closes_, first_;
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -8,16 +8,34 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 using kernels::TreeEdge;
 
-// A coordinate along which a joint gives way: q of the child against the parent.
+// Factors are kept twice: of the solves, and of what contacts do to the tree (solve.hpp).
+inline constexpr int kFactorSets = 2, kOfSolves = 0, kOfContacts = 1;
+
 template <class S>
-struct alignas(64) EdgeDof {
+struct alignas(64) DofFactors {
   Real response[kTwistRowsOf<S>][kLanes];  // wrench that a unit rate asks for
   Real pivot[kLanes];                      // axis . response
   Real inverse[kLanes];                    // 1 / (pivot + what drives and limits add)
-  Real load[kLanes];
+};
+// A coordinate along which a joint gives way: q of the child against the parent.
+template <class S>
+struct alignas(64) EdgeDof {
+  DofFactors<S> factors[kFactorSets];
+  // Along the axis, but for what drives and limits push by: first with the parent at rest.
+  Real load[kLanes], push[kLanes];
   Real began[kLanes], change[kLanes];  // rate before the solve, and what it changes by
+  Real pending[kLanes];                // of contacts (response.hpp)
   std::uint32_t low, high;             // lanes in which a limit acts
   std::uint32_t above, below;          // lanes in which a drive is at its largest impulse
+  std::uint32_t factored[4];           // the same when the factors of the solves were found
+  std::uint32_t before[4];             // and when the solve began
+};
+
+// Of a ball joint, whose rotation is eliminated at once: inverse of the moments of inertia, and
+// what couples them with the linear velocity.
+template <class S>
+struct alignas(64) BallFactors {
+  Real compliance[S::kInertia][kLanes], mixed[3][3][kLanes];
 };
 
 template <class S>
@@ -28,15 +46,20 @@ struct alignas(64) EdgeRows {
              [kLanes];  // twist of the child against the parent there that closes the joint
   Real change[kTwistRowsOf<S>][kLanes];  // what its twist is to change by, but for the coordinates
   EdgeDof<S> slide, turn;
-  // Of a ball joint, whose rotation is eliminated at once: inverse of the moments of inertia, what
-  // couples them with the linear velocity, and the moment.
-  Real compliance[S::kInertia][kLanes], mixed[3][3][kLanes], moment[S::kAng][kLanes];
-  std::uint32_t lanes;  // in which the joint holds
+  BallFactors<S> ball[kFactorSets];
+  Real moment[S::kAng][kLanes];   // on what rotates freely
+  Real pending[S::kAng][kLanes];  // of contacts
+  std::uint32_t lanes;            // in which the joint holds
 };
 
 template <class S>
 MW_INLINE EdgeRows<S>& edge_rows(const Work& w, int edge) {
   return reinterpret_cast<EdgeRows<S>*>(w.direct.edges)[edge];
+}
+// Articulated inertias of a set of factors [body][row][lane].
+template <class S>
+MW_INLINE Real* inertias(const Constants& t, const Work& w, int set) {
+  return w.direct.inertia + set * t.bodies * kArticulatedRowsOf<S> * kLanes;
 }
 template <class S, class Rows>
 MW_INLINE Rows& part_rows(const Work& w, int part) {
@@ -150,6 +173,21 @@ MW_INLINE auto axis_of_slide(const EdgeRows<S>& s) {
 template <class S>
 MW_INLINE auto axis_of_turn(const EdgeRows<S>& s) {
   return TwistOf<S>{load_as<typename S::Ang>(s.turn_axis[0]), zero_of<typename S::Vec>()};
+}
+// Of a ball joint under a wrench or a moment: what goes on to the parent, and how the child turns
+// where its anchor moves at v.
+template <class S>
+MW_INLINE Mat3 mixed_of(const BallFactors<S>& s) requires(S::kDim == 3) {
+  return {load_vec3(s.mixed[0][0]), load_vec3(s.mixed[1][0]), load_vec3(s.mixed[2][0])};
+}
+template <class S>
+MW_INLINE Wrench without_turn(const BallFactors<S>& s, const Wrench& p) requires(S::kDim == 3) {
+  const Vec3 turn = mul(load_as<Sym3>(s.compliance[0]), p.n);
+  return {zero_of<Vec3>(), p.f - mul_transposed(mixed_of(s), turn)};
+}
+template <class S>
+MW_INLINE Vec3 turn_of(const BallFactors<S>& s, Vec3 moment, Vec3 v) requires(S::kDim == 3) {
+  return mul(load_as<Sym3>(s.compliance[0]), moment - mul(mixed_of(s), v));
 }
 // Whether a joint gives way about z alone.
 MW_INLINE bool hinges(const TreeEdge& edge) { return !edge.ball && !edge.locked; }

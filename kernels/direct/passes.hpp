@@ -2,8 +2,10 @@
 // fills a DirectSolver.
 #pragma once
 
+#include "kernels/direct/contacts.hpp"
 #include "kernels/direct/solve.hpp"
 #include "kernels/direct/stiffness.hpp"
+#include "kernels/direct/tree_compliances.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -12,9 +14,9 @@ struct DirectPasses {
   static void begin(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     w.direct.located = 0;
+    for (int b = 0; b < t.bodies; ++b) w.direct.held[b] = 0;
     for (int i = 0; i < t.joint_trees.bodies; ++i) {
       const int b = t.joint_trees.body[i];
-      w.direct.held[b] = 0;
       put_moments(t, g, w, b);
     }
     for (int i = 0; i < t.joint_trees.edges; ++i) {
@@ -23,7 +25,10 @@ struct DirectPasses {
       w.direct.held[edge.child] |= lanes;
       if (!edge.prescribed) w.direct.held[edge.parent] |= lanes;
     }
-    TreeSolve<S, kDense>(t, g, w, w.direct.rotary, true, false).guess_active_sets();
+    w.direct.factors.place = -1;
+    w.direct.is_stiff = false, w.direct.firm = kAllLanes;
+    put_least(t, g, w);
+    biased(t, g, w, false).guess_active_sets();
   }
 
   static void bias(const Constants& t, const Group& g, kernels::Scratch* scratch) {
@@ -31,12 +36,11 @@ struct DirectPasses {
     const EdgeFinder<S, kDense> finder(t, g, w);
     if (w.direct.located != w.substep) finder.refresh_parts();
     finder.template find<true>();
-    GeometricStiffness<S>(t, g, w).find();
-    TreeSolve<S, kDense>(t, g, w, w.direct.stiffened, true, true).run(w.direct.rotary);
+    w.direct.is_stiff = GeometricStiffness<S>(t, g, w).find();
+    biased(t, g, w, true).run();
   }
   static void bias_again(const Constants& t, const Group& g, kernels::Scratch* scratch) {
-    Work& w = work_of(scratch);
-    TreeSolve<S, kDense>(t, g, w, w.direct.stiffened, true, false).run(w.direct.stiffened);
+    biased(t, g, work_of(scratch), false).run_again();
   }
   static void relax(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
@@ -44,18 +48,73 @@ struct DirectPasses {
     finder.refresh_parts();
     finder.template find<false>();
     w.direct.located = w.substep + 1;
-    relax_again(t, g, scratch);
+    relaxed(t, g, w).run();
   }
   static void relax_again(const Constants& t, const Group& g, kernels::Scratch* scratch) {
+    relaxed(t, g, work_of(scratch)).run_again();
+  }
+
+  // Contacts meet trees where those were when the substep began, and in the relaxing pass where it
+  // has taken them. That is where the next substep begins: effective masses hold for both, unless
+  // limits and drives tell the passes apart.
+  template <Pass kPass>
+  static void contacts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    TreeSolve<S, kDense>(t, g, w, w.direct.rotary, false, false).run(w.direct.rotary);
+    const TreeContacts<S, kDense> contacts(t, w);
+    int set = kOfSolves;
+    if (contacts.find_touched()) {
+      const auto solve = kPass == Pass::bias ? biased(t, g, w, false) : relaxed(t, g, w);
+      set = solve.factor_for_contacts();
+      if (kPass == Pass::relax || w.substep == 0 || EdgeBounds<S>(t, g, w, false, false).some()) {
+        TreeCompliances<S>(t, w, set).find();
+        contacts.template weigh<true>();
+      }
+    }
+    contacts.template solve<kPass>(set);
+  }
+  static void weigh_alone(const Constants& t, const Group&, kernels::Scratch* scratch) {
+    TreeContacts<S, kDense>(t, work_of(scratch)).template weigh<false>();
   }
 
   static kernels::DirectSolver<Real> table() {
-    return {begin, bias, bias_again, relax, relax_again};
+    return {begin,
+            bias,
+            bias_again,
+            relax,
+            relax_again,
+            contacts<Pass::bias>,
+            contacts<Pass::relax>,
+            weigh_alone};
   }
 
  private:
+  static TreeSolve<S, kDense> biased(const Constants& t, const Group& g, Work& w, bool first) {
+    return {t, g, w, w.substep, w.direct.is_stiff, true, first};
+  }
+  static TreeSolve<S, kDense> relaxed(const Constants& t, const Group& g, Work& w) {
+    return {t, g, w, w.substep + 1, false, false, false};
+  }
+  // The least that a contact moves a tree by: as much as all of it is heavy. A joint may hold a
+  // body wholly along a normal, and rounding leave anything.
+  static void put_least(const Constants& t, const Group& g, Work& w) {
+    const Float one(Real(1));
+    const auto row = [&](int b) { return w.direct.least + b * kLanes; };
+    for_each_tree_body(
+        t, [&](int b) { (one / Float(constants_of_body(g, b).inv_mass)).store(row(b)); });
+    for (int i = t.joint_trees.edges - 1; i >= 0; --i) {
+      const TreeEdge& edge = t.joint_trees.edge[i];
+      if (!edge.prescribed) add_to(row(edge.parent), 0, Float::load(row(edge.child)));
+    }
+    for (int i = 0; i < t.joint_trees.roots; ++i) {
+      Real* of = row(t.joint_trees.root[i]);
+      (one / Float::load(of)).store(of);
+    }
+    for (int i = 0; i < t.joint_trees.edges; ++i) {
+      const TreeEdge& edge = t.joint_trees.edge[i];
+      Real* of = row(edge.child);
+      (edge.prescribed ? one / Float::load(of) : Float::load(row(edge.parent))).store(of);
+    }
+  }
   static MW_INLINE void put_moments(const Constants& t, const Group& g, Work& w, int b) {
     const auto& constants = constants_of_body(g, b);
     Real* to = w.direct.rotary + b * S::kInertia * kLanes;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "kernels/direct/bounds.hpp"
+#include "kernels/direct/pivot_rule.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -19,44 +20,127 @@ class TreeSolve {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
 
-  // `rotary`: moments of inertia [body][rotary][lane], with what resists as inertia does; `closes`:
-  // see Bound; `first` solve of a substep.
-  TreeSolve(const Constants& t, const Group& g, Work& w, const Real* rotary, bool closes,
+  // At the start of substep `place`. `stiffened`: with the geometric stiffness; `closes`: see
+  // Bound; `first` solve of a substep.
+  TreeSolve(const Constants& t, const Group& g, Work& w, int place, bool stiffened, bool closes,
             bool first)
-      : t_(t), g_(g), w_(w), d_(w.direct), rotary_(rotary), closes_(closes), first_(first) {}
+      : t_(t),
+        g_(g),
+        w_(w),
+        d_(w.direct),
+        rotary_(stiffened ? d_.stiffened : d_.rotary),
+        place_(place),
+        stiffened_(stiffened),
+        first_(first),
+        closes_(closes),
+        bounds_(t, g, w, closes, first) {}
 
   // Until the active sets stay as they are. The angular momenta that there are are those of the
-  // moments `before`.
-  void run(const Real* before) const {
+  // moments without stiffness.
+  void run() const {
     for_each_tree_body(t_, [&](int b) {
       WrenchOf<S> p{zero_of<Ang>(), zero_of<Vec>()};
-      if (before != rotary_) {
+      if (stiffened_) {
         const Velocity<S> v = get_velocity<S, kDense>(w_, w_.velocity, b);
-        p.n = apply(moments(before, b), v.w) - apply(moments(rotary_, b), v.w);
+        p.n = apply(moments(d_.rotary, b), v.w) - apply(moments(rotary_, b), v.w);
       }
       store(row(d_.own_load, b, kTwistRowsOf<S>), p);
     });
-    for (int i = 0; i < kMostSolves; ++i) {
-      eliminate_all();
-      substitute_back();
-      // What the last solve did is what is kept.
-      if (i + 1 == kMostSolves || !correct_active_sets()) break;
+    if (first_) d_.firm = kAllLanes;
+    solve_in(kAllLanes);
+  }
+  // After contacts, whose impulses are the loads of the bodies (response.hpp).
+  void run_again() const {
+    if (d_.pushed != 0) solve_in(d_.pushed);
+  }
+
+  // Factors for what contacts do to trees; returns their set. Limits that act and drives hold
+  // against contacts as rigidly as they do in the last solve. Where one of them has given way to
+  // the contacts of this substep they keep their impulses instead, which takes back what contacts
+  // pushed against in vain: else that feeds energy.
+  int factor_for_contacts() const {
+    if (d_.firm == kAllLanes) {
+      factor_for_solves();
+      return kOfSolves;
     }
-    commit();
+    eliminate_all<kOfContacts>();
+    return kOfContacts;
   }
 
   // Active sets to begin a step with.
   void guess_active_sets() const {
-    for_each_bound([](const auto& bound, const EdgeRows<S>&) { bound.guess(); });
+    bounds_.for_each([](const auto& bound, const EdgeRows<S>&) { bound.guess(); });
   }
 
  private:
-  static constexpr int kMostSolves = 4;
+  static constexpr int kMostSolves = 32;
+
+  // Velocities and impulses of some lanes.
+  void solve_in(std::uint32_t lanes) const {
+    PivotRule rule;
+    bounds_.for_each([](const auto& bound, const EdgeRows<S>&) { bound.mark_before(); });
+    bool changed = false;
+    for (int i = 0; i < kMostSolves; ++i) {
+      factor_for_solves();
+      reduce_loads();
+      substitute_back();
+      if (i + 1 == kMostSolves) break;  // what the last solve did is what is kept
+      if (!correct_active_sets(lanes, rule)) break;
+      changed = true;
+    }
+    if (changed && !first_) {
+      bounds_.for_each(
+          [&](const auto& bound, const EdgeRows<S>&) { d_.firm &= ~bound.gave_way(); });
+    }
+    commit(lanes);
+  }
+
+  // Unless there are some of this place and of these active sets.
+  void factor_for_solves() const {
+    bool same = d_.factors.place == place_ && d_.factors.stiffened == stiffened_;
+    bounds_.for_each(
+        [&](const auto& bound, const EdgeRows<S>&) { same = same && bound.is_factored(); });
+    if (!same) eliminate_all<kOfSolves>();
+  }
 
   // From the leaves to the roots.
+  template <int kSet>
   void eliminate_all() const {
+    if constexpr (kSet == kOfSolves) d_.factors = {place_, stiffened_};
+    Real* const inertias_of_set = inertias<S>(t_, w_, kSet);
     for_each_tree_body(t_, [&](int b) {
-      store(row(d_.inertia, b, kArticulatedRowsOf<S>), rigid_body(mass_of(b), moments(rotary_, b)));
+      store(row(inertias_of_set, b, kArticulatedRowsOf<S>),
+            rigid_body(mass_of(b), moments(rotary_, b)));
+    });
+    for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
+      const TreeEdge& edge = t_.joint_trees.edge[i];
+      EdgeRows<S>& s = edge_rows<S>(w_, i);
+      ArticulatedOf<S> inertia =
+          moved_back(load_as<ArticulatedOf<S>>(row(d_.inertia, edge.child, kArticulatedRowsOf<S>)),
+                     -load_as<Vec>(s.arm_child[0]));
+      if (edge.slides) {
+        eliminate<kSet>(edge, edge.slide, s.slide, axis_of_slide(s), inertia);
+      }
+      if (hinges(edge)) {
+        eliminate<kSet>(edge, edge.angle, s.turn, axis_of_turn(s), inertia);
+      }
+      if constexpr (S::kDim == 3) {
+        if (edge.ball) eliminate_rotation(s.ball[kSet], inertia);
+      }
+      if (edge.prescribed) continue;
+      const auto arm = load_as<Vec>(s.arm_parent[0]);
+      Real* to = row(inertias_of_set, edge.parent, kArticulatedRowsOf<S>);
+      if constexpr (S::kDim == 3) {
+        if (edge.ball) {  // what is left is of forces alone
+          add_in_lanes<kArticulatedRowsOf<S>>(to, spring_at(arm, inertia.linear), s.lanes);
+          continue;
+        }
+      }
+      add_in_lanes<kArticulatedRowsOf<S>>(to, moved_back(inertia, arm), s.lanes);
+    }
+  }
+  void reduce_loads() const {
+    for_each_tree_body(t_, [&](int b) {
       store(row(d_.load, b, kTwistRowsOf<S>),
             load_as<WrenchOf<S>>(row(d_.own_load, b, kTwistRowsOf<S>)));
     });
@@ -64,24 +148,20 @@ class TreeSolve {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       EdgeRows<S>& s = edge_rows<S>(w_, i);
       const auto arm = load_as<Vec>(s.arm_child[0]);
-      ArticulatedOf<S> inertia = moved_back(
-          load_as<ArticulatedOf<S>>(row(d_.inertia, edge.child, kArticulatedRowsOf<S>)), -arm);
-      WrenchOf<S> load =
-          moved(load_as<WrenchOf<S>>(row(d_.load, edge.child, kTwistRowsOf<S>)), arm);
       const TwistOf<S> change = find_change(edge, s);
       store(s.change[0], change);
-      load = load - mul(inertia, change);
-      if (edge.slides) eliminate(edge, edge.slide, s.slide, axis_of_slide(s), inertia, load);
-      if (hinges(edge)) eliminate(edge, edge.angle, s.turn, axis_of_turn(s), inertia, load);
+      const auto inertia =
+          load_as<ArticulatedOf<S>>(row(d_.inertia, edge.child, kArticulatedRowsOf<S>));
+      const auto own = load_as<WrenchOf<S>>(row(d_.load, edge.child, kTwistRowsOf<S>));
+      WrenchOf<S> load = moved(own - mul(inertia, moved(change, -arm)), arm);
+      if (edge.slides) load = reduce(edge, edge.slide, s.slide, axis_of_slide(s), load);
+      if (hinges(edge)) load = reduce(edge, edge.angle, s.turn, axis_of_turn(s), load);
       if constexpr (S::kDim == 3) {
-        if (edge.ball) eliminate_rotation(s, inertia, load);
+        if (edge.ball) load = reduce_rotation(s, load);
       }
       if (edge.prescribed) continue;
-      const auto back = load_as<Vec>(s.arm_parent[0]);
-      add_in_lanes<kArticulatedRowsOf<S>>(row(d_.inertia, edge.parent, kArticulatedRowsOf<S>),
-                                          moved_back(inertia, back), s.lanes);
-      add_in_lanes<kTwistRowsOf<S>>(row(d_.load, edge.parent, kTwistRowsOf<S>), moved(load, -back),
-                                    s.lanes);
+      add_in_lanes<kTwistRowsOf<S>>(row(d_.load, edge.parent, kTwistRowsOf<S>),
+                                    moved(load, -load_as<Vec>(s.arm_parent[0])), s.lanes);
     }
   }
   // And back.
@@ -98,7 +178,7 @@ class TreeSolve {
       if (hinges(edge)) v = expand(s.turn, axis_of_turn(s), v);
       if constexpr (S::kDim == 3) {
         if (edge.ball) {
-          v.w = mul(load_as<Sym3>(s.compliance[0]), load_vec3(s.moment[0]) - mul(mixed_of(s), v.v));
+          v.w = turn_of(s.ball[kOfSolves], load_vec3(s.moment[0]), v.v);
         }
       }
       if (edge.slides) v = expand(s.slide, axis_of_slide(s), v);
@@ -146,101 +226,132 @@ class TreeSolve {
     return change;
   }
 
+  template <int kSet>
   MW_INLINE void eliminate(const TreeEdge& edge, int part, EdgeDof<S>& dof, const TwistOf<S>& axis,
-                           ArticulatedOf<S>& inertia, WrenchOf<S>& load) const {
+                           ArticulatedOf<S>& inertia) const {
     const WrenchOf<S> f = mul(inertia, axis);
     const Float pivot = dot(axis, f);
-    Float stiffness(Real(0)), push(Real(0));
-    with_bound(edge, part, dof, [&](const auto& bound) { bound.add(pivot, stiffness, push); });
-    const Float inverse = inverse_or_zero(pivot + stiffness), own = dot(axis, load) + push;
-    store(dof.response[0], f);
-    pivot.store(dof.pivot), inverse.store(dof.inverse), own.store(dof.load);
+    Float stiffness(Real(0));
+    bounds_.visit(edge, part, dof, [&](const auto& bound) {
+      stiffness = bound.stiffness(pivot, kSet == kOfContacts ? d_.firm : kAllLanes);
+      if constexpr (kSet == kOfSolves) bound.mark_factored();
+    });
+    const Float inverse = inverse_or_zero(pivot + stiffness);
+    DofFactors<S>& to = dof.factors[kSet];
+    store(to.response[0], f);
+    pivot.store(to.pivot), inverse.store(to.inverse);
     inertia = without(inertia, f, inverse);
-    load = fnma(f, own * inverse, load);
   }
-  MW_INLINE void eliminate_rotation(EdgeRows<S>& s, ArticulatedOf<S>& inertia,
-                                    WrenchOf<S>& load) const requires(S::kDim == 3) {
+  MW_INLINE WrenchOf<S> reduce(const TreeEdge& edge, int part, EdgeDof<S>& dof,
+                               const TwistOf<S>& axis, const WrenchOf<S>& load) const {
+    const DofFactors<S>& f = dof.factors[kOfSolves];
+    const Float own = dot(axis, load);
+    Float push(Real(0));
+    bounds_.visit(edge, part, dof, [&](const auto& bound) { push = bound.push(); });
+    own.store(dof.load), push.store(dof.push);
+    const Float change = (own + push) * Float::load(f.inverse);
+    return fnma(load_as<WrenchOf<S>>(f.response[0]), change, load);
+  }
+  static MW_INLINE void eliminate_rotation(BallFactors<S>& to,
+                                           ArticulatedOf<S>& inertia) requires(S::kDim == 3) {
     const Sym3 compliance = inverse(inertia.rotary);
     const Mat3 m = inertia.mixed;
     const Mat3 by{mul(compliance, m.x), mul(compliance, m.y), mul(compliance, m.z)};
     const Sym3& a = inertia.linear;
-    store(s.compliance[0], compliance), store(s.moment[0], load.n);
-    store(s.mixed[0][0], m.x), store(s.mixed[1][0], m.y), store(s.mixed[2][0], m.z);
-    const Sym3 left{a.xx - dot(m.x, by.x), a.xy - dot(m.x, by.y), a.xz - dot(m.x, by.z),
-                    a.yy - dot(m.y, by.y), a.yz - dot(m.y, by.z), a.zz - dot(m.z, by.z)};
-    const Float zero(Real(0));
-    const Vec3 none{zero, zero, zero};
-    inertia = {{zero, zero, zero, zero, zero, zero}, {none, none, none}, left};
-    load = {none, load.f - mul_transposed(by, load.n)};
+    store(to.compliance[0], compliance);
+    store(to.mixed[0][0], m.x), store(to.mixed[1][0], m.y), store(to.mixed[2][0], m.z);
+    inertia.linear = {a.xx - dot(m.x, by.x), a.xy - dot(m.x, by.y), a.xz - dot(m.x, by.z),
+                      a.yy - dot(m.y, by.y), a.yz - dot(m.y, by.z), a.zz - dot(m.z, by.z)};
   }
-  static MW_INLINE Mat3 mixed_of(const EdgeRows<S>& s) {
-    return {load_vec3(s.mixed[0][0]), load_vec3(s.mixed[1][0]), load_vec3(s.mixed[2][0])};
+  static MW_INLINE WrenchOf<S> reduce_rotation(EdgeRows<S>& s,
+                                               const WrenchOf<S>& load) requires(S::kDim == 3) {
+    store(s.moment[0], load.n);
+    return without_turn(s.ball[kOfSolves], load);
   }
   static MW_INLINE TwistOf<S> expand(EdgeDof<S>& dof, const TwistOf<S>& axis, const TwistOf<S>& v) {
-    const Float load = Float::load(dof.load) - dot(v, load_as<WrenchOf<S>>(dof.response[0]));
-    const Float change = load * Float::load(dof.inverse);
-    change.store(dof.change);
+    const DofFactors<S>& f = dof.factors[kOfSolves];
+    const Float load = Float::load(dof.load) - dot(v, load_as<WrenchOf<S>>(f.response[0]));
+    const Float change = (load + Float::load(dof.push)) * Float::load(f.inverse);
+    load.store(dof.load), change.store(dof.change);
     return fma(axis, change, v);
   }
 
-  // Returns whether that of some edge has changed.
-  bool correct_active_sets() const {
-    std::uint32_t changed = 0;
-    for_each_bound(
-        [&](const auto& bound, const EdgeRows<S>& s) { changed |= bound.correct() & s.lanes; });
-    return changed != 0;
+  // Corrects them; returns whether some were wrong.
+  bool correct_active_sets(std::uint32_t lanes, PivotRule& rule) const {
+    std::uint32_t some = 0;
+    bounds_.for_each([&](const auto& bound, const EdgeRows<S>& s) {
+      const auto wrong = bound.wrong(lanes & s.lanes);
+      some |= wrong.limit | wrong.drive;
+      rule.count(wrong.limit), rule.count(wrong.drive);
+    });
+    if (some == 0) return false;
+    std::uint32_t all = rule.choose(some), last = some & ~all;
+    // Visited backwards: the first that is wrong is the last one.
+    bounds_.template for_each<true>([&](const auto& bound, const EdgeRows<S>& s) {
+      auto wrong = bound.wrong(lanes & s.lanes);
+      const std::uint32_t limit = wrong.limit & last;
+      last &= ~limit;
+      const std::uint32_t drive = wrong.drive & last;
+      last &= ~drive;
+      bound.correct({(wrong.limit & all) | limit, (wrong.drive & all) | drive});
+    });
+    return true;
   }
 
   // Velocities, and what joints did.
-  void commit() const {
+  void commit(std::uint32_t lanes) const {
     for_each_tree_body(t_, [&](int b) {
       const auto change = load_as<TwistOf<S>>(row(d_.twist, b, kTwistRowsOf<S>));
       const auto own_load = load_as<WrenchOf<S>>(row(d_.own_load, b, kTwistRowsOf<S>));
       store(row(d_.load, b, kTwistRowsOf<S>),
-            WrenchOf<S>{apply(moments(rotary_, b), change.w) - own_load.n, change.v * mass_of(b)});
+            WrenchOf<S>{apply(moments(rotary_, b), change.w), change.v * mass_of(b)} - own_load);
       const Velocity<S> old = get_velocity<S, kDense>(w_, w_.velocity, b);
       const Velocity<S> now{old.v + change.v, old.w + change.w};
-      const std::uint32_t held = d_.held[b];
+      const std::uint32_t held = d_.held[b] & lanes;
       if (held == kAllLanes) {
         put_velocity<S, kDense>(w_, w_.velocity, b, now);
       } else {
         put_velocity<S, kDense>(w_, w_.velocity, b, select(mask_from_bits(held), now, old));
       }
     });
-    for_each_bound([&](const auto& bound, const EdgeRows<S>&) { bound.keep(); });
+    bounds_.for_each([&](const auto& bound, const EdgeRows<S>&) { bound.keep(lanes); });
     for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       const EdgeRows<S>& s = edge_rows<S>(w_, i);
       const WrenchOf<S> p = moved(load_as<WrenchOf<S>>(row(d_.load, edge.child, kTwistRowsOf<S>)),
                                   load_as<Vec>(s.arm_child[0]));
-      keep_impulse(edge, s, p);
+      keep_impulse(edge, s, p, lanes);
       if (edge.prescribed) continue;
       add_in_lanes<kTwistRowsOf<S>>(row(d_.load, edge.parent, kTwistRowsOf<S>),
                                     moved(p, -load_as<Vec>(s.arm_parent[0])), s.lanes);
     }
   }
   // On B, without what acts along the coordinates.
-  MW_INLINE void keep_impulse(const TreeEdge& edge, const EdgeRows<S>& s, WrenchOf<S> p) const {
+  MW_INLINE void keep_impulse(const TreeEdge& edge, const EdgeRows<S>& s, WrenchOf<S> p,
+                              std::uint32_t lanes) const {
     if (edge.slides) {
       const auto axis = load_as<Vec>(s.slide_axis[0]);
       p.f = fnma(axis, dot(axis, p.f), p.f);
-      keep(part_rows<S, LineRows<S>>(w_, edge.hold), edge, s, p.f);
+      keep(part_rows<S, LineRows<S>>(w_, edge.hold), edge, s, p.f, lanes);
     } else {
-      keep(part_rows<S, PointRows<S>>(w_, edge.hold), edge, s, p.f);
+      keep(part_rows<S, PointRows<S>>(w_, edge.hold), edge, s, p.f, lanes);
     }
     if (edge.turn < 0) return;
-    if (edge.locked) return keep(part_rows<S, LockRows<S>>(w_, edge.turn), edge, s, p.n);
+    if (edge.locked) return keep(part_rows<S, LockRows<S>>(w_, edge.turn), edge, s, p.n, lanes);
     if constexpr (S::kDim == 3) {
       const auto axis = load_vec3(s.turn_axis[0]);
-      keep(part_rows<S, SwingRows<S>>(w_, edge.turn), edge, s, fnma(axis, dot(axis, p.n), p.n));
+      keep(part_rows<S, SwingRows<S>>(w_, edge.turn), edge, s, fnma(axis, dot(axis, p.n), p.n),
+           lanes);
     }
   }
   template <class Rows, class V>
-  MW_INLINE void keep(Rows& to, const TreeEdge& edge, const EdgeRows<S>& s, V p) const {
+  MW_INLINE void keep(Rows& to, const TreeEdge& edge, const EdgeRows<S>& s, V p,
+                      std::uint32_t lanes) const {
+    const auto old = load_as<V>(to.impulse[0]);
     if (edge.reversed) p = -p;
-    if (!first_) p = load_as<V>(to.impulse[0]) + p;
-    const Mask holds = mask_from_bits(s.lanes);
-    store(to.impulse[0], select(holds, p, zero_of<V>()));
+    if (!first_) p = old + p;
+    p = select(mask_from_bits(s.lanes), p, zero_of<V>());
+    store(to.impulse[0], select(mask_from_bits(lanes), p, old));
   }
 
   // Of a root, or of what hangs on nothing in some lanes.
@@ -257,35 +368,14 @@ class TreeSolve {
   }
   static MW_INLINE Real* row(Real* of, int body, int rows) { return of + body * rows * kLanes; }
 
-  template <class Visit>
-  MW_INLINE void with_bound(const TreeEdge& edge, int part, EdgeDof<S>& dof, Visit visit) const {
-    if (part < 0) return;
-    const JointPart& what = t_.part[part];
-    const Joint& c = constants_of_part(g_, part);
-    if (what.kind == PartKind::slide) {
-      visit(Bound<S, true>(t_, g_, what, c, part_rows<S, Row<S, true>>(w_, part), dof,
-                           edge.reversed, closes_, first_));
-    } else {
-      visit(Bound<S, false>(t_, g_, what, c, part_rows<S, Row<S, false>>(w_, part), dof,
-                            edge.reversed, closes_, first_));
-    }
-  }
-  template <class Visit>
-  MW_INLINE void for_each_bound(Visit visit) const {
-    for (int i = 0; i < t_.joint_trees.edges; ++i) {
-      const TreeEdge& edge = t_.joint_trees.edge[i];
-      EdgeRows<S>& s = edge_rows<S>(w_, i);
-      with_bound(edge, edge.slide, s.slide, [&](const auto& b) { visit(b, s); });
-      with_bound(edge, edge.angle, s.turn, [&](const auto& b) { visit(b, s); });
-    }
-  }
-
   const Constants& t_;
   const Group& g_;
   Work& w_;
   DirectWork& d_;
-  const Real* rotary_;
-  const bool closes_, first_;
+  const Real* rotary_;  // moments of inertia [body][rotary][lane], with what resists as they do
+  const int place_;
+  const bool stiffened_, first_, closes_;
+  const EdgeBounds<S> bounds_;
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

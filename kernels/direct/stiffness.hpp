@@ -50,7 +50,8 @@ class GeometricStiffness {
   GeometricStiffness(const Constants& t, const Group& g, const Work& w)
       : t_(t), g_(g), w_(w), d_(w.direct) {}
 
-  void find() const {
+  // Returns whether some body has any.
+  bool find() const {
     for_each_tree_body(t_, [&](int b) {
       const Float zero(Real(0));
       zero.store(sums(b)), zero.store(sums(b) + kLanes);
@@ -66,7 +67,7 @@ class GeometricStiffness {
       stiff |= bits(Float(Real(0)) < share);
       share.store(sums(b));
     });
-    if (stiff == 0) return;
+    if (stiff == 0) return false;
     for_each_arm([&](int b, Vec r, Vec p) {
       const Float share = Float::load(sums(b)) * Float(t_.h);
       const auto own = load_as<MomentsOf<S>>(rotary(d_.stiffened, b));
@@ -74,6 +75,7 @@ class GeometricStiffness {
       store(rotary(d_.stiffened, b),
             select(Float(Real(0)) < share, own + scaled(stiffness_of(r, p), share), own));
     });
+    return true;
   }
 
  private:

@@ -6,6 +6,7 @@
 
 #include "kernels/joint/breaking.hpp"
 #include "kernels/joint/gap_energy.hpp"
+#include "kernels/work/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 

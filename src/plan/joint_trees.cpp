@@ -11,7 +11,6 @@
 #include "src/base/float_mode.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/plan/soft_constraint.hpp"
-#include "src/plan/substeps.hpp"
 
 namespace manyworlds {
 
@@ -62,7 +61,11 @@ class JointTreeBuilder {
       const auto& joints = at_[static_cast<std::size_t>(b)];
       if (!joints.empty() && in_tree_[static_cast<std::size_t>(joints.front())]) grow(component);
     }
+    auto& edge_of = plan_.trees_of_joints.edge_of;
+    edge_of.assign(plan_.bodies.size(), -1);
+    int index = 0;
     for (const kernels::TreeEdge& edge : plan_.trees_of_joints.edges) {
+      edge_of[static_cast<std::size_t>(edge.child)] = index++;
       for (const int part : {edge.hold, edge.turn, edge.slide, edge.angle}) {
         if (part < 0) continue;
         solve_at_once(plan_.parts[static_cast<std::size_t>(part)]);
@@ -210,22 +213,30 @@ std::vector<bool> joints_of_trees(const Scene& scene) {
   return out;
 }
 
-bool all_in_trees(const Scene& scene) {
+std::vector<int> trees_of_bodies(const Scene& scene) {
   const std::vector<bool> in = joints_of_trees(scene);
-  return std::all_of(in.begin(), in.end(), [](bool one) { return one; });
-}
-
-bool nothing_touches(const Scene& scene) {
-  const auto joined = joined_bodies(scene);
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const Body &a = scene.bodies[j], &b = scene.bodies[i];
-      if (a.motion != Motion::dynamic && b.motion != Motion::dynamic) continue;
-      if (!filters_let_touch(a, b)) continue;
-      if (joined.count({static_cast<int>(j), static_cast<int>(i)}) == 0) return false;
+  std::vector<int> tree(scene.bodies.size(), -1);
+  const auto moves = [&](BodyId body) { return body && scene.at(body).motion == Motion::dynamic; };
+  const auto root = [&](int i) {
+    while (tree[static_cast<std::size_t>(i)] != i) i = tree[static_cast<std::size_t>(i)];
+    return i;
+  };
+  for (std::size_t j = 0; j < in.size(); ++j) {
+    if (!in[j]) continue;
+    const BodyId ends[] = {scene.joints[j].body_a, scene.joints[j].body_b};
+    for (const BodyId body : ends) {
+      if (!moves(body)) continue;
+      int& of = tree[static_cast<std::size_t>(body.index())];
+      if (of < 0) of = body.index();
     }
+    if (!moves(ends[0]) || !moves(ends[1])) continue;
+    const int a = root(ends[0].index()), b = root(ends[1].index());
+    tree[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
   }
-  return true;
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    if (tree[i] >= 0) tree[i] = root(static_cast<int>(i));
+  }
+  return tree;
 }
 
 void collect_joint_trees(PlanData& plan) {

@@ -11,9 +11,7 @@ namespace manyworlds {
 // ball joints without limits, hinges, sliders, fixed and wheel joints, without a loop, on nothing
 // or on one body that is not dynamic.
 std::vector<bool> joints_of_trees(const Scene& scene);
-bool all_in_trees(const Scene& scene);
-
-// Whether no two shapes can touch, by their filters and joints.
-bool nothing_touches(const Scene& scene);
+// Per body: which such tree it is of, by the lowest of its bodies; -1: none.
+std::vector<int> trees_of_bodies(const Scene& scene);
 
 }  // namespace manyworlds

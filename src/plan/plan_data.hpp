@@ -68,7 +68,8 @@ struct PlanPart {
 struct PlanJointTrees {
   std::vector<kernels::TreeEdge> edges;
   std::vector<std::int32_t> roots, bodies;
-  std::int32_t parts = 0;  // that edges are made of
+  std::vector<std::int32_t> edge_of;  // [body] that it hangs on; -1: none
+  std::int32_t parts = 0;             // that edges are made of
 };
 
 // Thrust or torque of a control.

@@ -15,12 +15,6 @@ namespace manyworlds {
 
 namespace {
 
-std::string short_text(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", x);
-  return text;
-}
-
 using Need = SubstepNeed;
 void at_least(Need& need, double substeps, const std::string& why) {
   if (substeps > need.substeps) need = {substeps, why};
@@ -51,12 +45,12 @@ Need need_of_standing(const Scene& scene) {
 // The gap of a joint under its load stays below a hundredth of a body's size, as a spring of a
 // quarter of the substeps' rate. Loads of more than some thousand times the lighter body want more
 // than substeps.
-Need need_of_loads(const Scene& scene, double length_unit) {
+Need need_of_loads(const Scene& scene, double length_unit, const std::vector<bool>& joints) {
   constexpr double kGap = 0.01;  // of the length unit
   Need out;
   const std::vector<double> carried = carried_masses(scene);
   for (std::size_t j = 0; j < carried.size(); ++j) {
-    if (carried[j] == 0) continue;
+    if (carried[j] == 0 || !joints[j]) continue;
     double lighter = std::numeric_limits<double>::infinity();
     for (const BodyId body : {scene.joints[j].body_a, scene.joints[j].body_b}) {
       if (body && scene.at(body).motion == Motion::dynamic) {
@@ -74,9 +68,9 @@ Need need_of_loads(const Scene& scene, double length_unit) {
 
 // Gauss-Seidel brings a load down through light bodies in as many sweeps as the ratio of masses
 // asks for; stiffer contacts do not help. Measured: ratios of 300 hold from 8 substeps on, of 400
-// from 11 on. Of numbers that vary, the heaviest upon the lightest.
+// from 11 on. Of numbers that vary, the heaviest upon the lightest. A tree that is solved at once
+// stands behind the contacts of its bodies as a whole.
 Need need_of_ratios(const std::vector<Scene>& extremes) {
-  constexpr double kFourSubsteps = 50;  // ratio that four substeps are good for
   struct Weight {
     BodyId body;
     double least, most;  // kg
@@ -99,14 +93,19 @@ Need need_of_ratios(const std::vector<Scene>& extremes) {
   };
   sort_by(by_least, &Weight::least), sort_by(by_most, &Weight::most);
   const auto joined = joined_bodies(scene);
-  double ratio = kFourSubsteps;
+  const bool at_once = scene.options.joint.method == JointMethod::tree;
+  const std::vector<int> trees =
+      at_once ? trees_of_bodies(scene) : std::vector<int>(scene.bodies.size(), -1);
+  const auto tree_of = [&](BodyId body) { return trees[static_cast<std::size_t>(body.index())]; };
+  double ratio = kRatioOfFourSubsteps;
   std::string why;
   for (const Weight& light : by_least) {
     for (std::size_t j = by_most.size(); j-- > 0;) {
       const Weight& heavy = by_most[j];
       const double here = heavy.most / light.least;
       if (here <= ratio) break;
-      const bool apart = heavy.body == light.body ||
+      const bool one_tree = tree_of(light.body) >= 0 && tree_of(light.body) == tree_of(heavy.body);
+      const bool apart = heavy.body == light.body || one_tree ||
                          joined.count(std::minmax(light.body.index(), heavy.body.index())) > 0 ||
                          !filters_let_touch(scene.at(light.body), scene.at(heavy.body));
       if (apart) continue;
@@ -117,7 +116,7 @@ Need need_of_ratios(const std::vector<Scene>& extremes) {
     }
   }
   if (why.empty()) return {};
-  return {kLeastSubsteps * std::sqrt(ratio / kFourSubsteps), why};
+  return {kLeastSubsteps * std::sqrt(ratio / kRatioOfFourSubsteps), why};
 }
 
 // A frequency that is given keeps its share.
@@ -135,6 +134,12 @@ int rounded_up(double substeps) {
 
 }  // namespace
 
+std::string short_text(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
 bool filters_let_touch(const Body& a, const Body& b) {
   for (const Shape& of_a : a.shapes) {
     for (const Shape& of_b : b.shapes) {
@@ -145,11 +150,12 @@ bool filters_let_touch(const Body& a, const Body& b) {
   return false;
 }
 
-Need need_of_joints(const std::vector<Scene>& extremes, double length_unit) {
+Need need_of_joints(const std::vector<Scene>& extremes, double length_unit,
+                    const std::vector<bool>& joints) {
   Need out;
   for (const Scene& scene : extremes) {
     if (scene.options.gravity.isZero(0)) continue;
-    const Need of = need_of_loads(scene, length_unit);
+    const Need of = need_of_loads(scene, length_unit, joints);
     at_least(out, of.substeps, of.why);
   }
   return out;
@@ -163,14 +169,17 @@ SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_
     return out;
   }
   Need need{kLeastSubsteps, "the least; nothing asks for more"};
+  std::vector<bool> swept(extremes.front().joints.size(), true);
+  if (o.joint.method == JointMethod::tree) {
+    swept = joints_of_trees(extremes.front());
+    swept.flip();
+  }
   bool weight = false;
   for (const Scene& scene : extremes) {
     if (scene.options.gravity.isZero(0)) continue;
     weight = true;
     for (const Need& of : {need_of_sizes(scene, length_unit), need_of_standing(scene),
-                           o.joint.method == JointMethod::tree && all_in_trees(scene)
-                               ? Need{}
-                               : need_of_loads(scene, length_unit)}) {
+                           need_of_loads(scene, length_unit, swept)}) {
       at_least(need, of.substeps, of.why);
     }
   }

@@ -16,6 +16,9 @@ namespace manyworlds {
 inline constexpr int kLeastSubsteps = 4, kMostSubsteps = detail::kMaxSubsteps;
 inline constexpr double kContactShare = 0.25;  // of the substeps' rate is the frequency of contacts
 
+// Of masses, that four substeps of sweeps are good for.
+inline constexpr double kRatioOfFourSubsteps = 50;
+
 struct SubstepChoice {
   int substeps = kLeastSubsteps;
   int stiff =
@@ -28,8 +31,11 @@ struct SubstepNeed {
   double substeps = 0;
   std::string why = {};
 };
-// Of sweeps over joints under what these carry, in the worst of the scenes.
-SubstepNeed need_of_joints(const std::vector<Scene>& extremes, double length_unit);
+// Of sweeps over some of the joints under what these carry, in the worst of the scenes.
+SubstepNeed need_of_joints(const std::vector<Scene>& extremes, double length_unit,
+                           const std::vector<bool>& joints);
+
+std::string short_text(double x);  // three digits
 
 // Whether some shape of A and some of B may touch.
 bool filters_let_touch(const Body& a, const Body& b);

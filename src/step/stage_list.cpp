@@ -7,6 +7,8 @@ namespace {
 
 using kernels::Solver;
 
+constexpr int kMoreRounds = 2;  // of contacts and the trees that they act on
+
 template <class Real>
 class Builder {
  public:
@@ -50,6 +52,7 @@ class Builder {
   bool trees() const { return joints() && t_.joint_trees.edges > 0; }
   // Whether some parts of joints are swept over.
   bool sweeps() const { return joints() && t_.joint_trees.parts < t_.parts; }
+  bool trees_touch() const { return trees() && contacts(); }
   // Impulses are those of one substep alone: nothing is carried over.
   bool forgets() const { return t_.solver.kind == Solver::penalty; }
 
@@ -85,17 +88,21 @@ class Builder {
   void tgs_soft() {
     Calls& to = out_.solve;
     // Trees are done with one solve, but for what contacts spoil.
-    const bool again = trees() && contacts();
+    const bool again = trees_touch();
     if (trees()) add(to, StepStage::joints, trees_.bias);
-    for (int i = 0; i < t_.solver.iterations; ++i) {
+    // More rounds meet the limits into which contacts have driven joints, let go of those that gave
+    // way, and bring loads from leg to leg: with one impacts leave twice the overlap, and legs on
+    // limits do not come to rest.
+    const int rounds = t_.solver.iterations + (again ? kMoreRounds : 0);
+    for (int i = 0; i < rounds; ++i) {
       if (sweeps()) add(to, StepStage::joints, joints_.bias);
-      add_carried(to, StepStage::bias, solver_.bias);
+      add_carried(to, StepStage::bias, again ? trees_.bias_contacts : solver_.bias);
       if (again) add(to, StepStage::joints, trees_.bias_again);
     }
     add(to, StepStage::advance, solver_.advance);
     if (trees()) add(to, StepStage::joints, trees_.relax);
     if (sweeps()) add(to, StepStage::joints, joints_.relax);
-    add_carried(to, StepStage::relax, solver_.relax);
+    add_carried(to, StepStage::relax, again ? trees_.relax_contacts : solver_.relax);
     if (again) add(to, StepStage::joints, trees_.relax_again);
     ask_here(joints_.relax, solver_.relax);
   }
@@ -155,6 +162,8 @@ class Builder {
   void end() {
     Calls& to = out_.end;
     add(to, StepStage::joints, joints_.store);
+    // Impacts play between free bodies.
+    if (trees_touch()) add(to, StepStage::restitute, trees_.weigh_alone);
     add(to, StepStage::restitute, solver_.restitute);
     add(to, StepStage::store, solver_.store);
     const bool flight = plan_.runs(StepStage::flight);

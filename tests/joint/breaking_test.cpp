@@ -214,7 +214,9 @@ TEST_CASE("a slow body does not fall asleep in the step in which its joint break
 TEST_CASE("a world that goes wrong in the step in which its joint would break keeps it",
           "[fast][joint]") {
   for (const Table& table : widest_tables()) {
-    Batch batch(compile(hanging(Space::spatial, HingeJoint{}, 50)), options_of(table, 3));
+    Scene scene = hanging(Space::spatial, HingeJoint{}, 50);
+    scene.options.joint.method = JointMethod::sweep;  // by a tree it bears that, and breaks
+    Batch batch(compile(scene), options_of(table, 3));
     batch.step(5);
     const std::uint64_t before = batch.hash(1);
     batch.add_force(1, batch.body_in_row(0), {0, 0, -1e30});

@@ -309,7 +309,19 @@ TEST_CASE("the plan solves joints at once where that is worth it, and says why",
     touching.add(
         body_of(shape_of(ground_of(space)), Vec3(0, 0, 0) - 20 * up_of(space), Motion::fixed));
     touching.bodies[3].shapes = {shape_of(cube_of(space, 0.1))};
-    CHECK_FALSE(method(touching).has_value());
+    CHECK(method(touching) == JointMethod::tree);
+    Scene compact = chain(space, 1, 1, 1, true, HingeJoint{});
+    CHECK_FALSE(method(compact).has_value());
+    compact.bodies[0].mass_properties->inertia *= 0.05;
+    CHECK(method(compact) == JointMethod::tree);
+    Scene uneven = tree_scene(space);  // no joint carries anything
+    uneven.options.gravity.setZero();
+    uneven.add(uniform_rod(space, 1, 1, Vec3::Zero()));
+    uneven.add(uniform_rod(space, 40, 1, Vec3::UnitX()));
+    uneven.add(joint_at(uneven, BodyId(0), BodyId(1), at({0.5, 0, 0}), HingeJoint{}));
+    CHECK_FALSE(method(uneven).has_value());
+    uneven.bodies[1].mass_properties->mass = 60;
+    CHECK(method(uneven) == JointMethod::tree);
     Scene other = chain(space, 10, 0.5, 500, true, FixedJoint{});
     other.options.solver.method = Solver::sequential_impulse;
     CHECK_FALSE(method(other).has_value());

@@ -1,0 +1,75 @@
+// Effective masses of contacts by how their bodies give way as parts of trees, and so the softness
+// that comes with them: a load on light legs rests on contacts that are as stiff as it is heavy.
+#pragma once
+
+#include "kernels/direct/tree_velocities.hpp"
+#include "kernels/rows/contact_block.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// Effective masses of a block in some lanes, by how its sides give way.
+template <class S, int N, class A>
+void put_masses(const Constants& t, SidedBlock<S, N, A>& s, const TreeSide<S>& of_a,
+                const TreeSide<S>& of_b, std::uint32_t lanes) {
+  using Vec = typename S::Vec;
+  using Ang = typename S::Ang;
+  const Float zero(Real(0));
+  const Mask changes = mask_from_bits(lanes);
+  const auto put = [&](Float x, Real* to) { select(changes, x, Float::load(to)).store(to); };
+  const auto response = [](const auto& rows, const TreeSide<S>& side, const WrenchOf<S>& p) {
+    const TwistOf<S> free{apply(inertia_of<S>(rows), p.n), p.f * Float::load(rows.inv_mass)};
+    if (side.lanes == 0) return free;
+    return select(mask_from_bits(side.lanes), mul(side.compliance, p), free);
+  };
+  // Speed along the second of unit impulses along the first.
+  const auto coupling = [&](const auto& wrench, int i, int j) {
+    Float k = dot(response(s.b, of_b, wrench(s.b, i)), wrench(s.b, j));
+    if constexpr (A::kMoves) k = k + dot(response(s.a, of_a, wrench(s.a, i)), wrench(s.a, j));
+    return k;
+  };
+
+  const auto least_of = [](const auto& rows, const TreeSide<S>& side) {
+    const Float alone = Float::load(rows.inv_mass);
+    return side.lanes == 0 ? alone : select(mask_from_bits(side.lanes), side.least, alone);
+  };
+  Float least = least_of(s.b, of_b);
+  if constexpr (A::kMoves) least = least + least_of(s.a, of_a);
+
+  const Vec n = load_as<Vec>(s.normal[0]);
+  const auto normal = [&](const ContactSide<S, N, Free>& side, int i) {
+    return WrenchOf<S>{load_as<Ang>(side.arm[i][0]), n};
+  };
+  for (int i = 0, at = 0; i < N; ++i) {
+    const Float mass = Float::load(s.mass[i]);
+    put(select(zero < mass, inverse_or_zero(max(coupling(normal, i, i), least)), zero), s.mass[i]);
+    for (int j = i + 1; j < N; ++j) put(coupling(normal, i, j), s.cross_k[at++]);
+  }
+  if (!t.has_friction) return;
+  const Vec first = load_as<Vec>(s.tangent[0]);
+  const auto tangent = [&](const ContactSide<S, N, Free>& side, int i) {
+    Vec along = first;
+    if constexpr (S::kDim == 3) {
+      if (i == 1) along = cross(n, first);
+    }
+    return WrenchOf<S>{cross(load_as<Vec>(side.centre[0]), along), along};
+  };
+  const Float k11 = max(coupling(tangent, 0, 0), least);
+  if constexpr (S::kTangents == 1) {
+    put(inverse_or_zero(k11), s.tangent_mass[0]);
+  } else {
+    const Float k12 = coupling(tangent, 0, 1), k22 = max(coupling(tangent, 1, 1), least);
+    const Float scale = inverse_or_zero(fms(k11, k22, k12 * k12));
+    put(k22 * scale, s.tangent_mass[0]), put(-(k12 * scale), s.tangent_mass[1]);
+    put(k11 * scale, s.tangent_mass[2]);
+    if constexpr (ContactBlock<S, N>::kTwist) {
+      const auto about = [&](const auto&, int) { return WrenchOf<S>{n, zero_of<Vec>()}; };
+      Float arm = zero;
+      for (int i = 0; i < N; ++i) arm = max(arm, Float::load(s.twist_arm[i]));
+      // What turns it turns the farthest point by as much as it would be pushed.
+      const Float k = max(coupling(about, 0, 0), least * inverse_or_zero(arm * arm));
+      put(inverse_or_zero(k), s.twist_mass);
+    }
+  }
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -1,0 +1,92 @@
+// The passes over contacts of plans with trees of joints. Blocks none of whose bodies are of trees
+// are solved as without any; in lanes in which a side is of no tree its numbers are the same.
+#pragma once
+
+#include "kernels/direct/contact_masses.hpp"
+#include "kernels/rows/bounce_totals.hpp"
+#include "kernels/rows/contact.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+template <class S, bool kDense>
+class TreeContacts {
+ public:
+  TreeContacts(const Constants& t, Work& w) : t_(t), w_(w) {}
+
+  // Marks the bodies of trees that contacts are on, and those that they hang on; whether there are
+  // any.
+  bool find_touched() const {
+    bool* touched = w_.direct.touched;
+    for (int b = 0; b <= t_.bodies; ++b) touched[b] = false;
+    bool some = false;
+    for_each_end([&](int body, std::uint32_t lanes) {
+      if ((w_.direct.held[body] & lanes) != 0) some = touched[body] = true;
+    });
+    for (int i = t_.joint_trees.edges - 1; some && i >= 0; --i) {
+      const TreeEdge& edge = t_.joint_trees.edge[i];
+      if (!edge.prescribed) touched[edge.parent] |= touched[edge.child];
+    }
+    return some;
+  }
+
+  // Effective masses. kTree: as parts of trees give way, else as free bodies do.
+  template <bool kTree>
+  void weigh() const {
+    for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList&) {
+      TreeSide<S> a{}, b = load_tree_side<S, kDense>(w_, s.offset_b, s.body_b, s.mask);
+      if constexpr (A::kMoves) a = load_tree_side<S, kDense>(w_, s.offset_a, s.body_a, s.mask);
+      const std::uint32_t lanes = a.lanes | b.lanes;
+      if (lanes == 0) return;
+      if constexpr (!kTree) a.lanes = b.lanes = 0;
+      put_masses(t_, s, a, b, lanes);
+    });
+  }
+
+  // `set` of factors.
+  template <Pass kPass>
+  void solve(int set) const {
+    t_.has_friction ? solve_all<kPass, true>(set) : solve_all<kPass, false>(set);
+  }
+
+ private:
+  template <Pass kPass, bool kFriction>
+  void solve_all(int set) const {
+    const TreeResponse<S, kDense> response(t_, w_, set);
+    response.open();
+    for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      if (meets_tree(s)) {
+        TreeVelocities<S, A, kDense> v(response, w_, s);
+        solve_rows<kDense, kFriction, kPass>(t_, w_, s, v);
+        v.store(s);
+      } else {
+        solve_block<kDense, kFriction, kPass>(t_, w_, s);
+      }
+      if constexpr (kPass == Pass::relax) {
+        if (t_.has_restitution) accumulate_bounce(s, bounce_at<S, N>(list, i), kFriction);
+      }
+    });
+  }
+  // visit(body, lanes) for the bodies that move at both ends of a block, or of all blocks.
+  template <int N, class A, class Visit>
+  MW_INLINE void for_each_end_of(const SidedBlock<S, N, A>& s, Visit visit) const {
+    for_each_body<S, kDense>(w_, s.offset_b, s.body_b, s.mask, visit);
+    if constexpr (A::kMoves) for_each_body<S, kDense>(w_, s.offset_a, s.body_a, s.mask, visit);
+  }
+  template <class Visit>
+  MW_INLINE void for_each_end(Visit visit) const {
+    for_each_block<S>(w_, [&]<int N, class A>(const SidedBlock<S, N, A>& s, int, BlockList&) {
+      for_each_end_of(s, visit);
+    });
+  }
+  template <int N, class A>
+  MW_INLINE bool meets_tree(const SidedBlock<S, N, A>& s) const {
+    std::uint32_t lanes = 0;
+    for_each_end_of(s, [&](int body, std::uint32_t in) { lanes |= w_.direct.held[body] & in; });
+    return lanes != 0;
+  }
+
+  const Constants& t_;
+  Work& w_;
+};
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
