@@ -211,7 +211,9 @@ class Bound {
       const auto ends = [&](Float x, std::uint32_t at) {
         return bits(most + select(mask_from_bits(at), zero - slack_f, slack_f) < x);
       };
-      out.above = ends(free, dof_.above), out.below = ends(zero - free, dof_.below);
+      // Never from one bound to the other at once: the answer may be in between.
+      out.above = ends(free, dof_.above) & ~dof_.below;
+      out.below = ends(zero - free, dof_.below) & ~dof_.above;
     }
     return out;
   }
