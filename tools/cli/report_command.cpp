@@ -148,7 +148,8 @@ void print_worth(const std::vector<report::WorthRow>& rows) {
     if (r.scene != scene) fmt::print("\n{}: {}\n", r.scene, report::speed_text(r.plain));
     scene = r.scene;
     fmt::print("  {:<40} {:>6.2f}  {}\n", r.variant, r.worth,
-               r.same_bits      ? "equal bits"
+               !r.holds.empty() ? r.holds
+               : r.same_bits    ? "equal bits"
                : r.must_be_same ? "DIFFERENT BITS"
                                 : "");
   }

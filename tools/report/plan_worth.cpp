@@ -252,6 +252,14 @@ std::vector<WorthRow> run_worth(const WorthOptions& options,
       break;
     }
   }
+  if (options.scenes.empty() && out.size() == variants.size()) {
+    tell("trees of joints against sweeps", 1);
+    try {
+      const std::vector<WorthRow> methods = compare_joint_methods(options.quick);
+      out.insert(out.end(), methods.begin(), methods.end());
+    } catch (const tools::Interrupted&) {
+    }
+  }
   return out;
 }
 
@@ -264,6 +272,7 @@ nlohmann::ordered_json to_json(const std::vector<WorthRow>& rows) {
                    {"time_ratio", r.worth},
                    {"same_bits", r.same_bits},
                    {"must_be_same", r.must_be_same}});
+    if (!r.holds.empty()) out.back()["holds"] = r.holds;
   }
   return out;
 }
@@ -281,10 +290,11 @@ std::string worth_page(const std::vector<WorthRow>& rows, const std::string& mac
     if (i == 0 || rows[i - 1].scene != r.scene) {
       if (!lines.empty()) body += table(lines);
       body += "<h2>" + escaped(r.scene) + "</h2><p>" + speed_text(r.plain) + " as by default.</p>";
-      lines = {{"variant", "ratio", "bits"}};
+      lines = {{"variant", "ratio", r.holds.empty() ? "bits" : "at most in 10 s"}};
     }
     lines.push_back({r.variant, fmt::format("{:.2f}", r.worth),
-                     r.same_bits      ? "equal"
+                     !r.holds.empty() ? r.holds
+                     : r.same_bits    ? "equal"
                      : r.must_be_same ? "DIFFERENT"
                                       : "its own"});
   }

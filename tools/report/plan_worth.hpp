@@ -20,6 +20,7 @@ struct WorthRow {
   double worth = 0;        // median of (time of the variant / time as by default)
   bool same_bits = false;  // of positions and velocities
   bool must_be_same = true;
+  std::string holds = {};  // what it does, where that is what counts
 };
 
 struct WorthOptions {
@@ -30,6 +31,9 @@ struct WorthOptions {
 // `tell` is called before each row with what comes next and the share that is done.
 std::vector<WorthRow> run_worth(const WorthOptions& options,
                                 const std::function<void(const std::string&, double)>& tell);
+
+// Trees of joints against sweeps (joint_methods.cpp), by the time of sweeps in 4 substeps.
+std::vector<WorthRow> compare_joint_methods(bool quick);
 
 nlohmann::ordered_json to_json(const std::vector<WorthRow>& rows);
 std::string worth_page(const std::vector<WorthRow>& rows, const std::string& machine);

@@ -149,8 +149,8 @@ double Seen::fastest(int world) const {
 
 std::vector<Trial> stability_trials() {
   std::vector<Trial> out = contact_trials();
-  for (const auto& more : {joint_trials(), motion_trials(), structure_trials(), law_trials(),
-                           size_trials(), impact_trials()}) {
+  for (const auto& more : {joint_trials(), tree_trials(), motion_trials(), structure_trials(),
+                           law_trials(), size_trials(), impact_trials()}) {
     out.insert(out.end(), more.begin(), more.end());
   }
   return out;

@@ -86,6 +86,7 @@ struct Verdict {
 std::vector<Trial> stability_trials();
 std::vector<Trial> contact_trials();    // B2 to B14, B33 to B44
 std::vector<Trial> joint_trials();      // B15 to B24
+std::vector<Trial> tree_trials();       // J1 to J7
 std::vector<Trial> motion_trials();     // B26 to B32
 std::vector<Trial> structure_trials();  // B7, B19, B24, B37
 std::vector<Trial> law_trials();        // B42, B45, B46

@@ -2,8 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/report/reference.hpp"
-#include "tools/report/stability.hpp"
+#include "tools/report/swung_chain.hpp"
 
 namespace manyworlds::report {
 namespace {
@@ -30,21 +29,6 @@ Scene chain(int links, double half, double radius, const Body& load, double load
   scene.add(end);
   pin(links - 1, links, 2 * half * links);
   return scene;
-}
-
-// How far the anchors of a joint are apart, at most.
-double worst_gap(const Seen& s, int w) {
-  const Scene& scene = s.batch().plan().scene();
-  double most = 0;
-  for (const Joint& j : scene.joints) {
-    const auto anchor = [&](BodyId body, const Frame& frame) {
-      if (!body) return frame.position;
-      const int row = s.batch().row(body);
-      return Vec3(s.position(w, row) + s.rotation(w, row) * frame.position);
-    };
-    most = std::max(most, (anchor(j.body_a, j.frame_a) - anchor(j.body_b, j.frame_b)).norm());
-  }
-  return most;
 }
 
 Trial ball_and_chain() {
