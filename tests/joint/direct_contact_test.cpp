@@ -265,7 +265,6 @@ TEST_CASE("fingers on a hand on an arm hold what they grip", "[joint][fast]") {
   for (const double mass : {0.5, 2.0}) {
     Scene scene = tree_scene(Space::spatial);
     scene.options.substeps.reset();  // small bodies ask for more
-    const Spring stiff{0, 0, 4, 1};
     const auto link = [&](double kg, const Vec3& half, const Vec3& place) {
       Body body = block(Space::spatial, kg, half, place);
       body.shapes[0].filter = {2, 4};
