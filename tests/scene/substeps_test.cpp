@@ -97,6 +97,9 @@ TEST_CASE("ratios of mass and loads of joints ask for substeps", "[fast][plan]")
     CHECK(substeps_of(chain) == 4);
     Shape& last = chain.bodies[9].shapes[0];
     last.density = 1000 * chain.options.density, last.filter.mask = 0;
+    CHECK(substeps_of(chain) == 4);  // solved at once
+    CHECK(compile(chain).resolved().joint.method == JointMethod::tree);
+    chain.options.joint.method = JointMethod::sweep;
     CHECK(substeps_of(chain) > 8);
     CHECK(says(why(chain), "joint 0 carries 1.01e+03 times its lighter body"));
     // A load that hangs on two ways is not known of either.
