@@ -174,14 +174,21 @@ void carve_joint_trees(const Constants& t, DirectWork& w, Carver& c) {
   };
   const int rotary = planar ? 1 : 6, twist = planar ? kPlanarTwistRows : kTwistRows;
   take(w.rotary, rotary), take(w.stiffened, rotary), take(w.stiffness, 2);
-  take(w.inertia, 2 * (planar ? kPlanarInertiaRows : kArticulatedRows));
+  const int articulated = planar ? kPlanarInertiaRows : kArticulatedRows;
+  const EdgeSizes bytes = planar ? edge_sizes(Planar{}) : edge_sizes(Tensor{});
+  const auto edges = static_cast<std::size_t>(t.joint_trees.edges);
+  const auto take_factors = [&](TreeFactorRows& to) {
+    c.take(to.edges, edges * bytes.factors), take(to.inertia, articulated);
+  };
+  take_factors(w.of_solves);
   take(w.own_load, twist), take(w.load, twist), take(w.twist, twist);
-  const std::size_t bytes = planar ? edge_bytes(Planar{}) : edge_bytes(Tensor{});
-  c.take(w.edges, static_cast<std::size_t>(t.joint_trees.edges) * bytes);
+  c.take(w.edges, edges * bytes.rows);
   c.take(w.held, static_cast<std::size_t>(t.bodies));
-  take(w.compliance, planar ? kPlanarInertiaRows : kArticulatedRows);
-  take(w.pending, twist), take(w.least, 1);
-  c.take(w.path, static_cast<std::size_t>(t.joint_trees.edges));
+  if (!t.has_contacts) return;
+  take_factors(w.of_contacts);
+  take(w.compliance, articulated), take(w.pending, twist), take(w.inv_tree_mass, 1);
+  c.take(w.pending_edges, edges * bytes.pending);
+  c.take(w.path, edges);
   c.take(w.touched, static_cast<std::size_t>(t.bodies) + 1);
 }
 

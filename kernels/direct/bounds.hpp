@@ -16,18 +16,25 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Times the pivot. A limit outdoes a motor that drives into it.
-inline constexpr Real kBounded = Real(1e30);  // N s or N m s: more is no bound
+inline constexpr Real kHardMotor = Real(1e3), kHardLimit = Real(1e6);
+inline constexpr Real kUnbounded = Real(1e30);  // N s or N m s, of drives
 // What rounding leaves of speeds does not change active sets.
 inline constexpr Real kActiveSlack = sizeof(Real) == 4 ? Real(1e-5) : Real(1e-12);
-inline constexpr Real kHardMotor = Real(1e3), kHardLimit = Real(1e6);
 
 template <class S, bool kLinear>
 class Bound {
  public:
   // closes: limits are closed, too. `first`: the substep has no impulses yet.
   MW_INLINE Bound(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
-                  Row<S, kLinear>& s, EdgeDof<S>& dof, bool reversed, bool closes, bool first)
-      : part_(part), c_(constants), s_(s), dof_(dof), closes_(closes), first_(first) {
+                  Row<S, kLinear>& s, EdgeDof<S>& dof, const DofFactors<S>& factors, bool reversed,
+                  bool closes, bool first)
+      : part_(part),
+        c_(constants),
+        s_(s),
+        dof_(dof),
+        factors_(factors),
+        closes_(closes),
+        first_(first) {
     sign_ = reversed ? Real(-1) : Real(1);
     began_ = Float::load(dof.began) * sign_;
     const Float value = Float::load(s.value);
@@ -48,9 +55,9 @@ class Bound {
   // The active set to begin a step with: what acted at the end of the last one.
   MW_INLINE void guess() const {
     const Float zero(Real(0));
-    dof_.above = dof_.below = 0;
-    dof_.low = bits(zero < Float::load(s_.impulse[1]));
-    dof_.high = bits(zero < Float::load(s_.impulse[2]));
+    dof_.active.above = dof_.active.below = 0;
+    dof_.active.low = bits(zero < Float::load(s_.impulse[1]));
+    dof_.active.high = bits(zero < Float::load(s_.impulse[2]));
   }
 
   // What it adds to the pivot; in lanes that are not `firm` only what has no bound.
@@ -58,24 +65,25 @@ class Bound {
     const Float zero(Real(0));
     Float sum = zero;
     if (part_.drive) {
-      Mask yields = mask_from_bits(dof_.above | dof_.below);
+      Mask yields = mask_from_bits(dof_.active.above | dof_.active.below);
       if (firm != kAllLanes) {
-        yields = yields | ((Float(c_.max_impulse) < Float(kBounded)) & mask_from_bits(~firm));
+        yields = yields | ((Float(c_.max_impulse) < Float(kUnbounded)) & mask_from_bits(~firm));
       }
       sum = select(yields, zero, drive_stiffness(pivot));
     }
     const Float of_limit = limit_stiffness(pivot);
-    if (part_.low) sum = sum + select(mask_from_bits(dof_.low & firm), of_limit, zero);
-    if (part_.high) sum = sum + select(mask_from_bits(dof_.high & firm), of_limit, zero);
+    if (part_.low) sum = sum + select(mask_from_bits(dof_.active.low & firm), of_limit, zero);
+    if (part_.high) sum = sum + select(mask_from_bits(dof_.active.high & firm), of_limit, zero);
     return sum;
   }
 
   // And to the load.
   MW_INLINE Float push() const {
-    const Float zero(Real(0)), pivot = Float::load(dof_.factors[kOfSolves].pivot);
+    const Float zero(Real(0)), pivot = Float::load(factors_.pivot);
     Float sum = zero;
     if (part_.drive) {
-      const Mask above = mask_from_bits(dof_.above), below = mask_from_bits(dof_.below);
+      const Mask above = mask_from_bits(dof_.active.above),
+                 below = mask_from_bits(dof_.active.below);
       const Float k = drive_stiffness(pivot), most = c_.max_impulse, so_far = before(0);
       Float p = k * (wanted_ - began_) - (part_.springy ? so_far : zero);
       p = select(above, most - so_far, select(below, zero - most - so_far, p));
@@ -86,28 +94,16 @@ class Bound {
       const Float p = k * (least - speed) - (part_.soft_limit ? before(which) : zero);
       return select(mask_from_bits(active), p, zero - before(which));
     };
-    if (part_.low) sum = fma(limit(dof_.low, low_, began_, 1), sign_, sum);
-    if (part_.high) sum = fnma(limit(dof_.high, high_, zero - began_, 2), sign_, sum);
+    if (part_.low) sum = fma(limit(dof_.active.low, low_, began_, 1), sign_, sum);
+    if (part_.high) sum = fnma(limit(dof_.active.high, high_, zero - began_, 2), sign_, sum);
     return sum;
   }
 
-  // Whether the pivot was found with this active set.
-  MW_INLINE bool is_factored() const {
-    return dof_.factored[0] == dof_.low && dof_.factored[1] == dof_.high &&
-           dof_.factored[2] == dof_.above && dof_.factored[3] == dof_.below;
-  }
-  MW_INLINE void mark_before() const {
-    dof_.before[0] = dof_.low, dof_.before[1] = dof_.high;
-    dof_.before[2] = dof_.above, dof_.before[3] = dof_.below;
-  }
-  // Lanes in which a limit has let go since, or a drive has given way.
+  // Lanes in which a limit has let go since the solve began, or a drive has given way.
   MW_INLINE std::uint32_t gave_way() const {
-    return (dof_.before[0] & ~dof_.low) | (dof_.before[1] & ~dof_.high) |
-           (dof_.above & ~dof_.before[2]) | (dof_.below & ~dof_.before[3]);
-  }
-  MW_INLINE void mark_factored() const {
-    dof_.factored[0] = dof_.low, dof_.factored[1] = dof_.high;
-    dof_.factored[2] = dof_.above, dof_.factored[3] = dof_.below;
+    const ActiveSet &before = dof_.before, &now = dof_.active;
+    return (before.low & ~now.low) | (before.high & ~now.high) | (now.above & ~before.above) |
+           (now.below & ~before.below);
   }
 
   // Of `lanes` those in which what came of it does not agree with the active set.
@@ -116,8 +112,8 @@ class Bound {
   };
   MW_INLINE Wrong wrong(std::uint32_t lanes) const {
     const ActiveSet now = found();
-    return {lanes & ((now.low ^ dof_.low) | (now.high ^ dof_.high)),
-            lanes & ((now.above ^ dof_.above) | (now.below ^ dof_.below))};
+    return {lanes & ((now.low ^ dof_.active.low) | (now.high ^ dof_.active.high)),
+            lanes & ((now.above ^ dof_.active.above) | (now.below ^ dof_.active.below))};
   }
   // Corrects it in some lanes.
   MW_INLINE void correct(const Wrong& lanes) const {
@@ -125,8 +121,8 @@ class Bound {
     const auto put = [](std::uint32_t& to, std::uint32_t from, std::uint32_t in) {
       to = (to & ~in) | (from & in);
     };
-    put(dof_.low, now.low, lanes.limit), put(dof_.high, now.high, lanes.limit);
-    put(dof_.above, now.above, lanes.drive), put(dof_.below, now.below, lanes.drive);
+    put(dof_.active.low, now.low, lanes.limit), put(dof_.active.high, now.high, lanes.limit);
+    put(dof_.active.above, now.above, lanes.drive), put(dof_.active.below, now.below, lanes.drive);
   }
 
   // Keeps the impulses of the substep, in some lanes.
@@ -165,7 +161,7 @@ class Bound {
   }
   // Of the substep, if nothing bounded it.
   MW_INLINE Float unbounded_drive(Float change) const {
-    const Float k = drive_stiffness(Float::load(dof_.factors[kOfSolves].pivot)), zero(Real(0));
+    const Float k = drive_stiffness(Float::load(factors_.pivot)), zero(Real(0));
     return k * ((wanted_ - began_) - change) + (part_.springy ? zero : before(0));
   }
   // Of the substep, by the active set. What limits do is what the pivot lacks: by their own
@@ -175,45 +171,44 @@ class Bound {
     Impulses out{before(0), zero, zero};
     if (part_.drive) {
       const Float most = c_.max_impulse;
-      out.drive = select(mask_from_bits(dof_.above), most,
-                         select(mask_from_bits(dof_.below), zero - most, unbounded_drive(change)));
+      out.drive =
+          select(mask_from_bits(dof_.active.above), most,
+                 select(mask_from_bits(dof_.active.below), zero - most, unbounded_drive(change)));
     }
     if (!part_.low && !part_.high) return out;
-    const Float all = fms(Float::load(dof_.factors[kOfSolves].pivot), Float::load(dof_.change),
-                          Float::load(dof_.load));
+    const Float all =
+        fms(Float::load(factors_.pivot), Float::load(dof_.change), Float::load(dof_.load));
     const Float low = fms(all, sign_, out.drive - before(0)) + (before(1) - before(2));
-    out.low = select(mask_from_bits(dof_.low), low, zero);
-    out.high = select(mask_from_bits(dof_.high), zero - low, zero);
+    out.low = select(mask_from_bits(dof_.active.low), low, zero);
+    out.high = select(mask_from_bits(dof_.active.high), zero - low, zero);
     return out;
   }
-  struct ActiveSet {
-    std::uint32_t low, high, above, below;
-  };
+  // The active set that agrees with what came of it.
   MW_INLINE ActiveSet found() const {
     const Impulses p = impulses();
     const Float zero(Real(0)), change = change_of_speed(), v = began_ + change;
     const Float slack = (abs(began_) + abs(change)) * Float(kActiveSlack);
-    const Float slack_p = slack * Float::load(dof_.factors[kOfSolves].pivot);
+    const Float slack_p = slack * Float::load(factors_.pivot);
     ActiveSet out{0, 0, 0, 0};
     if (part_.low) {
-      const Mask acts = mask_from_bits(dof_.low);
+      const Mask acts = mask_from_bits(dof_.active.low);
       out.low = bits((acts & (zero - slack_p < p.low)) | ((v < low_ - slack) & !acts));
     }
     if (part_.high) {
-      const Mask acts = mask_from_bits(dof_.high);
+      const Mask acts = mask_from_bits(dof_.active.high);
       out.high = bits((acts & (zero - slack_p < p.high)) | ((zero - v < high_ - slack) & !acts));
     }
     if (part_.drive) {
       const Float free = unbounded_drive(change), most = c_.max_impulse;
       const Float speeds = abs(began_) + abs(change) + abs(wanted_);
-      const Float slack_f = speeds * (drive_stiffness(Float::load(dof_.factors[kOfSolves].pivot)) *
-                                      Float(Real(0.1) * kActiveSlack));
+      const Float slack_f =
+          speeds * (drive_stiffness(Float::load(factors_.pivot)) * Float(Real(0.1) * kActiveSlack));
       const auto ends = [&](Float x, std::uint32_t at) {
         return bits(most + select(mask_from_bits(at), zero - slack_f, slack_f) < x);
       };
       // Never from one bound to the other at once: the answer may be in between.
-      out.above = ends(free, dof_.above) & ~dof_.below;
-      out.below = ends(zero - free, dof_.below) & ~dof_.above;
+      out.above = ends(free, dof_.active.above) & ~dof_.active.below;
+      out.below = ends(zero - free, dof_.active.below) & ~dof_.active.above;
     }
     return out;
   }
@@ -222,58 +217,71 @@ class Bound {
   const Joint& c_;
   Row<S, kLinear>& s_;
   EdgeDof<S>& dof_;
+  const DofFactors<S>& factors_;  // of the solves
   bool closes_, first_;
   Float sign_ = Real(1), inv_h_ = Real(0), began_ = Real(0);
   Float wanted_ = Real(0);                // speed of a drive
   Float low_ = Real(0), high_ = Real(0);  // bounds of limits
 };
 
+// Whether some edge has a drive or limits.
+inline bool has_bounds(const Constants& t) {
+  for (int i = 0; i < t.joint_trees.edges; ++i) {
+    const TreeEdge& edge = t.joint_trees.edge[i];
+    if (edge.slide >= 0 || edge.angle >= 0) return true;
+  }
+  return false;
+}
+
 // The bounds of all edges, for one solve (Bound).
 template <class S>
 class EdgeBounds {
  public:
   MW_INLINE EdgeBounds(const Constants& t, const Group& g, const Work& w, bool closes, bool first)
-      : t_(t), g_(g), w_(w), closes_(closes), first_(first) {}
+      : t_(t),
+        g_(g),
+        w_(w),
+        factors_(factors_in<S>(w.direct.of_solves)),
+        closes_(closes),
+        first_(first) {}
 
-  // Whether there are any.
-  bool some() const {
-    for (int i = 0; i < t_.joint_trees.edges; ++i) {
-      const TreeEdge& edge = t_.joint_trees.edge[i];
-      if (edge.slide >= 0 || edge.angle >= 0) return true;
-    }
-    return false;
-  }
-  // look(bound) at a part of an edge, -1: none.
+  // look(bound) at what drives and limits an edge along x, or about z.
   template <class Look>
-  MW_INLINE void visit(const TreeEdge& edge, int part, EdgeDof<S>& dof, Look look) const {
-    if (part < 0) return;
-    const JointPart& what = t_.part[part];
-    const Joint& c = constants_of_part(g_, part);
-    if (what.kind == PartKind::slide) {
-      look(Bound<S, true>(t_, g_, what, c, part_rows<S, Row<S, true>>(w_, part), dof, edge.reversed,
-                          closes_, first_));
-    } else {
-      look(Bound<S, false>(t_, g_, what, c, part_rows<S, Row<S, false>>(w_, part), dof,
-                           edge.reversed, closes_, first_));
-    }
+  MW_INLINE void visit_slide(int i, Look look) const {
+    const TreeEdge& edge = t_.joint_trees.edge[i];
+    visit<true>(edge, edge.slide, edge_rows<S>(w_, i).slide, factors_.edge[i].slide, look);
   }
-  // look(bound, rows of its edge) at all of them.
+  template <class Look>
+  MW_INLINE void visit_turn(int i, Look look) const {
+    const TreeEdge& edge = t_.joint_trees.edge[i];
+    visit<false>(edge, edge.angle, edge_rows<S>(w_, i).turn, factors_.edge[i].turn, look);
+  }
+  // look(bound, dof, rows of its edge) at all of them.
   template <bool kBackwards = false, class Look>
   MW_INLINE void for_each(Look look) const {
     const int edges = t_.joint_trees.edges;
     for (int k = 0; k < edges; ++k) {
       const int i = kBackwards ? edges - 1 - k : k;
-      const TreeEdge& edge = t_.joint_trees.edge[i];
       EdgeRows<S>& s = edge_rows<S>(w_, i);
-      visit(edge, edge.slide, s.slide, [&](const auto& bound) { look(bound, s); });
-      visit(edge, edge.angle, s.turn, [&](const auto& bound) { look(bound, s); });
+      visit_slide(i, [&](const auto& bound) { look(bound, s.slide, s); });
+      visit_turn(i, [&](const auto& bound) { look(bound, s.turn, s); });
     }
   }
 
  private:
+  template <bool kLinear, class Look>
+  MW_INLINE void visit(const TreeEdge& edge, int part, EdgeDof<S>& dof,
+                       const DofFactors<S>& factors, Look look) const {
+    if (part < 0) return;
+    look(Bound<S, kLinear>(t_, g_, t_.part[part], constants_of_part(g_, part),
+                           part_rows<S, Row<S, kLinear>>(w_, part), dof, factors, edge.reversed,
+                           closes_, first_));
+  }
+
   const Constants& t_;
   const Group& g_;
   const Work& w_;
+  const TreeFactors<S> factors_;
   const bool closes_, first_;
 };
 

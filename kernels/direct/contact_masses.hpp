@@ -7,7 +7,30 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Effective masses of a block in some lanes, by how its sides give way.
+// 1/kg, of the trees of bodies.
+inline void find_tree_masses(const Constants& t, const Group& g, const Work& w) {
+  const Float one(Real(1));
+  const auto row = [&](int b) { return w.direct.inv_tree_mass + b * kLanes; };
+  for_each_tree_body(t,
+                     [&](int b) { (one / Float(constants_of_body(g, b).inv_mass)).store(row(b)); });
+  for (int i = t.joint_trees.edges - 1; i >= 0; --i) {
+    const TreeEdge& edge = t.joint_trees.edge[i];
+    if (!edge.prescribed) add_to(row(edge.parent), 0, Float::load(row(edge.child)));
+  }
+  const auto invert = [&](int b) { (one / Float::load(row(b))).store(row(b)); };
+  for (int i = 0; i < t.joint_trees.roots; ++i) invert(t.joint_trees.root[i]);
+  for (int i = 0; i < t.joint_trees.edges; ++i) {
+    const TreeEdge& edge = t.joint_trees.edge[i];
+    if (edge.prescribed) {
+      invert(edge.child);
+    } else {
+      Float::load(row(edge.parent)).store(row(edge.child));
+    }
+  }
+}
+
+// Effective masses of a block in some lanes, by how its sides give way. A joint may hold a body
+// wholly along a normal, and rounding leave anything: no contact is heavier than its trees.
 template <class S, int N, class A>
 void put_masses(const Constants& t, SidedBlock<S, N, A>& s, const TreeSide<S>& of_a,
                 const TreeSide<S>& of_b, std::uint32_t lanes) {
@@ -28,12 +51,12 @@ void put_masses(const Constants& t, SidedBlock<S, N, A>& s, const TreeSide<S>& o
     return k;
   };
 
-  const auto least_of = [](const auto& rows, const TreeSide<S>& side) {
+  const auto inv_mass_of = [](const auto& rows, const TreeSide<S>& side) {
     const Float alone = Float::load(rows.inv_mass);
-    return side.lanes == 0 ? alone : select(mask_from_bits(side.lanes), side.least, alone);
+    return side.lanes == 0 ? alone : select(mask_from_bits(side.lanes), side.inv_tree_mass, alone);
   };
-  Float least = least_of(s.b, of_b);
-  if constexpr (A::kMoves) least = least + least_of(s.a, of_a);
+  Float least = inv_mass_of(s.b, of_b);
+  if constexpr (A::kMoves) least = least + inv_mass_of(s.a, of_a);
 
   const Vec n = load_as<Vec>(s.normal[0]);
   const auto normal = [&](const ContactSide<S, N, Free>& side, int i) {

@@ -42,16 +42,15 @@ class TreeContacts {
     });
   }
 
-  // `set` of factors.
   template <Pass kPass>
-  void solve(int set) const {
-    t_.has_friction ? solve_all<kPass, true>(set) : solve_all<kPass, false>(set);
+  void solve(const TreeFactors<S>& factors) const {
+    t_.has_friction ? solve_all<kPass, true>(factors) : solve_all<kPass, false>(factors);
   }
 
  private:
   template <Pass kPass, bool kFriction>
-  void solve_all(int set) const {
-    const TreeResponse<S, kDense> response(t_, w_, set);
+  void solve_all(const TreeFactors<S>& factors) const {
+    const TreeResponse<S, kDense> response(t_, w_, factors);
     response.open();
     for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       if (meets_tree(s)) {

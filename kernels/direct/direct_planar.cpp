@@ -8,6 +8,8 @@ void fill_direct_planar(kernels::DirectSolver<Real>& dense, kernels::DirectSolve
   dense = DirectPasses<Planar, true>::table();
   rows = DirectPasses<Planar, false>::table();
 }
-std::size_t edge_bytes(Planar) { return sizeof(EdgeRows<Planar>); }
+EdgeSizes edge_sizes(Planar) {
+  return {sizeof(EdgeRows<Planar>), sizeof(EdgeFactors<Planar>), sizeof(PendingRows<Planar>)};
+}
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -8,6 +8,8 @@ void fill_direct_tensor(kernels::DirectSolver<Real>& dense, kernels::DirectSolve
   dense = DirectPasses<Tensor, true>::table();
   rows = DirectPasses<Tensor, false>::table();
 }
-std::size_t edge_bytes(Tensor) { return sizeof(EdgeRows<Tensor>); }
+EdgeSizes edge_sizes(Tensor) {
+  return {sizeof(EdgeRows<Tensor>), sizeof(EdgeFactors<Tensor>), sizeof(PendingRows<Tensor>)};
+}
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

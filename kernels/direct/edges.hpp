@@ -8,34 +8,20 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 using kernels::TreeEdge;
 
-// Factors are kept twice: of the solves, and of what contacts do to the tree (solve.hpp).
-inline constexpr int kFactorSets = 2, kOfSolves = 0, kOfContacts = 1;
-
-template <class S>
-struct alignas(64) DofFactors {
-  Real response[kTwistRowsOf<S>][kLanes];  // wrench that a unit rate asks for
-  Real pivot[kLanes];                      // axis . response
-  Real inverse[kLanes];                    // 1 / (pivot + what drives and limits add)
+// Lanes in which a limit acts, and in which a drive is at its largest impulse, of a coordinate.
+struct ActiveSet {
+  std::uint32_t low, high, above, below;
+  bool operator==(const ActiveSet&) const = default;
 };
+
 // A coordinate along which a joint gives way: q of the child against the parent.
 template <class S>
 struct alignas(64) EdgeDof {
-  DofFactors<S> factors[kFactorSets];
   // Along the axis, but for what drives and limits push by: first with the parent at rest.
   Real load[kLanes], push[kLanes];
   Real began[kLanes], change[kLanes];  // rate before the solve, and what it changes by
-  Real pending[kLanes];                // of contacts (response.hpp)
-  std::uint32_t low, high;             // lanes in which a limit acts
-  std::uint32_t above, below;          // lanes in which a drive is at its largest impulse
-  std::uint32_t factored[4];           // the same when the factors of the solves were found
-  std::uint32_t before[4];             // and when the solve began
-};
-
-// Of a ball joint, whose rotation is eliminated at once: inverse of the moments of inertia, and
-// what couples them with the linear velocity.
-template <class S>
-struct alignas(64) BallFactors {
-  Real compliance[S::kInertia][kLanes], mixed[3][3][kLanes];
+  ActiveSet active, before;            // of the solve, and when it began
+  ActiveSet factored;                  // that the factors of the solves were found with
 };
 
 template <class S>
@@ -46,20 +32,46 @@ struct alignas(64) EdgeRows {
              [kLanes];  // twist of the child against the parent there that closes the joint
   Real change[kTwistRowsOf<S>][kLanes];  // what its twist is to change by, but for the coordinates
   EdgeDof<S> slide, turn;
-  BallFactors<S> ball[kFactorSets];
-  Real moment[S::kAng][kLanes];   // on what rotates freely
-  Real pending[S::kAng][kLanes];  // of contacts
-  std::uint32_t lanes;            // in which the joint holds
+  Real moment[S::kAng][kLanes];  // on what rotates freely
+  std::uint32_t lanes;           // in which the joint holds
 };
+
+template <class S>
+struct alignas(64) DofFactors {
+  Real response[kTwistRowsOf<S>][kLanes];  // wrench that a unit rate asks for
+  Real pivot[kLanes];                      // axis . response
+  Real inverse[kLanes];                    // 1 / (pivot + what drives and limits add)
+};
+// Of a ball joint, whose rotation is eliminated at once: inverse of the moments of inertia, and
+// what couples them with the linear velocity.
+template <class S>
+struct alignas(64) BallFactors {
+  Real compliance[S::kInertia][kLanes], mixed[3][3][kLanes];
+};
+
+template <>
+struct BallFactors<Planar> {};  // a hinge there
+
+// How the edges of trees give way, and what hangs on them: of the solves, or of what contacts do to
+// trees, which plans with contacts alone have (solve.hpp).
+template <class S>
+struct EdgeFactors {
+  DofFactors<S> slide, turn;
+  BallFactors<S> ball;
+};
+template <class S>
+struct TreeFactors {
+  EdgeFactors<S>* edge;
+  Real* inertia;  // [body][articulated inertia][lane]
+};
+template <class S>
+MW_INLINE TreeFactors<S> factors_in(const TreeFactorRows& rows) {
+  return {reinterpret_cast<EdgeFactors<S>*>(rows.edges), rows.inertia};
+}
 
 template <class S>
 MW_INLINE EdgeRows<S>& edge_rows(const Work& w, int edge) {
   return reinterpret_cast<EdgeRows<S>*>(w.direct.edges)[edge];
-}
-// Articulated inertias of a set of factors [body][row][lane].
-template <class S>
-MW_INLINE Real* inertias(const Constants& t, const Work& w, int set) {
-  return w.direct.inertia + set * t.bodies * kArticulatedRowsOf<S> * kLanes;
 }
 template <class S, class Rows>
 MW_INLINE Rows& part_rows(const Work& w, int part) {

@@ -15,19 +15,14 @@ struct DirectPasses {
     Work& w = work_of(scratch);
     w.direct.located = 0;
     for (int b = 0; b < t.bodies; ++b) w.direct.held[b] = 0;
-    for (int i = 0; i < t.joint_trees.bodies; ++i) {
-      const int b = t.joint_trees.body[i];
-      put_moments(t, g, w, b);
-    }
+    for_each_tree_body(t, [&](int b) { put_moments(t, g, w, b); });
     for (int i = 0; i < t.joint_trees.edges; ++i) {
       const TreeEdge& edge = t.joint_trees.edge[i];
       const std::uint32_t lanes = part_rows<S, PartBodies<S>>(w, edge.hold).mask;
       w.direct.held[edge.child] |= lanes;
       if (!edge.prescribed) w.direct.held[edge.parent] |= lanes;
     }
-    w.direct.factors.place = -1;
-    w.direct.is_stiff = false, w.direct.firm = kAllLanes;
-    put_least(t, g, w);
+    w.direct.factored.place = -1, w.direct.is_stiff = false;
     biased(t, g, w, false).guess_active_sets();
   }
 
@@ -61,16 +56,18 @@ struct DirectPasses {
   static void contacts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     const TreeContacts<S, kDense> contacts(t, w);
-    int set = kOfSolves;
+    TreeFactors<S> factors = factors_in<S>(w.direct.of_solves);
     if (contacts.find_touched()) {
-      const auto solve = kPass == Pass::bias ? biased(t, g, w, false) : relaxed(t, g, w);
-      set = solve.factor_for_contacts();
-      if (kPass == Pass::relax || w.substep == 0 || EdgeBounds<S>(t, g, w, false, false).some()) {
-        TreeCompliances<S>(t, w, set).find();
+      const bool first = kPass == Pass::bias && w.substep == 0;
+      if (first) find_tree_masses(t, g, w);
+      factors =
+          (kPass == Pass::bias ? biased(t, g, w, false) : relaxed(t, g, w)).factor_for_contacts();
+      if (kPass == Pass::relax || first || has_bounds(t)) {
+        TreeCompliances<S>(t, w, factors).find();
         contacts.template weigh<true>();
       }
     }
-    contacts.template solve<kPass>(set);
+    contacts.template solve<kPass>(factors);
   }
   static void weigh_alone(const Constants& t, const Group&, kernels::Scratch* scratch) {
     TreeContacts<S, kDense>(t, work_of(scratch)).template weigh<false>();
@@ -93,27 +90,6 @@ struct DirectPasses {
   }
   static TreeSolve<S, kDense> relaxed(const Constants& t, const Group& g, Work& w) {
     return {t, g, w, w.substep + 1, false, false, false};
-  }
-  // The least that a contact moves a tree by: as much as all of it is heavy. A joint may hold a
-  // body wholly along a normal, and rounding leave anything.
-  static void put_least(const Constants& t, const Group& g, Work& w) {
-    const Float one(Real(1));
-    const auto row = [&](int b) { return w.direct.least + b * kLanes; };
-    for_each_tree_body(
-        t, [&](int b) { (one / Float(constants_of_body(g, b).inv_mass)).store(row(b)); });
-    for (int i = t.joint_trees.edges - 1; i >= 0; --i) {
-      const TreeEdge& edge = t.joint_trees.edge[i];
-      if (!edge.prescribed) add_to(row(edge.parent), 0, Float::load(row(edge.child)));
-    }
-    for (int i = 0; i < t.joint_trees.roots; ++i) {
-      Real* of = row(t.joint_trees.root[i]);
-      (one / Float::load(of)).store(of);
-    }
-    for (int i = 0; i < t.joint_trees.edges; ++i) {
-      const TreeEdge& edge = t.joint_trees.edge[i];
-      Real* of = row(edge.child);
-      (edge.prescribed ? one / Float::load(of) : Float::load(row(edge.parent))).store(of);
-    }
   }
   static MW_INLINE void put_moments(const Constants& t, const Group& g, Work& w, int b) {
     const auto& constants = constants_of_body(g, b);

@@ -15,13 +15,20 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+// What contacts have left at an edge in their pass: along its coordinates, and on what rotates
+// freely.
+template <class S>
+struct alignas(64) PendingRows {
+  Real slide[kLanes], turn[kLanes], moment[S::kAng][kLanes];
+};
+
 template <class S, bool kDense>
 class TreeResponse {
  public:
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  // By a set of factors.
-  TreeResponse(const Constants& t, Work& w, int set) : t_(t), w_(w), d_(w.direct), set_(set) {}
+  TreeResponse(const Constants& t, Work& w, const TreeFactors<S>& factors)
+      : t_(t), w_(w), d_(w.direct), factors_(factors) {}
 
   // Nothing has acted yet on the velocities that there are.
   void open() const {
@@ -31,9 +38,8 @@ class TreeResponse {
     for_each_tree_body(
         t_, [&](int b) { store(row(d_.own_load, b), none), store(row(d_.pending, b), none); });
     for (int i = 0; i < t_.joint_trees.edges; ++i) {
-      EdgeRows<S>& s = edge_rows<S>(w_, i);
-      zero.store(s.slide.pending), zero.store(s.turn.pending);
-      store(s.pending[0], zero_of<Ang>());
+      PendingRows<S>& left = pending(i);
+      zero.store(left.slide), zero.store(left.turn), store(left.moment[0], zero_of<Ang>());
     }
   }
 
@@ -43,17 +49,22 @@ class TreeResponse {
     add_in_lanes<kTwistRowsOf<S>>(row(d_.own_load, body), p, lanes);
     for (int i = edge_of(body); i >= 0; i = edge_of(body)) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
-      EdgeRows<S>& s = edge_rows<S>(w_, i);
+      const EdgeRows<S>& s = edge_rows<S>(w_, i);
       if (const std::uint32_t cut = lanes & ~s.lanes; cut != 0) {
         add_in_lanes<kTwistRowsOf<S>>(row(d_.pending, body), p, cut);
         lanes &= s.lanes;
       }
       if (lanes == 0) return;
       p = moved(p, load_as<Vec>(s.arm_child[0]));
-      if (edge.slides) p = leave(s.slide, axis_of_slide(s), p, lanes);
-      if (hinges(edge)) p = leave(s.turn, axis_of_turn(s), p, lanes);
+      const EdgeFactors<S>& f = factors_.edge[i];
+      PendingRows<S>& left = pending(i);
+      if (edge.slides) p = leave(f.slide, axis_of_slide(s), p, left.slide, lanes);
+      if (hinges(edge)) p = leave(f.turn, axis_of_turn(s), p, left.turn, lanes);
       if constexpr (S::kDim == 3) {
-        if (edge.ball) p = leave_rotation(s, p, lanes);
+        if (edge.ball) {
+          add_in_lanes<3>(left.moment[0], p.n, lanes);
+          p = without_turn(f.ball, p);
+        }
       }
       if (edge.prescribed) return;
       p = moved(p, -load_as<Vec>(s.arm_parent[0]));
@@ -95,41 +106,39 @@ class TreeResponse {
   MW_INLINE TwistOf<S> down(int i, TwistOf<S> v) const {
     const TreeEdge& edge = t_.joint_trees.edge[i];
     const EdgeRows<S>& s = edge_rows<S>(w_, i);
+    const EdgeFactors<S>& f = factors_.edge[i];
+    const PendingRows<S>& left = pending(i);
     v = moved(v, load_as<Vec>(s.arm_parent[0]));
-    if (hinges(edge)) v = give_way(s.turn, axis_of_turn(s), v);
+    if (hinges(edge)) v = give_way(f.turn, axis_of_turn(s), left.turn, v);
     if constexpr (S::kDim == 3) {
-      if (edge.ball) v.w = turn_of(s.ball[set_], load_vec3(s.pending[0]), v.v);
+      if (edge.ball) v.w = turn_of(f.ball, load_vec3(left.moment[0]), v.v);
     }
-    if (edge.slides) v = give_way(s.slide, axis_of_slide(s), v);
+    if (edge.slides) v = give_way(f.slide, axis_of_slide(s), left.slide, v);
     v = moved(v, -load_as<Vec>(s.arm_child[0]));
     if (s.lanes == kAllLanes) return v;
     return select(mask_from_bits(s.lanes), v, alone(edge.child));
   }
-  MW_INLINE TwistOf<S> give_way(const EdgeDof<S>& dof, const TwistOf<S>& axis,
-                                const TwistOf<S>& v) const {
-    const DofFactors<S>& f = dof.factors[set_];
-    const Float load = Float::load(dof.pending) - dot(v, load_as<WrenchOf<S>>(f.response[0]));
+  static MW_INLINE TwistOf<S> give_way(const DofFactors<S>& f, const TwistOf<S>& axis,
+                                       const Real* left, const TwistOf<S>& v) {
+    const Float load = Float::load(left) - dot(v, load_as<WrenchOf<S>>(f.response[0]));
     return fma(axis, load * Float::load(f.inverse), v);
   }
 
   // What is left at a joint, and what goes on.
-  MW_INLINE WrenchOf<S> leave(EdgeDof<S>& dof, const TwistOf<S>& axis, const WrenchOf<S>& p,
-                              std::uint32_t lanes) const {
+  static MW_INLINE WrenchOf<S> leave(const DofFactors<S>& f, const TwistOf<S>& axis,
+                                     const WrenchOf<S>& p, Real* left, std::uint32_t lanes) {
     const Float load = dot(axis, p);
-    add_in_lanes<1>(dof.pending, load, lanes);
-    const DofFactors<S>& f = dof.factors[set_];
+    add_in_lanes<1>(left, load, lanes);
     return fnma(load_as<WrenchOf<S>>(f.response[0]), load * Float::load(f.inverse), p);
   }
-  MW_INLINE Wrench leave_rotation(EdgeRows<S>& s, const Wrench& p, std::uint32_t lanes) const
-      requires(S::kDim == 3) {
-    add_in_lanes<3>(s.pending[0], p.n, lanes);
-    return without_turn(s.ball[set_], p);
+  MW_INLINE PendingRows<S>& pending(int edge) const {
+    return reinterpret_cast<PendingRows<S>*>(d_.pending_edges)[edge];
   }
 
   const Constants& t_;
   Work& w_;
   DirectWork& d_;
-  const int set_;
+  const TreeFactors<S> factors_;
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -33,6 +33,7 @@ class TreeSolve {
         stiffened_(stiffened),
         first_(first),
         closes_(closes),
+        factors_(factors_in<S>(d_.of_solves)),
         bounds_(t, g, w, closes, first) {}
 
   // Until the active sets stay as they are. The angular momenta that there are are those of the
@@ -54,22 +55,23 @@ class TreeSolve {
     if (d_.pushed != 0) solve_in(d_.pushed);
   }
 
-  // Factors for what contacts do to trees; returns their set. Limits that act and drives hold
-  // against contacts as rigidly as they do in the last solve. Where one of them has given way to
-  // the contacts of this substep they keep their impulses instead, which takes back what contacts
-  // pushed against in vain: else that feeds energy.
-  int factor_for_contacts() const {
+  // Factors for what contacts do to trees. Limits that act and drives hold against contacts as
+  // rigidly as they do in the last solve. Where one of them has given way to the contacts of this
+  // substep they keep their impulses instead, which takes back what contacts pushed against in
+  // vain: else that feeds energy.
+  TreeFactors<S> factor_for_contacts() const {
     if (d_.firm == kAllLanes) {
       factor_for_solves();
-      return kOfSolves;
+      return factors_;
     }
-    eliminate_all<kOfContacts>();
-    return kOfContacts;
+    const TreeFactors<S> own = factors_in<S>(d_.of_contacts);
+    eliminate_all(own, d_.firm);
+    return own;
   }
 
   // Active sets to begin a step with.
   void guess_active_sets() const {
-    bounds_.for_each([](const auto& bound, const EdgeRows<S>&) { bound.guess(); });
+    bounds_.for_each([](const auto& bound, auto&, auto&) { bound.guess(); });
   }
 
  private:
@@ -78,7 +80,7 @@ class TreeSolve {
   // Velocities and impulses of some lanes.
   void solve_in(std::uint32_t lanes) const {
     PivotRule rule;
-    bounds_.for_each([](const auto& bound, const EdgeRows<S>&) { bound.mark_before(); });
+    bounds_.for_each([](const auto&, auto& dof, auto&) { dof.before = dof.active; });
     bool changed = false;
     for (int i = 0; i < kMostSolves; ++i) {
       factor_for_solves();
@@ -89,54 +91,63 @@ class TreeSolve {
       changed = true;
     }
     if (changed && !first_) {
-      bounds_.for_each(
-          [&](const auto& bound, const EdgeRows<S>&) { d_.firm &= ~bound.gave_way(); });
+      bounds_.for_each([&](const auto& bound, auto&, auto&) { d_.firm &= ~bound.gave_way(); });
     }
     commit(lanes);
   }
 
   // Unless there are some of this place and of these active sets.
   void factor_for_solves() const {
-    bool same = d_.factors.place == place_ && d_.factors.stiffened == stiffened_;
+    bool same = d_.factored.place == place_ && d_.factored.stiffened == stiffened_;
     bounds_.for_each(
-        [&](const auto& bound, const EdgeRows<S>&) { same = same && bound.is_factored(); });
-    if (!same) eliminate_all<kOfSolves>();
+        [&](const auto&, auto& dof, auto&) { same = same && dof.factored == dof.active; });
+    if (same) return;
+    eliminate_all(factors_, kAllLanes);
+    d_.factored = {place_, stiffened_};
+    bounds_.for_each([](const auto&, auto& dof, auto&) { dof.factored = dof.active; });
   }
 
-  // From the leaves to the roots.
-  template <int kSet>
-  void eliminate_all() const {
-    if constexpr (kSet == kOfSolves) d_.factors = {place_, stiffened_};
-    Real* const inertias_of_set = inertias<S>(t_, w_, kSet);
+  // From the leaves to the roots. `firm`: see Bound::stiffness.
+  void eliminate_all(const TreeFactors<S>& to, std::uint32_t firm) const {
     for_each_tree_body(t_, [&](int b) {
-      store(row(inertias_of_set, b, kArticulatedRowsOf<S>),
-            rigid_body(mass_of(b), moments(rotary_, b)));
+      store(row(to.inertia, b, kArticulatedRowsOf<S>), rigid_body(mass_of(b), moments(rotary_, b)));
     });
     for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
-      EdgeRows<S>& s = edge_rows<S>(w_, i);
+      const EdgeRows<S>& s = edge_rows<S>(w_, i);
+      EdgeFactors<S>& f = to.edge[i];
       ArticulatedOf<S> inertia =
-          moved_back(load_as<ArticulatedOf<S>>(row(d_.inertia, edge.child, kArticulatedRowsOf<S>)),
+          moved_back(load_as<ArticulatedOf<S>>(row(to.inertia, edge.child, kArticulatedRowsOf<S>)),
                      -load_as<Vec>(s.arm_child[0]));
+      const auto give_way = [&](const TwistOf<S>& axis, DofFactors<S>& dof, auto visit) {
+        const WrenchOf<S> response = mul(inertia, axis);
+        const Float pivot = dot(axis, response);
+        Float stiffness(Real(0));
+        visit([&](const auto& bound) { stiffness = bound.stiffness(pivot, firm); });
+        const Float inverse = inverse_or_zero(pivot + stiffness);
+        store(dof.response[0], response);
+        pivot.store(dof.pivot), inverse.store(dof.inverse);
+        inertia = without(inertia, response, inverse);
+      };
       if (edge.slides) {
-        eliminate<kSet>(edge, edge.slide, s.slide, axis_of_slide(s), inertia);
+        give_way(axis_of_slide(s), f.slide, [&](auto look) { bounds_.visit_slide(i, look); });
       }
       if (hinges(edge)) {
-        eliminate<kSet>(edge, edge.angle, s.turn, axis_of_turn(s), inertia);
+        give_way(axis_of_turn(s), f.turn, [&](auto look) { bounds_.visit_turn(i, look); });
       }
       if constexpr (S::kDim == 3) {
-        if (edge.ball) eliminate_rotation(s.ball[kSet], inertia);
+        if (edge.ball) eliminate_rotation(f.ball, inertia);
       }
       if (edge.prescribed) continue;
       const auto arm = load_as<Vec>(s.arm_parent[0]);
-      Real* to = row(inertias_of_set, edge.parent, kArticulatedRowsOf<S>);
+      Real* parent = row(to.inertia, edge.parent, kArticulatedRowsOf<S>);
       if constexpr (S::kDim == 3) {
         if (edge.ball) {  // what is left is of forces alone
-          add_in_lanes<kArticulatedRowsOf<S>>(to, spring_at(arm, inertia.linear), s.lanes);
+          add_in_lanes<kArticulatedRowsOf<S>>(parent, spring_at(arm, inertia.linear), s.lanes);
           continue;
         }
       }
-      add_in_lanes<kArticulatedRowsOf<S>>(to, moved_back(inertia, arm), s.lanes);
+      add_in_lanes<kArticulatedRowsOf<S>>(parent, moved_back(inertia, arm), s.lanes);
     }
   }
   void reduce_loads() const {
@@ -151,13 +162,31 @@ class TreeSolve {
       const TwistOf<S> change = find_change(edge, s);
       store(s.change[0], change);
       const auto inertia =
-          load_as<ArticulatedOf<S>>(row(d_.inertia, edge.child, kArticulatedRowsOf<S>));
+          load_as<ArticulatedOf<S>>(row(factors_.inertia, edge.child, kArticulatedRowsOf<S>));
       const auto own = load_as<WrenchOf<S>>(row(d_.load, edge.child, kTwistRowsOf<S>));
       WrenchOf<S> load = moved(own - mul(inertia, moved(change, -arm)), arm);
-      if (edge.slides) load = reduce(edge, edge.slide, s.slide, axis_of_slide(s), load);
-      if (hinges(edge)) load = reduce(edge, edge.angle, s.turn, axis_of_turn(s), load);
+      const EdgeFactors<S>& f = factors_.edge[i];
+      const auto reduce = [&](const TwistOf<S>& axis, const DofFactors<S>& factors, EdgeDof<S>& dof,
+                              auto visit) {
+        const Float along = dot(axis, load);
+        Float push(Real(0));
+        visit([&](const auto& bound) { push = bound.push(); });
+        along.store(dof.load), push.store(dof.push);
+        const Float rate = (along + push) * Float::load(factors.inverse);
+        load = fnma(load_as<WrenchOf<S>>(factors.response[0]), rate, load);
+      };
+      if (edge.slides) {
+        reduce(axis_of_slide(s), f.slide, s.slide,
+               [&](auto look) { bounds_.visit_slide(i, look); });
+      }
+      if (hinges(edge)) {
+        reduce(axis_of_turn(s), f.turn, s.turn, [&](auto look) { bounds_.visit_turn(i, look); });
+      }
       if constexpr (S::kDim == 3) {
-        if (edge.ball) load = reduce_rotation(s, load);
+        if (edge.ball) {
+          store(s.moment[0], load.n);
+          load = without_turn(f.ball, load);
+        }
       }
       if (edge.prescribed) continue;
       add_in_lanes<kTwistRowsOf<S>>(row(d_.load, edge.parent, kTwistRowsOf<S>),
@@ -175,13 +204,12 @@ class TreeSolve {
         v = moved(load_as<TwistOf<S>>(row(d_.twist, edge.parent, kTwistRowsOf<S>)),
                   load_as<Vec>(s.arm_parent[0]));
       }
-      if (hinges(edge)) v = expand(s.turn, axis_of_turn(s), v);
+      const EdgeFactors<S>& f = factors_.edge[i];
+      if (hinges(edge)) v = expand(f.turn, s.turn, axis_of_turn(s), v);
       if constexpr (S::kDim == 3) {
-        if (edge.ball) {
-          v.w = turn_of(s.ball[kOfSolves], load_vec3(s.moment[0]), v.v);
-        }
+        if (edge.ball) v.w = turn_of(f.ball, load_vec3(s.moment[0]), v.v);
       }
-      if (edge.slides) v = expand(s.slide, axis_of_slide(s), v);
+      if (edge.slides) v = expand(f.slide, s.slide, axis_of_slide(s), v);
       v = moved(v + load_as<TwistOf<S>>(s.change[0]), -load_as<Vec>(s.arm_child[0]));
       Real* to = row(d_.twist, edge.child, kTwistRowsOf<S>);
       if (s.lanes == kAllLanes) {
@@ -226,32 +254,6 @@ class TreeSolve {
     return change;
   }
 
-  template <int kSet>
-  MW_INLINE void eliminate(const TreeEdge& edge, int part, EdgeDof<S>& dof, const TwistOf<S>& axis,
-                           ArticulatedOf<S>& inertia) const {
-    const WrenchOf<S> f = mul(inertia, axis);
-    const Float pivot = dot(axis, f);
-    Float stiffness(Real(0));
-    bounds_.visit(edge, part, dof, [&](const auto& bound) {
-      stiffness = bound.stiffness(pivot, kSet == kOfContacts ? d_.firm : kAllLanes);
-      if constexpr (kSet == kOfSolves) bound.mark_factored();
-    });
-    const Float inverse = inverse_or_zero(pivot + stiffness);
-    DofFactors<S>& to = dof.factors[kSet];
-    store(to.response[0], f);
-    pivot.store(to.pivot), inverse.store(to.inverse);
-    inertia = without(inertia, f, inverse);
-  }
-  MW_INLINE WrenchOf<S> reduce(const TreeEdge& edge, int part, EdgeDof<S>& dof,
-                               const TwistOf<S>& axis, const WrenchOf<S>& load) const {
-    const DofFactors<S>& f = dof.factors[kOfSolves];
-    const Float own = dot(axis, load);
-    Float push(Real(0));
-    bounds_.visit(edge, part, dof, [&](const auto& bound) { push = bound.push(); });
-    own.store(dof.load), push.store(dof.push);
-    const Float change = (own + push) * Float::load(f.inverse);
-    return fnma(load_as<WrenchOf<S>>(f.response[0]), change, load);
-  }
   static MW_INLINE void eliminate_rotation(BallFactors<S>& to,
                                            ArticulatedOf<S>& inertia) requires(S::kDim == 3) {
     const Sym3 compliance = inverse(inertia.rotary);
@@ -263,13 +265,8 @@ class TreeSolve {
     inertia.linear = {a.xx - dot(m.x, by.x), a.xy - dot(m.x, by.y), a.xz - dot(m.x, by.z),
                       a.yy - dot(m.y, by.y), a.yz - dot(m.y, by.z), a.zz - dot(m.z, by.z)};
   }
-  static MW_INLINE WrenchOf<S> reduce_rotation(EdgeRows<S>& s,
-                                               const WrenchOf<S>& load) requires(S::kDim == 3) {
-    store(s.moment[0], load.n);
-    return without_turn(s.ball[kOfSolves], load);
-  }
-  static MW_INLINE TwistOf<S> expand(EdgeDof<S>& dof, const TwistOf<S>& axis, const TwistOf<S>& v) {
-    const DofFactors<S>& f = dof.factors[kOfSolves];
+  static MW_INLINE TwistOf<S> expand(const DofFactors<S>& f, EdgeDof<S>& dof,
+                                     const TwistOf<S>& axis, const TwistOf<S>& v) {
     const Float load = Float::load(dof.load) - dot(v, load_as<WrenchOf<S>>(f.response[0]));
     const Float change = (load + Float::load(dof.push)) * Float::load(f.inverse);
     load.store(dof.load), change.store(dof.change);
@@ -279,16 +276,17 @@ class TreeSolve {
   // Corrects them; returns whether some were wrong.
   bool correct_active_sets(std::uint32_t lanes, PivotRule& rule) const {
     std::uint32_t some = 0;
-    bounds_.for_each([&](const auto& bound, const EdgeRows<S>& s) {
+    bounds_.for_each([&](const auto& bound, auto&, const EdgeRows<S>& s) {
       const auto wrong = bound.wrong(lanes & s.lanes);
       some |= wrong.limit | wrong.drive;
       rule.count(wrong.limit), rule.count(wrong.drive);
     });
     if (some == 0) return false;
-    std::uint32_t all = rule.choose(some), last = some & ~all;
+    const std::uint32_t all = rule.choose(some);
+    std::uint32_t last = some & ~all;
     // Visited backwards: the first that is wrong is the last one.
-    bounds_.template for_each<true>([&](const auto& bound, const EdgeRows<S>& s) {
-      auto wrong = bound.wrong(lanes & s.lanes);
+    bounds_.template for_each<true>([&](const auto& bound, auto&, const EdgeRows<S>& s) {
+      const auto wrong = bound.wrong(lanes & s.lanes);
       const std::uint32_t limit = wrong.limit & last;
       last &= ~limit;
       const std::uint32_t drive = wrong.drive & last;
@@ -314,7 +312,7 @@ class TreeSolve {
         put_velocity<S, kDense>(w_, w_.velocity, b, select(mask_from_bits(held), now, old));
       }
     });
-    bounds_.for_each([&](const auto& bound, const EdgeRows<S>&) { bound.keep(lanes); });
+    bounds_.for_each([&](const auto& bound, auto&, auto&) { bound.keep(lanes); });
     for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       const EdgeRows<S>& s = edge_rows<S>(w_, i);
@@ -357,7 +355,7 @@ class TreeSolve {
   // Of a root, or of what hangs on nothing in some lanes.
   MW_INLINE void solve_alone(int body) const {
     store(row(d_.twist, body, kTwistRowsOf<S>),
-          solve(load_as<ArticulatedOf<S>>(row(d_.inertia, body, kArticulatedRowsOf<S>)),
+          solve(load_as<ArticulatedOf<S>>(row(factors_.inertia, body, kArticulatedRowsOf<S>)),
                 load_as<WrenchOf<S>>(row(d_.load, body, kTwistRowsOf<S>))));
   }
   MW_INLINE Float mass_of(int body) const {
@@ -375,6 +373,7 @@ class TreeSolve {
   const Real* rotary_;  // moments of inertia [body][rotary][lane], with what resists as they do
   const int place_;
   const bool stiffened_, first_, closes_;
+  const TreeFactors<S> factors_;  // of the solves
   const EdgeBounds<S> bounds_;
 };
 

@@ -1,5 +1,5 @@
 // Compliances of the bodies of trees that contacts touch, from the root on, by a set of the
-// factors that the edges hold.
+// factors of the edges.
 #pragma once
 
 #include "kernels/direct/compliance.hpp"
@@ -11,7 +11,8 @@ template <class S>
 class TreeCompliances {
  public:
   using Vec = typename S::Vec;
-  TreeCompliances(const Constants& t, Work& w, int set) : t_(t), w_(w), d_(w.direct), set_(set) {}
+  TreeCompliances(const Constants& t, Work& w, const TreeFactors<S>& factors)
+      : t_(t), w_(w), d_(w.direct), factors_(factors) {}
 
   void find() const {
     for (int i = 0; i < t_.joint_trees.roots; ++i) {
@@ -22,7 +23,7 @@ class TreeCompliances {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       if (!d_.touched[edge.child]) continue;
       const EdgeRows<S>& s = edge_rows<S>(w_, i);
-      ComplianceOf<S> c = beyond_edge(edge, s);
+      ComplianceOf<S> c = beyond_edge(edge, s, factors_.edge[i]);
       // The child is a root in the others.
       if (s.lanes != kAllLanes) c = select(mask_from_bits(s.lanes), c, alone(edge.child));
       store(row(edge.child), c);
@@ -31,25 +32,22 @@ class TreeCompliances {
 
  private:
   MW_INLINE ComplianceOf<S> alone(int body) const {
-    return compliance_of(load_as<ArticulatedOf<S>>(inertias<S>(t_, w_, set_) +
-                                                   body * kArticulatedRowsOf<S> * kLanes));
+    return compliance_of(
+        load_as<ArticulatedOf<S>>(factors_.inertia + body * kArticulatedRowsOf<S> * kLanes));
   }
-  MW_INLINE ComplianceOf<S> beyond_edge(const TreeEdge& edge, const EdgeRows<S>& s) const {
+  MW_INLINE ComplianceOf<S> beyond_edge(const TreeEdge& edge, const EdgeRows<S>& s,
+                                        const EdgeFactors<S>& f) const {
     alignas(64) Real none[kComplianceRowsOf<S> * kLanes] = {};
     auto c = moved(load_as<ComplianceOf<S>>(edge.prescribed ? none : row(edge.parent)),
                    load_as<Vec>(s.arm_parent[0]));
-    const auto pass = [&](const EdgeDof<S>& dof, const TwistOf<S>& axis) {
-      const DofFactors<S>& f = dof.factors[set_];
-      c = beyond(c, axis, load_as<WrenchOf<S>>(f.response[0]), Float::load(f.inverse));
+    const auto pass = [&](const DofFactors<S>& dof, const TwistOf<S>& axis) {
+      c = beyond(c, axis, load_as<WrenchOf<S>>(dof.response[0]), Float::load(dof.inverse));
     };
-    if (hinges(edge)) pass(s.turn, axis_of_turn(s));
+    if (hinges(edge)) pass(f.turn, axis_of_turn(s));
     if constexpr (S::kDim == 3) {
-      if (edge.ball) {
-        const BallFactors<S>& f = s.ball[set_];
-        c = beyond_ball(c, load_as<Sym3>(f.compliance[0]), mixed_of(f));
-      }
+      if (edge.ball) c = beyond_ball(c, load_as<Sym3>(f.ball.compliance[0]), mixed_of(f.ball));
     }
-    if (edge.slides) pass(s.slide, axis_of_slide(s));
+    if (edge.slides) pass(f.slide, axis_of_slide(s));
     return moved(c, -load_as<Vec>(s.arm_child[0]));
   }
   MW_INLINE Real* row(int body) const {
@@ -59,7 +57,7 @@ class TreeCompliances {
   const Constants& t_;
   Work& w_;
   const DirectWork& d_;
-  const int set_;
+  const TreeFactors<S> factors_;
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

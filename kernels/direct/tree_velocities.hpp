@@ -12,7 +12,7 @@ template <class S>
 struct TreeSide {
   std::uint32_t lanes = 0;
   ComplianceOf<S> compliance;
-  Float least;  // 1/kg, of the whole tree
+  Float inv_tree_mass;
 };
 
 // Velocity of a side, and the wrench that impulses have been about its centre of mass.
@@ -96,10 +96,10 @@ MW_INLINE TreeSide<S> load_tree_side(const Work& w, const std::int32_t* offset, 
     if (lanes == 0) return;
     const Real* from = w.direct.compliance + of * kComplianceRowsOf<S> * kLanes;
     const auto c = load_as<ComplianceOf<S>>(from);
-    const Float least = Float::load(w.direct.least + of * kLanes);
+    const Float inv_mass = Float::load(w.direct.inv_tree_mass + of * kLanes);
     const Mask mask = mask_from_bits(lanes);
     out.compliance = out.lanes == 0 ? c : select(mask, c, out.compliance);
-    out.least = out.lanes == 0 ? least : select(mask, least, out.least);
+    out.inv_tree_mass = out.lanes == 0 ? inv_mass : select(mask, inv_mass, out.inv_tree_mass);
     out.lanes |= lanes;
   });
   return out;

@@ -22,8 +22,11 @@ FillJoints fill_joints_planar, fill_joints_tensor;
 using FillDirect = void(kernels::DirectSolver<Real>& dense, kernels::DirectSolver<Real>& rows);
 FillDirect fill_direct_planar, fill_direct_tensor;
 // Bytes of the rows of an edge.
-std::size_t edge_bytes(Planar);
-std::size_t edge_bytes(Tensor);
+struct EdgeSizes {
+  std::size_t rows, factors, pending;
+};
+EdgeSizes edge_sizes(Planar);
+EdgeSizes edge_sizes(Tensor);
 using FillFlight = void(kernels::FlightTable<Real>* tables);  // [inertia]
 FillFlight fill_flight_planar, fill_flight_spatial;
 // Bytes of the rows of a part.

@@ -163,7 +163,12 @@ struct TreeWork {
   Real* row_load;                   // [dof][lane], J' times the forces of rows
 };
 
-// What the factors of trees of joints were found with, active sets aside.
+// Factors of trees of joints (kernels/direct/edges.hpp), and what they were found with, active sets
+// aside.
+struct TreeFactorRows {
+  unsigned char* edges;  // [edge]
+  Real* inertia;         // [body][articulated inertia][lane]
+};
 struct FactorState {
   int place;       // the substep that begins where the bodies were; -1: none
   bool stiffened;  // with the geometric stiffness
@@ -175,23 +180,25 @@ struct DirectWork {
   Real* rotary;          // [body][moments of inertia][lane], world axes
   Real* stiffened;       // the same with the geometric stiffness
   Real* stiffness;       // [body][sum, sum times arm^2][lane], of it
-  Real* inertia;         // [set of factors][body][articulated inertia][lane]
   Real* own_load;        // [body][wrench][lane]
   Real* load;            // [body][wrench][lane], with what hangs on it; then what joints did
   Real* twist;           // [body][twist][lane], change of velocity
   unsigned char* edges;  // rows of edges
   std::uint32_t* held;   // [body] lanes in which a tree moves it
   int located;           // the substep that the rows are of
-  FactorState factors;   // that the edges hold for the solves
+  TreeFactorRows of_solves;
+  FactorState factored;  // of the solves
   bool is_stiff;         // whether some body has geometric stiffness in this substep
-  // Of contacts (kernels/direct/response.hpp).
-  std::uint32_t firm;    // lanes in which limits and drives hold against them
-  Real* least;           // [body][lane], 1/kg: of its tree
-  Real* compliance;      // [body][compliance][lane]
-  Real* pending;         // [body][wrench][lane], of roots: what the pass has done so far
-  std::int32_t* path;    // edges from a body to its root
-  bool* touched;         // [body] whether a contact is on it, or on what hangs on it
-  std::uint32_t pushed;  // lanes in which it has done anything
+  // Of plans with contacts (kernels/direct/contacts.hpp).
+  TreeFactorRows of_contacts;
+  std::uint32_t firm;            // lanes in which limits and drives hold against them
+  Real* inv_tree_mass;           // [body][lane], 1/kg
+  Real* compliance;              // [body][compliance][lane]
+  Real* pending;                 // [body][wrench][lane], of roots: what the pass has done so far
+  unsigned char* pending_edges;  // the same of edges (response.hpp)
+  std::int32_t* path;            // edges from a body to its root
+  bool* touched;                 // [body] whether a contact is on it, or on what hangs on it
+  std::uint32_t pushed;          // lanes in which the pass has done anything
 };
 
 // Of a step in which energies are audited (kernels/observe/audit.hpp): the energy before it, what a
