@@ -20,8 +20,8 @@ namespace {
 std::string joint_text(std::size_t j) { return "joint " + std::to_string(j); }
 
 // The parts of a joint are swept over one after the other: what the point does turns a body about
-// its centre, and what holds its rotation moves the point. With the square of the arm over that of
-// the body's radius of gyration across it, that converges ever more slowly. 1/m^2 times m^2.
+// its centre, and what holds its rotation moves the point. That
+// converges ever more slowly with m r^2 / I, I across the arm.
 double lever_of(const Scene& scene, BodyId id, const Frame& frame) {
   if (!id || scene.at(id).motion != Motion::dynamic) return 0;
   const MassProperties of = mass_properties(scene, scene.at(id));
@@ -53,27 +53,26 @@ std::string need_of_levers(const Scene& scene, const std::vector<bool>& in_tree)
   return {};
 }
 
-// Each contact of a tree's body walks to its root and back in every pass.
-bool deep_and_touching(const Scene& scene, const std::vector<bool>& in_tree) {
-  constexpr int kMost = 64;  // joints: as many contacts cost what the solve of the tree does
-  std::map<int, int> joints;
-  const std::vector<int> trees = trees_of_bodies(scene);
-  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
-    if (in_tree[j]) ++joints[trees[static_cast<std::size_t>(scene.joints[j].body_b.index())]];
-  }
-  for (std::size_t b = 0; b < trees.size(); ++b) {
-    if (trees[b] < 0 || joints[trees[b]] <= kMost) continue;
-    for (const Shape& shape : scene.bodies[b].shapes) {
-      if (shape.filter.mask != 0) return true;
+// Each contact of a tree's body takes a way to the root and back in every pass: contacts all along
+// a chain cost the square of its length.
+bool is_long_and_touches(const Scene& scene, const SceneTrees& trees) {
+  constexpr int kMost = 64;  // joints
+  const auto joined = joined_bodies(scene);
+  const auto bodies = static_cast<int>(scene.bodies.size());
+  const auto body = [&](int i) -> const Body& { return scene.at(BodyId(i)); };
+  for (int i = 0; i < bodies; ++i) {
+    if (trees.joints_with[static_cast<std::size_t>(i)] <= kMost) continue;
+    for (int j = 0; j < bodies; ++j) {
+      if (i == j || !filters_let_touch(body(i), body(j))) continue;
+      if (joined.count(std::minmax(i, j)) == 0) return true;
     }
   }
   return false;
 }
 
 // Loads that go down through light bodies.
-std::string need_of_masses(const Scene& scene) {
+std::string need_of_masses(const Scene& scene, const std::vector<int>& trees) {
   std::map<int, std::pair<double, double>> range;  // of a tree, kg
-  const std::vector<int> trees = trees_of_bodies(scene);
   for (std::size_t b = 0; b < trees.size(); ++b) {
     if (trees[b] < 0) continue;
     const double mass = mass_properties(scene, scene.bodies[b]).mass;
@@ -94,10 +93,11 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
   const Scene& first = extremes.front();
   const Options& o = first.options;
   if (o.solver.method != Solver::tgs_soft) return {};
-  const std::vector<bool> in_tree = joints_of_trees(first);
+  const SceneTrees trees = trees_of(first);
+  const std::vector<bool>& in_tree = trees.has_joint;
   const auto at_once = [](const std::string& why) { return "at once, since " + why; };
   if (std::find(in_tree.begin(), in_tree.end(), true) == in_tree.end()) return {};
-  if (deep_and_touching(first, in_tree)) return {};
+  if (is_long_and_touches(first, trees)) return {};
   if (o.joint.frequency) {  // what is asked for to be soft is swept over
     const double share = *o.joint.frequency * o.dt / o.substeps.value_or(kLeastSubsteps);
     if (share <= kContactShare) return {};
@@ -118,7 +118,8 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
     }
   }
   for (const Scene& scene : extremes) {
-    for (const std::string& why : {need_of_levers(scene, in_tree), need_of_masses(scene)}) {
+    for (const std::string& why :
+         {need_of_levers(scene, in_tree), need_of_masses(scene, trees.of_body)}) {
       if (!why.empty()) return at_once(why);
     }
   }

@@ -37,7 +37,7 @@ bool fits(const Joint& joint) {
 class JointTreeBuilder {
  public:
   explicit JointTreeBuilder(PlanData& plan)
-      : plan_(plan), joints_(plan.scene.joints.size()), in_tree_(joints_of_trees(plan.scene)) {
+      : plan_(plan), joints_(plan.scene.joints.size()), in_tree_(trees_of(plan.scene).has_joint) {
     const auto bodies = plan.bodies.size();
     at_.resize(bodies), component_.assign(bodies, -1), placed_.assign(bodies, false);
     for (std::size_t i = 0; i < plan.parts.size(); ++i) {
@@ -177,10 +177,12 @@ class JointTreeBuilder {
 
 // Bodies that hang together are a tree where there is a joint less than there are bodies, and at
 // most one more that holds to what is not dynamic.
-std::vector<bool> joints_of_trees(const Scene& scene) {
+SceneTrees trees_of(const Scene& scene) {
   struct Component {
     int bodies = 1, between = 0, anchors = 0;
     bool fits = true;
+    bool is_tree() const { return fits && anchors <= 1 && between == bodies - 1; }
+    int joints() const { return between + anchors; }
   };
   std::vector<std::size_t> parent(scene.bodies.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});
@@ -203,40 +205,18 @@ std::vector<bool> joints_of_trees(const Scene& scene) {
     (a && b ? component.between : component.anchors) += 1;
     component.fits &= fits(joint);
   }
-  std::vector<bool> out;
+  SceneTrees out;
   for (const Joint& joint : scene.joints) {
     const bool a = moves(joint.body_a), b = moves(joint.body_b);
-    const Component* component = a || b ? &of[root(a ? joint.body_a : joint.body_b)] : nullptr;
-    out.push_back(component && component->fits && component->anchors <= 1 &&
-                  component->between == component->bodies - 1);
+    out.has_joint.push_back((a || b) && of[root(a ? joint.body_a : joint.body_b)].is_tree());
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Component& component = of[find(i)];
+    const bool hangs = component.joints() > 0 && component.is_tree();
+    out.of_body.push_back(hangs ? static_cast<int>(find(i)) : -1);
+    out.joints_with.push_back(hangs ? component.joints() : 0);
   }
   return out;
-}
-
-std::vector<int> trees_of_bodies(const Scene& scene) {
-  const std::vector<bool> in = joints_of_trees(scene);
-  std::vector<int> tree(scene.bodies.size(), -1);
-  const auto moves = [&](BodyId body) { return body && scene.at(body).motion == Motion::dynamic; };
-  const auto root = [&](int i) {
-    while (tree[static_cast<std::size_t>(i)] != i) i = tree[static_cast<std::size_t>(i)];
-    return i;
-  };
-  for (std::size_t j = 0; j < in.size(); ++j) {
-    if (!in[j]) continue;
-    const BodyId ends[] = {scene.joints[j].body_a, scene.joints[j].body_b};
-    for (const BodyId body : ends) {
-      if (!moves(body)) continue;
-      int& of = tree[static_cast<std::size_t>(body.index())];
-      if (of < 0) of = body.index();
-    }
-    if (!moves(ends[0]) || !moves(ends[1])) continue;
-    const int a = root(ends[0].index()), b = root(ends[1].index());
-    tree[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-  for (std::size_t i = 0; i < tree.size(); ++i) {
-    if (tree[i] >= 0) tree[i] = root(static_cast<int>(i));
-  }
-  return tree;
 }
 
 void collect_joint_trees(PlanData& plan) {

@@ -95,7 +95,7 @@ Need need_of_ratios(const std::vector<Scene>& extremes) {
   const auto joined = joined_bodies(scene);
   const bool at_once = scene.options.joint.method == JointMethod::tree;
   const std::vector<int> trees =
-      at_once ? trees_of_bodies(scene) : std::vector<int>(scene.bodies.size(), -1);
+      at_once ? trees_of(scene).of_body : std::vector<int>(scene.bodies.size(), -1);
   const auto tree_of = [&](BodyId body) { return trees[static_cast<std::size_t>(body.index())]; };
   double ratio = kRatioOfFourSubsteps;
   std::string why;
@@ -171,7 +171,7 @@ SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_
   Need need{kLeastSubsteps, "the least; nothing asks for more"};
   std::vector<bool> swept(extremes.front().joints.size(), true);
   if (o.joint.method == JointMethod::tree) {
-    swept = joints_of_trees(extremes.front());
+    swept = trees_of(extremes.front()).has_joint;
     swept.flip();
   }
   bool weight = false;
