@@ -67,6 +67,15 @@ inline Body uniform_rod(Space space, double mass, double length, const Vec3& pos
   const double across = mass * length * length / 12;
   return lump(space, mass, {across * 1e-3, across, across}, position);
 }
+// A uniform box of half extents, of which the plane has the first two, that weighs `mass`, kg.
+inline Body solid_box(Space space, double mass, const Vec3& half, const Vec3& position,
+                      double friction = 0.5) {
+  Body body = body_of(shape_of(box_of(space, half), friction), position);
+  const Vec3 square = half.cwiseProduct(half);
+  const Vec3 moments = mass / 3 * (Vec3::Constant(square.sum()) - square);
+  body.mass_properties = MassProperties{mass, Vec3::Zero(), moments.asDiagonal()};
+  return body;
+}
 // Fixed, solid below height 0.
 inline Body ground(Space space, const Material& material = {}) {
   Body body = body_of(shape_of(ground_of(space), material), Vec3::Zero(), Motion::fixed);
@@ -75,6 +84,12 @@ inline Body ground(Space space, const Material& material = {}) {
 }
 inline Body ground(Space space, double friction, double restitution = 0) {
   return ground(space, Material{friction, restitution});
+}
+
+// Rotates z to y: a hinge about y, for spatial scenes that swing in the plane of x and z.
+inline Quat z_to_y() { return Quat(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX())); }
+inline Quat hinge_axes(Space space) {
+  return space == Space::planar ? Quat(Quat::Identity()) : z_to_y();
 }
 
 // A frame whose axes are the world's.

@@ -11,7 +11,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Control thrust(int body, const Vec3& point, const Vec3& direction) {

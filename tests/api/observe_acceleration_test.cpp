@@ -48,8 +48,6 @@ Body askew(Space space, const Vec3& place) {
   return body_of(shape, place);
 }
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
-
 }  // namespace
 
 TEST_CASE("in free fall the acceleration is gravity and an accelerometer tells 0",

@@ -10,8 +10,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
-
 BatchOptions observing(const Table& table, int worlds = 1) {
   BatchOptions options = options_of(table, worlds);
   options.observe.what = {Observer::joints, Observer::joint_loads};

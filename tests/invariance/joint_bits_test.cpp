@@ -12,8 +12,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
-
 std::vector<Plan> plans() {
   std::vector<Plan> out;
   for (const Space space : kSpaces) {

@@ -7,7 +7,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 constexpr double kGravity = 10;
 
 // A weight of 2 kg that hangs still, 1 m below where it is held, by a joint of this type.

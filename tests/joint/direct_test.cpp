@@ -5,33 +5,25 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes/loaded_trees.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
-
-Scene tree_scene(Space space) {
-  Scene scene = empty_scene(space, 10);
-  scene.options.joint.method = JointMethod::tree;
-  return scene;
-}
 // Links of 1 kg and `length`, from the origin along x or downwards, the last one `load` kg.
 Scene chain(Space space, int links, double length, double load, bool hangs, JointType type) {
   Scene scene = tree_scene(space);
-  const Vec3 way = hangs ? Vec3(-up_of(space)) : Vec3(Vec3::UnitX());
+  if (!hangs) {
+    scenes::add_rods(scene, links, length, load, type);
+    return scene;
+  }
   for (int i = 0; i < links; ++i) {
     const double mass = i + 1 == links ? load : 1;
-    const Vec3 place = (i + 0.5) * length * way;
-    Body body = uniform_rod(space, mass, length, place);
-    if (hangs) {
-      body = lump(space, mass, Vec3::Constant(mass * length * length / 12), place);
-    }
-    scene.add(body);
-    scene.add(
-        joint_at(scene, BodyId(i - 1), BodyId(i), at(i * length * way, hinge_axes(space)), type));
+    const Vec3 down = -length * up_of(space);
+    scene.add(lump(space, mass, Vec3::Constant(mass * length * length / 12), (i + 0.5) * down));
+    scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), at(i * down, hinge_axes(space)), type));
   }
   return scene;
 }

@@ -9,8 +9,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
-
 Scene still_scene(Space space) { return empty_scene(space, 0); }
 
 }  // namespace

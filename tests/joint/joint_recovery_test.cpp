@@ -11,8 +11,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
-
 // A circle or sphere of 0.2 m that collides with nothing.
 BodyId add_bead(Scene& scene, const Vec3& position) {
   Body bead = body_of(shape_of(round_of(scene.space, 0.2)), position);

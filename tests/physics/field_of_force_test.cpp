@@ -9,8 +9,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
-
 Scene floating(Space space, const Vec3& place, const Vec3& v) {
   Scene scene = empty_scene(space, 0);
   scene.add(lump(space, 2, {0.2, 0.2, 0.2}, place));

@@ -16,8 +16,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
-
 // Frictionless balls and boxes of many masses in a heap, and some of them flying at it.
 Scene heap(Space space) {
   Scene scene = empty_scene(space, 10);

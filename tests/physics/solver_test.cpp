@@ -16,7 +16,6 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 constexpr Solver kAll[] = {Solver::tgs_soft, Solver::sequential_impulse, Solver::sor, Solver::nncg,
                            Solver::penalty};
 constexpr Solver kHard[] = {Solver::sequential_impulse, Solver::sor, Solver::nncg};

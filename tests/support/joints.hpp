@@ -7,6 +7,12 @@
 
 namespace manyworlds::test {
 
+// Empty, with gravity of 10 m/s^2, for joints that are solved at once.
+inline Scene tree_scene(Space space) {
+  Scene scene = empty_scene(space, 10);
+  scene.options.joint.method = JointMethod::tree;
+  return scene;
+}
 // A ball of `mass`, kg, that touches nothing.
 inline BodyId add_ball(Scene& scene, const Vec3& position, double mass = 1) {
   return scene.add(lump(scene.space, mass, Vec3::Constant(0.1 * mass), position));
@@ -15,12 +21,6 @@ inline BodyId add_ball(Scene& scene, const Vec3& position, double mass = 1) {
 inline Frame at(const Vec3& position, const Quat& rotation = Quat::Identity()) {
   return {position, rotation};
 }
-// Rotates z to y: a hinge about y, for spatial scenes that swing in the plane of x and z.
-inline Quat z_to_y() { return Quat(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX())); }
-inline Quat hinge_axes(Space space) {
-  return space == Space::planar ? Quat(Quat::Identity()) : z_to_y();
-}
-
 // Frame of a body (none: the world) in the world, now.
 inline Frame frame_now(const Batch& batch, int world, BodyId body, const Frame& frame) {
   const Plan& plan = batch.plan(batch.kind_of(world));

@@ -17,6 +17,7 @@ using scenes::box_of;
 using scenes::cube_of;
 using scenes::ground;
 using scenes::ground_of;
+using scenes::hinge_axes;
 using scenes::in_row;
 using scenes::kPi;
 using scenes::lump;
@@ -25,6 +26,7 @@ using scenes::rotation;
 using scenes::round_of;
 using scenes::row_of;
 using scenes::shape_of;
+using scenes::solid_box;
 using scenes::space_of;
 using scenes::spin;
 using scenes::uniform_rod;
@@ -32,6 +34,9 @@ using scenes::up_of;
 using scenes::values;
 using scenes::vector_of;
 using scenes::velocity;
+using scenes::z_to_y;
+
+inline constexpr Space kSpaces[] = {Space::planar, Space::spatial};
 
 inline Scene empty_scene(Space space, double gravity = 10) {
   return scenes::empty_scene(space, gravity, "test");

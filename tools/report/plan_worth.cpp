@@ -31,13 +31,6 @@ struct Variant {
   bool must_be_same = true;
 };
 
-// Of this thread, so that others on the machine matter little.
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 std::vector<double> moving_parts(const Batch& batch) {
   std::vector<double> out;
   for (const Field f : {Field::position, Field::linear_velocity, Field::angular_velocity}) {
@@ -219,6 +212,12 @@ void add_substeps(bool quick, std::vector<Variant>& out) {
 }
 
 }  // namespace
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 std::vector<WorthRow> run_worth(const WorthOptions& options,
                                 const std::function<void(const std::string&, double)>& tell) {

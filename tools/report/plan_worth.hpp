@@ -32,6 +32,9 @@ struct WorthOptions {
 std::vector<WorthRow> run_worth(const WorthOptions& options,
                                 const std::function<void(const std::string&, double)>& tell);
 
+// Of this thread, so that others on the machine matter little.
+double processor_seconds();
+
 // Trees of joints against sweeps (joint_methods.cpp), by the time of sweeps in 4 substeps.
 std::vector<WorthRow> compare_joint_methods(bool quick);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -39,6 +40,8 @@ std::vector<Setting> settings(bool quick) {
   out.push_back({"two sweeps per substep, f32", Precision::f32, 1, 1,
                  [](Options& o) { o.solver.iterations = 2; }});
   out.push_back({"a quarter of the step, f32", Precision::f32, 4});
+  out.push_back({"joints swept over, f32", Precision::f32, 1, 1,
+                 [](Options& o) { o.joint.method = JointMethod::sweep; }});
   out.push_back(with_solver("sequential-impulse, 20 sweeps, f32", Solver::sequential_impulse));
   out.push_back(with_solver("split impulses, 20 sweeps, f32", Solver::sequential_impulse, true));
   out.push_back(with_solver("sor 1.3, 20 sweeps, f32", Solver::sor));
@@ -133,6 +136,24 @@ Quat Seen::rotation(int world, int body) const {
   const double* q = q_.data() + static_cast<std::size_t>(world * bodies_ + body) * n;
   if (n == 4) return Quat(q[0], q[1], q[2], q[3]);
   return Quat(Eigen::AngleAxisd(std::atan2(q[1], q[0]), Vec3::UnitZ()));
+}
+double Seen::worst_gap(int world) const {
+  const Scene& scene = batch_->plan().scene();
+  double most = 0;
+  for (const Joint& j : scene.joints) {
+    const bool slides =
+        std::holds_alternative<SliderJoint>(j.type) || std::holds_alternative<WheelJoint>(j.type);
+    if (slides) continue;
+    const auto anchor = [&](BodyId body, const Frame& frame) {
+      if (!body || scene.at(body).motion == Motion::fixed) {
+        return frame_in_world(scene, body, frame).position;
+      }
+      const int row = batch_->row(body);
+      return Vec3(position(world, row) + rotation(world, row) * frame.position);
+    };
+    most = std::max(most, (anchor(j.body_a, j.frame_a) - anchor(j.body_b, j.frame_b)).norm());
+  }
+  return most;
 }
 double Seen::energy(int world) const {
   const Energy e = batch_->energy(world);

@@ -28,6 +28,8 @@ class Seen {
   Vec3 spin(int world, int body) const { return vector(w_, world, body); }
   double fastest(int world) const;  // of the speeds of its bodies, m/s
   Quat rotation(int world, int body) const;
+  // How far the anchors of a joint are apart, at most, m; not of joints that slide.
+  double worst_gap(int world) const;
   Vec3 moved(int world, int body) const;  // since the start, m
   double energy(int world) const;         // J
   double start_energy(int world) const { return start_energy_[static_cast<std::size_t>(world)]; }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/report/stability.hpp"
 #include "tools/report/swung_chain.hpp"
 
 namespace manyworlds::report {
@@ -12,12 +13,14 @@ namespace {
 
 std::string text_of(double x) { return fmt::format("{:g}", x); }
 
+double gap_of(const Seen& s, int w) { return s.worst_gap(w); }
+
 // 1 kg at the end of 1 m, ever more compact: hinged, welded, driven.
 Scene arms() {
   Scene scene = empty(Space::spatial, 10);
   int place = 0;
   for (const double inertia : {1e-2, 1e-4, 1e-6}) {
-    const Frame root{{0, 2.0 * place, 0}, Quat(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX()))};
+    const Frame root{{0, 2.0 * place, 0}, scenes::z_to_y()};
     const Drive drive{0, 0, Spring{2000, 50, 0, 0}};
     const auto hang = [&](const Vec3& reach, JointType type) {
       Body body = lump(Space::spatial, 1, Vec3::Constant(inertia), root.position + reach);
@@ -35,7 +38,7 @@ Scene arms() {
 Trial arms_gap() {
   Trial t = trial("J1 gap", "1 kg of 1e-2 to 1e-6 kg m^2 on arms of 1 m: hinged, welded, driven",
                   "gap of a joint", "m", 1e-3, 5);
-  t.scene = arms, t.value = worst_gap;
+  t.scene = arms, t.value = gap_of;
   return t;
 }
 Trial arms_energy() {
@@ -50,7 +53,7 @@ Trial chain_gap(double load) {
                   "ten links under " + text_of(load) + " times a link, swung from the horizontal",
                   "gap of a joint, in links", "", 0.01, 10);
   t.scene = [load] { return swung_chain(load); };
-  t.value = [](const Seen& s, int w) { return worst_gap(s, w) / kLink; };
+  t.value = [](const Seen& s, int w) { return s.worst_gap(w) / kLink; };
   return t;
 }
 Trial chain_gain(double load) {
@@ -74,36 +77,15 @@ Trial chain_loss(double load) {
   return t;
 }
 
-Body block(double mass, const Vec3& half, const Vec3& place) {
-  Body body = with_shape(Box{half}, place, 0.6);
-  const Vec3 square = half.cwiseProduct(half);
-  weigh(body, mass, mass / 3 * (Vec3::Constant(square.sum()) - square));
-  return body;
-}
-
-// Four legs of three welded links of 0.1 kg each.
 Trial legs(double times) {
   Trial t = trial("J3 " + text_of(times),
                   "four welded legs under " + text_of(times) + " times their mass", "overlap", "m",
                   1e-3, 5);
   t.from = 2;
   t.scene = [times] {
-    Scene scene = empty(Space::spatial, 10);
-    scene.add(ground(Space::spatial, 0.6));
-    Body top = block(1.2 * times, {0.3, 0.3, 0.05}, {0, 0, 0.36});
-    top.jitter.position = {0, 0, 0.01};
-    const BodyId plate = scene.add(top);
-    for (int leg = 0; leg < 4; ++leg) {
-      BodyId last = plate;
-      for (int i = 0; i < 3; ++i) {
-        const Vec3 upper((leg & 1) != 0 ? 0.2 : -0.2, (leg & 2) != 0 ? 0.2 : -0.2, 0.31 - 0.1 * i);
-        Body link = block(0.1, {0.02, 0.02, 0.05}, upper - Vec3(0, 0, 0.05));
-        link.jitter.with = plate;
-        const BodyId id = scene.add(link);
-        scene.add(joint_at(scene, last, id, {upper, Quat::Identity()}, FixedJoint{}));
-        last = id;
-      }
-    }
+    Scene scene = scenes::welded_table(Space::spatial, 1.2 * times);
+    scene.bodies[1].jitter.position = {0, 0, 0.01};
+    for (std::size_t i = 2; i < scene.bodies.size(); ++i) scene.bodies[i].jitter.with = BodyId(1);
     return scene;
   };
   t.value = [](const Seen& s, int w) {
@@ -126,22 +108,14 @@ Trial driven_arms() {
     Scene scene = empty(Space::planar, 10);
     for (const double gain : {200.0, 2000.0, 20000.0}) {
       for (const double load : {1.0, 10.0, 100.0}) {
-        BodyId last;
-        for (int i = 0; i < 10; ++i) {
-          Body link =
-              scenes::uniform_rod(Space::planar, i == 9 ? load : 1, 0.2, {0.2 * (i + 0.5), 0, 0});
-          link.jitter.linear_velocity = {0, 0.05, 0};
-          const BodyId id = scene.add(link);
-          const Drive drive{0, 0, Spring{gain, gain / 20, 0, 0}};
-          scene.add(
-              joint_at(scene, last, id, frame_at(0.2 * i, 0), HingeJoint{std::nullopt, drive}));
-          last = id;
-        }
+        const Drive drive{0, 0, Spring{gain, gain / 20, 0, 0}};
+        scenes::add_rods(scene, 10, 0.2, load, HingeJoint{std::nullopt, drive});
       }
     }
+    for (Body& link : scene.bodies) link.jitter.linear_velocity = {0, 0.05, 0};
     return scene;
   };
-  t.value = [](const Seen& s, int w) { return worst_gap(s, w) / 0.2; };
+  t.value = [](const Seen& s, int w) { return s.worst_gap(w) / 0.2; };
   return t;
 }
 
@@ -154,16 +128,9 @@ Trial frequencies() {
     double lost = 0, all = 0;
     for (const double frequency : {10.0, 60.0, 240.0, 1000.0}) {
       for (const int links : {3, 10, 40}) {
-        Scene scene = empty(Space::planar, 10);
+        Scene scene = swung_chain(1, links);
         scene.options = plan.scene().options;
         scene.options.joint.frequency = frequency;
-        for (int i = 0; i < links; ++i) {
-          Body link = scenes::uniform_rod(Space::planar, 1, kLink, {(i + 0.5) * kLink, 0, 0});
-          link.jitter.linear_velocity = {0, 0.01, 0};
-          scene.add(link);
-          scene.add(
-              joint_at(scene, BodyId(i - 1), BodyId(i), frame_at(i * kLink, 0), HingeJoint{}));
-        }
         Batch batch(compile(scene), options);
         batch.step(300);
         for (int w = 0; w < batch.worlds(); ++w) lost += batch.status(w) == Status::ok ? 0 : 1;
@@ -196,40 +163,13 @@ Trial hung_chain() {
   return t;
 }
 
-// Two fingers of 50 g on a hand on an arm of two driven links hold a box.
 Trial gripper() {
   Trial t = trial("J7", "fingers of 50 g on a hand on an arm grip a box of 2 kg with 60 N",
                   "slipped in 10 s", "m", 1e-3, 11);
   t.from = 1;
   t.scene = [] {
-    Scene scene = empty(Space::spatial, 10);
-    const auto link = [&](double kg, const Vec3& half, const Vec3& place) {
-      Body body = block(kg, half, place);
-      body.shapes[0].filter = {2, 4};
-      return scene.add(body);
-    };
-    const Quat about_y(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX()));
-    const auto hinge = [&](BodyId a, BodyId b, const Vec3& where) {
-      const Drive drive{0, 0, Spring{2e4, 400, 0, 0}};
-      scene.add(joint_at(scene, a, b, {where, about_y}, HingeJoint{std::nullopt, drive}));
-    };
-    const BodyId upper = link(2, {0.25, 0.04, 0.04}, {0.25, 0, 1}),
-                 lower = link(1.5, {0.25, 0.03, 0.03}, {0.75, 0, 1}),
-                 hand = link(0.5, {0.03, 0.08, 0.02}, {1.03, 0, 1});
-    hinge({}, upper, {0, 0, 1}), hinge(upper, lower, {0.5, 0, 1});
-    scene.add(joint_at(scene, lower, hand, {{1, 0, 1}, Quat::Identity()}, FixedJoint{}));
-    const Quat along_y(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()));
-    for (const double side : {-1.0, 1.0}) {
-      const BodyId finger = link(0.05, {0.01, 0.01, 0.05}, {1.03, side * 0.0401, 0.93});
-      const Drive grip{-side * 0.05, 0, Spring{1e4, 50, 0, 0}, 60};
-      scene.add(joint_at(scene, hand, finger, {{1.03, side * 0.0401, 0.98}, along_y},
-                         SliderJoint{std::nullopt, grip}));
-    }
-    Body box = block(2, Vec3::Constant(0.03), {1.03, 0, 0.9});
-    box.shapes[0].filter = {4, 2};
-    box.shapes[0].material.friction = 1;
-    box.jitter.position = {2e-3, 0, 2e-3};
-    scene.add(box);
+    Scene scene = scenes::gripper(2);
+    scene.bodies.back().jitter.position = {2e-3, 0, 2e-3};
     return scene;
   };
   // Against the hand, across the fingers, from where it was when the grip was closed. Along them
@@ -242,7 +182,8 @@ Trial gripper() {
     batch.step(static_cast<int>(std::lround(10 / dt)));
     now.look(11);
     const auto place = [](const Seen& s, int w) {
-      return Vec3(s.rotation(w, 2).inverse() * (s.position(w, 5) - s.position(w, 2)));
+      const Vec3 from_hand = s.position(w, scenes::kGripped) - s.position(w, scenes::kHand);
+      return Vec3(s.rotation(w, scenes::kHand).inverse() * from_hand);
     };
     double most = 0;
     for (int w = 0; w < batch.worlds(); ++w) {

@@ -1,0 +1,122 @@
+// Random trees of joints that fall on the ground and on what lies about.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "tests/support/joints.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+std::optional<Limit> random_limit(Random& random, double width) {
+  if (random.chance(0.5)) return std::nullopt;
+  Limit limit{-random.uniform(0.1, 1) * width, random.uniform(0.1, 1) * width, std::nullopt};
+  if (random.chance(0.3)) limit.spring = Spring{0, 0, 5, 0.7};
+  return limit;
+}
+// Motors have a largest force, springs may.
+std::optional<Drive> random_drive(Random& random, double width, double mass) {
+  if (random.chance(0.5)) return std::nullopt;
+  Drive drive;
+  drive.target_position = random.uniform(-0.5, 0.5) * width;
+  drive.target_speed = random.chance(0.3) ? random.uniform(-3, 3) : 0;
+  if (random.chance(0.7)) drive.spring = Spring{0, 0, random.uniform(1, 10), 0.7};
+  if (!drive.spring || random.chance(0.6)) drive.max_force = mass * random.uniform(1, 50);
+  return drive;
+}
+JointType random_type(Random& random, Space space, double mass) {
+  switch (random.integer(0, 9)) {
+    case 0: return FixedJoint{};
+    case 1:
+    case 2: {
+      const auto limit = random_limit(random, 0.3);
+      return SliderJoint{limit, random_drive(random, 0.3, mass)};
+    }
+    case 3: return space == Space::planar ? JointType(HingeJoint{}) : JointType(BallJoint{});
+    case 4: {
+      const Spring suspension{0, 0, random.uniform(2, 8), 0.7};
+      const auto travel = random_limit(random, 0.2);
+      return WheelJoint{suspension, travel, random_drive(random, 1, mass)};
+    }
+    default: {
+      const auto limit = random_limit(random, 1);
+      return HingeJoint{limit, random_drive(random, 1, mass)};
+    }
+  }
+}
+
+// Up to eight boxes of up to a hundred times the density of others, that do not touch one another.
+void add_tree(Random& random, Scene& scene, const Vec3& base) {
+  const Space space = scene.space;
+  const bool flat = space == Space::planar, anchored = random.chance(0.3);
+  const double spread = random.chance(0.5) ? 0 : random.uniform(0, 1);
+  struct Link {
+    BodyId id;
+    Vec3 place, half;
+  };
+  std::vector<Link> links;
+  const Vec3 velocity = anchored ? Vec3(Vec3::Zero()) : Vec3(random.planar_direction() * 2);
+  for (int i = 0, n = random.integer(2, 8); i < n; ++i) {
+    Vec3 half{random.uniform(0.05, 0.3), random.uniform(0.03, 0.15), random.uniform(0.03, 0.15)};
+    if (flat) half.z() = 0;
+    const Link* on = nullptr;
+    if (i > 0)
+      on = &links[static_cast<std::size_t>(random.chance(0.6) ? i - 1 : random.integer(0, i - 1))];
+    const double side = random.chance(0.8) ? 1 : -1;
+    Vec3 anchor = base - half.x() * Vec3::UnitX(), place = base;
+    if (on) {
+      anchor = on->place + Vec3(side * on->half.x(), random.uniform(-0.5, 0.5) * on->half.y(), 0);
+      place = anchor + side * half.x() * Vec3::UnitX();
+    }
+    Body body = body_of(shape_of(box_of(space, half), random.uniform(0, 1)), place);
+    body.shapes[0].filter = {2, 1};
+    body.shapes[0].density = 1000 * std::pow(10, spread * random.uniform(-1, 1));
+    body.linear_velocity = velocity;
+    if (i == 0 && !anchored) body.jitter.angle = 0.5;
+    if (i > 0) body.jitter.with = links[0].id;
+    const double mass = mass_properties(scene, body).mass;
+    const BodyId id = scene.add(body);
+    if (on || anchored) {
+      const Frame frame{anchor, random.chance(0.5) ? Quat(Quat::Identity()) : hinge_axes(space)};
+      const JointType type = random_type(random, space, mass);
+      scene.add(joint_at(scene, on ? on->id : BodyId{}, id, frame, type));
+    }
+    links.push_back({id, place, half});
+  }
+}
+Scene random_scene(Random& random, Space space) {
+  Scene scene = tree_scene(space);
+  scene.options.substeps = 4;
+  scene.add(ground(space, random.uniform(0, 1)));
+  const Vec3 up = up_of(space);
+  for (int i = 0, n = random.integer(1, 3); i < n; ++i) {
+    add_tree(random, scene, 12.0 * i * Vec3::UnitX() + random.uniform(1.2, 2.5) * up);
+  }
+  for (int i = 0, n = random.integer(0, 3); i < n; ++i) {
+    const Geometry shape = random.chance(0.5) ? cube_of(space, 0.1) : round_of(space, 0.1);
+    const Vec3 place = random.uniform(-1, 4) * Vec3::UnitX() + (4 + 0.5 * i) * up;
+    scene.add(body_of(shape_of(shape), place));
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("random trees that fall gain no energy", "[joint][slow]") {
+  Random random(20);
+  for (int i = 0; i < 60; ++i) {
+    const Scene scene = random_scene(random, i % 2 == 0 ? Space::planar : Space::spatial);
+    BatchOptions options = options_of({widest_of(Precision::f32), Precision::f32}, 8);
+    options.audit_every = 1;
+    Batch batch(compile(scene), options);
+    batch.step(240);
+    for (int w = 0; w < 8; ++w) {
+      INFO("scene " << i << " world " << w);
+      CHECK(batch.status(w) == Status::ok);
+    }
+  }
+}
+
+}  // namespace manyworlds::test
