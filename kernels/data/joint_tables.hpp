@@ -95,6 +95,7 @@ struct TreeEdge {
 struct JointTrees {
   std::int32_t edges, roots, bodies;
   std::int32_t parts;  // that edges are made of
+  bool bounded;        // some edge has a drive or limits
   const TreeEdge* edge;
   const std::int32_t* root;     // bodies that hang on nothing
   const std::int32_t* body;     // all that trees move

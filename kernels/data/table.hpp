@@ -72,19 +72,24 @@ struct JointSolver {
   Stage<Real> gap_energy;
 };
 
+// Of contacts by how trees give way, in place of SolverTable's passes, and of the trees that they
+// have acted on.
+template <class Real>
+struct TreeRound {
+  Stage<Real> contacts;        // the first of a pass
+  Stage<Real> contacts_again;  // the others
+  Stage<Real> trees;
+};
+
 // Trees of joints that are solved at once (kernels/direct/), for one inertia kind and layout. Each
 // solve leaves velocities with which the joints close what is apart (bias) or hold what they have.
 template <class Real>
 struct DirectSolver {
-  Stage<Real> begin;       // after JointSolver::prepare
-  Stage<Real> bias;        // the first of a substep
-  Stage<Real> bias_again;  // after contacts
-  Stage<Real> relax;       // where the substep has taken the bodies
-  Stage<Real> relax_again;
-  // Contacts by how trees give way, in place of SolverTable's passes, with solves around them; then
-  // effective masses as of free bodies again.
-  Stage<Real> bias_contacts, relax_contacts;
-  Stage<Real> weigh_alone;
+  Stage<Real> begin;  // after JointSolver::prepare
+  Stage<Real> bias;   // the first of a substep
+  Stage<Real> relax;  // where the substep has taken the bodies
+  TreeRound<Real> bias_round, relax_round;
+  Stage<Real> weigh_alone;  // after them: effective masses as of free bodies again
 };
 
 // The audit of energy (kernels/observe/audit.hpp).

@@ -107,16 +107,18 @@ class Bound {
   }
 
   // Of `lanes` those in which what came of it does not agree with the active set.
-  struct Wrong {
-    std::uint32_t limit, drive;
-  };
-  MW_INLINE Wrong wrong(std::uint32_t lanes) const {
+  MW_INLINE BoundLanes wrong(std::uint32_t lanes) const {
     const ActiveSet now = found();
     return {lanes & ((now.low ^ dof_.active.low) | (now.high ^ dof_.active.high)),
             lanes & ((now.above ^ dof_.active.above) | (now.below ^ dof_.active.below))};
   }
+  // Lanes in which no limit acts, and in which the drive is at its largest impulse.
+  MW_INLINE BoundLanes gives_way() const {
+    const ActiveSet& now = dof_.active;
+    return {~(now.low | now.high), now.above | now.below};
+  }
   // Corrects it in some lanes.
-  MW_INLINE void correct(const Wrong& lanes) const {
+  MW_INLINE void correct(const BoundLanes& lanes) const {
     const ActiveSet now = found();
     const auto put = [](std::uint32_t& to, std::uint32_t from, std::uint32_t in) {
       to = (to & ~in) | (from & in);
@@ -223,15 +225,6 @@ class Bound {
   Float wanted_ = Real(0);                // speed of a drive
   Float low_ = Real(0), high_ = Real(0);  // bounds of limits
 };
-
-// Whether some edge has a drive or limits.
-inline bool has_bounds(const Constants& t) {
-  for (int i = 0; i < t.joint_trees.edges; ++i) {
-    const TreeEdge& edge = t.joint_trees.edge[i];
-    if (edge.slide >= 0 || edge.angle >= 0) return true;
-  }
-  return false;
-}
 
 // The bounds of all edges, for one solve (Bound).
 template <class S>

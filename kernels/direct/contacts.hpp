@@ -47,21 +47,25 @@ class TreeContacts {
     t_.has_friction ? solve_all<kPass, true>(factors) : solve_all<kPass, false>(factors);
   }
 
+  // What they did in a substep, for restitution.
+  void accumulate_bounces() const {
+    for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      accumulate_bounce(s, bounce_at<S, N>(list, i), t_.has_friction);
+    });
+  }
+
  private:
   template <Pass kPass, bool kFriction>
   void solve_all(const TreeFactors<S>& factors) const {
     const TreeResponse<S, kDense> response(t_, w_, factors);
     response.open();
-    for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+    for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList&) {
       if (meets_tree(s)) {
         TreeVelocities<S, A, kDense> v(response, w_, s);
         solve_rows<kDense, kFriction, kPass>(t_, w_, s, v);
         v.store(s);
       } else {
         solve_block<kDense, kFriction, kPass>(t_, w_, s);
-      }
-      if constexpr (kPass == Pass::relax) {
-        if (t_.has_restitution) accumulate_bounce(s, bounce_at<S, N>(list, i), kFriction);
       }
     });
   }

@@ -14,6 +14,14 @@ struct ActiveSet {
   bool operator==(const ActiveSet&) const = default;
 };
 
+// Lanes of its limits and of its drive.
+struct BoundLanes {
+  std::uint32_t limit, drive;
+  BoundLanes operator&(BoundLanes o) const { return {limit & o.limit, drive & o.drive}; }
+  BoundLanes operator|(BoundLanes o) const { return {limit | o.limit, drive | o.drive}; }
+  BoundLanes operator~() const { return {~limit, ~drive}; }
+};
+
 // A coordinate along which a joint gives way: q of the child against the parent.
 template <class S>
 struct alignas(64) EdgeDof {
@@ -21,6 +29,7 @@ struct alignas(64) EdgeDof {
   Real load[kLanes], push[kLanes];
   Real began[kLanes], change[kLanes];  // rate before the solve, and what it changes by
   ActiveSet active, before;            // of the solve, and when it began
+  BoundLanes corrected, settled;       // of the solve: see TreeSolve::correct_active_sets
   ActiveSet factored;                  // that the factors of the solves were found with
 };
 

@@ -51,23 +51,32 @@ struct DirectPasses {
 
   // Contacts meet trees where those were when the substep began, and in the relaxing pass where it
   // has taken them. That is where the next substep begins: effective masses hold for both, unless
-  // limits and drives tell the passes apart.
-  template <Pass kPass>
+  // limits and drives tell the solves apart.
+  template <Pass kPass, bool kAgain>
   static void contacts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     const TreeContacts<S, kDense> contacts(t, w);
     TreeFactors<S> factors = factors_in<S>(w.direct.of_solves);
     if (contacts.find_touched()) {
-      const bool first = kPass == Pass::bias && w.substep == 0;
+      const bool first = kPass == Pass::bias && !kAgain && w.substep == 0;
       if (first) find_tree_masses(t, g, w);
       factors =
           (kPass == Pass::bias ? biased(t, g, w, false) : relaxed(t, g, w)).factor_for_contacts();
-      if (kPass == Pass::relax || first || has_bounds(t)) {
+      const bool moved = first || (kPass == Pass::relax && !kAgain);
+      if (moved || t.joint_trees.bounded) {
         TreeCompliances<S>(t, w, factors).find();
         contacts.template weigh<true>();
       }
     }
     contacts.template solve<kPass>(factors);
+  }
+  // What the relaxing pass did counts for restitution.
+  template <bool kAgain>
+  static void relax_contacts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
+    contacts<Pass::relax, kAgain>(t, g, scratch);
+    if (t.has_restitution && kAgain == t.joint_trees.bounded) {
+      TreeContacts<S, kDense>(t, work_of(scratch)).accumulate_bounces();
+    }
   }
   static void weigh_alone(const Constants& t, const Group&, kernels::Scratch* scratch) {
     TreeContacts<S, kDense>(t, work_of(scratch)).template weigh<false>();
@@ -76,11 +85,9 @@ struct DirectPasses {
   static kernels::DirectSolver<Real> table() {
     return {begin,
             bias,
-            bias_again,
             relax,
-            relax_again,
-            contacts<Pass::bias>,
-            contacts<Pass::relax>,
+            {contacts<Pass::bias, false>, contacts<Pass::bias, true>, bias_again},
+            {relax_contacts<false>, relax_contacts<true>, relax_again},
             weigh_alone};
   }
 

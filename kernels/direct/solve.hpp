@@ -80,7 +80,10 @@ class TreeSolve {
   // Velocities and impulses of some lanes.
   void solve_in(std::uint32_t lanes) const {
     PivotRule rule;
-    bounds_.for_each([](const auto&, auto& dof, auto&) { dof.before = dof.active; });
+    bounds_.for_each([](const auto&, auto& dof, auto&) {
+      dof.before = dof.active;
+      dof.corrected = dof.settled = {0, 0};
+    });
     bool changed = false;
     for (int i = 0; i < kMostSolves; ++i) {
       factor_for_solves();
@@ -273,11 +276,16 @@ class TreeSolve {
     return fma(axis, change, v);
   }
 
-  // Corrects them; returns whether some were wrong.
+  // Corrects them; returns whether some were wrong. What has been corrected alone is right at
+  // first, but for rounding, where both of its states are as good: that is settled, on the side
+  // that leaves the error in an impulse rather than in a velocity.
   bool correct_active_sets(std::uint32_t lanes, PivotRule& rule) const {
+    const auto wrong_in = [&](const auto& bound, const auto& dof, const EdgeRows<S>& s) {
+      return bound.wrong(lanes & s.lanes) & ~dof.settled;
+    };
     std::uint32_t some = 0;
-    bounds_.for_each([&](const auto& bound, auto&, const EdgeRows<S>& s) {
-      const auto wrong = bound.wrong(lanes & s.lanes);
+    bounds_.for_each([&](const auto& bound, auto& dof, const EdgeRows<S>& s) {
+      const BoundLanes wrong = wrong_in(bound, dof, s);
       some |= wrong.limit | wrong.drive;
       rule.count(wrong.limit), rule.count(wrong.drive);
     });
@@ -285,13 +293,17 @@ class TreeSolve {
     const std::uint32_t all = rule.choose(some);
     std::uint32_t last = some & ~all;
     // Visited backwards: the first that is wrong is the last one.
-    bounds_.template for_each<true>([&](const auto& bound, auto&, const EdgeRows<S>& s) {
-      const auto wrong = bound.wrong(lanes & s.lanes);
-      const std::uint32_t limit = wrong.limit & last;
-      last &= ~limit;
-      const std::uint32_t drive = wrong.drive & last;
-      last &= ~drive;
-      bound.correct({(wrong.limit & all) | limit, (wrong.drive & all) | drive});
+    bounds_.template for_each<true>([&](const auto& bound, auto& dof, const EdgeRows<S>& s) {
+      const BoundLanes wrong = wrong_in(bound, dof, s);
+      BoundLanes alone{wrong.limit & last, 0};
+      last &= ~alone.limit;
+      alone.drive = wrong.drive & last;
+      last &= ~alone.drive;
+      const BoundLanes again = alone & dof.corrected;
+      dof.settled = dof.settled | again;
+      dof.corrected = alone;
+      bound.correct((wrong & BoundLanes{all, all}) | (alone & ~again) |
+                    (again & bound.gives_way()));
     });
     return true;
   }

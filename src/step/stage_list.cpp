@@ -7,8 +7,6 @@ namespace {
 
 using kernels::Solver;
 
-constexpr int kMoreRounds = 2;  // of contacts and the trees that they act on
-
 template <class Real>
 class Builder {
  public:
@@ -88,23 +86,31 @@ class Builder {
   void tgs_soft() {
     Calls& to = out_.solve;
     // Trees are done with one solve, but for what contacts spoil.
-    const bool again = trees_touch();
     if (trees()) add(to, StepStage::joints, trees_.bias);
-    // More rounds meet the limits into which contacts have driven joints, let go of those that gave
-    // way, and bring loads from leg to leg: with one impacts leave twice the overlap, and legs on
-    // limits do not come to rest.
-    const int rounds = t_.solver.iterations + (again ? kMoreRounds : 0);
-    for (int i = 0; i < rounds; ++i) {
+    for (int i = 0; i < t_.solver.iterations; ++i) {
       if (sweeps()) add(to, StepStage::joints, joints_.bias);
-      add_carried(to, StepStage::bias, again ? trees_.bias_contacts : solver_.bias);
-      if (again) add(to, StepStage::joints, trees_.bias_again);
+      trees_touch() ? round(StepStage::bias, trees_.bias_round, i > 0)
+                    : add_carried(to, StepStage::bias, solver_.bias);
     }
+    // One more brings loads from leg to leg.
+    if (trees_touch()) round(StepStage::bias, trees_.bias_round, true);
     add(to, StepStage::advance, solver_.advance);
     if (trees()) add(to, StepStage::joints, trees_.relax);
     if (sweeps()) add(to, StepStage::joints, joints_.relax);
-    add_carried(to, StepStage::relax, again ? trees_.relax_contacts : solver_.relax);
-    if (again) add(to, StepStage::joints, trees_.relax_again);
+    if (trees_touch()) {
+      // Contacts push against limits and drives that give way only in the solve that follows: it
+      // takes another round to take that back, else it feeds energy.
+      round(StepStage::relax, trees_.relax_round, false);
+      if (t_.joint_trees.bounded) round(StepStage::relax, trees_.relax_round, true);
+    } else {
+      add_carried(to, StepStage::relax, solver_.relax);
+    }
     ask_here(joints_.relax, solver_.relax);
+  }
+  // Contacts by how trees give way, and the trees that they have acted on.
+  void round(StepStage stage, const kernels::TreeRound<Real>& of, bool again) {
+    add_carried(out_.solve, stage, again ? of.contacts_again : of.contacts);
+    add(out_.solve, StepStage::joints, of.trees);
   }
   void advance() {
     Calls& to = out_.solve;

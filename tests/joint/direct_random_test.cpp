@@ -104,16 +104,18 @@ Scene random_scene(Random& random, Space space) {
 
 }  // namespace
 
+// Of these, seeds 642 and 683 lose worlds where limits and drives hold against contacts for good,
+// and 683 where the relaxing pass ends with its first round.
 TEST_CASE("random trees that fall gain no energy", "[joint][slow]") {
-  Random random(20);
-  for (int i = 0; i < 60; ++i) {
-    const Scene scene = random_scene(random, i % 2 == 0 ? Space::planar : Space::spatial);
+  for (std::uint64_t seed = 600; seed < 700; ++seed) {
+    Random random(seed);
+    const Scene scene = random_scene(random, seed % 2 == 0 ? Space::planar : Space::spatial);
     BatchOptions options = options_of({widest_of(Precision::f32), Precision::f32}, 8);
     options.audit_every = 1;
     Batch batch(compile(scene), options);
     batch.step(240);
     for (int w = 0; w < 8; ++w) {
-      INFO("scene " << i << " world " << w);
+      INFO("seed " << seed << " world " << w);
       CHECK(batch.status(w) == Status::ok);
     }
   }
