@@ -104,10 +104,12 @@ Scene random_scene(Random& random, Space space) {
 
 }  // namespace
 
-// Of these, seeds 642 and 683 lose worlds where limits and drives hold against contacts for good,
-// and 683 where the relaxing pass ends with its first round.
+// Of these, 1959, 4643 and 9034 lose worlds where limits and drives hold against contacts after
+// they gave way, and 2008 where the relaxing pass ends with its first round.
 TEST_CASE("random trees that fall gain no energy", "[joint][slow]") {
-  for (std::uint64_t seed = 600; seed < 700; ++seed) {
+  std::vector<std::uint64_t> seeds{1959, 2008, 4643, 9034};
+  for (std::uint64_t seed = 0; seed < 60; ++seed) seeds.push_back(seed);
+  for (const std::uint64_t seed : seeds) {
     Random random(seed);
     const Scene scene = random_scene(random, seed % 2 == 0 ? Space::planar : Space::spatial);
     BatchOptions options = options_of({widest_of(Precision::f32), Precision::f32}, 8);
