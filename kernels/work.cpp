@@ -182,13 +182,21 @@ void carve_joint_trees(const Constants& t, DirectWork& w, Carver& c) {
   };
   take_factors(w.of_solves);
   take(w.own_load, twist), take(w.load, twist), take(w.twist, twist);
-  c.take(w.edges, edges * bytes.rows);
+  const auto closures = static_cast<std::size_t>(t.joint_trees.closures);
+  c.take(w.edges, (edges + closures) * bytes.rows);
   c.take(w.held, static_cast<std::size_t>(t.bodies));
-  if (!t.has_contacts) return;
-  take_factors(w.of_contacts);
-  take(w.compliance, articulated), take(w.pending, twist), take(w.inv_tree_mass, 1);
+  const auto lanes = static_cast<std::size_t>(kLanes);
+  c.take(w.loop_factors, static_cast<std::size_t>(t.joint_trees.loop_factors) * lanes);
+  const auto loop_rows = static_cast<std::size_t>(t.joint_trees.loop_rows) * lanes;
+  c.take(w.loop_floor, loop_rows), c.take(w.loop_target, loop_rows);
+  c.take(w.loop_impulse, loop_rows);
+  if (closures == 0 && !t.has_contacts) return;
+  take(w.pending, twist);
   c.take(w.pending_edges, edges * bytes.pending);
   c.take(w.path, edges);
+  if (!t.has_contacts) return;
+  take_factors(w.of_contacts);
+  take(w.compliance, articulated), take(w.inv_tree_mass, 1);
   c.take(w.touched, static_cast<std::size_t>(t.bodies) + 1);
 }
 

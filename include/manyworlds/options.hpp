@@ -69,17 +69,16 @@ struct ContactOptions {
 
 // How joints are solved: one after the other in every substep (sweep), or those of a tree at once
 // (tree), in which heavy loads on light bodies hold as well as light ones. Trees are what hangs
-// together by ball joints without limits, hinges, sliders, fixed and wheel joints, without a loop,
-// on the world, on a kinematic body or on nothing; other joints are swept over. Of tgs_soft.
+// together by ball joints without limits, hinges, sliders, fixed and wheel joints; up to four of
+// them without drives or limits may close loops, unless one of what hangs together may break or
+// begins apart by more than a hundredth of its arms. Other joints are swept over. Of tgs_soft.
 enum class JointMethod { sweep, tree };
 const char* to_string(JointMethod method);
 
 // What joints hold together is pulled back as by a spring and damper. Not capped: stiffer than the
 // default may ring.
 struct JointOptions {
-  // Default: tree where all joints are of trees that hang on something, nothing can touch, no
-  // frequency is given, and sweeps would take more than four substeps or a joint is fixed; else
-  // sweep.
+  // Default: tree where sweeps of four substeps do not hold the joints (docs/plan.md), else sweep.
   std::optional<JointMethod> method = {};
   // Hz; default a quarter per substep, and hard rows in sequential_impulse, sor and nncg. Trees are
   // hard whatever it is, and close what is apart at the rate of such a spring; by default in a

@@ -91,12 +91,22 @@ struct TreeEdge {
   bool locked;                 // `turn` is a lock
   std::int32_t slide, angle;   // rows along x and about z that drive or limit it; -1: none
 };
-// Edges follow those of their parents.
+// Joints that close the loops of what hangs together: edges between bodies that others hold
+// already. `row`, `factor`: where its numbers begin.
+struct JointLoops {
+  std::int32_t first, end;  // among TreeEdge
+  std::int32_t rows, row, factor;
+};
+// Edges follow those of their parents; those that close loops follow all of them.
 struct JointTrees {
   std::int32_t edges, roots, bodies;
-  std::int32_t parts;  // that edges are made of
-  bool bounded;        // some edge has a drive or limits
+  std::int32_t closures;  // edges that close loops
+  std::int32_t loops;
+  std::int32_t loop_rows, loop_factors;  // of all loops
+  std::int32_t parts;                    // that edges are made of
+  bool bounded;                          // some edge has a drive or limits
   const TreeEdge* edge;
+  const JointLoops* loop;
   const std::int32_t* root;     // bodies that hang on nothing
   const std::int32_t* body;     // all that trees move
   const std::int32_t* edge_of;  // [body] that it hangs on; -1: none

@@ -104,7 +104,7 @@ class EdgeFinder {
   // kCloses: with the bias that closes the joints, else they keep what they have.
   template <bool kCloses>
   void find() const {
-    for (int i = 0; i < t_.joint_trees.edges; ++i) {
+    for (int i = 0; i < t_.joint_trees.edges + t_.joint_trees.closures; ++i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       EdgeRows<S>& s = edge_rows<S>(w_, i);
       TwistOf<S> target{zero_of<Ang>(), zero_of<Vec>()};

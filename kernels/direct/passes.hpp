@@ -16,7 +16,7 @@ struct DirectPasses {
     w.direct.located = 0;
     for (int b = 0; b < t.bodies; ++b) w.direct.held[b] = 0;
     for_each_tree_body(t, [&](int b) { put_moments(t, g, w, b); });
-    for (int i = 0; i < t.joint_trees.edges; ++i) {
+    for (int i = 0; i < t.joint_trees.edges + t.joint_trees.closures; ++i) {
       const TreeEdge& edge = t.joint_trees.edge[i];
       const std::uint32_t lanes = part_rows<S, PartBodies<S>>(w, edge.hold).mask;
       w.direct.held[edge.child] |= lanes;

@@ -1,26 +1,16 @@
 // What impulses of contacts do to a tree, one after the other, between two of its solves: each
 // changes the velocities of all bodies of the tree, so that the next contact meets what is there
-// (Gauss-Seidel in the coordinates of the joints, at the cost of a way to the root and back). An
-// impulse goes up from its body to the root, and leaves at each joint what acts along the axes by
-// which that gives way; a body's velocity comes down by what has been left so far. All of it is
-// linear. Work::velocity stays as it was: the solve that follows takes the sums of the impulses, in
-// DirectWork::own_load.
+// (Gauss-Seidel in the coordinates of the joints, at the cost of a way to the root and back).
+// Work::velocity stays as it was: the solve that follows takes the sums of the impulses, in
+// DirectWork::own_load. What closes loops is not met, that solve does.
 //
 // Where a tree is cut, and at roots, the compliance is that with which contacts were weighed last:
 // the solve that follows is exact again.
 #pragma once
 
-#include "kernels/direct/compliance.hpp"
-#include "kernels/direct/edges.hpp"
+#include "kernels/direct/tree_paths.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
-
-// What contacts have left at an edge in their pass: along its coordinates, and on what rotates
-// freely.
-template <class S>
-struct alignas(64) PendingRows {
-  Real slide[kLanes], turn[kLanes], moment[S::kAng][kLanes];
-};
 
 template <class S, bool kDense>
 class TreeResponse {
@@ -28,117 +18,39 @@ class TreeResponse {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
   TreeResponse(const Constants& t, Work& w, const TreeFactors<S>& factors)
-      : t_(t), w_(w), d_(w.direct), factors_(factors) {}
+      : t_(t), w_(w), d_(w.direct), paths_(t, w, factors) {}
 
   // Nothing has acted yet on the velocities that there are.
   void open() const {
     d_.pushed = 0;
-    const Float zero(Real(0));
     const WrenchOf<S> none{zero_of<Ang>(), zero_of<Vec>()};
-    for_each_tree_body(
-        t_, [&](int b) { store(row(d_.own_load, b), none), store(row(d_.pending, b), none); });
-    for (int i = 0; i < t_.joint_trees.edges; ++i) {
-      PendingRows<S>& left = pending(i);
-      zero.store(left.slide), zero.store(left.turn), store(left.moment[0], zero_of<Ang>());
-    }
+    for_each_tree_body(t_, [&](int b) { store(own_load(b), none); });
+    paths_.open();
   }
 
   // An impulse on a body about its centre of mass, in some lanes.
-  void push(int body, WrenchOf<S> p, std::uint32_t lanes) const {
+  void push(int body, const WrenchOf<S>& p, std::uint32_t lanes) const {
     d_.pushed |= lanes;
-    add_in_lanes<kTwistRowsOf<S>>(row(d_.own_load, body), p, lanes);
-    for (int i = edge_of(body); i >= 0; i = edge_of(body)) {
-      const TreeEdge& edge = t_.joint_trees.edge[i];
-      const EdgeRows<S>& s = edge_rows<S>(w_, i);
-      if (const std::uint32_t cut = lanes & ~s.lanes; cut != 0) {
-        add_in_lanes<kTwistRowsOf<S>>(row(d_.pending, body), p, cut);
-        lanes &= s.lanes;
-      }
-      if (lanes == 0) return;
-      p = moved(p, load_as<Vec>(s.arm_child[0]));
-      const EdgeFactors<S>& f = factors_.edge[i];
-      PendingRows<S>& left = pending(i);
-      if (edge.slides) p = leave(f.slide, axis_of_slide(s), p, left.slide, lanes);
-      if (hinges(edge)) p = leave(f.turn, axis_of_turn(s), p, left.turn, lanes);
-      if constexpr (S::kDim == 3) {
-        if (edge.ball) {
-          add_in_lanes<3>(left.moment[0], p.n, lanes);
-          p = without_turn(f.ball, p);
-        }
-      }
-      if (edge.prescribed) return;
-      p = moved(p, -load_as<Vec>(s.arm_parent[0]));
-      body = edge.parent;
-    }
-    add_in_lanes<kTwistRowsOf<S>>(row(d_.pending, body), p, lanes);
+    add_in_lanes<kTwistRowsOf<S>>(own_load(body), p, lanes);
+    paths_.push(body, p, lanes);
   }
 
   // The velocity of a body of a tree about its centre of mass.
   Velocity<S> velocity_of(int body) const {
     const Velocity<S> began = get_velocity<S, kDense>(w_, w_.velocity, body);
     if (d_.pushed == 0) return began;
-    int steps = 0;
-    TwistOf<S> v{zero_of<Ang>(), zero_of<Vec>()};
-    for (int i = edge_of(body), b = body;; i = edge_of(b)) {
-      if (i < 0) {
-        v = alone(b);
-        break;
-      }
-      d_.path[steps++] = i;
-      b = t_.joint_trees.edge[i].parent;
-      if (t_.joint_trees.edge[i].prescribed) break;
-    }
-    while (steps > 0) v = down(d_.path[--steps], v);
+    const TwistOf<S> v = paths_.change_of(body);
     // Lanes in which nothing acts keep the sign of their zeros, whatever others do.
     return select(mask_from_bits(d_.pushed), Velocity<S>{began.v + v.v, began.w + v.w}, began);
   }
 
  private:
-  int edge_of(int body) const { return t_.joint_trees.edge_of[body]; }
-  static Real* row(Real* of, int body) { return of + body * kTwistRowsOf<S> * kLanes; }
-
-  // Of what hangs on nothing.
-  MW_INLINE TwistOf<S> alone(int body) const {
-    return mul(load_as<ComplianceOf<S>>(d_.compliance + body * kComplianceRowsOf<S> * kLanes),
-               load_as<WrenchOf<S>>(row(d_.pending, body)));
-  }
-  // From the parent's to the child's.
-  MW_INLINE TwistOf<S> down(int i, TwistOf<S> v) const {
-    const TreeEdge& edge = t_.joint_trees.edge[i];
-    const EdgeRows<S>& s = edge_rows<S>(w_, i);
-    const EdgeFactors<S>& f = factors_.edge[i];
-    const PendingRows<S>& left = pending(i);
-    v = moved(v, load_as<Vec>(s.arm_parent[0]));
-    if (hinges(edge)) v = give_way(f.turn, axis_of_turn(s), left.turn, v);
-    if constexpr (S::kDim == 3) {
-      if (edge.ball) v.w = turn_of(f.ball, load_vec3(left.moment[0]), v.v);
-    }
-    if (edge.slides) v = give_way(f.slide, axis_of_slide(s), left.slide, v);
-    v = moved(v, -load_as<Vec>(s.arm_child[0]));
-    if (s.lanes == kAllLanes) return v;
-    return select(mask_from_bits(s.lanes), v, alone(edge.child));
-  }
-  static MW_INLINE TwistOf<S> give_way(const DofFactors<S>& f, const TwistOf<S>& axis,
-                                       const Real* left, const TwistOf<S>& v) {
-    const Float load = Float::load(left) - dot(v, load_as<WrenchOf<S>>(f.response[0]));
-    return fma(axis, load * Float::load(f.inverse), v);
-  }
-
-  // What is left at a joint, and what goes on.
-  static MW_INLINE WrenchOf<S> leave(const DofFactors<S>& f, const TwistOf<S>& axis,
-                                     const WrenchOf<S>& p, Real* left, std::uint32_t lanes) {
-    const Float load = dot(axis, p);
-    add_in_lanes<1>(left, load, lanes);
-    return fnma(load_as<WrenchOf<S>>(f.response[0]), load * Float::load(f.inverse), p);
-  }
-  MW_INLINE PendingRows<S>& pending(int edge) const {
-    return reinterpret_cast<PendingRows<S>*>(d_.pending_edges)[edge];
-  }
+  Real* own_load(int body) const { return d_.own_load + body * kTwistRowsOf<S> * kLanes; }
 
   const Constants& t_;
   Work& w_;
   DirectWork& d_;
-  const TreeFactors<S> factors_;
+  const TreePaths<S, true> paths_;
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

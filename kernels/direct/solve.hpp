@@ -10,6 +10,8 @@
 #pragma once
 
 #include "kernels/direct/bounds.hpp"
+#include "kernels/direct/joint_impulses.hpp"
+#include "kernels/direct/loops.hpp"
 #include "kernels/direct/pivot_rule.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -34,7 +36,8 @@ class TreeSolve {
         first_(first),
         closes_(closes),
         factors_(factors_in<S>(d_.of_solves)),
-        bounds_(t, g, w, closes, first) {}
+        bounds_(t, g, w, closes, first),
+        loops_(t, g, w, factors_) {}
 
   // Until the active sets stay as they are. The angular momenta that there are are those of the
   // moments without stiffness.
@@ -87,8 +90,13 @@ class TreeSolve {
     bool changed = false;
     for (int i = 0; i < kMostSolves; ++i) {
       factor_for_solves();
-      reduce_loads();
-      substitute_back();
+      loops_.clear();
+      solve_linear();
+      if (loops_.any()) {
+        find_changes_of_closures();
+        loops_.find_impulses();
+        solve_linear();
+      }
       if (i + 1 == kMostSolves) break;  // what the last solve did is what is kept
       if (!correct_active_sets(lanes, rule)) break;
       changed = true;
@@ -99,6 +107,18 @@ class TreeSolve {
     commit(lanes);
   }
 
+  void solve_linear() const {
+    reduce_loads();
+    substitute_back();
+  }
+  void find_changes_of_closures() const {
+    const int edges = t_.joint_trees.edges;
+    for (int i = edges; i < edges + t_.joint_trees.closures; ++i) {
+      EdgeRows<S>& s = edge_rows<S>(w_, i);
+      store(s.change[0], find_change(t_.joint_trees.edge[i], s));
+    }
+  }
+
   // Unless there are some of this place and of these active sets.
   void factor_for_solves() const {
     bool same = d_.factored.place == place_ && d_.factored.stiffened == stiffened_;
@@ -106,6 +126,7 @@ class TreeSolve {
         [&](const auto&, auto& dof, auto&) { same = same && dof.factored == dof.active; });
     if (same) return;
     eliminate_all(factors_, kAllLanes);
+    loops_.factor();
     d_.factored = {place_, stiffened_};
     bounds_.for_each([](const auto&, auto& dof, auto&) { dof.factored = dof.active; });
   }
@@ -157,6 +178,9 @@ class TreeSolve {
     for_each_tree_body(t_, [&](int b) {
       store(row(d_.load, b, kTwistRowsOf<S>),
             load_as<WrenchOf<S>>(row(d_.own_load, b, kTwistRowsOf<S>)));
+    });
+    loops_.for_each_side([&](int b, const WrenchOf<S>& p, std::uint32_t in) {
+      add_in_lanes<kTwistRowsOf<S>>(row(d_.load, b, kTwistRowsOf<S>), p, in);
     });
     for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
@@ -232,7 +256,7 @@ class TreeSolve {
     if (edge.parent != t_.bodies) {
       const Velocity<S> a = get_velocity<S, kDense>(w_, w_.velocity, edge.parent);
       const TwistOf<S> of_parent = moved(TwistOf<S>{a.w, a.v}, load_as<Vec>(s.arm_parent[0]));
-      v = {v.w - of_parent.w, v.v - of_parent.v};
+      v = v - of_parent;
     }
     if (edge.slides) {
       const auto axis = load_as<Vec>(s.slide_axis[0]);
@@ -324,46 +348,25 @@ class TreeSolve {
         put_velocity<S, kDense>(w_, w_.velocity, b, select(mask_from_bits(held), now, old));
       }
     });
+    loops_.for_each_side([&](int b, const WrenchOf<S>& p, std::uint32_t in) {
+      add_in_lanes<kTwistRowsOf<S>>(row(d_.load, b, kTwistRowsOf<S>), WrenchOf<S>{-p.n, -p.f}, in);
+    });
     bounds_.for_each([&](const auto& bound, auto&, auto&) { bound.keep(lanes); });
+    const JointImpulses<S> kept(w_, first_, lanes);
+    loops_.for_each_wrench([&](int i, const WrenchOf<S>& p) {
+      kept.keep(t_.joint_trees.edge[i], edge_rows<S>(w_, i), p);
+    });
     for (int i = t_.joint_trees.edges - 1; i >= 0; --i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       const EdgeRows<S>& s = edge_rows<S>(w_, i);
       const WrenchOf<S> p = moved(load_as<WrenchOf<S>>(row(d_.load, edge.child, kTwistRowsOf<S>)),
                                   load_as<Vec>(s.arm_child[0]));
-      keep_impulse(edge, s, p, lanes);
+      kept.keep(edge, s, p);
       if (edge.prescribed) continue;
       add_in_lanes<kTwistRowsOf<S>>(row(d_.load, edge.parent, kTwistRowsOf<S>),
                                     moved(p, -load_as<Vec>(s.arm_parent[0])), s.lanes);
     }
   }
-  // On B, without what acts along the coordinates.
-  MW_INLINE void keep_impulse(const TreeEdge& edge, const EdgeRows<S>& s, WrenchOf<S> p,
-                              std::uint32_t lanes) const {
-    if (edge.slides) {
-      const auto axis = load_as<Vec>(s.slide_axis[0]);
-      p.f = fnma(axis, dot(axis, p.f), p.f);
-      keep(part_rows<S, LineRows<S>>(w_, edge.hold), edge, s, p.f, lanes);
-    } else {
-      keep(part_rows<S, PointRows<S>>(w_, edge.hold), edge, s, p.f, lanes);
-    }
-    if (edge.turn < 0) return;
-    if (edge.locked) return keep(part_rows<S, LockRows<S>>(w_, edge.turn), edge, s, p.n, lanes);
-    if constexpr (S::kDim == 3) {
-      const auto axis = load_vec3(s.turn_axis[0]);
-      keep(part_rows<S, SwingRows<S>>(w_, edge.turn), edge, s, fnma(axis, dot(axis, p.n), p.n),
-           lanes);
-    }
-  }
-  template <class Rows, class V>
-  MW_INLINE void keep(Rows& to, const TreeEdge& edge, const EdgeRows<S>& s, V p,
-                      std::uint32_t lanes) const {
-    const auto old = load_as<V>(to.impulse[0]);
-    if (edge.reversed) p = -p;
-    if (!first_) p = old + p;
-    p = select(mask_from_bits(s.lanes), p, zero_of<V>());
-    store(to.impulse[0], select(mask_from_bits(lanes), p, old));
-  }
-
   // Of a root, or of what hangs on nothing in some lanes.
   MW_INLINE void solve_alone(int body) const {
     store(row(d_.twist, body, kTwistRowsOf<S>),
@@ -387,6 +390,7 @@ class TreeSolve {
   const bool stiffened_, first_, closes_;
   const TreeFactors<S> factors_;  // of the solves
   const EdgeBounds<S> bounds_;
+  const TreeLoops<S, kDense> loops_;
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -43,6 +43,8 @@ MW_INLINE void store(Real* p, const PlanarInertia& a) {
   a.rotary.store(p), store(p + kLanes, a.mixed), store(p + 3 * kLanes, a.linear);
 }
 
+MW_INLINE Twist operator-(const Twist& a, const Twist& b) { return {a.w - b.w, a.v - b.v}; }
+MW_INLINE PlanarTwist operator-(PlanarTwist a, PlanarTwist b) { return {a.w - b.w, a.v - b.v}; }
 MW_INLINE Twist select(Mask m, const Twist& a, const Twist& b) {
   return {select(m, a.w, b.w), select(m, a.v, b.v)};
 }

@@ -90,7 +90,7 @@ class GeometricStiffness {
   // visit(body, arm, impulse on it) for both sides of every edge.
   template <class Visit>
   MW_INLINE void for_each_arm(Visit visit) const {
-    for (int i = 0; i < t_.joint_trees.edges; ++i) {
+    for (int i = 0; i < t_.joint_trees.edges + t_.joint_trees.closures; ++i) {
       const kernels::TreeEdge& edge = t_.joint_trees.edge[i];
       const EdgeRows<S>& s = edge_rows<S>(w_, i);
       const auto& part = part_rows<S, PartBodies<S>>(w_, edge.hold);

@@ -189,16 +189,20 @@ struct DirectWork {
   TreeFactorRows of_solves;
   FactorState factored;  // of the solves
   bool is_stiff;         // whether some body has geometric stiffness in this substep
+  // Of plans with loops (kernels/direct/loops.hpp).
+  Real* loop_factors;                             // [entry][lane], lower triangles
+  Real *loop_floor, *loop_target, *loop_impulse;  // [row][lane]
+  // Of impulses on bodies of trees (kernels/direct/tree_paths.hpp).
+  Real* pending;                 // [body][wrench][lane], of roots
+  unsigned char* pending_edges;  // the same of edges
+  std::int32_t* path;            // edges from a body to its root
   // Of plans with contacts (kernels/direct/contacts.hpp).
   TreeFactorRows of_contacts;
-  std::uint32_t firm;            // lanes in which limits and drives hold against them
-  Real* inv_tree_mass;           // [body][lane], 1/kg
-  Real* compliance;              // [body][compliance][lane]
-  Real* pending;                 // [body][wrench][lane], of roots: what the pass has done so far
-  unsigned char* pending_edges;  // the same of edges (response.hpp)
-  std::int32_t* path;            // edges from a body to its root
-  bool* touched;                 // [body] whether a contact is on it, or on what hangs on it
-  std::uint32_t pushed;          // lanes in which the pass has done anything
+  std::uint32_t firm;    // lanes in which limits and drives hold against them
+  Real* inv_tree_mass;   // [body][lane], 1/kg
+  Real* compliance;      // [body][compliance][lane]
+  bool* touched;         // [body] whether a contact is on it, or on what hangs on it
+  std::uint32_t pushed;  // lanes in which the pass has done anything
 };
 
 // Of a step in which energies are audited (kernels/observe/audit.hpp): the energy before it, what a

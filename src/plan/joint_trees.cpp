@@ -2,7 +2,9 @@
 #include "src/plan/joint_trees.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <deque>
 #include <numeric>
 #include <type_traits>
 #include <variant>
@@ -24,6 +26,18 @@ struct TreeJoint {
   int body_a = 0, body_b = 0;
 };
 
+// What a joint's coordinates are driven or limited by stands in the pivots of a tree: such a joint
+// does not close a loop.
+bool has_bounds(const Joint& joint) {
+  const auto of_type = [](const auto& type) {
+    using Type = std::decay_t<decltype(type)>;
+    if constexpr (std::is_same_v<Type, HingeJoint> || std::is_same_v<Type, SliderJoint>) {
+      return type.limit.has_value() || type.drive.has_value();
+    }
+    return std::is_same_v<Type, WheelJoint>;
+  };
+  return std::visit(of_type, joint.type);
+}
 bool fits(const Joint& joint) {
   const auto of_type = [](const auto& type) {
     using Type = std::decay_t<decltype(type)>;
@@ -34,12 +48,33 @@ bool fits(const Joint& joint) {
   return std::visit(of_type, joint.type);
 }
 
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+  std::size_t find(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  // Whether they were apart.
+  bool join(std::size_t a, std::size_t b) {
+    a = find(a), b = find(b);
+    parent_[b] = a;
+    return a != b;
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
 class JointTreeBuilder {
  public:
   explicit JointTreeBuilder(PlanData& plan)
       : plan_(plan), joints_(plan.scene.joints.size()), in_tree_(trees_of(plan.scene).has_joint) {
     const auto bodies = plan.bodies.size();
     at_.resize(bodies), component_.assign(bodies, -1), placed_.assign(bodies, false);
+    seen_.assign(joints_.size(), false);
     for (std::size_t i = 0; i < plan.parts.size(); ++i) {
       TreeJoint& joint = joints_[static_cast<std::size_t>(plan.parts[i].joint)];
       joint.parts.push_back(static_cast<int>(i));
@@ -61,20 +96,35 @@ class JointTreeBuilder {
       const auto& joints = at_[static_cast<std::size_t>(b)];
       if (!joints.empty() && in_tree_[static_cast<std::size_t>(joints.front())]) grow(component);
     }
-    auto& edge_of = plan_.trees_of_joints.edge_of;
-    edge_of.assign(plan_.bodies.size(), -1);
-    int index = 0;
-    for (const kernels::TreeEdge& edge : plan_.trees_of_joints.edges) {
-      edge_of[static_cast<std::size_t>(edge.child)] = index++;
-      for (const int part : {edge.hold, edge.turn, edge.slide, edge.angle}) {
-        if (part < 0) continue;
-        solve_at_once(plan_.parts[static_cast<std::size_t>(part)]);
-        ++plan_.trees_of_joints.parts;
-      }
-    }
+    finish(plan_.trees_of_joints);
   }
 
  private:
+  void finish(PlanJointTrees& trees) {
+    trees.edge_of.assign(plan_.bodies.size(), -1);
+    for (std::size_t i = 0; i < trees.edges.size(); ++i) {
+      trees.edge_of[static_cast<std::size_t>(trees.edges[i].child)] = static_cast<int>(i);
+    }
+    const auto count = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
+    kernels::JointTrees& counts = trees.counts;
+    counts.edges = count(trees.edges), counts.closures = count(closures_);
+    counts.roots = count(trees.roots), counts.bodies = count(trees.bodies);
+    counts.loops = count(trees.loops);
+    for (kernels::JointLoops& loop : trees.loops) {
+      loop.first += counts.edges, loop.end += counts.edges;
+      loop.row = counts.loop_rows, loop.factor = counts.loop_factors;
+      counts.loop_rows += loop.rows, counts.loop_factors += loop.rows * (loop.rows + 1) / 2;
+    }
+    trees.edges.insert(trees.edges.end(), closures_.begin(), closures_.end());
+    for (const kernels::TreeEdge& edge : trees.edges) {
+      counts.bounded |= edge.slide >= 0 || edge.angle >= 0;
+      for (const int part : {edge.hold, edge.turn, edge.slide, edge.angle}) {
+        if (part < 0) continue;
+        solve_at_once(plan_.parts[static_cast<std::size_t>(part)]);
+        ++counts.parts;
+      }
+    }
+  }
   // The world and kinematic bodies move as they are told.
   bool prescribed(int body) const {
     return body == static_cast<int>(plan_.bodies.size()) ||
@@ -95,41 +145,78 @@ class JointTreeBuilder {
     }
     return out;
   }
-  // From what is given, or else from the heaviest body on.
+  // From what is given, or else from the heaviest body on, breadth first: so a chain between two
+  // anchors is closed in its middle. Bounds come before all else, since they cannot close a loop.
   void grow(const std::vector<int>& bodies) {
-    std::vector<int> order;
+    struct Step {
+      int joint, child;
+    };
+    std::deque<Step> ahead;
+    std::vector<int> order, closing;
+    const auto look = [&](int j, int child) {
+      const Joint& joint = plan_.scene.joints[static_cast<std::size_t>(j)];
+      has_bounds(joint) ? ahead.push_front({j, child}) : ahead.push_back({j, child});
+    };
     const auto place = [&](int body) {
       order.push_back(body), placed_[static_cast<std::size_t>(body)] = true;
+      for (const int j : at_[static_cast<std::size_t>(body)]) {
+        const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
+        const int next = joint.body_a == body ? joint.body_b : joint.body_a;
+        if (!prescribed(next) && !seen_[static_cast<std::size_t>(j)]) look(j, next);
+      }
     };
     for (const int body : bodies) {
       for (const int j : at_[static_cast<std::size_t>(body)]) {
         const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
-        if (prescribed(joint.body_a) || prescribed(joint.body_b)) {
-          add_edge(j, body), place(body);
-        }
+        if (prescribed(joint.body_a) || prescribed(joint.body_b)) look(j, body);
       }
     }
-    if (order.empty()) {
+    if (ahead.empty()) {
       const auto lighter = [&](int a, int b) {
         return plan_.bodies[static_cast<std::size_t>(a)].mass <
                plan_.bodies[static_cast<std::size_t>(b)].mass;
       };
-      place(*std::max_element(bodies.begin(), bodies.end(), lighter));
-      plan_.trees_of_joints.roots.push_back(order.front());
+      const int heaviest = *std::max_element(bodies.begin(), bodies.end(), lighter);
+      plan_.trees_of_joints.roots.push_back(heaviest);
+      place(heaviest);
     }
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      for (const int j : at_[static_cast<std::size_t>(order[i])]) {
-        const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
-        const int next = joint.body_a == order[i] ? joint.body_b : joint.body_a;
-        if (prescribed(next) || placed_[static_cast<std::size_t>(next)]) continue;
-        add_edge(j, next), place(next);
+    while (!ahead.empty()) {
+      const Step step = ahead.front();
+      ahead.pop_front();
+      if (seen_[static_cast<std::size_t>(step.joint)]) continue;
+      seen_[static_cast<std::size_t>(step.joint)] = true;
+      if (placed_[static_cast<std::size_t>(step.child)]) {
+        closing.push_back(step.joint);
+      } else {
+        plan_.trees_of_joints.edges.push_back(edge_of(step.joint, step.child));
+        place(step.child);
       }
     }
     auto& all = plan_.trees_of_joints.bodies;
     all.insert(all.end(), order.begin(), order.end());
+    if (!closing.empty()) close(closing);
   }
 
-  void add_edge(int j, int child) {
+  void close(const std::vector<int>& joints) {
+    auto& loops = plan_.trees_of_joints.loops;
+    kernels::JointLoops loop{};
+    loop.first = static_cast<int>(closures_.size());
+    for (const int j : joints) {
+      const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
+      closures_.push_back(edge_of(j, prescribed(joint.body_b) ? joint.body_a : joint.body_b));
+      loop.rows += rows_of(closures_.back());
+    }
+    loop.end = static_cast<int>(closures_.size());
+    loops.push_back(loop);
+  }
+  int rows_of(const kernels::TreeEdge& edge) const {
+    const bool flat = plan_.scene.space == Space::planar;
+    const int hold = (flat ? 2 : 3) - (edge.slides ? 1 : 0);
+    if (edge.turn < 0) return hold;
+    return hold + (flat ? 1 : edge.locked ? 3 : 2);
+  }
+
+  kernels::TreeEdge edge_of(int j, int child) const {
     const TreeJoint& joint = joints_[static_cast<std::size_t>(j)];
     kernels::TreeEdge edge{};
     edge.child = child;
@@ -148,7 +235,7 @@ class JointTreeBuilder {
       }
     }
     edge.ball = plan_.scene.space == Space::spatial && edge.turn < 0;
-    plan_.trees_of_joints.edges.push_back(edge);
+    return edge;
   }
 
   // Gaps are closed in a substep, or as fast as joints are said to be.
@@ -171,50 +258,81 @@ class JointTreeBuilder {
   std::vector<std::vector<int>> at_;  // [body] joints
   std::vector<int> component_;        // [body] its first body
   std::vector<bool> placed_;          // [body] in its tree
+  std::vector<bool> seen_;            // [joint] in its tree, or closes a loop
+  std::vector<kernels::TreeEdge> closures_;
 };
 
 }  // namespace
 
-// Bodies that hang together are a tree where there is a joint less than there are bodies, and at
-// most one more that holds to what is not dynamic.
-SceneTrees trees_of(const Scene& scene) {
-  struct Component {
-    int bodies = 1, between = 0, anchors = 0;
-    bool fits = true;
-    bool is_tree() const { return fits && anchors <= 1 && between == bodies - 1; }
-    int joints() const { return between + anchors; }
+// Whether a joint's frames begin apart by more than a hundredth of its arms. In a loop there may be
+// no way to close all of them, and then what hangs together would be flung about.
+bool begins_apart(const Scene& scene, const Joint& joint) {
+  const auto arm = [&](BodyId id, const Frame& frame) {
+    if (!id || scene.at(id).motion != Motion::dynamic) return 0.0;
+    return (frame.position - mass_properties(scene, scene.at(id)).center).norm();
   };
-  std::vector<std::size_t> parent(scene.bodies.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto find = [&](std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  const auto moves = [&](BodyId body) { return body && scene.at(body).motion == Motion::dynamic; };
-  const auto root = [&](BodyId body) { return find(static_cast<std::size_t>(body.index())); };
-  std::vector<Component> of(scene.bodies.size());
-  for (const Joint& joint : scene.joints) {
-    if (!moves(joint.body_a) || !moves(joint.body_b)) continue;
-    const std::size_t a = root(joint.body_a), b = root(joint.body_b);
-    if (a != b) parent[b] = a, of[a].bodies += of[b].bodies;
+  const Vec3 gap = frame_in_world(scene, joint.body_b, joint.frame_b).position -
+                   frame_in_world(scene, joint.body_a, joint.frame_a).position;
+  double apart = gap.norm();
+  if (std::holds_alternative<SliderJoint>(joint.type) ||
+      std::holds_alternative<WheelJoint>(joint.type)) {
+    const Quat axes = frame_in_world(scene, joint.body_a, joint.frame_a).rotation;
+    const Vec3 along = axes.normalized() * Vec3::UnitX();
+    apart = (gap - along.dot(gap) * along).norm();
   }
+  return apart > 0.01 * (arm(joint.body_a, joint.frame_a) + arm(joint.body_b, joint.frame_b));
+}
+
+// How a load is shared around a loop is known to sweeps alone.
+bool may_break(const Joint& joint) {
+  return std::isfinite(joint.break_force) || std::isfinite(joint.break_torque);
+}
+
+SceneTrees trees_of(const Scene& scene) {
+  constexpr int kMostClosures = 4;  // joints that close loops: each costs some solves of the tree
+  struct Component {
+    int joints = 0, closures = 0;
+    bool fits = true, open = false;
+    bool is_tree() const {
+      return fits && joints > 0 && closures <= kMostClosures && !(open && closures > 0);
+    }
+  };
+  const std::size_t bodies = scene.bodies.size();
+  const auto moves = [&](BodyId body) { return body && scene.at(body).motion == Motion::dynamic; };
+  const auto index = [](BodyId body) { return static_cast<std::size_t>(body.index()); };
+  const auto held = [&](const Joint& joint) { return moves(joint.body_a) || moves(joint.body_b); };
+  DisjointSets together(bodies), held_together(bodies + 1);  // with all that does not move as one
   for (const Joint& joint : scene.joints) {
-    const bool a = moves(joint.body_a), b = moves(joint.body_b);
-    if (!a && !b) continue;
-    Component& component = of[root(a ? joint.body_a : joint.body_b)];
-    (a && b ? component.between : component.anchors) += 1;
-    component.fits &= fits(joint);
+    if (moves(joint.body_a) && moves(joint.body_b)) {
+      together.join(index(joint.body_a), index(joint.body_b));
+    }
+  }
+  const auto root = [&](const Joint& joint) {
+    return together.find(index(moves(joint.body_a) ? joint.body_a : joint.body_b));
+  };
+  std::vector<Component> of(bodies);
+  for (const bool bounded : {true, false}) {  // those that cannot close a loop first
+    for (const Joint& joint : scene.joints) {
+      if (!held(joint) || has_bounds(joint) != bounded) continue;
+      Component& component = of[root(joint)];
+      component.fits &= fits(joint);
+      component.open |= begins_apart(scene, joint) || may_break(joint);
+      ++component.joints;
+      const std::size_t a = moves(joint.body_a) ? index(joint.body_a) : bodies;
+      const std::size_t b = moves(joint.body_b) ? index(joint.body_b) : bodies;
+      if (held_together.join(a, b)) continue;
+      component.fits &= !bounded;
+      ++component.closures;
+    }
   }
   SceneTrees out;
   for (const Joint& joint : scene.joints) {
-    const bool a = moves(joint.body_a), b = moves(joint.body_b);
-    out.has_joint.push_back((a || b) && of[root(a ? joint.body_a : joint.body_b)].is_tree());
+    out.has_joint.push_back(held(joint) && of[root(joint)].is_tree());
   }
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Component& component = of[find(i)];
-    const bool hangs = component.joints() > 0 && component.is_tree();
-    out.of_body.push_back(hangs ? static_cast<int>(find(i)) : -1);
-    out.joints_with.push_back(hangs ? component.joints() : 0);
+  for (std::size_t i = 0; i < bodies; ++i) {
+    const Component& component = of[together.find(i)];
+    out.of_body.push_back(component.is_tree() ? static_cast<int>(together.find(i)) : -1);
+    out.joints_with.push_back(component.is_tree() ? component.joints : 0);
   }
   return out;
 }

@@ -8,8 +8,8 @@
 namespace manyworlds {
 
 // What hangs together as trees that the kernels can solve at once: of ball joints without limits,
-// hinges, sliders, fixed and wheel joints, without a loop, on nothing or on one body that is not
-// dynamic.
+// hinges, sliders, fixed and wheel joints. A few of them without drives or limits may close loops,
+// or hold to more than one thing that is not dynamic, where none begins apart or may break.
 struct SceneTrees {
   std::vector<bool> has_joint;   // [joint]
   std::vector<int> of_body;      // [body] which tree, by one of its bodies; -1: none

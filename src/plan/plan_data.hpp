@@ -66,10 +66,11 @@ struct PlanPart {
 
 // Joints that are solved at once.
 struct PlanJointTrees {
-  std::vector<kernels::TreeEdge> edges;
+  kernels::JointTrees counts{};          // its lists are these:
+  std::vector<kernels::TreeEdge> edges;  // those that close loops last
+  std::vector<kernels::JointLoops> loops;
   std::vector<std::int32_t> roots, bodies;
   std::vector<std::int32_t> edge_of;  // [body] that it hangs on; -1: none
-  std::int32_t parts = 0;             // that edges are made of
 };
 
 // Thrust or torque of a control.

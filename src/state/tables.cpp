@@ -252,18 +252,11 @@ void TablesOf<Real>::add_joints(const PlanData& plan) {
   t.part = parts_.data();
   const PlanJointTrees& trees = plan.trees_of_joints;
   edges_ = trees.edges, edge_roots_ = trees.roots, edge_bodies_ = trees.bodies;
-  edge_of_ = trees.edge_of;
-  const auto count = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
-  const auto bounded = [](const kernels::TreeEdge& e) { return e.slide >= 0 || e.angle >= 0; };
-  t.joint_trees = {count(edges_),
-                   count(edge_roots_),
-                   count(edge_bodies_),
-                   trees.parts,
-                   std::any_of(edges_.begin(), edges_.end(), bounded),
-                   edges_.data(),
-                   edge_roots_.data(),
-                   edge_bodies_.data(),
-                   edge_of_.data()};
+  edge_of_ = trees.edge_of, loops_ = trees.loops;
+  t.joint_trees = trees.counts;
+  t.joint_trees.edge = edges_.data(), t.joint_trees.loop = loops_.data();
+  t.joint_trees.root = edge_roots_.data(), t.joint_trees.body = edge_bodies_.data();
+  t.joint_trees.edge_of = edge_of_.data();
   t.has_drives = std::any_of(parts_.begin(), parts_.end(), kernels::gives_energy);
   for (const PlanThrust& p : plan.thrusts) thrusts_.push_back(p.what);
   for (int body = 0, i = 0; !thrusts_.empty() && body <= t.bodies; ++body) {

@@ -43,6 +43,7 @@ class TablesOf {
   std::vector<kernels::PairClass<Real>> classes_;
   std::vector<kernels::JointPart> parts_;
   std::vector<kernels::TreeEdge> edges_;
+  std::vector<kernels::JointLoops> loops_;
   std::vector<std::int32_t> edge_roots_, edge_bodies_, edge_of_;
   std::vector<kernels::BreakTable<Real>> breaking_;
   std::vector<kernels::AttractorTable<Real>> attractors_;

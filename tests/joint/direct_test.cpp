@@ -296,7 +296,18 @@ TEST_CASE("the plan solves joints at once where that is worth it, and says why",
     CHECK_FALSE(method(chain(space, 3, 0.5, 1, true, HingeJoint{})).has_value());
     Scene loop = chain(space, 10, 0.5, 500, true, FixedJoint{});
     loop.add(joint_at(loop, {}, BodyId(9), at(Vec3::Zero()), FixedJoint{}));
-    CHECK_FALSE(method(loop).has_value());
+    CHECK(method(loop) == JointMethod::tree);
+    Scene breaks = loop;
+    breaks.joints.back().break_force = 1e6;
+    CHECK_FALSE(method(breaks).has_value());
+    Scene apart = loop;
+    apart.bodies[4].position += 0.1 * up_of(space);
+    CHECK_FALSE(method(apart).has_value());
+    Scene many = loop;
+    for (const int body : {2, 4, 6, 8}) {
+      many.add(joint_at(many, {}, BodyId(body), at(Vec3::Zero()), FixedJoint{}));
+    }
+    CHECK_FALSE(method(many).has_value());
     Scene touching = chain(space, 10, 0.5, 500, true, FixedJoint{});
     touching.add(
         body_of(shape_of(ground_of(space)), Vec3(0, 0, 0) - 20 * up_of(space), Motion::fixed));

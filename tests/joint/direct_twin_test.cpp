@@ -69,18 +69,60 @@ Scene random_tree(Random& random, Space space) {
   return scene;
 }
 
+int freedom(const JointType& type) {
+  if (std::holds_alternative<BallJoint>(type)) return 3;
+  if (std::holds_alternative<WheelJoint>(type)) return 2;
+  return std::holds_alternative<FixedJoint>(type) ? 0 : 1;
+}
+// Joints that close loops, between bodies that others leave free enough; returns how many.
+int add_closures(Random& random, Scene& scene) {
+  const bool planar = scene.space == Space::planar;
+  const auto bodies = static_cast<int>(scene.bodies.size());
+  std::vector<int> parent(scene.bodies.size(), -1), free(scene.bodies.size(), 0);
+  for (const Joint& joint : scene.joints) {
+    const int a = joint.body_a ? joint.body_a.index() : -1;
+    const int b = joint.body_b ? joint.body_b.index() : -1;
+    const auto child = static_cast<std::size_t>(std::max(a, b));
+    parent[child] = std::min(a, b), free[child] = freedom(joint.type);
+  }
+  const auto up_to = [&](int body, int other) {  // where both meet
+    int sum = 0;
+    for (int a = body, b = other; a != b; a = parent[static_cast<std::size_t>(a)]) {
+      if (a < b) std::swap(a, b);
+      sum += free[static_cast<std::size_t>(a)];
+    }
+    return sum;
+  };
+  int closures = 0;
+  for (int tries = 0; tries < 20 && closures < 3; ++tries) {
+    const int a = random.integer(0, bodies - 1), b = random.integer(0, bodies - 1);
+    if (a == b || up_to(a, b) < (planar ? 4 : 6)) continue;
+    const Vec3 on = (scene.at(BodyId(a)).position + scene.at(BodyId(b)).position) / 2;
+    const JointType type = planar ? JointType(HingeJoint{}) : JointType(BallJoint{});
+    scene.add(joint_at(scene, BodyId(a), BodyId(b), Frame{on, Quat::Identity()}, type));
+    ++closures;
+  }
+  return closures;
+}
+
 }  // namespace
 
 TEST_CASE("trees of joints move as the whole system of equations says", "[fast][joint]") {
   Random random(20);
+  int looped = 0;
   for (const Space space : {Space::planar, Space::spatial}) {
-    for (int k = 0; k < 60; ++k) {
-      const Scene scene = random_tree(random, space);
+    for (int k = 0; k < 90; ++k) {
+      Scene scene = random_tree(random, space);
+      const int closures = k < 60 ? 0 : add_closures(random, scene);
       JointTwin twin(scene);
       const double dt = scene.options.dt;
       twin.step(dt);
       double fastest = 1;
       for (const TwinBody& b : twin.closing()) fastest = std::max(fastest, b.linear.norm());
+      if (closures > 0 && fastest > 15) continue;  // all but singular
+      looped += closures > 0;
+      // Loops give way by differences of what their trees do.
+      const double loose = closures > 0 ? 20 : 1;
       for (const Table& table : widest_tables()) {
         Batch batch(compile(scene), options_of(table));
         REQUIRE(batch.plan().resolved().joint.method == JointMethod::tree);
@@ -97,13 +139,15 @@ TEST_CASE("trees of joints move as the whole system of equations says", "[fast][
           speed = std::max(speed, (velocity(batch, 0, i) - end.linear).norm());
         }
         INFO(name(table) << ' ' << (space == Space::planar ? "planar" : "spatial") << " tree " << k
-                         << " of " << scene.bodies.size() << ", fastest " << fastest);
-        CHECK(moved < pick(table, 2e-6, 1e-11) * fastest);
-        CHECK(turned < pick(table, 2e-4, 1e-7) * fastest);
-        CHECK(speed < pick(table, 5e-4, 1e-8) * fastest);
+                         << " of " << scene.bodies.size() << ", loops " << closures << ", fastest "
+                         << fastest);
+        CHECK(moved < pick(table, loose * 2e-6, 1e-11) * fastest);
+        CHECK(turned < pick(table, loose * 2e-4, 1e-7) * fastest);
+        CHECK(speed < pick(table, loose * 5e-4, 1e-8) * fastest);
       }
     }
   }
+  CHECK(looped > 30);
 }
 
 }  // namespace manyworlds::test

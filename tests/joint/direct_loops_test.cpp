@@ -1,0 +1,129 @@
+// Loops of joints that are solved at once with the trees that they close.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/known_motion.hpp"
+#include "scenes/makers.hpp"
+#include "tests/support/joints.hpp"
+#include "tests/support/tables.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+Batch batch_of(Scene scene, const Table& table) {
+  scene.options.joint.method = JointMethod::tree;
+  BatchOptions options = options_of(table, 8);
+  options.audit_every = 1;
+  return Batch(compile(scene), options);
+}
+void check_all(const Batch& batch, double gap) {
+  for (int w = 0; w < batch.worlds(); ++w) {
+    INFO("world " << w << ", gap " << worst_gap(batch, w));
+    CHECK(batch.status(w) == Status::ok);
+    CHECK(worst_gap(batch, w) < gap);
+  }
+}
+
+}  // namespace
+
+// When they lie flat, one degree of freedom becomes n + 1, and the loops' rows depend on one
+// another.
+TEST_CASE("loops of four bars solved at once pass through where they lie flat", "[fast][joint]") {
+  for (const Table& table : widest_tables()) {
+    for (const int n : {1, 2, 4}) {
+      INFO(name(table) << ", loops " << n);
+      Scene scene = scenes::loops_of_four_bars(n);
+      scene.options.substeps = 4;
+      Batch batch = batch_of(scene, table);
+      REQUIRE(batch.plan().resolved().joint.method == JointMethod::tree);
+      const double start = energy_of(batch, 0), lowest = -9.81 * (0.5 * (n + 1) + n);
+      double gain = 0, tip = 0;
+      Swing theta{9.81 * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n), kPi / 2, -1};
+      for (int i = 0; i < 300; ++i) {
+        batch.step();
+        theta.advance(scene.options.dt, 20);
+        const Vec3 at = position(batch, 0, 0) + rotation(batch, 0, 0) * Vec3(0.5, 0, 0);
+        tip = std::max(tip, (at - Vec3(std::cos(theta.angle), std::sin(theta.angle), 0)).norm());
+        gain = std::max(gain, (energy_of(batch, 0) - start) / (start - lowest));
+      }
+      check_all(batch, 1e-3);
+      INFO("tip " << tip << " m, gain " << gain);
+      CHECK(gain < 0.02);
+      CHECK(tip < 0.2);
+    }
+  }
+}
+
+// Planks in a line between two banks give way along themselves by nothing.
+TEST_CASE("a taut bridge solved at once bears boxes", "[fast][joint]") {
+  for (const Table& table : widest_tables()) {
+    INFO(name(table));
+    Batch batch = batch_of(scenes::bridge(), table);
+    REQUIRE(batch.plan().resolved().joint.method == JointMethod::tree);
+    batch.step(300);
+    check_all(batch, 1e-4);
+    for (int w = 0; w < batch.worlds(); ++w) CHECK(max_penetration(batch, w) < 0.01);
+  }
+}
+
+TEST_CASE("a driven four-bar linkage solved at once stays closed", "[fast][joint]") {
+  for (const Table& table : widest_tables()) {
+    INFO(name(table));
+    Batch batch = batch_of(scenes::four_bar(), table);
+    for (int i = 0; i < 30; ++i) batch.step(10), check_all(batch, 1e-4);
+  }
+}
+
+// Nothing in it gives way: the rows of its loop say nothing new at all.
+TEST_CASE("a welded frame solved at once bears a hundred times its mass", "[fast][joint]") {
+  for (const Table& table : widest_tables()) {
+    for (const Space space : kSpaces) {
+      INFO(name(table) << (space == Space::planar ? " planar" : " spatial"));
+      Scene scene = empty_scene(space, 10);
+      const Vec3 up = up_of(space), side = Vec3::UnitX(), inertia = Vec3::Constant(0.1);
+      const BodyId left = scene.add(lump(space, 1, inertia, 0.5 * up - side));
+      const BodyId right = scene.add(lump(space, 1, inertia, 0.5 * up + side));
+      const BodyId beam = scene.add(lump(space, 200, 200 * inertia, up));
+      scene.add(joint_at(scene, {}, left, at(-side), FixedJoint{}));
+      scene.add(joint_at(scene, {}, right, at(side), FixedJoint{}));
+      scene.add(joint_at(scene, left, beam, at(up - side), FixedJoint{}));
+      scene.add(joint_at(scene, right, beam, at(up + side), FixedJoint{}));
+      Batch batch = batch_of(scene, table);
+      REQUIRE(batch.plan().resolved().joint.method == JointMethod::tree);
+      for (int i = 0; i < 60; ++i) batch.step(10), check_all(batch, 1e-5);
+      CHECK((position(batch, 0, 2) - up).norm() < 1e-5);
+      CHECK(velocity(batch, 0, 2).norm() < 1e-4);
+    }
+  }
+}
+
+// Hinges with parallel axes in space: three of the five rows that close the loop say nothing new.
+TEST_CASE("a planar loop in space is closed by more than it takes", "[fast][joint]") {
+  for (const Table& table : widest_tables()) {
+    INFO(name(table));
+    Scene scene = empty_scene(Space::spatial, 10);
+    const Vec3 corner[] = {{0, 0, 0}, {0, 0, 1}, {2, 0, 1}, {2, 0, 0}};
+    std::vector<BodyId> bar;
+    for (int i = 0; i < 3; ++i) {
+      bar.push_back(scene.add(
+          lump(Space::spatial, 1, Vec3::Constant(0.05), (corner[i] + corner[i + 1]) / 2)));
+    }
+    for (int i = 0; i < 4; ++i) {
+      const bool banks = i == 0 || i == 3;
+      const BodyId a = banks ? BodyId{} : bar[static_cast<std::size_t>(i - 1)];
+      const BodyId b = bar[static_cast<std::size_t>(std::min(i, 2))];
+      scene.add(joint_at(scene, a, b, {corner[i], z_to_y()}, HingeJoint{}));
+    }
+    scene.at(bar[0]).linear_velocity = {0.5, 0, 0};
+    scene.at(bar[1]).linear_velocity = {1, 0, 0};
+    scene.at(bar[2]).linear_velocity = {0.5, 0, 0};
+    Batch batch = batch_of(scene, table);
+    REQUIRE(batch.plan().resolved().joint.method == JointMethod::tree);
+    for (int i = 0; i < 60; ++i) batch.step(10), check_all(batch, 1e-3);
+    CHECK(std::abs(position(batch, 0, 1).y()) < 1e-4);
+  }
+}
+
+}  // namespace manyworlds::test
