@@ -4,7 +4,9 @@
 //   E       kinetic energy, potential energy of gravity, attractors and springs that are forces,
 //   and
 //           what joints hold that have come apart (kernels/joint/gap_energy.hpp)
-//   given   at most by forces, controls and wind: |F| |v| dt with the speeds of both ends added
+//   given   at most by forces, controls and wind, |F| |v| dt with the speeds of both ends added,
+//   and
+//           by kinematic bodies that lift others
 //   driven  by drives, springs and springy limits (kernels/joint/drive_work.hpp)
 //
 // A gain is compared with the kinetic energy at the start, what was given, and what is no sign of
@@ -124,7 +126,7 @@ EnergySums sum_energy(const Constants& t, const Group& g) {
   using Vec = typename S::Vec;
   const Float zero(Real(0)), half(Real(0.5)), push(Real(2) * t.push_out_speed);
   bool driven = false;
-  for (int b = 0; kQuiet && b < t.bodies; ++b) driven |= t.body[b].kinematic;
+  for (int b = 0; b < t.bodies; ++b) driven |= t.body[b].kinematic;
   EnergySums out{zero, zero, zero, zero, zero};
   for (int b = 0; b < t.bodies; ++b) {
     if (t.body[b].kinematic) continue;
@@ -146,9 +148,11 @@ EnergySums sum_energy(const Constants& t, const Group& g) {
     out.kinetic = out.kinetic + kinetic;
     out.energy = out.energy + (kinetic - potential);
     out.terms = out.terms + (kinetic + abs(potential));
+    const Float driver = driven ? driver_speed2<S>(t, g, x) : zero;
+    if (driven) out.power = fma(weight * length_of(m.pull), sqrt(driver), out.power);  // lifts
     if constexpr (kQuiet) {
       Float quiet = fma(length_of(m.pull) * Float(t.dt), push, push * push);
-      if (driven) quiet = fma(driver_speed2<S>(t, g, x), Float(Real(4)), quiet);
+      if (driven) quiet = fma(driver, Float(Real(4)), quiet);
       out.quiet = fma(weight, quiet, out.quiet);
     }
     if (!g.force && !is_thrust(t, b) && !t.has_drag) continue;

@@ -229,6 +229,29 @@ TEST_CASE("kinematic bodies give energy that a world may have", "[fast][audit]")
   }
 }
 
+TEST_CASE("kinematic bodies may lift others for as long as they like", "[fast][audit]") {
+  for (const Space space : kSpaces) {
+    for (const double speed : {0.05, 0.5, 5.0}) {
+      for (const bool welded : {false, true}) {
+        INFO(speed << " m/s, welded " << welded);
+        Scene scene = empty_scene(space, 9.81);
+        const Vec3 up = up_of(space);
+        Body plate = body_of(shape_of(box_of(space, {1, 0.1, 1})), Vec3::Zero());
+        if (space == Space::spatial) plate.shapes = {shape_of(box_of(space, {1, 1, 0.1}))};
+        plate.motion = Motion::kinematic;
+        plate.linear_velocity = speed * up;
+        const BodyId lift = scene.add(plate);
+        Body load = body_of(shape_of(cube_of(space, 0.2)), (welded ? 2 : 0.3) * up);
+        load.linear_velocity = speed * up;
+        const BodyId cube = scene.add(load);
+        const Frame frame{0.2 * up, Quat::Identity()};
+        if (welded) scene.add(joint_at(scene, lift, cube, frame, FixedJoint{}));
+        CHECK(diverged_after(scene, 300) == 0);
+      }
+    }
+  }
+}
+
 TEST_CASE("what is audited is a world's own", "[fast][audit][bits]") {
   // Some worlds diverge, and when they are flagged depends on nothing but themselves.
   Scene scene = spring_of(Space::spatial, 2500, Integrator::explicit_euler);
