@@ -21,7 +21,7 @@ using FillJoints = void(kernels::JointSolver<Real>& dense, kernels::JointSolver<
 FillJoints fill_joints_planar, fill_joints_tensor;
 using FillDirect = void(kernels::DirectSolver<Real>& dense, kernels::DirectSolver<Real>& rows);
 FillDirect fill_direct_planar, fill_direct_tensor;
-// Bytes of the rows of an edge.
+// Bytes of what an edge has: its rows, a set of its factors, and what impulses leave at it.
 struct EdgeSizes {
   std::size_t rows, factors, pending;
 };

@@ -113,7 +113,7 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
       return at_once(joint_text(j) + " is fixed");
     }
     // Sweeps overshoot loads that come suddenly, by half.
-    if (std::isfinite(joint.break_force) || std::isfinite(joint.break_torque)) {
+    if (may_break(joint)) {
       return at_once(joint_text(j) + " may break");
     }
   }

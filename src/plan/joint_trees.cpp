@@ -2,12 +2,8 @@
 #include "src/plan/joint_trees.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <deque>
-#include <numeric>
-#include <type_traits>
-#include <variant>
 #include <vector>
 
 #include "src/base/float_mode.hpp"
@@ -24,48 +20,6 @@ using kernels::PartKind;
 struct TreeJoint {
   std::vector<int> parts;
   int body_a = 0, body_b = 0;
-};
-
-// What a joint's coordinates are driven or limited by stands in the pivots of a tree: such a joint
-// does not close a loop.
-bool has_bounds(const Joint& joint) {
-  const auto of_type = [](const auto& type) {
-    using Type = std::decay_t<decltype(type)>;
-    if constexpr (std::is_same_v<Type, HingeJoint> || std::is_same_v<Type, SliderJoint>) {
-      return type.limit.has_value() || type.drive.has_value();
-    }
-    return std::is_same_v<Type, WheelJoint>;
-  };
-  return std::visit(of_type, joint.type);
-}
-bool fits(const Joint& joint) {
-  const auto of_type = [](const auto& type) {
-    using Type = std::decay_t<decltype(type)>;
-    if constexpr (std::is_same_v<Type, BallJoint>) return !type.cone && !type.twist;
-    return std::is_same_v<Type, HingeJoint> || std::is_same_v<Type, SliderJoint> ||
-           std::is_same_v<Type, FixedJoint> || std::is_same_v<Type, WheelJoint>;
-  };
-  return std::visit(of_type, joint.type);
-}
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  // Whether they were apart.
-  bool join(std::size_t a, std::size_t b) {
-    a = find(a), b = find(b);
-    parent_[b] = a;
-    return a != b;
-  }
-
- private:
-  std::vector<std::size_t> parent_;
 };
 
 class JointTreeBuilder {
@@ -263,79 +217,6 @@ class JointTreeBuilder {
 };
 
 }  // namespace
-
-// Whether a joint's frames begin apart by more than a hundredth of its arms. In a loop there may be
-// no way to close all of them, and then what hangs together would be flung about.
-bool begins_apart(const Scene& scene, const Joint& joint) {
-  const auto arm = [&](BodyId id, const Frame& frame) {
-    if (!id || scene.at(id).motion != Motion::dynamic) return 0.0;
-    return (frame.position - mass_properties(scene, scene.at(id)).center).norm();
-  };
-  const Vec3 gap = frame_in_world(scene, joint.body_b, joint.frame_b).position -
-                   frame_in_world(scene, joint.body_a, joint.frame_a).position;
-  double apart = gap.norm();
-  if (std::holds_alternative<SliderJoint>(joint.type) ||
-      std::holds_alternative<WheelJoint>(joint.type)) {
-    const Quat axes = frame_in_world(scene, joint.body_a, joint.frame_a).rotation;
-    const Vec3 along = axes.normalized() * Vec3::UnitX();
-    apart = (gap - along.dot(gap) * along).norm();
-  }
-  return apart > 0.01 * (arm(joint.body_a, joint.frame_a) + arm(joint.body_b, joint.frame_b));
-}
-
-// How a load is shared around a loop is known to sweeps alone.
-bool may_break(const Joint& joint) {
-  return std::isfinite(joint.break_force) || std::isfinite(joint.break_torque);
-}
-
-SceneTrees trees_of(const Scene& scene) {
-  constexpr int kMostClosures = 4;  // joints that close loops: each costs some solves of the tree
-  struct Component {
-    int joints = 0, closures = 0;
-    bool fits = true, open = false;
-    bool is_tree() const {
-      return fits && joints > 0 && closures <= kMostClosures && !(open && closures > 0);
-    }
-  };
-  const std::size_t bodies = scene.bodies.size();
-  const auto moves = [&](BodyId body) { return body && scene.at(body).motion == Motion::dynamic; };
-  const auto index = [](BodyId body) { return static_cast<std::size_t>(body.index()); };
-  const auto held = [&](const Joint& joint) { return moves(joint.body_a) || moves(joint.body_b); };
-  DisjointSets together(bodies), held_together(bodies + 1);  // with all that does not move as one
-  for (const Joint& joint : scene.joints) {
-    if (moves(joint.body_a) && moves(joint.body_b)) {
-      together.join(index(joint.body_a), index(joint.body_b));
-    }
-  }
-  const auto root = [&](const Joint& joint) {
-    return together.find(index(moves(joint.body_a) ? joint.body_a : joint.body_b));
-  };
-  std::vector<Component> of(bodies);
-  for (const bool bounded : {true, false}) {  // those that cannot close a loop first
-    for (const Joint& joint : scene.joints) {
-      if (!held(joint) || has_bounds(joint) != bounded) continue;
-      Component& component = of[root(joint)];
-      component.fits &= fits(joint);
-      component.open |= begins_apart(scene, joint) || may_break(joint);
-      ++component.joints;
-      const std::size_t a = moves(joint.body_a) ? index(joint.body_a) : bodies;
-      const std::size_t b = moves(joint.body_b) ? index(joint.body_b) : bodies;
-      if (held_together.join(a, b)) continue;
-      component.fits &= !bounded;
-      ++component.closures;
-    }
-  }
-  SceneTrees out;
-  for (const Joint& joint : scene.joints) {
-    out.has_joint.push_back(held(joint) && of[root(joint)].is_tree());
-  }
-  for (std::size_t i = 0; i < bodies; ++i) {
-    const Component& component = of[together.find(i)];
-    out.of_body.push_back(component.is_tree() ? static_cast<int>(together.find(i)) : -1);
-    out.joints_with.push_back(component.is_tree() ? component.joints : 0);
-  }
-  return out;
-}
 
 void collect_joint_trees(PlanData& plan) {
   const FloatMode mode;

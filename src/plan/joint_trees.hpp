@@ -17,4 +17,9 @@ struct SceneTrees {
 };
 SceneTrees trees_of(const Scene& scene);
 
+// What a joint's coordinates are driven or limited by stands in the pivots of a tree: such a joint
+// does not close a loop.
+bool has_bounds(const Joint& joint);
+bool may_break(const Joint& joint);
+
 }  // namespace manyworlds

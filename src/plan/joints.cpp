@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "src/base/float_mode.hpp"
+#include "src/plan/joint_trees.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/plan/soft_constraint.hpp"
 
@@ -93,7 +94,7 @@ class Builder {
   // A joint that is nothing but this spring may be a force to the plan's integrator.
   void force(PlanPart& p, const Spring& s) const {
     if (!has_flight(plan_.scene.options) || s.frequency > 0) return;
-    if (std::isfinite(joint_.break_force) || std::isfinite(joint_.break_torque)) return;
+    if (may_break(joint_)) return;
     p.what.force = true;
     p.constants.stiffness = s.stiffness, p.constants.damping = s.damping;
   }
