@@ -155,9 +155,9 @@ TEST_CASE("random trees that fall gain no energy", "[joint][slow]") {
   }
 }
 
-// Of these, 739, 793 and 1577 lose worlds with a floor of 1e-5 (loops.hpp).
+// Of these, 739 and 1577 lose worlds with a floor of 1e-5 (loops.hpp).
 TEST_CASE("random loops that fall gain no energy", "[joint][slow]") {
-  std::vector<std::uint64_t> seeds{739, 793, 1577};
+  std::vector<std::uint64_t> seeds{739, 1577};
   for (std::uint64_t seed = 0; seed < 60; ++seed) seeds.push_back(seed);
   int looped = 0;
   for (const std::uint64_t seed : seeds) {
