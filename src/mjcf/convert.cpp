@@ -105,13 +105,15 @@ double round_to_two_digits(double x) {
   return shift >= 0 ? std::round(x * scale) / scale : std::round(x / scale) * scale;
 }
 
-// Median bounding diameter of the geoms of bodies that move; 1 m if there are none.
+// Median bounding diameter of the geoms of bodies that move; 1 m if there are none. Planes do not
+// count, and neither do sizes whose diameter overflows, which the scene's check refuses by name.
 double typical_size(const Scene& scene) {
   std::vector<double> diameters;
   for (const Body& body : scene.bodies) {
     if (body.motion != Motion::dynamic) continue;
     for (const Shape& shape : body.shapes) {
-      diameters.push_back(bounding_diameter(shape.geometry));
+      const double diameter = bounding_diameter(shape.geometry);
+      if (std::isnormal(diameter)) diameters.push_back(diameter);
     }
   }
   if (diameters.empty()) return 1;

@@ -248,6 +248,21 @@ TEST_CASE("numbers that MuJoCo lets pass are found by validate", "[mjcf][fast]")
   }
 }
 
+// The typical size of what moves has two digits: none where it overflows.
+TEST_CASE("a size without a finite diameter is found by validate", "[mjcf][fast]") {
+  const std::string shape = GENERATE("size='1e308'", "type='box' size='1e200 1 1'");
+  INFO(shape);
+  const Scene scene =
+      load_mjcf_string(world("<body name='b'><freejoint/><inertial pos='0 0 0' mass='1' "
+                             "diaginertia='1 1 1'/><geom name='g' " +
+                             shape + "/></body>"))
+          .scene;
+  CHECK(*scene.options.length_unit == 1);
+  const std::vector<std::string> problems = validate(scene);
+  REQUIRE_FALSE(problems.empty());
+  CHECK(problems[0].find("bodies[0 'b'].shapes[0") == 0);
+}
+
 TEST_CASE("MuJoCo's error function throws instead of ending the process", "[mjcf][fast]") {
   {
     const mjcf::LogCapture log;
