@@ -57,7 +57,8 @@ struct Drive {
   double max_force = std::numeric_limits<double>::infinity();  // N or N m
 };
 
-// The frames' origins coincide. Spatial.
+// The frames' origins coincide. Spatial. A twist has no meaning where z of B points against z of A:
+// give it a cone, too, where bodies can lean that far.
 struct BallJoint {
   std::optional<double> cone = {};  // rad, 0 to pi: the most that z of B leans from z of A
   std::optional<Limit> twist = {};  // rad, about z

@@ -14,7 +14,8 @@ enum class PartKind : std::int32_t {
   swing,     // the z axes are parallel (space)
   line,      // B's anchor lies on the x axis of A
   slide,     // row along x of A
-  angle,     // row about z
+  angle,     // row about z, which both frames share
+  twist,     // row about z of frames whose z axes may lean (space)
   cone,      // row for the angle between the z axes (space)
   distance,  // row between the anchors
   pulley,    // row for the length of the rope

@@ -6,6 +6,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+inline constexpr double kLeastTwist = 0.01;  // of 1 + z_a . z_b: at a lean of 172 degrees
+
 // v / |v| and |v|; along the last axis where v is all but zero.
 MW_INLINE Vec2 direction_of(Vec2 v, Float& length) {
   length = sqrt(dot(v, v));
@@ -27,6 +29,13 @@ MW_INLINE Float twist_between(const Frames<S>& f) {
   const Quat q = compose(inverse(f.a), f.b);
   const Float half = arc_tangent(copysign(Real(1), q.w) * q.z, abs(q.w));
   return half + half;
+}
+
+// The twist changes by that times the relative angular velocity: (z_a + z_b) / (1 + z_a . z_b), by
+// the derivative of twist_between. Against one another the axes have no twist.
+MW_INLINE Vec3 twist_axis(Vec3 z_a, Vec3 z_b) {
+  const Float one(Real(1));
+  return (z_a + z_b) * (one / max(one + dot(z_a, z_b), Real(kLeastTwist)));
 }
 
 template <class S>
@@ -52,7 +61,7 @@ void prepare(const Constants& t, const Group& g, const JointPart& part, const Jo
   if constexpr (S::kDim == 3) {
     store(s.start_axis[0], axis_z(f.a)), store(s.start_axis_b[0], axis_z(f.b));
   }
-  if (part.kind == PartKind::angle) twist_between(f).store(s.start_value);
+  if (part.kind != PartKind::cone) twist_between(f).store(s.start_value);
 }
 
 template <class S, bool kDense, bool kMoved>
@@ -102,8 +111,8 @@ MW_INLINE void locate(const Work& w, const JointPart& part, const Joint&, Row<S,
     }
     Vec3 n;
     Float value = Float::load(s.start_value), length;
-    if (part.kind == PartKind::angle) {
-      n = direction_of(z_a + z_b, length);
+    if (part.kind != PartKind::cone) {
+      n = part.kind == PartKind::twist ? twist_axis(z_a, z_b) : direction_of(z_a + z_b, length);
       if constexpr (kMoved) value = value + dot(n, swept_b - swept_a);
     } else {
       const Vec3 lean = cross(z_a, z_b);

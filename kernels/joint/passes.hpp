@@ -35,6 +35,7 @@ MW_INLINE void for_each_part(const Constants& t, Work& w, int first, int end, Vi
         if constexpr (S::kDim == 3) visit(*reinterpret_cast<SwingRows<S>*>(at), part, i);
         break;
       case PartKind::angle:
+      case PartKind::twist:
       case PartKind::cone: visit(*reinterpret_cast<Row<S, false>*>(at), part, i); break;
       default: visit(*reinterpret_cast<Row<S, true>*>(at), part, i);
     }

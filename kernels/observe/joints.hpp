@@ -18,15 +18,6 @@ MW_INLINE void row_now(const Constants& t, const Group& g, const Work& w, const 
   locate<S, true, false>(w, part, constants, s);
 }
 
-// How much faster a twist changes than about the axis of its row, which halves the angle between
-// the z axes: 1 / cos of half of it. With hinges there is none.
-template <class S>
-MW_INLINE Float twist_rate(const Row<S, false>& s) {
-  const auto z_a = load_vec3(s.start_axis[0]), z_b = load_vec3(s.start_axis_b[0]);
-  const Vec3 sum = z_a + z_b;
-  return sqrt(dot(sum, sum)) / max(Float(Real(1)) + dot(z_a, z_b), Real(1e-6));
-}
-
 template <class S, bool kLinear>
 MW_INLINE void observe_coordinate(const Constants& t, const Group& g, const Work& w,
                                   const kernels::JointCoordinate& c, Real* rows) {
@@ -34,11 +25,7 @@ MW_INLINE void observe_coordinate(const Constants& t, const Group& g, const Work
   row_now(t, g, w, c.what, constants_of_part(g, c.part), s);
   const TwoBodies<S> v{velocity_of<S>(t, g, c.what.body_a), velocity_of<S>(t, g, c.what.body_b)};
   Float::load(s.value).store(rows + row_of(Observed::joint_position) * kLanes);
-  Float speed = speed_of(s, v);
-  if constexpr (S::kDim == 3 && !kLinear) {
-    if (c.what.kind == PartKind::angle) speed = speed * twist_rate(s);
-  }
-  speed.store(rows + row_of(Observed::joint_speed) * kLanes);
+  speed_of(s, v).store(rows + row_of(Observed::joint_speed) * kLanes);
 }
 
 MW_INLINE bool is_linear(PartKind kind) {
@@ -68,6 +55,7 @@ MW_INLINE void observe_load(const Constants& t, const Group& g, const Work& w, i
     case PartKind::lock:
     case PartKind::swing: return add_torque(rows, load_as<Ang>(stored) * inv_h);
     case PartKind::angle:
+    case PartKind::twist:
     case PartKind::cone: {
       Row<S, false> s;
       row_now(t, g, w, what, constants_of_part(g, part), s);

@@ -7,7 +7,7 @@ namespace {
 
 using kernels::PartKind;
 
-std::vector<PartKind> kinds(const BallJoint&) { return {PartKind::cone, PartKind::angle}; }
+std::vector<PartKind> kinds(const BallJoint&) { return {PartKind::cone, PartKind::twist}; }
 std::vector<PartKind> kinds(const HingeJoint&) { return {PartKind::angle}; }
 std::vector<PartKind> kinds(const SliderJoint&) { return {PartKind::slide}; }
 std::vector<PartKind> kinds(const FixedJoint&) { return {}; }

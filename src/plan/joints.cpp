@@ -161,7 +161,7 @@ class Builder {
       PlanPart& p = part(PartKind::cone);
       limit(p, Limit{-std::numeric_limits<double>::infinity(), *j.cone, std::nullopt});
     }
-    if (j.twist) limit(part(PartKind::angle), j.twist);
+    if (j.twist) limit(part(spatial() ? PartKind::twist : PartKind::angle), j.twist);
     part(PartKind::point);
   }
   void add(const HingeJoint& j) {
