@@ -46,12 +46,16 @@ Trial heavy_rope() {
   return t;
 }
 
-// Joints that begin a metre apart.
+// Joints that begin a metre apart, and close by 1 m/s each. Hung, and with joints that are closed,
+// the same chain lashes like a whip: in its exact motion (the equations of its angles, by
+// Runge-Kutta 8 with a tolerance of 1e-9) the last bead reaches 70.2 m/s as it turns over. Pulls
+// add what they part the ends by, at most.
 Trial stretched(bool gravity) {
+  constexpr double kWhip = 70, kPulls = 40;  // m/s
   Trial t = trial(
       gravity ? "B17 hung" : "B17",
       std::string("chain whose 40 joints begin 1 m apart") + (gravity ? ", under gravity" : ""),
-      "speed", "m/s", 50, 3);
+      "speed", "m/s", gravity ? kWhip + kPulls : 50, 3);
   t.scene = [gravity] {
     Scene scene = empty(Space::planar, gravity ? 10 : 0);
     scene.options.joint.pull_speed = 1;
