@@ -69,7 +69,7 @@ struct ContactOptions {
 
 // How joints are solved: one after the other in every substep (sweep), or those of a tree at once
 // (tree), in which heavy loads on light bodies hold as well as light ones. Trees are what hangs
-// together by ball joints without limits, hinges, sliders, fixed and wheel joints; up to four of
+// together by ball joints, hinges, sliders, fixed and wheel joints; up to four of
 // them without drives or limits may close loops, unless one of what hangs together may break or
 // begins apart by more than a hundredth of its arms. Other joints are swept over. Of tgs_soft.
 enum class JointMethod { sweep, tree };

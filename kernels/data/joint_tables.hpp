@@ -91,6 +91,7 @@ struct TreeEdge {
   std::int32_t turn;           // lock or swing; -1: of a ball joint, and of a hinge in the plane
   bool locked;                 // `turn` is a lock
   std::int32_t slide, angle;   // rows along x and about z that drive or limit it; -1: none
+  std::int32_t cone;           // row that limits a ball joint; -1: none
 };
 // Joints that close the loops of what hangs together: edges between bodies that others hold
 // already. `row`, `factor`: where its numbers begin.

@@ -249,6 +249,12 @@ class EdgeBounds {
     const TreeEdge& edge = t_.joint_trees.edge[i];
     visit<false>(edge, edge.angle, edge_rows<S>(w_, i).turn, factors_.edge[i].turn, look);
   }
+  // look(bound) at the cone of a ball joint.
+  template <class Look>
+  MW_INLINE void visit_cone(int i, Look look) const {
+    const TreeEdge& edge = t_.joint_trees.edge[i];
+    visit<false>(edge, edge.cone, edge_rows<S>(w_, i).slide, factors_.edge[i].slide, look);
+  }
   // look(bound, dof, rows of its edge) at all of them.
   template <bool kBackwards = false, class Look>
   MW_INLINE void for_each(Look look) const {
@@ -257,6 +263,9 @@ class EdgeBounds {
       const int i = kBackwards ? edges - 1 - k : k;
       EdgeRows<S>& s = edge_rows<S>(w_, i);
       visit_slide(i, [&](const auto& bound) { look(bound, s.slide, s); });
+      if constexpr (S::kDim == 3) {
+        visit_cone(i, [&](const auto& bound) { look(bound, s.slide, s); });
+      }
       visit_turn(i, [&](const auto& bound) { look(bound, s.turn, s); });
     }
   }

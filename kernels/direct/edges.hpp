@@ -33,6 +33,7 @@ struct alignas(64) EdgeDof {
   ActiveSet factored;                  // that the factors of the solves were found with
 };
 
+// A ball joint has its cone in the places of a slide, and its twist in those of a turn.
 template <class S>
 struct alignas(64) EdgeRows {
   Real arm_parent[S::kDim][kLanes], arm_child[S::kDim][kLanes];  // to the point that both share
@@ -117,6 +118,9 @@ class EdgeFinder {
         }
       }
       if constexpr (S::kDim == 2) Float(Real(1)).store(s.turn_axis[0]);
+      if constexpr (S::kDim == 3) {
+        if (edge.ball) put_limits(edge, s);
+      }
       if constexpr (kCloses) {
         if (edge.reversed) target = {-target.w, -target.v};
         store(s.target[0], target);
@@ -181,6 +185,14 @@ class EdgeFinder {
     }
   }
 
+  MW_INLINE void put_limits(const TreeEdge& edge, EdgeRows<S>& s) const {
+    const auto put = [&](int part, Real* axis) {
+      if (part < 0) return;
+      store(axis, load_as<Vec>(part_rows<S, Row<S, false>>(w_, part).angular_b[0]));
+    };
+    put(edge.cone, s.slide_axis[0]), put(edge.angle, s.turn_axis[0]);
+  }
+
   const Constants& t_;
   const Group& g_;
   Work& w_;
@@ -195,21 +207,8 @@ template <class S>
 MW_INLINE auto axis_of_turn(const EdgeRows<S>& s) {
   return TwistOf<S>{load_as<typename S::Ang>(s.turn_axis[0]), zero_of<typename S::Vec>()};
 }
-// Of a ball joint under a wrench or a moment: what goes on to the parent, and how the child turns
-// where its anchor moves at v.
-template <class S>
-MW_INLINE Mat3 mixed_of(const BallFactors<S>& s) requires(S::kDim == 3) {
-  return {load_vec3(s.mixed[0][0]), load_vec3(s.mixed[1][0]), load_vec3(s.mixed[2][0])};
-}
-template <class S>
-MW_INLINE Wrench without_turn(const BallFactors<S>& s, const Wrench& p) requires(S::kDim == 3) {
-  const Vec3 turn = mul(load_as<Sym3>(s.compliance[0]), p.n);
-  return {zero_of<Vec3>(), p.f - mul_transposed(mixed_of(s), turn)};
-}
-template <class S>
-MW_INLINE Vec3 turn_of(const BallFactors<S>& s, Vec3 moment, Vec3 v) requires(S::kDim == 3) {
-  return mul(load_as<Sym3>(s.compliance[0]), moment - mul(mixed_of(s), v));
-}
+// Whether a ball joint has limits.
+MW_INLINE bool limited(const TreeEdge& edge) { return edge.cone >= 0 || edge.angle >= 0; }
 // Whether a joint gives way about z alone.
 MW_INLINE bool hinges(const TreeEdge& edge) { return !edge.ball && !edge.locked; }
 

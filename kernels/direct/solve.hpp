@@ -9,7 +9,7 @@
 // Lanes in which a joint does not hold cut the tree there: the child is a root in those.
 #pragma once
 
-#include "kernels/direct/bounds.hpp"
+#include "kernels/direct/ball_bounds.hpp"
 #include "kernels/direct/joint_impulses.hpp"
 #include "kernels/direct/loops.hpp"
 #include "kernels/direct/pivot_rule.hpp"
@@ -37,6 +37,7 @@ class TreeSolve {
         closes_(closes),
         factors_(factors_in<S>(d_.of_solves)),
         bounds_(t, g, w, closes, first),
+        balls_(t, w, bounds_),
         loops_(t, g, w, factors_) {}
 
   // Until the active sets stay as they are. The angular momenta that there are are those of the
@@ -160,13 +161,16 @@ class TreeSolve {
         give_way(axis_of_turn(s), f.turn, [&](auto look) { bounds_.visit_turn(i, look); });
       }
       if constexpr (S::kDim == 3) {
-        if (edge.ball) eliminate_rotation(f.ball, inertia);
+        if (edge.ball) {
+          eliminate_rotation(f.ball, inertia);
+          if (limited(edge)) balls_.eliminate(i, f, inertia, firm);
+        }
       }
       if (edge.prescribed) continue;
       const auto arm = load_as<Vec>(s.arm_parent[0]);
       Real* parent = row(to.inertia, edge.parent, kArticulatedRowsOf<S>);
       if constexpr (S::kDim == 3) {
-        if (edge.ball) {  // what is left is of forces alone
+        if (edge.ball && !limited(edge)) {  // what is left is of forces alone
           add_in_lanes<kArticulatedRowsOf<S>>(parent, spring_at(arm, inertia.linear), s.lanes);
           continue;
         }
@@ -212,7 +216,7 @@ class TreeSolve {
       if constexpr (S::kDim == 3) {
         if (edge.ball) {
           store(s.moment[0], load.n);
-          load = without_turn(f.ball, load);
+          load = limited(edge) ? balls_.reduce(i, f, load) : without_turn(f.ball, load);
         }
       }
       if (edge.prescribed) continue;
@@ -234,7 +238,10 @@ class TreeSolve {
       const EdgeFactors<S>& f = factors_.edge[i];
       if (hinges(edge)) v = expand(f.turn, s.turn, axis_of_turn(s), v);
       if constexpr (S::kDim == 3) {
-        if (edge.ball) v.w = turn_of(f.ball, load_vec3(s.moment[0]), v.v);
+        if (edge.ball) {
+          const Vec3 moment = load_vec3(s.moment[0]);
+          v.w = limited(edge) ? balls_.turn(i, f, moment, v) : turn_of(f.ball, moment, v.v);
+        }
       }
       if (edge.slides) v = expand(f.slide, s.slide, axis_of_slide(s), v);
       v = moved(v + load_as<TwistOf<S>>(s.change[0]), -load_as<Vec>(s.arm_child[0]));
@@ -275,23 +282,18 @@ class TreeSolve {
         v.w = fnma(axis, rate, v.w);
       }
     }
+    if constexpr (S::kDim == 3) {
+      if (edge.ball) {
+        if (edge.cone >= 0) dot(load_vec3(s.slide_axis[0]), v.w).store(s.slide.began);
+        if (edge.angle >= 0) dot(load_vec3(s.turn_axis[0]), v.w).store(s.turn.began);
+      }
+    }
     TwistOf<S> change{-v.w, -v.v};
     if (closes_) change = change + load_as<TwistOf<S>>(s.target[0]);
     if (edge.ball) change.w = zero_of<Ang>();
     return change;
   }
 
-  static MW_INLINE void eliminate_rotation(BallFactors<S>& to,
-                                           ArticulatedOf<S>& inertia) requires(S::kDim == 3) {
-    const Sym3 compliance = inverse(inertia.rotary);
-    const Mat3 m = inertia.mixed;
-    const Mat3 by{mul(compliance, m.x), mul(compliance, m.y), mul(compliance, m.z)};
-    const Sym3& a = inertia.linear;
-    store(to.compliance[0], compliance);
-    store(to.mixed[0][0], m.x), store(to.mixed[1][0], m.y), store(to.mixed[2][0], m.z);
-    inertia.linear = {a.xx - dot(m.x, by.x), a.xy - dot(m.x, by.y), a.xz - dot(m.x, by.z),
-                      a.yy - dot(m.y, by.y), a.yz - dot(m.y, by.z), a.zz - dot(m.z, by.z)};
-  }
   static MW_INLINE TwistOf<S> expand(const DofFactors<S>& f, EdgeDof<S>& dof,
                                      const TwistOf<S>& axis, const TwistOf<S>& v) {
     const Float load = Float::load(dof.load) - dot(v, load_as<WrenchOf<S>>(f.response[0]));
@@ -390,6 +392,7 @@ class TreeSolve {
   const bool stiffened_, first_, closes_;
   const TreeFactors<S> factors_;  // of the solves
   const EdgeBounds<S> bounds_;
+  const BallBounds<S> balls_;
   const TreeLoops<S, kDense> loops_;
 };
 

@@ -2,8 +2,7 @@
 // factors of the edges.
 #pragma once
 
-#include "kernels/direct/compliance.hpp"
-#include "kernels/direct/edges.hpp"
+#include "kernels/direct/ball.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -45,7 +44,10 @@ class TreeCompliances {
     };
     if (hinges(edge)) pass(f.turn, axis_of_turn(s));
     if constexpr (S::kDim == 3) {
-      if (edge.ball) c = beyond_ball(c, load_as<Sym3>(f.ball.compliance[0]), mixed_of(f.ball));
+      if (edge.ball) {
+        c = limited(edge) ? BallLimits<S>(edge, s, f).beyond(c)
+                          : beyond_ball(c, load_as<Sym3>(f.ball.compliance[0]), mixed_of(f.ball));
+      }
     }
     if (edge.slides) pass(f.slide, axis_of_slide(s));
     return moved(c, -load_as<Vec>(s.arm_child[0]));

@@ -3,8 +3,7 @@
 // way; a body's velocity comes down by what has been left so far. All of it is linear.
 #pragma once
 
-#include "kernels/direct/compliance.hpp"
-#include "kernels/direct/edges.hpp"
+#include "kernels/direct/ball.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -53,7 +52,7 @@ class TreePaths {
       if constexpr (S::kDim == 3) {
         if (edge.ball) {
           add_in_lanes<3>(left.moment[0], p.n, lanes);
-          p = without_turn(f.ball, p);
+          p = through_ball(edge, s, f, p);
         }
       }
       if (edge.prescribed) return;
@@ -104,12 +103,25 @@ class TreePaths {
     v = moved(v, load_as<Vec>(s.arm_parent[0]));
     if (hinges(edge)) v = give_way(f.turn, axis_of_turn(s), left.turn, v);
     if constexpr (S::kDim == 3) {
-      if (edge.ball) v.w = turn_of(f.ball, load_vec3(left.moment[0]), v.v);
+      if (edge.ball) v.w = turn_by_ball(edge, s, f, load_vec3(left.moment[0]), v);
     }
     if (edge.slides) v = give_way(f.slide, axis_of_slide(s), left.slide, v);
     v = moved(v, -load_as<Vec>(s.arm_child[0]));
     if (s.lanes == kAllLanes) return v;
     return select(mask_from_bits(s.lanes), v, alone(edge.child));
+  }
+  static MW_INLINE Wrench through_ball(const TreeEdge& edge, const EdgeRows<S>& s,
+                                       const EdgeFactors<S>& f, const Wrench& p) {
+    if (!limited(edge)) return without_turn(f.ball, p);
+    const BallLimits<S> limits(edge, s, f);
+    return limits.pass(p, limits.at_rest(p.n));
+  }
+  static MW_INLINE Vec3 turn_by_ball(const TreeEdge& edge, const EdgeRows<S>& s,
+                                     const EdgeFactors<S>& f, Vec3 moment, const Twist& v) {
+    if (!limited(edge)) return turn_of(f.ball, moment, v.v);
+    const BallLimits<S> limits(edge, s, f);
+    BallImpulses p = limits.at_rest(moment);
+    return limits.turn(moment, v, p);
   }
   static MW_INLINE TwistOf<S> give_way(const DofFactors<S>& f, const TwistOf<S>& axis,
                                        const Real* left, const TwistOf<S>& v) {

@@ -71,8 +71,8 @@ class JointTreeBuilder {
     }
     trees.edges.insert(trees.edges.end(), closures_.begin(), closures_.end());
     for (const kernels::TreeEdge& edge : trees.edges) {
-      counts.bounded |= edge.slide >= 0 || edge.angle >= 0;
-      for (const int part : {edge.hold, edge.turn, edge.slide, edge.angle}) {
+      counts.bounded |= edge.slide >= 0 || edge.angle >= 0 || edge.cone >= 0;
+      for (const int part : {edge.hold, edge.turn, edge.slide, edge.angle, edge.cone}) {
         if (part < 0) continue;
         solve_at_once(plan_.parts[static_cast<std::size_t>(part)]);
         ++counts.parts;
@@ -177,7 +177,7 @@ class JointTreeBuilder {
     edge.reversed = joint.body_a == child;
     edge.parent = edge.reversed ? joint.body_b : joint.body_a;
     edge.prescribed = prescribed(edge.parent);
-    edge.hold = edge.turn = edge.slide = edge.angle = -1;
+    edge.hold = edge.turn = edge.slide = edge.angle = edge.cone = -1;
     for (const int part : joint.parts) {
       switch (plan_.parts[static_cast<std::size_t>(part)].what.kind) {
         case PartKind::point: edge.hold = part; break;
@@ -185,6 +185,7 @@ class JointTreeBuilder {
         case PartKind::lock: edge.turn = part, edge.locked = true; break;
         case PartKind::swing: edge.turn = part; break;
         case PartKind::slide: edge.slide = part; break;
+        case PartKind::cone: edge.cone = part; break;
         default: edge.angle = part;
       }
     }

@@ -7,7 +7,7 @@
 
 namespace manyworlds {
 
-// What hangs together as trees that the kernels can solve at once: of ball joints without limits,
+// What hangs together as trees that the kernels can solve at once: of ball joints,
 // hinges, sliders, fixed and wheel joints. A few of them without drives or limits may close loops,
 // or hold to more than one thing that is not dynamic, where none begins apart or may break.
 struct SceneTrees {

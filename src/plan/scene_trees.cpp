@@ -15,9 +15,9 @@ namespace {
 bool fits(const Joint& joint) {
   const auto of_type = [](const auto& type) {
     using Type = std::decay_t<decltype(type)>;
-    if constexpr (std::is_same_v<Type, BallJoint>) return !type.cone && !type.twist;
-    return std::is_same_v<Type, HingeJoint> || std::is_same_v<Type, SliderJoint> ||
-           std::is_same_v<Type, FixedJoint> || std::is_same_v<Type, WheelJoint>;
+    return std::is_same_v<Type, BallJoint> || std::is_same_v<Type, HingeJoint> ||
+           std::is_same_v<Type, SliderJoint> || std::is_same_v<Type, FixedJoint> ||
+           std::is_same_v<Type, WheelJoint>;
   };
   return std::visit(of_type, joint.type);
 }
@@ -69,6 +69,7 @@ bool has_bounds(const Joint& joint) {
     if constexpr (std::is_same_v<Type, HingeJoint> || std::is_same_v<Type, SliderJoint>) {
       return type.limit.has_value() || type.drive.has_value();
     }
+    if constexpr (std::is_same_v<Type, BallJoint>) return type.cone || type.twist;
     return std::is_same_v<Type, WheelJoint>;
   };
   return std::visit(of_type, joint.type);

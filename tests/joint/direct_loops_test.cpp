@@ -8,6 +8,7 @@
 #include "scenes/known_motion.hpp"
 #include "scenes/makers.hpp"
 #include "tests/support/joints.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
@@ -69,42 +70,8 @@ Scene loops(Space space) {
 TEST_CASE("loops have the same bits wherever a world is", "[bits][fast][joint]") {
   for (const Space space : kSpaces) {
     const Plan plan = compile(loops(space));
-    REQUIRE(plan.resolved().joint.method == JointMethod::tree);
-    for (const Precision precision : {Precision::f32, Precision::f64}) {
-      std::vector<std::uint64_t> reference;
-      for (const Table& table : all_tables()) {
-        if (table.precision != precision) continue;
-        for (const ContactLayout layout : {ContactLayout::dense, ContactLayout::rows}) {
-          for (const int threads : {1, 3}) {
-            BatchOptions options = options_of(table, 21, threads);
-            options.layout = layout;
-            Batch batch(plan, options);
-            const auto joints = static_cast<int>(plan.scene().joints.size());
-            for (int w = 0; w < 21; w += 4) {
-              batch.set_joint_enabled(w, JointId(w % 8 == 0 ? 6 : joints - 1), false);
-            }
-            batch.step(60);
-            std::vector<std::uint64_t> hashes;
-            for (int w = 0; w < 21; ++w) {
-              CHECK(batch.status(w) == Status::ok);
-              hashes.push_back(batch.hash(w));
-            }
-            if (reference.empty()) reference = hashes;
-            INFO(name(table) << " threads " << threads);
-            CHECK(hashes == reference);
-          }
-        }
-      }
-      if (reference.empty()) continue;
-      CHECK(reference[0] != reference[1]);
-      BatchOptions alone = options_of({Isa::scalar, precision}, 1);
-      for (const int w : {1, 6, 18}) {
-        alone.seed = options_of({Isa::scalar, precision}, 1).seed + static_cast<std::uint64_t>(w);
-        Batch batch(plan, alone);
-        batch.step(60);
-        CHECK(batch.hash(0) == reference[static_cast<std::size_t>(w)]);
-      }
-    }
+    const auto joints = static_cast<int>(plan.scene().joints.size());
+    check_same_bits(plan, {JointId(6), JointId(joints - 1)});
   }
 }
 

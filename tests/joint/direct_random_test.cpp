@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "tests/support/joints.hpp"
 #include "tests/support/random.hpp"
@@ -130,6 +131,22 @@ int add_loops(Random& random, Scene& scene) {
   return loops;
 }
 
+// Ball joints with limits, in places of hinges and of what is fixed; returns how many.
+int limit_balls(Random& random, Scene& scene) {
+  int balls = 0;
+  for (Joint& joint : scene.joints) {
+    const bool hinge = std::holds_alternative<HingeJoint>(joint.type);
+    if (!hinge && !std::holds_alternative<FixedJoint>(joint.type)) continue;
+    BallJoint ball;
+    ball.cone = random.uniform(0.01, 1.5);
+    if (random.chance(0.8)) ball.twist = Limit{-random.uniform(0, 1), random.uniform(0, 1), {}};
+    if (random.chance(0.2) && ball.twist) ball.twist->spring = Spring{0, 0, 5, 0.7};
+    joint.type = ball;
+    ++balls;
+  }
+  return balls;
+}
+
 void check_energies(const Scene& scene, std::uint64_t seed) {
   BatchOptions options = options_of({widest_of(Precision::f32), Precision::f32}, 8);
   options.audit_every = 1;
@@ -153,6 +170,17 @@ TEST_CASE("random trees that fall gain no energy", "[joint][slow]") {
     const Scene scene = random_scene(random, seed % 2 == 0 ? Space::planar : Space::spatial);
     check_energies(scene, seed);
   }
+}
+
+TEST_CASE("random trees of ball joints with limits that fall gain no energy", "[joint][slow]") {
+  int balls = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed);
+    Scene scene = random_scene(random, Space::spatial);
+    balls += limit_balls(random, scene);
+    check_energies(scene, seed);
+  }
+  CHECK(balls > 200);
 }
 
 // Of these, 739 and 1577 lose worlds with a floor of 1e-5 (loops.hpp).

@@ -1,6 +1,7 @@
 #include "tests/support/joint_twin.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <variant>
@@ -23,6 +24,10 @@ std::optional<Drive> drive_of(const Joint& joint) {
 }
 bool is_wheel(const Joint& joint) { return std::holds_alternative<WheelJoint>(joint.type); }
 bool is_slider(const Joint& joint) { return std::holds_alternative<SliderJoint>(joint.type); }
+double twist_between(const Quat& a, const Quat& b) {
+  const Quat turn = a.conjugate() * b;
+  return 2 * std::atan2(turn.w() < 0 ? -turn.z() : turn.z(), std::abs(turn.w()));
+}
 bool slides(const Joint& joint) { return is_slider(joint) || is_wheel(joint); }
 
 }  // namespace
@@ -139,8 +144,7 @@ void JointTwin::find_drives(double dt) {
       x = (qa * Vec3::UnitX())
               .dot(anchor(joint.body_b, joint.frame_b) - anchor(joint.body_a, joint.frame_a));
     } else {
-      const Quat turn = qa.conjugate() * qb;
-      x = 2 * std::atan2(turn.w() < 0 ? -turn.z() : turn.z(), std::abs(turn.w()));
+      x = twist_between(qa, qb);
     }
     const Spring& spring = *drive->spring;
     DriveRow out;
@@ -152,10 +156,47 @@ void JointTwin::find_drives(double dt) {
   }
 }
 
-void JointTwin::solve(double rate, bool first) {
+// Beyond a bound nothing comes nearer than it is, and before it by no more than it is away. The
+// twist is followed about the mean of both axes, as rates are.
+std::vector<JointTwin::LimitRow> JointTwin::limits(double dt, bool first) const {
+  std::vector<LimitRow> out;
+  const auto add = [&](const Eigen::VectorXd& j, double gap) {
+    out.push_back({j, first ? -gap / dt : std::min(-gap / dt, 0.0)});
+  };
+  for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
+    const Joint& joint = scene_.joints[i];
+    const auto* ball = std::get_if<BallJoint>(&joint.type);
+    if (!ball || (!ball->cone && !ball->twist)) continue;
+    const Quat qa = axes(joint.body_a, joint.frame_a), qb = axes(joint.body_b, joint.frame_b);
+    const Vec3 za = qa * Vec3::UnitZ(), zb = qb * Vec3::UnitZ(), lean = za.cross(zb);
+    if (ball->cone) {
+      add(-about(joint, lean.normalized()), *ball->cone - std::atan2(lean.norm(), za.dot(zb)));
+    }
+    if (!ball->twist) continue;
+    const Vec3 n = (za + zb) / (1 + za.dot(zb));
+    double value = twist_[i];
+    if (!first) {
+      const auto turned = [&](BodyId body) -> Vec3 {
+        if (!body) return Vec3::Zero();
+        return dt * closing_[static_cast<std::size_t>(body.index())].angular;
+      };
+      value += n.dot(turned(joint.body_b) - turned(joint.body_a));
+    }
+    add(about(joint, n), value - ball->twist->low);
+    add(-about(joint, n), ball->twist->high - value);
+  }
+  return out;
+}
+
+Eigen::VectorXd JointTwin::solve_with(const std::vector<LimitRow>& limits, double rate, bool first,
+                                      Eigen::VectorXd& impulse) {
   const int n = kSize * static_cast<int>(bodies_.size());
-  const std::vector<Row> all = rows();
-  const int m = static_cast<int>(all.size());
+  std::vector<Row> all = rows();
+  const auto joints = static_cast<int>(all.size());
+  for (const LimitRow& limit : limits) {
+    if (limit.acts) all.push_back({limit.j, 0});
+  }
+  const auto m = static_cast<int>(all.size());
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + m, n + m);
   Eigen::VectorXd v = Eigen::VectorXd::Zero(n), load = Eigen::VectorXd::Zero(n + m);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -165,10 +206,7 @@ void JointTwin::solve(double rate, bool first) {
     v.segment<3>(at) = bodies_[i].linear, v.segment<3>(at + 3) = bodies_[i].angular;
   }
   load.head(n) = system.topLeftCorner(n, n) * v;
-  const std::vector<Eigen::VectorXd> j = drive_axes();
-  for (std::size_t i = 0; i < drives_.size(); ++i) {
-    DriveRow& drive = drives_[i];
-    drive.j = j[i];
+  for (const DriveRow& drive : drives_) {
     system.topLeftCorner(n, n) += drive.stiffness * drive.j * drive.j.transpose();
     load.head(n) += (drive.push - (first ? 0 : drive.impulse)) * drive.j;
   }
@@ -178,19 +216,63 @@ void JointTwin::solve(double rate, bool first) {
     system.col(n + k).head(n) = row.j;
     load(n + k) = -rate * row.error;
   }
+  int k = n + joints;
+  for (const LimitRow& limit : limits) {
+    if (limit.acts) {
+      load(k++) = limit.least;
+    } else {
+      load.head(n) -= limit.before * limit.j;
+    }
+  }
   const Eigen::VectorXd x = system.fullPivLu().solve(load);
-  for (DriveRow& drive : drives_)
-    drive.impulse = drive.push - drive.stiffness * drive.j.dot(x.head(n));
+  impulse = -x.tail(m - joints);
+  return x.head(n);
+}
+
+// The first of the limits that is wrong is put right, until none is (Murty 1974).
+void JointTwin::solve(double dt, bool first) {
+  const std::vector<Eigen::VectorXd> j = drive_axes();
+  for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].j = j[i];
+  std::vector<LimitRow> all = limits(dt, first);
+  for (std::size_t i = 0; !first && i < all.size(); ++i) all[i].before = limit_impulses_[i];
+  Eigen::VectorXd v, impulse;
+  for (bool wrong = true; wrong;) {
+    v = solve_with(all, first ? 1 / dt : 0, first, impulse);
+    wrong = false;
+    int k = 0;
+    for (LimitRow& limit : all) {
+      wrong =
+          limit.acts ? limit.before + impulse(k++) < -1e-12 : limit.j.dot(v) < limit.least - 1e-10;
+      if (!wrong) continue;
+      limit.acts = !limit.acts;
+      break;
+    }
+  }
+  limit_impulses_.clear();
+  int k = 0;
+  for (const LimitRow& limit : all) {
+    limit_impulses_.push_back(limit.acts ? limit.before + impulse(k++) : 0);
+  }
+  if (first) {
+    acting_ = static_cast<int>(
+        std::count_if(all.begin(), all.end(), [](const LimitRow& limit) { return limit.acts; }));
+  }
+  for (DriveRow& drive : drives_) drive.impulse = drive.push - drive.stiffness * drive.j.dot(v);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const int at = kSize * static_cast<int>(i);
-    bodies_[i].linear = x.segment<3>(at), bodies_[i].angular = x.segment<3>(at + 3);
+    bodies_[i].linear = v.segment<3>(at), bodies_[i].angular = v.segment<3>(at + 3);
   }
 }
 
 void JointTwin::step(double dt) {
   for (TwinBody& b : bodies_) b.linear += dt * scene_.options.gravity;
   find_drives(dt);
-  solve(1 / dt, true);
+  twist_.clear();
+  for (const Joint& joint : scene_.joints) {
+    twist_.push_back(
+        twist_between(axes(joint.body_a, joint.frame_a), axes(joint.body_b, joint.frame_b)));
+  }
+  solve(dt, true);
   closing_ = bodies_;
   for (TwinBody& b : bodies_) {
     b.position += dt * b.linear;
@@ -199,7 +281,7 @@ void JointTwin::step(double dt) {
       b.rotation = Quat(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * b.rotation;
     }
   }
-  solve(0, false);
+  solve(dt, false);
 }
 
 }  // namespace manyworlds::test

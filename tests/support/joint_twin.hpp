@@ -18,7 +18,8 @@ struct TwinBody {
 };
 
 // Ball joints, hinges, sliders, fixed and wheel joints between bodies that begin as the scene says,
-// with drives that are springs; neither limits nor bounds of drives.
+// with drives that are springs and hard limits of ball joints; neither other limits nor bounds of
+// drives.
 class JointTwin {
  public:
   explicit JointTwin(const Scene& scene);
@@ -29,6 +30,8 @@ class JointTwin {
   // As found by the last step before it moved the bodies; then as it left them.
   const std::vector<TwinBody>& closing() const { return closing_; }
   const std::vector<TwinBody>& bodies() const { return bodies_; }
+  // Limits that acted in the first of its solves.
+  int acting() const { return acting_; }
 
  private:
   struct Row {
@@ -39,7 +42,14 @@ class JointTwin {
     Eigen::VectorXd j;
     double stiffness = 0, push = 0, impulse = 0;  // impulse = push - stiffness j v
   };
+  // j v is at least `least`, by an impulse of the step that is at least 0.
+  struct LimitRow {
+    Eigen::VectorXd j;
+    double least = 0, before = 0;  // impulse so far
+    bool acts = false;
+  };
   std::vector<Row> rows() const;
+  std::vector<LimitRow> limits(double dt, bool first) const;
   Vec3 anchor(BodyId body, const Frame& frame) const;
   Quat axes(BodyId body, const Frame& frame) const;
   // j += d . velocity of the point at `place` of a body, times sign.
@@ -50,11 +60,17 @@ class JointTwin {
   Eigen::VectorXd along(const Joint& joint, const Vec3& d) const;
   std::vector<Eigen::VectorXd> drive_axes() const;
   void find_drives(double dt);
-  void solve(double rate, bool first);
+  void solve(double dt, bool first);
+  // Velocities of all bodies, with the limits that act; `impulse` of those.
+  Eigen::VectorXd solve_with(const std::vector<LimitRow>& limits, double rate, bool first,
+                             Eigen::VectorXd& impulse);
 
   Scene scene_;
   std::vector<TwinBody> bodies_, closing_;
   std::vector<DriveRow> drives_;
+  std::vector<double> twist_;  // of each joint, when the step began
+  std::vector<double> limit_impulses_;
+  int acting_ = 0;
 };
 
 }  // namespace manyworlds::test
