@@ -41,8 +41,8 @@ std::vector<Pose> read_poses(const mw::Batch& batch) {
 }
 
 // A point of a shape, given in the shape's frame, in the frame of its body.
-mw::Vec2 in_body(const mw::Shape& shape, const mw::Vec2& p) {
-  return (shape.position + shape.rotation.normalized() * mw::Vec3(p.x(), p.y(), 0)).head<2>();
+mw::Vec2 in_body(const mw::Shape& shape, const mw::Vec3& p) {
+  return (shape.position + shape.rotation.normalized() * p).head<2>();
 }
 
 // What of the world to show, m; y up.
@@ -52,56 +52,38 @@ struct View {
   double height() const { return high.y() - low.y(); }
 };
 
+// A chain of points of the shape.
 void draw_line(std::ofstream& svg, const mw::Shape& shape, const Pose& pose,
-               std::vector<mw::Vec2> points, bool closed) {
-  if (closed) points.push_back(points.front());
-  svg << "<polyline points='";
-  for (const mw::Vec2& point : points) {
+               const std::vector<mw::Vec3>& line, const char* as) {
+  svg << '<' << as << " points='";
+  for (const mw::Vec3& point : line) {
     const mw::Vec2 x = pose(in_body(shape, point));
     svg << x.x() << ',' << x.y() << ' ';
   }
   svg << "'/>\n";
 }
 
+mw::Surface surface_of(const mw::Shape& shape, const View& view) {
+  mw::SurfaceOptions options{.space = mw::Space::planar, .around = 32};
+  // Ground without end, in the frame of its shape, to beyond what is shown.
+  const double far = 2 * (view.width() + view.height());
+  options.low.setConstant(-far), options.high.setConstant(far);
+  return mw::surface(shape.geometry, options);
+}
+
 void draw_shape(std::ofstream& svg, const mw::Shape& shape, const Pose& pose, const View& view) {
-  if (const auto* circle = std::get_if<mw::Circle>(&shape.geometry)) {
-    const mw::Vec2 x = pose(in_body(shape, {0, 0})),
-                   rim = pose(in_body(shape, {circle->radius, 0}));
-    svg << "<circle cx='" << x.x() << "' cy='" << x.y() << "' r='" << circle->radius << "'/>"
-        << "<path d='M" << x.x() << ' ' << x.y() << 'L' << rim.x() << ' ' << rim.y() << "'/>\n";
-  } else if (const auto* capsule = std::get_if<mw::Capsule>(&shape.geometry)) {
-    // Up one side, around the end, down the other side and around the other end.
-    const double r = capsule->radius, h = capsule->half_length;
-    const auto at = [&](double x, double y) {
-      const mw::Vec2 p = pose(in_body(shape, {x, y}));
-      return std::to_string(p.x()) + ' ' + std::to_string(p.y());
-    };
-    const std::string around = 'A' + std::to_string(r) + ' ' + std::to_string(r) + " 0 0 1 ";
-    svg << "<path d='M" << at(r, -h) << 'L' << at(r, h) << around << at(-r, h) << 'L' << at(-r, -h)
-        << around << at(r, -h) << "Z'/>\n";
-  } else if (const auto* segment = std::get_if<mw::Segment>(&shape.geometry)) {
-    draw_line(svg, shape, pose, {segment->a, segment->b}, false);
-  } else if (const auto* terrain = std::get_if<mw::Terrain>(&shape.geometry)) {
-    draw_line(svg, shape, pose, terrain->points, terrain->loop);
-  } else if (const auto* polygon = std::get_if<mw::Polygon>(&shape.geometry)) {
-    svg << "<polygon points='";
-    for (const mw::Vec2& vertex : polygon->vertices) {
-      const mw::Vec2 x = pose(in_body(shape, vertex));
-      svg << x.x() << ',' << x.y() << ' ';
-    }
-    svg << "'/>\n";
-  } else if (const auto* half_plane = std::get_if<mw::HalfPlane>(&shape.geometry)) {
-    const mw::Vec2 n = half_plane->normal.normalized(), along(-n.y(), n.x());
-    const double far = 2 * (view.width() + view.height());
-    const mw::Vec2 on = n * half_plane->offset;
-    svg << "<polygon class='ground' points='";
-    for (const mw::Vec2& corner :
-         {mw::Vec2(on + far * along), mw::Vec2(on - far * along),
-          mw::Vec2(on - far * along - far * n), mw::Vec2(on + far * along - far * n)}) {
-      const mw::Vec2 x = pose(in_body(shape, corner));
-      svg << x.x() << ',' << x.y() << ' ';
-    }
-    svg << "'/>\n";
+  const mw::Surface surface = surface_of(shape, view);
+  for (const auto& [first, count] : surface.faces) {
+    const auto begin = surface.points.begin() + first;
+    const bool ground = std::holds_alternative<mw::HalfPlane>(shape.geometry);
+    draw_line(svg, shape, pose, {begin, begin + count},
+              ground ? "polygon class='ground'" : "polygon");
+  }
+  if (surface.faces.empty()) {
+    for (const auto& line : surface.lines) draw_line(svg, shape, pose, line, "polyline");
+  }
+  for (const auto& mark : surface.marks) {
+    draw_line(svg, shape, pose, mark, "polyline class='mark'");
   }
 }
 
@@ -111,22 +93,9 @@ View find_view(const mw::Batch& batch, const std::vector<Pose>& poses) {
     const int body = static_cast<int>(i) % batch.bodies();
     const mw::Scene& scene = batch.plan().scene();
     for (const mw::Shape& shape : scene.at(batch.body_in_row(body)).shapes) {
-      std::vector<mw::Vec2> corners;
-      if (const auto* polygon = std::get_if<mw::Polygon>(&shape.geometry)) {
-        for (const mw::Vec2& vertex : polygon->vertices) {
-          corners.push_back(poses[i](in_body(shape, vertex)));
-        }
-      } else if (const auto* circle = std::get_if<mw::Circle>(&shape.geometry)) {
-        const mw::Vec2 x = poses[i](in_body(shape, {0, 0})), r(circle->radius, circle->radius);
-        corners = {x - r, x + r};
-      } else if (const auto* capsule = std::get_if<mw::Capsule>(&shape.geometry)) {
-        const mw::Vec2 r(capsule->radius, capsule->radius);
-        for (const double end : {-capsule->half_length, capsule->half_length}) {
-          const mw::Vec2 x = poses[i](in_body(shape, {0, end}));
-          corners.insert(corners.end(), {x - r, x + r});
-        }
-      }
-      for (const mw::Vec2& x : corners) {
+      if (std::holds_alternative<mw::HalfPlane>(shape.geometry)) continue;
+      for (const mw::Vec3& p : surface_of(shape, {{0, 0}, {1, 1}}).points) {
+        const mw::Vec2 x = poses[i](in_body(shape, p));
         view.low = view.low.cwiseMin(x), view.high = view.high.cwiseMax(x);
       }
     }
@@ -173,9 +142,9 @@ int main(int argc, char** argv) {
   svg.precision(4);
   svg << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " << width << ' ' << height
       << "' width='1000' height='" << 1000 * height / width << "'>\n"
-      << "<style>circle,polygon,path{stroke:#1d1f2a;stroke-width:.03}"
+      << "<style>polygon{stroke:#1d1f2a;stroke-width:.03}"
       << "polyline{fill:none;stroke:#1d1f2a;stroke-width:.06}"
-      << ".ground{fill:#8d99ae;stroke:none}.sky{fill:#f4f1ea}</style>\n"
+      << ".mark{stroke-width:.03}.ground{fill:#8d99ae;stroke:none}.sky{fill:#f4f1ea}</style>\n"
       << "<clipPath id='view'><rect x='" << view.low.x() << "' y='" << view.low.y() << "' width='"
       << view.width() << "' height='" << view.height() << "'/></clipPath>\n";
   for (int world = 0; world < batch.worlds(); ++world) {

@@ -13,5 +13,6 @@
 #include "manyworlds/plan.hpp"
 #include "manyworlds/scene.hpp"
 #include "manyworlds/scenes.hpp"
+#include "manyworlds/surface.hpp"
 #include "manyworlds/task.hpp"
 #include "manyworlds/tasks.hpp"

@@ -56,13 +56,6 @@ std::vector<ManifoldPoint> manifold(const Shape& a, const Pose& pose_a, const Sh
 std::optional<RayHit> ray_cast(const Shape& shape, const Pose& pose, const Ray& ray,
                                std::optional<Space> space = std::nullopt);
 
-// What a picture shows of a geometry: all points within the radius of the convex hull of these.
-struct Outline {
-  std::vector<Vec3> points = {};  // m, shape frame; empty: not convex, or without end
-  double radius = 0;              // m
-};
-// Round shapes other than balls and capsules are given by points that are close to one another.
-Outline outline(const Geometry& geometry, Space space);
 // The geometry with another size (Parameter::size), of which it takes as many numbers as it has.
 Geometry resized(Geometry geometry, const Vec3& size);
 

@@ -12,7 +12,7 @@ the rest by example.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import joints, mjcf, query, scenes, shapes, tasks
+from . import joints, mjcf, query, scenes, shapes, surfaces, tasks
 from ._core import Expression, Snapshot, SnapshotError, __version__, available_isas
 from ._core import names as enumerations
 from .batch import Batch
@@ -45,6 +45,7 @@ from .scene import (
     vary,
 )
 from .shapes import *  # noqa: F403
+from .surfaces import *  # noqa: F403
 from .tasks import Action, Observation, Reward, Task, TaskError
 from .view import View
 
@@ -113,6 +114,7 @@ __all__ = [
 ]
 __all__ += joints.__all__
 __all__ += shapes.__all__
+__all__ += surfaces.__all__
 
 
 def __getattr__(name: str) -> Any:

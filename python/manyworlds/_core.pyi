@@ -141,10 +141,8 @@ def manifold(a: object, pose_a: object, b: object, pose_b: object, margin: objec
 def ray_cast(shape: object, pose: object, ray: object, space: object | None) -> object:
     """(distance, normal), or None where the ray misses."""
 
-def outline(geometry: object, planar: bool) -> object:
-    """
-    (corners, radius): all points within radius of their convex hull. None: not convex.
-    """
+def surface(geometry: object, space: object, around: object, low: object, high: object) -> tuple:
+    """(points, normals, triangles, faces, lines, marks) of a geometry."""
 
 def resized(geometry: object, size: object) -> object:
     """The geometry with other numbers of the parameter size."""

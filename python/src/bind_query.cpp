@@ -2,8 +2,10 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include "arrays.hpp"
 #include "bind.hpp"
 #include "manyworlds/query.hpp"
+#include "manyworlds/surface.hpp"
 #include "scene_fields.hpp"
 
 namespace manyworlds::python {
@@ -91,12 +93,38 @@ nb::object ray_cast_of(nb::handle shape, nb::handle pose, nb::handle ray, nb::ha
   return nb::make_tuple(hit->distance, to_python(hit->normal));
 }
 
-// (corners (n, 3), radius) of a geometry, or None.
-nb::object outline_of(nb::handle geometry, bool planar) {
-  const Outline out =
-      outline(from_python<Geometry>(geometry, "geometry"), planar ? Space::planar : Space::spatial);
-  if (out.points.empty()) return nb::none();
-  return nb::make_tuple(to_python(out.points), out.radius);
+// (n, width) of a list of n things of `width` numbers each.
+template <class T, class Rows>
+auto table_of(const Rows& rows, std::size_t width) {
+  std::vector<T> numbers;
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < width; ++c) {
+      numbers.push_back(row[static_cast<decltype(row.size())>(c)]);
+    }
+  }
+  return owned(std::move(numbers), {rows.size(), width});
+}
+
+nb::list chains_of(const std::vector<std::vector<Vec3>>& chains) {
+  nb::list out;
+  for (const auto& chain : chains) out.append(table_of<double>(chain, 3));
+  return out;
+}
+
+// (points, normals, triangles, faces, lines, marks).
+nb::tuple surface_of(nb::handle geometry, nb::handle space, nb::handle around, nb::handle low,
+                     nb::handle high) {
+  SurfaceOptions options;
+  options.space = from_python<Space>(space, "space");
+  options.around = from_python<int>(around, "around");
+  options.low = from_python<Vec3>(low, "low");
+  options.high = from_python<Vec3>(high, "high");
+  const Surface out =
+      answered([&] { return surface(from_python<Geometry>(geometry, "geometry"), options); });
+  return nb::make_tuple(table_of<double>(out.points, 3), table_of<double>(out.normals, 3),
+                        table_of<std::int32_t>(out.triangles, 3),
+                        table_of<std::int32_t>(out.faces, 2), chains_of(out.lines),
+                        chains_of(out.marks));
 }
 
 nb::object resized_of(nb::handle geometry, nb::handle size) {
@@ -116,8 +144,9 @@ void bind_query(nb::module_& m) {
         "[(normal, point, separation, feature)] of two shapes.");
   m.def("ray_cast", &ray_cast_of, nb::arg("shape"), nb::arg("pose"), nb::arg("ray"),
         nb::arg("space").none(), "(distance, normal), or None where the ray misses.");
-  m.def("outline", &outline_of, nb::arg("geometry"), nb::arg("planar"),
-        "(corners, radius): all points within radius of their convex hull. None: not convex.");
+  m.def("surface", &surface_of, nb::arg("geometry"), nb::arg("space"), nb::arg("around"),
+        nb::arg("low"), nb::arg("high"),
+        "(points, normals, triangles, faces, lines, marks) of a geometry.");
   m.def("resized", &resized_of, nb::arg("geometry"), nb::arg("size"),
         "The geometry with other numbers of the parameter size.");
 }

@@ -92,22 +92,23 @@ def test_what_swings_stays_in_view(name):
 
 
 def test_corners_outlines_and_faces():
-    box, _ = solids.corners_of(mw.Box((1, 2, 3)), planar=False)
-    faces = solids.faces_of(box)
+    box = mw.surface(mw.Box((1, 2, 3)))
+    faces = solids.patches_of(box)
     assert sorted(map(len, faces)) == [4] * 6
     for face in faces:
-        a, b, c = box[face[:3]]
-        assert np.cross(b - a, c - a) @ box[face].mean(axis=0) > 0  # seen from outside
-    cylinder, _ = solids.corners_of(mw.Cylinder(1, 2), planar=False)
-    assert sorted(map(len, solids.faces_of(cylinder))) == [4] * 24 + [24] * 2
+        a, b, c = box.points[face[:3]]
+        assert np.cross(b - a, c - a) @ box.points[face].mean(axis=0) > 0  # seen from outside
+    cylinder = mw.surface(mw.Cylinder(1, 2))
+    assert sorted(map(len, solids.patches_of(cylinder))) == [3] * 48 + [24] * 2
     hull = mw.make_hull(np.random.default_rng(3).normal(size=(30, 3)))
-    corners = np.asarray(hull.vertices)
-    faces = solids.faces_of(corners)
+    look = mw.surface(hull)
+    faces = solids.patches_of(look)
     edges = sum(map(len, faces)) / 2
-    assert len(corners) - edges + len(faces) == 2  # Euler
-    circle = solids.outline_of(np.zeros((1, 2)), 2.0)
+    assert len(look.lines) == edges
+    assert len(hull.vertices) - edges + len(faces) == 2  # Euler
+    circle = solids.outline_of(mw.surface(mw.Circle(2.0), "planar").points[:, :2])
     np.testing.assert_allclose(np.hypot(*circle.T), 2)
-    x, y = solids.outline_of(np.array([[0.0, 0], [3, 0], [1, 0], [3, 2], [0, 2]]), 0).T
+    x, y = solids.outline_of(np.array([[0.0, 0], [3, 0], [1, 0], [3, 2], [0, 2]])).T
     assert 0.5 * abs(np.dot(x, np.roll(y, 1)) - np.dot(y, np.roll(x, 1))) == pytest.approx(6)
 
 

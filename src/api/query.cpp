@@ -168,10 +168,6 @@ std::optional<RayHit> ray_cast(const Shape& shape, const Pose& pose, const Ray& 
   return cast(kernels_for<float>(Isa::scalar), plan, in_space);
 }
 
-Outline outline(const Geometry& geometry, Space space) {
-  return traits_of(geometry).outline(geometry, space);
-}
-
 Geometry resized(Geometry geometry, const Vec3& size) {
   const GeometryTraits& kind = traits_of(geometry);
   for (int c = 0; c < kind.sizes(); ++c) kind.resize(geometry, c, size[c]);

@@ -170,14 +170,12 @@ class Picture:
                 continue
             if isinstance(solid.geometry, (Plane, HalfPlane)):
                 draw = pieces.half_plane if self._eye.planar else pieces.floor
-                out += draw(*solids.surface(solid, *pose), view, self._eye)
+                out += draw(*solids.half_space_of(solid, *pose), view, self._eye)
                 continue
-            corners, radius = solid.corners, solid.radius
             if sizes is not None and sizes[solid.index, 0] > 0:
                 own = solids.resized(solid.geometry, sizes[solid.index])
-                corners, radius = solids.corners_of(own, self._eye.planar) or (corners, radius)
-            placed = solids.placed(solid, corners, *pose)
-            out += pieces.pieces_of(solid, placed, radius, pose[0] @ solid.rotation, self._eye)
+                solid = solid._replace(look=solids.look_of(own, self._eye.planar))
+            out += pieces.pieces_of(solid, pose, self._eye)
         return out
 
 

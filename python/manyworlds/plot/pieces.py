@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..shapes import Circle, HeightField, Sphere
+from ..shapes import Cylinder, HeightField
 from . import solids
-from .solids import Floats, Solid
+from .solids import Floats, Pose, Solid
 
 View = tuple[tuple[float, float], tuple[float, float]]  # (left, right), (bottom, top), m
 
@@ -42,15 +42,14 @@ class Eye(NamedTuple):
         return np.stack([points @ self.right, points @ self.up], axis=-1)
 
 
-def pieces_of(
-    solid: Solid, corners: Floats, radius: float, rotation: Floats, eye: Eye
-) -> list[Piece]:
-    """Of a solid that has an end; its corners are those in the world."""
+def pieces_of(solid: Solid, pose: Pose, eye: Eye) -> list[Piece]:
+    """Of a solid that has an end, whose body has this pose."""
+    points = solids.placed(solid, solid.points, *pose)
     if solid.is_line:
-        return [Piece(0.0, eye.flat(corners), None, rgb("#555b66"), 1.0)]
-    if solid.faces:
-        return _shaded(solid, corners, eye)
-    return _round(solid, corners, radius, rotation, eye)
+        return [Piece(0.0, eye.flat(points), None, rgb("#555b66"), 1.0)]
+    if solid.patches:
+        return _shaded(solid, points, eye)
+    return _round(solid, points, pose, eye)
 
 
 def _alpha(solid: Solid, eye: Eye) -> float:
@@ -62,34 +61,34 @@ def _shaded(solid: Solid, corners: Floats, eye: Eye) -> list[Piece]:
     """The faces that are seen, darker where they turn from the light."""
     pieces = []
     color = np.array(rgb(solid.color))
-    for face in solid.faces:
+    for face in solid.patches:
         ring = corners[face]
         normal = np.cross(ring[1] - ring[0], ring[2] - ring[0])
         if normal @ eye.towards <= 0:
             continue
         lit = 0.65 + 0.35 * max(0.0, float(normal @ _LIGHT / np.linalg.norm(normal)))
-        edge = (lit if isinstance(solid.geometry, HeightField) else 0.5) * color
+        of_round_side = isinstance(solid.geometry, (HeightField, Cylinder)) and len(face) == 3
+        edge = (lit if of_round_side else 0.5) * color
         depth = float(ring.mean(axis=0) @ eye.towards)
         outline = eye.flat(np.concatenate([ring, ring[:1]]))
         pieces.append(Piece(depth, outline, lit * color, edge, _alpha(solid, eye)))
     return pieces
 
 
-def _round(solid: Solid, corners: Floats, radius: float, rotation: Floats, eye: Eye) -> list[Piece]:
-    """The outline of a shape that is round or flat, and a mark that shows how a ball turns."""
+def _round(solid: Solid, points: Floats, pose: Pose, eye: Eye) -> list[Piece]:
+    """The outline of a shape that is round or flat, and marks that show how it turns."""
     color = np.array(rgb(solid.color))
-    outline = solids.outline_of(eye.flat(corners), radius)
-    depth = float(corners.mean(axis=0) @ eye.towards)
+    outline = solids.outline_of(eye.flat(points))
+    middle = points.mean(axis=0)
+    depth = float(middle @ eye.towards)
     closed = np.concatenate([outline, outline[:1]])
     pieces = [Piece(depth, closed, color, 0.5 * color, _alpha(solid, eye))]
-    if isinstance(solid.geometry, Circle):
-        mark = np.stack([corners[0], corners[0] + radius * rotation[:, 0]])
-    elif isinstance(solid.geometry, Sphere):
-        ring = radius * solids.EQUATOR @ rotation.T
-        mark = corners[0] + _seen_part(ring, ring @ eye.towards >= 0)
-    else:
-        return pieces
-    return [*pieces, Piece(depth, eye.flat(mark), None, 0.5 * color, 1.0)]
+    for line in solid.look.marks:
+        mark = solids.placed(solid, line, *pose)
+        if not eye.planar:
+            mark = _seen_part(mark, (mark - middle) @ eye.towards >= 0)
+        pieces.append(Piece(depth, eye.flat(mark), None, 0.5 * color, 1.0))
+    return pieces
 
 
 def half_plane(normal: Floats, offset: float, view: View, eye: Eye) -> list[Piece]:
@@ -131,10 +130,10 @@ def _middle(view: View, eye: Eye) -> Floats:
 
 
 def _seen_part(line: Floats, seen: NDArray[np.bool_]) -> Floats:
-    """Of a closed line, (n + 1, 3), whose seen points are neighbours, those."""
+    """Of a line, (n, 3), whose seen points are neighbours, those; it may be closed."""
+    if seen.all() or not (line[0] == line[-1]).all():
+        return line if seen.all() else line[seen]
     ring, inside = line[:-1], seen[:-1]
-    if inside.all():
-        return line
     start = -int(np.flatnonzero(~inside)[0])
     return np.roll(ring, start, axis=0)[np.roll(inside, start)]
 

@@ -31,7 +31,7 @@ def view_of(
     above = np.concatenate([*moving, np.zeros((0, 3))])
     for part in parts:
         if isinstance(part.geometry, (Plane, HalfPlane)):
-            normal, offset = solids.surface(part, *poses[part.body])
+            normal, offset = solids.half_space_of(part, *poses[part.body])
             if normal[1 if eye.planar else 2] > 0.5:
                 moving.append(above + (offset - above @ normal)[:, None] * normal)
     points, rest = (eye.flat(np.concatenate([*p, np.zeros((0, 3))])) for p in (moving, others))
@@ -75,8 +75,7 @@ def _room_of(scene: Scene, b: int, parts: Sequence[Solid], poses: Sequence[Pose]
     points = [np.zeros((0, 3))]
     for part in parts:
         if part.body == b:
-            placed = solids.placed(part, part.corners, *poses[b])
-            points += [placed - part.radius, placed + part.radius]
+            points.append(solids.placed(part, part.points, *poses[b]))
     room = np.concatenate(points)
     if len(room) and any(j.any_orientation or j.angle > 0 for j in (jitter, own)):
         middle = poses[leader][1]

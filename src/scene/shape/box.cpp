@@ -47,9 +47,21 @@ class BoxTraits final : public TraitsOf<Box> {
     f.inner_radius = f.half.minCoeff();
     return f;
   }
-  Outline outline_of(const Box& b, Space) const override {
-    Outline out;
-    for (int i = 0; i < 8; ++i) out.points.push_back(corner(b, i));
+  Surface surface_of(const Box& b, const SurfaceOptions&) const override {
+    Surface out;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-1.0, 1.0}) {
+        const Vec3 normal = side * Vec3::Unit(axis);
+        const Vec3 u = Vec3::Unit((axis + 1) % 3), v = side * Vec3::Unit((axis + 2) % 3);
+        std::vector<Vec3> corners;
+        for (const Vec3& sign : {Vec3(-u - v), Vec3(u - v), Vec3(u + v), Vec3(v - u)}) {
+          corners.push_back((normal + sign).cwiseProduct(b.half_extents));
+        }
+        detail::add_face(out, corners, normal);
+        if (axis == 2) out.lines.push_back(detail::closed(corners));
+      }
+    }
+    for (const int i : {0, 1, 2, 3}) out.lines.push_back({corner(b, i), corner(b, i | 4)});
     return out;
   }
 

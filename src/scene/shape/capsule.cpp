@@ -1,4 +1,6 @@
 // Capsules, in the plane and in space.
+#include <cmath>
+
 #include "src/scene/shape/traits.hpp"
 
 namespace manyworlds {
@@ -54,9 +56,31 @@ class CapsuleTraits final : public TraitsOf<Capsule> {
     f.radius = c.half_length + c.radius;
     return f;
   }
-  Outline outline_of(const Capsule& c, Space space) const override {
-    const Vec3 end = end_of(c, space);
-    return {{-end, end}, c.radius};
+  Surface surface_of(const Capsule& c, const SurfaceOptions& o) const override {
+    const double r = c.radius, h = c.half_length;
+    if (o.space == Space::planar) {
+      std::vector<Vec3> outline;
+      detail::add_arc(outline, {0, h, 0}, r, 0, kPi, o.around);
+      detail::add_arc(outline, {0, -h, 0}, r, kPi, 2 * kPi, o.around);
+      return detail::planar_solid(outline);
+    }
+    Surface out;
+    std::vector<detail::Ring> rings;
+    const int quarter = (o.around + 3) / 4;
+    for (const double end : {-1.0, 1.0}) {
+      for (int i = 0; i <= quarter; ++i) {
+        const double a = end < 0 ? kPi / 2 * (quarter - i) / quarter : kPi / 2 * i / quarter;
+        const bool pole = i == (end < 0 ? 0 : quarter);
+        const double c_a = pole ? 0 : std::cos(a), s_a = end * std::sin(a);
+        rings.push_back({r * c_a, end * h + r * s_a, c_a, s_a});
+      }
+    }
+    detail::add_revolved(out, rings, o.around);
+    for (const double end : {-h, h}) {
+      out.lines.push_back(detail::closed(detail::circle(r, end, o.around)));
+    }
+    out.marks.push_back({{r, 0, -h}, {r, 0, h}});
+    return out;
   }
 
  private:

@@ -29,7 +29,11 @@ class CircleTraits final : public TraitsOf<Circle> {
     f.radius = f.thickness = f.inner_radius = c.radius;
     return f;
   }
-  Outline outline_of(const Circle& c, Space) const override { return {{Vec3::Zero()}, c.radius}; }
+  Surface surface_of(const Circle& c, const SurfaceOptions& o) const override {
+    Surface out = detail::planar_solid(detail::circle(c.radius, 0, o.around));
+    out.marks.push_back({Vec3::Zero(), {c.radius, 0, 0}});
+    return out;
+  }
 };
 
 }  // namespace

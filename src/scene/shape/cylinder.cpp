@@ -1,4 +1,5 @@
 // Cylinders about z.
+#include <algorithm>
 #include <cmath>
 
 #include "src/scene/shape/traits.hpp"
@@ -40,9 +41,17 @@ class CylinderTraits final : public TraitsOf<Cylinder> {
     f.inner_radius = std::min(c.radius, c.half_length);
     return f;
   }
-  Outline outline_of(const Cylinder& c, Space) const override {
-    Outline out{detail::ring(c.radius, -c.half_length)};
-    for (const Vec3& p : detail::ring(c.radius, c.half_length)) out.points.push_back(p);
+  Surface surface_of(const Cylinder& c, const SurfaceOptions& o) const override {
+    Surface out;
+    detail::add_revolved(out, {{c.radius, -c.half_length, 1, 0}, {c.radius, c.half_length, 1, 0}},
+                         o.around);
+    for (const double end : {-1.0, 1.0}) {
+      std::vector<Vec3> rim = detail::circle(c.radius, end * c.half_length, o.around);
+      out.lines.push_back(detail::closed(rim));
+      if (end < 0) std::reverse(rim.begin(), rim.end());
+      detail::add_face(out, rim, end * Vec3::UnitZ());
+    }
+    out.marks.push_back({{c.radius, 0, -c.half_length}, {c.radius, 0, c.half_length}});
     return out;
   }
 };

@@ -45,17 +45,13 @@ class EllipsoidTraits final : public TraitsOf<Ellipsoid> {
     f.inner_radius = e.radii.minCoeff();
     return f;
   }
-  Outline outline_of(const Ellipsoid& e, Space) const override {
-    constexpr int kRings = 5, kAround = 12;
-    Outline out{{Vec3(0, 0, -e.radii.z()), Vec3(0, 0, e.radii.z())}, 0};
-    for (int i = 1; i <= kRings; ++i) {
-      const double polar = kPi * i / (kRings + 1);
-      for (int k = 0; k < kAround; ++k) {
-        const double angle = 2 * kPi * k / kAround;
-        const Vec3 unit(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
-                        std::cos(polar));
-        out.points.push_back(unit.cwiseProduct(e.radii));
-      }
+  Surface surface_of(const Ellipsoid& e, const SurfaceOptions& o) const override {
+    Surface out = detail::ball(1, o.around);
+    // A plane's normal is stretched by the inverse of what stretches the plane.
+    for (Vec3& p : out.points) p = p.cwiseProduct(e.radii);
+    for (Vec3& n : out.normals) n = n.cwiseQuotient(e.radii).normalized();
+    for (auto& line : out.marks) {
+      for (Vec3& p : line) p = p.cwiseProduct(e.radii);
     }
     return out;
   }

@@ -55,16 +55,20 @@ Convex prism_of(const std::array<Vec3, 3>& top, double level, const Vec3& x, con
   return c;
 }
 
+// Point of a field in the shape frame.
+Vec3 point_of(const HeightField& field, int i, int j) {
+  const double z = field.heights[static_cast<std::size_t>(i + j * field.columns)];
+  return {i * field.cell.x() - (field.columns - 1) * field.cell.x() / 2,
+          j * field.cell.y() - (field.rows() - 1) * field.cell.y() / 2, z};
+}
+
 // What is below each triangle of a surface, as deep as the field is wide below its lowest point.
 std::vector<Convex> prisms_of(const HeightField& field, const Vec3& x, const Mat3& r) {
   const int columns = field.columns - 1, rows = field.rows() - 1;
   const double wide = columns * field.cell.x(), deep = rows * field.cell.y();
   const double level =
       *std::min_element(field.heights.begin(), field.heights.end()) - std::hypot(wide, deep);
-  const auto corner = [&](int i, int j) {
-    const double z = field.heights[static_cast<std::size_t>(i + j * field.columns)];
-    return Vec3(i * field.cell.x() - wide / 2, j * field.cell.y() - deep / 2, z);
-  };
+  const auto corner = [&](int i, int j) { return point_of(field, i, j); };
   std::vector<Convex> out;
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
@@ -87,6 +91,37 @@ class HeightFieldTraits final : public TraitsOf<HeightField> {
   std::vector<Convex> parts_of(const HeightField& field, const Vec3& x, const Mat3& r,
                                Space) const override {
     return prisms_of(field, x, r);
+  }
+  // Normals are those of the cells around a point, so that the ground looks as smooth as bodies
+  // find it.
+  Surface surface_of(const HeightField& field, const SurfaceOptions&) const override {
+    const int columns = field.columns, rows = field.rows();
+    const auto at = [&](int i, int j) { return i + j * columns; };
+    Surface out;
+    for (int j = 0; j < rows; ++j) {
+      for (int i = 0; i < columns; ++i) out.points.push_back(point_of(field, i, j));
+    }
+    out.normals.assign(out.points.size(), Vec3::Zero());
+    for (int j = 0; j + 1 < rows; ++j) {
+      for (int i = 0; i + 1 < columns; ++i) {
+        out.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+        out.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    }
+    const auto index = [](int i) { return static_cast<std::size_t>(i); };
+    for (const auto& [a, b, c] : out.triangles) {
+      const Vec3 &p = out.points[index(a)], &q = out.points[index(b)], &r = out.points[index(c)];
+      const Vec3 area = (q - p).cross(r - p);
+      for (const int i : {a, b, c}) out.normals[index(i)] += area;
+    }
+    for (Vec3& n : out.normals) n.normalize();
+    std::vector<Vec3> border;
+    for (int i = 0; i < columns; ++i) border.push_back(point_of(field, i, 0));
+    for (int j = 1; j < rows; ++j) border.push_back(point_of(field, columns - 1, j));
+    for (int i = columns - 2; i >= 0; --i) border.push_back(point_of(field, i, rows - 1));
+    for (int j = rows - 2; j > 0; --j) border.push_back(point_of(field, 0, j));
+    out.lines.push_back(detail::closed(std::move(border)));
+    return out;
   }
 };
 

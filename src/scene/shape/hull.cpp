@@ -95,7 +95,21 @@ class HullTraits final : public TraitsOf<Hull> {
   ShapeForm form_of(const Hull&, const PolygonChoice&) const override {
     return {kernels::ShapeKind::hull};
   }
-  Outline outline_of(const Hull& hull, Space) const override { return {hull.vertices}; }
+  Surface surface_of(const Hull& hull, const SurfaceOptions&) const override {
+    const detail::ConvexHull solid = detail::convex_hull(hull.vertices);
+    const auto corner = [&](int i) { return solid.vertices[static_cast<std::size_t>(i)]; };
+    Surface out;
+    for (const detail::HullFace& f : solid.faces) {
+      std::vector<Vec3> corners;
+      for (std::size_t i = 0; i < f.outline.size(); ++i) {
+        const int from = f.outline[i], to = f.outline[(i + 1) % f.outline.size()];
+        corners.push_back(corner(from));
+        if (from < to) out.lines.push_back({corner(from), corner(to)});
+      }
+      detail::add_face(out, corners, f.normal);
+    }
+    return out;
+  }
 };
 
 }  // namespace

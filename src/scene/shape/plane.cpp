@@ -1,4 +1,7 @@
 // Planes and half-planes.
+#include <algorithm>
+#include <cmath>
+
 #include "src/scene/shape/traits.hpp"
 
 namespace manyworlds {
@@ -22,6 +25,25 @@ class PlaneTraits final : public TraitsOf<Plane> {
                                Space) const override {
     return {half_space_of(plane.normal, plane.offset, x, r)};
   }
+  Surface surface_of(const Plane& plane, const SurfaceOptions& o) const override {
+    const Vec3 n = plane.normal.normalized();
+    const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
+    // Around the foot of the box's middle, and beyond the box on all sides.
+    const Vec3 middle = (o.low + o.high) / 2;
+    const Vec3 foot = middle + (plane.offset - n.dot(middle)) * n;
+    const double far = (o.high - o.low).norm() + (foot - middle).norm();
+    std::vector<Vec3> corners = {foot - far * u - far * v, foot + far * u - far * v,
+                                 foot + far * u + far * v, foot - far * u + far * v};
+    for (int axis = 0; axis < 3; ++axis) {
+      corners = detail::clipped(corners, Vec3::Unit(axis), o.high[axis]);
+      corners = detail::clipped(corners, -Vec3::Unit(axis), -o.low[axis]);
+    }
+    Surface out;
+    if (corners.size() < 3) return out;
+    detail::add_face(out, corners, n);
+    out.lines.push_back(detail::closed(std::move(corners)));
+    return out;
+  }
 };
 
 class HalfPlaneTraits final : public TraitsOf<HalfPlane> {
@@ -38,6 +60,26 @@ class HalfPlaneTraits final : public TraitsOf<HalfPlane> {
   std::vector<Convex> parts_of(const HalfPlane& plane, const Vec3& x, const Mat3& r,
                                Space) const override {
     return {half_space_of(detail::in_plane(plane.normal), plane.offset, x, r)};
+  }
+  Surface surface_of(const HalfPlane& plane, const SurfaceOptions& o) const override {
+    const Vec3 n = detail::in_plane(plane.normal.normalized()), along(-n.y(), n.x(), 0);
+    const std::vector<Vec3> box = {{o.low.x(), o.low.y(), 0},
+                                   {o.high.x(), o.low.y(), 0},
+                                   {o.high.x(), o.high.y(), 0},
+                                   {o.low.x(), o.high.y(), 0}};
+    Surface out;
+    detail::add_face(out, detail::clipped(box, n, plane.offset), Vec3::UnitZ());
+    // Of the box, the points on the surface that are farthest to either side.
+    const std::vector<Vec3> above = detail::clipped(box, -n, -plane.offset);
+    std::vector<Vec3> line;
+    const double near = 1e-9 * (o.high - o.low).norm();
+    for (const Vec3& p : above) {
+      if (std::abs(n.dot(p) - plane.offset) <= near) line.push_back(p);
+    }
+    std::sort(line.begin(), line.end(),
+              [&](const Vec3& a, const Vec3& b) { return along.dot(a) > along.dot(b); });
+    if (line.size() > 1) out.lines.push_back({line.front(), line.back()});
+    return out;
   }
 };
 

@@ -189,10 +189,22 @@ class PolygonTraits final : public TraitsOf<Polygon> {
     f.radius += polygon.radius, f.inner_radius += polygon.radius;
     return f;
   }
-  Outline outline_of(const Polygon& polygon, Space) const override {
-    Outline out{{}, polygon.radius};
-    for (const Vec2& v : polygon.vertices) out.points.push_back(detail::in_plane(v));
-    return out;
+  Surface surface_of(const Polygon& polygon, const SurfaceOptions& o) const override {
+    std::vector<Vec3> outline;
+    const std::size_t n = polygon.vertices.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec2& at = polygon.vertices[i];
+      if (polygon.radius == 0) {
+        outline.push_back(detail::in_plane(at));
+        continue;
+      }
+      const Vec2 before = at - polygon.vertices[(i + n - 1) % n];
+      const Vec2 after = polygon.vertices[(i + 1) % n] - at;
+      const double from = std::atan2(-before.x(), before.y());
+      const double turn = std::atan2(detail::cross(before, after), before.dot(after));
+      detail::add_arc(outline, detail::in_plane(at), polygon.radius, from, from + turn, o.around);
+    }
+    return detail::planar_solid(outline);
   }
 };
 

@@ -30,6 +30,11 @@ class SegmentTraits final : public TraitsOf<Segment> {
     f.half.x() = f.radius = span.norm() / 2;
     return f;
   }
+  Surface surface_of(const Segment& s, const SurfaceOptions&) const override {
+    Surface out;
+    out.lines.push_back({detail::in_plane(s.a), detail::in_plane(s.b)});
+    return out;
+  }
 };
 
 }  // namespace

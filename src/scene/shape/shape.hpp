@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels/data/shape_kinds.hpp"
+#include "manyworlds/surface.hpp"
 #include "src/scene/checks.hpp"
 #include "src/scene/convex.hpp"
 
@@ -51,7 +52,8 @@ class GeometryTraits {
                                            Space space) const = 0;
   // Of what is one convex shape with an end.
   virtual ShapeForm form(const Geometry& geometry, const PolygonChoice& choice) const = 0;
-  virtual Outline outline(const Geometry& geometry, Space space) const = 0;
+  // What a picture shows of it (surface.hpp), once all is checked.
+  virtual Surface surface(const Geometry& geometry, const SurfaceOptions& options) const = 0;
 
  protected:
   struct Kind {

@@ -29,7 +29,9 @@ class SphereTraits final : public TraitsOf<Sphere> {
     f.radius = f.thickness = f.inner_radius = s.radius;
     return f;
   }
-  Outline outline_of(const Sphere& s, Space) const override { return {{Vec3::Zero()}, s.radius}; }
+  Surface surface_of(const Sphere& s, const SurfaceOptions& o) const override {
+    return detail::ball(s.radius, o.around);
+  }
 };
 
 }  // namespace

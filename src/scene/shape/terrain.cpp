@@ -64,6 +64,13 @@ class TerrainTraits final : public TraitsOf<Terrain> {
     }
     return links;
   }
+  Surface surface_of(const Terrain& terrain, const SurfaceOptions&) const override {
+    std::vector<Vec3> line;
+    for (const Vec2& p : terrain.points) line.push_back(detail::in_plane(p));
+    Surface out;
+    out.lines.push_back(terrain.loop ? detail::closed(std::move(line)) : std::move(line));
+    return out;
+  }
 };
 
 }  // namespace

@@ -51,15 +51,5 @@ void check_unit(Checker& checker, std::string_view field, double length) {
                          number_text(kInputTolerance) + ")");
 }
 
-std::vector<Vec3> ring(double radius, double z) {
-  constexpr int kCorners = 24;
-  std::vector<Vec3> out;
-  for (int i = 0; i < kCorners; ++i) {
-    const double angle = 2 * kPi * i / kCorners;
-    out.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
-  }
-  return out;
-}
-
 }  // namespace detail
 }  // namespace manyworlds

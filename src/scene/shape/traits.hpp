@@ -6,6 +6,7 @@
 #include <string>
 
 #include "src/scene/shape/shape.hpp"
+#include "src/scene/surface.hpp"
 
 namespace manyworlds {
 
@@ -38,7 +39,9 @@ class TraitsOf : public GeometryTraits {
   ShapeForm form(const Geometry& g, const PolygonChoice& choice) const final {
     return form_of(of(g), choice);
   }
-  Outline outline(const Geometry& g, Space space) const final { return outline_of(of(g), space); }
+  Surface surface(const Geometry& g, const SurfaceOptions& options) const final {
+    return surface_of(of(g), options);
+  }
 
  protected:
   virtual void examine(detail::Checker& checker, const G& g) const = 0;
@@ -52,7 +55,7 @@ class TraitsOf : public GeometryTraits {
   virtual ShapeForm form_of(const G&, const PolygonChoice&) const {
     return {kernels::ShapeKind::plane};
   }
-  virtual Outline outline_of(const G&, Space) const { return {}; }
+  virtual Surface surface_of(const G& g, const SurfaceOptions& options) const = 0;
 
  private:
   static const G& of(const Geometry& g) { return std::get<G>(g); }
@@ -116,9 +119,6 @@ void stretch(Vertices& vertices, int axis, double value) {
   if (value == before) return;
   for (auto& v : vertices) v[axis] *= value / before;
 }
-
-// Corners of an outline that stand for a circle of this radius across z, at this height.
-std::vector<Vec3> ring(double radius, double z);
 
 }  // namespace detail
 }  // namespace manyworlds
