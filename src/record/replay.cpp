@@ -1,38 +1,15 @@
-// Simulates a recording again and compares.
+// Compares a recording with what it does when it is simulated again.
 #include <bit>
 #include <cstdio>
 
 #include "src/base/float_mode.hpp"
 #include "src/record/described.hpp"
 #include "src/record/recording.hpp"
+#include "src/record/run_again.hpp"
 
 namespace manyworlds {
 
 namespace {
-
-// Room that a batch takes per byte of its snapshot, at most: a file that asks for more lies.
-constexpr std::size_t kMaxBytesPerByte = 64;
-constexpr std::size_t kFreeBytes = std::size_t{1} << 26;
-
-Batch make_batch(const Recording::Impl& recording, const ReplayOptions& options) {
-  std::vector<Batch::Kind> kinds;
-  std::size_t bytes = 0;
-  for (const auto& kind : recording.kinds) {
-    kinds.push_back({kind.plan, static_cast<int>(kind.worlds.size())});
-    bytes += kind.plan.report().bytes_per_world * kind.worlds.size();
-  }
-  if (bytes > kFreeBytes && bytes / kMaxBytesPerByte > recording.start.size()) {
-    throw RecordError("the snapshot has " + std::to_string(recording.start.size()) +
-                      " bytes, its worlds need some " + std::to_string(bytes));
-  }
-  BatchOptions batch;
-  batch.threads = options.threads;
-  batch.isa = options.isa;
-  batch.layout = options.layout;
-  batch.precision = recording.precision;
-  batch.sleep = recording.sleep;
-  return Batch(std::move(kinds), batch);
-}
 
 class Comparison {
  public:
@@ -126,39 +103,16 @@ class Comparison {
   std::vector<double> found_;
 };
 
-ReplayResult replay(const Recording& recording, const Recording::Impl& all,
-                    const ReplayOptions& options) {
-  Batch batch = make_batch(all, options);
+ReplayResult compared(const Recording& recording, const ReplayOptions& options) {
+  Batch batch = record::batch_of(recording, options);
   ReplayResult result;
-  result.worlds = all.worlds();
+  result.worlds = recording.worlds();
   result.kernel_table = batch.kernel_table();
   Comparison comparison(recording, batch, result);
-  std::int64_t at = 0;
-  int call_steps = 0;
-  std::size_t next = 0;
-  bool goes_on = true;
-  const GoOn go_on = [&] { return goes_on = goes_on && (!options.go_on || options.go_on()); };
-  try {
-    batch.restore(all.start);
-    for (std::int64_t sample = 0; sample < recording.samples() && go_on(); ++sample) {
-      const auto before =
-          static_cast<std::size_t>(all.inputs_before[static_cast<std::size_t>(sample)]);
-      for (; next < before && goes_on; ++next) {
-        const record::InputRow& row = all.inputs[next];
-        if (!record::advance(batch, at, row.step, call_steps, go_on)) break;
-        record::apply(batch, row, row.world, all.values(row), all.state(row));
-        if (row.call_steps > 0) call_steps = row.call_steps;
-      }
-      if (!goes_on || !record::advance(batch, at, recording.step(sample), call_steps, go_on)) break;
-      comparison.compare(sample);
-      ++result.samples;
-    }
-  } catch (const SnapshotError& error) {
-    throw RecordError(error.what());
-  } catch (const std::invalid_argument& error) {
-    throw RecordError("input " + std::to_string(next) + ": " + error.what());
-  }
-  result.steps = at;
+  result.steps = record::run_again(recording, batch, options.go_on, [&](std::int64_t sample) {
+    comparison.compare(sample);
+    ++result.samples;
+  });
   result.lost_worlds = batch.lost_worlds();
   return result;
 }
@@ -167,8 +121,7 @@ ReplayResult replay(const Recording& recording, const Recording::Impl& all,
 
 ReplayResult replay(const Recording& recording, const ReplayOptions& options) {
   const FloatMode mode;
-  const Recording::Impl& all = recording.impl();
-  return record::described(all.label, [&] { return replay(recording, all, options); });
+  return record::described(recording.impl().label, [&] { return compared(recording, options); });
 }
 
 }  // namespace manyworlds
