@@ -77,5 +77,5 @@ if(TARGET manyworlds_mjcf)
 endif()
 if(TARGET manyworlds_record)
   mw_pkg_config(manyworlds-record "Recordings for manyworlds" "manyworlds = ${PROJECT_VERSION}"
-                "hdf5" "")
+                "hdf5, zlib" "")
 endif()

@@ -17,6 +17,10 @@ foreach(file IN LISTS mw_python_files)
        SYMBOLIC)
 endforeach()
 
+if(TARGET mw_viewer)
+  file(CREATE_LINK "${mw_viewer_page}" "${mw_python_build}/manyworlds/viewer.html" SYMBOLIC)
+endif()
+
 if(NOT MW_TESTS)
   return()
 endif()

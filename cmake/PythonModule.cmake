@@ -1,6 +1,6 @@
 # The extension modules of the package manyworlds, for the ordinary build tree (Python.cmake) and for
 # wheels (python/CMakeLists.txt): _core, and where their libraries are built, _record and _mjcf, which
-# alone need HDF5 and MuJoCo. Wants the target manyworlds::manyworlds.
+# alone need HDF5 with zlib and MuJoCo. Wants the target manyworlds::manyworlds.
 
 find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
 if(NOT nanobind_DIR)
@@ -72,7 +72,7 @@ set(mw_python_converters "${mw_python_dir}/src/convert.cpp" "${mw_python_dir}/sr
 if(TARGET manyworlds::record)
   mw_python_module(_record "${mw_python_dir}/src/record/module.cpp" ${mw_python_converters})
   mw_python_links(manyworlds_python_record manyworlds::record)
-  target_link_libraries(manyworlds_python_record PRIVATE HDF5::HDF5)
+  target_link_libraries(manyworlds_python_record PRIVATE HDF5::HDF5 ZLIB::ZLIB)
 endif()
 if(TARGET manyworlds::mjcf)
   mw_python_module(_mjcf "${mw_python_dir}/src/mjcf/module.cpp" ${mw_python_converters})

@@ -66,7 +66,7 @@ endif()
 if(MW_RECORD)
   mw_test_program(manyworlds_record_tests ${mw_record_test_sources}
     "${PROJECT_SOURCE_DIR}/tools/report/report_files.cpp")
-  target_link_libraries(manyworlds_record_tests PRIVATE manyworlds_record HDF5::HDF5)
+  target_link_libraries(manyworlds_record_tests PRIVATE manyworlds_record HDF5::HDF5 ZLIB::ZLIB)
 endif()
 
 # The fast tests with each narrower instruction set forced. First, since they take longest.

@@ -23,6 +23,7 @@ from .ids import BodyId, ControlId, JointId, KeyframeId, ShapeId
 from .joints import *  # noqa: F403
 from .kinds import Kind
 from .options import ContactOptions, JointOptions, Medium, Options, SleepOptions, SolverOptions
+from .page import Page, PageReport, show, write_page
 from .plan import Plan
 from .query import Pose
 from .results import CONTACT, STEP_CONTACT, Status
@@ -81,6 +82,8 @@ __all__ = [
     "Medium",
     "Observation",
     "Options",
+    "Page",
+    "PageReport",
     "Plan",
     "Point",
     "Pose",
@@ -109,8 +112,10 @@ __all__ = [
     "mjcf",
     "query",
     "scenes",
+    "show",
     "tasks",
     "vary",
+    "write_page",
 ]
 __all__ += joints.__all__
 __all__ += shapes.__all__

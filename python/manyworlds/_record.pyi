@@ -1,5 +1,6 @@
 """Recordings, scenes as JSON. Private: use manyworlds.record."""
 
+from collections.abc import Sequence
 import os
 import pathlib
 from typing import Annotated
@@ -82,6 +83,11 @@ class Recording:
     def read(self, field: object | None, kind: int, begin: int, out: Annotated[NDArray, dict(order='C', device='cpu')]) -> None: ...
 
     def replay(self, isa: object | None, threads: object, layout: object | None) -> dict: ...
+
+def page(recordings: Sequence[Recording], empty: str | os.PathLike, file: str | os.PathLike | None, title: str, worlds: int, every: int, numbers: Sequence[tuple[str, Sequence[float]]]) -> object:
+    """
+    A page as text, or (worlds, bodies, frames, bytes) of one that was written.
+    """
 
 def unfinished_recordings(file: str | os.PathLike) -> list[pathlib.Path]:
     """

@@ -104,6 +104,9 @@ class Run(unittest.TestCase):
             (("run", "ball3d", "--record=a.h5"), {"MW_RECORD": "ON"}),
             (("soak", "ball3d", "--dump-lost", "lost/x"), {"MW_RECORD": "ON", "MW_MJCF": "OFF"}),
             (("replay", "a.h5"), {"MW_RECORD": "ON"}),
+            (("view", "runs/a.h5", "--out", "pages/a.html"),
+             {"MW_RECORD": "ON", "MW_MJCF": "OFF", "MW_VIEWER": "OFF"}),
+            (("view", "robot.xml"), {"MW_RECORD": "ON", "MW_MJCF": "ON"}),
             (("run", "--json", "scenes/mjcf/box_pile.xml"), {"MW_MJCF": "ON", "MW_RECORD": "OFF"}),
             (("plan", "folder/model"), {"MW_MJCF": "ON"}),
             (("model", "robot.xml"), {"MW_MJCF": "ON"}),
@@ -149,7 +152,7 @@ class Run(unittest.TestCase):
         # What makes objects what they are is as it was; what there is to build has grown.
         changed = {name for name in first if outcome.configured[name] != first[name]}
         self.assertEqual(changed, {"MW_KERNELS", "MW_MJCF", "MW_RECORD", "MW_REPORT", "MW_TESTS",
-                                   "MW_BENCH"})
+                                   "MW_BENCH", "MW_VIEWER"})
 
     def test_instruction_sets_of_the_environment(self):
         outcome = self.checkout(AVX512).run(MW_ISAS="scalar;avx2")

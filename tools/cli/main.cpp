@@ -43,6 +43,7 @@ struct AllOptions {
   CompareOptions compare;
   JobOptions soak;
   ReplayArguments replay;
+  ViewArguments view;
   ReportOptions report;
 };
 
@@ -235,6 +236,47 @@ void add_replay(CLI::App& app, AllOptions& all, int& code) {
   command->callback([&] { code = replay_command(all.replay); });
 }
 
+void add_view(CLI::App& app, AllOptions& all, int& code) {
+  CLI::App* command = app.add_subcommand("view", "Make a page that shows worlds in a browser");
+  ViewArguments& view = all.view;
+  command
+      ->add_option("what", view.sources,
+                   "recordings (.h5), names of scenes or MJCF files (.xml), side by side")
+      ->required()
+      ->type_name("FILE.h5|NAME|FILE.xml");
+  command->add_option("--out", view.out, "the page; default: one in the temporary folder, opened")
+      ->type_name("PAGE.html");
+  command->add_flag("--open", view.open, "open the page of --out, too");
+  command->add_option("--title", view.title, "of the page (default: the name of the scene)")
+      ->type_name("TEXT");
+  command->add_option("--worlds", view.worlds, "the first N (default: all recorded, or what fits)")
+      ->check(CLI::Range(1, 1 << 20))
+      ->type_name("N");
+  add_count(*command, "--every", view.every, 1, "show one of N samples of recordings");
+  add_count(*command, "--fps", view.fps, 1, "frames per second of scenes, simulated time");
+  command->add_option("--seconds", view.seconds, "simulated time of scenes")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S")
+      ->capture_default_str();
+  add_mjcf_options(*command, view.job);
+  add_plan_options(*command, view.job);
+  add_random_controls(*command, view.job);
+  add_keyframe(*command, view.job);
+  add_sleep_option(*command, view.job.sleep);
+  add_seed(*command, view.job.seed, "world i of a scene draws from seed + i (default: 0)");
+  add_json_option(*command, view.job);
+  command->footer(
+      "Examples:\n"
+      "  manyworlds view bin-boxes\n"
+      "  manyworlds view run.h5 --out page.html\n"
+      "  manyworlds view before.h5 after.h5 --out both.html\n"
+      "  manyworlds view humanoid.xml --random-controls --worlds 16 --seconds 5\n"
+      "\n"
+      "The page is one file that needs nothing else: no server, no network. Scenes are recorded\n"
+      "first, as many worlds as make a page of some 10 MB.");
+  command->callback([&] { code = view_command(all.view); });
+}
+
 // What all reports take.
 void add_report_options(CLI::App& app, ReportOptions& options, const std::string& name) {
   app.add_flag("--quick", options.quick, "shorter, in under two minutes");
@@ -382,6 +424,7 @@ int run_program(int argc, char** argv) {
   add_compare(app, all, code);
   add_soak(app, all, code);
   add_replay(app, all, code);
+  add_view(app, all, code);
   add_report(app, all, code);
   add_info(app, all, code);
   try {

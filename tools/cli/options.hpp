@@ -105,6 +105,18 @@ struct ReplayArguments {
   JobOptions job;  // threads, isa, layout and json of it
 };
 
+struct ViewArguments {
+  std::vector<std::string> sources;  // recordings, scenes, MJCF files
+  std::string out;                   // file; empty: one in the temporary folder, which is opened
+  std::string title;
+  int worlds = 0;  // 0: all of a recording, as many of a scene as fit
+  int every = 1;   // of the samples
+  int fps = 30;    // frames per simulated second, of scenes
+  double seconds = 10;
+  bool open = false;
+  JobOptions job;  // of scenes
+};
+
 // Each adds one group of options to a subcommand; values that fail their check make CLI11's parse
 // throw with the option's name in front. The options must outlive the parse.
 void add_scene_argument(CLI::App& app, JobOptions& options);

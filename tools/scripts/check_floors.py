@@ -44,6 +44,7 @@ ONE_HOME = {
     r"mujoco/.*": ("src/mjcf", None),
     r"tinyxml2\.h": ("src/mjcf", None),
     r"hdf5\.h": ("src/record", 1),
+    r"zlib\.h": ("src/record", 1),
     r"libqhull_r/.*": ("src/scene", 1),
     r"nlohmann/.*": ("src/record", 1),
     r"nanobind/.*": ("python/src", None),

@@ -15,8 +15,11 @@ packages=(
   libcli11-dev libeigen3-dev libfmt-dev libqhull-dev libtbb-dev libxsimd-dev nlohmann-json3-dev
 )
 mjcf_packages=(libtinyxml2-dev python3-pip)
-record_packages=(libhdf5-dev)
-tests_packages=(catch2 libbenchmark-dev pkg-config)
+record_packages=(libhdf5-dev zlib1g-dev)
+# Any Node that is there will do: one from elsewhere conflicts with Debian's npm.
+viewer_packages=()
+[[ -n $(type -P node) && -n $(type -P npm) ]] || viewer_packages=(nodejs npm)
+tests_packages=(catch2 chromium libbenchmark-dev pkg-config)
 # What the Python package is built and tested with, in an environment of its own.
 python_packages=(python3-dev python3-venv)
 python_dir="$root/build/python"
@@ -122,7 +125,7 @@ add_parts() {
       parts+=("$part")
     fi
   done
-  for part in mjcf record python; do
+  for part in mjcf record python viewer; do
     local name=MW_${part^^}
     case ${!name-} in
       "") ;;
@@ -148,6 +151,7 @@ configure() {
   arguments+=(-D "MW_KERNELS=$(IFS=';'; echo "${kernels[*]}")")
   arguments+=(-D "MW_MJCF=$(on_off mjcf)" -D "MW_RECORD=$(on_off record)")
   arguments+=(-D "MW_REPORT=$(on_off report)" -D "MW_PYTHON=$(on_off python)")
+  arguments+=(-D "MW_VIEWER=$(on_off viewer)")
   arguments+=(-D "MW_TESTS=$(on_off tests)" -D "MW_BENCH=$(on_off tests)")
   if has python; then arguments+=(-D "Python_EXECUTABLE=$python_dir/bin/python"); fi
   if [[ -n ${MW_ISAS-} ]]; then arguments+=(-D "MW_ISAS=$MW_ISAS"); else arguments+=(-U MW_ISAS); fi
@@ -178,9 +182,9 @@ took() {
 }
 
 # build TARGET PART...: everything up to an up-to-date TARGET in build/release, with these parts of
-# it: kernels (all sets) or single ones of $all_kernels, mjcf, record, report, tests, python. Parts
+# it: kernels (all sets) or single ones of $all_kernels, mjcf, record, report, tests, python, viewer. Parts
 # share their objects with what was built before, so a build that grows compiles what is new. Two at a
-# time wait for one another. MW_MJCF, MW_RECORD and MW_PYTHON in the environment (ON or OFF) overrule,
+# time wait for one another. MW_MJCF, MW_RECORD, MW_PYTHON and MW_VIEWER in the environment (ON or OFF) overrule,
 # MW_ISAS="scalar;avx2" leaves out the kernels of other instruction sets, BUILD_SHARED_LIBS=ON links anew.
 build() {
   local target=$1 parts=() part since
@@ -190,7 +194,7 @@ build() {
   flock 9
   add_parts "$@"
   since=$(now)
-  for part in mjcf record tests python; do
+  for part in mjcf record tests python viewer; do
     local -n more=${part}_packages
     if has "$part"; then packages+=("${more[@]}"); fi
   done

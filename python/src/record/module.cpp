@@ -2,11 +2,15 @@
 // because it needs HDF5.
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <array>
+#include <span>
+#include <utility>
 
+#include "manyworlds/page.hpp"
 #include "manyworlds/record.hpp"
 #include "python/src/arrays.hpp"
 #include "python/src/errors.hpp"
@@ -162,6 +166,47 @@ nb::dict replay_of(HeldRecording& self, nb::object isa, nb::object threads, nb::
   return out;
 }
 
+// f(), with all recordings held, their Recordings being in `found`.
+template <class F>
+auto with_all(std::span<HeldRecording* const> left, std::vector<const Recording*>& found, F f)
+    -> decltype(f()) {
+  if (left.empty()) return f();
+  return left.front()->with([&](Recording& r) {
+    found.push_back(&r);
+    return with_all(left.subspan(1), found, f);
+  });
+}
+
+// The page as text, or (worlds, bodies, frames, bytes) of a file that was written.
+nb::object page(const std::vector<HeldRecording*>& recordings, const std::filesystem::path& empty,
+                const std::optional<std::filesystem::path>& file, const std::string& title,
+                int worlds, std::int64_t every,
+                std::vector<std::pair<std::string, std::vector<float>>> numbers) {
+  PageOptions options{.title = title, .max_worlds = worlds, .every = every};
+  for (auto& [name, values] : numbers) options.numbers.push_back({name, "", std::move(values)});
+  std::vector<const Recording*> found;
+  return with_all(recordings, found, [&]() -> nb::object {
+    if (file) {
+      const PageReport report = [&] {
+        const nb::gil_scoped_release release;
+        return Interrupts::during([&](const GoOn& go_on) {
+          options.go_on = go_on;
+          return write_page(found, empty, *file, options);
+        });
+      }();
+      return nb::make_tuple(report.worlds, report.bodies, report.frames, report.bytes);
+    }
+    const std::string text = [&] {
+      const nb::gil_scoped_release release;
+      return Interrupts::during([&](const GoOn& go_on) {
+        options.go_on = go_on;
+        return page_of(found, empty, options);
+      });
+    }();
+    return nb::str(text.c_str(), text.size());
+  });
+}
+
 void bind_writing(nb::module_& m) {
   nb::class_<HeldRecorder>(m, "Recorder", "Private: use manyworlds.record.Recorder.")
       .def("__init__", &make_recorder, nb::arg("batch"), nb::arg("file"), nb::arg("worlds"),
@@ -230,6 +275,9 @@ NB_MODULE(_record, m) {
                           "A recording that cannot be written, or that is cut, corrupted or none.");
   bind_writing(m);
   bind_reading(m);
+  m.def("page", &page, nb::arg("recordings"), nb::arg("empty"), nb::arg("file").none(),
+        nb::arg("title"), nb::arg("worlds"), nb::arg("every"), nb::arg("numbers"),
+        "A page as text, or (worlds, bodies, frames, bytes) of one that was written.");
   m.def("unfinished_recordings", &unfinished_recordings, nb::arg("file"),
         nb::call_guard<nb::gil_scoped_release>(),
         "The part files beside a file that have contents and no writer any more.");

@@ -1,0 +1,68 @@
+# The page that shows recordings, viewer/: bundled by Node into one file, <build>/viewer/viewer.html,
+# which `manyworlds view` finds beside the program.
+
+set(mw_viewer_node_least 18)
+find_program(MW_NODE node)
+find_program(MW_NPM npm)
+mark_as_advanced(MW_NODE MW_NPM)
+if(NOT MW_NODE OR NOT MW_NPM)
+  message(FATAL_ERROR "MW_VIEWER=ON wants Node ${mw_viewer_node_least} or later and npm "
+                      "(Debian: nodejs npm)")
+endif()
+execute_process(COMMAND "${MW_NODE}" --version OUTPUT_VARIABLE mw_node_version
+                OUTPUT_STRIP_TRAILING_WHITESPACE)
+string(REGEX REPLACE "^v" "" mw_node_version "${mw_node_version}")
+if(mw_node_version VERSION_LESS mw_viewer_node_least)
+  message(FATAL_ERROR "MW_VIEWER=ON wants Node ${mw_viewer_node_least} or later; ${MW_NODE} is "
+                      "${mw_node_version}")
+endif()
+
+# Its packages are put beside a copy of what asks for them, so that the sources stay as they are.
+set(mw_viewer_dir "${PROJECT_BINARY_DIR}/viewer")
+set(mw_viewer_page "${mw_viewer_dir}/viewer.html")
+set(mw_viewer_packages "${mw_viewer_dir}/node_modules/.package-lock.json")
+file(GLOB mw_viewer_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/viewer/src/*"
+  "${PROJECT_SOURCE_DIR}/viewer/*.mjs" "${PROJECT_SOURCE_DIR}/viewer/tsconfig.json")
+add_custom_command(OUTPUT "${mw_viewer_packages}"
+  COMMAND ${CMAKE_COMMAND} -E copy_if_different "${PROJECT_SOURCE_DIR}/viewer/package.json"
+          "${PROJECT_SOURCE_DIR}/viewer/package-lock.json" "${mw_viewer_dir}"
+  COMMAND ${CMAKE_COMMAND} -E env PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1
+          "${MW_NPM}" ci --no-audit --no-fund --loglevel=error
+  COMMAND ${CMAKE_COMMAND} -E touch "${mw_viewer_packages}"
+  WORKING_DIRECTORY "${mw_viewer_dir}"
+  DEPENDS "${PROJECT_SOURCE_DIR}/viewer/package.json" "${PROJECT_SOURCE_DIR}/viewer/package-lock.json"
+  COMMENT "Fetching the packages of the viewer" VERBATIM)
+add_custom_command(OUTPUT "${mw_viewer_page}"
+  COMMAND ${CMAKE_COMMAND} -E copy_directory "${PROJECT_SOURCE_DIR}/viewer/src" "${mw_viewer_dir}/src"
+  COMMAND ${CMAKE_COMMAND} -E copy_if_different "${PROJECT_SOURCE_DIR}/viewer/build.mjs"
+          "${PROJECT_SOURCE_DIR}/viewer/tsconfig.json" "${mw_viewer_dir}"
+  COMMAND "${MW_NODE}" node_modules/typescript/bin/tsc --noEmit
+  COMMAND "${MW_NODE}" build.mjs "${mw_viewer_page}"
+  WORKING_DIRECTORY "${mw_viewer_dir}"
+  DEPENDS "${mw_viewer_packages}" ${mw_viewer_sources}
+  COMMENT "Bundling the viewer" VERBATIM)
+file(MAKE_DIRECTORY "${mw_viewer_dir}")
+add_custom_target(mw_viewer ALL DEPENDS "${mw_viewer_page}")
+
+if(MW_INSTALL)
+  # With the library, since wheels are made of that, and with the program.
+  foreach(component IN ITEMS library program)
+    install(FILES "${mw_viewer_page}" DESTINATION "${CMAKE_INSTALL_DATADIR}/manyworlds"
+            COMPONENT ${component})
+  endforeach()
+  add_dependencies(mw_libraries mw_viewer)
+endif()
+
+# The page in a real browser, one that Debian has.
+if(MW_TESTS AND TARGET manyworlds_cli AND MW_RECORD AND NOT MW_SANITIZE)
+  find_program(MW_CHROMIUM NAMES chromium chromium-browser google-chrome)
+  mark_as_advanced(MW_CHROMIUM)
+  add_test(NAME viewer_browser
+    COMMAND "${MW_NODE}" --test-reporter=spec --test "${PROJECT_SOURCE_DIR}/viewer/test/browser.test.mjs"
+    WORKING_DIRECTORY "${mw_viewer_dir}")
+  set(mw_viewer_environment "MANYWORLDS_CLI=$<TARGET_FILE:manyworlds_cli>"
+    "MANYWORLDS_VIEWER=${mw_viewer_page}" "CHROMIUM=${MW_CHROMIUM}"
+    "PLAYWRIGHT=${mw_viewer_dir}/node_modules/playwright-core/index.mjs")
+  set_tests_properties(viewer_browser PROPERTIES TIMEOUT 900 COST 800
+    ENVIRONMENT "${mw_viewer_environment}")
+endif()

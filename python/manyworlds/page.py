@@ -1,0 +1,149 @@
+"""Pages that show recordings in a browser or a notebook: one file, without a server or a network.
+
+    recording = mw.record.Recording("run.h5")
+    mw.write_page([recording], "page.html")
+    mw.show(recording)  # in a notebook's cell
+"""
+
+from __future__ import annotations
+
+import html
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import arrays, files
+from .batch import Batch
+from .files import File
+
+if TYPE_CHECKING:
+    from .record import Recording
+
+__all__ = ["Page", "PageReport", "show", "write_page"]
+
+_HEIGHT = 560  # pixels, in a cell
+
+
+class PageReport(NamedTuple):
+    """What a page holds."""
+
+    worlds: int  # of all recordings
+    bodies: int  # that move, of all worlds
+    frames: int
+    bytes: int
+
+
+class Page:
+    """A page as text; a notebook shows it in the cell."""
+
+    def __init__(self, text: str, height: int) -> None:
+        self.text = text
+        self.height = height
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe srcdoc="{html.escape(self.text)}" sandbox="allow-scripts" '
+            f'style="width: 100%; height: {self.height}px; border: 0; border-radius: 8px"></iframe>'
+        )
+
+    def save(self, file: File) -> None:
+        """Writes the page."""
+        files.path(file, "file").write_text(self.text, encoding="utf-8")
+
+    def __repr__(self) -> str:
+        return f"<Page of {len(self.text) / 1e6:.1f} MB; save(file) writes it>"
+
+
+def write_page(
+    recordings: Sequence[Recording],
+    file: File,
+    *,
+    title: str = "",
+    worlds: Optional[int] = None,
+    every: int = 1,
+    numbers: Optional[Mapping[str, ArrayLike]] = None,
+) -> PageReport:
+    """Writes a page of recordings: one, or several to be compared.
+
+    title     default: the name of the scene
+    worlds    the first so many of each; None: all
+    every     of the samples every so many
+    numbers   by name, (samples, worlds) of the first recording: what worlds can be coloured by
+
+    Raises RecordError where a recording cannot be read or the file not be written, ValueError,
+    TypeError; FileNotFoundError where the package was built without the page.
+    """
+    made = _page(recordings, title, worlds, every, numbers, files.path(file, "file"))
+    return PageReport(*made)  # type: ignore[misc]
+
+
+def show(
+    shown: Union[Recording, Sequence[Recording], Batch],
+    *,
+    title: str = "",
+    worlds: Optional[int] = None,
+    every: int = 1,
+    numbers: Optional[Mapping[str, ArrayLike]] = None,
+    height: int = _HEIGHT,
+) -> Page:
+    """The page of recordings, or of a batch as it is now, for a notebook's cell.
+
+    height    of the cell, in pixels; the others are those of ``write_page``
+    """
+    height = arrays.integer(height, "height", 100, 10_000)
+    if isinstance(shown, Batch):
+        from .record import Recorder, Recording
+
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "now.h5"
+            Recorder(shown, file, every=0).close()
+            with Recording(file) as now:
+                return Page(str(_page([now], title, worlds, every, numbers, None)), height)
+    several = list(shown) if isinstance(shown, Sequence) else [shown]
+    return Page(str(_page(several, title, worlds, every, numbers, None)), height)
+
+
+def _empty_page() -> Path:
+    """The page without data: MANYWORLDS_VIEWER, or what came with the package."""
+    given = os.environ.get("MANYWORLDS_VIEWER")
+    place = Path(given) if given else Path(__file__).with_name("viewer.html")
+    if place.is_file():
+        return place
+    raise FileNotFoundError(
+        f"there is no page at {place}: the package was built without it. tools/viewer in the "
+        "repository builds it, with Node 18 or later and npm; MANYWORLDS_VIEWER names one that is elsewhere"
+    )
+
+
+def _page(
+    recordings: Sequence[Recording],
+    title: str,
+    worlds: Optional[int],
+    every: int,
+    numbers: Optional[Mapping[str, ArrayLike]],
+    file: Optional[Path],
+) -> object:
+    from . import _record
+    from .record import Recording
+
+    for i, one in enumerate(recordings):
+        if not isinstance(one, Recording):
+            raise TypeError(f"recordings[{i}] is of type {type(one).__name__}; expected a Recording")
+    if not isinstance(title, str):
+        raise TypeError(f"title is of type {type(title).__name__}; expected a str")
+    most = 0 if worlds is None else arrays.integer(worlds, "worlds", 1, 2**31 - 1)
+    given = []
+    for name, values in (numbers or {}).items():
+        shape = (len(recordings[0].steps), len(recordings[0].worlds)) if recordings else (0, 0)
+        table = arrays.numbers(values, shape, ("sample", "world"), f"numbers[{name!r}]", np.float32)
+        given.append((str(name), table.reshape(-1).tolist()))
+    if not recordings:
+        raise ValueError("recordings is empty; expected one or more")
+    every = arrays.integer(every, "every", 1, 2**31 - 1)
+    held = [one._held for one in recordings]
+    return _record.page(held, _empty_page(), file, title, most, every, given)

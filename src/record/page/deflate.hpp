@@ -1,0 +1,16 @@
+// Compressed bytes as text.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace manyworlds::record {
+
+// In the format of zlib, which browsers call "deflate". Throws RecordError.
+std::vector<std::uint8_t> deflated(std::span<const std::uint8_t> bytes);
+std::string base64(std::span<const std::uint8_t> bytes);
+inline std::string packed(std::span<const std::uint8_t> bytes) { return base64(deflated(bytes)); }
+
+}  // namespace manyworlds::record

@@ -1,0 +1,95 @@
+// `view`: what it makes of recordings and scenes, and what it says where it cannot. What is on a
+// page is tested in tests/record and in a browser (viewer/test).
+#if MW_HAVE_CLI
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/paths.hpp"
+#include "tests/support/program.hpp"
+
+namespace manyworlds {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+using test::contains, test::Outcome;
+
+// A folder that the program runs in.
+struct Folder : test::ScratchFolder {
+  Outcome run(const std::string& arguments, const std::string& viewer = "viewer.html") const {
+    return test::run_program(test::kProgram, *this, arguments, "MANYWORLDS_VIEWER=" + viewer);
+  }
+};
+
+void check_bad(const Outcome& outcome, const char* message) {
+  CHECK(outcome.code == 2);
+  CHECK(outcome.out.empty());
+  INFO(outcome.err);
+  CHECK(contains(outcome.err, message));
+  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+}
+
+void write_empty_page(const Folder& folder) {
+  std::ofstream(folder / "viewer.html")
+      << "<meta name=\"manyworlds-page\" content=\"1\"><!-- manyworlds: recordings -->";
+}
+
+bool records(const Folder& folder) { return contains(folder.run("info").out, "recordings   yes"); }
+
+}  // namespace
+
+TEST_CASE("view makes pages of scenes and recordings", "[cli]") {
+  const Folder folder;
+  if (!records(folder)) return;
+  write_empty_page(folder);
+  const Outcome scene =
+      folder.run("view ball3d --worlds 3 --seconds 1 --fps 15 --out ball.html --json");
+  INFO(scene.err);
+  REQUIRE(scene.code == 0);
+  const Json json = Json::parse(scene.out);
+  CHECK(json["page"] == "ball.html");
+  CHECK(json["worlds"] == 3);
+  CHECK(json["bodies"] == 3);
+  CHECK(json["frames"] == 16);
+  CHECK(json["bytes"] == fs::file_size(folder / "ball.html"));
+  CHECK(json["opened"] == false);
+
+  REQUIRE(folder.run("run stack10 --worlds 4 --steps 12 --record a.h5 --record-every 2").code == 0);
+  const Outcome both = folder.run("view a.h5 stack10 --seconds 0.1 --worlds 2 --out both.html");
+  INFO(both.err);
+  CHECK(both.code == 0);
+  CHECK(contains(both.out, "both.html: 4 worlds, 40 moving bodies, 7 frames, "));
+  CHECK(folder.run("view a.h5 --every 3 --json --out c.html").code == 0);
+  // As many worlds as fit, and no file is left but the page.
+  const Outcome fits = folder.run("view ball3d --seconds 0.1 --out d.html --json");
+  CHECK(Json::parse(fits.out)["worlds"] == 256);
+}
+
+TEST_CASE("view says what is wrong", "[cli]") {
+  const Folder folder;
+  if (!records(folder)) return;
+  check_bad(folder.run("view ball3d", "absent.html"),
+            "MANYWORLDS_VIEWER is 'absent.html', which is no file");
+  write_empty_page(folder);
+  check_bad(folder.run("view absent.h5 --out a.html"), "'absent.h5': cannot be read");
+  check_bad(folder.run("view ball4d --out a.html"), "unknown scene 'ball4d'");
+  check_bad(folder.run("view ball3d --seconds 0.1 --worlds 2 --out no/such/a.html"), "no/such");
+  check_bad(folder.run("view ball3d --worlds 0"), "--worlds");
+  check_bad(folder.run("view"), "what is required");
+  CHECK_FALSE(fs::exists(folder / "a.html"));
+  std::ofstream(folder / "viewer.html") << "<html>";
+  check_bad(folder.run("view ball3d --seconds 0.1 --worlds 2 --out a.html"),
+            "is no page of this version");
+}
+
+}  // namespace manyworlds
+
+#endif

@@ -1,0 +1,154 @@
+// `manyworlds view`: recordings as a page, those given or one that is made for it.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "not_built.hpp"
+
+#ifdef MW_HAVE_RECORD
+#include "job.hpp"
+#include "manyworlds/page.hpp"
+#include "progress.hpp"
+#include "recording.hpp"
+#include "tools/base/interrupt.hpp"
+#include "tools/base/tell.hpp"
+#include "tools/base/text.hpp"
+#include "view_page.hpp"
+#endif
+
+namespace manyworlds::cli {
+
+#ifdef MW_HAVE_RECORD
+
+namespace {
+
+namespace fs = std::filesystem;
+using tools::counted, tools::with_prefix;
+
+// Of a recording that is made here, unless --worlds says otherwise: what makes a page of some 10
+// MB.
+constexpr double kMaxPoses = 2.5e6;
+constexpr int kMaxWorlds = 256;
+
+// A file that is gone when it is not needed any more.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& ending)
+      : path_(fs::temp_directory_path() / fmt::format("manyworlds-{}{}", getpid(), ending)) {}
+  ~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+// Steps a scene and records it in `file`.
+void record(const ViewArguments& arguments, const std::string& scene, const fs::path& file) {
+  JobOptions options = arguments.job;
+  options.scene = scene;
+  if (!options.seconds) options.seconds = arguments.seconds;
+  const Job job = prepare(options);
+  const double dt = job.plan.scene().options.dt;
+  options.record = file.string();
+  options.record_every = std::max(1, static_cast<int>(std::lround(1 / (arguments.fps * dt))));
+  if (arguments.worlds > 0) {
+    options.worlds = arguments.worlds;
+  } else {
+    const double frames = static_cast<double>(job.steps) / options.record_every + 1;
+    const double each = frames * std::max(1, job.plan.bodies());
+    options.worlds = static_cast<int>(std::clamp(kMaxPoses / each, 1.0, double{kMaxWorlds}));
+  }
+  options.record_worlds = fmt::format("0-{}", options.worlds - 1);
+  const std::uint64_t seed = options.seed.value_or(0);
+  Batch batch = make_batch(job, options, options.worlds, seed, options.threads);
+  const RandomControls controls = asked_controls(batch, options, seed);
+  const tools::Interruptible interruptible;
+  JobRecorder recorder(batch, options);
+  {
+    Progress progress(scene, job.steps);
+    timed_steps(batch, job.steps, steps_per_call(options), &progress, controls);
+  }
+  recorder.finish(batch);
+  if (!recorder.failure().empty()) throw InputError(recorder.failure());
+}
+
+bool is_recording(const std::string& source) {
+  return source.ends_with(".h5") || source.find(".h5.part-") != std::string::npos;
+}
+
+// Where the page goes that --out does not name.
+fs::path page_in_temporary_folder(const std::string& source) {
+  std::string name = fs::path(source).stem().string();
+  std::replace(name.begin(), name.end(), ':', '-');
+  return fs::temp_directory_path() / fmt::format("manyworlds-{}.html", name);
+}
+
+}  // namespace
+
+int view_command(const ViewArguments& arguments) {
+  const fs::path empty = empty_page();
+  const auto before = std::chrono::steady_clock::now();
+  std::vector<Recording> recordings;
+  for (const std::string& source : arguments.sources) {
+    if (is_recording(source)) {
+      recordings.push_back(Recording::open(source));
+    } else {
+      const TemporaryFile file(".h5");
+      record(arguments, source, file.path());
+      recordings.push_back(Recording::open(file.path()));
+    }
+  }
+  std::vector<const Recording*> all;
+  for (const Recording& one : recordings) all.push_back(&one);
+  PageOptions options;
+  options.title = arguments.title;
+  options.max_worlds = arguments.worlds;
+  options.every = arguments.every;
+  const fs::path out = arguments.out.empty() ? page_in_temporary_folder(arguments.sources.front())
+                                             : fs::path(arguments.out);
+  const PageReport report = write_page(all, empty, out, options);
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - before;
+  const bool opened =
+      (arguments.out.empty() || arguments.open) && open_in_browser(fs::absolute(out));
+  if (arguments.job.json) {
+    const nlohmann::ordered_json json = {{"page", out.string()},    {"worlds", report.worlds},
+                                         {"bodies", report.bodies}, {"frames", report.frames},
+                                         {"bytes", report.bytes},   {"seconds", spent.count()},
+                                         {"opened", opened}};
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    fmt::print("{}: {}, {} moving bodies, {}, {}B, {:.2f} s\n", out.string(),
+               counted(report.worlds, "world"), report.bodies,
+               counted(static_cast<int>(report.frames), "frame"),
+               with_prefix(static_cast<double>(report.bytes)), spent.count());
+    if (!opened && (arguments.out.empty() || arguments.open)) {
+      fmt::print("no desktop to open it on: open {} in a browser\n", fs::absolute(out).string());
+    }
+  }
+  return kOk;
+}
+
+#else
+
+int view_command(const ViewArguments&) { throw not_built("view", "recordings", "MW_RECORD=ON"); }
+
+#endif
+
+}  // namespace manyworlds::cli

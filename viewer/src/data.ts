@@ -1,0 +1,124 @@
+// What the page shows: heads of recordings, and frames of them.
+//
+// A FrameSource is all that the rest of the page knows of where frames come from. Recordings are
+// inside the page (recorded.ts); a socket that delivers frames of a running batch would be another
+// one, whose `frames` grows.
+
+export interface MeshLevel {
+  points: Float32Array;
+  normals: Float32Array;
+  triangles: Uint32Array;
+  lines: Float32Array; // pairs of points
+  marks: Float32Array;
+}
+
+export interface Mesh {
+  kind: string;
+  levels: MeshLevel[]; // the finest first
+}
+
+export interface Shape {
+  shape: number; // among all shapes of the scene
+  mesh: number;
+  size: number[];
+  stretch: number[];
+  position: number[];
+  rotation: number[]; // w x y z
+}
+
+export interface Body {
+  name: string;
+  motion: 'dynamic' | 'kinematic' | 'fixed';
+  row: number | null;
+  radius: number; // m
+  position: number[];
+  rotation: number[];
+  center: number[]; // of mass, body frame
+  mass: number; // kg
+  shapes: Shape[];
+}
+
+export interface JointEnd {
+  body: number | null;
+  position: number[];
+  rotation: number[];
+}
+
+export interface Joint {
+  name: string;
+  type: string;
+  a: JointEnd;
+  b: JointEnd;
+}
+
+export interface Kind {
+  scene: string;
+  gravity: number[];
+  rows: number; // moving bodies
+  low: number[];
+  high: number[];
+  bodies: Body[];
+  joints: Joint[];
+  first_world: number;
+  worlds: number;
+  names: number[];
+  orientation: 0 | 2 | 4;
+  sizes: { shape: number; values: Float32Array }[]; // [world] size x y z, stretch x y z
+}
+
+export interface WorldNumber {
+  name: string;
+  unit: string;
+  values: Float32Array; // [frame][world]
+}
+
+export interface Run {
+  origin: string;
+  space: 'planar' | 'spatial';
+  dt: number;
+  slowest: number; // m/s or rad/s
+  speed_steps: number;
+  meshes: Mesh[];
+  kinds: Kind[];
+  numbers: WorldNumber[];
+}
+
+// The moving bodies of a kind at one moment, [world][row].
+export interface Poses {
+  position: Float32Array; // x y z
+  rotation: Float32Array; // x y z w
+  speed: Uint8Array; // coded
+  spin: Uint8Array;
+  there: Uint8Array; // 0: disabled
+  status: Int32Array; // [world]
+}
+
+export interface FrameSource {
+  readonly run: Run;
+  readonly frames: number;
+  time(frame: number): number; // s
+  // Whether poses of the frame can be read at once; prepare() sees to that it will be so.
+  ready(frame: number): boolean;
+  prepare(frame: number): Promise<void>;
+  // Poses between a frame and the next one, 0 <= part < 1. Both must be ready.
+  read(frame: number, part: number, kind: number, into: Poses): void;
+}
+
+export function emptyPoses(kind: Kind): Poses {
+  const items = kind.worlds * kind.rows;
+  return {
+    position: new Float32Array(3 * items),
+    rotation: new Float32Array(4 * items),
+    speed: new Uint8Array(items),
+    spin: new Uint8Array(items),
+    there: new Uint8Array(items).fill(1),
+    status: new Int32Array(kind.worlds),
+  };
+}
+
+// Bits of a world's status (results.hpp).
+export const LOST = 1 | 2 | 4;
+
+export function speedOf(run: Run, code: number): number {
+  return code === 0 ? 0 : run.slowest * 2 ** ((code - 1) / run.speed_steps);
+}

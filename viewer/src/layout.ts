@@ -1,0 +1,61 @@
+// Where worlds stand: a grid for each run, side by side, or all runs in one place.
+import type { Kind, Run } from './data';
+
+export interface Cell {
+  run: number;
+  kind: number;
+  world: number; // of the kind
+  x: number; // m, where the world's origin is
+  y: number;
+  ghost: boolean;
+}
+
+export interface Layout {
+  cells: Cell[];
+  low: number[]; // m, of one cell, about its origin
+  high: number[];
+  width: number; // m, from cell to cell
+  depth: number;
+  box: { low: number[]; high: number[] }; // of all
+}
+
+const GAP = 0.14; // of the larger side of a cell, between cells
+
+export function makeLayout(runs: Run[], ghosts: boolean, aspect: number): Layout {
+  const planar = runs[0].space === 'planar';
+  const kinds: Kind[] = runs.flatMap((run) => run.kinds);
+  const low = [0, 1, 2].map((c) => Math.min(...kinds.map((kind) => kind.low[c])));
+  const high = [0, 1, 2].map((c) => Math.max(...kinds.map((kind) => kind.high[c])));
+  const side = Math.max(high[0] - low[0], high[1] - low[1]);
+  const width = high[0] - low[0] + GAP * side;
+  const depth = high[1] - low[1] + GAP * side;
+  const cells: Cell[] = [];
+  const counts = runs.map((run) => run.kinds.reduce((sum, kind) => sum + kind.worlds, 0));
+  const most = Math.max(...counts);
+  const abreast = ghosts ? 1 : runs.length;
+  // Seen from above a grid looks lower than it is deep.
+  const look = planar ? 1 : 0.78;
+  const columns = Math.max(1, Math.min(most, Math.round(Math.sqrt((most * depth * look * aspect) / (abreast * width)))));
+  const between = runs.length > 1 && !ghosts ? 0.6 * width : 0;
+  runs.forEach((run, r) => {
+    let n = 0;
+    const left = ghosts ? 0 : r * (columns * width + between);
+    run.kinds.forEach((kind, k) => {
+      for (let world = 0; world < kind.worlds; ++world, ++n) {
+        cells.push({
+          run: r, kind: k, world, ghost: ghosts && r > 0,
+          x: left + (n % columns) * width, y: -Math.floor(n / columns) * depth,
+        });
+      }
+    });
+  });
+  const xs = cells.map((cell) => cell.x);
+  const ys = cells.map((cell) => cell.y);
+  return {
+    cells, low, high, width, depth,
+    box: {
+      low: [Math.min(...xs) + low[0], Math.min(...ys) + low[1], low[2]],
+      high: [Math.max(...xs) + high[0], Math.max(...ys) + high[1], high[2]],
+    },
+  };
+}

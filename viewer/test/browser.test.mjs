@@ -1,0 +1,356 @@
+// The page in a real browser, on recordings that the program makes for it. Run by ctest:
+//   MANYWORLDS_CLI=program MANYWORLDS_VIEWER=viewer.html CHROMIUM=browser PLAYWRIGHT=.../index.mjs
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+
+const { MANYWORLDS_CLI: program, CHROMIUM: browserPath, MANYWORLDS_VIEWER: viewer, PLAYWRIGHT } = process.env;
+const { chromium } = await import(PLAYWRIGHT ?? 'playwright-core');
+
+const folder = mkdtempSync(join(tmpdir(), 'manyworlds-viewer-'));
+let browser;
+
+function run(...args) {
+  return execFileSync(program, args, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
+}
+
+// A page of sources, made once, and what its head says.
+const made = new Map();
+function pageOf(...args) {
+  const key = args.join(' ');
+  if (!made.has(key)) {
+    const file = join(folder, `${made.size}.html`);
+    run('view', ...args, '--out', file);
+    const head = /id="mw-head">(.*?)<\/script>/s.exec(readFileSync(file, 'utf8'));
+    made.set(key, { file, head: JSON.parse(head[1]) });
+  }
+  return made.get(key);
+}
+
+// Shapes of bodies that move, of all worlds.
+function shapesIn(head) {
+  let out = 0;
+  for (const r of head.runs) {
+    for (const kind of r.kinds) {
+      for (const body of kind.bodies) if (body.row !== null) out += kind.worlds * body.shapes.length;
+    }
+  }
+  return out;
+}
+
+// Opens a page without any network, and fails on what it complains of or asks for.
+async function open(file, { width = 1100, height = 760, dark = false, hash = '' } = {}) {
+  const context = await browser.newContext({
+    viewport: { width, height }, offline: true, reducedMotion: 'reduce',
+    colorScheme: dark ? 'dark' : 'light',
+  });
+  const page = await context.newPage();
+  const complaints = [];
+  const url = `file://${file}`;
+  page.on('console', (message) => {
+    if (message.type() === 'error' || message.type() === 'warning') complaints.push(message.text());
+  });
+  page.on('pageerror', (error) => complaints.push(error.message));
+  page.on('request', (request) => {
+    if (request.url() !== url && !request.url().startsWith('blob:')) complaints.push(`asks for ${request.url()}`);
+  });
+  await page.goto(url + hash);
+  await page.waitForFunction(() => window.manyworlds !== undefined, null, { timeout: 60000, polling: 50 });
+  const calm = () => page.waitForFunction(() => {
+    const { waiting, flying } = window.manyworlds.report;
+    return !waiting && !flying;
+  }, null, { timeout: 60000, polling: 50 });
+  await calm();
+  return {
+    page, complaints, calm,
+    report: () => page.evaluate(() => window.manyworlds.report),
+    body: (cell, row) => page.evaluate(([c, r]) => window.manyworlds.bodyAt(c, r), [cell, row]),
+    pixel: (at) => page.evaluate(({ x, y }) => window.manyworlds.pixelAt(x, y), at),
+    seek: async (time) => {
+      await page.evaluate((t) => window.manyworlds.seek(t), time);
+      await calm();
+    },
+    key: async (key) => {
+      await page.keyboard.press(key);
+      await calm();
+    },
+    close: async () => {
+      await context.close();
+      // Software GL says how slow it is to read pixels; that is of the tests, not of the page.
+      assert.deepEqual(complaints.filter((text) => !/GPU stall|swiftshader|software WebGL/i.test(text)), []);
+    },
+  };
+}
+
+function near(found, wanted, within, what) {
+  found.forEach((x, c) => assert.ok(Math.abs(x - wanted[c]) <= within, `${what}: ${found} is not ${wanted}`));
+}
+
+before(async () => {
+  assert.ok(browserPath && existsSync(browserPath), 'no Chromium was found: apt-get install chromium');
+  assert.ok(existsSync(viewer), `${viewer} was not built`);
+  browser = await chromium.launch({
+    executablePath: browserPath,
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+  });
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+describe('scenes', () => {
+  test('each opens offline, without a complaint, with as many shapes as were recorded', async () => {
+    for (const { name } of JSON.parse(run('scenes', '--json'))) {
+      const { file, head } = pageOf(name, '--worlds', '2', '--seconds', '0.4');
+      const view = await open(file, { width: 400, height: 300 });
+      const report = await view.report();
+      assert.equal(report.worlds, 2, name);
+      assert.equal(report.instances, shapesIn(head), name);
+      assert.equal(report.drawn, shapesIn(head), name);
+      assert.equal(report.frames[0], head.runs[0].times.length, name);
+      await view.seek(0.4);
+      await view.close();
+    }
+  });
+});
+
+describe('drawing', () => {
+  test('a body is where it was recorded, in its colour', async () => {
+    const { file, head } = pageOf('ball2d', '--worlds', '4', '--seconds', '3');
+    const view = await open(file);
+    const g = head.runs[0].kinds[0].gravity[1];
+    const heights = [[], []];
+    for (const time of [0, 0.2, 0.4]) { // it falls freely
+      await view.seek(time);
+      for (const [i, cell] of [0, 3].entries()) {
+        const { position, pixel, color } = await view.body(cell, 0);
+        heights[i].push(position[1]);
+        // Beside the mark that shows how it turns.
+        assert.deepEqual(await view.pixel({ x: pixel.x - 4, y: pixel.y - 4 }), color);
+      }
+    }
+    for (const [a, b, c] of heights) assert.ok(Math.abs(c - 2 * b + a - g * 0.04) < 0.01, `${[a, b, c]}`);
+    const before = await view.body(0, 0);
+    await view.seek(0);
+    const after = await view.body(0, 0);
+    assert.ok(Math.hypot(before.pixel.x - after.pixel.x, before.pixel.y - after.pixel.y) > 20);
+    assert.notDeepEqual(await view.pixel({ x: before.pixel.x - 4, y: before.pixel.y - 4 }), before.color);
+    await view.close();
+  });
+
+  test('in space a body has its colour, shaded', async () => {
+    const { file } = pageOf('ball3d', '--worlds', '1', '--seconds', '1');
+    const view = await open(file);
+    const { pixel, color } = await view.body(0, 0);
+    const seen = await view.pixel(pixel);
+    const order = (rgb) => [0, 1, 2].sort((a, b) => rgb[b] - rgb[a])[0];
+    assert.equal(order(seen), order(color), `${seen} of ${color}`);
+    assert.ok(Math.max(...seen) - Math.min(...seen) > 60, `${seen} has no colour`);
+    await view.close();
+  });
+
+  test('motion goes on over chunks of frames, and between frames', async () => {
+    const { file, head } = pageOf('free-flight', '--worlds', '1', '--seconds', '3');
+    const view = await open(file);
+    const { times } = head.runs[0];
+    const places = [];
+    for (const frame of [30, 31, 31.5, 32, 33, 34]) {
+      const low = Math.floor(frame);
+      await view.seek(times[low] + (frame - low) * (times[low + 1] - times[low]));
+      places.push(await view.body(0, 0));
+    }
+    const step = places[1].position.map((x, c) => x - places[0].position[c]);
+    assert.ok(Math.hypot(...step) > 1e-4);
+    const radius = head.runs[0].kinds[0].bodies.find((body) => body.row === 0).radius;
+    [1, 1.5, 2, 3, 4].forEach((n, i) => {
+      near(places[i + 1].position, places[0].position.map((x, c) => x + n * step[c]), (n + 1) * radius / 250, `frame ${30 + n}`);
+      assert.ok(Math.abs(Math.hypot(...places[i + 1].rotation) - 1) < 1e-5);
+    });
+    await view.close();
+  });
+
+  test('few calls draw many worlds, and the script is quick', async () => {
+    const { file } = pageOf('bin-boxes', '--worlds', '1024', '--seconds', '1');
+    const view = await open(file, { width: 640, height: 480, hash: '#time=0.5' });
+    assert.equal(await view.page.isChecked('#shadows'), false); // there is no graphics card here
+    const report = await view.report();
+    assert.equal(report.instances, 20480);
+    assert.equal(report.drawn, 20480);
+    assert.ok(report.drawCalls <= 20, `${report.drawCalls} draw calls`);
+    assert.equal(report.allCalls, report.drawCalls);
+    const spent = (await view.page.evaluate(() => window.manyworlds.measure(90))).slice(30).sort((a, b) => a - b);
+    console.log(`1024 worlds of bin-boxes, 20480 bodies: ${report.drawCalls} draw calls; script per frame, without GL, ` +
+      `${spent[0].toFixed(1)} ms at least, ${spent[30].toFixed(1)} ms in the median of ${spent.length}`);
+    await view.close();
+  });
+});
+
+describe('use', () => {
+  test('keys play, step, scrub and change speed', async () => {
+    const { file, head } = pageOf('stack10', '--worlds', '3', '--seconds', '2');
+    const view = await open(file);
+    const { times } = head.runs[0];
+    assert.equal((await view.report()).time, 0);
+    await view.key('ArrowRight');
+    await view.key('ArrowRight');
+    assert.equal((await view.report()).frame, 2);
+    await view.key('ArrowLeft');
+    assert.ok(Math.abs((await view.report()).time - times[1]) < 1e-9);
+    await view.key('End');
+    assert.equal((await view.report()).frame, times.length - 1);
+    await view.key('Shift+ArrowLeft');
+    assert.ok(Math.abs((await view.report()).time - (times.at(-1) - 1)) < 1e-6);
+    await view.key('Home');
+    await view.key(']');
+    await view.key(']');
+    assert.equal((await view.report()).speed, 4);
+    await view.page.keyboard.press(' ');
+    assert.equal((await view.report()).playing, true);
+    await view.page.waitForFunction(() => window.manyworlds.report.time > 0.3);
+    await view.page.keyboard.press(' ');
+    assert.equal((await view.report()).playing, false);
+    const slider = view.page.locator('#time');
+    await slider.fill('1.25');
+    await view.calm();
+    assert.equal((await view.report()).time, 1.25);
+    assert.match(await view.page.locator('#clock').textContent(), /^1\.25 \/ 2\.00 s$/);
+    await view.close();
+  });
+
+  test('a click goes to a world and chooses a body, which can be followed', async () => {
+    const { file } = pageOf('free-flight', '--worlds', '4', '--seconds', '2');
+    const view = await open(file);
+    const { pixel } = await view.body(2, 3);
+    await view.page.mouse.click(pixel.x, pixel.y);
+    await view.calm();
+    let report = await view.report();
+    assert.equal(report.chosen.cell, 2);
+    // Another body may be before it; then it is that one which is under the cursor.
+    const row = report.chosen.row;
+    assert.ok(row >= 0);
+    const there = await view.body(2, row);
+    assert.equal(await view.page.locator('#bodies tr.chosen').count(), 1);
+    assert.match(await view.page.locator('#world-name').textContent(), /^World 2/);
+    await view.page.mouse.click(there.pixel.x, there.pixel.y);
+    await view.calm();
+    await view.key('f');
+    assert.equal((await view.report()).following, true);
+    const begin = await view.body(2, (await view.report()).chosen.row);
+    await view.seek(1.5);
+    report = await view.report();
+    const end = await view.body(2, report.chosen.row);
+    assert.ok(Math.hypot(...end.position.map((x, c) => x - begin.position[c])) > 0.1, 'it moved');
+    near([end.pixel.x, end.pixel.y], [begin.pixel.x, begin.pixel.y], 1.5, 'pixels');
+    await view.page.evaluate(() => { for (const id of ['trails', 'joints', 'centers']) document.getElementById(id).click(); });
+    await view.calm();
+    await view.key('Escape');
+    report = await view.report();
+    assert.deepEqual(report.chosen, { cell: -1, row: -1 });
+    assert.equal(report.following, false);
+    await view.key('n');
+    assert.equal((await view.report()).chosen.cell, 0);
+    await view.close();
+  });
+
+  test('a body hidden by nothing is the one that is picked', async () => {
+    const { file } = pageOf('newton-cradle', '--worlds', '2', '--seconds', '1');
+    const view = await open(file);
+    for (const row of [0, 2, 4]) {
+      const { pixel } = await view.body(1, row);
+      await view.page.mouse.click(pixel.x, pixel.y);
+      await view.calm();
+      assert.deepEqual((await view.report()).chosen, { cell: 1, row });
+    }
+    await view.close();
+  });
+
+  test('colours follow numbers, and worlds that are lost are marked', async () => {
+    const { file } = pageOf('ball2d', '--worlds', '4', '--seconds', '3');
+    const view = await open(file);
+    await view.page.selectOption('#color', 'speed');
+    await view.seek(0.3);
+    const fast = await view.body(0, 0);
+    await view.seek(0);
+    const slow = await view.body(0, 0);
+    assert.notDeepEqual(fast.color, slow.color);
+    assert.deepEqual(await view.pixel({ x: slow.pixel.x - 4, y: slow.pixel.y - 4 }), slow.color);
+    assert.match(await view.page.locator('#high').textContent(), /m\/s/);
+    assert.doesNotMatch(await view.page.locator('#about').textContent(), /lost/);
+    await view.close();
+
+    const far = pageOf('ball2d', '--worlds', '2', '--seconds', '1', '--set', 'bounds=-50,3,-1,50,50,1');
+    const lost = await open(far.file);
+    await lost.seek(1);
+    assert.match(await lost.page.locator('#about').textContent(), /2 lost/);
+    const { pixel } = await lost.body(0, 0);
+    const seen = await lost.pixel({ x: pixel.x - 4, y: pixel.y - 4 });
+    assert.ok(seen[0] > seen[1] + 60 && seen[0] > seen[2] + 60, `${seen} is not red`);
+    await lost.key('l');
+    assert.match(await lost.page.locator('#world-about').textContent(), /out of bounds/);
+    await lost.close();
+  });
+
+  test('two recordings side by side, or in one place', async () => {
+    const files = ['f32', 'f64'].map((precision) => {
+      const file = join(folder, `${precision}.h5`);
+      run('run', 'stack10', '--worlds', '3', '--steps', '60', '--precision', precision, '--record', file, '--record-every', '2');
+      return file;
+    });
+    const { file, head } = pageOf(...files);
+    assert.equal(head.runs.length, 2);
+    const view = await open(file);
+    let report = await view.report();
+    assert.equal(report.worlds, 6);
+    assert.equal(report.instances, shapesIn(head));
+    const beside = [await view.body(0, 9), await view.body(3, 9)];
+    assert.ok(Math.abs(beside[0].pixel.x - beside[1].pixel.x) > 50);
+    await view.page.selectOption('#compare', 'ghosts');
+    await view.calm();
+    report = await view.report();
+    assert.equal(report.worlds, 6);
+    const one = [await view.body(0, 9), await view.body(3, 9)];
+    near([one[0].pixel.x, one[0].pixel.y], [one[1].pixel.x, one[1].pixel.y], 3, 'pixels');
+    await view.page.selectOption('#color', 'run');
+    await view.calm();
+    await view.close();
+  });
+
+  test('everything has its place on a phone and on a desk, dark and light', async () => {
+    const { file } = pageOf('stack10', '--worlds', '3', '--seconds', '2');
+    for (const [width, height] of [[390, 844], [1400, 900]]) {
+      for (const dark of [false, true]) {
+        const view = await open(file, { width, height, dark });
+        if (width < 500) await view.page.click('#panel-button');
+        await view.key('n');
+        const boxes = await view.page.evaluate(() => ['head', 'buttons', 'panel', 'timeline'].map((id) => {
+          const { left, right, top, bottom } = document.getElementById(id).getBoundingClientRect();
+          return { id, left, right, top, bottom };
+        }));
+        boxes.forEach((a, i) => {
+          assert.ok(a.left >= 0 && a.right <= width && a.top >= 0 && a.bottom <= height, `${a.id} is cut at ${width}`);
+          for (const b of boxes.slice(i + 1)) {
+            const apart = a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+            assert.ok(apart, `${a.id} and ${b.id} overlap at ${width}`);
+          }
+        });
+        assert.equal(await view.page.evaluate(() => document.documentElement.classList.contains('dark')), dark);
+        assert.ok(await view.page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth));
+        await view.close();
+      }
+    }
+  });
+
+  test('a page without a recording says so', async () => {
+    const context = await browser.newContext({ offline: true });
+    const page = await context.newPage();
+    await page.goto(`file://${viewer}`);
+    await page.waitForFunction(() => !document.getElementById('message').hidden);
+    assert.match(await page.locator('#message').textContent(), /This page has no recording: manyworlds view/);
+    await context.close();
+  });
+});
