@@ -1,5 +1,6 @@
 # Installs the built tree into a fresh prefix, moves that to PREFIX, and runs the program from there.
 #   cmake -D BUILD_DIR=... -D SOURCE_DIR=... -D PREFIX=... -D BINDIR=bin -D MJCF=ON -D RECORD=ON
+#         -D VIEWER=ON
 #         -P TestInstall.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -39,4 +40,7 @@ endif()
 if(RECORD)
   run("${program}" run ball3d --worlds 20 --steps 10 --record run.h5 WORKING_DIRECTORY "${folder}")
   run("${program}" replay run.h5 WORKING_DIRECTORY "${folder}")
+  if(VIEWER)
+    run("${program}" view run.h5 --out page.html WORKING_DIRECTORY "${folder}")
+  endif()
 endif()

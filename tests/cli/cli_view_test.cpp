@@ -84,6 +84,10 @@ TEST_CASE("view says what is wrong", "[cli]") {
   check_bad(folder.run("view ball3d --seconds 0.1 --worlds 2 --out no/such/a.html"), "no/such");
   check_bad(folder.run("view ball3d --worlds 0"), "--worlds");
   check_bad(folder.run("view"), "what is required");
+  for (const char* size : {"3x", "1280x720x", "63x64", "64x9000", "axb"}) {
+    check_bad(folder.run(std::string("view ball3d --png a.png --size ") + size),
+              "--size: must be like 1280x720, each 64 to 8192, is '");
+  }
   CHECK_FALSE(fs::exists(folder / "a.html"));
   std::ofstream(folder / "viewer.html") << "<html>";
   check_bad(folder.run("view ball3d --seconds 0.1 --worlds 2 --out a.html"),

@@ -104,7 +104,7 @@ class Run(unittest.TestCase):
             (("run", "ball3d", "--record=a.h5"), {"MW_RECORD": "ON"}),
             (("soak", "ball3d", "--dump-lost", "lost/x"), {"MW_RECORD": "ON", "MW_MJCF": "OFF"}),
             (("replay", "a.h5"), {"MW_RECORD": "ON"}),
-            (("view", "runs/a.h5", "--out", "pages/a.html"),
+            (("view", "runs/a.h5", "--out", "pages/a.html", "--png", "x/a.png"),
              {"MW_RECORD": "ON", "MW_MJCF": "OFF", "MW_VIEWER": "OFF"}),
             (("view", "robot.xml"), {"MW_RECORD": "ON", "MW_MJCF": "ON"}),
             (("run", "--json", "scenes/mjcf/box_pile.xml"), {"MW_MJCF": "ON", "MW_RECORD": "OFF"}),

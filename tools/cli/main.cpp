@@ -247,6 +247,15 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
   command->add_option("--out", view.out, "the page; default: one in the temporary folder, opened")
       ->type_name("PAGE.html");
   command->add_flag("--open", view.open, "open the page of --out, too");
+  command
+      ->add_option("--png", view.png, "a picture of the page, by headless Chromium; no page then")
+      ->type_name("FILE.png");
+  command->add_option("--at", view.at, "when, simulated time (default: the end)")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
+  command->add_option("--size", view.size, "of the picture, in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
   command->add_option("--title", view.title, "of the page (default: the name of the scene)")
       ->type_name("TEXT");
   command->add_option("--worlds", view.worlds, "the first N (default: all recorded, or what fits)")
@@ -269,6 +278,7 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       "Examples:\n"
       "  manyworlds view bin-boxes\n"
       "  manyworlds view run.h5 --out page.html\n"
+      "  manyworlds view bin-boxes --png picture.png --at 1.2 --size 1200x680\n"
       "  manyworlds view before.h5 after.h5 --out both.html\n"
       "  manyworlds view humanoid.xml --random-controls --worlds 16 --seconds 5\n"
       "\n"

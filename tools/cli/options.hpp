@@ -114,6 +114,9 @@ struct ViewArguments {
   int fps = 30;    // frames per simulated second, of scenes
   double seconds = 10;
   bool open = false;
+  std::string png;           // file; empty: no picture
+  std::optional<double> at;  // s, of the picture; default: the end
+  std::string size = "1280x720";
   JobOptions job;  // of scenes
 };
 

@@ -104,6 +104,7 @@ fs::path page_in_temporary_folder(const std::string& source) {
 
 int view_command(const ViewArguments& arguments) {
   const fs::path empty = empty_page();
+  const PictureSize size = parse_size(arguments.size);
   const auto before = std::chrono::steady_clock::now();
   std::vector<Recording> recordings;
   for (const std::string& source : arguments.sources) {
@@ -121,24 +122,36 @@ int view_command(const ViewArguments& arguments) {
   options.title = arguments.title;
   options.max_worlds = arguments.worlds;
   options.every = arguments.every;
-  const fs::path out = arguments.out.empty() ? page_in_temporary_folder(arguments.sources.front())
-                                             : fs::path(arguments.out);
+  const bool picture = !arguments.png.empty();
+  std::optional<TemporaryFile> unnamed;  // of a picture alone
+  if (picture && arguments.out.empty()) unnamed.emplace(".html");
+  const fs::path out = unnamed                 ? unnamed->path()
+                       : arguments.out.empty() ? page_in_temporary_folder(arguments.sources.front())
+                                               : fs::path(arguments.out);
   const PageReport report = write_page(all, empty, out, options);
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - before;
+  if (picture) {
+    take_picture(out, fmt::format("picture&time={}", arguments.at.value_or(1e12)), size,
+                 arguments.png);
+  }
   const bool opened =
-      (arguments.out.empty() || arguments.open) && open_in_browser(fs::absolute(out));
+      !unnamed && (arguments.out.empty() || arguments.open) && open_in_browser(fs::absolute(out));
+  const std::string made = unnamed ? arguments.png : out.string();
   if (arguments.job.json) {
-    const nlohmann::ordered_json json = {{"page", out.string()},    {"worlds", report.worlds},
-                                         {"bodies", report.bodies}, {"frames", report.frames},
-                                         {"bytes", report.bytes},   {"seconds", spent.count()},
+    const nlohmann::ordered_json json = {{unnamed ? "picture" : "page", made},
+                                         {"worlds", report.worlds},
+                                         {"bodies", report.bodies},
+                                         {"frames", report.frames},
+                                         {"bytes", report.bytes},
+                                         {"seconds", spent.count()},
                                          {"opened", opened}};
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
-    fmt::print("{}: {}, {} moving bodies, {}, {}B, {:.2f} s\n", out.string(),
+    fmt::print("{}: {}, {} moving bodies, {}, {}B, {:.2f} s\n", made,
                counted(report.worlds, "world"), report.bodies,
                counted(static_cast<int>(report.frames), "frame"),
                with_prefix(static_cast<double>(report.bytes)), spent.count());
-    if (!opened && (arguments.out.empty() || arguments.open)) {
+    if (!opened && !unnamed && (arguments.out.empty() || arguments.open)) {
       fmt::print("no desktop to open it on: open {} in a browser\n", fs::absolute(out).string());
     }
   }

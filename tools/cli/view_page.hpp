@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace manyworlds::cli {
 
@@ -11,5 +12,16 @@ std::filesystem::path empty_page();
 
 // Hands a page to the desktop's browser. False where there is no desktop.
 bool open_in_browser(const std::filesystem::path& page);
+
+// "1280x720" as width and height, pixels. Throws InputError.
+struct PictureSize {
+  int width = 0, height = 0;
+};
+PictureSize parse_size(const std::string& text);
+
+// A picture of a page as headless Chromium shows it, with what stands behind '#' in its address.
+// CHROMIUM in the environment names the browser. Throws InputError, also where there is none.
+void take_picture(const std::filesystem::path& page, const std::string& fragment,
+                  const PictureSize& size, const std::filesystem::path& png);
 
 }  // namespace manyworlds::cli

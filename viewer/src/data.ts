@@ -102,6 +102,8 @@ export interface FrameSource {
   prepare(frame: number): Promise<void>;
   // Poses between a frame and the next one, 0 <= part < 1. Both must be ready.
   read(frame: number, part: number, kind: number, into: Poses): void;
+  // Where one body, world * rows + row, is at a frame; false where that is not ready.
+  positionAt(frame: number, kind: number, item: number, out: number[]): boolean;
 }
 
 export function emptyPoses(kind: Kind): Poses {

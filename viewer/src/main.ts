@@ -1,10 +1,10 @@
 // The page: what its buttons, keys and clicks do, and the loop that draws.
 import * as THREE from 'three';
 
-import { PALETTE, scaleGradient } from './colors';
-import { speedOf } from './data';
+import { scaleGradient } from './colors';
+import { speedOf, type FrameSource } from './data';
 import { Overlays, type Chosen } from './overlays';
-import { openRuns, type RecordedSource } from './recorded';
+import { openRuns } from './recorded';
 import { Stage, THEMES } from './stage';
 import { Worlds, momentOf } from './worlds';
 
@@ -37,7 +37,7 @@ class App {
   private theme: 'light' | 'dark' = 'light';
   private readonly script: number[] = []; // ms, of the last frames
 
-  constructor(private readonly title: string, private readonly sources: RecordedSource[]) {
+  constructor(private readonly title: string, private readonly sources: FrameSource[]) {
     const planar = sources[0].run.space === 'planar';
     this.end = Math.max(...sources.map((source) => source.time(source.frames - 1)));
     this.stage = new Stage(element<HTMLCanvasElement>('view'), planar);
@@ -50,6 +50,8 @@ class App {
     const wanted = new URLSearchParams(window.location.hash.slice(1));
     const time = Number(wanted.get('time') ?? 0);
     if (Number.isFinite(time)) this.seek(time);
+    // A picture: nothing but the worlds and their name.
+    if (wanted.has('picture')) for (const id of ['panel', 'buttons', 'timeline']) element(id).hidden = true;
     await Promise.all(this.sources.map((source) => source.prepare(momentOf(source, this.time).frame)));
     this.resize();
     this.build();
@@ -111,12 +113,14 @@ class App {
     const { width, height } = this.canvasSize();
     this.stage.resize(width, height);
     const panel = element('panel');
-    const open = !panel.classList.contains('closed');
+    const open = !panel.classList.contains('closed') && !panel.hidden;
+    const timeline = element('timeline');
+    const below = timeline.hidden ? height - 4 : timeline.getBoundingClientRect().top;
     const narrow = width <= 620;
     this.stage.insets = {
       top: element('head').getBoundingClientRect().bottom + 8, left: 12,
       right: open && !narrow ? panel.offsetWidth + 28 : 12,
-      bottom: height - (open && narrow ? panel.getBoundingClientRect().top : element('timeline').getBoundingClientRect().top) + 8,
+      bottom: height - (open && narrow ? panel.getBoundingClientRect().top : below) + 8,
     };
     this.dirty = true;
   }
@@ -263,7 +267,7 @@ class App {
     this.dirty = true;
   }
 
-  private longest(): RecordedSource {
+  private longest(): FrameSource {
     return this.sources.reduce((a, b) => (b.time(b.frames - 1) > a.time(a.frames - 1) ? b : a));
   }
 
@@ -559,5 +563,3 @@ main().catch((error: unknown) => {
   message.textContent = error instanceof Error ? error.message : String(error);
   console.error(error);
 });
-
-export { PALETTE };

@@ -2,7 +2,6 @@
 import * as THREE from 'three';
 
 import { linear } from './colors';
-import type { RecordedSource } from './recorded';
 import type { Worlds } from './worlds';
 
 const TRAIL_SECONDS = 2;
@@ -73,7 +72,7 @@ export class Overlays {
 
   private addTrails(chosen: Chosen): void {
     const cell = this.worlds.layout.cells[chosen.cell];
-    const source = this.worlds.sources[cell.run] as RecordedSource;
+    const source = this.worlds.sources[cell.run];
     const kind = this.worlds.kindOf(cell);
     const now = this.worlds.frame;
     const from = new THREE.Vector3();

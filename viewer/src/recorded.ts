@@ -1,5 +1,5 @@
 // Recordings inside the page. How frames are coded is in src/record/page/frames.hpp.
-import { emptyPoses, type FrameSource, type Kind, type MeshLevel, type Poses, type Run } from './data';
+import { type FrameSource, type Kind, type MeshLevel, type Poses, type Run } from './data';
 
 interface Chunk {
   frames: number;
@@ -236,7 +236,6 @@ export class RecordedSource implements FrameSource {
     for (let w = 0; w < kind.worlds; ++w) into.status[w] = a.status[atStatus + w];
   }
 
-  // Where one body is at a frame that is ready.
   positionAt(frame: number, kindIndex: number, item: number, out: number[]): boolean {
     const chunk = this.chunkOf(frame);
     const one = this.decoded.get(chunk)?.[kindIndex];
@@ -261,5 +260,3 @@ export async function openRuns(page: Document): Promise<{ title: string; sources
     RecordedSource.open(run, (chunk) => page.getElementById(`mw-${r}-${chunk}`)?.textContent ?? '')));
   return { title: head.title, sources };
 }
-
-export { emptyPoses };

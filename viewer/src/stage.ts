@@ -24,8 +24,8 @@ export const THEMES: Record<'light' | 'dark', Theme & { sky: string; skyTop: str
     selected: '#b9cdf3', fixed: '#97a3b6',
   },
   dark: {
-    sky: '#12151c', skyTop: '#0d1016', ground: '#39414f', wall: '#7d93bb', tile: '#222835', lost: '#7c3430',
-    selected: '#3f5a94', fixed: '#66738a',
+    sky: '#12151c', skyTop: '#0d1016', ground: '#4b5568', wall: '#7d93bb', tile: '#222835', lost: '#7c3430',
+    selected: '#4a6bb0', fixed: '#66738a',
   },
 };
 

@@ -42,7 +42,7 @@ function shapesIn(head) {
 }
 
 // Opens a page without any network, and fails on what it complains of or asks for.
-async function open(file, { width = 1100, height = 760, dark = false, hash = '' } = {}) {
+async function open(file, { width = 800, height = 560, dark = false, hash = '' } = {}) {
   const context = await browser.newContext({
     viewport: { width, height }, offline: true, reducedMotion: 'reduce',
     colorScheme: dark ? 'dark' : 'light',
@@ -343,6 +343,31 @@ describe('use', () => {
         await view.close();
       }
     }
+  });
+
+  test('the program takes pictures', async () => {
+    const file = join(folder, 'picture.png');
+    run('view', 'ball2d', '--worlds', '4', '--seconds', '1', '--png', file, '--at', '0.2', '--size', '320x200');
+    const bytes = readFileSync(file);
+    assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
+    assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [320, 200]);
+    // Not empty: a browser shows it, and the ball's colour is in it.
+    const context = await browser.newContext();
+    const page = await context.newPage();
+    const found = await page.evaluate(async (data) => {
+      const image = await createImageBitmap(await (await fetch(data)).blob());
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const pen = canvas.getContext('2d');
+      pen.drawImage(image, 0, 0);
+      const { data: rgba } = pen.getImageData(0, 0, image.width, image.height);
+      const colors = new Set();
+      for (let i = 0; i < rgba.length; i += 4) colors.add(rgba.slice(i, i + 3).join());
+      return [...colors];
+    }, `data:image/png;base64,${bytes.toString('base64')}`);
+    await context.close();
+    assert.ok(found.includes('243,167,18'), 'no ball');
+    assert.throws(() => execFileSync(program, ['view', 'ball2d', '--worlds', '1', '--seconds', '0.1', '--png', file],
+      { env: { ...process.env, CHROMIUM: '/no/such/browser' }, stdio: 'pipe' }), /wants a browser, and found no \/no\/such\/browser/);
   });
 
   test('a page without a recording says so', async () => {
