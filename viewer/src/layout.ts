@@ -21,6 +21,21 @@ export interface Layout {
 
 const GAP = 0.14; // of the larger side of a cell, between cells
 
+// Near to what fills the window, and better so that the last row is full.
+function columnsFor(count: number, wanted: number): number {
+  let best = 1;
+  let least = Infinity;
+  for (let columns = 1; columns <= count; ++columns) {
+    const empty = (columns - (count % columns)) % columns;
+    const cost = Math.abs(Math.log(columns / wanted)) + 0.4 * (empty / columns);
+    if (cost < least) {
+      least = cost;
+      best = columns;
+    }
+  }
+  return best;
+}
+
 export function makeLayout(runs: Run[], ghosts: boolean, aspect: number): Layout {
   const planar = runs[0].space === 'planar';
   const kinds: Kind[] = runs.flatMap((run) => run.kinds);
@@ -35,7 +50,7 @@ export function makeLayout(runs: Run[], ghosts: boolean, aspect: number): Layout
   const abreast = ghosts ? 1 : runs.length;
   // Seen from above a grid looks lower than it is deep.
   const look = planar ? 1 : 0.78;
-  const columns = Math.max(1, Math.min(most, Math.round(Math.sqrt((most * depth * look * aspect) / (abreast * width)))));
+  const columns = columnsFor(most, Math.sqrt((most * depth * look * aspect) / (abreast * width)));
   const between = runs.length > 1 && !ghosts ? 0.6 * width : 0;
   runs.forEach((run, r) => {
     let n = 0;
