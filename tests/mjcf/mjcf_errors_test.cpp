@@ -258,9 +258,9 @@ TEST_CASE("a size without a finite diameter is found by validate", "[mjcf][fast]
                              shape + "/></body>"))
           .scene;
   CHECK(*scene.options.length_unit == 1);
-  const std::vector<std::string> problems = validate(scene);
-  REQUIRE_FALSE(problems.empty());
-  CHECK(problems[0].find("bodies[0 'b'].shapes[0") == 0);
+  const std::vector<Issue> issues = validate(scene);
+  REQUIRE_FALSE(issues.empty());
+  CHECK(issues[0].place.find("bodies[0 'b'].shapes[0") == 0);
 }
 
 TEST_CASE("MuJoCo's error function throws instead of ending the process", "[mjcf][fast]") {
