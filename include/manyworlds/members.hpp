@@ -257,13 +257,23 @@ struct Members<Keyframe> {
     visit("generalized_velocity", generalized_velocity), visit("controls", controls);
   }
 };
+template <>
+struct Members<CoordinateDraw> {
+  static constexpr const char* name = "CoordinateDraw";
+  static void visit(auto& value, auto&& visit) {
+    auto& [velocity, first, low, high, normal, replaces, nearest, farthest] = value;
+    visit("velocity", velocity), visit("first", first), visit("low", low), visit("high", high);
+    visit("normal", normal), visit("replaces", replaces), visit("nearest", nearest);
+    visit("farthest", farthest);
+  }
+};
 // -- the whole
 template <>
 struct Members<Scene> {
   static constexpr const char* name = "Scene";
   static void visit(auto& value, auto&& visit) {
     auto& [name_, space, bodies, joints, controls, attractors, options, variations, exclusions,
-           tendons, keyframes] = value;
+           tendons, keyframes, coordinate_draws] = value;
     visit("name", name_, not_counted("names are for people"));
     visit("space", space), visit("bodies", bodies), visit("joints", joints);
     visit("controls", controls), visit("attractors", attractors), visit("options", options);
@@ -274,6 +284,8 @@ struct Members<Scene> {
     visit("tendons", tendons, counted_if(!tendons.empty(), kOfNewton));
     visit("keyframes", keyframes,
           not_counted("what a world is reset to does not matter to one that has begun"));
+    visit("coordinate_draws", coordinate_draws,
+          not_counted("what a world begins with does not matter to one that has begun"));
   }
 };
 

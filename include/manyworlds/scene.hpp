@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -96,6 +97,21 @@ struct Keyframe {
   std::vector<double> controls = {};              // [control], as Batch::set_controls takes them
 };
 
+// Numbers of the generalized positions or velocities that worlds of Solver::newton begin with,
+// drawn at each reset anew: each uniform between its low and high, or normal with the mean half way
+// between them and half the range as standard deviation. Draws act in their order.
+struct CoordinateDraw {
+  bool velocity = false;  // of dofs, else of coordinates
+  int first = 0;          // of low.size() in a row, as MuJoCo counts qpos and qvel
+  std::vector<double> low = {}, high = {};
+  bool normal = false;
+  bool replaces = false;  // what is there by then; else they are added to it
+  // Drawn again, up to 1000 times, until the norm of what was drawn is more than the one and less
+  // than the other.
+  double nearest = -std::numeric_limits<double>::infinity();
+  double farthest = std::numeric_limits<double>::infinity();
+};
+
 struct Scene {
   std::string name = {};
   Space space = Space::spatial;
@@ -108,6 +124,7 @@ struct Scene {
   std::vector<Exclusion> exclusions = {};  // beside those of joints (Joint::collide)
   std::vector<Tendon> tendons = {};
   std::vector<Keyframe> keyframes = {};
+  std::vector<CoordinateDraw> coordinate_draws = {};
 
   // Appends and returns the handle. Shape k of a body is ShapeId(body, k).
   BodyId add(Body body) {

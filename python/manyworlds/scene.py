@@ -159,6 +159,25 @@ class Keyframe:
 
 
 @dataclass(slots=True, kw_only=True)
+class CoordinateDraw:
+    """Numbers of the generalised positions or velocities that worlds begin with, drawn at each reset.
+
+    ``low`` and ``high`` have one number for each coordinate or dof from ``first`` on; ``normal`` draws
+    have their mean half way between the two and half the range as standard deviation, others are uniform.
+    They act in their order. Of the solver newton.
+    """
+
+    velocity: bool = False  # of dofs, else of coordinates
+    first: int = 0  # as MuJoCo counts qpos and qvel
+    low: Numbers = field(default_factory=list)
+    high: Numbers = field(default_factory=list)
+    normal: bool = False
+    replaces: bool = False  # what is there by then; else they are added to it
+    nearest: float = -inf  # drawn again until their norm is more than this
+    farthest: float = inf  # and less than that
+
+
+@dataclass(slots=True, kw_only=True)
 class Ray:
     """A ray that every world casts against all of its shapes."""
 
@@ -177,7 +196,9 @@ class Point:
     body: BodyRef = -1
 
 
-Part = Union[Body, Joint, Control, Attractor, Variation, Exclusion, Tendon, Keyframe]
+Part = Union[
+    Body, Joint, Control, Attractor, Variation, Exclusion, Tendon, Keyframe, CoordinateDraw
+]
 
 
 @dataclass(slots=True, kw_only=True)
@@ -195,6 +216,7 @@ class Scene:
     exclusions: list[Exclusion] = field(default_factory=list)  # beside those of joints
     tendons: list[Tendon] = field(default_factory=list)
     keyframes: list[Keyframe] = field(default_factory=list)
+    coordinate_draws: list[CoordinateDraw] = field(default_factory=list)
 
     def __repr__(self) -> str:
         return shown.line(
@@ -239,7 +261,7 @@ class Scene:
     @overload
     def add(self, part: Keyframe) -> KeyframeId: ...
     @overload
-    def add(self, part: Union[Attractor, Variation, Exclusion, Tendon]) -> int: ...
+    def add(self, part: Union[Attractor, Variation, Exclusion, Tendon, CoordinateDraw]) -> int: ...
     def add(self, part: Part) -> int:
         """Appends a body, joint, control, ... or keyframe and returns its handle or index."""
         places: list[tuple[type, list[Any], type[int]]] = [
@@ -251,6 +273,7 @@ class Scene:
             (Exclusion, self.exclusions, int),
             (Tendon, self.tendons, int),
             (Keyframe, self.keyframes, KeyframeId),
+            (CoordinateDraw, self.coordinate_draws, int),
         ]
         for kind, place, handle in places:
             if isinstance(part, kind):

@@ -66,8 +66,8 @@ void bind_scene(nb::module_& m) {
             default_values<Compliance, SoftContact, Material, Filter, Shape, MassProperties, Jitter,
                            Body, Frame, Spring, Limit, Drive, JointDynamics, Joint, Actuator,
                            Control, Attractor, Variation, Exclusion, TendonTerm, Tendon, Keyframe,
-                           SolverOptions, ContactOptions, JointOptions, SleepOptions, Medium,
-                           Options, Scene, Ray, Point>();
+                           CoordinateDraw, SolverOptions, ContactOptions, JointOptions,
+                           SleepOptions, Medium, Options, Scene, Ray, Point>();
         add_alternatives<Geometry>(out), add_alternatives<JointType>(out);
         return out;
       },

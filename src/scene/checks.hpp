@@ -106,6 +106,7 @@ void check_newton(Checker checker, const Scene& scene, bool sound);
 void check_trees(Checker checker, const Scene& scene);
 // `sound`: whether the scene has no other issue. Only then are sizes looked at.
 void check_keyframes(Checker checker, const Scene& scene, bool sound);
+void check_coordinate_draws(Checker checker, const Scene& scene, bool sound);
 // "body 3 'crate'"
 std::string named_part(const char* what, std::size_t index, const std::string& name);
 // `sound`: whether the scene has no other issue. Only then are its extremes looked at.

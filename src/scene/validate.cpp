@@ -101,6 +101,7 @@ std::vector<Issue> validate(const Scene& scene) {
     check("body_a", exclusion.body_a), check("body_b", exclusion.body_b);
   }
   detail::check_keyframes(checker, scene, issues.empty() && option_issues.empty());
+  detail::check_coordinate_draws(checker, scene, issues.empty() && option_issues.empty());
   const bool sound = issues.empty() && option_issues.empty();
   issues.insert(issues.end(), option_issues.begin(), option_issues.end());
   check_variations(checker, scene, sound);

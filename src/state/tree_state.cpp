@@ -1,5 +1,6 @@
 // Worlds whose bodies are in joint coordinates: how they begin, and where that puts the bodies.
 #include "src/plan/tree_kinematics.hpp"
+#include "src/state/coordinate_draws.hpp"
 #include "src/state/worlds.hpp"
 
 namespace manyworlds {
@@ -32,7 +33,24 @@ void Worlds<Real>::begin_trees(int world, const Draws& draws) {
     }
     for (int c = 0; c < 4; ++c) put(Field::generalized_position, joint.coordinate + 3 + c, q[c]);
   }
+  draw_coordinates(world, draws);
   place_links(world);
+}
+
+// In their order, each upon what is there.
+template <class Real>
+void Worlds<Real>::draw_coordinates(int world, const Draws& draws) {
+  const auto& all = plan_.scene().coordinate_draws;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const CoordinateDraw& draw = all[i];
+    const Field field = draw.velocity ? Field::generalized_velocity : Field::generalized_position;
+    const std::vector<double> drawn = drawn_coordinates(draw, i, draws);
+    for (std::size_t k = 0; k < drawn.size(); ++k) {
+      Real& number_of = number(field, world, draw.first + static_cast<int>(k), 0);
+      const double from = draw.replaces ? 0 : static_cast<double>(number_of);
+      number_of = static_cast<Real>(from + drawn[k]);
+    }
+  }
 }
 
 template <class Real>
@@ -67,6 +85,8 @@ void Worlds<Real>::place_links(int world) {
 
 template void Worlds<float>::begin_trees(int, const Draws&);
 template void Worlds<double>::begin_trees(int, const Draws&);
+template void Worlds<float>::draw_coordinates(int, const Draws&);
+template void Worlds<double>::draw_coordinates(int, const Draws&);
 template void Worlds<float>::place_links(int);
 template void Worlds<double>::place_links(int);
 

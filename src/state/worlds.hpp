@@ -159,6 +159,7 @@ class Worlds final : public WorldsBase {
   void initialise(int world);
   // Of trees (tree_state.cpp): their coordinates as drawn; the bodies from the coordinates.
   void begin_trees(int world, const Draws& draws);
+  void draw_coordinates(int world, const Draws& draws);
   void place_links(int world);
   void begin(int world);
   void place(int world, int body, const BodyState& state);

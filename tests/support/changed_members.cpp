@@ -171,6 +171,7 @@ Scene scene_with_everything(Solver solver) {
     scene.tendons.push_back({"cord", {{JointId(1), 0.5}, {JointId(2), -2}}, end});
   }
   scene.keyframes.push_back({"key", {1, 2}, {3, 4}, {5, 6}});
+  scene.coordinate_draws.push_back({true, 1, {-1, -2}, {3, 4}, true, true, 0.1, 7});
   scene.options.contact_capacity = 7;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-1, -2, -3), Vec3(1, 2, 3));
   scene.options.joint.frequency = 30;
