@@ -117,6 +117,29 @@ inline Expression ray_distance(int ray) {  // m, of Task::rays
   return observed(Observed::ray_distance, ray);
 }
 
+// Of Solver::newton, by MuJoCo's indices (docs/robots.md, "Coordinates").
+Expression generalized_position(int coordinate);  // m, rad, or of a quaternion
+Expression generalized_velocity(int dof);         // m/s or rad/s
+// As the last substep found its forces, which is one substep behind the state (observed.hpp).
+inline Expression link_position(BodyId body, int axis) {  // m, of the body frame
+  return observed(Observed::link_position, body.index(), axis);
+}
+inline Expression link_center(BodyId body, int axis) {  // m, of the centre of mass
+  return observed(Observed::link_center, body.index(), axis);
+}
+inline Expression external_force(BodyId body, int axis) {  // N, of contacts and inputs
+  return observed(Observed::external_force, body.index(), axis);
+}
+inline Expression external_torque(BodyId body, int axis) {  // N m, about its tree's mass centre
+  return observed(Observed::external_torque, body.index(), axis);
+}
+inline Expression actuator_force(int dof) {  // N or N m
+  return observed(Observed::actuator_force, dof);
+}
+inline Expression constraint_force(int dof) {  // N or N m, of limits and contacts
+  return observed(Observed::constraint_force, dof);
+}
+
 Expression action(
     int index = 0);  // that led here; of discrete tasks its number. 0 at the beginning
 Expression control(ControlId control);  // that led here: of the scene

@@ -8,50 +8,67 @@ namespace manyworlds {
 // X(observer, what has numbers of its own, when they are taken, what it sees)
 //   state: at the end of a call, and by Batch::look(), which needs no step
 //   step: of the last step of a call, 0 before it
-#define MW_OBSERVERS(X)                                                                \
-  X(contacts, world, step, "every contact point with the impulses of the last step")   \
-  X(touching, body, step, "which bodies a contact acted on in the last step")          \
-  X(penetration, world, step, "the deepest overlap that the last step began with")     \
-  X(motion, world, state, "energies, momenta, mass centre")                            \
-  X(joints, coordinate, state, "coordinates of joints and their speeds")               \
-  X(joint_loads, joint, state, "forces and torques in joints")                         \
-  X(residual, world, step, "how far the solver was from done")                         \
-  X(rays, ray, state, "where the rays end: chosen by giving Observers::rays")          \
-  X(acceleration, body, state, "accelerations over the last step, and accelerometers") \
-  X(points, point, state, "where points of bodies are: chosen by giving Observers::points")
+#define MW_OBSERVERS(X)                                                                     \
+  X(contacts, world, step, "every contact point with the impulses of the last step")        \
+  X(touching, body, step, "which bodies a contact acted on in the last step")               \
+  X(penetration, world, step, "the deepest overlap that the last step began with")          \
+  X(motion, world, state, "energies, momenta, mass centre")                                 \
+  X(joints, coordinate, state, "coordinates of joints and their speeds")                    \
+  X(joint_loads, joint, state, "forces and torques in joints")                              \
+  X(residual, world, step, "how far the solver was from done")                              \
+  X(rays, ray, state, "where the rays end: chosen by giving Observers::rays")               \
+  X(acceleration, body, state, "accelerations over the last step, and accelerometers")      \
+  X(points, point, state, "where points of bodies are: chosen by giving Observers::points") \
+  X(links, body, state, "where links of trees were as their last forces were found")        \
+  X(link_inertias, body, state, "inertias of links about the mass centre of their tree")    \
+  X(link_velocities, body, state, "velocities of links at the mass centre of their tree")   \
+  X(link_forces, body, step, "what contacts and inputs do to links, about the same")        \
+  X(dof_forces, dof, step, "generalised forces of actuators and constraints")
 
 // X(what, its observer, components, unit, meaning)
 //   vector: [2 or 3], the plane's x and y or x, y and z
 //   spin: [1 or 3], the plane's z or x, y and z
-#define MW_OBSERVED(X)                                                                            \
-  X(kinetic_energy, motion, one, "J", "")                                                         \
-  X(potential_energy, motion, one, "J", "0 at the world's origin")                                \
-  X(total_mass, motion, one, "kg", "of dynamic bodies")                                           \
-  X(momentum, motion, vector, "N s", "")                                                          \
-  X(angular_momentum, motion, spin, "N m s", "about the world's origin")                          \
-  X(mass_center, motion, vector, "m", "")                                                         \
-  X(penetration, penetration, one, "m",                                                           \
-    "deepest overlap that the last step began with, 0 if none")                                   \
-  X(contact_count, contacts, one, "1", "contact points of the last step, all of them")            \
-  X(touching, touching, one, "1", "1 where a contact acted on the body in the last step, else 0") \
-  X(joint_position, joints, one, "m or rad", "coordinates of the joints (Plan.first_observed)")   \
-  X(joint_speed, joints, one, "m/s or rad/s", "")                                                 \
-  X(joint_force, joint_loads, vector, "N", "on body B, world axes, last substep")                 \
-  X(joint_torque, joint_loads, spin, "N m", "on body B about its anchor, last substep")           \
-  X(residual, residual, two, "m/s, rad/s",                                                        \
-    "largest change that one more sweep of the solver would make")                                \
-  X(ray_distance, rays, one, "m", "the ray's length where it hits nothing")                       \
-  X(ray_normal, rays, vector, "1", "out of what is hit, world; 0: no hit")                        \
-  X(ray_body, rays, one, "1", "scene body, -1: no hit")                                           \
-  X(ray_shape, rays, one, "1", "index in Body.shapes, -1: no hit")                                \
-  X(linear_acceleration, acceleration, vector, "m/s^2",                                           \
-    "of the centre of mass over the last step, impacts included, world")                          \
-  X(angular_acceleration, acceleration, spin, "rad/s^2", "over the last step, world")             \
-  X(proper_acceleration, acceleration, vector, "m/s^2",                                           \
-    "what an accelerometer at the centre of mass reads, body axes: g upwards at rest, 0 in free " \
-    "fall")                                                                                       \
-  X(point_position, points, vector, "m", "world")                                                 \
-  X(point_velocity, points, vector, "m/s", "of the point of the body, world")
+#define MW_OBSERVED(X)                                                                             \
+  X(kinetic_energy, motion, one, "J", "")                                                          \
+  X(potential_energy, motion, one, "J", "0 at the world's origin")                                 \
+  X(total_mass, motion, one, "kg", "of dynamic bodies")                                            \
+  X(momentum, motion, vector, "N s", "")                                                           \
+  X(angular_momentum, motion, spin, "N m s", "about the world's origin")                           \
+  X(mass_center, motion, vector, "m", "")                                                          \
+  X(penetration, penetration, one, "m",                                                            \
+    "deepest overlap that the last step began with, 0 if none")                                    \
+  X(contact_count, contacts, one, "1", "contact points of the last step, all of them")             \
+  X(touching, touching, one, "1", "1 where a contact acted on the body in the last step, else 0")  \
+  X(joint_position, joints, one, "m or rad", "coordinates of the joints (Plan.first_observed)")    \
+  X(joint_speed, joints, one, "m/s or rad/s", "")                                                  \
+  X(joint_force, joint_loads, vector, "N", "on body B, world axes, last substep")                  \
+  X(joint_torque, joint_loads, spin, "N m", "on body B about its anchor, last substep")            \
+  X(residual, residual, two, "m/s, rad/s",                                                         \
+    "largest change that one more sweep of the solver would make")                                 \
+  X(ray_distance, rays, one, "m", "the ray's length where it hits nothing")                        \
+  X(ray_normal, rays, vector, "1", "out of what is hit, world; 0: no hit")                         \
+  X(ray_body, rays, one, "1", "scene body, -1: no hit")                                            \
+  X(ray_shape, rays, one, "1", "index in Body.shapes, -1: no hit")                                 \
+  X(linear_acceleration, acceleration, vector, "m/s^2",                                            \
+    "of the centre of mass over the last step, impacts included, world")                           \
+  X(angular_acceleration, acceleration, spin, "rad/s^2", "over the last step, world")              \
+  X(proper_acceleration, acceleration, vector, "m/s^2",                                            \
+    "what an accelerometer at the centre of mass reads, body axes: g upwards at rest, 0 in free "  \
+    "fall")                                                                                        \
+  X(point_position, points, vector, "m", "world")                                                  \
+  X(point_velocity, points, vector, "m/s", "of the point of the body, world")                      \
+  X(link_position, links, vector, "m", "of the body's frame, world (MuJoCo's xpos)")               \
+  X(link_center, links, vector, "m", "of its centre of mass, world (xipos)")                       \
+  X(link_inertia, link_inertias, vector, "kg m^2", "xx, yy, zz, world axes (cinert)")              \
+  X(link_product, link_inertias, vector, "kg m^2", "xy, xz, yz, world axes (cinert)")              \
+  X(link_moment, link_inertias, vector, "kg m", "mass times the way from there to its own centre") \
+  X(link_mass, link_inertias, one, "kg", "")                                                       \
+  X(link_angular_velocity, link_velocities, spin, "rad/s", "world axes (cvel)")                    \
+  X(link_velocity, link_velocities, vector, "m/s", "of the link there, world axes (cvel)")         \
+  X(external_torque, link_forces, spin, "N m", "about that centre, world axes (cfrc_ext)")         \
+  X(external_force, link_forces, vector, "N", "world axes (cfrc_ext)")                             \
+  X(actuator_force, dof_forces, one, "N or N m", "MuJoCo's qfrc_actuator")                         \
+  X(constraint_force, dof_forces, one, "N or N m", "of limits and contacts (qfrc_constraint)")
 
 // What is read is [world][item of its observer][component]. A plan without orientation (every
 // moving body a centred ball) rotates neither rays nor points.
@@ -83,6 +100,12 @@ namespace manyworlds {
 // acceleration is that minus what gravity gives the body (times its gravity scale, attractors
 // included, nothing for kinematic bodies), as MuJoCo's accelerometer in the body's frame; 0 of a
 // body that is disabled or frozen.
+//
+// Links, their inertias, velocities and forces, and the forces on dofs are of Solver::newton, 0 of
+// others: those of the last substep, where its forces were found, which is where it began
+// (Runge-Kutta: its last stage). So they are one substep behind the state, as MuJoCo's are after
+// mj_step. A state that is looked at without a step tells where links and velocities are in it.
+// External forces are those of contacts and of inputs (Batch::add_force), not gravity or drag.
 enum class Observer {
 #define MW_OBSERVER_ENUM(name, item, taken, meaning) name,
   MW_OBSERVERS(MW_OBSERVER_ENUM)
@@ -95,7 +118,7 @@ enum class Observed {
 };
 
 // What has numbers of its own: a body is a row of state arrays (Plan::row).
-enum class ObservedItem { world, body, joint, coordinate, ray, point };
+enum class ObservedItem { world, body, joint, coordinate, dof, ray, point };
 enum class ObservedComponents { one, two, vector, spin };
 enum class ObservedOf { state, step };
 

@@ -102,7 +102,8 @@ struct ObserverView {
   const std::int32_t* joint_of_part;  // [part]
   // Of trees whose joint_loads are asked for, else nullptr.
   const TreeAnchor<Real>* anchor;  // [joint of the scene]
-  Real* before;                    // the group's state before the last stage
+  bool of_links;                   // links, or what acts on them or on dofs, is asked for
+  Real* before;  // the group's state before the last stage, where one of the two is; else nullptr
 
   const RayTable* ray;            // [ray]
   const SeenShape* seen_shape;    // [fixed shape, then collider]
@@ -136,6 +137,8 @@ struct ObserverTable {
   Observe<Real> of_trees;  // the same of trees, whose contacts have no blocks
   // Around the last stage of trees: keeps the state that it begins with; what joints carry in it.
   Observe<Real> keep_tree_state, loads_of_trees;
+  // Links, and what acts on them and on dofs: in that stage; the same of a state without a step.
+  Observe<Real> links_of_trees, look_at_links;
   // Around one more sweep of the solver: keep what it changes; what that is, and put it back.
   std::size_t (*saved_bytes)(const SceneConstants<Real>&, Scratch*);
   Observe<Real> save_rows, compare[kInertiaKinds];

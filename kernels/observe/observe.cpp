@@ -108,6 +108,8 @@ kernels::ObserverTable<Real> make_table() {
   out.of_trees = observe_tree_contacts;
   out.keep_tree_state = keep_tree_state;
   out.loads_of_trees = observe_tree_loads;
+  out.links_of_trees = observe_tree_links;
+  out.look_at_links = look_at_tree_links;
   out.run_program = run_program;
   out.cast = cast_one;
   return out;

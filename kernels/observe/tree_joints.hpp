@@ -5,7 +5,7 @@
 
 #include "kernels/joint/coordinates.hpp"
 #include "kernels/observe/observe.hpp"
-#include "kernels/tree/contacts.hpp"
+#include "kernels/observe/tree_links.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -100,20 +100,13 @@ class TreeLoads {
       store(rate, load_twist(rate) + a);
     }
   }
-  // Contacts push from outside. Where a lane has none the numbers are those of no step.
+  // Contacts push from outside.
   void take_contacts() const {
-    const ContactRows contacts(t_, w_);
-    for (int i = 0; i < w_.tree.contact_count; ++i) {
-      const TreeContact& c = w_.tree.contacts[i];
-      const TreePair& pair = t_.tree.pair[c.pair];
-      const Vec3 own = contacts.force_of(c, pair);
-      const Vec3 sum = fma(load_vec3(c.frame[6]), own.z,
-                           fma(load_vec3(c.frame[3]), own.y, load_vec3(c.frame[0]) * own.x));
-      const Vec3 force = select(mask_from_bits(c.lanes), sum, zero_of<Vec3>());
+    for_each_contact_force(t_, w_, [&](const TreePair& pair, const TreeContact& c, Vec3 force) {
       const Vec3 arm_a = load_vec3(c.arm_a[0]), arm_b = load_vec3(c.arm_b[0]);
       add(pair.link_b, {cross(force, arm_b), -force});
       if (pair.link_a >= 0) add(pair.link_a, {cross(arm_a, force), force});
-    }
+    });
   }
   // Of the frame that the first `joints` of a link's joints have moved, from the tree's origin.
   FramePose pose_after(int index, int joints) const {

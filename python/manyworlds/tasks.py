@@ -183,6 +183,65 @@ class Terms:
         """m, of Task.rays."""
         return _x.observed("ray_distance", ray, 0)
 
+    def generalized_position(self, coordinate: int) -> Expression:
+        """m, rad or a number of a quaternion, of the solver newton: MuJoCo's qpos."""
+        return _x.generalized_position(coordinate)
+
+    def generalized_velocity(self, dof: int) -> Expression:
+        """m/s or rad/s, of the solver newton: MuJoCo's qvel."""
+        return _x.generalized_velocity(dof)
+
+    def link_position(self, body: BodyRef, axis: Axis) -> Expression:
+        """m, of the body frame where the last forces were found: MuJoCo's xpos after a step."""
+        return self._link("link_position", body, axis)
+
+    def link_center(self, body: BodyRef, axis: Axis) -> Expression:
+        """m, of the centre of mass there: xipos."""
+        return self._link("link_center", body, axis)
+
+    def link_inertia(self, body: BodyRef, axis: Axis) -> Expression:
+        """kg m^2, xx, yy or zz about the mass centre of the body's tree, world axes: of cinert."""
+        return self._link("link_inertia", body, axis)
+
+    def link_product(self, body: BodyRef, index: int) -> Expression:
+        """kg m^2, xy, xz or yz of the same."""
+        return self._link("link_product", body, index)
+
+    def link_moment(self, body: BodyRef, axis: Axis) -> Expression:
+        """kg m, its mass times the way from its tree's mass centre to its own: of cinert."""
+        return self._link("link_moment", body, axis)
+
+    def link_mass(self, body: BodyRef) -> Expression:
+        """kg."""
+        return self._link("link_mass", body, 0)
+
+    def link_angular_velocity(self, body: BodyRef, axis: Axis) -> Expression:
+        """rad/s, world axes, where the last forces were found: of cvel."""
+        return self._link("link_angular_velocity", body, axis)
+
+    def link_velocity(self, body: BodyRef, axis: Axis) -> Expression:
+        """m/s, of the body where the mass centre of its tree is: of cvel."""
+        return self._link("link_velocity", body, axis)
+
+    def external_torque(self, body: BodyRef, axis: Axis) -> Expression:
+        """N m, of contacts and inputs about the mass centre of the body's tree: of cfrc_ext."""
+        return self._link("external_torque", body, axis)
+
+    def external_force(self, body: BodyRef, axis: Axis) -> Expression:
+        """N, of contacts and inputs: of cfrc_ext."""
+        return self._link("external_force", body, axis)
+
+    def _link(self, what: str, body: BodyRef, axis: Axis) -> Expression:
+        return _x.observed(what, self._index("body", body), self._axis(axis))
+
+    def actuator_force(self, dof: int) -> Expression:
+        """N or N m, of all actuators: qfrc_actuator."""
+        return _x.observed("actuator_force", dof, 0)
+
+    def constraint_force(self, dof: int) -> Expression:
+        """N or N m, of limits and contacts: qfrc_constraint."""
+        return _x.observed("constraint_force", dof, 0)
+
     def action(self, index: int = 0) -> Expression:
         """The action that led here; of discrete tasks its number. 0 at the beginning."""
         return _x.action(index)

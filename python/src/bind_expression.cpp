@@ -146,6 +146,8 @@ void bind_terms(Functions& m) {
         return terms::observed(observed_named(what), item, component);
       },
       nb::arg("what"), nb::arg("item"), nb::arg("component"));
+  m.def_static("generalized_position", &terms::generalized_position, nb::arg("coordinate"));
+  m.def_static("generalized_velocity", &terms::generalized_velocity, nb::arg("dof"));
   m.def_static("action", &terms::action, nb::arg("index"));
   m.def_static(
       "control", [](int index) { return terms::control(ControlId(index)); }, nb::arg("index"));

@@ -14,6 +14,7 @@ const char* word_of(ObservedItem item) {
     case ObservedItem::body: return "body";
     case ObservedItem::joint: return "joint";
     case ObservedItem::coordinate: return "coordinate";
+    case ObservedItem::dof: return "dof";
     case ObservedItem::ray: return "ray";
     case ObservedItem::point: return "point";
   }
@@ -31,6 +32,7 @@ std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of) {
     if (item == "joint") return static_cast<int>(scene.joints.size());
     if (item == "control") return static_cast<int>(scene.controls.size());
     if (item == "coordinate") return plan.coordinates();
+    if (item == "dof") return plan.items(ItemKind::dof);
     std::size_t shapes = 0;
     for (const Body& body : scene.bodies) shapes += body.shapes.size();
     return item == "shape" ? static_cast<int>(shapes) : 1;

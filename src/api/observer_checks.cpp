@@ -22,6 +22,7 @@ std::size_t items_of(ObservedItem item, const PlanData& plan, const Observers& o
     case ObservedItem::body: return plan.bodies.size();
     case ObservedItem::joint: return plan.scene.joints.size();
     case ObservedItem::coordinate: return plan.coordinates.size();
+    case ObservedItem::dof: return plan.trees.dofs.size();
     case ObservedItem::ray: return observers.rays.size();
     case ObservedItem::point: return observers.points.size();
   }

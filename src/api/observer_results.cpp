@@ -31,6 +31,14 @@ bool wants_frames(const Observers& observers) {
   return false;
 }
 
+// Observers that only trees have something for.
+bool observes_links(const Observers& observers) {
+  constexpr Observer kOf[] = {Observer::links, Observer::link_inertias, Observer::link_velocities,
+                              Observer::link_forces, Observer::dof_forces};
+  return std::any_of(std::begin(kOf), std::end(kOf),
+                     [&](Observer o) { return observes(observers, o); });
+}
+
 // Of a fixed shape or a body's.
 template <class Shape>
 kernels::SeenShape seen_shape(const PlanData& plan, const Shape& s) {
@@ -137,10 +145,9 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
   view.point = kind.points.data();
   view.coordinate = plan.coordinates.data();
   view.joint_of_part = kind.joint_of_part.data();
-  if (!kind.anchors.empty()) {
-    view.anchor = kind.anchors.data();
-    view.before = reals(at(t.state_size) * lanes);
-  }
+  if (!kind.anchors.empty()) view.anchor = kind.anchors.data();
+  view.of_links = plan.has_trees() && observes_links(observers_);
+  if (view.anchor || view.of_links) view.before = reals(at(t.state_size) * lanes);
   const auto shifted = [](const PlanBody& b) { return !b.aligned; };
   if (wants_frames(observers_) && std::any_of(plan.bodies.begin(), plan.bodies.end(), shifted)) {
     view.frames = block.frames = reals(bodies * kernels::kFrameRows * lanes);

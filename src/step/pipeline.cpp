@@ -137,7 +137,7 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
 }
 
 // Bodies in joint coordinates: a step is as many substeps, each of which finds its own contacts.
-// `wanted` where contacts of the last one are observed, or what joints carry in its last stage.
+// `wanted` where contacts of the last one are observed, or its last stage.
 template <class Real>
 void tree_steps(const Run<Real>& run, int steps, const kernels::ObserverView<Real>* wanted) {
   const GroupStep<Real>& p = run.step;
@@ -166,7 +166,8 @@ void tree_steps(const Run<Real>& run, int steps, const kernels::ObserverView<Rea
   if (wanted) {
     const bool contacts = wanted->of_contacts && t.has_contacts;
     if (contacts) observer.of_trees(t, run.group, run.scratch, *wanted);
-    if (loads) observer.loads_of_trees(t, run.group, run.scratch, *wanted);
+    if (loads && wanted->of_links) observer.links_of_trees(t, run.group, run.scratch, *wanted);
+    if (loads && wanted->anchor) observer.loads_of_trees(t, run.group, run.scratch, *wanted);
     run.lap(StepStage::observe);
   }
   run(StageCall<Real>{StepStage::tree, tree.place});
@@ -258,6 +259,7 @@ template <class Real>
 void look_at_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                    kernels::Scratch* scratch) {
   look_at_start(p, group, scratch);
+  if (p.wanted->of_links) p.kernels.observer->look_at_links(p.tables, group, scratch, *p.wanted);
   look_at_end(p, group, scratch);
 }
 

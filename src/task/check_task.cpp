@@ -163,6 +163,15 @@ class TaskChecker {
         axis(n.of);
         body();
         break;
+      case Term::generalized_position:
+      case Term::generalized_velocity:
+        if (plan_) {
+          const bool velocity = n.term == Term::generalized_velocity;
+          const ItemKind of = velocity ? ItemKind::dof : ItemKind::coordinate;
+          bounded(n.index, static_cast<std::size_t>(plan_->items(of)),
+                  velocity ? "the degree of freedom" : "the coordinate");
+        }
+        break;
       case Term::observed: check_observed(place, e, bounded); break;
       case Term::action:
         bounded(n.index, task_.choices > 0 ? 1 : task_.actions.size(), "the action");
@@ -195,6 +204,12 @@ class TaskChecker {
         bounded(n.axis, static_cast<std::size_t>(first[item + 1] - first[item]), "the coordinate");
         return;
       }
+      case ObservedItem::dof:
+        if (plan_) {
+          bounded(n.index, static_cast<std::size_t>(plan_->items(ItemKind::dof)),
+                  "the degree of freedom");
+        }
+        break;
       case ObservedItem::ray: bounded(n.index, task_.rays.size(), "the ray"); break;
       case ObservedItem::point: bounded(n.index, task_.points.size(), "the point"); break;
     }

@@ -23,6 +23,7 @@ const char* word_of(ObservedItem item) {
     case ObservedItem::body: return "body";
     case ObservedItem::joint:
     case ObservedItem::coordinate: return "joint";
+    case ObservedItem::dof: return "dof";
     case ObservedItem::ray: return "ray";
     case ObservedItem::point: return "point";
   }
@@ -119,6 +120,10 @@ Expression direction(BodyId body, int of, int axis) {
 Expression observed(Observed what, int item, int component) {
   return leaf(Term::observed, item, static_cast<int>(checked_enum(what)), component);
 }
+Expression generalized_position(int coordinate) {
+  return leaf(Term::generalized_position, coordinate);
+}
+Expression generalized_velocity(int dof) { return leaf(Term::generalized_velocity, dof); }
 Expression action(int index) { return leaf(Term::action, index); }
 Expression control(ControlId control) { return leaf(Term::control, control.index()); }
 Expression age() { return leaf(Term::age); }
@@ -167,6 +172,8 @@ std::string to_string(E expression) {
     case Term::angle: return "angle of body " + index;
     case Term::direction:
       return "direction of body " + index + "'s axis " + std::to_string(n.of) + axis;
+    case Term::generalized_position: return "generalized_position " + index;
+    case Term::generalized_velocity: return "generalized_velocity " + index;
     case Term::observed: return observed_text(n);
     case Term::action: return "action " + index;
     case Term::control: return "control " + index;

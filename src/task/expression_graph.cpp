@@ -66,6 +66,8 @@ constexpr TermName kTerms[] = {
     {Term::angular_velocity, "angular_velocity", {kIndex, kAxis}},
     {Term::angle, "angle", {kIndex}},
     {Term::direction, "direction", {kIndex, kOf, kAxis}},
+    {Term::generalized_position, "generalized_position", {kIndex}},
+    {Term::generalized_velocity, "generalized_velocity", {kIndex}},
     {Term::action, "action", {kIndex}},
     {Term::control, "control", {kIndex}},
     {Term::age, "age", {}},

@@ -18,6 +18,8 @@ enum class Term {
   angular_velocity,
   angle,
   direction,
+  generalized_position,
+  generalized_velocity,
   observed,
   action,
   control,
@@ -29,7 +31,7 @@ enum class Term {
 struct Expression::Node {
   Term term = Term::number;
   double number = 0;
-  int index = -1;  // body, action, control, row, or item of what is observed
+  int index = -1;  // body, action, control, coordinate, dof, row, or item of what is observed
   int of = 0;      // axis of a body, or Observed
   int axis = 0;    // of the world, or component of what is observed
   kernels::Operation operation{};

@@ -30,6 +30,8 @@ int ProgramBuilder::add_node(const Expression::Node& n) {
     case Term::angular_velocity: return add(angular_velocity(n.index, n.axis));
     case Term::angle: return add(angle(n.index));
     case Term::direction: return add(direction(n.index, n.of, n.axis));
+    case Term::generalized_position: return add_coordinate(Field::generalized_position, n.index);
+    case Term::generalized_velocity: return add_coordinate(Field::generalized_velocity, n.index);
     case Term::observed: return add_observed(n);
     case Term::action: return emit(Operation::input, n.index);
     case Term::control: return emit(Operation::control, n.index);
@@ -70,6 +72,10 @@ int ProgramBuilder::add_observed(const Expression::Node& n) {
   const auto& rows = kernels::kObserverRows;
   return emit(Operation::seen, item * rows.of_item[observer] + rows.first[n.of] + component,
               observer);
+}
+
+int ProgramBuilder::add_coordinate(Field field, int item) {
+  return emit(Operation::state, state_layout(plan_.data()).row_of(field, item));
 }
 
 int ProgramBuilder::add_function(const Expression::Node& n) {

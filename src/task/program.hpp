@@ -64,6 +64,7 @@ class ProgramBuilder {
   int add_node(const Expression::Node& node);
   int add_function(const Expression::Node& node);
   int add_observed(const Expression::Node& node);
+  int add_coordinate(Field field, int item);
   int emit(kernels::Operation operation, int a = -1, int b = -1, int c = -1, double number = 0);
   int remember(int row);
   // In terms of what the kernels have.

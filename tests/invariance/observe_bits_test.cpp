@@ -20,6 +20,11 @@ Observers everything(const Plan& plan) {
   observers.what = {Observer::contacts, Observer::touching,    Observer::penetration,
                     Observer::motion,   Observer::joints,      Observer::joint_loads,
                     Observer::residual, Observer::acceleration};
+  for (const Observer of_trees :
+       {Observer::links, Observer::link_inertias, Observer::link_velocities, Observer::link_forces,
+        Observer::dof_forces}) {
+    observers.what.push_back(of_trees);
+  }
   for (int i = 0; i < 12; ++i) {
     Ray ray;
     const double angle = 2 * kPi * i / 12;
