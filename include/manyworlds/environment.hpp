@@ -4,6 +4,7 @@
 // Worlds depend on nothing but the task, their seed and their actions: not on how many there are.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -43,6 +44,23 @@ struct StepArrays {
   std::span<double> rewards = {};
   std::span<double> reward_terms = {};                      // [world][reward]
   std::span<std::uint8_t> terminated = {}, truncated = {};  // 1 or 0
+  // The same in double: as the worlds of Precision::f64 have them. Either may be wanted, or both.
+  std::span<double> observations_f64 = {}, final_observations_f64 = {};
+  std::span<double> infos = {};        // [world][info]
+  std::span<double> final_infos = {};  // as final_observations; requires infos
+};
+
+// Those of a beginning; of worlds that do not begin they stay.
+struct BeginArrays {
+  BeginArrays() = default;
+  template <class Floats>
+  requires std::convertible_to<Floats, std::span<float>> BeginArrays(
+      Floats&& floats)  // NOLINT(google-explicit-constructor): observations alone
+      : observations(floats) {}
+
+  std::span<float> observations = {};
+  std::span<double> observations_f64 = {};
+  std::span<double> infos = {};
 };
 
 // Worlds of an Environment, to go on from later, elsewhere or many times: what they are, and what
@@ -70,6 +88,7 @@ class Environment {
   int worlds() const;
   int observations() const;  // numbers of one world
   int actions() const;       // numbers of one world; 1 of a discrete task
+  int infos() const;         // numbers of one world
 
   // One step of the task in every world. `actions`: [world][action]; of a discrete task one per
   // world. An action that is not a number freezes its world, which then is lost; a choice that
@@ -91,17 +110,17 @@ class Environment {
   int steps_left() const;  // physics steps of a step that was ended early; 0: there is none
 
   // Next episodes of the worlds of a mask, [world]; with seeds, [world], their first ones.
-  // `observations` ([world][observation], or empty) of the others stay.
-  void reset(std::span<const std::uint8_t> mask, std::span<float> observations);
+  // What is told of the others stays.
+  void reset(std::span<const std::uint8_t> mask, const BeginArrays& out);
   void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
-             std::span<float> observations);
+             const BeginArrays& out);
 
   // What steps, to look at, to record and to draw. Whoever changes worlds in it (write, restore)
   // says so by begin(), for what the task remembers of them.
   Batch& batch();
   const Batch& batch() const;
   // The worlds of a mask begin an episode in the state that they have.
-  void begin(std::span<const std::uint8_t> mask, std::span<float> observations);
+  void begin(std::span<const std::uint8_t> mask, const BeginArrays& out);
   // World `to` becomes what world `from` is, with what the task remembers of it.
   void copy_world(int from, int to);
 

@@ -33,6 +33,13 @@ struct Reward {
   Expression value = {};  // of a step; a task's reward is the sum of its rewards
 };
 
+// What people are told beside: in double, of no account to the policy.
+struct Info {
+  std::string name = {};
+  Expression value = {};
+  bool of_steps_alone = false;  // not told where an episode begins
+};
+
 struct Task {
   std::string name = {};
   Scene scene = {};
@@ -50,6 +57,8 @@ struct Task {
   // Broken off after so many steps of the task; 0: never. A world that is lost is broken off, too.
   int max_steps = 0;
   double solved_at = std::numeric_limits<double>::infinity();  // mean return; said to people only
+
+  std::vector<Info> infos = {};
 
   std::vector<Ray> rays = {};      // for terms::ray_distance
   std::vector<Point> points = {};  // for terms::point_position and point_velocity

@@ -48,7 +48,7 @@ from .scene import (
 )
 from .shapes import *  # noqa: F403
 from .surfaces import *  # noqa: F403
-from .tasks import Action, Observation, Reward, Task, TaskError
+from .tasks import Action, Info, Observation, Reward, Task, TaskError
 from .view import View
 
 from . import pickling as _pickling  # of the values above; isort: skip
@@ -73,6 +73,7 @@ __all__ = [
     "Exclusion",
     "Expression",
     "Field",
+    "Info",
     "Issue",
     "Jitter",
     "JointId",

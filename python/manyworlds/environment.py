@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, Optional, Union
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _core, arrays, shown, tasks
 from ._core import Snapshot
@@ -18,9 +18,9 @@ from .plan import Plan
 from .tasks import Task, TaskError
 
 AutoresetName = Literal["next_step", "same_step", "disabled"]
-Floats = NDArray[np.float32]
 Doubles = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Observations = NDArray[Any]  # float32, or the float64 that was asked for
 
 
 class _OwnBatch(Batch):
@@ -51,7 +51,7 @@ class EnvironmentSnapshot:
     task: int  # of which task: equal for tasks that compute the same
     memory: Doubles  # (worlds, numbers)
     # Of the last step or reset, as the array has them that it filled.
-    observations: Floats  # (worlds, observations)
+    observations: Observations  # (worlds, observations)
     terminated: Flags  # (worlds,)
     truncated: Flags
 
@@ -70,11 +70,13 @@ class Environment(InMemory):
                  the step that ends it begins the next and ``final_observations`` has where it ended,
                  with "disabled" it steps on until it is reset
     reward_terms, final_observations  whether these arrays are filled by ``step``
+    observation_dtype  "float32" or "float64": of observations
 
     What a world does depends on the task, its seed and its actions alone. The arrays of the last
     step or reset are ``observations`` (worlds, observations) float32, ``rewards`` (worlds,) float64,
-    ``terminated`` and ``truncated`` (worlds,) bool, ``reward_terms`` (worlds, rewards) float64 and
-    ``final_observations``: the same arrays in every step. Raises TaskError, ValueError, TypeError.
+    ``terminated`` and ``truncated`` (worlds,) bool, ``reward_terms`` (worlds, rewards) float64,
+    ``infos`` (worlds, infos) float64, and ``final_observations`` and ``final_infos`` of "same_step":
+    the same arrays in every step. Raises TaskError, ValueError, TypeError.
     An environment is used by one thread at a time.
     """
 
@@ -92,6 +94,7 @@ class Environment(InMemory):
         *,
         reward_terms: bool = False,
         final_observations: Optional[bool] = None,
+        observation_dtype: DTypeLike = np.float32,
     ) -> None:
         if isinstance(task, str):
             task = tasks.load(task)
@@ -110,16 +113,22 @@ class Environment(InMemory):
         self.autoreset: str = autoreset.replace("-", "_")
         self.discrete = task.choices > 0
         n, seen, parts = self._worlds, len(task.observations), len(task.rewards)
-        self.observations: Floats = np.zeros((n, seen), np.float32)
+        kind = np.dtype(observation_dtype)
+        if kind not in (np.float32, np.float64):
+            raise ValueError(f"observation_dtype is {kind}; expected float32 or float64")
+        self.observations: Observations = np.zeros((n, seen), kind)
         self.rewards: Doubles = np.zeros(n, np.float64)
         self.terminated: Flags = np.zeros(n, np.bool_)
         self.truncated: Flags = np.zeros(n, np.bool_)
         self.reward_terms: Optional[Doubles] = np.zeros((n, parts)) if reward_terms else None
         if final_observations is None:
             final_observations = self.autoreset == "same_step"
-        self.final_observations: Optional[Floats] = (
-            np.zeros((n, seen), np.float32) if final_observations else None
+        self.final_observations: Optional[Observations] = (
+            np.zeros((n, seen), kind) if final_observations else None
         )
+        self.infos: Doubles = np.zeros((n, len(task.infos)))
+        same = self.autoreset == "same_step"
+        self.final_infos: Optional[Doubles] = np.zeros_like(self.infos) if same else None
         self._action_shape = (n,) if self.discrete else (n, len(task.actions))
         self._action_type = np.dtype(np.int64 if self.discrete else np.float32)
         self._step = self._held.step_choices if self.discrete else self._held.step_numbers
@@ -127,9 +136,7 @@ class Environment(InMemory):
         # Those that were filled last: the caller's or the environment's own.
         self._last = self.observations, self.terminated, self.truncated
         # Those of a step that was ended early, in the order of the extension.
-        self._unfilled: Optional[
-            tuple[Floats, Doubles, Flags, Flags, Optional[Doubles], Optional[Floats]]
-        ] = None
+        self._unfilled: Optional[tuple[Any, ...]] = None
         self.begin()
 
     # -- what it is
@@ -148,6 +155,11 @@ class Environment(InMemory):
     def reward_names(self) -> list[str]:
         """Of the columns of ``reward_terms``."""
         return [r.name for r in self.task.rewards]
+
+    @property
+    def info_names(self) -> list[str]:
+        """Of the columns of ``infos``."""
+        return [i.name for i in self.task.infos]
 
     @property
     def action_shape(self) -> tuple[int, ...]:
@@ -202,7 +214,7 @@ class Environment(InMemory):
         truncated: Optional[Writable] = None,
         reward_terms: Optional[Writable] = None,
         final_observations: Optional[Writable] = None,
-    ) -> tuple[Floats, Doubles, Flags, Flags]:
+    ) -> tuple[Observations, Doubles, Flags, Flags]:
         """One step of the task in every world, without the GIL.
 
         ``actions``: (worlds,) integers below ``task.choices`` or (worlds, numbers), of any dtype;
@@ -235,11 +247,12 @@ class Environment(InMemory):
                 final_observations,
                 self.observations.shape,
                 ("worlds", "observations"),
-                np.float32,
+                self.observations.dtype,
                 "final_observations",
             )
         given = self._actions(actions)
-        out = observations, rewards, terminated, truncated, reward_terms, final_observations
+        told = (self.infos, self.final_infos) if self.task.infos else (None, None)
+        out = observations, rewards, terminated, truncated, reward_terms, final_observations, *told
         try:
             self._step(given, *out)
         except BaseException:  # whatever a signal's handler raised
@@ -249,7 +262,7 @@ class Environment(InMemory):
         self._last = observations, terminated, truncated
         return observations, rewards, terminated, truncated
 
-    def finish_step(self) -> tuple[Floats, Doubles, Flags, Flags]:
+    def finish_step(self) -> tuple[Observations, Doubles, Flags, Flags]:
         """Takes a step that Ctrl-C ended early to its end, with its actions and into its arrays.
 
         What comes of it has the bits of a step that was not ended, but for forces that were added to
@@ -295,7 +308,7 @@ class Environment(InMemory):
         mask_or_ids: Optional[Ids] = None,
         seeds: Optional[Seeds] = None,
         observations: Optional[Writable] = None,
-    ) -> Floats:
+    ) -> Observations:
         """Begins the next episodes of all worlds or of some; with ``seeds`` their first ones.
 
         ``mask_or_ids``: a bool array (worlds,), or indices. ``seeds``: a number s, with which world
@@ -305,21 +318,21 @@ class Environment(InMemory):
         mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
         own = arrays.seeds(seeds, mask_or_ids, self._worlds)
-        self._held.reset(mask, own, observations)
+        self._held.reset(mask, own, observations, self.infos if self.task.infos else None)
         self._began(mask, observations)
         return observations
 
     def begin(
         self, mask_or_ids: Optional[Ids] = None, observations: Optional[Writable] = None
-    ) -> Floats:
+    ) -> Observations:
         """Worlds begin an episode in the state that they have; see ``reset``."""
         mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
-        self._held.begin(mask, observations)
+        self._held.begin(mask, observations, self.infos if self.task.infos else None)
         self._began(mask, observations)
         return observations
 
-    def _began(self, mask: NDArray[np.uint8], observations: Floats) -> None:
+    def _began(self, mask: NDArray[np.uint8], observations: Observations) -> None:
         chosen = mask.view(np.bool_)
         self.terminated[chosen] = False
         self.truncated[chosen] = False
@@ -344,7 +357,7 @@ class Environment(InMemory):
         snapshot: EnvironmentSnapshot,
         source: Optional[Ids] = None,
         ids: Optional[Ids] = None,
-    ) -> Floats:
+    ) -> Observations:
         """Worlds go on bit by bit as the saved ones did, in this or another Environment of the task.
 
         ``source``, ``ids``: as in ``Batch.restore``. Restored as a whole, later episodes are

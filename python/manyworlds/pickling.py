@@ -104,7 +104,7 @@ def _exchanged(members: Members, exchange: Callable[[Any], Any]) -> Members:
     """The members of a task with other values where expressions may be."""
 
     def part(one: Any) -> Any:
-        if not isinstance(one, (tasks.Observation, tasks.Reward)):
+        if not isinstance(one, (tasks.Observation, tasks.Reward, tasks.Info)):
             return one
         return dataclasses.replace(one, value=exchange(one.value))
 
@@ -112,6 +112,7 @@ def _exchanged(members: Members, exchange: Callable[[Any], Any]) -> Members:
         "controls": [exchange(value) for value in members["controls"]],
         "observations": [part(one) for one in members["observations"]],
         "rewards": [part(one) for one in members["rewards"]],
+        "infos": [part(one) for one in members.get("infos", [])],
         "terminated": exchange(members["terminated"]),
         "truncated": exchange(members["truncated"]),
     }

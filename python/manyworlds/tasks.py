@@ -286,6 +286,15 @@ class Reward:
     value: Value = 0.0
 
 
+@dataclass(slots=True, eq=False)
+class Info:
+    """What people are told beside, in double; of no account to the policy."""
+
+    name: str = ""
+    value: Value = 0.0
+    of_steps_alone: bool = False  # not told where an episode begins
+
+
 @dataclass(slots=True, kw_only=True, eq=False)
 class Task:
     """What a policy has to do in a scene: actions, observations, rewards, and when it ends."""
@@ -305,6 +314,7 @@ class Task:
     truncated: Value = 0.0  # it is broken off; so is a world that is lost
     max_steps: int = 0  # broken off after so many; 0: never
     solved_at: float = inf  # mean return; said to people only
+    infos: list[Info] = field(default_factory=list)
 
     rays: list[Ray] = field(default_factory=list)  # for ray_distance
     points: list[Point] = field(default_factory=list)  # for point_position, point_velocity
@@ -337,6 +347,10 @@ class Task:
     def reward(self, name: str, value: Value) -> None:
         """Adds a part of the reward."""
         self.rewards.append(Reward(name, value))
+
+    def tell(self, name: str, value: Value, of_steps_alone: bool = False) -> None:
+        """Adds an info."""
+        self.infos.append(Info(name, value, of_steps_alone))
 
     def validate(self) -> list[Issue]:
         """Everything that is wrong with the task and its scene; empty: it can be run."""

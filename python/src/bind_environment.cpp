@@ -2,6 +2,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
 #include "arrays.hpp"
@@ -47,16 +48,38 @@ void make(HeldEnvironment* self, nb::object task, nb::object worlds, nb::object 
   new (self) HeldEnvironment(t, options);
 }
 
-StepArrays arrays_of(const MaybeOut<float>& observations, const MaybeOut<double>& rewards,
+// Observations are wanted as float32 or as float64, or not.
+using ObservationsOut = std::optional<std::variant<Out<float>, Out<double>>>;
+
+template <class T>
+std::span<T> span_if(const ObservationsOut& array) {
+  const auto* of = array ? std::get_if<Out<T>>(&*array) : nullptr;
+  return of ? span_of(*of) : std::span<T>();
+}
+
+StepArrays arrays_of(const ObservationsOut& observations, const MaybeOut<double>& rewards,
                      const MaybeOut<bool>& terminated, const MaybeOut<bool>& truncated,
                      const MaybeOut<double>& reward_terms,
-                     const MaybeOut<float>& final_observations) {
-  return {.observations = span_or_none(observations),
-          .final_observations = span_or_none(final_observations),
+                     const ObservationsOut& final_observations, const MaybeOut<double>& infos,
+                     const MaybeOut<double>& final_infos) {
+  return {.observations = span_if<float>(observations),
+          .final_observations = span_if<float>(final_observations),
           .rewards = span_or_none(rewards),
           .reward_terms = span_or_none(reward_terms),
           .terminated = flags(terminated),
-          .truncated = flags(truncated)};
+          .truncated = flags(truncated),
+          .observations_f64 = span_if<double>(observations),
+          .final_observations_f64 = span_if<double>(final_observations),
+          .infos = span_or_none(infos),
+          .final_infos = span_or_none(final_infos)};
+}
+
+BeginArrays arrays_of(const ObservationsOut& observations, const MaybeOut<double>& infos) {
+  BeginArrays out;
+  out.observations = span_if<float>(observations);
+  out.observations_f64 = span_if<double>(observations);
+  out.infos = span_or_none(infos);
+  return out;
 }
 
 // f(environment, go on), without the GIL. What is over by then is taken to its end, so that a
@@ -70,22 +93,24 @@ void run_step(HeldEnvironment& self, F f) {
 }
 
 template <class T>
-void step(HeldEnvironment& self, const In<T>& actions, const MaybeOut<float>& observations,
+void step(HeldEnvironment& self, const In<T>& actions, const ObservationsOut& observations,
           const MaybeOut<double>& rewards, const MaybeOut<bool>& terminated,
           const MaybeOut<bool>& truncated, const MaybeOut<double>& reward_terms,
-          const MaybeOut<float>& final_observations) {
-  const StepArrays out =
-      arrays_of(observations, rewards, terminated, truncated, reward_terms, final_observations);
+          const ObservationsOut& final_observations, const MaybeOut<double>& infos,
+          const MaybeOut<double>& final_infos) {
+  const StepArrays out = arrays_of(observations, rewards, terminated, truncated, reward_terms,
+                                   final_observations, infos, final_infos);
   run_step(self,
            [&](Environment& e, const GoOn& go_on) { return e.step(span_of(actions), out, go_on); });
 }
 
-void finish_step(HeldEnvironment& self, const MaybeOut<float>& observations,
+void finish_step(HeldEnvironment& self, const ObservationsOut& observations,
                  const MaybeOut<double>& rewards, const MaybeOut<bool>& terminated,
                  const MaybeOut<bool>& truncated, const MaybeOut<double>& reward_terms,
-                 const MaybeOut<float>& final_observations) {
-  const StepArrays out =
-      arrays_of(observations, rewards, terminated, truncated, reward_terms, final_observations);
+                 const ObservationsOut& final_observations, const MaybeOut<double>& infos,
+                 const MaybeOut<double>& final_infos) {
+  const StepArrays out = arrays_of(observations, rewards, terminated, truncated, reward_terms,
+                                   final_observations, infos, final_infos);
   run_step(self, [&](Environment& e, const GoOn& go_on) { return e.finish_step(out, go_on); });
 }
 
@@ -93,7 +118,8 @@ void def_steps(nb::class_<HeldEnvironment>& c) {
   const auto out = [](const char* array) { return nb::arg(array).noconvert().none(); };
   const auto def = [&](const char* name, auto f, const char* text, auto... actions) {
     c.def(name, f, actions..., out("observations"), out("rewards"), out("terminated"),
-          out("truncated"), out("reward_terms"), out("final_observations"), text);
+          out("truncated"), out("reward_terms"), out("final_observations"), out("infos"),
+          out("final_infos"), text);
   };
   const char* const text =
       "One step of the task in every world, without the GIL, into arrays; None: not wanted.";
@@ -104,14 +130,22 @@ void def_steps(nb::class_<HeldEnvironment>& c) {
 }
 
 void reset(HeldEnvironment& self, const In<std::uint8_t>& mask,
-           const std::optional<In<std::uint64_t>>& seeds, const MaybeOut<float>& observations) {
+           const std::optional<In<std::uint64_t>>& seeds, const ObservationsOut& observations,
+           const MaybeOut<double>& infos) {
+  const BeginArrays out = arrays_of(observations, infos);
   self.run([&](Environment& e) {
     if (seeds) {
-      e.reset(span_of(mask), span_of(*seeds), span_or_none(observations));
+      e.reset(span_of(mask), span_of(*seeds), out);
     } else {
-      e.reset(span_of(mask), span_or_none(observations));
+      e.reset(span_of(mask), out);
     }
   });
+}
+
+void begin(HeldEnvironment& self, const In<std::uint8_t>& mask, const ObservationsOut& observations,
+           const MaybeOut<double>& infos) {
+  const BeginArrays out = arrays_of(observations, infos);
+  self.run([&](Environment& e) { e.begin(span_of(mask), out); });
 }
 
 using MemoryIn = In<double>;
@@ -176,6 +210,7 @@ void bind_tasks(nb::module_& m) {
       [] {
         nb::dict out;
         out["Action"] = to_python(Action{});
+        out["Info"] = to_python(Info{});
         out["Task"] = to_python(Task{});
         return out;
       },
@@ -199,13 +234,9 @@ void bind_environment(nb::module_& m) {
           "steps_left",
           [](HeldEnvironment& s) { return s.with([](Environment& e) { return e.steps_left(); }); })
       .def("reset", &reset, nb::arg("mask").noconvert(), nb::arg("seeds").noconvert().none(),
-           nb::arg("observations").noconvert().none())
-      .def(
-          "begin",
-          [](HeldEnvironment& self, const In<std::uint8_t>& mask, const MaybeOut<float>& out) {
-            self.run([&](Environment& e) { e.begin(span_of(mask), span_or_none(out)); });
-          },
-          nb::arg("mask").noconvert(), nb::arg("observations").noconvert().none())
+           nb::arg("observations").noconvert().none(), nb::arg("infos").noconvert().none())
+      .def("begin", &begin, nb::arg("mask").noconvert(), nb::arg("observations").noconvert().none(),
+           nb::arg("infos").noconvert().none())
       .def(
           "copy_world",
           [](HeldEnvironment& self, int source, int target) {

@@ -45,6 +45,14 @@ struct Described<Reward> {
   static void fields(auto&& visit, auto& s) { visit("name", s.name), visit("value", s.value); }
 };
 template <>
+struct Described<Info> {
+  static constexpr const char* name = "Info";
+  static void fields(auto&& visit, auto& s) {
+    visit("name", s.name), visit("value", s.value);
+    visit("of_steps_alone", s.of_steps_alone);
+  }
+};
+template <>
 struct Described<Task> {
   static constexpr const char* name = "Task";
   static void fields(auto&& visit, auto& s) {
@@ -52,8 +60,8 @@ struct Described<Task> {
     visit("choices", s.choices), visit("actions", s.actions), visit("controls", s.controls);
     visit("observations", s.observations), visit("rewards", s.rewards);
     visit("terminated", s.terminated), visit("truncated", s.truncated);
-    visit("max_steps", s.max_steps), visit("solved_at", s.solved_at), visit("rays", s.rays);
-    visit("points", s.points);
+    visit("max_steps", s.max_steps), visit("solved_at", s.solved_at), visit("infos", s.infos);
+    visit("rays", s.rays), visit("points", s.points);
   }
 };
 

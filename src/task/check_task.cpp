@@ -44,6 +44,9 @@ class TaskChecker {
     for (std::size_t i = 0; i < task_.rewards.size(); ++i) {
       check(named("reward", i, task_.rewards[i].name), task_.rewards[i].value, false);
     }
+    for (std::size_t i = 0; i < task_.infos.size(); ++i) {
+      check(named("info", i, task_.infos[i].name), task_.infos[i].value, false);
+    }
     check("terminated", task_.terminated, false);
     check("truncated", task_.truncated, false);
     check_list("rays", [&] { check_rays(task_.rays, *plan_); });

@@ -59,6 +59,7 @@ const Task& Environment::task() const { return impl_->task; }
 Autoreset Environment::autoreset() const { return impl_->autoreset; }
 int Environment::worlds() const { return impl_->batch.worlds(); }
 int Environment::observations() const { return static_cast<int>(impl_->task.observations.size()); }
+int Environment::infos() const { return static_cast<int>(impl_->task.infos.size()); }
 int Environment::actions() const { return impl_->programs->inputs.actions; }
 int Environment::steps_left() const { return impl_->steps_left; }
 Batch& Environment::batch() { return impl_->batch; }
@@ -100,21 +101,21 @@ bool Environment::finish_step(const StepArrays& out, const GoOn& go_on) {
   return impl_->finish_step(out, go_on);
 }
 
-void Environment::reset(std::span<const std::uint8_t> mask, std::span<float> observations) {
-  impl_->check_to_begin("reset", mask, observations);
+void Environment::reset(std::span<const std::uint8_t> mask, const BeginArrays& out) {
+  impl_->check_to_begin("reset", mask, out);
   impl_->batch.reset(mask);
-  begin(mask, observations);
+  begin(mask, out);
 }
 void Environment::reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
-                        std::span<float> observations) {
-  impl_->check_to_begin("reset", mask, observations);
+                        const BeginArrays& out) {
+  impl_->check_to_begin("reset", mask, out);
   impl_->batch.reset(mask, seeds);
-  begin(mask, observations);
+  begin(mask, out);
 }
-void Environment::begin(std::span<const std::uint8_t> mask, std::span<float> observations) {
+void Environment::begin(std::span<const std::uint8_t> mask, const BeginArrays& out) {
   check_array("the mask's entries", mask.size(), impl_->worlds(), false);
-  impl_->check_to_begin("begin", mask, observations);
-  impl_->begin(*impl_->batch.impl_, mask, observations);
+  impl_->check_to_begin("begin", mask, out);
+  impl_->begin(*impl_->batch.impl_, mask, out);
 }
 
 void Environment::copy_world(int from, int to) {

@@ -37,17 +37,29 @@ struct Environment::Impl {
 
   std::size_t worlds() const { return static_cast<std::size_t>(batch.worlds()); }
   std::size_t observations() const { return worlds() * task.observations.size(); }
+  std::size_t infos() const { return worlds() * task.infos.size(); }
   bool discrete() const { return task.choices > 0; }
 
   void check(const StepArrays& out) const {
-    check_array("observations", out.observations.size(), observations(), true);
-    check_array("final_observations", out.final_observations.size(), observations(), true);
-    if (out.observations.empty() && !out.final_observations.empty())
-      reject("final_observations are wanted without observations");
+    check_pair("observations", out.observations, "final_observations", out.final_observations,
+               observations());
+    check_pair("observations_f64", out.observations_f64, "final_observations_f64",
+               out.final_observations_f64, observations());
+    check_pair("infos", out.infos, "final_infos", out.final_infos, infos());
     check_array("rewards", out.rewards.size(), worlds(), true);
     check_array("reward_terms", out.reward_terms.size(), worlds() * task.rewards.size(), true);
     check_array("terminated", out.terminated.size(), worlds(), true);
     check_array("truncated", out.truncated.size(), worlds(), true);
+  }
+
+  template <class T>
+  static void check_pair(const char* name, std::span<T> own, const char* final_name,
+                         std::span<T> last, std::size_t wanted) {
+    check_array(name, own.size(), wanted, true);
+    check_array(final_name, last.size(), wanted, true);
+    if (own.empty() && !last.empty()) {
+      reject(std::string(final_name) + " are wanted without " + name);
+    }
   }
 
   void check(const EnvironmentSnapshot& snapshot) const {
@@ -77,8 +89,10 @@ struct Environment::Impl {
   }
   // What begins all worlds gives up a step in whose middle they stand.
   void check_to_begin(const char* call, std::span<const std::uint8_t> mask,
-                      std::span<const float> seen) const {
-    check_array("observations", seen.size(), observations(), true);
+                      const BeginArrays& out) const {
+    check_array("observations", out.observations.size(), observations(), true);
+    check_array("observations_f64", out.observations_f64.size(), observations(), true);
+    check_array("infos", out.infos.size(), infos(), true);
     const auto begins = [](std::uint8_t begin) { return begin != 0; };
     if (!std::all_of(mask.begin(), mask.end(), begins)) check_between_steps(call);
   }
@@ -130,9 +144,11 @@ struct Environment::Impl {
                       [&](int, int, int world) { b.tell(batch, Input::reset, world); });
   }
 
-  void begin(Batch::Impl& b, std::span<const std::uint8_t> mask, std::span<float> seen) {
+  void begin(Batch::Impl& b, std::span<const std::uint8_t> mask, const BeginArrays& out) {
     runner->out = {};
-    runner->out.observations = seen;
+    runner->out.observations = out.observations;
+    runner->out.observations_f64 = out.observations_f64;
+    runner->out.infos = out.infos;
     runner->keeps_last = false;
     b.core->begin(*b.executor, mask, false, runner->visitor());
     steps_left = 0;

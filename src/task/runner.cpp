@@ -65,6 +65,7 @@ TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : max_steps(task.
   ProgramBuilder builder(plan, inputs, memory);
   for (const Observation& o : task.observations) observations.push_back(builder.add(o.value));
   for (const Reward& r : task.rewards) rewards.push_back(builder.add(r.value));
+  for (const Info& i : task.infos) infos.push_back(builder.add(i.value));
   terminated = builder.add(task.terminated);
   truncated = builder.add(task.truncated | terms::lost());
   ProgramBuilder first(plan, inputs, memory, &builder);
@@ -156,7 +157,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     }
     run(g, after_, thread, false);
     const int first = g.group * lanes_, end = std::min(lanes_, worlds_ - first);
-    for (int l = 0; l < end; ++l) put_observations(out.observations, thread, first + l, l);
+    for (int l = 0; l < end; ++l) put_results(thread, first + l, l);
     put_rewards(thread, first, end);
     end_episodes(thread, first, end, age);
     put_down(g.group, thread, (1u << lanes_) - 1u);
@@ -172,7 +173,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
       age_[at(world)] = 0;
       begin_next[at(world)] = 0;
       if (keeps_last) keep_last(world);
-      put_observations(out.observations, thread, world, l);
+      put_results(thread, world, l);
     }
     put_down(g.group, thread, lanes);
   }
@@ -253,17 +254,30 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     return thread.values[at(row * lanes_ + lane)];
   }
 
-  void put_observations(std::span<float> to, const Thread& thread, int world, int lane) const {
+  // What is told of a world, where it is wanted.
+  void put_results(const Thread& thread, int world, int lane) const {
+    put(out.observations, p_->observations, thread, world, lane);
+    put(out.observations_f64, p_->observations, thread, world, lane);
+    put(out.infos, p_->infos, thread, world, lane);
+  }
+  template <class T>
+  void put(std::span<T> to, const std::vector<int>& rows, const Thread& thread, int world,
+           int lane) const {
     if (to.empty()) return;
-    float* own = to.data() + at(world) * p_->observations.size();
-    for (const int row : p_->observations) *own++ = static_cast<float>(value(thread, row, lane));
+    T* own = to.data() + at(world) * rows.size();
+    for (const int row : rows) *own++ = static_cast<T>(value(thread, row, lane));
   }
 
   void keep_last(int world) const {
-    if (out.observations.empty() || out.final_observations.empty()) return;
     const std::size_t n = p_->observations.size();
-    std::copy_n(out.observations.data() + at(world) * n, n,
-                out.final_observations.data() + at(world) * n);
+    keep(out.observations, out.final_observations, world, n);
+    keep(out.observations_f64, out.final_observations_f64, world, n);
+    keep(out.infos, out.final_infos, world, p_->infos.size());
+  }
+  template <class T>
+  static void keep(std::span<T> from, std::span<T> to, int world, std::size_t n) {
+    if (from.empty() || to.empty()) return;
+    std::copy_n(from.data() + at(world) * n, n, to.data() + at(world) * n);
   }
 
   // Of the worlds `first` on, which are lanes 0 to `end`. In steps that begin an episode there is

@@ -23,8 +23,8 @@ struct TaskPrograms {
   std::vector<std::array<double, 2>> action_range, control_range;
   int max_steps;
   Program before, after;
-  std::vector<int> controls;               // rows of `before`
-  std::vector<int> observations, rewards;  // rows of `after`
+  std::vector<int> controls;                      // rows of `before`
+  std::vector<int> observations, rewards, infos;  // rows of `after`
   int terminated, truncated;
   Memory memory;
   // Of all this; of a user's function only where it stands, since what it does cannot be told.

@@ -6,7 +6,7 @@ from typing import Any, Optional, Union
 
 import gymnasium
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from ..environment import Environment
 from ..in_memory import InMemory
@@ -30,6 +30,7 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
         precision: Precision = "f32",
         isa: Optional[Isa] = None,
         reward_terms: bool = False,
+        observation_dtype: DTypeLike = np.float32,
         render_mode: Optional[str] = None,
     ) -> None:
         self.task = spaces.task_of(task, max_episode_steps)
@@ -45,28 +46,30 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
             isa=isa,
             autoreset="disabled",
             reward_terms=reward_terms,
+            observation_dtype=observation_dtype,
         )
-        self.observation_space = spaces.observation_space(self.task)
+        self.observation_space = spaces.observation_space(self.task, observation_dtype)
         self.action_space = spaces.action_space(self.task)
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """The first episode of the seed, 0 to 2**64 - 1; None: the next episode. Returns (observation,
-        info): (observations,) float32 and an empty dict."""
+        info): (observations,) float32 and the task's infos, but for those of steps alone."""
         super().reset(seed=seed)
-        return self.environment.reset(seeds=seed)[0].copy(), {}
+        return self.environment.reset(seeds=seed)[0].copy(), self._told(False)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """One step of the task. ``action``: an integer below ``task.choices``, or (numbers,).
 
         Returns (observation, reward, terminated, truncated, info); the observation is (observations,)
-        float32, a copy. ``info`` has "lost" where the world is, "reward_terms" by name if asked for.
+        float32 or what was asked for, a copy. ``info`` has the task's infos, "lost" where the world is,
+        "reward_terms" by name if asked for.
         ValueError for a wrong shape and for a choice that there is not, TypeError for a wrong dtype.
         """
         e = self.environment
         observations, rewards, terminated, truncated = e.step(np.asarray(action)[None])
-        info: dict[str, Any] = {}
+        info = self._told(True)
         if e.reward_terms is not None:
             parts = e.reward_terms[0]
             info["reward_terms"] = {n: float(p) for n, p in zip(e.reward_names, parts)}
@@ -74,6 +77,10 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
             info["lost"] = True
         ends = bool(terminated[0]), bool(truncated[0])
         return observations[0].copy(), float(rewards[0]), *ends, info
+
+    def _told(self, stepped: bool) -> dict[str, Any]:
+        told = zip(self.task.infos, self.environment.infos[0])
+        return {i.name: float(value) for i, value in told if stepped or not i.of_steps_alone}
 
     def render(self) -> Optional[NDArray[np.uint8]]:  # type: ignore[override]
         """The world as it is, (height, width, 3) uint8; None without a render_mode."""

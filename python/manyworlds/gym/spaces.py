@@ -8,6 +8,7 @@ from typing import Any, Optional, Union
 
 import gymnasium
 import numpy as np
+from numpy.typing import DTypeLike
 
 from .. import arrays, tasks
 from ..tasks import Task
@@ -25,17 +26,17 @@ def task_of(task: Union[Task, str], max_episode_steps: Optional[int]) -> Task:
     return dataclasses.replace(found, max_steps=steps)
 
 
-def observation_space(task: Task) -> gymnasium.spaces.Box:
-    """A Box, (observations,) float32, of finite bounds: those that the task gives, else what its
+def observation_space(task: Task, dtype: DTypeLike = np.float32) -> gymnasium.spaces.Box:
+    """A Box, (observations,) of the dtype, of finite bounds: those that the task gives, else what its
     expressions can be, else the largest numbers."""
     ends = [range_of(o.value, task) for o in task.observations]
     low = [o.low if o.low > -inf else least for o, (least, _) in zip(task.observations, ends)]
     high = [o.high if o.high < inf else most for o, (_, most) in zip(task.observations, ends)]
     largest = np.finfo(np.float32).max
     return gymnasium.spaces.Box(
-        np.clip(low, -largest, largest).astype(np.float32),
-        np.clip(high, -largest, largest).astype(np.float32),
-        dtype=np.float32,
+        np.clip(low, -largest, largest).astype(dtype),
+        np.clip(high, -largest, largest).astype(dtype),
+        dtype=np.dtype(dtype).type,
     )
 
 

@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from .. import arrays
 from ..environment import Environment
@@ -36,7 +36,7 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
     copy                False: ``reset`` and ``step`` return the same arrays every time
     seed                of the worlds until ``reset`` gives one; None: a random one
     reward_terms        ``infos["reward_terms"]`` has the parts of the reward by name
-    threads, precision, isa  as in ``manyworlds.Environment``
+    threads, precision, isa, observation_dtype  as in ``manyworlds.Environment``
     render_mode         "rgb_array": ``render()`` draws every world (``manyworlds.plot``)
 
     ``reset(seed=s)`` begins the first episode of the seed s + i in world i, ``reset()`` the next
@@ -66,6 +66,7 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
         threads: Optional[int] = None,
         precision: Precision = "f32",
         isa: Optional[Isa] = None,
+        observation_dtype: DTypeLike = np.float32,
         render_mode: Optional[str] = None,
     ) -> None:
         self.autoreset_mode = AutoresetMode(autoreset_mode)
@@ -85,9 +86,10 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
             isa,
             MODES[self.autoreset_mode],  # type: ignore[arg-type]
             reward_terms=reward_terms,
+            observation_dtype=observation_dtype,
         )
         self.num_envs = self.environment.worlds
-        self.single_observation_space = spaces.observation_space(self.task)
+        self.single_observation_space = spaces.observation_space(self.task, observation_dtype)
         self.single_action_space = spaces.action_space(self.task)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
@@ -115,7 +117,8 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
             self.environment.reset(mask & ~given)
         self._resets_now[mask] = False
         observations = self.environment.observations
-        return observations.copy() if self.copy else observations, {}
+        infos = self._told(self.environment.infos, mask, np.zeros_like(mask))
+        return observations.copy() if self.copy else observations, infos
 
     def step(
         self, actions: NDArray[Any]
@@ -169,28 +172,43 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
 
     def _infos(self) -> dict[str, Any]:
         e, infos = self.environment, {}
-        if e.reward_terms is None and not (e.truncated.any() or e.terminated.any()):
+        told = bool(self.task.infos)
+        if e.reward_terms is None and not told and not (e.truncated.any() or e.terminated.any()):
             return infos
         ended = e.terminated | e.truncated
+        every = np.ones_like(ended)
         if self.autoreset_mode == AutoresetMode.SAME_STEP:
             if ended.any():
                 infos |= self._final(ended)
+            infos |= self._told(e.infos, every, ~ended)
             if e.reward_terms is not None and not ended.all():
                 infos |= self._reward_terms(~ended)
             return infos
-        if e.reward_terms is not None:
-            if self.autoreset_mode == AutoresetMode.DISABLED:
-                stepped = np.ones_like(ended)
-            else:
+        if e.reward_terms is not None or told:
+            stepped = every
+            if self.autoreset_mode != AutoresetMode.DISABLED:
                 stepped = ~self._resets_now
                 self._resets_now = ended
-            if stepped.any():
+            infos |= self._told(e.infos, every, stepped)
+            if e.reward_terms is not None and stepped.any():
                 infos |= self._reward_terms(stepped)
         if e.truncated.any():
             lost = e.lost() & e.truncated
             if lost.any():
                 infos |= {"lost": lost, "_lost": lost.copy()}
         return infos
+
+    def _told(
+        self, values: NDArray[Any], mask: NDArray[np.bool_], stepped: NDArray[np.bool_]
+    ) -> dict[str, Any]:
+        """The task's infos of the worlds of a mask; those of steps alone where they were stepped."""
+        out: dict[str, Any] = {}
+        for info, column in zip(self.task.infos, values.T):
+            of = mask & stepped if info.of_steps_alone else mask
+            if of.any():
+                out[info.name] = np.where(of, column, 0)
+                out["_" + info.name] = of.copy()
+        return out
 
     def _final(self, ended: NDArray[np.bool_]) -> dict[str, Any]:
         e = self.environment
@@ -200,6 +218,8 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
         for row, observation in zip(rows, e.final_observations[rows]):
             last[row] = observation
         info = {} if e.reward_terms is None else self._reward_terms(ended)
+        if e.final_infos is not None:
+            info |= self._told(e.final_infos, ended, ended)
         return {
             "final_obs": last,
             "_final_obs": ended,
