@@ -6,6 +6,7 @@
 #include "manyworlds/executor.hpp"
 #include "manyworlds/expression_graph.hpp"
 #include "manyworlds/fields.hpp"
+#include "manyworlds/gymnasium.hpp"
 #include "manyworlds/hull.hpp"
 #include "manyworlds/ids.hpp"
 #include "manyworlds/listener.hpp"

@@ -480,6 +480,12 @@ class expressions:
     def observed(what: str, item: int, component: int) -> Expression: ...
 
     @staticmethod
+    def generalized_position(coordinate: int) -> Expression: ...
+
+    @staticmethod
+    def generalized_velocity(dof: int) -> Expression: ...
+
+    @staticmethod
     def action(index: int) -> Expression: ...
 
     @staticmethod
@@ -528,9 +534,9 @@ class Environment:
     @property
     def steps_left(self) -> int: ...
 
-    def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None: ...
+    def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None: ...
 
-    def begin(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None: ...
+    def begin(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None: ...
 
     def copy_world(self, source: int, target: int) -> None: ...
 
@@ -544,17 +550,27 @@ class Environment:
 
     def batch(self) -> Batch: ...
 
-    def step_choices(self, actions: Annotated[NDArray[numpy.int64], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None:
+    def step_choices(self, actions: Annotated[NDArray[numpy.int64], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None:
         """
         One step of the task in every world, without the GIL, into arrays; None: not wanted.
         """
 
-    def step_numbers(self, actions: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None:
+    def step_numbers(self, actions: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None:
         """
         One step of the task in every world, without the GIL, into arrays; None: not wanted.
         """
 
-    def finish_step(self, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | None) -> None:
+    def finish_step(self, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None:
         """The rest of a step that was ended early."""
+
+def gymnasium_tasks() -> dict:
+    """
+    By the name of each task of Gymnasium's: its model, and its arguments with their defaults.
+    """
+
+def gymnasium_task(name: str, scene: object, arguments: dict) -> object:
+    """
+    A task of Gymnasium's for a model. Arguments that it does not have are not looked at.
+    """
 
 __version__: str

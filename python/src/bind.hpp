@@ -16,6 +16,7 @@ void bind_snapshot(nanobind::module_& m);  // Snapshot, SnapshotError
 void bind_batch(nanobind::module_& m);     // Batch: construction, shape, stepping, resets
 void bind_expression(nanobind::module_& m);   // Expression, its functions and terms
 void bind_environment(nanobind::module_& m);  // tasks, Environment
+void bind_gymnasium(nanobind::module_& m);    // tasks of Gymnasium's models
 
 // The rest of Batch, by what it is about.
 void bind_batch_state(nanobind::class_<HeldBatch>& c);  // fields as arrays, in place; controls

@@ -13,4 +13,5 @@ NB_MODULE(_core, m) {
   mw::bind_batch(m);
   mw::bind_expression(m);
   mw::bind_environment(m);
+  mw::bind_gymnasium(m);
 }

@@ -147,9 +147,9 @@ def test_metadata_is_what_gymnasium_wants():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for mode in AutoresetMode:
-            env = gymnasium.make_vec("manyworlds/Hopper-v0", 2, autoreset_mode=mode)
-            assert env.metadata["autoreset_mode"] is mode and env.metadata["render_fps"] == 125
-        gymnasium.make("manyworlds/Hopper-v0").reset(seed=1)
+            env = gymnasium.make_vec("manyworlds/CartPole-v0", 2, autoreset_mode=mode)
+            assert env.metadata["autoreset_mode"] is mode and env.metadata["render_fps"] == 50
+        gymnasium.make("manyworlds/CartPole-v0").reset(seed=1)
 
 
 # -- pickles

@@ -3,15 +3,17 @@
     import gymnasium
     import manyworlds.gym
     envs = gymnasium.make_vec("manyworlds/LunarLander-v0", num_envs=4096)
+    envs = gymnasium.make_vec("manyworlds/Ant-v5", num_envs=4096)  # and its other MuJoCo tasks: ``mujoco``
 
 docs/rl.md explains the rest by example.
 """
 
+from . import mujoco
 from .check import check_vector_env
 from .registration import ids, register
 from .single_env import Env
 from .vector_env import VectorEnv
 
-__all__ = ["Env", "VectorEnv", "check_vector_env", "ids", "register"]
+__all__ = ["Env", "VectorEnv", "check_vector_env", "ids", "mujoco", "register"]
 
 register()

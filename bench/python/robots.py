@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Environment steps per second of one core: Gymnasium's MuJoCo tasks here, in Gymnasium's own vector
+environment, and in EnvPool where it is installed, in turns.
+
+    pip install gymnasium mujoco-core==4.0.1 glfw imageio envpool
+    bench/python/robots.py --tasks HalfCheetah-v5 Ant-v5 --seconds 1 --repeats 5 --json build/robots.json
+
+Each steps in one thread under random actions that were made before, through its own resets. Time is the
+processor's, of all threads of the process; figures are medians over rounds, and ratios are those of each
+round, so that what else the machine does falls on all alike. Gymnasium and EnvPool solve as the files say (the
+humanoids by PGS); here the solver is Newton's with the files' tolerance. What is not installed is left out
+with a message.
+"""
+
+import argparse
+import json
+import platform
+import statistics
+import time
+
+import gymnasium
+import numpy as np
+
+import manyworlds as mw
+from manyworlds.gym import mujoco as tasks
+
+FEW = 64  # environments of Gymnasium, at most: more step no faster, and take long to make
+
+
+def ours(name, n, environment):
+    task = tasks.task(name)
+    if environment:
+        env = mw.Environment(task, n, threads=1)
+        return env.step, env.close
+    env = mw.gym.VectorEnv(task, n, threads=1, copy=False)
+    env.reset(seed=0)
+    return env.step, env.close
+
+
+def gymnasiums(name, n):
+    env = gymnasium.make_vec(name, n, vectorization_mode="sync")
+    env.reset(seed=0)
+    return env.step, env.close
+
+
+def envpools(name, n):
+    import envpool
+
+    env = envpool.make_gymnasium(name, num_envs=n, num_threads=1, seed=0)
+    env.reset()
+    return env.step, env.close
+
+
+def peers(name, n):
+    """{what: a function that makes (step, close)}."""
+    out = {
+        "Environment": lambda: ours(name, n, True),
+        "VectorEnv": lambda: ours(name, n, False),
+        "EnvPool": lambda: envpools(name, n),
+    }
+    if n <= FEW:
+        out["Gymnasium, SyncVectorEnv"] = lambda: gymnasiums(name, n)
+    return out
+
+
+def speed_of(step, actions, n, seconds):
+    """Environment steps per second of processor time."""
+    count, began = 0, time.process_time()
+    while time.process_time() - began < seconds:
+        step(actions[count % len(actions)])
+        count += 1
+    return count * n / (time.process_time() - began)
+
+
+def by_turns(name, n, seconds, repeats):
+    """{what: speeds of each round}."""
+    space = gymnasium.make(name).action_space
+    shape = (32, n, *space.shape)
+    actions = np.random.default_rng(0).uniform(space.low, space.high, shape).astype(np.float32)
+    steps, closes, speeds = {}, [], {}
+    for what, make in peers(name, n).items():
+        try:
+            steps[what], close = make()
+        except (ImportError, RuntimeError, ValueError, AssertionError, KeyError) as error:
+            print(f"{what} of {name} cannot be had here: {error}")
+            continue
+        closes.append(close)
+        speeds[what] = []
+    for _ in range(repeats + 1):  # the first round warms up
+        for what, step in steps.items():
+            speeds[what].append(speed_of(step, actions, n, seconds))
+    for close in closes:
+        close()
+    return {what: found[1:] for what, found in speeds.items()}
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    p.add_argument("--tasks", nargs="*", default=tasks.names())
+    p.add_argument("--worlds", type=int, nargs="*", default=[1, 64, 4096])
+    p.add_argument("--seconds", type=float, default=0.5)
+    p.add_argument("--repeats", type=int, default=5)
+    p.add_argument("--json")
+    o = p.parse_args()
+    rows = []
+    print("| task | envs | what, on one core | steps/s | Environment / this |")
+    print("|---|---:|---|---:|---:|")
+    for name in o.tasks:
+        for n in o.worlds:
+            speeds = by_turns(name, n, o.seconds, o.repeats)
+            for what, found in speeds.items():
+                ratio = statistics.median(a / b for a, b in zip(speeds["Environment"], found))
+                row = dict(task=name, worlds=n, what=what, speed=statistics.median(found), ratio=ratio)
+                rows.append(row)
+                print(f"| {name} | {n} | {what} | {row['speed']:,.0f} | {ratio:.2f} |", flush=True)
+    if o.json:
+        with mw.Environment("CartPole", threads=1) as env:
+            kernels = env.batch.kernel_table
+        about = dict(
+            machine=platform.processor() or platform.machine(),
+            python=platform.python_version(),
+            gymnasium=gymnasium.__version__,
+            manyworlds=mw.__version__,
+            kernels=kernels,
+            seconds=o.seconds,
+            repeats=o.repeats,
+        )
+        with open(o.json, "w") as file:
+            json.dump({"about": about, "rows": rows}, file, indent=1)
+
+
+if __name__ == "__main__":
+    main()
