@@ -50,9 +50,9 @@ TEST_CASE("a changed member changes the fingerprint, unless it is said why not",
     INFO(member);
     CHECK_FALSE(has(member));
   }
-  for (const char* member : {"keyframes", "keyframes/0/name", "keyframes/0/controls/1",
-                             "keyframes/0/generalized_position/0", "coordinate_draws",
-                             "coordinate_draws/0/high/1"}) {
+  for (const char* member :
+       {"keyframes", "keyframes/0/name", "keyframes/0/controls/1",
+        "keyframes/0/generalized_position/0", "coordinate_draws", "coordinate_draws/0/high/1"}) {
     INFO(member);
     CHECK(has(member));
   }
