@@ -260,7 +260,7 @@ TEST_CASE("a size without a finite diameter is found by validate", "[mjcf][fast]
   CHECK(*scene.options.length_unit == 1);
   const std::vector<Issue> issues = validate(scene);
   REQUIRE_FALSE(issues.empty());
-  CHECK(issues[0].place.find("bodies[0 'b'].shapes[0") == 0);
+  CHECK(issues[0].place.find("body 0 'b', shape 0") == 0);
 }
 
 TEST_CASE("MuJoCo's error function throws instead of ending the process", "[mjcf][fast]") {
