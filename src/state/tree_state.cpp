@@ -44,12 +44,11 @@ void Worlds<Real>::draw_coordinates(int world, const Draws& draws) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const CoordinateDraw& draw = all[i];
     const Field field = draw.velocity ? Field::generalized_velocity : Field::generalized_position;
-    const std::vector<double> drawn = drawn_coordinates(draw, i, draws);
-    for (std::size_t k = 0; k < drawn.size(); ++k) {
+    for_each_drawn(draw, i, draws, [&](std::size_t k, double drawn) {
       Real& number_of = number(field, world, draw.first + static_cast<int>(k), 0);
       const double from = draw.replaces ? 0 : static_cast<double>(number_of);
-      number_of = static_cast<Real>(from + drawn[k]);
-    }
+      number_of = static_cast<Real>(from + drawn);
+    });
   }
 }
 
