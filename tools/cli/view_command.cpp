@@ -1,15 +1,16 @@
 // `manyworlds view`: recordings as a page, those given or one that is made for it.
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
-
-#include <unistd.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -42,18 +43,27 @@ using tools::counted, tools::with_prefix;
 constexpr double kMaxPoses = 2.5e6;
 constexpr int kMaxWorlds = 256;
 
-// A file that is gone when it is not needed any more.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& ending)
-      : path_(fs::temp_directory_path() / fmt::format("manyworlds-{}{}", getpid(), ending)) {}
-  ~TemporaryFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
+// A new folder that only its owner may enter: nobody else can have put a file or a link there.
+fs::path make_private_folder() {
+  std::string name = (fs::temp_directory_path() / "manyworlds-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) {
+    throw InputError(fmt::format("view: no folder can be made in '{}': {}",
+                                 fs::temp_directory_path().string(), std::strerror(errno)));
   }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const fs::path& path() const { return path_; }
+  return name;
+}
+
+// Files that are gone when they are not needed any more.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_(make_private_folder()) {}
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  fs::path operator/(const char* file) const { return path_ / file; }
 
  private:
   fs::path path_;
@@ -93,11 +103,11 @@ bool is_recording(const std::string& source) {
   return source.ends_with(".h5") || source.find(".h5.part-") != std::string::npos;
 }
 
-// Where the page goes that --out does not name.
+// Where the page goes that --out does not name. It stays, for the browser that opens it.
 fs::path page_in_temporary_folder(const std::string& source) {
   std::string name = fs::path(source).stem().string();
   std::replace(name.begin(), name.end(), ':', '-');
-  return fs::temp_directory_path() / fmt::format("manyworlds-{}.html", name);
+  return make_private_folder() / (name + ".html");
 }
 
 }  // namespace
@@ -111,9 +121,10 @@ int view_command(const ViewArguments& arguments) {
     if (is_recording(source)) {
       recordings.push_back(Recording::open(source));
     } else {
-      const TemporaryFile file(".h5");
-      record(arguments, source, file.path());
-      recordings.push_back(Recording::open(file.path()));
+      const ScratchFolder folder;
+      const fs::path file = folder / "run.h5";
+      record(arguments, source, file);
+      recordings.push_back(Recording::open(file));
     }
   }
   std::vector<const Recording*> all;
@@ -123,9 +134,9 @@ int view_command(const ViewArguments& arguments) {
   options.max_worlds = arguments.worlds;
   options.every = arguments.every;
   const bool picture = !arguments.png.empty();
-  std::optional<TemporaryFile> unnamed;  // of a picture alone
-  if (picture && arguments.out.empty()) unnamed.emplace(".html");
-  const fs::path out = unnamed                 ? unnamed->path()
+  std::optional<ScratchFolder> unnamed;  // of a picture alone
+  if (picture && arguments.out.empty()) unnamed.emplace();
+  const fs::path out = unnamed                 ? *unnamed / "page.html"
                        : arguments.out.empty() ? page_in_temporary_folder(arguments.sources.front())
                                                : fs::path(arguments.out);
   const PageReport report = write_page(all, empty, out, options);
