@@ -22,7 +22,7 @@ inline Scene contraption(Space space) {
   };
   const auto join = [&](BodyId a, BodyId b, const Vec3& where, JointType type) {
     Joint joint = joint_at(scene, a, b, at(where, hinge_axes(space)), std::move(type));
-    joint.break_force = space == Space::planar ? 4e4 : 9e3;
+    joint.break_force = space == Space::planar ? 4e4 : 1e4;
     joint.break_torque = joint.break_force;
     scene.add(joint);
   };
