@@ -4,14 +4,19 @@
 // semi-definite, as an inertia of the body. For an impulse p of a substep at an arm r, with
 // u = |p| r + |r| p:
 //   G = h (g E - u u' / (4 |p| |r|)),  g = (|p| |r| + p . r) / 2
-// which is 0 in compression. It damps what it holds, so bodies that do not need it have none: with
-// s the sum of g and m of their transverse moments, G is scaled by max(0, 1 - (m / 2) / (h s)).
+// which is 0 in compression. A cone's impulse p turns with the plane in which its joint leans by
+// theta: the second derivatives of p theta, by how both z axes move out of that plane, are at most
+//   G = h g a a',  g = p / tan(theta / 2)
+// of each body, a its axis of that motion. It damps what it holds, so bodies that do not need it
+// have none: with s the sum of g and m of their transverse moments, G is scaled by max(0, 1 - (m /
+// 2) / (h s)).
 #pragma once
 
 #include "kernels/direct/edges.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+inline constexpr double kLeastLean = 0.01;      // rad
 inline constexpr Real kStiffShare = Real(0.5);  // below that share of a body's moments it has none
 
 MW_INLINE Sym3 scaled(const Sym3& a, Float s) {
@@ -61,6 +66,7 @@ class GeometricStiffness {
       const ArmStiffness k(r, p);
       add_to(sums(b), 0, k.sum), add_to(sums(b), 1, k.sum * k.arm2);
     });
+    for_each_cone([&](int b, auto, Float g) { add_to(sums(b), 0, g); });
     std::uint32_t stiff = 0;
     for_each_tree_body(t_, [&](int b) {
       const Float share = share_of(b);
@@ -74,6 +80,12 @@ class GeometricStiffness {
       // Lanes without any keep the sign of their zeros, whatever others have.
       store(rotary(d_.stiffened, b),
             select(Float(Real(0)) < share, own + scaled(stiffness_of(r, p), share), own));
+    });
+    for_each_cone([&](int b, auto axis, Float g) {
+      const Float share = Float::load(sums(b)) * Float(t_.h);
+      const auto own = load_as<Sym3>(rotary(d_.stiffened, b));
+      store(rotary(d_.stiffened, b),
+            select(Float(Real(0)) < share, fnma(axis, axis * -(share * g), own), own));
     });
     return true;
   }
@@ -99,6 +111,26 @@ class GeometricStiffness {
       p = select(mask_from_bits(s.lanes), p, zero_of<Vec>());
       visit(edge.child, load_as<Vec>(s.arm_child[0]), p);
       if (!edge.prescribed) visit(edge.parent, load_as<Vec>(s.arm_parent[0]), -p);
+    }
+  }
+  // visit(body, axis, g) for both sides of every cone.
+  template <class Visit>
+  MW_INLINE void for_each_cone(Visit visit) const {
+    if constexpr (S::kDim == 3) {
+      for (int i = 0; i < t_.joint_trees.edges; ++i) {
+        const kernels::TreeEdge& edge = t_.joint_trees.edge[i];
+        if (edge.cone < 0) continue;
+        const auto& row = part_rows<S, Row<S, false>>(w_, edge.cone);
+        const Float lean = max(Float::load(row.value), Float(Real(kLeastLean)));
+        const Float half = lean * half_tangent_ratio(lean * lean);  // its tangent
+        Float g = Float::load(row.impulse[2]) * inverse_or_zero(half);
+        g = select(mask_from_bits(edge_rows<S>(w_, i).lanes), g, Float(Real(0)));
+        const auto n = load_vec3(row.angular_b[0]);
+        const Vec3 a = cross(load_vec3(row.start_axis[0]), n);
+        const Vec3 b = cross(load_vec3(row.start_axis_b[0]), n);
+        visit(edge.child, edge.reversed ? a : b, g);
+        if (!edge.prescribed) visit(edge.parent, edge.reversed ? b : a, g);
+      }
     }
   }
   MW_INLINE Real* sums(int body) const { return d_.stiffness + body * 2 * kLanes; }
