@@ -19,6 +19,19 @@ Expression norm(const std::vector<Expression>& v) {
   return sqrt(sum(squares));
 }
 
+namespace {
+
+// In the most digits that there are: a build may have the kernels of one precision alone.
+Batch one_world(const Plan& plan) {
+  try {
+    return Batch(plan, {.worlds = 1, .threads = 1, .precision = Precision::f64});
+  } catch (const std::invalid_argument&) {
+    return Batch(plan, {.worlds = 1, .threads = 1, .precision = Precision::f32});
+  }
+}
+
+}  // namespace
+
 TaskOf::TaskOf(const Scene& model, int frame_skip, const Wanted& wanted) {
   task.name = wanted.name;
   task.scene = model;
@@ -29,7 +42,7 @@ TaskOf::TaskOf(const Scene& model, int frame_skip, const Wanted& wanted) {
     refuse("is not one of joints for Solver::newton");
   }
   task.scene.coordinate_draws.clear();
-  const Batch batch(compile(task.scene), {.worlds = 1, .threads = 1, .precision = Precision::f64});
+  const Batch batch = one_world(compile(task.scene));
   start_.resize(batch.size(Field::generalized_position));
   batch.read(Field::generalized_position, std::span<double>(start_));
   coordinates_ = static_cast<int>(start_.size());
