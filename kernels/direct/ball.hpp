@@ -80,8 +80,6 @@ class BallLimits {
     if (edge.angle >= 0) limit(f.turn, load_vec3(s.turn_axis[0]), twist);
   }
 
-  bool any() const { return cone_ || twist_; }
-
   // What they do under a moment on the child, with the parent at rest; `push` of both.
   MW_INLINE BallImpulses at_rest(Vec3 moment, const BallImpulses& push) const {
     const auto compliance = load_as<Sym3>(f_.ball.compliance[0]);

@@ -117,6 +117,7 @@ class GeometricStiffness {
   template <class Visit>
   MW_INLINE void for_each_cone(Visit visit) const {
     if constexpr (S::kDim == 3) {
+      if (!t_.joint_trees.bounded) return;
       for (int i = 0; i < t_.joint_trees.edges; ++i) {
         const kernels::TreeEdge& edge = t_.joint_trees.edge[i];
         if (edge.cone < 0) continue;
