@@ -31,10 +31,7 @@ using Json = nlohmann::json;
 
 using test::contains, test::content, test::Outcome;
 
-struct Folder : test::ScratchFolder {
-  Outcome run(const std::string& arguments, const std::string& before = "") const {
-    return test::run_program(test::kProgram, *this, arguments, before);
-  }
+struct Folder : test::ProgramFolder {
   std::vector<std::string> parts() const {
     std::vector<std::string> found;
     for (const auto& entry : fs::recursive_directory_iterator(path())) {

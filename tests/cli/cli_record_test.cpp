@@ -20,12 +20,7 @@ using Json = nlohmann::json;
 
 using test::contains, test::Outcome;
 
-// A folder that the program runs in.
-struct Folder : test::ScratchFolder {
-  Outcome run(const std::string& arguments) const {
-    return test::run_program(test::kProgram, *this, arguments);
-  }
-};
+using Folder = test::ProgramFolder;
 
 void check_bad(const Outcome& outcome, const char* message) {
   CHECK(outcome.code == 2);

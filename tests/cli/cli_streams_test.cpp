@@ -22,11 +22,7 @@ using Json = nlohmann::json;
 
 using test::contains, test::content, test::Outcome;
 
-// A folder that the program runs in.
-struct Folder : test::ScratchFolder {
-  Outcome run(const std::string& arguments, const std::string& environment = "") const {
-    return test::run_program(test::kProgram, *this, arguments, environment);
-  }
+struct Folder : test::ProgramFolder {
   // With these redirections of a shell besides.
   Outcome redirected(const std::string& arguments, const std::string& how) const {
     return run(arguments, "sh -c '\"$0\" \"$@\" " + how + "'");

@@ -22,10 +22,9 @@ using Json = nlohmann::json;
 
 using test::contains, test::Outcome;
 
-// A folder that the program runs in.
-struct Folder : test::ScratchFolder {
+struct Folder : test::ProgramFolder {
   Outcome run(const std::string& arguments, const std::string& viewer = "viewer.html") const {
-    return test::run_program(test::kProgram, *this, arguments, "MANYWORLDS_VIEWER=" + viewer);
+    return ProgramFolder::run(arguments, "MANYWORLDS_VIEWER=" + viewer);
   }
 };
 

@@ -11,6 +11,8 @@
 #include <string>
 #include <system_error>
 
+#include "tests/support/paths.hpp"
+
 namespace manyworlds::test {
 
 // A folder of its own, gone with the object.
@@ -56,6 +58,15 @@ inline Outcome run_program(const std::string& program, const ScratchFolder& fold
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder / "out"),
           content(folder / "err")};
 }
+
+#if MW_HAVE_CLI
+// A folder that the program runs in.
+struct ProgramFolder : ScratchFolder {
+  Outcome run(const std::string& arguments, const std::string& environment = "") const {
+    return run_program(kProgram, *this, arguments, environment);
+  }
+};
+#endif
 
 inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
