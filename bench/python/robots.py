@@ -13,8 +13,6 @@ with a message.
 """
 
 import argparse
-import json
-import platform
 import statistics
 import time
 
@@ -23,6 +21,8 @@ import numpy as np
 
 import manyworlds as mw
 from manyworlds.gym import mujoco as tasks
+
+from vector_envs import write_json
 
 FEW = 64  # environments of Gymnasium, at most: more step no faster, and take long to make
 
@@ -116,17 +116,7 @@ def main():
     if o.json:
         with mw.Environment("CartPole", threads=1) as env:
             kernels = env.batch.kernel_table
-        about = dict(
-            machine=platform.processor() or platform.machine(),
-            python=platform.python_version(),
-            gymnasium=gymnasium.__version__,
-            manyworlds=mw.__version__,
-            kernels=kernels,
-            seconds=o.seconds,
-            repeats=o.repeats,
-        )
-        with open(o.json, "w") as file:
-            json.dump({"about": about, "rows": rows}, file, indent=1)
+        write_json(o.json, rows, kernels, o.seconds, o.repeats)
 
 
 if __name__ == "__main__":

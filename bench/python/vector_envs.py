@@ -133,6 +133,21 @@ def controls_of(batch):
     return [low + (high - low) * random.random(shape, np.float32) for _ in range(32)]
 
 
+def write_json(file, rows, kernels, seconds, repeats):
+    """The rows of a table, and what they were measured with."""
+    about = dict(
+        machine=platform.processor() or platform.machine(),
+        python=platform.python_version(),
+        gymnasium=gymnasium.__version__,
+        manyworlds=mw.__version__,
+        kernels=kernels,
+        seconds=seconds,
+        repeats=repeats,
+    )
+    with open(file, "w") as to:
+        json.dump({"about": about, "rows": rows}, to, indent=1)
+
+
 def main():
     p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     p.add_argument("--seconds", type=float, default=5)
@@ -191,17 +206,7 @@ def main():
                     speed = by_loop(lambda c: batch.step(1, c), sets, n, o.seconds, o.repeats)
                 add(ours, "Batch.step with controls", "prepared", n, threads, speed)
     if o.json:
-        about = dict(
-            machine=platform.processor() or platform.machine(),
-            python=platform.python_version(),
-            gymnasium=gymnasium.__version__,
-            manyworlds=mw.__version__,
-            kernels=kernels,
-            seconds=o.seconds,
-            repeats=o.repeats,
-        )
-        with open(o.json, "w") as file:
-            json.dump({"about": about, "rows": rows}, file, indent=1)
+        write_json(o.json, rows, kernels, o.seconds, o.repeats)
 
 
 if __name__ == "__main__":
