@@ -57,30 +57,6 @@ TEST_CASE("chains of light links keep together under any load", "[joint][slow]")
   }
 }
 
-// The equations of the angles of 40 beads, by Runge-Kutta 8 with a tolerance of 1e-9: the last one
-// is fastest at 2.788 s, as it turns over, with 70.172 m/s.
-TEST_CASE("a chain that falls from the horizontal lashes like a whip", "[joint][fast]") {
-  if (!has_table(double_table())) return;
-  Scene scene = tree_scene(Space::planar);
-  for (int i = 0; i < 40; ++i) {
-    scene.add(lump(Space::planar, 1, Vec3::Constant(0.02), Vec3(i + 0.5, 0, 0)));
-    scene.add(joint_at(scene, BodyId(i - 1), BodyId(i), at(Vec3(i, 0, 0)), HingeJoint{}));
-  }
-  for (const int substeps : {4, 64}) {
-    scene.options.substeps = substeps;
-    Batch batch(compile(scene), options_of(double_table()));
-    double fastest = 0, when = 0;
-    for (int i = 1; i <= 180; ++i) {
-      batch.step();
-      const double speed = velocity(batch, 0, 39).norm();
-      if (speed > fastest) fastest = speed, when = i * scene.options.dt;
-    }
-    INFO(substeps << " substeps");
-    CHECK(fastest == Approx(70.172).epsilon(substeps == 4 ? 0.04 : 0.02));
-    CHECK(when == Approx(2.788).margin(0.02));
-  }
-}
-
 TEST_CASE("compact bodies on long arms rest", "[joint][fast]") {
   for (const Space space : kSpaces) {
     for (const double inertia : {1e-2, 1e-4, 1e-6}) {

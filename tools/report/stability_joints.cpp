@@ -47,8 +47,8 @@ Trial heavy_rope() {
 }
 
 // Joints that begin a metre apart, and close by 1 m/s each. Hung, and with joints that are closed,
-// the same chain lashes like a whip: in its exact motion (the equations of its angles, by
-// Runge-Kutta 8 with a tolerance of 1e-9) the last bead reaches 70.2 m/s as it turns over. Pulls
+// the same chain lashes like a whip: in its exact motion (tests/joint/direct_whip_test.cpp) the
+// last bead reaches 70.2 m/s as it turns over. Pulls
 // add what they part the ends by, at most.
 Trial stretched(bool gravity) {
   constexpr double kWhip = 70, kPulls = 40;  // m/s
