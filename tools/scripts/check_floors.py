@@ -231,14 +231,14 @@ def too_long(root, files):
 def check(root):
     """All violations as (file, line, message), and the number of files and includes seen."""
     code, texts = [], []
-    for folder in FOLDERS + ["cmake", ".ci"]:
+    for folder in FOLDERS + ["cmake", ".ci", "viewer"]:
         for path in sorted((root / folder).rglob("*")):
-            if not path.is_file() or "__pycache__" in path.parts:
+            if not path.is_file() or {"__pycache__", "node_modules"} & set(path.parts):
                 continue
             file = path.relative_to(root).as_posix()
             if path.suffix in (".cpp", ".hpp", ".h"):
                 code.append(file)
-            if path.suffix in (".cpp", ".hpp", ".h", ".py", ".sh", ".cmake", ""):
+            if path.suffix in (".cpp", ".hpp", ".h", ".py", ".sh", ".cmake", ".ts", ".mjs", ""):
                 texts.append(file)
     graph = {file: includes(root / file) for file in code}
     found = []

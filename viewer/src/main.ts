@@ -1,45 +1,41 @@
 // The page: what its buttons, keys and clicks do, and the loop that draws.
 import * as THREE from 'three';
 
-import { scaleGradient } from './colors';
-import { speedOf, type FrameSource } from './data';
+import type { FrameSource } from './data';
+import { element } from './elements';
 import { Overlays, type Chosen } from './overlays';
+import { Panel } from './panel';
+import { pickBody, pickCell } from './pick';
+import { Probe } from './probe';
 import { openRuns } from './recorded';
 import { Stage, THEMES } from './stage';
+import { Timeline } from './timeline';
 import { Worlds, momentOf } from './worlds';
 
-function element<T extends HTMLElement>(id: string): T {
-  return document.getElementById(id) as T;
-}
-
-const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 const TABLE_MS = 120; // from one writing of the table to the next
 const CLICK_PIXELS = 5;
 const WAIT_MS = 250; // how long a picture stays while the next frames are decoded
 const SOFTWARE_SHADOWS = 3000; // shapes that still have shadows without a graphics card
 
-class App {
+export class App {
   readonly stage: Stage;
   worlds!: Worlds;
-  private overlays!: Overlays;
-  private time = 0;
-  private readonly end: number;
-  private playing = false;
-  private speed = 1;
-  private chosen: Chosen = { cell: -1, row: -1 };
-  private following = false;
+  overlays!: Overlays;
+  private panel!: Panel;
+  readonly timeline: Timeline;
+  chosen: Chosen = { cell: -1, row: -1 };
+  following = false;
   private readonly lastPlace = new THREE.Vector3();
-  private dirty = true;
-  private lastTick = 0;
+  dirty = true;
   private lastTable = 0;
   private lastDrawn = 0;
   private ghosts = false;
   private theme: 'light' | 'dark' = 'light';
-  private readonly script: number[] = []; // ms, of the last frames
+  readonly script: number[] = []; // ms, of the last frames
 
-  constructor(private readonly title: string, private readonly sources: FrameSource[]) {
+  constructor(private readonly title: string, readonly sources: FrameSource[]) {
     const planar = sources[0].run.space === 'planar';
-    this.end = Math.max(...sources.map((source) => source.time(source.frames - 1)));
+    this.timeline = new Timeline(sources, () => { this.dirty = true; });
     this.stage = new Stage(element<HTMLCanvasElement>('view'), planar);
     this.stage.controls.addEventListener('change', () => { this.dirty = true; });
     this.setUp(planar);
@@ -49,10 +45,10 @@ class App {
   async begin(): Promise<void> {
     const wanted = new URLSearchParams(window.location.hash.slice(1));
     const time = Number(wanted.get('time') ?? 0);
-    if (Number.isFinite(time)) this.seek(time);
+    if (Number.isFinite(time)) this.timeline.seek(time);
     // A picture: nothing but the worlds and their name.
     if (wanted.has('picture')) for (const id of ['panel', 'buttons', 'timeline']) element(id).hidden = true;
-    await Promise.all(this.sources.map((source) => source.prepare(momentOf(source, this.time).frame)));
+    await Promise.all(this.sources.map((source) => source.prepare(momentOf(source, this.timeline.time).frame)));
     this.resize();
     this.build();
     if (this.worlds.instances > SOFTWARE_SHADOWS && this.stage.software) element('shadows').click();
@@ -63,7 +59,7 @@ class App {
       if (this.chosen.cell < 0) this.showAll(false);
     });
     requestAnimationFrame((now) => this.tick(now));
-    if (this.end > 0 && !wanted.has('time') && !window.matchMedia('(prefers-reduced-motion: reduce)').matches) this.play(true);
+    if (this.timeline.end > 0 && !wanted.has('time') && !window.matchMedia('(prefers-reduced-motion: reduce)').matches) this.timeline.play(true);
   }
 
   // What the address asks for: page.html#time=2.5&world=3&color=speed.
@@ -90,7 +86,8 @@ class App {
     this.worlds = new Worlds(this.sources, this.ghosts, width / height, {
       wireframe: this.checked('wireframe'), walls: this.checked('walls'), edges: this.checked('edges'),
     });
-    this.worlds.colorBy = element<HTMLSelectElement>('color').value;
+    this.worlds.coloring.by = element<HTMLSelectElement>('color').value;
+    this.panel = new Panel(this.title, this.sources, this.worlds, (row) => this.choose(this.chosen.cell, row));
     this.worlds.setTheme(THEMES[this.theme]);
     this.overlays = new Overlays(this.worlds);
     this.overlays.trails = this.checked('trails');
@@ -136,7 +133,7 @@ class App {
     for (const number of this.sources[0].run.numbers) choices.push([`number:${number.name}`, number.name]);
     for (const [value, text] of choices) color.add(new Option(text, value));
     color.onchange = () => {
-      this.worlds.colorBy = color.value;
+      this.worlds.coloring.by = color.value;
       this.dirty = true;
       color.blur();
     };
@@ -165,20 +162,6 @@ class App {
       (element(id).parentElement as HTMLElement).hidden = planar;
     }
     if (planar) document.querySelectorAll<HTMLElement>('.z').forEach((cell) => { cell.hidden = true; });
-    element('play').onclick = () => this.play(!this.playing);
-    element('back').onclick = () => this.step(-1);
-    element('on').onclick = () => this.step(1);
-    const slider = element<HTMLInputElement>('time');
-    slider.max = String(this.end);
-    slider.oninput = () => {
-      this.play(false);
-      this.seek(Number(slider.value));
-    };
-    const speed = element<HTMLSelectElement>('speed');
-    speed.onchange = () => {
-      this.speed = Number(speed.value);
-      speed.blur();
-    };
     element('overview').onclick = () => {
       this.choose(-1, -1);
       this.showAll(true);
@@ -210,8 +193,8 @@ class App {
 
   private click(x: number, y: number): void {
     const ray = this.stage.ray(x, y);
-    const body = this.worlds.pick(ray);
-    const cell = body?.cell ?? this.worlds.pickCell(ray);
+    const body = pickBody(this.worlds, ray);
+    const cell = body?.cell ?? pickCell(this.worlds, ray);
     if (cell < 0) return;
     const other = cell !== this.chosen.cell;
     this.choose(cell, body?.row ?? -1);
@@ -225,13 +208,13 @@ class App {
     if (typing) return;
     const toggle = (id: string) => element(id).click();
     const actions: Record<string, () => void> = {
-      ' ': () => this.play(!this.playing),
-      ArrowLeft: () => (event.shiftKey ? this.jump(-1) : this.step(-1)),
-      ArrowRight: () => (event.shiftKey ? this.jump(1) : this.step(1)),
-      Home: () => this.seek(0),
-      End: () => this.seek(this.end),
-      '[': () => this.faster(-1),
-      ']': () => this.faster(1),
+      ' ': () => this.timeline.play(!this.timeline.playing),
+      ArrowLeft: () => (event.shiftKey ? this.timeline.jump(-1) : this.timeline.step(-1)),
+      ArrowRight: () => (event.shiftKey ? this.timeline.jump(1) : this.timeline.step(1)),
+      Home: () => this.timeline.seek(0),
+      End: () => this.timeline.seek(this.timeline.end),
+      '[': () => this.timeline.faster(-1),
+      ']': () => this.timeline.faster(1),
       Escape: () => { this.choose(-1, -1); this.showAll(true); },
       f: () => this.follow(!this.following),
       n: () => this.next(1, () => true),
@@ -251,44 +234,6 @@ class App {
     if (action === undefined) return;
     event.preventDefault();
     action();
-  }
-
-  play(on: boolean): void {
-    if (on && this.time >= this.end) this.seek(0);
-    this.playing = on;
-    const button = element('play');
-    button.textContent = on ? '❚❚' : '▶';
-    button.setAttribute('aria-label', on ? 'Pause' : 'Play');
-    this.lastTick = performance.now();
-  }
-
-  seek(time: number): void {
-    this.time = Math.max(0, Math.min(this.end, time));
-    this.dirty = true;
-  }
-
-  private longest(): FrameSource {
-    return this.sources.reduce((a, b) => (b.time(b.frames - 1) > a.time(a.frames - 1) ? b : a));
-  }
-
-  step(frames: number): void {
-    this.play(false);
-    const source = this.longest();
-    let frame = 0;
-    while (frame + 1 < source.frames && source.time(frame + 1) <= this.time + 1e-9) ++frame;
-    const between = this.time - source.time(frame) > 1e-9;
-    const to = frames < 0 && between ? frame : frame + frames;
-    this.seek(source.time(Math.max(0, Math.min(source.frames - 1, to))));
-  }
-
-  private jump(seconds: number): void {
-    this.seek(this.time + seconds);
-  }
-
-  private faster(by: number): void {
-    const at = Math.max(0, Math.min(SPEEDS.length - 1, SPEEDS.indexOf(this.speed) + by));
-    this.speed = SPEEDS[at];
-    element<HTMLSelectElement>('speed').value = String(this.speed);
   }
 
   private next(by: number, wanted: (cell: number) => boolean): void {
@@ -344,16 +289,16 @@ class App {
     this.dirty = true;
   }
 
+  redraw(): void {
+    this.dirty = true;
+  }
+
   // ---- the loop
 
   private tick(now: number): void {
     requestAnimationFrame((next) => this.tick(next));
     const began = performance.now();
-    if (this.playing) {
-      this.seek(this.time + ((now - this.lastTick) / 1000) * this.speed);
-      if (this.time >= this.end) this.play(false);
-    }
-    this.lastTick = now;
+    this.timeline.advance(now);
     if (this.stage.flying) this.dirty = true;
     if (!this.dirty) return;
     this.dirty = !this.draw(now);
@@ -363,7 +308,7 @@ class App {
 
   // False: frames are still being decoded, what was there before is drawn.
   draw(now: number): boolean {
-    const whole = this.worlds.read(this.time);
+    const whole = this.worlds.read(this.timeline.time);
     if (!whole && now - this.lastDrawn < WAIT_MS) return false;
     this.lastDrawn = now;
     this.worlds.widenScales();
@@ -383,170 +328,19 @@ class App {
     return whole;
   }
 
-  private tell(now: number): void {
-    element<HTMLInputElement>('time').value = String(this.time);
-    element('clock').textContent = `${this.time.toFixed(2)} / ${this.end.toFixed(2)} s`;
+  tell(now: number): void {
+    this.timeline.tell();
     if (now - this.lastTable < TABLE_MS) return;
     this.lastTable = now;
-    this.tellAbout();
-    this.tellLegend();
-    if (this.chosen.cell >= 0) this.tellWorld();
-  }
-
-  private tellAbout(): void {
-    const { cells } = this.worlds.layout;
-    const lost = cells.filter((cell) => this.worlds.isLost(cell)).length;
-    const about = element('about');
-    const names = [...new Set(this.sources.flatMap((source) => source.run.kinds.map((kind) => kind.scene)))];
-    about.replaceChildren(`${cells.length} ${cells.length === 1 ? 'world' : 'worlds'}${names.length > 0 && names.join() !== this.title ? ` of ${names.join(', ')}` : ''}, ${this.worlds.instances.toLocaleString('en')} shapes`);
-    if (lost > 0) {
-      const mark = document.createElement('span');
-      mark.className = 'lost';
-      mark.textContent = `, ${lost} lost`;
-      about.append(mark);
-    }
-    about.title = this.sources.map((source) => source.run.origin).join('\n');
-  }
-
-  private tellLegend(): void {
-    const by = this.worlds.colorBy;
-    const scale = element('scale');
-    let ends = ['', ''];
-    if (by === 'speed') ends = ['0', `${this.worlds.maxSpeed.toPrecision(3)} m/s`];
-    else if (by === 'spin') ends = ['0', `${this.worlds.maxSpin.toPrecision(3)} rad/s`];
-    else if (by === 'height') {
-      const up = this.worlds.planar ? 1 : 2;
-      ends = [this.worlds.layout.low[up], this.worlds.layout.high[up]].map((x) => `${x.toPrecision(3)} m`);
-    } else if (by.startsWith('number:')) {
-      const unit = this.sources[0].run.numbers.find((one) => `number:${one.name}` === by)?.unit ?? '';
-      ends = this.worlds.numberEnds.map((x) => `${x.toPrecision(3)} ${unit}`);
-    }
-    const scaled = ends[1] !== '';
-    if (by === 'rest') ends = ['at rest', 'moving'];
-    if (by === 'run') ends = ['first', 'second'];
-    scale.style.background = scaled ? scaleGradient
-      : by === 'rest' ? 'linear-gradient(90deg, #5b6f8f 50%, #f3a712 50%)'
-        : by === 'run' ? 'linear-gradient(90deg, #3f6fb5 50%, #f3a712 50%)' : '';
-    element('legend').hidden = by === 'body';
-    element('low').textContent = ends[0];
-    element('high').textContent = ends[1];
-  }
-
-  private tellWorld(): void {
-    const { cell: index, row: chosenRow } = this.chosen;
-    const cell = this.worlds.layout.cells[index];
-    const kind = this.worlds.kindOf(cell);
-    const run = this.worlds.runOf(cell);
-    const poses = this.worlds.posesOf(cell);
-    const recording = this.sources.length > 1 ? `, recording ${cell.run + 1}` : '';
-    element('world-name').textContent = `World ${kind.names[cell.world]}${recording}`;
-    const status = poses.status[cell.world];
-    const words = ['not finite, frozen', 'out of range, frozen', 'out of bounds', 'out of contact capacity', 'a joint broke', 'gained energy']
-      .filter((_, bit) => (status >> bit) & 1);
-    const followed = this.following ? ', followed' : '';
-    element('world-about').textContent = `${kind.scene}: ${words.length > 0 ? words.join(', ') : 'ok'}${followed}`;
-    const bodies = element('bodies');
-    const moving = kind.bodies.map((body, b) => ({ body, b })).filter(({ body }) => body.row !== null);
-    while (bodies.children.length < moving.length) {
-      const line = document.createElement('tr');
-      for (let c = 0; c < 6; ++c) line.append(document.createElement('td'));
-      const row = moving[bodies.children.length].body.row as number;
-      line.onclick = () => this.choose(this.chosen.cell, row);
-      bodies.append(line);
-    }
-    moving.forEach(({ body, b }, i) => {
-      const line = bodies.children[i] as HTMLTableRowElement;
-      const row = body.row as number;
-      const item = cell.world * kind.rows + row;
-      line.classList.toggle('chosen', row === chosenRow);
-      const dot = document.createElement('span');
-      dot.className = 'dot';
-      dot.style.background = `rgb(${this.worlds.colorOf(index, row).join()})`;
-      line.cells[0].replaceChildren(dot, body.name || `body ${b}`);
-      line.cells[0].title = `${body.name || `body ${b}`}, ${body.mass.toPrecision(3)} kg`;
-      const there = poses.there[item] !== 0;
-      [poses.position[3 * item], poses.position[3 * item + 1], poses.position[3 * item + 2],
-        speedOf(run, poses.speed[item]), speedOf(run, poses.spin[item])].forEach((x, c) => {
-        const text = there ? x.toFixed(2) : '–';
-        if (line.cells[c + 1].textContent !== text) line.cells[c + 1].textContent = text;
-      });
-      if (this.worlds.planar) line.cells[3].hidden = true;
-    });
-  }
-
-  // ---- for tests and for those who drive the page from elsewhere
-
-  get report() {
-    const median = (values: number[]) => [...values].sort((a, b) => a - b)[values.length >> 1] ?? 0;
-    return {
-      instances: this.worlds.instances,
-      drawn: this.worlds.drawn,
-      worlds: this.worlds.layout.cells.length,
-      frames: this.sources.map((source) => source.frames),
-      time: this.time,
-      frame: this.worlds.frame,
-      playing: this.playing,
-      speed: this.speed,
-      chosen: { ...this.chosen },
-      following: this.following,
-      drawCalls: this.worlds.objects + this.overlays.objects,
-      allCalls: this.stage.renderer.info.render.calls,
-      triangles: this.stage.renderer.info.render.triangles,
-      scriptMs: median(this.script),
-      waiting: this.dirty,
-      flying: this.stage.flying,
-    };
-  }
-
-  // ms of script for each of so many frames, one after the other and without GL: reading frames,
-  // writing instances, what is written beside the picture.
-  async measure(frames: number): Promise<number[]> {
-    const out: number[] = [];
-    for (let i = 0; i < frames; ++i) {
-      const time = (this.end * (i + 0.5)) / frames;
-      await Promise.all(this.sources.map(async (source) => {
-        for (let frame = 0; frame < source.frames; ++frame) await source.prepare(frame);
-      }));
-      const began = performance.now();
-      this.time = time;
-      this.worlds.read(time);
-      this.worlds.widenScales();
-      this.worlds.write(this.stage.camera, this.stage.pixelsPerMetre);
-      this.overlays.update(this.chosen);
-      this.tell(began);
-      out.push(performance.now() - began);
-    }
-    this.dirty = true;
-    return out;
-  }
-
-  bodyAt(cell: number, row: number) {
-    const place = this.worlds.placeOf(cell, row, new THREE.Vector3());
-    const one = this.worlds.layout.cells[cell];
-    const poses = this.worlds.posesOf(one);
-    const item = one.world * this.worlds.kindOf(one).rows + row;
-    return {
-      pixel: this.stage.pixelOf(place), color: this.worlds.colorOf(cell, row),
-      position: [...poses.position.subarray(3 * item, 3 * item + 3)],
-      rotation: [...poses.rotation.subarray(4 * item, 4 * item + 4)],
-    };
-  }
-
-  // What is drawn at a place of the canvas: red, green, blue.
-  pixelAt(x: number, y: number): number[] {
-    this.draw(performance.now());
-    const { renderer } = this.stage;
-    const gl = renderer.getContext();
-    const ratio = renderer.getPixelRatio();
-    const out = new Uint8Array(4);
-    gl.readPixels(Math.round(x * ratio), Math.round(gl.drawingBufferHeight - y * ratio), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, out);
-    return [...out.subarray(0, 3)];
+    this.panel.tellAbout();
+    this.panel.tellLegend();
+    if (this.chosen.cell >= 0) this.panel.tellWorld(this.chosen, this.following);
   }
 }
 
 declare global {
   interface Window {
-    manyworlds?: App;
+    manyworlds?: Probe;
   }
 }
 
@@ -554,7 +348,7 @@ async function main(): Promise<void> {
   const { title, sources } = await openRuns(document);
   const app = new App(title, sources);
   await app.begin();
-  window.manyworlds = app;
+  window.manyworlds = new Probe(app);
 }
 
 main().catch((error: unknown) => {

@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
-import type { Theme } from './worlds';
+import type { Theme } from './coloring';
 
 export interface Box {
   low: number[];

@@ -1,0 +1,124 @@
+// In which colour a body is drawn: its own, or that of a number on a scale.
+import { LOST_COLOR, linear, scaleInto, type Rgb } from './colors';
+import { LOST, speedOf, type FrameSource, type Poses } from './data';
+import type { Drawable, KindView } from './drawables';
+import type { Cell, Layout } from './layout';
+
+export type ColorBy = string; // 'body', 'speed', ..., or 'number:NAME'
+
+export interface Theme {
+  ground: string;
+  wall: string;
+  tile: string;
+  lost: string;
+  selected: string;
+  fixed: string;
+}
+
+const LOST_RGB = linear(LOST_COLOR);
+const REST = linear('#5b6f8f');
+const AWAKE = linear('#f3a712');
+const RUNS = ['#3f6fb5', '#f3a712', '#76b041', '#8f5aa8'].map(linear);
+
+export function put(color: Rgb, out: Float32Array, at: number): void {
+  out[at] = color[0];
+  out[at + 1] = color[1];
+  out[at + 2] = color[2];
+}
+
+export class Coloring {
+  by: ColorBy = 'body';
+  maxSpeed = 1; // ends of the scales, of what is shown
+  maxSpin = 1;
+  readonly tints: Record<keyof Theme, Rgb> =
+    { ground: [1, 1, 1], wall: [1, 1, 1], tile: [1, 1, 1], lost: [1, 0, 0], selected: [0, 0, 1], fixed: [0.5, 0.5, 0.5] };
+  private mode = 'body'; // `by` without the name of the number
+  private numbers: { now: Float32Array; low: number; high: number } = { now: new Float32Array(0), low: 0, high: 0 };
+
+  constructor(private readonly sources: FrameSource[], private readonly planar: boolean, private readonly layout: Layout) {}
+
+  setTheme(theme: Theme): void {
+    for (const name of Object.keys(theme) as (keyof Theme)[]) this.tints[name] = linear(theme[name]);
+  }
+
+  // Colour of a body as the eye gets it without shading, linear.
+  into(cell: Cell, poses: Poses, drawable: Drawable, item: number, out: Float32Array, at: number): void {
+    if (drawable.row < 0) {
+      put(this.tints.fixed, out, at);
+      return;
+    }
+    switch (this.mode) {
+      case 'speed':
+        scaleInto(speedOf(this.sources[cell.run].run, poses.speed[item]) / this.maxSpeed, out, at);
+        break;
+      case 'spin':
+        scaleInto(speedOf(this.sources[cell.run].run, poses.spin[item]) / this.maxSpin, out, at);
+        break;
+      case 'rest':
+        put(poses.speed[item] === 0 && poses.spin[item] === 0 ? REST : AWAKE, out, at);
+        break;
+      case 'height': {
+        const up = this.planar ? 1 : 2;
+        const x = poses.position[3 * item + up];
+        scaleInto((x - this.layout.low[up]) / (this.layout.high[up] - this.layout.low[up]), out, at);
+        break;
+      }
+      case 'run':
+        put(RUNS[cell.run % RUNS.length], out, at);
+        break;
+      case 'number':
+        scaleInto(this.numberOf(cell), out, at);
+        break;
+      default:
+        put(drawable.color, out, at);
+    }
+    if ((poses.status[cell.world] & LOST) !== 0) {
+      for (let c = 0; c < 3; ++c) out[at + c] = 0.25 * out[at + c] + 0.75 * LOST_RGB[c];
+    }
+  }
+
+  private get number(): Float32Array | undefined {
+    return this.sources[0].run.numbers.find((one) => `number:${one.name}` === this.by)?.values;
+  }
+
+  // Where the scale of the recorded number ends at this frame.
+  findNumberEnds(frame: number): void {
+    this.mode = this.by.startsWith('number:') ? 'number' : this.by;
+    const values = this.number;
+    if (values === undefined) return;
+    const worlds = this.sources[0].run.kinds.reduce((sum, kind) => sum + kind.worlds, 0);
+    const now = values.subarray(frame * worlds, (frame + 1) * worlds);
+    let low = Infinity;
+    let high = -Infinity;
+    for (const x of now) {
+      if (x < low) low = x;
+      if (x > high) high = x;
+    }
+    this.numbers = { now, low, high };
+  }
+
+  // 0 to 1 of the recorded number of a world; the other recordings have none.
+  private numberOf(cell: Cell): number {
+    if (cell.run > 0) return 0;
+    const first = this.sources[0].run.kinds.slice(0, cell.kind).reduce((sum, kind) => sum + kind.worlds, 0);
+    const { now, low, high } = this.numbers;
+    return (now[first + cell.world] - low) / (high - low || 1);
+  }
+
+  // The ends of the recorded number's scale.
+  get numberEnds(): [number, number] {
+    return [this.numbers.low, this.numbers.high];
+  }
+
+  // The ends of the scales: the fastest body of this moment, but never less than before.
+  widen(kinds: KindView[][]): void {
+    this.sources.forEach((source, r) => kinds[r].forEach((view) => {
+      let speed = 0;
+      let spin = 0;
+      for (const code of view.poses.speed) if (code > speed) speed = code;
+      for (const code of view.poses.spin) if (code > spin) spin = code;
+      this.maxSpeed = Math.max(this.maxSpeed, speedOf(source.run, speed));
+      this.maxSpin = Math.max(this.maxSpin, speedOf(source.run, spin));
+    }));
+  }
+}

@@ -1,0 +1,93 @@
+// What is written beside the picture: how many worlds there are, the scale of the colours, and the chosen world.
+import { scaleGradient } from './colors';
+import { speedOf, type FrameSource } from './data';
+import { element } from './elements';
+import type { Chosen } from './overlays';
+import type { Worlds } from './worlds';
+
+export class Panel {
+  // choose(row): a body of the chosen world is clicked.
+  constructor(private readonly title: string, private readonly sources: FrameSource[],
+    private readonly worlds: Worlds, private readonly choose: (row: number) => void) {}
+
+  tellAbout(): void {
+    const { cells } = this.worlds.layout;
+    const lost = cells.filter((cell) => this.worlds.isLost(cell)).length;
+    const about = element('about');
+    const names = [...new Set(this.sources.flatMap((source) => source.run.kinds.map((kind) => kind.scene)))];
+    about.replaceChildren(`${cells.length} ${cells.length === 1 ? 'world' : 'worlds'}${names.length > 0 && names.join() !== this.title ? ` of ${names.join(', ')}` : ''}, ${this.worlds.instances.toLocaleString('en')} shapes`);
+    if (lost > 0) {
+      const mark = document.createElement('span');
+      mark.className = 'lost';
+      mark.textContent = `, ${lost} lost`;
+      about.append(mark);
+    }
+    about.title = this.sources.map((source) => source.run.origin).join('\n');
+  }
+
+  tellLegend(): void {
+    const by = this.worlds.coloring.by;
+    const scale = element('scale');
+    let ends = ['', ''];
+    if (by === 'speed') ends = ['0', `${this.worlds.coloring.maxSpeed.toPrecision(3)} m/s`];
+    else if (by === 'spin') ends = ['0', `${this.worlds.coloring.maxSpin.toPrecision(3)} rad/s`];
+    else if (by === 'height') {
+      const up = this.worlds.planar ? 1 : 2;
+      ends = [this.worlds.layout.low[up], this.worlds.layout.high[up]].map((x) => `${x.toPrecision(3)} m`);
+    } else if (by.startsWith('number:')) {
+      const unit = this.sources[0].run.numbers.find((one) => `number:${one.name}` === by)?.unit ?? '';
+      ends = this.worlds.coloring.numberEnds.map((x) => `${x.toPrecision(3)} ${unit}`);
+    }
+    const scaled = ends[1] !== '';
+    if (by === 'rest') ends = ['at rest', 'moving'];
+    if (by === 'run') ends = ['first', 'second'];
+    scale.style.background = scaled ? scaleGradient
+      : by === 'rest' ? 'linear-gradient(90deg, #5b6f8f 50%, #f3a712 50%)'
+        : by === 'run' ? 'linear-gradient(90deg, #3f6fb5 50%, #f3a712 50%)' : '';
+    element('legend').hidden = by === 'body';
+    element('low').textContent = ends[0];
+    element('high').textContent = ends[1];
+  }
+
+  tellWorld(chosen: Chosen, following: boolean): void {
+    const { cell: index, row: chosenRow } = chosen;
+    const cell = this.worlds.layout.cells[index];
+    const kind = this.worlds.kindOf(cell);
+    const run = this.worlds.runOf(cell);
+    const poses = this.worlds.posesOf(cell);
+    const recording = this.sources.length > 1 ? `, recording ${cell.run + 1}` : '';
+    element('world-name').textContent = `World ${kind.names[cell.world]}${recording}`;
+    const status = poses.status[cell.world];
+    const words = ['not finite, frozen', 'out of range, frozen', 'out of bounds', 'out of contact capacity', 'a joint broke', 'gained energy']
+      .filter((_, bit) => (status >> bit) & 1);
+    const followed = following ? ', followed' : '';
+    element('world-about').textContent = `${kind.scene}: ${words.length > 0 ? words.join(', ') : 'ok'}${followed}`;
+    const bodies = element('bodies');
+    const moving = kind.bodies.map((body, b) => ({ body, b })).filter(({ body }) => body.row !== null);
+    while (bodies.children.length < moving.length) {
+      const line = document.createElement('tr');
+      for (let c = 0; c < 6; ++c) line.append(document.createElement('td'));
+      const row = moving[bodies.children.length].body.row as number;
+      line.onclick = () => this.choose(row);
+      bodies.append(line);
+    }
+    moving.forEach(({ body, b }, i) => {
+      const line = bodies.children[i] as HTMLTableRowElement;
+      const row = body.row as number;
+      const item = cell.world * kind.rows + row;
+      line.classList.toggle('chosen', row === chosenRow);
+      const dot = document.createElement('span');
+      dot.className = 'dot';
+      dot.style.background = `rgb(${this.worlds.colorOf(index, row).join()})`;
+      line.cells[0].replaceChildren(dot, body.name || `body ${b}`);
+      line.cells[0].title = `${body.name || `body ${b}`}, ${body.mass.toPrecision(3)} kg`;
+      const there = poses.there[item] !== 0;
+      [poses.position[3 * item], poses.position[3 * item + 1], poses.position[3 * item + 2],
+        speedOf(run, poses.speed[item]), speedOf(run, poses.spin[item])].forEach((x, c) => {
+        const text = there ? x.toFixed(2) : '–';
+        if (line.cells[c + 1].textContent !== text) line.cells[c + 1].textContent = text;
+      });
+      if (this.worlds.planar) line.cells[3].hidden = true;
+    });
+  }
+}
