@@ -28,17 +28,58 @@ template <class S>
 MW_INLINE Vec3 turn_of(const BallFactors<S>& s, Vec3 moment, Vec3 v) requires(S::kDim == 3) {
   return mul(load_as<Sym3>(s.compliance[0]), moment - mul(mixed_of(s), v));
 }
+// L D L' of moments of inertia about an anchor. A thin rod under a heavy load has moments of 1 to
+// 1e-7 of one another, and what is left of the load's inertia across it is as small a part of that:
+// eliminated by the inverse, float would have no digit of it left; by the factors it is as good as
+// the entries are (Higham 2002, 10.1).
+class RotaryFactors {
+ public:
+  MW_INLINE explicit RotaryFactors(const Sym3& a) {
+    const Float least = (a.xx + a.yy + a.zz) * Float(kLeast);
+    const auto inverse_of = [&](Float pivot) { return inverse_or_zero(max(pivot, least)); };
+    d0_ = inverse_of(a.xx);
+    yx_ = a.xy * d0_, zx_ = a.xz * d0_;
+    d1_ = inverse_of(fnma(yx_, a.xy, a.yy));
+    const Float zy = fnma(yx_, a.xz, a.yz);
+    zy_ = zy * d1_;
+    d2_ = inverse_of(fnma(zy_, zy, fnma(zx_, a.xz, a.zz)));
+  }
+  MW_INLINE Sym3 inverse() const {
+    const Float xz = fms(yx_, zy_, zx_), by_xz = xz * d2_, by_yz = zy_ * d2_;
+    return {fma(xz, by_xz, fma(yx_ * yx_, d1_, d0_)),
+            fnma(zy_, by_xz, -(yx_ * d1_)),
+            by_xz,
+            fma(zy_, by_yz, d1_),
+            -by_yz,
+            d2_};
+  }
+  // b - m' a^-1 m.
+  MW_INLINE Sym3 without(const Mat3& m, const Sym3& b) const {
+    const Vec3 x = reduced(m.x), y = reduced(m.y), z = reduced(m.z), by_x = scaled(x),
+               by_y = scaled(y), by_z = scaled(z);
+    return {b.xx - dot(x, by_x), b.xy - dot(x, by_y), b.xz - dot(x, by_z),
+            b.yy - dot(y, by_y), b.yz - dot(y, by_z), b.zz - dot(z, by_z)};
+  }
+
+ private:
+  // Of the sum of the moments: the least that a pivot is taken to be.
+  static constexpr Real kLeast = sizeof(Real) == 4 ? Real(1e-6) : Real(1e-14);
+  MW_INLINE Vec3 reduced(Vec3 a) const {
+    const Float y = fnma(yx_, a.x, a.y);
+    return {a.x, y, fnma(zy_, y, fnma(zx_, a.x, a.z))};
+  }
+  MW_INLINE Vec3 scaled(Vec3 a) const { return {a.x * d0_, a.y * d1_, a.z * d2_}; }
+
+  Float d0_, d1_, d2_, yx_, zx_, zy_;  // 1 / D, L
+};
 template <class S>
 MW_INLINE void eliminate_rotation(BallFactors<S>& to,
                                   ArticulatedInertia& inertia) requires(S::kDim == 3) {
-  const Sym3 compliance = inverse(inertia.rotary);
+  const RotaryFactors factors(inertia.rotary);
   const Mat3 m = inertia.mixed;
-  const Mat3 by{mul(compliance, m.x), mul(compliance, m.y), mul(compliance, m.z)};
-  const Sym3& a = inertia.linear;
-  store(to.compliance[0], compliance);
+  store(to.compliance[0], factors.inverse());
   store(to.mixed[0][0], m.x), store(to.mixed[1][0], m.y), store(to.mixed[2][0], m.z);
-  inertia.linear = {a.xx - dot(m.x, by.x), a.xy - dot(m.x, by.y), a.xz - dot(m.x, by.z),
-                    a.yy - dot(m.y, by.y), a.yz - dot(m.y, by.z), a.zz - dot(m.z, by.z)};
+  inertia.linear = factors.without(m, inertia.linear);
 }
 
 // Along the axes of a cone and of a twist.
