@@ -173,7 +173,8 @@ void carve_joint_trees(const Constants& t, DirectWork& w, Carver& c) {
     c.take(to, static_cast<std::size_t>(t.bodies * rows * kLanes));
   };
   const int rotary = planar ? 1 : 6, twist = planar ? kPlanarTwistRows : kTwistRows;
-  take(w.rotary, rotary), take(w.stiffened, rotary), take(w.stiffness, 2);
+  take(w.rotary, rotary), take(w.stiffened, rotary), take(w.stiffness, 2),
+      take(w.turning, planar ? 2 : 4);
   const int articulated = planar ? kPlanarInertiaRows : kArticulatedRows;
   const EdgeSizes bytes = planar ? edge_sizes(Planar{}) : edge_sizes(Tensor{});
   const auto edges = static_cast<std::size_t>(t.joint_trees.edges);

@@ -16,17 +16,18 @@ class TreeContacts {
   // Marks the bodies of trees that contacts are on, and those that they hang on; whether there are
   // any.
   bool find_touched() const {
-    bool* touched = w_.direct.touched;
-    for (int b = 0; b <= t_.bodies; ++b) touched[b] = false;
-    bool some = false;
+    std::uint32_t* touched = w_.direct.touched;
+    for (int b = 0; b <= t_.bodies; ++b) touched[b] = 0;
+    std::uint32_t some = 0;
     for_each_end([&](int body, std::uint32_t lanes) {
-      if ((w_.direct.held[body] & lanes) != 0) some = touched[body] = true;
+      const std::uint32_t held = w_.direct.held[body] & lanes;
+      touched[body] |= held, some |= held;
     });
-    for (int i = t_.joint_trees.edges - 1; some && i >= 0; --i) {
+    for (int i = t_.joint_trees.edges - 1; some != 0 && i >= 0; --i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
       if (!edge.prescribed) touched[edge.parent] |= touched[edge.child];
     }
-    return some;
+    return some != 0;
   }
 
   // Effective masses. kTree: as parts of trees give way, else as free bodies do.

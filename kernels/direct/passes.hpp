@@ -32,6 +32,7 @@ struct DirectPasses {
     if (w.direct.located != w.substep) finder.refresh_parts();
     finder.template find<true>();
     w.direct.is_stiff = GeometricStiffness<S>(t, g, w).find();
+    if (w.direct.is_stiff && t.has_contacts) TreeContacts<S, kDense>(t, w).find_touched();
     biased(t, g, w, true).run();
   }
   static void bias_again(const Constants& t, const Group& g, kernels::Scratch* scratch) {

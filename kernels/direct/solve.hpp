@@ -13,6 +13,7 @@
 #include "kernels/direct/joint_impulses.hpp"
 #include "kernels/direct/loops.hpp"
 #include "kernels/direct/pivot_rule.hpp"
+#include "kernels/direct/turning.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -38,25 +39,19 @@ class TreeSolve {
         factors_(factors_in<S>(d_.of_solves)),
         bounds_(t, g, w, closes, first),
         balls_(t, w, bounds_),
-        loops_(t, g, w, factors_) {}
+        loops_(t, g, w, factors_),
+        turning_(t, w) {}
 
-  // Until the active sets stay as they are. The angular momenta that there are are those of the
-  // moments without stiffness.
+  // Until the active sets stay as they are.
   void run() const {
-    for_each_tree_body(t_, [&](int b) {
-      WrenchOf<S> p{zero_of<Ang>(), zero_of<Vec>()};
-      if (stiffened_) {
-        const Velocity<S> v = get_velocity<S, kDense>(w_, w_.velocity, b);
-        p.n = apply(moments(d_.rotary, b), v.w) - apply(moments(rotary_, b), v.w);
-      }
-      store(row(d_.own_load, b, kTwistRowsOf<S>), p);
-    });
+    stiffened_ ? turning_.begin() : turning_.clear();
     if (first_) d_.firm = kAllLanes;
-    solve_in(kAllLanes);
+    // What closes loops knows of no mean.
+    solve_in(kAllLanes, stiffened_ && !loops_.any());
   }
   // After contacts, whose impulses are the loads of the bodies (response.hpp).
   void run_again() const {
-    if (d_.pushed != 0) solve_in(d_.pushed);
+    if (d_.pushed != 0) solve_in(d_.pushed, false);
   }
 
   // Factors for what contacts do to trees. Limits that act and drives hold against contacts as
@@ -81,8 +76,8 @@ class TreeSolve {
  private:
   static constexpr int kMostSolves = 32;
 
-  // Velocities and impulses of some lanes.
-  void solve_in(std::uint32_t lanes) const {
+  // Velocities and impulses of some lanes. `turns`: see Turning.
+  void solve_in(std::uint32_t lanes, bool turns) const {
     PivotRule rule;
     bounds_.for_each([](const auto&, auto& dof, auto&) {
       dof.before = dof.active;
@@ -92,7 +87,7 @@ class TreeSolve {
     for (int i = 0; i < kMostSolves; ++i) {
       factor_for_solves();
       loops_.clear();
-      solve_linear();
+      turns ? turning_.find([&] { solve_linear(); }) : solve_linear();
       if (loops_.any()) {
         find_changes_of_closures();
         loops_.find_impulses();
@@ -394,6 +389,7 @@ class TreeSolve {
   const EdgeBounds<S> bounds_;
   const BallBounds<S> balls_;
   const TreeLoops<S, kDense> loops_;
+  const Turning<S, kDense> turning_;
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

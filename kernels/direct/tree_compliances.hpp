@@ -16,11 +16,11 @@ class TreeCompliances {
   void find() const {
     for (int i = 0; i < t_.joint_trees.roots; ++i) {
       const int b = t_.joint_trees.root[i];
-      if (d_.touched[b]) store(row(b), alone(b));
+      if (d_.touched[b] != 0) store(row(b), alone(b));
     }
     for (int i = 0; i < t_.joint_trees.edges; ++i) {
       const TreeEdge& edge = t_.joint_trees.edge[i];
-      if (!d_.touched[edge.child]) continue;
+      if (d_.touched[edge.child] == 0) continue;
       const EdgeRows<S>& s = edge_rows<S>(w_, i);
       ComplianceOf<S> c = beyond_edge(edge, s, factors_.edge[i]);
       // The child is a root in the others.

@@ -180,6 +180,7 @@ struct DirectWork {
   Real* rotary;          // [body][moments of inertia][lane], world axes
   Real* stiffened;       // the same with the geometric stiffness
   Real* stiffness;       // [body][sum, sum times arm^2][lane], of it
+  Real* turning;         // [body][mean rotation, what is left of it][lane] (turning.hpp)
   Real* own_load;        // [body][wrench][lane]
   Real* load;            // [body][wrench][lane], with what hangs on it; then what joints did
   Real* twist;           // [body][twist][lane], change of velocity
@@ -198,11 +199,11 @@ struct DirectWork {
   std::int32_t* path;            // edges from a body to its root
   // Of plans with contacts (kernels/direct/contacts.hpp).
   TreeFactorRows of_contacts;
-  std::uint32_t firm;    // lanes in which limits and drives hold against them
-  Real* inv_tree_mass;   // [body][lane], 1/kg
-  Real* compliance;      // [body][compliance][lane]
-  bool* touched;         // [body] whether a contact is on it, or on what hangs on it
-  std::uint32_t pushed;  // lanes in which the pass has done anything
+  std::uint32_t firm;      // lanes in which limits and drives hold against them
+  Real* inv_tree_mass;     // [body][lane], 1/kg
+  Real* compliance;        // [body][compliance][lane]
+  std::uint32_t* touched;  // [body] lanes with a contact on it, or on what hangs on it
+  std::uint32_t pushed;    // lanes in which the pass has done anything
 };
 
 // Of a step in which energies are audited (kernels/observe/audit.hpp): the energy before it, what a
