@@ -70,8 +70,8 @@ struct ContactOptions {
 // How joints are solved: one after the other in every substep (sweep), or those of a tree at once
 // (tree), in which heavy loads on light bodies hold as well as light ones. Trees are what hangs
 // together by ball joints, hinges, sliders, fixed and wheel joints; up to four of
-// them without drives or limits may close loops, unless one of what hangs together may break or
-// begins apart by more than a hundredth of its arms. Other joints are swept over. Of tgs_soft.
+// them without drives or limits may close loops, unless one of what hangs together may break.
+// Other joints are swept over. Of tgs_soft.
 enum class JointMethod { sweep, tree };
 const char* to_string(JointMethod method);
 
@@ -87,6 +87,8 @@ struct JointOptions {
   double damping_ratio = 2;
   // m/s per length unit, and rad/s: cap on the speed at which a joint closes what has come apart.
   // For scenes whose joints begin far apart; under heavy loads a low one lets chains stretch.
+  // Unless it is given, joints of a tree's loop that begin apart by more than a hundredth of their
+  // arms close what they begin apart by within 4 s.
   double pull_speed = std::numeric_limits<double>::infinity();
 };
 

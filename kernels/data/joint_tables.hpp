@@ -40,6 +40,7 @@ struct JointConstants {
   T frame_a[4], frame_b[4];    // in principal axes; planar: cos, sin
   RowSoftness<T> soft;         // of what the part holds together
   T pull, angular_pull;        // max speed at which it corrects errors, m/s and rad/s
+  T slack;                     // error of a tree's joint beyond which that is no maximum, m
   T rest;                      // value that an equality row is held at
   RowSoftness<T> drive_soft;
   T target_position, target_speed;
@@ -73,11 +74,12 @@ struct JointPart {
   bool spring;                  // a point that is drawn with limited force
   bool force;                   // nothing but a spring, which the integrator of the plan evaluates
   bool direct;                  // of a tree that is solved at once, not swept over
+  bool gradual;                 // begins apart, and closes by its `pull`
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
 // May its rows give energy to the bodies?
 static inline constexpr bool gives_energy(const JointPart& p) {
-  return !p.force && (p.drive || p.spring || p.soft_limit);
+  return !p.force && (p.drive || p.spring || p.soft_limit || p.gradual);
 }
 
 // The joint that a body of a tree hangs on (kernels/direct/), by its parts.
@@ -98,6 +100,7 @@ struct TreeEdge {
 struct JointLoops {
   std::int32_t first, end;  // among TreeEdge
   std::int32_t rows, row, factor;
+  bool gradual;  // joints of what they close begin apart
 };
 // Edges follow those of their parents; those that close loops follow all of them.
 struct JointTrees {

@@ -143,7 +143,7 @@ class EdgeFinder {
     put_arms(edge, from, s);
     const Joint& c = numbers(edge.hold);
     if constexpr (kCloses) {
-      target = -pull_of(load_as<Vec>(from.gap[0]), c.soft.bias_rate, c.pull);
+      target = -pull_of(load_as<Vec>(from.gap[0]), c.soft.bias_rate, c.pull, c.slack);
     }
   }
   template <bool kCloses>
@@ -155,13 +155,13 @@ class EdgeFinder {
     if constexpr (S::kDim == 2) {
       store(s.slide_axis[0], Vec{d.y, -d.x});
       if constexpr (kCloses) {
-        target = d * -pull_of(Float::load(from.error[0]), c.soft.bias_rate, c.pull);
+        target = d * -pull_of(Float::load(from.error[0]), c.soft.bias_rate, c.pull, c.slack);
       }
     } else {
       const auto e = load_as<Vec>(from.direction[1][0]);
       store(s.slide_axis[0], cross(d, e));
       if constexpr (kCloses) {
-        const Vec2 x = pull_of(load_as<Vec2>(from.error[0]), c.soft.bias_rate, c.pull);
+        const Vec2 x = pull_of(load_as<Vec2>(from.error[0]), c.soft.bias_rate, c.pull, c.slack);
         target = -fma(e, x.y, d * x.x);
       }
     }

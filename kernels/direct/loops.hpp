@@ -21,6 +21,8 @@ using kernels::JointLoops;
 // Impulses are at most a speed over it. With 1e-5 in float32 random loops gain energy
 // (direct_random_test.cpp), as they do with more solves.
 inline constexpr Real kLoopFloor = Real(sizeof(Real) == 4 ? 1e-4 : 1e-8);
+// What begins apart may be straight and compressed, and is flung across itself by less.
+inline constexpr Real kGradualFloor = Real(1e-4);
 inline constexpr int kLoopSolves = 3;
 
 template <class S, bool kDense>
@@ -46,7 +48,8 @@ class TreeLoops {
           const Float x = dot(change_at(other), of);
           select(mask_from_bits(both), x, Float(Real(0))).store(entry(a, r, c));
         });
-        const Float own = free_compliance(edge, along) * Float(kLoopFloor);
+        const Float own =
+            free_compliance(edge, along) * Float(loop.gradual ? kGradualFloor : kLoopFloor);
         const Float floor = select(mask_from_bits(rows(edge).lanes), own, Float(Real(0)));
         floor.store(d_.loop_floor + (loop.row + r) * kLanes);
         eliminate(a, r, floor);

@@ -170,6 +170,11 @@ MW_INLINE V pull_of(V error, Float rate, Float cap) {
   const Float length = sqrt(dot(pull, pull));
   return pull * (cap / max(length, cap));
 }
+// Of a joint that begins apart by less than `slack`: what opens beyond that closes as fast as ever.
+template <class V>
+MW_INLINE V pull_of(V error, Float rate, Float cap, Float slack) {
+  return pull_of(error, rate, max(cap, fnma(slack, rate, length_of(error) * rate)));
+}
 
 // Applies an impulse to B at its anchor, and the opposite one to A at its own.
 template <class S, bool kDense>

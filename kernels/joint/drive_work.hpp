@@ -1,4 +1,5 @@
-// Work that drives, springs and springy limits do in a step, for the audit of energy. Impulses and
+// Work that drives, springs, springy limits and joints that close gradually do in a step, for the
+// audit of energy. Impulses and
 // velocities are linear in each other: a row whose impulse in a substep is p, and whose speed goes
 // from s to s', has given p (s + s') / 2.
 #pragma once
@@ -25,8 +26,8 @@ MW_INLINE Driven<S> driven(const JointPart& part, const Row<S, kLinear>& s, cons
   }
   return out;
 }
-template <class S, class Velocities>
-MW_INLINE Driven<S> driven(const JointPart&, const PointRows<S>& s, const Velocities& v) {
+template <class S, class Rows, class Velocities>
+MW_INLINE Driven<S> driven_at_anchors(const Rows& s, const Velocities& v) {
   using Vec = typename S::Vec;
   Driven<S> out;
   out.rows = S::kDim;
@@ -38,6 +39,14 @@ MW_INLINE Driven<S> driven(const JointPart&, const PointRows<S>& s, const Veloci
     out.speed[i] = Float::load(number[i]), out.impulse[i] = Float::load(s.impulse[i]);
   }
   return out;
+}
+template <class S, class Velocities>
+MW_INLINE Driven<S> driven(const JointPart&, const PointRows<S>& s, const Velocities& v) {
+  return driven_at_anchors<S>(s, v);
+}
+template <class S, class Velocities>
+MW_INLINE Driven<S> driven(const JointPart&, const LineRows<S>& s, const Velocities& v) {
+  return driven_at_anchors<S>(s, v);
 }
 template <class S, class Velocities>
 MW_INLINE Driven<S> driven(const JointPart&, const PartBodies<S>&, const Velocities&) {

@@ -2,6 +2,7 @@
 // of effective mass m that is C off is a spring:
 //   E = k C^2 / 2,  k = m bias_rate / (h rho)
 // A hard one (rho = 0) closes at bias_rate C whatever it bears: E = m (bias_rate C)^2 / 2 + |F C|.
+// One that closes gradually holds none: what it gives is counted (drive_work.hpp).
 #pragma once
 
 #include "kernels/joint/drive_work.hpp"
@@ -32,13 +33,14 @@ MW_INLINE Gap gap_of(const JointPart& part, const Joint& constants, const Row<S,
 template <class S>
 MW_INLINE Gap gap_of(const JointPart& part, const Joint&, const PointRows<S>& s) {
   using Vec = typename S::Vec;
-  if (part.spring) return {Float(Real(0)), Float(Real(0))};
+  if (part.spring || part.gradual) return {Float(Real(0)), Float(Real(0))};
   const Vec gap = load_as<Vec>(s.gap[0]);
   const auto mass = load_as<typename PointMass<S>::Type>(s.mass[0]);
   return gap_of(gap, mul(mass, gap), load_as<Vec>(s.impulse[0]));
 }
 template <class S>
-MW_INLINE Gap gap_of(const JointPart&, const Joint&, const LineRows<S>& s) {
+MW_INLINE Gap gap_of(const JointPart& part, const Joint&, const LineRows<S>& s) {
+  if (part.gradual) return {Float(Real(0)), Float(Real(0))};
   const auto impulse = load_as<typename S::Vec>(s.impulse[0]);
   if constexpr (S::kDim == 2) {
     const Float error = Float::load(s.error[0]);

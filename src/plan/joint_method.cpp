@@ -70,6 +70,17 @@ bool is_long_and_touches(const Scene& scene, const SceneTrees& trees) {
   return false;
 }
 
+// Between two ends sag and tension follow the length as its root: what sweeps let a row of 32 links
+// stretch by makes it sag by a fifth more.
+std::string need_of_rows(const SceneTrees& trees) {
+  constexpr int kMost = 32;  // joints
+  for (std::size_t b = 0; b < trees.has_loop.size(); ++b) {
+    if (!trees.has_loop[b] || trees.joints_with[b] <= kMost) continue;
+    return std::to_string(trees.joints_with[b]) + " joints hang together in a loop";
+  }
+  return {};
+}
+
 // Loads that go down through light bodies.
 std::string need_of_masses(const Scene& scene, const std::vector<int>& trees) {
   std::map<int, std::pair<double, double>> range;  // of a tree, kg
@@ -117,6 +128,7 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
       return at_once(joint_text(j) + " may break");
     }
   }
+  if (const std::string why = need_of_rows(trees); !why.empty()) return at_once(why);
   for (const Scene& scene : extremes) {
     for (const std::string& why :
          {need_of_levers(scene, in_tree), need_of_masses(scene, trees.of_body)}) {

@@ -2,6 +2,7 @@
 #include "src/plan/joint_trees.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <vector>
@@ -16,6 +17,10 @@ namespace {
 
 using kernels::PartKind;
 
+// s, of joints of loops that begin apart. A bridge of 160 links sags by the root of what has
+// closed: in one second it is set swinging for half a minute.
+constexpr double kClosingTime = 4;
+
 // A joint with its parts, whose bodies are those of all of them.
 struct TreeJoint {
   std::vector<int> parts;
@@ -25,7 +30,7 @@ struct TreeJoint {
 class JointTreeBuilder {
  public:
   explicit JointTreeBuilder(PlanData& plan)
-      : plan_(plan), joints_(plan.scene.joints.size()), in_tree_(trees_of(plan.scene).has_joint) {
+      : plan_(plan), joints_(plan.scene.joints.size()), trees_(trees_of(plan.scene)) {
     const auto bodies = plan.bodies.size();
     at_.resize(bodies), component_.assign(bodies, -1), placed_.assign(bodies, false);
     seen_.assign(joints_.size(), false);
@@ -48,7 +53,8 @@ class JointTreeBuilder {
       if (prescribed(b) || component_[static_cast<std::size_t>(b)] >= 0) continue;
       const std::vector<int> component = gather(b);
       const auto& joints = at_[static_cast<std::size_t>(b)];
-      if (!joints.empty() && in_tree_[static_cast<std::size_t>(joints.front())]) grow(component);
+      if (!joints.empty() && trees_.has_joint[static_cast<std::size_t>(joints.front())])
+        grow(component);
     }
     finish(plan_.trees_of_joints);
   }
@@ -148,10 +154,10 @@ class JointTreeBuilder {
     }
     auto& all = plan_.trees_of_joints.bodies;
     all.insert(all.end(), order.begin(), order.end());
-    if (!closing.empty()) close(closing);
+    if (!closing.empty()) close(closing, bodies);
   }
 
-  void close(const std::vector<int>& joints) {
+  void close(const std::vector<int>& joints, const std::vector<int>& bodies) {
     auto& loops = plan_.trees_of_joints.loops;
     kernels::JointLoops loop{};
     loop.first = static_cast<int>(closures_.size());
@@ -161,7 +167,14 @@ class JointTreeBuilder {
       loop.rows += rows_of(closures_.back());
     }
     loop.end = static_cast<int>(closures_.size());
+    for (const int body : bodies) {
+      for (const int j : at_[static_cast<std::size_t>(body)]) loop.gradual |= gradual(j);
+    }
     loops.push_back(loop);
+  }
+  bool gradual(int joint) const {
+    return trees_.slack[static_cast<std::size_t>(joint)] > 0 &&
+           !std::isfinite(plan_.scene.options.joint.pull_speed);
   }
   int rows_of(const kernels::TreeEdge& edge) const {
     const bool flat = plan_.scene.space == Space::planar;
@@ -205,11 +218,16 @@ class JointTreeBuilder {
               ? soft_constraint(*o.joint.frequency, o.joint.damping_ratio, h).rate
               : 0;
     }
+    const double slack = trees_.slack[static_cast<std::size_t>(part.joint)];
+    const bool holds = part.what.kind == PartKind::point || part.what.kind == PartKind::line;
+    if (!holds || !gradual(part.joint)) return;
+    part.what.gradual = true;
+    part.constants.pull = slack / kClosingTime, part.constants.slack = slack;
   }
 
   PlanData& plan_;
   std::vector<TreeJoint> joints_;
-  std::vector<bool> in_tree_;         // [joint]
+  SceneTrees trees_;
   std::vector<std::vector<int>> at_;  // [body] joints
   std::vector<int> component_;        // [body] its first body
   std::vector<bool> placed_;          // [body] in its tree

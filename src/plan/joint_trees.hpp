@@ -9,11 +9,16 @@ namespace manyworlds {
 
 // What hangs together as trees that the kernels can solve at once: of ball joints,
 // hinges, sliders, fixed and wheel joints. A few of them without drives or limits may close loops,
-// or hold to more than one thing that is not dynamic, where none begins apart or may break.
+// or hold to more than one thing that is not dynamic, where none may break.
 struct SceneTrees {
-  std::vector<bool> has_joint;   // [joint]
+  std::vector<bool> has_joint;  // [joint]
+  // [joint] m: what a joint of a loop begins apart by, and a hundredth of its arms; 0 where it
+  // begins apart by less than that. In a loop there may be no way to close all of them at once, and
+  // then what hangs together would be flung about.
+  std::vector<double> slack;
   std::vector<int> of_body;      // [body] which tree, by one of its bodies; -1: none
   std::vector<int> joints_with;  // [body] joints of its tree
+  std::vector<bool> has_loop;    // [body] its tree
 };
 SceneTrees trees_of(const Scene& scene);
 

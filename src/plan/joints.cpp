@@ -117,6 +117,7 @@ class Builder {
     const Options& o = plan_.scene.options;
     out.constants.pull = std::min(o.joint.pull_speed * *o.length_unit, kUnlimited);
     out.constants.angular_pull = std::min(o.joint.pull_speed, kUnlimited);
+    out.constants.slack = kUnlimited;
     out.constants.limit_soft = hard();
     out.constants.max_impulse = kUnlimited;
     out.constants.ratio = 1;

@@ -42,9 +42,13 @@ class DisjointSets {
   std::vector<std::size_t> parent_;
 };
 
-// Whether a joint's frames begin apart by more than a hundredth of its arms. In a loop there may be
-// no way to close all of them, and then what hangs together would be flung about.
-bool begins_apart(const Scene& scene, const Joint& joint) {
+constexpr double kClosedShare = 0.01;  // of a joint's arms
+
+// How far a joint's frames are apart where the scene begins, m, and the sum of its arms.
+struct StartGap {
+  double length, arms;
+};
+StartGap start_gap(const Scene& scene, const Joint& joint) {
   const auto arm = [&](BodyId id, const Frame& frame) {
     if (!id || scene.at(id).motion != Motion::dynamic) return 0.0;
     return (frame.position - mass_properties(scene, scene.at(id)).center).norm();
@@ -58,7 +62,7 @@ bool begins_apart(const Scene& scene, const Joint& joint) {
     const Vec3 along = axes.normalized() * Vec3::UnitX();
     apart = (gap - along.dot(gap) * along).norm();
   }
-  return apart > 0.01 * (arm(joint.body_a, joint.frame_a) + arm(joint.body_b, joint.frame_b));
+  return {apart, arm(joint.body_a, joint.frame_a) + arm(joint.body_b, joint.frame_b)};
 }
 
 }  // namespace
@@ -116,16 +120,23 @@ SceneTrees trees_of(const Scene& scene) {
   // How a load is shared around a loop is known to sweeps alone.
   for (const Joint& joint : scene.joints) {
     if (!held(joint) || !of[root(joint)].is_tree() || of[root(joint)].closures == 0) continue;
-    of[root(joint)].fits = !may_break(joint) && !begins_apart(scene, joint);
+    of[root(joint)].fits = !may_break(joint);
   }
   SceneTrees out;
   for (const Joint& joint : scene.joints) {
-    out.has_joint.push_back(held(joint) && of[root(joint)].is_tree());
+    const bool at_once = held(joint) && of[root(joint)].is_tree();
+    out.has_joint.push_back(at_once);
+    out.slack.push_back(0);
+    if (!at_once || of[root(joint)].closures == 0) continue;
+    const StartGap gap = start_gap(scene, joint);
+    const double closed = kClosedShare * gap.arms;
+    if (gap.length > closed) out.slack.back() = gap.length + closed;
   }
   for (std::size_t i = 0; i < bodies; ++i) {
     const Component& component = of[together.find(i)];
     out.of_body.push_back(component.is_tree() ? static_cast<int>(together.find(i)) : -1);
     out.joints_with.push_back(component.is_tree() ? component.joints : 0);
+    out.has_loop.push_back(component.is_tree() && component.closures > 0);
   }
   return out;
 }

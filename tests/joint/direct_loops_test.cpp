@@ -115,6 +115,53 @@ TEST_CASE("a taut bridge solved at once bears boxes", "[fast][joint]") {
   }
 }
 
+// Straight and compressed between two anchors: closed, it sags by the root of what closes.
+TEST_CASE("rows of links that begin apart close and hang as the catenary", "[joint][slow]") {
+  constexpr int kLinks = 40;
+  for (const double size : {0.01, 1.0}) {
+    for (const double share : {0.9, 0.9875}) {
+      const double span = share * kLinks * size;
+      Scene scene = empty_scene(Space::planar, 10);
+      for (int i = 0; i < kLinks; ++i) {
+        const double x = (i + 0.5) * span / kLinks - span / 2;
+        Body link = uniform_rod(Space::planar, 1, size, {x, 0, 0});
+        link.linear_drag = link.angular_drag = 0.1 / std::sqrt(size);
+        link.jitter.linear_velocity = {0, 0.01 * std::sqrt(size), 0};
+        scene.add(link);
+      }
+      for (int i = 0; i <= kLinks; ++i) {
+        Joint hinge;
+        hinge.body_a = BodyId(i == kLinks ? -1 : i - 1);
+        hinge.body_b = BodyId(i == kLinks ? i - 1 : i);
+        hinge.frame_a.position.x() = i == 0 ? -span / 2 : i == kLinks ? span / 2 : size / 2;
+        hinge.frame_b.position.x() = i == kLinks ? size / 2 : -size / 2;
+        scene.add(hinge);
+      }
+      double low = 1e-3 * size, high = 1e6 * size;  // 2 a sinh(span / 2 a) = length
+      for (int i = 0; i < 200; ++i) {
+        const double a = std::sqrt(low * high);
+        (2 * a * std::sinh(span / 2 / a) > kLinks * size ? low : high) = a;
+      }
+      const double right = low * (std::cosh(span / 2 / low) - 1);
+      for (const Table& table : widest_tables()) {
+        BatchOptions options = options_of(table, 8);
+        options.audit_every = 1;
+        Batch batch(compile(scene), options);
+        CHECK(batch.plan().resolved().joint.method == JointMethod::tree);
+        batch.step(1800);
+        INFO(name(table) << " links of " << size << " m, span " << share);
+        check_all(batch, 1e-3 * size);
+        for (int w = 0; w < batch.worlds(); ++w) {
+          double sag = 0;
+          for (int i = 0; i < kLinks; ++i) sag = std::max(sag, -position(batch, w, i).y());
+          INFO(name(table) << " links of " << size << " m, span " << share);
+          CHECK(sag == Approx(right).epsilon(0.05));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("a driven four-bar linkage solved at once stays closed", "[fast][joint]") {
   for (const Table& table : widest_tables()) {
     INFO(name(table));

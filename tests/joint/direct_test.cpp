@@ -50,8 +50,8 @@ TEST_CASE("chains of light links keep together under any load", "[joint][slow]")
         CHECK(gap < (load < 50 ? 0.03 : 0.01) * 0.5);  // light ones lash
         // Symplectic Euler's energy swings by m g v h / 2, and falls at 8 m/s.
         CHECK(gain < 3.5e-3 * fall);
-        // What geometric stiffness damps, and what light chains lash away.
-        CHECK(lost < (load < 50 ? 0.5 : 0.2) * fall);
+        // What chains lash away where they are drawn taut.
+        CHECK(lost < (load < 50 ? 0.5 : load < 500 ? 0.2 : 0.05) * fall);
       }
     }
   }
@@ -302,7 +302,13 @@ TEST_CASE("the plan solves joints at once where that is worth it, and says why",
     CHECK_FALSE(method(breaks).has_value());
     Scene apart = loop;
     apart.bodies[4].position += 0.1 * up_of(space);
-    CHECK_FALSE(method(apart).has_value());
+    CHECK(method(apart) == JointMethod::tree);
+    Scene row = chain(space, 33, 0.5, 1, false, HingeJoint{});
+    row.options.gravity.setZero();  // no joint carries anything
+    CHECK_FALSE(method(row).has_value());
+    const Frame end = at(Vec3(16.5, 0, 0), hinge_axes(space));
+    row.add(joint_at(row, {}, BodyId(32), end, HingeJoint{}));
+    CHECK(method(row) == JointMethod::tree);
     Scene many = loop;
     for (const int body : {2, 4, 6, 8}) {
       many.add(joint_at(many, {}, BodyId(body), at(Vec3::Zero()), FixedJoint{}));
