@@ -34,7 +34,7 @@ Swing swing(double load, JointMethod method, int substeps, bool quick) {
     seen.look(i * scene.options.dt);
     for (int w = 0; w < batch.worlds(); ++w) {
       if (batch.status(w) != Status::ok) continue;
-      const double rise = (seen.energy(w) - seen.start_energy(w)) / fall_of_chain(load);
+      const double rise = gain_of_chain(seen, w, load);
       out.gap = std::max(out.gap, seen.worst_gap(w) / kLink);
       out.gain = std::max(out.gain, rise), out.loss = std::max(out.loss, -rise);
     }
