@@ -1,8 +1,9 @@
 """Tasks and expressions: composed in Python, the same as in C++; what is wrong is said."""
 
 import copy
-import importlib.util
+import importlib
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +16,10 @@ EXAMPLES = Path(__file__).parents[2] / "examples" / "python"
 
 
 def example(name):
-    """A module of examples/python."""
-    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    """A module of examples/python; some import others of them."""
+    if str(EXAMPLES) not in sys.path:
+        sys.path.append(str(EXAMPLES))
+    return importlib.import_module(name)
 
 
 def falling():
