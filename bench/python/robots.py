@@ -8,7 +8,7 @@ environment, and in EnvPool where it is installed, in turns.
     bench/python/robots.py --policies docs/training --tasks HalfCheetah-v5 --worlds 64 --repeats 3
 
 Each steps in one thread under actions that were made before, through its own resets: random ones or, with
---policies FOLDER, those of the trained policies there (TASK-1.npz, of examples/python/ppo.py) in the same worlds,
+--policies FOLDER, those of the trained policies there (TASK-SEED.npz, of examples/python/ppo.py) in the same worlds,
 which were played once to record them, so that contacts are those of a gait. Time is the processor's, of all threads of the process; figures are medians over rounds, and ratios are those of each
 round, so that what else the machine does falls on all alike. Gymnasium and EnvPool solve as the files say (the
 humanoids by PGS); here the solver is Newton's with the files' tolerance. What is not installed is left out
@@ -150,21 +150,22 @@ def main():
     p.add_argument("--tasks", nargs="*", help="default: all, or those that have a policy")
     p.add_argument("--worlds", type=int, nargs="*", default=[1, 64, 4096])
     p.add_argument("--seconds", type=float, default=0.5, help="of a round of random actions")
-    p.add_argument("--policies", type=Path, help="the folder of TASK-1.npz")
+    p.add_argument("--policies", type=Path, help="the folder of TASK-SEED.npz")
     p.add_argument("--steps", type=int, default=500, help="of a round of a policy")
     p.add_argument("--repeats", type=int, default=5)
     p.add_argument("--json")
     o = p.parse_args()
-    has = tasks.names()
+    has, files = tasks.names(), {}
     if o.policies:
-        has = [name for name in has if (o.policies / f"{name}-1.npz").exists()]
+        files = {name: sorted(o.policies.glob(f"{name}-[0-9].npz")) for name in has}
+        has = [name for name in has if files[name]]
     rows = []
     print("| task | envs | what, on one core | steps/s | Environment / this |")
     print("|---|---:|---|---:|---:|")
     for name in o.tasks or has:
         for n in o.worlds:
             if o.policies:
-                policy = Policy.load(o.policies / f"{name}-1.npz")
+                policy = Policy.load(files[name][0])
                 speeds = in_a_gait(name, n, policy, o.steps, o.repeats)
             else:
                 speeds = by_turns(name, n, o.seconds, o.repeats)

@@ -70,6 +70,20 @@ def test_episodes_end_as_stable_baselines_has_it(VecEnv):
     env.close()
 
 
+def test_robots_are_trained(VecEnv):
+    pytest.importorskip("manyworlds._mjcf")
+    from manyworlds.gym import mujoco
+
+    env = VecEnv(mujoco.task("Hopper-v5", reset_noise_scale=0.0), 3)
+    assert env.reset().shape == (3, 11) and env.action_space.shape == (3,)
+    dones = np.zeros(3, bool)
+    while not dones.any():
+        observations, rewards, dones, infos = env.step(np.ones((3, 3), np.float32))
+    assert dones.all() and len({info["terminal_observation"].tobytes() for info in infos}) == 1
+    assert not infos[0]["TimeLimit.truncated"]
+    env.close()
+
+
 def test_other_autoresets_are_refused(VecEnv):
     with pytest.raises(ValueError, match="SAME_STEP"):
         VecEnv("CartPole", 2, autoreset_mode="NextStep")

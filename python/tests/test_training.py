@@ -35,6 +35,29 @@ def script(monkeypatch, path, *arguments):
     return module.main()
 
 
+def test_wrappers_of_training_loops_take_robots():
+    """Those of CleanRL's PPO for continuous actions, as vector wrappers."""
+    import gymnasium
+    from gymnasium.wrappers import vector
+
+    import manyworlds.gym  # noqa: F401  (registers the tasks)
+
+    envs = gymnasium.make_vec("manyworlds/Hopper-v5", num_envs=8)
+    envs = vector.ClipAction(vector.RecordEpisodeStatistics(envs))
+    envs = vector.NormalizeReward(vector.NormalizeObservation(envs), gamma=0.99)
+    observations, _ = envs.reset(seed=1)
+    rng, ended = np.random.default_rng(0), 0
+    for _ in range(100):
+        actions = rng.normal(0, 2, envs.action_space.shape).astype(np.float32)
+        observations, rewards, terminated, _, infos = envs.step(actions)
+        ended += terminated.sum()
+        if terminated.any():
+            assert (infos["_episode"] == terminated).all()
+            assert (infos["episode"]["l"][terminated] > 3).all()
+    assert ended > 8 and observations.std() < 3 and np.isfinite(rewards).all()
+    envs.close()
+
+
 @pytest.mark.parametrize("row", TRANSFER, ids=lambda row: row["policy"])
 def test_trained_policies_score_as_they_did(row):
     policies = example("policy")
