@@ -266,8 +266,8 @@ class Recording(InMemory):
         return scene
 
     def get(self, field: str, sample: Optional[int] = None, kind: int = 0) -> NDArray[Any]:
-        """A state field of a kind's worlds at every sample, (samples, worlds, bodies, components), or
-        at one, (worlds, bodies, components); float32 or float64, as the batch had it."""
+        """A state field of a kind's worlds at every sample, (samples, worlds, items, components), or
+        at one, (worlds, items, components); float32 or float64, as the batch had it."""
         kind = arrays.index(kind, self.kinds, "kind")
         count = self._held.samples
         first = 0 if sample is None else arrays.index(sample, count, "sample")

@@ -59,6 +59,18 @@ def test_what_is_recorded_is_read_back_and_replayed(batch, tmp_path):
         recording.get("position")
 
 
+def test_coordinates_of_robots_are_read_back(tmp_path):
+    """Of which there are more than bodies."""
+    file = tmp_path / "run.h5"
+    with mw.Batch("cheetah", 3, threads=1, seed=2) as robots:
+        with record.Recorder(robots, file):
+            robots.step(5, controls=0.5)
+        with record.Recording(file) as recording:
+            for field in ("generalized_position", "generalized_velocity", "position"):
+                assert (recording.get(field)[-1] == robots.get(field)).all()
+            assert recording.get("generalized_position").shape == (2, 3, 9, 1)
+
+
 def test_h5py_reads_the_same(batch, tmp_path):
     h5py = pytest.importorskip("h5py")
     seen = disturbed(tmp_path / "run.h5", batch)

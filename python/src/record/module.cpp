@@ -108,26 +108,27 @@ auto table(const Recording& r, F f) {
                {static_cast<std::size_t>(r.samples()), static_cast<std::size_t>(r.worlds())});
 }
 
-// (worlds, bodies, components) of a field of a kind of world.
+// (worlds, items, components) of a field of a kind of world.
 std::array<int, 3> shape_of(const Recording& recording, Field field, int kind) {
   const Plan& plan = plan_of(recording, kind);
-  return {recording.worlds_of(kind), plan.bodies(), components(field, plan.scene().space)};
+  return {recording.worlds_of(kind), plan.items(info(field).item),
+          components(field, plan.scene().space)};
 }
 
-// `out`: a field of a kind at the samples from `begin` on, (samples, worlds, bodies, components).
+// `out`: a field of a kind at the samples from `begin` on, (samples, worlds, items, components).
 void read(HeldRecording& self, nb::object field, int kind, std::int64_t begin, const AnyOut& out) {
   const Field which = from_python<Field>(field, "field");
   self.with([&](Recording& r) {
-    const auto [worlds, bodies, n] = shape_of(r, which, kind);
+    const auto [worlds, items, n] = shape_of(r, which, kind);
     if (out.ndim() != 4) throw nb::value_error("the array must have four axes");
     const auto samples = static_cast<std::int64_t>(out.shape(0));
     check_size("the array", out.size(),
-               out.shape(0) * static_cast<std::size_t>(worlds) * static_cast<std::size_t>(bodies) *
+               out.shape(0) * static_cast<std::size_t>(worlds) * static_cast<std::size_t>(items) *
                    static_cast<std::size_t>(n));
     if (begin < 0 || samples > r.samples() || begin > r.samples() - samples) {
       throw nb::index_error("there is no such sample");
     }
-    if (bodies == 0) return;
+    if (items == 0) return;
     int first = 0;
     for (int k = 0; k < kind; ++k) first += r.worlds_of(k);
     const int last = first + worlds;
@@ -256,8 +257,8 @@ void bind_reading(nb::module_& m) {
           [](HeldRecording& self, nb::object field, int kind) {
             const Field which = from_python<Field>(field, "field");
             return self.with([&](Recording& r) {
-              const auto [worlds, bodies, n] = shape_of(r, which, kind);
-              return nb::make_tuple(worlds, bodies, n);
+              const auto [worlds, items, n] = shape_of(r, which, kind);
+              return nb::make_tuple(worlds, items, n);
             });
           },
           nb::arg("field").none(), nb::arg("kind"))
