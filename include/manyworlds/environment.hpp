@@ -91,9 +91,9 @@ class Environment {
   int infos() const;         // numbers of one world
 
   // One step of the task in every world. `actions`: [world][action]; of a discrete task one per
-  // world. An action that is not a number freezes its world, which then is lost; a choice that
-  // there is not throws std::invalid_argument before anything is done. Allocates nothing, except
-  // where a world begins whose masses or sizes vary.
+  // world. An action that is not a number, or is infinite and not clamped (Action), freezes its
+  // world, which then is lost; a choice that there is not throws std::invalid_argument before
+  // anything is done. Allocates nothing, except where a world begins whose masses or sizes vary.
   void step(std::span<const float> actions, const StepArrays& out);
   void step(std::span<const std::int64_t> actions, const StepArrays& out);
   // As these, asking between physics steps, some 15 times a second, whether to go on. False: it was

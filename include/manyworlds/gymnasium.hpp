@@ -8,8 +8,8 @@
 // the model is not one of theirs, with what was expected of it.
 //
 // After a step positions, inertias and forces of links are those that the last substep found
-// (Observer::links and its like), as in MuJoCo, coordinates those after it. Beside what docs/rl.md
-// lists as different, actions beyond their range count as its end in costs, too.
+// (Observer::links and its like), as in MuJoCo, coordinates those after it. Costs are of actions as
+// given, also beyond the ranges that controls are kept in. docs/rl.md lists what is different.
 #pragma once
 
 #include <array>

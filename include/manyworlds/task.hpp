@@ -14,10 +14,13 @@
 
 namespace manyworlds {
 
-// One number of a continuous action. Beyond its range it counts as the end of the range.
+// One number of a continuous action. Beyond its range it counts as the end of the range. Where it
+// is not clamped it counts as given, in costs too; an infinite one then loses the world. Controls
+// of the scene are kept within their own ranges either way.
 struct Action {
   std::string name = {};
   double low = -1, high = 1;
+  bool clamped = true;
 };
 
 struct Observation {

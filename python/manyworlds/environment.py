@@ -219,8 +219,9 @@ class Environment(InMemory):
 
         ``actions``: (worlds,) integers below ``task.choices`` or (worlds, numbers), of any dtype;
         int64 and float32 are taken without a copy. An action beyond its range counts as the end of
-        the range; one that is not a number freezes its world, which is then lost and truncated. A
-        choice that there is not raises ValueError before anything is done.
+        the range, or as given where it is not clamped (``Action``); one that is not a number freezes its
+        world, which is then lost and truncated. A choice that there is not raises ValueError before
+        anything is done.
 
         Arrays that are given are filled in place of the environment's own, and returned; they may be
         whatever ``Batch.get`` takes as ``out``. Returns (observations, rewards, terminated, truncated).

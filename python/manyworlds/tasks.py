@@ -261,11 +261,16 @@ class Terms:
 
 @dataclass(slots=True)
 class Action:
-    """One number of a continuous action. Beyond its range it counts as the end of the range."""
+    """One number of a continuous action. Beyond its range it counts as the end of the range.
+
+    Where it is not ``clamped`` it counts as given, in costs too; an infinite one then loses the world.
+    Controls of the scene are kept within their own ranges either way.
+    """
 
     name: str = ""
     low: float = -1.0
     high: float = 1.0
+    clamped: bool = True
 
 
 @dataclass(slots=True, eq=False)
@@ -335,9 +340,11 @@ class Task:
         """Terms with the names of this task's scene."""
         return Terms(self.scene)
 
-    def act(self, name: str, low: float = -1.0, high: float = 1.0) -> Expression:
-        """Adds a number to the action, and returns it as an expression."""
-        self.actions.append(Action(name, low, high))
+    def act(
+        self, name: str, low: float = -1.0, high: float = 1.0, clamped: bool = True
+    ) -> Expression:
+        """Adds a number to the action (``Action``), and returns it as an expression."""
+        self.actions.append(Action(name, low, high, clamped))
         return _x.action(len(self.actions) - 1)
 
     def observe(self, name: str, value: Value, low: float = -inf, high: float = inf) -> None:

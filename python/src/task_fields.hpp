@@ -30,6 +30,7 @@ struct Described<Action> {
   static constexpr const char* name = "Action";
   static void fields(auto&& visit, auto& s) {
     visit("name", s.name), visit("low", s.low), visit("high", s.high);
+    visit("clamped", s.clamped);
   }
 };
 template <>

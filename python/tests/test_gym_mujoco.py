@@ -97,8 +97,11 @@ def apart(found, expected, precision):
     return np.max(np.abs(found - expected) / np.maximum(1.0, scale))
 
 
-def compare(name, precision, count, **arguments):
-    """What differs from Gymnasium's in each state: (errors, whether no constraint acted, touched)."""
+def compare(name, precision, count, reach=1.0, **arguments):
+    """What differs from Gymnasium's in each state: (errors, whether no constraint acted, touched).
+
+    ``reach``: of actions, in their ranges.
+    """
     rng = np.random.default_rng(7)
     theirs = Theirs(name, **arguments)
     states = theirs.states(count, rng)
@@ -107,6 +110,7 @@ def compare(name, precision, count, **arguments):
     env.batch.set("generalized_velocity", np.array([v for _, v in states])[..., None])
     space = theirs.env.action_space
     actions = rng.uniform(space.low, space.high, (STEPS, count, *space.shape)).astype(np.float32)
+    actions *= np.float32(reach)
     results = [(env.begin().copy(), None, None, None)]
     for action in actions:
         observations, rewards, terminated, _ = env.step(action)
@@ -212,6 +216,12 @@ OTHER_ARGUMENTS = {
 @pytest.mark.parametrize("name", OTHER_ARGUMENTS)
 def test_arguments_do_what_they_do_there(name):
     gate(name, "f64", 1e-8, 1e-6, 1e-8, states=60, **OTHER_ARGUMENTS[name])
+
+
+@pytest.mark.parametrize("name", tasks.names())
+def test_costs_are_of_actions_as_given(name):
+    """Beyond their ranges, too, where the controls stay within theirs."""
+    gate(name, "f64", 1e-8, 1e-6, 1e-8, states=40, reach=3.0)
 
 
 @pytest.mark.parametrize("name", tasks.names())

@@ -128,6 +128,27 @@ def test_actions_beyond_their_range_count_as_its_end():
     assert values(lambda t: [t.action()], [-9, 9, 1])[:, 0].tolist() == [-2, 3, 1]
 
 
+def test_actions_that_are_not_clamped_count_as_given():
+    task = tasks.load("CartPoleSwingUp")  # 15 N at an action of 1
+    task.actions[0].clamped = False
+    task.observe("action", task.terms.action())
+    task.observe("control", task.terms.control(0))
+    clamped = copy.deepcopy(task)
+    clamped.actions[0].clamped = True
+    with mw.Environment(task, 4, threads=1) as env, mw.Environment(clamped, 4, threads=1) as other:
+        actions = np.array([[-9], [0.5], [np.inf], [np.nan]], np.float32)
+        observations, rewards, *_ = env.step(actions)
+        assert observations[:2, -2:].tolist() == [[-9, -15], [0.5, 7.5]]
+        assert env.lost().tolist() == [False, False, True, True]
+        of_the_end, less, *_ = other.step(actions)
+        assert of_the_end[:3, -2:].tolist() == [[-1, -15], [0.5, 7.5], [1, 15]]
+        assert other.lost().tolist() == [False, False, False, True]
+        assert rewards[0] - less[0] == pytest.approx(-0.01 * (81 - 1), rel=1e-5)
+        assert (observations[:2, :-2] == of_the_end[:2, :-2]).all() and rewards[1] == less[1]
+        with pytest.raises(mw.SnapshotError):
+            other.restore(env.save())
+
+
 def test_expressions_have_no_truth_value():
     a = tasks.Terms().action()
     for wrong in (lambda: bool(a > 1), lambda: a > 1 and a < 2, lambda: 0 < a < 1, lambda: not a):

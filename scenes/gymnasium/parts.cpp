@@ -59,7 +59,7 @@ TaskOf::TaskOf(const Scene& model, int frame_skip, const Wanted& wanted) {
            std::to_string(wanted.least_coordinates) + " or more");
   }
   for (const Control& control : model.controls) {
-    task.actions.push_back({control.name, control.low, control.high});
+    task.actions.push_back({control.name, control.low, control.high, false});
     task.controls.push_back(action(static_cast<int>(task.controls.size())));
   }
 }

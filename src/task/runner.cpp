@@ -60,7 +60,10 @@ std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, con
 
 TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : max_steps(task.max_steps) {
   inputs.actions = task.choices > 0 ? 1 : static_cast<int>(task.actions.size());
-  for (const Action& a : task.actions) action_range.push_back({a.low, a.high});
+  for (const Action& a : task.actions) {
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    action_range.push_back(a.clamped ? std::array{a.low, a.high} : std::array{-kAny, kAny});
+  }
   control_range = plan.data().control_range;
   ProgramBuilder builder(plan, inputs, memory);
   for (const Observation& o : task.observations) observations.push_back(builder.add(o.value));
@@ -218,11 +221,11 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     for (std::size_t i = 0; i < p_->action_range.size(); ++i) {
       const float value = actions[world * p_->action_range.size() + i];
       const auto [low, high] = p_->action_range[i];
-      if (std::isnan(value)) freeze(g, lane);
-      in[i * at(lanes_)] = std::isnan(value)
-                               ? Real(0)
-                               : std::clamp(static_cast<Real>(value), static_cast<Real>(low),
-                                            static_cast<Real>(high));
+      const Real counts =
+          std::clamp(static_cast<Real>(value), static_cast<Real>(low), static_cast<Real>(high));
+      const bool sound = std::isfinite(counts);
+      if (!sound) freeze(g, lane);
+      in[i * at(lanes_)] = sound ? counts : Real(0);
     }
   }
 

@@ -53,6 +53,8 @@ def _range(name: str, rest: Sequence[Any], found: Sequence[Range], task: Task) -
         if task.choices > 0:
             return 0.0, task.choices - 1.0
         action = task.actions[rest[0]]
+        if not action.clamped:
+            return _ALL
         return min(action.low, 0.0), max(action.high, 0.0)  # 0 at the beginning
     if name == "control":
         control = task.scene.controls[rest[0]]
