@@ -1,5 +1,8 @@
 """The examples of examples/python, in short form."""
 
+import importlib.util
+
+import numpy as np
 import pytest
 
 from test_tasks import example
@@ -15,9 +18,40 @@ def test_design_search_improves():
     assert history[-1][0] > history[0][0]
 
 
-def test_planning_swings_acrobot_up():
-    up, steps = example("mppi").main(["--samples", "128", "--seed", "1"])
-    assert up and steps < 150
+def test_planning_swings_a_pole_up_and_keeps_it_up():
+    seen = example("mppi").main(["--branches", "128", "--seconds", "3"])
+    assert len(seen) == 150
+    upright = seen[:, 2]
+    assert upright[0] < -0.9 and upright[-25:].min() > 0.95
+
+
+def test_planning_raises_a_humanoid():
+    seen = example("mppi").main("--task humanoid --branches 64 --seconds 0.8 --horizon 0.4".split())
+    height, upright = seen.T
+    assert height[0] < 0.15 and upright[0] < 0.2
+    assert height[-1] > height[5] + 0.1 and upright[-1] > 0.7
+
+
+def test_a_gait_is_found():
+    pytest.importorskip("cma")
+    pytest.importorskip("gymnasium")
+    if importlib.util.find_spec("manyworlds._mjcf") is None:
+        pytest.skip("built without MuJoCo")
+    short = "--candidates 128 --generations 5 --seconds 0.8"
+    history, far = example("gait_search").main(short.split())
+    assert history[-1] > 2 * max(history[0], 10)
+    assert np.median(far) > 0.3
+
+
+def test_friction_and_damping_are_found_in_a_recording():
+    pytest.importorskip("cma")
+    if importlib.util.find_spec("manyworlds._record") is None:
+        pytest.skip("built without HDF5")
+    short = "--candidates 128 --generations 30 --seconds 1"
+    numbers = example("identification").main(short.split())
+    assert len(numbers) == 7
+    for name, (hidden, found) in numbers.items():
+        assert found == pytest.approx(hidden, rel=0.02), name
 
 
 def test_every_task_has_a_picture(tmp_path):
