@@ -130,6 +130,13 @@ def test_ranges_follow_from_what_expressions_are_made_of():
         assert 0.99 * most < high <= most and low == -high
 
 
+def test_actions_have_their_range_where_they_are_clamped():
+    task = tasks.load("CartPoleSwingUp")
+    assert range_of(task.terms.action(), task) == (-1, 1)
+    task.actions[0].clamped = False
+    assert range_of(task.terms.action(), task) == (-np.inf, np.inf)
+
+
 def test_bounds_that_a_task_gives_are_kept():
     task = tasks.load("Pendulum")
     task.observations = []
