@@ -74,6 +74,7 @@ def main(argv: Sequence[str] | None = None) -> tuple[list[float], Array]:
     p.add_argument("--candidates", type=int, default=4096, help="of a generation")
     p.add_argument("--generations", type=int, default=25)
     p.add_argument("--seconds", type=float, default=5, help="of a walk")
+    p.add_argument("--fall", type=float, default=0, help="what a fall costs; returns are some 1000")
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--threads", type=int)
     o = p.parse_args(argv)
@@ -93,7 +94,7 @@ def main(argv: Sequence[str] | None = None) -> tuple[list[float], Array]:
         began = time.perf_counter()
         total, far, upright = walk(env, low + (high - low) * tried, steps, o.seed)
         wall = time.perf_counter() - began
-        search.tell(tried, -total)
+        search.tell(tried, o.fall * ~upright - total)
         history.append(float(total.mean()))
         print(
             f"generation {generation}: mean return {total.mean():.0f}, best {total.max():.0f}, "
