@@ -13,15 +13,14 @@
 #include <variant>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "manyworlds/members.hpp"
 #include "manyworlds/plan.hpp"
 #include "src/base/enum_names.hpp"
+#include "src/page/json.hpp"
 
 namespace manyworlds::record {
 
-using Json = nlohmann::ordered_json;
+using page::Json;
 
 // The words for an enumeration, and for the alternatives of a variant, in their order.
 template <class E>

@@ -14,9 +14,11 @@ from pathlib import Path
 
 # A file in src/ includes its own and lower floors.
 SRC_FLOORS = ["base", "lcp", "scene", "plan", "state", "dispatch", "step", "api", "task"]
-# Off the column: read models into a Scene, record a Batch. They may know nothing below the public
-# headers but these.
-SRC_SIDE = {"mjcf": {"mjcf", "base"}, "record": {"record", "base"}}
+# Off the column: read models into a Scene, describe worlds to the page, record a Batch, show it live. They
+# may know nothing below the public headers but these.
+SRC_SIDE = {
+    "mjcf": {"mjcf", "base"}, "page": {"page", "base"}, "record": {"record", "page", "base"},
+    "live": {"live", "page", "base"}}
 # Floors that may see kernels/data (tables and views, no lanes).
 SRC_SEES_KERNELS = {"plan", "state", "dispatch", "step", "api", "task"}
 # A geometry's file names the kind of shape that the kernels take it for.
@@ -44,9 +46,10 @@ ONE_HOME = {
     r"mujoco/.*": ("src/mjcf", None),
     r"tinyxml2\.h": ("src/mjcf", None),
     r"hdf5\.h": ("src/record", 1),
-    r"zlib\.h": ("src/record", 1),
+    r"zlib\.h": ("src/page", 1),
+    r"boost/.*": ("src/live", None),
     r"libqhull_r/.*": ("src/scene", 1),
-    r"nlohmann/.*": ("src/record", 1),
+    r"nlohmann/.*": ("src/page", 1),
     r"nanobind/.*": ("python/src", None),
 }
 # Where third-party headers have to be at home; tests and benchmarks may drive a library themselves.

@@ -1,4 +1,4 @@
-// Recordings inside the page. How frames are coded is in src/record/page/frames.hpp.
+// Recordings inside the page. How frames are coded is in src/page/frames.hpp.
 import { type FrameSource, type Kind, type MeshLevel, type Poses, type Run } from './data';
 
 interface Chunk {

@@ -31,9 +31,9 @@ std::string read_empty(const std::filesystem::path& file) {
 }
 
 // Inside of an element of HTML.
-std::string embedded(const record::Json& json) {
+std::string embedded(const page::Json& json) {
   std::string out;
-  for (const char c : json.dump(-1, ' ', false, record::Json::error_handler_t::replace)) {
+  for (const char c : json.dump(-1, ' ', false, page::Json::error_handler_t::replace)) {
     if (c == '<') {
       out += "\\u003c";
     } else {
@@ -54,7 +54,7 @@ Page make_page(std::span<const Recording* const> recordings, const std::filesyst
   if (recordings.empty()) throw std::invalid_argument("page: there is no recording");
   std::string text = read_empty(empty);
   Page out;
-  record::Json runs = record::Json::array();
+  page::Json runs = page::Json::array();
   std::string data;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     PageOptions own = options;
@@ -72,7 +72,7 @@ Page make_page(std::span<const Recording* const> recordings, const std::filesyst
     out.report.bodies += run.bodies;
     out.report.frames = std::max(out.report.frames, run.frames);
   }
-  const record::Json head = {
+  const page::Json head = {
       {"title", options.title.empty() ? recordings[0]->plan().scene().name : options.title},
       {"runs", std::move(runs)}};
   data =

@@ -6,17 +6,22 @@
 #include <optional>
 #include <utility>
 
-#include "src/record/page/deflate.hpp"
-#include "src/record/page/frames.hpp"
-#include "src/record/page/look.hpp"
+#include "src/base/enum_names.hpp"
+#include "src/page/deflate.hpp"
+#include "src/page/frames.hpp"
+#include "src/page/look.hpp"
+#include "src/page/room.hpp"
+#include "src/page/sizes.hpp"
 #include "src/record/recording.hpp"
 #include "src/record/run_again.hpp"
 
 namespace manyworlds::record {
+
+using namespace page;  // NOLINT(google-build-using-namespace): what a page is made of
+
 namespace {
 
 constexpr std::int64_t kRoomFrames = 40;  // that say how much room a world needs
-constexpr double kOutliers = 0.005;       // of the bodies, at either end, that do not count there
 
 struct KindPart {
   std::size_t index, worlds;  // of the recording; the first so many of them
@@ -70,7 +75,7 @@ class RunWriter {
           all_.kinds[kind.index].worlds.begin(),
           all_.kinds[kind.index].worlds.begin() + static_cast<std::ptrdiff_t>(kind.worlds)));
       look["orientation"] = orientation_of(kind);
-      look["sizes"] = sizes_of(kind, start, meshes);
+      look["sizes"] = sizes_of_kind(kind, start, meshes);
       kinds.push_back(std::move(look));
       out.worlds += static_cast<int>(kind.worlds);
       out.bodies += static_cast<std::int64_t>(kind.worlds) * kind.plan->bodies();
@@ -126,85 +131,22 @@ class RunWriter {
     return out;
   }
 
-  // The box in which bodies are most of the time, with what is fixed near it.
-  Room room_of(const KindPart& kind, const std::vector<double>& radii) const {
-    const auto width = static_cast<std::size_t>(components(Field::position, all_.space()));
-    const Scene& scene = kind.plan->scene();
-    std::vector<double> along[3];
+  // Where bodies of a kind are, at some moments of the recording.
+  std::vector<double> some_positions(const KindPart& kind) const {
+    std::vector<double> out;
     const std::int64_t stride =
         std::max<std::int64_t>(1, static_cast<std::int64_t>(samples_.size()) / kRoomFrames);
     for (std::size_t i = 0; i < samples_.size(); i += static_cast<std::size_t>(stride)) {
       const std::vector<double> x = read(Field::position, kind, samples_[i]);
-      for (std::size_t n = 0; n < x.size(); ++n) {
-        if (std::abs(x[n]) < 1e9) along[n % width].push_back(x[n]);
-      }
+      out.insert(out.end(), x.begin(), x.end());
     }
-    double radius = 0;
-    for (int row = 0; row < kind.plan->bodies(); ++row) {
-      const int body = kind.plan->body_in_row(row).index();
-      radius = std::max(radius, radii[static_cast<std::size_t>(body)]);
-    }
-    Room room;
-    room.low.setZero(), room.high.setZero();
-    for (std::size_t c = 0; c < width; ++c) {
-      std::vector<double>& values = along[c];
-      if (values.empty()) continue;
-      const auto last = static_cast<double>(values.size() - 1);
-      const auto quantile = [&](double q) {
-        const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::lround(q * last));
-        std::nth_element(values.begin(), at, values.end());
-        return *at;
-      };
-      const auto axis = static_cast<Eigen::Index>(c);
-      room.low[axis] = quantile(kOutliers), room.high[axis] = quantile(1 - kOutliers);
-    }
-    const double margin = std::max(radius, 1e-3);
-    room.low.array() -= margin, room.high.array() += margin;
-    const Room fixed = fixed_room(scene);
-    const double extent = (room.high - room.low).maxCoeff();
-    if (!fixed.empty()) {
-      room.low = room.low.cwiseMin(fixed.low.cwiseMax((room.low.array() - 2 * extent).matrix()));
-      room.high =
-          room.high.cwiseMax(fixed.high.cwiseMin((room.high.array() + 2 * extent).matrix()));
-    }
-    for (const Body& body : scene.bodies) add_ground(body, extent, room);
-    const Vec3 more = Vec3::Constant(0.01 * extent);
-    room.low -= more, room.high += more;
-    return room;
-  }
-
-  // Of planes, the feet of the corners of the room, where they are near.
-  static void add_ground(const Body& body, double extent, Room& room) {
-    for (const Shape& shape : body.shapes) {
-      Vec3 n;
-      double offset;
-      if (const auto* plane = std::get_if<Plane>(&shape.geometry)) {
-        n = plane->normal, offset = plane->offset;
-      } else if (const auto* half = std::get_if<HalfPlane>(&shape.geometry)) {
-        n = {half->normal.x(), half->normal.y(), 0}, offset = half->offset;
-      } else {
-        continue;
-      }
-      const Quat turn = body.rotation.normalized();
-      n = turn * (shape.rotation.normalized() * n);
-      offset += n.dot(turn * shape.position + body.position);
-      const Room was = room;
-      for (int i = 0; i < 8; ++i) {
-        const Vec3 corner(i & 1 ? was.high.x() : was.low.x(), i & 2 ? was.high.y() : was.low.y(),
-                          i & 4 ? was.high.z() : was.low.z());
-        const double above = n.dot(corner) - offset;
-        if (above > 0 && above < extent / 2) room.add(corner - above * n);
-      }
-    }
+    return out;
   }
 
   Json look_of_kind(KindPart& kind, Meshes& meshes) {
-    const Scene& scene = kind.plan->scene();
-    kind.radii = radii_of(scene, 0);
-    double largest = 0;
-    for (const double r : kind.radii) largest = std::max(largest, r);
-    for (double& r : kind.radii) r = r > 0 ? r : largest > 0 ? largest : 1;
-    Json out = look_of(*kind.plan, kind.radii, room_of(kind, kind.radii), meshes);
+    kind.radii = drawn_radii(kind.plan->scene());
+    Json out = look_of(*kind.plan, kind.radii,
+                       room_of(*kind.plan, kind.radii, some_positions(kind)), meshes);
     std::vector<double> steps;
     for (int row = 0; row < kind.plan->bodies(); ++row) {
       const auto body = static_cast<std::size_t>(kind.plan->body_in_row(row).index());
@@ -218,40 +160,11 @@ class RunWriter {
   }
 
   // Sizes of shapes that vary from world to world: [{shape, [world] size x y z, stretch x y z}].
-  Json sizes_of(const KindPart& kind, const Batch& start, Meshes& meshes) const {
+  Json sizes_of_kind(const KindPart& kind, const Batch& start, Meshes& meshes) const {
     Json out = Json::array();
-    const Scene& scene = kind.plan->scene();
-    const bool vary =
-        std::any_of(scene.variations.begin(), scene.variations.end(),
-                    [](const Variation& v) { return v.parameter == Parameter::size; });
-    if (!vary) return out;
-    std::vector<std::vector<float>> found;
-    std::vector<bool> differs;
-    std::vector<const Shape*> shapes;
-    for (const Body& body : scene.bodies) {
-      for (const Shape& shape : body.shapes) shapes.push_back(&shape);
-    }
-    found.resize(shapes.size()), differs.resize(shapes.size());
-    std::vector<double> sizes(3 * shapes.size());
-    for (std::size_t w = 0; w < kind.worlds; ++w) {
-      start.read(Parameter::size, all_.first_world[kind.index] + static_cast<int>(w), sizes);
-      for (std::size_t s = 0; s < shapes.size(); ++s) {
-        const Vec3 size(sizes[3 * s], sizes[3 * s + 1], sizes[3 * s + 2]);
-        if (!(size.x() > 0)) continue;
-        const Meshes::Use use = meshes.use(shapes[s]->geometry, size);
-        const Meshes::Use plain = meshes.use(shapes[s]->geometry);
-        // Sizes are kept in the number type of the batch.
-        const double near = 1e-5 * plain.size.norm();
-        if (!use.size.isApprox(plain.size, 1e-5) || (use.stretch - plain.stretch).norm() > near) {
-          differs[s] = true;
-        }
-        for (const Vec3& v : {use.size, use.stretch}) {
-          for (const double x : v) found[s].push_back(static_cast<float>(x));
-        }
-      }
-    }
-    for (std::size_t s = 0; s < shapes.size(); ++s) {
-      if (differs[s]) out.push_back({{"shape", s}, {"values", numbers_of(found[s])}});
+    for (const VariedSize& one :
+         sizes_of(start, all_.first_world[kind.index], static_cast<int>(kind.worlds), meshes)) {
+      out.push_back({{"shape", one.shape}, {"values", numbers_of(one.values)}});
     }
     return out;
   }

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "manyworlds/page.hpp"
-#include "src/record/json.hpp"
+#include "src/page/json.hpp"
 
 namespace manyworlds::record {
 
 inline constexpr std::size_t kChunkFrames = 32;
 
 struct PageRun {
-  Json head;
+  page::Json head;
   std::vector<std::string> chunks;  // base64 of zlib
   int worlds = 0;
   std::int64_t frames = 0, bodies = 0;

@@ -1,4 +1,4 @@
-#include "src/record/page/look.hpp"
+#include "src/page/look.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,10 @@
 
 #include "manyworlds/query.hpp"
 #include "manyworlds/surface.hpp"
-#include "src/record/page/deflate.hpp"
+#include "src/base/enum_names.hpp"
+#include "src/page/deflate.hpp"
 
-namespace manyworlds::record {
+namespace manyworlds::page {
 namespace {
 
 constexpr int kFine = 32, kCoarse = 12;  // corners of a circle, near and far
@@ -250,4 +251,4 @@ Json look_of(const Plan& plan, const std::vector<double>& radii, const Room& roo
           {"joints", std::move(joints)}};
 }
 
-}  // namespace manyworlds::record
+}  // namespace manyworlds::page

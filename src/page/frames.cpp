@@ -1,11 +1,11 @@
-#include "src/record/page/frames.hpp"
+#include "src/page/frames.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-namespace manyworlds::record {
+namespace manyworlds::page {
 namespace {
 
 // Beyond it linear prediction would overflow.
@@ -114,4 +114,4 @@ void PoseQuantizer::write(ChunkWriter& to) {
   frame_ = 0;
 }
 
-}  // namespace manyworlds::record
+}  // namespace manyworlds::page

@@ -7,9 +7,9 @@
 
 #include "manyworlds/plan.hpp"
 #include "manyworlds/surface.hpp"
-#include "src/record/json.hpp"
+#include "src/page/json.hpp"
 
-namespace manyworlds::record {
+namespace manyworlds::page {
 
 // Meshes of a page, each once. Shapes that are the same but for their size share one.
 class Meshes {
@@ -56,4 +56,4 @@ Json look_of(const Plan& plan, const std::vector<double>& radii, const Room& roo
 // The box around all fixed shapes that have an end.
 Room fixed_room(const Scene& scene);
 
-}  // namespace manyworlds::record
+}  // namespace manyworlds::page

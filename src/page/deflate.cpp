@@ -1,14 +1,13 @@
-#include "src/record/page/deflate.hpp"
+#include "src/page/deflate.hpp"
 
 #include <zlib.h>
 
 #include <algorithm>
 #include <limits>
 #include <new>
+#include <stdexcept>
 
-#include "manyworlds/record.hpp"
-
-namespace manyworlds::record {
+namespace manyworlds::page {
 
 std::vector<std::uint8_t> deflated(std::span<const std::uint8_t> bytes) {
   constexpr int kLevel = 6;  // 9 takes five times as long to save two percent
@@ -17,7 +16,7 @@ std::vector<std::uint8_t> deflated(std::span<const std::uint8_t> bytes) {
   const int result =
       compress2(out.data(), &size, bytes.data(), static_cast<uLong>(bytes.size()), kLevel);
   if (result == Z_MEM_ERROR) throw std::bad_alloc();
-  if (result != Z_OK) throw RecordError("page: zlib failed with " + std::to_string(result));
+  if (result != Z_OK) throw std::runtime_error("page: zlib failed with " + std::to_string(result));
   out.resize(size);
   return out;
 }
@@ -37,4 +36,4 @@ std::string base64(std::span<const std::uint8_t> bytes) {
   return out;
 }
 
-}  // namespace manyworlds::record
+}  // namespace manyworlds::page

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace manyworlds::record {
+namespace manyworlds::page {
 
 inline constexpr double kPositionSteps = 512;     // to the radius of a body
 inline constexpr double kQuaternionSteps = 1024;  // to 1
@@ -68,4 +68,4 @@ class PoseQuantizer {
   std::vector<std::int32_t> before_;  // [channel][item]
 };
 
-}  // namespace manyworlds::record
+}  // namespace manyworlds::page
