@@ -38,6 +38,9 @@ endif()
 if(TARGET manyworlds_record)
   mw_install_library(manyworlds_record manyworlds-record)
 endif()
+if(TARGET manyworlds_live)
+  mw_install_library(manyworlds_live manyworlds-live)
+endif()
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/licenses/manyworlds")
 
@@ -50,7 +53,7 @@ install(FILES "${PROJECT_BINARY_DIR}/manyworlds-config.cmake"
               "${PROJECT_BINARY_DIR}/manyworlds-config-version.cmake"
         DESTINATION "${mw_package_dir}")
 
-# pkg-config: manyworlds, manyworlds-mjcf, manyworlds-record. An archive's own needs are its user's.
+# pkg-config: manyworlds, manyworlds-live, manyworlds-mjcf, manyworlds-record. An archive's own needs are its user's.
 file(RELATIVE_PATH mw_pc_up "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" mw_pc_up "${mw_pc_up}")
 # mw_pkg_config(NAME DESCRIPTION REQUIRES PRIVATE_REQUIRES PRIVATE_LIBS): lib<NAME with _ for ->.
@@ -78,4 +81,8 @@ endif()
 if(TARGET manyworlds_record)
   mw_pkg_config(manyworlds-record "Recordings for manyworlds" "manyworlds = ${PROJECT_VERSION}"
                 "hdf5, zlib" "")
+endif()
+if(TARGET manyworlds_live)
+  mw_pkg_config(manyworlds-live "Live pages for manyworlds" "manyworlds = ${PROJECT_VERSION}" "zlib"
+                "-pthread")
 endif()

@@ -39,7 +39,7 @@ function(mw_test_pkg_config package source)
   endif()
 endfunction()
 mw_test_pkg_config(manyworlds main)
-foreach(component IN ITEMS mjcf record)
+foreach(component IN ITEMS live mjcf record)
   if(TARGET manyworlds_${component})
     mw_install_test(embed_${component} TestEmbed -D SOURCE_DIR=${mw_examples}/embed
                     -D COMPONENTS=${component})

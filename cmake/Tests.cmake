@@ -54,7 +54,9 @@ set(mw_mjcf_test_sources ${mw_test_sources})
 list(FILTER mw_mjcf_test_sources INCLUDE REGEX "/tests/mjcf/")
 set(mw_record_test_sources ${mw_test_sources})
 list(FILTER mw_record_test_sources INCLUDE REGEX "/tests/record/")
-list(FILTER mw_test_sources EXCLUDE REGEX "/tests/(mjcf|record)/")
+set(mw_live_test_sources ${mw_test_sources})
+list(FILTER mw_live_test_sources INCLUDE REGEX "/tests/live/")
+list(FILTER mw_test_sources EXCLUDE REGEX "/tests/(live|mjcf|record)/")
 if(MW_TEST_SOURCES)
   list(FILTER mw_test_sources INCLUDE REGEX "/(${MW_TEST_SOURCES})_test")
 endif()
@@ -67,6 +69,11 @@ if(MW_RECORD)
   mw_test_program(manyworlds_record_tests ${mw_record_test_sources}
     "${PROJECT_SOURCE_DIR}/tools/report/report_files.cpp")
   target_link_libraries(manyworlds_record_tests PRIVATE manyworlds_record HDF5::HDF5 ZLIB::ZLIB)
+endif()
+
+if(MW_LIVE)
+  mw_test_program(manyworlds_live_tests ${mw_live_test_sources})
+  target_link_libraries(manyworlds_live_tests PRIVATE manyworlds_live)
 endif()
 
 # The fast tests with each narrower instruction set forced. First, since they take longest.

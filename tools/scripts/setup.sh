@@ -16,6 +16,7 @@ packages=(
 )
 mjcf_packages=(libtinyxml2-dev python3-pip)
 record_packages=(libhdf5-dev zlib1g-dev)
+live_packages=(libboost-dev zlib1g-dev)
 # Any Node that is there will do: one from elsewhere conflicts with Debian's npm.
 viewer_packages=()
 [[ -n $(type -P node) && -n $(type -P npm) ]] || viewer_packages=(nodejs npm)
@@ -125,7 +126,7 @@ add_parts() {
       parts+=("$part")
     fi
   done
-  for part in mjcf record python viewer; do
+  for part in mjcf record live python viewer; do
     local name=MW_${part^^}
     case ${!name-} in
       "") ;;
@@ -149,7 +150,7 @@ configure() {
   done
   ((${#kernels[@]} < ${#all_kernels[@]})) || kernels=()
   arguments+=(-D "MW_KERNELS=$(IFS=';'; echo "${kernels[*]}")")
-  arguments+=(-D "MW_MJCF=$(on_off mjcf)" -D "MW_RECORD=$(on_off record)")
+  arguments+=(-D "MW_MJCF=$(on_off mjcf)" -D "MW_RECORD=$(on_off record)" -D "MW_LIVE=$(on_off live)")
   arguments+=(-D "MW_REPORT=$(on_off report)" -D "MW_PYTHON=$(on_off python)")
   arguments+=(-D "MW_VIEWER=$(on_off viewer)")
   arguments+=(-D "MW_TESTS=$(on_off tests)" -D "MW_BENCH=$(on_off tests)")
@@ -182,9 +183,9 @@ took() {
 }
 
 # build TARGET PART...: everything up to an up-to-date TARGET in build/release, with these parts of
-# it: kernels (all sets) or single ones of $all_kernels, mjcf, record, report, tests, python, viewer. Parts
+# it: kernels (all sets) or single ones of $all_kernels, mjcf, record, live, report, tests, python, viewer. Parts
 # share their objects with what was built before, so a build that grows compiles what is new. Two at a
-# time wait for one another. MW_MJCF, MW_RECORD, MW_PYTHON and MW_VIEWER in the environment (ON or OFF) overrule,
+# time wait for one another. MW_MJCF, MW_RECORD, MW_LIVE, MW_PYTHON and MW_VIEWER in the environment (ON or OFF) overrule,
 # MW_ISAS="scalar;avx2" leaves out the kernels of other instruction sets, BUILD_SHARED_LIBS=ON links anew.
 build() {
   local target=$1 parts=() part since
@@ -194,7 +195,7 @@ build() {
   flock 9
   add_parts "$@"
   since=$(now)
-  for part in mjcf record tests python viewer; do
+  for part in mjcf record live tests python viewer; do
     local -n more=${part}_packages
     if has "$part"; then packages+=("${more[@]}"); fi
   done
