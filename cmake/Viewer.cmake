@@ -65,4 +65,11 @@ if(MW_TESTS AND TARGET manyworlds_cli AND MW_RECORD AND NOT MW_SANITIZE)
     "PLAYWRIGHT=${mw_viewer_dir}/node_modules/playwright-core/index.mjs")
   set_tests_properties(viewer_browser PROPERTIES TIMEOUT 900 COST 800
     ENVIRONMENT "${mw_viewer_environment}")
+  if(MW_LIVE)
+    add_test(NAME viewer_live
+      COMMAND "${MW_NODE}" --test-reporter=spec --test "${PROJECT_SOURCE_DIR}/viewer/test/live.test.mjs"
+      WORKING_DIRECTORY "${mw_viewer_dir}")
+    set_tests_properties(viewer_live PROPERTIES TIMEOUT 300 COST 700
+      ENVIRONMENT "${mw_viewer_environment}")
+  endif()
 endif()

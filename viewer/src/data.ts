@@ -1,8 +1,7 @@
 // What the page shows: heads of recordings, and frames of them.
 //
-// A FrameSource is all that the rest of the page knows of where frames come from. Recordings are
-// inside the page (recorded.ts); a socket that delivers frames of a running batch would be another
-// one, whose `frames` grows.
+// A FrameSource is all that most of the page knows of where frames come from: recordings inside the page
+// (recorded.ts), or a socket that delivers frames of a running batch (live.ts), whose `frames` grows.
 
 export interface MeshLevel {
   points: Float32Array;
@@ -64,6 +63,7 @@ export interface Kind {
   names: number[];
   orientation: 0 | 2 | 4;
   sizes: { shape: number; values: Float32Array }[]; // [world] size x y z, stretch x y z
+  controls?: { name: string; low: number; high: number; value: number }[]; // of a live page
 }
 
 export interface WorldNumber {

@@ -1,15 +1,19 @@
 // The page: what its buttons, keys and clicks do, and the loop that draws.
 import * as THREE from 'three';
 
+import { Commands } from './commands';
 import type { FrameSource } from './data';
 import { element } from './elements';
+import { Grab } from './grab';
+import { LiveSource } from './live';
+import { LiveClock } from './live_clock';
 import { Overlays, type Chosen } from './overlays';
 import { Panel } from './panel';
 import { pickBody, pickCell } from './pick';
 import { Probe } from './probe';
 import { openRuns } from './recorded';
 import { Stage, THEMES } from './stage';
-import { Timeline } from './timeline';
+import { Timeline, type Clock } from './timeline';
 import { Worlds, momentOf } from './worlds';
 
 const TABLE_MS = 120; // from one writing of the table to the next
@@ -22,7 +26,9 @@ export class App {
   worlds!: Worlds;
   overlays!: Overlays;
   private panel!: Panel;
-  readonly timeline: Timeline;
+  readonly timeline: Clock;
+  readonly grab: Grab | null = null; // of a live page, as the next
+  private readonly commands: Commands | null = null;
   chosen: Chosen = { cell: -1, row: -1 };
   following = false;
   private readonly lastPlace = new THREE.Vector3();
@@ -33,12 +39,19 @@ export class App {
   private theme: 'light' | 'dark' = 'light';
   readonly script: number[] = []; // ms, of the last frames
 
-  constructor(private readonly title: string, readonly sources: FrameSource[]) {
+  constructor(private readonly title: string, readonly sources: FrameSource[], readonly live: LiveSource | null) {
     const planar = sources[0].run.space === 'planar';
-    this.timeline = new Timeline(sources, () => { this.dirty = true; });
-    this.stage = new Stage(element<HTMLCanvasElement>('view'), planar);
+    const canvas = element<HTMLCanvasElement>('view');
+    this.timeline = live !== null ? new LiveClock(live) : new Timeline(sources, () => { this.dirty = true; });
+    if (live !== null) this.grab = new Grab(this, live, canvas); // before the camera hears of a pointer
+    this.stage = new Stage(canvas, planar);
     this.stage.controls.addEventListener('change', () => { this.dirty = true; });
     this.setUp(planar);
+    if (live !== null) {
+      this.commands = new Commands(this, live);
+      live.changed = () => { this.dirty = true; };
+      live.resized = () => this.build();
+    }
     this.setTheme(window.matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
   }
 
@@ -228,6 +241,7 @@ export class App {
       t: () => toggle('trails'),
       w: () => toggle('wireframe'),
       d: () => toggle('dark'),
+      r: () => this.commands?.reset(),
       o: () => togglePanel(element('panel').classList.contains('closed')),
     };
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -302,6 +316,8 @@ export class App {
     if (this.stage.flying) this.dirty = true;
     if (!this.dirty) return;
     this.dirty = !this.draw(now);
+    this.commands?.update();
+    this.live?.ask();
     this.script.push(performance.now() - began);
     if (this.script.length > 240) this.script.shift();
   }
@@ -320,6 +336,7 @@ export class App {
     this.stage.advance(now);
     this.stage.camera.updateMatrixWorld();
     this.worlds.write(this.stage.camera, this.stage.pixelsPerMetre);
+    this.overlays.pull = this.grab?.line() ?? null;
     this.overlays.update(this.chosen);
     const { layout } = this.worlds;
     this.stage.render(Math.max(layout.width, layout.depth),
@@ -345,8 +362,9 @@ declare global {
 }
 
 async function main(): Promise<void> {
-  const { title, sources } = await openRuns(document);
-  const app = new App(title, sources);
+  const live = document.getElementById('mw-live') !== null ? await LiveSource.open() : null;
+  const { title, sources } = live !== null ? { title: live.run.title, sources: [live] } : await openRuns(document);
+  const app = new App(title, sources, live);
   await app.begin();
   window.manyworlds = new Probe(app);
 }

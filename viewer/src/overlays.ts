@@ -46,6 +46,7 @@ export class Overlays {
   trails = false;
   joints = false;
   centers = false;
+  pull: { from: THREE.Vector3; to: THREE.Vector3 } | null = null; // the spring of a drag
   private readonly hidden: Lines; // by what is before them
   private readonly above: Lines;
 
@@ -66,6 +67,7 @@ export class Overlays {
       if (this.centers) this.addCenters(chosen.cell);
       if (chosen.row >= 0) this.addFrame(chosen);
     }
+    if (this.pull !== null) this.above.add(this.pull.from, this.pull.to, linear('#e02b2b'));
     this.hidden.finish();
     this.above.finish();
   }
@@ -85,7 +87,7 @@ export class Overlays {
       for (let frame = now; frame >= Math.max(0, now - TRAIL_FRAMES); --frame) {
         const age = source.time(now) - source.time(frame);
         if (age > TRAIL_SECONDS || !source.ready(frame)) break;
-        source.positionAt(frame, cell.kind, cell.world * kind.rows + row, at);
+        if (!source.positionAt(frame, cell.kind, cell.world * kind.rows + row, at)) break;
         to.set(at[0] + cell.x, at[1] + cell.y, this.worlds.planar ? 0 : at[2]);
         this.hidden.add(from, to, color, 1 - age / TRAIL_SECONDS);
         from.copy(to);

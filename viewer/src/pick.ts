@@ -3,10 +3,16 @@ import * as THREE from 'three';
 
 import type { Worlds } from './worlds';
 
+export interface Hit {
+  cell: number;
+  row: number;
+  point: THREE.Vector3; // m, as drawn
+}
+
 // The body under a ray: exact, triangle by triangle, of shapes whose spheres it meets.
-export function pickBody(worlds: Worlds, ray: THREE.Ray): { cell: number; row: number } | null {
+export function pickBody(worlds: Worlds, ray: THREE.Ray): Hit | null {
   let best = Infinity;
-  let found: { cell: number; row: number } | null = null;
+  let found: Hit | null = null;
   const q = new THREE.Quaternion();
   const center = new THREE.Vector3();
   const local = new THREE.Ray();
@@ -42,10 +48,11 @@ export function pickBody(worlds: Worlds, ray: THREE.Ray): { cell: number; row: n
           }
         }
         if (local.intersectTriangle(abc[0], abc[1], abc[2], false, hit) === null) continue;
-        const far = hit.distanceTo(local.origin) - (worlds.planar ? 0.01 * d.row : 0);
+        const away = hit.distanceTo(local.origin);
+        const far = away - (worlds.planar ? 0.01 * d.row : 0);
         if (far < best) {
           best = far;
-          found = { cell: n, row: d.row };
+          found = { cell: n, row: d.row, point: ray.at(away, new THREE.Vector3()) };
         }
       }
     }

@@ -29,6 +29,7 @@ export class Probe {
       scriptMs: median(this.app.script),
       waiting: this.app.dirty,
       flying: this.app.stage.flying,
+      live: this.app.live === null ? null : { ...this.app.live.state, dragging: this.app.grab?.dragging ?? false },
     };
   }
 

@@ -39,6 +39,23 @@ export async function inflate(bytes: Uint8Array): Promise<Uint8Array> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
+export function floats(text: unknown): Float32Array {
+  return new Float32Array(bytesOf(text as string).buffer);
+}
+
+// Makes arrays of what meshes have as text.
+export function openMeshes(run: Run): void {
+  for (const mesh of run.meshes) {
+    mesh.levels = mesh.levels.map((level): MeshLevel => ({
+      points: floats(level.points),
+      normals: floats(level.normals),
+      triangles: new Uint32Array(bytesOf(level.triangles as unknown as string).buffer),
+      lines: floats(level.lines),
+      marks: floats(level.marks),
+    }));
+  }
+}
+
 // One channel: whole numbers of `items` over `frames`, from bytes that begin at `at`.
 function decodeChannel(
   bytes: Uint8Array, at: number, width: number, items: number, frames: number): Int32Array {
@@ -89,16 +106,7 @@ export class RecordedSource implements FrameSource {
   // Makes arrays of what a head has as text.
   static async open(head: unknown, textOf: (chunk: number) => string): Promise<RecordedSource> {
     const run = head as Head;
-    const floats = (text: unknown) => new Float32Array(bytesOf(text as string).buffer);
-    for (const mesh of run.meshes) {
-      mesh.levels = mesh.levels.map((level): MeshLevel => ({
-        points: floats(level.points),
-        normals: floats(level.normals),
-        triangles: new Uint32Array(bytesOf(level.triangles as unknown as string).buffer),
-        lines: floats(level.lines),
-        marks: floats(level.marks),
-      }));
-    }
+    openMeshes(run);
     const packed = async (text: unknown) =>
       new Float32Array((await inflate(bytesOf(text as string))).buffer);
     for (const kind of run.kinds) {

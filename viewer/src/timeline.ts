@@ -4,7 +4,21 @@ import { element } from './elements';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 
-export class Timeline {
+export interface Clock {
+  readonly end: number; // s
+  time: number;
+  readonly playing: boolean;
+  readonly speed: number;
+  play(on: boolean): void;
+  seek(time: number): void;
+  step(frames: number): void;
+  jump(seconds: number): void;
+  faster(by: number): void;
+  advance(now: number): void;
+  tell(): void;
+}
+
+export class Timeline implements Clock {
   readonly end: number; // s
   time = 0;
   playing = false;

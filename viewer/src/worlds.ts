@@ -16,6 +16,7 @@ export class Worlds {
   readonly coloring: Coloring;
   selected = -1; // cell
   drawn = 0; // shapes of moving bodies that were written last
+  readonly seen: number[] = []; // cells that the camera saw then
   private readonly drawables: Drawables;
   private readonly frustum = new THREE.Frustum();
   private readonly sphere = new THREE.Sphere();
@@ -99,6 +100,7 @@ export class Worlds {
   write(camera: THREE.Camera, pixels: number): void {
     for (const batch of this.drawables.batches) batch.count = 0;
     this.drawn = 0;
+    this.seen.length = 0;
     this.coloring.findNumberEnds(this.shown.frame);
     this.frustum.setFromProjectionMatrix(new THREE.Matrix4().multiplyMatrices(
       camera.projectionMatrix, camera.matrixWorldInverse));
@@ -112,6 +114,7 @@ export class Worlds {
       this.sphere.center.set(cell.x + middle[0], cell.y + middle[1], middle[2]);
       this.sphere.radius = 1.3 * reach;
       if (!this.frustum.intersectsSphere(this.sphere)) continue;
+      this.seen.push(n);
       const distance = this.planar ? 0 : Math.max(1e-6, this.sphere.center.distanceTo(eye) - reach);
       this.writeCell(cell, n, this.planar ? pixels : pixels / distance);
     }
