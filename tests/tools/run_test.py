@@ -92,7 +92,7 @@ class Run(unittest.TestCase):
             outcome = self.checkout(flags).run()
             self.assertEqual(outcome.returncode, 0, outcome.stderr)
             self.assertEqual(outcome.configured["MW_KERNELS"], first)
-            for part in ("MJCF", "RECORD", "REPORT", "TESTS", "BENCH", "PYTHON"):
+            for part in ("MJCF", "RECORD", "LIVE", "REPORT", "TESTS", "BENCH", "PYTHON"):
                 self.assertEqual(outcome.configured["MW_" + part], "OFF", part)
             self.assertEqual(outcome.built, ["manyworlds_cli"])
             self.assertEqual(outcome.stdout, "program: run bin-boxes --worlds 4096 --seconds 5\n")
@@ -106,7 +106,8 @@ class Run(unittest.TestCase):
             (("replay", "a.h5"), {"MW_RECORD": "ON"}),
             (("view", "runs/a.h5", "--out", "pages/a.html", "--png", "x/a.png"),
              {"MW_RECORD": "ON", "MW_MJCF": "OFF", "MW_VIEWER": "OFF"}),
-            (("view", "robot.xml"), {"MW_RECORD": "ON", "MW_MJCF": "ON"}),
+            (("view", "robot.xml"), {"MW_RECORD": "ON", "MW_MJCF": "ON", "MW_LIVE": "OFF"}),
+            (("view", "ball3d", "--live"), {"MW_LIVE": "ON", "MW_MJCF": "OFF"}),
             (("run", "--json", "scenes/mjcf/box_pile.xml"), {"MW_MJCF": "ON", "MW_RECORD": "OFF"}),
             (("plan", "folder/model"), {"MW_MJCF": "ON"}),
             (("model", "robot.xml"), {"MW_MJCF": "ON"}),

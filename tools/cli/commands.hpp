@@ -16,7 +16,8 @@ int verify_command(const VerifyOptions& options);
 int compare_command(const CompareOptions& options);
 int soak_command(const JobOptions& options);
 int replay_command(const ReplayArguments& arguments);
-int view_command(const ViewArguments& arguments);
+int view_command(const ViewArguments& arguments);  // with --live, live_command
+int live_command(const ViewArguments& arguments);
 int report_accuracy_command(const ReportOptions& options);
 int report_stability_command(const ReportOptions& options);
 int report_plan_command(const ReportOptions& options);

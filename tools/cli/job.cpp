@@ -41,7 +41,8 @@ KeyframeId find_keyframe(const Batch& batch, const JobOptions& options) {
 
 }  // namespace
 
-Job prepare(const JobOptions& options, std::vector<std::string>* warnings) {
+Job prepare(const JobOptions& options, std::vector<std::string>* warnings,
+            const std::function<void(Scene&)>& change) {
   Scene scene = load_scene(options.scene, options.mjcf, warnings);
   if (options.dt) scene.options.dt = *options.dt;
   if (options.substeps) scene.options.substeps = *options.substeps;
@@ -53,6 +54,7 @@ Job prepare(const JobOptions& options, std::vector<std::string>* warnings) {
       throw InputError("--set: " + wrong);
     }
   }
+  if (change) change(scene);
   PlanOptions plan_options;
   plan_options.broad_phase = options.broad_phase;
   plan_options.keep = options.keep;

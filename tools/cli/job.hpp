@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,10 @@ struct Job {
   int steps = 0;  // --steps, or what --seconds comes to
 };
 
-// Loads (scene_source.hpp), applies --dt and the like, compiles. Throws InputError and SceneError.
-Job prepare(const JobOptions& options, std::vector<std::string>* warnings = nullptr);
+// Loads (scene_source.hpp), applies --dt and the like and then `change`, compiles. Throws
+// InputError and SceneError.
+Job prepare(const JobOptions& options, std::vector<std::string>* warnings = nullptr,
+            const std::function<void(Scene&)>& change = {});
 
 // A batch of `worlds` whose world i draws from seed + i. Throws InputError when the machine does
 // not have the memory, std::invalid_argument from the library.

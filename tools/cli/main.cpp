@@ -267,6 +267,21 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       ->check(CLI::PositiveNumber)
       ->type_name("S")
       ->capture_default_str();
+  CLI::Option* live = command->add_flag(
+      "--live", view.live, "step a scene and serve its page on this machine until Ctrl-C");
+  for (const char* other : {"--out", "--open", "--png", "--at", "--every", "--fps", "--seconds"}) {
+    live->excludes(command->get_option(other));
+  }
+  command->add_option("--port", view.port, "of --live (default: any that is free)")
+      ->check(CLI::Range(1, 65535))
+      ->needs(live)
+      ->type_name("N");
+  command->add_option("--speed", view.speed, "of --live: simulated per real second, or max")
+      ->needs(live)
+      ->type_name("X")
+      ->capture_default_str();
+  command->add_flag("--paused", view.paused, "--live waits for the page's play button")
+      ->needs(live);
   add_mjcf_options(*command, view.job);
   add_plan_options(*command, view.job);
   add_random_controls(*command, view.job);
@@ -281,9 +296,12 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds view bin-boxes --png picture.png --at 1.2 --size 1200x680\n"
       "  manyworlds view before.h5 after.h5 --out both.html\n"
       "  manyworlds view humanoid.xml --random-controls --worlds 16 --seconds 5\n"
+      "  manyworlds view bin-boxes --live --worlds 64\n"
       "\n"
       "The page is one file that needs nothing else: no server, no network. Scenes are recorded\n"
-      "first, as many worlds as make a page of some 10 MB.");
+      "first, as many worlds as make a page of some 10 MB. With --live the page shows worlds "
+      "while\n"
+      "they step, and drags, pushes, resets and pauses them.");
   command->callback([&] { code = view_command(all.view); });
 }
 

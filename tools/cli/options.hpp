@@ -117,7 +117,11 @@ struct ViewArguments {
   std::string png;           // file; empty: no picture
   std::optional<double> at;  // s, of the picture; default: the end
   std::string size = "1280x720";
-  JobOptions job;  // of scenes
+  bool live = false;        // served while it steps (live_command.hpp)
+  int port = 0;             // of 127.0.0.1; 0: any that is free
+  std::string speed = "1";  // simulated per real second, or "max"
+  bool paused = false;      // at first
+  JobOptions job;           // of scenes
 };
 
 // Each adds one group of options to a subcommand; values that fail their check make CLI11's parse

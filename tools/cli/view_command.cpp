@@ -113,6 +113,7 @@ fs::path page_in_temporary_folder(const std::string& source) {
 }  // namespace
 
 int view_command(const ViewArguments& arguments) {
+  if (arguments.live) return live_command(arguments);
   const fs::path empty = empty_page();
   const PictureSize size = parse_size(arguments.size);
   const auto before = std::chrono::steady_clock::now();
@@ -171,7 +172,10 @@ int view_command(const ViewArguments& arguments) {
 
 #else
 
-int view_command(const ViewArguments&) { throw not_built("view", "recordings", "MW_RECORD=ON"); }
+int view_command(const ViewArguments& arguments) {
+  if (arguments.live) return live_command(arguments);
+  throw not_built("view", "recordings", "MW_RECORD=ON");
+}
 
 #endif
 

@@ -48,6 +48,7 @@ HEADERS = """#include <cstdio>
 #include <vector>
 
 #include <manyworlds/manyworlds.hpp>
+#include <manyworlds/live.hpp>
 #include <manyworlds/page.hpp>
 #include <manyworlds/query.hpp>
 #include <manyworlds/record.hpp>
