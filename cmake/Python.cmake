@@ -17,6 +17,14 @@ foreach(file IN LISTS mw_python_files)
        SYMBOLIC)
 endforeach()
 
+# Those of files that are not there any more.
+file(GLOB_RECURSE mw_python_links "${mw_python_build}/manyworlds/*.py" "${mw_python_build}/manyworlds/*.pyi")
+foreach(link IN LISTS mw_python_links)
+  if(IS_SYMLINK "${link}" AND NOT EXISTS "${link}")
+    file(REMOVE "${link}")
+  endif()
+endforeach()
+
 if(TARGET mw_viewer)
   file(CREATE_LINK "${mw_viewer_page}" "${mw_python_build}/manyworlds/viewer.html" SYMBOLIC)
 endif()

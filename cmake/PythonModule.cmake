@@ -1,5 +1,5 @@
 # The extension modules of the package manyworlds, for the ordinary build tree (Python.cmake) and for
-# wheels (python/CMakeLists.txt): _core, and where their libraries are built, _record and _mjcf, which
+# wheels (python/CMakeLists.txt): _core, and where their libraries are built, _live, _record and _mjcf, which
 # alone need HDF5 with zlib and MuJoCo. Wants the target manyworlds::manyworlds.
 
 find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
@@ -73,6 +73,11 @@ if(TARGET manyworlds::record)
   mw_python_module(_record "${mw_python_dir}/src/record/module.cpp" ${mw_python_converters})
   mw_python_links(manyworlds_python_record manyworlds::record)
   target_link_libraries(manyworlds_python_record PRIVATE HDF5::HDF5 ZLIB::ZLIB)
+endif()
+if(TARGET manyworlds::live)
+  mw_python_module(_live "${mw_python_dir}/src/live/module.cpp" ${mw_python_converters})
+  mw_python_links(manyworlds_python_live manyworlds::live)
+  target_link_libraries(manyworlds_python_live PRIVATE ZLIB::ZLIB)
 endif()
 if(TARGET manyworlds::mjcf)
   mw_python_module(_mjcf "${mw_python_dir}/src/mjcf/module.cpp" ${mw_python_converters})

@@ -22,6 +22,7 @@ from .fields import Field
 from .ids import BodyId, ControlId, JointId, KeyframeId, ShapeId
 from .joints import *  # noqa: F403
 from .kinds import Kind
+from .live import LiveView, view
 from .options import ContactOptions, JointOptions, Medium, Options, SleepOptions, SolverOptions
 from .page import Page, PageReport, show, write_page
 from .plan import Plan
@@ -49,7 +50,7 @@ from .scene import (
 from .shapes import *  # noqa: F403
 from .surfaces import *  # noqa: F403
 from .tasks import Action, Info, Observation, Reward, Task, TaskError
-from .view import View
+from .state_view import View
 
 from . import pickling as _pickling  # of the values above; isort: skip
 
@@ -82,6 +83,7 @@ __all__ = [
     "KeyframeId",
     "Kind",
     "MassProperties",
+    "LiveView",
     "Medium",
     "Observation",
     "Options",
@@ -118,6 +120,7 @@ __all__ = [
     "show",
     "tasks",
     "vary",
+    "view",
     "write_page",
 ]
 __all__ += joints.__all__

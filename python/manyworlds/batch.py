@@ -58,6 +58,8 @@ class Batch(Fields, Inputs, Results, InMemory):
     so do rollouts.
     """
 
+    _views: tuple[Any, ...] = ()  # LiveViews that look on
+
     _instead = "pickle its scene or plan, the arguments that it was made with, and save()"
 
     def __init__(
@@ -202,6 +204,8 @@ class Batch(Fields, Inputs, Results, InMemory):
 
     def close(self) -> None:
         """Lets go of the worlds; every later use raises ValueError. Twice is once."""
+        for view in self._views:
+            view.close()
         self._held.close()
 
     def __enter__(self) -> Batch:
@@ -243,7 +247,18 @@ class Batch(Fields, Inputs, Results, InMemory):
         mask = None if ids is None else arrays.mask(ids, self._worlds)
         if controls is not None:
             self.set_controls(controls, ids)
+        self._before_step(n)
         self._held.step(n, mask)
+        self._after_step()
+
+    # What pages asked for, before a call of so many steps, and what they see after it.
+    def _before_step(self, steps: int) -> None:
+        for view in self._views:
+            view._core.apply(steps)
+
+    def _after_step(self) -> None:
+        for view in self._views:
+            view._core.show()
 
     def step_to(self, clock: float, max_steps: int = 8) -> int:
         """Takes whole steps until the simulated time reaches ``clock``, in s, and returns how many.
@@ -256,9 +271,11 @@ class Batch(Fields, Inputs, Results, InMemory):
             raise TypeError(f"clock is of type {type(clock).__name__}; expected a number of s")
         if not np.isfinite(clock):
             raise ValueError(f"clock is {clock}, must be finite")
-        return self._held.step_to(
-            float(clock), arrays.integer(max_steps, "max_steps", 0, MAX_STEPS)
-        )
+        max_steps = arrays.integer(max_steps, "max_steps", 0, MAX_STEPS)
+        self._before_step(max(max_steps, 1))
+        taken = self._held.step_to(float(clock), max_steps)
+        self._after_step()
+        return taken
 
     def reset(
         self,
@@ -283,12 +300,12 @@ class Batch(Fields, Inputs, Results, InMemory):
             index = int(self._plans[0][0].keyframe(keyframe))
             mask = None if mask_or_ids is None else arrays.mask(mask_or_ids, self._worlds)
             self._held.reset(mask, None, index)
-            return
-        if mask_or_ids is None and seeds is None:
+        elif mask_or_ids is None and seeds is None:
             self._held.reset(None, None, None)
-            return
-        mask = arrays.mask(mask_or_ids, self._worlds)
-        self._held.reset(mask, arrays.seeds(seeds, mask_or_ids, self._worlds), None)
+        else:
+            mask = arrays.mask(mask_or_ids, self._worlds)
+            self._held.reset(mask, arrays.seeds(seeds, mask_or_ids, self._worlds), None)
+        self._after_step()
 
     def rollout(
         self,

@@ -14,6 +14,7 @@ from .arrays import Writable
 from .batch import MAX_THREADS, MAX_WORLDS, Batch
 from .in_memory import InMemory
 from .names import Ids, Isa, Precision, Seeds
+from .own_batch import _OwnBatch
 from .plan import Plan
 from .tasks import Task, TaskError
 
@@ -21,26 +22,6 @@ AutoresetName = Literal["next_step", "same_step", "disabled"]
 Doubles = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Observations = NDArray[Any]  # float32, or the float64 that was asked for
-
-
-class _OwnBatch(Batch):
-    """The batch inside of an environment."""
-
-    def __init__(self, environment: Environment) -> None:
-        held = environment._held.batch()
-        self.plan = environment._plan
-        self._held = held
-        self._worlds = held.worlds
-        self._plans = [(self.plan, held.worlds)]
-        self._kinds = None
-        self._real = np.dtype(np.float32 if held.precision == "f32" else np.float64)
-        # What the task looks at is observed; the extension refuses the rest.
-        self._watched = frozenset(_core.names()["Observer"])
-        self._bodies = self.plan.bodies
-        self._controls = held.controls()
-        self._joints = len(self.plan.scene.joints)
-        self._planar = self.plan.scene.space == "planar"
-        self._find_fields()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -254,6 +235,8 @@ class Environment(InMemory):
         given = self._actions(actions)
         told = (self.infos, self.final_infos) if self.task.infos else (None, None)
         out = observations, rewards, terminated, truncated, reward_terms, final_observations, *told
+        if self._batch is not None:
+            self._batch._before_step(self.task.frame_skip)
         try:
             self._step(given, *out)
         except BaseException:  # whatever a signal's handler raised
@@ -261,6 +244,8 @@ class Environment(InMemory):
                 self._unfilled = out
             raise
         self._last = observations, terminated, truncated
+        if self._batch is not None:
+            self._batch._after_step()
         return observations, rewards, terminated, truncated
 
     def finish_step(self) -> tuple[Observations, Doubles, Flags, Flags]:
@@ -339,6 +324,8 @@ class Environment(InMemory):
         self.truncated[chosen] = False
         self._unfilled = None
         self._last = observations, self.terminated, self.truncated
+        if self._batch is not None:
+            self._batch._after_step()
 
     def copy_world(self, source: int, target: int) -> None:
         """World ``target`` becomes what ``source`` is, with what the task remembers of it."""

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core, arrays, draws
 from .arrays import Writable
 from .names import Ids
-from .view import View
+from .state_view import View
 
 
 @dataclass(frozen=True, slots=True)

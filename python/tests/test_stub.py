@@ -17,7 +17,7 @@ PACKAGE = Path(manyworlds.__file__).parent
 PATTERNS = Path(__file__).parents[1] / "stub_patterns.txt"
 
 
-@pytest.mark.parametrize("name", ["_core", "_record", "_mjcf"])
+@pytest.mark.parametrize("name", ["_core", "_live", "_record", "_mjcf"])
 def test_the_stub_is_up_to_date(tmp_path, name):
     nanobind = pytest.importorskip("nanobind")
     if nanobind.__version__ != "3.1.0":

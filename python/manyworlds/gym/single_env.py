@@ -10,6 +10,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..environment import Environment
 from ..in_memory import InMemory
+from ..live import LiveView, view
 from ..names import Isa, Precision
 from ..tasks import Task
 from . import rendering, spaces
@@ -86,6 +87,10 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
         """The world as it is, (height, width, 3) uint8; None without a render_mode."""
         frames = self._frames.of(self.environment)
         return None if frames is None else frames[0]
+
+    def view(self, **options: Any) -> LiveView:
+        """A page that shows the world while it steps: ``manyworlds.view`` of the environment."""
+        return view(self.environment, **options)
 
     def close(self) -> None:
         """Lets go of the world; later steps raise ValueError."""

@@ -14,6 +14,7 @@ from numpy.typing import DTypeLike, NDArray
 from .. import arrays
 from ..environment import Environment
 from ..in_memory import InMemory
+from ..live import LiveView, view
 from ..names import Isa, Precision
 from ..tasks import Task
 from . import rendering, spaces
@@ -139,6 +140,10 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
     def render(self) -> Optional[tuple[NDArray[np.uint8], ...]]:  # type: ignore[override]
         """A frame of every world as it is, (height, width, 3) uint8; None without a render_mode."""
         return self._frames.of(self.environment)
+
+    def view(self, **options: Any) -> LiveView:
+        """A page that shows the worlds while they step: ``manyworlds.view`` of the environment."""
+        return view(self.environment, **options)
 
     def close_extras(self, **kwargs: Any) -> None:
         """Lets go of the worlds: what ``close`` does, once."""
