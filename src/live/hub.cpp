@@ -65,7 +65,8 @@ void Hub::forget(int page) {
 Hub::Captured Hub::newest(std::span<const int> worlds, bool older) const {
   const std::lock_guard lock(mutex_);
   if (newest_ == nullptr || newest_->has(worlds)) return newest_;
-  const bool current = of_all_ != nullptr && of_all_->version >= newest_->version;
+  const bool current =
+      of_all_ != nullptr && of_all_->version >= newest_->version && of_all_->has(worlds);
   return current || older ? of_all_ : nullptr;
 }
 

@@ -51,7 +51,7 @@ struct Live::Impl {
   std::function<void()> controls_set;
   std::uint64_t version = 1;
   std::int64_t seen_steps = 0;           // of the batch, when its version was last counted
-  Clock::time_point last_all = {};       // when all that can be shown was captured
+  Clock::time_point next_all = {};       // when all that can be shown is captured again
   int saved = 0;                         // snapshots
   std::unique_ptr<live::Server> server;  // last: its thread uses the rest
 };

@@ -11,8 +11,10 @@
 namespace manyworlds {
 namespace {
 
-// How old the capture of all may be from which a page begins that is opened while nothing steps.
+// How often all that can be shown is captured, for pages that are opened while nothing steps: not
+// more often than this, and so that it takes no more than this share of the time.
 constexpr auto kIdle = std::chrono::milliseconds(250);
+constexpr int kIdleShare = 200;
 
 const LiveOptions& checked(const LiveOptions& options) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument("live: " + what); };
@@ -81,12 +83,13 @@ void Live::Impl::show(const Batch& batch) {
     if (!worlds.empty()) publish(batch, std::move(worlds), false);
   }
   // run() is there when a page is opened; others may not step for a long time then.
-  if (options.clock && last_all != Clock::time_point{}) return;
-  if (const Clock::time_point now = Clock::now(); now - last_all >= kIdle) {
-    last_all = now;
+  if (options.clock && next_all != Clock::time_point{}) return;
+  if (const Clock::time_point now = Clock::now(); now >= next_all) {
     std::vector<int> all(static_cast<std::size_t>(sizes.shown));
     for (int w = 0; w < sizes.shown; ++w) all[static_cast<std::size_t>(w)] = w;
     publish(batch, std::move(all), true);
+    const Clock::time_point end = Clock::now();
+    next_all = end + std::max<Clock::duration>(kIdle, kIdleShare * (end - now));
   }
 }
 

@@ -25,7 +25,7 @@ class Loop {
     last_ = measured_ = Clock::now();
     tell();
     live_.changed();
-    live_.last_all = {};  // with the clock as it is now
+    live_.next_all = {};  // with the clock as it is now
     live_.show(batch);
   }
   ~Loop() { live_.controls_set = {}; }
