@@ -93,6 +93,31 @@ TEST_CASE("view says what is wrong", "[cli]") {
             "is no page of this version");
 }
 
+TEST_CASE("view --live says what it cannot show", "[cli]") {
+  const Folder folder;
+  write_empty_page(folder);
+  const Outcome bare = folder.run("view ball3d --live");
+  if (contains(bare.err, "was built without")) {
+    CHECK(bare.code == 2);
+    CHECK(contains(bare.err, "libboost-dev"));
+    return;
+  }
+  check_bad(bare, "the page is none of this version");  // it may open no socket
+  check_bad(folder.run("view run.h5 --live"), "'run.h5' is a recording");
+  check_bad(folder.run("view ball3d ball2d --live"), "shows one scene, 2 were given");
+  check_bad(folder.run("view ball3d --live --speed fast"),
+            "--speed: must be 0.001 to 10000, or max");
+  check_bad(folder.run("view ball3d --live --speed 0"), "is '0'");
+  check_bad(folder.run("view nothing --live"), "nothing");
+  for (const char* other : {"--out a.html", "--png a.png", "--seconds 3", "--fps 5"}) {
+    CHECK(folder.run(std::string("view ball3d --live ") + other).code == 2);
+  }
+  for (const char* alone : {"--speed 2", "--port 8080", "--paused"}) {
+    CHECK(folder.run(std::string("view ball3d ") + alone).code == 2);
+  }
+  check_bad(folder.run("view ball3d --live", "none.html"), "MANYWORLDS_VIEWER is 'none.html'");
+}
+
 }  // namespace manyworlds
 
 #endif

@@ -10,6 +10,7 @@ export class LiveClock implements Clock {
   readonly end = 0;
 
   constructor(private readonly source: LiveSource) {
+    element('timeline').classList.add('live');
     for (const id of ['back', 'time']) element(id).hidden = true;
     element('on').title = 'One step on (→)';
     const select = element<HTMLSelectElement>('speed');
