@@ -152,7 +152,7 @@ class Run(unittest.TestCase):
         self.assertEqual(outcome.built, ["all"])
         # What makes objects what they are is as it was; what there is to build has grown.
         changed = {name for name in first if outcome.configured[name] != first[name]}
-        self.assertEqual(changed, {"MW_KERNELS", "MW_MJCF", "MW_RECORD", "MW_REPORT", "MW_TESTS",
+        self.assertEqual(changed, {"MW_KERNELS", "MW_LIVE", "MW_MJCF", "MW_RECORD", "MW_REPORT", "MW_TESTS",
                                    "MW_BENCH", "MW_VIEWER"})
 
     def test_instruction_sets_of_the_environment(self):
