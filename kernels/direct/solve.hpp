@@ -44,10 +44,14 @@ class TreeSolve {
 
   // Until the active sets stay as they are.
   void run() const {
-    stiffened_ ? turning_.begin() : turning_.clear();
+    bool turns = false;
+    if (stiffened_) {
+      turns = turning_.begin();
+    } else {
+      turning_.clear();
+    }
     if (first_) d_.firm = kAllLanes;
-    // What closes loops knows of no mean.
-    solve_in(kAllLanes, stiffened_ && !loops_.any());
+    solve_in(kAllLanes, turns && !loops_.any());  // what closes loops knows of no mean
   }
   // After contacts, whose impulses are the loads of the bodies (response.hpp).
   void run_again() const {

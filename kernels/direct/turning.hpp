@@ -36,10 +36,11 @@ class Turning {
     const WrenchOf<S> none{zero_of<Ang>(), zero_of<Vec>()};
     for_each_tree_body(t_, [&](int b) { store(at(d_.own_load, b), none); });
   }
-  // Means, and loads against all of the rotation.
-  void begin() const {
-    find_mean();
+  // Means, and loads against all of the rotation; whether something turns.
+  bool begin() const {
+    const bool turns = find_mean();
     put_loads(Real(0));
+    return turns;
   }
   // By solve(), of the bodies' own loads.
   template <class Solve>
@@ -58,19 +59,22 @@ class Turning {
  private:
   static constexpr int kRows = S::kAng + 1;
 
-  void find_mean() const {
+  bool find_mean() const {
     for_each_tree_body(t_, [&](int b) {
       const MomentsOf<S> k = stiffness(b);
       store(at(d_.twist, b), k), store(at(d_.load, b), apply(k, velocity(b)));
     });
     sum_trees<S::kInertia, MomentsOf<S>>(d_.twist), sum_trees<S::kAng, Ang>(d_.load);
     if (t_.has_contacts) spread_touched();
+    std::uint32_t turns = 0;
     for_each_tree_body(t_, [&](int b) {
-      const Ang mean =
-          mean_of(load_as<MomentsOf<S>>(at(d_.twist, b)), load_as<Ang>(at(d_.load, b)));
+      const auto sum = load_as<MomentsOf<S>>(at(d_.twist, b));
       const Mask touched = mask_from_bits(t_.has_contacts ? d_.touched[b] : 0);
-      store(mean_at(b), select(touched, zero_of<Ang>(), mean));
+      const Ang mean = select(touched, zero_of<Ang>(), mean_of(sum, load_as<Ang>(at(d_.load, b))));
+      store(mean_at(b), mean);
+      turns |= bits(Float(Real(0)) < dot_of(mean, mean));
     });
+    return turns != 0;
   }
   // What the stiffness takes from angular momenta, into the bodies' own loads.
   void put_loads(Real share) const {
