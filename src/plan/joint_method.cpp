@@ -70,13 +70,12 @@ bool is_long_and_touches(const Scene& scene, const SceneTrees& trees) {
   return false;
 }
 
-// Between two ends sag and tension follow the length as its root: what sweeps let a row of 32 links
-// stretch by makes it sag by a fifth more.
+// Between two ends the sag of a row follows its length by a root: what sweeps let each joint
+// stretch by shows many times over.
 std::string need_of_rows(const SceneTrees& trees) {
-  constexpr int kMost = 32;  // joints
-  for (std::size_t b = 0; b < trees.has_loop.size(); ++b) {
-    if (!trees.has_loop[b] || trees.joints_with[b] <= kMost) continue;
-    return std::to_string(trees.joints_with[b]) + " joints hang together in a loop";
+  constexpr int kMost = 32;
+  for (const int joints : trees.joints_in_loops) {
+    if (joints > kMost) return std::to_string(joints) + " joints hang together in loops";
   }
   return {};
 }

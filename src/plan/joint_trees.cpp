@@ -53,8 +53,8 @@ class JointTreeBuilder {
       if (prescribed(b) || component_[static_cast<std::size_t>(b)] >= 0) continue;
       const std::vector<int> component = gather(b);
       const auto& joints = at_[static_cast<std::size_t>(b)];
-      if (!joints.empty() && trees_.has_joint[static_cast<std::size_t>(joints.front())])
-        grow(component);
+      if (joints.empty()) continue;
+      if (trees_.has_joint[static_cast<std::size_t>(joints.front())]) grow(component);
     }
     finish(plan_.trees_of_joints);
   }

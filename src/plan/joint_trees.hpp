@@ -16,9 +16,9 @@ struct SceneTrees {
   // begins apart by less than that. In a loop there may be no way to close all of them at once, and
   // then what hangs together would be flung about.
   std::vector<double> slack;
-  std::vector<int> of_body;      // [body] which tree, by one of its bodies; -1: none
-  std::vector<int> joints_with;  // [body] joints of its tree
-  std::vector<bool> has_loop;    // [body] its tree
+  std::vector<int> of_body;          // [body] which tree, by one of its bodies; -1: none
+  std::vector<int> joints_with;      // [body] joints of its tree
+  std::vector<int> joints_in_loops;  // [body] of those the ones that are part of loops
 };
 SceneTrees trees_of(const Scene& scene);
 

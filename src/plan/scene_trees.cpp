@@ -83,10 +83,48 @@ bool may_break(const Joint& joint) {
   return std::isfinite(joint.break_force) || std::isfinite(joint.break_torque);
 }
 
+namespace {
+
+// [joint] whether it is part of a loop, in which all that does not move counts as one body: what is
+// left when joints of bodies without another one have gone, and so on.
+std::vector<bool> on_loops(const Scene& scene) {
+  const std::size_t world = scene.bodies.size();
+  const auto node = [&](BodyId body) {
+    const bool moves = body && scene.at(body).motion == Motion::dynamic;
+    return moves ? static_cast<std::size_t>(body.index()) : world;
+  };
+  std::vector<std::vector<std::size_t>> of(world + 1);
+  std::vector<bool> left(scene.joints.size());
+  std::vector<int> degree(world + 1);
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const std::size_t a = node(scene.joints[j].body_a), b = node(scene.joints[j].body_b);
+    left[j] = a != b;
+    if (a != b) of[a].push_back(j), of[b].push_back(j), ++degree[a], ++degree[b];
+  }
+  std::vector<std::size_t> ends;
+  for (std::size_t i = 0; i < world; ++i) {
+    if (degree[i] == 1) ends.push_back(i);
+  }
+  while (!ends.empty()) {
+    const std::size_t end = ends.back();
+    ends.pop_back();
+    for (const std::size_t j : of[end]) {
+      if (!left[j]) continue;
+      left[j] = false;
+      const std::size_t a = node(scene.joints[j].body_a), b = node(scene.joints[j].body_b);
+      const std::size_t next = a == end ? b : a;
+      if (--degree[next] == 1 && next != world) ends.push_back(next);
+    }
+  }
+  return left;
+}
+
+}  // namespace
+
 SceneTrees trees_of(const Scene& scene) {
   constexpr int kMostClosures = 4;  // joints that close loops: each costs some solves of the tree
   struct Component {
-    int joints = 0, closures = 0;
+    int joints = 0, closures = 0, in_loops = 0;
     bool fits = true;
     bool is_tree() const { return fits && joints > 0 && closures <= kMostClosures; }
   };
@@ -123,11 +161,14 @@ SceneTrees trees_of(const Scene& scene) {
     of[root(joint)].fits = !may_break(joint);
   }
   SceneTrees out;
-  for (const Joint& joint : scene.joints) {
+  const std::vector<bool> on_loop = on_loops(scene);
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const Joint& joint = scene.joints[j];
     const bool at_once = held(joint) && of[root(joint)].is_tree();
     out.has_joint.push_back(at_once);
     out.slack.push_back(0);
-    if (!at_once || of[root(joint)].closures == 0) continue;
+    if (!at_once || !on_loop[j]) continue;
+    ++of[root(joint)].in_loops;
     const StartGap gap = start_gap(scene, joint);
     const double closed = kClosedShare * gap.arms;
     if (gap.length > closed) out.slack.back() = gap.length + closed;
@@ -136,7 +177,7 @@ SceneTrees trees_of(const Scene& scene) {
     const Component& component = of[together.find(i)];
     out.of_body.push_back(component.is_tree() ? static_cast<int>(together.find(i)) : -1);
     out.joints_with.push_back(component.is_tree() ? component.joints : 0);
-    out.has_loop.push_back(component.is_tree() && component.closures > 0);
+    out.joints_in_loops.push_back(component.in_loops);
   }
   return out;
 }

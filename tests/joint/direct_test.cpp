@@ -307,6 +307,9 @@ TEST_CASE("the plan solves joints at once where that is worth it, and says why",
     row.options.gravity.setZero();  // no joint carries anything
     CHECK_FALSE(method(row).has_value());
     const Frame end = at(Vec3(16.5, 0, 0), hinge_axes(space));
+    Scene tail = row;  // many joints, of which five make a loop
+    tail.add(joint_at(tail, {}, BodyId(3), at(Vec3(2, 0, 0), hinge_axes(space)), HingeJoint{}));
+    CHECK_FALSE(method(tail).has_value());
     row.add(joint_at(row, {}, BodyId(32), end, HingeJoint{}));
     CHECK(method(row) == JointMethod::tree);
     Scene many = loop;
