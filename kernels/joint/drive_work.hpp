@@ -1,7 +1,6 @@
 // Work that drives, springs, springy limits and joints that close gradually do in a step, for the
-// audit of energy. Impulses and
-// velocities are linear in each other: a row whose impulse in a substep is p, and whose speed goes
-// from s to s', has given p (s + s') / 2.
+// audit of energy. Impulses and velocities are linear in each other: a row whose impulse in a
+// substep is p, and whose speed goes from s to s', has given p (s + s') / 2.
 #pragma once
 
 #include "kernels/joint/coordinates.hpp"
