@@ -58,6 +58,7 @@ struct Server::Impl {
 
   ~Impl() {
     content.hub.stop_listening();
+    stopping = true;  // before the last of the pages can be gone
     asio::post(context, [this] {
       beast::error_code ignored;
       acceptor.close(ignored);
@@ -69,7 +70,6 @@ struct Server::Impl {
       deadline.async_wait([this](const beast::error_code&) { context.stop(); });
       if (sessions.empty()) context.stop();
     });
-    stopping = true;
     thread.join();
   }
 
