@@ -1,6 +1,6 @@
 // `manyworlds view --live`: worlds in a browser while they step.
 #include <algorithm>
-#include <cmath>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -36,14 +36,10 @@ constexpr double kLeastGravity = 9.81;  // m/s^2, to either side of a scene that
 
 double parse_speed(const std::string& text) {
   if (text == "max") return std::numeric_limits<double>::infinity();
-  std::size_t end = 0;
   double speed = 0;
-  try {
-    speed = std::stod(text, &end);
-  } catch (const std::exception&) {
-    end = text.size() + 1;
-  }
-  if (end == text.size() && speed >= 0.001 && speed <= 1e4) return speed;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, speed);
+  if (error == std::errc{} && stop == end && speed >= 0.001 && speed <= 1e4) return speed;
   throw InputError(fmt::format("--speed: must be 0.001 to 10000, or max, is '{}'", text));
 }
 
