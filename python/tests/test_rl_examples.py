@@ -37,10 +37,10 @@ def test_a_gait_is_found():
     pytest.importorskip("gymnasium")
     if importlib.util.find_spec("manyworlds._mjcf") is None:
         pytest.skip("built without MuJoCo")
-    short = "--candidates 128 --generations 5 --seconds 0.8"
+    short = "--candidates 128 --generations 10 --seconds 1.5"
     history, far = example("gait_search").main(short.split())
-    assert history[-1] > 2 * max(history[0], 10)
-    assert np.median(far) > 0.3
+    assert history[-1] > history[0] + 0.3  # m: from about -0.3 to 0.4
+    assert np.median(far) > 0.5  # 1.3
 
 
 def test_friction_and_damping_are_found_in_a_recording():
