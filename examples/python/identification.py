@@ -113,7 +113,7 @@ def main(argv: Sequence[str] | None = None) -> dict[str, tuple[float, float]]:
             wall = time.perf_counter() - began
             print(f"generation {generation}: off by {error.min():.4f} m and rad, {wall:.1f} s")
     batch.close()
-    found = guess * np.exp(search.mean)
+    found = guess * np.exp(search.result.xfavorite)
     for name, a, b in zip(("friction", *JOINTS), hidden, found):
         print(f"{name:10}  hidden {a:7.4f}  found {b:7.4f}  {100 * (b / a - 1):+.2f} %")
     return {name: (a, b) for name, a, b in zip(("friction", *JOINTS), hidden, found)}
