@@ -105,8 +105,7 @@ TEST_CASE("report stability judges every case in every setting", "[cli][report]"
                                        "C5 overlap",
                                        "C5 rest",
                                        "J2 gap 10",
-                                       "J2 loss 10",
-                                       "J2 loss 100"};
+                                       "J2 loss 10"};
   std::map<std::string, int> rows;
   const Json report = Json::parse(outcome.out);
   for (const Json& v : report["results"]) {
