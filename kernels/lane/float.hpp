@@ -80,7 +80,13 @@ struct Float {
   MW_INLINE Float(Real x) : v(x) {}
   MW_INLINE Float(Batch x) : v(x) {}
   static MW_INLINE Float load(const Real* p) { return Batch::load_aligned(p); }
-  MW_INLINE void store(Real* p) const { v.store_aligned(p); }
+  // The vector types of intrinsics may alias anything: after each of their stores compilers would
+  // load again what they know of plans, counts and pointers. This one is memory of Reals.
+  MW_INLINE void store(Real* p) const {
+    using Register = typename Batch::register_type;
+    using Reals = Real __attribute__((vector_size(sizeof(Register))));
+    *reinterpret_cast<Reals*>(p) = reinterpret_cast<Reals>(v.data);
+  }
 };
 MW_INLINE Float operator+(Float a, Float b) { return a.v + b.v; }
 MW_INLINE Float operator-(Float a, Float b) { return a.v - b.v; }
