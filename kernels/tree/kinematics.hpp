@@ -63,7 +63,7 @@ MW_INLINE Wrench to_parent(const Work& w, int link, const Wrench& a) {
 // Moves a link by one of its joints. Leaves in the rows of the first dof its axis, and a point on
 // it; of a free or ball joint the point alone.
 MW_INLINE FramePose move_by(const TreeJoint& joint, const Real* c, FramePose at, Real* rows) {
-  const Vec3 anchor = shared(joint.anchor), axis = rotate(at.q, shared(joint.axis));
+  const Vec3 axis = rotate(at.q, shared(joint.axis));
   if (joint.kind == TreeJointKind::slide) {
     store(rows, axis);
     at.x = fma(axis, Float::load(c) - Float(joint.reference), at.x);
@@ -74,7 +74,9 @@ MW_INLINE FramePose move_by(const TreeJoint& joint, const Real* c, FramePose at,
     store(rows + 3 * kLanes, at.x);
     return at;
   }
-  const Vec3 point = at.x + rotate(at.q, anchor);
+  const Real* anchor = joint.anchor;
+  const bool off_origin = anchor[0] != 0 || anchor[1] != 0 || anchor[2] != 0;  // in few models
+  const Vec3 point = off_origin ? at.x + rotate(at.q, shared(joint.anchor)) : at.x;
   Quat rotation;
   if (joint.kind == TreeJointKind::ball) {
     rotation = normalize(load_quat(c));
@@ -87,7 +89,7 @@ MW_INLINE FramePose move_by(const TreeJoint& joint, const Real* c, FramePose at,
   }
   store(rows + 3 * kLanes, point);
   at.q = mul(at.q, rotation);
-  at.x = point - rotate(at.q, anchor);
+  if (off_origin) at.x = point - rotate(at.q, shared(joint.anchor));
   return at;
 }
 
@@ -114,6 +116,14 @@ MW_INLINE void finish_axes(const TreeJoint& joint, const FramePose& at, Real* ro
   }
 }
 
+// A product of unit quaternions is off by its rounding alone: a step of Newton's method for
+// 1 / |q| from 1 is as good as a root and a division.
+MW_INLINE Quat unit_again(Quat q) {
+  const Float square = fma(q.z, q.z, fma(q.y, q.y, fma(q.x, q.x, q.w * q.w)));
+  const Float scale = fnma(Float(Real(0.5)), square, Float(Real(1.5)));
+  return {q.w * scale, q.x * scale, q.y * scale, q.z * scale};
+}
+
 inline void find_poses(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.links; ++i) {
     const TreeLink& link = t.tree.link[i];
@@ -127,7 +137,7 @@ inline void find_poses(const Constants& t, const Group& g, const Work& w) {
       at = move_by(joints[j], coordinate_of(t, g, joints[j].coordinate), at,
                    axis_of(w, joints[j].dof));
     }
-    at.q = normalize(at.q);
+    at.q = unit_again(at.q);
     for (int j = 0; j < link.joints; ++j) {
       finish_axes(joints[j], at, axis_of(w, joints[j].dof));
     }
