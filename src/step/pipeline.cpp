@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "src/base/upper_halves.hpp"
+
 namespace manyworlds {
 
 namespace {
@@ -18,7 +20,10 @@ struct Run {
   void lap(StepStage stage) const {
     if (clock) clock->lap(stage);
   }
-  void operator()(kernels::Stage<Real> call) const { call(step.tables, group, scratch); }
+  void operator()(kernels::Stage<Real> call) const {
+    call(step.tables, group, scratch);
+    clear_upper_halves(step.kernels.lanes);
+  }
   void operator()(const StageCall<Real>& call) const {
     (*this)(call.run);
     lap(call.stage);
@@ -150,6 +155,7 @@ void tree_steps(const Run<Real>& run, int steps, const kernels::ObserverView<Rea
   if (!t.has_contacts) {
     const int alone = loads ? 1 : 0;  // with a look in the middle
     tree.steps(t, run.group, run.scratch, substeps - alone);
+    clear_upper_halves(p.kernels.lanes);
     run.lap(StepStage::tree);
     if (!loads) return;
     substeps = alone;
@@ -180,6 +186,7 @@ void whole_steps(const Run<Real>& run, Move move, int steps) {
   const Audit<Real> audit(run);
   const auto take = [&](int n) {
     move(t, run.group, run.scratch, n);
+    clear_upper_halves(run.step.kernels.lanes);
     run.lap(t.flight.on ? StepStage::flight : StepStage::free_motion);
   };
   while (steps > 0) {
@@ -307,6 +314,7 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
   }
   if (p.wanted) {
     look_at_end(p, group, scratch);
+    clear_upper_halves(p.kernels.lanes);
     if (clock) clock->lap(StepStage::observe);
   }
   return taken;
