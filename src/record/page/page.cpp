@@ -30,19 +30,6 @@ std::string read_empty(const std::filesystem::path& file) {
   return text;
 }
 
-// Inside of an element of HTML.
-std::string embedded(const page::Json& json) {
-  std::string out;
-  for (const char c : json.dump(-1, ' ', false, page::Json::error_handler_t::replace)) {
-    if (c == '<') {
-      out += "\\u003c";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 struct Page {
   std::string text;
   PageReport report;
@@ -75,8 +62,8 @@ Page make_page(std::span<const Recording* const> recordings, const std::filesyst
   const page::Json head = {
       {"title", options.title.empty() ? recordings[0]->plan().scene().name : options.title},
       {"runs", std::move(runs)}};
-  data =
-      "<script type=\"application/json\" id=\"mw-head\">" + embedded(head) + "</script>\n" + data;
+  data = "<script type=\"application/json\" id=\"mw-head\">" + page::embedded(head) +
+         "</script>\n" + data;
   text.replace(text.find(kPlace), kPlace.size(), data);
   out.text = std::move(text);
   out.report.bytes = out.text.size();
