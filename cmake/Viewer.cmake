@@ -1,5 +1,6 @@
-# The page that shows recordings, viewer/: bundled by Node into one file, <build>/viewer/viewer.html,
-# which `manyworlds view` finds beside the program.
+# The pages that show recordings and reports, viewer/: bundled by Node into a file each,
+# <build>/viewer/viewer.html and report.html, which `manyworlds view` and `report` find beside the
+# program.
 
 set(mw_viewer_node_least 18)
 find_program(MW_NODE node)
@@ -20,9 +21,10 @@ endif()
 # Its packages are put beside a copy of what asks for them, so that the sources stay as they are.
 set(mw_viewer_dir "${PROJECT_BINARY_DIR}/viewer")
 set(mw_viewer_page "${mw_viewer_dir}/viewer.html")
+set(mw_report_page "${mw_viewer_dir}/report.html")
 set(mw_viewer_packages "${mw_viewer_dir}/node_modules/.package-lock.json")
-file(GLOB mw_viewer_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/viewer/src/*"
-  "${PROJECT_SOURCE_DIR}/viewer/*.mjs" "${PROJECT_SOURCE_DIR}/viewer/tsconfig.json")
+file(GLOB mw_viewer_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/viewer/src/*.*"
+  "${PROJECT_SOURCE_DIR}/viewer/src/report/*.*" "${PROJECT_SOURCE_DIR}/viewer/*.mjs" "${PROJECT_SOURCE_DIR}/viewer/tsconfig.json")
 add_custom_command(OUTPUT "${mw_viewer_packages}"
   COMMAND ${CMAKE_COMMAND} -E copy_if_different "${PROJECT_SOURCE_DIR}/viewer/package.json"
           "${PROJECT_SOURCE_DIR}/viewer/package-lock.json" "${mw_viewer_dir}"
@@ -32,17 +34,17 @@ add_custom_command(OUTPUT "${mw_viewer_packages}"
   WORKING_DIRECTORY "${mw_viewer_dir}"
   DEPENDS "${PROJECT_SOURCE_DIR}/viewer/package.json" "${PROJECT_SOURCE_DIR}/viewer/package-lock.json"
   COMMENT "Fetching the packages of the viewer" VERBATIM)
-add_custom_command(OUTPUT "${mw_viewer_page}"
+add_custom_command(OUTPUT "${mw_viewer_page}" "${mw_report_page}"
   COMMAND ${CMAKE_COMMAND} -E copy_directory "${PROJECT_SOURCE_DIR}/viewer/src" "${mw_viewer_dir}/src"
   COMMAND ${CMAKE_COMMAND} -E copy_if_different "${PROJECT_SOURCE_DIR}/viewer/build.mjs"
           "${PROJECT_SOURCE_DIR}/viewer/tsconfig.json" "${mw_viewer_dir}"
   COMMAND "${MW_NODE}" node_modules/typescript/bin/tsc --noEmit
-  COMMAND "${MW_NODE}" build.mjs "${mw_viewer_page}"
+  COMMAND "${MW_NODE}" build.mjs "${mw_viewer_dir}"
   WORKING_DIRECTORY "${mw_viewer_dir}"
   DEPENDS "${mw_viewer_packages}" ${mw_viewer_sources}
   COMMENT "Bundling the viewer" VERBATIM)
 file(MAKE_DIRECTORY "${mw_viewer_dir}")
-add_custom_target(mw_viewer ALL DEPENDS "${mw_viewer_page}")
+add_custom_target(mw_viewer ALL DEPENDS "${mw_viewer_page}" "${mw_report_page}")
 
 if(MW_INSTALL)
   # With the library, since wheels are made of that, and with the program.
@@ -50,26 +52,32 @@ if(MW_INSTALL)
     install(FILES "${mw_viewer_page}" DESTINATION "${CMAKE_INSTALL_DATADIR}/manyworlds"
             COMPONENT ${component})
   endforeach()
+  install(FILES "${mw_report_page}" DESTINATION "${CMAKE_INSTALL_DATADIR}/manyworlds"
+          COMPONENT program)
   add_dependencies(mw_libraries mw_viewer)
 endif()
 
-# The page in a real browser, one that Debian has.
-if(MW_TESTS AND TARGET manyworlds_cli AND MW_RECORD AND NOT MW_SANITIZE)
+# The pages in a real browser, one that Debian has.
+if(MW_TESTS AND TARGET manyworlds_cli AND NOT MW_SANITIZE)
   find_program(MW_CHROMIUM NAMES chromium chromium-browser google-chrome)
   mark_as_advanced(MW_CHROMIUM)
-  add_test(NAME viewer_browser
-    COMMAND "${MW_NODE}" --test-reporter=spec --test "${PROJECT_SOURCE_DIR}/viewer/test/browser.test.mjs"
-    WORKING_DIRECTORY "${mw_viewer_dir}")
-  set(mw_viewer_environment "MANYWORLDS_CLI=$<TARGET_FILE:manyworlds_cli>"
-    "MANYWORLDS_VIEWER=${mw_viewer_page}" "CHROMIUM=${MW_CHROMIUM}"
-    "PLAYWRIGHT=${mw_viewer_dir}/node_modules/playwright-core/index.mjs")
-  set_tests_properties(viewer_browser PROPERTIES TIMEOUT 900 COST 800
-    ENVIRONMENT "${mw_viewer_environment}")
-  if(MW_LIVE)
-    add_test(NAME viewer_live
-      COMMAND "${MW_NODE}" --test-reporter=spec --test "${PROJECT_SOURCE_DIR}/viewer/test/live.test.mjs"
+  function(mw_browser_test name timeout)
+    add_test(NAME viewer_${name}
+      COMMAND "${MW_NODE}" --test-reporter=spec --test "${PROJECT_SOURCE_DIR}/viewer/test/${name}.test.mjs"
       WORKING_DIRECTORY "${mw_viewer_dir}")
-    set_tests_properties(viewer_live PROPERTIES TIMEOUT 300 COST 700
-      ENVIRONMENT "${mw_viewer_environment}")
+    set_tests_properties(viewer_${name} PROPERTIES TIMEOUT ${timeout} COST 700 ENVIRONMENT
+      "MANYWORLDS_CLI=$<TARGET_FILE:manyworlds_cli>;MANYWORLDS_VIEWER=${mw_viewer_page};\
+MANYWORLDS_REPORT=${mw_report_page};CHROMIUM=${MW_CHROMIUM};\
+PLAYWRIGHT=${mw_viewer_dir}/node_modules/playwright-core/index.mjs")
+  endfunction()
+  if(MW_RECORD)
+    mw_browser_test(browser 900)
+    set_tests_properties(viewer_browser PROPERTIES COST 800)
+  endif()
+  if(MW_LIVE)
+    mw_browser_test(live 300)
+  endif()
+  if(MW_REPORT)
+    mw_browser_test(report 300)
   endif()
 endif()

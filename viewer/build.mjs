@@ -1,26 +1,57 @@
-// Bundles the page into one file without data: node build.mjs OUT.html
-import { readFile, writeFile, mkdir, rename } from 'node:fs/promises';
+// Bundles the pages, each into one file without data: node build.mjs FOLDER makes viewer.html and
+// report.html there.
+import { readFile, writeFile, mkdir, readdir, rename } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
 
 const here = dirname(fileURLToPath(import.meta.url));
-const out = process.argv[2] ?? join(here, 'dist', 'viewer.html');
-const bundled = await build({
-  entryPoints: [join(here, 'src', 'main.ts')],
-  bundle: true,
-  minify: true,
-  write: false,
-  format: 'iife',
-  target: 'es2022',
-  legalComments: 'inline', // three.js wants its notice kept
-  charset: 'utf8',
-});
-const script = bundled.outputFiles[0].text.replaceAll('</script', '<\\/script');
-const style = await readFile(join(here, 'src', 'page.css'), 'utf8');
-const page = (await readFile(join(here, 'src', 'page.html'), 'utf8'))
-  .replace('/* style */', () => style)
-  .replace('/* script */', () => script);
-await mkdir(dirname(out), { recursive: true });
-await writeFile(`${out}.part`, page);
-await rename(`${out}.part`, out);
+const folder = process.argv[2] ?? join(here, 'dist');
+
+// The licences of the packages that a bundle has, since most want them kept with every copy.
+async function licences(inputs) {
+  const packages = new Set();
+  for (const input of inputs) {
+    const found = /^(.*node_modules\/(?:@[^/]+\/)?[^/]+)\//.exec(input);
+    if (found) packages.add(found[1]);
+  }
+  const texts = [];
+  for (const path of [...packages].sort()) {
+    const { name, version } = JSON.parse(await readFile(join(here, path, 'package.json'), 'utf8'));
+    const file = (await readdir(join(here, path))).find((entry) => /^licen[cs]e/i.test(entry));
+    if (!file) throw new Error(`${name} comes without its licence`);
+    texts.push(`${name} ${version}\n\n${(await readFile(join(here, path, file), 'utf8')).trim()}\n`);
+  }
+  return `<script type="text/plain" id="licences">\n${texts.join('\n').replaceAll('</script', '<\\/script')}</script>\n`;
+}
+
+async function page(name, source) {
+  const read = (file) => readFile(join(here, 'src', file), 'utf8');
+  const bundled = await build({
+    entryPoints: [join(here, 'src', `${source}main.ts`)],
+    absWorkingDir: here,
+    bundle: true,
+    minify: true,
+    write: false,
+    metafile: true,
+    format: 'iife',
+    target: 'es2022',
+    legalComments: 'none', // whole licences follow
+    charset: 'utf8',
+  });
+  const script = bundled.outputFiles[0].text.replaceAll('</script', '<\\/script');
+  const legal = await licences(Object.keys(bundled.metafile.inputs));
+  const [theme, style] = [await read('theme.css'), await read(`${source}page.css`)];
+  const text = (await read(`${source}page.html`))
+    .replace('/* theme */', () => theme)
+    .replace('/* style */', () => style)
+    .replace('/* script */', () => script)
+    .replace('</body>', () => `${legal}</body>`);
+  await mkdir(folder, { recursive: true });
+  const out = join(folder, name);
+  await writeFile(`${out}.part`, text);
+  await rename(`${out}.part`, out);
+}
+
+await page('viewer.html', '');
+await page('report.html', 'report/');

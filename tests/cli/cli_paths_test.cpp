@@ -64,7 +64,7 @@ TEST_CASE("a name that cannot be is told with the option that gave it", "[cli][f
     all.insert(all.end(), recorded.begin(), recorded.end());
   }
   if (geteuid() != 0) {  // whom nothing stops
-    all.push_back({report + "--out sealed", "--out: cannot write 'sealed/throughput.html': Perm"});
+    all.push_back({report + "--out sealed", "--out: cannot write 'sealed/throughput.json': Perm"});
     if (records) {
       all.push_back({job + "--record sealed/a.h5", "--record: 'sealed/a.h5': Permission denied"});
       all.push_back({job + "--dump-lost sealed", "--dump-lost: 'sealed/world_0.h5': Permission"});

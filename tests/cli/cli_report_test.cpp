@@ -1,7 +1,7 @@
 // `manyworlds report`, run as its users run it: complete JSON with sane numbers, and a page.
 #if MW_HAVE_CLI
 
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -50,6 +50,28 @@ std::map<std::string, double> least_errors(const Json& report) {
   return least;
 }
 
+// A page without a report, as viewer/ builds it but for what shows it.
+constexpr const char* kBlank =
+    "<meta name=\"manyworlds-report\" content=\"1\">\n<!-- manyworlds: report -->\nend\n";
+constexpr const char* kWithBlank = "MANYWORLDS_REPORT=blank.html";
+
+// `arguments` with the page above.
+Outcome run_with_page(const ScratchFolder& folder, const std::string& arguments) {
+  std::ofstream(folder / "blank.html") << kBlank;
+  return test::run_program(test::kProgram, folder, arguments, kWithBlank);
+}
+
+// What was put into a page.
+Json report_in(const std::string& page) {
+  const std::string start = "<script type=\"application/json\" id=\"mw-report\">";
+  const std::size_t from = page.find(start), to = page.find("</script>");
+  REQUIRE(from != std::string::npos);
+  REQUIRE(to != std::string::npos);
+  CHECK(page.find('<', from + start.size()) == to);  // nothing in it is HTML
+  CHECK(contains(page.substr(to), "end"));
+  return Json::parse(page.substr(from + start.size(), to - from - start.size()));
+}
+
 // A program that stands in for another engine's, in the folder `peers`.
 void write_peer(const ScratchFolder& folder, const std::string& name, const std::string& body) {
   const std::filesystem::path path = folder.path() / "peers" / name;
@@ -62,8 +84,7 @@ void write_peer(const ScratchFolder& folder, const std::string& name, const std:
 
 TEST_CASE("report accuracy writes complete tables and a page", "[cli][report]") {
   const ScratchFolder folder;
-  const Outcome outcome =
-      test::run_program(test::kProgram, folder, "report accuracy --quick --out here", "");
+  const Outcome outcome = run_with_page(folder, "report accuracy --quick --out here");
   INFO(outcome.err);
   REQUIRE(outcome.code == 0);
   CHECK(contains(outcome.out, "A16 49 balls that bounce"));
@@ -86,16 +107,14 @@ TEST_CASE("report accuracy writes complete tables and a page", "[cli][report]") 
     CHECK(least.at(id) < most);
   }
   const std::string page = content(folder.path() / "here" / "accuracy.html");
-  CHECK(contains(page, "<svg"));
+  CHECK(report_in(page) == report);
   CHECK(contains(page, "RaiSim"));
-  CHECK_FALSE(contains(page, "http"));  // nothing from the network
   CHECK_FALSE(contains(page, "nan"));
 }
 
 TEST_CASE("report stability judges every case in every setting", "[cli][report]") {
   const ScratchFolder folder;
-  const Outcome outcome =
-      test::run_program(test::kProgram, folder, "report stability --quick --json");
+  const Outcome outcome = run_with_page(folder, "report stability --quick --json");
   INFO(outcome.err);
   REQUIRE(outcome.code == 0);
   // What the default settings are known not to hold, by docs/stability.md.
@@ -113,6 +132,7 @@ TEST_CASE("report stability judges every case in every setting", "[cli][report]"
     INFO(v.dump());
     ++rows[id];
     CHECK_FALSE(v["criterion"].get<std::string>().empty());
+    CHECK_FALSE(v["group"].get<std::string>().empty());
     if (v["passed"] == true) {
       CHECK(v["lost_worlds"] == 0);
       CHECK(v["value"].get<double>() <= v["limit"].get<double>());
@@ -128,8 +148,7 @@ TEST_CASE("report stability judges every case in every setting", "[cli][report]"
 TEST_CASE("report plan finds equal bits whatever was switched on", "[cli][report]") {
   const ScratchFolder folder;
   const Outcome outcome =
-      test::run_program(test::kProgram, folder,
-                        "report plan --quick --scenes ball3d,stack10,chain2d,pyramid2d --json");
+      run_with_page(folder, "report plan --quick --scenes ball3d,stack10,chain2d,pyramid2d --json");
   INFO(outcome.out << outcome.err);
   REQUIRE(outcome.code == 0);
   std::map<std::string, int> variants;
@@ -139,6 +158,7 @@ TEST_CASE("report plan finds equal bits whatever was switched on", "[cli][report
     ++variants[row["scene"]];
     CHECK(row["time_ratio"].get<double>() > 0);
     CHECK(row["world_steps_per_s"].get<double>() > 0);
+    CHECK(row["bodies"].get<int>() > 0);
     if (row["must_be_same"]) CHECK(row["same_bits"] == true);
   }
   CHECK(variants.size() == 4);
@@ -150,8 +170,7 @@ TEST_CASE("report plan finds equal bits whatever was switched on", "[cli][report
 
 TEST_CASE("report throughput measures every sweep", "[cli][report]") {
   const ScratchFolder folder;
-  const Outcome outcome =
-      test::run_program(test::kProgram, folder, "report throughput --quick --scenes ball2d --json");
+  const Outcome outcome = run_with_page(folder, "report throughput --quick --scenes ball2d --json");
   INFO(outcome.err);
   REQUIRE(outcome.code == 0);
   const Json results = Json::parse(outcome.out)["results"];
@@ -166,7 +185,7 @@ TEST_CASE("report throughput measures every sweep", "[cli][report]") {
   CHECK(hashes.size() == 4);
   CHECK(hashes["threads"].size() == 1);
   CHECK(hashes["instruction set and precision"].size() <= 2);  // one for each precision
-  CHECK(contains(content(folder.path() / "report" / "throughput.html"), "By bodies per world"));
+  CHECK(report_in(content(folder.path() / "report" / "throughput.html"))["results"] == results);
 }
 
 TEST_CASE("report throughput compares with other engines and says which of them fail",
@@ -189,8 +208,8 @@ exit 3
   write_peer(folder, "peer_dumb", "echo ball2d\n");
   write_peer(folder, "peer_gone", "kill -9 $$\n");
   write_peer(folder, "other", "exit 1\n");
-  const Outcome outcome = test::run_program(
-      test::kProgram, folder, "report throughput --quick --scenes ball2d --peers peers");
+  const Outcome outcome =
+      run_with_page(folder, "report throughput --quick --scenes ball2d --peers peers");
   INFO(outcome.out << outcome.err);
   REQUIRE(outcome.code == 0);
   const Json results =
@@ -213,9 +232,76 @@ exit 3
   CHECK(failures[2] == "peer_dumb failed: ball2d: it printed no result");
   CHECK(contains(outcome.out, "Good 1.2"));
   CHECK(contains(outcome.out, "peer_bad failed: "));
-  const std::string page = content(folder.path() / "report" / "throughput.html");
-  CHECK(contains(page, "Beside other engines"));
-  CHECK(contains(page, "4.00 mm"));
+  CHECK(report_in(content(folder.path() / "report" / "throughput.html"))["results"] == results);
+}
+
+TEST_CASE("a report without a page is its JSON, and says how the page is made", "[cli][report]") {
+  const ScratchFolder folder;
+  // Where no page was built beside it.
+  const std::filesystem::path alone = folder / "bin" / "manyworlds";
+  std::filesystem::create_directories(alone.parent_path());
+  std::filesystem::copy_file(test::kProgram, alone);
+  const std::string command = "report accuracy --quick --cases A1";
+  const Outcome first = test::run_program(alone.string(), folder, command);
+  INFO(first.err);
+  CHECK(first.code == 0);
+  CHECK(std::count(first.err.begin(), first.err.end(), '\n') == 1);
+  CHECK(contains(first.err, "tools/viewer in the repository builds it"));
+  CHECK(contains(first.err, "'manyworlds report page report/accuracy.json' makes it"));
+  CHECK_FALSE(contains(first.out, "accuracy.html"));
+  CHECK_FALSE(contains(first.err, "earlier"));
+  const std::filesystem::path page = folder / "report" / "accuracy.html";
+  CHECK_FALSE(std::filesystem::exists(page));
+  const Json report = Json::parse(content(folder / "report" / "accuracy.json"));
+  CHECK(report["results"][0]["id"] == "A1");
+
+  // Makes it of what was measured then.
+  const Outcome made = run_with_page(folder, "report page report/accuracy.json");
+  INFO(made.err);
+  CHECK(made.code == 0);
+  CHECK(made.out == "report/accuracy.html\n");
+  CHECK(report_in(content(page)) == report);
+  CHECK(run_with_page(folder, "report page report/accuracy.json --out a/b").code == 0);
+  CHECK(content(folder / "a" / "b" / "accuracy.html") == content(page));
+
+  const Outcome again = test::run_program(alone.string(), folder, command);
+  CHECK(contains(again.err, "report/accuracy.html is of an earlier report"));
+  const Outcome none =
+      test::run_program(alone.string(), folder, "report page report/accuracy.json");
+  CHECK(none.code == 2);
+  CHECK(contains(none.err, "report page: the page was not built with this program: tools/viewer"));
+}
+
+TEST_CASE("report page says what is no report and what is no page", "[fast][cli][report]") {
+  const ScratchFolder folder;
+  std::ofstream(folder / "list.json") << "[1, 2]";
+  std::ofstream(folder / "other.json") << R"({"report": "weather", "results": []})";
+  std::ofstream(folder / "half.json") << R"({"report": "plan", "res)";
+  std::ofstream(folder / "plan.json") << R"({"report": "plan", "results": []})";
+  std::ofstream(folder / "plan.html") << R"({"report": "plan", "results": []})";
+  for (const auto& [arguments, message] : std::map<std::string, std::string>{
+           {"none.json", "'none.json': there is no such file"},
+           {".", "'.': is no file"},
+           {"list.json", "'list.json': is no report; expected the JSON of report accuracy, "},
+           {"plan.json other.json", "'other.json': is no report"},
+           {"half.json", "'half.json': is no report"},
+           {"plan.html", "'plan.html': is where its page would go"},
+           {"plan.json --out list.json", "report page: cannot write 'list.json': is a file"}}) {
+    INFO(arguments);
+    const Outcome outcome = run_with_page(folder, "report page " + arguments);
+    INFO(outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(contains(outcome.err, message));
+  }
+  for (const std::string command : {"report page plan.json", "report accuracy --quick"}) {
+    CHECK(contains(test::run_program(test::kProgram, folder, command, "MANYWORLDS_REPORT=no").err,
+                   "MANYWORLDS_REPORT is 'no', which is no file"));
+    CHECK(contains(
+        test::run_program(test::kProgram, folder, command, "MANYWORLDS_REPORT=list.json").err,
+        "'list.json': is no page of this version; expected report.html as viewer/ builds it"));
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "report"));
 }
 
 TEST_CASE("report throughput says when a folder has no peers", "[fast][cli][report]") {

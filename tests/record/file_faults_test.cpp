@@ -116,7 +116,9 @@ TEST_CASE("whatever fails while a report is written, both files are whole or as 
   const Folder folder;
   const fs::path page = folder / "plan.html", json = folder / "plan.json";
   const std::string new_page(100, 'p'), new_json(100, 'j');
-  const auto write = [&] { report::ReportFiles(folder.path(), "plan").write(new_page, new_json); };
+  const auto write = [&] {
+    report::ReportFiles(folder.path(), "plan", true).write(new_json, new_page);
+  };
   put_back(folder, {page, json}, existed);
   check_sweeps(folder.path(), write, [&](const std::string& message) {
     const bool failed = !message.empty();

@@ -28,6 +28,8 @@ std::string with_prefix(double value) {
   return three_digits(value) + std::string(kPrefixes[prefix]);
 }
 
+std::string speed_text(double per_second) { return with_prefix(per_second) + "/s"; }
+
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 std::string length(double meters) {

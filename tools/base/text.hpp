@@ -9,6 +9,9 @@ namespace manyworlds::tools {
 // Three significant digits and a prefix: "263 k", "12.3 M", "870", "0.5".
 std::string with_prefix(double value);
 
+// "1.25 M/s"
+std::string speed_text(double per_second);
+
 // Sixteen hexadecimal digits.
 std::string hex(std::uint64_t hash);
 

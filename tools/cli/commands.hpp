@@ -22,6 +22,7 @@ int report_accuracy_command(const ReportOptions& options);
 int report_stability_command(const ReportOptions& options);
 int report_plan_command(const ReportOptions& options);
 int report_throughput_command(const ReportOptions& options);
+int report_page_command(const ReportPageOptions& options);
 int info_command(bool json);
 int list_options_command(bool json);  // those of a scene, for --set
 

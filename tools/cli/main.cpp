@@ -45,6 +45,7 @@ struct AllOptions {
   ReplayArguments replay;
   ViewArguments view;
   ReportOptions report;
+  ReportPageOptions report_page;
 };
 
 constexpr const char* kAppFooter =
@@ -312,6 +313,20 @@ void add_report_options(CLI::App& app, ReportOptions& options, const std::string
   app.add_flag("--json", options.json, "print JSON instead of text");
 }
 
+void add_report_page(CLI::App& report, ReportPageOptions& options, int& code) {
+  CLI::App* page =
+      report.add_subcommand("page", "Make the pages of reports that were measured before");
+  page->add_option("file", options.files, "JSON of reports")->required()->type_name("FILE.json");
+  add_folder(*page, "--out", options.out, "for the pages (default: beside the JSON)");
+  page->footer(
+      "Examples:\n"
+      "  manyworlds report page report/accuracy.json\n"
+      "  manyworlds report page report/*.json --out pages\n"
+      "\n"
+      "For what was measured by a program that was built without pages, or before they changed.");
+  page->callback([&] { code = report_page_command(options); });
+}
+
 void add_report(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command =
       app.add_subcommand("report", "Measure accuracy, stability, plans and throughput");
@@ -372,6 +387,7 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "Peers step the same standard scenes alternately with manyworlds, in some 20 minutes, or\n"
       "one with --quick. A peer that fails is a line of the report.");
   throughput->callback([&] { code = report_throughput_command(all.report); });
+  add_report_page(*command, all.report_page, code);
 }
 
 void add_info(CLI::App& app, AllOptions& all, int& code) {

@@ -100,6 +100,11 @@ struct ReportOptions {
   bool json = false;
 };
 
+struct ReportPageOptions {
+  std::vector<std::string> files;  // JSON of reports
+  std::string out;                 // folder; empty: beside each
+};
+
 struct ReplayArguments {
   std::string file;
   JobOptions job;  // threads, isa, layout and json of it

@@ -1,24 +1,31 @@
-// `manyworlds report`: each report as a table for people, JSON, and a page that needs no network.
+// `manyworlds report`: each report as a table for people, JSON, and a page that viewer/ makes of
+// it.
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "built_page.hpp"
 #include "commands.hpp"
 #include "leftovers.hpp"
 #include "manyworlds/scenes.hpp"
 #include "progress.hpp"
+#include "report_page.hpp"
 #include "tools/base/interrupt.hpp"
 #include "tools/base/machine.hpp"
 #include "tools/base/tell.hpp"
+#include "tools/base/text.hpp"
 #include "tools/base/version.hpp"
 #include "tools/report/accuracy.hpp"
-#include "tools/report/page.hpp"
 #include "tools/report/plan_worth.hpp"
 #include "tools/report/report_files.hpp"
 #include "tools/report/stability.hpp"
@@ -27,15 +34,22 @@
 namespace manyworlds::cli {
 namespace {
 
-using tools::kVersion, tools::machine_line;
+using tools::kVersion, tools::machine_line, tools::speed_text;
 
 using Tell = std::function<void(const std::string&, double)>;
 
 // Made before there is anything to write, so that no work is lost to a name that cannot be one.
-report::ReportFiles files_of(const std::string& name, const ReportOptions& options) {
-  report::ReportFiles files(options.out, name);
+struct Output {
+  std::string name;
+  std::optional<std::string> blank;  // the page without a report, where there is one
+  report::ReportFiles files;
+};
+
+Output output_of(const std::string& name, const ReportOptions& options) {
+  std::optional<std::string> blank = read_report_page();
+  report::ReportFiles files(options.out, name, blank.has_value());
   tell_of_leftovers(files.leftovers(), {});
-  return files;
+  return {name, std::move(blank), std::move(files)};
 }
 
 // Runs `measure` with a progress bar.
@@ -52,31 +66,44 @@ auto run_report(const char* name, Measure measure) {
 }
 
 // Why the files could not be written; empty if they are.
-std::string write_files(const report::ReportFiles& files, const std::string& page,
-                        const std::string& json) {
+std::string write_files(const Output& output, const nlohmann::ordered_json& json) {
+  std::optional<std::string> page;
+  if (output.blank) page = page_of(*output.blank, json);
   try {
-    files.write(page, json);
+    output.files.write(json.dump(1) + "\n", page);
     return {};
   } catch (const std::runtime_error& error) {
     return error.what();
   }
 }
 
+std::string utc_now() {
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%MZ}", fmt::gmtime(now));
+}
+
+void tell_of_no_page(const report::ReportFiles& files) {
+  std::error_code ignored;
+  tools::tell("{}; then 'manyworlds report page {}' makes it{}\n", why_no_page(kReportPage),
+              tools::shell_word(files.json().string()),
+              std::filesystem::exists(files.page(), ignored)
+                  ? fmt::format(". {} is of an earlier report", files.page().string())
+                  : "");
+}
+
 // Files, and JSON or what `print` prints to standard output, which is not lost with the files.
 // Where it was interrupted there are none: those of an older, whole report stay.
 template <class Print>
-int finish_report(const std::string& name, const ReportOptions& options,
-                  const report::ReportFiles& files, nlohmann::ordered_json results,
-                  const std::string& page, Print print) {
-  nlohmann::ordered_json json = {{"report", name},
-                                 {"version", kVersion},
-                                 {"machine", machine_line()},
-                                 {"quick", options.quick},
-                                 {"results", std::move(results)}};
+int finish_report(const Output& output, const ReportOptions& options,
+                  nlohmann::ordered_json results, Print print) {
+  nlohmann::ordered_json json = {{"report", output.name},     {"version", kVersion},
+                                 {"machine", machine_line()}, {"date", utc_now()},
+                                 {"quick", options.quick},    {"results", std::move(results)}};
+  const report::ReportFiles& files = output.files;
   const bool whole = tools::interrupted() == 0;
   std::string failure;
   if (whole) {
-    failure = write_files(files, page, json.dump(1) + "\n");
+    failure = write_files(output, json);
   } else {
     json["interrupted"] = tools::interrupt_name();
   }
@@ -87,17 +114,22 @@ int finish_report(const std::string& name, const ReportOptions& options,
       fmt::print("{}\n", machine_line());
       print();
       if (whole && failure.empty()) {
-        fmt::print("\n{}\n{}\n", files.page().string(), files.json().string());
+        fmt::print("\n{}{}\n", output.blank ? files.page().string() + '\n' : "",
+                   files.json().string());
       }
     }
   } catch (const std::system_error&) {
     if (failure.empty()) throw;  // what comes first is told
   }
   if (!failure.empty()) throw InputError(failure);
-  if (whole) return kOk;
   std::fflush(stdout);
-  tools::tell("manyworlds: interrupted by {}; {} and {} are not written\n", tools::interrupt_name(),
-              files.page().string(), files.json().string());
+  if (whole) {
+    if (!output.blank) tell_of_no_page(files);
+    return kOk;
+  }
+  tools::tell("manyworlds: interrupted by {}; {}{} not written\n", tools::interrupt_name(),
+              output.blank ? files.page().string() + " and " : "",
+              files.json().string() + (output.blank ? " are" : " is"));
   return tools::interrupt_code();
 }
 
@@ -145,7 +177,7 @@ void print_stability(const std::vector<report::Verdict>& verdicts) {
 void print_worth(const std::vector<report::WorthRow>& rows) {
   std::string scene;
   for (const report::WorthRow& r : rows) {
-    if (r.scene != scene) fmt::print("\n{}: {}\n", r.scene, report::speed_text(r.plain));
+    if (r.scene != scene) fmt::print("\n{}: {}\n", r.scene, speed_text(r.plain));
     scene = r.scene;
     fmt::print("  {:<40} {:>6.2f}  {}\n", r.variant, r.worth,
                !r.holds.empty() ? r.holds
@@ -166,7 +198,7 @@ void print_throughput(const report::Throughput& result) {
     }
     sweep = r.sweep;
     fmt::print("  {:<24} {:<34} {:>10} {:>12} {:>12} {:>9.1f}%\n", r.scene, r.value, r.worlds,
-               report::speed_text(r.world_steps_per_s), r.bytes_per_world, 100 * r.bandwidth_share);
+               speed_text(r.world_steps_per_s), r.bytes_per_world, 100 * r.bandwidth_share);
   }
   if (result.peers) fmt::print("{}", report::peers_text(*result.peers));
 }
@@ -179,39 +211,35 @@ int report_accuracy_command(const ReportOptions& options) {
   check_names("--cases", options.cases, ids, "case");
   report::AccuracyOptions what;
   what.cases = options.cases, what.quick = options.quick;
-  const report::ReportFiles files = files_of("accuracy", options);
+  const Output output = output_of("accuracy", options);
   const tools::Interruptible interruptible;
   const auto results =
       run_report("accuracy", [&](const Tell& tell) { return report::run_accuracy(what, tell); });
-  return finish_report("accuracy", options, files, report::to_json(results),
-                       report::accuracy_page(results, machine_line()),
-                       [&] { print_accuracy(results); });
+  return finish_report(output, options, report::to_json(results), [&] { print_accuracy(results); });
 }
 
 int report_stability_command(const ReportOptions& options) {
   std::vector<std::string> ids;
   for (const report::Trial& t : report::stability_trials()) ids.push_back(t.id);
   check_names("--cases", options.cases, ids, "case");
-  const report::ReportFiles files = files_of("stability", options);
+  const Output output = output_of("stability", options);
   const tools::Interruptible interruptible;
   const auto verdicts = run_report("stability", [&](const Tell& tell) {
     return report::run_stability({options.cases, options.quick}, tell);
   });
-  return finish_report("stability", options, files, report::to_json(verdicts),
-                       report::stability_page(verdicts, machine_line()),
+  return finish_report(output, options, report::to_json(verdicts),
                        [&] { print_stability(verdicts); });
 }
 
 int report_plan_command(const ReportOptions& options) {
   check_names("--scenes", options.scenes, scene_names(), "scene");
-  const report::ReportFiles files = files_of("plan", options);
+  const Output output = output_of("plan", options);
   const tools::Interruptible interruptible;
   const auto rows = run_report("plan", [&](const Tell& tell) {
     return report::run_worth({options.scenes, options.quick}, tell);
   });
   const int code =
-      finish_report("plan", options, files, report::to_json(rows),
-                    report::worth_page(rows, machine_line()), [&] { print_worth(rows); });
+      finish_report(output, options, report::to_json(rows), [&] { print_worth(rows); });
   const bool wrong = std::any_of(rows.begin(), rows.end(), [](const report::WorthRow& r) {
     return r.must_be_same && !r.same_bits;
   });
@@ -221,14 +249,12 @@ int report_plan_command(const ReportOptions& options) {
 int report_throughput_command(const ReportOptions& options) {
   check_names("--scenes", options.scenes, scene_names(), "scene");
   if (!options.peers.empty()) report::find_peers(options.peers);  // says early what is wrong
-  const report::ReportFiles files = files_of("throughput", options);
+  const Output output = output_of("throughput", options);
   const tools::Interruptible interruptible;
   const auto result = run_report("throughput", [&](const Tell& tell) {
     return report::run_throughput({options.scenes, options.peers, options.quick}, tell);
   });
-  return finish_report("throughput", options, files, report::to_json(result),
-                       report::throughput_page(result, machine_line()),
-                       [&] { print_throughput(result); });
+  return finish_report(output, options, report::to_json(result), [&] { print_throughput(result); });
 }
 
 }  // namespace manyworlds::cli

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "built_page.hpp"
 #include "options.hpp"
 
 namespace manyworlds::cli {
@@ -22,21 +23,8 @@ namespace manyworlds::cli {
 namespace fs = std::filesystem;
 
 fs::path empty_page() {
-  std::error_code ignored;
-  if (const char* given = std::getenv("MANYWORLDS_VIEWER"); given != nullptr && *given != 0) {
-    if (fs::is_regular_file(given, ignored)) return given;
-    throw InputError(fmt::format("MANYWORLDS_VIEWER is '{}', which is no file", given));
-  }
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path prefix = program.parent_path().parent_path();
-  for (const fs::path& file :
-       {prefix / "share" / "manyworlds" / "viewer.html", prefix / "viewer" / "viewer.html"}) {
-    if (fs::is_regular_file(file, ignored)) return file;
-  }
-  throw InputError(
-      "view: the page was not built with this program: tools/viewer in the repository builds it, "
-      "with "
-      "Node 18 or later and npm; MANYWORLDS_VIEWER=viewer.html names one that is elsewhere");
+  if (const auto page = find_page(kViewerPage)) return *page;
+  throw InputError("view: " + why_no_page(kViewerPage));
 }
 
 namespace {

@@ -88,6 +88,5 @@ std::vector<CaseResult> run_accuracy(const AccuracyOptions& options,
                                      const std::function<void(const std::string&, double)>& tell);
 
 nlohmann::ordered_json to_json(const std::vector<CaseResult>& results);
-std::string accuracy_page(const std::vector<CaseResult>& results, const std::string& machine);
 
 }  // namespace manyworlds::report

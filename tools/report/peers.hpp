@@ -53,6 +53,5 @@ void run_peers(const PeerOptions& options,
 
 nlohmann::ordered_json to_json(const PeerScene& scene);
 std::string peers_text(const Peers& peers);
-std::string peers_html(const Peers& peers);  // a section of a page
 
 }  // namespace manyworlds::report

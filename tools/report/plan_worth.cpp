@@ -12,7 +12,6 @@
 #include "manyworlds/scenes.hpp"
 #include "tools/base/median.hpp"
 #include "tools/report/in_space.hpp"
-#include "tools/report/page.hpp"
 #include "tools/report/stability.hpp"
 
 namespace manyworlds::report {
@@ -63,6 +62,7 @@ WorthRow measure(const Variant& v, bool quick) {
   }
   WorthRow row{v.scene, v.name,        tools::median(speeds), tools::median(ratios),
                false,   v.must_be_same};
+  row.bodies = plain.bodies(0);
   const std::vector<double> a = moving_parts(plain), b = moving_parts(changed);
   row.same_bits =
       a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
@@ -271,34 +271,10 @@ nlohmann::ordered_json to_json(const std::vector<WorthRow>& rows) {
                    {"time_ratio", r.worth},
                    {"same_bits", r.same_bits},
                    {"must_be_same", r.must_be_same}});
+    if (r.bodies > 0) out.back()["bodies"] = r.bodies;
     if (!r.holds.empty()) out.back()["holds"] = r.holds;
   }
   return out;
-}
-
-std::string worth_page(const std::vector<WorthRow>& rows, const std::string& machine) {
-  std::string body =
-      "<p>Each variant steps alternately with the batch as it is by default, on one thread; the "
-      "ratio "
-      "is the median of (time of the variant / time as by default): 1.30 means that the "
-      "step takes 30 % longer with it. Bits are those of positions and velocities of all "
-      "worlds after the last step.</p>";
-  std::vector<std::vector<std::string>> lines;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const WorthRow& r = rows[i];
-    if (i == 0 || rows[i - 1].scene != r.scene) {
-      if (!lines.empty()) body += table(lines);
-      body += "<h2>" + escaped(r.scene) + "</h2><p>" + speed_text(r.plain) + " as by default.</p>";
-      lines = {{"variant", "ratio", r.holds.empty() ? "bits" : "at most in 10 s"}};
-    }
-    lines.push_back({r.variant, fmt::format("{:.2f}", r.worth),
-                     !r.holds.empty() ? r.holds
-                     : r.same_bits    ? "equal"
-                     : r.must_be_same ? "DIFFERENT"
-                                      : "its own"});
-  }
-  if (!lines.empty()) body += table(lines);
-  return page("What plans leave out", machine, body);
 }
 
 }  // namespace manyworlds::report

@@ -21,6 +21,7 @@ struct WorthRow {
   bool same_bits = false;  // of positions and velocities
   bool must_be_same = true;
   std::string holds = {};  // what it does, where that is what counts
+  int bodies = 0;          // of a world; 0: not told
 };
 
 struct WorthOptions {
@@ -39,6 +40,5 @@ double processor_seconds();
 std::vector<WorthRow> compare_joint_methods(bool quick);
 
 nlohmann::ordered_json to_json(const std::vector<WorthRow>& rows);
-std::string worth_page(const std::vector<WorthRow>& rows, const std::string& machine);
 
 }  // namespace manyworlds::report

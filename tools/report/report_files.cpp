@@ -29,20 +29,21 @@ void write(OutputFile& file, const std::string& text) {
 
 }  // namespace
 
-ReportFiles::ReportFiles(const fs::path& folder, const std::string& name)
+ReportFiles::ReportFiles(const fs::path& folder, const std::string& name, bool with_page)
     : page_(folder / (name + ".html")), json_(folder / (name + ".json")) {
   guarded([&] { make_folder(folder); }, "--out: ");
-  for (const fs::path& file : {page_, json_}) {
-    guarded([&] { const OutputFile trial(file); });
-  }
+  guarded([&] { const OutputFile trial(json_); });
+  if (with_page) guarded([&] { const OutputFile trial(page_); });
 }
 
-void ReportFiles::write(const std::string& page, const std::string& json) const {
+void ReportFiles::write(const std::string& json, const std::optional<std::string>& page) const {
   guarded([&] {
-    OutputFile page_file(page_), json_file(json_);
-    report::write(page_file, page);
+    std::optional<OutputFile> page_file;
+    if (page) page_file.emplace(page_);
+    OutputFile json_file(json_);
+    if (page) report::write(*page_file, *page);
     report::write(json_file, json);
-    page_file.commit();
+    if (page) page_file->commit();
     json_file.commit();
   });
 }

@@ -5,10 +5,7 @@
 #include <cmath>
 #include <variant>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "tools/report/page.hpp"
 
 namespace manyworlds::report {
 namespace {
@@ -52,9 +49,12 @@ std::vector<Setting> settings(bool quick) {
 }
 
 Verdict verdict_of(const Trial& trial, const Setting& setting) {
-  return {
-      trial.id, trial.title, trial.criterion, trial.unit, setting.name, trial.note, trial.limit, 0,
-      0,        false};
+  return {trial.id,    trial.title,
+          trial.group, trial.criterion,
+          trial.unit,  setting.name,
+          trial.note,  trial.limit,
+          0,           0,
+          false};
 }
 
 Verdict run_trial(const Trial& trial, const Setting& setting, int worlds) {
@@ -98,12 +98,6 @@ Verdict run_trial(const Trial& trial, const Setting& setting, int worlds) {
   for (int w = 0; w < worlds; ++w) out.lost += batch.status(w) == Status::ok ? 0 : 1;
   out.passed = out.lost == 0 && out.value <= trial.limit;
   return out;
-}
-
-std::string cell_text(const Verdict& v) {
-  const std::string value = std::isfinite(v.value) ? fmt::format("{:.2g}", v.value) : "not finite";
-  return (v.passed ? "pass " : "FAIL ") + value +
-         (v.lost > 0 ? fmt::format(", {} worlds lost", v.lost) : "");
 }
 
 }  // namespace
@@ -169,11 +163,21 @@ double Seen::fastest(int world) const {
 }
 
 std::vector<Trial> stability_trials() {
-  std::vector<Trial> out = contact_trials();
-  for (const auto& more : {joint_trials(), tree_trials(), motion_trials(), structure_trials(),
-                           law_trials(), size_trials(), impact_trials()}) {
-    out.insert(out.end(), more.begin(), more.end());
-  }
+  std::vector<Trial> out;
+  const auto add = [&](const char* group, std::vector<Trial> trials) {
+    for (Trial& t : trials) {
+      t.group = group;
+      out.push_back(std::move(t));
+    }
+  };
+  add("contacts", contact_trials());
+  add("joints", joint_trials());
+  add("trees of joints", tree_trials());
+  add("motion", motion_trials());
+  add("structures", structure_trials());
+  add("laws", law_trials());
+  add("sizes", size_trials());
+  add("impacts", impact_trials());
   return out;
 }
 
@@ -205,6 +209,7 @@ nlohmann::ordered_json to_json(const std::vector<Verdict>& verdicts) {
   for (const Verdict& v : verdicts) {
     out.push_back({{"id", v.id},
                    {"title", v.title},
+                   {"group", v.group},
                    {"criterion", v.criterion},
                    {"unit", v.unit},
                    {"limit", v.limit},
@@ -215,25 +220,6 @@ nlohmann::ordered_json to_json(const std::vector<Verdict>& verdicts) {
                    {"note", v.note}});
   }
   return out;
-}
-
-std::string stability_page(const std::vector<Verdict>& verdicts, const std::string& machine) {
-  std::vector<std::vector<std::string>> rows = {{"case", "must stay at or below"}};
-  std::string notes;
-  for (const Verdict& v : verdicts) {
-    if (rows.size() == 1 || rows.back()[0] != v.id + " " + v.title) {
-      rows.push_back(
-          {v.id + " " + v.title, fmt::format("{}: {:g} {}", v.criterion, v.limit, v.unit)});
-      if (!v.note.empty()) notes += "<li>" + escaped(v.id + ": " + v.note) + "</li>";
-    }
-    if (rows.size() == 2) rows[0].push_back(v.setting);
-    rows.back().push_back(cell_text(v));
-  }
-  return page("Stiff and extreme cases", machine,
-              "<p>The number is that of the worst of the worlds, which differ a little if the case "
-              "allows it; a world that "
-              "is lost fails its case.</p>" +
-                  table(rows) + (notes.empty() ? "" : "<ul>" + notes + "</ul>"));
 }
 
 }  // namespace manyworlds::report

@@ -44,6 +44,7 @@ class Seen {
 
 struct Trial {
   std::string id, title;
+  std::string group = {};       // that it is shown in
   std::string criterion, unit;  // what must stay at or below the limit
   double limit = 0;
   double seconds = 10;  // simulated
@@ -79,7 +80,7 @@ struct Setting {
 };
 
 struct Verdict {
-  std::string id, title, criterion, unit, setting, note;
+  std::string id, title, group, criterion, unit, setting, note;
   double limit = 0, value = 0;  // of the worst world
   int lost = 0;                 // worlds whose status is not ok
   bool passed = false;
@@ -103,6 +104,5 @@ std::vector<Verdict> run_stability(const StabilityOptions& options,
                                    const std::function<void(const std::string&, double)>& tell);
 
 nlohmann::ordered_json to_json(const std::vector<Verdict>& verdicts);
-std::string stability_page(const std::vector<Verdict>& verdicts, const std::string& machine);
 
 }  // namespace manyworlds::report

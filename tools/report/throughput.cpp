@@ -11,7 +11,6 @@
 #include "manyworlds/scenes.hpp"
 #include "tools/base/machine.hpp"
 #include "tools/base/text.hpp"
-#include "tools/report/page.hpp"
 
 namespace manyworlds::report {
 namespace {
@@ -121,15 +120,6 @@ std::vector<Job> jobs_of(const ThroughputOptions& options) {
   return out;
 }
 
-std::string stages_text(const ThroughputRow& row) {
-  std::string out;
-  for (const auto& [stage, share] : row.stages) {
-    if (share < 0.01) continue;
-    out += fmt::format("{}{} {:.0f} %", out.empty() ? "" : ", ", stage, 100 * share);
-  }
-  return out;
-}
-
 }  // namespace
 
 // Throws Interrupted; what was measured until then is in `out`.
@@ -192,45 +182,6 @@ nlohmann::ordered_json to_json(const Throughput& result) {
     out["peer_failures"] = p.failures;
   }
   return out;
-}
-
-std::string throughput_page(const Throughput& result, const std::string& machine) {
-  std::string body = fmt::format(
-      "<p>One thread of this machine multiplies and adds at {:.0f} GFLOP/s (float32) and copies "
-      "memory at {:.0f} GB/s, read and written. The last column is the share of that which reading "
-      "and writing the state of each world once a step would take; beyond 100 % it lies in a "
-      "cache. "
-      "Each row is the fastest of three runs or more of the same steps, after 60 to warm up; the "
-      "hash "
-      "is that after those.</p>",
-      result.limits.gflops, result.limits.gigabytes_per_s);
-  std::vector<std::vector<std::string>> lines;
-  std::string stages;
-  const auto flush = [&] {
-    if (!lines.empty()) body += table(lines);
-    body += stages;
-    lines.clear(), stages.clear();
-  };
-  for (std::size_t i = 0; i < result.rows.size(); ++i) {
-    const ThroughputRow& r = result.rows[i];
-    if (i == 0 || result.rows[i - 1].sweep != r.sweep) {
-      flush();
-      body += "<h2>By " + escaped(r.sweep) + "</h2>";
-      lines = {{"scene", r.sweep, "worlds", "threads", "world-steps", "body-steps",
-                "bytes per world", "of memory", "hash"}};
-    }
-    lines.push_back({r.scene, r.value, std::to_string(r.worlds), std::to_string(r.threads),
-                     speed_text(r.world_steps_per_s), speed_text(r.body_steps_per_s),
-                     std::to_string(r.bytes_per_world),
-                     fmt::format("{:.1f} %", 100 * r.bandwidth_share), tools::hex(r.hash)});
-    if (!r.stages.empty()) {
-      stages += fmt::format("<p>{}, {} worlds: {}.</p>", escaped(r.scene), r.worlds,
-                            escaped(stages_text(r)));
-    }
-  }
-  flush();
-  if (result.peers) body += peers_html(*result.peers);
-  return page("Throughput", machine, body);
 }
 
 }  // namespace manyworlds::report

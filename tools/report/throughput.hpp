@@ -50,6 +50,5 @@ Throughput run_throughput(const ThroughputOptions& options,
                           const std::function<void(const std::string&, double)>& tell);
 
 nlohmann::ordered_json to_json(const Throughput& result);
-std::string throughput_page(const Throughput& result, const std::string& machine);
 
 }  // namespace manyworlds::report

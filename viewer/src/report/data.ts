@@ -1,0 +1,107 @@
+// The JSON of `manyworlds report`, as the program puts it into the page.
+
+export interface Report<Results> {
+  report: string;
+  version: string;
+  machine: string;
+  date?: string; // UTC
+  quick: boolean;
+  results: Results;
+}
+
+export type Precision = 'f32' | 'f64';
+
+export interface AccuracyPoint {
+  method: string;
+  precision: Precision;
+  step_s: number;
+  error: number | null; // null: the world was lost
+  us_per_world: number;
+  steps_per_s: number;
+}
+
+export interface Published {
+  engine: string;
+  step_s: number;
+  error: number | null;
+  seconds: number | null; // of wall time, there
+}
+
+export interface AccuracyCase {
+  id: string;
+  title: string;
+  metric: string;
+  unit: string;
+  level: number; // the error that is asked for
+  simulated_s: number;
+  points: AccuracyPoint[];
+  cheapest_at_level: AccuracyPoint[];
+  published: Published[];
+}
+
+export interface Verdict {
+  id: string;
+  title: string;
+  group?: string;
+  criterion: string;
+  unit: string;
+  limit: number;
+  setting: string;
+  value: number | null; // of the worst world; null: not finite
+  lost_worlds: number;
+  passed: boolean;
+  note: string;
+}
+
+export interface WorthRow {
+  scene: string;
+  variant: string;
+  bodies?: number;
+  world_steps_per_s: number; // as by default
+  time_ratio: number; // of the variant, by that as by default
+  same_bits: boolean;
+  must_be_same: boolean;
+  holds?: string;
+}
+
+export interface ThroughputRow {
+  sweep: string;
+  scene: string;
+  value: string;
+  worlds: number;
+  threads: number;
+  world_steps_per_s: number;
+  body_steps_per_s: number;
+  bytes_per_world: number;
+  bandwidth_share: number;
+  stage_split: Record<string, number>;
+  hash: string;
+}
+
+export interface PeerErrors {
+  worst_overlap_m: number | null;
+  worst_gap_m: number | null;
+}
+
+export interface PeerEngine extends PeerErrors {
+  engine: string;
+  version: string;
+  world_steps_per_s: number;
+  ratio: number; // how often as fast manyworlds is
+  settings: string;
+}
+
+export interface PeerScene extends PeerErrors {
+  scene: string;
+  world_steps_per_s: number;
+  engines: PeerEngine[];
+}
+
+export interface Throughput {
+  gflops: number;
+  gigabytes_per_s: number;
+  rows: ThroughputRow[];
+  peer_protocol?: { worlds: number; steps: number; rounds: number };
+  peers?: PeerScene[];
+  peer_failures?: string[];
+}

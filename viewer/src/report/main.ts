@@ -1,0 +1,24 @@
+// The page of a report: reads what the program put into it, and shows it by its kind.
+import { element } from '../elements';
+import { accuracyPage } from './accuracy';
+import type { Report } from './data';
+import { make } from './dom';
+import { planPage } from './plan';
+import { stabilityPage } from './stability';
+import { throughputPage } from './throughput';
+
+const PAGES: Record<string, (report: Report<any>) => void> = {
+  accuracy: accuracyPage, stability: stabilityPage, plan: planPage, throughput: throughputPage,
+};
+
+const data = document.getElementById('mw-report');
+if (data === null) {
+  element('main').append(make('p', { class: 'fail' }, 'There is no report in this page: `manyworlds report` puts one in.'));
+} else {
+  try {
+    const report = JSON.parse(data.textContent ?? '') as Report<unknown>;
+    PAGES[report.report](report);
+  } catch (error) {
+    element('main').append(make('p', { class: 'fail' }, `This report cannot be shown whole, it may be of another version: ${error}`));
+  }
+}
