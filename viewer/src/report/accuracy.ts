@@ -132,6 +132,6 @@ export function accuracyPage(report: Report<AccuracyCase[]>): void {
     section(`${c.id} ${c.title}`, [
       make('p', {}, `Error: ${c.metric} (${c.unit}), after ${short(c.simulated_s)} s.`),
       picture(c), levelTable(c), published(c), allPoints(c),
-    ], { tally: { passed: Number(passed), failed: Number(!passed) } });
+    ], { name: c.id, tally: { passed: Number(passed), failed: Number(!passed) } });
   }
 }

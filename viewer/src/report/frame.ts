@@ -15,7 +15,13 @@ export interface Tally {
   failed: number;
 }
 
-let sections = 0;
+// What a link may end with, "#By-worlds": the same in every report of a kind.
+function anchorOf(label: string): string {
+  const name = label.replace(/[^\w.-]+/g, '-');
+  let out = name;
+  for (let i = 2; document.getElementById(out) !== null; ++i) out = `${name}-${i}`;
+  return out;
+}
 
 function tallyText({ passed, failed }: Tally): HTMLElement {
   return failed > 0
@@ -23,9 +29,16 @@ function tallyText({ passed, failed }: Tally): HTMLElement {
     : make('span', { class: 'pass' }, passed > 0 ? 'PASS' : '');
 }
 
-// A part of the page with a line in the contents. `level` 3 is below the last of level 2.
-export function section(heading: string, children: Child[], { level = 2, tally = undefined as Tally | undefined, label = heading } = {}): HTMLElement {
-  const id = `s${++sections}`;
+interface Place {
+  level?: 2 | 3; // 3 is below the last of level 2
+  tally?: Tally;
+  label?: string; // in the contents, if not the heading
+  name?: string; // in links, if not the label
+}
+
+// A part of the page with a line in the contents.
+export function section(heading: string, children: Child[], { level = 2, tally, label = heading, name }: Place = {}): HTMLElement {
+  const id = anchorOf(name ?? label);
   const link = make('a', { href: `#${id}` }, label);
   element('contents-list').append(make('li', { class: `level${level}` }, link, tally ? tallyText(tally) : null));
   const out = make('section', { id }, make(level === 2 ? 'h2' : 'h3', {}, heading, tally ? tallyText(tally) : null));
