@@ -100,8 +100,8 @@ test('accuracy: curves, the cheapest to an error, and cases that none reaches', 
   const view = await open(file);
   const [passed, failed] = await view.totals();
   const reached = report.results.filter((c) => c.cheapest_at_level.length > 0).length;
-  assert.equal(passed, `${reached} cases PASS`);
-  assert.equal(failed, `${report.results.length - reached} cases FAIL`);
+  assert.equal(passed, `${reached} PASS: error reached`);
+  assert.equal(failed, `${report.results.length - reached} FAIL: not reached`);
   const told = await view.hover('A4: error against run time', '[aria-label=dot] circle');
   assert.match(told, /method .+, f(32|64).*step [\d.]+ ms.*error [\d.e-]+ m.*run time [\d.]+ [mµ]?s/);
   // A method that is hidden has no line any more.
@@ -116,7 +116,7 @@ test('accuracy: curves, the cheapest to an error, and cases that none reaches', 
 
   report.results[0].cheapest_at_level = [];
   const other = await open(pageOf(report, 'unreached'));
-  assert.equal((await other.totals())[1], `${report.results.length - reached + 1} cases FAIL`);
+  assert.equal((await other.totals())[1], `${report.results.length - reached + 1} FAIL: not reached`);
   await other.page.locator('#only-failures').click();
   const visible = await other.page.$$eval('main section', (all) => all.filter((e) => e.offsetParent !== null).map((e) => e.querySelector('h2').innerText));
   assert.ok(visible.some((text) => text.startsWith('A3 ')) && !visible.some((text) => text.endsWith('PASS')), visible.join());
@@ -191,7 +191,7 @@ test('throughput: sweeps, the same bits, and other engines', async () => {
   const changed = pageOf(report, 'peers');
   const other = await open(changed);
   assert.equal((await other.totals())[1], '1 FAIL: different bits');
-  assert.equal((await other.totals())[2], '1 engines that failed');
+  assert.equal((await other.totals())[2], '1 FAIL: other engines');
   assert.match(await other.hover('Speed beside other engines', '[aria-label=dot] circle'), /engine .*speed [\d.]+ [kM]\/s.*worst (overlap 4 mm|gap 10 mm)/);
   assert.equal(await other.page.getByText('peer_bad failed: it fell over').count(), 1);
   await other.close();

@@ -43,6 +43,9 @@ export function powerOfTen(value: number): string {
   return `10${exponent < 0 ? '⁻' : ''}${raised}`;
 }
 
+// "m^2/s^2" with raised digits
+export const raised = (text: string): string => text.replace(/\^(\d)/g, (_, digit: string) => RAISED[Number(digit)]);
+
 export function counted(count: number, noun: string, many = `${noun}s`): string {
   return `${count} ${count === 1 ? noun : many}`;
 }

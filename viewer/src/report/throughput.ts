@@ -118,7 +118,7 @@ export function throughputPage(report: Report<Throughput>): void {
   totals([
     { count: String(same), label: 'PASS: same bits', mark: true },
     { count: String(groups.length - same), label: 'FAIL: different bits', mark: groups.length === same },
-    ...(peers ? [{ count: String(broken), label: 'engines that failed', mark: broken === 0 }] : []),
+    ...(peers ? [{ count: String(broken), label: 'FAIL: other engines', mark: broken === 0 }] : []),
     ...(best ? [{ count: perSecond(best.body_steps_per_s), label: `body-steps at most (${best.scene})` }] : []),
   ]);
   const choice = make('select', { id: 'metric' }, METRICS.map(({ name }) => make('option', {}, name)));
