@@ -55,7 +55,7 @@ from .state_view import View
 from . import pickling as _pickling  # of the values above; isort: skip
 
 if TYPE_CHECKING:
-    from . import record
+    from . import record, search
 
 __all__ = [
     "Action",
@@ -129,6 +129,6 @@ __all__ += surfaces.__all__
 
 
 def __getattr__(name: str) -> Any:
-    if name == "record":  # which loads HDF5
-        return import_module(".record", __name__)
+    if name in ("record", "search"):  # the first loads HDF5
+        return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

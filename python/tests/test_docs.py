@@ -1,4 +1,4 @@
-"""The examples of README.md, docs/python.md and docs/robots.md run."""
+"""The examples of README.md, docs/python.md, docs/robots.md and docs/search.md run."""
 
 import importlib.util
 import re
@@ -28,6 +28,26 @@ def test_robots():
         exec(code.replace("1024", "16"), places)
     assert places["q"].shape == (16, 2, 1) and np.isfinite(places["q"]).all()
     assert len(np.unique(places["q"])) == 2
+
+
+def test_searches(tmp_path, monkeypatch):
+    for package in ("cma", "scipy", "pyarrow"):
+        pytest.importorskip(package)
+    if importlib.util.find_spec("manyworlds._record") is None:
+        pytest.skip("built without HDF5")
+    monkeypatch.chdir(tmp_path)
+    places = {}
+    for code in examples("docs/search.md"):
+        code = code.replace("candidates=1000", "candidates=100").replace("run(15, ", "run(4, ")
+        code = code.replace('"speed": 20, "angle": 15', '"speed": 4, "angle": 5')
+        code = code.replace("((500,", "((60,").replace("CmaEs(256)", "CmaEs(32)")
+        if "write_page" in code and not (Path(mw.__file__).parent / "viewer.html").is_file():
+            code = "\n".join(line for line in code.splitlines() if "write_page" not in line)
+        exec(code, places)
+    best = places["found"].best
+    assert best.value > 25 and places["again"].hashes[0] == best.hash
+    assert len(places["design"].results) == 60 and len(places["by_hand"].results) == 500
+    assert places["annealed"].best.value > 20 and places["shots"].results.best.value > 2
 
 
 def test_the_manual(tmp_path, monkeypatch):
