@@ -1,6 +1,6 @@
 """A gait by CMA-ES: 4,096 candidates run at once, one world each.
 
-    pip install "manyworlds[gym,mjcf]" cma
+    pip install "manyworlds[gym,mjcf,search]"
     python gait_search.py
 
 The robot is Gymnasium's HalfCheetah-v5. Hips, knees and ankles follow sines, the fore leg with a lag behind the
@@ -10,15 +10,14 @@ of the task, so that worlds work it out in their lanes.
 """
 
 import argparse
-import time
 from collections.abc import Sequence
 from typing import Any
 
-import cma
 import numpy as np
 from numpy.typing import NDArray
 
 import manyworlds as mw
+from manyworlds import search
 from manyworlds.gym import mujoco
 
 Array = NDArray[Any]
@@ -53,15 +52,6 @@ def runner() -> mw.Task:
     return task
 
 
-def run(env: mw.Environment, numbers: Array, steps: int, seed: int) -> Array:
-    """(worlds,): how far each came, m."""
-    env.reset(seeds=seed)
-    actions = np.ascontiguousarray(np.broadcast_to(numbers, env.action_shape), np.float32)
-    for _ in range(steps):
-        env.step(actions)
-    return env.infos[:, env.info_names.index("x_position")].copy()
-
-
 def main(argv: Sequence[str] | None = None) -> tuple[list[float], Array]:
     """Median distance of each generation, and how far the gait that was found goes in every world, m."""
     p = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
@@ -73,38 +63,28 @@ def main(argv: Sequence[str] | None = None) -> tuple[list[float], Array]:
     o = p.parse_args(argv)
 
     task = runner()
-    n, steps = o.candidates, round(o.seconds / (task.frame_skip * task.scene.options.dt))
-    env = mw.Environment(task, n, threads=o.threads, autoreset="disabled")
-    low, high = (np.array([getattr(a, end) for a in task.actions]) for end in ("low", "high"))
-    search = cma.CMAEvolutionStrategy(
-        np.full(len(low), 0.5),
-        0.25,
-        {"popsize": n, "CMA_mu": n // 10, "bounds": [0, 1], "seed": o.seed, "verbose": -9},
+    space = search.Space(*(search.Parameter(a.name, a.low, a.high) for a in task.actions))
+    steps = round(o.seconds / (task.frame_skip * task.scene.options.dt))
+
+    def distance(run: search.Run) -> Array:
+        return run.info("x_position")  # m
+
+    trial = search.TaskTrial(task, space, distance, steps=steps, threads=o.threads)
+    # Each candidate from a beginning of its own: what is good must be so from others, too.
+    hunt = search.Search(
+        trial, search.CmaEs(o.candidates), "maximize", seed=o.seed, seeds="candidate"
     )
-    history = []
-    for generation in range(o.generations):
-        tried = np.array(search.ask())
-        began = time.perf_counter()
-        # Each generation from beginnings of its own: what is good must be so from others, too.
-        far = run(env, low + (high - low) * tried, steps, o.seed + n * generation)
-        wall = time.perf_counter() - began
-        search.tell(tried, -far)
-        history.append(float(np.median(far)))
-        print(
-            f"generation {generation}: {history[-1]:.2f} m in the median, {far.max():.2f} m at most; {wall:.1f} s",
-            flush=True,
-        )
+    found = hunt.run(o.generations, on_generation=print)
     # The middle of what the search keeps to: the best of all was lucky, too.
-    found = low + (high - low) * search.result.xfavorite
-    print(
-        ", ".join(f"{a.name.replace(', ', ' in ')}: {x:.3f}" for a, x in zip(task.actions, found))
-    )
-    far = run(env, found, steps, o.seed + 1_000_000)
+    middle = hunt.mean
+    assert middle is not None
+    print(", ".join(f"{name.replace(', ', ' in ')}: {x:.3f}" for name, x in middle.items()))
+    n = o.candidates
+    far = trial.evaluate([space.row(middle)] * n, np.arange(n) + o.seed + 1_000_000).values
     print(
         f"from {n} other beginnings: {np.median(far):.2f} m in the median, {far.min():.2f} to {far.max():.2f}"
     )
-    env.close()
-    return history, far
+    return [float(np.median(g.value)) for g in found.generations], far
 
 
 if __name__ == "__main__":

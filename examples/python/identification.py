@@ -1,6 +1,6 @@
 """System identification: friction and damping of a robot from a recording of its motion, by CMA-ES.
 
-    pip install manyworlds cma
+    pip install "manyworlds[search]"
     python identification.py
 
 A cheetah with hidden friction under its feet and hidden damping in its six joints moves under known torques; its
@@ -13,41 +13,32 @@ there are in which a search gets stuck.
 
 import argparse
 import tempfile
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import cma
 import numpy as np
 from numpy.typing import NDArray
 
 import manyworlds as mw
-from manyworlds import record
+from manyworlds import record, search
 
 JOINTS = "hip_hind", "knee_hind", "ankle_hind", "hip_fore", "knee_fore", "ankle_fore"
 EVERY = 2  # steps between two samples
-MOST = np.log(4)  # of the logarithm by which a number differs from the guess
 Array = NDArray[Any]
 
 
-def robot() -> tuple[mw.Scene, Array]:
-    """What may differ from world to world is declared, and guessed as the model has it."""
-    scene = mw.scenes.load("cheetah")
-    joints = [scene.joints[int(scene.joint(name))] for name in JOINTS]
-    damping = [joint.dynamics.damping for joint in joints]
-    scene.add(mw.vary("friction", 0.1, 2, draw="none"))
+def numbers(scene: mw.Scene) -> search.Space:
+    """Friction of everything, and the damping of each joint; a quarter to four times what the model has."""
+    friction = search.Parameter(
+        "friction", 0.45 / 4, 0.45 * 4, "log", sets=search.Number("friction")
+    )
+    damping = []
     for name in JOINTS:
-        scene.add(mw.vary("damping", 0.3, 30, draw="none", joint=name))
-    return scene, np.array([0.45, *damping])
-
-
-def give(batch: mw.Batch, numbers: Array) -> None:
-    """(worlds, 7): of each world the friction, and the damping of its joints in N m s/rad."""
-    damping = batch.get("damping")
-    damping[:, [int(batch.plan.joint(name)) for name in JOINTS], 0] = numbers[:, 1:]
-    batch.set("damping", damping)
-    batch.set("friction", numbers[:, :1, None])
+        guess = scene.joints[int(scene.joint(name))].dynamics.damping
+        sets = search.Number("damping", joint=name)
+        damping.append(search.Parameter(name, guess / 4, guess * 4, "log", sets=sets))
+    return search.Space(friction, *damping)
 
 
 def torques(steps: int, dt: float, random: np.random.Generator) -> Array:
@@ -56,18 +47,6 @@ def torques(steps: int, dt: float, random: np.random.Generator) -> Array:
     rate, phase = random.uniform(0.7, 2.5, (3, 1, 6)), random.uniform(0, 2 * np.pi, (3, 1, 6))
     waves: Array = 0.4 * np.sin(2 * np.pi * rate * t + phase).sum(axis=0)
     return np.clip(waves, -1, 1)[:, None]
-
-
-def recording(scene: mw.Scene, hidden: Array, controls: Array) -> Array:
-    """(samples, coordinates): the motion, from a file."""
-    with tempfile.TemporaryDirectory() as folder, mw.Batch(scene, 1, threads=1) as real:
-        give(real, hidden[None])
-        file = Path(folder) / "motion.h5"
-        with record.Recorder(real, file, every=EVERY):
-            for row in controls:
-                real.step(1, controls=row)
-        with record.Recording(file) as motion:
-            return motion.get("generalized_position")[1:, 0, :, 0]
 
 
 def main(argv: Sequence[str] | None = None) -> dict[str, tuple[float, float]]:
@@ -81,42 +60,36 @@ def main(argv: Sequence[str] | None = None) -> dict[str, tuple[float, float]]:
     p.add_argument("--threads", type=int)
     o = p.parse_args(argv)
 
-    scene, guess = robot()
+    scene = mw.scenes.load("cheetah")
+    space, steps = numbers(scene), round(o.seconds / scene.options.dt)
     random = np.random.default_rng(o.seed)
-    controls = torques(round(o.seconds / scene.options.dt), scene.options.dt, random)
-    hidden = guess * np.exp(random.uniform(-0.7, 0.7, len(guess)))  # half to twice
-    seen = recording(scene, hidden, controls)
-    seen = seen + o.noise * random.normal(size=seen.shape)
-    batch = mw.Batch(scene, o.candidates, threads=o.threads)
+    controls = torques(steps, scene.options.dt, random)
+    hidden = space.named(space.values([random.uniform(0.25, 0.75, len(space))])[0])  # half to twice
+    motion = "generalized_position"
+    seen = np.zeros((steps // EVERY, scene.compile().coordinates))
 
-    def errors(numbers: Array) -> Array:
+    def error(run: search.Run) -> Array:
         """(worlds,): root mean square of how far motions are from what was seen, m and rad alike."""
-        batch.reset()
-        give(batch, numbers)
-        fields = ["generalized_position"]
-        motion = batch.rollout(None, controls=controls, fields=fields, every=EVERY)[fields[0]]
-        found: Array = np.sqrt(np.mean((motion[..., 0] - seen[:, None]) ** 2, axis=(0, 2)))
+        off = run.fields[motion][..., 0] - seen[:, None]
+        found: Array = np.sqrt(np.mean(off**2, axis=(0, 2)))
         return found
 
-    search = cma.CMAEvolutionStrategy(
-        np.zeros(len(guess)),
-        0.4,
-        {"popsize": o.candidates, "CMA_mu": o.candidates // 10, "bounds": [-MOST, MOST],
-         "seed": o.seed, "verbose": -9},
+    trial = search.Trial(
+        scene, space, error, steps, controls=controls, fields=[motion], every=EVERY, threads=o.threads
     )  # fmt: skip
-    began = time.perf_counter()
-    for generation in range(o.generations):
-        tried = np.array(search.ask())
-        error = errors(guess * np.exp(tried))
-        search.tell(tried, error)
-        if generation % 5 == 4:
-            wall = time.perf_counter() - began
-            print(f"generation {generation}: off by {error.min():.4f} m and rad, {wall:.1f} s")
-    batch.close()
-    found = guess * np.exp(search.result.xfavorite)
-    for name, a, b in zip(("friction", *JOINTS), hidden, found):
+    with tempfile.TemporaryDirectory() as folder:
+        file, _ = trial.record(hidden, 0, Path(folder) / "motion.h5", every=EVERY)
+        with file:
+            seen[:] = file.get(motion)[1:, 0, :, 0]
+    seen += o.noise * random.normal(size=seen.shape)
+    hunt = search.Search(trial, search.CmaEs(o.candidates, sigma=0.15), seed=o.seed)
+    hunt.run(o.generations, on_generation=lambda g: print(g) if g.index % 5 == 4 else None)
+    found = hunt.mean
+    assert found is not None
+    for name, a in hidden.items():
+        b = found[name]
         print(f"{name:10}  hidden {a:7.4f}  found {b:7.4f}  {100 * (b / a - 1):+.2f} %")
-    return {name: (a, b) for name, a, b in zip(("friction", *JOINTS), hidden, found)}
+    return {name: (a, found[name]) for name, a in hidden.items()}
 
 
 if __name__ == "__main__":

@@ -54,6 +54,86 @@ def test_friction_and_damping_are_found_in_a_recording():
         assert found == pytest.approx(hidden, rel=0.02), name
 
 
+def statics(bridge, thick):
+    """Forces in the bars of the bridge, N, by the equilibrium of its nodes: no dynamics."""
+    nodes, bars = bridge.nodes(), np.array(bridge.bars())
+    along = nodes[bars[:, 1]] - nodes[bars[:, 0]]
+    length = np.hypot(*along.T)
+    disc = np.pi * bridge.NODE**2 * bridge.DEPTH * bridge.IRON
+    down = np.full(len(nodes), disc)
+    down[1 : bridge.PANELS] += bridge.CRATE
+    weights = thick * length * bridge.DEPTH * bridge.DENSITY / 2
+    np.add.at(down, bars, np.stack([weights, weights], axis=1))
+    at = np.zeros((len(nodes), 2, len(bars) + 3))
+    for i, (a, b) in enumerate(bars):
+        at[a, :, i], at[b, :, i] = along[i] / length[i], -along[i] / length[i]
+    at[0, 0, -3] = at[0, 1, -2] = at[bridge.PANELS, 1, -1] = 1  # pin and roller
+    load = np.stack([0 * down, down * bridge.GRAVITY], axis=1)
+    forces = np.linalg.solve(at.reshape(2 * len(nodes), -1), load.reshape(-1))
+    return forces[: len(bars)], length
+
+
+def test_a_bridge_bears_its_load_with_little_mass():
+    pytest.importorskip("cma")
+    bridge = example("bridge")
+    best = bridge.main("--candidates 128 --generations 30 --threads 1".split()).best
+
+    def needed(thick):
+        force, length = statics(bridge, thick)
+        area = np.abs(force) / bridge.STRENGTH / bridge.DEPTH
+        push = np.maximum(-force, 0)
+        slender = 12 * push * length**2 / (np.pi**2 * bridge.STIFFNESS * bridge.DEPTH)
+        return np.maximum(0.003, np.maximum(area, np.cbrt(slender)))
+
+    found = np.array([best.values[g] for g in bridge.groups()])
+    assert (found > 0.97 * needed(found)).all()
+    thick = found
+    for _ in range(30):  # every bar as thick as it has to be, its own weight considered
+        thick = needed(thick)
+    least = (thick * statics(bridge, thick)[1]).sum() * bridge.DEPTH * bridge.DENSITY
+    assert 0.97 * least < best.value < 1.1 * least
+
+
+def test_a_launcher_hits_its_mark(tmp_path):
+    pytest.importorskip("cma")
+    launcher = example("launcher")
+    short = f"--candidates 128 --generations 8 --threads 1 --mark 40 --table {tmp_path}/a.parquet"
+    if importlib.util.find_spec("pyarrow") is None:
+        short = short.split(" --table")[0]
+    found = launcher.main(short.split())
+    assert found.best.violation == 0 and 150 < found.best.values["counterweight"] < 400
+    ok = [g.value[g.status == 0].min(initial=np.inf) for g in found.generations]
+    assert ok[-1] < 1.2 * min(ok) and len(found) == 1024
+
+
+def test_a_walker_gets_on():
+    pytest.importorskip("cma")
+    short = "--candidates 128 --generations 6 --seconds 1.5 --threads 1"
+    found = example("walker").main(short.split())
+    medians = [np.median(g.value[g.status == 0]) for g in found.generations]
+    assert medians[-1] > medians[0] + 0.1 and found.best.value > 0.8
+
+
+def test_limbs_are_as_long_as_their_worlds_want_them():
+    """Standing, with the weight on them: off by what their springs give, some millimetres."""
+    walker, search = example("walker"), pytest.importorskip("manyworlds.search")
+    space, seen = walker.make_space(), []
+
+    def drive(run):
+        run.batch.step(200)
+        return {}
+
+    def lengths(run):
+        seen.append(run.batch.get("generalized_position")[:, [4, 6, 8, 10], 0] + walker.LENGTH)
+        return np.zeros(run.batch.worlds)
+
+    with search.Trial(walker.make_scene(), space, lengths, begin=walker.stand, drive=drive) as t:
+        wanted = np.array([[0.25, 0.5, 0.35, 0.4], [0.4, 0.4, 0.4, 0.4], [0.3, 0.3, 0.25, 0.35]])
+        rest = np.tile(space.values([[0.5] * len(space)])[0, 4:], (3, 1))
+        assert not t.evaluate(np.concatenate([wanted, rest], axis=1), 0).lost.any()
+    assert np.abs(seen[-1] - wanted).max() < 0.01
+
+
 def test_every_task_has_a_picture(tmp_path):
     pytest.importorskip("matplotlib")
     example("gallery").main(["--steps", "2", "--out", str(tmp_path / "tasks.png")])
