@@ -95,15 +95,15 @@ def test_a_bridge_bears_its_load_with_little_mass():
 
 
 def test_a_launcher_hits_its_mark(tmp_path):
+    """There is another way, which takes 691 kg and lets go on the way up."""
     pytest.importorskip("cma")
-    launcher = example("launcher")
-    short = f"--candidates 128 --generations 8 --threads 1 --mark 40 --table {tmp_path}/a.parquet"
-    if importlib.util.find_spec("pyarrow") is None:
-        short = short.split(" --table")[0]
-    found = launcher.main(short.split())
-    assert found.best.violation == 0 and 150 < found.best.values["counterweight"] < 400
-    ok = [g.value[g.status == 0].min(initial=np.inf) for g in found.generations]
-    assert ok[-1] < 1.2 * min(ok) and len(found) == 1024
+    short = "--candidates 300 --generations 10 --threads 1".split()
+    if importlib.util.find_spec("pyarrow") is not None:
+        short += ["--table", str(tmp_path / "all.parquet")]
+    best = example("launcher").main(short).best
+    assert best.violation == 0
+    assert best.value == best.values["counterweight"] == pytest.approx(391, rel=0.02)
+    assert len(list(tmp_path.iterdir())) == len(short) // 7
 
 
 def test_a_walker_gets_on():

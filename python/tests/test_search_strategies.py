@@ -5,6 +5,7 @@ import pytest
 
 from manyworlds import search
 from manyworlds.search import Parameter, Space
+from manyworlds.search.strategies import _folded, _unfolded
 from test_search import SPACE, STRATEGIES, needs
 
 
@@ -113,6 +114,17 @@ def test_cma_finds_a_minimum_and_is_done():
     assert hunt.results.best.value < 1e-6 and hunt.strategy.why_done
     with pytest.raises(ValueError, match="start_at of 'a' is 7, must be -3 to 3"):
         search.Search(space, search.CmaEs(24, start_at={"a": 7}))
+
+
+def test_what_leaves_its_range_is_folded_back():
+    x = np.linspace(-3, 3, 60_001)
+    y = _folded(x)
+    assert y.min() == 0 and y.max() == 1 and np.abs(np.diff(y)).max() < 1.0001e-4  # no jumps
+    assert (np.diff(y)[np.abs(x[1:] - 0.5) < 0.59] > 0).all()
+    middle = np.abs(x - 0.5) < 0.4
+    np.testing.assert_allclose(y[middle], x[middle], atol=1e-12)
+    points = np.linspace(0, 1, 101)
+    np.testing.assert_allclose(_folded(_unfolded(points)), points, atol=1e-12)
 
 
 def test_other_strategies_and_evaluators_fit():
