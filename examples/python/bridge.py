@@ -55,7 +55,7 @@ def groups() -> list[str]:
 
 def make_scene() -> mw.Scene:
     scene = mw.Scene(name="bridge", space="planar")
-    scene.options = mw.Options(gravity=(0, -GRAVITY, 0), substeps=8)
+    scene.options = mw.Options(gravity=(0, -GRAVITY, 0), substeps=16)
     ghost = mw.Filter(mask=0)
 
     def add(name: str, at: Sequence[float], shape: mw.Shape, angle: float = 0.0) -> None:

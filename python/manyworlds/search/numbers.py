@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..batch import Batch
 from ..ids import ShapeId
 from ..kinds import AnyScene, plan_of
+from ..names import Draw
 from ..names import Parameter as SceneParameter
 from ..plan import Plan
 from ..scene import Scene, Variation
@@ -70,7 +71,11 @@ class Numbers:
                 low[component], high[component] = ends
         for (name, item), (low, high) in ranges.items():
             where = self._named(source, fields[name].item, item)
-            self.scene.add(_variation(name, low, high, where))
+            base = own[name][item]
+            # What keeps its number takes no time at resets; but the scene's own has to be in the range then.
+            keeps = bool(((low <= base) & (base <= high)).all())
+            draw: Draw = "none" if keeps else "uniform"
+            self.scene.add(_variation(name, low, high, {**where, "draw": draw}))
         self.plan = Plan(self.scene)
         # In the order in which the library applies them: a mass is of the body as its sizes have made it.
         order = get_args(SceneParameter)
