@@ -2,7 +2,6 @@
 
 import json
 import pickle
-import sys
 import tempfile
 from pathlib import Path
 
@@ -284,6 +283,14 @@ def test_what_callbacks_return_is_checked():
             ValueError, match=r"what the objective returns has shape \(3,\); expected"
         ):
             tried.evaluate(SPACE.values(np.full((2, 6), 0.5)), 0)
+        middle = SPACE.values(np.full((2, 6), 0.5))
+        for seeds, says in (
+            (0.5, "seeds are of dtype float64; expected integers"),
+            ([1, -1], "seeds hold -1, must be 0 to"),
+            ([1, 2, 3], r"seeds have shape \(3,\); expected \(candidates=2,\)"),
+        ):
+            with pytest.raises((TypeError, ValueError), match=says):
+                tried.evaluate(middle, seeds)
     with pytest.raises(ValueError, match="steps is 0"):
         search.Trial(scene(), SPACE, distance)
     with pytest.raises(ValueError, match="drive steps by itself"):
@@ -384,17 +391,3 @@ def test_a_table(tmp_path):
     empty = search.Search(SPACE, search.Random(2)).results
     assert len(empty.table()) == 0 and empty.table().schema.equals(table.schema)
     assert pickle.loads(pickle.dumps(results)).best == results.best
-
-
-@pytest.mark.parametrize("package", ["cma", "scipy.stats.qmc", "pyarrow"])
-def test_what_is_missing_is_named(package, monkeypatch, tmp_path):
-    monkeypatch.setitem(sys.modules, package, None)
-    calls = {
-        "cma": lambda: search.Search(SPACE, search.CmaEs(8)),
-        "scipy.stats.qmc": lambda: search.Search(SPACE, search.Sobol(8)),
-        "pyarrow": lambda: search.Search(SPACE, search.Random(8)).results.save(
-            tmp_path / "a.parquet"
-        ),
-    }
-    with pytest.raises(ImportError, match=rf"needs {package.split('.')[0]}.*manyworlds\[search\]"):
-        calls[package]()

@@ -1,5 +1,7 @@
 """manyworlds.search: parameters, designs, CMA-ES, and strategies of one's own."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -160,3 +162,17 @@ def test_other_strategies_and_evaluators_fit():
         hunt.run()
     with pytest.raises(ValueError, match="records nothing"):
         hunt.record("x.h5")
+
+
+@pytest.mark.parametrize("package", ["cma", "scipy.stats.qmc", "pyarrow"])
+def test_what_is_missing_is_named(package, monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, package, None)
+    calls = {
+        "cma": lambda: search.Search(SPACE, search.CmaEs(8)),
+        "scipy.stats.qmc": lambda: search.Search(SPACE, search.Sobol(8)),
+        "pyarrow": lambda: search.Search(SPACE, search.Random(8)).results.save(
+            tmp_path / "a.parquet"
+        ),
+    }
+    with pytest.raises(ImportError, match=rf"needs {package.split('.')[0]}.*manyworlds\[search\]"):
+        calls[package]()

@@ -26,7 +26,7 @@ class Candidate:
     generation: int
     candidate: int  # its place in the generation
     values: dict[str, float]  # of the parameters, by name
-    value: float  # of the objective
+    value: float  # of the objective; not a number where it is lost or there is none
     violation: float  # of its constraints, 0: they are kept
     status: str  # "ok", "infeasible", "lost", "not_finite"
     seed: int  # of its world
@@ -57,7 +57,7 @@ class Generation:
             self.index,
             int(i),
             self.space.named(self.values[i]),
-            float(self.value[i]),
+            float(self.value[i]) if self.status[i] < 2 else np.nan,
             float(self.violation[i]),
             STATUS[self.status[i]],
             int(self.seed[i]),

@@ -49,8 +49,14 @@ class Rounds(InMemory):
         """
         rows = self._space.checked(values)
         own = np.asarray(seeds)
-        if own.dtype.kind not in "iu" or (own.dtype.kind == "i" and (own < 0).any()):
-            raise TypeError(f"seeds are of dtype {own.dtype}; expected integers >= 0")
+        if own.dtype.kind not in "iu":
+            raise TypeError(f"seeds are of dtype {own.dtype}; expected integers")
+        if own.dtype.kind == "i" and (own < 0).any():
+            raise ValueError(f"seeds hold {own.min()}, must be 0 to 2^64 - 1")
+        if own.shape not in ((), (len(rows),)):
+            raise ValueError(
+                f"seeds have shape {own.shape}; expected (candidates={len(rows)},) or ()"
+            )
         each = np.ascontiguousarray(np.broadcast_to(own.astype(np.uint64), len(rows)))
         parts = []
         rounds = -(-len(rows) // self._most)
