@@ -1,5 +1,6 @@
 """manyworlds.search: candidates in worlds, results, and what goes wrong."""
 
+import importlib.util
 import json
 import pickle
 import tempfile
@@ -318,8 +319,13 @@ def test_an_interrupt_leaves_what_there_is_and_goes_on(name, tmp_path):
         whole = search.Search(tried, STRATEGIES[name](), seed=2).run(4)
     with search.Trial(scene(), SPACE, interrupted, 40, begin=throw, worlds=16, threads=1) as tried:
         hunt = search.Search(tried, STRATEGIES[name](), seed=2)
+        parquet = importlib.util.find_spec("pyarrow") and tmp_path / "so_far.parquet"
         with pytest.raises(KeyboardInterrupt):
-            hunt.run(4)
+            hunt.run(4, file=parquet)
+        if parquet:
+            from pyarrow.parquet import read_table
+
+            assert read_table(parquet).to_pydict() == hunt.results.table().to_pydict()
         assert len(hunt.results) == 64
         same(hunt.run(2), whole)
 
