@@ -159,6 +159,7 @@ struct SceneConstants {
   std::int32_t restitution_sweeps;
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
   bool has_joints;
+  bool looks_ahead;       // contacts are of bodies turned ahead (work/half_turn.hpp)
   bool slows;             // by linear drag
   bool has_substeps;      // some stages of the solver: not free motion
   bool collider_is_body;  // collider i is the only shape of body i, centred and aligned

@@ -4,9 +4,9 @@
 // leaves its tangent by r a^2 / 2 at the step's end; of the tangent half way, by r a^2 / 8 at both
 // ends. What comes down next is found better, too, and the inverse inertia is that of the middle.
 // Separations are taken back to the step's start along their rows. Bodies that turn little stay as
-// they are: at rest nothing changes and nothing is paid for it. So do those of plans with joints,
-// whose rows turn with the substeps: ahead of them, wheels of car3d brake (32.9 m in 10 s, where
-// short steps say 34.7, against 35.0).
+// they are: at rest nothing changes and nothing is paid for it. So do centred balls, and bodies of
+// plans with joints, whose rows turn with the substeps: ahead of them, wheels of car3d brake (32.9
+// m in 10 s, where short steps say 34.7, against 35.0).
 #pragma once
 
 #include "kernels/work/constants.hpp"
@@ -21,7 +21,7 @@ inline constexpr Real kMostTurn = Real(0.5);    // rad; what spins faster is tur
 // of now, and so are those of robots.
 MW_INLINE bool looks_ahead(const Constants& t, const Work& w) {
   const bool recorded = w.recorder && !w.recorder->places;
-  return t.has_orientation && !t.has_joints && t.tree.links == 0 && !recorded;
+  return t.looks_ahead && !recorded;
 }
 
 // The angle that a body turns by in half a step, as rows take it; 0 in lanes that turn little.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "manyworlds/scenes.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/hashes.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
@@ -26,10 +26,6 @@ std::vector<std::uint64_t> run(const Plan& plan, const BatchOptions& options, in
     CHECK_FALSE(frozen(batch.status(w)));
   }
   return hashes(batch);
-}
-
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 const std::vector<ContactLayout> kLayouts = {ContactLayout::automatic, ContactLayout::dense,

@@ -1,6 +1,7 @@
 // The law of bits for trees of joints that are solved at once.
 #pragma once
 
+#include <cstring>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -9,6 +10,10 @@
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
+
+inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
 
 // Worlds move by the same bits in every instruction set and layout, by any number of threads, and
 // among others as alone. In every fourth one of `off` is disabled.

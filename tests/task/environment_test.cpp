@@ -1,10 +1,9 @@
 // Environments: the same bits however they are run, and what happens where episodes end.
 #include <catch2/catch.hpp>
 
-#include <cstring>
-
 #include "manyworlds/tasks.hpp"
 #include "tests/support/policy.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
@@ -26,9 +25,6 @@ std::vector<double> history(Played& p, int world, int steps_seen) {
   add(p.final_observations, n);
   add(p.reward_terms, terms);
   return out;
-}
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 // Ends episodes early and often, so that resets are part of what is compared.
