@@ -5,7 +5,7 @@ find_package(Threads REQUIRED)
 find_package(Qhull REQUIRED CONFIG)
 
 mw_sources(mw_library_sources "src/*.cpp" "scenes/*.cpp")
-list(FILTER mw_library_sources EXCLUDE REGEX "/src/(live|mjcf|page|record)/")
+list(FILTER mw_library_sources EXCLUDE REGEX "/src/(film|live|mjcf|page|record)/")
 
 mw_library(manyworlds ${mw_library_sources})
 add_library(manyworlds::manyworlds ALIAS manyworlds)

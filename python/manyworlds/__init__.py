@@ -19,6 +19,7 @@ from .batch import Batch
 from .bodies import Body, Jitter, MassProperties
 from .environment import Environment, EnvironmentSnapshot
 from .fields import Field
+from .film import FilmReport, write_film, write_picture
 from .ids import BodyId, ControlId, JointId, KeyframeId, ShapeId
 from .joints import *  # noqa: F403
 from .kinds import Kind
@@ -74,6 +75,7 @@ __all__ = [
     "Exclusion",
     "Expression",
     "Field",
+    "FilmReport",
     "Info",
     "Issue",
     "Jitter",
@@ -121,7 +123,9 @@ __all__ = [
     "tasks",
     "vary",
     "view",
+    "write_film",
     "write_page",
+    "write_picture",
 ]
 __all__ += joints.__all__
 __all__ += shapes.__all__

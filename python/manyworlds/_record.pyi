@@ -14,6 +14,9 @@ import manyworlds._core
 class RecordError(ValueError):
     """A recording that cannot be written, or that is cut, corrupted or none."""
 
+class FilmError(ValueError):
+    """A picture or film that cannot be made: a program is missing or fails."""
+
 class Recorder:
     """Private: use manyworlds.record.Recorder."""
 
@@ -88,6 +91,12 @@ def page(recordings: Sequence[Recording], empty: str | os.PathLike, file: str | 
     """
     A page as text, or (worlds, bodies, frames, bytes) of one that was written.
     """
+
+def picture(page: str | os.PathLike, file: str | os.PathLike, width: int, height: int, view: str, time: float) -> None:
+    """A picture of a page."""
+
+def film(page: str | os.PathLike, file: str | os.PathLike, width: int, height: int, view: str, fps: float, speed: float, begin: float, end: float) -> tuple[int, float, int]:
+    """A film of a page: frames, seconds and bytes of it."""
 
 def unfinished_recordings(file: str | os.PathLike) -> list[pathlib.Path]:
     """

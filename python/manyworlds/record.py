@@ -27,7 +27,7 @@ from .scene import Scene
 
 try:
     from . import _record
-    from ._record import RecordError
+    from ._record import FilmError, RecordError
 except ImportError as error:
     raise ImportError(
         "manyworlds.record needs a build with HDF5 and nlohmann_json "
@@ -36,6 +36,7 @@ except ImportError as error:
 
 __all__ = [
     "Difference",
+    "FilmError",
     "LostWorldDumps",
     "RecordError",
     "Recorder",

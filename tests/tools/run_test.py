@@ -106,6 +106,7 @@ class Run(unittest.TestCase):
             (("replay", "a.h5"), {"MW_RECORD": "ON"}),
             (("view", "runs/a.h5", "--out", "pages/a.html", "--png", "x/a.png"),
              {"MW_RECORD": "ON", "MW_MJCF": "OFF", "MW_VIEWER": "OFF"}),
+            (("view", "a.h5", "--mp4", "films/a.mp4"), {"MW_RECORD": "ON", "MW_MJCF": "OFF"}),
             (("view", "robot.xml"), {"MW_RECORD": "ON", "MW_MJCF": "ON", "MW_LIVE": "OFF"}),
             (("view", "ball3d", "--live"), {"MW_LIVE": "ON", "MW_MJCF": "OFF"}),
             (("run", "--json", "scenes/mjcf/box_pile.xml"), {"MW_MJCF": "ON", "MW_RECORD": "OFF"}),

@@ -111,7 +111,7 @@ int live_command(const ViewArguments& arguments) {
     throw InputError(
         fmt::format("--live: steps a scene or an MJCF file; '{}' is a recording", source));
   }
-  const double speed = parse_speed(arguments.speed);
+  const double speed = parse_speed(arguments.speed.value_or("1"));
   JobOptions options = arguments.job;
   options.scene = source;
   options.worlds = arguments.worlds > 0 ? arguments.worlds : kWorlds;

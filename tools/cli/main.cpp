@@ -251,36 +251,55 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
   command
       ->add_option("--png", view.png, "a picture of the page, by headless Chromium; no page then")
       ->type_name("FILE.png");
-  command->add_option("--at", view.at, "when, simulated time (default: the end)")
+  command
+      ->add_option("--mp4", view.mp4,
+                   "a film of the page, by headless Chromium and ffmpeg; no page then")
+      ->type_name("FILE.mp4");
+  command
+      ->add_option("--at", view.at,
+                   "when, simulated time: the picture (default: the end), the film's begin (0)")
       ->check(CLI::NonNegativeNumber)
       ->type_name("S");
-  command->add_option("--size", view.size, "of the picture, in pixels")
+  command->add_option("--until", view.until, "the film's end, simulated time (default: the end)")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
+  command->add_option("--size", view.size, "of the picture and the film, in pixels")
       ->type_name("WxH")
       ->capture_default_str();
+  command->add_option("--world", view.world, "the picture and the film show this one, from 0 on")
+      ->check(CLI::Range(0, 1 << 20))
+      ->type_name("N");
+  command
+      ->add_option("--color", view.color,
+                   "theirs by: body, speed, spin, rest, height, run (default: body)")
+      ->type_name("BY");
+  command->add_flag("--dark", view.dark, "both in the dark");
   command->add_option("--title", view.title, "of the page (default: the name of the scene)")
       ->type_name("TEXT");
   command->add_option("--worlds", view.worlds, "the first N (default: all recorded, or what fits)")
       ->check(CLI::Range(1, 1 << 20))
       ->type_name("N");
   add_count(*command, "--every", view.every, 1, "show one of N samples of recordings");
-  add_count(*command, "--fps", view.fps, 1, "frames per second of scenes, simulated time");
+  add_count(*command, "--fps", view.fps, 1,
+            "frames per second of scenes, simulated time; with --mp4 of the film");
   command->add_option("--seconds", view.seconds, "simulated time of scenes")
       ->check(CLI::PositiveNumber)
       ->type_name("S")
       ->capture_default_str();
   CLI::Option* live = command->add_flag(
       "--live", view.live, "step a scene and serve its page on this machine until Ctrl-C");
-  for (const char* other : {"--out", "--open", "--png", "--at", "--every", "--fps", "--seconds"}) {
+  for (const char* other : {"--out", "--open", "--png", "--mp4", "--at", "--until", "--world",
+                            "--color", "--dark", "--every", "--fps", "--seconds"}) {
     live->excludes(command->get_option(other));
   }
   command->add_option("--port", view.port, "of --live (default: any that is free)")
       ->check(CLI::Range(1, 65535))
       ->needs(live)
       ->type_name("N");
-  command->add_option("--speed", view.speed, "of --live: simulated per real second, or max")
-      ->needs(live)
-      ->type_name("X")
-      ->capture_default_str();
+  command
+      ->add_option("--speed", view.speed,
+                   "of --live and --mp4: simulated per real second; live also max (default: 1)")
+      ->type_name("X");
   command->add_flag("--paused", view.paused, "--live waits for the page's play button")
       ->needs(live);
   add_mjcf_options(*command, view.job);
@@ -295,6 +314,7 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds view bin-boxes\n"
       "  manyworlds view run.h5 --out page.html\n"
       "  manyworlds view bin-boxes --png picture.png --at 1.2 --size 1200x680\n"
+      "  manyworlds view run.h5 --mp4 film.mp4 --speed 0.25\n"
       "  manyworlds view before.h5 after.h5 --out both.html\n"
       "  manyworlds view humanoid.xml --random-controls --worlds 16 --seconds 5\n"
       "  manyworlds view bin-boxes --live --worlds 64\n"

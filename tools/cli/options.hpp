@@ -116,15 +116,19 @@ struct ViewArguments {
   std::string title;
   int worlds = 0;  // 0: all of a recording, as many of a scene as fit
   int every = 1;   // of the samples
-  int fps = 30;    // frames per simulated second, of scenes
+  int fps = 30;    // frames per simulated second of scenes, per second of a film
   double seconds = 10;
   bool open = false;
-  std::string png;           // file; empty: no picture
-  std::optional<double> at;  // s, of the picture; default: the end
+  std::string png, mp4;         // files; empty: no picture, no film
+  std::optional<double> at;     // s, of the picture (default: the end) and the film's begin (0)
+  std::optional<double> until;  // s, of the film's end
   std::string size = "1280x720";
-  bool live = false;        // served while it steps (live_command.hpp)
-  int port = 0;             // of 127.0.0.1; 0: any that is free
-  std::string speed = "1";  // simulated per real second, or "max"
+  std::optional<int> world;  // of pictures and films; none: all
+  std::string color;         // by what; empty: by body
+  bool dark = false;
+  bool live = false;                 // served while it steps (live_command.hpp)
+  int port = 0;                      // of 127.0.0.1; 0: any that is free
+  std::optional<std::string> speed;  // simulated per real second, or "max" of live pages; default: 1
   bool paused = false;      // at first
   JobOptions job;           // of scenes
 };

@@ -1,14 +1,11 @@
 // `manyworlds view`: recordings as a page, those given or one that is made for it.
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,9 +20,11 @@
 #include "manyworlds/page.hpp"
 #include "progress.hpp"
 #include "recording.hpp"
+#include "src/base/scratch_folder.hpp"
 #include "tools/base/interrupt.hpp"
 #include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
+#include "view_frames.hpp"
 #include "view_page.hpp"
 #endif
 
@@ -43,41 +42,16 @@ using tools::counted, tools::with_prefix;
 constexpr double kMaxPoses = 2.5e6;
 constexpr int kMaxWorlds = 256;
 
-// A new folder that only its owner may enter: nobody else can have put a file or a link there.
-fs::path make_private_folder() {
-  std::string name = (fs::temp_directory_path() / "manyworlds-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) {
-    throw InputError(fmt::format("view: no folder can be made in '{}': {}",
-                                 fs::temp_directory_path().string(), std::strerror(errno)));
-  }
-  return name;
-}
-
-// Files that are gone when they are not needed any more.
-class ScratchFolder {
- public:
-  ScratchFolder() : path_(make_private_folder()) {}
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  fs::path operator/(const char* file) const { return path_ / file; }
-
- private:
-  fs::path path_;
-};
-
 // Steps a scene and records it in `file`.
-void record(const ViewArguments& arguments, const std::string& scene, const fs::path& file) {
+void record(const ViewArguments& arguments, double samples_per_second, const std::string& scene,
+            const fs::path& file) {
   JobOptions options = arguments.job;
   options.scene = scene;
   if (!options.seconds) options.seconds = arguments.seconds;
   const Job job = prepare(options);
   const double dt = job.plan.scene().options.dt;
   options.record = file.string();
-  options.record_every = std::max(1, static_cast<int>(std::lround(1 / (arguments.fps * dt))));
+  options.record_every = std::max(1, static_cast<int>(std::lround(1 / (samples_per_second * dt))));
   if (arguments.worlds > 0) {
     options.worlds = arguments.worlds;
   } else {
@@ -103,6 +77,11 @@ bool is_recording(const std::string& source) {
   return source.ends_with(".h5") || source.find(".h5.part-") != std::string::npos;
 }
 
+int tell_interrupted() {
+  tools::tell("manyworlds: {}: nothing was written\n", tools::interrupt_name());
+  return tools::interrupt_code();
+}
+
 // Where the page goes that --out does not name. It stays, for the browser that opens it.
 fs::path page_in_temporary_folder(const std::string& source) {
   std::string name = fs::path(source).stem().string();
@@ -114,9 +93,10 @@ fs::path page_in_temporary_folder(const std::string& source) {
 
 int view_command(const ViewArguments& arguments) {
   if (arguments.live) return live_command(arguments);
+  const FramesWanted wanted = frames_wanted(arguments);
   const fs::path empty = empty_page();
-  const PictureSize size = parse_size(arguments.size);
   const auto before = std::chrono::steady_clock::now();
+  const tools::Interruptible interruptible;
   std::vector<Recording> recordings;
   for (const std::string& source : arguments.sources) {
     if (is_recording(source)) {
@@ -124,48 +104,76 @@ int view_command(const ViewArguments& arguments) {
     } else {
       const ScratchFolder folder;
       const fs::path file = folder / "run.h5";
-      record(arguments, source, file);
+      record(arguments, wanted.samples_per_second, source, file);
       recordings.push_back(Recording::open(file));
     }
   }
   std::vector<const Recording*> all;
   for (const Recording& one : recordings) all.push_back(&one);
+  // What was recorded until Ctrl-C makes a page, but neither picture nor film.
+  const bool cut_short = tools::interrupted() != 0;
+  if (cut_short && wanted.any()) return tell_interrupted();
   PageOptions options;
   options.title = arguments.title;
   options.max_worlds = arguments.worlds;
   options.every = arguments.every;
-  const bool picture = !arguments.png.empty();
-  std::optional<ScratchFolder> unnamed;  // of a picture alone
-  if (picture && arguments.out.empty()) unnamed.emplace();
+  options.go_on = [cut_short] { return cut_short || tools::interrupted() == 0; };
+  std::optional<ScratchFolder> unnamed;  // of pictures and films alone
+  if (wanted.any() && arguments.out.empty()) unnamed.emplace();
   const fs::path out = unnamed                 ? *unnamed / "page.html"
                        : arguments.out.empty() ? page_in_temporary_folder(arguments.sources.front())
                                                : fs::path(arguments.out);
-  const PageReport report = write_page(all, empty, out, options);
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - before;
-  if (picture) {
-    take_picture(out, fmt::format("picture&time={}", arguments.at.value_or(1e12)), size,
-                 arguments.png);
+  const PageReport page = write_page(all, empty, out, options);
+  if (!page.written) return tell_interrupted();
+  FilmReport film;
+  if (wanted.picture) {
+    const PictureOptions picture{
+        .frame = wanted.frame, .time = arguments.at.value_or(kEnd), .go_on = options.go_on};
+    if (!write_picture(out, arguments.png, picture)) return tell_interrupted();
   }
+  if (wanted.film) {
+    film = make_film(out, arguments, wanted);
+    if (!film.written) return tell_interrupted();
+  }
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - before;
   const bool opened =
       !unnamed && (arguments.out.empty() || arguments.open) && open_in_browser(fs::absolute(out));
-  const std::string made = unnamed ? arguments.png : out.string();
   if (arguments.job.json) {
-    const nlohmann::ordered_json json = {{unnamed ? "picture" : "page", made},
-                                         {"worlds", report.worlds},
-                                         {"bodies", report.bodies},
-                                         {"frames", report.frames},
-                                         {"bytes", report.bytes},
-                                         {"seconds", spent.count()},
-                                         {"opened", opened}};
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  } else {
-    fmt::print("{}: {}, {} moving bodies, {}, {}B, {:.2f} s\n", made,
-               counted(report.worlds, "world"), report.bodies,
-               counted(static_cast<int>(report.frames), "frame"),
-               with_prefix(static_cast<double>(report.bytes)), spent.count());
-    if (!opened && !unnamed && (arguments.out.empty() || arguments.open)) {
-      fmt::print("no desktop to open it on: open {} in a browser\n", fs::absolute(out).string());
+    nlohmann::ordered_json json;
+    if (!unnamed) json["page"] = out.string();
+    if (wanted.picture) json["picture"] = arguments.png;
+    if (wanted.film) {
+      json["film"] = {{"file", arguments.mp4},
+                      {"frames", film.frames},
+                      {"seconds", film.seconds},
+                      {"bytes", film.bytes}};
     }
+    json.update({{"worlds", page.worlds},
+                 {"bodies", page.bodies},
+                 {"frames", page.frames},
+                 {"bytes", page.bytes},
+                 {"seconds", spent.count()},
+                 {"opened", opened}});
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    return kOk;
+  }
+  std::vector<std::string> made;
+  if (!unnamed) made.push_back(out.string());
+  if (wanted.picture) made.push_back(arguments.png);
+  if (!made.empty()) {
+    fmt::print("{}: {}, {} moving bodies, {}, {}B, {:.2f} s\n", fmt::join(made, ", "),
+               counted(page.worlds, "world"), page.bodies,
+               counted(static_cast<int>(page.frames), "frame"),
+               with_prefix(static_cast<double>(page.bytes)), spent.count());
+  }
+  if (wanted.film) {
+    fmt::print("{}: {}, {} moving bodies, {}, {:.2f} s of film, {}B, {:.1f} s\n", arguments.mp4,
+               counted(page.worlds, "world"), page.bodies,
+               counted(static_cast<int>(film.frames), "frame"), film.seconds,
+               with_prefix(static_cast<double>(film.bytes)), spent.count());
+  }
+  if (!opened && !unnamed && (arguments.out.empty() || arguments.open)) {
+    fmt::print("no desktop to open it on: open {} in a browser\n", fs::absolute(out).string());
   }
   return kOk;
 }

@@ -19,9 +19,4 @@ struct PictureSize {
 };
 PictureSize parse_size(const std::string& text);
 
-// A picture of a page as headless Chromium shows it, with what stands behind '#' in its address.
-// CHROMIUM in the environment names the browser. Throws InputError, also where there is none.
-void take_picture(const std::filesystem::path& page, const std::string& fragment,
-                  const PictureSize& size, const std::filesystem::path& png);
-
 }  // namespace manyworlds::cli

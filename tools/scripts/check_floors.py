@@ -14,11 +14,11 @@ from pathlib import Path
 
 # A file in src/ includes its own and lower floors.
 SRC_FLOORS = ["base", "lcp", "scene", "plan", "state", "dispatch", "step", "api", "task"]
-# Off the column: read models into a Scene, describe worlds to the page, record a Batch, show it live. They
+# Off the column: read models into a Scene, describe worlds to the page, record a Batch, show it live, film the page. They
 # may know nothing below the public headers but these.
 SRC_SIDE = {
     "mjcf": {"mjcf", "base"}, "page": {"page", "base"}, "record": {"record", "page", "base"},
-    "live": {"live", "page", "base"}}
+    "live": {"live", "page", "base"}, "film": {"film", "page", "base"}}
 # Floors that may see kernels/data (tables and views, no lanes).
 SRC_SEES_KERNELS = {"plan", "state", "dispatch", "step", "api", "task"}
 # A geometry's file names the kind of shape that the kernels take it for.

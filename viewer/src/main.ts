@@ -1,9 +1,11 @@
 // The page: what its buttons, keys and clicks do, and the loop that draws.
 import * as THREE from 'three';
 
+import { obeyAddress } from './address';
 import { Commands } from './commands';
 import type { FrameSource } from './data';
 import { element } from './elements';
+import { Film } from './film';
 import { Grab } from './grab';
 import { LiveSource } from './live';
 import { LiveClock } from './live_clock';
@@ -59,14 +61,21 @@ export class App {
     const wanted = new URLSearchParams(window.location.hash.slice(1));
     const time = Number(wanted.get('time') ?? 0);
     if (Number.isFinite(time)) this.timeline.seek(time);
-    // A picture: nothing but the worlds and their name.
-    if (wanted.has('picture')) for (const id of ['panel', 'buttons', 'timeline']) element(id).hidden = true;
-    await Promise.all(this.sources.map((source) => source.prepare(momentOf(source, this.timeline.time).frame)));
+    // Of pictures and films: nothing but the worlds and their name, and no frame but those that are asked for.
+    const film = wanted.has('film');
+    if (film) for (const id of ['panel', 'buttons', 'timeline']) element(id).hidden = true;
+    await this.prepare(this.timeline.time);
     this.resize();
     this.build();
     if (this.worlds.instances > SOFTWARE_SHADOWS && this.stage.software) element('shadows').click();
     this.showAll(false);
-    this.obey(wanted);
+    const refused = obeyAddress(this, wanted);
+    if (film) {
+      if (refused !== '') throw new Error(refused);
+      this.stage.endFlight();
+      this.worlds.selected = -1; // who looks on chooses nothing
+      return;
+    }
     window.addEventListener('resize', () => {
       this.resize();
       if (this.chosen.cell < 0) this.showAll(false);
@@ -75,19 +84,23 @@ export class App {
     if (this.timeline.end > 0 && !wanted.has('time') && !window.matchMedia('(prefers-reduced-motion: reduce)').matches) this.timeline.play(true);
   }
 
-  // What the address asks for: page.html#time=2.5&world=3&color=speed.
-  private obey(wanted: URLSearchParams): void {
-    const color = wanted.get('color');
-    const choice = element<HTMLSelectElement>('color');
-    if (color !== null && [...choice.options].some((option) => option.value === color)) {
-      choice.value = color;
-      choice.dispatchEvent(new Event('change'));
-    }
-    const cell = Number(wanted.get('world') ?? -1);
-    if (Number.isInteger(cell) && cell >= 0 && cell < this.worlds.layout.cells.length) {
-      this.choose(cell, -1);
-      this.showCell(cell);
-    }
+  // Frames of pictures and films; how long worlds go on, s.
+  film(): Promise<number> {
+    return Film.open(this);
+  }
+
+  // Until drawAt can draw that time, s.
+  async prepare(time: number): Promise<void> {
+    await Promise.all(this.sources.flatMap((source) => {
+      const { frame, part } = momentOf(source, time);
+      return part > 0 ? [source.prepare(frame), source.prepare(frame + 1)] : [source.prepare(frame)];
+    }));
+  }
+
+  drawAt(time: number): void {
+    this.timeline.seek(time);
+    this.lastTable = -Infinity; // what is written beside it is of that time, too
+    if (!this.draw(performance.now())) throw new Error(`${time} s was not prepared`);
   }
 
   private build(): void {
@@ -284,7 +297,7 @@ export class App {
     this.dirty = true;
   }
 
-  private showCell(cell: number): void {
+  showCell(cell: number): void {
     const { layout } = this.worlds;
     const one = layout.cells[cell];
     this.resize();
@@ -294,7 +307,7 @@ export class App {
     }, { fly: true, elevation: 0.55 });
   }
 
-  private setTheme(name: 'light' | 'dark'): void {
+  setTheme(name: 'light' | 'dark'): void {
     this.theme = name;
     document.documentElement.classList.toggle('dark', name === 'dark');
     element<HTMLInputElement>('dark').checked = name === 'dark';
@@ -358,18 +371,22 @@ export class App {
 declare global {
   interface Window {
     manyworlds?: Probe;
+    manyworldsReady?: Promise<App>;
+    manyworldsFilm?: Film;
   }
 }
 
-async function main(): Promise<void> {
+async function main(): Promise<App> {
   const live = document.getElementById('mw-live') !== null ? await LiveSource.open() : null;
   const { title, sources } = live !== null ? { title: live.run.title, sources: [live] } : await openRuns(document);
   const app = new App(title, sources, live);
   await app.begin();
   window.manyworlds = new Probe(app);
+  return app;
 }
 
-main().catch((error: unknown) => {
+window.manyworldsReady = main();
+window.manyworldsReady.catch((error: unknown) => {
   const message = element('message');
   message.hidden = false;
   message.textContent = error instanceof Error ? error.message : String(error);

@@ -4,12 +4,15 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <array>
 #include <span>
+#include <tuple>
 #include <utility>
 
+#include "manyworlds/film.hpp"
 #include "manyworlds/page.hpp"
 #include "manyworlds/record.hpp"
 #include "python/src/arrays.hpp"
@@ -208,6 +211,45 @@ nb::object page(const std::vector<HeldRecording*>& recordings, const std::filesy
   });
 }
 
+FrameOptions frame_of(int width, int height, const std::string& view) {
+  return {.width = width, .height = height, .view = view};
+}
+
+void picture(const std::filesystem::path& page, const std::filesystem::path& file, int width,
+             int height, const std::string& view, double time) {
+  Interrupts::during([&](const GoOn& go_on) {
+    return write_picture(page, file,
+                         {.frame = frame_of(width, height, view), .time = time, .go_on = go_on});
+  });
+}
+
+// Frames, seconds and bytes of it.
+std::tuple<std::int64_t, double, std::size_t> film(const std::filesystem::path& page,
+                                                   const std::filesystem::path& file, int width,
+                                                   int height, const std::string& view, double fps,
+                                                   double speed, double begin, double end) {
+  const FilmReport report = Interrupts::during([&](const GoOn& go_on) {
+    return write_film(page, file,
+                      {.frame = frame_of(width, height, view),
+                       .fps = fps,
+                       .speed = speed,
+                       .begin = begin,
+                       .end = end,
+                       .go_on = go_on});
+  });
+  return {report.frames, report.seconds, report.bytes};
+}
+
+void bind_films(nb::module_& m) {
+  m.def("picture", &picture, nb::arg("page"), nb::arg("file"), nb::arg("width"), nb::arg("height"),
+        nb::arg("view"), nb::arg("time"), nb::call_guard<nb::gil_scoped_release>(),
+        "A picture of a page.");
+  m.def("film", &film, nb::arg("page"), nb::arg("file"), nb::arg("width"), nb::arg("height"),
+        nb::arg("view"), nb::arg("fps"), nb::arg("speed"), nb::arg("begin"), nb::arg("end"),
+        nb::call_guard<nb::gil_scoped_release>(),
+        "A film of a page: frames, seconds and bytes of it.");
+}
+
 void bind_writing(nb::module_& m) {
   nb::class_<HeldRecorder>(m, "Recorder", "Private: use manyworlds.record.Recorder.")
       .def("__init__", &make_recorder, nb::arg("batch"), nb::arg("file"), nb::arg("worlds"),
@@ -274,11 +316,14 @@ NB_MODULE(_record, m) {
   m.doc() = "Recordings, scenes as JSON. Private: use manyworlds.record.";
   bind_error<RecordError>(m, "RecordError",
                           "A recording that cannot be written, or that is cut, corrupted or none.");
+  bind_error<FilmError>(m, "FilmError",
+                        "A picture or film that cannot be made: a program is missing or fails.");
   bind_writing(m);
   bind_reading(m);
   m.def("page", &page, nb::arg("recordings"), nb::arg("empty"), nb::arg("file").none(),
         nb::arg("title"), nb::arg("worlds"), nb::arg("every"), nb::arg("numbers"),
         "A page as text, or (worlds, bodies, frames, bytes) of one that was written.");
+  bind_films(m);
   m.def("unfinished_recordings", &unfinished_recordings, nb::arg("file"),
         nb::call_guard<nb::gil_scoped_release>(),
         "The part files beside a file that have contents and no writer any more.");

@@ -1,0 +1,146 @@
+"""Pictures and films of worlds, drawn by a headless Chromium and encoded by ffmpeg.
+
+    recording = mw.record.Recording("run.h5")
+    mw.write_film([recording], "run.mp4", speed=0.25)
+    mw.write_picture([recording], "run.png", time=1.2, size=(1080, 600))
+
+Both programs run apart from this one: chromium (CHROMIUM in the environment names another) and, for films,
+ffmpeg (FFMPEG). Frames are those of ``write_page``'s page at exactly their moments, however long they take.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, Optional
+from urllib.parse import quote, urlencode
+
+from numpy.typing import ArrayLike
+
+from . import arrays, files
+from .files import File
+from .page import write_page
+
+if TYPE_CHECKING:
+    from .record import Recording
+
+__all__ = ["FilmReport", "write_film", "write_picture"]
+
+_LEAST, _MOST = 64, 8192  # pixels
+
+
+class FilmReport(NamedTuple):
+    """What a film holds."""
+
+    frames: int
+    seconds: float  # of the film
+    bytes: int
+
+
+def write_picture(
+    recordings: Sequence[Recording],
+    file: File,
+    *,
+    time: Optional[float] = None,
+    size: tuple[int, int] = (1280, 720),
+    world: Optional[int] = None,
+    color: str = "body",
+    dark: bool = False,
+    title: str = "",
+    worlds: Optional[int] = None,
+    numbers: Optional[Mapping[str, ArrayLike]] = None,
+) -> None:
+    """Writes a PNG file of recordings, all in one picture.
+
+    time    s, simulated; None, and what is beyond the end: the end
+    size    width and height, pixels, 64 to 8192
+    world   the camera is at this one of those that are shown, from 0 on; None: at all
+    color   of bodies, by: "body", "speed", "spin", "rest", "height", "run" of several recordings, or
+            "number:reward" of a number named reward
+    dark    as pages are in the dark
+    title, worlds, numbers    as in ``write_page``
+
+    Raises record.FilmError (a ValueError) where Chromium is missing or fails or the file cannot be written, and
+    what ``write_page`` raises.
+    """
+    from . import _record
+
+    width, height = _size(size, 1)
+    moment = float("inf") if time is None else arrays.at_least(time, "time", 0)
+    view = _view(world, color, dark)
+    target = files.path(file, "file")
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder) / "page.html"
+        write_page(recordings, page, title=title, worlds=worlds, numbers=numbers)
+        _record.picture(page, target, width, height, view, moment)
+
+
+def write_film(
+    recordings: Sequence[Recording],
+    file: File,
+    *,
+    fps: float = 30,
+    speed: float = 1,
+    begin: float = 0,
+    end: Optional[float] = None,
+    size: tuple[int, int] = (1280, 720),
+    world: Optional[int] = None,
+    color: str = "body",
+    dark: bool = False,
+    title: str = "",
+    worlds: Optional[int] = None,
+    numbers: Optional[Mapping[str, ArrayLike]] = None,
+) -> FilmReport:
+    """Writes an MP4 file (H.264) of recordings, all in one picture.
+
+    fps     frames per second of the film, 0.01 to 1000
+    speed   simulated seconds per second of the film: 0.25 is slow motion
+    begin   s, simulated: frame k is at begin + k * speed / fps
+    end     s, simulated; None, and what is beyond the end: the end
+    size    width and height, pixels, even numbers from 64 to 8192
+    the others are those of ``write_picture``
+
+    Between samples of a recording motion is straight: for slow motion record more of them. Raises
+    record.FilmError (a ValueError) where Chromium or ffmpeg is missing or fails or the file cannot be
+    written, and what ``write_page`` raises.
+    """
+    from . import _record
+
+    width, height = _size(size, 2)
+    fps = _within(fps, "fps", 0.01, 1000)
+    speed = _within(speed, "speed", 1e-6, 1e6)
+    begin = arrays.at_least(begin, "begin", 0)
+    last = float("inf") if end is None else arrays.at_least(end, "end", begin)
+    view = _view(world, color, dark)
+    target = files.path(file, "file")
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder) / "page.html"
+        write_page(recordings, page, title=title, worlds=worlds, numbers=numbers)
+        return FilmReport(*_record.film(page, target, width, height, view, fps, speed, begin, last))
+
+
+def _size(size: tuple[int, int], step: int) -> tuple[int, int]:
+    if not isinstance(size, (tuple, list)) or len(size) != 2:
+        raise TypeError(f"size is {size!r}; expected a width and a height")
+    width, height = (arrays.integer(side, f"size[{i}]", _LEAST, _MOST) for i, side in enumerate(size))
+    if width % step or height % step:
+        raise ValueError(f"size is {width} x {height}; films want even numbers")
+    return width, height
+
+
+def _within(value: float, name: str, low: float, high: float) -> float:
+    value = arrays.at_least(value, name, low)
+    if value > high:
+        raise ValueError(f"{name} is {value}; expected {low} to {high}")
+    return value
+
+
+def _view(world: Optional[int], color: str, dark: bool) -> str:
+    """As behind '#' in the address of a page."""
+    if not isinstance(color, str):
+        raise TypeError(f"color is of type {type(color).__name__}; expected a str")
+    wanted = {"color": color, "theme": "dark" if dark else "light"}
+    if world is not None:
+        wanted["world"] = str(arrays.integer(world, "world", 0, 2**31 - 1))
+    return urlencode(wanted, quote_via=quote)

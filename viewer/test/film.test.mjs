@@ -1,0 +1,116 @@
+// Films that the program makes in a real browser, frame by frame; run by ctest as browser.test.mjs is.
+import assert from 'node:assert/strict';
+import { execFileSync, spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+const { MANYWORLDS_CLI: program, CHROMIUM: browserPath, PLAYWRIGHT } = process.env;
+const { chromium } = await import(PLAYWRIGHT ?? 'playwright-core');
+
+const folder = mkdtempSync(join(tmpdir(), 'manyworlds-film-'));
+const encoder = join(dirname(fileURLToPath(import.meta.url)), '..', '..', 'tests', 'support', 'fake_encoder.sh');
+const scene = ['ball2d', '--worlds', '4', '--seconds', '0.6'];
+const size = { width: 320, height: 200 };
+// 6 frames from 0.1 to 0.6 s, each of which the recording has.
+const film = ['--fps', '5', '--speed', '0.5', '--at', '0.1', '--size', '320x200'];
+const times = Array.from({ length: 6 }, (_, k) => 0.1 + 0.1 * k);
+let browser;
+
+function run(args, environment = {}) {
+  return execFileSync(program, ['view', ...scene, ...args],
+    { env: { ...process.env, ...environment }, cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
+}
+
+// Each frame, as an address with its data, is the page at its time, and not half a frame later: by the mean difference
+// of bytes that differ between the two.
+async function checkFrames(frames, within) {
+  assert.equal(frames.length, times.length);
+  const page = await browser.newPage({ viewport: size });
+  await page.goto(`file://${join(folder, 'page.html')}#film`);
+  await page.evaluate(() => window.manyworldsReady.then((app) => app.film()));
+  for (const [k, url] of frames.entries()) {
+    const found = await page.evaluate(async ([own, time]) => {
+      const pixels = async (data) => {
+        const image = new Image();
+        image.src = data;
+        await image.decode();
+        const pen = new OffscreenCanvas(image.width, image.height).getContext('2d');
+        pen.drawImage(image, 0, 0);
+        return pen.getImageData(0, 0, image.width, image.height).data;
+      };
+      const at = async (t) => pixels(`data:image/png;base64,${await window.manyworldsFilm.frame(t, 'image/png', true)}`);
+      const [seen, now, later] = [await pixels(own), await at(time), await at(time > 0.59 ? time - 0.05 : time + 0.05)];
+      const out = { bytes: 0, now: 0, later: 0 };
+      for (let i = 0; i < now.length; ++i) {
+        if (Math.abs(now[i] - later[i]) < 40) continue;
+        ++out.bytes;
+        out.now += Math.abs(seen[i] - now[i]);
+        out.later += Math.abs(seen[i] - later[i]);
+      }
+      return { ...out, now: out.now / out.bytes, later: out.later / out.bytes };
+    }, [url, times[k]]);
+    assert.ok(found.bytes > 50 && found.now < within && found.later > 40, `frame ${k}: ${JSON.stringify(found)}`);
+  }
+  await page.close();
+}
+
+before(async () => {
+  assert.ok(browserPath && existsSync(browserPath), 'no Chromium was found: apt-get install chromium');
+  browser = await chromium.launch({
+    executablePath: browserPath,
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+  });
+  run(['--fps', '10', '--out', 'page.html']);
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+test('each frame of a film is the page at exactly its time', async () => {
+  run([...film, '--mp4', 'a film.mp4'], { FFMPEG: encoder, MODE: '' }); // keeps pictures as they come
+  const bytes = readFileSync(join(folder, 'a film.mp4'));
+  const frames = [];
+  for (let at = 0; at >= 0;) {
+    const next = bytes.indexOf(Buffer.from([0xff, 0xd8, 0xff]), at + 3);
+    frames.push(`data:image/jpeg;base64,${bytes.subarray(at, next < 0 ? bytes.length : next).toString('base64')}`);
+    at = next;
+  }
+  await checkFrames(frames, 12);
+});
+
+test('a browser plays what ffmpeg makes of it', async (t) => {
+  if (spawnSync('ffmpeg', ['-version']).error) return t.skip('ffmpeg is not installed');
+  const report = JSON.parse(run([...film, '--mp4', 'film.mp4', '--json']));
+  assert.equal(report.film.frames, 6);
+  const page = await browser.newPage();
+  const frames = await page.evaluate(async (url) => {
+    const video = document.createElement('video');
+    const event = (name) => new Promise((resolve, reject) => {
+      video.addEventListener(name, resolve, { once: true });
+      video.addEventListener('error', () => reject(new Error(video.error.message)), { once: true });
+    });
+    video.src = URL.createObjectURL(await (await fetch(url)).blob());
+    await event('loadeddata');
+    if (video.videoWidth !== 320 || video.videoHeight !== 200 || Math.abs(video.duration - 1.2) > 1e-3) {
+      throw new Error(`${video.videoWidth} x ${video.videoHeight}, ${video.duration} s`);
+    }
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [320, 200];
+    const out = [];
+    for (let k = 0; k < 6; ++k) {
+      video.currentTime = (k + 0.5) / 5;
+      await event('seeked');
+      canvas.getContext('2d').drawImage(video, 0, 0);
+      out.push(canvas.toDataURL());
+    }
+    return out;
+  }, `data:video/mp4;base64,${readFileSync(join(folder, 'film.mp4')).toString('base64')}`);
+  await page.close();
+  await checkFrames(frames, 25);
+  return undefined;
+});
