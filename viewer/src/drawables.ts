@@ -16,6 +16,7 @@ export interface Drawable {
   row: number; // -1: fixed
   shape: number;
   batches: Batch[]; // by level
+  mesh: Mesh;
   color: Rgb;
   position: number[];
   rotation: number[]; // x y z w
@@ -179,7 +180,7 @@ export class Drawables {
         const q = xyzw(shape.rotation);
         view.drawables.push({
           body, row: body.row ?? -1, shape: shape.shape,
-          batches: this.known.get(`${keyOf(mesh)}-${ghost}`)!.batches,
+          batches: this.known.get(`${keyOf(mesh)}-${ghost}`)!.batches, mesh,
           color: linear(body.row === null ? '#8d99ae' : PALETTE[b % PALETTE.length]),
           position: shape.position, rotation: q,
           centred: shape.position.every((x) => x === 0) && Math.abs(q[3]) === 1,

@@ -15,6 +15,7 @@ import { pickBody, pickCell } from './pick';
 import { Probe } from './probe';
 import { openRuns } from './recorded';
 import { Stage, THEMES } from './stage';
+import { Tether } from './tether';
 import { Timeline, type Clock } from './timeline';
 import { Worlds, momentOf } from './worlds';
 
@@ -34,6 +35,7 @@ export class App {
   chosen: Chosen = { cell: -1, row: -1 };
   following = false;
   private readonly lastPlace = new THREE.Vector3();
+  private readonly tether = new Tether();
   dirty = true;
   private lastTable = 0;
   private lastDrawn = 0;
@@ -67,6 +69,7 @@ export class App {
     await this.prepare(this.timeline.time);
     this.resize();
     this.build();
+    this.worlds.read(this.timeline.time);
     if (this.worlds.instances > SOFTWARE_SHADOWS && this.stage.software) element('shadows').click();
     this.showAll(false);
     const refused = obeyAddress(this, wanted);
@@ -119,6 +122,7 @@ export class App {
     this.overlays.trails = this.checked('trails');
     this.overlays.joints = this.checked('joints');
     this.overlays.centers = this.checked('centers');
+    this.overlays.bounds = this.checked('bounds');
     this.stage.scene.add(this.worlds.group, this.overlays.group);
     this.worlds.selected = this.chosen.cell;
     this.dirty = true;
@@ -177,7 +181,7 @@ export class App {
       this.stage.shadows = this.checked('shadows');
       this.dirty = true;
     };
-    for (const id of ['trails', 'joints', 'centers'] as const) {
+    for (const id of ['trails', 'joints', 'centers', 'bounds'] as const) {
       element(id).onchange = () => {
         this.overlays[id] = this.checked(id);
         this.dirty = true;
@@ -253,6 +257,7 @@ export class App {
       },
       t: () => toggle('trails'),
       w: () => toggle('wireframe'),
+      b: () => toggle('bounds'),
       d: () => toggle('dark'),
       r: () => this.commands?.reset(),
       o: () => togglePanel(element('panel').classList.contains('closed')),
@@ -275,6 +280,7 @@ export class App {
   }
 
   choose(cell: number, row: number): void {
+    if (cell >= 0 && cell !== this.chosen.cell) this.tether.hold(this.worlds, cell);
     this.chosen = { cell, row };
     this.worlds.selected = cell;
     if (row < 0) this.follow(false);
@@ -298,13 +304,8 @@ export class App {
   }
 
   showCell(cell: number): void {
-    const { layout } = this.worlds;
-    const one = layout.cells[cell];
     this.resize();
-    this.stage.show({
-      low: [one.x + layout.low[0], one.y + layout.low[1], layout.low[2]],
-      high: [one.x + layout.high[0], one.y + layout.high[1], layout.high[2]],
-    }, { fly: true, elevation: 0.55 });
+    this.stage.show(this.tether.begin(this.worlds, cell), { fly: true, elevation: 0.55 });
   }
 
   setTheme(name: 'light' | 'dark'): void {
@@ -345,6 +346,10 @@ export class App {
       const place = this.worlds.placeOf(this.chosen.cell, this.chosen.row, new THREE.Vector3());
       this.stage.shift(place.clone().sub(this.lastPlace));
       this.lastPlace.copy(place);
+    }
+    if (this.chosen.cell >= 0) {
+      const by = this.tether.pull(this.worlds, this.chosen.cell);
+      if (!this.following && this.grab?.dragging !== true) this.stage.shift(by);
     }
     this.stage.advance(now);
     this.stage.camera.updateMatrixWorld();

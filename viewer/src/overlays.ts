@@ -1,6 +1,7 @@
 // Lines over the chosen world: trails, joints with their axes, centres of mass, its borders.
 import * as THREE from 'three';
 
+import { boundsOf } from './bounds';
 import { linear } from './colors';
 import type { Worlds } from './worlds';
 
@@ -46,6 +47,7 @@ export class Overlays {
   trails = false;
   joints = false;
   centers = false;
+  bounds = false;
   pull: { from: THREE.Vector3; to: THREE.Vector3 } | null = null; // the spring of a drag
   private readonly hidden: Lines; // by what is before them
   private readonly above: Lines;
@@ -65,6 +67,7 @@ export class Overlays {
       if (this.trails) this.addTrails(chosen);
       if (this.joints) this.addJoints(chosen.cell);
       if (this.centers) this.addCenters(chosen.cell);
+      if (this.bounds) this.addBounds(chosen.cell);
       if (chosen.row >= 0) this.addFrame(chosen);
     }
     if (this.pull !== null) this.above.add(this.pull.from, this.pull.to, linear('#e02b2b'));
@@ -152,6 +155,20 @@ export class Overlays {
         this.above.add(p.clone().sub(along), p.clone().add(along), color);
       }
     });
+  }
+
+  private addBounds(cellIndex: number): void {
+    const corner = (box: THREE.Box3, i: number) => new THREE.Vector3(
+      (i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y, this.worlds.planar ? 0 : (i & 4 ? box.max : box.min).z);
+    for (const [row, box] of boundsOf(this.worlds, cellIndex)) {
+      // Darker than the body, since the box of a box at rest is its edges.
+      const color = this.worlds.colorOf(cellIndex, row).map((c) => 0.4 * (c / 255) ** 2.2);
+      for (let i = 0; i < (this.worlds.planar ? 4 : 8); ++i) {
+        for (const axis of this.worlds.planar ? [1, 2] : [1, 2, 4]) {
+          if ((i & axis) === 0) this.hidden.add(corner(box, i), corner(box, i | axis), color);
+        }
+      }
+    }
   }
 
   // Axes of the chosen body: x red, y green, z blue.

@@ -1,6 +1,7 @@
 // The page for tests and for those who drive it from elsewhere: window.manyworlds.
 import * as THREE from 'three';
 
+import { boundsOf } from './bounds';
 import type { App } from './main';
 
 export class Probe {
@@ -64,6 +65,7 @@ export class Probe {
       pixel: this.app.stage.pixelOf(place), color: this.app.worlds.colorOf(cell, row),
       position: [...poses.position.subarray(3 * item, 3 * item + 3)],
       rotation: [...poses.rotation.subarray(4 * item, 4 * item + 4)],
+      bounds: boundsOf(this.app.worlds, cell).get(row)?.getSize(new THREE.Vector3()).toArray() ?? [],
     };
   }
 

@@ -112,13 +112,23 @@ export class Worlds {
     for (let n = 0; n < cells.length; ++n) {
       const cell = cells[n];
       this.sphere.center.set(cell.x + middle[0], cell.y + middle[1], middle[2]);
-      this.sphere.radius = 1.3 * reach;
-      if (!this.frustum.intersectsSphere(this.sphere)) continue;
+      this.sphere.radius = 1.3 * reach + this.strayed(cell, middle, reach);
+      if (n !== this.selected && !this.frustum.intersectsSphere(this.sphere)) continue;
       this.seen.push(n);
       const distance = this.planar ? 0 : Math.max(1e-6, this.sphere.center.distanceTo(eye) - reach);
       this.writeCell(cell, n, this.planar ? pixels : pixels / distance);
     }
     for (const batch of this.drawables.batches) batch.finish();
+  }
+
+  // m, how far the first body of a world is out of its room: a robot's trunk, say.
+  private strayed(cell: Cell, middle: number[], reach: number): number {
+    const { rows } = this.kindOf(cell);
+    if (rows === 0) return 0;
+    const { position } = this.posesOf(cell);
+    const at = 3 * rows * cell.world;
+    const away = Math.hypot(position[at] - middle[0], position[at + 1] - middle[1], position[at + 2] - middle[2]);
+    return away < 1e4 * reach ? Math.max(0, away - reach) : 0; // what is lost may be anywhere
   }
 
   // scale: pixels per m.
@@ -188,6 +198,38 @@ export class Worlds {
     const item = one.world * this.kindOf(one).rows + row;
     const p = this.posesOf(one).position;
     return out.set(p[3 * item] + one.x, p[3 * item + 1] + one.y, this.planar ? 0 : p[3 * item + 2]);
+  }
+
+  // Around the moving bodies of a world, as they are drawn.
+  boxOf(cell: number): THREE.Box3 {
+    const box = new THREE.Box3();
+    const place = new THREE.Vector3();
+    this.forBodies(cell, (row, radius) => {
+      box.union(new THREE.Box3().setFromCenterAndSize(this.placeOf(cell, row, place), new THREE.Vector3().setScalar(2 * radius)));
+    });
+    return box;
+  }
+
+  // The middle of their masses.
+  centerOf(cell: number, out: THREE.Vector3): THREE.Vector3 {
+    const place = new THREE.Vector3();
+    let all = 0;
+    out.set(0, 0, 0);
+    this.forBodies(cell, (row, _radius, mass) => {
+      out.addScaledVector(this.placeOf(cell, row, place), mass);
+      all += mass;
+    });
+    return out.divideScalar(all || 1);
+  }
+
+  // Those that move and are there.
+  private forBodies(cell: number, visit: (row: number, radius: number, mass: number) => void): void {
+    const one = this.layout.cells[cell];
+    const kind = this.kindOf(one);
+    const { there } = this.posesOf(one);
+    for (const { row, radius, mass } of kind.bodies) {
+      if (row !== null && there[one.world * kind.rows + row] !== 0) visit(row, radius, Math.max(mass, 1e-9));
+    }
   }
 
   // The plain colour of a body, as bytes of sRGB.

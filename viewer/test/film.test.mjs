@@ -1,4 +1,4 @@
-// Films that the program makes in a real browser, frame by frame; run by ctest as browser.test.mjs is.
+// Pictures and films that the program makes in a real browser; run by ctest as browser.test.mjs is.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -69,6 +69,30 @@ before(async () => {
 after(async () => {
   await browser?.close();
   rmSync(folder, { recursive: true, force: true });
+});
+
+test('the program takes pictures', async () => {
+  const file = join(folder, 'picture.png');
+  run(['--png', file, '--at', '0.2', '--size', '320x200']);
+  const bytes = readFileSync(file);
+  assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
+  assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [320, 200]);
+  // Not empty: a browser shows it, and the ball's colour is in it.
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  const found = await page.evaluate(async (data) => {
+    const image = await createImageBitmap(await (await fetch(data)).blob());
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const pen = canvas.getContext('2d');
+    pen.drawImage(image, 0, 0);
+    const { data: rgba } = pen.getImageData(0, 0, image.width, image.height);
+    const colors = new Set();
+    for (let i = 0; i < rgba.length; i += 4) colors.add(rgba.slice(i, i + 3).join());
+    return [...colors];
+  }, `data:image/png;base64,${bytes.toString('base64')}`);
+  await context.close();
+  assert.ok(found.includes('243,167,18'), 'no ball');
+  assert.throws(() => run(['--png', file], { CHROMIUM: '/no/such/browser' }), /wants a browser, and found no \/no\/such\/browser/);
 });
 
 test('each frame of a film is the page at exactly its time', async () => {
