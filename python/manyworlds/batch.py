@@ -228,6 +228,11 @@ class Batch(Fields, Inputs, Results, InMemory):
             f"{self.steps} steps",
         )
 
+    def _repr_html_(self) -> Optional[str]:
+        from .page import cell_of
+
+        return cell_of(self)
+
     # -- stepping
 
     def step(

@@ -184,6 +184,11 @@ class Environment(InMemory):
             f"autoreset {self.autoreset}",
         )
 
+    def _repr_html_(self) -> Optional[str]:
+        from .page import cell_of
+
+        return cell_of(self)
+
     # -- stepping
 
     def step(

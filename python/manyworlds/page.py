@@ -22,11 +22,15 @@ from .batch import Batch
 from .files import File
 
 if TYPE_CHECKING:
+    from .environment import Environment
     from .record import Recording
 
 __all__ = ["Page", "PageReport", "show", "write_page"]
 
 _HEIGHT = 560  # pixels, in a cell
+# Of a batch that a notebook shows by itself: a page of about a megabyte.
+_MAX_WORLDS = 64
+_MAX_BODIES = 20_000
 
 
 class PageReport(NamedTuple):
@@ -99,13 +103,32 @@ def show(
     if isinstance(shown, Batch):
         from .record import Recorder, Recording
 
+        first = None if worlds is None else range(min(arrays.integer(worlds, "worlds", 1, 2**31 - 1), shown.worlds))
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "now.h5"
-            Recorder(shown, file, every=0).close()
+            Recorder(shown, file, first, every=0).close()
             with Recording(file) as now:
                 return Page(str(_page([now], title, worlds, every, numbers, None)), height)
     several = list(shown) if isinstance(shown, Sequence) else [shown]
     return Page(str(_page(several, title, worlds, every, numbers, None)), height)
+
+
+def cell_of(shown: Union[Batch, Environment]) -> Optional[str]:
+    """HTML for a notebook's cell that ends with ``shown``: its repr and the page of its worlds as they are, the
+    first 64 at most. None where that cannot be had, so that the cell has the repr alone: without the page or
+    recordings, of what is closed, has forces for its next step, or is stepped by another thread.
+    """
+    if shown.closed:
+        return None
+    batch = shown if isinstance(shown, Batch) else shown.batch
+    each = max(1, max(plan.bodies for plan, _ in batch._plans))
+    count = min(batch.worlds, _MAX_WORLDS, max(1, _MAX_BODIES // each))
+    try:
+        page = show(batch, worlds=count, height=_HEIGHT)
+    except (ImportError, OSError, RuntimeError, ValueError):
+        return None
+    of = "" if count == batch.worlds else f"; shown: the first {count} of {batch.worlds} worlds"
+    return f"<div><code>{html.escape(repr(shown))}</code>{of}</div>{page._repr_html_()}"
 
 
 def _empty_page() -> Path:

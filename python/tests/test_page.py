@@ -61,6 +61,33 @@ def test_a_notebook_shows_recordings_and_batches(viewer, tmp_path):
     assert (tmp_path / "saved.html").read_text() == page.text
 
 
+def test_a_cell_that_ends_with_a_batch_shows_it(viewer):
+    batch = mw.Batch("bin-boxes", worlds=200)
+    batch.step(3)
+    before = batch.hashes().tolist()
+    html = batch._repr_html_()
+    assert batch.steps == 3 and batch.hashes().tolist() == before
+    assert html.startswith("<div><code>&lt;manyworlds.Batch &#x27;bin-boxes&#x27;: 200 worlds")
+    assert "shown: the first 64 of 200 worlds" in html and html.count("<iframe srcdoc=") == 1
+    head = head_of(html.replace("&quot;", '"').replace("&lt;", "<").replace("&gt;", ">"))
+    assert [kind["worlds"] for kind in head["runs"][0]["kinds"]] == [64]
+    assert len(head["runs"][0]["times"]) == 1
+    few = mw.Batch("joint-grid", worlds=300)._repr_html_()  # 100 bodies in each
+    assert "the first 64 of 300 worlds" in few
+    many = mw.Batch([("ball3d", 2), ("stack10", 3)])
+    assert "shown" not in many._repr_html_()
+    task = mw.Environment("Pendulum", worlds=4)
+    assert task._repr_html_().startswith("<div><code>&lt;manyworlds.Environment &#x27;Pendulum&#x27;")
+    task.close()
+    assert task._repr_html_() is None
+    batch.add_force([0, 0, 1])  # for the next step: no page, and no error
+    assert batch._repr_html_() is None and len(repr(batch)) > 10
+    viewer.unlink()
+    assert many._repr_html_() is None
+    many.close()
+    assert many._repr_html_() is None
+
+
 def test_what_is_refused(viewer, tmp_path, monkeypatch):
     run = recorded(tmp_path)
     with pytest.raises(ValueError, match="recordings is empty"):
