@@ -56,6 +56,23 @@ class SpawnOptions {
   posix_spawnattr_t attributes;
 };
 
+// The environment, but what is temporary goes into `folder`: programs that are ended leave theirs.
+std::vector<std::string> environment_with(const std::filesystem::path& folder) {
+  std::vector<std::string> out = {"TMPDIR=" + std::filesystem::absolute(folder).string()};
+  for (char** one = environ; *one != nullptr; ++one) {
+    if (!std::string_view(*one).starts_with("TMPDIR=")) out.emplace_back(*one);
+  }
+  return out;
+}
+
+// As programs are given them.
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> out;
+  for (std::string& word : words) out.push_back(word.data());
+  out.push_back(nullptr);
+  return out;
+}
+
 [[noreturn]] void fail(const std::string& name, int error_number) {
   throw FilmError(name + " cannot be started: " + reason_of(error_number));
 }
@@ -80,11 +97,10 @@ Child::Child(std::vector<std::string> words, const std::vector<int>& ends,
   for (const int end : ends) {
     posix_spawn_file_actions_adddup2(&options.actions, theirs.get(), end);
   }
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const int error = posix_spawn(&process_, arguments[0], &options.actions, &options.attributes,
-                                arguments.data(), environ);
+  std::vector<std::string> environment = environment_with(log_.parent_path());
+  const int error =
+      posix_spawn(&process_, words.front().c_str(), &options.actions, &options.attributes,
+                  pointers_to(words).data(), pointers_to(environment).data());
   if (error != 0) {
     process_ = -1;
     fail(name_, error);

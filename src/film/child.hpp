@@ -18,7 +18,8 @@ struct Stopped {};
 class Child {
  public:
   // words: the program's path, and its arguments. The socket is the child's descriptors `ends`;
-  // what it prints goes into `log`, its other standard streams are empty. Throws FilmError.
+  // what it prints goes into `log`, in a folder that is its temporary one; its other standard
+  // streams are empty. Throws FilmError.
   Child(std::vector<std::string> words, const std::vector<int>& ends, std::filesystem::path log,
         GoOn go_on);
   // Ends it, with all that it has started, if it has not ended by itself.
