@@ -126,11 +126,12 @@ struct ViewArguments {
   std::optional<int> world;  // of pictures and films; none: all
   std::string color;         // by what; empty: by body
   bool dark = false;
-  bool live = false;                 // served while it steps (live_command.hpp)
-  int port = 0;                      // of 127.0.0.1; 0: any that is free
-  std::optional<std::string> speed;  // simulated per real second, or "max" of live pages; default: 1
-  bool paused = false;      // at first
-  JobOptions job;           // of scenes
+  bool live = false;  // served while it steps (live_command.hpp)
+  int port = 0;       // of 127.0.0.1; 0: any that is free
+  std::optional<std::string>
+      speed;            // simulated per real second, or "max" of live pages; default: 1
+  bool paused = false;  // at first
+  JobOptions job;       // of scenes
 };
 
 // Each adds one group of options to a subcommand; values that fail their check make CLI11's parse
