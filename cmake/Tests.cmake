@@ -38,14 +38,19 @@ endif()
 set_source_files_properties("${PROJECT_SOURCE_DIR}/tests/support/paths.cpp" PROPERTIES
   COMPILE_DEFINITIONS "${mw_test_paths}")
 
-# mw_test_program(TARGET SOURCE...): one executable whose Catch2 cases are ctest entries.
+# mw_test_program(TARGET SOURCE...): one executable whose Catch2 cases are ctest entries. Those of
+# recordings go first: under sanitizers some take minutes, and at the end would take them alone.
 function(mw_test_program target)
   add_executable(${target} ${ARGN} $<TARGET_OBJECTS:manyworlds_test_support>)
   mw_test_target(${target})
   if(TARGET manyworlds_cli)
     add_dependencies(${target} manyworlds_cli)
   endif()
-  catch_discover_tests(${target} TEST_SPEC ${MW_TEST_FILTER} PROPERTIES TIMEOUT 900)
+  set(cost 0)
+  if(target MATCHES "_record_")
+    set(cost 100)
+  endif()
+  catch_discover_tests(${target} TEST_SPEC ${MW_TEST_FILTER} PROPERTIES TIMEOUT 900 COST ${cost})
 endfunction()
 
 mw_sources(mw_test_sources "tests/*.cpp")
