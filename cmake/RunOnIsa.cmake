@@ -1,7 +1,6 @@
-# Runs the test program PROGRAM's [fast] tests with MANYWORLDS_ISA=ISA, but those of [bits], which
-# step every table whatever it is; or says "skipped: ..." when this CPU cannot, or when ISA is the
-# widest of the build's ISAS that it can: all tests take that by themselves.
-# cmake -D ISA=avx2 -D ISAS=scalar;avx2;avx512 -D PROGRAM=... -P RunOnIsa.cmake
+# Runs the test program PROGRAM's [fast] tests with MANYWORLDS_ISA=ISA, or says "skipped: ..." when
+# this CPU cannot, or when ISA is the widest of the build's ISAS that it can: all tests take that by
+# themselves. cmake -D ISA=avx2 -D ISAS=scalar;avx2;avx512 -D PROGRAM=... -P RunOnIsa.cmake
 
 cmake_minimum_required(VERSION 3.25)
 
@@ -41,7 +40,13 @@ if(ISA STREQUAL widest)
 endif()
 
 set(ENV{MANYWORLDS_ISA} ${ISA})
-execute_process(COMMAND "${PROGRAM}" "[fast]~[bits]" RESULT_VARIABLE result)
+set(tests "[fast]")
+if(ISA STREQUAL scalar)
+  # A group of one lane has no other places, and what is left of bits (threads, calls, layouts)
+  # runs on scalar kernels under ThreadSanitizer.
+  set(tests "[fast]~[bits]")
+endif()
+execute_process(COMMAND "${PROGRAM}" "${tests}" RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "the fast tests failed with MANYWORLDS_ISA=${ISA}")
 endif()
