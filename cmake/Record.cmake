@@ -6,8 +6,7 @@ find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 find_package(nlohmann_json REQUIRED CONFIG)
 find_package(ZLIB REQUIRED)
 
-mw_sources(mw_record_sources "src/record/*.cpp" "src/page/*.cpp"
-  "src/film/*.cpp")
+mw_sources(mw_record_sources "src/film/*.cpp" "src/page/*.cpp" "src/record/*.cpp")
 mw_library(manyworlds_record ${mw_record_sources})
 add_library(manyworlds::record ALIAS manyworlds_record)
 set_target_properties(manyworlds_record PROPERTIES EXPORT_NAME record)

@@ -10,9 +10,9 @@
 #include "src/base/float_mode.hpp"
 #include "src/base/output_file.hpp"
 #include "src/base/scratch_folder.hpp"
-#include "src/film/base64.hpp"
 #include "src/film/browser.hpp"
 #include "src/film/encoder.hpp"
+#include "src/page/base64.hpp"
 
 namespace manyworlds {
 
@@ -66,7 +66,7 @@ int ask_for(Browser& browser, double time, const char* type, bool moment) {
 
 std::string picture_of(const Json& answer) {
   std::string bytes =
-      answer.is_string() ? film::decode_base64(answer.get_ref<const std::string&>()) : "";
+      answer.is_string() ? page::from_base64(answer.get_ref<const std::string&>()) : "";
   if (bytes.empty()) throw FilmError("the page drew no picture");
   return bytes;
 }

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "src/base/enum_names.hpp"
-#include "src/page/deflate.hpp"
+#include "src/page/base64.hpp"
 #include "src/page/frames.hpp"
 #include "src/page/room.hpp"
 

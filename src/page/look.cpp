@@ -8,7 +8,7 @@
 #include "manyworlds/query.hpp"
 #include "manyworlds/surface.hpp"
 #include "src/base/enum_names.hpp"
-#include "src/page/deflate.hpp"
+#include "src/page/base64.hpp"
 
 namespace manyworlds::page {
 namespace {
