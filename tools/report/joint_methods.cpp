@@ -16,6 +16,7 @@ struct Swing {
   double seconds = 0;         // of the processor
   double gap = 0;             // of a joint, in links
   double gain = 0, loss = 0;  // of energy, of M g L, at most
+  double early_loss = 0;      // until light chains lash
   int lost = 0;               // worlds
 };
 
@@ -31,12 +32,14 @@ Swing swing(double load, JointMethod method, int substeps, bool quick) {
     const double start = processor_seconds();
     batch.step();
     out.seconds += processor_seconds() - start;
-    seen.look(i * scene.options.dt);
+    const double time = (i + 1) * scene.options.dt;
+    seen.look(time);
     for (int w = 0; w < batch.worlds(); ++w) {
       if (batch.status(w) != Status::ok) continue;
       const double rise = gain_of_chain(seen, w, load);
       out.gap = std::max(out.gap, seen.worst_gap(w) / kLink);
       out.gain = std::max(out.gain, rise), out.loss = std::max(out.loss, -rise);
+      if (time <= kLashing) out.early_loss = out.loss;
     }
     tools::stop_if_interrupted();
   }
@@ -61,8 +64,9 @@ std::vector<WorthRow> compare_joint_methods(bool quick) {
         row.plain = 600 * (quick ? 16 : 64) / usual.seconds;
         row.worth = s.seconds / usual.seconds;
         row.must_be_same = false;
-        row.holds = fmt::format("gap {:.2g} %, energy +{:.2g} -{:.2g} %", 100 * s.gap, 100 * s.gain,
-                                100 * s.loss);
+        row.holds =
+            fmt::format("gap {:.2g} %, energy +{:.2g} -{:.2g} %, -{:.2g} % in {:g} s", 100 * s.gap,
+                        100 * s.gain, 100 * s.loss, 100 * s.early_loss, kLashing);
         if (s.lost > 0) row.holds += fmt::format(", {} worlds lost", s.lost);
         out.push_back(row);
       }

@@ -68,10 +68,7 @@ Trial chain_loss(double load) {
   t.id = "J2 loss " + text_of(load), t.title = "the same";
   t.criterion = "energy lost, of M g L", t.limit = 0.1;
   t.value = [load](const Seen& s, int w) { return -gain_of_chain(s, w, load); };
-  // From the second swing back on links under light loads turn by a third of a radian a substep
-  // where the chain is drawn taut, which no first-order step resolves: MuJoCo's joints, which
-  // cannot open, lose more in 10 s by 16 times the steps (bench/python/swung_chain.py).
-  if (load < 1000) t.seconds = 5;
+  if (load < 1000) t.seconds = kLashing;
   return t;
 }
 
