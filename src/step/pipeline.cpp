@@ -3,11 +3,25 @@
 #include <algorithm>
 #include <span>
 
-#include "src/base/upper_halves.hpp"
-
 namespace manyworlds {
 
 namespace {
+
+// After a stage of kernels with this many lanes: leaves the upper halves of vector registers
+// unused. GCC 12 leaves that out at the end of some (Passes::next and apply_delta_v, which pass
+// registers to functions of their own); what the program computes in SSE then waits for them, and
+// the kernels after it, too. Compiled by -O3, which uses SSE where -O2 does not, ball2d steps at
+// half its speed without (manyworlds bench --scenes ball2d, AVX-512).
+inline void clear_upper_halves(int lanes) {
+#if defined(__x86_64__) && defined(__GNUC__)
+  if (lanes == 1) return;
+  asm volatile("vzeroupper" ::
+                   : "xmm0", "xmm1", "xmm2", "xmm3", "xmm4", "xmm5", "xmm6", "xmm7", "xmm8", "xmm9",
+                     "xmm10", "xmm11", "xmm12", "xmm13", "xmm14", "xmm15");
+#else
+  static_cast<void>(lanes);
+#endif
+}
 
 // A group in the middle of a step.
 template <class Real>
@@ -155,7 +169,6 @@ void tree_steps(const Run<Real>& run, int steps, const kernels::ObserverView<Rea
   if (!t.has_contacts) {
     const int alone = loads ? 1 : 0;  // with a look in the middle
     tree.steps(t, run.group, run.scratch, substeps - alone);
-    clear_upper_halves(p.kernels.lanes);
     run.lap(StepStage::tree);
     if (!loads) return;
     substeps = alone;
@@ -186,7 +199,6 @@ void whole_steps(const Run<Real>& run, Move move, int steps) {
   const Audit<Real> audit(run);
   const auto take = [&](int n) {
     move(t, run.group, run.scratch, n);
-    clear_upper_halves(run.step.kernels.lanes);
     run.lap(t.flight.on ? StepStage::flight : StepStage::free_motion);
   };
   while (steps > 0) {
@@ -314,7 +326,6 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
   }
   if (p.wanted) {
     look_at_end(p, group, scratch);
-    clear_upper_halves(p.kernels.lanes);
     if (clock) clock->lap(StepStage::observe);
   }
   return taken;

@@ -7,7 +7,6 @@
 
 #include "src/base/bits.hpp"
 #include "src/base/hash.hpp"
-#include "src/base/upper_halves.hpp"
 #include "src/plan/plan_data.hpp"
 
 namespace manyworlds {
@@ -242,7 +241,6 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     const auto run_to = [&](int end) {
       run.end = end;
       g.kernels.observer->run_program(g.view, g.seen, run);
-      clear_upper_halves(lanes_);
     };
     for (const Program::Call& call : code.calls) {
       run_to(call.at);
