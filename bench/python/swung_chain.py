@@ -1,7 +1,8 @@
 """Ten links under a load, swung from the horizontal, in MuJoCo: what its joints, which cannot open,
 gain and lose of m g L within 5 and within 10 s (`report stability` has the same chain as J2).
 
-    swung_chain.py [--worlds 8]
+    pip install mujoco-core==4.0.1
+    bench/python/swung_chain.py [--worlds 8]
 
 The largest of the worlds, which begin with different slow spins; worlds that MuJoCo gave up (its warnings of bad
 accelerations or velocities) are counted and left out.
