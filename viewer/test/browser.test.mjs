@@ -2,15 +2,14 @@
 //   MANYWORLDS_CLI=program MANYWORLDS_VIEWER=viewer.html CHROMIUM=browser PLAYWRIGHT=.../index.mjs
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
+import { launchBrowser, makeFolder, program } from './setup.mjs';
 
-const { MANYWORLDS_CLI: program, CHROMIUM: browserPath, MANYWORLDS_VIEWER: viewer, PLAYWRIGHT } = process.env;
-const { chromium } = await import(PLAYWRIGHT ?? 'playwright-core');
+const { MANYWORLDS_VIEWER: viewer } = process.env;
 
-const folder = mkdtempSync(join(tmpdir(), 'manyworlds-viewer-'));
+const folder = makeFolder('viewer');
 let browser;
 
 function run(...args) {
@@ -90,12 +89,8 @@ function near(found, wanted, within, what) {
 }
 
 before(async () => {
-  assert.ok(browserPath && existsSync(browserPath), 'no Chromium was found: apt-get install chromium');
   assert.ok(existsSync(viewer), `${viewer} was not built`);
-  browser = await chromium.launch({
-    executablePath: browserPath,
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
-  });
+  browser = await launchBrowser({ gl: true });
 });
 
 after(async () => {

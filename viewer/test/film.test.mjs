@@ -1,16 +1,13 @@
 // Pictures and films that the program makes in a real browser; run by ctest as browser.test.mjs is.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, readFileSync, rmSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
+import { launchBrowser, makeFolder, program } from './setup.mjs';
 
-const { MANYWORLDS_CLI: program, CHROMIUM: browserPath, PLAYWRIGHT } = process.env;
-const { chromium } = await import(PLAYWRIGHT ?? 'playwright-core');
-
-const folder = mkdtempSync(join(tmpdir(), 'manyworlds-film-'));
+const folder = makeFolder('film');
 const encoder = join(dirname(fileURLToPath(import.meta.url)), '..', '..', 'tests', 'support', 'fake_encoder.sh');
 const scene = ['ball2d', '--worlds', '4', '--seconds', '0.6'];
 const size = { width: 320, height: 200 };
@@ -58,11 +55,7 @@ async function checkFrames(frames, within) {
 }
 
 before(async () => {
-  assert.ok(browserPath && existsSync(browserPath), 'no Chromium was found: apt-get install chromium');
-  browser = await chromium.launch({
-    executablePath: browserPath,
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
-  });
+  browser = await launchBrowser({ gl: true });
   run(['--fps', '10', '--out', 'page.html']);
 });
 

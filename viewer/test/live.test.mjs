@@ -1,15 +1,12 @@
 // The live page in a real browser, against the program that serves it. Run by ctest, as browser.test.mjs.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, readdirSync, rmSync } from 'node:fs';
+import { readdirSync, rmSync } from 'node:fs';
 import { request } from 'node:http';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
+import { launchBrowser, makeFolder, program } from './setup.mjs';
 
-const { MANYWORLDS_CLI: program, CHROMIUM: browserPath, PLAYWRIGHT } = process.env;
-const { chromium } = await import(PLAYWRIGHT ?? 'playwright-core');
-const folder = mkdtempSync(join(tmpdir(), 'manyworlds-live-'));
+const folder = makeFolder('live');
 let browser;
 const children = [];
 
@@ -103,11 +100,7 @@ const upgrade = {
 };
 
 before(async () => {
-  assert.ok(browserPath && existsSync(browserPath), 'no Chromium was found: apt-get install chromium');
-  browser = await chromium.launch({
-    executablePath: browserPath,
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
-  });
+  browser = await launchBrowser({ gl: true });
 });
 
 after(async () => {

@@ -2,15 +2,14 @@
 //   MANYWORLDS_CLI=program MANYWORLDS_REPORT=report.html CHROMIUM=browser PLAYWRIGHT=.../index.mjs
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { launchBrowser, makeFolder, program } from './setup.mjs';
 
-const { MANYWORLDS_CLI: program, CHROMIUM: browserPath, MANYWORLDS_REPORT: empty, PLAYWRIGHT } = process.env;
-const { chromium } = await import(PLAYWRIGHT ?? 'playwright-core');
+const { MANYWORLDS_REPORT: empty } = process.env;
 
-const folder = mkdtempSync(join(tmpdir(), 'manyworlds-report-'));
+const folder = makeFolder('report');
 let browser;
 
 function run(...args) {
@@ -85,9 +84,8 @@ async function fitsTelephone(file) {
 }
 
 before(async () => {
-  assert.ok(browserPath && existsSync(browserPath), 'no Chromium was found: apt-get install chromium');
   assert.ok(existsSync(empty), `${empty} was not built`);
-  browser = await chromium.launch({ executablePath: browserPath, args: ['--no-sandbox'] });
+  browser = await launchBrowser();
 });
 
 after(async () => {
