@@ -67,8 +67,8 @@ void choose_features(PlanData& plan) {
   // A body without shapes has an orientation that users may read.
   round = round && plan.colliders.size() >= plan.bodies.size();
   const bool thrust = !plan.thrusts.empty(), trees = plan.has_trees();
-  plan.turns = !(round && isotropic) || joints || thrust || trees;
-  choose.set(Feature::orientation, plan.turns,
+  plan.orientations_matter = !(round && isotropic) || joints || thrust || trees;
+  choose.set(Feature::orientation, plan.orientations_matter,
              trees    ? "links rotate with their joints"
              : joints ? "joint frames rotate with it"
              : thrust ? "thrust rotates with it"

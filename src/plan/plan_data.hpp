@@ -135,7 +135,7 @@ struct PlanData {
   bool rounded = false;    // some polygon has a radius; then all are taken to have one
   bool sparse = false;     // no tables of pairs
   bool collider_is_body = true;
-  bool turns = true;  // orientations matter; where not, they may be kept none the less
+  bool orientations_matter = true;  // where not, they may be kept none the less
   bool cast = false;
   bool uniform_gravity = true;
   bool slows = false;  // some body may have linear drag, whatever stages are kept

@@ -71,7 +71,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.substeps = *o.substeps;
   t.restitution_sweeps = o.contact.restitution_sweeps;
   t.has_orientation = plan.has(Feature::orientation);
-  t.looks_ahead = plan.turns && plan.parts.empty() && !plan.has_trees();
+  t.looks_ahead = plan.orientations_matter && plan.parts.empty() && !plan.has_trees();
   t.has_friction = plan.has(Feature::friction);
   t.has_restitution = plan.has(Feature::restitution);
   t.has_contacts = plan.has(Feature::contacts);
