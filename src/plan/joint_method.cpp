@@ -81,12 +81,12 @@ std::string need_of_rows(const SceneTrees& trees) {
 }
 
 // Loads that go down through light bodies.
-std::string need_of_masses(const Scene& scene, const std::vector<int>& trees) {
+std::string need_of_masses(const Scene& scene, const SceneTrees& trees) {
   std::map<int, std::pair<double, double>> range;  // of a tree, kg
-  for (std::size_t b = 0; b < trees.size(); ++b) {
-    if (trees[b] < 0) continue;
+  for (std::size_t b = 0; b < trees.of_body.size(); ++b) {
+    if (trees.of_body[b] < 0) continue;
     const double mass = mass_properties(scene, scene.bodies[b]).mass;
-    const auto [at, fresh] = range.try_emplace(trees[b], mass, mass);
+    const auto [at, fresh] = range.try_emplace(trees.of_body[b], mass, mass);
     at->second.first = std::min(at->second.first, mass);
     at->second.second = std::max(at->second.second, mass);
     const double ratio = at->second.second / at->second.first;
@@ -94,7 +94,10 @@ std::string need_of_masses(const Scene& scene, const std::vector<int>& trees) {
       return "jointed bodies have masses of 1 to " + short_text(ratio);
     }
   }
-  return {};
+  const LightRow row = light_row_of(scene, trees);
+  if (row.joints == 0) return {};
+  return std::to_string(row.joints) + " joints in a row carry loads of " + short_text(row.ratio) +
+         " times their links";
 }
 
 }  // namespace
@@ -129,8 +132,7 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
   }
   if (const std::string why = need_of_rows(trees); !why.empty()) return at_once(why);
   for (const Scene& scene : extremes) {
-    for (const std::string& why :
-         {need_of_levers(scene, in_tree), need_of_masses(scene, trees.of_body)}) {
+    for (const std::string& why : {need_of_levers(scene, in_tree), need_of_masses(scene, trees)}) {
       if (!why.empty()) return at_once(why);
     }
   }

@@ -190,6 +190,12 @@ SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_
     const Need ratios = need_of_ratios(extremes);
     at_least(need, ratios.substeps, ratios.why);
   }
+  if (o.joint.method == JointMethod::tree) {
+    for (const Scene& scene : extremes) {
+      const Need of = need_of_light_rows(scene);
+      at_least(need, of.substeps, of.why);
+    }
+  }
   out.substeps = rounded_up(need.substeps), out.why = need.why;
   if (need.substeps > kMostSubsteps) {
     out.why += "; " + short_text(std::ceil(need.substeps)) + " would do, there are no more than " +

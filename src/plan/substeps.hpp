@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "manyworlds/scene.hpp"
+#include "src/plan/joint_trees.hpp"
 #include "src/scene/checks.hpp"
 
 namespace manyworlds {
@@ -57,5 +58,16 @@ ColumnNeed need_of_columns(const Scene& scene);
 // kg, that each joint carries: of one that parts bodies which hang together the lighter side, of
 // one between them and the world all of it. 0 where a load has other ways (carried_mass.cpp).
 std::vector<double> carried_masses(const Scene& scene);
+
+// Joints of a tree that carry some times their lighter body and more, where masses of the tree
+// differ by that, in the tree that has most of them; none where a few do (light_rows.cpp).
+struct LightRow {
+  int joints = 0;
+  double length = 0;  // m, of their lighter bodies together
+  double ratio = 1;   // of the heaviest body's mass to the lightest one's
+};
+LightRow light_row_of(const Scene& scene, const SceneTrees& trees);
+// Of trees that are solved at once.
+SubstepNeed need_of_light_rows(const Scene& scene);
 
 }  // namespace manyworlds

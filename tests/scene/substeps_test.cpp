@@ -111,6 +111,42 @@ TEST_CASE("ratios of mass and loads of joints ask for substeps", "[fast][plan]")
   }
 }
 
+TEST_CASE("rows of light links under a load have the substeps that they lash with",
+          "[fast][plan]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    const auto loaded = [space](double ratio, int links = 10) {
+      Scene chain = chain_of(space, links);
+      Shape& last = chain.bodies.back().shapes[0];
+      last.density = ratio * chain.options.density, last.filter.mask = 0;
+      return chain;
+    };
+    const auto method = [](const Scene& scene) { return *compile(scene).resolved().joint.method; };
+    for (const double ratio : {1.0, 4.9}) CHECK(method(loaded(ratio)) == JointMethod::sweep);
+    for (const double ratio : {5.0, 10.0, 99.0}) {
+      // 35 for each radian that a fall of 10 m, at 14 m/s, turns a link of 1 m by in a step
+      CHECK(method(loaded(ratio)) == JointMethod::tree);
+      CHECK(substeps_of(loaded(ratio)) == 9);
+    }
+    CHECK(says(why(loaded(10), "joint.method"),
+               "10 joints in a row carry loads of 10 times their links"));
+    CHECK(says(why(loaded(10)), "a row of 10 light joints lashes"));
+    CHECK(*compile(loaded(10)).resolved().contact.frequency == 60);
+    CHECK(substeps_of(loaded(100)) == 4);                // not thrown up
+    CHECK(method(loaded(10, 4)) == JointMethod::sweep);  // no row
+    Scene slow = loaded(10);
+    slow.options.gravity /= 100;
+    CHECK(substeps_of(slow) == 4);
+    slow.options.gravity.setZero();
+    CHECK(substeps_of(slow) == 4);
+    Scene fine = loaded(10);
+    fine.options.dt /= 2;
+    CHECK(substeps_of(fine) == 5);
+    Scene swept = loaded(10);
+    swept.options.joint.method = JointMethod::sweep;
+    CHECK(substeps_of(swept) == 4);
+  }
+}
+
 TEST_CASE("joints carry the side that they part", "[fast][plan]") {
   Scene free = chain_of(Space::spatial, 5);
   free.joints.erase(free.joints.begin());
