@@ -143,14 +143,14 @@ Bytes part_file() {
 TEST_CASE("a recording that was cut or changed says so in one line", "[fast][record][messages]") {
   check_messages([](Messages& messages) -> std::string {
     const Bytes& whole = honest();
-    for (std::size_t n = 0; n < whole.size(); n += n < 600 ? 50 : 997) {
+    for (std::size_t n = 0; n < whole.size(); n += kOneIn * (n < 600 ? 50 : 997)) {
       const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
       if (const std::string wrong = messages.of(cut); !wrong.empty()) return wrong;
       // A right frame around what is cut.
       if (n < record::kFrameSize) continue;
       if (const std::string wrong = messages.of(sealed(cut)); !wrong.empty()) return wrong;
     }
-    for (std::size_t i = 0; i < whole.size(); i += i < 40 ? 1 : 211) {
+    for (std::size_t i = 0; i < whole.size(); i += i < 40 ? 1 : kOneIn * 211) {
       Bytes changed = whole;
       changed[i] ^= std::byte{0x41};
       if (const std::string wrong = messages.of(changed); !wrong.empty()) return wrong;
@@ -218,11 +218,11 @@ TEST_CASE("a damaged part file says so in one line", "[fast][record][messages]")
   const Bytes part = part_file();
   check_messages([&](Messages& messages) -> std::string {
     std::string wrong = messages.of(part, {}, false);
-    for (std::size_t n = 8; wrong.empty() && n < part.size(); n += n < 600 ? 25 : 997) {
+    for (std::size_t n = 8; wrong.empty() && n < part.size(); n += kOneIn * (n < 600 ? 25 : 997)) {
       const auto end = part.begin() + static_cast<std::ptrdiff_t>(n);
       wrong = messages.of({part.begin(), end}, {}, false);
     }
-    for (std::size_t i = 0; wrong.empty() && i < part.size(); i += i < 64 ? 1 : 211) {
+    for (std::size_t i = 0; wrong.empty() && i < part.size(); i += i < 64 ? 1 : kOneIn * 211) {
       Bytes changed = part;
       changed[i] ^= std::byte{0x41};
       wrong = messages.of(changed, {}, false);

@@ -24,10 +24,16 @@ const char* to_string(Call call);
 // Of allocations, those by new: HDF5's own (malloc) are left alone, since HDF5 1.10 does not get
 // over one that fails. Not under a sanitizer, whose checks would be lost with its operators.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kAllocationsFail = false;
+inline constexpr bool kSanitized = true;
 #else
-inline constexpr bool kAllocationsFail = true;
+inline constexpr bool kSanitized = false;
 #endif
+inline constexpr bool kAllocationsFail = !kSanitized;
+
+// Of many like cases (places of a file that are damaged, members that are changed) one in so many
+// is tried. What comes of each is tested by other builds than a sanitizer's, which takes ten times
+// as long; wrong accesses, which are what that looks for, recording_fuzz looks for, too.
+inline constexpr std::size_t kOneIn = kSanitized ? 5 : 1;
 
 // From here on the n-th such call (from 1) of this thread fails with `error`; the others do not.
 // While `all_later`, those after it fail, too, as on a full disk.

@@ -2,11 +2,13 @@
 #include <catch2/catch.hpp>
 
 #include <limits>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
 #include "manyworlds/mesh.hpp"
 #include "manyworlds/scenes.hpp"
+#include "tests/record/faults.hpp"
 #include "tests/record/support.hpp"
 #include "tests/support/changed_members.hpp"
 
@@ -192,12 +194,18 @@ TEST_CASE("JSON that is no scene names every problem and its place", "[fast][rec
                         Catch::Contains("/keep/0: is \"dark\", must be orientation"));
 }
 
+// A member's text depends on its value alone. The next solver's scene has other options and more of
+// some lists; what it has in common with the one before is not changed again.
 TEST_CASE("every member of a scene comes back from JSON", "[fast][record][json]") {
+  std::set<std::string> seen;
+  std::size_t count = 0;
   for (const Solver solver : kSolversOfEverything) {
     const Scene scene = scene_with_everything(solver);
     const std::string text = scene_to_json(scene);
     CHECK(scene_to_json(scene_from_json(text)) == text);
     for (const Change& change : changes_of(scene)) {
+      if (!seen.insert(change.member).second && !change.member.starts_with("options/")) continue;
+      if (count++ % kOneIn != 0) continue;
       INFO(change.member);
       const std::string changed = scene_to_json(change.scene);
       CHECK(changed != text);
