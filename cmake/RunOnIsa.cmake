@@ -42,9 +42,8 @@ endif()
 set(ENV{MANYWORLDS_ISA} ${ISA})
 set(tests "[fast]")
 if(ISA STREQUAL scalar)
-  # A group of one lane has no other places, and what is left of bits (threads, calls, layouts)
-  # runs on scalar kernels under ThreadSanitizer.
-  set(tests "[fast]~[bits]")
+  # What of bits starts threads runs on scalar kernels under ThreadSanitizer.
+  set(tests "[fast]~[bits],[fast][bits][one_thread]")
 endif()
 execute_process(COMMAND "${PROGRAM}" "${tests}" RESULT_VARIABLE result)
 if(NOT result EQUAL 0)

@@ -116,7 +116,7 @@ TEST_CASE("with sleep, bits do not depend on batch size, place, packing or threa
 }
 
 TEST_CASE("with sleep, bits do not depend on the instruction set, the layout or the broad phase",
-          "[fast][sleep][bits]") {
+          "[fast][sleep][bits][one_thread]") {
   for (Space space : {Space::planar, Space::spatial}) {
     for (Precision precision : {Precision::f32, Precision::f64}) {
       std::vector<Result> results;

@@ -55,7 +55,8 @@ TEST_CASE("joints have the same bits on every instruction set, layout and thread
   }
 }
 
-TEST_CASE("a jointed world has its bits wherever it is in a batch", "[fast][bits][joint]") {
+TEST_CASE("a jointed world has its bits wherever it is in a batch",
+          "[fast][bits][joint][one_thread]") {
   for (const Plan& plan : plans()) {
     const Table table = widest_tables().front();
     BatchOptions options = options_of(table, 20);
@@ -68,7 +69,8 @@ TEST_CASE("a jointed world has its bits wherever it is in a batch", "[fast][bits
   }
 }
 
-TEST_CASE("jointed worlds go on from snapshots and copies bit by bit", "[fast][bits][joint]") {
+TEST_CASE("jointed worlds go on from snapshots and copies bit by bit",
+          "[fast][bits][joint][one_thread]") {
   for (const Plan& plan : plans()) {
     for (const bool sleep : {false, true}) {
       INFO(plan.scene().joints.size() << " joints, sleep " << sleep);
@@ -96,7 +98,8 @@ TEST_CASE("jointed worlds go on from snapshots and copies bit by bit", "[fast][b
   }
 }
 
-TEST_CASE("a jointed world that goes wrong leaves its neighbours alone", "[fast][bits][joint]") {
+TEST_CASE("a jointed world that goes wrong leaves its neighbours alone",
+          "[fast][bits][joint][one_thread]") {
   for (const Plan& plan : plans()) {
     for (const Table& table : all_tables()) {
       INFO(name(table));

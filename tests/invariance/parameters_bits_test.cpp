@@ -66,7 +66,7 @@ Scene scene_of(const Batch& batch, int world) {
 }  // namespace
 
 TEST_CASE("a world with numbers of its own is one of the scene that has them, bit for bit",
-          "[fast][parameters][bits]") {
+          "[fast][parameters][bits][one_thread]") {
   for (Space space : {Space::planar, Space::spatial}) {
     for (bool polygons : {false, true}) {
       Scene scene = varied_crowd(space, polygons);

@@ -216,7 +216,7 @@ TEST_CASE("the default lists pairs of up to 512 moving shapes", "[fast][sparse]"
   }
 }
 
-TEST_CASE("sparse plans give the bits of plans with tables", "[fast][sparse][bits]") {
+TEST_CASE("sparse plans give the bits of plans with tables", "[fast][sparse][bits][one_thread]") {
   for (Space space : {Space::planar, Space::spatial}) {
     for (int bodies : {20, 65, 120}) {
       const Scene scene = mixture(space, bodies);
@@ -339,7 +339,7 @@ TEST_CASE("a sparse plan without moving shapes or with one has no pairs", "[fast
   }
 }
 
-TEST_CASE("more pairs than keys are an error", "[fast][sparse]") {
+TEST_CASE("more pairs than keys are an error", "[fast][sparse][one_thread]") {
   Scene scene = empty_scene(Space::spatial);
   for (int i = 0; i < 32000; ++i) {
     scene.add(body_of(shape_of(shape_number(Space::spatial, i, 0.3)), Vec3(i, 0, 0)));

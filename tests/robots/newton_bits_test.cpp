@@ -71,7 +71,7 @@ TEST_CASE("robots have the same bits on every instruction set and thread count",
 }
 
 // What makes the other tests worth something: robots touch the ground, each other and themselves.
-TEST_CASE("the robots of these tests touch in every way", "[fast][robots]") {
+TEST_CASE("the robots of these tests touch in every way", "[fast][robots][one_thread]") {
   const Plan plan = compile(robots());
   Batch batch(plan, options_of(widest_tables().front(), kWorlds));
   std::vector<std::vector<int>> met(batch.plan().scene().bodies.size(),
@@ -106,7 +106,8 @@ TEST_CASE("the robots of these tests touch in every way", "[fast][robots]") {
   CHECK(most > 12);
 }
 
-TEST_CASE("a world of robots has its bits wherever it is in a batch", "[fast][bits][robots]") {
+TEST_CASE("a world of robots has its bits wherever it is in a batch",
+          "[fast][bits][robots][one_thread]") {
   const Plan plan = compile(robots());
   for (const Table& table : widest_tables()) {
     INFO(name(table));
@@ -183,7 +184,8 @@ TEST_CASE("a body at rest has its bits beside worlds in which it is touched",
   }
 }
 
-TEST_CASE("robots beside other kinds of worlds keep their bits", "[fast][bits][robots]") {
+TEST_CASE("robots beside other kinds of worlds keep their bits",
+          "[fast][bits][robots][one_thread]") {
   Scene lone = robot_scene();
   lone.add(ground(Space::spatial, 0.7));
   add_walker(lone, 0, 0.02);
@@ -198,7 +200,7 @@ TEST_CASE("robots beside other kinds of worlds keep their bits", "[fast][bits][r
 }
 
 TEST_CASE("robots take many steps in one call as they take them one by one",
-          "[fast][bits][robots]") {
+          "[fast][bits][robots][one_thread]") {
   const Plan plan = compile(robots());
   for (const Table& table : widest_tables()) {
     INFO(name(table));
@@ -210,7 +212,7 @@ TEST_CASE("robots take many steps in one call as they take them one by one",
   }
 }
 
-TEST_CASE("robots go on from snapshots and copies bit by bit", "[fast][bits][robots]") {
+TEST_CASE("robots go on from snapshots and copies bit by bit", "[fast][bits][robots][one_thread]") {
   const Plan plan = compile(GENERATE(robots(), randomized(lone_walker())));
   for (const Table& table : all_tables()) {
     INFO(name(table));
@@ -233,7 +235,7 @@ TEST_CASE("robots go on from snapshots and copies bit by bit", "[fast][bits][rob
 }
 
 TEST_CASE("robots whose neighbours rest keep their bits, and so do those that rest",
-          "[fast][bits][robots]") {
+          "[fast][bits][robots][one_thread]") {
   const Plan plan = compile(robots());
   for (const Table& table : all_tables()) {
     INFO(name(table));
@@ -254,7 +256,8 @@ TEST_CASE("robots whose neighbours rest keep their bits, and so do those that re
   }
 }
 
-TEST_CASE("a world of robots that goes wrong leaves its neighbours alone", "[fast][bits][robots]") {
+TEST_CASE("a world of robots that goes wrong leaves its neighbours alone",
+          "[fast][bits][robots][one_thread]") {
   const Plan plan = compile(robots());
   for (const Table& table : all_tables()) {
     for (const Field field : {Field::generalized_position, Field::generalized_velocity,
