@@ -75,7 +75,7 @@ Scene rope_of(Space space, double load, double friction) {
 
 }  // namespace
 
-TEST_CASE("ropes fold under a hundred times a link's mass", "[joint][fast]") {
+TEST_CASE("ropes fold under a hundred times a link's mass", "[joint][fast][long]") {
   constexpr int kWorlds = 16;
   for (const Space space : kSpaces) {
     for (const double friction : {0.0, 0.6}) {
@@ -177,7 +177,7 @@ TEST_CASE("a body on a rail beside a wall slides along it", "[joint][fast]") {
 }
 
 // Knees that limits or motors hold, up to 67 times heavier above than below.
-TEST_CASE("legs that limits and motors hold stand still", "[joint][fast]") {
+TEST_CASE("legs that limits and motors hold stand still", "[joint][fast][long]") {
   for (const Space space : kSpaces) {
     for (const double mass : {1.0, 5.0, 20.0}) {
       for (const bool motor : {false, true}) {

@@ -99,7 +99,8 @@ std::vector<std::uint8_t> mask_of(const Batch& batch, int world) {
 
 }  // namespace
 
-TEST_CASE("named scenes gain no energy from nothing, and audits change no bit", "[fast][audit]") {
+TEST_CASE("named scenes gain no energy from nothing, and audits change no bit",
+          "[fast][audit][long]") {
   for (const auto& entry : scenes::all()) {
     INFO(entry.name);
     const Plan plan = compile(entry.make());

@@ -341,7 +341,8 @@ TEST_CASE("every solver has the same bits on every instruction set, layout and t
   }
 }
 
-TEST_CASE("more sweeps leave smaller residuals, and looking changes nothing", "[fast][solver]") {
+TEST_CASE("more sweeps leave smaller residuals, and looking changes nothing",
+          "[fast][solver][long]") {
   if (!has_table(double_table())) return;
   for (Space space : kSpaces) {
     for (Solver solver : kAll) {

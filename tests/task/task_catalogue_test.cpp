@@ -205,7 +205,7 @@ TEST_CASE("Pusher: going round the puck and pushing brings it to the mark", "[ta
   CHECK(random_return(task) < 0);
 }
 
-TEST_CASE("BirdSling: some shots hit, and not slinging does not", "[task][fast]") {
+TEST_CASE("BirdSling: some shots hit, and not slinging does not", "[task][fast][long]") {
   const Task task = task_of("BirdSling");
   const auto shot = [&](float strength, float steepness) {
     return mean_return(
