@@ -46,6 +46,10 @@ set_source_files_properties("${PROJECT_SOURCE_DIR}/tests/support/paths.cpp" PROP
 function(mw_test_program target)
   add_executable(${target} ${ARGN} $<TARGET_OBJECTS:manyworlds_test_support>)
   mw_test_target(${target})
+  # Half of -O1's time to compile. What tests work out at length is in tests/support, which keeps it.
+  if(MW_SANITIZE MATCHES address)
+    target_compile_options(${target} PRIVATE -O0)
+  endif()
   if(TARGET manyworlds_cli)
     add_dependencies(${target} manyworlds_cli)
   endif()
