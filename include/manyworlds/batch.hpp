@@ -59,6 +59,8 @@ class Batch {
   ShapeId shape(std::string_view name, int kind = 0) const { return plan(kind).shape(name); }
   JointId joint(std::string_view name, int kind = 0) const { return plan(kind).joint(name); }
   ControlId control(std::string_view name, int kind = 0) const { return plan(kind).control(name); }
+  TendonId tendon(std::string_view name, int kind = 0) const { return plan(kind).tendon(name); }
+  SiteId site(std::string_view name, int kind = 0) const { return plan(kind).site(name); }
   KeyframeId keyframe(std::string_view name, int kind = 0) const {
     return plan(kind).keyframe(name);
   }

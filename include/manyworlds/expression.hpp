@@ -139,6 +139,16 @@ inline Expression actuator_force(int dof) {  // N or N m
 inline Expression constraint_force(int dof) {  // N or N m, of limits and contacts
   return observed(Observed::constraint_force, dof);
 }
+inline Expression tendon_length(TendonId tendon) {  // m or rad, as its terms are
+  return observed(Observed::tendon_length, tendon.index());
+}
+inline Expression tendon_velocity(TendonId tendon) {  // m/s or rad/s
+  return observed(Observed::tendon_velocity, tendon.index());
+}
+// Of all solvers; of others where the state has it.
+inline Expression site_position(SiteId site, int axis) {  // m
+  return observed(Observed::site_position, site.index(), axis);
+}
 
 Expression action(
     int index = 0);  // that led here; of discrete tasks its number. 0 at the beginning

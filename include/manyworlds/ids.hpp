@@ -1,6 +1,6 @@
-// Ids: which body, shape, joint, control or keyframe of a scene. Handles with types of their own,
-// so that one is not taken for another, nor for the row of an array: fixed bodies are in the scene,
-// but have no row (Plan::row).
+// Ids: which body, shape, joint, control, tendon, site or keyframe of a scene. Handles with types
+// of their own, so that one is not taken for another, nor for the row of an array: fixed bodies are
+// in the scene, but have no row (Plan::row).
 #pragma once
 
 #include <compare>
@@ -24,6 +24,8 @@ class Id {
 using BodyId = Id<struct BodyTag>;          // Scene::bodies
 using JointId = Id<struct JointTag>;        // Scene::joints
 using ControlId = Id<struct ControlTag>;    // Scene::controls
+using TendonId = Id<struct TendonTag>;      // Scene::tendons
+using SiteId = Id<struct SiteTag>;          // Scene::sites
 using KeyframeId = Id<struct KeyframeTag>;  // Scene::keyframes
 
 class ShapeId {

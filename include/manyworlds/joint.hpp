@@ -140,7 +140,8 @@ struct Joint {
 };
 
 // A length made of coordinates of hinges and sliders, each times its coefficient: a cord over
-// pulleys (MuJoCo's fixed tendon). Of Solver::newton, which keeps it within its limit.
+// pulleys (MuJoCo's fixed tendon). Of Solver::newton, which keeps it within its limit; one without
+// a limit is only looked at (Observer::tendons).
 struct TendonTerm {
   JointId joint = {};
   double coefficient = 1;  // m/rad or 1, or any unit that the limit is in

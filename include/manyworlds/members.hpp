@@ -8,6 +8,8 @@
 // shape_members.hpp and option_members.hpp.
 #pragma once
 
+#include <algorithm>
+
 #include "manyworlds/member_list.hpp"
 #include "manyworlds/option_members.hpp"
 #include "manyworlds/scene.hpp"
@@ -249,6 +251,14 @@ struct Members<Exclusion> {
   }
 };
 template <>
+struct Members<Site> {
+  static constexpr const char* name = "Site";
+  static void visit(auto& value, auto&& visit) {
+    auto& [name_, body, position] = value;
+    visit("name", name_), visit("body", body), visit("position", position);
+  }
+};
+template <>
 struct Members<Keyframe> {
   static constexpr const char* name = "Keyframe";
   static void visit(auto& value, auto&& visit) {
@@ -273,7 +283,7 @@ struct Members<Scene> {
   static constexpr const char* name = "Scene";
   static void visit(auto& value, auto&& visit) {
     auto& [name_, space, bodies, joints, controls, attractors, options, variations, exclusions,
-           tendons, keyframes, coordinate_draws] = value;
+           tendons, keyframes, coordinate_draws, sites] = value;
     visit("name", name_, not_counted("names are for people"));
     visit("space", space), visit("bodies", bodies), visit("joints", joints);
     visit("controls", controls), visit("attractors", attractors), visit("options", options);
@@ -281,11 +291,14 @@ struct Members<Scene> {
           not_counted("what they vary is counted number by number, and not how it is drawn"));
     visit("exclusions", exclusions,
           counted_if(!exclusions.empty(), "without any it is what it was before there were some"));
-    visit("tendons", tendons, counted_if(!tendons.empty(), kOfNewton));
+    const bool limited = std::any_of(tendons.begin(), tendons.end(),
+                                     [](const Tendon& tendon) { return tendon.limit.has_value(); });
+    visit("tendons", tendons, counted_if(limited, "those without limits are only looked at"));
     visit("keyframes", keyframes,
           not_counted("what a world is reset to does not matter to one that has begun"));
     visit("coordinate_draws", coordinate_draws,
           not_counted("what a world begins with does not matter to one that has begun"));
+    visit("sites", sites, not_counted("they are looked at and move nothing"));
   }
 };
 

@@ -5,7 +5,7 @@
 // meshes (their convex hulls, as in MuJoCo), planes and height fields. Poses, masses and inertias
 // are those that MuJoCo's compiler computes. Whatever would change the motion and is not simulated
 // here is an error; what only shapes the accuracy of MuJoCo's solver is a warning; what is only
-// seen (lights, cameras, materials, textures, sites) is ignored.
+// seen (lights, cameras, materials, textures) is ignored. Sites are kept, as points with names.
 //
 // A model with any joint but free ones is articulated: its scene is one of trees for
 // Solver::newton, which moves as in MuJoCo. Read are
@@ -17,6 +17,7 @@
 //     affine (motor, position, velocity, damper, general), as controls (ControlKind::joint_force);
 //   - friction, condim 1 and 3, softness, margin, gap, priority and solmix of geoms; which pairs
 //     collide, excludes included;
+//   - fixed tendons, with their limits or to be looked at;
 //   - keyframes (qpos, qvel and ctrl; a time is a warning);
 //   - timestep, integrator, cone, impratio, gravity, gravcomp, wind, density and viscosity of a
 //     medium (inertia model), iterations and tolerances, and the flags that switch off constraints,

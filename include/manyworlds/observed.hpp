@@ -23,7 +23,9 @@ namespace manyworlds {
   X(link_inertias, body, state, "inertias of links about the mass centre of their tree")    \
   X(link_velocities, body, state, "velocities of links at the mass centre of their tree")   \
   X(link_forces, body, step, "what contacts and inputs do to links, about the same")        \
-  X(dof_forces, dof, step, "generalised forces of actuators and constraints")
+  X(dof_forces, dof, step, "generalised forces of actuators and constraints")               \
+  X(tendons, tendon, state, "lengths of tendons as the last forces were found")             \
+  X(sites, site, state, "where sites are, of trees as their last forces were found")
 
 // X(what, its observer, components, unit, meaning)
 //   vector: [2 or 3], the plane's x and y or x, y and z
@@ -68,7 +70,10 @@ namespace manyworlds {
   X(external_torque, link_forces, spin, "N m", "about that centre, world axes (cfrc_ext)")         \
   X(external_force, link_forces, vector, "N", "world axes (cfrc_ext)")                             \
   X(actuator_force, dof_forces, one, "N or N m", "MuJoCo's qfrc_actuator")                         \
-  X(constraint_force, dof_forces, one, "N or N m", "of limits and contacts (qfrc_constraint)")
+  X(constraint_force, dof_forces, one, "N or N m", "of limits and contacts (qfrc_constraint)")     \
+  X(tendon_length, tendons, one, "m or rad", "sum of coordinates (ten_length)")                    \
+  X(tendon_velocity, tendons, one, "m/s or rad/s", "(ten_velocity)")                               \
+  X(site_position, sites, vector, "m", "world (site_xpos)")
 
 // What is read is [world][item of its observer][component]. A plan without orientation (every
 // moving body a centred ball) rotates neither rays nor points.
@@ -101,11 +106,13 @@ namespace manyworlds {
 // included, nothing for kinematic bodies), as MuJoCo's accelerometer in the body's frame; 0 of a
 // body that is disabled or frozen.
 //
-// Links, their inertias, velocities and forces, and the forces on dofs are of Solver::newton, 0 of
-// others: those of the last substep, where its forces were found, which is where it began
+// Links, their inertias, velocities and forces, forces on dofs and tendons are of Solver::newton, 0
+// of others: those of the last substep, where its forces were found, which is where it began
 // (Runge-Kutta: its last stage). So they are one substep behind the state, as MuJoCo's are after
 // mj_step. A state that is looked at without a step tells where links and velocities are in it.
-// External forces are those of contacts and of inputs (Batch::add_force), not gravity or drag.
+// So are sites; of other solvers, whose steps have no such place, they are where the state has
+// them. External forces are those of contacts and of inputs (Batch::add_force), not gravity or
+// drag.
 enum class Observer {
 #define MW_OBSERVER_ENUM(name, item, taken, meaning) name,
   MW_OBSERVERS(MW_OBSERVER_ENUM)
@@ -118,7 +125,7 @@ enum class Observed {
 };
 
 // What has numbers of its own: a body is a row of state arrays (Plan::row).
-enum class ObservedItem { world, body, joint, coordinate, dof, ray, point };
+enum class ObservedItem { world, body, joint, coordinate, dof, tendon, site, ray, point };
 enum class ObservedComponents { one, two, vector, spin };
 enum class ObservedOf { state, step };
 

@@ -109,6 +109,8 @@ class Plan {
   ShapeId shape(BodyId body, std::string_view name) const { return scene().shape(body, name); }
   JointId joint(std::string_view name) const { return scene().joint(name); }
   ControlId control(std::string_view name) const { return scene().control(name); }
+  TendonId tendon(std::string_view name) const { return scene().tendon(name); }
+  SiteId site(std::string_view name) const { return scene().site(name); }
   KeyframeId keyframe(std::string_view name) const { return scene().keyframe(name); }
   int bodies() const;              // bodies with state: dynamic and kinematic, in scene order
   int items(ItemKind kind) const;  // of a world, that have the state fields of this kind

@@ -87,6 +87,14 @@ struct Exclusion {
   BodyId body_a = {}, body_b = {};
 };
 
+// A point of a body, or of the world, that has a name: MuJoCo's site. It moves nothing; observers
+// and tasks find it (Observer::sites).
+struct Site {
+  std::string name = {};
+  BodyId body = {};              // none: the world
+  Vec3 position = Vec3::Zero();  // m, in the body's frame or in the world
+};
+
 // A state that worlds can be reset to (Batch::reset): generalized_position and generalized_velocity
 // of Solver::newton, as the fields of that name have them, and the controls. What is empty is as
 // any reset leaves it.
@@ -125,6 +133,7 @@ struct Scene {
   std::vector<Tendon> tendons = {};
   std::vector<Keyframe> keyframes = {};
   std::vector<CoordinateDraw> coordinate_draws = {};
+  std::vector<Site> sites = {};
 
   // Appends and returns the handle. Shape k of a body is ShapeId(body, k).
   BodyId add(Body body) {
@@ -139,6 +148,14 @@ struct Scene {
     controls.push_back(std::move(control));
     return ControlId(static_cast<int>(controls.size()) - 1);
   }
+  TendonId add(Tendon tendon) {
+    tendons.push_back(std::move(tendon));
+    return TendonId(static_cast<int>(tendons.size()) - 1);
+  }
+  SiteId add(Site site) {
+    sites.push_back(std::move(site));
+    return SiteId(static_cast<int>(sites.size()) - 1);
+  }
   KeyframeId add(Keyframe keyframe) {
     keyframes.push_back(std::move(keyframe));
     return KeyframeId(static_cast<int>(keyframes.size()) - 1);
@@ -151,6 +168,8 @@ struct Scene {
   ShapeId shape(BodyId body, std::string_view name) const;
   JointId joint(std::string_view name) const;
   ControlId control(std::string_view name) const;
+  TendonId tendon(std::string_view name) const;
+  SiteId site(std::string_view name) const;
   KeyframeId keyframe(std::string_view name) const;
 
   // What a handle stands for. Throw std::out_of_range where there is none.
@@ -166,6 +185,10 @@ struct Scene {
   const Control& at(ControlId id) const {
     return controls.at(static_cast<std::size_t>(id.index()));
   }
+  Tendon& at(TendonId id) { return tendons.at(static_cast<std::size_t>(id.index())); }
+  const Tendon& at(TendonId id) const { return tendons.at(static_cast<std::size_t>(id.index())); }
+  Site& at(SiteId id) { return sites.at(static_cast<std::size_t>(id.index())); }
+  const Site& at(SiteId id) const { return sites.at(static_cast<std::size_t>(id.index())); }
   Keyframe& at(KeyframeId id) { return keyframes.at(static_cast<std::size_t>(id.index())); }
   const Keyframe& at(KeyframeId id) const {
     return keyframes.at(static_cast<std::size_t>(id.index()));

@@ -70,6 +70,11 @@ struct PointTable {
   Real position[3];
 };
 
+// A tendon of trees, among the terms of all.
+struct TendonTable {
+  std::int32_t first_term, terms;
+};
+
 // Where a joint of a tree holds its body B, for what it carries (kernels/observe/tree_joints.hpp):
 // on a link, or on a frame without mass that the first `joints` of its joints have moved.
 template <class Real>
@@ -102,7 +107,7 @@ struct ObserverView {
   const std::int32_t* joint_of_part;  // [part]
   // Of trees whose joint_loads are asked for, else nullptr.
   const TreeAnchor<Real>* anchor;  // [joint of the scene]
-  bool of_links;                   // links, or what acts on them or on dofs, is asked for
+  bool of_links;                   // what links, dofs, tendons or sites of trees tell is asked for
   Real* before;  // the group's state before the last stage, where one of the two is; else nullptr
 
   const RayTable* ray;            // [ray]
@@ -110,6 +115,11 @@ struct ObserverView {
   const Real* ray_rows;           // [ray][row][lane]
   const PointTable<Real>* point;  // [point]
   Real* placed;                   // [ray][origin, direction][lane], in the world
+
+  const TendonTable* tendon;  // [tendon]
+  const TreeTerm<Real>* tendon_term;
+  // [site] of a body, or a link of trees, in its own frame; -1: in the world
+  const PointTable<Real>* site;
 };
 
 template <class Real>

@@ -63,6 +63,7 @@ void fill(kernels::ObserverTable<Real>& out) {
   look(out, Observer::motion)[kind] = observe_motion<S>;
   look(out, Observer::rays)[kind] = observe_rays;
   look(out, Observer::points)[kind] = observe_points<S>;
+  look(out, Observer::sites)[kind] = observe_sites<S>;
   look(out, Observer::acceleration)[kind] = observe_acceleration<S>;
   begin(out, Observer::acceleration)[kind] = begin_acceleration<S>;
 }

@@ -1,7 +1,7 @@
 // Links of trees as their last forces were found: where they are, their inertias and velocities at
 // the mass centre of their tree, and what acts on them from outside (MuJoCo's xpos, xipos, cinert,
-// cvel and cfrc_ext); and the generalised forces of actuators and of constraints (qfrc_actuator,
-// qfrc_constraint).
+// cvel and cfrc_ext); the generalised forces of actuators and of constraints (qfrc_actuator,
+// qfrc_constraint); lengths of tendons and places of sites (ten_length, ten_velocity, site_xpos).
 #pragma once
 
 #include "kernels/observe/observe.hpp"
@@ -33,6 +33,8 @@ class TreeLinks {
 
   void put_motion() const {
     if (has(Observer::links)) put_poses();
+    if (has(Observer::tendons)) put_tendons();
+    if (has(Observer::sites)) put_sites();
     const bool inertias = has(Observer::link_inertias), moves = has(Observer::link_velocities);
     if (!inertias && !moves && !has(Observer::link_forces)) return;
     find_centers();
@@ -91,6 +93,33 @@ class TreeLinks {
       const Vec3 x = origin(i) + load_pose(w_, i).x;
       put(to + row_of(Observed::link_position) * kLanes, x);
       put(to + row_of(Observed::link_center) * kLanes, x + arm(i));
+    }
+  }
+  void put_tendons() const {
+    for (int i = 0; i < items_of(o_, Observer::tendons); ++i) {
+      const kernels::TendonTable& tendon = o_.tendon[i];
+      Float length(Real(0)), velocity(Real(0));
+      for (int k = tendon.first_term; k < tendon.first_term + tendon.terms; ++k) {
+        const kernels::TreeTerm<Real>& term = o_.tendon_term[k];
+        const Float coefficient(term.coefficient);
+        length = fma(coefficient, Float::load(coordinate_of(t_, g_, term.coordinate)), length);
+        velocity = fma(coefficient, Float::load(velocity_of(t_, g_, term.dof)), velocity);
+      }
+      Real* to = rows_for(o_, Observer::tendons) + i * rows_of(Observer::tendons) * kLanes;
+      put(to + row_of(Observed::tendon_length) * kLanes, length);
+      put(to + row_of(Observed::tendon_velocity) * kLanes, velocity);
+    }
+  }
+  void put_sites() const {
+    for (int i = 0; i < items_of(o_, Observer::sites); ++i) {
+      const kernels::PointTable<Real>& site = o_.site[i];
+      Vec3 x = shared(site.position);
+      if (site.body >= 0) {
+        const FramePose at = load_pose(w_, site.body);
+        x = origin(site.body) + (at.x + rotate(at.q, x));
+      }
+      Real* to = rows_for(o_, Observer::sites) + i * rows_of(Observer::sites) * kLanes;
+      put(to + row_of(Observed::site_position) * kLanes, x);
     }
   }
   void put_inertias() const {

@@ -20,7 +20,7 @@ from .bodies import Body, Jitter, MassProperties
 from .environment import Environment, EnvironmentSnapshot
 from .fields import Field
 from .film import FilmReport, write_film, write_picture
-from .ids import BodyId, ControlId, JointId, KeyframeId, ShapeId
+from .ids import BodyId, ControlId, JointId, KeyframeId, ShapeId, SiteId, TendonId
 from .joints import *  # noqa: F403
 from .kinds import Kind
 from .live import LiveView, view
@@ -41,6 +41,7 @@ from .scene import (
     Ray,
     Scene,
     SceneError,
+    Site,
     Tendon,
     TendonTerm,
     Variation,
@@ -100,6 +101,8 @@ __all__ = [
     "Scene",
     "SceneError",
     "ShapeId",
+    "Site",
+    "SiteId",
     "SleepOptions",
     "Snapshot",
     "SnapshotError",
@@ -108,6 +111,7 @@ __all__ = [
     "Task",
     "TaskError",
     "Tendon",
+    "TendonId",
     "TendonTerm",
     "Variation",
     "View",

@@ -37,7 +37,7 @@ def round_trip(scene: object) -> object:
 
 def find_in_scene(scene: object, kind: str, name: object) -> int:
     """
-    Index of the body, joint, control or keyframe that a name, handle or index means.
+    Index of the body, joint, control, tendon, site or keyframe that a name, handle or index means.
     """
 
 def find_shape_in_scene(scene: object, name: str, body: object | None) -> tuple[int, int]:
@@ -109,7 +109,7 @@ class Plan:
 
     def find(self, kind: str, name: object) -> int:
         """
-        Index of the body, joint, control or keyframe that a name, handle or index means.
+        Index of the body, joint, control, tendon, site or keyframe that a name, handle or index means.
         """
 
     def find_shape(self, name: str, body: object | None) -> tuple[int, int]:

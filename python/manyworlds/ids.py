@@ -1,4 +1,4 @@
-"""Handles: which body, shape, joint, control or keyframe of a scene.
+"""Handles: which body, shape, joint, control, tendon, site or keyframe of a scene.
 
 ``Scene.add`` returns them, and ``body("crate")`` and the like of a Scene, Plan or Batch find them.
 Wherever one is taken, a name or a plain int is, too: an int is the index in the scene's list, never
@@ -52,6 +52,18 @@ class ControlId(_Handle):
     __slots__ = ()
 
 
+class TendonId(_Handle):
+    """A tendon: its index in ``Scene.tendons``."""
+
+    __slots__ = ()
+
+
+class SiteId(_Handle):
+    """A site: its index in ``Scene.sites``."""
+
+    __slots__ = ()
+
+
 class KeyframeId(_Handle):
     """A keyframe: its index in ``Scene.keyframes``."""
 
@@ -65,10 +77,12 @@ class ShapeId(NamedTuple):
     index: int
 
 
-# What is taken where a body, a shape, a joint, a control or a keyframe is asked for.
+# What is taken where a body, a shape, a joint, a control, a tendon, a site or a keyframe is asked for.
 BodyRef = Union[int, str]  # a BodyId is an int
 JointRef = Union[int, str]
 ControlRef = Union[int, str]
+TendonRef = Union[int, str]
+SiteRef = Union[int, str]
 KeyframeRef = Union[int, str]
 ShapeRef = Union[int, str, ShapeId]
 # One or several of them; a mask of bools is over the rows of arrays.
@@ -137,7 +151,7 @@ class Chooser:
 
 
 class Named:
-    """What has a plan finds its bodies, shapes, joints, controls and keyframes by name, and their rows."""
+    """What has a plan finds its bodies, shapes, joints, controls, tendons, sites and keyframes by name, and rows."""
 
     plan: Plan
 
@@ -152,6 +166,14 @@ class Named:
     def control(self, name: ControlRef) -> ControlId:
         """The control of a name: see Plan.control."""
         return self.plan.control(name)
+
+    def tendon(self, name: TendonRef) -> TendonId:
+        """The tendon of a name: see Plan.tendon."""
+        return self.plan.tendon(name)
+
+    def site(self, name: SiteRef) -> SiteId:
+        """The site of a name: see Plan.site."""
+        return self.plan.site(name)
 
     def keyframe(self, name: KeyframeRef) -> KeyframeId:
         """The keyframe of a name: see Plan.keyframe."""

@@ -54,7 +54,8 @@ Isa = Literal["scalar", "avx2", "avx512"]
 ContactLayout = Literal["automatic", "dense", "rows"]
 Observer = Literal[
     "contacts", "touching", "penetration", "motion", "joints", "joint_loads", "residual", "rays",
-    "acceleration", "points", "links", "link_inertias", "link_velocities", "link_forces", "dof_forces"
+    "acceleration", "points", "links", "link_inertias", "link_velocities", "link_forces", "dof_forces",
+    "tendons", "sites"
 ]
 Feature = Literal[
     "orientation", "inertia", "friction", "restitution", "contacts", "drag", "gravity", "joints"

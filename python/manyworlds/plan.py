@@ -16,6 +16,10 @@ from .ids import (
     KeyframeId,
     KeyframeRef,
     ShapeId,
+    SiteId,
+    SiteRef,
+    TendonId,
+    TendonRef,
 )
 from .names import BroadPhase, Feature
 from .options import Options
@@ -79,6 +83,14 @@ class Plan(_core.Plan):
     def control(self, name: ControlRef) -> ControlId:
         """The control of a name: see body."""
         return ControlId(self.find("control", name))
+
+    def tendon(self, name: TendonRef) -> TendonId:
+        """The tendon of a name: see body."""
+        return TendonId(self.find("tendon", name))
+
+    def site(self, name: SiteRef) -> SiteId:
+        """The site of a name: see body."""
+        return SiteId(self.find("site", name))
 
     def keyframe(self, name: KeyframeRef) -> KeyframeId:
         """The keyframe of a name: see body."""

@@ -20,6 +20,10 @@ from .ids import (
     KeyframeRef,
     ShapeId,
     ShapeRef,
+    SiteId,
+    SiteRef,
+    TendonId,
+    TendonRef,
 )
 from .joints import Frame, Joint, JointType, Limit
 from .names import BroadPhase, ControlKind, Draw, Feature, Numbers, Parameter, Space
@@ -137,11 +141,23 @@ class TendonTerm:
 
 @dataclass(slots=True, kw_only=True)
 class Tendon:
-    """A length made of coordinates of joints, kept within its limit. Of the solver newton."""
+    """A length made of coordinates of joints, kept within its limit. Of the solver newton.
+
+    Without a limit it is only looked at: the observer "tendons".
+    """
 
     name: str = ""
     terms: list[TendonTerm] = field(default_factory=list)
     limit: Optional[Limit] = None
+
+
+@dataclass(slots=True, kw_only=True)
+class Site:
+    """A point of a body, or of the world, that has a name, to be looked at: the observer "sites"."""
+
+    name: str = ""
+    body: BodyRef = -1  # -1: the world
+    position: Numbers = (0.0, 0.0, 0.0)  # m, in the body's frame or in the world
 
 
 @dataclass(slots=True, kw_only=True)
@@ -197,7 +213,16 @@ class Point:
 
 
 Part = Union[
-    Body, Joint, Control, Attractor, Variation, Exclusion, Tendon, Keyframe, CoordinateDraw
+    Body,
+    Joint,
+    Control,
+    Attractor,
+    Variation,
+    Exclusion,
+    Tendon,
+    Keyframe,
+    CoordinateDraw,
+    Site,
 ]
 
 
@@ -217,6 +242,7 @@ class Scene:
     tendons: list[Tendon] = field(default_factory=list)
     keyframes: list[Keyframe] = field(default_factory=list)
     coordinate_draws: list[CoordinateDraw] = field(default_factory=list)
+    sites: list[Site] = field(default_factory=list)
 
     def __repr__(self) -> str:
         return shown.line(
@@ -259,9 +285,13 @@ class Scene:
     @overload
     def add(self, part: Control) -> ControlId: ...
     @overload
+    def add(self, part: Tendon) -> TendonId: ...
+    @overload
+    def add(self, part: Site) -> SiteId: ...
+    @overload
     def add(self, part: Keyframe) -> KeyframeId: ...
     @overload
-    def add(self, part: Union[Attractor, Variation, Exclusion, Tendon, CoordinateDraw]) -> int: ...
+    def add(self, part: Union[Attractor, Variation, Exclusion, CoordinateDraw]) -> int: ...
     def add(self, part: Part) -> int:
         """Appends a body, joint, control, ... or keyframe and returns its handle or index."""
         places: list[tuple[type, list[Any], type[int]]] = [
@@ -271,9 +301,10 @@ class Scene:
             (Attractor, self.attractors, int),
             (Variation, self.variations, int),
             (Exclusion, self.exclusions, int),
-            (Tendon, self.tendons, int),
+            (Tendon, self.tendons, TendonId),
             (Keyframe, self.keyframes, KeyframeId),
             (CoordinateDraw, self.coordinate_draws, int),
+            (Site, self.sites, SiteId),
         ]
         for kind, place, handle in places:
             if isinstance(part, kind):
@@ -295,6 +326,14 @@ class Scene:
     def control(self, name: ControlRef) -> ControlId:
         """The control of a name: see body."""
         return ControlId(_core.find_in_scene(self, "control", name))
+
+    def tendon(self, name: TendonRef) -> TendonId:
+        """The tendon of a name: see body."""
+        return TendonId(_core.find_in_scene(self, "tendon", name))
+
+    def site(self, name: SiteRef) -> SiteId:
+        """The site of a name: see body."""
+        return SiteId(_core.find_in_scene(self, "site", name))
 
     def keyframe(self, name: KeyframeRef) -> KeyframeId:
         """The keyframe of a name: see body."""

@@ -17,16 +17,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import inf
-from typing import Any, Optional, Union
+from typing import Any, Union
 
 from . import _core, shown
 from ._core import Expression
 from ._core import expressions as _x
-from .ids import BodyId, BodyRef, ControlId, ControlRef, JointId, JointRef, index_of
 from .scene import Issue, Point, Ray, Scene, SceneError
+from .terms import Terms as Terms
 
 Value = Union[Expression, float]  # numbers are expressions
-Axis = Union[int, str]  # 0, 1, 2 or "x", "y", "z", of the world
 
 
 def sin(a: Value) -> Expression:
@@ -99,166 +98,6 @@ def largest(value: Value) -> Expression:
     return _x.largest(value)
 
 
-class Terms:
-    """What a world is at the end of a step, as expressions.
-
-    Bodies, joints and controls by handle, index or, of a scene that is given, by name. What does not exist
-    raises ValueError here when it is a name, and is an issue of the task when it is an index.
-    """
-
-    def __init__(self, scene: Optional[Scene] = None) -> None:
-        self._scene = scene
-
-    def _index(self, what: str, key: Any) -> Any:
-        kind = {"body": BodyId, "joint": JointId, "control": ControlId}[what]
-
-        def find(name: str) -> int:
-            if self._scene is None:
-                raise ValueError(f"the {what} '{key}': names are those of a scene, use Terms(scene)")
-            return _core.find_in_scene(self._scene, what, name)
-
-        return index_of(key, kind, find, f"the {what}")
-
-    @staticmethod
-    def _axis(axis: Axis) -> int:
-        if not isinstance(axis, str):
-            return axis
-        if axis not in ("x", "y", "z"):
-            raise ValueError(f"the axis is '{axis}'; expected 'x', 'y', 'z' or 0, 1, 2")
-        return "xyz".index(axis)
-
-    def position(self, body: BodyRef, axis: Axis) -> Expression:
-        """m, of the body frame."""
-        return _x.position(self._index("body", body), self._axis(axis))
-
-    def velocity(self, body: BodyRef, axis: Axis) -> Expression:
-        """m/s, of the centre of mass."""
-        return _x.velocity(self._index("body", body), self._axis(axis))
-
-    def angular_velocity(self, body: BodyRef, axis: Axis = 2) -> Expression:
-        """rad/s; in the plane about axis 2."""
-        return _x.angular_velocity(self._index("body", body), self._axis(axis))
-
-    def angle(self, body: BodyRef) -> Expression:
-        """rad, -pi to pi, in the plane."""
-        return _x.angle(self._index("body", body))
-
-    def direction(self, body: BodyRef, of: Axis, axis: Axis) -> Expression:
-        """A component of the body's x, y or z axis."""
-        return _x.direction(self._index("body", body), self._axis(of), self._axis(axis))
-
-    def joint_position(self, joint: JointRef, coordinate: int = 0) -> Expression:
-        """m or rad, from where the joint began."""
-        return _x.observed("joint_position", self._index("joint", joint), coordinate)
-
-    def joint_speed(self, joint: JointRef, coordinate: int = 0) -> Expression:
-        """m/s or rad/s."""
-        return _x.observed("joint_speed", self._index("joint", joint), coordinate)
-
-    def touching(self, body: BodyRef) -> Expression:
-        """1 where a contact acted on the body in the last step; 0 where a world begins."""
-        return _x.observed("touching", self._index("body", body), 0)
-
-    def linear_acceleration(self, body: BodyRef, axis: Axis) -> Expression:
-        """m/s^2, of the centre of mass in the last physics step, impacts included; world."""
-        return _x.observed("linear_acceleration", self._index("body", body), self._axis(axis))
-
-    def angular_acceleration(self, body: BodyRef, axis: Axis = 2) -> Expression:
-        """rad/s^2, in the last physics step; in the plane about axis 2."""
-        return _x.observed("angular_acceleration", self._index("body", body), self._axis(axis))
-
-    def proper_acceleration(self, body: BodyRef, axis: Axis) -> Expression:
-        """m/s^2, what an accelerometer at the centre of mass reads; body axes, g upwards at rest."""
-        return _x.observed("proper_acceleration", self._index("body", body), self._axis(axis))
-
-    def point_position(self, point: int, axis: Axis) -> Expression:
-        """m, of Task.points; world."""
-        return _x.observed("point_position", point, self._axis(axis))
-
-    def point_velocity(self, point: int, axis: Axis) -> Expression:
-        """m/s, of Task.points; world."""
-        return _x.observed("point_velocity", point, self._axis(axis))
-
-    def ray_distance(self, ray: int) -> Expression:
-        """m, of Task.rays."""
-        return _x.observed("ray_distance", ray, 0)
-
-    def generalized_position(self, coordinate: int) -> Expression:
-        """m, rad or a number of a quaternion, of the solver newton: MuJoCo's qpos."""
-        return _x.generalized_position(coordinate)
-
-    def generalized_velocity(self, dof: int) -> Expression:
-        """m/s or rad/s, of the solver newton: MuJoCo's qvel."""
-        return _x.generalized_velocity(dof)
-
-    def link_position(self, body: BodyRef, axis: Axis) -> Expression:
-        """m, of the body frame where the last forces were found: MuJoCo's xpos after a step."""
-        return self._link("link_position", body, axis)
-
-    def link_center(self, body: BodyRef, axis: Axis) -> Expression:
-        """m, of the centre of mass there: xipos."""
-        return self._link("link_center", body, axis)
-
-    def link_inertia(self, body: BodyRef, axis: Axis) -> Expression:
-        """kg m^2, xx, yy or zz about the mass centre of the body's tree, world axes: of cinert."""
-        return self._link("link_inertia", body, axis)
-
-    def link_product(self, body: BodyRef, index: int) -> Expression:
-        """kg m^2, xy, xz or yz of the same."""
-        return self._link("link_product", body, index)
-
-    def link_moment(self, body: BodyRef, axis: Axis) -> Expression:
-        """kg m, its mass times the way from its tree's mass centre to its own: of cinert."""
-        return self._link("link_moment", body, axis)
-
-    def link_mass(self, body: BodyRef) -> Expression:
-        """kg."""
-        return self._link("link_mass", body, 0)
-
-    def link_angular_velocity(self, body: BodyRef, axis: Axis) -> Expression:
-        """rad/s, world axes, where the last forces were found: of cvel."""
-        return self._link("link_angular_velocity", body, axis)
-
-    def link_velocity(self, body: BodyRef, axis: Axis) -> Expression:
-        """m/s, of the body where the mass centre of its tree is: of cvel."""
-        return self._link("link_velocity", body, axis)
-
-    def external_torque(self, body: BodyRef, axis: Axis) -> Expression:
-        """N m, of contacts and inputs about the mass centre of the body's tree: of cfrc_ext."""
-        return self._link("external_torque", body, axis)
-
-    def external_force(self, body: BodyRef, axis: Axis) -> Expression:
-        """N, of contacts and inputs: of cfrc_ext."""
-        return self._link("external_force", body, axis)
-
-    def _link(self, what: str, body: BodyRef, axis: Axis) -> Expression:
-        return _x.observed(what, self._index("body", body), self._axis(axis))
-
-    def actuator_force(self, dof: int) -> Expression:
-        """N or N m, of all actuators: qfrc_actuator."""
-        return _x.observed("actuator_force", dof, 0)
-
-    def constraint_force(self, dof: int) -> Expression:
-        """N or N m, of limits and contacts: qfrc_constraint."""
-        return _x.observed("constraint_force", dof, 0)
-
-    def action(self, index: int = 0) -> Expression:
-        """The action that led here; of discrete tasks its number. 0 at the beginning."""
-        return _x.action(index)
-
-    def control(self, control: ControlRef) -> Expression:
-        """The control of the scene that led here."""
-        return _x.control(self._index("control", control))
-
-    def age(self) -> Expression:
-        """Steps of the task since the episode began, with this one."""
-        return _x.age()
-
-    def lost(self) -> Expression:
-        """Whether the world is lost (``Status.lost()``)."""
-        return _x.lost()
-
-
 @dataclass(slots=True)
 class Action:
     """One number of a continuous action. Beyond its range it counts as the end of the range.
@@ -293,7 +132,10 @@ class Reward:
 
 @dataclass(slots=True, eq=False)
 class Info:
-    """What people are told beside, in double; of no account to the policy."""
+    """What people are told beside, in double; of no account to the policy.
+
+    Those named "a[0]", "a[1]" and so on are the array "a" in the infos of Gymnasium's classes.
+    """
 
     name: str = ""
     value: Value = 0.0
@@ -355,9 +197,16 @@ class Task:
         """Adds a part of the reward."""
         self.rewards.append(Reward(name, value))
 
-    def tell(self, name: str, value: Value, of_steps_alone: bool = False) -> None:
-        """Adds an info."""
-        self.infos.append(Info(name, value, of_steps_alone))
+    def tell(
+        self, name: str, value: Union[Value, Sequence[Value]], of_steps_alone: bool = False
+    ) -> None:
+        """Adds an info; of several values one each, "name[0]" and so on, of which Gymnasium's classes
+        make one array."""
+        if not isinstance(value, (list, tuple)):
+            self.infos.append(Info(name, value, of_steps_alone))  # type: ignore[arg-type]
+            return
+        for i, one in enumerate(value):
+            self.infos.append(Info(f"{name}[{i}]", one, of_steps_alone))
 
     def validate(self) -> list[Issue]:
         """Everything that is wrong with the task and its scene; empty: it can be run."""

@@ -1,5 +1,6 @@
 // Expression with Python's operators; functions and terms with plain indices. Names, axes by letter
-// and what else is convenient are the package's business (manyworlds/tasks.py).
+// and what else is convenient are the package's business (manyworlds/terms.py and
+// tasks.py).
 #include <array>
 
 #include <nanobind/stl/string.h>

@@ -122,7 +122,8 @@ void bind_plan(nb::module_& m) {
           },
           "Indices in the scene of the bodies in all rows.")
       .def("find", &find, nb::arg("kind"), nb::arg("name"),
-           "Index of the body, joint, control or keyframe that a name, handle or index means.")
+           "Index of the body, joint, control, tendon, site or keyframe that a name, handle or "
+           "index means.")
       .def("find_shape", &find_shape, nb::arg("name"), nb::arg("body").none(),
            "(body, index) of the shape of a name, of one body or of all.")
       .def(

@@ -66,7 +66,7 @@ void bind_scene(nb::module_& m) {
             default_values<Compliance, SoftContact, Material, Filter, Shape, MassProperties, Jitter,
                            Body, Frame, Spring, Limit, Drive, JointDynamics, Joint, Actuator,
                            Control, Attractor, Variation, Exclusion, TendonTerm, Tendon, Keyframe,
-                           CoordinateDraw, SolverOptions, ContactOptions, JointOptions,
+                           CoordinateDraw, Site, SolverOptions, ContactOptions, JointOptions,
                            SleepOptions, Medium, Options, Scene, Ray, Point>();
         add_alternatives<Geometry>(out), add_alternatives<JointType>(out);
         return out;
@@ -85,7 +85,8 @@ void bind_scene(nb::module_& m) {
         return find_in(names_of_scene(scene), kind, name);
       },
       nb::arg("scene"), nb::arg("kind"), nb::arg("name"),
-      "Index of the body, joint, control or keyframe that a name, handle or index means.");
+      "Index of the body, joint, control, tendon, site or keyframe that a name, handle or index "
+      "means.");
   m.def(
       "find_shape_in_scene",
       [](nb::object scene, const std::string& name, nb::object body) {

@@ -39,8 +39,9 @@ bool is_dataclass(nb::handle value, const char* name);
 template <class T>
 struct Described;  // name, and fields(visit, value): visit("member", value.member)...
 
-// Index of the "body", "joint", "control" or "keyframe" of a scene that a handle, a name or an
-// index means, and (body, index) of a shape by its name. Raise IndexError and ValueError.
+// Index of the "body", "joint", "control", "tendon", "site" or "keyframe" of a scene that a handle,
+// a name or an index means, and (body, index) of a shape by its name. Raise IndexError and
+// ValueError.
 int find_in(const Scene& scene, const std::string& kind, nb::handle name);
 std::pair<int, int> find_shape_in(const Scene& scene, const std::string& name, nb::handle body);
 // An index from `low` to below a count, or an IndexError.
@@ -124,6 +125,8 @@ struct Converter<T> {
 BodyId read_body(nb::handle value, const Place& place);
 JointId read_joint(nb::handle value, const Place& place);
 ControlId read_control(nb::handle value, const Place& place);
+TendonId read_tendon(nb::handle value, const Place& place);
+SiteId read_site(nb::handle value, const Place& place);
 KeyframeId read_keyframe(nb::handle value, const Place& place);
 // Indices and names are of the body, if there is one.
 ShapeId read_shape(nb::handle value, BodyId body, const Place& place);

@@ -15,6 +15,8 @@ const char* word_of(ObservedItem item) {
     case ObservedItem::joint: return "joint";
     case ObservedItem::coordinate: return "coordinate";
     case ObservedItem::dof: return "dof";
+    case ObservedItem::tendon: return "tendon";
+    case ObservedItem::site: return "site";
     case ObservedItem::ray: return "ray";
     case ObservedItem::point: return "point";
   }
@@ -33,6 +35,8 @@ std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of) {
     if (item == "control") return static_cast<int>(scene.controls.size());
     if (item == "coordinate") return plan.coordinates();
     if (item == "dof") return plan.items(ItemKind::dof);
+    if (item == "tendon") return static_cast<int>(scene.tendons.size());
+    if (item == "site") return static_cast<int>(scene.sites.size());
     std::size_t shapes = 0;
     for (const Body& body : scene.bodies) shapes += body.shapes.size();
     return item == "shape" ? static_cast<int>(shapes) : 1;

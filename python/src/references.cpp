@@ -1,12 +1,13 @@
-// What callers mean by a body, a shape, a joint, a control or a keyframe: a handle
-// (manyworlds/ids.py), a name or an index.
+// What callers mean by a body, a shape, a joint, a control, a tendon, a site or a keyframe: a
+// handle (manyworlds/ids.py), a name or an index.
 #include "convert.hpp"
 
 namespace manyworlds::python {
 
 namespace {
 
-constexpr const char* kHandles[] = {"BodyId", "JointId", "ControlId", "KeyframeId", "ShapeId"};
+constexpr const char* kHandles[] = {"BodyId", "JointId",    "ControlId", "TendonId",
+                                    "SiteId", "KeyframeId", "ShapeId"};
 
 // Is it a handle of another kind?
 void refuse_others(nb::handle value, const Place& place, const char* kind) {
@@ -66,6 +67,14 @@ ControlId read_control(nb::handle value, const Place& place) {
   return read_reference<ControlId>(
       value, place, "ControlId", [](const Scene& s, const auto& name) { return s.control(name); });
 }
+TendonId read_tendon(nb::handle value, const Place& place) {
+  return read_reference<TendonId>(value, place, "TendonId",
+                                  [](const Scene& s, const auto& name) { return s.tendon(name); });
+}
+SiteId read_site(nb::handle value, const Place& place) {
+  return read_reference<SiteId>(value, place, "SiteId",
+                                [](const Scene& s, const auto& name) { return s.site(name); });
+}
 KeyframeId read_keyframe(nb::handle value, const Place& place) {
   return read_reference<KeyframeId>(
       value, place, "KeyframeId",
@@ -100,6 +109,10 @@ int find_in(const Scene& scene, const std::string& kind, nb::handle name) {
   const Place place{nullptr, kind.c_str(), -1, &scene};
   if (kind == "body") return checked(kind, read_body(name, place).index(), scene.bodies.size());
   if (kind == "joint") return checked(kind, read_joint(name, place).index(), scene.joints.size());
+  if (kind == "tendon") {
+    return checked(kind, read_tendon(name, place).index(), scene.tendons.size());
+  }
+  if (kind == "site") return checked(kind, read_site(name, place).index(), scene.sites.size());
   if (kind == "keyframe") {
     return checked(kind, read_keyframe(name, place).index(), scene.keyframes.size());
   }
@@ -130,6 +143,12 @@ Scene names_of_scene(nb::handle scene) {
   });
   for_each_name(scene, "controls", [&](std::string name, nb::handle) {
     out.controls.emplace_back().name = std::move(name);
+  });
+  for_each_name(scene, "tendons", [&](std::string name, nb::handle) {
+    out.tendons.emplace_back().name = std::move(name);
+  });
+  for_each_name(scene, "sites", [&](std::string name, nb::handle) {
+    out.sites.emplace_back().name = std::move(name);
   });
   for_each_name(scene, "keyframes", [&](std::string name, nb::handle) {
     out.keyframes.emplace_back().name = std::move(name);

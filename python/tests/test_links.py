@@ -15,6 +15,25 @@ import manyworlds as mw  # noqa: E402
 
 ASSETS = pathlib.Path(gymnasium.__file__).parent / "envs" / "mujoco" / "assets"
 OBSERVE = ["links", "link_inertias", "link_velocities", "link_forces", "dof_forces"]
+# A trunk that floats, an arm of hinges with a welded hand without mass, a drawer, what is fixed; sites
+# on all of them and in the world, and tendons with a limit and without. Capsules would meet in their
+# middles, where no normal is better than another.
+MARKED = """<mujoco><compiler angle="radian" autolimits="true"/>
+  <option timestep="0.004" integrator="{integrator}"><flag contact="disable"/></option>
+  <default><geom type="capsule" size="0.04 0.1"/><joint damping="0.2" armature="0.01"/></default>
+  <worldbody><geom type="plane" size="5 5 1"/><site name="mark" pos="1 2 3"/>
+    <body name="post" pos="0 2 1" euler="0.1 0.2 0.3"><geom/><site name="top" pos="0 0.1 0.2"/></body>
+    <body name="pivot" pos="0 3 1" euler="0.3 0 0.3"><site pos="0.1 0.1 0.2"/></body>
+    <body name="trunk" pos="0 0 1"><freejoint/><geom/><site name="chest" pos="0.1 0.02 0.1"/>
+      <body pos="0.2 0 0" euler="0 0.4 0"><joint name="a" axis="0 1 0" ref="0.1"/><geom/>
+        <site name="elbow" pos="0 0 0.2" euler="0.3 0.2 0.1"/>
+        <body pos="0.2 0 0"><joint name="b" axis="1 0 0"/><geom/>
+          <body name="hand" pos="0 0.1 0.2" euler="0.5 0 0"><site name="tip" pos="0 0 0.1"/></body></body></body>
+      <body pos="-0.2 0 0"><joint name="c" type="slide" axis="1 0 0"/>
+        <joint name="d" axis="0 0 1"/><geom/></body></body></worldbody>
+  <tendon><fixed name="cord"><joint joint="a" coef="-1"/><joint joint="b" coef="0.5"/></fixed>
+    <fixed name="held" range="-0.1 0.1"><joint joint="c" coef="2"/><joint joint="d" coef="1"/></fixed>
+    <fixed><joint joint="d" coef="3"/></fixed></tendon></mujoco>"""
 
 
 @pytest.fixture(autouse=True)
@@ -101,3 +120,62 @@ def test_other_solvers_have_none():
     for name in ("link_position", "link_mass", "external_force"):
         assert not batch.get(name).any()
     assert batch.get("actuator_force").shape == (2, 0, 1)
+
+
+@pytest.mark.parametrize("steps", [0, 1, 4])
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicitfast"])
+def test_tendons_and_sites_are_mujocos(integrator, steps):
+    text = MARKED.format(integrator=integrator)
+    m = mujoco.MjModel.from_xml_string(text)
+    m.opt.solver, m.opt.tolerance, m.opt.iterations = mujoco.mjtSolver.mjSOL_NEWTON, 1e-14, 100
+    d = mujoco.MjData(m)
+    rng = np.random.default_rng(3)
+    scene = mw.mjcf.load_string(text)
+    scene.options.solver.tolerance, scene.options.solver.iterations = 1e-14, 100
+    count = 8
+    batch = mw.Batch(scene, worlds=count, threads=1, precision="f64", observe=["tendons", "sites"])
+    assert [s.name for s in scene.sites] == [m.site(i).name for i in range(m.nsite)]
+    assert [t.name for t in scene.tendons] == [m.tendon(i).name for i in range(m.ntendon)]
+    assert [t.limit is None for t in scene.tendons] == [True, False, True]
+    states = []
+    for _ in range(count):
+        qpos = d.qpos.copy()
+        mujoco.mj_integratePos(m, qpos, rng.normal(size=m.nv), 0.3)
+        states.append((qpos, rng.normal(size=m.nv)))
+    batch.set("generalized_position", np.array([q for q, _ in states])[..., None])
+    batch.set("generalized_velocity", np.array([v for _, v in states])[..., None])
+    if steps:
+        batch.step(steps)
+    else:
+        batch.look()
+    found = {k: batch.get(k) for k in ("site_position", "tendon_length", "tendon_velocity")}
+    for world, (qpos, qvel) in enumerate(states):
+        mujoco.mj_resetData(m, d)
+        d.qpos[:], d.qvel[:] = qpos, qvel
+        if steps:
+            mujoco.mj_step(m, d, nstep=steps)
+        else:
+            mujoco.mj_forward(m, d)
+        near = dict(rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(found["site_position"][world], d.site_xpos, **near)
+        np.testing.assert_allclose(found["tendon_length"][world, :, 0], d.ten_length, **near)
+        np.testing.assert_allclose(found["tendon_velocity"][world, :, 0], d.ten_velocity, **near)
+
+
+def test_tendons_and_sites_by_name():
+    scene = mw.mjcf.load_string(MARKED.format(integrator="Euler"))
+    assert scene.site("tip") == 5 and type(scene.site("tip")) is mw.SiteId
+    assert scene.tendon("held") == 1 and type(scene.tendon("held")) is mw.TendonId
+    bodies = [scene.bodies[s.body].name if s.body >= 0 else None for s in scene.sites]
+    # The hand has no mass and is part of what it is on; the pivot has no geoms and is no body here.
+    assert bodies == ["world", "post", None, "trunk", "", ""]
+    terms = mw.tasks.Terms(scene)
+    assert repr(terms.site_position("tip", "z")).endswith("site_position(5, 'z')>")
+    assert repr(terms.tendon_velocity("cord")).endswith("tendon_velocity(0)>")
+    with pytest.raises(ValueError, match="no site is named 'tops'.*nearest: 'top'"):
+        terms.site_position("tops", 0)
+    with pytest.raises(TypeError, match="expected a TendonId, a name or an index"):
+        terms.tendon_length(mw.SiteId(0))
+    batch = mw.Batch(scene, worlds=2, observe=["sites"])
+    assert batch.site("tip") == batch.plan.site("tip") == 5
+    assert batch.tendon("cord") == 0

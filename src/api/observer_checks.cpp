@@ -23,6 +23,8 @@ std::size_t items_of(ObservedItem item, const PlanData& plan, const Observers& o
     case ObservedItem::joint: return plan.scene.joints.size();
     case ObservedItem::coordinate: return plan.coordinates.size();
     case ObservedItem::dof: return plan.trees.dofs.size();
+    case ObservedItem::tendon: return plan.scene.tendons.size();
+    case ObservedItem::site: return plan.scene.sites.size();
     case ObservedItem::ray: return observers.rays.size();
     case ObservedItem::point: return observers.points.size();
   }

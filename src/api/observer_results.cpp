@@ -26,15 +26,18 @@ bool wants_frames(const Observers& observers) {
   for (int i = 0; i < kObserverCount; ++i) {
     const ObservedItem item = kObserverInfo[i].item;
     const bool of_bodies = item == ObservedItem::body && kObserverInfo[i].of == ObservedOf::state;
-    if ((of_bodies || item == ObservedItem::point) && observes(observers, Observer(i))) return true;
+    const bool of_points = item == ObservedItem::point || item == ObservedItem::site;
+    if ((of_bodies || of_points) && observes(observers, Observer(i))) return true;
   }
   return false;
 }
 
-// Observers that only trees have something for.
+// Observers that trees have something for where their forces are found.
 bool observes_links(const Observers& observers) {
-  constexpr Observer kOf[] = {Observer::links, Observer::link_inertias, Observer::link_velocities,
-                              Observer::link_forces, Observer::dof_forces};
+  constexpr Observer kOf[] = {
+      Observer::links,       Observer::link_inertias, Observer::link_velocities,
+      Observer::link_forces, Observer::dof_forces,    Observer::tendons,
+      Observer::sites};
   return std::any_of(std::begin(kOf), std::end(kOf),
                      [&](Observer o) { return observes(observers, o); });
 }
@@ -80,6 +83,8 @@ ObserverResultsOf<Real>::ObserverResultsOf(const AllWorlds& worlds, const Observ
     }
     kind.frames_vary = std::any_of(plan.bodies.begin(), plan.bodies.end(),
                                    [](const PlanBody& b) { return b.reshaped && !b.aligned; });
+    if (has(Observer::tendons)) set_tendons(kind, plan);
+    if (has(Observer::sites)) set_sites(kind, w.plan());
     for (const Point& p : observers_.points) {
       kind.points.push_back({w.plan().row(p.body), {}});
       for (int c = 0; c < 3; ++c) {
@@ -95,6 +100,43 @@ ObserverResultsOf<Real>::ObserverResultsOf(const AllWorlds& worlds, const Observ
     }
   }
   set_rays(observers_.rays);
+}
+
+template <class Real>
+void ObserverResultsOf<Real>::set_tendons(Kind& kind, const PlanData& plan) const {
+  const auto& dofs = plan.trees.dofs;
+  for (const Tendon& tendon : plan.scene.tendons) {
+    kind.tendons.push_back({static_cast<std::int32_t>(kind.tendon_terms.size()),
+                            static_cast<std::int32_t>(tendon.terms.size())});
+    for (const TendonTerm& term : tendon.terms) {
+      const int coordinate = plan.first_coordinate[at(term.joint.index())];
+      const auto dof = std::find_if(dofs.begin(), dofs.end(), [&](const kernels::TreeDof& d) {
+        return d.coordinate == coordinate;
+      });
+      kind.tendon_terms.push_back({coordinate, static_cast<std::int32_t>(dof - dofs.begin()),
+                                   static_cast<Real>(term.coefficient)});
+    }
+  }
+}
+
+template <class Real>
+void ObserverResultsOf<Real>::set_sites(Kind& kind, const Plan& plan) const {
+  const auto& links = plan.data().trees.links;
+  for (const Site& site : plan.scene().sites) {
+    const int row = site.body && plan.find_row(site.body) ? plan.row(site.body) : -1;
+    kernels::PointTable<Real>& to = kind.sites.emplace_back();
+    to.body = row;
+    if (row >= 0 && plan.data().has_trees()) {
+      const auto link =
+          std::find_if(links.begin(), links.end(), [&](const auto& l) { return l.body == row; });
+      to.body = static_cast<std::int32_t>(link - links.begin());
+    }
+    // What is on a fixed body stays.
+    const Frame at_site{site.position, Quat::Identity()};
+    const Vec3 x =
+        row < 0 ? frame_in_world(plan.scene(), site.body, at_site).position : site.position;
+    for (int c = 0; c < 3; ++c) to.position[c] = static_cast<Real>(x[c]);
+  }
 }
 
 template <class Real>
@@ -143,6 +185,8 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
     view.room = kind.room;
   }
   view.point = kind.points.data();
+  view.tendon = kind.tendons.data(), view.tendon_term = kind.tendon_terms.data();
+  view.site = kind.sites.data();
   view.coordinate = plan.coordinates.data();
   view.joint_of_part = kind.joint_of_part.data();
   if (!kind.anchors.empty()) view.anchor = kind.anchors.data();

@@ -84,7 +84,10 @@ class ObserverResultsOf final : public ObserverResults {
     std::vector<kernels::PointTable<Real>> points;
     std::vector<std::int32_t> joint_of_part;
     std::vector<kernels::TreeAnchor<Real>> anchors;  // of trees
-    std::vector<kernels::SeenShape> seen_shapes;     // of rays
+    std::vector<kernels::TendonTable> tendons;
+    std::vector<kernels::TreeTerm<Real>> tendon_terms;
+    std::vector<kernels::PointTable<Real>> sites;
+    std::vector<kernels::SeenShape> seen_shapes;  // of rays
     int room = 0;
     bool frames_vary = false;  // from world to world
   };
@@ -109,6 +112,9 @@ class ObserverResultsOf final : public ObserverResults {
     const auto& count = kind.rows[static_cast<std::size_t>(Observer::contacts)];
     return std::min(static_cast<int>(count[world]), kind.room);
   }
+  // What does not move of what the kind's scene names.
+  void set_tendons(Kind& kind, const PlanData& plan) const;
+  void set_sites(Kind& kind, const Plan& plan) const;
   Block make_block(std::size_t kind, kernels::Scratch* scratch) const;
   // Frames of the bodies of a lane's world, from the plan's or its own sizes and densities.
   void put_frames(std::size_t kind, int world, std::size_t lane, Real* frames) const;

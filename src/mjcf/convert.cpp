@@ -16,6 +16,7 @@
 #include "src/mjcf/options.hpp"
 #include "src/mjcf/pose.hpp"
 #include "src/mjcf/shape.hpp"
+#include "src/mjcf/sites.hpp"
 #include "src/mjcf/tendons.hpp"
 
 namespace manyworlds::mjcf {
@@ -147,6 +148,7 @@ Scene make_scene(const Model& model, const std::string& name) {
   } else {
     add_joints(model, scene_body, scene);
   }
+  add_sites(model, scene_body, scene);
   return scene;
 }
 

@@ -37,6 +37,14 @@ std::string problem_of(const Model& model, int t) {
   return "";
 }
 
+Limit limit_of(const mjModel& m, int t) {
+  Limit limit;
+  limit.low = m.tendon_range[2 * t], limit.high = m.tendon_range[2 * t + 1];
+  limit.margin = m.tendon_margin[t];
+  limit.compliance = compliance(m.tendon_solref_lim + mjNREF * t, m.tendon_solimp_lim + mjNIMP * t);
+  return limit;
+}
+
 }  // namespace
 
 void check_tendons(const Model& model, std::vector<std::string>& problems) {
@@ -49,19 +57,14 @@ void check_tendons(const Model& model, std::vector<std::string>& problems) {
 void add_tendons(const Model& model, const std::vector<JointId>& scene_joint, Scene& scene) {
   const mjModel& m = *model.compiled;
   for (int t = 0; t < m.ntendon; ++t) {
-    if (!limits(m, t)) continue;
+    if (!is_fixed_tendon(m, t)) continue;
     Tendon tendon;
     tendon.name = model.name(mjOBJ_TENDON, t);
     for (int i = m.tendon_adr[t]; i < m.tendon_adr[t] + m.tendon_num[t]; ++i) {
       tendon.terms.push_back(
           {scene_joint[static_cast<std::size_t>(m.wrap_objid[i])], m.wrap_prm[i]});
     }
-    Limit limit;
-    limit.low = m.tendon_range[2 * t], limit.high = m.tendon_range[2 * t + 1];
-    limit.margin = m.tendon_margin[t];
-    limit.compliance =
-        compliance(m.tendon_solref_lim + mjNREF * t, m.tendon_solimp_lim + mjNIMP * t);
-    tendon.limit = limit;
+    if (limits(m, t)) tendon.limit = limit_of(m, t);
     scene.tendons.push_back(std::move(tendon));
   }
 }

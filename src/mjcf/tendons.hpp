@@ -1,4 +1,4 @@
-// Fixed tendons with limits, as tendons of Solver::newton.
+// Fixed tendons, as tendons of Solver::newton: those without limits are there to be looked at.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Bodies, shapes, joints, controls and keyframes of a scene by name.
+// Bodies, shapes, joints, controls, tendons, sites and keyframes of a scene by name.
 #include <stdexcept>
 #include <utility>
 
@@ -92,6 +92,12 @@ JointId Scene::joint(std::string_view wanted) const {
 }
 ControlId Scene::control(std::string_view wanted) const {
   return find(wanted, names_of<ControlId>(controls), "control", "controls");
+}
+TendonId Scene::tendon(std::string_view wanted) const {
+  return find(wanted, names_of<TendonId>(tendons), "tendon", "tendons");
+}
+SiteId Scene::site(std::string_view wanted) const {
+  return find(wanted, names_of<SiteId>(sites), "site", "sites");
 }
 KeyframeId Scene::keyframe(std::string_view wanted) const {
   return find(wanted, names_of<KeyframeId>(keyframes), "keyframe", "keyframes");

@@ -55,6 +55,7 @@ std::vector<Issue> validate(const Scene& scene) {
   check_count("joints", scene.joints.size(), detail::kMaxBodies);
   check_count("controls", scene.controls.size(), detail::kMaxBodies);
   check_count("attractors", scene.attractors.size(), detail::kMaxBodies);
+  check_count("sites", scene.sites.size(), detail::kMaxShapes);
   check_count("keyframes", scene.keyframes.size(), detail::kMaxBodies);
 
   // Needed before the bodies, whose masses depend on the default density, but listed after them.
@@ -99,6 +100,16 @@ std::vector<Issue> validate(const Scene& scene) {
                        std::to_string(bodies - 1));
     };
     check("body_a", exclusion.body_a), check("body_b", exclusion.body_b);
+  }
+  for (std::size_t i = 0; i < scene.sites.size(); ++i) {
+    const Site& site = scene.sites[i];
+    detail::Checker at = checker.at(detail::named_part("site", i, site.name));
+    if (site.body.index() < -1 || site.body.index() >= bodies) {
+      at.add("body", "is " + std::to_string(site.body.index()) +
+                         ", must be a body, or -1 for the world, up to " +
+                         std::to_string(bodies - 1));
+    }
+    at.finite("position", site.position, "m");
   }
   detail::check_keyframes(checker, scene, issues.empty() && option_issues.empty());
   detail::check_coordinate_draws(checker, scene, issues.empty() && option_issues.empty());

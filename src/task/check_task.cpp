@@ -213,6 +213,8 @@ class TaskChecker {
                   "the degree of freedom");
         }
         break;
+      case ObservedItem::tendon: bounded(n.index, scene.tendons.size(), "the tendon"); break;
+      case ObservedItem::site: bounded(n.index, scene.sites.size(), "the site"); break;
       case ObservedItem::ray: bounded(n.index, task_.rays.size(), "the ray"); break;
       case ObservedItem::point: bounded(n.index, task_.points.size(), "the point"); break;
     }

@@ -24,6 +24,8 @@ const char* word_of(ObservedItem item) {
     case ObservedItem::joint:
     case ObservedItem::coordinate: return "joint";
     case ObservedItem::dof: return "dof";
+    case ObservedItem::tendon: return "tendon";
+    case ObservedItem::site: return "site";
     case ObservedItem::ray: return "ray";
     case ObservedItem::point: return "point";
   }

@@ -27,14 +27,15 @@ const char* const kRobot = R"(<mujoco>
       <body name="hand" pos="0.3 0 0">
         <joint name="wrist" axis="0 1 0" range="-60 60" armature="0.02"/>
         <joint name="reach" type="slide" axis="1 0 0" range="0 0.1"/>
-        <geom type="box" size="0.1 0.1 0.1"/>
+        <geom type="box" size="0.1 0.1 0.1"/><site name="tip" pos="0.1 0 0"/>
       </body>
     </body>
   </body>
 </worldbody>
 <actuator><position name="servo" joint="wrist" kp="20" ctrlrange="-1 1" forcerange="-5 5"/></actuator>
 <tendon><fixed name="cord" range="-1 1"><joint joint="wrist" coef="1"/>
-  <joint joint="reach" coef="-2"/></fixed></tendon>
+  <joint joint="reach" coef="-2"/></fixed>
+  <fixed name="seen"><joint joint="wrist" coef="3"/></fixed></tendon>
 <sensor><jointpos joint="wrist"/></sensor>
 <keyframe><key name="ready" qvel="0 0 0 0 0 0 0 0 0 0.5 0" ctrl="0.25"/></keyframe>
 </mujoco>)";
@@ -65,8 +66,9 @@ TEST_CASE("model prints the tree of a robot and all that acts on it", "[cli]") {
         "slider 'reach'  q 12  v 10  0 to 0.1 m\n", "  'world'  plane\n",
         "  'servo'  joint_force on 'wrist'  control -1 to 1  gear 1  gain (20, 0, 0)  "
         "bias (0, -20, 0)  force -5 to 5\n",
-        "  'cord'  1 'wrist' + -2 'reach'  -1 to 1\n", "\nkeyframes\n  'ready'\n", "plane-sphere",
-        "0.004\n", "sensors are not computed\n", "solver PGS"}) {
+        "  'cord'  1 'wrist' + -2 'reach'  -1 to 1\n", "  'seen'  3 'wrist'\n",
+        "\nsites\n  'tip'  on 'hand'  at (0.1, 0, 0) m\n", "\nkeyframes\n  'ready'\n",
+        "plane-sphere", "0.004\n", "sensors are not computed\n", "solver PGS"}) {
     INFO(line << "\n" << text.out);
     CHECK(contains(text.out, line));
   }
@@ -88,6 +90,9 @@ TEST_CASE("model --json has the places of joints in the coordinates", "[cli]") {
   CHECK(hand["joints"][1]["range"] == nlohmann::json::array({0, 0.1}));
   CHECK(json["controls"][0]["force_range"] == nlohmann::json::array({-5, 5}));
   CHECK(json["tendons"][0]["terms"][1]["coefficient"] == -2);
+  CHECK_FALSE(json["tendons"][1].contains("range"));
+  CHECK(json["sites"][0]["body"] == json["bodies"][2]["body"]);
+  CHECK(json["sites"][0]["position"] == nlohmann::json::array({0.1, 0, 0}));
   REQUIRE(json["keyframes"].size() == 1);
   CHECK(json["keyframes"][0]["name"] == "ready");
   CHECK(json["keyframes"][0]["generalized_position"].size() == 13);

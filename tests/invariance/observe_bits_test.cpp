@@ -22,7 +22,7 @@ Observers everything(const Plan& plan) {
                     Observer::residual, Observer::acceleration};
   for (const Observer of_trees :
        {Observer::links, Observer::link_inertias, Observer::link_velocities, Observer::link_forces,
-        Observer::dof_forces}) {
+        Observer::dof_forces, Observer::tendons, Observer::sites}) {
     observers.what.push_back(of_trees);
   }
   for (int i = 0; i < 12; ++i) {

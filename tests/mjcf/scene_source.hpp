@@ -39,7 +39,7 @@ class SceneSource {
       out += fmt::format("scene.exclusions = {};\n", text(scene.exclusions));
     }
     if (!scene.tendons.empty() || !scene.attractors.empty() || !scene.variations.empty() ||
-        !scene.keyframes.empty()) {
+        !scene.keyframes.empty() || !scene.sites.empty()) {
       throw std::logic_error(scene.name + " has what SceneSource does not write");
     }
     return out + "return scene;\n}\n";

@@ -172,6 +172,7 @@ Scene scene_with_everything(Solver solver) {
   }
   scene.keyframes.push_back({"key", {1, 2}, {3, 4}, {5, 6}});
   scene.coordinate_draws.push_back({true, 1, {-1, -2}, {3, 4}, true, true, 0.1, 7});
+  scene.sites.push_back({"site", BodyId(0), Vec3(1, 2, 3)});
   scene.options.contact_capacity = 7;
   scene.options.bounds = Eigen::AlignedBox3d(Vec3(-1, -2, -3), Vec3(1, 2, 3));
   scene.options.joint.frequency = 30;

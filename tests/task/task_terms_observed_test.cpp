@@ -85,6 +85,13 @@ TEST_CASE("terms of what is not there are issues of the task", "[task][fast][obs
              Contains("angular_acceleration of body 1, axis 0: the axis must be 2 in the plane"));
   CHECK_THAT(message(terms::point_velocity(1, 0)),
              Contains("point_velocity of point 1, axis 0: the point must be 0 to 0"));
+  task.scene.add(Site{"top", BodyId(1), Vec3(0, 0.5, 0)});
+  CHECK(message(terms::site_position(SiteId(0), 1)).find("site_position") == std::string::npos);
+  CHECK_THAT(message(terms::site_position(SiteId(1), 0)),
+             Contains("site_position of site 1, axis 0: the site must be 0 to 0"));
+  CHECK_THAT(message(terms::site_position(SiteId(0), 2)), Contains("the axis must be 0 to 1"));
+  CHECK_THAT(message(terms::tendon_length(TendonId(0))),
+             Contains("tendon_length of tendon 0: the tendon must be 0 to 0, but there are none"));
   CHECK_THAT(message(terms::observed(Observed::momentum, 1, 0)),
              Contains("the item must be 0 to 0"));
 }

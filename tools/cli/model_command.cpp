@@ -1,5 +1,5 @@
-// `manyworlds model`: what was read of a model: bodies and joints, actuators, tendons, pairs of
-// shapes, keyframes, options, and what of its file does not act as it says.
+// `manyworlds model`: what was read of a model: bodies and joints, actuators, tendons, sites, pairs
+// of shapes, keyframes, options, and what of its file does not act as it says.
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -155,6 +155,16 @@ Json tendons_json(const Scene& scene) {
   return out;
 }
 
+Json sites_json(const Scene& scene) {
+  Json out = Json::array();
+  for (const Site& site : scene.sites) {
+    Json& one =
+        out.emplace_back(Json{{"name", site.name}, {"position", numbers_json(site.position)}});
+    if (site.body) one["body"] = site.body.index();
+  }
+  return out;
+}
+
 Json keyframes_json(const Scene& scene) {
   Json out = Json::array();
   for (const Keyframe& keyframe : scene.keyframes) {
@@ -185,6 +195,7 @@ Json to_json(const Job& job, const std::vector<std::string>& warnings) {
           {"fixed_bodies", std::move(fixed)},
           {"controls", controls_json(scene)},
           {"tendons", tendons_json(scene)},
+          {"sites", sites_json(scene)},
           {"keyframes", keyframes_json(scene)},
           {"exclusions", scene.exclusions.size()},
           {"pairs", pairs_json(job.plan.report().pairs)},
@@ -284,6 +295,19 @@ void print_tendons(const Scene& scene) {
   }
 }
 
+void print_sites(const Scene& scene) {
+  if (scene.sites.empty()) return;
+  fmt::print("\nsites\n");
+  for (std::size_t i = 0; i < scene.sites.size(); ++i) {
+    const Site& site = scene.sites[i];
+    const std::string body =
+        site.body ? label("body", scene.bodies, site.body.index()) : "the world";
+    fmt::print("  {}  on {}  at ({:.6g}, {:.6g}, {:.6g}) m\n",
+               label("site", scene.sites, static_cast<int>(i)), body, site.position.x(),
+               site.position.y(), site.position.z());
+  }
+}
+
 void print_keyframes(const Scene& scene) {
   if (scene.keyframes.empty()) return;
   fmt::print("\nkeyframes\n");
@@ -323,6 +347,7 @@ int model_command(const JobOptions& options) {
   print_tree(scene, model_tree(job.plan));
   print_controls(scene);
   print_tendons(scene);
+  print_sites(scene);
   print_keyframes(scene);
   print_pairs(job.plan.report().pairs);
   if (!scene.exclusions.empty()) {
