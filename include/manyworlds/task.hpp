@@ -36,7 +36,8 @@ struct Reward {
   Expression value = {};  // of a step; a task's reward is the sum of its rewards
 };
 
-// What people are told beside: in double, of no account to the policy.
+// What people are told beside: in double, of no account to the policy. Those that are named a[0],
+// a[1] and so on are the array a to Gymnasium.
 struct Info {
   std::string name = {};
   Expression value = {};

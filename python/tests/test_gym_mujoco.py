@@ -18,12 +18,11 @@ mujoco = pytest.importorskip("mujoco")
 
 import manyworlds as mw  # noqa: E402
 import manyworlds.gym  # noqa: E402
+from manyworlds.gym import infos as gym_infos  # noqa: E402
 from manyworlds.gym import mujoco as tasks  # noqa: E402
 
 STATES = int(os.environ.get("MANYWORLDS_GYM_STATES", "300"))
 STEPS = 2  # of the task, from each state
-# What Gymnasium tells that is left out here.
-UNTOLD = {"tendon_length", "tendon_velocity"}
 # Contacts whose points are not MuJoCo's (docs/robots.md), of the two kinds of shapes.
 KINDS = mujoco.mjtGeom
 OTHERS = {(KINDS.mjGEOM_CAPSULE, KINDS.mjGEOM_CYLINDER)}
@@ -106,6 +105,7 @@ def compare(name, precision, count, reach=1.0, **arguments):
     theirs = Theirs(name, **arguments)
     states = theirs.states(count, rng)
     env = ours(name, count, precision, **arguments)
+    told_of = list(gym_infos.told(env.task.infos))
     env.batch.set("generalized_position", np.array([q for q, _ in states])[..., None])
     env.batch.set("generalized_velocity", np.array([v for _, v in states])[..., None])
     space = theirs.env.action_space
@@ -128,9 +128,11 @@ def compare(name, precision, count, reach=1.0, **arguments):
             assert not truncated
             error = max(error, apart(observations[world], obs, precision))
             error = max(error, apart(rewards[world], reward, precision))
-            told = dict(zip(env.info_names, infos[world]))
-            assert set(told) == set(info) - UNTOLD
-            error = max(error, *(apart(told[key], info[key], precision) for key in told))
+            told = {name: infos[world, columns] for name, columns, _ in told_of}
+            assert set(told) == set(info)
+            for key, value in info.items():
+                assert np.shape(told[key]) == np.shape(value), key
+                error = max(error, apart(told[key], value, precision))
             if bool(terminated[world]) != ended:
                 error = np.inf
         errors[world], smooth[world] = error, theirs.smooth
@@ -182,14 +184,24 @@ def test_spaces_lengths_and_arguments_are_gymnasiums(name):
     assert set(own) == set(wanted) - {"xml_file", "default_camera_config"}
     for key, value in own.items():
         assert value == pytest.approx(wanted[key]), key
-    envs = gymnasium.make_vec(f"manyworlds/{name}", num_envs=3, observation_dtype="float64")
+    # All of them by name, the model too; what a camera sees is not part of the task.
+    given = {key: value for key, value in wanted.items() if key != "default_camera_config"}
+    one = gymnasium.make(f"manyworlds/{name}", **given)
+    assert one.observation_space.shape == env.observation_space.shape
+    assert one.action_space == env.action_space
+    one.close()
+    envs = gymnasium.make_vec(
+        f"manyworlds/{name}", num_envs=3, observation_dtype="float64", **given
+    )
     assert envs.single_observation_space.shape == env.observation_space.shape
     assert envs.single_observation_space.dtype == env.observation_space.dtype
     assert envs.single_action_space == env.action_space
     assert envs.metadata["render_fps"] == env.metadata["render_fps"]
     observations, infos = envs.reset(seed=3)
     assert observations.dtype == np.float64
-    assert {key for key in infos if key[0] != "_"} == set(env.reset(seed=3)[1]) - UNTOLD
+    _, expected = env.reset(seed=3)
+    assert {key for key in infos if key[0] != "_"} == set(expected)
+    assert all(infos[key].shape == (3, *np.shape(expected[key])) for key in expected)
     threshold = theirs.reward_threshold
     assert tasks.task(name).solved_at == (np.inf if threshold is None else threshold)
     assert tasks.task(name).max_steps == theirs.max_episode_steps

@@ -120,6 +120,7 @@ Task humanoid(const Scene& model, const HumanoidOptions& o) {
   const Expression healthy = within(qpos(2), o.healthy_z_range);
   const Expression forces = squares_of_forces(t, [](const Expression& x) { return x; });
   tell_xy(t);
+  tell_tendons(t);
   t.step_info("x_velocity", x_velocity);
   t.step_info("y_velocity", t.rate(mass_center(t, 1)));
   t.reward("reward_survive", o.healthy_reward * healthy);
@@ -139,6 +140,7 @@ Task humanoid_standup(const Scene& model, const HumanoidStandupOptions& o) {
   t.info("x_position", qpos(0));
   t.info("y_position", qpos(1));
   t.info("z_distance_from_origin", qpos(2) - t.start(2));
+  tell_tendons(t);
   t.reward("reward_linup", qpos(2) / t.task.scene.options.dt);
   t.reward("reward_quadctrl", -o.ctrl_cost_weight * t.sum_of_squares_of_actions());
   t.reward("reward_impact", -clipped(o.impact_cost_weight * forces, o.impact_cost_range));

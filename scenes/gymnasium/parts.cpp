@@ -91,6 +91,11 @@ BodyId TaskOf::link_of_mujoco(int body) const {
          " is asked for");
 }
 
+SiteId TaskOf::first_site() const {
+  if (task.scene.sites.empty()) refuse("has no site, must have one");
+  return SiteId(0);
+}
+
 Expression TaskOf::sum_of_squares_of_actions() const {
   std::vector<Expression> squares;
   for (std::size_t i = 0; i < task.actions.size(); ++i) {
@@ -138,6 +143,16 @@ void tell_xy(TaskOf& t) {
   t.info("x_position", qpos(0));
   t.info("y_position", qpos(1));
   t.info("distance_from_origin", norm({qpos(0), qpos(1)}));
+}
+void tell_tendons(TaskOf& t) {
+  const auto tell = [&](const std::string& name, const auto& term) {
+    for (std::size_t i = 0; i < t.task.scene.tendons.size(); ++i) {
+      const std::string element = name + "[" + std::to_string(i) + "]";
+      t.info(element.c_str(), term(TendonId(static_cast<int>(i))));
+    }
+  };
+  tell("tendon_length", tendon_length);
+  tell("tendon_velocity", tendon_velocity);
 }
 
 }  // namespace manyworlds::gymnasium

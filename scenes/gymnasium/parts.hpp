@@ -47,6 +47,8 @@ class TaskOf {
   // The one that is MuJoCo's body of this index, where 0 is the world.
   BodyId link_of_mujoco(int body) const;
 
+  SiteId first_site() const;  // throws as above where the model has none
+
   // The change of x in a step, in a second; 0 at the beginning.
   Expression rate(const Expression& x) const { return (x - previous(x)) / dt(); }
   Expression sum_of_squares_of_actions() const;
@@ -75,5 +77,6 @@ class TaskOf {
 // Infos of x, and of x and y.
 void tell_x(TaskOf& t, const Expression& x_velocity);
 void tell_xy(TaskOf& t);  // and how far that is
+void tell_tendons(TaskOf& t);
 
 }  // namespace manyworlds::gymnasium

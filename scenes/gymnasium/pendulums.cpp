@@ -26,13 +26,8 @@ Task inverted_double_pendulum(const Scene& model, const InvertedDoublePendulumOp
   t.observe_velocities(10);
   t.observe("constraint force on the cart", clamp(constraint_force(0), -10, 10));
 
-  // The site at the upper pole's tip, of which scenes know nothing, is as far again from its hinge
-  // as the middle of its capsule.
-  const BodyId pole = t.links().back();
-  const auto tip = [&](int axis) {
-    return 2 * link_center(pole, axis) - link_position(pole, axis);
-  };
-  const Expression x = tip(0), y = tip(2), fallen = y <= 1;
+  const SiteId tip = t.first_site();
+  const Expression x = site_position(tip, 0), y = site_position(tip, 2), fallen = y <= 1;
   t.reward("reward_survive", o.healthy_reward * !fallen);
   t.reward("distance_penalty", -(0.01 * square(x) + square(y - 2)));
   t.reward("velocity_penalty", -(1e-3 * square(qvel(1)) + 5e-3 * square(qvel(2))));

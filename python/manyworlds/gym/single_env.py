@@ -13,6 +13,7 @@ from ..in_memory import InMemory
 from ..live import LiveView, view
 from ..names import Isa, Precision
 from ..tasks import Task
+from . import infos as task_infos
 from . import rendering, spaces
 
 
@@ -49,6 +50,7 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
             reward_terms=reward_terms,
             observation_dtype=observation_dtype,
         )
+        self._told_of = list(task_infos.told(self.task.infos))
         self.observation_space = spaces.observation_space(self.task, observation_dtype)
         self.action_space = spaces.action_space(self.task)
 
@@ -80,8 +82,12 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
         return observations[0].copy(), float(rewards[0]), *ends, info
 
     def _told(self, stepped: bool) -> dict[str, Any]:
-        told = zip(self.task.infos, self.environment.infos[0])
-        return {i.name: float(value) for i, value in told if stepped or not i.of_steps_alone}
+        values = self.environment.infos[0]
+        return {
+            name: values[columns] if isinstance(columns, list) else float(values[columns])
+            for name, columns, of_steps_alone in self._told_of
+            if stepped or not of_steps_alone
+        }
 
     def render(self) -> Optional[NDArray[np.uint8]]:  # type: ignore[override]
         """The world as it is, (height, width, 3) uint8; None without a render_mode."""

@@ -17,6 +17,7 @@ from ..in_memory import InMemory
 from ..live import LiveView, view
 from ..names import Isa, Precision
 from ..tasks import Task
+from . import infos as task_infos
 from . import rendering, spaces
 
 Seed = Union[int, Sequence[Optional[int]], None]
@@ -89,6 +90,7 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
             reward_terms=reward_terms,
             observation_dtype=observation_dtype,
         )
+        self._told_of = list(task_infos.told(self.task.infos))
         self.num_envs = self.environment.worlds
         self.single_observation_space = spaces.observation_space(self.task, observation_dtype)
         self.single_action_space = spaces.action_space(self.task)
@@ -208,11 +210,12 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
     ) -> dict[str, Any]:
         """The task's infos of the worlds of a mask; those of steps alone where they were stepped."""
         out: dict[str, Any] = {}
-        for info, column in zip(self.task.infos, values.T):
-            of = mask & stepped if info.of_steps_alone else mask
+        for name, columns, of_steps_alone in self._told_of:
+            of = mask & stepped if of_steps_alone else mask
             if of.any():
-                out[info.name] = np.where(of, column, 0)
-                out["_" + info.name] = of.copy()
+                own = values[:, columns]
+                out[name] = np.where(of if own.ndim == 1 else of[:, None], own, 0)
+                out["_" + name] = of.copy()
         return out
 
     def _final(self, ended: NDArray[np.bool_]) -> dict[str, Any]:
