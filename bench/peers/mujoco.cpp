@@ -138,17 +138,13 @@ MujocoWorld::MujocoWorld(Model model, const World& from)
 
 void MujocoWorld::step() { mj_step(model_.get(), data_.get()); }
 
-double MujocoWorld::overlap() {
-  mj_fwdPosition(model_.get(), data_.get());
-  double most = 0;
-  for (int i = 0; i < data_->ncon; ++i) most = std::max(most, -data_->contact[i].dist);
-  return most;
-}
-
-Heights MujocoWorld::heights() {
-  mj_fwdPosition(model_.get(), data_.get());
-  Heights out;
-  for (int i = 1; i < model_->nbody; ++i) out.add(data_->xpos[3 * i + 2]);
+std::vector<Pose> MujocoWorld::poses() {
+  mj_kinematics(model_.get(), data_.get());  // a step leaves it where it was before
+  std::vector<Pose> out;
+  for (int i = 1; i < model_->nbody; ++i) {
+    const mjtNum *x = data_->xpos + 3 * i, *q = data_->xquat + 4 * i;
+    out.push_back({{x[0], x[1], x[2]}, 0, {q[0], q[1], q[2], q[3]}});
+  }
   return out;
 }
 

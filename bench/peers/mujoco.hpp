@@ -4,6 +4,7 @@
 #include <mujoco/mujoco.h>
 
 #include <memory>
+#include <vector>
 
 #include "bench/peers/peer.hpp"
 
@@ -14,9 +15,7 @@ class MujocoWorld final : public Simulation {
   MujocoWorld(std::shared_ptr<const mjModel> model, const World& from);
 
   void step() override;
-  double overlap() override;
-  double gap() override { return 0; }  // coordinates of joints: there can be none
-  Heights heights() override;
+  std::vector<Pose> poses() override;
 
   const mjModel& model() const { return *model_; }
   mjData& data() { return *data_; }

@@ -1,8 +1,9 @@
 #include "bench/peers/peer.hpp"
 
+#include <time.h>
+
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -20,8 +21,8 @@ class UsageError : public std::runtime_error {
 
 struct Options {
   std::vector<std::string> scenes;  // empty: all that the engine has
-  int worlds = 1024, warm_up = 60, steps = 300;
-  bool list = false, help = false;
+  int worlds = 1024, warm_up = 60, steps = 300, visit = 1;
+  bool poses = false, list = false, help = false;
 };
 
 std::vector<std::string> scenes_of(const Engine& engine) {
@@ -72,12 +73,16 @@ Options parse(int argc, char** argv, const Engine& engine) {
       options.list = true;
       continue;
     }
+    if (option == "--poses") {
+      options.poses = true;
+      continue;
+    }
     if (option == "--help" || option == "-h") {
       options.help = true;
       continue;
     }
     const bool known = option == "--scenes" || option == "--worlds" || option == "--warm-up" ||
-                       option == "--steps";
+                       option == "--steps" || option == "--visit";
     if (!known) throw UsageError("unknown argument '" + option + "'; see --help");
     if (i + 1 == argc) throw UsageError(option + ": a value is missing");
     const std::string value = argv[++i];
@@ -85,73 +90,109 @@ Options parse(int argc, char** argv, const Engine& engine) {
     if (option == "--worlds") options.worlds = count(option, value, 1);
     if (option == "--warm-up") options.warm_up = count(option, value, 0);
     if (option == "--steps") options.steps = count(option, value, 1);
+    if (option == "--visit") options.visit = count(option, value, 1);
   }
   if (options.scenes.empty()) options.scenes = scenes_of(engine);
   return options;
 }
 
-void step_all(const Simulations& worlds, Together* together, int steps) {
-  for (int s = 0; s < steps; ++s) {
+// `visit` steps of a world, then of the next.
+void step_all(const Simulations& worlds, Together* together, int steps, int visit) {
+  for (int done = 0; done < steps; done += visit) {
+    const int now = std::min(visit, steps - done);
     if (together != nullptr) {
-      together->step();
-    } else {
-      for (const auto& world : worlds) world->step();
+      together->step(now);
+      continue;
+    }
+    for (const auto& world : worlds) {
+      for (int s = 0; s < now; ++s) world->step();
     }
   }
 }
 
-// A number, or null for what is not there or not finite.
-std::string number(std::optional<double> value) {
-  if (!value || !std::isfinite(*value)) return "null";
+// Of this process, s: other work on the machine takes less of it than of the time on the clock.
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// null for what is not finite.
+std::string number(double value, int digits) {
+  if (!std::isfinite(value)) return "null";
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g", *value);
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
 }
 
 // A speed is none when bodies fell through the floor, or what stands fell over.
-void require_sane(const std::string& scene, const World& world, const Heights& heights) {
-  if (heights.lowest >= 0 && heights.highest >= world.stands) return;
-  throw std::runtime_error(scene + ": ends with bodies at heights from " +
-                           std::to_string(heights.lowest) + " to " +
-                           std::to_string(heights.highest) + " m");
+void require_sane(const std::string& scene, const World& world, const std::vector<Pose>& poses) {
+  if (world.chain) return;
+  double lowest = 1e300, highest = -1e300;
+  for (const Pose& pose : poses) {
+    const double height = pose.position[world.planar ? 1 : 2];
+    lowest = std::min(lowest, height), highest = std::max(highest, height);
+  }
+  if (lowest >= 0 && highest >= world.stands) return;
+  throw std::runtime_error(scene + ": ends with bodies at heights from " + std::to_string(lowest) +
+                           " to " + std::to_string(highest) + " m");
+}
+
+// "x,y,angle" or "x,y,z,w,x,y,z" of each body, one after the other.
+void append(std::string& out, const World& world, const std::vector<Pose>& poses) {
+  constexpr int kDigits = 9;
+  const auto add = [&](double value) {
+    if (!out.empty() && out.back() != '[') out += ',';
+    out += number(value, kDigits);
+  };
+  for (const Pose& pose : poses) {
+    for (int i = 0; i < (world.planar ? 2 : 3); ++i) {
+      add(pose.position[static_cast<std::size_t>(i)]);
+    }
+    if (world.planar) {
+      add(pose.angle);
+    } else {
+      for (const double component : pose.rotation) add(component);
+    }
+  }
 }
 
 void measure(const std::string& scene, const Options& options, const Engine& engine) {
-  using Clock = std::chrono::steady_clock;
   Simulations worlds;
   for (int i = 0; i < options.worlds; ++i) worlds.push_back(engine.make(draw(scene, i)));
   const auto together = engine.together ? engine.together(worlds) : nullptr;
-  step_all(worlds, together.get(), options.warm_up);
-  const auto start = Clock::now();
-  step_all(worlds, together.get(), options.steps);
-  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  step_all(worlds, together.get(), options.warm_up, options.visit);
+  const double start = processor_seconds();
+  step_all(worlds, together.get(), options.steps, options.visit);
+  const double seconds = processor_seconds() - start;
   if (together) together->finish();
 
   const World world = draw(scene, 0);
-  double overlap = 0, gap = 0;
+  std::string poses = "[";
   for (const auto& w : worlds) {
-    if (!world.chain) require_sane(scene, world, w->heights());
-    overlap = std::max(overlap, w->overlap());
-    gap = std::max(gap, w->gap());
+    const std::vector<Pose> now = w->poses();
+    require_sane(scene, world, now);
+    if (options.poses) append(poses, world, now);
   }
   const double speed = static_cast<double>(options.worlds) * options.steps / seconds;
   std::printf(
       "{\"engine\": \"%s\", \"version\": \"%s\", \"scene\": \"%s\", \"worlds\": %d, \"steps\": %d, "
-      "\"seconds\": %s, \"world_steps_per_s\": %s, \"worst_overlap_m\": %s, \"worst_gap_m\": %s, "
-      "\"settings\": \"%s\"}\n",
+      "\"visit\": %d, \"seconds\": %s, \"world_steps_per_s\": %s, \"settings\": \"%s\"%s%s%s}\n",
       engine.name, engine.version.c_str(), scene.c_str(), options.worlds, options.steps,
-      number(seconds).c_str(), number(speed).c_str(),
-      number(world.chain ? std::nullopt : std::optional(overlap)).c_str(),
-      number(world.chain ? std::optional(gap) : std::nullopt).c_str(),
-      engine.settings(world).c_str());
+      options.visit, number(seconds, 6).c_str(), number(speed, 6).c_str(),
+      engine.settings(world).c_str(), options.poses ? ", \"poses\": " : "",
+      options.poses ? poses.c_str() : "", options.poses ? "]" : "");
   std::fflush(stdout);
 }
 
 void print_help(const char* program, const Engine& engine) {
   std::printf(
-      "usage: %s [--scenes A,B,...] [--worlds N] [--warm-up N] [--steps N] | --list\n"
+      "usage: %s [--scenes A,B,...] [--worlds N] [--warm-up N] [--steps N] [--visit N] [--poses]\n"
+      "       | --list\n"
       "Steps N worlds (1024) of each scene (all) round robin on one thread with %s %s: warm-up\n"
-      "steps (60), then timed ones (300), of 1/60 s. Prints a line of JSON for each scene.\n"
+      "steps (60), then timed ones (300), of 1/60 s, --visit (1) of them before the next world's.\n"
+      "Prints a line of JSON for each scene, with where all bodies are after the last step: "
+      "--poses.\n"
       "--list prints the scenes: %s.\n",
       program, engine.name, engine.version.c_str(), joined(scenes_of(engine)).c_str());
 }

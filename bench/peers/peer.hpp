@@ -2,9 +2,9 @@
 // or together by the protocol of `manyworlds bench`, and a line of JSON for each scene.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,13 +12,11 @@
 
 namespace manyworlds::peers {
 
-// Of the centres of the lowest and the highest body, m.
-struct Heights {
-  double lowest = 1e300, highest = -1e300;
-  void add(double height) {
-    lowest = height < lowest ? height : lowest;
-    highest = height > highest ? height : highest;
-  }
+// Of a body: its centre in the world, m, and how it is turned, rad or w x y z.
+struct Pose {
+  std::array<double, 3> position{};
+  double angle = 0;                            // planar
+  std::array<double, 4> rotation{1, 0, 0, 0};  // spatial
 };
 
 // One world of an engine. The destructor frees it.
@@ -30,11 +28,8 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   virtual void step() = 0;  // kStep
-  // Of the state after the last step, m: how far the deepest contact overlaps (0 when none does),
-  // and how far the widest joint gapes. Asked for after the clock has stopped.
-  virtual double overlap() = 0;
-  virtual double gap() = 0;
-  virtual Heights heights() = 0;
+  // After the last step, of World::bodies in their order. Asked for after the clock has stopped.
+  virtual std::vector<Pose> poses() = 0;
 };
 
 using Simulations = std::vector<std::unique_ptr<Simulation>>;
@@ -47,7 +42,7 @@ class Together {
   Together(const Together&) = delete;
   Together& operator=(const Together&) = delete;
 
-  virtual void step() = 0;  // kStep
+  virtual void step(int steps) = 0;  // of kStep each
   // Gives the worlds their states, after the clock has stopped.
   virtual void finish() = 0;
 };
@@ -63,8 +58,8 @@ struct Engine {
   std::function<std::unique_ptr<Together>(const Simulations&)> together;
 };
 
-// main() of a peer: --scenes A,B --worlds N --warm-up N --steps N, or --list. Returns the exit
-// code: 0, 1 when something failed, 2 for a bad command line.
+// main() of a peer: --scenes A,B --worlds N --warm-up N --steps N --visit N --poses, or --list.
+// Returns the exit code: 0, 1 when something failed, 2 for a bad command line.
 int run_peer(int argc, char** argv, const Engine& engine);
 
 }  // namespace manyworlds::peers

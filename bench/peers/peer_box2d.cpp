@@ -1,7 +1,6 @@
 // The planar scenes in Box2D 2.4.
 #include <box2d/box2d.h>
 
-#include <algorithm>
 #include <vector>
 
 #include "bench/peers/peer.hpp"
@@ -33,38 +32,17 @@ class Box2dWorld final : public Simulation {
         hinge.Initialize(last, added, b2Vec2(real(body.position[0] - 0.5), 0));
         world_.CreateJoint(&hinge);
       }
+      bodies_.push_back(added);
       last = added;
     }
   }
 
   void step() override { world_.Step(real(kStep), kVelocityIterations, kPositionIterations); }
 
-  // Of the surfaces that Box2D keeps apart, which for polygons include a skin of 10 mm.
-  double overlap() override {
-    float most = 0;
-    for (b2Contact* c = world_.GetContactList(); c != nullptr; c = c->GetNext()) {
-      if (!c->IsTouching()) continue;
-      b2WorldManifold manifold;
-      c->GetWorldManifold(&manifold);
-      for (int i = 0; i < c->GetManifold()->pointCount; ++i) {
-        most = std::max(most, -manifold.separations[i]);
-      }
-    }
-    return most;
-  }
-
-  double gap() override {
-    float most = 0;
-    for (b2Joint* j = world_.GetJointList(); j != nullptr; j = j->GetNext()) {
-      most = std::max(most, (j->GetAnchorA() - j->GetAnchorB()).Length());
-    }
-    return most;
-  }
-
-  Heights heights() override {
-    Heights out;
-    for (b2Body* b = world_.GetBodyList(); b != nullptr; b = b->GetNext()) {
-      if (b->GetType() == b2_dynamicBody) out.add(b->GetPosition().y);
+  std::vector<Pose> poses() override {
+    std::vector<Pose> out;
+    for (const b2Body* b : bodies_) {
+      out.push_back({{b->GetPosition().x, b->GetPosition().y, 0}, b->GetAngle()});
     }
     return out;
   }
@@ -99,28 +77,15 @@ class Box2dWorld final : public Simulation {
       // There are no capsules. These collide with nothing: one shape will do, given their mass.
       box.SetAsBox(real(from.half + from.radius), real(from.radius));
       add_fixture(body, box, world);
-      const b2MassData mass = capsule_mass(from);
+      const PlanarMass of = planar_mass(from);
+      const b2MassData mass = {real(of.mass), b2Vec2(0, 0), real(of.moment)};
       body->SetMassData(&mass);
     }
     return body;
   }
 
-  // A rectangle and two half circles, whose centroids are 4r/3pi beyond its ends.
-  static b2MassData capsule_mass(const Body& from) {
-    constexpr double kPi = 3.14159265358979323846;
-    const double r = from.radius, h = from.half;
-    const double rectangle = kPlanarDensity * 4 * r * h, ends = kPlanarDensity * kPi * r * r;
-    const double centroid = 4 * r / (3 * kPi);
-    const double about_centroid = r * r / 2 - centroid * centroid;  // per mass of an end
-    const double arm = h + centroid;
-    b2MassData out;
-    out.mass = real(rectangle + ends);
-    out.center.SetZero();
-    out.I = real(rectangle * (r * r + h * h) / 3 + ends * (about_centroid + arm * arm));
-    return out;
-  }
-
   b2World world_;
+  std::vector<b2Body*> bodies_;  // that move
 };
 
 }  // namespace
@@ -132,11 +97,8 @@ int main(int argc, char** argv) {
   engine.name = "Box2D";
   engine.version = PEER_BOX2D_VERSION;  // b2_version of 2.4.1 says 2.4.0
   engine.planar = true;
-  engine.settings = [](const World& world) {
-    return std::string(
-               "float32, 8 velocity and 3 position iterations, continuous collision as by default, "
-               "no sleep") +
-           (world.chain ? "" : "; overlap is of polygons with their skin of 10 mm");
+  engine.settings = [](const World&) {
+    return "float32, 8 velocity and 3 position iterations, continuous collision as by default";
   };
   engine.make = [](const World& world) { return std::make_unique<Box2dWorld>(world); };
   return run_peer(argc, argv, engine);

@@ -1,7 +1,6 @@
 // The spatial scenes in Bullet 3.
 #include <btBulletDynamicsCommon.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -48,32 +47,13 @@ class BulletWorld final : public Simulation {
   // No substeps: one step of exactly this length.
   void step() override { world_.stepSimulation(real(kStep), 0); }
 
-  double overlap() override {
-    world_.performDiscreteCollisionDetection();  // where the bodies are now
-    btScalar most = 0;
-    for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
-      const btPersistentManifold* manifold = dispatcher_.getManifoldByIndexInternal(i);
-      for (int p = 0; p < manifold->getNumContacts(); ++p) {
-        most = std::max(most, -manifold->getContactPoint(p).getDistance());
-      }
-    }
-    return most;
-  }
-
-  double gap() override {
-    btScalar most = 0;
-    for (const auto& joint : joints_) {
-      const btVector3 a = joint->getRigidBodyA().getCenterOfMassTransform() * joint->getPivotInA();
-      const btVector3 b = joint->getRigidBodyB().getCenterOfMassTransform() * joint->getPivotInB();
-      most = std::max(most, a.distance(b));
-    }
-    return most;
-  }
-
-  Heights heights() override {
-    Heights out;
+  std::vector<Pose> poses() override {
+    std::vector<Pose> out;
     for (const auto& body : bodies_) {
-      if (!body->isStaticObject()) out.add(body->getCenterOfMassPosition().z());
+      if (body->isStaticObject()) continue;
+      const btVector3& x = body->getCenterOfMassPosition();
+      const btQuaternion q = body->getOrientation();
+      out.push_back({{x.x(), x.y(), x.z()}, 0, {q.w(), q.x(), q.y(), q.z()}});
     }
     return out;
   }

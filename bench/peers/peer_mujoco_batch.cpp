@@ -26,8 +26,8 @@ class MujocoBatch final : public Together {
     }
   }
 
-  void step() override {
-    if (mjb_step(batch_.get(), nullptr, 0, 1, mjSTAGE_NONE) == 0) return;
+  void step(int steps) override {
+    if (mjb_step(batch_.get(), nullptr, 0, steps, mjSTAGE_NONE) == 0) return;
     for (int i = 0; i < count(); ++i) {
       if (mjb_status(batch_.get())[i] == 0) continue;
       throw std::runtime_error(std::string("MuJoCo: ") + mjb_error(batch_.get(), i));

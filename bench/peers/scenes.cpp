@@ -146,6 +146,24 @@ World draw(const std::string& name, int index) {
   return world;
 }
 
+PlanarMass planar_mass(const Body& body) {
+  const double r = body.radius, h = body.half;
+  if (body.form == Form::ball) {
+    const double mass = kPlanarDensity * kPi * r * r;
+    return {mass, mass * r * r / 2};
+  }
+  if (body.form == Form::box) {
+    const double mass = kPlanarDensity * 4 * h * h;
+    return {mass, mass * 2 * h * h / 3};
+  }
+  // A capsule is a rectangle and two half circles, whose centroids are 4r/3pi beyond its ends.
+  const double rectangle = kPlanarDensity * 4 * r * h, ends = kPlanarDensity * kPi * r * r;
+  const double centroid = 4 * r / (3 * kPi);
+  const double about_centroid = r * r / 2 - centroid * centroid;  // per mass of an end
+  const double arm = h + centroid;
+  return {rectangle + ends, rectangle * (r * r + h * h) / 3 + ends * (about_centroid + arm * arm)};
+}
+
 std::vector<Slab> slabs(const World& world) {
   std::vector<Slab> out;
   if (world.floor == 0) return out;

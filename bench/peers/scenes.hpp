@@ -44,6 +44,12 @@ struct World {
   std::vector<Body> bodies;
 };
 
+// Of a body of a planar scene: kg, and kg m^2 about its centre.
+struct PlanarMass {
+  double mass = 0, moment = 0;
+};
+PlanarMass planar_mass(const Body& body);
+
 // A static box of floor or wall.
 struct Slab {
   std::array<double, 3> centre{}, half{};

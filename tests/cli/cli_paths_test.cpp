@@ -43,6 +43,7 @@ TEST_CASE("a name that cannot be is told with the option that gave it", "[cli][f
       {report + "--out /dev/null", "--out: '/dev/null': is no folder"},
       {report + "--out " + long_name, "the folder cannot be made: File name too long"},
       {report + "--peers ''", "--peers: must be the name of a folder, is ''"},
+      {report + "--peers-only", "--peers-only requires --peers"},
       {report + "--peers none", "--peers: 'none': cannot be read: No such file or directory"},
       {report + "--peers file", "--peers: 'file': is no folder"},
       {report + "--peers .", "--peers: '.': there is no program peer_* in it"},

@@ -186,14 +186,27 @@ TEST_CASE("report throughput measures every sweep", "[cli][report]") {
 TEST_CASE("report throughput compares with other engines and says which of them fail",
           "[cli][report]") {
   const ScratchFolder folder;
-  // Says what it was asked for where settings go, and something of its own before the result.
+  // Says what it was asked for where settings go, and something of its own before the result. Its
+  // balls are 4 mm in the ground in the first world and 1 m above it in the others.
   write_peer(folder, "peer_good", R"(
 if [ "$1" = --list ]; then echo ball2d; exit; fi
 echo 'hello from an engine'
+poses=0,0.496,0.1
+for world in $(seq 127); do poses="$poses,0.5,1.5,-2"; done
 cat <<END
 {"engine": "Good", "version": "1.2", "scene": "ball2d", "world_steps_per_s": 1000, \
-"worst_overlap_m": 0.004, "worst_gap_m": null, "settings": "$*"}
+"settings": "$*", "poses": [$poses]}
 END
+)");
+  write_peer(folder, "peer_slow", R"(
+if [ "$1" = --list ]; then echo ball2d; exit; fi
+poses=0,1,0
+for world in $(seq 127); do poses="$poses,0,1,0"; done
+echo '{"engine": "Slow", "version": "3", "scene": "ball2d", "world_steps_per_s": 300, "poses": ['$poses]}
+)");
+  write_peer(folder, "peer_lost", R"(
+if [ "$1" = --list ]; then echo ball2d; exit; fi
+echo '{"engine": "Lost", "version": "1", "scene": "ball2d", "world_steps_per_s": 9, "poses": [1, 2]}'
 )");
   write_peer(folder, "peer_bad", R"(
 if [ "$1" = --list ]; then echo ball2d; exit; fi
@@ -204,28 +217,41 @@ exit 3
   write_peer(folder, "peer_gone", "kill -9 $$\n");
   write_peer(folder, "other", "exit 1\n");
   const Outcome outcome =
-      run_with_page(folder, "report throughput --quick --scenes ball2d --peers peers");
+      run_with_page(folder, "report throughput --quick --scenes ball2d --peers peers --peers-only");
   INFO(outcome.out << outcome.err);
   REQUIRE(outcome.code == 0);
   const Json results =
       Json::parse(content(folder.path() / "report" / "throughput.json"))["results"];
+  CHECK(results["rows"].empty());
   REQUIRE(results["peers"].size() == 1);
   const Json& scene = results["peers"][0];
   CHECK(scene["scene"] == "ball2d");
   CHECK(scene["worst_gap_m"].is_null());
-  REQUIRE(scene["engines"].size() == 1);
-  const Json& good = scene["engines"][0];
+  CHECK(scene["long_visit"].get<double>() > 0);
+  REQUIRE(scene["engines"].size() == 2);
+  const Json &good = scene["engines"][0], &slow = scene["engines"][1];
   CHECK(good["engine"] == "Good");
   CHECK(good["world_steps_per_s"] == 1000.0);
-  CHECK(good["worst_overlap_m"] == 0.004);
-  CHECK(good["settings"] == "--scenes ball2d --worlds 128 --warm-up 60 --steps 60");
+  CHECK(good["worst_overlap_m"].get<double>() == Approx(0.004).margin(1e-6));
+  CHECK(good["settings"] ==
+        "--scenes ball2d --worlds 128 --warm-up 60 --steps 60 --visit 16 --poses");
   CHECK(good["ratio"].get<double>() > 1);
+  CHECK(good["long_visit"]["world_steps_per_s"] == 1000.0);
+  CHECK(slow["engine"] == "Slow");
+  CHECK(slow["worst_overlap_m"] == 0.0);
+  CHECK(slow["long_visit"].is_null());
+  CHECK(results["peer_means"]["ratio"].get<double>() == Approx(good["ratio"].get<double>()));
+  CHECK(results["peer_means"]["long_visit"].get<double>() ==
+        Approx(good["long_visit"]["ratio"].get<double>()));
   const Json& failures = results["peer_failures"];
-  REQUIRE(failures.size() == 3);
+  REQUIRE(failures.size() == 4);
   CHECK(contains(failures[0], "peer_gone failed: --list: "));
   CHECK(failures[1] == "peer_bad failed: ball2d: exit status 3: it fell over?");
   CHECK(failures[2] == "peer_dumb failed: ball2d: it printed no result");
+  CHECK(failures[3] ==
+        "peer_lost failed: ball2d: its poses are 2 numbers, expected 384 (128 worlds of 1 bodies)");
   CHECK(contains(outcome.out, "Good 1.2"));
+  CHECK(contains(outcome.out, "fastest engine of each scene, geometric mean: "));
   CHECK(contains(outcome.out, "peer_bad failed: "));
   CHECK(report_in(content(folder.path() / "report" / "throughput.html"))["results"] == results);
 }

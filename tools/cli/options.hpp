@@ -96,6 +96,7 @@ struct ReportOptions {
   std::vector<std::string> scenes;  // of the others; empty: the report's own
   std::string out = "report";       // folder
   std::string peers;                // of throughput: folder of other engines' programs
+  bool peers_only = false;          // and no sweeps
   bool quick = false;
   bool json = false;
 };

@@ -26,6 +26,7 @@
 #include "tools/base/text.hpp"
 #include "tools/base/version.hpp"
 #include "tools/report/accuracy.hpp"
+#include "tools/report/peer_program.hpp"
 #include "tools/report/plan_worth.hpp"
 #include "tools/report/report_files.hpp"
 #include "tools/report/stability.hpp"
@@ -252,7 +253,8 @@ int report_throughput_command(const ReportOptions& options) {
   const Output output = output_of("throughput", options);
   const tools::Interruptible interruptible;
   const auto result = run_report("throughput", [&](const Tell& tell) {
-    return report::run_throughput({options.scenes, options.peers, options.quick}, tell);
+    return report::run_throughput(
+        {options.scenes, options.peers, options.peers_only, options.quick}, tell);
   });
   return finish_report(output, options, report::to_json(result), [&] { print_throughput(result); });
 }

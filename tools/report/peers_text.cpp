@@ -1,4 +1,7 @@
 // The comparison with other engines as text.
+#include <optional>
+#include <string>
+
 #include <fmt/format.h>
 
 #include "tools/base/text.hpp"
@@ -9,8 +12,8 @@ namespace {
 
 std::string protocol_text(const Peers& peers) {
   return fmt::format(
-      "{} worlds on one thread, round robin, {} steps of 1/60 s after 60 to warm up, no sleep; in "
-      "turns in one run, {}",
+      "{} worlds on one thread, round robin, {} steps of 1/60 s after 60 to warm up, no sleep; by "
+      "processor time, in turns in one run, {}",
       peers.worlds, peers.steps,
       peers.rounds == 1 ? "once" : fmt::format("median of {} rounds", peers.rounds));
 }
@@ -23,20 +26,49 @@ std::string error_text(const PeerErrors& errors) {
 
 std::string ratio_text(double ratio) { return fmt::format("{:.3g} x", ratio); }
 
+// A row of the table; empty cells for what is not there.
+std::string row_text(const std::string& scene, const std::string& engine, double speed,
+                     const std::optional<double>& ratio, const std::optional<double>& long_speed,
+                     const std::optional<double>& long_ratio, const PeerErrors& errors) {
+  const auto ratio_or_none = [](const std::optional<double>& r) {
+    return r ? ratio_text(*r) : std::string();
+  };
+  return fmt::format("  {:<12} {:<19} {:>12} {:>10} {:>12} {:>10}  {}\n", scene, engine,
+                     tools::speed_text(speed), ratio_or_none(ratio),
+                     long_speed ? tools::speed_text(*long_speed) : std::string(),
+                     ratio_or_none(long_ratio), error_text(errors));
+}
+
+std::string scene_text(const PeerScene& scene) {
+  std::string out = row_text(scene.scene, "manyworlds", scene.world_steps_per_s, {},
+                             scene.long_visit, {}, scene.errors);
+  for (const PeerRow& row : scene.engines) {
+    std::optional<double> long_speed, long_ratio;
+    if (row.long_visit) {
+      long_speed = row.long_visit->world_steps_per_s, long_ratio = row.long_visit->ratio;
+    }
+    out += row_text("", row.engine + ' ' + row.version, row.speed.world_steps_per_s,
+                    row.speed.ratio, long_speed, long_ratio, row.errors);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string peers_text(const Peers& peers) {
   std::string out = fmt::format("\npeers: {}\n", protocol_text(peers));
-  out += fmt::format("  {:<14} {:<16} {:>12} {:>17}  {}\n", "scene", "engine", "steps/s",
-                     "manyworlds/engine", "worst, last step");
-  for (const PeerScene& scene : peers.scenes) {
-    out += fmt::format("  {:<14} {:<16} {:>12} {:>17}  {}\n", scene.scene, "manyworlds",
-                       tools::speed_text(scene.world_steps_per_s), "", error_text(scene.errors));
-    for (const PeerRow& row : scene.engines) {
-      out += fmt::format("  {:<14} {:<16} {:>12} {:>17}  {}\n", "", row.engine + ' ' + row.version,
-                         tools::speed_text(row.world_steps_per_s), ratio_text(row.ratio),
-                         error_text(row.errors));
+  out += fmt::format("  {:<12} {:<19} {:>12} {:>10} {:>12} {:>10}  {}\n", "scene", "engine",
+                     "steps/s", "manyworlds", fmt::format("{} a visit", kLongVisit), "manyworlds",
+                     "worst, last step");
+  for (const PeerScene& scene : peers.scenes) out += scene_text(scene);
+  const PeerMeans means = means_of(peers);
+  if (means.ratio) {
+    out += fmt::format("  manyworlds to the fastest engine of each scene, geometric mean: {}",
+                       ratio_text(*means.ratio));
+    if (means.long_visit) {
+      out += fmt::format(", {} with {} steps a visit", ratio_text(*means.long_visit), kLongVisit);
     }
+    out += '\n';
   }
   for (const std::string& failure : peers.failures) out += "  " + failure + '\n';
   return out;

@@ -128,8 +128,8 @@ static void run_sweeps(const ThroughputOptions& options,
                        Throughput& out) {
   tell("limits of the machine", 0);
   out.limits = measure_limits();
-  const std::vector<Job> jobs = jobs_of(options);
-  const double sweeps = options.peers.empty() ? 1 : 0.3;  // share of the work, about
+  const std::vector<Job> jobs = options.peers_only ? std::vector<Job>() : jobs_of(options);
+  const double sweeps = options.peers.empty() ? 1 : options.peers_only ? 0 : 0.3;  // of the work
   for (const Job& job : jobs) {
     tell(job.sweep + ' ' + job.scene + ' ' + job.value,
          sweeps * static_cast<double>(out.rows.size()) / static_cast<double>(jobs.size()));
@@ -176,9 +176,11 @@ nlohmann::ordered_json to_json(const Throughput& result) {
                                 {"rows", rows}};
   if (result.peers) {
     const Peers& p = *result.peers;
-    out["peer_protocol"] = {{"worlds", p.worlds}, {"steps", p.steps}, {"rounds", p.rounds}};
+    out["peer_protocol"] = {
+        {"worlds", p.worlds}, {"steps", p.steps}, {"rounds", p.rounds}, {"long_visit", kLongVisit}};
     out["peers"] = nlohmann::ordered_json::array();
     for (const PeerScene& scene : p.scenes) out["peers"].push_back(to_json(scene));
+    out["peer_means"] = to_json(means_of(p));
     out["peer_failures"] = p.failures;
   }
   return out;

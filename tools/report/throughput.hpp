@@ -43,6 +43,7 @@ struct Throughput {
 struct ThroughputOptions {
   std::vector<std::string> scenes;  // empty: bin-spheres, stack10, chain3d, ball2d
   std::string peers;                // folder of other engines' programs; empty: none
+  bool peers_only = false;          // no sweeps
   bool quick = false;
 };
 

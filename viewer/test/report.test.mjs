@@ -182,9 +182,12 @@ test('throughput: sweeps, the same bits, and other engines', async () => {
 
   report.results.rows.filter((r) => r.sweep === 'threads').at(-1).hash = '0123456789abcdef';
   report.results.rows.push({ ...report.results.rows.find((r) => r.sweep === 'threads'), threads: 99, value: '99' });
-  report.results.peer_protocol = { worlds: 128, steps: 60, rounds: 3 };
-  report.results.peers = [{ scene: 'ball2d', world_steps_per_s: 1e6, worst_overlap_m: 0.004, worst_gap_m: null, engines: [
-    { engine: 'Good', version: '1.2', world_steps_per_s: 1e4, ratio: 100, worst_overlap_m: null, worst_gap_m: 0.01, settings: 'as it comes' }] }];
+  report.results.peer_protocol = { worlds: 128, steps: 60, rounds: 3, long_visit: 16 };
+  report.results.peers = [{ scene: 'ball2d', world_steps_per_s: 1e6, long_visit: 2e6, worst_overlap_m: 0.004, worst_gap_m: null, engines: [
+    { engine: 'Good', version: '1.2', rounds: 3, world_steps_per_s: 1e4, ratio: 100, long_visit: { world_steps_per_s: 4e4, ratio: 50 },
+      worst_overlap_m: null, worst_gap_m: 0.01, settings: 'as it comes' },
+    { engine: 'Slow', version: '3', rounds: 1, world_steps_per_s: 1e3, ratio: 1000, long_visit: null, worst_overlap_m: 0.02, worst_gap_m: null, settings: '' }] }];
+  report.results.peer_means = { ratio: 100, long_visit: 50 };
   report.results.peer_failures = ['peer_bad failed: it fell over'];
   const changed = pageOf(report, 'peers');
   const other = await open(changed);
@@ -192,6 +195,7 @@ test('throughput: sweeps, the same bits, and other engines', async () => {
   assert.equal((await other.totals())[2], '1 FAIL: other engines');
   assert.match(await other.hover('Speed beside other engines', '[aria-label=dot] circle'), /engine .*speed [\d.]+ [kM]\/s.*worst (overlap 4 mm|gap 10 mm)/);
   assert.equal(await other.page.getByText('peer_bad failed: it fell over').count(), 1);
+  assert.equal(await other.page.getByText('100 times as fast as the fastest engine of each scene (geometric mean), 50 times with 16 steps').count(), 1);
   await other.close();
   await fitsTelephone(changed);
 });

@@ -86,22 +86,26 @@ export interface PeerErrors {
 export interface PeerEngine extends PeerErrors {
   engine: string;
   version: string;
+  rounds: number; // that it took part in
   world_steps_per_s: number;
   ratio: number; // how often as fast manyworlds is
+  long_visit: { world_steps_per_s: number; ratio: number } | null; // with more steps of a world before the next one's
   settings: string;
 }
 
 export interface PeerScene extends PeerErrors {
   scene: string;
   world_steps_per_s: number;
-  engines: PeerEngine[];
+  long_visit: number; // of manyworlds
+  engines: PeerEngine[]; // the fastest first
 }
 
 export interface Throughput {
   gflops: number;
   gigabytes_per_s: number;
   rows: ThroughputRow[];
-  peer_protocol?: { worlds: number; steps: number; rounds: number };
+  peer_protocol?: { worlds: number; steps: number; rounds: number; long_visit: number };
   peers?: PeerScene[];
+  peer_means?: { ratio: number | null; long_visit: number | null };
   peer_failures?: string[];
 }

@@ -1,6 +1,6 @@
 // Other engines beside manyworlds.
 import * as Plot from '@observablehq/plot';
-import type { PeerErrors, PeerScene, Throughput } from './data';
+import type { PeerEngine, PeerErrors, PeerScene, Throughput } from './data';
 import { distinct, make, table, type Cell } from './dom';
 import { section } from './frame';
 import { length, perSecond, short } from './numbers';
@@ -49,26 +49,36 @@ function picture(speeds: Speed[], names: string[]): HTMLElement[] {
   })];
 }
 
-export function peersSection({ peer_protocol: protocol, peer_failures: failures = [] }: Throughput, peers: PeerScene[]): void {
+const speedCell = (speed: number, ratio: number, note: string): Cell => ({ text: `${perSecond(speed)} (${short(ratio)} x)`, note });
+
+// A row for manyworlds in each scene and for each engine, the fastest first.
+function rowsOf(scene: PeerScene, nameOf: (e: PeerEngine) => string): (string | Cell)[][] {
+  return [
+    [scene.scene, OWN, perSecond(scene.world_steps_per_s), perSecond(scene.long_visit), errorText(scene)],
+    ...scene.engines.map((e): (string | Cell)[] => ['', nameOf(e),
+      speedCell(e.world_steps_per_s, e.ratio, e.rounds === 1 ? 'once' : `median of ${e.rounds}`),
+      e.long_visit ? speedCell(e.long_visit.world_steps_per_s, e.long_visit.ratio, '') : '', errorText(e)])];
+}
+
+export function peersSection({ peer_protocol: protocol, peer_means: means, peer_failures: failures = [] }: Throughput, peers: PeerScene[]): void {
   const nameOf = (e: { engine: string; version: string }): string => `${e.engine} ${e.version}`;
   const engines = distinct(peers.flatMap((s) => s.engines.map(nameOf)));
-  const rows = peers.map((scene): (string | Cell)[] => [scene.scene,
-    { text: perSecond(scene.world_steps_per_s), note: errorText(scene) },
-    ...engines.map((name): Cell => {
-      const e = scene.engines.find((one) => nameOf(one) === name);
-      return e ? { text: `${perSecond(e.world_steps_per_s)} (${short(e.ratio)} x)`, note: errorText(e) } : { text: '' };
-    })]);
   const speeds = peers.flatMap((s): Speed[] => [
     { scene: s.scene, name: OWN, speed: s.world_steps_per_s, ratio: null, errors: s },
     ...s.engines.map((e) => ({ scene: s.scene, name: nameOf(e), speed: e.world_steps_per_s, ratio: e.ratio, errors: e }))]);
   const rounds = protocol ? (protocol.rounds === 1 ? 'once' : `median of ${protocol.rounds} rounds`) : '';
-  const said = protocol ? `${protocol.worlds} worlds on one thread, round robin, ${protocol.steps} steps of 1/60 s after 60 to warm up, no sleep; in turns in one run, ${rounds}. ` : '';
+  const said = protocol ? `${protocol.worlds} worlds on one thread, ${protocol.steps} steps of 1/60 s after 60 to warm up, no sleep; by processor time, in turns in one run, ${rounds}. ` : '';
+  const visit = protocol?.long_visit ?? 16;
+  const mean = means?.ratio ? `manyworlds is ${short(means.ratio)} times as fast as the fastest engine of each scene (geometric mean)` +
+    (means.long_visit ? `, ${short(means.long_visit)} times with ${visit} steps a visit.` : '.') : '';
   section('Beside other engines', [
-    make('p', {}, `${said}World-steps per second, how often as fast manyworlds is (median of the rounds, each against manyworlds right before and after) in ` +
-      'parentheses, and the deepest overlap or widest joint gap of all worlds after the last step.'),
+    mean === '' ? null : make('p', {}, mean),
+    make('p', {}, `${said}World-steps per second with one step of each world in turn, and with ${visit}; how often as fast manyworlds is (median of the rounds, each ` +
+      'against manyworlds right before and after) in parentheses; and the deepest overlap or widest joint gap of all worlds after the last step, found by the ' +
+      'same code from where the bodies of each engine are. Engines below a third of the fastest one take part once.'),
     failures.map((failure) => make('p', { class: 'fail' }, failure)),
     speeds.length > 0 ? picture(speeds, [OWN, ...engines]) : null,
-    table(['scene', OWN, ...engines], rows),
+    table(['scene', 'engine', 'world-steps', `${visit} a visit`, 'worst, last step'], peers.flatMap((scene) => rowsOf(scene, nameOf))),
     distinct(peers.flatMap((s) => s.engines.map((e) => `${nameOf(e)}: ${e.settings}.`))).map((note) => make('p', { class: 'quiet' }, note)),
   ], failures.length > 0 ? { tally: { passed: 0, failed: failures.length } } : {});
 }

@@ -124,7 +124,7 @@ export function throughputPage(report: Report<Throughput>): void {
   const choice = make('select', { id: 'metric' }, METRICS.map(({ name }) => make('option', {}, name)));
   const metric = (): Metric => METRICS[Math.max(0, choice.selectedIndex)];
   const scenes = distinct(rows.map(familyOf));
-  section('Sweeps', [make('div', { class: 'row' }, failuresButton(groups.length - same + broken), make('label', {}, 'Plots show ', choice))]);
+  if (rows.length > 0) section('Sweeps', [make('div', { class: 'row' }, failuresButton(groups.length - same + broken), make('label', {}, 'Plots show ', choice))]);
   const charts = [...grouped(rows, (r) => r.sweep)].map(([sweep, all]) => {
     const own = groups.filter((g) => g[0].sweep === sweep), bad = own.filter((g) => !isSame(g)).length;
     const judged: { tally?: Tally } = own.length > 0 ? { tally: { passed: own.length - bad, failed: bad } } : {};
