@@ -256,6 +256,37 @@ exit 3
   CHECK(report_in(content(folder.path() / "report" / "throughput.html"))["results"] == results);
 }
 
+TEST_CASE("report throughput measures joint gaps where the engine's bodies are", "[cli][report]") {
+  const ScratchFolder folder;
+  // Chains as they start but for the last link, which is turned about its centre by half a turn:
+  // its end is 1 m from where it is joined.
+  write_peer(folder, "peer_turned", R"(
+if [ "$1" = --list ]; then echo chain2d; echo chain3d; exit; fi
+world=
+for i in 0 1 2 3 4 5 6 7 8; do
+  if [ $2 = chain2d ]; then world="$world$i.5,0,0,"; else world="$world$i.5,0,0,1,0,0,0,"; fi
+done
+if [ $2 = chain2d ]; then world="${world}9.5,0,3.14159265"; else world="${world}9.5,0,0,0,0,0,1"; fi
+poses=$world
+for i in $(seq 127); do poses="$poses,$world"; done
+echo '{"engine": "Turned", "version": "1", "scene": "'$2'", "world_steps_per_s": 1, "poses": ['$poses]}
+)");
+  const Outcome outcome = run_with_page(
+      folder, "report throughput --quick --scenes chain2d,chain3d --peers peers --peers-only");
+  INFO(outcome.out << outcome.err);
+  REQUIRE(outcome.code == 0);
+  const Json results =
+      Json::parse(content(folder.path() / "report" / "throughput.json"))["results"];
+  CHECK(results["peer_failures"].empty());
+  REQUIRE(results["peers"].size() == 2);
+  for (const Json& scene : results["peers"]) {
+    INFO(scene);
+    REQUIRE(scene["engines"].size() == 1);
+    CHECK(scene["engines"][0]["worst_overlap_m"].is_null());
+    CHECK(scene["engines"][0]["worst_gap_m"].get<double>() == Approx(1).margin(1e-5));
+  }
+}
+
 TEST_CASE("a report without a page is its JSON, and says how the page is made", "[cli][report]") {
   const ScratchFolder folder;
   // Where no page was built beside it.
