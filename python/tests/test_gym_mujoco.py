@@ -26,6 +26,8 @@ STEPS = 2  # of the task, from each state
 # Contacts whose points are not MuJoCo's (docs/robots.md), of the two kinds of shapes.
 KINDS = mujoco.mjtGeom
 OTHERS = {(KINDS.mjGEOM_CAPSULE, KINDS.mjGEOM_CYLINDER)}
+# Infos that are sums of numbers of the state, and of which.
+SUMS = {"tendon_length": "qpos", "tendon_velocity": "qvel"}
 
 
 @pytest.fixture(autouse=True)
@@ -88,11 +90,11 @@ def ours(name, worlds, precision, **arguments):
     )
 
 
-def apart(found, expected, precision):
+def apart(found, expected, precision, terms=None):
     """The largest difference, of float64 relative to the number itself or to 1, of float32 relative to the
-    largest number of all, as small torques there are differences of large ones."""
+    largest number of all, as small torques there are differences of large ones; or to that of the terms."""
     found, size = np.atleast_1d(found), np.abs(np.atleast_1d(expected))
-    scale = size if precision == "f64" else np.max(size)
+    scale = size if precision == "f64" else np.max(np.abs(terms if terms is not None else size))
     return np.max(np.abs(found - expected) / np.maximum(1.0, scale))
 
 
@@ -132,7 +134,8 @@ def compare(name, precision, count, reach=1.0, **arguments):
             assert set(told) == set(info)
             for key, value in info.items():
                 assert np.shape(told[key]) == np.shape(value), key
-                error = max(error, apart(told[key], value, precision))
+                terms = getattr(theirs.data, SUMS[key]) if key in SUMS else None
+                error = max(error, apart(told[key], value, precision, terms))
             if bool(terminated[world]) != ended:
                 error = np.inf
         errors[world], smooth[world] = error, theirs.smooth
