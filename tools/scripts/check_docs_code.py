@@ -50,6 +50,7 @@ HEADERS = """#include <cstdio>
 #include <manyworlds/manyworlds.hpp>
 #include <manyworlds/live.hpp>
 #include <manyworlds/film.hpp>
+#include <manyworlds/gymnasium_mjcf.hpp>
 #include <manyworlds/page.hpp>
 #include <manyworlds/query.hpp>
 #include <manyworlds/record.hpp>
