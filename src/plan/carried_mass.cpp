@@ -102,4 +102,15 @@ std::vector<double> carried_masses(const Scene& scene) {
   return Walk(scene).carried();
 }
 
+BodyId lighter_body(const Scene& scene, const Joint& joint) {
+  BodyId lighter;
+  double least = std::numeric_limits<double>::infinity();
+  for (const BodyId body : {joint.body_a, joint.body_b}) {
+    if (!body || scene.at(body).motion != Motion::dynamic) continue;
+    const double mass = mass_properties(scene, scene.at(body)).mass;
+    if (mass < least) lighter = body, least = mass;
+  }
+  return lighter;
+}
+
 }  // namespace manyworlds

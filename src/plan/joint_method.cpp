@@ -81,12 +81,12 @@ std::string need_of_rows(const SceneTrees& trees) {
 }
 
 // Loads that go down through light bodies.
-std::string need_of_masses(const Scene& scene, const SceneTrees& trees) {
+std::string need_of_masses(const Scene& scene, const std::vector<int>& trees) {
   std::map<int, std::pair<double, double>> range;  // of a tree, kg
-  for (std::size_t b = 0; b < trees.of_body.size(); ++b) {
-    if (trees.of_body[b] < 0) continue;
+  for (std::size_t b = 0; b < trees.size(); ++b) {
+    if (trees[b] < 0) continue;
     const double mass = mass_properties(scene, scene.bodies[b]).mass;
-    const auto [at, fresh] = range.try_emplace(trees.of_body[b], mass, mass);
+    const auto [at, fresh] = range.try_emplace(trees[b], mass, mass);
     at->second.first = std::min(at->second.first, mass);
     at->second.second = std::max(at->second.second, mass);
     const double ratio = at->second.second / at->second.first;
@@ -94,8 +94,12 @@ std::string need_of_masses(const Scene& scene, const SceneTrees& trees) {
       return "jointed bodies have masses of 1 to " + short_text(ratio);
     }
   }
-  const LightRow row = light_row_of(scene, trees);
-  if (row.joints == 0) return {};
+  return {};
+}
+std::string need_of_light_links(const Scene& scene, const SceneTrees& trees) {
+  const std::vector<LightRow> rows = light_rows(scene, trees);
+  if (rows.empty()) return {};
+  const LightRow& row = rows.front();
   return std::to_string(row.joints) + " joints in a row carry loads of " + short_text(row.ratio) +
          " times their links";
 }
@@ -132,7 +136,9 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
   }
   if (const std::string why = need_of_rows(trees); !why.empty()) return at_once(why);
   for (const Scene& scene : extremes) {
-    for (const std::string& why : {need_of_levers(scene, in_tree), need_of_masses(scene, trees)}) {
+    for (const std::string& why :
+         {need_of_levers(scene, in_tree), need_of_masses(scene, trees.of_body),
+          need_of_light_links(scene, trees)}) {
       if (!why.empty()) return at_once(why);
     }
   }

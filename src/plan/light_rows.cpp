@@ -17,44 +17,24 @@ namespace manyworlds {
 
 namespace {
 
-int tree_of(const Joint& joint, const SceneTrees& trees) {
-  for (const BodyId body : {joint.body_a, joint.body_b}) {
-    const int tree = body ? trees.of_body[static_cast<std::size_t>(body.index())] : -1;
-    if (tree >= 0) return tree;
-  }
-  return -1;
-}
-
 const Frame& frame_on(const Joint& joint, BodyId body) {
   return joint.body_a == body ? joint.frame_a : joint.frame_b;
 }
 
-BodyId lighter_of(const Scene& scene, const Joint& joint) {
-  BodyId lighter;
-  double least = std::numeric_limits<double>::infinity();
-  for (const BodyId body : {joint.body_a, joint.body_b}) {
-    if (!body || scene.at(body).motion != Motion::dynamic) continue;
-    const double mass = mass_properties(scene, scene.at(body)).mass;
-    if (mass < least) lighter = body, least = mass;
-  }
-  return lighter;
-}
-
-// m, from a joint to the farthest other one on its body.
-double length_of(const Scene& scene, std::size_t joint, BodyId body) {
+// m, from a joint to the farthest other one on its body, of all that are on it.
+double length_of(const Scene& scene, std::size_t joint, BodyId body,
+                 const std::vector<std::size_t>& on_it) {
   const Vec3 from = frame_on(scene.joints[joint], body).position;
   double out = 0;
-  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
-    const Joint& other = scene.joints[j];
-    if (j == joint || (other.body_a != body && other.body_b != body)) continue;
-    out = std::max(out, (frame_on(other, body).position - from).norm());
+  for (const std::size_t other : on_it) {
+    out = std::max(out, (frame_on(scene.joints[other], body).position - from).norm());
   }
   return out;
 }
 
 }  // namespace
 
-LightRow light_row_of(const Scene& scene, const SceneTrees& trees) {
+std::vector<LightRow> light_rows(const Scene& scene, const SceneTrees& trees) {
   constexpr double kLoad = 5;  // times the lighter body of a joint, and the lightest of the tree
   constexpr int kRow = 5;      // joints
   struct Tree {
@@ -68,19 +48,25 @@ LightRow light_row_of(const Scene& scene, const SceneTrees& trees) {
     const double mass = mass_properties(scene, scene.bodies[b]).mass;
     tree.least = std::min(tree.least, mass), tree.most = std::max(tree.most, mass);
   }
+  std::vector<std::vector<std::size_t>> joints_on(scene.bodies.size());
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    for (const BodyId body : {scene.joints[j].body_a, scene.joints[j].body_b}) {
+      if (body) joints_on[static_cast<std::size_t>(body.index())].push_back(j);
+    }
+  }
   const std::vector<double> carried = carried_masses(scene);
   for (std::size_t j = 0; j < carried.size(); ++j) {
     if (!trees.has_joint[j] || carried[j] == 0) continue;
-    const BodyId lighter = lighter_of(scene, scene.joints[j]);
+    const BodyId lighter = lighter_body(scene, scene.joints[j]);
     if (carried[j] < kLoad * mass_properties(scene, scene.at(lighter)).mass) continue;
-    LightRow& row = all[tree_of(scene.joints[j], trees)].row;
-    ++row.joints, row.length += length_of(scene, j, lighter);
+    const auto of = static_cast<std::size_t>(lighter.index());
+    LightRow& row = all[trees.of_body[of]].row;
+    ++row.joints, row.length += length_of(scene, j, lighter, joints_on[of]);
   }
-  LightRow out;
+  std::vector<LightRow> out;
   for (auto& [first, tree] : all) {
     tree.row.ratio = tree.most / tree.least;
-    if (tree.row.joints < kRow || tree.row.ratio < kLoad) continue;
-    if (tree.row.joints > out.joints) out = tree.row;
+    if (tree.row.joints >= kRow && tree.row.ratio >= kLoad) out.push_back(tree.row);
   }
   return out;
 }
@@ -91,12 +77,16 @@ LightRow light_row_of(const Scene& scene, const SceneTrees& trees) {
 SubstepNeed need_of_light_rows(const Scene& scene) {
   constexpr double kThrown = 100;    // times a link
   constexpr double kPerRadian = 35;  // substeps for each radian that the fall turns a link by
-  const LightRow row = light_row_of(scene, trees_of(scene));
-  if (row.joints == 0 || row.ratio >= kThrown || row.length == 0) return {};
-  const double speed = std::sqrt(2 * scene.options.gravity.norm() * row.length);  // m/s
-  const double turn = speed * row.joints / row.length * scene.options.dt;         // rad
-  return {kPerRadian * turn, "a row of " + std::to_string(row.joints) +
-                                 " light joints lashes when it throws up its load"};
+  SubstepNeed out;
+  for (const LightRow& row : light_rows(scene, trees_of(scene))) {
+    if (row.ratio >= kThrown || row.length == 0) continue;
+    const double speed = std::sqrt(2 * scene.options.gravity.norm() * row.length);  // m/s
+    const double turn = speed * row.joints / row.length * scene.options.dt;         // rad
+    if (kPerRadian * turn <= out.substeps) continue;
+    out = {kPerRadian * turn, "a row of " + std::to_string(row.joints) +
+                                  " light joints lashes when it throws up its load"};
+  }
+  return out;
 }
 
 }  // namespace manyworlds

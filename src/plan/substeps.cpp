@@ -51,13 +51,8 @@ Need need_of_loads(const Scene& scene, double length_unit, const std::vector<boo
   const std::vector<double> carried = carried_masses(scene);
   for (std::size_t j = 0; j < carried.size(); ++j) {
     if (carried[j] == 0 || !joints[j]) continue;
-    double lighter = std::numeric_limits<double>::infinity();
-    for (const BodyId body : {scene.joints[j].body_a, scene.joints[j].body_b}) {
-      if (body && scene.at(body).motion == Motion::dynamic) {
-        lighter = std::min(lighter, mass_properties(scene, scene.at(body)).mass);
-      }
-    }
-    const double ratio = carried[j] / lighter;
+    const BodyId lighter = lighter_body(scene, scene.joints[j]);
+    const double ratio = carried[j] / mass_properties(scene, scene.at(lighter)).mass;
     const double w2 = 2 * ratio * scene.options.gravity.norm() / (kGap * length_unit);
     at_least(
         out, substeps_of(std::sqrt(w2), scene.options.dt),

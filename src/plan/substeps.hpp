@@ -59,14 +59,17 @@ ColumnNeed need_of_columns(const Scene& scene);
 // one between them and the world all of it. 0 where a load has other ways (carried_mass.cpp).
 std::vector<double> carried_masses(const Scene& scene);
 
+// Of a joint that has one: its lighter dynamic body.
+BodyId lighter_body(const Scene& scene, const Joint& joint);
+
 // Joints of a tree that carry some times their lighter body and more, where masses of the tree
-// differ by that, in the tree that has most of them; none where a few do (light_rows.cpp).
+// differ by that, and more than a few of them do (light_rows.cpp).
 struct LightRow {
   int joints = 0;
   double length = 0;  // m, of their lighter bodies together
   double ratio = 1;   // of the heaviest body's mass to the lightest one's
 };
-LightRow light_row_of(const Scene& scene, const SceneTrees& trees);
+std::vector<LightRow> light_rows(const Scene& scene, const SceneTrees& trees);
 // Of trees that are solved at once.
 SubstepNeed need_of_light_rows(const Scene& scene);
 

@@ -32,7 +32,7 @@ Scene chain(Space space, int links, double length, double load, bool hangs, Join
 
 TEST_CASE("chains of light links keep together under any load", "[joint][slow]") {
   for (const Space space : kSpaces) {
-    for (const double load : {1.0, 10.0, 100.0, 1000.0}) {
+    for (const double load : {1.0, 5.0, 10.0, 20.0, 60.0, 100.0, 1000.0}) {
       for (const Table& table : widest_tables()) {
         Batch batch(compile(chain(space, 10, 0.5, load, false, HingeJoint{})), options_of(table));
         const double start = energy_of(batch, 0);
@@ -47,7 +47,7 @@ TEST_CASE("chains of light links keep together under any load", "[joint][slow]")
         INFO(name(table) << " load " << load << " gap " << gap << " gain " << gain << " lost "
                          << lost / fall);
         CHECK(batch.status(0) == Status::ok);
-        CHECK(gap < (load < 50 ? 0.03 : 0.01) * 0.5);  // light ones lash
+        CHECK(gap < (load < 5 ? 0.03 : 0.01) * 0.5);  // swept over, links as heavy as the load lash
         // Symplectic Euler's energy swings by m g v h / 2, and falls at 8 m/s.
         CHECK(gain < 3.5e-3 * fall);
         // What chains lash away where they are drawn taut.

@@ -141,6 +141,18 @@ TEST_CASE("rows of light links under a load have the substeps that they lash wit
     Scene fine = loaded(10);
     fine.options.dt /= 2;
     CHECK(substeps_of(fine) == 5);
+    // Of two, the one that is thrown up counts, whichever is longer.
+    Scene both = loaded(200, 12);
+    const int others = static_cast<int>(both.bodies.size());
+    for (Body body : loaded(10).bodies) both.add(std::move(body));
+    for (Joint joint : loaded(10).joints) {
+      if (joint.body_a) joint.body_a = BodyId(joint.body_a.index() + others);
+      joint.body_b = BodyId(joint.body_b.index() + others);
+      both.add(joint);
+    }
+    for (Body& body : both.bodies) body.shapes[0].filter.mask = 0;
+    CHECK(substeps_of(loaded(200, 12)) == 4);
+    CHECK(substeps_of(both) == 9);
     Scene swept = loaded(10);
     swept.options.joint.method = JointMethod::sweep;
     CHECK(substeps_of(swept) == 4);
