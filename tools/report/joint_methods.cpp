@@ -54,7 +54,7 @@ std::vector<WorthRow> compare_joint_methods(bool quick) {
   for (const double load : {1.0, 10.0, 100.0, 1000.0}) {
     const Swing usual = swing(load, JointMethod::sweep, 4, quick);
     for (const JointMethod method : {JointMethod::sweep, JointMethod::tree}) {
-      for (const int substeps : {1, 2, 4, 8}) {
+      for (const int substeps : {1, 2, 4, 8, 12}) {
         const bool same = method == JointMethod::sweep && substeps == 4;
         const Swing s = same ? usual : swing(load, method, substeps, quick);
         WorthRow row;

@@ -1,7 +1,5 @@
 #include "tools/report/peers.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +11,7 @@
 #include "tools/base/interrupt.hpp"
 #include "tools/base/median.hpp"
 #include "tools/report/peer_program.hpp"
+#include "tools/report/plan_worth.hpp"
 
 namespace manyworlds::report {
 namespace {
@@ -25,14 +24,6 @@ constexpr double kSlow = 1.0 / 3;
 
 PeerProtocol protocol_of(const Peers& peers, int visit) {
   return {peers.worlds, kWarmUp, peers.steps, visit};
-}
-
-// Of this process, s, as the peers measure themselves: other work on the machine takes less of it
-// than of the time on the clock.
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 // manyworlds in the same scene, `visit` steps per call.
