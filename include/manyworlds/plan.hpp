@@ -101,7 +101,8 @@ class Plan {
   Plan& operator=(const Plan&) = default;
   const Scene& scene() const;
   const PlanOptions& options() const;
-  // Those of the scene, with what they leave to the plan filled in.
+  // Those of the scene, with what they leave to the plan filled in. joint.method stays empty where
+  // the plan sweeps.
   const Options& resolved() const;
   // As those of its Scene: the one of a name.
   BodyId body(std::string_view name) const { return scene().body(name); }
