@@ -268,4 +268,16 @@ MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
   v.store(w, s);
 }
 
+// Two that are apart (apart.hpp): the velocities of the second are on their way while the first is
+// solved, which is a long chain of operations that wait for each other.
+template <bool kDense, bool kFriction, Pass kPass, class S, int N, class A>
+MW_INLINE void solve_two_blocks(const Constants& t, Work& w, SidedBlock<S, N, A>& first,
+                                SidedBlock<S, N, A>& second) {
+  RowVelocities<S, A, kDense> of_first(w, first), of_second(w, second);
+  solve_rows<kDense, kFriction, kPass>(t, w, first, of_first);
+  solve_rows<kDense, kFriction, kPass>(t, w, second, of_second);
+  of_first.store(w, first);
+  of_second.store(w, second);
+}
+
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

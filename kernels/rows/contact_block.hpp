@@ -26,6 +26,7 @@ struct alignas(64) ContactSide<S, N, Free> : SideRows<S, Free> {
 struct alignas(64) BlockHeader : RowBodies {
   std::int32_t key[kLanes];
   std::uint32_t unsure;  // lanes in which nothing is expected to touch in this step
+  bool apart;            // about other bodies than the block before it (apart.hpp)
 };
 
 // All but side A.
@@ -89,18 +90,21 @@ MW_INLINE Bounce<S, N>& bounce_at(const BlockList& list, int i) {
                                           static_cast<std::size_t>(i) * list.bounce_stride);
 }
 
-template <class S, int N, class A, class Visit>
-MW_INLINE void for_each_block_of(BlockList& list, Visit visit) {
-  for (int i = 0; i < list.count; ++i) visit(block_at<SidedBlock<S, N, A>>(list, i), i, list);
+// Calls visit.operator()<points, side A>(list) for the lists in solver order.
+template <class S, class Visit>
+MW_INLINE void for_each_list(Work& w, Visit visit) {
+  const auto list = [&](ListId id) -> BlockList& { return w.blocks[static_cast<int>(id)]; };
+  visit.template operator()<S::kMulti, Free>(list(ListId::pair_multi));
+  visit.template operator()<1, Free>(list(ListId::pair_single));
+  visit.template operator()<S::kMulti, Fixed>(list(ListId::fixed_multi));
+  visit.template operator()<1, Fixed>(list(ListId::fixed_single));
 }
 // Calls visit(block, index, list) for every block in solver order.
 template <class S, class Visit>
 MW_INLINE void for_each_block(Work& w, Visit visit) {
-  const auto list = [&](ListId id) -> BlockList& { return w.blocks[static_cast<int>(id)]; };
-  for_each_block_of<S, S::kMulti, Free>(list(ListId::pair_multi), visit);
-  for_each_block_of<S, 1, Free>(list(ListId::pair_single), visit);
-  for_each_block_of<S, S::kMulti, Fixed>(list(ListId::fixed_multi), visit);
-  for_each_block_of<S, 1, Fixed>(list(ListId::fixed_single), visit);
+  for_each_list<S>(w, [&]<int N, class A>(BlockList& list) {
+    for (int i = 0; i < list.count; ++i) visit(block_at<SidedBlock<S, N, A>>(list, i), i, list);
+  });
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernels/collide/row_builder.hpp"
+#include "kernels/rows/apart.hpp"
 #include "kernels/rows/approach.hpp"
 #include "kernels/rows/friction.hpp"
 #include "kernels/rows/record.hpp"
@@ -138,6 +139,8 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   s.unsure = mask & ~touching;
   drop_lanes<S>(t, w, mask, s);
   Ints::load(key).store(s.key);
+  s.apart = blocks.count > 0 &&
+            are_apart<A, kDense>(s, block_at<SidedBlock<S, N, A>>(blocks, blocks.count - 1));
   ++blocks.count;
   w.counters.manifolds += static_cast<unsigned>(__builtin_popcount(mask));
 
