@@ -15,10 +15,29 @@ export interface Theme {
   fixed: string;
 }
 
+// What bodies can be coloured by, and what it is called.
+export function colorChoices(sources: FrameSource[]): [ColorBy, string][] {
+  const out: [ColorBy, string][] =
+    [['body', 'body'], ['speed', 'speed'], ['spin', 'rate of rotation'], ['rest', 'rest and motion'], ['height', 'height']];
+  if (sources.length > 1) out.push(['run', 'recording']);
+  for (const { name } of sources[0].run.numbers) out.push([`number:${name}`, name]);
+  return out;
+}
+
+// What colours of numbers mean.
+export interface Scale {
+  name: string;
+  unit: string;
+  at(x: number): number; // the number at 0 <= x <= 1
+}
+
 const LOST_RGB = linear(LOST_COLOR);
-const REST = linear('#5b6f8f');
-const AWAKE = linear('#f3a712');
-const RUNS = ['#3f6fb5', '#f3a712', '#76b041', '#8f5aa8'].map(linear);
+const REST_COLOR = '#5b6f8f';
+const AWAKE_COLOR = '#f3a712';
+const RUN_COLORS = ['#3f6fb5', '#f3a712', '#76b041', '#8f5aa8'];
+const REST = linear(REST_COLOR);
+const AWAKE = linear(AWAKE_COLOR);
+const RUNS = RUN_COLORS.map(linear);
 
 export function put(color: Rgb, out: Float32Array, at: number): void {
   out[at] = color[0];
@@ -105,9 +124,28 @@ export class Coloring {
     return (now[first + cell.world] - low) / (high - low || 1);
   }
 
-  // The ends of the recorded number's scale.
-  get numberEnds(): [number, number] {
-    return [this.numbers.low, this.numbers.high];
+  // Null where colours are of no number.
+  get scale(): Scale | null {
+    const between = (name: string, unit: string, low: number, high: number): Scale => ({ name, unit, at: (x) => low + x * (high - low) });
+    switch (this.by) {
+      case 'speed': return between('speed', 'm/s', 0, this.maxSpeed);
+      case 'spin': return between('rate of rotation', 'rad/s', 0, this.maxSpin);
+      case 'height': {
+        const up = this.planar ? 1 : 2;
+        return between('height', 'm', this.layout.low[up], this.layout.high[up]);
+      }
+      default: {
+        const number = this.sources[0].run.numbers.find((one) => `number:${one.name}` === this.by);
+        return number === undefined ? null : between(number.name, number.unit, this.numbers.low, this.numbers.high);
+      }
+    }
+  }
+
+  // What single colours mean; null where they mean nothing.
+  get words(): { text: string; color: string }[] | null {
+    if (this.by === 'rest') return [{ text: 'at rest', color: REST_COLOR }, { text: 'moving', color: AWAKE_COLOR }];
+    if (this.by !== 'run') return null;
+    return this.sources.map((_, r) => ({ text: `recording ${r + 1}`, color: RUN_COLORS[r % RUN_COLORS.length] }));
   }
 
   // The ends of the scales: the fastest body of this moment, but never less than before.

@@ -38,4 +38,5 @@ export function scaleInto(x: number, out: Float32Array, at: number): void {
   out[at + 2] = table[i + 2];
 }
 
-export const scaleGradient = `linear-gradient(90deg, ${SCALE.join(', ')})`;
+// Its places, from 0 to 1.
+export const scaleStops = SCALE.map((color, i): [number, string] => [i / (SCALE.length - 1), color]);

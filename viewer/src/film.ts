@@ -45,6 +45,7 @@ export class Film {
     clock.hidden = !moment;
     this.app.drawAt(time);
     this.pen.drawImage(this.app.stage.renderer.domElement, 0, 0);
+    this.app.panel.legend.paint(this.pen, this.canvas.width / window.innerWidth);
     for (const id of ['head', 'moment']) this.write(document.getElementById(id) as HTMLElement);
     const blob = await this.canvas.convertToBlob({ type, quality: JPEG_QUALITY });
     return toBase64(blob);

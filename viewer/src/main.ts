@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 
 import { obeyAddress } from './address';
+import { colorChoices } from './coloring';
 import { Commands } from './commands';
 import type { FrameSource } from './data';
 import { element } from './elements';
@@ -28,7 +29,7 @@ export class App {
   readonly stage: Stage;
   worlds!: Worlds;
   overlays!: Overlays;
-  private panel!: Panel;
+  panel!: Panel;
   readonly timeline: Clock;
   readonly grab: Grab | null = null; // of a live page, as the next
   private readonly commands: Commands | null = null;
@@ -158,12 +159,10 @@ export class App {
     document.title = `${this.title} – manyworlds`;
     element('title').textContent = this.title;
     const color = element<HTMLSelectElement>('color');
-    const choices: [string, string][] = [['body', 'body'], ['speed', 'speed'], ['spin', 'rate of rotation'], ['rest', 'rest and motion'], ['height', 'height']];
-    if (this.sources.length > 1) choices.push(['run', 'recording']);
-    for (const number of this.sources[0].run.numbers) choices.push([`number:${number.name}`, number.name]);
-    for (const [value, text] of choices) color.add(new Option(text, value));
+    for (const [value, text] of colorChoices(this.sources)) color.add(new Option(text, value));
     color.onchange = () => {
       this.worlds.coloring.by = color.value;
+      this.lastTable = -Infinity; // the legend goes with it
       this.dirty = true;
       color.blur();
     };
@@ -368,7 +367,7 @@ export class App {
     if (now - this.lastTable < TABLE_MS) return;
     this.lastTable = now;
     this.panel.tellAbout();
-    this.panel.tellLegend();
+    this.panel.legend.tell(this.worlds.coloring);
     if (this.chosen.cell >= 0) this.panel.tellWorld(this.chosen, this.following);
   }
 }

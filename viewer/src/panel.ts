@@ -1,11 +1,13 @@
-// What is written beside the picture: how many worlds there are, the scale of the colours, and the chosen world.
-import { scaleGradient } from './colors';
+// What is written beside the picture: how many worlds there are, and the chosen one.
 import { speedOf, type FrameSource } from './data';
 import { element } from './elements';
+import { Legend } from './legend';
 import type { Chosen } from './overlays';
 import type { Worlds } from './worlds';
 
 export class Panel {
+  readonly legend = new Legend();
+
   // choose(row): a body of the chosen world is clicked.
   constructor(private readonly title: string, private readonly sources: FrameSource[],
     private readonly worlds: Worlds, private readonly choose: (row: number) => void) {}
@@ -23,30 +25,6 @@ export class Panel {
       about.append(mark);
     }
     about.title = this.sources.map((source) => source.run.origin).join('\n');
-  }
-
-  tellLegend(): void {
-    const by = this.worlds.coloring.by;
-    const scale = element('scale');
-    let ends = ['', ''];
-    if (by === 'speed') ends = ['0', `${this.worlds.coloring.maxSpeed.toPrecision(3)} m/s`];
-    else if (by === 'spin') ends = ['0', `${this.worlds.coloring.maxSpin.toPrecision(3)} rad/s`];
-    else if (by === 'height') {
-      const up = this.worlds.planar ? 1 : 2;
-      ends = [this.worlds.layout.low[up], this.worlds.layout.high[up]].map((x) => `${x.toPrecision(3)} m`);
-    } else if (by.startsWith('number:')) {
-      const unit = this.sources[0].run.numbers.find((one) => `number:${one.name}` === by)?.unit ?? '';
-      ends = this.worlds.coloring.numberEnds.map((x) => `${x.toPrecision(3)} ${unit}`);
-    }
-    const scaled = ends[1] !== '';
-    if (by === 'rest') ends = ['at rest', 'moving'];
-    if (by === 'run') ends = ['first', 'second'];
-    scale.style.background = scaled ? scaleGradient
-      : by === 'rest' ? 'linear-gradient(90deg, #5b6f8f 50%, #f3a712 50%)'
-        : by === 'run' ? 'linear-gradient(90deg, #3f6fb5 50%, #f3a712 50%)' : '';
-    element('legend').hidden = by === 'body';
-    element('low').textContent = ends[0];
-    element('high').textContent = ends[1];
   }
 
   tellWorld(chosen: Chosen, following: boolean): void {

@@ -1,102 +1,9 @@
 // The page in a real browser, on recordings that the program makes for it. Run by ctest:
 //   MANYWORLDS_CLI=program MANYWORLDS_VIEWER=viewer.html CHROMIUM=browser PLAYWRIGHT=.../index.mjs
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { existsSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
-import { launchBrowser, makeFolder, program } from './setup.mjs';
-
-const { MANYWORLDS_VIEWER: viewer } = process.env;
-
-const folder = makeFolder('viewer');
-let browser;
-
-function run(...args) {
-  return execFileSync(program, args, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
-}
-
-// A page of sources, made once, and what its head says.
-const made = new Map();
-function pageOf(...args) {
-  const key = args.join(' ');
-  if (!made.has(key)) {
-    const file = join(folder, `${made.size}.html`);
-    run('view', ...args, '--out', file);
-    const head = /id="mw-head">(.*?)<\/script>/s.exec(readFileSync(file, 'utf8'));
-    made.set(key, { file, head: JSON.parse(head[1]) });
-  }
-  return made.get(key);
-}
-
-// Shapes of bodies that move, of all worlds.
-function shapesIn(head) {
-  let out = 0;
-  for (const r of head.runs) {
-    for (const kind of r.kinds) {
-      for (const body of kind.bodies) if (body.row !== null) out += kind.worlds * body.shapes.length;
-    }
-  }
-  return out;
-}
-
-// Opens a page without any network, and fails on what it complains of or asks for.
-async function open(file, { width = 800, height = 560, dark = false, hash = '' } = {}) {
-  const context = await browser.newContext({
-    viewport: { width, height }, offline: true, reducedMotion: 'reduce',
-    colorScheme: dark ? 'dark' : 'light',
-  });
-  const page = await context.newPage();
-  const complaints = [];
-  const url = `file://${file}`;
-  page.on('console', (message) => {
-    if (message.type() === 'error' || message.type() === 'warning') complaints.push(message.text());
-  });
-  page.on('pageerror', (error) => complaints.push(error.message));
-  page.on('request', (request) => {
-    if (request.url() !== url && !request.url().startsWith('blob:')) complaints.push(`asks for ${request.url()}`);
-  });
-  await page.goto(url + hash);
-  await page.waitForFunction(() => window.manyworlds !== undefined, null, { timeout: 60000, polling: 50 });
-  const calm = () => page.waitForFunction(() => {
-    const { waiting, flying } = window.manyworlds.report;
-    return !waiting && !flying;
-  }, null, { timeout: 60000, polling: 50 });
-  await calm();
-  return {
-    page, complaints, calm,
-    report: () => page.evaluate(() => window.manyworlds.report),
-    body: (cell, row) => page.evaluate(([c, r]) => window.manyworlds.bodyAt(c, r), [cell, row]),
-    pixel: (at) => page.evaluate(({ x, y }) => window.manyworlds.pixelAt(x, y), at),
-    seek: async (time) => {
-      await page.evaluate((t) => window.manyworlds.seek(t), time);
-      await calm();
-    },
-    key: async (key) => {
-      await page.keyboard.press(key);
-      await calm();
-    },
-    close: async () => {
-      await context.close();
-      // Software GL says how slow it is to read pixels; that is of the tests, not of the page.
-      assert.deepEqual(complaints.filter((text) => !/GPU stall|swiftshader|software WebGL/i.test(text)), []);
-    },
-  };
-}
-
-function near(found, wanted, within, what) {
-  found.forEach((x, c) => assert.ok(Math.abs(x - wanted[c]) <= within, `${what}: ${found} is not ${wanted}`));
-}
-
-before(async () => {
-  assert.ok(existsSync(viewer), `${viewer} was not built`);
-  browser = await launchBrowser({ gl: true });
-});
-
-after(async () => {
-  await browser?.close();
-  rmSync(folder, { recursive: true, force: true });
-});
+import { describe, test } from 'node:test';
+import { browserOf, folder, near, open, pageOf, run, shapesIn, viewer } from './pages.mjs';
 
 describe('scenes', () => {
   test('each opens offline, without a complaint, with as many shapes as were recorded', async () => {
@@ -303,7 +210,8 @@ describe('use', () => {
     const slow = await view.body(0, 0);
     assert.notDeepEqual(fast.color, slow.color);
     assert.deepEqual(await view.pixel({ x: slow.pixel.x - 4, y: slow.pixel.y - 4 }), slow.color);
-    assert.match(await view.page.locator('#high').textContent(), /m\/s/);
+    assert.match(await view.page.locator('#legend-name').textContent(), /^speed, m\/s$/);
+    assert.equal(await view.page.locator('#ticks span').count(), 5);
     assert.doesNotMatch(await view.page.locator('#about').textContent(), /lost/);
     await view.close();
 
@@ -370,7 +278,7 @@ describe('use', () => {
   });
 
   test('a page without a recording says so', async () => {
-    const context = await browser.newContext({ offline: true });
+    const context = await browserOf().newContext({ offline: true });
     const page = await context.newPage();
     await page.goto(`file://${viewer}`);
     await page.waitForFunction(() => !document.getElementById('message').hidden);
