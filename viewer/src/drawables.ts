@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 
 import { Batch, type Look } from './batches';
+import { clipPolygon, clipSegment, isInside, type Sides } from './clip';
 import { PALETTE, linear, type Rgb } from './colors';
 import { emptyPoses, type Body, type Kind, type Mesh, type Poses, type Run } from './data';
 
@@ -51,31 +52,63 @@ function keyOf(mesh: Mesh): string {
   return `${mesh.kind}-${hash}`;
 }
 
-// Triangles and lines of several shapes in one.
+// Triangles and lines of several shapes in one, cut at `sides` where there are some.
 class Merged {
   private readonly points: number[] = [];
   private readonly normals: number[] = [];
   private readonly triangles: number[] = [];
   readonly lines: number[] = [];
 
+  constructor(private readonly sides: Sides | null) {}
+
   add(mesh: Mesh, size: number[], stretch: number[], place: THREE.Matrix4): void {
     const level = mesh.levels[0];
-    const first = this.points.length / 3;
     const v = new THREE.Vector3();
     const turn = new THREE.Matrix3().getNormalMatrix(place);
-    const put = (from: Float32Array, i: number, to: number[]) => {
+    const placed = (from: Float32Array, i: number) => {
       const p = [0, 1, 2].map((c) => from[i + c] * size[c] + stretch[c] * Math.sign(from[i + c]));
-      v.set(p[0], p[1], p[2]).applyMatrix4(place);
-      to.push(v.x, v.y, v.z);
+      return v.set(p[0], p[1], p[2]).applyMatrix4(place).toArray();
     };
+    const vertices: number[][] = []; // with their normals
     for (let i = 0; i < level.points.length; i += 3) {
-      put(level.points, i, this.points);
+      const point = placed(level.points, i);
       v.set(level.normals[i] / size[0], level.normals[i + 1] / size[1], level.normals[i + 2] / size[2]);
-      v.applyMatrix3(turn).normalize();
-      this.normals.push(v.x, v.y, v.z);
+      vertices.push([...point, ...v.applyMatrix3(turn).normalize().toArray()]);
     }
-    for (const t of level.triangles) this.triangles.push(first + t);
-    for (let i = 0; i < level.lines.length; i += 3) put(level.lines, i, this.lines);
+    const { sides } = this;
+    const first = this.points.length / 3;
+    for (const vertex of vertices) this.put(vertex);
+    const kept = vertices.map((vertex) => sides === null || isInside(vertex, sides));
+    for (let t = 0; t < level.triangles.length; t += 3) {
+      const corners = [...level.triangles.subarray(t, t + 3)];
+      if (sides === null || corners.every((i) => kept[i])) {
+        this.triangles.push(...corners.map((i) => first + i));
+        continue;
+      }
+      const polygon = clipPolygon(corners.map((i) => vertices[i]), sides).map((vertex) => this.put(vertex));
+      for (let i = 2; i < polygon.length; ++i) this.triangles.push(polygon[0], polygon[i - 1], polygon[i]);
+    }
+    for (let i = 0; i + 3 < level.lines.length; i += 6) {
+      const [a, b] = [placed(level.lines, i), placed(level.lines, i + 3)];
+      const left = sides === null ? [a, b] : clipSegment(a, b, sides);
+      if (left !== null) this.lines.push(...left[0], ...left[1]);
+    }
+  }
+
+  private put(vertex: number[]): number {
+    this.points.push(vertex[0], vertex[1], vertex[2]);
+    this.normals.push(vertex[3], vertex[4], vertex[5]);
+    return this.points.length / 3 - 1;
+  }
+
+  // Widens low and high by what is drawn.
+  bounds(low: number[], high: number[]): void {
+    const widen = (from: number[], i: number) => [0, 1, 2].forEach((c) => {
+      low[c] = Math.min(low[c], from[i + c]);
+      high[c] = Math.max(high[c], from[i + c]);
+    });
+    for (const i of this.triangles) widen(this.points, 3 * i);
+    for (let i = 0; i < this.lines.length; i += 3) widen(this.lines, i);
   }
 
   get empty(): boolean {
@@ -99,10 +132,14 @@ export class Drawables {
   readonly group = new THREE.Group();
   readonly batches: Batch[] = [];
   readonly kinds: KindView[][]; // [run][kind]
+  // m, around what does not move, about the origin of a world.
+  readonly still: Sides = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
   private readonly known = new Map<string, MeshUse>();
   private readonly look: Look;
 
-  constructor(runs: Run[], ghosts: boolean, private readonly planar: boolean, private readonly options: Options) {
+  // sides: where what does not move is cut, if it is.
+  constructor(runs: Run[], ghosts: boolean, private readonly planar: boolean, private readonly options: Options,
+    private readonly sides: Sides | null) {
     this.look = { lit: !planar, opacity: 1, wireframe: options.wireframe, shadows: !planar };
     runs.forEach((run, r) => this.count(run, ghosts && r > 0));
     for (const use of this.known.values()) this.addBatches(use);
@@ -165,8 +202,8 @@ export class Drawables {
 
   private view(run: Run, kind: Kind, ghost: boolean): KindView {
     const view: KindView = { poses: emptyPoses(kind), drawables: [], ground: null, wall: null, tile: null };
-    const solid = new Merged();
-    const wall = new Merged();
+    const solid = new Merged(this.sides);
+    const wall = new Merged(this.sides);
     kind.bodies.forEach((body, b) => {
       const own = placed(body.position, body.rotation);
       for (const shape of body.shapes) {
@@ -188,6 +225,7 @@ export class Drawables {
         });
       }
     });
+    for (const merged of [solid, wall]) merged.bounds(this.still.low, this.still.high);
     if (!ghost) this.addStill(view, kind, solid, wall);
     return view;
   }

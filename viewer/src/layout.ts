@@ -1,4 +1,5 @@
 // Where worlds stand: a grid for each run, side by side, or all runs in one place.
+import type { Sides } from './clip';
 import type { Kind, Run } from './data';
 
 export interface Cell {
@@ -34,6 +35,13 @@ function columnsFor(count: number, wanted: number): number {
     }
   }
   return best;
+}
+
+// Where what does not move is cut: within the gap between cells; null where a cell has no neighbour.
+export function sidesOf(layout: Layout): Sides | null {
+  if (!layout.cells.some((cell) => cell.x !== layout.cells[0].x || cell.y !== layout.cells[0].y)) return null;
+  const more = [0.25 * (layout.width - (layout.high[0] - layout.low[0])), 0.25 * (layout.depth - (layout.high[1] - layout.low[1]))];
+  return { low: [0, 1].map((c) => layout.low[c] - more[c]), high: [0, 1].map((c) => layout.high[c] + more[c]) };
 }
 
 export function makeLayout(runs: Run[], ghosts: boolean, aspect: number): Layout {

@@ -24,6 +24,8 @@ export class Probe {
       speed: this.app.timeline.speed,
       chosen: { ...this.app.chosen },
       following: this.app.following,
+      still: this.app.worlds.still,
+      cell: { width: this.app.worlds.layout.width, depth: this.app.worlds.layout.depth },
       drawCalls: this.app.worlds.objects + this.app.overlays.objects,
       allCalls: this.app.stage.renderer.info.render.calls,
       triangles: this.app.stage.renderer.info.render.triangles,

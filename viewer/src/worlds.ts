@@ -6,7 +6,7 @@ import { Coloring, put, type Theme } from './coloring';
 import type { Rgb } from './colors';
 import { LOST, type FrameSource, type Kind, type Poses, type Run } from './data';
 import { Drawables, type KindView, type Options } from './drawables';
-import { makeLayout, type Cell, type Layout } from './layout';
+import { makeLayout, sidesOf, type Cell, type Layout } from './layout';
 
 const NEAR_PIXELS = 26; // a body of so many pixels across is drawn finely
 
@@ -26,12 +26,15 @@ export class Worlds {
     const runs = sources.map((source) => source.run);
     this.planar = runs[0].space === 'planar';
     this.layout = makeLayout(runs, ghosts && runs.length > 1, aspect);
-    this.drawables = new Drawables(runs, ghosts, this.planar, options);
+    this.drawables = new Drawables(runs, ghosts, this.planar, options, sidesOf(this.layout));
     this.coloring = new Coloring(sources, this.planar, this.layout);
   }
 
   get group(): THREE.Group {
     return this.drawables.group;
+  }
+  get still(): { low: number[]; high: number[] } {
+    return this.drawables.still;
   }
   get objects(): number { // draw calls without shadows
     return this.drawables.objects;

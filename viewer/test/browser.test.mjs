@@ -1,6 +1,7 @@
 // The page in a real browser, on recordings that the program makes for it. Run by ctest:
 //   MANYWORLDS_CLI=program MANYWORLDS_VIEWER=viewer.html CHROMIUM=browser PLAYWRIGHT=.../index.mjs
 import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { browserOf, folder, near, open, pageOf, run, shapesIn, viewer } from './pages.mjs';
@@ -15,6 +16,10 @@ describe('scenes', () => {
       assert.equal(report.instances, shapesIn(head), name);
       assert.equal(report.drawn, shapesIn(head), name);
       assert.equal(report.frames[0], head.runs[0].times.length, name);
+      const { still: { low, high }, cell } = report;
+      if (low[0] !== null) {
+        assert.ok(high[0] - low[0] < cell.width && high[1] - low[1] < cell.depth, `${name}: ${low} to ${high} is no tile of ${JSON.stringify(cell)}`);
+      }
       await view.seek(0.4);
       await view.close();
     }
@@ -54,6 +59,23 @@ describe('drawing', () => {
     assert.equal(order(seen), order(color), `${seen} of ${color}`);
     assert.ok(Math.max(...seen) - Math.min(...seen) > 60, `${seen} has no colour`);
     await view.close();
+  });
+
+  test('a floor that is longer than its tile is cut at its sides, but for a world alone', async () => {
+    for (const worlds of [1, 2]) {
+      const { file, head } = pageOf('stack10', '--worlds', String(worlds), '--seconds', '0.2');
+      const [kind] = head.runs[0].kinds;
+      const box = kind.bodies.find((body) => body.row !== null);
+      kind.bodies.push({ ...box, name: 'floor', motion: 'fixed', row: null, position: [0, 0, 0], rotation: [Math.SQRT1_2, 0, 0, Math.SQRT1_2],
+        shapes: [{ ...box.shapes[0], shape: 99, size: [0.5, 100, 0.1] }] });
+      const longer = join(folder, `floor-${worlds}.html`);
+      writeFileSync(longer, readFileSync(file, 'utf8').replace(/(id="mw-head">).*?(?=<\/script>)/s, (_, tag) => tag + JSON.stringify(head)));
+      const view = await open(longer);
+      const { still: { low, high }, cell } = await view.report();
+      if (worlds === 1) near([high[0], low[0]], [100, -100], 1e-3, 'the floor');
+      else assert.ok(high[0] - low[0] > kind.high[0] - kind.low[0] && high[0] - low[0] < cell.width, `${low} to ${high} in ${cell.width}`);
+      await view.close();
+    }
   });
 
   test('motion goes on over chunks of frames, and between frames', async () => {
