@@ -58,6 +58,16 @@ export class Probe {
     return out;
   }
 
+  // Draws so many frames, spread over the time.
+  async drawFrames(frames: number): Promise<void> {
+    for (let i = 0; i < frames; ++i) {
+      const time = (this.app.timeline.end * (i + 0.5)) / frames;
+      await this.app.prepare(time);
+      await new Promise((resolve) => { requestAnimationFrame(resolve); });
+      this.app.drawAt(time);
+    }
+  }
+
   bodyAt(cell: number, row: number) {
     const place = this.app.worlds.placeOf(cell, row, new THREE.Vector3());
     const one = this.app.worlds.layout.cells[cell];

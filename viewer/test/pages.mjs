@@ -84,6 +84,34 @@ export async function open(file, { width = 800, height = 560, dark = false, hash
   };
 }
 
+// What the page's main thread does while `draw` draws so many frames, ms per frame, by the browser's profiler:
+// `thread` is its processor's time in script, with what it hands to GL; the others are shares of samples of the clock,
+// in functions of the page (`page`), in those that they call of the browser, GL above all (`calls`), and in collecting garbage.
+export async function profiled(page, frames, draw) {
+  const cdp = await page.context().newCDPSession(page);
+  await cdp.send('Performance.enable', { timeDomain: 'threadTicks' });
+  const scriptTime = async () => {
+    const { metrics } = await cdp.send('Performance.getMetrics');
+    return 1e3 * metrics.find(({ name }) => name === 'ScriptDuration').value;
+  };
+  await cdp.send('Profiler.enable');
+  await cdp.send('Profiler.setSamplingInterval', { interval: 250 });
+  const begin = await scriptTime();
+  await cdp.send('Profiler.start');
+  await draw();
+  const { profile } = await cdp.send('Profiler.stop');
+  const out = { thread: (await scriptTime()) - begin, page: 0, calls: 0, garbage: 0 };
+  const kinds = new Map(profile.nodes.map(({ id, callFrame: { functionName: name, url } }) => [id,
+    name === '(garbage collector)' ? 'garbage' : name.startsWith('(') && name !== '(anonymous)' ? 'idle' : url === '' ? 'calls' : 'page']));
+  profile.samples.forEach((id, i) => {
+    const kind = kinds.get(id);
+    if (kind !== 'idle') out[kind] += Math.max(0, profile.timeDeltas[i]) / 1e3;
+  });
+  await cdp.detach();
+  for (const name of Object.keys(out)) out[name] /= frames;
+  return out;
+}
+
 export function near(found, wanted, within, what) {
   found.forEach((x, c) => assert.ok(Math.abs(x - wanted[c]) <= within, `${what}: ${found} is not ${wanted}`));
 }
