@@ -23,6 +23,7 @@ fs::path make_private_folder() {
 }
 
 ScratchFolder::~ScratchFolder() {
+  if (kept_) return;
   // A program that was ended a moment ago may have a file more to write.
   for (int attempt = 0; attempt < 20; ++attempt) {
     std::error_code error;

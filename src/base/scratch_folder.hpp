@@ -1,5 +1,5 @@
-// A new folder that only its owner may enter, and which is gone with the object: nobody else can
-// have put a file or a link there.
+// A new folder that only its owner may enter, and which is gone with the object if it is not to
+// stay: nobody else can have put a file or a link there.
 #pragma once
 
 #include <filesystem>
@@ -17,9 +17,11 @@ class ScratchFolder {
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const char* file) const { return path_ / file; }
+  void keep() { kept_ = true; }  // it stays
 
  private:
   std::filesystem::path path_;
+  bool kept_ = false;
 };
 
 }  // namespace manyworlds

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -91,6 +92,27 @@ TEST_CASE("view says what is wrong", "[cli]") {
   std::ofstream(folder / "viewer.html") << "<html>";
   check_bad(folder.run("view ball3d --seconds 0.1 --worlds 2 --out a.html"),
             "is no page of this version");
+}
+
+TEST_CASE("view without --out leaves its page in the temporary folder, or nothing", "[cli]") {
+  const Folder folder;
+  if (!records(folder)) return;
+  fs::create_directory(folder / "tmp");
+  const auto view = [&](const std::string& arguments) {
+    return folder.run(arguments, "viewer.html TMPDIR=tmp env -u DISPLAY -u WAYLAND_DISPLAY");
+  };
+  std::ofstream(folder / "viewer.html") << "<html>";
+  check_bad(view("view ball3d --seconds 0.1 --worlds 2"), "is no page of this version");
+  CHECK(fs::is_empty(folder / "tmp"));
+  write_empty_page(folder);
+  check_bad(view("view absent.h5"), "'absent.h5': cannot be read");
+  CHECK(fs::is_empty(folder / "tmp"));
+  const Outcome made = view("view ball3d --seconds 0.1 --worlds 2 --json");
+  REQUIRE(made.code == 0);
+  const fs::path page = std::string(Json::parse(made.out)["page"]);
+  CHECK(page.filename() == "ball3d.html");
+  CHECK(fs::exists(folder / page.string()));
+  CHECK(std::distance(fs::directory_iterator(folder / "tmp"), fs::directory_iterator()) == 1);
 }
 
 TEST_CASE("view --live says what it cannot show", "[cli]") {

@@ -82,11 +82,11 @@ int tell_interrupted() {
   return tools::interrupt_code();
 }
 
-// Where the page goes that --out does not name. It stays, for the browser that opens it.
-fs::path page_in_temporary_folder(const std::string& source) {
+// What the page is called that --out does not name.
+std::string page_name(const std::string& source) {
   std::string name = fs::path(source).stem().string();
   std::replace(name.begin(), name.end(), ':', '-');
-  return make_private_folder() / (name + ".html");
+  return name + ".html";
 }
 
 }  // namespace
@@ -118,13 +118,14 @@ int view_command(const ViewArguments& arguments) {
   options.max_worlds = arguments.worlds;
   options.every = arguments.every;
   options.go_on = [cut_short] { return cut_short || tools::interrupted() == 0; };
-  std::optional<ScratchFolder> unnamed;  // of pictures and films alone
-  if (wanted.any() && arguments.out.empty()) unnamed.emplace();
-  const fs::path out = unnamed                 ? *unnamed / "page.html"
-                       : arguments.out.empty() ? page_in_temporary_folder(arguments.sources.front())
-                                               : fs::path(arguments.out);
+  const bool unnamed = wanted.any() && arguments.out.empty();  // of pictures and films alone
+  std::optional<ScratchFolder> folder;
+  if (arguments.out.empty()) folder.emplace();
+  const fs::path out =
+      folder ? folder->path() / page_name(arguments.sources.front()) : fs::path(arguments.out);
   const PageReport page = write_page(all, empty, out, options);
   if (!page.written) return tell_interrupted();
+  if (folder && !unnamed) folder->keep();  // for the browser that opens it
   FilmReport film;
   if (wanted.picture) {
     const PictureOptions picture{
