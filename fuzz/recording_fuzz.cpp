@@ -30,6 +30,8 @@ void look(const Recording& recording) {
       (void)recording.hash(s, w);
       (void)to_string(recording.status(s, w));
       (void)recording.name_of(w);
+      (void)recording.contacts(s, w);
+      (void)recording.contacts_found(s, w);
       for (int f = 0; f < kFieldCount; ++f) (void)recording.read(static_cast<Field>(f), s, w);
     }
   }

@@ -2,8 +2,8 @@
 // scenes as JSON. A library of its own, manyworlds::record, because it needs HDF5.
 //
 // A file holds the scenes with all their options, a Snapshot of the worlds at the beginning, every
-// input since then, and every k steps the state fields, hashes and status of each world. Its layout
-// is in docs/batch.md.
+// input since then, and every k steps the state fields, hashes and status of each world, and its
+// contacts where that is asked for. Its layout is in docs/batch.md.
 //
 // Any thread may use its own Batch, Recorder and Recording while others do: those that are in HDF5
 // at the same time wait for one another.
@@ -61,15 +61,30 @@ struct RecordOptions {
   // What is older than so many seconds of wall time when a call of the batch ends is flushed, and
   // survives the end of the program, whatever that is (see unfinished_recordings). 0: at each call.
   double flush_seconds = 5;
+  // Contact points of a world and sample that are kept at most, those of the largest forces; at
+  // most kMaxContactsRecorded. 0: none are recorded. Wants a batch that observes contacts
+  // (Observer::contacts).
+  int contacts = 0;
+};
+
+inline constexpr int kMaxContactsRecorded = 1 << 16;  // of a world and sample
+
+// A contact point that bore a normal force in the last step before a sample.
+struct RecordedContact {
+  BodyId body_a = {}, body_b = {};  // when one is fixed it is body_a
+  Vec3 point = Vec3::Zero();        // m, world, where the narrow phase found it
+  Vec3 normal = Vec3::Zero();       // unit, from A to B, world
+  double force = 0;                 // N, along the normal: the impulse of the step over its dt
 };
 
 // Records from construction to close(): the state of some worlds every few steps, and every input
 // to them. The batch reports every call to it, so nothing needs to go through the Recorder.
 class Recorder {
  public:
-  // Throws std::invalid_argument for options that do not fit the batch and when forces were added
-  // for the next step already, which no file would know of; RecordError when the file cannot be
-  // written, or exists and is no regular file. A symbolic link is followed.
+  // Throws std::invalid_argument for options that do not fit the batch, for contacts that it does
+  // not observe, and when forces were added for the next step already, which no file would know of;
+  // RecordError when the file cannot be written, or exists and is no regular file. A symbolic link
+  // is followed.
   Recorder(Batch& batch, const std::filesystem::path& file, const RecordOptions& options = {});
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;
@@ -151,6 +166,11 @@ class Recording {
   Status status(std::int64_t sample, int world) const;
   // The field of one world, canonical [body][component].
   std::vector<double> read(Field field, std::int64_t sample, int world) const;
+  bool has_contacts() const;  // RecordOptions::contacts was not 0
+  // As of the last step before the sample, in canonical order; none where they were not recorded.
+  std::vector<RecordedContact> contacts(std::int64_t sample, int world) const;
+  // How many there were, of which RecordOptions::contacts were kept.
+  int contacts_found(std::int64_t sample, int world) const;
   // As it was recorded: program version, instruction set, threads, seed, ...; for people.
   std::string origin() const;
 

@@ -35,6 +35,7 @@ except ImportError as error:
     ) from error
 
 __all__ = [
+    "RECORDED_CONTACT",
     "Difference",
     "FilmError",
     "LostWorldDumps",
@@ -48,6 +49,17 @@ __all__ = [
 ]
 
 MAX_WORLDS_BY_DEFAULT = 64
+MAX_CONTACTS = 2**16  # of a world and sample
+# RECORDED_CONTACT: of Recording.contacts.
+RECORDED_CONTACT = np.dtype(
+    [
+        ("body_a", np.int32),  # scene bodies; when one is fixed it is body_a
+        ("body_b", np.int32),
+        ("point", np.float64, (3,)),  # m, world
+        ("normal", np.float64, (3,)),  # unit, from A to B, world
+        ("force", np.float64),  # N, along the normal: the impulse of the step over its dt
+    ]
+)
 _MAX_STEPS = 2**31 - 1
 
 
@@ -63,12 +75,14 @@ class Recorder(InMemory):
     flush_seconds  what is older than so many seconds of wall time when a call of the batch ends is
                  flushed, and survives the end of the process, whatever that is (see
                  unfinished_recordings); 0: at each call, inf: never
+    contacts     contact points of a world and sample that are kept at most, those of the largest forces; 0: none
+                 are recorded. Wants a batch made with observe=["contacts"]
 
     The batch reports every input to it, so nothing needs to go through the Recorder. Steps of some worlds
     alone (``ids``) are recorded as the states that they came to. As a context manager it is closed at the
     end, also after an exception. Without ``close`` no file is left, unless the process is cut off. Raises
     RecordError, a ValueError, when the file cannot be written (from ``close`` for what failed while
-    stepping), ValueError when forces were added for the next step already.
+    stepping), ValueError when forces were added for the next step already or contacts are not observed.
     """
 
     _instead = "pickle the path of its file"
@@ -81,7 +95,9 @@ class Recorder(InMemory):
         every: int = 1,
         first_world: int = 0,
         flush_seconds: float = 5.0,
+        contacts: int = 0,
     ) -> None:
+        contacts = arrays.integer(contacts, "contacts", 0, MAX_CONTACTS)
         first_world = arrays.integer(first_world, "first_world", 0, 2**62)
         every = arrays.integer(every, "every", 0, _MAX_STEPS)
         flush_seconds = arrays.at_least(flush_seconds, "flush_seconds", 0)
@@ -94,7 +110,7 @@ class Recorder(InMemory):
                 raise ValueError("worlds are none; at least one must be recorded")
         self.file = files.path(file, "file")
         self._held = _record.Recorder(
-            batch._held, self.file, chosen, every, first_world, flush_seconds
+            batch._held, self.file, chosen, every, first_world, flush_seconds, contacts
         )
         self._closed = False
 
@@ -276,6 +292,26 @@ class Recording(InMemory):
         out = np.empty(shape, np.float32 if self.precision == "f32" else np.float64)
         self._held.read(field, kind, first, out)
         return out if sample is None else out[0]
+
+    @property
+    def has_contacts(self) -> bool:
+        """Whether it was recorded with ``contacts``."""
+        return self._held.has_contacts
+
+    def contacts(self, sample: int, world: int) -> NDArray[Any]:
+        """Contact points that bore a force in the last step before a sample, structured, (contacts,) of
+        RECORDED_CONTACT. ``world`` counts those of ``worlds``. Empty where none were recorded."""
+        sample = arrays.index(sample, self._held.samples, "sample")
+        bodies, numbers, _ = self._held.contacts(sample, arrays.index(world, len(self.worlds), "world"))
+        out = np.empty(len(bodies), RECORDED_CONTACT)
+        out["body_a"], out["body_b"] = bodies[:, 0], bodies[:, 1]
+        out["point"], out["normal"], out["force"] = numbers[:, :3], numbers[:, 3:6], numbers[:, 6]
+        return out
+
+    def contacts_found(self, sample: int, world: int) -> int:
+        """How many there were, of which ``Recorder``'s ``contacts`` were kept."""
+        sample = arrays.index(sample, self._held.samples, "sample")
+        return int(self._held.contacts(sample, arrays.index(world, len(self.worlds), "world"))[2])
 
     def replay(
         self,

@@ -71,6 +71,35 @@ def test_coordinates_of_robots_are_read_back(tmp_path):
             assert recording.get("generalized_position").shape == (2, 3, 9, 1)
 
 
+def test_contacts_bear_the_weight(tmp_path):
+    ground = mw.Body(motion="fixed", shapes=[mw.Shape(geometry=mw.Plane())])
+    crate = mw.Body(position=(0, 0, 0.5), shapes=[mw.Shape(geometry=mw.Box())])
+    scene = mw.Scene(bodies=[ground, crate])
+    with mw.Batch(scene, 2, threads=1, observe=["contacts"]) as crates_:
+        crates_.step(240)
+        with record.Recorder(crates_, tmp_path / "run.h5", contacts=3):
+            crates_.step(1)
+        seen = crates_.step_contacts(1)
+    with record.Recording(tmp_path / "run.h5") as recording:
+        assert recording.has_contacts
+        found = recording.contacts(1, 1)
+        assert found.dtype == record.RECORDED_CONTACT and len(found) == 3
+        assert recording.contacts_found(1, 1) == 4
+        assert (found["body_a"] == 0).all() and (found["body_b"] == 1).all()
+        forces = np.sort(seen["normal_impulse"] / scene.options.dt)[1:]
+        np.testing.assert_allclose(np.sort(found["force"]), forces, rtol=1e-6)
+        np.testing.assert_allclose(found["normal"], [[0, 0, 1]] * 3, atol=1e-6)
+        with pytest.raises(IndexError):
+            recording.contacts(2, 0)
+    with mw.Batch(scene, 2, threads=1) as blind:
+        with pytest.raises(ValueError, match="does not observe them"):
+            record.Recorder(blind, tmp_path / "none.h5", contacts=3)
+        with record.Recorder(blind, tmp_path / "plain.h5"):
+            blind.step()
+    with record.Recording(tmp_path / "plain.h5") as plain:
+        assert not plain.has_contacts and len(plain.contacts(1, 0)) == 0
+
+
 def test_h5py_reads_the_same(batch, tmp_path):
     h5py = pytest.importorskip("h5py")
     seen = disturbed(tmp_path / "run.h5", batch)

@@ -28,6 +28,7 @@ std::vector<int> checked_worlds(const Batch& batch, const RecordOptions& options
     throw std::invalid_argument(
         "record: forces were added for the next step, which the recording would not know of");
   }
+  record::check_contacts(batch, options);
   std::vector<int> worlds = options.worlds;
   if (worlds.empty()) {
     worlds.resize(static_cast<std::size_t>(std::min(batch.worlds(), kMaxWorldsByDefault)));
@@ -166,6 +167,9 @@ void Recorder::Listener::sample(const Batch& batch) {
     }
     batch.precision() == Precision::f32 ? add_fields<float>(batch, kind)
                                         : add_fields<double>(batch, kind);
+    if (options_.contacts == 0) continue;
+    batch.precision() == Precision::f32 ? add_contacts<float>(batch, kind)
+                                        : add_contacts<double>(batch, kind);
   }
   sampled_step_ = steps_;
   sampled_inputs_ = inputs_;
@@ -211,6 +215,7 @@ void Recorder::Listener::flush_tables() {
     kind.hash.flush();
     kind.status.flush();
     for (Table& table : kind.fields) table.flush();
+    for (Table* table : record::tables_of(kind.contacts)) table->flush();
   }
 }
 

@@ -17,6 +17,14 @@ namespace manyworlds {
 
 namespace record {
 
+// Points of all worlds and samples, one after the other: those of a world at a sample end at `end`
+// and begin where those before it end.
+struct ContactTables {
+  Table end, found;                            // [sample][world]
+  Table body_a, body_b, point, normal, force;  // [point]
+  std::int64_t points = 0;
+};
+
 // What is recorded of one kind of world.
 struct KindTables {
   std::vector<int> worlds;                         // of the batch
@@ -24,7 +32,14 @@ struct KindTables {
   record::Handle group;
   std::array<Table, kFieldCount> fields;
   Table hash, status;
+  record::Handle contacts_group;
+  ContactTables contacts;  // empty where they are not asked for
 };
+
+// All of them.
+std::array<Table*, 7> tables_of(ContactTables& contacts);
+// Throws std::invalid_argument where the batch does not observe what is asked for.
+void check_contacts(const Batch& batch, const RecordOptions& options);
 
 struct InputTables {
   Table step, call_steps, input, world, body, begin, count, values, states;
@@ -45,11 +60,14 @@ struct Recorder::Listener final : BatchListener {
   void describe(const Batch& batch);
   void make_kind(const Batch& batch, int kind, std::vector<int> worlds);
   void make_inputs();
+  void make_contacts(const Batch& batch, record::KindTables& kind, Space space);
   void write_inputs();
   void flush_tables();
   void flush_if_due();
   template <class Real>
   void add_fields(const Batch& batch, record::KindTables& kind);
+  template <class Real>
+  void add_contacts(const Batch& batch, record::KindTables& kind);
   template <class Do>
   void guarded(Do&& what) noexcept;
   void close_tables() noexcept;

@@ -66,6 +66,7 @@ void Recorder::Listener::make_kind(const Batch& batch, int index, std::vector<in
     record::write_text(table.dataset(), "components", component_names(field, space));
   }
   kind.worlds = std::move(worlds);
+  if (options_.contacts > 0) make_contacts(batch, kind, space);
   kinds_.push_back(std::move(kind));
 }
 

@@ -117,7 +117,7 @@ void Recording::Impl::read_kind(hid_t parent, int index) {
   const PlanOptions options = described("plan_options: ", [&] {
     return plan_options_from_json(record::read_text_table(group, "plan_options"));
   });
-  Kind kind{described("scene: ", [&] { return compile(scene, options); }), {}, {}, {}, {}};
+  Kind kind{described("scene: ", [&] { return compile(scene, options); }), {}, {}, {}, {}, {}};
   if (kind.plan.fingerprint() != record::read_number<std::uint64_t>(group, "fingerprint")) {
     record::fail("this program makes another plan of the scene than the one that recorded it");
   }
@@ -147,6 +147,9 @@ void Recording::Impl::read_kind(hid_t parent, int index) {
     table = precision == Precision::f32 ? TableReader::open<float>(group, info(field).name, row)
                                         : TableReader::open<double>(group, info(field).name, row);
     table.expect_rows(steps.size());
+  }
+  if (record::has_link(group, "contacts")) {
+    described("contacts: ", [&] { open_contacts(record::open_group(group, "contacts"), kind); });
   }
   first_world.push_back(worlds() + static_cast<int>(count));
   kinds.push_back(std::move(kind));
@@ -297,6 +300,23 @@ std::vector<double> Recording::read(Field field, std::int64_t sample, int world)
   return described(impl().label, [&] {
     return impl().read(field, p.kind, sample, static_cast<std::int64_t>(p.world));
   });
+}
+bool Recording::has_contacts() const { return !impl().kinds.front().contacts.end.empty(); }
+std::vector<RecordedContact> Recording::contacts(std::int64_t sample, int world) const {
+  check_index("sample", sample, impl().steps.size());
+  const record::UsingHdf5 hdf5;
+  const auto p = impl().place(world);
+  return described(impl().label, [&] {
+    return sound(impl().storage.get(),
+                 [&] { return impl().read_contacts(p.kind, sample, p.world, 1); });
+  });
+}
+int Recording::contacts_found(std::int64_t sample, int world) const {
+  check_index("sample", sample, impl().steps.size());
+  const auto p = impl().place(world);
+  const auto& kind = impl().kinds[p.kind];
+  if (kind.contacts.end.empty()) return 0;
+  return kind.contacts.found[static_cast<std::size_t>(sample) * kind.worlds.size() + p.world];
 }
 std::string Recording::origin() const { return impl().origin; }
 

@@ -14,12 +14,19 @@
 namespace manyworlds {
 
 struct Recording::Impl {
+  // Of a kind, where they were recorded: see ContactTables.
+  struct Contacts {
+    std::vector<std::int64_t> end;    // [sample][world]; empty: they were not
+    std::vector<std::int32_t> found;  // [sample][world]
+    record::TableReader body_a, body_b, point, normal, force;
+  };
   struct Kind {
     Plan plan;
     std::vector<std::int64_t> worlds;   // what they were called
     std::vector<std::uint64_t> hashes;  // [sample][world]
     std::vector<std::uint32_t> statuses;
     std::array<record::TableReader, kFieldCount> fields;  // left out where nothing has a state
+    Contacts contacts = {};
   };
   struct Place {
     std::size_t kind, world;
@@ -34,6 +41,9 @@ struct Recording::Impl {
   // Of one input, as apply() takes them.
   std::span<const double> values(const record::InputRow& row) const;
   std::span<const std::uint8_t> state(const record::InputRow& row) const;
+  // Of `worlds` worlds of a kind from `first` on, one after the other.
+  std::vector<RecordedContact> read_contacts(std::size_t kind, std::int64_t sample,
+                                             std::size_t first, std::size_t worlds) const;
   // One sample of a field of a kind, [world][body][component], or of one world of it.
   std::vector<double> read(Field field, std::size_t kind, std::int64_t sample,
                            std::int64_t world = -1) const;
@@ -57,6 +67,7 @@ struct Recording::Impl {
   void read_head();
   void read_kind(hid_t parent, int index);
   void read_samples();
+  void open_contacts(hid_t group, Kind& kind) const;
   void read_inputs();
   void check_input(std::size_t index, std::int64_t values, std::int64_t states) const;
   void check_order() const;

@@ -75,6 +75,7 @@ Batch make_batch(const Job& job, const JobOptions& options, int worlds, std::uin
   batch_options.layout = options.layout;
   batch_options.sleep = options.sleep;
   batch_options.audit_every = options.audit_every;
+  if (options.record_contacts > 0) batch_options.observe.what = {Observer::contacts};
   try {
     Batch batch(job.plan, batch_options);
     if (!options.keyframe.empty()) batch.reset(find_keyframe(batch, options));

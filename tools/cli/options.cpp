@@ -14,6 +14,8 @@
 namespace manyworlds::cli {
 namespace {
 
+constexpr int kMaxContacts = 1 << 16;  // as kMaxContactsRecorded, which is of recordings alone
+
 // The whole of `text` as a number, or nothing. Stricter than CLI11's own conversion, which takes
 // leading blanks, hexadecimal and, for unsigned numbers, a minus sign.
 template <class Number>
@@ -345,6 +347,16 @@ void add_record_options(CLI::App& app, JobOptions& options) {
       ->type_name("SECONDS")
       ->capture_default_str()
       ->needs(file);
+  add_contacts_option(app, options.record_contacts, "--record-contacts",
+                      "contact points of a world and sample, the N of the largest forces at most");
+  app.get_option("--record-contacts")->needs(file);
+}
+
+void add_contacts_option(CLI::App& app, int& contacts, const char* flag, const std::string& help) {
+  app.add_option(flag, contacts, help)
+      ->transform(whole_number(0, kMaxContacts))
+      ->type_name("N")
+      ->capture_default_str();
 }
 
 void add_dump_option(CLI::App& app, JobOptions& options) {

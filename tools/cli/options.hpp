@@ -68,6 +68,7 @@ struct JobOptions {
   std::string record_worlds;  // "0,5,10-20"; empty: the first few
   int record_every = 1;       // steps
   double record_flush = 5;    // s
+  int record_contacts = 0;    // points of a world and sample at most; 0: none
   std::string dump_lost;      // folder
 };
 
@@ -119,6 +120,7 @@ struct ViewArguments {
   int every = 1;   // of the samples
   int fps = 30;    // frames per simulated second of scenes, per second of a film
   double seconds = 10;
+  int contacts = 64;  // points of a world and frame of scenes at most
   bool open = false;
   std::string png, mp4;         // files; empty: no picture, no film
   std::optional<double> at;     // s, of the picture (default: the end) and the film's begin (0)
@@ -149,6 +151,7 @@ void add_sleep_option(CLI::App& app, bool& sleep);
 void add_sleep_options(CLI::App& app, std::vector<bool>& sleep);  // or both
 void add_json_option(CLI::App& app, JobOptions& options);
 void add_record_options(CLI::App& app, JobOptions& options);
+void add_contacts_option(CLI::App& app, int& contacts, const char* flag, const std::string& help);
 void add_dump_option(CLI::App& app, JobOptions& options);
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes);
 void add_case_list(CLI::App& app, std::vector<std::string>& cases, const std::string& example);

@@ -110,6 +110,7 @@ JobRecorder::JobRecorder(Batch& batch, const JobOptions& options) {
   }
   record.every = options.record_every;
   record.flush_seconds = options.record_flush;
+  record.contacts = options.record_contacts;
   const std::size_t worlds =
       record.worlds.empty()
           ? static_cast<std::size_t>(std::min(batch.worlds(), kMaxWorldsByDefault))

@@ -47,13 +47,15 @@ using HeldRecorder = Listening<Recorder>;
 using HeldDumps = Listening<LostWorldDumps>;
 
 void make_recorder(HeldRecorder* self, const HeldBatch& batch, const std::filesystem::path& file,
-                   const Ids& worlds, int every, std::int64_t first_world, double flush_seconds) {
+                   const Ids& worlds, int every, std::int64_t first_world, double flush_seconds,
+                   int contacts) {
   const auto chosen = span_of(worlds);
   new (self) HeldRecorder(batch, file,
                           RecordOptions{.worlds = {chosen.begin(), chosen.end()},
                                         .every = every,
                                         .first_world = first_world,
-                                        .flush_seconds = flush_seconds});
+                                        .flush_seconds = flush_seconds,
+                                        .contacts = contacts});
 }
 
 void make_dumps(HeldDumps* self, const HeldBatch& batch, const std::filesystem::path& folder,
@@ -147,6 +149,24 @@ void read(HeldRecording& self, nb::object field, int kind, std::int64_t begin, c
       }
     });
   });
+}
+
+// (bodies, numbers) of the contacts of a world at a sample, and how many there were: (n, 2) and
+// (n, 7) of point, normal, force.
+nb::tuple contacts_of(HeldRecording& self, std::int64_t sample, int world) {
+  const auto [all, found] = self.with([&](Recording& r) {
+    return std::pair(r.contacts(sample, world), r.contacts_found(sample, world));
+  });
+  std::vector<std::int32_t> bodies;
+  std::vector<double> numbers;
+  for (const RecordedContact& c : all) {
+    bodies.insert(bodies.end(), {c.body_a.index(), c.body_b.index()});
+    numbers.insert(numbers.end(), c.point.begin(), c.point.end());
+    numbers.insert(numbers.end(), c.normal.begin(), c.normal.end());
+    numbers.push_back(c.force);
+  }
+  return nb::make_tuple(owned(std::move(bodies), {all.size(), 2}),
+                        owned(std::move(numbers), {all.size(), 7}), found);
 }
 
 nb::dict replay_of(HeldRecording& self, nb::object isa, nb::object threads, nb::object layout) {
@@ -253,7 +273,7 @@ void bind_films(nb::module_& m) {
 void bind_writing(nb::module_& m) {
   nb::class_<HeldRecorder>(m, "Recorder", "Private: use manyworlds.record.Recorder.")
       .def("__init__", &make_recorder, nb::arg("batch"), nb::arg("file"), nb::arg("worlds"),
-           nb::arg("every"), nb::arg("first_world"), nb::arg("flush_seconds"))
+           nb::arg("every"), nb::arg("first_world"), nb::arg("flush_seconds"), nb::arg("contacts"))
       .def("sample",
            [](HeldRecorder& self) { self.run([](Recorder& r, Batch& b) { r.sample(b); }); })
       .def("close", [](HeldRecorder& self) { self.run([](Recorder& r, Batch&) { r.close(); }); })
@@ -277,6 +297,7 @@ void bind_reading(nb::module_& m) {
   def(c, "sleep", [](Recording& r) { return r.sleep(); });
   def(c, "finished", [](Recording& r) { return r.finished(); });
   def(c, "origin", [](Recording& r) { return r.origin(); });
+  def(c, "has_contacts", [](Recording& r) { return r.has_contacts(); });
   def(c, "steps", &steps_of);
   def(c, "worlds", &names_of_worlds);
   def(c, "hashes", [](Recording& r) {
@@ -306,6 +327,7 @@ void bind_reading(nb::module_& m) {
           nb::arg("field").none(), nb::arg("kind"))
       .def("read", &read, nb::arg("field").none(), nb::arg("kind"), nb::arg("begin"),
            nb::arg("out").noconvert())
+      .def("contacts", &contacts_of, nb::arg("sample"), nb::arg("world"))
       .def("replay", &replay_of, nb::arg("isa").none(), nb::arg("threads"),
            nb::arg("layout").none());
 }
