@@ -56,8 +56,8 @@ def write_picture(
     time    s, simulated; None, and what is beyond the end: the end
     size    width and height, pixels, 64 to 8192
     world   the camera is at this one of those that are shown, from 0 on; None: at all
-    color   of bodies, by: "body", "speed", "spin", "rest", "height", "run" of several recordings, or
-            "number:reward" of a number named reward
+    color   of bodies, by: "body", "speed", "spin", "rest", "height", "contact" where contacts were
+            recorded, "run" of several recordings, or "number:reward" of a number named reward
     dark    as pages are in the dark
     title, worlds, numbers    as in ``write_page``
 

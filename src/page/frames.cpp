@@ -11,8 +11,8 @@ namespace {
 // Beyond it linear prediction would overflow.
 constexpr double kLargest = 1 << 28;
 
-std::int32_t rounded(double value) {
-  return static_cast<std::int32_t>(std::lround(std::clamp(value, -kLargest, kLargest)));
+std::uint32_t folded(std::int32_t value) {
+  return static_cast<std::uint32_t>(value) << 1 ^ static_cast<std::uint32_t>(value >> 31);
 }
 
 double norm(std::span<const double> values) {
@@ -23,6 +23,10 @@ double norm(std::span<const double> values) {
 
 }  // namespace
 
+std::int32_t rounded(double value) {
+  return static_cast<std::int32_t>(std::lround(std::clamp(value, -kLargest, kLargest)));
+}
+
 std::uint8_t speed_code(double speed) {
   if (!(speed > kSlowest)) return 0;
   return static_cast<std::uint8_t>(
@@ -31,14 +35,24 @@ std::uint8_t speed_code(double speed) {
 
 void ChunkWriter::add(std::span<const std::int32_t> values) {
   folded_.resize(values.size());
-  std::uint32_t largest = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::size_t frame = i % frames_;
     const std::int32_t one = frame > 0 ? values[i - 1] : 0, two = frame > 1 ? values[i - 2] : one;
     const std::int32_t left = values[i] - (2 * one - two);
-    folded_[i] = static_cast<std::uint32_t>(left) << 1 ^ static_cast<std::uint32_t>(left >> 31);
-    largest |= folded_[i];
+    folded_[i] = folded(left);
   }
+  write_folded();
+}
+
+void ChunkWriter::add_list(std::span<const std::int32_t> values) {
+  folded_.resize(values.size());
+  std::transform(values.begin(), values.end(), folded_.begin(), folded);
+  write_folded();
+}
+
+void ChunkWriter::write_folded() {
+  std::uint32_t largest = 0;
+  for (const std::uint32_t value : folded_) largest |= value;
   int width = 0;
   for (; width < 4 && largest >> (8 * width) != 0; ++width) {
     for (const std::uint32_t value : folded_) {

@@ -21,6 +21,9 @@ inline constexpr double kAngleSteps = 4096;       // to a full turn
 inline constexpr double kSlowest = 1e-3;
 inline constexpr double kSpeedSteps = 12;
 
+// To the nearest of those whose differences do not overflow.
+std::int32_t rounded(double value);
+
 // 0 below the slowest, else 1 + the steps above it, 255 at most.
 std::uint8_t speed_code(double speed);
 
@@ -30,10 +33,15 @@ class ChunkWriter {
   explicit ChunkWriter(std::size_t frames) : frames_(frames) {}
   // [item][frame]
   void add(std::span<const std::int32_t> values);
+  // As they are, of any number.
+  void add_list(std::span<const std::int32_t> values);
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }
   const std::vector<int>& widths() const { return widths_; }  // bytes per value, of each channel
 
  private:
+  // All of `folded_`.
+  void write_folded();
+
   std::size_t frames_;
   std::vector<std::uint8_t> bytes_;
   std::vector<int> widths_;

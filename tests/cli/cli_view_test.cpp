@@ -94,6 +94,31 @@ TEST_CASE("view says what is wrong", "[cli]") {
             "is no page of this version");
 }
 
+TEST_CASE("contacts are recorded where they are asked for, and of scenes that view records",
+          "[cli]") {
+  const Folder folder;
+  if (!records(folder)) return;
+  write_empty_page(folder);
+  const auto has_contacts = [&](const std::string& arguments) {
+    const Outcome made = folder.run("view " + arguments + " --out page.html");
+    INFO(made.err);
+    REQUIRE(made.code == 0);
+    return contains(test::content(folder / "page.html"), "\"contacts\":true");
+  };
+  CHECK(has_contacts("stack10 --worlds 2 --seconds 0.1"));
+  CHECK_FALSE(has_contacts("stack10 --worlds 2 --seconds 0.1 --contacts 0"));
+  REQUIRE(folder.run("run stack10 --worlds 2 --steps 4 --record a.h5 --record-contacts 5").code ==
+          0);
+  CHECK(has_contacts("a.h5"));
+  CHECK(folder.run("replay a.h5").code == 0);
+  REQUIRE(folder.run("run stack10 --worlds 2 --steps 4 --record b.h5").code == 0);
+  CHECK_FALSE(has_contacts("b.h5"));
+  check_bad(folder.run("run stack10 --record-contacts 5"), "--record-contacts requires --record");
+  check_bad(folder.run("run stack10 --record c.h5 --record-contacts 70000"),
+            "--record-contacts: must be at most 65536, is 70000");
+  check_bad(folder.run("view stack10 --contacts -1"), "--contacts: must be at least 0, is -1");
+}
+
 TEST_CASE("view without --out leaves its page in the temporary folder, or nothing", "[cli]") {
   const Folder folder;
   if (!records(folder)) return;

@@ -70,6 +70,20 @@ class Chunk {
     at_ += width * count;
     return out;
   }
+  // The numbers of a list, which are as they were put.
+  std::vector<std::int64_t> list(std::size_t count) {
+    const auto width = static_cast<std::size_t>(widths_.at(channel_++));
+    std::vector<std::int64_t> out(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::int64_t folded = 0;
+      for (std::size_t b = 0; b < width; ++b) {
+        folded += std::int64_t{bytes_.at(at_ + b * count + i)} << (8 * b);
+      }
+      out[i] = folded % 2 == 0 ? folded / 2 : -(folded + 1) / 2;
+    }
+    at_ += width * count;
+    return out;
+  }
   std::size_t frames() const { return frames_; }
   bool done() const { return at_ == bytes_.size() && channel_ == widths_.size(); }
 
@@ -226,6 +240,91 @@ TEST_CASE("a page has what was asked for", "[fast][record][page]") {
     CHECK(there[0 * chunk.frames() + f] == 1);
     CHECK(there[1 * chunk.frames() + f] == 0);
     CHECK(there[3 * chunk.frames() + f] == (f > 0 ? 1 : 0));
+  }
+}
+
+// Each list by its definition (src/page/contacts.hpp), from those before it.
+TEST_CASE("contacts on a page are those that were recorded", "[fast][record][page]") {
+  const Folder folder;
+  const auto empty = empty_page(folder);
+  for (const char* name : {"bin-boxes", "bin2d"}) {
+    BatchOptions options = batch_options(widest_tables().front(), 3);
+    options.observe.what = {Observer::contacts};
+    Batch batch(compile(scenes::find(name)->make()), options);
+    batch.step(60);
+    Recorder recorder(batch, folder / "run.h5", {.every = 2, .contacts = 100});
+    for (int i = 0; i < 45; ++i) batch.step(2);
+    recorder.close();
+    const Recording recording = Recording::open(folder / "run.h5");
+    const Recording* const all[] = {&recording};
+    const std::string page = page_of(all, empty);
+    const Json run = Json::parse(element(page, "mw-head")).at("runs").at(0);
+    CHECK(run.at("contacts") == true);
+    const Json kind = run.at("kinds").at(0);
+    const std::size_t rows = kind.at("rows"), worlds = 3;
+    const std::size_t space = run.at("space") == "planar" ? 2 : 3, turns = kind.at("orientation");
+    const double step = kind.at("contact_step");
+    std::int64_t first = 0, points = 0;
+    for (std::size_t c = 0; c < run.at("chunks").size(); ++c) {
+      Chunk chunk(run.at("chunks").at(c), element(page, "mw-0-" + std::to_string(c)));
+      for (std::size_t k = 0; k < space + (turns == 2 ? 1 : turns) + 2; ++k) {
+        chunk.next(rows * worlds);
+      }
+      chunk.next(worlds);  // status
+      const std::vector<double> counts = chunk.next(worlds);
+      std::size_t count = 0;
+      for (const double n : counts) count += static_cast<std::size_t>(n);
+      std::vector<std::vector<std::int64_t>> lists;
+      for (std::size_t k = 0; k < 2 + 2 * space + 1; ++k) lists.push_back(chunk.list(count));
+      CHECK(chunk.done());
+      std::size_t at = 0;
+      for (std::size_t w = 0; w < worlds; ++w) {
+        std::vector<std::vector<std::int64_t>> before;
+        for (std::size_t f = 0; f < chunk.frames(); ++f) {
+          auto wanted =
+              recording.contacts(first + static_cast<std::int64_t>(f), static_cast<int>(w));
+          std::stable_sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) {
+            return std::pair(a.body_a, a.body_b) < std::pair(b.body_a, b.body_b);
+          });
+          REQUIRE(wanted.size() == static_cast<std::size_t>(counts[w * chunk.frames() + f]));
+          std::vector<std::vector<std::int64_t>> now;
+          std::map<std::pair<std::int64_t, std::int64_t>, std::size_t> of_pair;
+          for (std::size_t i = 0; i < wanted.size(); ++i, ++at) {
+            std::vector<std::int64_t> numbers;
+            for (const auto& list : lists) numbers.push_back(list[at]);
+            for (std::size_t k = 0; k < 2 && i < before.size(); ++k) numbers[k] += before[i][k];
+            // The n-th of a pair follows the n-th of that pair.
+            const std::size_t nth = of_pair[{numbers[0], numbers[1]}]++;
+            std::size_t met = 0;
+            for (const auto& old : before) {
+              if (old[0] != numbers[0] || old[1] != numbers[1] || met++ != nth) continue;
+              for (std::size_t k = 2; k < numbers.size(); ++k) numbers[k] += old[k];
+            }
+            CHECK(numbers[0] == wanted[i].body_a.index());
+            CHECK(numbers[1] == wanted[i].body_b.index());
+            for (std::size_t k = 0; k < space; ++k) {
+              const auto axis = static_cast<Eigen::Index>(k);
+              CHECK(std::abs(static_cast<double>(numbers[2 + k]) * step - wanted[i].point[axis]) <
+                    0.51 * step);
+              CHECK(std::abs(static_cast<double>(numbers[2 + space + k]) / 127 -
+                             wanted[i].normal[axis]) < 0.51 / 127);
+            }
+            if (wanted[i].force > 1e-6) {
+              const double force = 1e-6 * std::exp2(static_cast<double>(numbers.back() - 1) / 64);
+              CHECK(force == Approx(wanted[i].force).epsilon(0.006));
+            } else {
+              CHECK(numbers.back() == 0);
+            }
+            now.push_back(numbers);
+            ++points;
+          }
+          before = std::move(now);
+        }
+      }
+      first += static_cast<std::int64_t>(chunk.frames());
+    }
+    CHECK(first == recording.samples());
+    CHECK(points > 1000);
   }
 }
 

@@ -271,7 +271,7 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       ->type_name("N");
   command
       ->add_option("--color", view.color,
-                   "theirs by: body, speed, spin, rest, height, run (default: body)")
+                   "theirs by: body, speed, spin, rest, height, contact, run (default: body)")
       ->type_name("BY");
   command->add_flag("--dark", view.dark, "both in the dark");
   command->add_option("--title", view.title, "of the page (default: the name of the scene)")
@@ -286,10 +286,13 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       ->check(CLI::PositiveNumber)
       ->type_name("S")
       ->capture_default_str();
+  add_contacts_option(
+      *command, view.contacts, "--contacts",
+      "of scenes: contact points of a world and frame, the N of the largest forces");
   CLI::Option* live = command->add_flag(
       "--live", view.live, "step a scene and serve its page on this machine until Ctrl-C");
   for (const char* other : {"--out", "--open", "--png", "--mp4", "--at", "--until", "--world",
-                            "--color", "--dark", "--every", "--fps", "--seconds"}) {
+                            "--color", "--dark", "--every", "--fps", "--seconds", "--contacts"}) {
     live->excludes(command->get_option(other));
   }
   command->add_option("--port", view.port, "of --live (default: any that is free)")

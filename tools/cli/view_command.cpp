@@ -52,6 +52,7 @@ void record(const ViewArguments& arguments, double samples_per_second, const std
   const double dt = job.plan.scene().options.dt;
   options.record = file.string();
   options.record_every = std::max(1, static_cast<int>(std::lround(1 / (samples_per_second * dt))));
+  options.record_contacts = arguments.contacts;
   if (arguments.worlds > 0) {
     options.worlds = arguments.worlds;
   } else {

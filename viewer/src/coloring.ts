@@ -1,4 +1,5 @@
 // In which colour a body is drawn: its own, or that of a number on a scale.
+import { weightOf } from './contacts';
 import { LOST_COLOR, linear, scaleInto, type Rgb } from './colors';
 import { LOST, speedOf, type FrameSource, type Poses } from './data';
 import type { Drawable, KindView } from './drawables';
@@ -19,9 +20,14 @@ export interface Theme {
 export function colorChoices(sources: FrameSource[]): [ColorBy, string][] {
   const out: [ColorBy, string][] =
     [['body', 'body'], ['speed', 'speed'], ['spin', 'rate of rotation'], ['rest', 'rest and motion'], ['height', 'height']];
+  if (hasContacts(sources)) out.push(['contact', 'contact force']);
   if (sources.length > 1) out.push(['run', 'recording']);
   for (const { name } of sources[0].run.numbers) out.push([`number:${name}`, name]);
   return out;
+}
+
+export function hasContacts(sources: FrameSource[]): boolean {
+  return sources.some((source) => source.run.contacts === true);
 }
 
 // What colours of numbers mean.
@@ -49,12 +55,17 @@ export class Coloring {
   by: ColorBy = 'body';
   maxSpeed = 1; // ends of the scales, of what is shown
   maxSpin = 1;
+  maxForce: number;
+  private readonly weight: number; // N, of a body in the mean
   readonly tints: Record<keyof Theme, Rgb> =
     { ground: [1, 1, 1], wall: [1, 1, 1], tile: [1, 1, 1], lost: [1, 0, 0], selected: [0, 0, 1], fixed: [0.5, 0.5, 0.5] };
   private mode = 'body'; // `by` without the name of the number
   private numbers: { now: Float32Array; low: number; high: number } = { now: new Float32Array(0), low: 0, high: 0 };
 
-  constructor(private readonly sources: FrameSource[], private readonly planar: boolean, private readonly layout: Layout) {}
+  constructor(private readonly sources: FrameSource[], private readonly planar: boolean, private readonly layout: Layout) {
+    this.weight = Math.max(...sources.flatMap((source) => source.run.kinds.map(weightOf)));
+    this.maxForce = this.weight;
+  }
 
   setTheme(theme: Theme): void {
     for (const name of Object.keys(theme) as (keyof Theme)[]) this.tints[name] = linear(theme[name]);
@@ -72,6 +83,9 @@ export class Coloring {
         break;
       case 'spin':
         scaleInto(speedOf(this.sources[cell.run].run, poses.spin[item]) / this.maxSpin, out, at);
+        break;
+      case 'contact':
+        scaleInto(Math.log1p(poses.force[item] / this.weight) / Math.log1p(this.maxForce / this.weight), out, at);
         break;
       case 'rest':
         put(poses.speed[item] === 0 && poses.spin[item] === 0 ? REST : AWAKE, out, at);
@@ -134,6 +148,10 @@ export class Coloring {
         const up = this.planar ? 1 : 2;
         return between('height', 'm', this.layout.low[up], this.layout.high[up]);
       }
+      case 'contact': {
+        const most = Math.log1p(this.maxForce / this.weight);
+        return { name: 'contact force', unit: 'N', at: (x) => this.weight * Math.expm1(x * most) };
+      }
       default: {
         const number = this.sources[0].run.numbers.find((one) => `number:${one.name}` === this.by);
         return number === undefined ? null : between(number.name, number.unit, this.numbers.low, this.numbers.high);
@@ -155,6 +173,7 @@ export class Coloring {
       let spin = 0;
       for (const code of view.poses.speed) if (code > speed) speed = code;
       for (const code of view.poses.spin) if (code > spin) spin = code;
+      for (const force of view.poses.force) if (force > this.maxForce) this.maxForce = force;
       this.maxSpeed = Math.max(this.maxSpeed, speedOf(source.run, speed));
       this.maxSpin = Math.max(this.maxSpin, speedOf(source.run, spin));
     }));

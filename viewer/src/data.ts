@@ -3,6 +3,8 @@
 // A FrameSource is all that most of the page knows of where frames come from: recordings inside the page
 // (recorded.ts), or a socket that delivers frames of a running batch (live.ts), whose `frames` grows.
 
+import type { VisitContact } from './contacts';
+
 export interface MeshLevel {
   points: Float32Array;
   normals: Float32Array;
@@ -63,6 +65,7 @@ export interface Kind {
   names: number[];
   orientation: 0 | 2 | 4;
   sizes: { shape: number; values: Float32Array }[]; // [world] size x y z, stretch x y z
+  contact_step?: number; // m, of points of contacts
   controls?: { name: string; low: number; high: number; value: number }[]; // of a live page
 }
 
@@ -81,6 +84,7 @@ export interface Run {
   meshes: Mesh[];
   kinds: Kind[];
   numbers: WorldNumber[];
+  contacts?: boolean; // whether they were recorded
 }
 
 // The moving bodies of a kind at one moment, [world][row].
@@ -91,6 +95,7 @@ export interface Poses {
   spin: Uint8Array;
   there: Uint8Array; // 0: disabled
   status: Int32Array; // [world]
+  force: Float32Array; // N, sum of what contacts press with; 0 where nobody asked
 }
 
 export interface FrameSource {
@@ -102,6 +107,8 @@ export interface FrameSource {
   prepare(frame: number): Promise<void>;
   // Poses between a frame and the next one, 0 <= part < 1. Both must be ready.
   read(frame: number, part: number, kind: number, into: Poses): void;
+  // Contacts of a world at a frame; none where that is not ready, or they were not recorded.
+  visitContacts(frame: number, kind: number, world: number, visit: VisitContact): void;
   // Where one body, world * rows + row, is at a frame; false where that is not ready.
   positionAt(frame: number, kind: number, item: number, out: number[]): boolean;
 }
@@ -115,6 +122,7 @@ export function emptyPoses(kind: Kind): Poses {
     spin: new Uint8Array(items),
     there: new Uint8Array(items).fill(1),
     status: new Int32Array(kind.worlds),
+    force: new Float32Array(items),
   };
 }
 

@@ -27,7 +27,7 @@ export class Film {
   // Ends of colours' scales grow with what has been seen: here all is seen first, so that a film has one scale.
   private async widenScales(): Promise<void> {
     const { worlds, sources } = this.app;
-    if (!['speed', 'spin'].includes(worlds.coloring.by)) return;
+    if (!['speed', 'spin', 'contact'].includes(worlds.coloring.by)) return;
     for (const source of sources) {
       for (let frame = 0; frame < source.frames; ++frame) {
         await this.app.prepare(source.time(frame));

@@ -147,6 +147,8 @@ export class LiveSource implements FrameSource {
     into.there[item] = frame.there[from];
   }
 
+  visitContacts(): void {}
+
   positionAt(index: number, kindIndex: number, item: number, out: number[]): boolean {
     const one = this.history[index];
     const kind = this.run.kinds[kindIndex];

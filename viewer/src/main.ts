@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 
 import { obeyAddress } from './address';
-import { colorChoices } from './coloring';
+import { colorChoices, hasContacts } from './coloring';
 import { Commands } from './commands';
 import type { FrameSource } from './data';
 import { element } from './elements';
@@ -23,6 +23,7 @@ import { Worlds, momentOf } from './worlds';
 const TABLE_MS = 120; // from one writing of the table to the next
 const CLICK_PIXELS = 5;
 const WAIT_MS = 250; // how long a picture stays while the next frames are decoded
+const MARKS = ['trails', 'joints', 'centers', 'bounds', 'contacts'] as const; // of overlays
 const SOFTWARE_SHADOWS = 3000; // shapes that still have shadows without a graphics card
 
 export class App {
@@ -111,6 +112,7 @@ export class App {
     if (this.worlds !== undefined) {
       this.stage.scene.remove(this.worlds.group, this.overlays.group);
       this.worlds.dispose();
+      this.overlays.dispose();
     }
     const { width, height } = this.canvasSize();
     this.worlds = new Worlds(this.sources, this.ghosts, width / height, {
@@ -120,10 +122,7 @@ export class App {
     this.panel = new Panel(this.title, this.sources, this.worlds, (row) => this.choose(this.chosen.cell, row));
     this.worlds.setTheme(THEMES[this.theme]);
     this.overlays = new Overlays(this.worlds);
-    this.overlays.trails = this.checked('trails');
-    this.overlays.joints = this.checked('joints');
-    this.overlays.centers = this.checked('centers');
-    this.overlays.bounds = this.checked('bounds');
+    for (const id of MARKS) this.overlays[id] = this.checked(id);
     this.stage.scene.add(this.worlds.group, this.overlays.group);
     this.worlds.selected = this.chosen.cell;
     this.dirty = true;
@@ -160,6 +159,7 @@ export class App {
     element('title').textContent = this.title;
     const color = element<HTMLSelectElement>('color');
     for (const [value, text] of colorChoices(this.sources)) color.add(new Option(text, value));
+    (element('contacts').parentElement as HTMLElement).hidden = !hasContacts(this.sources);
     color.onchange = () => {
       this.worlds.coloring.by = color.value;
       this.lastTable = -Infinity; // the legend goes with it
@@ -180,7 +180,7 @@ export class App {
       this.stage.shadows = this.checked('shadows');
       this.dirty = true;
     };
-    for (const id of ['trails', 'joints', 'centers', 'bounds'] as const) {
+    for (const id of MARKS) {
       element(id).onchange = () => {
         this.overlays[id] = this.checked(id);
         this.dirty = true;
@@ -257,6 +257,7 @@ export class App {
       t: () => toggle('trails'),
       w: () => toggle('wireframe'),
       b: () => toggle('bounds'),
+      x: () => toggle('contacts'),
       d: () => toggle('dark'),
       r: () => this.commands?.reset(),
       o: () => togglePanel(element('panel').classList.contains('closed')),

@@ -1,6 +1,7 @@
-// Lines over the chosen world: trails, joints with their axes, centres of mass, its borders.
+// What is drawn over worlds: contacts, and lines over the chosen one: trails, joints with their axes, centres of mass, its borders.
 import * as THREE from 'three';
 
+import { Arrows } from './arrows';
 import { boundsOf } from './bounds';
 import { linear } from './colors';
 import type { Worlds } from './worlds';
@@ -48,14 +49,17 @@ export class Overlays {
   joints = false;
   centers = false;
   bounds = false;
+  contacts = false;
   pull: { from: THREE.Vector3; to: THREE.Vector3 } | null = null; // the spring of a drag
   private readonly hidden: Lines; // by what is before them
   private readonly above: Lines;
+  private readonly arrows: Arrows;
 
   constructor(private readonly worlds: Worlds) {
     this.hidden = new Lines(worlds, true);
     this.above = new Lines(worlds, false);
-    this.group.add(this.hidden.object, this.above.object);
+    this.arrows = new Arrows(worlds);
+    this.group.add(this.hidden.object, this.above.object, ...this.arrows.group.children);
   }
 
   get objects(): number {
@@ -71,8 +75,17 @@ export class Overlays {
       if (chosen.row >= 0) this.addFrame(chosen);
     }
     if (this.pull !== null) this.above.add(this.pull.from, this.pull.to, linear('#e02b2b'));
+    // Of all that are seen while none is chosen.
+    this.arrows.update(!this.contacts ? [] : chosen.cell >= 0 ? [chosen.cell] : this.worlds.seen);
     this.hidden.finish();
     this.above.finish();
+  }
+
+  get contactsDrawn(): number {
+    return this.arrows.count;
+  }
+  dispose(): void {
+    this.arrows.dispose();
   }
 
   private addTrails(chosen: Chosen): void {

@@ -26,6 +26,7 @@ export class Probe {
       following: this.app.following,
       still: this.app.worlds.still,
       cell: { width: this.app.worlds.layout.width, depth: this.app.worlds.layout.depth },
+      contacts: this.app.overlays.contactsDrawn,
       drawCalls: this.app.worlds.objects + this.app.overlays.objects,
       allCalls: this.app.stage.renderer.info.render.calls,
       triangles: this.app.stage.renderer.info.render.triangles,
@@ -74,11 +75,20 @@ export class Probe {
     const poses = this.app.worlds.posesOf(one);
     const item = one.world * this.app.worlds.kindOf(one).rows + row;
     return {
-      pixel: this.app.stage.pixelOf(place), color: this.app.worlds.colorOf(cell, row),
+      pixel: this.app.stage.pixelOf(place), color: this.app.worlds.colorOf(cell, row), force: poses.force[item],
       position: [...poses.position.subarray(3 * item, 3 * item + 3)],
       rotation: [...poses.rotation.subarray(4 * item, 4 * item + 4)],
       bounds: boundsOf(this.app.worlds, cell).get(row)?.getSize(new THREE.Vector3()).toArray() ?? [],
     };
+  }
+
+  // Of a world at the moment that is shown: bodies of the scene, point, normal, force in N.
+  contactsAt(cell: number) {
+    const one = this.app.worlds.layout.cells[cell];
+    const out: { a: number; b: number; point: number[]; normal: number[]; force: number }[] = [];
+    this.app.sources[one.run].visitContacts(this.app.worlds.frameOf(one), one.kind, one.world,
+      (a, b, x, y, z, nx, ny, nz, force) => out.push({ a, b, point: [x, y, z], normal: [nx, ny, nz], force }));
+    return out;
   }
 
   // What is drawn at a place of the canvas: red, green, blue.

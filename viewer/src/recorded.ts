@@ -1,4 +1,5 @@
 // Recordings inside the page. How frames are coded is in src/page/frames.hpp.
+import { ContactChunk, type ContactSteps, type VisitContact } from './contacts';
 import { type FrameSource, type Kind, type MeshLevel, type Poses, type Run } from './data';
 
 interface Chunk {
@@ -6,7 +7,7 @@ interface Chunk {
   widths: number[];
 }
 
-interface Head extends Run {
+interface Head extends Run, ContactSteps {
   times: number[];
   position_steps: number;
   quaternion_steps: number;
@@ -23,9 +24,11 @@ interface Decoded {
   spin: Int32Array;
   status: Int32Array;
   there: Int32Array | null;
+  contacts: ContactChunk | null;
 }
 
 const MAX_CHUNKS = 24; // decoded, kept
+const MAX_CONTACTS = 4; // of them, with their contacts
 
 export function bytesOf(text: string): Uint8Array {
   const binary = atob(text);
@@ -155,6 +158,7 @@ export class RecordedSource implements FrameSource {
   }
 
   private decode(chunk: Chunk, bytes: Uint8Array): Decoded[] {
+    const planar = this.run.space === 'planar';
     let at = 0;
     let channel = 0;
     const next = (items: number) => {
@@ -163,7 +167,18 @@ export class RecordedSource implements FrameSource {
       at += width * items * chunk.frames;
       return out;
     };
-    const space = this.run.space === 'planar' ? 2 : 3;
+    const contactsOf = (worlds: number) => {
+      const counts = next(worlds);
+      const points = counts.reduce((sum, count) => sum + count, 0);
+      const channels = Array.from({ length: ContactChunk.channels(planar) }, () => {
+        const width = chunk.widths[channel++];
+        const from = at;
+        at += width * points;
+        return { at: from, width };
+      });
+      return new ContactChunk(bytes, counts, channels, chunk.frames, planar);
+    };
+    const space = planar ? 2 : 3;
     return this.run.kinds.map((kind) => {
       const items = kind.worlds * kind.rows;
       const turns = kind.orientation === 2 ? 1 : kind.orientation;
@@ -174,6 +189,7 @@ export class RecordedSource implements FrameSource {
         spin: next(items),
         status: next(kind.worlds),
         there: this.run.enabled ? next(items) : null,
+        contacts: this.run.contacts === true ? contactsOf(kind.worlds) : null,
       };
     });
   }
@@ -242,6 +258,20 @@ export class RecordedSource implements FrameSource {
     }
     const atStatus = (frame - this.first[chunkA]) * kind.worlds;
     for (let w = 0; w < kind.worlds; ++w) into.status[w] = a.status[atStatus + w];
+  }
+
+  visitContacts(frame: number, kindIndex: number, world: number, visit: VisitContact): void {
+    const chunk = this.chunkOf(frame);
+    const contacts = this.decoded.get(chunk)?.[kindIndex].contacts ?? null;
+    if (contacts === null) return;
+    if (!contacts.decoded) this.forgetContacts();
+    contacts.visit(frame - this.first[chunk], world, this.run.kinds[kindIndex], this.run, visit);
+  }
+
+  // Those of the oldest chunks, so that there is room for one more.
+  private forgetContacts(): void {
+    const decoded = [...this.decoded.values()].flat().map((one) => one.contacts).filter((one) => one?.decoded);
+    decoded.slice(0, Math.max(0, decoded.length - MAX_CONTACTS * this.run.kinds.length + 1)).forEach((one) => one!.forget());
   }
 
   positionAt(frame: number, kindIndex: number, item: number, out: number[]): boolean {

@@ -21,6 +21,7 @@ export class Worlds {
   private readonly frustum = new THREE.Frustum();
   private readonly sphere = new THREE.Sphere();
   private shown: { frame: number; part: number } = { frame: -1, part: 0 };
+  private readonly frames: number[] = []; // of each run, shown
 
   constructor(readonly sources: FrameSource[], ghosts: boolean, aspect: number, options: Options) {
     const runs = sources.map((source) => source.run);
@@ -86,7 +87,11 @@ export class Worlds {
         all = false;
         return;
       }
-      this.drawables.kinds[r].forEach((view, k) => source.read(frame, part, k, view.poses));
+      this.drawables.kinds[r].forEach((view, k) => {
+        source.read(frame, part, k, view.poses);
+        if (this.coloring.by === 'contact') addForces(source, frame, k, view.poses);
+      });
+      this.frames[r] = frame;
       if (r === 0) this.shown = { frame, part };
       // The chunk after the next frames, before it is wanted.
       const soon = Math.min(frame + 20, source.frames - 1);
@@ -95,6 +100,9 @@ export class Worlds {
     return all;
   }
 
+  frameOf(cell: Cell): number {
+    return this.frames[cell.run] ?? 0;
+  }
   get frame(): number {
     return this.shown.frame;
   }
@@ -257,6 +265,18 @@ function putStill(batch: Batch, cell: Cell, color: Rgb, z: number): void {
   out[o + 2] = z;
   out[o + 3] = out[o + 4] = out[o + 5] = out[o + 9] = 1;
   put(color, out, o + 13);
+}
+
+// What contacts press with on each body.
+function addForces(source: FrameSource, frame: number, kindIndex: number, poses: Poses): void {
+  const kind = source.run.kinds[kindIndex];
+  const rows = kind.bodies.map((body) => body.row);
+  poses.force.fill(0);
+  for (let world = 0; world < kind.worlds; ++world) {
+    source.visitContacts(frame, kindIndex, world, (a, b, _x, _y, _z, _nx, _ny, _nz, force) => {
+      for (const row of [rows[a], rows[b]]) if (row !== null) poses.force[world * kind.rows + row] += force;
+    });
+  }
 }
 
 export function momentOf(source: FrameSource, time: number): { frame: number; part: number } {

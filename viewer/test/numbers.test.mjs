@@ -1,7 +1,42 @@
-// Numbers that a page draws: what colours mean. Run by ctest, as browser.test.mjs.
+// Numbers that a page draws: contacts with their forces, and what colours mean. Run by ctest, as browser.test.mjs.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { browserOf, near, open, pageOf } from './pages.mjs';
+
+test('contacts bear the weight, and are drawn and coloured by', async () => {
+  const { file, head } = pageOf('stack10', '--worlds', '2', '--seconds', '3', '--fps', '10');
+  const [kind] = head.runs[0].kinds;
+  const weight = 10 * kind.bodies[1].mass * -kind.gravity[2];
+  const view = await open(file, { width: 700, height: 420, hash: '#time=3' });
+  const contacts = await view.page.evaluate(() => window.manyworlds.contactsAt(1));
+  const onGround = contacts.filter(({ a }) => kind.bodies[a].row === null);
+  assert.equal(contacts.length, 40);
+  assert.equal(onGround.length, 4);
+  for (const { normal } of contacts) near(normal, [0, 0, 1], 0.05, 'normal');
+  for (const { point } of onGround) assert.ok(Math.abs(point[2]) < 0.02, `${point}`);
+  const borne = onGround.reduce((sum, { force }) => sum + force, 0);
+  assert.ok(Math.abs(borne / weight - 1) < 0.05, `${borne} N of ${weight} N`);
+  const before = await view.report();
+  assert.equal(before.contacts, 0);
+  await view.key('x');
+  let report = await view.report();
+  assert.equal(report.contacts, 80);
+  assert.equal(report.drawCalls, before.drawCalls + 2);
+  await view.key('n');
+  report = await view.report();
+  assert.equal(report.contacts, 40); // of the chosen world alone
+  await view.page.selectOption('#color', 'contact');
+  await view.calm();
+  const [low, high] = [await view.body(1, 0), await view.body(1, 9)];
+  assert.ok(low.force > 10 * high.force, `${low.force} N, ${high.force} N`);
+  assert.notDeepEqual(low.color, high.color);
+  await view.close();
+
+  const without = await open(pageOf('ball2d', '--worlds', '1', '--seconds', '0.2', '--contacts', '0').file);
+  assert.equal(await without.page.isVisible('#contacts'), false);
+  assert.equal(await without.page.locator('#color option[value=contact]').count(), 0);
+  await without.close();
+});
 
 test('the legend has the numbers and the unit of the colours', async () => {
   const { file, head } = pageOf('ball2d', '--worlds', '2', '--seconds', '1');

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/base/enum_names.hpp"
+#include "src/page/contacts.hpp"
 #include "src/page/deflate.hpp"
 #include "src/page/frames.hpp"
 #include "src/page/look.hpp"
@@ -28,6 +29,7 @@ struct KindPart {
   const Plan* plan;
   std::vector<double> radii;  // of the scene's bodies
   std::unique_ptr<PoseQuantizer> poses;
+  std::unique_ptr<ContactCoder> contacts;  // where they were recorded
 };
 
 template <class T>
@@ -50,7 +52,7 @@ class RunWriter {
     for (std::size_t k = 0; k < all_.kinds.size() && left > 0; ++k) {
       const std::size_t worlds = std::min(left, all_.kinds[k].worlds.size());
       left -= worlds;
-      kinds_.push_back({k, worlds, &all_.kinds[k].plan, {}, {}});
+      kinds_.push_back({k, worlds, &all_.kinds[k].plan, {}, {}, {}});
     }
     for (const PageNumber& number : options.numbers) {
       const std::size_t wanted = all_.steps.size() * static_cast<std::size_t>(all_.worlds());
@@ -112,6 +114,10 @@ class RunWriter {
                 {"slowest", kSlowest},
                 {"speed_steps", kSpeedSteps},
                 {"enabled", !enabled_.empty()},
+                {"contacts", recording_.has_contacts()},
+                {"normal_steps", kNormalSteps},
+                {"force_steps", kForceSteps},
+                {"least_force", kLeastForce},
                 {"meshes", meshes.json()},
                 {"kinds", std::move(kinds)},
                 {"numbers", std::move(numbers)},
@@ -148,14 +154,22 @@ class RunWriter {
     Json out = look_of(*kind.plan, kind.radii,
                        room_of(*kind.plan, kind.radii, some_positions(kind)), meshes);
     std::vector<double> steps;
+    double smallest = 1;  // m, radius of a body that moves
     for (int row = 0; row < kind.plan->bodies(); ++row) {
       const auto body = static_cast<std::size_t>(kind.plan->body_in_row(row).index());
       steps.push_back(kind.radii[body] / kPositionSteps);
+      smallest = row == 0 ? kind.radii[body] : std::min(smallest, kind.radii[body]);
     }
     kind.poses = std::make_unique<PoseQuantizer>(
         std::move(steps), kind.worlds,
         static_cast<std::size_t>(components(Field::position, all_.space())),
         static_cast<std::size_t>(orientation_of(kind)), kChunkFrames);
+    if (recording_.has_contacts()) {
+      const double step = smallest / kContactSteps;
+      kind.contacts = std::make_unique<ContactCoder>(
+          step, kind.worlds, static_cast<std::size_t>(components(Field::position, all_.space())));
+      out["contact_step"] = step;
+    }
     return out;
   }
 
@@ -201,7 +215,7 @@ class RunWriter {
     }
   }
 
-  // Of each kind: poses, then status of its worlds, then what is there.
+  // Of each kind: poses, then status of its worlds, then what is there, then contacts.
   void write_chunk(std::size_t first, std::size_t count, ChunkWriter& chunk) {
     std::size_t before = 0, each = 0;
     for (const KindPart& kind : kinds_) {
@@ -235,8 +249,36 @@ class RunWriter {
         }
         chunk.add(there);
       }
+      if (kind.contacts) write_contacts(kind, first, count, chunk);
       before += items;
     }
+  }
+
+  void write_contacts(KindPart& kind, std::size_t first, std::size_t count, ChunkWriter& chunk) {
+    const UsingHdf5 hdf5;
+    const auto& recorded = all_.kinds[kind.index];
+    for (std::size_t f = 0; f < count; ++f) {
+      const std::int64_t sample = samples_[first + f];
+      // All worlds at once: they lie one after the other.
+      const std::vector<RecordedContact> all =
+          all_.read_contacts(kind.index, sample, 0, kind.worlds);
+      auto from = all.begin();
+      std::size_t i = static_cast<std::size_t>(sample) * recorded.worlds.size();
+      for (std::size_t w = 0; w < kind.worlds; ++w, ++i) {
+        const auto& end = recorded.contacts.end;
+        const std::int64_t n =
+            end.empty() ? 0 : end[i] - (i == 0 ? 0 : end[i - 1]);  // none, where others have some
+        std::vector<ContactPoint> points(static_cast<std::size_t>(n));
+        for (ContactPoint& to : points) {
+          const RecordedContact& c = *from++;
+          to.body_a = c.body_a.index(), to.body_b = c.body_b.index(), to.force = c.force;
+          std::copy_n(c.point.data(), 3, to.point.begin());
+          std::copy_n(c.normal.data(), 3, to.normal.begin());
+        }
+        kind.contacts->add(w, std::move(points));
+      }
+    }
+    kind.contacts->write(chunk);
   }
 
   // Of [sample][world], what is on the page.
