@@ -189,6 +189,7 @@ Body SceneBytes::body(int index) {
     if (byte() > 128) {
       out.jitter.position = planar_vector(0.5).cwiseAbs();
       out.jitter.linear_velocity = planar_vector(1).cwiseAbs();
+      out.jitter.angular_velocity = axial_vector(1).cwiseAbs();
       out.jitter.angle = number(0, 3);
       out.jitter.any_orientation = !planar_ && byte() > 128;
       if (rarely()) out.jitter.with = BodyId(integer(-2, 4));

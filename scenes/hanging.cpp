@@ -34,7 +34,7 @@ Scene bridge() {
   for (int i = 0; i < kBoxes; ++i) {
     const BodyId box = add_body(scene, "box" + std::to_string(i),
                                 {1.5 * i - 3.75, kHeight + 1.5, 0}, Polygon::box(0.4, 0.4));
-    scene.at(box).jitter = {{0.2, 0.5, 0}, Vec3::Zero(), 1, false, {}};
+    scene.at(box).jitter = {.position = {0.2, 0.5, 0}, .angle = 1};
   }
   return scene;
 }

@@ -42,7 +42,8 @@ class Doll {
     const BodyId index = scene_.add(body);
     if (!pelvis_) {
       pelvis_ = index;
-      scene_.bodies.back().jitter = {{0.2, 0.5, 0.1}, {0.5, 0.5, 0}, 0.5, false, {}};
+      scene_.bodies.back().jitter = {
+          .position = {0.2, 0.5, 0.1}, .linear_velocity = {0.5, 0.5, 0}, .angle = 0.5};
     } else {
       scene_.bodies.back().jitter.with = pelvis_;
     }

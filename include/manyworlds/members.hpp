@@ -32,8 +32,9 @@ template <>
 struct Members<Jitter> {
   static constexpr const char* name = "Jitter";
   static void visit(auto& value, auto&& visit) {
-    auto& [position, linear_velocity, angle, any_orientation, with] = value;
-    visit("position", position), visit("linear_velocity", linear_velocity), visit("angle", angle);
+    auto& [position, linear_velocity, angular_velocity, angle, any_orientation, with] = value;
+    visit("position", position), visit("linear_velocity", linear_velocity);
+    visit("angular_velocity", angular_velocity), visit("angle", angle);
     visit("any_orientation", any_orientation), visit("with", with);
   }
 };

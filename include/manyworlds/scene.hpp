@@ -46,12 +46,14 @@ struct MassProperties {
 // How the initial state differs from world to world: every entry is the half range of a uniform
 // draw around the value given in Body, one draw per component, world and body.
 struct Jitter {
-  Vec3 position = Vec3::Zero();         // m
-  Vec3 linear_velocity = Vec3::Zero();  // m/s
-  double angle = 0;                     // rad, about z
-  bool any_orientation = false;         // spatial: orientation uniform over all rotations
+  Vec3 position = Vec3::Zero();          // m
+  Vec3 linear_velocity = Vec3::Zero();   // m/s
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s, world
+  double angle = 0;                      // rad, about z
+  bool any_orientation = false;          // spatial: orientation uniform over all rotations
   // What is drawn for that body moves this one, too, as one rigid piece with it and with its change
-  // of velocity, before anything of its own: for assemblies on joints.
+  // of velocity, before anything of its own: for assemblies on joints. That body may have one that
+  // it moves with itself: what is drawn for each of such a chain moves all that follow.
   BodyId with = {};
 };
 

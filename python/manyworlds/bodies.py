@@ -29,9 +29,11 @@ class Jitter:
 
     position: Numbers = (0.0, 0.0, 0.0)  # m
     linear_velocity: Numbers = (0.0, 0.0, 0.0)  # m/s
+    angular_velocity: Numbers = (0.0, 0.0, 0.0)  # rad/s, world
     angle: float = 0.0  # rad, about z
     any_orientation: bool = False  # spatial: any rotation, uniformly
-    # A body whose draws move this one, too, as one rigid piece; -1: none.
+    # A body whose draws move this one, too, as one rigid piece, and those of the body that it moves
+    # with itself, and so on; -1: none.
     with_body: BodyRef = -1
 
 

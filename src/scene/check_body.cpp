@@ -99,23 +99,44 @@ void check_derived_mass(Checker& checker, const Scene& scene, const Body& body) 
   }
 }
 
+// Where `body` moves with another one, which may move with the next, and so on to one that does
+// not.
+void check_jitter_chain(Checker& checker, const Scene& scene, const Body& body) {
+  const auto leader_of = [&](const Body& of) {
+    const auto with = static_cast<std::size_t>(of.jitter.with.index());
+    return with < scene.bodies.size() ? &scene.bodies[with] : nullptr;
+  };
+  const std::string is = "is " + std::to_string(body.jitter.with.index());
+  const Body* leader = leader_of(body);
+  if (leader == nullptr || leader == &body || leader->motion == Motion::fixed) {
+    checker.add("jitter.with", is + ", must be -1 or another body that is not fixed");
+    return;
+  }
+  int length = 0;
+  while (leader != nullptr && leader != &body && length <= kMaxJitterChain) {
+    leader = leader_of(*leader);
+    ++length;
+  }
+  if (leader == &body) {
+    checker.add("jitter.with", is + ", which in the end moves with this body itself; the last of "
+                                    "a chain must have a jitter.with of -1");
+  } else if (length > kMaxJitterChain) {
+    checker.add("jitter.with", is + ", a chain of more than " + std::to_string(kMaxJitterChain) +
+                                   " bodies; there may be so many up to one whose jitter.with is "
+                                   "-1");
+  }
+}
+
 void check_jitter(Checker& checker, const Scene& scene, const Body& body) {
   const Jitter& jitter = body.jitter;
   checker.not_negative("jitter.position", jitter.position, "m");
   checker.not_negative("jitter.linear_velocity", jitter.linear_velocity, "m/s");
+  checker.not_negative_axial("jitter.angular_velocity", jitter.angular_velocity, "rad/s");
   checker.not_negative("jitter.angle", jitter.angle, "rad");
   if (checker.planar() && jitter.any_orientation) {
     checker.add("jitter.any_orientation", "is true, must be false in a planar scene (set angle)");
   }
-  if (jitter.with == BodyId()) return;
-  const auto with = static_cast<std::size_t>(jitter.with.index());
-  const Body* leader = with < scene.bodies.size() ? &scene.bodies[with] : nullptr;
-  if (leader == nullptr || leader == &body || leader->motion == Motion::fixed ||
-      leader->jitter.with != BodyId()) {
-    checker.add("jitter.with", "is " + std::to_string(jitter.with.index()) +
-                                   ", must be -1 or another body that is not fixed and whose own "
-                                   "jitter.with is -1");
-  }
+  if (jitter.with != BodyId()) check_jitter_chain(checker, scene, body);
 }
 
 // What would be dropped without a word: a fixed body has no state, and no world has its own.
@@ -130,9 +151,7 @@ void check_fixed(Checker& checker, const Body& body) {
   if (!body.enabled) {
     checker.add("enabled", "is false on a fixed body, must be true (or the body kinematic)");
   }
-  const Jitter& jitter = body.jitter;
-  if (!jitter.position.isZero(0) || !jitter.linear_velocity.isZero(0) || jitter.angle != 0 ||
-      jitter.any_orientation || jitter.with != BodyId()) {
+  if (jitters(body.jitter)) {
     checker.add("jitter", set);
   }
 }

@@ -127,9 +127,7 @@ class NewtonChecker {
     if (!body.angular_velocity.isZero(0)) {
       refuse(at, "angular_velocity", "is not 0", "it of free bodies only");
     }
-    const Jitter& j = body.jitter;
-    if (!j.position.isZero(0) || !j.linear_velocity.isZero(0) || j.angle != 0 ||
-        j.any_orientation || j.with) {
+    if (jitters(body.jitter)) {
       refuse(at, "jitter", "is given", "it of free bodies only: what they hold moves along");
     }
   }

@@ -123,6 +123,16 @@ bool Checker::finite_axial(std::string_view field, const Vec3& value, std::strin
   return good;
 }
 
+bool Checker::not_negative_axial(std::string_view field, const Vec3& value, std::string_view unit) {
+  bool good = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool flat = planar() && axis != 2;
+    const std::string name = component(field, axis);
+    good &= flat ? zero_in_plane(name, value[axis], unit) : not_negative(name, value[axis], unit);
+  }
+  return good;
+}
+
 bool Checker::rotation(std::string_view field, const Quat& value) {
   // Below this length nothing but rounding is left of the direction that was meant.
   constexpr double kZeroLength = 1e-12;

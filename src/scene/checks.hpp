@@ -30,6 +30,7 @@ inline constexpr double kInputTolerance = 1e-6;
 inline constexpr int kMaxSubsteps = 64;
 inline constexpr int kMaxBodies = 32767;
 inline constexpr int kMaxShapes = 32767;
+inline constexpr int kMaxJitterChain = 256;  // bodies, since each is drawn with all before it
 inline constexpr int kMaxNewtonDofs = 64, kMaxNewtonLinks = 256;  // of Solver::newton
 
 // Shortest text that reads back as the same number, in any locale; "nan" without a sign.
@@ -79,6 +80,7 @@ class Checker {
   bool not_negative(std::string_view field, const Vec3& value, std::string_view unit);
   // As finite(), for rotations: in a planar scene x and y must be 0.
   bool finite_axial(std::string_view field, const Vec3& value, std::string_view unit);
+  bool not_negative_axial(std::string_view field, const Vec3& value, std::string_view unit);
   // Finite, not zero, and about z in a planar scene. Need not be unit.
   bool rotation(std::string_view field, const Quat& value);
 
@@ -89,6 +91,12 @@ class Checker {
   Space space_;
   std::string part_;
 };
+
+// Is anything of it drawn?
+inline bool jitters(const Jitter& j) {
+  return !j.position.isZero(0) || !j.linear_velocity.isZero(0) || !j.angular_velocity.isZero(0) ||
+         j.angle != 0 || j.any_orientation || j.with != BodyId();
+}
 
 void check_shape(Checker checker, const Body& body, const Shape& shape);
 // Everything of the body, its shapes included. `density_valid`: whether Options::density is.

@@ -27,6 +27,7 @@ inline void add_jitter(const Jitter& j, int index, const Draws& draws, BodyState
     const auto k = static_cast<std::uint64_t>(c);
     s.position[c] += j.position[c] * draws.symmetric(base + k);
     s.linear_velocity[c] += j.linear_velocity[c] * draws.symmetric(base + 3 + k);
+    s.angular_velocity[c] += j.angular_velocity[c] * draws.symmetric(base + 10 + k);
   }
   if (j.angle != 0) {
     const double angle = j.angle * draws.symmetric(base + 6);
@@ -38,18 +39,27 @@ inline void add_jitter(const Jitter& j, int index, const Draws& draws, BodyState
   }
 }
 
-inline BodyState draw_initial_state(const Scene& scene, int index, const Draws& draws) {
+// `center_of(b)`: the centre of mass of body b of the scene in its frame, m, in this world.
+BodyState draw_initial_state(const Scene& scene, int index, const Draws& draws,
+                             const auto& center_of) {
   const Body& body = scene.bodies[static_cast<std::size_t>(index)];
   BodyState s = described_state(body);
   if (body.jitter.with) {
-    const Body& leader = scene.at(body.jitter.with);
-    const BodyState from = described_state(leader);
-    BodyState to = from;
-    add_jitter(leader.jitter, body.jitter.with.index(), draws, to);
+    // A chain is as long as it is checked to be (check_body.cpp).
+    const int leader = body.jitter.with.index();
+    const BodyState from = described_state(scene.at(body.jitter.with));
+    const BodyState to = draw_initial_state(scene, leader, draws, center_of);
     const Quat rotation = to.rotation * from.rotation.conjugate();
     s.position = to.position + rotation * (s.position - from.position);
     s.rotation = rotation * s.rotation;
     s.linear_velocity += to.linear_velocity - from.linear_velocity;
+    const Vec3 spin = to.angular_velocity - from.angular_velocity;
+    if (!spin.isZero(0)) {
+      const Vec3 arm = s.position + s.rotation * center_of(index) - to.position -
+                       to.rotation * center_of(leader);
+      s.angular_velocity += spin;
+      s.linear_velocity += spin.cross(arm);
+    }
   }
   add_jitter(body.jitter, index, draws, s);
   return s;

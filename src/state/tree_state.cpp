@@ -18,7 +18,7 @@ void Worlds<Real>::begin_trees(int world, const Draws& draws) {
     const int link = trees.dofs[static_cast<std::size_t>(joint.dof)].link;
     const int row = trees.links[static_cast<std::size_t>(link)].body;
     const int scene_body = data().bodies[static_cast<std::size_t>(row)].scene_body;
-    const BodyState s = draw_initial_state(plan_.scene(), scene_body, draws);
+    const BodyState s = drawn_state(world, scene_body, draws);
     const Vec3 center = body_of(world, static_cast<std::size_t>(row)).center;
     const Vec3 linear = s.linear_velocity - s.angular_velocity.cross(s.rotation * center);
     const Vec3 angular = s.rotation.conjugate() * s.angular_velocity;

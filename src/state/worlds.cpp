@@ -52,6 +52,14 @@ void Worlds<Real>::place(int world, int body, const BodyState& s) {
   if (tables().has_orientation) set_rotation(world, body, s.rotation * b.principal);
 }
 
+// Where a body of the scene begins in this world.
+template <class Real>
+BodyState Worlds<Real>::drawn_state(int world, int scene_body, const Draws& draws) const {
+  return draw_initial_state(plan_.scene(), scene_body, draws, [&](int body) {
+    return body_of(world, static_cast<std::size_t>(plan_.row(BodyId(body)))).center;
+  });
+}
+
 template <class Real>
 void Worlds<Real>::initialise(int world) {
   const Draws draws(seed_[static_cast<std::size_t>(world)],
@@ -67,7 +75,7 @@ void Worlds<Real>::initialise(int world) {
     const int scene_body = data().bodies[b].scene_body, body = static_cast<int>(b);
     const Body& described = plan_.scene().bodies[static_cast<std::size_t>(scene_body)];
     if (!data().has_trees()) {
-      place(world, body, draw_initial_state(plan_.scene(), scene_body, draws));
+      place(world, body, drawn_state(world, scene_body, draws));
     }
     if (storage_.has_activity()) storage_.set_absent(lane_index, body, !described.enabled);
   }

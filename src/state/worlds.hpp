@@ -163,6 +163,7 @@ class Worlds final : public WorldsBase {
   void place_links(int world);
   void begin(int world);
   void place(int world, int body, const BodyState& state);
+  BodyState drawn_state(int world, int scene_body, const Draws& draws) const;
   // Of a body's principal axes, as the kernels have it, and of its own.
   Quat internal_rotation(int world, int body) const;
   Quat rotation(int world, int body) const;

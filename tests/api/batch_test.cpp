@@ -235,6 +235,72 @@ TEST_CASE("jitter stays within its range and differs between worlds and bodies",
   }
 }
 
+TEST_CASE("angular velocities are drawn within their range", "[fast][batch]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    const bool planar = space == Space::planar;
+    Scene scene = empty_scene(space, 0);
+    Body body = body_of(shape_of(cube_of(space, 0.5)), Vec3::Zero());
+    body.angular_velocity = Vec3(0, 0, 3);
+    body.jitter.angular_velocity = planar ? Vec3(0, 0, 2) : Vec3(1, 0, 2);
+    scene.add(body);
+    Batch batch(compile(scene), options_of(widest_tables().back(), 1000));
+    Vec3 low = Vec3::Constant(9), high = Vec3::Constant(-9);
+    for (int w = 0; w < 1000; ++w) {
+      const Vec3 spin = scenes::spin(batch, w, 0);
+      REQUIRE(velocity(batch, w, 0) == Vec3::Zero());
+      low = low.cwiseMin(spin), high = high.cwiseMax(spin);
+    }
+    CHECK(low.z() == Approx(1).margin(0.02));
+    CHECK(high.z() == Approx(5).margin(0.02));
+    CHECK(low.x() == Approx(planar ? 0 : -1).margin(0.02));
+    CHECK(high.x() == Approx(planar ? 0 : 1).margin(0.02));
+    CHECK(low.y() == 0);
+    CHECK(high.y() == 0);
+  }
+}
+
+TEST_CASE("what is drawn for the bodies of a chain moves those after them as one piece",
+          "[fast][batch]") {
+  Scene scene = empty_scene(Space::spatial, 0);
+  for (int i = 0; i < 3; ++i) {
+    Body body = body_of(shape_of(Box{{0.2, 0.3, 0.4}}), Vec3(i, 0, 0));
+    body.mass_properties = mass_properties(scene, body);
+    body.mass_properties->center = Vec3(0, 0.25, 0);
+    if (i > 0) body.jitter.with = BodyId(i - 1);
+    scene.add(body);
+  }
+  scene.bodies[0].jitter.position = Vec3(1, 1, 1);
+  scene.bodies[0].jitter.any_orientation = true;
+  scene.bodies[0].jitter.linear_velocity = scene.bodies[0].jitter.angular_velocity = Vec3(1, 2, 3);
+  scene.bodies[1].jitter.angle = 1;
+  scene.bodies[1].jitter.angular_velocity = Vec3(0, 5, 0);
+  constexpr int kWorlds = 17;
+  Batch batch(compile(scene), options_of(widest_tables().back(), kWorlds));
+  for (int w = 0; w < kWorlds; ++w) {
+    Quat turn[3];
+    Vec3 at[3], center[3], linear[3], spin[3];
+    for (int b = 0; b < 3; ++b) {
+      turn[b] = rotation(batch, w, b), at[b] = position(batch, w, b);
+      center[b] = at[b] + turn[b] * Vec3(0, 0.25, 0);
+      linear[b] = velocity(batch, w, b);
+      spin[b] = scenes::spin(batch, w, b);
+    }
+    // The second turns about its own origin, and the third with it.
+    CHECK((at[1] - at[0]).isApprox(turn[0] * Vec3(1, 0, 0), 1e-5));
+    CHECK((at[2] - at[1]).isApprox(turn[1] * Vec3(1, 0, 0), 1e-5));
+    const double by = Eigen::AngleAxisd(turn[1] * turn[0].conjugate()).angle();
+    CHECK(by > 0);
+    CHECK(by < 1 + 1e-5);
+    CHECK(turn[2].angularDistance(turn[1]) < 1e-5);
+    // Speeds of the centres of mass.
+    CHECK(spin[1].x() == Approx(spin[0].x()).margin(1e-5));
+    CHECK(spin[1].z() == Approx(spin[0].z()).margin(1e-5));
+    CHECK(std::abs(spin[1].y() - spin[0].y()) <= 5 + 1e-5);
+    CHECK((spin[2] - spin[1]).norm() < 1e-5);
+    CHECK((linear[2] - linear[1] - spin[2].cross(center[2] - center[1])).norm() < 1e-4);
+  }
+}
+
 TEST_CASE("orientations are uniform over all rotations when asked for", "[fast][batch]") {
   Scene scene = one_crate(Space::spatial);
   scene.bodies[0].jitter.any_orientation = true;

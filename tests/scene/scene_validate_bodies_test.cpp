@@ -54,6 +54,10 @@ TEST_CASE("bad body states are named", "[fast][scene]") {
       {"jitter.position.y", "is nan m", [](Scene& s) { crate(s).jitter.position.y() = kNan; }},
       {"jitter.linear_velocity.x", "is inf m/s",
        [](Scene& s) { crate(s).jitter.linear_velocity.x() = kInf; }},
+      {"jitter.angular_velocity.z", "is -1 rad/s, must be >= 0",
+       [](Scene& s) { crate(s).jitter.angular_velocity.z() = -1; }},
+      {"jitter.angular_velocity.z", "is nan rad/s",
+       [](Scene& s) { crate(s).jitter.angular_velocity.z() = kNan; }},
       {"jitter.angle", "is -0.1 rad", [](Scene& s) { crate(s).jitter.angle = -0.1; }},
       {"jitter.with", "is 99, must be -1 or another body",
        [](Scene& s) { crate(s).jitter.with = BodyId(99); }},
@@ -79,6 +83,8 @@ TEST_CASE("planar bodies stay in the plane", "[fast][scene]") {
        {"jitter.position.z", "must be 0", [](Scene& s) { crate(s).jitter.position.z() = 1; }},
        {"jitter.linear_velocity.z", "must be 0",
         [](Scene& s) { crate(s).jitter.linear_velocity.z() = 1; }},
+       {"jitter.angular_velocity.x", "must be 0",
+        [](Scene& s) { crate(s).jitter.angular_velocity.x() = 1; }},
        {"jitter.any_orientation", "must be false",
         [](Scene& s) { crate(s).jitter.any_orientation = true; }}});
   Scene rotated = planar();
@@ -86,6 +92,34 @@ TEST_CASE("planar bodies stay in the plane", "[fast][scene]") {
   crate(rotated).angular_velocity.z() = -2;
   crate(rotated).jitter.angle = 1;
   CHECK(validate(rotated).empty());
+}
+
+TEST_CASE("chains of bodies that are drawn together end", "[fast][scene]") {
+  Scene scene = spatial();
+  for (int i = 2; i < 300; ++i) {
+    Body link = crate(scene);
+    link.name = "link" + std::to_string(i);
+    link.jitter.with = BodyId(i - 1);
+    scene.add(link);
+  }
+  // Body 257 moves with 256 others, body 258 with one more.
+  std::vector<Issue> issues = validate(scene);
+  REQUIRE(issues.size() == 300 - 258);
+  CHECK(to_string(issues[0]) ==
+        "body 258 'link258': jitter.with is 257, a chain of more than 256 bodies; there may be so "
+        "many up to one whose jitter.with is -1");
+  scene.bodies.resize(258);
+  CHECK(validate(scene).empty());
+  scene.bodies.resize(4);
+  CHECK(validate(scene).empty());
+  crate(scene).jitter.with = BodyId(2);
+  issues = validate(scene);
+  REQUIRE(issues.size() == 3);
+  CHECK(to_string(issues[0]) ==
+        "body 1 'crate': jitter.with is 2, which in the end moves with this body itself; the last "
+        "of a chain must have a jitter.with of -1");
+  CHECK(issues[1].place == "body 2 'link2': jitter.with");
+  CHECK(issues[2].message.find("is 2, a chain of more than 256 bodies") == 0);
 }
 
 TEST_CASE("spatial bodies may jitter by angle and by orientation", "[fast][scene]") {
@@ -202,6 +236,7 @@ TEST_CASE("what a fixed body would ignore is refused", "[fast][scene]") {
               {"angular_velocity", "is set", [&](Scene& s) { ground(s).angular_velocity.x() = 1; }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.position.x() = 1; }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.angle = 1; }},
+              {"jitter", "is set", [&](Scene& s) { ground(s).jitter.angular_velocity.z() = 1; }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.with = BodyId(1); }},
               {"jitter", "is set", [&](Scene& s) { ground(s).jitter.any_orientation = true; }}});
 }

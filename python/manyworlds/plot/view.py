@@ -68,16 +68,17 @@ def _around(middle: Floats, radius: float) -> Floats:
 
 def _room_of(scene: Scene, b: int, parts: Sequence[Solid], poses: Sequence[Pose]) -> Floats:
     """Points around what a body takes up in the beginning, with its jitter."""
-    jitter = scene.bodies[b].jitter
-    leader = jitter.with_body if jitter.with_body >= 0 else b
-    own = scene.bodies[leader].jitter
-    spread = np.abs(np.asarray(own.position, float)) + np.abs(np.asarray(jitter.position, float))
+    jitters, leader = [scene.bodies[b].jitter], b
+    while jitters[-1].with_body >= 0:
+        leader = jitters[-1].with_body
+        jitters.append(scene.bodies[leader].jitter)
+    spread = sum(np.abs(np.asarray(j.position, float)) for j in jitters)
     points = [np.zeros((0, 3))]
     for part in parts:
         if part.body == b:
             points.append(solids.placed(part, part.points, *poses[b]))
     room = np.concatenate(points)
-    if len(room) and any(j.any_orientation or j.angle > 0 for j in (jitter, own)):
+    if len(room) and any(j.any_orientation or j.angle > 0 for j in jitters):
         middle = poses[leader][1]
         room = _around(middle, np.linalg.norm(room - middle, axis=1).max())
     return np.concatenate([room - spread, room + spread])
