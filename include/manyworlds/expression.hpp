@@ -12,10 +12,12 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "manyworlds/ids.hpp"
 #include "manyworlds/observed.hpp"
+#include "manyworlds/variation.hpp"
 
 namespace manyworlds {
 
@@ -61,6 +63,15 @@ Expression clamp(const Expression& a, const Expression& low, const Expression& h
 Expression sin(const Expression& a);  // rad, of up to 1e5 rad
 Expression cos(const Expression& a);
 Expression exp(const Expression& a);
+Expression log(const Expression& a);  // natural; -inf of 0, not a number below
+// a to the power of b, to 2 + |b ln a| units in the last place. Of a < 0 where b is whole, else not
+// a number. Products are exacter: square.
+Expression pow(const Expression& a, const Expression& b);
+Expression tanh(const Expression& a);
+Expression acos(const Expression& a);  // rad, 0 to pi; not a number beyond -1 to 1
+// What is left of a beside whole multiples of b, with the sign of b: 0 up to b without b.
+Expression mod(const Expression& a, const Expression& b);
+Expression sign(const Expression& a);                        // -1, 0 or 1
 Expression atan2(const Expression& y, const Expression& x);  // rad, -pi to pi; 0 for (0, 0)
 
 // A function of one's own, worked out for several worlds at a time: out[l] from in[0][l], in[1][l],
@@ -73,6 +84,13 @@ class LaneFunction {
   virtual void operator()(int lanes, std::span<const double* const> in, double* out) const = 0;
 };
 Expression lane_function(std::shared_ptr<const LaneFunction> function, std::vector<Expression> in);
+
+// How often a random number is drawn.
+enum class Every {
+  episode,  // where it begins: goals
+  step,     // and at every step of the task: noise
+};
+const char* to_string(Every every);
 
 // What a world is at the end of a step of the task, or where it begins. Bodies and joints are those
 // of the scene; axis 0, 1, 2 is x, y, z of the world. What does not exist is an error of the task.
@@ -155,6 +173,24 @@ Expression action(
 Expression control(ControlId control);  // that led here: of the scene
 Expression age();                       // steps of the task since the episode began, with this one
 Expression lost();                      // the world is lost (Status)
+
+// A random number from low to high, or a normal one. It depends on its name, on the seed and the
+// episode of the world and, where it is of every step, on age() alone; before the steps, where
+// Task::controls are worked out, on that of the step to take. So those of one name are the same in
+// all expressions of the task, and others know nothing of them. Copies of a world, of snapshots
+// too, draw what it would have drawn until their episode ends.
+Expression uniform(std::string_view name, Every every, const Expression& low = 0,
+                   const Expression& high = 1);
+Expression normal(std::string_view name, Every every, const Expression& mean = 0,
+                  const Expression& deviation = 1);
+
+// A number of the scene as this world has it (variation.hpp, Batch::read), of what has it; those
+// that vary are the world's own. `component` counts within the numbers of a parameter.
+Expression parameter(Parameter of, int component = 0);  // of the world: gravity
+Expression parameter(Parameter of, BodyId body, int component = 0);
+Expression parameter(Parameter of, ShapeId shape, int component = 0);
+Expression parameter(Parameter of, JointId joint, int component = 0);
+Expression parameter(Parameter of, ControlId control, int component = 0);
 
 // What `value` was at the end of the step before; in the first step where the world began. In
 // Task::controls: what it is.

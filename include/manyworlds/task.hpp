@@ -51,7 +51,8 @@ struct Task {
 
   int choices = 0;  // discrete tasks: the action is one of 0 to choices - 1, and `actions` is empty
   std::vector<Action> actions = {};
-  // What each control of the scene is set to before the steps: of actions, numbers and previous().
+  // What each control of the scene is set to before the steps: of actions, numbers, random ones,
+  // parameters and previous().
   std::vector<Expression> controls = {};
 
   std::vector<Observation> observations = {};

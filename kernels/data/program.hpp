@@ -39,6 +39,12 @@ enum class Operation : std::int32_t {
   cosine,       // of up to 1e5 rad
   arc_tangent,  // the angle of (b, a), -pi to pi
   exponential,
+  logarithm,  // natural
+  power,      // a to the power of b
+  hyperbolic_tangent,
+  arc_cosine,  // 0 to pi
+  remainder,   // of a by b, with the sign of b
+  sign,
   less,
   less_equal,
   equal,

@@ -1,11 +1,23 @@
 // Runs a program for the worlds of a group.
 #include "kernels/data/program.hpp"
 
-#include "kernels/lane/elementary.hpp"
+#include "kernels/lane/logarithm.hpp"
 #include "kernels/lane/solve.hpp"
 #include "kernels/observe/observe.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+namespace {
+
+// Not a number beyond -1 to 1.
+MW_INLINE Float arc_cosine(Float x) {
+  const Float one(Real(1));
+  const Mask inside = abs(x) <= one;
+  const Float angle = arc_tangent(sqrt((one - x) * (one + x)), x);
+  return select(inside, angle, Float(Real(0)) / Float(Real(0)));
+}
+
+}  // namespace
 
 void run_program(const Group& g, const ObserverView* seen, const kernels::ProgramRun<Real>& run) {
   using kernels::Operation;
@@ -46,6 +58,12 @@ void run_program(const Group& g, const ObserverView* seen, const kernels::Progra
         case Operation::cosine: return sine_and_cosine(a()).cosine;
         case Operation::arc_tangent: return arc_tangent(a(), b());
         case Operation::exponential: return exponential(a());
+        case Operation::logarithm: return logarithm(a());
+        case Operation::power: return power(a(), b());
+        case Operation::hyperbolic_tangent: return hyperbolic_tangent(a());
+        case Operation::arc_cosine: return arc_cosine(a());
+        case Operation::remainder: return modulo(a(), b());
+        case Operation::sign: return sign(a());
         case Operation::less: return truth(a() < b());
         case Operation::less_equal: return truth(a() <= b());
         case Operation::equal: return truth(a() == b());

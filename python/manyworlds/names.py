@@ -49,6 +49,7 @@ Parameter = Literal[
     "kv",
 ]
 Draw = Literal["none", "uniform", "log_uniform"]
+Every = Literal["episode", "step"]
 Precision = Literal["f32", "f64"]
 Isa = Literal["scalar", "avx2", "avx512"]
 ContactLayout = Literal["automatic", "dense", "rows"]

@@ -43,6 +43,39 @@ def exp(a: Value) -> Expression:
     return _x.exp(a)
 
 
+def log(a: Value) -> Expression:
+    """Natural logarithm: minus infinity of 0, not a number below."""
+    return _x.log(a)
+
+
+def tanh(a: Value) -> Expression:
+    """Hyperbolic tangent."""
+    return _x.tanh(a)
+
+
+def arccos(a: Value) -> Expression:
+    """rad, 0 to pi; not a number beyond -1 to 1."""
+    return _x.arccos(a)
+
+
+def sign(a: Value) -> Expression:
+    """-1, 0 or 1."""
+    return _x.sign(a)
+
+
+def mod(a: Value, b: Value) -> Expression:
+    """``a % b``: what is left beside whole multiples of ``b``, with the sign of ``b``."""
+    return _x.mod(a, b)
+
+
+def power(a: Value, b: Value) -> Expression:
+    """``a ** b``, to 2 + |b ln a| units in the last place; of ``a`` below 0 where ``b`` is whole.
+
+    Of a number, whole powers up to 64 are exacter: ``a ** 3`` is a product.
+    """
+    return Expression(a) ** b
+
+
 def sqrt(a: Value) -> Expression:
     """Square root; of what is below 0 not a number."""
     return _x.sqrt(a)
@@ -152,7 +185,8 @@ class Task:
 
     choices: int = 0  # discrete tasks: the action is 0 to choices - 1, and `actions` is empty
     actions: list[Action] = field(default_factory=list)
-    # What each control of the scene is set to: of actions, numbers and previous(...).
+    # What each control of the scene is set to: of actions, numbers, random ones, parameters and
+    # previous(...).
     controls: list[Value] = field(default_factory=list)
 
     observations: list[Observation] = field(default_factory=list)

@@ -14,14 +14,18 @@ from .ids import (
     ControlRef,
     JointId,
     JointRef,
+    ShapeId,
+    ShapeRef,
     SiteId,
     SiteRef,
     TendonId,
     TendonRef,
     index_of,
 )
+from .names import Every, Parameter
 from .scene import Scene
 
+Value = Union[Expression, float]  # numbers are expressions
 Axis = Union[int, str]  # 0, 1, 2 or "x", "y", "z", of the world
 
 _HANDLES = {
@@ -203,3 +207,51 @@ class Terms:
     def lost(self) -> Expression:
         """Whether the world is lost (``Status.lost()``)."""
         return _x.lost()
+
+    def uniform(
+        self, name: str, low: Value = 0.0, high: Value = 1.0, *, every: Every = "step"
+    ) -> Expression:
+        """A random number from ``low`` to ``high``, of every "step" of the task or "episode".
+
+        It depends on its name, the world's seed and episode and, of every step, ``age()`` alone; in
+        ``Task.controls`` on that of the step to take. So one name is one number wherever it stands.
+        """
+        return _x.uniform(name, every, low, high)
+
+    def normal(
+        self, name: str, mean: Value = 0.0, deviation: Value = 1.0, *, every: Every = "step"
+    ) -> Expression:
+        """A normal random number, drawn as those of ``uniform``."""
+        return _x.normal(name, every, mean, deviation)
+
+    def parameter(
+        self,
+        parameter: Parameter,
+        component: int = 0,
+        *,
+        body: Optional[BodyRef] = None,
+        shape: Optional[ShapeRef] = None,
+        joint: Optional[JointRef] = None,
+        control: Optional[ControlRef] = None,
+    ) -> Expression:
+        """A number of the scene as this world has it (``Scene.variations``), of what has it.
+
+        A shape that is an int is one of ``body``. ``component`` counts within the parameter's numbers.
+        Raises ValueError where it is no number of what is given.
+        """
+        if shape is not None:
+            return _x.parameter(parameter, "shape", *self._shape(shape, body), component)
+        for kind, ref in (("body", body), ("joint", joint), ("control", control)):
+            if ref is not None:
+                return _x.parameter(parameter, kind, self._index(kind, ref), -1, component)
+        return _x.parameter(parameter, "world", -1, -1, component)
+
+    def _shape(self, shape: ShapeRef, body: Optional[BodyRef]) -> tuple[int, int]:
+        if isinstance(shape, ShapeId):
+            return shape
+        of = None if body is None else self._index("body", body)
+        if not isinstance(shape, str):
+            return -1 if of is None else of, shape
+        if self._scene is None:
+            raise ValueError(f"the shape '{shape}': names are those of a scene, use Terms(scene)")
+        return _core.find_shape_in_scene(self._scene, shape, of)

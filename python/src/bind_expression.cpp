@@ -2,6 +2,8 @@
 // and what else is convenient are the package's business (manyworlds/terms.py and
 // tasks.py).
 #include <array>
+#include <cmath>
+#include <string_view>
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -44,16 +46,16 @@ void binary(nb::class_<Expression>& c, const char* name, const char* reflected, 
   binary(c, reflected, [f](E self, E other) { return f(other, self); });
 }
 
+// Whole powers up to 64 are products, and 0.5 is the square root: exacter than others.
 Expression power(E self, nb::handle exponent) {
+  if (nb::isinstance<Expression>(exponent)) return pow(self, operand(exponent));
   const double n = from_python<double>(exponent, "the exponent");
   if (n == 0.5) return sqrt(self);
-  if (!(n >= 0 && n <= 64) || n != static_cast<int>(n)) {
-    throw nb::value_error("expressions have the powers 0 to 64 and 0.5; use exp for others");
-  }
+  if (!(std::abs(n) <= 64) || n != static_cast<int>(n)) return pow(self, n);
   if (n == 0) return 1;
   Expression out = self;
-  for (int i = 1; i < static_cast<int>(n); ++i) out = out * self;
-  return out;
+  for (int i = 1; i < std::abs(static_cast<int>(n)); ++i) out = out * self;
+  return n < 0 ? 1 / out : out;
 }
 
 // A class as a namespace: stubs have no place for a module within a module.
@@ -77,6 +79,7 @@ void bind_operators(nb::class_<Expression>& c) {
   binary(c, "__sub__", "__rsub__", [](E a, E b) { return a - b; });
   binary(c, "__mul__", "__rmul__", [](E a, E b) { return a * b; });
   binary(c, "__truediv__", "__rtruediv__", [](E a, E b) { return a / b; });
+  binary(c, "__mod__", "__rmod__", [](E a, E b) { return mod(a, b); });
   binary(c, "__and__", "__rand__", [](E a, E b) { return a & b; });
   binary(c, "__or__", "__ror__", [](E a, E b) { return a | b; });
   binary(c, "__lt__", [](E a, E b) { return a < b; });
@@ -92,6 +95,9 @@ void bind_operators(nb::class_<Expression>& c) {
       .def("__invert__", [](E a) { return !a; })
       .def("__abs__", [](E a) { return abs(a); })
       .def("__pow__", &power, nb::arg("exponent"))
+      .def(
+          "__rpow__", [](E self, nb::handle base) { return pow(operand(base), self); },
+          nb::arg("base"))
       .def("__hash__",
            [](nb::handle self) { return reinterpret_cast<std::intptr_t>(self.ptr()) >> 4; })
       .def("__copy__", [](nb::object self) { return self; })
@@ -126,6 +132,28 @@ Observed observed_named(const std::string& name) {
   throw nb::value_error(("the observed number " + unknown_name(name, known)).c_str());
 }
 
+// Of what has it: "world", "body", "shape" (`body` and `shape`), "joint", "control".
+Expression parameter_of(nb::handle parameter, const std::string& owner, int index, int shape,
+                        int component) {
+  const auto of = from_python<Parameter>(parameter, "the parameter");
+  if (owner == "world") return terms::parameter(of, component);
+  if (owner == "body") return terms::parameter(of, BodyId(index), component);
+  if (owner == "shape") return terms::parameter(of, ShapeId(BodyId(index), shape), component);
+  if (owner == "joint") return terms::parameter(of, JointId(index), component);
+  return terms::parameter(of, ControlId(index), component);
+}
+
+using RandomTerm = Expression (*)(std::string_view, Every, E, E);
+void bind_random(Functions& m, const char* name, RandomTerm term, const char* first,
+                 const char* second) {
+  m.def_static(
+      name,
+      [term](const std::string& of, nb::handle every, nb::handle a, nb::handle b) {
+        return term(of, from_python<Every>(every, "every"), operand(a), operand(b));
+      },
+      nb::arg("name"), nb::arg("every"), nb::arg(first), nb::arg(second));
+}
+
 void bind_terms(Functions& m) {
   const auto of_body = [&m](const char* name, auto term) {
     m.def_static(
@@ -154,6 +182,10 @@ void bind_terms(Functions& m) {
       "control", [](int index) { return terms::control(ControlId(index)); }, nb::arg("index"));
   m.def_static("age", &terms::age);
   m.def_static("lost", &terms::lost);
+  bind_random(m, "uniform", terms::uniform, "low", "high");
+  bind_random(m, "normal", terms::normal, "mean", "deviation");
+  m.def_static("parameter", &parameter_of, nb::arg("parameter"), nb::arg("owner"), nb::arg("index"),
+               nb::arg("shape"), nb::arg("component"));
   one(m, "previous", terms::previous);
   one(m, "held", terms::held);
   one(m, "largest", terms::largest);
@@ -174,6 +206,12 @@ void bind_expression(nb::module_& parent) {
   one(m, "sin", [](E a) { return sin(a); });
   one(m, "cos", [](E a) { return cos(a); });
   one(m, "exp", [](E a) { return exp(a); });
+  one(m, "log", [](E a) { return log(a); });
+  one(m, "tanh", [](E a) { return tanh(a); });
+  one(m, "arccos", [](E a) { return acos(a); });
+  one(m, "sign", [](E a) { return sign(a); });
+  two(m, "mod", [](E a, E b) { return mod(a, b); });
+  two(m, "power", [](E a, E b) { return pow(a, b); });
   one(m, "sqrt", [](E a) { return sqrt(a); });
   one(m, "floor", [](E a) { return floor(a); });
   two(m, "minimum", [](E a, E b) { return min(a, b); });

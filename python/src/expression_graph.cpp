@@ -24,7 +24,12 @@ ExpressionGraph::Node read_node(nb::handle value, const Place& place) {
     node.number = read_number(parts[1], place.element(1));
     return node;
   }
-  for (std::size_t i = 1; i < parts.size(); ++i) {
+  std::size_t first = 1;
+  if (parts.size() > 1 && nb::isinstance<nb::str>(parts[1])) {
+    node.text = read_text(parts[1], place.element(1));
+    first = 2;
+  }
+  for (std::size_t i = first; i < parts.size(); ++i) {
     node.arguments.push_back(
         static_cast<int>(read_integer(parts[i], place.element(i), kMin, kMax)));
   }
@@ -40,6 +45,7 @@ nb::tuple values_of(const std::vector<Expression>& roots) {
     nb::list out;
     out.append(nb::str(node.name.c_str(), node.name.size()));
     if (node.name == "number") out.append(node.number);
+    if (!node.text.empty()) out.append(nb::str(node.text.c_str(), node.text.size()));
     for (const int argument : node.arguments) out.append(argument);
     nodes.append(nb::tuple(out));
   }

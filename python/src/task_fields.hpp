@@ -8,6 +8,12 @@
 namespace manyworlds::python {
 
 template <>
+struct Names<Every> {
+  static constexpr const char* kind = "Every";
+  static constexpr Named<Every> all[] = {{Every::episode, "episode"}, {Every::step, "step"}};
+};
+
+template <>
 struct Names<Autoreset> {
   static constexpr const char* kind = "Autoreset";
   static constexpr Named<Autoreset> all[] = {{Autoreset::next_step, "next_step"},

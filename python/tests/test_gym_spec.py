@@ -111,6 +111,17 @@ def test_ranges_follow_from_what_expressions_are_made_of():
         (tasks.where(speed > 0, t.action(), -1), (-1, 3)),
         (tasks.sqrt(t.action() - 1), (0, 2**0.5)),
         (tasks.floor(t.ray_distance(0) - 0.5), (-1, 2)),
+        (tasks.log(1 + t.action()), (0, np.log(4))),
+        (tasks.log(t.action()), (-inf, np.log(3))),
+        (tasks.sign(speed), (-1, 1)),
+        (tasks.mod(speed, 3), (0, 3)),
+        (speed % -2, (-2, 0)),
+        ((1 + t.touching(1)) ** 1.5, (1, 2**1.5)),
+        ((1 + t.touching(1)) ** -0.25, (2**-0.25, 1)),
+        (t.action() ** 1.5, (0, inf)),
+        (speed**1.5, (-inf, inf)),
+        (t.uniform("a", -2, 3), (-2, 3)),
+        (t.parameter("gravity", 1), (-inf, inf)),
         (tasks.exp(-t.touching(1)), (np.exp(-1), 1)),
         (tasks.exp(abs(speed)), (1, inf)),
         (tasks.previous(-t.touching(1)), (-1, 0)),
@@ -125,7 +136,7 @@ def test_ranges_follow_from_what_expressions_are_made_of():
     ]:
         assert range_of(value, task) == pytest.approx(wanted), value
     assert range_of(speed, task)[1] >= 1e5 and range_of(t.position(0, 0), task)[0] <= -1e10
-    for value, most in [(angle, 3.15), (tasks.sin(speed), 1.001), (t.direction(3, 0, 0), 1.001)]:
+    for value, most in [(angle, 3.15), (tasks.sin(speed), 1.001), (tasks.tanh(speed), 1.001), (t.direction(3, 0, 0), 1.001)]:
         low, high = range_of(value, task)
         assert 0.99 * most < high <= most and low == -high
 

@@ -3,6 +3,7 @@
 import copy
 import importlib
 import math
+import pickle
 import sys
 from pathlib import Path
 
@@ -100,6 +101,18 @@ def test_operators_and_functions_are_those_of_numpy():
         (lambda a: tasks.clip(a, -1, 1), lambda a: np.clip(a, -1, 1)),
         (lambda a: tasks.where(a > 0, a, -2), lambda a: np.where(a > 0, a, -2)),
         (lambda a: tasks.arctan2(a, -1), lambda a: np.arctan2(a, -1)),
+        (tasks.tanh, np.tanh),
+        (tasks.sign, np.sign),
+        (lambda a: tasks.log(a + 2), lambda a: np.log(a + 2)),
+        (lambda a: tasks.arccos(a / 4), lambda a: np.arccos(a / 4)),
+        (lambda a: tasks.mod(a, 0.75), lambda a: np.mod(a, 0.75)),
+        (lambda a: a % -2, lambda a: a % -2),
+        (lambda a: 7 % (a + 0.1), lambda a: 7 % (a + 0.1)),
+        (lambda a: (a + 2) ** 1.5, lambda a: (a + 2) ** 1.5),
+        (lambda a: (a + 2) ** -2, lambda a: (a + 2) ** -2.0),
+        (lambda a: (a + 2) ** a, lambda a: (a + 2) ** a),
+        (lambda a: 2**a, lambda a: 2**a),
+        (lambda a: tasks.power(a, 3), lambda a: a**3),
     ]
     found = values(lambda t: [f(t.action()) for f, _ in functions], x)
     for i, (_, f) in enumerate(functions):
@@ -161,11 +174,68 @@ def test_operands_that_are_no_numbers_are_type_errors():
     for wrong in (lambda: a + "1", lambda: [] * a, lambda: a & None, lambda: tasks.sin("x")):
         with pytest.raises(TypeError):
             wrong()
-    with pytest.raises(ValueError, match="powers 0 to 64 and 0.5"):
-        a**1.5
+    for wrong in (lambda: a ** "2", lambda: a**None, lambda: "2" ** a, lambda: a % "2"):
+        with pytest.raises(TypeError):
+            wrong()
     with pytest.raises(ValueError, match="nested"):
         for _ in range(3000):
             a = a + 1
+
+
+def test_random_numbers_have_names_and_are_the_same_wherever_they_stand():
+    def make(t):
+        goal = t.uniform("goal", -1, 1, every="episode")
+        return [
+            goal,
+            t.uniform("goal", -2, 2, every="episode"),
+            t.uniform("goal", -1, 1),
+            t.normal("noise", 1, 0),
+            pickle.loads(pickle.dumps(goal)),
+            t.normal("noise", deviation=3),
+        ]
+
+    one, two = (values(make, np.zeros(1000), steps=n) for n in (1, 2))
+    assert (one[:, 1] == 2 * one[:, 0]).all() and (one[:, 4] == one[:, 0]).all()
+    assert (one[:, 3] == 1).all()
+    assert (two[:, 0] == one[:, 0]).all() and (two[:, 2] != one[:, 2]).all()
+    assert abs(one[:, [0, 2]]).max() <= 1 and abs(one[:, 0].mean()) < 0.1
+    assert one[:, 5].std() == pytest.approx(3, rel=0.15)
+    t = tasks.Terms()
+    assert "uniform('goal', 'episode')" in repr(t.uniform("goal", every="episode"))
+    with pytest.raises(ValueError, match="every is 'epoch'"):
+        t.uniform("goal", every="epoch")
+    task = falling()
+    task.observe("x", t.uniform(""))
+    assert task.validate()[0].message == "a random number has no name, must have one"
+
+
+def test_parameters_are_those_of_the_world():
+    task = falling()
+    task.scene.bodies[0].shapes[0].name = "skin"
+    task.scene.add(mw.vary("friction", 0.1, 0.9))
+    task.scene.add(mw.vary("density", 100, 900))
+    t = task.terms
+    task.observe("friction", t.parameter("friction", shape="skin"))
+    task.observe("the same", t.parameter("friction", shape=0, body="ball"))
+    task.observe("mass", t.parameter("mass", body="ball"))
+    task.observe("gravity", t.parameter("gravity", 1))
+    task.observe("handle", t.parameter("density", shape=task.scene.shape("skin")))
+    task = pickle.loads(pickle.dumps(task))
+    with mw.Environment(task, 9, precision="f64", threads=1) as env:
+        env.step(np.zeros((9, 1), np.float32))
+        seen = env.observations
+        for column, name in ((0, "friction"), (1, "friction"), (2, "mass"), (4, "density")):
+            wanted = env.batch.get(name)[:, 0, 0].astype(np.float32)
+            assert (seen[:, column] == wanted).all() and np.ptp(wanted) > 0.1, name
+        assert (seen[:, 3] == -10).all()
+    with pytest.raises(ValueError, match="friction is a number of a shape, not of a body"):
+        t.parameter("friction", body="ball")
+    with pytest.raises(ValueError, match="nearest: 'mass'"):
+        t.parameter("mas", body="ball")
+    with pytest.raises(ValueError, match=r"use Terms\(scene\)"):
+        tasks.Terms().parameter("friction", shape="skin")
+    task.observe("x", t.parameter("damping", joint=0))
+    assert "damping of joint 0: the joint must be" in task.validate()[0].message
 
 
 def test_names_that_there_are_not_are_said():

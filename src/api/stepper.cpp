@@ -191,7 +191,7 @@ void Stepper<Real>::run_group(int index, int thread, bool steps, Work work) {
   for_each_other([&w](int lane_index, std::byte* to) { w.save_lane(lane_index, to); });
   work(plan, view, scratch_[t].views[kind], counters_[t],
        VisitedGroup<Real>{group, thread, kernels_, w.tables(), view,
-                          w.storage().controls(first_lane), plan.wanted,
+                          w.storage().controls(first_lane), plan.wanted, w,
                           part_.begins && part_.ends});
   for_each_other([&w](int lane_index, const std::byte* from) { w.restore_lane(lane_index, from); });
   // The others have not been stepped: what was last seen of their steps stays.

@@ -45,6 +45,7 @@ MW_ENUM_TABLE(Isa, avx512, "isa", "scalar", "avx2", "avx512");
 MW_ENUM_TABLE(ContactLayout, rows, "layout", "automatic", "dense", "rows");
 MW_ENUM_TABLE(ItemKind, particle, "item", "body", "world", "shape", "coordinate", "dof",
               "particle");
+MW_ENUM_TABLE(Every, step, "every", "episode", "step");
 MW_ENUM_TABLE(Autoreset, disabled, "autoreset", "next_step", "same_step", "disabled");
 #define MW_WRITE_NAME(name, ...) "write_" #name,
 MW_ENUM_TABLE(Input, disable_joint, "input", "force", "torque", "force_at", "impulse",

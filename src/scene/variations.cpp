@@ -52,9 +52,8 @@ bool joint_can(const JointType& type, Parameter parameter) {
       std::holds_alternative<HingeJoint>(type) || std::holds_alternative<SliderJoint>(type);
   return single || (std::holds_alternative<BallJoint>(type) && parameter != Parameter::rest);
 }
-bool control_can(const Control& control, Parameter parameter) {
-  const Actuator& a = control.actuator;
-  if (control.kind != ControlKind::joint_force) return false;
+bool control_can(ControlKind kind, const Actuator& a, Parameter parameter) {
+  if (kind != ControlKind::joint_force) return false;
   if (parameter == Parameter::kp) return is_position_servo(a);
   return parameter != Parameter::kv || is_position_servo(a) || is_velocity_servo(a);
 }
@@ -137,7 +136,10 @@ bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of) {
     case Parameter::gain:
     case Parameter::bias:
     case Parameter::kp:
-    case Parameter::kv: return control_can(at(scene.controls, of.control), parameter);
+    case Parameter::kv: {
+      const Control& control = at(scene.controls, of.control);
+      return control_can(control.kind, control.actuator, parameter);
+    }
   }
   return false;
 }
@@ -183,16 +185,18 @@ double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of
     case Parameter::gain:
     case Parameter::bias:
     case Parameter::kp:
-    case Parameter::kv: return get_number(at(scene.controls, of.control), parameter, component);
+    case Parameter::kv: {
+      const Control& control = at(scene.controls, of.control);
+      return get_number(control.kind, control.actuator, parameter, component);
+    }
   }
   return 0;
 }
 
-double get_number(const Control& control, Parameter parameter, int component) {
-  const Actuator& a = control.actuator;
+double get_number(ControlKind kind, const Actuator& a, Parameter parameter, int component) {
   if (parameter == Parameter::gain) return a.gain[component];
   if (parameter == Parameter::bias) return a.bias[component];
-  if (!control_can(control, parameter)) return 0;
+  if (!control_can(kind, a, parameter)) return 0;
   return parameter == Parameter::kp ? a.gain.x() : 0 - a.bias.z();  // never -0
 }
 
@@ -219,13 +223,12 @@ void set_number(Scene& scene, const VariedNumber& n, double value) {
     case Parameter::bias:
     case Parameter::kp:
     case Parameter::kv:
-      set_number(at(scene.controls, n.of.control), n.parameter, n.component, value);
+      set_number(at(scene.controls, n.of.control).actuator, n.parameter, n.component, value);
       break;
   }
 }
 
-void set_number(Control& control, Parameter parameter, int component, double value) {
-  Actuator& a = control.actuator;
+void set_number(Actuator& a, Parameter parameter, int component, double value) {
   if (parameter == Parameter::gain) {
     a.gain[component] = value;
   } else if (parameter == Parameter::bias) {

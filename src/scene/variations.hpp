@@ -38,8 +38,8 @@ bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of);
 
 double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of, int component);
 void set_number(Scene& scene, const VariedNumber& number, double value);
-// Of a control.
-double get_number(const Control& control, Parameter parameter, int component);
-void set_number(Control& control, Parameter parameter, int component, double value);
+// Of the actuator of a control.
+double get_number(ControlKind kind, const Actuator& actuator, Parameter parameter, int component);
+void set_number(Actuator& actuator, Parameter parameter, int component, double value);
 
 }  // namespace manyworlds

@@ -99,22 +99,27 @@ void Worlds<Real>::apply_values(int world) {
 
 template <class Real>
 void Worlds<Real>::read(Parameter parameter, int world, double* out) const {
-  const Scene& scene = plan_.scene();
-  const auto& at = number_at_[static_cast<std::size_t>(parameter)];
-  std::size_t i = 0;
-  for (const NumberOwner& of : owners_[static_cast<std::size_t>(parameter)]) {
-    for (int c = 0; c < info(parameter).numbers; ++c, ++i) {
-      out[i] = at[i] >= 0 ? values_of(world)[at[i]] : get_number(scene, parameter, of, c);
-      // Sizes and densities make a mass, too, and what servos have gains.
-      if (parameter == Parameter::mass) out[i] = body_of(world, i).mass;
-      if (of.control >= 0) out[i] = get_number(control_of(world, of.control), parameter, c);
-    }
-  }
+  for (std::size_t i = 0; i < parameter_size(parameter); ++i) out[i] = number(parameter, world, i);
 }
 
 template <class Real>
-Control Worlds<Real>::control_of(int world, int control) const {
-  Control out = plan_.scene().controls[static_cast<std::size_t>(control)];
+double Worlds<Real>::number(Parameter parameter, int world, std::size_t item) const {
+  const auto p = static_cast<std::size_t>(parameter);
+  const auto numbers = static_cast<std::size_t>(info(parameter).numbers);
+  const NumberOwner& of = owners_[p][item / numbers];
+  const int component = static_cast<int>(item % numbers), at = number_at_[p][item];
+  // Sizes and densities make a mass, too, and what servos have gains.
+  if (parameter == Parameter::mass) return body_of(world, item).mass;
+  if (of.control >= 0) {
+    const auto kind = plan_.scene().controls[static_cast<std::size_t>(of.control)].kind;
+    return get_number(kind, actuator_of(world, of.control), parameter, component);
+  }
+  return at >= 0 ? values_of(world)[at] : get_number(plan_.scene(), parameter, of, component);
+}
+
+template <class Real>
+Actuator Worlds<Real>::actuator_of(int world, int control) const {
+  Actuator out = plan_.scene().controls[static_cast<std::size_t>(control)].actuator;
   const auto& varied = data().varied;
   for (std::size_t i = 0; i < varied.size(); ++i) {
     const VariedNumber& n = varied[i];
@@ -252,6 +257,7 @@ void Worlds<Real>::copy_world(int from, int to) {
   template void Worlds<Real>::draw_values(int, const Draws&);                    \
   template void Worlds<Real>::apply_values(int);                                 \
   template void Worlds<Real>::read(Parameter, int, double*) const;               \
+  template double Worlds<Real>::number(Parameter, int, std::size_t) const;       \
   template std::string Worlds<Real>::check(Parameter, int, const double*) const; \
   template void Worlds<Real>::write(Parameter, int, const double*);              \
   template double Worlds<Real>::gravity(int, int) const;                         \

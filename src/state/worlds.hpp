@@ -87,6 +87,7 @@ class Worlds final : public WorldsBase {
     return number_at_[static_cast<std::size_t>(parameter)].size();
   }
   void read(Parameter parameter, int world, double* out) const override;
+  double number(Parameter parameter, int world, std::size_t item) const override;
   std::string check(Parameter parameter, int world, const double* in) const override;
   void write(Parameter parameter, int world, const double* in) override;
   // Bodies as this world's sizes, densities and masses make them.
@@ -152,7 +153,7 @@ class Worlds final : public WorldsBase {
   void draw_values(int world, const Draws& draws);
   // Derives everything from the world's numbers; its bodies stay where they are.
   void apply_values(int world);
-  Control control_of(int world, int control) const;  // with this world's numbers
+  Actuator actuator_of(int world, int control) const;  // with this world's numbers
   double gravity(int world, int component) const;
   double gravity_scale(int world, int scene_body) const;
 

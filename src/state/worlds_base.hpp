@@ -54,6 +54,7 @@ class WorldsBase {
   // times the numbers of each. check() says what is wrong with them; empty: nothing.
   virtual std::size_t parameter_size(Parameter parameter) const = 0;
   virtual void read(Parameter parameter, int world, double* out) const = 0;
+  virtual double number(Parameter parameter, int world, std::size_t item) const = 0;  // of these
   virtual std::string check(Parameter parameter, int world, const double* in) const = 0;
   virtual void write(Parameter parameter, int world, const double* in) = 0;
 

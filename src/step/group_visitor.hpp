@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "src/state/worlds_base.hpp"
 #include "src/step/pipeline.hpp"
 
 namespace manyworlds {
@@ -18,6 +19,7 @@ struct VisitedGroup {
   Real* control;  // [control][lane]
   // Of the last step, or of the state where worlds begin; null: nothing is observed.
   const kernels::ObserverView<Real>* seen;
+  const WorldsBase& worlds;  // all of the kind: to read those of the group
   bool whole;  // this visit takes all steps of the call: what this thread has put down still holds
 };
 

@@ -11,6 +11,7 @@
 #include "src/base/float_mode.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/scene/checks.hpp"
+#include "src/scene/variations.hpp"
 #include "src/task/node.hpp"
 
 namespace manyworlds {
@@ -109,13 +110,15 @@ class TaskChecker {
     const bool looks_back = n.term == Term::arithmetic && remembers(n.operation);
     if (control) {
       const bool fits = n.term == Term::number || n.term == Term::action ||
-                        n.term == Term::function ||
+                        n.term == Term::function || n.term == Term::uniform ||
+                        n.term == Term::parameter ||
                         (n.term == Term::arithmetic &&
                          (!looks_back || n.operation == kernels::Operation::previous));
       if (!fits) {
-        issues_.push_back({place, "depends on " +
-                                      (looks_back ? "what is remembered" : to_string(e)) +
-                                      ", must depend on actions, numbers and previous(...) alone"});
+        issues_.push_back(
+            {place, "depends on " + (looks_back ? "what is remembered" : to_string(e)) +
+                        ", must depend on actions, numbers, random ones, parameters and "
+                        "previous(...) alone"});
         return;
       }
     }
@@ -180,8 +183,45 @@ class TaskChecker {
         bounded(n.index, task_.choices > 0 ? 1 : task_.actions.size(), "the action");
         break;
       case Term::control: bounded(n.index, task_.scene.controls.size(), "the control"); break;
+      case Term::uniform:
+        if (n.text.empty())
+          issues_.push_back({place, "a random number has no name, must have one"});
+        bounded(n.index, 2, "the number");
+        break;
+      case Term::parameter: check_parameter(place, e, bounded); break;
       default: break;
     }
+  }
+
+  template <class Bounded>
+  void check_parameter(const std::string& place, const Expression& e, const Bounded& bounded) {
+    const Expression::Node& n = e.node();
+    const Scene& scene = task_.scene;
+    const auto parameter = static_cast<Parameter>(n.of);
+    const std::size_t count = static_cast<std::size_t>(info(parameter).numbers);
+    bool found = bounded(n.axis, count, "the number");
+    NumberOwner of;
+    switch (info(parameter).owner) {
+      case ParameterInfo::world: break;
+      case ParameterInfo::shape:
+      case ParameterInfo::body:
+        found = bounded(n.index, scene.bodies.size(), "the body") && found;
+        of.body = n.index;
+        if (!found || info(parameter).owner == ParameterInfo::body) break;
+        found = bounded(n.shape, scene.at(BodyId(n.index)).shapes.size(), "the shape");
+        of.shape = n.shape;
+        break;
+      case ParameterInfo::joint:
+        found = bounded(n.index, scene.joints.size(), "the joint") && found;
+        of.joint = n.index;
+        break;
+      case ParameterInfo::control:
+        found = bounded(n.index, scene.controls.size(), "the control") && found;
+        of.control = n.index;
+        break;
+    }
+    if (!found || can_vary(scene, parameter, of)) return;
+    issues_.push_back({place, to_string(e) + ": there is no such number that could vary"});
   }
 
   template <class Bounded>

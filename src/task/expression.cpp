@@ -1,5 +1,6 @@
 // Expressions out of expressions.
 #include <algorithm>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -42,6 +43,8 @@ Expression leaf(Term term, int index = -1, int of = 0, int axis = 0) {
 }
 
 }  // namespace
+
+const char* to_string(Every every) { return name_of(every); }
 
 Expression make_expression(Expression::Node node) {
   for (const Expression& e : node.operands) node.depth = std::max(node.depth, e.node().depth + 1);
@@ -106,6 +109,12 @@ Expression clamp(E a, E low, E high) { return min(max(a, low), high); }
 Expression sin(E a) { return arithmetic(Operation::sine, {a}); }
 Expression cos(E a) { return arithmetic(Operation::cosine, {a}); }
 Expression exp(E a) { return arithmetic(Operation::exponential, {a}); }
+Expression log(E a) { return arithmetic(Operation::logarithm, {a}); }
+Expression pow(E a, E b) { return arithmetic(Operation::power, {a, b}); }
+Expression tanh(E a) { return arithmetic(Operation::hyperbolic_tangent, {a}); }
+Expression acos(E a) { return arithmetic(Operation::arc_cosine, {a}); }
+Expression mod(E a, E b) { return arithmetic(Operation::remainder, {a, b}); }
+Expression sign(E a) { return arithmetic(Operation::sign, {a}); }
 Expression atan2(E y, E x) { return arithmetic(Operation::arc_tangent, {y, x}); }
 
 namespace terms {
@@ -130,6 +139,59 @@ Expression action(int index) { return leaf(Term::action, index); }
 Expression control(ControlId control) { return leaf(Term::control, control.index()); }
 Expression age() { return leaf(Term::age); }
 Expression lost() { return leaf(Term::lost); }
+
+namespace {
+
+Expression drawn(std::string_view name, Every every, int index) {
+  Expression::Node node;
+  node.term = Term::uniform;
+  node.text = name;
+  node.index = index;
+  node.of = static_cast<int>(checked_enum(every));
+  return make_expression(std::move(node));
+}
+Expression number_of(Parameter of, ParameterInfo::Owner owner, int index, int shape,
+                     int component) {
+  const ParameterInfo& what = info(of);
+  if (what.owner != owner) {
+    throw std::invalid_argument(std::string("parameter: ") + what.name + " is a number of a " +
+                                to_string(what.owner) + ", not of a " + to_string(owner));
+  }
+  Expression::Node node;
+  node.term = Term::parameter;
+  node.of = static_cast<int>(of);
+  node.index = index;
+  node.shape = shape;
+  node.axis = component;
+  return make_expression(std::move(node));
+}
+
+}  // namespace
+
+Expression uniform(std::string_view name, Every every, E low, E high) {
+  return low + (high - low) * drawn(name, every, 0);
+}
+// Box and Muller 1958.
+Expression normal(std::string_view name, Every every, E mean, E deviation) {
+  const Expression size = sqrt(-2 * log(1 - drawn(name, every, 0)));
+  return mean + deviation * (size * cos(2 * std::numbers::pi * drawn(name, every, 1)));
+}
+Expression parameter(Parameter of, int component) {
+  return number_of(of, ParameterInfo::world, -1, -1, component);
+}
+Expression parameter(Parameter of, BodyId body, int component) {
+  return number_of(of, ParameterInfo::body, body.index(), -1, component);
+}
+Expression parameter(Parameter of, ShapeId shape, int component) {
+  return number_of(of, ParameterInfo::shape, shape.body().index(), shape.index(), component);
+}
+Expression parameter(Parameter of, JointId joint, int component) {
+  return number_of(of, ParameterInfo::joint, joint.index(), -1, component);
+}
+Expression parameter(Parameter of, ControlId control, int component) {
+  return number_of(of, ParameterInfo::control, control.index(), -1, component);
+}
+
 Expression previous(E value) { return arithmetic(Operation::previous, {value}); }
 Expression held(E condition) { return arithmetic(Operation::held, {condition}); }
 Expression largest(E value) { return arithmetic(Operation::largest, {value}); }
@@ -159,6 +221,18 @@ std::string observed_text(const Expression::Node& n) {
   return text;
 }
 
+std::string parameter_text(const Expression::Node& n) {
+  const ParameterInfo& what = info(static_cast<Parameter>(n.of));
+  std::string text = what.name;
+  if (what.owner == ParameterInfo::shape) {
+    text += " of body " + std::to_string(n.index) + ", shape " + std::to_string(n.shape);
+  } else if (what.owner != ParameterInfo::world) {
+    text += std::string(" of ") + to_string(what.owner) + " " + std::to_string(n.index);
+  }
+  if (what.numbers > 1) text += ", number " + std::to_string(n.axis);
+  return text;
+}
+
 }  // namespace
 
 std::string to_string(E expression) {
@@ -181,6 +255,8 @@ std::string to_string(E expression) {
     case Term::control: return "control " + index;
     case Term::age: return "age";
     case Term::lost: return "lost";
+    case Term::uniform: return "the random number '" + n.text + "'";
+    case Term::parameter: return parameter_text(n);
     case Term::raw: return "row " + index + " of the state";
   }
   return "?";

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "manyworlds/observe.hpp"
+#include "src/base/enum_names.hpp"
 #include "src/task/node.hpp"
 
 namespace manyworlds {
@@ -40,6 +41,12 @@ constexpr OperationName kOperations[] = {
     {Operation::cosine, "cos", "", 1},
     {Operation::arc_tangent, "arctan2", "", 2},
     {Operation::exponential, "exp", "", 1},
+    {Operation::logarithm, "log", "", 1},
+    {Operation::power, "power", "**", 2},
+    {Operation::hyperbolic_tangent, "tanh", "", 1},
+    {Operation::arc_cosine, "arccos", "", 1},
+    {Operation::remainder, "mod", "%", 2},
+    {Operation::sign, "sign", "", 1},
     {Operation::less, "less", "<", 2},
     {Operation::less_equal, "less_equal", "<=", 2},
     {Operation::equal, "equal", "==", 2},
@@ -59,7 +66,7 @@ struct TermName {
   std::string_view name;
   std::array<Member, 3> members;
 };
-constexpr Member kIndex = &Node::index, kOf = &Node::of, kAxis = &Node::axis;
+constexpr Member kIndex = &Node::index, kOf = &Node::of, kAxis = &Node::axis, kShape = &Node::shape;
 constexpr TermName kTerms[] = {
     {Term::position, "position", {kIndex, kAxis}},
     {Term::velocity, "velocity", {kIndex, kAxis}},
@@ -72,6 +79,8 @@ constexpr TermName kTerms[] = {
     {Term::control, "control", {kIndex}},
     {Term::age, "age", {}},
     {Term::lost, "lost", {}},
+    {Term::uniform, "uniform", {kOf, kIndex}},
+    {Term::parameter, "parameter", {kIndex, kShape, kAxis}},
 };
 constexpr std::string_view kNumber = "number";
 
@@ -100,6 +109,12 @@ std::optional<TermName> term_of(const Node& node) {
   return found ? std::optional(*found) : std::nullopt;
 }
 
+// What is not a number of a term; terms without it have none.
+bool has_text(Term term) { return term == Term::uniform || term == Term::parameter; }
+std::string text_of(const Node& node) {
+  return node.term == Term::parameter ? info(static_cast<Parameter>(node.of)).name : node.text;
+}
+
 class Exporter {
  public:
   int add(const Expression& e) {
@@ -107,7 +122,7 @@ class Exporter {
     if (const auto known = known_.find(&node); known != known_.end()) return known->second;
     ExpressionGraph::Node out;
     if (node.term == Term::number) {
-      out = {std::string(kNumber), node.number, {}};
+      out = {std::string(kNumber), node.number, {}, {}};
     } else if (node.term == Term::arithmetic) {
       out.name = name_of(node.operation).name;
       for (const Expression& operand : node.operands) out.arguments.push_back(add(operand));
@@ -116,6 +131,7 @@ class Exporter {
       for (const Member member : term->members) {
         if (member != nullptr) out.arguments.push_back(node.*member);
       }
+      out.text = text_of(node);
     } else {
       throw std::invalid_argument(
           "the expression holds a function of C++, which has no plain values");
@@ -134,6 +150,21 @@ class Exporter {
 
 [[noreturn]] void wrong_node(std::size_t at, const std::string& what) {
   throw std::invalid_argument("nodes[" + std::to_string(at) + "] " + what);
+}
+
+// What `from` says of a random number or a parameter beside its indices.
+void read_text(const ExpressionGraph::Node& from, std::size_t at, Node& node) {
+  if (node.term == Term::uniform) {
+    node.text = from.text;
+    if (!is_named(static_cast<Every>(node.of))) {
+      wrong_node(at, "is drawn every " + std::to_string(node.of) + ", must be 0 or 1");
+    }
+    return;
+  }
+  const auto& names = EnumTable<Parameter>::names;
+  const auto found = std::find(names.begin(), names.end(), from.text);
+  if (found == names.end()) wrong_node(at, "is the parameter '" + from.text + "', which is none");
+  node.of = static_cast<int>(found - names.begin());
 }
 
 // The term of that name; sets which Observed it is, if it is one.
@@ -167,6 +198,7 @@ Expression read_node(const ExpressionGraph::Node& from, std::span<const Expressi
     for (std::size_t i = 0; i < from.arguments.size(); ++i) {
       node.*term->members[i] = from.arguments[i];
     }
+    if (has_text(node.term)) read_text(from, at, node);
     return make_expression(std::move(node));
   }
   const auto* operation = find(kOperations, [&](const auto& o) { return o.name == from.name; });
@@ -220,13 +252,23 @@ class Writer {
   void add_term(const Node& node, const TermName& term) {
     out += std::string(term.name) + "(";
     const char* comma = "";
+    if (node.term == Term::uniform) {
+      out += "'" + node.text + "', '" + to_string(static_cast<Every>(node.of)) + "'";
+      out += node.index > 0 ? ", " + std::to_string(node.index) + ")" : ")";
+      return;
+    }
+    if (has_text(node.term)) {
+      out += "'" + text_of(node) + "'";
+      comma = ", ";
+    }
     for (const Member member : term.members) {
       if (member == nullptr) break;
       out += comma;
       const int value = node.*member;
       const ObservedInfo* what = observed_by(node);
       const bool counts = what && info(what->observer).item == ObservedItem::coordinate;
-      const bool letter = member != kIndex && !counts && value >= 0 && value < 3;
+      const bool letter =
+          member != kIndex && !counts && !has_text(node.term) && value >= 0 && value < 3;
       out += letter ? std::string("'") + "xyz"[value] + "'" : std::to_string(value);
       comma = ", ";
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "kernels/data/program.hpp"
@@ -25,7 +26,9 @@ enum class Term {
   control,
   age,
   lost,
-  raw,  // row of the state, as the kernels have it: of the plan, not of users
+  uniform,    // Node::text is its name, index its number, of: Every
+  parameter,  // of: Parameter, of index, a shape's `shape`, component axis
+  raw,        // row of the state, as the kernels have it: of the plan, not of users
 };
 
 struct Expression::Node {
@@ -34,6 +37,8 @@ struct Expression::Node {
   int index = -1;  // body, action, control, coordinate, dof, row, or item of what is observed
   int of = 0;      // axis of a body, or Observed
   int axis = 0;    // of the world, or component of what is observed
+  int shape = -1;
+  std::string text = {};
   kernels::Operation operation{};
   std::vector<Expression> operands{};
   std::shared_ptr<const LaneFunction> function{};

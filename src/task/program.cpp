@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "kernels/data/observer.hpp"
+#include "src/base/random.hpp"
+#include "src/plan/plan_data.hpp"
 #include "src/plan/state_layout.hpp"
 
 namespace manyworlds {
@@ -37,6 +39,12 @@ int ProgramBuilder::add_node(const Expression::Node& n) {
     case Term::control: return emit(Operation::control, n.index);
     case Term::age: return emit(Operation::input, inputs_.age());
     case Term::lost: return emit(Operation::input, inputs_.lost());
+    case Term::uniform:
+      return add_number({.kind = static_cast<Every>(n.of) == Every::step ? HostNumber::of_step
+                                                                         : HostNumber::of_episode,
+                         .stream = stream_of(n.text),
+                         .count = static_cast<std::uint64_t>(n.index)});
+    case Term::parameter: return add_parameter(n);
     case Term::raw: return emit(Operation::state, n.index);
   }
   if (remembers(n.operation)) {
@@ -76,6 +84,41 @@ int ProgramBuilder::add_observed(const Expression::Node& n) {
 
 int ProgramBuilder::add_coordinate(Field field, int item) {
   return emit(Operation::state, state_layout(plan_.data()).row_of(field, item));
+}
+
+// What no variation can change is a constant.
+int ProgramBuilder::add_parameter(const Expression::Node& n) {
+  const auto parameter = static_cast<Parameter>(n.of);
+  const ParameterInfo::Owner owner = info(parameter).owner;
+  NumberOwner of;
+  if (owner == ParameterInfo::body || owner == ParameterInfo::shape) of.body = n.index;
+  if (owner == ParameterInfo::shape) of.shape = n.shape;
+  if (owner == ParameterInfo::joint) of.joint = n.index;
+  if (owner == ParameterInfo::control) of.control = n.index;
+  const PlanData& plan = plan_.data();
+  const auto changes = [&](const VariedNumber& v) {
+    if (parameter == Parameter::mass) return v.of.body == of.body;  // by its sizes and densities
+    if (of.control >= 0) return v.of.control == of.control;         // gains of servos
+    return v.parameter == parameter && v.of == of && v.component == n.axis;
+  };
+  if (std::none_of(plan.varied.begin(), plan.varied.end(), changes)) {
+    return emit(Operation::constant, -1, -1, -1, get_number(plan.scene, parameter, of, n.axis));
+  }
+  const std::vector<NumberOwner> owners = owners_of(plan.scene, parameter);
+  const auto at = std::find(owners.begin(), owners.end(), of) - owners.begin();
+  const auto numbers = static_cast<std::size_t>(info(parameter).numbers);
+  return add_number(
+      {.kind = HostNumber::parameter,
+       .of = parameter,
+       .item = static_cast<std::size_t>(at) * numbers + static_cast<std::size_t>(n.axis)});
+}
+
+int ProgramBuilder::add_number(const HostNumber& number) {
+  auto& all = inputs_.numbers;
+  const auto found = std::find(all.begin(), all.end(), number);
+  const auto index = static_cast<int>(found - all.begin());
+  if (found == all.end()) all.push_back(number);
+  return emit(Operation::input, inputs_.first_number() + index);
 }
 
 int ProgramBuilder::add_function(const Expression::Node& n) {

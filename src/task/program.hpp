@@ -16,12 +16,24 @@
 
 namespace manyworlds {
 
+// What the host puts into a row of ProgramRun::input: a random number, or a number of the scene.
+struct HostNumber {
+  enum Kind { of_episode, of_step, parameter } kind = parameter;
+  std::uint64_t stream = 0;  // of a random number
+  std::uint64_t count = 0;   // which one of the stream; of a step, beside what its age says
+  Parameter of = {};
+  std::size_t item = 0;  // as Batch::read has the parameter
+  bool operator==(const HostNumber&) const = default;
+};
+
 // Rows of ProgramRun::input: the actions, then these.
 struct InputRows {
   int actions = 0;
+  std::vector<HostNumber> numbers = {};
   int age() const { return actions; }
   int lost() const { return actions + 1; }
-  int count() const { return actions + 2; }
+  int first_number() const { return actions + 2; }
+  int count() const { return first_number() + static_cast<int>(numbers.size()); }
 };
 
 struct Program {
@@ -51,7 +63,8 @@ class ProgramBuilder {
  public:
   // `memory` of the program itself; of one that runs before the steps (`looks_back`) of the one
   // that ran after the last ones, which has everything that this one remembers.
-  ProgramBuilder(const Plan& plan, InputRows inputs, Memory& memory,
+  // Numbers of the host are added to `inputs`.
+  ProgramBuilder(const Plan& plan, InputRows& inputs, Memory& memory,
                  ProgramBuilder* looks_back = nullptr)
       : plan_(plan), inputs_(inputs), memory_(memory), looks_back_(looks_back) {}
 
@@ -65,6 +78,8 @@ class ProgramBuilder {
   int add_function(const Expression::Node& node);
   int add_observed(const Expression::Node& node);
   int add_coordinate(Field field, int item);
+  int add_parameter(const Expression::Node& node);
+  int add_number(const HostNumber& number);
   int emit(kernels::Operation operation, int a = -1, int b = -1, int c = -1, double number = 0);
   int remember(int row);
   // In terms of what the kernels have.
@@ -76,7 +91,7 @@ class ProgramBuilder {
   Expression state(int body, int component) const;
 
   const Plan& plan_;
-  InputRows inputs_;
+  InputRows& inputs_;
   Memory& memory_;
   ProgramBuilder* looks_back_;
   Program program_;

@@ -7,6 +7,7 @@
 
 #include "src/base/bits.hpp"
 #include "src/base/hash.hpp"
+#include "src/base/random.hpp"
 #include "src/plan/plan_data.hpp"
 
 namespace manyworlds {
@@ -48,6 +49,9 @@ std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, con
       add(call.at);
       add_all(call.in);
     }
+  }
+  for (const HostNumber& n : programs.inputs.numbers) {
+    add(n.kind, n.stream, n.count, n.of, n.item);
   }
   for (const auto* rows :
        {&programs.controls, &programs.observations, &programs.rewards, &programs.memory.row}) {
@@ -97,6 +101,10 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     age_ = AlignedBuffer<Real>(groups * lanes);
     begin_now.resize(at(worlds_));
     begin_next.resize(at(worlds_));
+    const auto& numbers = p_->inputs.numbers;
+    draws_ = std::any_of(numbers.begin(), numbers.end(),
+                         [](const HostNumber& n) { return n.kind != HostNumber::parameter; });
+    if (draws_) key_.resize(at(worlds_));
     unsound.resize(at(worlds_));
     for (int t = 0; t < batch.threads(); ++t) {
       Thread& thread = threads_.emplace_back();
@@ -109,22 +117,27 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
 
   GroupVisitor& visitor() override { return *this; }
 
-  std::size_t numbers() const override { return 2 + p_->memory.row.size(); }
+  std::size_t numbers() const override { return 2 + p_->memory.row.size() + (draws_ ? 2 : 0); }
 
   void save_world(int world, std::span<double> to) const override {
     to[0] = begin_next[at(world)];
     to[1] = static_cast<double>(age_[at(world)]);
-    for (std::size_t i = 2; i < to.size(); ++i) {
-      to[i] = static_cast<double>(memory_[remembered(world, i - 2)]);
+    for (std::size_t i = 0; i < p_->memory.row.size(); ++i) {
+      to[2 + i] = static_cast<double>(memory_[remembered(world, i)]);
     }
+    if (!draws_) return;  // in halves, which doubles hold exactly
+    to[to.size() - 2] = static_cast<double>(key_[at(world)] >> 32);
+    to[to.size() - 1] = static_cast<double>(key_[at(world)] & 0xffffffffu);
   }
 
   void restore_world(int world, std::span<const double> from) override {
     begin_next[at(world)] = from[0] != 0 && autoreset_ == Autoreset::next_step;
     age_[at(world)] = static_cast<Real>(from[1]);
-    for (std::size_t i = 2; i < from.size(); ++i) {
-      memory_[remembered(world, i - 2)] = static_cast<Real>(from[i]);
+    for (std::size_t i = 0; i < p_->memory.row.size(); ++i) {
+      memory_[remembered(world, i)] = static_cast<Real>(from[2 + i]);
     }
+    if (!draws_) return;
+    key_[at(world)] = half_of_key(from[from.size() - 2]) << 32 | half_of_key(from[from.size() - 1]);
   }
 
   void before_steps(const VisitedGroup<Real>& g) override {
@@ -132,6 +145,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     for (int l = 0; l < lanes_; ++l) {
       if (g.group * lanes_ + l < worlds_) unsound[at(g.group * lanes_ + l)] = 0;
       put_action(g, thread, l);
+      put_numbers(g, thread, l, age_[at(g.group * lanes_ + l)] + 1);
     }
     run(g, before_, thread, false);
     for (std::size_t i = 0; i < p_->controls.size(); ++i) {
@@ -150,8 +164,11 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
 
   void after_steps(const VisitedGroup<Real>& g) override {
     Thread& thread = threads_[at(g.thread)];
-    for (int l = 0; !g.whole && l < lanes_; ++l) put_action(g, thread, l);
     Real* age = age_.data() + at(g.group * lanes_);
+    for (int l = 0; !g.whole && l < lanes_; ++l) {
+      put_action(g, thread, l);
+      put_numbers(g, thread, l, age[l] + 1);
+    }
     Real* in = thread.inputs.data();
     for (int l = 0; l < lanes_; ++l) {
       in[at(p_->inputs.age() * lanes_ + l)] = age[l] += 1;
@@ -169,6 +186,12 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   void after_beginning(const VisitedGroup<Real>& g, std::uint32_t lanes) override {
     Thread& thread = threads_[at(g.thread)];
     std::fill_n(thread.inputs.data(), thread.inputs.size(), Real(0));
+    for (int l = 0; !p_->inputs.numbers.empty() && l < lanes_; ++l) {
+      if (!get_bit(lanes, at(l))) continue;
+      const int world = g.group * lanes_ + l;
+      if (draws_) key_[at(world)] = Draws(g.worlds.seed(world), g.worlds.episode(world)).key();
+      put_numbers(g, thread, l, 0);
+    }
     run(g, after_, thread, true);
     for (int l = 0; l < lanes_; ++l) {
       if (!get_bit(lanes, at(l))) continue;
@@ -195,6 +218,11 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     AlignedBuffer<Real> values, inputs;
     std::vector<const Real*> in;  // of a call
   };
+
+  // Of a snapshot, which may have been made up.
+  static std::uint64_t half_of_key(double number) {
+    return number >= 0 && number < 0x1p32 ? static_cast<std::uint64_t>(number) : 0;
+  }
 
   // Where in memory_ a number of a world is.
   std::size_t remembered(int world, std::size_t number) const {
@@ -226,6 +254,22 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
       const bool sound = std::isfinite(counts);
       if (!sound) freeze(g, lane);
       in[i * at(lanes_)] = sound ? counts : Real(0);
+    }
+  }
+
+  // What the host knows of the world in a lane, `age` steps after its episode began.
+  void put_numbers(const VisitedGroup<Real>& g, Thread& thread, int lane, Real age) const {
+    const int world = std::min(g.group * lanes_ + lane, worlds_ - 1);
+    Real* in = thread.inputs.data() + at(p_->inputs.first_number() * lanes_ + lane);
+    for (const HostNumber& n : p_->inputs.numbers) {
+      if (n.kind == HostNumber::parameter) {
+        *in = static_cast<Real>(g.worlds.number(n.of, world, n.item));
+      } else {  // an even count is of the episode, odd ones are of steps
+        const bool each = n.kind == HostNumber::of_step;
+        const std::uint64_t step = each ? 2 * static_cast<std::uint64_t>(age) + 1 : 0;
+        *in = uniform_of<Real>(bits_of_stream(key_[at(world)], n.stream, (n.count << 32) + step));
+      }
+      in += lanes_;
     }
   }
 
@@ -338,6 +382,8 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   int worlds_, lanes_;
   AlignedBuffer<Real> memory_;  // [group][number][lane]
   AlignedBuffer<Real> age_;     // [group][lane]
+  bool draws_;
+  std::vector<std::uint64_t> key_;  // [world] of its draws, from where its episode began
   std::vector<Thread> threads_;
 };
 

@@ -45,6 +45,10 @@ def _range(name: str, rest: Sequence[Any], found: Sequence[Range], task: Task) -
     if name in _MOST:
         return -_MOST[name], _MOST[name]
     steps = float(task.max_steps or inf)
+    if name == "uniform":
+        return _TRUTH
+    if name == "parameter":
+        return _ALL
     if name in ("age", "held"):
         return 0.0, steps
     if name == "ray_distance":
@@ -90,6 +94,21 @@ def _exp(x: float) -> float:
     return math.exp(x) if x < 700 else inf
 
 
+def _log(x: float) -> float:
+    return math.log(x) if x > 0 else -inf
+
+
+def _mod(a: Range, b: Range) -> Range:
+    return min(b[0], 0.0), max(b[1], 0.0)
+
+
+def _power(a: Range, b: Range) -> Range:
+    if a[0] <= 0 or math.isinf(a[1]) or math.isinf(b[0]) or math.isinf(b[1]):
+        return (0.0, inf) if a[0] >= 0 else _ALL
+    logs = _product((math.log(a[0]), math.log(a[1])), b)
+    return _exp(logs[0]), _exp(logs[1])
+
+
 _OPERATIONS: dict[str, Callable[..., Range]] = {
     "add": lambda a, b: (a[0] + b[0], a[1] + b[1]),
     "subtract": lambda a, b: (a[0] - b[1], a[1] - b[0]),
@@ -104,6 +123,12 @@ _OPERATIONS: dict[str, Callable[..., Range]] = {
     "sin": lambda a: _UNIT,
     "cos": lambda a: _UNIT,
     "arctan2": lambda a, b: _ANGLE,
+    "log": lambda a: (_log(a[0]), _log(a[1])),
+    "tanh": lambda a: _UNIT,
+    "arccos": lambda a: (0.0, _ANGLE[1]),
+    "mod": _mod,
+    "sign": lambda a: (-1.0, 1.0),
+    "power": _power,
     "exp": lambda a: (_exp(a[0]), _exp(a[1])),
     **{name: lambda *_: _TRUTH for name in ("less", "less_equal", "equal", "both", "either")},
     "opposite": lambda a: _TRUTH,
