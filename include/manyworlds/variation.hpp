@@ -11,34 +11,42 @@ namespace manyworlds {
 
 // X(name, what has one, numbers of each, unit, meaning). In the order in which they are applied: a
 // mass is of the body as its sizes and densities have made it.
-#define MW_PARAMETERS(X)                                                                       \
-  X(size, shape, 3, "m",                                                                       \
-    "sphere, circle: radius; capsule: radius, half length; box: half extents; polygon: half "  \
-    "extents of its bounding box about the shape frame's axes (it is stretched); others 0")    \
-  X(density, shape, 1, "kg/m^3", "kg/m^2 in the plane")                                        \
-  X(mass, body, 1, "kg", "of a dynamic body; its inertia grows in proportion")                 \
-  X(friction, shape, 1, "1", "Coulomb coefficient")                                            \
-  X(restitution, shape, 1, "1", "0 to 1")                                                      \
-  X(gravity, world, 3, "m/s^2", "")                                                            \
-  X(gravity_scale, body, 1, "1", "")                                                           \
-  X(linear_drag, body, 1, "1/s", "")                                                           \
-  X(angular_drag, body, 1, "1/s", "")                                                          \
-  X(armature, joint, 1, "kg m^2 or kg", "of Solver::newton: JointDynamics::armature")          \
-  X(damping, joint, 1, "N m s/rad or N s/m", "of Solver::newton: JointDynamics::damping")      \
-  X(stiffness, joint, 1, "N m/rad or N/m", "of Solver::newton: JointDynamics::stiffness")      \
-  X(rest, joint, 1, "rad or m", "of Solver::newton: JointDynamics::rest")                      \
-  X(gain, control, 3, "", "of Solver::newton: Actuator::gain")                                 \
-  X(bias, control, 3, "", "of Solver::newton: Actuator::bias")                                 \
-  X(kp, control, 1, "", "of a position servo: its gain is (kp, 0, 0), its bias (0, -kp, -kv)") \
-  X(kv, control, 1, "",                                                                        \
-    "of a position servo, or of a velocity servo: its gain is (kv, 0, 0), its bias (0, 0, -kv)")
+#define MW_PARAMETERS(X)                                                                         \
+  X(size, shape, 3, "m",                                                                         \
+    "sphere, circle: radius; capsule: radius, half length; box: half extents; polygon: half "    \
+    "extents of its bounding box about the shape frame's axes (it is stretched); others 0")      \
+  X(density, shape, 1, "kg/m^3", "kg/m^2 in the plane")                                          \
+  X(mass, body, 1, "kg", "of a dynamic body; its inertia grows in proportion")                   \
+  X(friction, shape, 1, "1", "Coulomb coefficient")                                              \
+  X(restitution, shape, 1, "1", "0 to 1")                                                        \
+  X(gravity, world, 3, "m/s^2", "")                                                              \
+  X(gravity_scale, body, 1, "1", "")                                                             \
+  X(linear_drag, body, 1, "1/s", "")                                                             \
+  X(angular_drag, body, 1, "1/s", "")                                                            \
+  X(armature, joint, 1, "kg m^2 or kg", "of Solver::newton: JointDynamics::armature")            \
+  X(damping, joint, 1, "N m s/rad or N s/m", "of Solver::newton: JointDynamics::damping")        \
+  X(stiffness, joint, 1, "N m/rad or N/m", "of Solver::newton: JointDynamics::stiffness")        \
+  X(rest, joint, 1, "rad or m", "of Solver::newton: JointDynamics::rest")                        \
+  X(gain, control, 3, "", "of Solver::newton: Actuator::gain")                                   \
+  X(bias, control, 3, "", "of Solver::newton: Actuator::bias")                                   \
+  X(kp, control, 1, "", "of a position servo: its gain is (kp, 0, 0), its bias (0, -kp, -kv)")   \
+  X(kv, control, 1, "",                                                                          \
+    "of a position servo, or of a velocity servo: its gain is (kv, 0, 0), its bias (0, 0, -kv)") \
+  X(limit_low, joint, 1, "rad or m",                                                             \
+    "of joints on bodies, as the rest: Limit::low of a hinge, slider, distance or wheel")        \
+  X(limit_high, joint, 1, "rad or m", "Limit::high")                                             \
+  X(motor_speed, joint, 1, "rad/s or m/s",                                                       \
+    "Drive::target_speed of a hinge, slider or wheel; a control of it goes first")               \
+  X(motor_force, joint, 1, "N m or N", "Drive::max_force")                                       \
+  X(drive_stiffness, joint, 1, "N m/rad or N/m", "of Drive::spring")                             \
+  X(drive_damping, joint, 1, "N m s/rad or N s/m", "of Drive::spring")
 
 enum class Parameter {
 #define MW_PARAMETER_ENUM(name, owner, numbers, unit, meaning) name,
   MW_PARAMETERS(MW_PARAMETER_ENUM)
 #undef MW_PARAMETER_ENUM
 };
-inline constexpr int kParameterCount = 17;
+inline constexpr int kParameterCount = 23;
 
 struct ParameterInfo {
   enum Owner { world, body, shape, joint, control };

@@ -47,6 +47,12 @@ Parameter = Literal[
     "bias",
     "kp",
     "kv",
+    "limit_low",
+    "limit_high",
+    "motor_speed",
+    "motor_force",
+    "drive_stiffness",
+    "drive_damping",
 ]
 Draw = Literal["none", "uniform", "log_uniform"]
 Every = Literal["episode", "step"]

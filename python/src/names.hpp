@@ -49,7 +49,9 @@ MW_NAMES(ControlKind, MW_NAME(target_position), MW_NAME(target_speed), MW_NAME(t
 MW_NAMES(Parameter, MW_NAME(size), MW_NAME(density), MW_NAME(mass), MW_NAME(friction),
          MW_NAME(restitution), MW_NAME(gravity), MW_NAME(gravity_scale), MW_NAME(linear_drag),
          MW_NAME(angular_drag), MW_NAME(armature), MW_NAME(damping), MW_NAME(stiffness),
-         MW_NAME(rest), MW_NAME(gain), MW_NAME(bias), MW_NAME(kp), MW_NAME(kv));
+         MW_NAME(rest), MW_NAME(gain), MW_NAME(bias), MW_NAME(kp), MW_NAME(kv), MW_NAME(limit_low),
+         MW_NAME(limit_high), MW_NAME(motor_speed), MW_NAME(motor_force), MW_NAME(drive_stiffness),
+         MW_NAME(drive_damping));
 MW_NAMES(Draw, MW_NAME(none), MW_NAME(uniform), MW_NAME(log_uniform));
 MW_NAMES(Precision, MW_NAME(f32), MW_NAME(f64));
 MW_NAMES(Isa, MW_NAME(scalar), MW_NAME(avx2), MW_NAME(avx512));

@@ -97,6 +97,7 @@ struct PlanVaries {
   bool materials = false;  // friction, restitution
   bool delta_v = false;    // gravity
   bool drag = false;
+  bool joints = false;  // limits and drives of joints on bodies
   // Of trees: centres of mass and principal axes of links, armatures and the like of joints, gains.
   bool links = false, dofs = false, actuators = false;
   bool body_constants() const { return masses || delta_v || drag; }

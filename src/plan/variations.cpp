@@ -39,6 +39,12 @@ void collect_variations(PlanData& plan) {
       case Parameter::bias:
       case Parameter::kp:
       case Parameter::kv: varies.actuators = true; break;
+      case Parameter::limit_low:
+      case Parameter::limit_high:
+      case Parameter::motor_speed:
+      case Parameter::motor_force:
+      case Parameter::drive_stiffness:
+      case Parameter::drive_damping: varies.joints = true; break;
     }
   }
 }
@@ -50,6 +56,8 @@ void derive_again(PlanData& plan) {
     plan.colliders.clear();
     collect_bodies(plan);
     collect_colliders(plan);
+  }
+  if (plan.varies.masses || plan.varies.shapes || plan.varies.joints) {
     collect_joints(plan);
     collect_controls(plan);
   }

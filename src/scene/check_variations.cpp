@@ -11,11 +11,6 @@
 namespace manyworlds::detail {
 namespace {
 
-bool is_of_newton(Parameter parameter) {
-  const ParameterInfo::Owner owner = info(parameter).owner;
-  return owner == ParameterInfo::joint || owner == ParameterInfo::control;
-}
-
 // "body 3, shape 1", "joint 2"
 std::string place_of(const NumberOwner& of) {
   if (of.joint >= 0) return "joint " + std::to_string(of.joint);
@@ -28,7 +23,9 @@ std::string place_of(const NumberOwner& of) {
 // Range of numbers that a scene may have, whatever else is in it.
 bool check_number(Checker& checker, const std::string& field, Parameter parameter, double value) {
   std::string unit = info(parameter).unit;
-  if (unit == "1" || is_of_newton(parameter)) unit.clear();  // it depends on the kind of joint
+  const ParameterInfo::Owner owner = info(parameter).owner;
+  const bool of_joint = owner == ParameterInfo::joint || owner == ParameterInfo::control;
+  if (unit == "1" || of_joint) unit.clear();  // it depends on the kind of joint
   switch (parameter) {
     case Parameter::size: return checker.size(field, value);
     case Parameter::density: return checker.density(field, value);
@@ -37,6 +34,9 @@ bool check_number(Checker& checker, const std::string& field, Parameter paramete
     case Parameter::gravity:
     case Parameter::gravity_scale:
     case Parameter::rest:
+    case Parameter::limit_low:
+    case Parameter::limit_high:
+    case Parameter::motor_speed:
     case Parameter::gain:
     case Parameter::bias: return checker.finite(field, value, unit);
     case Parameter::kp:
@@ -62,6 +62,14 @@ const char* who_can(Parameter parameter) {
     case Parameter::kv:
       return "a position servo, of gain (kp, 0, 0) and bias (0, -kp, -kv), kp > 0, or a velocity "
              "servo, of gain (kv, 0, 0) and bias (0, 0, -kv), kv > 0";
+    case Parameter::limit_low:
+    case Parameter::limit_high:
+      return "a hinge, slider, distance or wheel joint with a limit that is finite there";
+    case Parameter::motor_speed:
+    case Parameter::motor_force: return "a hinge, slider or wheel with a drive";
+    case Parameter::drive_stiffness:
+    case Parameter::drive_damping:
+      return "a hinge, slider or wheel whose drive has a spring of stiffness and damping";
     default: return "a dynamic body";
   }
 }
@@ -88,6 +96,11 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
     checker.add("parameter", std::string("is ") + parameter.name +
                                  ", which varies per world only with the newton solver, not " +
                                  to_string(scene.options.solver.method));
+    return false;
+  }
+  if (is_of_bodies(v.parameter) && scene.options.solver.method == Solver::newton) {
+    checker.add("parameter", std::string("is ") + parameter.name +
+                                 ", which does not vary per world with the newton solver");
     return false;
   }
   if (parameter.owner != ParameterInfo::body && !of_shape && body != -1) {
@@ -245,18 +258,24 @@ void check_variations(Checker checker, const Scene& scene, bool sound) {
     }
   }
 
-  // What is fine one by one must be so together, at either end.
-  for (const bool high : {false, true}) {
+  // What is fine one by one must be so together, at either end, and where the two ends of limits
+  // come closest.
+  const std::vector<VariedNumber> varied = varied_numbers(scene);
+  const auto check_end = [&](const char* name, auto is_high) {
     Scene extreme = scene;
     extreme.variations.clear();
-    for (const VariedNumber& n : varied_numbers(scene)) {
-      set_number(extreme, n, high ? n.high : n.low);
+    for (const VariedNumber& n : varied) {
+      set_number(extreme, n, is_high(n.parameter) ? n.high : n.low);
     }
-    for (const Issue& issue : validate(extreme)) {
-      checker.add(high ? "variations at their highest:" : "variations at their lowest:",
-                  to_string(issue));
-    }
-  }
+    for (const Issue& issue : validate(extreme)) checker.add(name, to_string(issue));
+  };
+  check_end("variations at their lowest:", [](Parameter) { return false; });
+  check_end("variations at their highest:", [](Parameter) { return true; });
+  const auto is_low_end = [](Parameter parameter) { return parameter == Parameter::limit_low; };
+  const auto is_of_low_end = [&](const VariedNumber& n) { return is_low_end(n.parameter); };
+  if (checker.count() != before || std::none_of(varied.begin(), varied.end(), is_of_low_end))
+    return;
+  check_end("variations at their lowest, limit_low at its highest:", is_low_end);
 }
 
 }  // namespace manyworlds::detail

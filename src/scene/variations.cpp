@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 #include "src/base/enum_names.hpp"
 #include "src/scene/shape/shape.hpp"
@@ -21,6 +23,54 @@ auto& shape_of(auto& scene, const NumberOwner& of) {
 }
 auto& dynamics_of(auto& scene, const NumberOwner& of) {
   return at(scene.joints, of.joint).dynamics;
+}
+
+// The limit and the drive of a joint on bodies that can vary; nullptr: it has none.
+template <class Type>
+auto* limit_of(Type& type) {
+  const auto found = [](auto& of) {
+    using Of = std::remove_cvref_t<decltype(of)>;
+    using Pointer = std::conditional_t<std::is_const_v<Type>, const Limit*, Limit*>;
+    if constexpr (std::is_same_v<Of, WheelJoint>) {
+      return Pointer(of.travel ? &*of.travel : nullptr);
+    } else if constexpr (requires { of.limit->low; } && !std::is_same_v<Of, BallJoint>) {
+      return Pointer(of.limit ? &*of.limit : nullptr);
+    } else {
+      return Pointer(nullptr);
+    }
+  };
+  return std::visit(found, type);
+}
+template <class Type>
+auto* drive_of(Type& type) {
+  const auto found = [](auto& of) {
+    using Pointer = std::conditional_t<std::is_const_v<Type>, const Drive*, Drive*>;
+    if constexpr (requires { of.drive->max_force; }) {
+      return Pointer(of.drive ? &*of.drive : nullptr);
+    } else {
+      return Pointer(nullptr);
+    }
+  };
+  return std::visit(found, type);
+}
+
+// The number of a joint on bodies; nullptr: there is none that can vary.
+template <class Type>
+auto* number_of(Type& type, Parameter parameter) {
+  using Pointer = std::conditional_t<std::is_const_v<Type>, const double*, double*>;
+  if (parameter == Parameter::limit_low || parameter == Parameter::limit_high) {
+    auto* limit = limit_of(type);
+    if (limit == nullptr) return Pointer(nullptr);
+    return Pointer(parameter == Parameter::limit_low ? &limit->low : &limit->high);
+  }
+  auto* drive = drive_of(type);
+  if (drive == nullptr) return Pointer(nullptr);
+  if (parameter == Parameter::motor_speed) return Pointer(&drive->target_speed);
+  if (parameter == Parameter::motor_force) return Pointer(&drive->max_force);
+  const bool by_force = drive->spring && drive->spring->frequency == 0;
+  if (!by_force) return Pointer(nullptr);
+  return Pointer(parameter == Parameter::drive_stiffness ? &drive->spring->stiffness
+                                                         : &drive->spring->damping);
 }
 
 int sizes_of(const Geometry& geometry) { return traits_of(geometry).sizes(); }
@@ -65,6 +115,15 @@ bool is_about(const Variation& v, const NumberOwner& of) {
 }
 
 }  // namespace
+
+bool is_of_bodies(Parameter parameter) {
+  return parameter >= Parameter::limit_low && parameter <= Parameter::drive_damping;
+}
+bool is_of_newton(Parameter parameter) {
+  const ParameterInfo::Owner owner = info(parameter).owner;
+  return (owner == ParameterInfo::joint || owner == ParameterInfo::control) &&
+         !is_of_bodies(parameter);
+}
 
 const ParameterInfo& info(Parameter parameter) {
   static constexpr std::array kInfo = {
@@ -140,6 +199,17 @@ bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of) {
       const Control& control = at(scene.controls, of.control);
       return control_can(control.kind, control.actuator, parameter);
     }
+    // What is not there, or never acts, has no rows in the plan.
+    case Parameter::limit_low:
+    case Parameter::limit_high: {
+      const double* number = number_of(at(scene.joints, of.joint).type, parameter);
+      return number != nullptr && std::isfinite(*number);
+    }
+    case Parameter::motor_speed:
+    case Parameter::motor_force:
+    case Parameter::drive_stiffness:
+    case Parameter::drive_damping:
+      return number_of(at(scene.joints, of.joint).type, parameter) != nullptr;
   }
   return false;
 }
@@ -189,6 +259,15 @@ double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of
       const Control& control = at(scene.controls, of.control);
       return get_number(control.kind, control.actuator, parameter, component);
     }
+    case Parameter::limit_low:
+    case Parameter::limit_high:
+    case Parameter::motor_speed:
+    case Parameter::motor_force:
+    case Parameter::drive_stiffness:
+    case Parameter::drive_damping: {
+      const double* number = number_of(at(scene.joints, of.joint).type, parameter);
+      return number != nullptr ? *number : 0;
+    }
   }
   return 0;
 }
@@ -224,6 +303,14 @@ void set_number(Scene& scene, const VariedNumber& n, double value) {
     case Parameter::kp:
     case Parameter::kv:
       set_number(at(scene.controls, n.of.control).actuator, n.parameter, n.component, value);
+      break;
+    case Parameter::limit_low:
+    case Parameter::limit_high:
+    case Parameter::motor_speed:
+    case Parameter::motor_force:
+    case Parameter::drive_stiffness:
+    case Parameter::drive_damping:
+      *number_of(at(scene.joints, n.of.joint).type, n.parameter) = value;
       break;
   }
 }

@@ -29,6 +29,10 @@ inline BodyId body_of(const Variation& v) { return v.shape.body() ? v.shape.body
 // controls, or the world.
 std::vector<NumberOwner> owners_of(const Scene& scene, Parameter parameter);
 
+// Of joints and controls of Solver::newton; of joints on bodies, which are those of all others.
+bool is_of_newton(Parameter parameter);
+bool is_of_bodies(Parameter parameter);
+
 // In the order in which they have to be set. A variation of all leaves out those that have no such
 // number.
 std::vector<VariedNumber> varied_numbers(const Scene& scene);
