@@ -122,8 +122,9 @@ int view_command(const ViewArguments& arguments) {
   const bool unnamed = wanted.any() && arguments.out.empty();  // of pictures and films alone
   std::optional<ScratchFolder> folder;
   if (arguments.out.empty()) folder.emplace();
-  const fs::path out =
-      folder ? folder->path() / page_name(arguments.sources.front()) : fs::path(arguments.out);
+  const fs::path out = !folder   ? fs::path(arguments.out)
+                       : unnamed ? folder->path() / "page.html"
+                                 : folder->path() / page_name(arguments.sources.front());
   const PageReport page = write_page(all, empty, out, options);
   if (!page.written) return tell_interrupted();
   if (folder && !unnamed) folder->keep();  // for the browser that opens it
