@@ -4,7 +4,7 @@ import { spawn } from 'node:child_process';
 import { readdirSync, rmSync } from 'node:fs';
 import { request } from 'node:http';
 import { after, before, describe, test } from 'node:test';
-import { launchBrowser, makeFolder, program } from './setup.mjs';
+import { launchBrowser, makeFolder, openPage, program } from './setup.mjs';
 
 const folder = makeFolder('live');
 let browser;
@@ -36,17 +36,10 @@ async function serve(...args) {
 }
 
 async function open(url) {
-  const context = await browser.newContext({ viewport: { width: 640, height: 400 }, reducedMotion: 'reduce' });
-  const page = await context.newPage();
-  const complaints = [];
-  page.on('console', (message) => {
-    if (message.type() === 'error' || message.type() === 'warning') complaints.push(message.text());
+  const { context, page, complaints } = await openPage(browser, url, {
+    viewport: { width: 640, height: 400 }, reducedMotion: 'reduce',
+    allowed: (asked) => asked.startsWith(url) || asked.startsWith('blob:'),
   });
-  page.on('pageerror', (error) => complaints.push(error.message));
-  page.on('request', (asked) => {
-    if (!asked.url().startsWith(url) && !asked.url().startsWith('blob:')) complaints.push(`asks for ${asked.url()}`);
-  });
-  await page.goto(url);
   await page.waitForFunction(() => window.manyworlds !== undefined, null, { timeout: 60000, polling: 50 });
   const until = (f, argument) => page.waitForFunction(f, argument, { timeout: 60000, polling: 20 });
   return {

@@ -4,7 +4,7 @@ import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before } from 'node:test';
-import { launchBrowser, makeFolder, program } from './setup.mjs';
+import { launchBrowser, makeFolder, openPage, program } from './setup.mjs';
 
 export const { MANYWORLDS_VIEWER: viewer } = process.env;
 
@@ -42,21 +42,10 @@ export function shapesIn(head) {
 
 // Opens a page without any network, and fails on what it complains of or asks for.
 export async function open(file, { width = 800, height = 560, dark = false, hash = '' } = {}) {
-  const context = await browser.newContext({
-    viewport: { width, height }, offline: true, reducedMotion: 'reduce',
-    colorScheme: dark ? 'dark' : 'light',
+  const { context, page, complaints } = await openPage(browser, `file://${file}${hash}`, {
+    viewport: { width, height }, offline: true, reducedMotion: 'reduce', colorScheme: dark ? 'dark' : 'light',
+    allowed: (asked) => asked.split('#')[0] === `file://${file}` || asked.startsWith('blob:'),
   });
-  const page = await context.newPage();
-  const complaints = [];
-  const url = `file://${file}`;
-  page.on('console', (message) => {
-    if (message.type() === 'error' || message.type() === 'warning') complaints.push(message.text());
-  });
-  page.on('pageerror', (error) => complaints.push(error.message));
-  page.on('request', (request) => {
-    if (request.url() !== url && !request.url().startsWith('blob:')) complaints.push(`asks for ${request.url()}`);
-  });
-  await page.goto(url + hash);
   await page.waitForFunction(() => window.manyworlds !== undefined, null, { timeout: 60000, polling: 50 });
   const calm = () => page.waitForFunction(() => {
     const { waiting, flying } = window.manyworlds.report;

@@ -5,7 +5,7 @@ import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { launchBrowser, makeFolder, program } from './setup.mjs';
+import { launchBrowser, makeFolder, openPage, program } from './setup.mjs';
 
 const { MANYWORLDS_REPORT: empty } = process.env;
 
@@ -31,16 +31,9 @@ function pageOf(report, name) {
 
 // Opens a page without any network, and fails on what it complains of or asks for.
 async function open(file, { width = 1400, dark = false } = {}) {
-  const context = await browser.newContext({ viewport: { width, height: 800 }, offline: true, colorScheme: dark ? 'dark' : 'light' });
-  const page = await context.newPage();
-  const complaints = [];
-  const url = `file://${file}`;
-  page.on('console', (message) => {
-    if (message.type() === 'error' || message.type() === 'warning') complaints.push(message.text());
+  const { context, page, complaints } = await openPage(browser, `file://${file}`, {
+    viewport: { width, height: 800 }, offline: true, colorScheme: dark ? 'dark' : 'light',
   });
-  page.on('pageerror', (error) => complaints.push(error.message));
-  page.on('request', (request) => { if (request.url() !== url) complaints.push(`asks for ${request.url()}`); });
-  await page.goto(url);
   return {
     page,
     totals: () => page.$$eval('.total', (all) => all.map((e) => e.innerText.replace(/\s+/g, ' '))),
