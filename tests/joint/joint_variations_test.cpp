@@ -120,12 +120,7 @@ TEST_CASE("a world with joints of its own is one of the scene that has them, bit
         BatchOptions options = options_of(table, 9);
         options.seed = 5;
         Batch batch(compile(scene), options);
-        std::vector<Batch> alone;
-        for (int w = 0; w < batch.worlds(); ++w) {
-          BatchOptions one = options_of(table, 1);
-          one.seed = 5 + static_cast<std::uint64_t>(w);
-          alone.emplace_back(compile(scene_of(batch, w)), one);
-        }
+        std::vector<Batch> alone = each_alone(batch, table, options.seed, scene_of);
         batch.step(30);
         for (int w = 0; w < batch.worlds(); ++w) {
           alone[static_cast<std::size_t>(w)].step(30);
