@@ -3,6 +3,7 @@
 
 #include "kernels/motion/free_motion.hpp"
 #include "kernels/observe/observe.hpp"
+#include "kernels/rows/touched.hpp"
 #include "kernels/sleep/sleep.hpp"
 #include "kernels/work/solver_tables.hpp"
 #include "kernels/work/stages.hpp"
@@ -14,6 +15,10 @@ namespace {
 template <class S>
 void free_motion(const Constants& t, const Group& g, kernels::Scratch* scratch, int steps) {
   free_motion_steps<S>(t, g, work_of(scratch), steps);
+}
+
+void gather_met(const Constants& t, const Group&, kernels::Scratch* scratch) {
+  gather_met(t, work_of(scratch));
 }
 
 void set_class(kernels::Scratch* scratch, int class_index) {
@@ -52,6 +57,7 @@ kernels::Kernels<Real> make_table() {
   out.begin = begin;
   out.broad_phase = broad_phase;
   out.choose_layout = choose_layout;
+  out.gather_met = gather_met;
   fill_collide_planar(out.collide[static_cast<int>(kernels::Dimension::planar)]);
   fill_collide_spatial(out.collide[static_cast<int>(kernels::Dimension::spatial)]);
   auto& planar = out.solver[static_cast<int>(InertiaKind::planar)];

@@ -234,6 +234,7 @@ void carve(const Constants& t, Work& w, Carver& c) {
   c.take(w.impulse_part, velocities);
   c.take(w.displacement, velocities);
   c.take(w.touched, count(t.bodies + 1));
+  if (t.has_contacts) c.take(w.met, count((t.bodies + 1) * lanes));
   if (t.has_joints) {
     const std::size_t bytes =
         t.dimension == kernels::Dimension::planar ? part_bytes(Planar{}) : part_bytes(Tensor{});

@@ -24,11 +24,12 @@ class RowPacker {
   RowPacker(CandidateList& to, std::int32_t dummy) : to_(to), dummy_(dummy) {
     for (int& n : count_) n = 0;
   }
-  MW_INLINE void add(int lane, std::int32_t code, std::int32_t key, Real axis) {
+  // Returns where.
+  MW_INLINE int add(int lane, std::int32_t code, std::int32_t key) {
     const int at = count_[lane]++ * kLanes + lane;
     to_.code[at] = code;
     to_.key[at] = key;
-    to_.axis[at] = axis;
+    return at;
   }
   void close() {
     int most = 0;
@@ -39,7 +40,6 @@ class RowPacker {
       for (int s = count_[l]; s < most; ++s) {
         to_.code[s * kLanes + l] = dummy_;
         to_.key[s * kLanes + l] = 0;
-        to_.axis[s * kLanes + l] = Real(0);
       }
     }
     to_.count = most;
@@ -121,7 +121,6 @@ void list_candidates(const Constants& t, Work& w) {
       for (int l = 0; l < kLanes; ++l) {
         to.code[i * kLanes + l] = code;
         to.key[i * kLanes + l] = key;
-        to.axis[i * kLanes + l] = Real(0);
       }
       to.mask[i] = masks[i];
     }
@@ -133,7 +132,7 @@ void list_candidates(const Constants& t, Work& w) {
     const std::int32_t code = code_of_hit(t, w, w.class_index, i);
     const std::int32_t key = pairs.first_key + hits[i];
     for (std::uint32_t m = masks[i]; m != 0; m &= m - 1) {
-      packer.add(__builtin_ctz(m), code, key, Real(0));
+      packer.add(__builtin_ctz(m), code, key);
     }
   }
   packer.close();
@@ -161,7 +160,7 @@ void compact(const Constants& t, Work& w, const CandidateList& from, const std::
     for (std::uint32_t m = keep[i]; m != 0; m &= m - 1) {
       const int l = __builtin_ctz(m);
       const int at = i * kLanes + l;
-      packer.add(l, from.code[at], from.key[at], from.axis[at]);
+      to.axis[packer.add(l, from.code[at], from.key[at])] = from.axis[at];
     }
   }
   packer.close();

@@ -146,6 +146,7 @@ struct Kernels {
   Layout (*choose_layout)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*, Layout);
   // Narrow phase and rows of one class (set_class). [dimension: planar, spatial]
   Stage<Real> collide[2][kPairKinds];
+  Stage<Real> gather_met;  // after them, of rows: which bodies contacts may act on
   SolverTable<Real> solver[kInertiaKinds][2][2];  // [inertia][friction][layout: dense, rows]
   SweepTable<Real> sweeps[kInertiaKinds][2];      // [inertia][layout: dense, rows]
   ImpulseTable<Real> impulses[kInertiaKinds];

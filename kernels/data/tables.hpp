@@ -164,11 +164,12 @@ struct SceneConstants {
   bool has_substeps;      // some stages of the solver: not free motion
   bool collider_is_body;  // collider i is the only shape of body i, centred and aligned
   bool friction_in_bias;
-  bool uniform_gravity;  // every body has the acceleration of body 0
-  bool sweep;            // sort and sweep instead of masked all-pairs
-  bool sparse;           // pairs are found lane by lane, there are no tables of them
-  bool cast;             // cast fast bodies against fixed shapes
-  bool cast_moving;      // cast fast bodies against moving shapes
+  bool uniform_gravity;   // every body has the acceleration of body 0
+  bool uniform_friction;  // every shape has that of collider 0
+  bool sweep;             // sort and sweep instead of masked all-pairs
+  bool sparse;            // pairs are found lane by lane, there are no tables of them
+  bool cast;              // cast fast bodies against fixed shapes
+  bool cast_moving;       // cast fast bodies against moving shapes
   bool has_bounds;
   bool has_sleep;
   std::int32_t audit_every;  // steps of a world; 0: its energy is not audited

@@ -76,7 +76,12 @@ MW_INLINE void put_friction(const Constants& t, const Group& g, const Sides<S, A
                             Mask active, const FrictionCentre<S>& sum, Float count,
                             const StoredImpulses<N>& stored, SidedBlock<S, N, A>& s) {
   const Float zero(Real(0)), one(Real(1));
-  const MaterialPair mu = load_materials<A>(t, g, code, s.mask, &Material::friction);
+  MaterialPair mu;
+  if (t.uniform_friction) {
+    mu.a = mu.b = Float(materials(g)->friction);
+  } else {
+    mu = load_materials<A>(t, g, code, s.mask, &Material::friction);
+  }
   sqrt(mu.a * mu.b).store(s.friction);
   const Float share = one / max(count, one);
   FrictionCentre<S> centre;

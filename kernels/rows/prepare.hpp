@@ -135,7 +135,11 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   if (mask == 0) return;
   active = mask_from_bits(mask);
   const std::uint32_t touching = bits(approach.touching & active);
-  mark_touched<S, A, kDense>(w, touching, s);
+  if constexpr (kDense) {
+    mark_touched<S, A, kDense>(w, touching, s);
+  } else {
+    mark_met<A>(t, w, touching, sides);
+  }
   s.unsure = mask & ~touching;
   drop_lanes<S>(t, w, mask, s);
   Ints::load(key).store(s.key);

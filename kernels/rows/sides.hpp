@@ -36,8 +36,11 @@ MW_INLINE Sides<S, A> find_sides(const Constants& t, const Work& w, const std::i
                                  RowBodies& s) {
   const Ints shapes = Ints::load(code), velocities = Ints::load(w.velocity_base);
   Sides<S, A> out;
-  out.body_b = gather(t.collider_body, high_half(shapes));
-  out.body_a = A::kMoves ? gather(t.collider_body, low_half(shapes)) : Ints(t.bodies);
+  const auto body_of = [&](Ints shape) {
+    return t.collider_is_body ? shape : gather(t.collider_body, shape);
+  };
+  out.body_b = body_of(high_half(shapes));
+  out.body_a = A::kMoves ? body_of(low_half(shapes)) : Ints(t.bodies);
   (velocities + out.body_b * Ints(S::kRow)).store(s.offset_b);
   (velocities + out.body_a * Ints(S::kRow)).store(s.offset_a);
   if constexpr (kDense) {  // every lane of a dense block is about the same two bodies

@@ -15,12 +15,13 @@ inline void find_stored(const Constants& t, const Group& g, Work& w, ListId list
   const std::int32_t capacity = t.capacity[id];
   const std::int32_t* keys = g.cache[id].keys;
   const Ints wanted = Ints::load(key), first = Ints::lanes() * Ints(capacity + 1);
-  Ints at = Ints::load(w.cursor[id]), found = gather(keys, first + at);
+  Ints at = Ints::load(w.cursor[id]), found = Ints::load(w.key_at_cursor[id]);
   for (std::uint32_t behind; (behind = (found < wanted) & mask) != 0;) {
     at = at + select(behind, Ints(1), Ints(0));
     found = gather(keys, first + at);
   }
   at.store(w.cursor[id]);
+  found.store(w.key_at_cursor[id]);
   const Ints row = select((found == wanted) & mask, at, Ints(capacity));
   const Ints size(kernels::cache_row_size(t.dimension, list));
   ((Ints::lanes() * Ints(capacity + 2) + row) * size).store(offset);

@@ -2,11 +2,27 @@
 // made, and those that an impulse has reached.
 #pragma once
 
+#include <cstring>
+
 #include "kernels/lane/ints.hpp"
 #include "kernels/rows/side.hpp"
 #include "kernels/work/work.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// In the lanes of `touching` contacts may act on the bodies of `sides` in this step: of rows, which
+// are many. A byte is stored without asking what was there, so no store waits for the one before.
+template <class A, class Sides>
+MW_INLINE void mark_met(const Constants& t, const Work& w, std::uint32_t touching,
+                        const Sides& sides) {
+  const auto mark = [&](Ints bodies) {
+    alignas(64) std::int32_t at[kLanes];
+    (select(touching, bodies, Ints(t.bodies)) * Ints(kLanes) + Ints::lanes()).store(at);
+    for (int l = 0; l < kLanes; ++l) w.met[at[l]] = 1;
+  };
+  mark(sides.body_b);
+  if constexpr (A::kMoves) mark(sides.body_a);
+}
 
 // In the lanes of `touching` contacts may act on the bodies of a block in this step.
 template <class S, class A, bool kDense>
@@ -22,6 +38,20 @@ MW_INLINE void mark_touched(const Work& w, std::uint32_t touching, const RowBodi
       };
       mark(s.offset_b[lane]);
       if constexpr (A::kMoves) mark(s.offset_a[lane]);
+    }
+  }
+}
+
+// What rows have marked becomes bits.
+inline void gather_met(const Constants& t, const Work& w) {
+  constexpr int kAtOnce = kLanes < 8 ? kLanes : 8;
+  for (int b = 0; b < t.bodies; ++b) {
+    for (int l = 0; l < kLanes; l += kAtOnce) {
+      std::uint64_t bytes = 0;
+      std::memcpy(&bytes, w.met + b * kLanes + l, kAtOnce);
+      // Byte i, 0 or 1, comes to bit 56 + i.
+      const auto bits = static_cast<std::uint32_t>(bytes * 0x0102040810204080u >> 56);
+      w.touched[b] |= bits << l;
     }
   }
 }

@@ -243,6 +243,7 @@ struct Work {
   std::int32_t* reached;                    // [body] by a joint that broke
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
   std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
+  std::int32_t key_at_cursor[kLists][kLanes];
   // sleep
   std::uint32_t frozen;         // lanes that were frozen when the step began
   std::uint32_t untouched;      // those, and lanes in which no body is awake: their cache stays
@@ -275,7 +276,8 @@ struct Work {
   std::int32_t* swift;  // colliders that go far in this step (casts between moving shapes)
   std::int32_t swift_count;
   std::uint32_t* touched;  // [body] lanes in which a contact may act on the body in this step
-  Recorder* recorder;      // nullptr but while contacts are recorded
+  unsigned char* met;  // [body][lane] 1: in rows of the narrow phase, before they are bits there
+  Recorder* recorder;  // nullptr but while contacts are recorded
   Recorder recorder_storage;
   kernels::GroupCounters counters;
 };

@@ -105,6 +105,14 @@ void choose_features(PlanData& plan) {
                [](const auto& a, const auto& b) { return a.restitution > 0 || b.restitution > 0; }),
       "some pairs bounce", "no pair bounces");
 
+  const double friction = plan.colliders.empty() ? 0 : plan.colliders.front().material.friction;
+  const auto differs = [&](const auto& shape) { return shape.material.friction != friction; };
+  plan.uniform_friction = std::none_of(plan.colliders.begin(), plan.colliders.end(), differs) &&
+                          std::none_of(plan.fixed.begin(), plan.fixed.end(), differs);
+  for (const VariedNumber& n : plan.varied) {
+    plan.uniform_friction = plan.uniform_friction && n.parameter != Parameter::friction;
+  }
+
   bool drag = false, gravity = false;
   for (const Scene& s : possible) {
     Vec3 common = Vec3::Zero();

@@ -138,7 +138,7 @@ struct PlanData {
   bool collider_is_body = true;
   bool orientations_matter = true;  // where not, they may be kept none the less
   bool cast = false;
-  bool uniform_gravity = true;
+  bool uniform_gravity = true, uniform_friction = true;
   bool slows = false;  // some body may have linear drag, whatever stages are kept
   int row_block = 0;
 

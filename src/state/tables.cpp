@@ -84,6 +84,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.collider_is_body = plan.collider_is_body;
   t.friction_in_bias = o.contact.friction_in_bias_pass;
   t.uniform_gravity = plan.uniform_gravity;
+  t.uniform_friction = plan.uniform_friction;
   t.sweep = plan.sweep;
   t.sparse = plan.sparse;
   t.cast = plan.cast && t.has_contacts;

@@ -66,7 +66,10 @@ const StageCalls<Real>& find_rows(const Run<Real>& run) {
     p.kernels.set_class(run.scratch, c);
     run(collide[static_cast<int>(t.pair_class[c].kind)]);
   }
-  if (t.has_contacts) run.lap(StepStage::collide);
+  if (t.has_contacts) {
+    if (layout == kernels::Layout::rows) run(p.kernels.gather_met);
+    run.lap(StepStage::collide);
+  }
   return calls;
 }
 
