@@ -239,6 +239,8 @@ void carve(const Constants& t, Work& w, Carver& c) {
     const std::size_t bytes =
         t.dimension == kernels::Dimension::planar ? part_bytes(Planar{}) : part_bytes(Tensor{});
     c.take(w.parts, count(t.parts) * bytes);
+    const int swept = t.dimension == kernels::Dimension::planar ? 2 : 4;
+    c.take(w.swept, count((t.bodies + 2) * swept * lanes));
     c.take(w.loads, count(t.breakable * row * lanes));
     if (t.breakable > 0) c.take(w.reached, count(t.bodies));
   }

@@ -190,6 +190,8 @@ struct SceneConstants {
   const PairClass<Real>* pair_class;
   TreeTable<Real> tree;  // no links: bodies are not in joint coordinates
   const JointPart* part;
+  const std::int32_t* jointed;  // state bodies that have parts
+  std::int32_t jointed_bodies;
   JointTrees joint_trees;            // no edges: none is solved at once
   const BreakTable<Real>* breaking;  // [breakable]
   const AttractorTable<Real>* attractor;

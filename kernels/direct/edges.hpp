@@ -98,6 +98,7 @@ class EdgeFinder {
 
   // Rows of the parts where the substeps have taken the bodies.
   void refresh_parts() const {
+    find_rotations<S, kDense>(t_, w_);
     for_each_part<S>(t_, w_, [&](auto& s, const JointPart& part, int i) {
       if (part.direct) refresh<S, kDense, true>(w_, part, constants_of_part(g_, i), s);
     });

@@ -103,11 +103,23 @@ MW_INLINE Frames<S> frames_of(const Constants& t, const Group& g, const JointPar
 // vector.
 template <class S>
 struct SweptRotation {
+  static constexpr int kNumbers = S::kAng + 1;
   typename S::Ang u;
   Float scale;
   MW_INLINE explicit SweptRotation(typename S::Ang swept) {
     u = swept * half_tangent_ratio(dot(swept, swept));
     scale = Float(Real(2)) / (Float(Real(1)) + dot(u, u));
+  }
+  // Of a body, which several parts may have; found by find_rotations.
+  MW_INLINE SweptRotation(const Work& w, int body) {
+    const Real* at = w.swept + body * kNumbers * kLanes;
+    u = load_as<typename S::Ang>(at);
+    scale = Float::load(at + S::kAng * kLanes);
+  }
+  MW_INLINE void store(const Work& w, int body) const {
+    Real* at = w.swept + body * kNumbers * kLanes;
+    manyworlds::MW_KERNEL_NAMESPACE::store(at, u);
+    scale.store(at + S::kAng * kLanes);
   }
   MW_INLINE Vec3 change(Vec3 r) const {
     const Vec3 across = cross(u, r);
@@ -118,6 +130,16 @@ struct SweptRotation {
     return (across + cross(u, across)) * scale;
   }
 };
+
+// Of all bodies that have parts, before these are refreshed: what two parts share is found once.
+template <class S, bool kDense>
+void find_rotations(const Constants& t, const Work& w) {
+  for (int i = 0; i < t.jointed_bodies; ++i) {
+    const int body = t.jointed[i];
+    SweptRotation<S>(get_velocity<S, kDense>(w, w.displacement, body).w).store(w, body);
+  }
+  SweptRotation<S>(zero_of<typename S::Ang>()).store(w, world_body(t));
+}
 
 // Rows between two anchors: from the centres, and their gap, when the step began.
 template <class S>
@@ -145,7 +167,7 @@ MW_INLINE MovedAnchors<S> anchors_now(const Work& w, const AnchoredRows<S>& s,
   out.moved_a = out.moved_b = zero_of<Vec>();
   if constexpr (kMoved) {
     const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
-    const SweptRotation<S> swept_a(moved.a.w), swept_b(moved.b.w);
+    const SweptRotation<S> swept_a(w, s.body_a), swept_b(w, s.body_b);
     const Vec change_a = swept_a.change(out.arm_a), change_b = swept_b.change(out.arm_b);
     out.arm_a = out.arm_a + change_a, out.arm_b = out.arm_b + change_b;
     out.moved_a = moved.a.v + change_a, out.moved_b = moved.b.v + change_b;

@@ -106,8 +106,8 @@ MW_INLINE void locate(const Work& w, const JointPart& part, const Joint&, Row<S,
   } else {
     auto z_a = load_as<Vec3>(s.start_axis[0]), z_b = load_as<Vec3>(s.start_axis_b[0]);
     if constexpr (kMoved) {
-      z_a = z_a + SweptRotation<S>(swept_a).change(z_a);
-      z_b = z_b + SweptRotation<S>(swept_b).change(z_b);
+      z_a = z_a + SweptRotation<S>(w, s.body_a).change(z_a);
+      z_b = z_b + SweptRotation<S>(w, s.body_b).change(z_b);
     }
     Vec3 n;
     Float value = Float::load(s.start_value), length;

@@ -89,6 +89,7 @@ struct JointPasses {
   template <Pass kPass>
   static void pass(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
+    if constexpr (kPass == Pass::relax) find_rotations<S, kDense>(t, w);
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       if (s.mask == 0 || part.direct) return;
       PartVelocities<S, kDense> v(w, s);
@@ -127,6 +128,7 @@ struct JointPasses {
 
   static void follow(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
+    find_rotations<S, kDense>(t, w);
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       refresh<S, kDense, true>(w, part, constants_of_part(g, i), s);
     });

@@ -38,9 +38,8 @@ template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, SwingRows<S>& s) {
   auto z_a = load_as<Vec3>(s.start_a[0]), z_b = load_as<Vec3>(s.start_b[0]);
   if constexpr (kMoved) {
-    const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
-    z_a = z_a + SweptRotation<S>(moved.a.w).change(z_a);
-    z_b = z_b + SweptRotation<S>(moved.b.w).change(z_b);
+    z_a = z_a + SweptRotation<S>(w, s.body_a).change(z_a);
+    z_b = z_b + SweptRotation<S>(w, s.body_b).change(z_b);
   }
   const Vec3 b = any_tangent(z_a), c = cross(z_a, b), lean = cross(z_a, z_b);
   store(s.across[0][0], b), store(s.across[1][0], c);

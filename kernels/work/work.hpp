@@ -239,6 +239,7 @@ struct Work {
   std::uint32_t* keep;       // [block], lanes that passed it
   BlockList blocks[kLists];
   unsigned char* parts;                     // rows of joints (kernels/joint/)
+  Real* swept;                              // [body + 2] of what has parts (kernels/joint/body.hpp)
   Real* loads;                              // [breakable joint] impulses of the step so far
   std::int32_t* reached;                    // [body] by a joint that broke
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far

@@ -252,6 +252,14 @@ void TablesOf<Real>::add_joints(const PlanData& plan) {
   add_breaking(plan);
   t.parts = static_cast<std::int32_t>(parts_.size());
   t.part = parts_.data();
+  for (const kernels::JointPart& part : parts_) {
+    if (part.body_a != t.bodies) jointed_.push_back(part.body_a);
+    jointed_.push_back(part.body_b);
+  }
+  std::sort(jointed_.begin(), jointed_.end());
+  jointed_.erase(std::unique(jointed_.begin(), jointed_.end()), jointed_.end());
+  t.jointed_bodies = static_cast<std::int32_t>(jointed_.size());
+  t.jointed = jointed_.data();
   const PlanJointTrees& trees = plan.trees_of_joints;
   edges_ = trees.edges, edge_roots_ = trees.roots, edge_bodies_ = trees.bodies;
   edge_of_ = trees.edge_of, loops_ = trees.loops;

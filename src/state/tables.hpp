@@ -42,6 +42,7 @@ class TablesOf {
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
   std::vector<kernels::JointPart> parts_;
+  std::vector<std::int32_t> jointed_;
   std::vector<kernels::TreeEdge> edges_;
   std::vector<kernels::JointLoops> loops_;
   std::vector<std::int32_t> edge_roots_, edge_bodies_, edge_of_;
