@@ -21,7 +21,8 @@ foreach(target IN LISTS mw_covered)
 endforeach()
 
 add_library(mw_fuzz_support STATIC
-  fuzz/inputs.cpp fuzz/scene_bytes.cpp fuzz/scene_members.cpp fuzz/snapshot_batches.cpp)
+  fuzz/inputs.cpp fuzz/scene_bytes.cpp fuzz/scene_members.cpp fuzz/snapshot_batches.cpp
+  tests/support/crowd.cpp)
 target_include_directories(mw_fuzz_support PUBLIC "${PROJECT_SOURCE_DIR}")
 target_link_libraries(mw_fuzz_support PUBLIC manyworlds)
 

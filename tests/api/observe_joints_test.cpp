@@ -95,7 +95,7 @@ TEST_CASE("sliders, wheels, springs and ropes tell where they are", "[fast][obse
   for (Space space : kSpaces) {
     Scene scene = empty_scene(space, 10);
     const Vec3 up = up_of(space);
-    const Quat to_up = Quat::FromTwoVectors(Vec3::UnitX(), up);
+    const Quat to_up = rotation_to(Vec3::UnitX(), up);
     const BodyId slider = add_ball(scene, Vec3::Zero());
     SliderJoint held;
     held.drive = Drive{0.5, 0, Spring{1000, 100, 0, 0}};

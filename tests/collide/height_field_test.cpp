@@ -104,7 +104,7 @@ TEST_CASE("a height field that is an inclined plane carries as that plane does",
               friction));
         }
         Body box = body_of(shape_of(Box{{0.3, 0.3, 0.2}}, friction), 0.21 * up + Vec3(2, 0, 0.5));
-        box.rotation = Quat::FromTwoVectors(Vec3::UnitZ(), up);
+        box.rotation = rotation_to(Vec3::UnitZ(), up);
         scene.add(box);
         Batch batch(compile(scene), options_of(table));
         batch.step(90);

@@ -144,7 +144,7 @@ TEST_CASE("what hung on a disabled body's joint is not thrown up", "[fast][joint
     const Vec3 up = up_of(space);
     for (int i = 0; i < 2; ++i) {  // a light rod, and a weight of 1 t on it
       Body rod = uniform_rod(space, i == 0 ? 1 : 1000, 1, (-0.5 - i) * up);
-      rod.rotation = Quat::FromTwoVectors(Vec3::UnitX(), up);
+      rod.rotation = rotation_to(Vec3::UnitX(), up);
       scene.add(rod);
       scene.add(joint_at(scene, BodyId(i - 1), BodyId(i),
                          at(-static_cast<double>(i) * up, hinge_axes(space)), HingeJoint{}));

@@ -115,7 +115,7 @@ TEST_CASE("limits stop a hinge and a slider, and hold what leans on them", "[fas
     hinge.limit = Limit{-0.5, 0.5, std::nullopt};
     scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), hinge));
     // Slides down along -up: x of the frame is up.
-    const Quat up = Quat::FromTwoVectors(Vec3::UnitX(), up_of(space));
+    const Quat up = rotation_to(Vec3::UnitX(), up_of(space));
     const BodyId lift = add_ball(scene, {5, 0, 0});
     SliderJoint slider;
     slider.limit = Limit{-2, 1, std::nullopt};
@@ -146,7 +146,7 @@ TEST_CASE("a bead slides down a wire as g sin of its slope", "[fast][joint]") {
     const double slope = 0.4;
     const Vec3 down = std::cos(slope) * Vec3::UnitX() - std::sin(slope) * up_of(space);
     const BodyId bead = add_ball(scene, Vec3::Zero());
-    scene.add(joint_at(scene, {}, bead, at(Vec3::Zero(), Quat::FromTwoVectors(Vec3::UnitX(), down)),
+    scene.add(joint_at(scene, {}, bead, at(Vec3::Zero(), rotation_to(Vec3::UnitX(), down)),
                        SliderJoint{}));
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
@@ -165,7 +165,7 @@ TEST_CASE("a wheel's suspension sags and swings as a damped oscillator", "[fast]
   for (Space space : kSpaces) {
     Scene scene = empty_scene(space, 9.81);
     scene.options.dt = 1.0 / 960;
-    const Quat up = Quat::FromTwoVectors(Vec3::UnitX(), up_of(space));
+    const Quat up = rotation_to(Vec3::UnitX(), up_of(space));
     const BodyId chassis = add_ball(scene, Vec3::Zero(), 3);
     const double omega = 2 * kPi * 1.5, zeta = 0.3;
     WheelJoint wheel;

@@ -76,7 +76,7 @@ TEST_CASE("a redundant loop in space stays finite and closed (B23)", "[fast][joi
       const Vec3 along = corner[(i + 1) % 4] - corner[i];
       Body rod = uniform_rod(Space::spatial, 1, 1, corner[i] + along / 2);
       rod.mass_properties->inertia = Vec3(0.02, 0.08, 0.08).asDiagonal();
-      rod.rotation = Quat::FromTwoVectors(Vec3::UnitX(), along);
+      rod.rotation = rotation_to(Vec3::UnitX(), along);
       scene.add(rod);
     }
     for (int i = 0; i < 4; ++i) {

@@ -162,7 +162,7 @@ TEST_CASE("elliptic cones of the newton solver are round", "[fast][newton]") {
       Joint slider;
       slider.type = SliderJoint{};
       slider.body_b = BodyId(1);
-      slider.frame_b = {Vec3::Zero(), Quat::FromTwoVectors(Vec3::UnitX(), Vec3::Unit(axis))};
+      slider.frame_b = {Vec3::Zero(), rotation_to(Vec3::UnitX(), Vec3::Unit(axis))};
       slider.frame_a = {last ? Vec3::Zero().eval() : begin, slider.frame_b.rotation};
       slider.after = last;
       last = scene.add(slider);

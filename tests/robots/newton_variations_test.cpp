@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "src/scene/variations.hpp"
 #include "tests/support/hashes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/robots.hpp"

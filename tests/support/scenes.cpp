@@ -21,6 +21,8 @@ Mat3 world_inertia(const Batch& batch, int world, int body, const MassProperties
 
 }  // namespace
 
+Quat rotation_to(const Vec3& from, const Vec3& to) { return Quat::FromTwoVectors(from, to); }
+
 Geometry slab_of(Space space, double side, double height) {
   if (space == Space::planar) return box_of(space, Vec3(side, height, 0));
   return box_of(space, Vec3(side, side, height));

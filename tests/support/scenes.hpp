@@ -47,6 +47,9 @@ inline Scene one_crate(Space space, double gravity = 0) {
   scene.add(body_of(shape_of(cube_of(space, 0.5)), Vec3::Zero()));
   return scene;
 }
+// The shortest rotation from one direction to another. Eigen's FromTwoVectors takes seconds to
+// compile in every file that calls it.
+Quat rotation_to(const Vec3& from, const Vec3& to);
 // A box `side` wide to every side and `height` high, both half extents, m.
 Geometry slab_of(Space space, double side, double height);
 
