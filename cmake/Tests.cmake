@@ -18,7 +18,10 @@ function(mw_test_target target)
   endif()
   target_link_libraries(${target} PRIVATE
     manyworlds Catch2::Catch2 fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
-  mw_precompile(${target} <catch2/catch.hpp>)
+  # Scenes and batches are what nearly every test includes.
+  mw_precompile(${target} <catch2/catch.hpp>
+    "${PROJECT_SOURCE_DIR}/include/manyworlds/batch.hpp"
+    "${PROJECT_SOURCE_DIR}/scenes/builders.hpp")
   if(TARGET manyworlds_cli)
     target_compile_definitions(${target} PRIVATE MW_HAVE_CLI=1)
   endif()
