@@ -44,6 +44,11 @@ std::vector<Variation> joints_and_gains() {
   return {vary(Parameter::armature, 0, 1e6, Draw::none),
           vary(Parameter::damping, 0, 1e6, Draw::none), gain};
 }
+std::vector<Variation> friction_mass_and_motor() {
+  auto out = friction_and_mass();
+  out.push_back(vary(Parameter::motor_speed, -1e3, 1e3, Draw::none));
+  return out;
+}
 void time_varied_steps(benchmark::State& state, const char* name,
                        const std::vector<Variation>& variations) {
   Scene scene = scenes::find(name)->make();
@@ -107,6 +112,8 @@ void register_batch() {
   };
   add_varied("batch/varied/off", "bin-boxes", {});
   add_varied("batch/varied/friction_and_mass", "bin-boxes", friction_and_mass());
+  add_varied("batch/varied/car3d_off", "car3d", {});
+  add_varied("batch/varied/car3d_friction_mass_and_motor", "car3d", friction_mass_and_motor());
   add_varied("batch/varied/humanoid_off", "humanoid", {});
   add_varied("batch/varied/humanoid_joints_and_gains", "humanoid", joints_and_gains());
   benchmark::RegisterBenchmark("batch/write/friction", time_new_numbers, Parameter::friction);

@@ -39,14 +39,30 @@ namespace manyworlds {
     "Drive::target_speed of a hinge, slider or wheel; a control of it goes first")               \
   X(motor_force, joint, 1, "N m or N", "Drive::max_force")                                       \
   X(drive_stiffness, joint, 1, "N m/rad or N/m", "of Drive::spring")                             \
-  X(drive_damping, joint, 1, "N m s/rad or N s/m", "of Drive::spring")
+  X(drive_damping, joint, 1, "N m s/rad or N s/m", "of Drive::spring")                           \
+  X(break_force, joint, 1, "N", "Joint::break_force, of a joint that has one")                   \
+  X(break_torque, joint, 1, "N m", "Joint::break_torque, of a joint that has one")               \
+  X(anchor_a, joint, 3, "m", "Joint::frame_a.position, in the body frame of A, or the world")    \
+  X(anchor_b, joint, 3, "m", "Joint::frame_b.position, in the body frame of B")                  \
+  X(axes_a, joint, 3, "rad", "Joint::frame_a.rotation, as a rotation vector: axis times angle")  \
+  X(axes_b, joint, 3, "rad", "Joint::frame_b.rotation, likewise")                                \
+  X(initial_position, body, 3, "m",                                                              \
+    "Body::position, read where a world begins; not of Solver::newton, as the next three")       \
+  X(initial_rotation, body, 3, "rad", "Body::rotation, as a rotation vector")                    \
+  X(initial_linear_velocity, body, 3, "m/s", "Body::linear_velocity")                            \
+  X(initial_angular_velocity, body, 3, "rad/s", "Body::angular_velocity")                        \
+  X(center_of_mass, body, 3, "m", "of a dynamic body, in its frame; its inertia is about it")    \
+  X(inertia_scale, body, 1, "1", "of a dynamic body: times the inertia of its shapes and mass")  \
+  X(wind, world, 3, "m/s", "Options::wind")                                                      \
+  X(control_low, control, 1, "", "Control::low, of any kind: what is set is clamped to it")      \
+  X(control_high, control, 1, "", "Control::high")
 
 enum class Parameter {
 #define MW_PARAMETER_ENUM(name, owner, numbers, unit, meaning) name,
   MW_PARAMETERS(MW_PARAMETER_ENUM)
 #undef MW_PARAMETER_ENUM
 };
-inline constexpr int kParameterCount = 23;
+inline constexpr int kParameterCount = 38;
 
 struct ParameterInfo {
   enum Owner { world, body, shape, joint, control };

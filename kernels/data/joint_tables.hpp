@@ -50,6 +50,7 @@ struct JointConstants {
   T low, high;
   T stiffness, damping;               // of a spring that is a force, N/m and N s/m
   T ground_a[3], ground_b[3], ratio;  // of a pulley
+  T max_force, max_torque;            // that its joint bears in a step, N s and N m s
 };
 
 // Thrust or torque of a control on a body.
@@ -117,11 +118,10 @@ struct JointTrees {
   const std::int32_t* edge_of;  // [body] that it hangs on; -1: none
 };
 
-// The maximum load of a joint that may break. Its parts follow one another.
-template <class T>
+// A joint that may break; what it bears is with the constants of its parts, which follow one
+// another.
 struct BreakTable {
   std::int32_t joint, first_part, parts;
-  T max_force, max_torque;  // N s and N m s in a step
 };
 
 // A coordinate of a joint, for observers. Its frames are those of any part of the joint.

@@ -193,7 +193,7 @@ struct SceneConstants {
   const std::int32_t* jointed;  // state bodies that have parts
   std::int32_t jointed_bodies;
   JointTrees joint_trees;            // no edges: none is solved at once
-  const BreakTable<Real>* breaking;  // [breakable]
+  const BreakTable* breaking;  // [breakable]
   const AttractorTable<Real>* attractor;
   const ThrustTable* thrust;         // ordered by body
   const std::int32_t* first_thrust;  // [body + 1]; nullptr: there is none

@@ -92,13 +92,14 @@ void break_joints(const Constants& t, const Group& g, kernels::Scratch* scratch)
   Work& w = work_of(scratch);
   const std::uint32_t frozen = frozen_lanes(g);  // also those that this step froze
   for (int i = 0; i < t.breakable; ++i) {
-    const kernels::BreakTable<Real>& joint = t.breaking[i];
+    const kernels::BreakTable& joint = t.breaking[i];
     const auto* from = w.loads + i * kLoadRows<S>;
     const auto force = load_as<typename S::Vec>(from);
     const auto torque = load_as<typename S::Ang>(from + S::kDim * kLanes);
     const JointPart& part = t.part[joint.first_part];
-    const std::uint32_t lanes = bits((Float(joint.max_force) < length_of(force)) |
-                                     (Float(joint.max_torque) < length_of(torque))) &
+    const Joint& most = constants_of_part(g, joint.first_part);
+    const std::uint32_t lanes = bits((Float(most.max_force) < length_of(force)) |
+                                     (Float(most.max_torque) < length_of(torque))) &
                                 active_lanes(t, g, part) & ~frozen;
     if (lanes == 0) continue;
     g.disabled_joints[joint.joint] |= lanes;

@@ -53,6 +53,21 @@ Parameter = Literal[
     "motor_force",
     "drive_stiffness",
     "drive_damping",
+    "break_force",
+    "break_torque",
+    "anchor_a",
+    "anchor_b",
+    "axes_a",
+    "axes_b",
+    "initial_position",
+    "initial_rotation",
+    "initial_linear_velocity",
+    "initial_angular_velocity",
+    "center_of_mass",
+    "inertia_scale",
+    "wind",
+    "control_low",
+    "control_high",
 ]
 Draw = Literal["none", "uniform", "log_uniform"]
 Every = Literal["episode", "step"]

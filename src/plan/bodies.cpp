@@ -1,8 +1,9 @@
 // Bodies with state: mass, centre, principal axes.
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
-#include "src/plan/plan_data.hpp"
+#include "src/plan/reshaped.hpp"
 
 namespace manyworlds {
 
@@ -30,6 +31,14 @@ void principal_axes(const MassProperties& m, PlanBody& body) {
   body.principal = Quat(axes).normalized();
 }
 
+bool may_shift(const PlanData& plan, int body) {
+  return std::any_of(plan.varied.begin(), plan.varied.end(), [&](const VariedNumber& n) {
+    return n.of.body == body && n.parameter == Parameter::center_of_mass;
+  });
+}
+
+}  // namespace
+
 bool may_be_reshaped(const PlanData& plan, int body) {
   const std::size_t shapes = plan.scene.bodies[static_cast<std::size_t>(body)].shapes.size();
   for (const VariedNumber& n : plan.varied) {
@@ -39,8 +48,6 @@ bool may_be_reshaped(const PlanData& plan, int body) {
   }
   return false;
 }
-
-}  // namespace
 
 void collect_bodies(PlanData& plan) {
   const Scene& scene = plan.scene;
@@ -63,8 +70,9 @@ void collect_bodies(PlanData& plan) {
       }
       out.inv_inertia = out.inertia.cwiseInverse();
     }
-    out.reshaped = may_be_reshaped(plan, static_cast<int>(i));
-    const bool shifts = out.reshaped && body.shapes.size() > 1;
+    out.shifted = may_shift(plan, static_cast<int>(i));
+    out.reshaped = out.shifted || may_be_reshaped(plan, static_cast<int>(i));
+    const bool shifts = out.shifted || (out.reshaped && body.shapes.size() > 1);
     out.aligned = !shifts && out.center.isZero(0) && out.principal.vec().isZero(0);
     plan.bodies.push_back(out);
   }

@@ -256,7 +256,8 @@ void lay_out_shapes(PlanData& plan) {
   for (std::size_t i = 0; i < plan.colliders.size(); ++i) {
     PlanCollider& c = plan.colliders[i];
     plan.collider_is_body = plan.collider_is_body && c.body == static_cast<int>(i) &&
-                            c.offset.isZero(0) && (info(c.kind).ball || c.rotation.isIdentity(0));
+                            c.offset.isZero(0) && !plan.bodies[i].shifted &&
+                            (info(c.kind).ball || c.rotation.isIdentity(0));
     c.row = plan.row_block;
     plan.row_block += info(c.kind).row;
   }

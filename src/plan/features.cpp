@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "src/plan/plan_data.hpp"
+#include "src/plan/reshaped.hpp"
 
 namespace manyworlds {
 
@@ -58,10 +59,11 @@ void choose_features(PlanData& plan) {
 
   bool round = true, isotropic = true;
   for (const PlanCollider& c : plan.colliders) {
-    round = round && info(c.kind).ball && c.offset.isZero(0);
+    round = round && info(c.kind).ball && c.offset.isZero(0) &&
+            !plan.bodies[static_cast<std::size_t>(c.body)].shifted;
   }
   for (const PlanBody& b : plan.bodies) {
-    isotropic = isotropic && is_isotropic(b) && (round || !b.reshaped);
+    isotropic = isotropic && is_isotropic(b) && (round || !may_be_reshaped(plan, b.scene_body));
   }
   const bool joints = !scene.joints.empty();
   // A body without shapes has an orientation that users may read.
@@ -131,9 +133,12 @@ void choose_features(PlanData& plan) {
       }
     }
   }
+  const auto is_wind = [](const VariedNumber& n) { return n.parameter == Parameter::wind; };
+  const bool wind =
+      !scene.options.wind.isZero(0) || std::any_of(plan.varied.begin(), plan.varied.end(), is_wind);
   for (const VariedNumber& n : plan.varied) {
-    const bool of_bodies = n.parameter == Parameter::gravity_scale ||
-                           (n.parameter == Parameter::linear_drag && !scene.options.wind.isZero(0));
+    const bool of_bodies = n.parameter == Parameter::gravity_scale || (is_wind(n) && plan.slows) ||
+                           (n.parameter == Parameter::linear_drag && wind);
     plan.uniform_gravity = plan.uniform_gravity && !of_bodies;
   }
   choose.set(Feature::drag, drag, "some bodies have drag", "no body has drag");

@@ -121,6 +121,8 @@ class Builder {
     out.constants.limit_soft = hard();
     out.constants.max_impulse = kUnlimited;
     out.constants.ratio = 1;
+    out.constants.max_force = joint_.break_force * o.dt;
+    out.constants.max_torque = joint_.break_torque * o.dt;
     return out;
   }
   static void put(const Vec3& from, double* to) { std::copy_n(from.data(), 3, to); }

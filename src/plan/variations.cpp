@@ -44,7 +44,28 @@ void collect_variations(PlanData& plan) {
       case Parameter::motor_speed:
       case Parameter::motor_force:
       case Parameter::drive_stiffness:
-      case Parameter::drive_damping: varies.joints = true; break;
+      case Parameter::drive_damping:
+      case Parameter::break_force:
+      case Parameter::break_torque:
+      case Parameter::anchor_a:
+      case Parameter::anchor_b:
+      case Parameter::axes_a:
+      case Parameter::axes_b: varies.joints = true; break;
+      case Parameter::initial_position:
+      case Parameter::initial_rotation:
+        // Lengths of joints and how far they are apart are those at the beginning.
+        varies.joints = varies.joints || !plan.scene.joints.empty();
+        [[fallthrough]];
+      case Parameter::initial_linear_velocity:
+      case Parameter::initial_angular_velocity: varies.starts = true; break;
+      case Parameter::center_of_mass: varies.shapes = true; [[fallthrough]];
+      case Parameter::inertia_scale:
+        varies.masses = true;
+        varies.links = plan.has_trees();
+        break;
+      case Parameter::wind: varies.delta_v = true; break;
+      case Parameter::control_low:
+      case Parameter::control_high: varies.ranges = true; break;
     }
   }
 }
@@ -76,8 +97,10 @@ std::vector<Scene> extremes(const PlanData& plan) {
   std::vector<Scene> out{plan.scene};
   if (plan.varied.empty()) return out;
   for (const bool high : {false, true}) {
+    std::vector<double> values;
+    for (const VariedNumber& n : plan.varied) values.push_back(high ? n.high : n.low);
     out.push_back(plan.scene);
-    for (const VariedNumber& n : plan.varied) set_number(out.back(), n, high ? n.high : n.low);
+    set_numbers(out.back(), plan.varied, values.data());
   }
   return out;
 }

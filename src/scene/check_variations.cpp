@@ -31,7 +31,25 @@ bool check_number(Checker& checker, const std::string& field, Parameter paramete
     case Parameter::density: return checker.density(field, value);
     case Parameter::mass: return checker.positive(field, value, unit, kMinMass, kLargestMass);
     case Parameter::restitution: return checker.between(field, value, 0, 1);
+    case Parameter::break_force:
+    case Parameter::break_torque:
+      if (value > 0) return checker.finite(field, value, unit);
+      checker.add(field, "is " + number_text(value) + ", must be > 0");
+      return false;
+    case Parameter::inertia_scale: return checker.positive(field, value, unit, 1e-6, 1e6);
     case Parameter::gravity:
+    case Parameter::wind:
+    case Parameter::anchor_a:
+    case Parameter::anchor_b:
+    case Parameter::axes_a:
+    case Parameter::axes_b:
+    case Parameter::initial_position:
+    case Parameter::initial_rotation:
+    case Parameter::initial_linear_velocity:
+    case Parameter::initial_angular_velocity:
+    case Parameter::center_of_mass:
+    case Parameter::control_low:
+    case Parameter::control_high:
     case Parameter::gravity_scale:
     case Parameter::rest:
     case Parameter::limit_low:
@@ -70,6 +88,15 @@ const char* who_can(Parameter parameter) {
     case Parameter::drive_stiffness:
     case Parameter::drive_damping:
       return "a hinge, slider or wheel whose drive has a spring of stiffness and damping";
+    case Parameter::break_force:
+    case Parameter::break_torque: return "a joint with such a load, which is finite";
+    case Parameter::axes_a:
+    case Parameter::axes_b:
+      return "a hinge, slider, fixed or wheel joint, or a ball joint with a cone or twist";
+    case Parameter::initial_position:
+    case Parameter::initial_rotation:
+    case Parameter::initial_linear_velocity:
+    case Parameter::initial_angular_velocity: return "a body that moves";
     default: return "a dynamic body";
   }
 }
@@ -139,7 +166,26 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
 
 // Numbers that are worked out from shapes, which have to be sound for it.
 bool is_of_shapes(Parameter parameter) {
-  return parameter == Parameter::mass || parameter == Parameter::size;
+  return parameter == Parameter::mass || parameter == Parameter::size ||
+         parameter == Parameter::center_of_mass;
+}
+
+// What a planar scene has no use for: z of vectors, x and y of rotations.
+bool leaves_plane(Parameter parameter, int component) {
+  switch (parameter) {
+    case Parameter::gravity:
+    case Parameter::wind:
+    case Parameter::anchor_a:
+    case Parameter::anchor_b:
+    case Parameter::initial_position:
+    case Parameter::initial_linear_velocity:
+    case Parameter::center_of_mass: return component == 2;
+    case Parameter::axes_a:
+    case Parameter::axes_b:
+    case Parameter::initial_rotation:
+    case Parameter::initial_angular_velocity: return component < 2;
+    default: return false;
+  }
 }
 
 // Every number of the scene that it is about: its range, and the scene's own where nothing draws.
@@ -153,7 +199,7 @@ void check_range(Checker& checker, const Scene& scene, bool sound, const Variati
   const bool good = check_number(checker, low, v.parameter, n.low) &&
                     check_number(checker, high, v.parameter, n.high);
   if (!good) return;
-  if (checker.planar() && v.parameter == Parameter::gravity && n.component == 2) {
+  if (checker.planar() && leaves_plane(n.parameter, n.component)) {
     if (n.low != 0 || n.high != 0) checker.add(high, "must be 0 in a planar scene, as " + low);
     return;
   }
@@ -261,21 +307,24 @@ void check_variations(Checker checker, const Scene& scene, bool sound) {
   // What is fine one by one must be so together, at either end, and where the two ends of limits
   // come closest.
   const std::vector<VariedNumber> varied = varied_numbers(scene);
-  const auto check_end = [&](const char* name, auto is_high) {
+  const auto check_end = [&](const std::string& name, auto is_high) {
     Scene extreme = scene;
     extreme.variations.clear();
-    for (const VariedNumber& n : varied) {
-      set_number(extreme, n, is_high(n.parameter) ? n.high : n.low);
-    }
+    std::vector<double> values;
+    for (const VariedNumber& n : varied) values.push_back(is_high(n.parameter) ? n.high : n.low);
+    set_numbers(extreme, varied, values.data());
     for (const Issue& issue : validate(extreme)) checker.add(name, to_string(issue));
   };
   check_end("variations at their lowest:", [](Parameter) { return false; });
   check_end("variations at their highest:", [](Parameter) { return true; });
-  const auto is_low_end = [](Parameter parameter) { return parameter == Parameter::limit_low; };
-  const auto is_of_low_end = [&](const VariedNumber& n) { return is_low_end(n.parameter); };
-  if (checker.count() != before || std::none_of(varied.begin(), varied.end(), is_of_low_end))
-    return;
-  check_end("variations at their lowest, limit_low at its highest:", is_low_end);
+  if (checker.count() != before) return;
+  for (const Parameter low : {Parameter::limit_low, Parameter::control_low}) {
+    const auto is_low_end = [&](Parameter parameter) { return parameter == low; };
+    const auto is_of_low_end = [&](const VariedNumber& n) { return is_low_end(n.parameter); };
+    if (std::none_of(varied.begin(), varied.end(), is_of_low_end)) continue;
+    check_end("variations at their lowest, " + std::string(info(low).name) + " at its highest:",
+              is_low_end);
+  }
 }
 
 }  // namespace manyworlds::detail

@@ -7,6 +7,8 @@
 #include <variant>
 
 #include "src/base/enum_names.hpp"
+#include "src/scene/joint_numbers.hpp"
+#include "src/scene/rotation_vector.hpp"
 #include "src/scene/shape/shape.hpp"
 
 namespace manyworlds {
@@ -25,54 +27,6 @@ auto& dynamics_of(auto& scene, const NumberOwner& of) {
   return at(scene.joints, of.joint).dynamics;
 }
 
-// The limit and the drive of a joint on bodies that can vary; nullptr: it has none.
-template <class Type>
-auto* limit_of(Type& type) {
-  const auto found = [](auto& of) {
-    using Of = std::remove_cvref_t<decltype(of)>;
-    using Pointer = std::conditional_t<std::is_const_v<Type>, const Limit*, Limit*>;
-    if constexpr (std::is_same_v<Of, WheelJoint>) {
-      return Pointer(of.travel ? &*of.travel : nullptr);
-    } else if constexpr (requires { of.limit->low; } && !std::is_same_v<Of, BallJoint>) {
-      return Pointer(of.limit ? &*of.limit : nullptr);
-    } else {
-      return Pointer(nullptr);
-    }
-  };
-  return std::visit(found, type);
-}
-template <class Type>
-auto* drive_of(Type& type) {
-  const auto found = [](auto& of) {
-    using Pointer = std::conditional_t<std::is_const_v<Type>, const Drive*, Drive*>;
-    if constexpr (requires { of.drive->max_force; }) {
-      return Pointer(of.drive ? &*of.drive : nullptr);
-    } else {
-      return Pointer(nullptr);
-    }
-  };
-  return std::visit(found, type);
-}
-
-// The number of a joint on bodies; nullptr: there is none that can vary.
-template <class Type>
-auto* number_of(Type& type, Parameter parameter) {
-  using Pointer = std::conditional_t<std::is_const_v<Type>, const double*, double*>;
-  if (parameter == Parameter::limit_low || parameter == Parameter::limit_high) {
-    auto* limit = limit_of(type);
-    if (limit == nullptr) return Pointer(nullptr);
-    return Pointer(parameter == Parameter::limit_low ? &limit->low : &limit->high);
-  }
-  auto* drive = drive_of(type);
-  if (drive == nullptr) return Pointer(nullptr);
-  if (parameter == Parameter::motor_speed) return Pointer(&drive->target_speed);
-  if (parameter == Parameter::motor_force) return Pointer(&drive->max_force);
-  const bool by_force = drive->spring && drive->spring->frequency == 0;
-  if (!by_force) return Pointer(nullptr);
-  return Pointer(parameter == Parameter::drive_stiffness ? &drive->spring->stiffness
-                                                         : &drive->spring->damping);
-}
-
 int sizes_of(const Geometry& geometry) { return traits_of(geometry).sizes(); }
 
 void set_mass(Scene& scene, Body& body, double mass) {
@@ -80,6 +34,36 @@ void set_mass(Scene& scene, Body& body, double mass) {
   m.inertia *= mass / m.mass;
   m.mass = mass;
   body.mass_properties = m;
+}
+MassProperties& given_mass(Scene& scene, Body& body) {
+  if (!body.mass_properties) body.mass_properties = mass_properties(scene, body);
+  return *body.mass_properties;
+}
+
+// Vectors and rotations that the scene holds as they are; nullptr: the parameter is none.
+template <class Of>
+auto* vector_of(Of& scene, Parameter parameter, const NumberOwner& of) {
+  using Pointer = std::conditional_t<std::is_const_v<Of>, const Vec3*, Vec3*>;
+  switch (parameter) {
+    case Parameter::gravity: return Pointer(&scene.options.gravity);
+    case Parameter::wind: return Pointer(&scene.options.wind);
+    case Parameter::anchor_a: return Pointer(&at(scene.joints, of.joint).frame_a.position);
+    case Parameter::anchor_b: return Pointer(&at(scene.joints, of.joint).frame_b.position);
+    case Parameter::initial_position: return Pointer(&body_of(scene, of).position);
+    case Parameter::initial_linear_velocity: return Pointer(&body_of(scene, of).linear_velocity);
+    case Parameter::initial_angular_velocity: return Pointer(&body_of(scene, of).angular_velocity);
+    default: return Pointer(nullptr);
+  }
+}
+template <class Of>
+auto* quaternion_of(Of& scene, Parameter parameter, const NumberOwner& of) {
+  using Pointer = std::conditional_t<std::is_const_v<Of>, const Quat*, Quat*>;
+  switch (parameter) {
+    case Parameter::axes_a: return Pointer(&at(scene.joints, of.joint).frame_a.rotation);
+    case Parameter::axes_b: return Pointer(&at(scene.joints, of.joint).frame_b.rotation);
+    case Parameter::initial_rotation: return Pointer(&body_of(scene, of).rotation);
+    default: return Pointer(nullptr);
+  }
 }
 
 int numbers_of(const Scene& scene, Parameter parameter, const NumberOwner& of) {
@@ -117,12 +101,11 @@ bool is_about(const Variation& v, const NumberOwner& of) {
 }  // namespace
 
 bool is_of_bodies(Parameter parameter) {
-  return parameter >= Parameter::limit_low && parameter <= Parameter::drive_damping;
+  return parameter == Parameter::wind ||
+         (parameter >= Parameter::limit_low && parameter <= Parameter::initial_angular_velocity);
 }
 bool is_of_newton(Parameter parameter) {
-  const ParameterInfo::Owner owner = info(parameter).owner;
-  return (owner == ParameterInfo::joint || owner == ParameterInfo::control) &&
-         !is_of_bodies(parameter);
+  return parameter >= Parameter::armature && parameter <= Parameter::kv;
 }
 
 const ParameterInfo& info(Parameter parameter) {
@@ -177,14 +160,25 @@ std::vector<NumberOwner> owners_of(const Scene& scene, Parameter parameter) {
 bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of) {
   switch (parameter) {
     case Parameter::gravity:
+    case Parameter::wind:
+    case Parameter::control_low:
+    case Parameter::control_high:
     case Parameter::friction:
-    case Parameter::restitution: return true;
+    case Parameter::restitution:
+    case Parameter::anchor_a:
+    case Parameter::anchor_b: return true;
+    case Parameter::initial_position:
+    case Parameter::initial_rotation:
+    case Parameter::initial_linear_velocity:
+    case Parameter::initial_angular_velocity: return body_of(scene, of).motion != Motion::fixed;
     case Parameter::size:
       return body_of(scene, of).motion != Motion::fixed &&
              sizes_of(shape_of(scene, of).geometry) > 0;
     case Parameter::density:
       return body_of(scene, of).motion == Motion::dynamic && !body_of(scene, of).mass_properties;
     case Parameter::mass:
+    case Parameter::center_of_mass:
+    case Parameter::inertia_scale:
     case Parameter::gravity_scale:
     case Parameter::linear_drag:
     case Parameter::angular_drag: return body_of(scene, of).motion == Motion::dynamic;
@@ -199,17 +193,16 @@ bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of) {
       const Control& control = at(scene.controls, of.control);
       return control_can(control.kind, control.actuator, parameter);
     }
-    // What is not there, or never acts, has no rows in the plan.
     case Parameter::limit_low:
-    case Parameter::limit_high: {
-      const double* number = number_of(at(scene.joints, of.joint).type, parameter);
-      return number != nullptr && std::isfinite(*number);
-    }
+    case Parameter::limit_high:
     case Parameter::motor_speed:
     case Parameter::motor_force:
     case Parameter::drive_stiffness:
     case Parameter::drive_damping:
-      return number_of(at(scene.joints, of.joint).type, parameter) != nullptr;
+    case Parameter::break_force:
+    case Parameter::break_torque: return joint_has(at(scene.joints, of.joint), parameter);
+    case Parameter::axes_a:
+    case Parameter::axes_b: return has_axes(at(scene.joints, of.joint).type);
   }
   return false;
 }
@@ -232,6 +225,10 @@ std::vector<VariedNumber> varied_numbers(const Scene& scene) {
 }
 
 double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of, int component) {
+  if (const Vec3* vector = vector_of(scene, parameter, of)) return (*vector)[component];
+  if (const Quat* rotation = quaternion_of(scene, parameter, of)) {
+    return rotation_vector(*rotation)[component];
+  }
   switch (parameter) {
     case Parameter::size: {
       const Geometry& geometry = shape_of(scene, of).geometry;
@@ -242,9 +239,15 @@ double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of
       return body_of(scene, of).motion == Motion::dynamic
                  ? mass_properties(scene, body_of(scene, of)).mass
                  : 0;
+    case Parameter::center_of_mass:
+      return body_of(scene, of).motion == Motion::dynamic
+                 ? mass_properties(scene, body_of(scene, of)).center[component]
+                 : 0;
+    case Parameter::inertia_scale: return body_of(scene, of).motion == Motion::dynamic ? 1 : 0;
+    case Parameter::control_low: return at(scene.controls, of.control).low;
+    case Parameter::control_high: return at(scene.controls, of.control).high;
     case Parameter::friction: return shape_of(scene, of).material.friction;
     case Parameter::restitution: return shape_of(scene, of).material.restitution;
-    case Parameter::gravity: return scene.options.gravity[component];
     case Parameter::gravity_scale: return body_of(scene, of).gravity_scale;
     case Parameter::linear_drag: return body_of(scene, of).linear_drag;
     case Parameter::angular_drag: return body_of(scene, of).angular_drag;
@@ -264,12 +267,14 @@ double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of
     case Parameter::motor_speed:
     case Parameter::motor_force:
     case Parameter::drive_stiffness:
-    case Parameter::drive_damping: {
-      const double* number = number_of(at(scene.joints, of.joint).type, parameter);
+    case Parameter::drive_damping:
+    case Parameter::break_force:
+    case Parameter::break_torque: {
+      const double* number = number_of(at(scene.joints, of.joint), parameter);
       return number != nullptr ? *number : 0;
     }
+    default: return 0;
   }
-  return 0;
 }
 
 double get_number(ControlKind kind, const Actuator& a, Parameter parameter, int component) {
@@ -279,7 +284,13 @@ double get_number(ControlKind kind, const Actuator& a, Parameter parameter, int 
   return parameter == Parameter::kp ? a.gain.x() : 0 - a.bias.z();  // never -0
 }
 
+namespace {
+
 void set_number(Scene& scene, const VariedNumber& n, double value) {
+  if (Vec3* vector = vector_of(scene, n.parameter, n.of)) {
+    (*vector)[n.component] = value;
+    return;
+  }
   switch (n.parameter) {
     case Parameter::size: {
       Geometry& geometry = shape_of(scene, n.of).geometry;
@@ -288,9 +299,14 @@ void set_number(Scene& scene, const VariedNumber& n, double value) {
     }
     case Parameter::density: shape_of(scene, n.of).density = value; break;
     case Parameter::mass: set_mass(scene, body_of(scene, n.of), value); break;
+    case Parameter::center_of_mass:
+      given_mass(scene, body_of(scene, n.of)).center[n.component] = value;
+      break;
+    case Parameter::inertia_scale: given_mass(scene, body_of(scene, n.of)).inertia *= value; break;
+    case Parameter::control_low: at(scene.controls, n.of.control).low = value; break;
+    case Parameter::control_high: at(scene.controls, n.of.control).high = value; break;
     case Parameter::friction: shape_of(scene, n.of).material.friction = value; break;
     case Parameter::restitution: shape_of(scene, n.of).material.restitution = value; break;
-    case Parameter::gravity: scene.options.gravity[n.component] = value; break;
     case Parameter::gravity_scale: body_of(scene, n.of).gravity_scale = value; break;
     case Parameter::linear_drag: body_of(scene, n.of).linear_drag = value; break;
     case Parameter::angular_drag: body_of(scene, n.of).angular_drag = value; break;
@@ -310,8 +326,25 @@ void set_number(Scene& scene, const VariedNumber& n, double value) {
     case Parameter::motor_force:
     case Parameter::drive_stiffness:
     case Parameter::drive_damping:
-      *number_of(at(scene.joints, n.of.joint).type, n.parameter) = value;
+    case Parameter::break_force:
+    case Parameter::break_torque:
+      *number_of(at(scene.joints, n.of.joint), n.parameter) = value;
       break;
+    default: break;
+  }
+}
+
+}  // namespace
+
+void set_numbers(Scene& scene, const std::vector<VariedNumber>& numbers, const double* values) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    // The three numbers of a rotation follow one another.
+    if (Quat* rotation = quaternion_of(scene, numbers[i].parameter, numbers[i].of)) {
+      *rotation = rotation_of(Vec3(values[i], values[i + 1], values[i + 2]));
+      i += 2;
+    } else {
+      set_number(scene, numbers[i], values[i]);
+    }
   }
 }
 

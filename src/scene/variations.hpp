@@ -29,7 +29,8 @@ inline BodyId body_of(const Variation& v) { return v.shape.body() ? v.shape.body
 // controls, or the world.
 std::vector<NumberOwner> owners_of(const Scene& scene, Parameter parameter);
 
-// Of joints and controls of Solver::newton; of joints on bodies, which are those of all others.
+// Of joints and controls of Solver::newton; of joints on bodies and how bodies begin, which all
+// other solvers have.
 bool is_of_newton(Parameter parameter);
 bool is_of_bodies(Parameter parameter);
 
@@ -41,7 +42,8 @@ std::vector<VariedNumber> varied_numbers(const Scene& scene);
 bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of);
 
 double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of, int component);
-void set_number(Scene& scene, const VariedNumber& number, double value);
+// All of a scene's numbers, in the order of varied_numbers().
+void set_numbers(Scene& scene, const std::vector<VariedNumber>& numbers, const double* values);
 // Of the actuator of a control.
 double get_number(ControlKind kind, const Actuator& actuator, Parameter parameter, int component);
 void set_number(Actuator& actuator, Parameter parameter, int component, double value);

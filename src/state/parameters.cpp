@@ -50,6 +50,7 @@ void Worlds<Real>::make_parameters() {
       own_bodies_.insert(own_bodies_.end(), data().bodies.begin(), data().bodies.end());
     }
   }
+  if (data().varies.ranges) own_ranges_.resize(worlds * data().control_range.size());
   for (std::size_t w = 0; w < worlds; ++w) {
     for (const VariedNumber& n : varied) {
       const double own = get_number(scene, n.parameter, n.of, n.component);
@@ -83,16 +84,22 @@ void Worlds<Real>::apply_values(int world) {
     const Body& described = plan_.scene().bodies[b];
     Body& body = own_->scene.bodies[b];
     if (n.parameter == Parameter::size) body.shapes[s].geometry = described.shapes[s].geometry;
-    if (n.parameter == Parameter::mass) body.mass_properties = described.mass_properties;
+    const bool of_mass = n.parameter == Parameter::mass ||
+                         n.parameter == Parameter::center_of_mass ||
+                         n.parameter == Parameter::inertia_scale;
+    if (of_mass) body.mass_properties = described.mass_properties;
   }
-  for (std::size_t i = 0; i < varied.size(); ++i) {
-    set_number(own_->scene, varied[i], values_of(world)[i]);
-  }
+  set_numbers(own_->scene, varied, values_of(world));
   derive_again(*own_);
   if (!own_bodies_.empty()) {
     std::copy(own_->bodies.begin(), own_->bodies.end(),
               own_bodies_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(world) *
                                                                 own_->bodies.size()));
+  }
+  for (std::size_t i = 0; data().varies.ranges && i < data().control_range.size(); ++i) {
+    const Control& own = own_->scene.controls[i];
+    own_ranges_[static_cast<std::size_t>(world) * data().control_range.size() + i] = {own.low,
+                                                                                      own.high};
   }
   storage_.set_constants(*own_, lane_index_of(world));
 }
@@ -108,9 +115,12 @@ double Worlds<Real>::number(Parameter parameter, int world, std::size_t item) co
   const auto numbers = static_cast<std::size_t>(info(parameter).numbers);
   const NumberOwner& of = owners_[p][item / numbers];
   const int component = static_cast<int>(item % numbers), at = number_at_[p][item];
-  // Sizes and densities make a mass, too, and what servos have gains.
+  // Sizes and densities make a mass and its centre, too, and what servos have gains.
   if (parameter == Parameter::mass) return body_of(world, item).mass;
-  if (of.control >= 0) {
+  if (parameter == Parameter::center_of_mass && at < 0) {
+    return body_of(world, item / numbers).center[component];
+  }
+  if (of.control >= 0 && is_of_newton(parameter)) {
     const auto kind = plan_.scene().controls[static_cast<std::size_t>(of.control)].kind;
     return get_number(kind, actuator_of(world, of.control), parameter, component);
   }
@@ -123,7 +133,8 @@ Actuator Worlds<Real>::actuator_of(int world, int control) const {
   const auto& varied = data().varied;
   for (std::size_t i = 0; i < varied.size(); ++i) {
     const VariedNumber& n = varied[i];
-    if (n.of.control == control) set_number(out, n.parameter, n.component, values_of(world)[i]);
+    if (n.of.control != control || !is_of_newton(n.parameter)) continue;
+    set_number(out, n.parameter, n.component, values_of(world)[i]);
   }
   return out;
 }
@@ -164,9 +175,12 @@ void Worlds<Real>::write(Parameter parameter, int world, const double* in) {
     changed = changed || value != in[i];
     value = in[i];
   }
-  if (!changed) return;
+  const bool of_starts =
+      parameter >= Parameter::initial_position && parameter <= Parameter::initial_angular_velocity;
+  if (!changed || (of_starts && !data().varies.joints)) return;  // a reset reads them
   const int lane_index = lane_index_of(world);
-  const bool moves = parameter == Parameter::size || parameter == Parameter::density;
+  const bool moves = parameter == Parameter::size || parameter == Parameter::density ||
+                     parameter == Parameter::center_of_mass;
   if (data().has_trees()) {  // whose links stay where their coordinates are
     apply_values(world);
     if (moves) place_links(world);
@@ -247,6 +261,10 @@ template <class Real>
 void Worlds<Real>::copy_world(int from, int to) {
   storage_.copy(lane_index_of(from), lane_index_of(to));
   std::copy_n(values_of(from), data().varied.size(), values_of(to));
+  for (std::size_t i = 0, n = data().control_range.size(); !own_ranges_.empty() && i < n; ++i) {
+    own_ranges_[static_cast<std::size_t>(to) * n + i] =
+        own_ranges_[static_cast<std::size_t>(from) * n + i];
+  }
   for (std::size_t b = 0; !own_bodies_.empty() && b < data().bodies.size(); ++b) {
     own_bodies_[static_cast<std::size_t>(to) * data().bodies.size() + b] = body_of(from, b);
   }

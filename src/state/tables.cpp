@@ -299,15 +299,12 @@ void TablesOf<Real>::add_joints(const PlanData& plan) {
 template <class Real>
 void TablesOf<Real>::add_breaking(const PlanData& plan) {
   auto& t = tables_;
-  const double dt = plan.scene.options.dt;
   t.joints = static_cast<std::int32_t>(plan.scene.joints.size());
   for (std::size_t i = 0; i < plan.parts.size(); ++i) {
     const Joint& joint = plan.scene.joints[static_cast<std::size_t>(plan.parts[i].joint)];
     if (std::isinf(joint.break_force) && std::isinf(joint.break_torque)) continue;
     if (breaking_.empty() || breaking_.back().joint != plan.parts[i].joint) {
-      breaking_.push_back({plan.parts[i].joint, static_cast<std::int32_t>(i), 0,
-                           static_cast<Real>(joint.break_force * dt),
-                           static_cast<Real>(joint.break_torque * dt)});
+      breaking_.push_back({plan.parts[i].joint, static_cast<std::int32_t>(i), 0});
     }
     ++breaking_.back().parts;
   }

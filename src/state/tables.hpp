@@ -46,7 +46,7 @@ class TablesOf {
   std::vector<kernels::TreeEdge> edges_;
   std::vector<kernels::JointLoops> loops_;
   std::vector<std::int32_t> edge_roots_, edge_bodies_, edge_of_;
-  std::vector<kernels::BreakTable<Real>> breaking_;
+  std::vector<kernels::BreakTable> breaking_;
   std::vector<kernels::AttractorTable<Real>> attractors_;
   std::vector<kernels::ThrustTable> thrusts_;
   std::optional<TreeTables<Real>> trees_;

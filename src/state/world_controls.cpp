@@ -20,8 +20,11 @@ void Worlds<Real>::set_controls_as(int first, int count, const In* in) {
         storage_.status(lane_index) |= kernels::kNonFinite;
         continue;
       }
-      const Real value = std::clamp(static_cast<Real>(*in), static_cast<Real>(ranges[i][0]),
-                                    static_cast<Real>(ranges[i][1]));
+      const auto [low, high] =
+          own_ranges_.empty() ? ranges[i]
+                              : own_ranges_[static_cast<std::size_t>(world) * ranges.size() + i];
+      const Real value =
+          std::clamp(static_cast<Real>(*in), static_cast<Real>(low), static_cast<Real>(high));
       Real& stored = control[i * lanes];
       changed = changed || stored != value;
       stored = value;

@@ -52,10 +52,11 @@ void Worlds<Real>::place(int world, int body, const BodyState& s) {
   if (tables().has_orientation) set_rotation(world, body, s.rotation * b.principal);
 }
 
-// Where a body of the scene begins in this world.
+// Where a body of the scene begins in this world, whose numbers have just been applied.
 template <class Real>
 BodyState Worlds<Real>::drawn_state(int world, int scene_body, const Draws& draws) const {
-  return draw_initial_state(plan_.scene(), scene_body, draws, [&](int body) {
+  const Scene& scene = data().varies.starts ? own_->scene : plan_.scene();
+  return draw_initial_state(scene, scene_body, draws, [&](int body) {
     return body_of(world, static_cast<std::size_t>(plan_.row(BodyId(body)))).center;
   });
 }

@@ -126,7 +126,8 @@ class Worlds final : public WorldsBase {
   // Bytes of a world outside of the storage.
   std::size_t own_bytes() const {
     return sizeof(std::uint64_t) + sizeof(std::uint32_t) + 2 * sizeof(int) +
-           (values_.size() * sizeof(double) + own_bodies_.size() * sizeof(PlanBody)) /
+           (values_.size() * sizeof(double) + own_bodies_.size() * sizeof(PlanBody) +
+            own_ranges_.size() * sizeof own_ranges_[0]) /
                static_cast<std::size_t>(worlds_);
   }
 
@@ -186,6 +187,7 @@ class Worlds final : public WorldsBase {
   std::array<std::vector<int>, kParameterCount> number_at_;  // index in PlanData::varied, or -1
   std::vector<double> values_;                               // [world][PlanData::varied]
   std::vector<PlanBody> own_bodies_;                         // [world][body], where masses vary
+  std::vector<std::array<double, 2>> own_ranges_;            // [world][control], where ranges vary
   std::unique_ptr<PlanData> own_;                            // the plan of the world at work
   std::vector<int> lane_index_;                              // [world]
   std::vector<int> world_in_;                                // [lane index], -1: none

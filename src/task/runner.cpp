@@ -6,81 +6,9 @@
 #include <limits>
 
 #include "src/base/bits.hpp"
-#include "src/base/hash.hpp"
 #include "src/base/random.hpp"
-#include "src/plan/plan_data.hpp"
 
 namespace manyworlds {
-
-namespace {
-
-std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, const Plan& plan) {
-  Hasher hash;
-  const auto add = [&hash](auto... numbers) {
-    (hash.add(static_cast<std::uint64_t>(numbers)), ...);
-  };
-  const auto add_all = [&](const auto& numbers) {
-    add(numbers.size());
-    for (const auto number : numbers) hash.add(static_cast<double>(number));
-  };
-  add(plan.fingerprint(), task.frame_skip, task.choices, programs.max_steps, programs.terminated,
-      programs.truncated, task.rays.size(), task.points.size());
-  for (const Ray& ray : task.rays) {
-    add_all(ray.origin);
-    add_all(ray.direction);
-    add(ray.body ? plan.row(ray.body) : -1, ray.mask);
-    hash.add(ray.length);
-  }
-  for (const Point& point : task.points) {
-    add_all(point.position);
-    add(plan.row(point.body));
-  }
-  for (const auto* ranges : {&programs.action_range, &programs.control_range}) {
-    add(ranges->size());
-    for (const auto& range : *ranges) add_all(range);
-  }
-  for (const Program* program : {&programs.before, &programs.after}) {
-    add(program->instructions.size(), program->calls.size());
-    for (const auto& i : program->instructions) {
-      add(i.operation, i.a, i.b, i.c);
-      hash.add(i.number);
-    }
-    for (const Program::Call& call : program->calls) {
-      add(call.at);
-      add_all(call.in);
-    }
-  }
-  for (const HostNumber& n : programs.inputs.numbers) {
-    add(n.kind, n.stream, n.count, n.of, n.item);
-  }
-  for (const auto* rows :
-       {&programs.controls, &programs.observations, &programs.rewards, &programs.memory.row}) {
-    add_all(*rows);
-  }
-  return hash.value();
-}
-
-}  // namespace
-
-TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : max_steps(task.max_steps) {
-  inputs.actions = task.choices > 0 ? 1 : static_cast<int>(task.actions.size());
-  for (const Action& a : task.actions) {
-    constexpr double kAny = std::numeric_limits<double>::infinity();
-    action_range.push_back(a.clamped ? std::array{a.low, a.high} : std::array{-kAny, kAny});
-  }
-  control_range = plan.data().control_range;
-  ProgramBuilder builder(plan, inputs, memory);
-  for (const Observation& o : task.observations) observations.push_back(builder.add(o.value));
-  for (const Reward& r : task.rewards) rewards.push_back(builder.add(r.value));
-  for (const Info& i : task.infos) infos.push_back(builder.add(i.value));
-  terminated = builder.add(task.terminated);
-  truncated = builder.add(task.truncated | terms::lost());
-  ProgramBuilder first(plan, inputs, memory, &builder);
-  for (const Expression& c : task.controls) controls.push_back(first.add(c));
-  before = first.take();
-  after = builder.take();
-  fingerprint = fingerprint_of(task, *this, plan);
-}
 
 namespace {
 
@@ -149,9 +77,14 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     }
     run(g, before_, thread, false);
     for (std::size_t i = 0; i < p_->controls.size(); ++i) {
-      const auto [low, high] = p_->control_range[i];
+      auto [low, high] = p_->control_range[i];
       const Real* from = thread.values.data() + at(p_->controls[i]) * at(lanes_);
       for (int l = 0; l < lanes_; ++l) {
+        if (p_->ranges_vary) {
+          const int world = std::min(g.group * lanes_ + l, worlds_ - 1);
+          low = g.worlds.number(Parameter::control_low, world, i);
+          high = g.worlds.number(Parameter::control_high, world, i);
+        }
         if (std::isnan(from[l])) {
           freeze(g, l);
         } else {

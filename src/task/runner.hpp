@@ -21,6 +21,7 @@ struct TaskPrograms {
 
   InputRows inputs;
   std::vector<std::array<double, 2>> action_range, control_range;
+  bool ranges_vary = false;  // of controls, from world to world
   int max_steps;
   Program before, after;
   std::vector<int> controls;                      // rows of `before`

@@ -81,6 +81,13 @@ TEST_CASE(
 TEST_CASE("draws depend on the world's seed and its episode, and keep to their range",
           "[fast][parameters]") {
   Scene scene = varied_crowd(Space::spatial);
+  for (const Parameter parameter :
+       {Parameter::initial_position, Parameter::initial_rotation,
+        Parameter::initial_linear_velocity, Parameter::initial_angular_velocity,
+        Parameter::center_of_mass, Parameter::wind}) {
+    scene.variations.push_back(vary_three(parameter, Vec3::Constant(-0.01), Vec3::Constant(0.01)));
+  }
+  scene.variations.push_back(vary(Parameter::inertia_scale, 0.9, 1.1));
   Batch batch(compile(scene), {.worlds = 40, .threads = 1, .seed = 3});
   Batch other(compile(scene), {.worlds = 8, .threads = 1, .seed = 13});
   for (int p = 0; p < kParameterCount; ++p) {

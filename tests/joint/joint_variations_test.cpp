@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "src/scene/variations.hpp"
 #include "tests/support/contraption.hpp"
 #include "tests/support/hashes.hpp"
 #include "tests/support/tables.hpp"
@@ -32,16 +31,6 @@ std::vector<Variation> of_all_joints(bool springs) {
   out.push_back(vary(Parameter::drive_stiffness, 100, 1000));
   out.push_back(vary(Parameter::drive_damping, 1, 30));
   return out;
-}
-
-// The scene with the numbers of one world of a batch.
-Scene scene_of(const Batch& batch, int world) {
-  Scene scene = batch.plan(0).scene();
-  for (const VariedNumber& n : varied_numbers(scene)) {
-    set_number(scene, n, numbers(batch, n.parameter, world)[static_cast<std::size_t>(n.of.joint)]);
-  }
-  scene.variations.clear();
-  return scene;
 }
 
 std::string only_issue(const Scene& scene) {
@@ -120,7 +109,7 @@ TEST_CASE("a world with joints of its own is one of the scene that has them, bit
         BatchOptions options = options_of(table, 9);
         options.seed = 5;
         Batch batch(compile(scene), options);
-        std::vector<Batch> alone = each_alone(batch, table, options.seed, scene_of);
+        std::vector<Batch> alone = each_alone(batch, table, options.seed, built_with);
         batch.step(30);
         for (int w = 0; w < batch.worlds(); ++w) {
           alone[static_cast<std::size_t>(w)].step(30);

@@ -138,6 +138,19 @@ TEST_CASE("every member and every bit of a scene goes through JSON", "[fast][rec
   CHECK(compile(scene_from_json(scene_to_json(planar))).fingerprint() ==
         compile(planar).fingerprint());
 
+  Scene varied = planar;
+  for (int p = 0; p < kParameterCount; ++p) {
+    varied.variations.push_back(vary(static_cast<Parameter>(p), -0.1, 1.0 / 3, Draw::none));
+    varied.variations.back().high.z() = 7.7;
+  }
+  const Scene varied_back = scene_from_json(scene_to_json(varied));
+  REQUIRE(varied_back.variations.size() == varied.variations.size());
+  for (std::size_t p = 0; p < varied.variations.size(); ++p) {
+    CHECK(varied_back.variations[p].parameter == varied.variations[p].parameter);
+    CHECK(varied_back.variations[p].low == varied.variations[p].low);
+    CHECK(varied_back.variations[p].high == varied.variations[p].high);
+  }
+
   // A scene that makes no sense is still a scene.
   planar.options.contact.slop = std::numeric_limits<double>::infinity();
   planar.options.density = -std::numeric_limits<double>::infinity();

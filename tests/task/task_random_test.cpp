@@ -251,6 +251,23 @@ TEST_CASE("what does not vary is a constant, and gains are those of servos that 
   CHECK(p.observations[0] != p.observations[6]);
 }
 
+TEST_CASE("controls of expressions keep to the ranges of their worlds", "[task][fast]") {
+  Task task;
+  task.scene = one_crate(Space::spatial);
+  Control thrust;
+  thrust.kind = ControlKind::thrust, thrust.body = BodyId(0);
+  thrust.direction = Vec3::UnitX(), thrust.low = -1, thrust.high = 1;
+  task.scene.add(thrust);
+  task.scene.variations = {vary(Parameter::control_high, 0.5, 3)};
+  task.controls = {100};
+  task.observations = {{"high", terms::parameter(Parameter::control_high, ControlId(0))},
+                       {"control", terms::control(ControlId(0))}};
+  Played p(task, {.worlds = 9});
+  p.step();
+  for (std::size_t w = 0; w < 9; ++w) CHECK(p.observations[2 * w + 1] == p.observations[2 * w]);
+  CHECK(p.observations[0] != p.observations[2]);
+}
+
 TEST_CASE("what is wrong with random numbers and parameters is said", "[task][fast]") {
   Task task;
   task.scene = one_crate(Space::spatial);
