@@ -192,7 +192,7 @@ struct SceneConstants {
   const JointPart* part;
   const std::int32_t* jointed;  // state bodies that have parts
   std::int32_t jointed_bodies;
-  JointTrees joint_trees;            // no edges: none is solved at once
+  JointTrees joint_trees;      // no edges: none is solved at once
   const BreakTable* breaking;  // [breakable]
   const AttractorTable<Real>* attractor;
   const ThrustTable* thrust;         // ordered by body

@@ -2,8 +2,6 @@
 // made, and those that an impulse has reached.
 #pragma once
 
-#include <cstring>
-
 #include "kernels/lane/ints.hpp"
 #include "kernels/rows/side.hpp"
 #include "kernels/work/work.hpp"
@@ -48,7 +46,7 @@ inline void gather_met(const Constants& t, const Work& w) {
   for (int b = 0; b < t.bodies; ++b) {
     for (int l = 0; l < kLanes; l += kAtOnce) {
       std::uint64_t bytes = 0;
-      std::memcpy(&bytes, w.met + b * kLanes + l, kAtOnce);
+      __builtin_memcpy(&bytes, w.met + b * kLanes + l, kAtOnce);
       // Byte i, 0 or 1, comes to bit 56 + i.
       const auto bits = static_cast<std::uint32_t>(bytes * 0x0102040810204080u >> 56);
       w.touched[b] |= bits << l;
