@@ -1,4 +1,4 @@
-"""The examples of README.md, docs/python.md, docs/robots.md and docs/search.md run."""
+"""The examples of README.md, docs/python.md, docs/robots.md, docs/scale.md and docs/search.md run."""
 
 import importlib.util
 import re
@@ -48,6 +48,14 @@ def test_searches(tmp_path, monkeypatch):
     assert best.value > 25 and places["again"].hashes[0] == best.hash
     assert len(places["design"].results) == 60 and len(places["by_hand"].results) == 500
     assert places["annealed"].best.value > 20 and places["shots"].results.best.value > 2
+
+
+def test_rollouts_beyond_one_machine():
+    pytest.importorskip("ray")
+    places = {}
+    for code in examples("docs/scale.md"):
+        exec(code.replace("worlds=4096", "worlds=64").replace("=500)", "=50)"), places)
+    assert places["rewards"].shape == (100, 64)
 
 
 def test_the_manual(tmp_path, monkeypatch):

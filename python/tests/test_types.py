@@ -89,7 +89,7 @@ def test_mypy(files):
         "[mypy-manyworlds._core,manyworlds._mjcf,manyworlds._record]\ndisable_error_code = type-arg\n"
         # What others import and no example looks at takes half of the time.
         "[mypy-matplotlib.*,PIL.*,torch.*]\nfollow_imports = skip\n"
-        "[mypy-jax.*]\nfollow_imports = skip\nignore_missing_imports = True\n"
+        "[mypy-jax.*,ray.*]\nfollow_imports = skip\nignore_missing_imports = True\n"
     )
     run = [sys.executable, "-m", "mypy", "--cache-dir", str(files / "cache"), "."]
     found = subprocess.run(run, cwd=files, capture_output=True, text=True)

@@ -1,0 +1,394 @@
+"""Rollouts of worlds that are spread over shards."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+
+from .. import arrays, search
+from ..files import File
+from ..in_memory import InMemory
+from ..kinds import MAX_WORLDS, AnyScene, plans_of
+from ..names import Isa, Precision
+from ..plan import Plan
+from ..rollout import MAX_STEPS
+from ..search.loop import Goal, SeedsBy
+from ..search.outcome import Objective
+from ..tasks import Task, TaskError
+from .shard import OF_A_TASK, Act, Shard
+from .trajectories import Evaluation, Trajectories
+from .trials import Trials
+from .work import Policy, Report, Work, default_block, shares, task_of
+
+if TYPE_CHECKING:
+    from .crew import Crew
+
+_AHEAD = 64  # calls that may wait at most
+_HISTORY = 2**31 - 1
+
+
+class Rollouts(InMemory):
+    """Worlds of a task or a scene on the actors of Ray, or in this process.
+
+    what        a Task, a Scene or a Plan, or the name of a task or a scene
+    worlds      how many
+    seed        world i draws from seed + i
+    policy      of a task: observations (block's worlds, observations) to actions, for each step; NumPy, JAX
+                or a torch.nn.Module; None: no action (zeros, or choice 0). Of a scene: a Batch to its
+                controls. It must compute what it does from what it is given alone
+    shards      actors; 0: none, in this process, without Ray; None: one for each node of the cluster
+    cpus        of each actor; None: all of its node's (the fewest of any node), or an equal share where there
+                are more shards than nodes
+    resources   that each actor takes, as Ray names them
+    block       worlds that are held, stepped and moved together; what worlds do depends on it where a
+                policy's rounding depends on the number of its rows. None: a 64th, 16 to 4096
+    fields      of a scene: what trajectories have
+    threads     of each shard; None: its cpus, or in this process all that it may run on
+    timeout     seconds for which a call may be silent, once its actor has started and caught up, before
+                that counts as hung and is replaced; calls before it count, too
+    max_restarts  how often a shard may be replaced in one call
+    checkpoint_every  steps after which worlds are saved at the end of a call; 0: never
+    folder      where they are saved, seen by all nodes; None: in Ray's object store. With a folder policies
+                that are out of use are let go of: for who gives new ones again and again
+
+    Worlds whose actor dies or hangs go on from what was saved last, or from the beginning where that went
+    with its node, and have the same bits. What a policy raises is raised here; then worlds are where their
+    shards came to, and ``closed``. Not for use by several threads. Raises ValueError, TypeError, TaskError,
+    SceneError, ShardError.
+    """
+
+    _instead = "pickle its task or scene and the arguments that it was made with"
+
+    def __init__(
+        self,
+        what: Union[Task, AnyScene],
+        worlds: int,
+        seed: int = 0,
+        policy: Optional[Policy] = None,
+        shards: Optional[int] = None,
+        *,
+        cpus: Optional[float] = None,
+        resources: Optional[Mapping[str, float]] = None,
+        block: Optional[int] = None,
+        fields: tuple[str, ...] = (),
+        threads: Optional[int] = None,
+        precision: Precision = "f32",
+        isa: Optional[Isa] = None,
+        timeout: Optional[float] = None,
+        max_restarts: int = 3,
+        checkpoint_every: int = 1000,
+        folder: Optional[File] = None,
+    ) -> None:
+        what = task_of(what)
+        if isinstance(what, Task):
+            if issues := what.validate():
+                raise TaskError(issues)
+            if fields:
+                raise ValueError(f"fields are {list(fields)}; expected none of a task")
+        elif not isinstance(what, Plan):
+            what = plans_of(what, 1)[0][0].scene
+        worlds = arrays.integer(worlds, "worlds", 1, MAX_WORLDS * 1024)
+        size = default_block(worlds) if block is None else arrays.integer(block, "block", 1, MAX_WORLDS)
+        seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
+        if policy is not None and not callable(policy):
+            raise TypeError(f"policy is of type {type(policy).__name__}; expected a callable, or None")
+        if timeout is not None and not timeout > 0:
+            raise ValueError(f"timeout is {timeout}; expected seconds > 0, or None")
+        work = Work(what, worlds, seed, size, threads, precision, isa, tuple(fields))
+        work.make_worlds(1, seed).close()  # what is wrong with it is said here
+        self._work = work
+        self._trials = 0
+        self._closed = False
+        self._crew: Optional[Crew] = None
+        self._shard: Optional[Shard] = None
+        self._policy = policy
+        if shards is None or arrays.integer(shards, "shards", 0, MAX_WORLDS) > 0:
+            self._crew = self._make_crew(
+                shards,
+                cpus,
+                resources or {},
+                timeout,
+                arrays.integer(max_restarts, "max_restarts", 0, 1000),
+                arrays.integer(checkpoint_every, "checkpoint_every", 0, MAX_STEPS),
+                folder,
+            )
+        else:
+            self._shard = Shard(work, range(work.blocks))
+        self.use(policy)
+
+    def _make_crew(
+        self,
+        shards: Optional[int],
+        cpus: Optional[float],
+        resources: Mapping[str, float],
+        timeout: Optional[float],
+        max_restarts: int,
+        checkpoint_every: int,
+        folder: Optional[File],
+    ) -> Crew:
+        try:
+            from . import cluster
+            from .crew import Crew, Options
+        except ModuleNotFoundError as error:
+            raise ModuleNotFoundError(
+                'actors need the package ray: pip install "manyworlds[ray]", or shards=0 for none'
+            ) from error
+
+        nodes = cluster.cpus_of_nodes()
+        count = self._shards(len(nodes) if shards is None else shards)
+        if cpus is None:
+            cpus = cluster.share_of(nodes, count)
+        if self._work.threads is None:
+            threads = max(1, int(cpus))
+            self._work = Work(**{**vars(self._work), "threads": threads})
+        if folder is not None:
+            Path(folder).mkdir(parents=True, exist_ok=True)
+        where = None if folder is None else str(Path(folder).resolve())
+        options = Options(cpus, resources, timeout, max_restarts, checkpoint_every, where)
+        return Crew(self._work, shares(self._work.blocks, count), options)
+
+    def _shards(self, count: int) -> int:
+        most = self._work.blocks
+        if count > most:
+            raise ValueError(
+                f"shards is {count}, but {self._work.worlds} worlds are {most} blocks of "
+                f"{self._work.block}; expected at most {most} (a smaller block gives more)"
+            )
+        return count
+
+    # -- what it is
+
+    @property
+    def worlds(self) -> int:
+        """How many there are."""
+        return self._work.worlds
+
+    @property
+    def block(self) -> int:
+        """Worlds of a block."""
+        return self._work.block
+
+    @property
+    def shards(self) -> int:
+        """Actors; 0: none."""
+        return 0 if self._crew is None else len(self._crew.members)
+
+    @property
+    def restarts(self) -> int:
+        """How often an actor was replaced."""
+        return 0 if self._crew is None else self._crew.restarts
+
+    @property
+    def processes(self) -> list[int]:
+        """Ids of the processes in which the shards are."""
+        self._check()
+        if self._crew is None:
+            assert self._shard is not None
+            return [self._shard.process]
+        for member in self._crew.members:
+            self._crew.send(member, "process")
+        return [self._crew.receive(member)[0] for member in self._crew.members]
+
+    def __repr__(self) -> str:
+        if self._closed:
+            return "<manyworlds.ray.Rollouts: closed>"
+        name = self._work.what.name if isinstance(self._work.what, Task) else "a scene"
+        return f"<manyworlds.ray.Rollouts: {name}, {self.worlds} worlds, {self.shards} shards>"
+
+    def _check(self) -> None:
+        if self._closed:
+            raise ValueError("the rollouts are closed")
+
+    # -- what worlds do
+
+    def use(self, policy: Optional[Policy]) -> None:
+        """Steps from now on are taken under this policy."""
+        self._check()
+        if self._shard is not None:
+            self._shard.use(policy)
+            return
+        import ray
+
+        assert self._crew is not None
+        kept = ray.put(policy)
+        self._crew.act(Act(policy=kept), "use", kept)
+        for member in self._crew.members:
+            self._receive(member)
+
+    def _receive(self, member: Any) -> list[Any]:
+        assert self._crew is not None
+        try:
+            return self._crew.receive(member)
+        except BaseException:
+            self.close()
+            raise
+
+    def run(
+        self, steps: int, every: int = 1, keep: Sequence[str] = OF_A_TASK
+    ) -> Trajectories:
+        """So many steps of all worlds, and what came of them.
+
+        ``every``: steps of a frame, of a scene. ``keep``: which arrays trajectories of a task have,
+        "observations", "actions", "rewards", "terminated", "truncated"; what is not kept is not sent.
+        """
+        steps = arrays.integer(steps, "steps", 1, MAX_STEPS)
+        every = arrays.integer(every, "every", 1, MAX_STEPS)
+        kept = self._kept(keep)
+        self._check()
+        if self._crew is None:
+            return self._run_here(steps, every, kept)
+        self._send_run(steps, every, kept)
+        return self._receive_run()
+
+    @staticmethod
+    def _kept(keep: Sequence[str]) -> tuple[str, ...]:
+        if isinstance(keep, str):
+            raise TypeError(f"keep is a str; expected a list of them, such as ['{keep}']")
+        for name in keep:
+            if name not in OF_A_TASK:
+                raise ValueError(f"keep has {name!r}; expected some of {', '.join(OF_A_TASK)}")
+        return tuple(keep)
+
+    def _run_here(self, steps: int, every: int, keep: tuple[str, ...]) -> Trajectories:
+        assert self._shard is not None
+        try:
+            reports, held = self._shard.run(steps, every, keep)
+        except BaseException:
+            self.close()
+            raise
+        return Trajectories(Report.joined(reports), [held])
+
+    def _send_run(self, steps: int, every: int, keep: tuple[str, ...]) -> None:
+        assert self._crew is not None
+        self._crew.act(Act(steps), "run", steps, every, keep, returns=2)
+
+    def _receive_run(self) -> Trajectories:
+        assert self._crew is not None
+        found = [self._receive(member) for member in self._crew.members]
+        return Trajectories(Report.joined([one[0] for one in found]), [one[1] for one in found])
+
+    def iterate(
+        self,
+        steps: int,
+        calls: Optional[int] = None,
+        every: int = 1,
+        ahead: int = 1,
+        keep: Sequence[str] = OF_A_TASK,
+    ) -> Iterator[Trajectories]:
+        """Trajectories of ``run(steps)`` again and again, while the next ones are run.
+
+        At most ``ahead`` calls are run before they are asked for, so what waits is bounded by that. Whoever
+        stops early, or gives another policy meanwhile, finds worlds up to ``ahead`` calls further on; a
+        policy that is given counts from the first call that was not sent by then.
+        """
+        steps = arrays.integer(steps, "steps", 1, MAX_STEPS)
+        every = arrays.integer(every, "every", 1, MAX_STEPS)
+        ahead = arrays.integer(ahead, "ahead", 0, _AHEAD)
+        left = _HISTORY if calls is None else arrays.integer(calls, "calls", 0, _HISTORY)
+        return self._iterate(steps, left, every, ahead, self._kept(keep))
+
+    def _iterate(
+        self, steps: int, left: int, every: int, ahead: int, keep: tuple[str, ...]
+    ) -> Iterator[Trajectories]:
+        waiting = 0
+        try:
+            while left > 0 or waiting > 0:
+                self._check()
+                if self._crew is None:
+                    left -= 1
+                    yield self._run_here(steps, every, keep)
+                    continue
+                while left > 0 and waiting <= ahead:
+                    self._send_run(steps, every, keep)
+                    left, waiting = left - 1, waiting + 1
+                waiting -= 1
+                yield self._receive_run()
+        finally:
+            while waiting > 0 and not self._closed:
+                self._receive_run()
+                waiting -= 1
+
+    def evaluate(self, policy: Optional[Policy] = None, episodes: int = 100) -> Evaluation:
+        """The first episode of each of so many worlds, of seeds ``seed`` + 0, 1 ..., under a policy, or the
+        one in use; the worlds that run are left alone. ValueError of a scene."""
+        self._check()
+        if not isinstance(self._work.what, Task):
+            raise ValueError("a scene has no episodes; expected a task")
+        episodes = arrays.integer(episodes, "episodes", 1, MAX_WORLDS * 1024)
+        chosen = self._policy if policy is None else policy
+        ranges = Work(**{**vars(self._work), "worlds": episodes})
+        parts = [(r.start, len(r)) for r in map(ranges.range, range(ranges.blocks))]
+        if self._crew is None:
+            assert self._shard is not None
+            found = [self._shard.evaluate(chosen, *part) for part in parts]
+        else:
+            import ray
+
+            kept = ray.put(chosen)
+            found = self._spread("evaluate", lambda r: (kept, [parts[i] for i in r]), len(parts))
+        joined = {name: np.concatenate([one[name] for one in found]) for name in found[0]}
+        return Evaluation(**joined)
+
+    def _spread(self, method: str, arguments: Any, count: int) -> list[Any]:
+        """Results of ``count`` things, of which each shard does some."""
+        assert self._crew is not None
+        members = [m for m in zip(self._crew.members, shares(count, self.shards)) if m[1]]
+        for member, some in members:
+            self._crew.send(member, method, *arguments(some))
+        return [one for member, _ in members for one in self._receive(member)[0]]
+
+    def search(
+        self,
+        space: search.Space,
+        strategy: search.Strategy,
+        objective: Optional[Objective] = None,
+        generations: Optional[int] = None,
+        *,
+        goal: Goal = "minimize",
+        seeds: SeedsBy = "search",
+        **trial: Any,
+    ) -> search.Search:
+        """A search over numbers of the task or scene, whose candidates the shards try.
+
+        ``objective`` and ``trial`` are those of search.TaskTrial, or search.Trial of a scene; the others
+        those of search.Search, whose seed is that of the rollouts. Returns the Search after so many
+        generations; ``run`` of it goes on. A candidate's outcome depends on its numbers and seed alone.
+        """
+        self._check()
+        self._trials += 1
+        trials = Trials(self, self._trials, space, objective, trial)
+        found = search.Search(trials, strategy, goal, self._work.seed, seeds)
+        if generations is None or generations > 0:
+            found.run(generations)
+        return found
+
+    # -- who does it
+
+    def resize(self, shards: int) -> None:
+        """From now on so many actors hold the worlds, which go on as they are. Not of a process without."""
+        self._check()
+        if self._crew is None:
+            raise ValueError("the rollouts have no actors (shards=0), which cannot be added to")
+        count = self._shards(arrays.integer(shards, "shards", 1, MAX_WORLDS))
+        self._crew.divide(shares(self._work.blocks, count))
+
+    @property
+    def closed(self) -> bool:
+        """Whether ``close`` was called, or a call has failed."""
+        return self._closed
+
+    def close(self) -> None:
+        """Ends the actors. Twice is once."""
+        self._closed = True
+        if self._crew is not None:
+            self._crew.close()
+        self._shard = None
+
+    def __enter__(self) -> Rollouts:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
