@@ -44,7 +44,7 @@ const Filter& filter_of(const PlanData& plan, const Planned& s) {
 
 template <class Real>
 TablesOf<Real>::TablesOf(const PlanData& plan, const BatchOptions& options, int lanes)
-    : constants_(plan, {}, 1, lanes) {
+    : constants_(plan, {}, 1, lanes), joints_(plan) {
   add_options(plan);
   add_flight(plan);
   add_bodies(plan);
@@ -53,7 +53,7 @@ TablesOf<Real>::TablesOf(const PlanData& plan, const BatchOptions& options, int 
                       (tables_.has_contacts || tables_.has_joints) && tables_.bodies > 0 &&
                       !plan.has_trees();
   add_shapes(plan);
-  add_joints(plan);
+  joints_.put(tables_);
   add_trees(plan);
   add_attractors(plan);
   add_pairs(plan);

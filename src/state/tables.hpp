@@ -9,6 +9,7 @@
 #include "src/base/aligned_buffer.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/state/constants.hpp"
+#include "src/state/joint_tables.hpp"
 #include "src/state/tree_tables.hpp"
 
 namespace manyworlds {
@@ -26,8 +27,6 @@ class TablesOf {
   void add_shapes(const PlanData& plan);
   void add_pairs(const PlanData& plan);
   void add_pair_classes(const PlanData& plan);
-  void add_joints(const PlanData& plan);
-  void add_breaking(const PlanData& plan);
   void add_trees(const PlanData& plan);
   void add_attractors(const PlanData& plan);
   void add_options(const PlanData& plan);
@@ -36,22 +35,14 @@ class TablesOf {
 
   kernels::SceneConstants<Real> tables_{};
   Constants<Real> constants_;
+  const JointTables joints_;
   std::vector<kernels::BodyTable> bodies_;
   std::vector<kernels::ColliderTable> colliders_;
   std::vector<std::int32_t> collider_row_, collider_body_, first_collider_, pair_of_;
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
-  std::vector<kernels::JointPart> parts_;
-  std::vector<std::int32_t> jointed_;
-  std::vector<kernels::TreeEdge> edges_;
-  std::vector<kernels::JointLoops> loops_;
-  std::vector<std::int32_t> edge_roots_, edge_bodies_, edge_of_;
-  std::vector<kernels::BreakTable> breaking_;
   std::vector<kernels::AttractorTable<Real>> attractors_;
-  std::vector<kernels::ThrustTable> thrusts_;
   std::optional<TreeTables<Real>> trees_;
-  std::vector<std::int32_t> first_thrust_;
-  std::vector<std::int32_t> joined_, first_joined_;
   AlignedBuffer<Real> fixed_rows_, hulls_, delta_v_rows_, factor_rows_;
 };
 
