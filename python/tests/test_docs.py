@@ -51,7 +51,6 @@ def test_searches(tmp_path, monkeypatch):
 
 
 def test_rollouts_beyond_one_machine():
-    pytest.importorskip("ray")
     places = {}
     for code in examples("docs/scale.md"):
         exec(code.replace("worlds=4096", "worlds=64").replace("=500)", "=50)"), places)
