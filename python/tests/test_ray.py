@@ -184,12 +184,14 @@ def test_a_node_that_dies_takes_no_world_with_it(cluster):
             assert r.restarts >= 2
 
 
-def test_shards_come_and_go(alone):
-    with cart_poles(2) as r, cart_poles(0) as here:
+def test_shards_come_and_go(tmp_path):
+    # Each run saves, so that a resize saves what was just saved.
+    with cart_poles(2, folder=tmp_path, checkpoint_every=30) as r, cart_poles(0) as here:
         for shards in [3, 1]:
             r.resize(shards)
             assert r.shards == shards
             assert same(r.run(35).report, here.run(35).report)
+            assert len(list(tmp_path.iterdir())) == 5
         os.kill(r.processes[0], signal.SIGKILL)
         assert same(r.run(35).gather(), here.run(35).gather())
 

@@ -7,7 +7,7 @@ same however often they are asked, what comes of the replacement is what would h
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
@@ -22,7 +22,7 @@ from .work import Arrays, Report, ShardError, Work
 class Options:
     """Of actors, and of how they are looked after."""
 
-    cpus: Optional[float]
+    cpus: float
     resources: Mapping[str, float]
     timeout: Optional[float]
     max_restarts: int
@@ -61,13 +61,13 @@ class Crew:
     """Members, each with a share of the blocks. Calls are sent to all of them, and answered in order."""
 
     def __init__(self, work: Work, shares: Sequence[range], options: Options) -> None:
-        if not ray.is_initialized():
-            ray.init(include_dashboard=False, log_to_driver=False)
         self._options = options
         self._work = ray.put(work)
         self.history: list[Act] = []
         self._dropped = 0  # entries that were before it, and the policy that they ended with
         self._policy_then: list[Act] = []
+        self._divided_at = 0  # in the history; and the files that members began with then
+        self._shared_files: list[str] = []
         self.restarts = 0
         self.members = [Member(blocks) for blocks in shares]
         for member in self.members:
@@ -138,8 +138,7 @@ class Crew:
         if call.act is not None:
             member.done += 1
         if call.saves:
-            for path in member.files:
-                Path(path).unlink(missing_ok=True)
+            _remove(set(member.files) - set(first))  # the same where nothing was done since
             member.saved, member.files, member.saved_at = (call.results[1],), first, member.done
             self._forget()
         while call.act is not None and member.sent and member.sent[0].saves:
@@ -187,7 +186,11 @@ class Crew:
         """What all worlds in files have behind them is not asked for again, nor are its policies."""
         if self._options.folder is None:
             return
-        count = min(member.saved_at for member in self.members) - self._dropped
+        oldest = min(member.saved_at for member in self.members)
+        if oldest > self._divided_at:  # each has files of its own by now
+            _remove(self._shared_files)
+            self._shared_files = []
+        count = oldest - self._dropped
         policies = [act for act in self.history[:count] if act.steps == 0]
         self._policy_then = policies[-1:] or self._policy_then
         del self.history[:count]
@@ -213,7 +216,8 @@ class Crew:
             saved = [m.saved[0] for m in before if set(m.blocks) & set(blocks)]
             self.members.append(Member(blocks, saved=tuple(saved), done=done, saved_at=done))
             self._start(self.members[-1])
-        # Files of several members' worlds go when each has saved them again: they are left to the folder.
+        self._divided_at = done
+        self._shared_files += [path for member in before for path in member.files]
 
     def close(self) -> None:
         """Ends all actors."""
@@ -256,6 +260,11 @@ class _Actor:
 
     def try_out(self, trial: Any, values: Sequence[Any], seeds: Sequence[Any]) -> list[Any]:
         return [self._shard.try_out(trial, v, s) for v, s in zip(values, seeds)]
+
+
+def _remove(files: Iterable[str]) -> None:
+    for path in files:
+        Path(path).unlink(missing_ok=True)
 
 
 def _fewer(acts: Sequence[Act]) -> list[Act]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
 
@@ -143,7 +144,7 @@ class Rollouts(InMemory):
             cpus = cluster.share_of(nodes, count)
         if self._work.threads is None:
             threads = max(1, int(cpus))
-            self._work = Work(**{**vars(self._work), "threads": threads})
+            self._work = replace(self._work, threads=threads)
         if folder is not None:
             Path(folder).mkdir(parents=True, exist_ok=True)
         where = None if folder is None else str(Path(folder).resolve())
@@ -319,7 +320,7 @@ class Rollouts(InMemory):
             raise ValueError("a scene has no episodes; expected a task")
         episodes = arrays.integer(episodes, "episodes", 1, MAX_WORLDS * 1024)
         chosen = self._policy if policy is None else policy
-        ranges = Work(**{**vars(self._work), "worlds": episodes})
+        ranges = replace(self._work, worlds=episodes)
         parts = [(r.start, len(r)) for r in map(ranges.range, range(ranges.blocks))]
         if self._crew is None:
             assert self._shard is not None

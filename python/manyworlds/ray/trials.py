@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
@@ -12,7 +13,6 @@ from .. import search
 from ..kinds import AnyScene
 from ..search.outcome import Objective
 from ..tasks import Task
-from .work import Work
 
 if TYPE_CHECKING:
     from .rollouts import Rollouts
@@ -57,7 +57,6 @@ class Trials:
         self._rollouts = rollouts
         self._number = number
         self._space = space
-        self._kept: Any = None
 
     @property
     def space(self) -> search.Space:
@@ -70,7 +69,7 @@ class Trials:
         """What comes of (candidates, parameters) values, each in a world of its seed (candidates,)."""
         rollouts = self._rollouts
         rollouts._check()
-        ranges = Work(**{**vars(rollouts._work), "worlds": len(values)})
+        ranges = replace(rollouts._work, worlds=len(values))
         pieces = [slice(r.start, r.stop) for r in map(ranges.range, range(ranges.blocks))]
         trial = self._number, self._maker
         if rollouts._crew is None:
