@@ -175,7 +175,6 @@ void begin(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   }
   if (t.tree.links == 0) rotate_body_rows(t, g, w, w.pose_rows != nullptr);
   for (int b = 0; b <= t.bodies; ++b) w.touched[b] = 0;
-  for (int i = 0; w.met && i < t.bodies * kLanes; ++i) w.met[i] = 0;
   for (int list = 0; list < kLists; ++list) {
     w.blocks[list].count = 0;
     for (int l = 0; l < kLanes; ++l) w.lane_count[list][l] = w.cursor[list][l] = 0;

@@ -104,6 +104,7 @@ kernels::Layout choose_layout(const Constants& t, const Group&, kernels::Scratch
               kDenseOccupancy * static_cast<float>((all + parts) * kLanes);
   }
   w.dense = w.dense && fits;
+  for (int i = 0; !w.dense && i < t.bodies * kLanes; ++i) w.met[i] = 0;
   return w.dense ? kernels::Layout::dense : kernels::Layout::rows;
 }
 
