@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "src/scene/rotation_vector.hpp"
-#include "tests/support/hashes.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
-#include "tests/support/varied.hpp"
+#include "tests/support/varied_bits.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -221,20 +220,7 @@ TEST_CASE("a world with a beginning of its own is one of the scene that has it, 
           "[fast][parameters][bits][one_thread]") {
   for (const Space space : kSpaces) {
     for (const bool round : {false, true}) {
-      Scene scene = varied_starts(space, round);
-      scene.options = compile(scene).resolved();
-      for (const Table& table : all_tables()) {
-        BatchOptions options = options_of(table, 11);
-        options.seed = 5;
-        Batch batch(compile(scene), options);
-        std::vector<Batch> alone = each_alone(batch, table, options.seed, built_with);
-        batch.step(40);
-        for (int w = 0; w < batch.worlds(); ++w) {
-          alone[static_cast<std::size_t>(w)].step(40);
-          INFO(name(table) << " world " << w << " round " << round);
-          CHECK(state(batch, w) == state(alone[static_cast<std::size_t>(w)], 0));
-        }
-      }
+      check_worlds_are_those_of_scenes(varied_starts(space, round), round ? "round" : "", 11, 40);
     }
   }
 }

@@ -3,7 +3,7 @@
 
 #include "tests/support/hashes.hpp"
 #include "tests/support/tables.hpp"
-#include "tests/support/varied.hpp"
+#include "tests/support/varied_bits.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -69,25 +69,14 @@ TEST_CASE("a world with numbers of its own is one of the scene that has them, bi
           "[fast][parameters][bits][one_thread]") {
   for (Space space : {Space::planar, Space::spatial}) {
     for (bool polygons : {false, true}) {
-      Scene scene = varied_crowd(space, polygons);
-      // A lone world's plan would choose by its own numbers.
-      scene.options = compile(scene).resolved();
-      for (const Table& table : all_tables()) {
-        BatchOptions options = options_of(table, 11);
-        options.seed = 5;
-        Batch batch(compile(scene), options);
-        std::vector<Batch> alone = each_alone(batch, table, options.seed, scene_of);
-        batch.step(60);
-        for (int w = 0; w < batch.worlds(); ++w) {
-          alone[static_cast<std::size_t>(w)].step(60);
-          INFO(name(table) << " world " << w << " polygons " << polygons);
-          CHECK(batch.status(w) == Status::ok);
-          CHECK(state(batch, w) == state(alone[static_cast<std::size_t>(w)], 0));
-          const Energy e = batch.energy(w), f = alone[static_cast<std::size_t>(w)].energy(0);
-          CHECK(e.kinetic == f.kinetic);
-          CHECK(e.potential == f.potential);
-        }
-      }
+      const auto same_energy = [](const Batch& batch, int w, const Batch& alone) {
+        CHECK(batch.status(w) == Status::ok);
+        const Energy e = batch.energy(w), f = alone.energy(0);
+        CHECK(e.kinetic == f.kinetic);
+        CHECK(e.potential == f.potential);
+      };
+      check_worlds_are_those_of_scenes(varied_crowd(space, polygons), polygons ? "polygons" : "",
+                                       11, 60, scene_of, same_energy);
     }
   }
 }

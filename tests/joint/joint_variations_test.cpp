@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "tests/support/contraption.hpp"
-#include "tests/support/hashes.hpp"
 #include "tests/support/tables.hpp"
-#include "tests/support/varied.hpp"
+#include "tests/support/varied_bits.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -103,20 +102,7 @@ TEST_CASE("a world with joints of its own is one of the scene that has them, bit
     for (const bool trees : {false, true}) {
       Scene scene = trees ? joint_trees(space) : contraption(space);
       scene.variations = of_all_joints(trees);
-      // A lone world's plan would choose by its own numbers.
-      scene.options = compile(scene).resolved();
-      for (const Table& table : all_tables()) {
-        BatchOptions options = options_of(table, 9);
-        options.seed = 5;
-        Batch batch(compile(scene), options);
-        std::vector<Batch> alone = each_alone(batch, table, options.seed, built_with);
-        batch.step(30);
-        for (int w = 0; w < batch.worlds(); ++w) {
-          alone[static_cast<std::size_t>(w)].step(30);
-          INFO(name(table) << " world " << w << " trees " << trees);
-          CHECK(state(batch, w) == state(alone[static_cast<std::size_t>(w)], 0));
-        }
-      }
+      check_worlds_are_those_of_scenes(scene, trees ? "trees" : "", 9, 30);
     }
   }
 }
@@ -126,26 +112,7 @@ TEST_CASE("joints of worlds have the same bits whatever the batch, threads and i
   for (const bool trees : {false, true}) {
     Scene scene = trees ? joint_trees(Space::spatial) : contraption(Space::spatial);
     scene.variations = of_all_joints(trees);
-    for (const Precision precision : {Precision::f32, Precision::f64}) {
-      std::vector<std::uint64_t> expected;
-      for (const Table& table : all_tables()) {
-        if (table.precision != precision) continue;
-        for (const int threads : {1, 3}) {
-          Batch batch(compile(scene), options_of(table, 21, threads));
-          batch.step(25);
-          batch.restore(batch.save(), 4, 5);
-          batch.step(5);
-          const auto worlds = hashes(batch);
-          CHECK(worlds[4] == worlds[5]);
-          CHECK(numbers(batch, Parameter::limit_low, 4) == numbers(batch, Parameter::limit_low, 5));
-          if (expected.empty()) expected = worlds;
-          CHECK(worlds == expected);
-        }
-        Batch fewer(compile(scene), options_of(table, 3));
-        fewer.step(30);
-        for (std::size_t w = 0; w < 3; ++w) CHECK(hashes(fewer)[w] == expected[w]);
-      }
-    }
+    check_bits_of_varied_worlds(scene, Parameter::limit_low);
   }
 }
 
