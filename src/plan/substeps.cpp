@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,7 @@ void at_least(Need& need, double substeps, const std::string& why) {
 }
 
 // The number of substeps whose contacts are as stiff as w, rad/s.
-double substeps_of(double w, double dt) { return w * dt / (2 * kPi * kContactShare); }
+double substeps_of(double w, double dt) { return w * dt / (2 * std::numbers::pi * kContactShare); }
 
 // Friction holds, and what rests is still, when a body falls by little of its size in a substep:
 // grips of 6 cm hold from 6 substeps of 1/60 s on.
