@@ -79,7 +79,7 @@ class Shard:
         }
         out: Arrays = {n: np.empty((steps, *kinds[n][0]), kinds[n][1]) for n in kinds if n in keep}
         returns = np.zeros(e.worlds)
-        episodes = np.zeros(e.worlds, np.int64)
+        episodes = np.zeros(e.worlds, np.int32)
         for i in range(steps):
             if "observations" in out:
                 out["observations"][i] = e.observations
@@ -106,7 +106,7 @@ class Shard:
                     frames.append({name: batch.get(name) for name in fields})
             out = {name: np.stack([f[name] for f in frames]) for name in fields if frames}
         none = np.zeros(batch.worlds)
-        return Report(batch.hashes(), batch.lost(), none, none.astype(np.int64)), out
+        return Report(batch.hashes(), batch.lost(), none, none.astype(np.int32)), out
 
     def repeat(self, acts: Sequence[Act]) -> None:
         """What others have done since these worlds were saved, without telling."""
