@@ -63,7 +63,8 @@ endfunction()
 
 # mw_unity(TARGET): with MW_UNITY, compiles the files of each of the target's folders as one, which
 # spares their common headers and instantiations. What a folder's files define for themselves has to
-# differ in name, then; files with definitions of their own (mw_define) and ALONE ones stay alone.
+# differ in name, then; files with definitions of their own (mw_define) and ALONE ones stay alone. A file
+# that lacks an include finds it in a file before it: MW_UNITY_BACKWARD, in a build of CI, has the others there.
 function(mw_unity target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" ALONE)
   if(NOT MW_UNITY)
@@ -78,6 +79,11 @@ function(mw_unity target)
     string(REGEX REPLACE "^src_" "" group "${group}")
     set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${group})
   endforeach()
+  if(MW_UNITY_BACKWARD)
+    get_target_property(sources ${target} SOURCES)
+    list(REVERSE sources)
+    set_target_properties(${target} PROPERTIES SOURCES "${sources}")
+  endif()
   list(TRANSFORM arg_ALONE PREPEND "${PROJECT_SOURCE_DIR}/")
   set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

@@ -67,6 +67,32 @@ class GeometryTraits {
 // Defined for every alternative of Geometry, in its file.
 template <class G>
 const GeometryTraits& traits_of();
+template <>
+const GeometryTraits& traits_of<Sphere>();
+template <>
+const GeometryTraits& traits_of<Box>();
+template <>
+const GeometryTraits& traits_of<Plane>();
+template <>
+const GeometryTraits& traits_of<Circle>();
+template <>
+const GeometryTraits& traits_of<Polygon>();
+template <>
+const GeometryTraits& traits_of<HalfPlane>();
+template <>
+const GeometryTraits& traits_of<Capsule>();
+template <>
+const GeometryTraits& traits_of<Segment>();
+template <>
+const GeometryTraits& traits_of<Terrain>();
+template <>
+const GeometryTraits& traits_of<Cylinder>();
+template <>
+const GeometryTraits& traits_of<Hull>();
+template <>
+const GeometryTraits& traits_of<HeightField>();
+template <>
+const GeometryTraits& traits_of<Ellipsoid>();
 
 const GeometryTraits& traits_of(const Geometry& geometry);
 
