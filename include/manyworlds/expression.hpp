@@ -192,9 +192,22 @@ Expression parameter(Parameter of, ShapeId shape, int component = 0);
 Expression parameter(Parameter of, JointId joint, int component = 0);
 Expression parameter(Parameter of, ControlId control, int component = 0);
 
+// A number of this world that outlives its episodes, and is the same for the whole of one
+// (Task::levels, by name).
+Expression level(std::string_view name);
+
 // What `value` was at the end of the step before; in the first step where the world began. In
 // Task::controls: what it is.
 Expression previous(const Expression& value);
+// What it was so many steps before, 0 to 256; in the first steps where the world began, so actions
+// are 0 then. In Task::controls too, where 0 is the step to take: delayed(action(0), 2) is what was
+// asked for two steps ago; the state of the world is behind previous(), one step more behind
+// delayed(previous(...), 1). Each step is a number that a world remembers. Throws
+// std::invalid_argument for other numbers of steps.
+Expression delayed(const Expression& value, int steps);
+// By as many steps as `steps` says in this world and step: rounded down, kept within 0 and `most`,
+// 0 to 256, which is what is remembered. What is not a number counts as `most`.
+Expression delayed(const Expression& value, const Expression& steps, int most);
 // Steps in a row, up to this one, at whose end the condition was true; 0 at the beginning.
 Expression held(const Expression& condition);
 // The largest that `value` has been since the beginning, which counts.

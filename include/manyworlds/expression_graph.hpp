@@ -15,7 +15,7 @@ struct ExpressionGraph {
     std::string name = {};            // "number", a term's or an operation's, as Python has them
     double number = 0;                // of "number"
     std::vector<int> arguments = {};  // a term's indices, or the nodes that an operation takes
-    std::string text = {};            // of random numbers: their name; of parameters: which one
+    std::string text = {};  // of random numbers and levels: their name; of parameters: which one
   };
   std::vector<Node> nodes = {};  // operands before what they make
   std::vector<int> roots = {};   // a node for each expression

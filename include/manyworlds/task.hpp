@@ -1,7 +1,8 @@
 // Task: what a policy has to do in a scene: actions, observations, rewards, and when an episode
 // ends. Plain values, as a Scene is; Environment (environment.hpp) runs it for thousands of worlds.
 //
-// Episodes begin where the scene does: with its jitter (Body::jitter) and variations.
+// Episodes begin where the scene does: with its jitter (Body::jitter) and variations, of which a
+// task may set some itself (Setting).
 #pragma once
 
 #include <limits>
@@ -44,6 +45,26 @@ struct Info {
   bool of_steps_alone = false;  // not told where an episode begins
 };
 
+// A number that every world keeps over its episodes: how hard its task is, how often it succeeded.
+// Whoever reads it (terms::level) finds the same through a whole episode.
+struct Level {
+  std::string name = {};
+  // In the world's first episode: of numbers and random ones of the episode.
+  Expression begin = 0;
+  // In its next episode: of what the world is, and what of it is remembered, at the end of the step
+  // that ends this one. An episode that a reset ends before leaves the number as it is, and so does
+  // what is not a number.
+  Expression next = 0;
+};
+
+// What a number of the scene is where an episode begins, instead of one that is drawn.
+struct Setting {
+  Expression number = 0;  // terms::parameter(...), which varies, with Draw::none
+  // Of numbers, random ones of the episode, and levels; kept within the range that the variation
+  // declares. What is not a number leaves it as it is.
+  Expression value = 0;
+};
+
 struct Task {
   std::string name = {};
   Scene scene = {};
@@ -52,7 +73,7 @@ struct Task {
   int choices = 0;  // discrete tasks: the action is one of 0 to choices - 1, and `actions` is empty
   std::vector<Action> actions = {};
   // What each control of the scene is set to before the steps: of actions, numbers, random ones,
-  // parameters and previous().
+  // parameters, levels and previous().
   std::vector<Expression> controls = {};
 
   std::vector<Observation> observations = {};
@@ -64,6 +85,9 @@ struct Task {
   double solved_at = std::numeric_limits<double>::infinity();  // mean return; said to people only
 
   std::vector<Info> infos = {};
+
+  std::vector<Level> levels = {};
+  std::vector<Setting> settings = {};
 
   std::vector<Ray> rays = {};      // for terms::ray_distance
   std::vector<Point> points = {};  // for terms::point_position and point_velocity

@@ -13,6 +13,7 @@ from ._core import Snapshot
 from .arrays import Writable
 from .batch import MAX_THREADS, MAX_WORLDS, Batch
 from .in_memory import InMemory
+from .levels import WithLevels
 from .names import Ids, Isa, Precision, Seeds
 from .own_batch import _OwnBatch
 from .plan import Plan
@@ -37,7 +38,7 @@ class EnvironmentSnapshot:
     truncated: Flags
 
 
-class Environment(InMemory):
+class Environment(WithLevels, InMemory):
     """A task in many worlds, one SIMD lane for each; what Gymnasium's classes are built on.
 
     task         a Task, or the name of one (``tasks.names()``)

@@ -100,19 +100,29 @@ def _expressions(nodes: Any, roots: Any) -> list[_core.Expression]:
         raise UnpicklingError(f"the pickle of an Expression is damaged: {error}") from None
 
 
+_HOLD_EXPRESSIONS: dict[type, tuple[str, ...]] = {
+    tasks.Observation: ("value",),
+    tasks.Reward: ("value",),
+    tasks.Info: ("value",),
+    tasks.Level: ("begin", "next"),
+    tasks.Setting: ("number", "value"),
+}
+
+
 def _exchanged(members: Members, exchange: Callable[[Any], Any]) -> Members:
     """The members of a task with other values where expressions may be."""
 
     def part(one: Any) -> Any:
-        if not isinstance(one, (tasks.Observation, tasks.Reward, tasks.Info)):
-            return one
-        return dataclasses.replace(one, value=exchange(one.value))
+        where = _HOLD_EXPRESSIONS.get(type(one), ())
+        return dataclasses.replace(one, **{name: exchange(getattr(one, name)) for name in where})
 
     return members | {
         "controls": [exchange(value) for value in members["controls"]],
         "observations": [part(one) for one in members["observations"]],
         "rewards": [part(one) for one in members["rewards"]],
         "infos": [part(one) for one in members.get("infos", [])],
+        "levels": [part(one) for one in members.get("levels", [])],
+        "settings": [part(one) for one in members.get("settings", [])],
         "terminated": exchange(members["terminated"]),
         "truncated": exchange(members["truncated"]),
     }

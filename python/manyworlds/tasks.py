@@ -17,9 +17,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import inf
-from typing import Any, Union
+from typing import Any, Optional, Union
 
-from . import _core, shown
+from . import _core, arrays, shown
 from ._core import Expression
 from ._core import expressions as _x
 from .scene import Issue, Point, Ray, Scene, SceneError
@@ -121,6 +121,22 @@ def previous(value: Value) -> Expression:
     return _x.previous(value)
 
 
+def delayed(value: Value, steps: Value, most: Optional[int] = None) -> Expression:
+    """What ``value`` was so many steps before, 0 to 256; in the first steps where the world began.
+
+    In ``Task.controls`` 0 is the step to take, so ``delayed(t.action(), 2)`` is what was asked for two steps
+    ago, 0 where there was none. ``steps`` may be an expression, such as a random number of the episode:
+    rounded down, kept within 0 and ``most``, which says how much is remembered; what is not a number counts as
+    ``most``. Each step is a number that a world remembers. Raises ValueError for other numbers of steps,
+    TypeError for an expression without ``most``.
+    """
+    if most is not None:
+        return _x.delayed_by(value, steps, arrays.integer(most, "most", 0, 256))
+    if isinstance(steps, Expression):
+        raise TypeError("steps is an expression; expected `most`, too: how many steps are remembered")
+    return _x.delayed(value, arrays.integer(steps, "steps", 0, 256))
+
+
 def held(condition: Value) -> Expression:
     """Steps in a row, up to this one, at whose end the condition was true."""
     return _x.held(condition)
@@ -175,6 +191,34 @@ class Info:
     of_steps_alone: bool = False  # not told where an episode begins
 
 
+@dataclass(slots=True, eq=False)
+class Level:
+    """A number that every world keeps over its episodes: how hard its task is, how often it succeeded.
+
+    Whoever reads it (``Terms.level``) finds the same through a whole episode. ``begin`` is what it is in the
+    world's first one: of numbers and random ones of the episode. ``next`` is what it is in the next: of what the
+    world is, and what of it is remembered, at the end of the step that ends this one. An episode that a reset
+    ends before leaves it as it is, and so does what is not a number.
+    """
+
+    name: str = ""
+    begin: Value = 0.0
+    next: Value = 0.0
+
+
+@dataclass(slots=True, eq=False)
+class Setting:
+    """What a number of the scene is where an episode begins, instead of one that is drawn.
+
+    ``number``: ``Terms.parameter(...)``, which varies with the draw "none". ``value``: of numbers, random ones
+    of the episode, and levels; kept within the range that the variation declares. What is not a number leaves
+    it as it is.
+    """
+
+    number: Value = 0.0
+    value: Value = 0.0
+
+
 @dataclass(slots=True, kw_only=True, eq=False)
 class Task:
     """What a policy has to do in a scene: actions, observations, rewards, and when it ends."""
@@ -185,8 +229,8 @@ class Task:
 
     choices: int = 0  # discrete tasks: the action is 0 to choices - 1, and `actions` is empty
     actions: list[Action] = field(default_factory=list)
-    # What each control of the scene is set to: of actions, numbers, random ones, parameters and
-    # previous(...).
+    # What each control of the scene is set to: of actions, numbers, random ones, parameters,
+    # levels and previous(...).
     controls: list[Value] = field(default_factory=list)
 
     observations: list[Observation] = field(default_factory=list)
@@ -196,6 +240,9 @@ class Task:
     max_steps: int = 0  # broken off after so many; 0: never
     solved_at: float = inf  # mean return; said to people only
     infos: list[Info] = field(default_factory=list)
+
+    levels: list[Level] = field(default_factory=list)
+    settings: list[Setting] = field(default_factory=list)
 
     rays: list[Ray] = field(default_factory=list)  # for ray_distance
     points: list[Point] = field(default_factory=list)  # for point_position, point_velocity
@@ -241,6 +288,20 @@ class Task:
             return
         for i, one in enumerate(value):
             self.infos.append(Info(f"{name}[{i}]", one, of_steps_alone))
+
+    def level(self, name: str, begin: Value = 0.0, next: Optional[Value] = None) -> Expression:
+        """Adds a number that worlds keep over their episodes (``Level``), and returns it as an expression.
+
+        ``next`` may be said later, of the expression that is returned: ``task.levels[-1].next = ...``; None:
+        it stays, but for ``Environment.set_levels``.
+        """
+        level = _x.level(name)
+        self.levels.append(Level(name, begin, level if next is None else next))
+        return level
+
+    def begin_with(self, number: Expression, value: Value) -> None:
+        """Sets a number of the scene, ``t.parameter(...)``, where episodes begin (``Setting``)."""
+        self.settings.append(Setting(number, value))
 
     def validate(self) -> list[Issue]:
         """Everything that is wrong with the task and its scene; empty: it can be run."""

@@ -224,6 +224,10 @@ class Terms:
         """A normal random number, drawn as those of ``uniform``."""
         return _x.normal(name, every, mean, deviation)
 
+    def level(self, name: str) -> Expression:
+        """A number of this world that outlives its episodes (``Task.levels``), by its name."""
+        return _x.level(name)
+
     def parameter(
         self,
         parameter: Parameter,

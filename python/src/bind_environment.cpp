@@ -211,6 +211,8 @@ void bind_tasks(nb::module_& m) {
         nb::dict out;
         out["Action"] = to_python(Action{});
         out["Info"] = to_python(Info{});
+        out["Level"] = to_python(Level{});
+        out["Setting"] = to_python(Setting{});
         out["Task"] = to_python(Task{});
         return out;
       },
@@ -237,6 +239,18 @@ void bind_environment(nb::module_& m) {
            nb::arg("observations").noconvert().none(), nb::arg("infos").noconvert().none())
       .def("begin", &begin, nb::arg("mask").noconvert(), nb::arg("observations").noconvert().none(),
            nb::arg("infos").noconvert().none())
+      .def(
+          "read_levels",
+          [](HeldEnvironment& self, const Out<double>& out) {
+            self.run([&](Environment& e) { e.read_levels(span_of(out)); });
+          },
+          nb::arg("out").noconvert())
+      .def(
+          "write_levels",
+          [](HeldEnvironment& self, const In<double>& in) {
+            self.run([&](Environment& e) { e.write_levels(span_of(in)); });
+          },
+          nb::arg("levels").noconvert())
       .def(
           "copy_world",
           [](HeldEnvironment& self, int source, int target) {

@@ -186,7 +186,18 @@ void bind_terms(Functions& m) {
   bind_random(m, "normal", terms::normal, "mean", "deviation");
   m.def_static("parameter", &parameter_of, nb::arg("parameter"), nb::arg("owner"), nb::arg("index"),
                nb::arg("shape"), nb::arg("component"));
+  m.def_static(
+      "level", [](const std::string& name) { return terms::level(name); }, nb::arg("name"));
   one(m, "previous", terms::previous);
+  m.def_static(
+      "delayed", [](nb::handle a, int steps) { return terms::delayed(operand(a), steps); },
+      nb::arg("a"), nb::arg("steps"));
+  m.def_static(
+      "delayed_by",
+      [](nb::handle a, nb::handle steps, int most) {
+        return terms::delayed(operand(a), operand(steps), most);
+      },
+      nb::arg("a"), nb::arg("steps"), nb::arg("most"));
   one(m, "held", terms::held);
   one(m, "largest", terms::largest);
 }

@@ -60,6 +60,18 @@ struct Described<Info> {
   }
 };
 template <>
+struct Described<Level> {
+  static constexpr const char* name = "Level";
+  static void fields(auto&& visit, auto& s) {
+    visit("name", s.name), visit("begin", s.begin), visit("next", s.next);
+  }
+};
+template <>
+struct Described<Setting> {
+  static constexpr const char* name = "Setting";
+  static void fields(auto&& visit, auto& s) { visit("number", s.number), visit("value", s.value); }
+};
+template <>
 struct Described<Task> {
   static constexpr const char* name = "Task";
   static void fields(auto&& visit, auto& s) {
@@ -68,6 +80,7 @@ struct Described<Task> {
     visit("observations", s.observations), visit("rewards", s.rewards);
     visit("terminated", s.terminated), visit("truncated", s.truncated);
     visit("max_steps", s.max_steps), visit("solved_at", s.solved_at), visit("infos", s.infos);
+    visit("levels", s.levels), visit("settings", s.settings);
     visit("rays", s.rays), visit("points", s.points);
   }
 };

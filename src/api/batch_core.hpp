@@ -24,10 +24,10 @@ class BatchCore {
   virtual void step(Executor& executor, int n, const Visit& visit = {},
                     std::span<const std::uint8_t> only = {}) = 0;
   virtual void end_steps(std::span<const std::uint8_t> only = {}) = 0;
-  // Lets the visitor know that the worlds of this mask begin, after resetting them if it is told
-  // to. Of batches of one kind, without sleep.
-  virtual void begin(Executor& executor, std::span<const std::uint8_t> worlds, bool reset,
-                     GroupVisitor& visitor) = 0;
+  // Lets the visitor know that the worlds of this mask begin, before and after resetting them if it
+  // is told to. Of batches of one kind, without sleep.
+  virtual void begin(Executor& executor, std::span<const std::uint8_t> worlds,
+                     const Beginning& beginning, GroupVisitor& visitor) = 0;
 
   virtual ObserverResults* observer_results() = 0;  // nullptr: nothing is observed
   virtual void look(Executor& executor) = 0;        // at the current state

@@ -104,17 +104,17 @@ void Stepper<Real>::end_steps(std::span<const std::uint8_t> only) {
 }
 
 template <class Real>
-void Stepper<Real>::begin(Executor& executor, std::span<const std::uint8_t> worlds, bool reset,
-                          GroupVisitor& visitor) {
+void Stepper<Real>::begin(Executor& executor, std::span<const std::uint8_t> worlds,
+                          const Beginning& beginning, GroupVisitor& visitor) {
   visitor_ = static_cast<GroupVisitorOf<Real>*>(&visitor);
   beginning_ = worlds;
-  resets_ = reset;
+  how_ = beginning;
   active_.clear();
   for (int g = 0; g < worlds_.front()->storage().groups(); ++g) {
     if (lanes_in(beginning_, g) != 0) active_.push_back(g);
   }
   for_each_active<&Stepper::begin_in>(executor);
-  beginning_ = {};
+  beginning_ = {}, how_ = {};
 }
 
 template <class Real>
@@ -216,9 +216,15 @@ void Stepper<Real>::begin_in(int index, int thread) {
   run_group(index, thread, false,
             [this](const auto& plan, const auto& group, auto* scratch, auto&, const auto& visited) {
               const std::uint32_t lanes = lanes_in(beginning_, visited.group);
-              for (int l = 0; resets_ && l < kernels_.lanes; ++l) {
-                if (get_bit(lanes, static_cast<std::size_t>(l))) {
-                  worlds_.front()->reset(visited.group * kernels_.lanes + l);
+              auto& own = *worlds_.front();
+              visitor_->before_beginning(visited, own, lanes, how_);
+              for (int l = 0; how_.resets && l < kernels_.lanes; ++l) {
+                if (!get_bit(lanes, static_cast<std::size_t>(l))) continue;
+                const int world = visited.group * kernels_.lanes + l;
+                if (how_.seeds.empty()) {
+                  own.reset(world);
+                } else {
+                  own.reset(world, how_.seeds[static_cast<std::size_t>(world)]);
                 }
               }
               if (plan.wanted) look_at_group<Real>(plan, group, scratch);

@@ -21,7 +21,7 @@ class Stepper final : public BatchCore {
   void step(Executor& executor, int n, const Visit& visit,
             std::span<const std::uint8_t> only) override;
   void end_steps(std::span<const std::uint8_t> only) override;
-  void begin(Executor& executor, std::span<const std::uint8_t> worlds, bool reset,
+  void begin(Executor& executor, std::span<const std::uint8_t> worlds, const Beginning& beginning,
              GroupVisitor& visitor) override;
   ObserverResults* observer_results() override { return results_.get(); }
   void look(Executor& executor) override;
@@ -94,7 +94,7 @@ class Stepper final : public BatchCore {
   Visit part_;                               // of it, that these steps are
   std::span<const std::uint8_t> beginning_;  // [world]
   std::span<const std::uint8_t> only_;       // [world] of the call; empty: all
-  bool resets_ = false;
+  Beginning how_;
 };
 
 }  // namespace manyworlds

@@ -207,6 +207,13 @@ void Worlds<Real>::write(Parameter parameter, int world, const double* in) {
 }
 
 template <class Real>
+void Worlds<Real>::set_next(Parameter parameter, int world, std::size_t item, double value) {
+  const int at = number_at_[static_cast<std::size_t>(parameter)][item];
+  const VariedNumber& n = data().varied[static_cast<std::size_t>(at)];
+  values_of(world)[at] = std::clamp(value, n.low, n.high);
+}
+
+template <class Real>
 double Worlds<Real>::gravity(int world, int component) const {
   const auto& at = number_at_[static_cast<std::size_t>(Parameter::gravity)];
   const int i = at[static_cast<std::size_t>(component)];
@@ -278,6 +285,7 @@ void Worlds<Real>::copy_world(int from, int to) {
   template double Worlds<Real>::number(Parameter, int, std::size_t) const;       \
   template std::string Worlds<Real>::check(Parameter, int, const double*) const; \
   template void Worlds<Real>::write(Parameter, int, const double*);              \
+  template void Worlds<Real>::set_next(Parameter, int, std::size_t, double);     \
   template double Worlds<Real>::gravity(int, int) const;                         \
   template double Worlds<Real>::gravity_scale(int, int) const;                   \
   template std::size_t Worlds<Real>::world_bytes() const;                        \

@@ -90,6 +90,7 @@ class Worlds final : public WorldsBase {
   double number(Parameter parameter, int world, std::size_t item) const override;
   std::string check(Parameter parameter, int world, const double* in) const override;
   void write(Parameter parameter, int world, const double* in) override;
+  void set_next(Parameter parameter, int world, std::size_t item, double value) override;
   // Bodies as this world's sizes, densities and masses make them.
   const PlanBody& body_of(int world, std::size_t body) const {
     return own_bodies_.empty()

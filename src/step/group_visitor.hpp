@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "src/state/worlds_base.hpp"
 #include "src/step/pipeline.hpp"
@@ -28,6 +29,12 @@ class GroupVisitor {
   virtual ~GroupVisitor() = default;
 };
 
+// How worlds begin an episode.
+struct Beginning {
+  bool resets = false;                        // or in the state that they have
+  std::span<const std::uint64_t> seeds = {};  // [world] of first episodes; empty: the next ones
+};
+
 // Visits the groups around their steps. A call that steps in parts begins with the first of
 // them and ends with the last.
 struct Visit {
@@ -41,6 +48,9 @@ class GroupVisitorOf : public GroupVisitor {
  public:
   virtual void before_steps(const VisitedGroup<Real>& group) = 0;
   virtual void after_steps(const VisitedGroup<Real>& group) = 0;
+  // Before the worlds in these lanes begin: numbers of the scene may be set for it.
+  virtual void before_beginning(const VisitedGroup<Real>& group, WorldsBase& worlds,
+                                std::uint32_t lanes, const Beginning& beginning) = 0;
   // After the worlds in these lanes began anew.
   virtual void after_beginning(const VisitedGroup<Real>& group, std::uint32_t lanes) = 0;
 };

@@ -1,4 +1,5 @@
 // What is wrong with a task.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -22,6 +23,14 @@ std::string named(const char* what, std::size_t i, const std::string& name) {
   return std::string(what) + " " + std::to_string(i) + (name.empty() ? "" : " '" + name + "'");
 }
 
+// When an expression is worked out, which says what it may depend on.
+enum class When {
+  after_steps,
+  before_steps,    // controls
+  before_episode,  // settings
+  before_first,    // where levels begin
+};
+
 class TaskChecker {
  public:
   explicit TaskChecker(const Task& task) : task_(task), issues_(validate(task.scene)) {
@@ -39,17 +48,19 @@ class TaskChecker {
     }
     for (std::size_t i = 0; i < task_.controls.size(); ++i) {
       check(named("control", i, i < controls ? task_.scene.controls[i].name : ""),
-            task_.controls[i], true);
+            task_.controls[i], When::before_steps);
     }
+    check_levels();
+    check_settings();
     check_observations();
     for (std::size_t i = 0; i < task_.rewards.size(); ++i) {
-      check(named("reward", i, task_.rewards[i].name), task_.rewards[i].value, false);
+      check(named("reward", i, task_.rewards[i].name), task_.rewards[i].value);
     }
     for (std::size_t i = 0; i < task_.infos.size(); ++i) {
-      check(named("info", i, task_.infos[i].name), task_.infos[i].value, false);
+      check(named("info", i, task_.infos[i].name), task_.infos[i].value);
     }
-    check("terminated", task_.terminated, false);
-    check("truncated", task_.truncated, false);
+    check("terminated", task_.terminated);
+    check("truncated", task_.truncated);
     check_list("rays", [&] { check_rays(task_.rays, *plan_); });
     check_list("points", [&] { check_points(task_.points, *plan_); });
     return std::move(issues_);
@@ -94,37 +105,101 @@ class TaskChecker {
     for (std::size_t i = 0; i < task_.observations.size(); ++i) {
       const Observation& o = task_.observations[i];
       const std::string place = named("observation", i, o.name);
-      check(place, o.value, false);
+      check(place, o.value);
       if (!(o.low <= o.high)) add_range(place, o.low, o.high, "must rise");
     }
   }
 
-  void check(const std::string& place, const Expression& e, bool control) {
-    seen_.clear();
-    walk(place, e, control);
+  void check_levels() {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < task_.levels.size(); ++i) {
+      const Level& level = task_.levels[i];
+      const std::string place = named("level", i, level.name);
+      if (level.name.empty()) issues_.push_back({place, "has no name, must have one"});
+      if (!names.insert(level.name).second) {
+        issues_.push_back({place, "has the name of one before it, must have its own"});
+      }
+      check(place + ", begin", level.begin, When::before_first);
+      check(place + ", next", level.next);
+    }
   }
-  void walk(const std::string& place, const Expression& e, bool control) {
+
+  void check_settings() {
+    std::set<std::pair<Parameter, std::size_t>> numbers;
+    for (std::size_t i = 0; i < task_.settings.size(); ++i) {
+      const Setting& s = task_.settings[i];
+      const std::string place = named("setting", i, "");
+      check(place + ", value", s.value, When::before_episode);
+      if (s.number.node().term != Term::parameter) {
+        issues_.push_back({place, "is of " + to_string(s.number) +
+                                      ", must be of a parameter (terms::parameter)"});
+        continue;
+      }
+      const std::size_t before = issues_.size();
+      check(place, s.number);
+      if (issues_.size() > before || !plan_) continue;
+      const NumberOwner of = owner_of(s.number.node());
+      const auto& varied = plan_->data().varied;
+      const auto at = std::find_if(varied.begin(), varied.end(), [&](const VariedNumber& v) {
+        return v.parameter == static_cast<Parameter>(s.number.node().of) && v.of == of &&
+               v.component == s.number.node().axis;
+      });
+      const std::string is = "is of " + to_string(s.number) + ", which ";
+      if (at == varied.end()) {
+        issues_.push_back({place, is + "does not vary (Scene::variations)"});
+      } else if (task_.scene.variations[static_cast<std::size_t>(at->variation)].draw !=
+                 Draw::none) {
+        issues_.push_back({place, is + "is drawn, must vary with Draw::none"});
+      } else if (!numbers.emplace(at->parameter, static_cast<std::size_t>(at - varied.begin()))
+                      .second) {
+        issues_.push_back({place, is + "another one sets"});
+      }
+    }
+  }
+
+  void check(const std::string& place, const Expression& e, When when = When::after_steps) {
+    seen_.clear();
+    walk(place, e, when);
+  }
+  void walk(const std::string& place, const Expression& e, When when) {
     const Expression::Node& n = e.node();
     // What previous(...) may look at, a control by itself may not.
-    if (!seen_.emplace(&n, control).second) return;
+    if (!seen_.emplace(&n, when).second) return;
     const bool looks_back = n.term == Term::arithmetic && remembers(n.operation);
-    if (control) {
-      const bool fits = n.term == Term::number || n.term == Term::action ||
-                        n.term == Term::function || n.term == Term::uniform ||
-                        n.term == Term::parameter ||
-                        (n.term == Term::arithmetic &&
-                         (!looks_back || n.operation == kernels::Operation::previous));
-      if (!fits) {
-        issues_.push_back(
-            {place, "depends on " + (looks_back ? "what is remembered" : to_string(e)) +
-                        ", must depend on actions, numbers, random ones, parameters and "
-                        "previous(...) alone"});
-        return;
-      }
+    if (!fits(n, when)) {
+      issues_.push_back({place, "depends on " + (looks_back ? "what is remembered" : to_string(e)) +
+                                    ", must depend on " + wanted(when)});
+      return;
     }
     check_leaf(place, e);
     for (const Expression& operand : n.operands) {
-      walk(place, operand, control && !looks_back);
+      walk(place, operand, looks_back ? When::after_steps : when);
+    }
+  }
+
+  static bool fits(const Expression::Node& n, When when) {
+    if (when == When::after_steps) return true;
+    const bool remembered = n.term == Term::arithmetic && remembers(n.operation);
+    switch (n.term) {
+      case Term::number:
+      case Term::function: return true;
+      case Term::arithmetic:
+        return !remembered ||
+               (when == When::before_steps && n.operation == kernels::Operation::previous);
+      case Term::uniform:
+        return when == When::before_steps || static_cast<Every>(n.of) == Every::episode;
+      case Term::level: return when != When::before_first;
+      case Term::action:
+      case Term::parameter: return when == When::before_steps;
+      default: return false;
+    }
+  }
+  static const char* wanted(When when) {
+    switch (when) {
+      case When::before_steps:
+        return "actions, numbers, random ones, parameters, levels and previous(...) alone";
+      case When::before_episode: return "numbers, random ones of the episode and levels alone";
+      default: return "numbers and random ones of the episode alone";
     }
   }
 
@@ -189,8 +264,18 @@ class TaskChecker {
         bounded(n.index, 2, "the number");
         break;
       case Term::parameter: check_parameter(place, e, bounded); break;
+      case Term::level: check_level(place, n.text); break;
       default: break;
     }
+  }
+
+  void check_level(const std::string& place, const std::string& name) {
+    const auto is = [&name](const Level& level) { return level.name == name; };
+    if (std::any_of(task_.levels.begin(), task_.levels.end(), is)) return;
+    std::string there;
+    for (const Level& level : task_.levels) there += (there.empty() ? "" : ", ") + level.name;
+    issues_.push_back({place, "asks for the level '" + name + "', must be one of Task::levels" +
+                                  (there.empty() ? ", of which there are none" : ": " + there)});
   }
 
   template <class Bounded>
@@ -200,27 +285,22 @@ class TaskChecker {
     const auto parameter = static_cast<Parameter>(n.of);
     const std::size_t count = static_cast<std::size_t>(info(parameter).numbers);
     bool found = bounded(n.axis, count, "the number");
-    NumberOwner of;
     switch (info(parameter).owner) {
       case ParameterInfo::world: break;
       case ParameterInfo::shape:
       case ParameterInfo::body:
         found = bounded(n.index, scene.bodies.size(), "the body") && found;
-        of.body = n.index;
         if (!found || info(parameter).owner == ParameterInfo::body) break;
         found = bounded(n.shape, scene.at(BodyId(n.index)).shapes.size(), "the shape");
-        of.shape = n.shape;
         break;
       case ParameterInfo::joint:
         found = bounded(n.index, scene.joints.size(), "the joint") && found;
-        of.joint = n.index;
         break;
       case ParameterInfo::control:
         found = bounded(n.index, scene.controls.size(), "the control") && found;
-        of.control = n.index;
         break;
     }
-    if (!found || can_vary(scene, parameter, of)) return;
+    if (!found || can_vary(scene, parameter, owner_of(n))) return;
     issues_.push_back({place, to_string(e) + ": there is no such number that could vary"});
   }
 
@@ -287,7 +367,7 @@ class TaskChecker {
   const Task& task_;
   std::vector<Issue> issues_;
   std::optional<Plan> plan_;
-  std::set<std::pair<const Expression::Node*, bool>> seen_;  // within controls or not
+  std::set<std::pair<const Expression::Node*, When>> seen_;
 };
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include "manyworlds/environment.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include "src/base/enum_names.hpp"
@@ -49,7 +51,13 @@ Environment::Impl::Impl(const Task& t, const EnvironmentOptions& options)
 Environment::Environment(const Task& task, const EnvironmentOptions& options)
     : impl_(Pimpl<Impl>::make(task, options)) {
   const std::vector<std::uint8_t> all(impl_->worlds(), 1);
-  begin(all, {});
+  if (task.settings.empty()) {
+    begin(all, {});
+  } else {  // once more, with them
+    std::vector<std::uint64_t> seeds;
+    for (std::size_t w = 0; w < all.size(); ++w) seeds.push_back(options.seed + w);
+    reset(all, seeds, {});
+  }
 }
 Environment::~Environment() = default;
 Environment::Environment(Environment&&) noexcept = default;
@@ -103,19 +111,38 @@ bool Environment::finish_step(const StepArrays& out, const GoOn& go_on) {
 
 void Environment::reset(std::span<const std::uint8_t> mask, const BeginArrays& out) {
   impl_->check_to_begin("reset", mask, out);
-  impl_->batch.reset(mask);
-  begin(mask, out);
+  impl_->begin(*impl_->batch.impl_, mask, {.resets = true}, out);
 }
 void Environment::reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
                         const BeginArrays& out) {
   impl_->check_to_begin("reset", mask, out);
-  impl_->batch.reset(mask, seeds);
-  begin(mask, out);
+  check_array("seeds", seeds.size(), impl_->worlds(), false);
+  impl_->begin(*impl_->batch.impl_, mask, {.resets = true, .seeds = seeds}, out);
 }
 void Environment::begin(std::span<const std::uint8_t> mask, const BeginArrays& out) {
-  check_array("the mask's entries", mask.size(), impl_->worlds(), false);
   impl_->check_to_begin("begin", mask, out);
-  impl_->begin(*impl_->batch.impl_, mask, out);
+  impl_->begin(*impl_->batch.impl_, mask, {}, out);
+}
+
+int Environment::levels() const { return static_cast<int>(impl_->task.levels.size()); }
+void Environment::read_levels(std::span<double> out) const {
+  const std::size_t n = impl_->task.levels.size();
+  check_array("levels", out.size(), impl_->worlds() * n, false);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = impl_->runner->level(static_cast<int>(i / n), i % n);
+  }
+}
+void Environment::write_levels(std::span<const double> in) {
+  const std::size_t n = impl_->task.levels.size();
+  check_array("levels", in.size(), impl_->worlds() * n, false);
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    if (std::isfinite(in[i])) continue;
+    reject("the level '" + impl_->task.levels[i % n].name + "' of world " + std::to_string(i / n) +
+           " is " + std::to_string(in[i]) + ", must be finite");
+  }
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    impl_->runner->set_level(static_cast<int>(i / n), i % n, in[i]);
+  }
 }
 
 void Environment::copy_world(int from, int to) {

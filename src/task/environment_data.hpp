@@ -90,6 +90,7 @@ struct Environment::Impl {
   // What begins all worlds gives up a step in whose middle they stand.
   void check_to_begin(const char* call, std::span<const std::uint8_t> mask,
                       const BeginArrays& out) const {
+    check_array("the mask's entries", mask.size(), worlds(), false);
     check_array("observations", out.observations.size(), observations(), true);
     check_array("observations_f64", out.observations_f64.size(), observations(), true);
     check_array("infos", out.infos.size(), infos(), true);
@@ -138,24 +139,28 @@ struct Environment::Impl {
   void begin_some(Batch::Impl& b) {
     if (!runner->some_begin) return;
     runner->keeps_last = autoreset == Autoreset::same_step;
-    b.core->begin(*b.executor, runner->begin_now, true, runner->visitor());
-    if (b.listeners.empty()) return;
-    b.for_each_masked(runner->begin_now,
-                      [&](int, int, int world) { b.tell(batch, Input::reset, world); });
+    b.core->begin(*b.executor, runner->begin_now, {.resets = true}, runner->visitor());
+    tell_resets(b, runner->begin_now);
   }
 
-  void begin(Batch::Impl& b, std::span<const std::uint8_t> mask, const BeginArrays& out) {
+  void begin(Batch::Impl& b, std::span<const std::uint8_t> mask, const Beginning& how,
+             const BeginArrays& out) {
     runner->out = {};
     runner->out.observations = out.observations;
     runner->out.observations_f64 = out.observations_f64;
     runner->out.infos = out.infos;
     runner->keeps_last = false;
-    b.core->begin(*b.executor, mask, false, runner->visitor());
+    b.core->begin(*b.executor, mask, how, runner->visitor());
+    if (how.resets) tell_resets(b, mask);
     steps_left = 0;
     forget_call();
   }
 
  private:
+  void tell_resets(const Batch::Impl& b, std::span<const std::uint8_t> mask) const {
+    if (b.listeners.empty()) return;
+    b.for_each_masked(mask, [&](int, int, int world) { b.tell(batch, Input::reset, world); });
+  }
   void tell_step(const Batch::Impl& b, int steps, bool begins) const {
     if (b.listeners.empty()) return;
     const std::size_t n = begins ? task.controls.size() : 0;

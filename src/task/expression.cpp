@@ -17,6 +17,7 @@ using kernels::Operation;
 
 // Expressions are walked through and destroyed by functions that call themselves.
 constexpr int kMaxDepth = 2000;
+constexpr int kMostDelay = 256;
 
 const char* word_of(ObservedItem item) {
   switch (item) {
@@ -192,11 +193,51 @@ Expression parameter(Parameter of, ControlId control, int component) {
   return number_of(of, ParameterInfo::control, control.index(), -1, component);
 }
 
+Expression level(std::string_view name) {
+  Expression::Node node;
+  node.term = Term::level;
+  node.text = name;
+  return make_expression(std::move(node));
+}
+
 Expression previous(E value) { return arithmetic(Operation::previous, {value}); }
+namespace {
+
+// What the value was 0, 1 ... steps before.
+std::vector<Expression> before(E value, const char* what, int steps) {
+  if (steps < 0 || steps > kMostDelay) {
+    throw std::invalid_argument(std::string("delayed: ") + what + " is " + std::to_string(steps) +
+                                ", must be 0 to " + std::to_string(kMostDelay));
+  }
+  std::vector<Expression> out{value};
+  for (int i = 0; i < steps; ++i) out.push_back(previous(out.back()));
+  return out;
+}
+
+}  // namespace
+
+Expression delayed(E value, int steps) { return before(value, "steps", steps).back(); }
+Expression delayed(E value, E steps, int most) {
+  const std::vector<Expression> was = before(value, "most", most);
+  Expression out = was.back();
+  for (int i = most - 1; i >= 0; --i)
+    out = select(steps < i + 1, was[static_cast<std::size_t>(i)], out);
+  return out;
+}
 Expression held(E condition) { return arithmetic(Operation::held, {condition}); }
 Expression largest(E value) { return arithmetic(Operation::largest, {value}); }
 
 }  // namespace terms
+
+NumberOwner owner_of(const Expression::Node& n) {
+  const ParameterInfo::Owner owner = info(static_cast<Parameter>(n.of)).owner;
+  NumberOwner of;
+  if (owner == ParameterInfo::body || owner == ParameterInfo::shape) of.body = n.index;
+  if (owner == ParameterInfo::shape) of.shape = n.shape;
+  if (owner == ParameterInfo::joint) of.joint = n.index;
+  if (owner == ParameterInfo::control) of.control = n.index;
+  return of;
+}
 
 const ObservedInfo* observed_by(const Expression::Node& node) {
   return node.term == Term::observed ? &info(static_cast<Observed>(node.of)) : nullptr;
@@ -257,6 +298,7 @@ std::string to_string(E expression) {
     case Term::lost: return "lost";
     case Term::uniform: return "the random number '" + n.text + "'";
     case Term::parameter: return parameter_text(n);
+    case Term::level: return "the level '" + n.text + "'";
     case Term::raw: return "row " + index + " of the state";
   }
   return "?";

@@ -81,6 +81,7 @@ constexpr TermName kTerms[] = {
     {Term::lost, "lost", {}},
     {Term::uniform, "uniform", {kOf, kIndex}},
     {Term::parameter, "parameter", {kIndex, kShape, kAxis}},
+    {Term::level, "level", {}},
 };
 constexpr std::string_view kNumber = "number";
 
@@ -110,7 +111,9 @@ std::optional<TermName> term_of(const Node& node) {
 }
 
 // What is not a number of a term; terms without it have none.
-bool has_text(Term term) { return term == Term::uniform || term == Term::parameter; }
+bool has_text(Term term) {
+  return term == Term::uniform || term == Term::parameter || term == Term::level;
+}
 std::string text_of(const Node& node) {
   return node.term == Term::parameter ? info(static_cast<Parameter>(node.of)).name : node.text;
 }
@@ -152,8 +155,12 @@ class Exporter {
   throw std::invalid_argument("nodes[" + std::to_string(at) + "] " + what);
 }
 
-// What `from` says of a random number or a parameter beside its indices.
+// What `from` says of a random number, a parameter or a level beside its indices.
 void read_text(const ExpressionGraph::Node& from, std::size_t at, Node& node) {
+  if (node.term == Term::level) {
+    node.text = from.text;
+    return;
+  }
   if (node.term == Term::uniform) {
     node.text = from.text;
     if (!is_named(static_cast<Every>(node.of))) {

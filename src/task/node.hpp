@@ -7,6 +7,7 @@
 
 #include "kernels/data/program.hpp"
 #include "manyworlds/expression.hpp"
+#include "src/scene/variations.hpp"
 
 namespace manyworlds {
 
@@ -28,6 +29,7 @@ enum class Term {
   lost,
   uniform,    // Node::text is its name, index its number, of: Every
   parameter,  // of: Parameter, of index, a shape's `shape`, component axis
+  level,      // of the name Node::text
   raw,        // row of the state, as the kernels have it: of the plan, not of users
 };
 
@@ -53,6 +55,9 @@ inline bool remembers(kernels::Operation operation) {
   return operation == kernels::Operation::previous || operation == kernels::Operation::held ||
          operation == kernels::Operation::largest;
 }
+
+// What has the number that a `parameter` node is about.
+NumberOwner owner_of(const Expression::Node& node);
 
 // What `observed` nodes are about; nullptr: others. Coordinates are those of a joint, Node::index.
 const ObservedInfo* observed_by(const Expression::Node& node);

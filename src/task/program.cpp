@@ -45,6 +45,7 @@ int ProgramBuilder::add_node(const Expression::Node& n) {
                          .stream = stream_of(n.text),
                          .count = static_cast<std::uint64_t>(n.index)});
     case Term::parameter: return add_parameter(n);
+    case Term::level: return add_level(n.text);
     case Term::raw: return emit(Operation::state, n.index);
   }
   if (remembers(n.operation)) {
@@ -86,15 +87,20 @@ int ProgramBuilder::add_coordinate(Field field, int item) {
   return emit(Operation::state, state_layout(plan_.data()).row_of(field, item));
 }
 
+HostNumber ProgramBuilder::number_of(const Expression::Node& n) const {
+  const auto parameter = static_cast<Parameter>(n.of);
+  const std::vector<NumberOwner> owners = owners_of(plan_.data().scene, parameter);
+  const auto at = std::find(owners.begin(), owners.end(), owner_of(n)) - owners.begin();
+  const auto numbers = static_cast<std::size_t>(info(parameter).numbers);
+  return {.kind = HostNumber::parameter,
+          .of = parameter,
+          .item = static_cast<std::size_t>(at) * numbers + static_cast<std::size_t>(n.axis)};
+}
+
 // What no variation can change is a constant.
 int ProgramBuilder::add_parameter(const Expression::Node& n) {
   const auto parameter = static_cast<Parameter>(n.of);
-  const ParameterInfo::Owner owner = info(parameter).owner;
-  NumberOwner of;
-  if (owner == ParameterInfo::body || owner == ParameterInfo::shape) of.body = n.index;
-  if (owner == ParameterInfo::shape) of.shape = n.shape;
-  if (owner == ParameterInfo::joint) of.joint = n.index;
-  if (owner == ParameterInfo::control) of.control = n.index;
+  const NumberOwner of = owner_of(n);
   const PlanData& plan = plan_.data();
   const auto changes = [&](const VariedNumber& v) {
     if (parameter == Parameter::mass) return v.of.body == of.body;  // by its sizes and densities
@@ -104,13 +110,13 @@ int ProgramBuilder::add_parameter(const Expression::Node& n) {
   if (std::none_of(plan.varied.begin(), plan.varied.end(), changes)) {
     return emit(Operation::constant, -1, -1, -1, get_number(plan.scene, parameter, of, n.axis));
   }
-  const std::vector<NumberOwner> owners = owners_of(plan.scene, parameter);
-  const auto at = std::find(owners.begin(), owners.end(), of) - owners.begin();
-  const auto numbers = static_cast<std::size_t>(info(parameter).numbers);
-  return add_number(
-      {.kind = HostNumber::parameter,
-       .of = parameter,
-       .item = static_cast<std::size_t>(at) * numbers + static_cast<std::size_t>(n.axis)});
+  return add_number(number_of(n));
+}
+
+int ProgramBuilder::add_level(const std::string& name) {
+  const auto& all = inputs_.levels;
+  const auto at = std::find(all.begin(), all.end(), name) - all.begin();
+  return add_number({.kind = HostNumber::level, .item = static_cast<std::size_t>(at)});
 }
 
 int ProgramBuilder::add_number(const HostNumber& number) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <string>
 #include <tuple>
 #include <unordered_map>
 #include <vector>
@@ -18,11 +19,11 @@ namespace manyworlds {
 
 // What the host puts into a row of ProgramRun::input: a random number, or a number of the scene.
 struct HostNumber {
-  enum Kind { of_episode, of_step, parameter } kind = parameter;
+  enum Kind { of_episode, of_step, parameter, level } kind = parameter;
   std::uint64_t stream = 0;  // of a random number
   std::uint64_t count = 0;   // which one of the stream; of a step, beside what its age says
   Parameter of = {};
-  std::size_t item = 0;  // as Batch::read has the parameter
+  std::size_t item = 0;  // as Batch::read has the parameter, or the level's index
   bool operator==(const HostNumber&) const = default;
 };
 
@@ -30,6 +31,7 @@ struct HostNumber {
 struct InputRows {
   int actions = 0;
   std::vector<HostNumber> numbers = {};
+  std::vector<std::string> levels = {};  // their names
   int age() const { return actions; }
   int lost() const { return actions + 1; }
   int first_number() const { return actions + 2; }
@@ -69,6 +71,8 @@ class ProgramBuilder {
       : plan_(plan), inputs_(inputs), memory_(memory), looks_back_(looks_back) {}
 
   int add(const Expression& expression);  // its row
+  // The number of a parameter's expression as Batch::read has it.
+  HostNumber number_of(const Expression::Node& node) const;
   Program take() { return std::move(program_); }
 
  private:
@@ -79,6 +83,7 @@ class ProgramBuilder {
   int add_observed(const Expression::Node& node);
   int add_coordinate(Field field, int item);
   int add_parameter(const Expression::Node& node);
+  int add_level(const std::string& name);
   int add_number(const HostNumber& number);
   int emit(kernels::Operation operation, int a = -1, int b = -1, int c = -1, double number = 0);
   int remember(int row);

@@ -7,6 +7,8 @@
 
 #include "src/base/bits.hpp"
 #include "src/base/random.hpp"
+#include "src/task/levels.hpp"
+#include "src/task/program_code.hpp"
 
 namespace manyworlds {
 
@@ -19,24 +21,27 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
  public:
   RunnerOf(std::shared_ptr<const TaskPrograms> programs, const Batch& batch, Autoreset autoreset)
       : p_(std::move(programs)),
+        opening_(p_->opening),
         before_(p_->before),
         after_(p_->after),
         autoreset_(autoreset),
         worlds_(batch.worlds()),
-        lanes_(batch.lanes()) {
+        lanes_(batch.lanes()),
+        levels_(at(worlds_), p_->level_nexts.size()) {
     const std::size_t groups = at((worlds_ + lanes_ - 1) / lanes_), lanes = at(lanes_);
     memory_ = AlignedBuffer<Real>(groups * p_->memory.row.size() * lanes);
     age_ = AlignedBuffer<Real>(groups * lanes);
     begin_now.resize(at(worlds_));
     begin_next.resize(at(worlds_));
     const auto& numbers = p_->inputs.numbers;
-    draws_ = std::any_of(numbers.begin(), numbers.end(),
-                         [](const HostNumber& n) { return n.kind != HostNumber::parameter; });
+    draws_ = std::any_of(numbers.begin(), numbers.end(), [](const HostNumber& n) {
+      return n.kind == HostNumber::of_episode || n.kind == HostNumber::of_step;
+    });
     if (draws_) key_.resize(at(worlds_));
     unsound.resize(at(worlds_));
     for (int t = 0; t < batch.threads(); ++t) {
       Thread& thread = threads_.emplace_back();
-      const std::size_t rows = std::max(before_.code.size(), after_.code.size());
+      const std::size_t rows = std::max({opening_.rows(), before_.rows(), after_.rows()});
       thread.values = AlignedBuffer<Real>(rows * lanes);
       thread.inputs = AlignedBuffer<Real>(at(p_->inputs.count()) * lanes);
       thread.in.reserve(rows);
@@ -45,7 +50,11 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
 
   GroupVisitor& visitor() override { return *this; }
 
-  std::size_t numbers() const override { return 2 + p_->memory.row.size() + (draws_ ? 2 : 0); }
+  // [begins with the next step, age, what the program remembers, levels, those of the next
+  // episode, key]
+  std::size_t numbers() const override {
+    return 2 + p_->memory.row.size() + 2 * levels_.count() + (draws_ ? 2 : 0);
+  }
 
   void save_world(int world, std::span<double> to) const override {
     to[0] = begin_next[at(world)];
@@ -53,6 +62,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     for (std::size_t i = 0; i < p_->memory.row.size(); ++i) {
       to[2 + i] = static_cast<double>(memory_[remembered(world, i)]);
     }
+    levels_.save(world, to.subspan(2 + p_->memory.row.size()));
     if (!draws_) return;  // in halves, which doubles hold exactly
     to[to.size() - 2] = static_cast<double>(key_[at(world)] >> 32);
     to[to.size() - 1] = static_cast<double>(key_[at(world)] & 0xffffffffu);
@@ -64,8 +74,16 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     for (std::size_t i = 0; i < p_->memory.row.size(); ++i) {
       memory_[remembered(world, i)] = static_cast<Real>(from[2 + i]);
     }
+    levels_.restore(world, from.subspan(2 + p_->memory.row.size()));
     if (!draws_) return;
     key_[at(world)] = half_of_key(from[from.size() - 2]) << 32 | half_of_key(from[from.size() - 1]);
+  }
+
+  double level(int world, std::size_t level) const override {
+    return static_cast<double>(levels_.get(world, level));
+  }
+  void set_level(int world, std::size_t level, double value) override {
+    levels_.set(world, level, static_cast<Real>(value));
   }
 
   void before_steps(const VisitedGroup<Real>& g) override {
@@ -116,15 +134,54 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     put_down(g.group, thread, (1u << lanes_) - 1u);
   }
 
+  void before_beginning(const VisitedGroup<Real>& g, WorldsBase& worlds, std::uint32_t lanes,
+                        const Beginning& how) override {
+    if (opening_.rows() == 0) return;
+    Thread& thread = threads_[at(g.thread)];
+    std::uint32_t first = 0;  // lanes whose first episode begins
+    for_each_lane(lanes, [&](int l) {
+      const int world = g.group * lanes_ + l;
+      const std::uint64_t seed = how.seeds.empty() ? worlds.seed(world) : how.seeds[at(world)];
+      const std::uint64_t episode = !how.resets         ? worlds.episode(world)
+                                    : how.seeds.empty() ? std::uint64_t{worlds.episode(world)} + 1
+                                                        : 0;
+      if (draws_) key_[at(world)] = Draws(seed, episode).key();
+      if (episode == 0) first |= 1u << l;
+      levels_.begin_episode(world);
+    });
+    if (first != 0 && levels_.count() > 0) {
+      put_opening_numbers(g, thread, lanes);
+      run(g, opening_, thread, true);
+      for_each_lane(first, [&](int l) {
+        for (std::size_t i = 0; i < levels_.count(); ++i) {
+          const Real begins = value(thread, p_->level_begins[i], l);
+          levels_.set(g.group * lanes_ + l, i, std::isnan(begins) ? Real(0) : begins);
+        }
+      });
+    }
+    if (!how.resets || p_->settings.empty()) return;
+    put_opening_numbers(g, thread, lanes);
+    run(g, opening_, thread, true);
+    for_each_lane(lanes, [&](int l) {
+      for (std::size_t i = 0; i < p_->settings.size(); ++i) {
+        const Real found = value(thread, p_->setting_values[i], l);
+        const HostNumber& of = p_->settings[i];
+        if (!std::isnan(found)) {
+          worlds.set_next(of.of, g.group * lanes_ + l, of.item, static_cast<double>(found));
+        }
+      }
+    });
+  }
+
   void after_beginning(const VisitedGroup<Real>& g, std::uint32_t lanes) override {
     Thread& thread = threads_[at(g.thread)];
-    std::fill_n(thread.inputs.data(), thread.inputs.size(), Real(0));
-    for (int l = 0; !p_->inputs.numbers.empty() && l < lanes_; ++l) {
-      if (!get_bit(lanes, at(l))) continue;
-      const int world = g.group * lanes_ + l;
-      if (draws_) key_[at(world)] = Draws(g.worlds.seed(world), g.worlds.episode(world)).key();
-      put_numbers(g, thread, l, 0);
+    if (draws_) {
+      for_each_lane(lanes, [&](int l) {
+        const int world = g.group * lanes_ + l;
+        key_[at(world)] = Draws(g.worlds.seed(world), g.worlds.episode(world)).key();
+      });
     }
+    put_opening_numbers(g, thread, lanes);
     run(g, after_, thread, true);
     for (int l = 0; l < lanes_; ++l) {
       if (!get_bit(lanes, at(l))) continue;
@@ -138,15 +195,6 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   }
 
  private:
-  struct Code {
-    explicit Code(const Program& program) : calls(program.calls) {
-      for (const auto& i : program.instructions) {
-        code.push_back({i.operation, i.a, i.b, i.c, static_cast<Real>(i.number)});
-      }
-    }
-    std::vector<kernels::Instruction<Real>> code;
-    const std::vector<Program::Call>& calls;
-  };
   struct Thread {
     AlignedBuffer<Real> values, inputs;
     std::vector<const Real*> in;  // of a call
@@ -155,6 +203,20 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   // Of a snapshot, which may have been made up.
   static std::uint64_t half_of_key(double number) {
     return number >= 0 && number < 0x1p32 ? static_cast<std::uint64_t>(number) : 0;
+  }
+
+  template <class Call>
+  void for_each_lane(std::uint32_t lanes, Call call) const {
+    for (int l = 0; l < lanes_; ++l) {
+      if (get_bit(lanes, at(l))) call(l);
+    }
+  }
+
+  // Inputs of worlds that begin an episode: no action, and no step behind them.
+  void put_opening_numbers(const VisitedGroup<Real>& g, Thread& thread, std::uint32_t lanes) const {
+    std::fill_n(thread.inputs.data(), thread.inputs.size(), Real(0));
+    if (p_->inputs.numbers.empty()) return;
+    for_each_lane(lanes, [&](int l) { put_numbers(g, thread, l, 0); });
   }
 
   // Where in memory_ a number of a world is.
@@ -197,6 +259,8 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     for (const HostNumber& n : p_->inputs.numbers) {
       if (n.kind == HostNumber::parameter) {
         *in = static_cast<Real>(g.worlds.number(n.of, world, n.item));
+      } else if (n.kind == HostNumber::level) {
+        *in = levels_.get(world, n.item);
       } else {  // an even count is of the episode, odd ones are of steps
         const bool each = n.kind == HostNumber::of_step;
         const std::uint64_t step = each ? 2 * static_cast<std::uint64_t>(age) + 1 : 0;
@@ -206,28 +270,15 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     }
   }
 
-  void run(const VisitedGroup<Real>& g, const Code& code, Thread& thread, bool beginning) const {
-    const std::size_t rows = p_->memory.row.size();
-    kernels::ProgramRun<Real> run{code.code.data(),
-                                  0,
-                                  0,
-                                  thread.inputs.data(),
-                                  memory_.data() + at(g.group) * rows * at(lanes_),
-                                  thread.values.data(),
-                                  beginning};
-    const auto run_to = [&](int end) {
-      run.end = end;
-      g.kernels.observer->run_program(g.view, g.seen, run);
-    };
-    for (const Program::Call& call : code.calls) {
-      run_to(call.at);
-      thread.in.clear();
-      for (const int row : call.in) thread.in.push_back(run.value + at(row * lanes_));
-      (*call.function)(lanes_, std::span<const Real* const>(thread.in),
-                       run.value + at(call.at * lanes_));
-      run.begin = call.at + 1;
-    }
-    run_to(static_cast<int>(code.code.size()));
+  void run(const VisitedGroup<Real>& g, const ProgramCode<Real>& code, Thread& thread,
+           bool beginning) const {
+    const std::size_t first = at(g.group) * p_->memory.row.size() * at(lanes_);
+    code.run(g, lanes_,
+             {.input = thread.inputs.data(),
+              .memory = memory_.data() + first,
+              .value = thread.values.data(),
+              .beginning = beginning},
+             thread.in);
   }
 
   Real value(const Thread& thread, int row, int lane) const {
@@ -290,6 +341,9 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
       if (!out.terminated.empty()) out.terminated[world] = terminated;
       if (!out.truncated.empty()) out.truncated[world] = truncated;
       const bool ended = terminated || truncated;
+      for (std::size_t i = 0; ended && i < levels_.count(); ++i) {
+        levels_.set_next(first + l, i, value(thread, p_->level_nexts[i], l));
+      }
       begin_now[world] = begins || (ended && autoreset_ == Autoreset::same_step);
       begin_next[world] = ended && autoreset_ == Autoreset::next_step;
       some = some || begin_now[world] != 0;
@@ -310,9 +364,10 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   }
 
   std::shared_ptr<const TaskPrograms> p_;
-  Code before_, after_;
+  ProgramCode<Real> opening_, before_, after_;
   Autoreset autoreset_;
   int worlds_, lanes_;
+  Levels<Real> levels_;
   AlignedBuffer<Real> memory_;  // [group][number][lane]
   AlignedBuffer<Real> age_;     // [group][lane]
   bool draws_;

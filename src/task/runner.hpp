@@ -23,9 +23,13 @@ struct TaskPrograms {
   std::vector<std::array<double, 2>> action_range, control_range;
   bool ranges_vary = false;  // of controls, from world to world
   int max_steps;
+  Program opening;                   // before an episode begins: knows no state of the world
+  std::vector<int> level_begins;     // its rows, by level, and those of settings
+  std::vector<HostNumber> settings;  // what they set
+  std::vector<int> setting_values;
   Program before, after;
-  std::vector<int> controls;                      // rows of `before`
-  std::vector<int> observations, rewards, infos;  // rows of `after`
+  std::vector<int> controls;                                   // rows of `before`
+  std::vector<int> observations, rewards, infos, level_nexts;  // rows of `after`
   int terminated, truncated;
   Memory memory;
   // Of all this; of a user's function only where it stands, since what it does cannot be told.
@@ -41,6 +45,8 @@ class TaskRunner {
   virtual std::size_t numbers() const = 0;
   virtual void save_world(int world, std::span<double> to) const = 0;
   virtual void restore_world(int world, std::span<const double> from) = 0;
+  virtual double level(int world, std::size_t level) const = 0;
+  virtual void set_level(int world, std::size_t level, double value) = 0;
 
   // Of the call in progress.
   const float* actions = nullptr;         // [world][action], or

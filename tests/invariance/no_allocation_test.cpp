@@ -216,6 +216,9 @@ TEST_CASE("steps of tasks allocate nothing, with the worlds that begin anew in t
   for (const tasks::Entry& entry : tasks::all()) {
     Task task = entry.make();
     task.max_steps = 11;
+    task.levels = {{"episodes", 0, terms::level("episodes") + 1}};
+    task.observations.push_back({"level", terms::level("episodes")});
+    task.observations.push_back({"late", terms::delayed(task.observations[0].value, 3)});
     for (const Autoreset autoreset : {Autoreset::next_step, Autoreset::same_step}) {
       Played p(task, {.worlds = 40, .threads = 1, .autoreset = autoreset});
       p.step();

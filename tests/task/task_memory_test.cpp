@@ -1,0 +1,293 @@
+// Delays, levels that outlive episodes, and numbers of the scene that a task sets where one begins.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "manyworlds/expression_graph.hpp"
+#include "tests/support/policy.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/tables.hpp"
+#include "tests/support/varied.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+// A falling crate that is pushed along x by actions which come late, by another number of steps in
+// every episode.
+constexpr int kMost = 4;
+Expression lag() { return terms::uniform("lag", Every::episode, 0, kMost + 2); }
+Task late() {
+  Task task;
+  task.scene = one_crate(Space::spatial, -10);
+  task.scene.bodies[0].jitter.linear_velocity = Vec3(1, 1, 1);
+  Control thrust;
+  thrust.kind = ControlKind::thrust, thrust.body = BodyId(0), thrust.low = -9, thrust.high = 9;
+  task.scene.add(thrust);
+  task.actions = {{"push", -1, 1}};
+  task.controls = {terms::delayed(terms::action(), lag(), kMost)};
+  const Expression height = terms::position(BodyId(0), 2);
+  task.observations = {
+      {"lag", lag()},
+      {"height", height},
+      {"three ago", terms::delayed(height, 3)},
+      {"lag ago", terms::delayed(height, lag(), kMost)},
+      {"control", terms::control(ControlId(0))},
+      {"height at the action", terms::previous(terms::delayed(height, lag(), kMost))}};
+  task.max_steps = 9;
+  return task;
+}
+
+// How far each world has come: one more after each episode that it ends itself, which takes as
+// many steps as it has levels, and where it begins then.
+Task stairs(Draw draw = Draw::none) {
+  Task task;
+  task.scene = one_crate(Space::spatial);
+  Variation start;
+  start.parameter = Parameter::initial_position, start.body = BodyId(0), start.draw = draw;
+  start.high = Vec3(5, 0, 0);
+  task.scene.variations = {start, vary(Parameter::mass, 900, 1100)};
+  const Expression step = terms::level("step");
+  task.levels = {{"step", 1, step + 1},
+                 {"luck", terms::uniform("luck", Every::episode, 2, 3),
+                  max(terms::level("luck"), terms::uniform("luck", Every::episode, 2, 3))},
+                 {"broken", 7, log(terms::level("broken") * -1)}};
+  task.settings = {{terms::parameter(Parameter::initial_position, BodyId(0), 0), step}};
+  task.observations = {{"step", step},
+                       {"x", terms::position(BodyId(0), 0)},
+                       {"luck", terms::level("luck")},
+                       {"broken", terms::level("broken")},
+                       {"mass", terms::parameter(Parameter::mass, BodyId(0))}};
+  task.terminated = terms::age() >= step;
+  return task;
+}
+
+// All that a world observes in some steps, under random actions, as world `first` + w would.
+std::vector<float> played(const Task& task, EnvironmentOptions options, int world, int first = 0) {
+  options.seed += static_cast<std::uint64_t>(first);
+  Played p(task, options);
+  std::vector<float> out;
+  const std::size_t n = task.observations.size(), at = static_cast<std::size_t>(world) * n;
+  for (int step = 0; step < 30; ++step) {
+    p.act_at_random(step, first);
+    p.step();
+    out.insert(out.end(), p.observations.begin() + static_cast<std::ptrdiff_t>(at),
+               p.observations.begin() + static_cast<std::ptrdiff_t>(at + n));
+  }
+  return out;
+}
+
+std::vector<double> levels(const Environment& environment) {
+  std::vector<double> out(Played::size(environment.worlds() * environment.levels()));
+  environment.read_levels(out);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("what is delayed is what was seen as many steps before, or where the episode began",
+          "[task][fast]") {
+  const Task task = late();
+  REQUIRE(validate(task).empty());
+  for (const Autoreset autoreset : {Autoreset::same_step, Autoreset::next_step}) {
+    constexpr std::size_t kWorlds = 21, kColumns = 6;
+    Played p(task, {.worlds = int(kWorlds), .seed = 3, .autoreset = autoreset});
+    std::vector<std::vector<float>> heights(kWorlds), actions(kWorlds);
+    const auto ago = [](const std::vector<float>& all, std::size_t steps, float before) {
+      return steps < all.size() ? all[all.size() - 1 - steps] : before;
+    };
+    const auto check = [&](std::size_t w) {
+      const float* o = p.observations.data() + w * kColumns;
+      heights[w].push_back(o[1]);
+      const auto steps = std::min<std::size_t>(static_cast<std::size_t>(o[0]), kMost);
+      CHECK(o[2] == ago(heights[w], 3, heights[w].front()));
+      CHECK(o[3] == ago(heights[w], steps, heights[w].front()));
+      CHECK(o[5] == ago(heights[w], steps + 1, heights[w].front()));
+      if (heights[w].size() > 1) CHECK(o[4] == ago(actions[w], steps, 0));
+    };
+    for (std::size_t w = 0; w < kWorlds; ++w) check(w);
+    std::vector<std::uint8_t> begins(kWorlds, 0);
+    for (int step = 0; step < 60; ++step) {
+      p.act_at_random(step);
+      p.step();
+      for (std::size_t w = 0; w < kWorlds; ++w) {
+        const bool ended = p.ended(int(w));
+        if (begins[w] != 0 || (ended && autoreset == Autoreset::same_step)) {
+          heights[w].clear(), actions[w].clear();
+        } else {
+          actions[w].push_back(p.actions[w]);
+        }
+        begins[w] = ended && autoreset == Autoreset::next_step;
+        check(w);
+      }
+    }
+  }
+}
+
+TEST_CASE("delays, levels and settings have the same bits whatever the batch and instruction set",
+          "[task][bits][fast]") {
+  for (const Task& task : {late(), stairs()}) {
+    REQUIRE(validate(task).empty());
+    for (const Precision precision : {Precision::f32, Precision::f64}) {
+      std::vector<float> before;
+      for (const Table& table : all_tables()) {
+        if (table.precision != precision) continue;
+        EnvironmentOptions options{.worlds = 19, .threads = 1, .seed = 4, .precision = precision};
+        options.isa = table.isa;
+        const std::vector<float> together = played(task, options, 17);
+        options.worlds = 1;
+        CHECK(played(task, options, 0, 17) == together);
+        options.worlds = 40, options.threads = 2;
+        CHECK(played(task, options, 17) == together);
+        CHECK((before.empty() || before == together));
+        before = together;
+      }
+    }
+  }
+}
+
+TEST_CASE("levels stay for an episode, and go on where it ends by itself", "[task][fast]") {
+  const Task task = stairs();
+  for (const Autoreset autoreset : {Autoreset::same_step, Autoreset::next_step}) {
+    Played p(task, {.worlds = 2, .seed = 8, .autoreset = autoreset});
+    const std::vector<double> first = levels(p.environment);
+    CHECK(first[0] == 1);
+    CHECK((first[1] >= 2 && first[1] <= 3 && first[1] != first[4]));
+    const bool same_step = autoreset == Autoreset::same_step;
+    int ended = 0;
+    float luck = p.observations[2], episode = 1;
+    bool begins = false;
+    for (int step = 1; step <= 60; ++step) {
+      p.step();
+      if (same_step && p.ended(0)) CHECK(p.final_observations[0] == episode);
+      episode += same_step ? p.ended(0) : begins;
+      begins = p.ended(0);
+      ended += p.ended(0);
+      CHECK(p.observations[0] == episode);
+      CHECK(p.observations[2] >= luck);
+      CHECK(p.observations[3] == 7);  // log(-7) is not a number
+      luck = p.observations[2];
+      // Where the world begins: within the range that is declared.
+      CHECK(p.observations[1] == std::min(p.observations[0], 5.f));
+    }
+    CHECK(ended == (same_step ? 10 : 9));  // of 1, 2, 3 ... steps
+    CHECK(luck > first[1]);
+
+    const auto all = p.all();
+    p.environment.reset(all, p.observations);  // in the middle of an episode
+    CHECK(levels(p.environment)[0] == ended + 1);
+    const std::vector<std::uint64_t> seeds{8, 9};
+    p.environment.reset(all, seeds, p.observations);
+    CHECK(levels(p.environment) == first);
+    CHECK(p.observations[1] == 1);
+  }
+}
+
+TEST_CASE("a world that is not reset goes on to what its last step says", "[task][fast]") {
+  Played p(stairs(), {.worlds = 1, .autoreset = Autoreset::disabled});
+  for (int step = 0; step < 4; ++step) p.step();
+  CHECK(p.ended(0));
+  CHECK(levels(p.environment)[0] == 1);
+  p.environment.reset(p.all(), p.observations);
+  CHECK(levels(p.environment)[0] == 2);
+  CHECK(p.observations[0] == 2);
+  p.environment.begin(p.all(), p.observations);
+  CHECK(levels(p.environment)[0] == 2);
+}
+
+TEST_CASE("levels are written, copied and saved with their worlds", "[task][fast]") {
+  Played p(stairs(), {.worlds = 3, .seed = 1, .autoreset = Autoreset::same_step});
+  Environment& e = p.environment;
+  e.write_levels(std::vector<double>{4, 2.5, 0, 1, 2.25, 0, 1, 2, 0});
+  CHECK(levels(e) == std::vector<double>{4, 2.5, 0, 1, 2.25, 0, 1, 2, 0});
+  for (int step = 0; step < 3; ++step) p.step();
+  CHECK(levels(e)[0] == 4);
+  e.copy_world(0, 1);
+  const EnvironmentSnapshot snapshot = e.save();
+  p.step();
+  CHECK(levels(e)[0] == 5);
+  CHECK(levels(e)[3] == 5);
+  CHECK(p.observations[1] == 5);
+  const std::vector<double> later = levels(e);
+  e.restore(snapshot);
+  CHECK(levels(e)[0] == 4);
+  p.step();
+  CHECK(levels(e) == later);
+  e.restore(snapshot, 2, 0);
+  CHECK(levels(e)[0] == 3);  // after episodes of one step and two
+  std::vector<double> bad(9, 1);
+  bad[4] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH(e.write_levels(bad), Catch::Contains("the level 'luck' of world 1 is nan"));
+  CHECK(levels(e)[0] == 3);
+  CHECK_THROWS_AS(e.write_levels(std::vector<double>(8)), std::invalid_argument);
+}
+
+TEST_CASE("a world whose numbers a task sets has the bits of a scene that has them",
+          "[task][fast]") {
+  Task task = stairs();
+  task.scene.bodies[0].jitter.angular_velocity = Vec3(1, 1, 1);
+  task.scene.variations.push_back(vary(Parameter::gravity_scale, 0.5, 2, Draw::none));
+  task.settings.push_back({terms::parameter(Parameter::gravity_scale, BodyId(0)),
+                           terms::uniform("pull", Every::episode, 0, 3)});
+  task.scene.options.gravity = Vec3(0, 0, -10);
+  task.terminated = 0;
+  REQUIRE(validate(task).empty());
+  Played p(task, {.worlds = 5, .seed = 3});
+  for (int episode = 0; episode < 2; ++episode) {
+    for (int w = 0; w < 5; ++w) {
+      const double pull = numbers(p.environment.batch(), Parameter::gravity_scale, w)[0];
+      CHECK((pull >= 0.5 && pull <= 2));
+      Batch alone(compile(built_with(p.environment.batch(), w)),
+                  {.worlds = 1, .seed = 3 + static_cast<std::uint64_t>(w)});
+      for (int i = 0; i < episode; ++i) alone.reset(std::vector<std::uint8_t>{1});
+      CHECK(alone.hash(0) == p.environment.batch().hash(w));
+    }
+    p.environment.reset(p.all(), p.observations);
+  }
+}
+
+TEST_CASE("what is wrong with delays, levels and settings is said", "[task][fast]") {
+  CHECK_THROWS_WITH(terms::delayed(1, -1), "delayed: steps is -1, must be 0 to 256");
+  CHECK_THROWS_WITH(terms::delayed(1, 2, 257), "delayed: most is 257, must be 0 to 256");
+  Task task = stairs(Draw::uniform);
+  const auto mass = terms::parameter(Parameter::mass, BodyId(0));
+  task.levels.push_back({"step", terms::level("step"), terms::level("stairs")});
+  task.levels.push_back({"", terms::uniform("u", Every::step), 0});
+  task.settings.push_back({terms::age(), 1});
+  task.settings.push_back({terms::parameter(Parameter::friction, ShapeId(BodyId(0), 0)), 1});
+  task.scene.variations[1].draw = Draw::none;
+  task.settings.push_back({mass, terms::age()});
+  task.settings.push_back({mass, 2});
+  std::vector<std::string> found;
+  for (const Issue& issue : validate(task)) found.push_back(issue.place + ": " + issue.message);
+  const std::vector<std::string> expected{
+      "level 3 'step': has the name of one before it, must have its own",
+      "level 3 'step', begin: depends on the level 'step', must depend on numbers and random ones "
+      "of "
+      "the episode alone",
+      "level 3 'step', next: asks for the level 'stairs', must be one of Task::levels: step, luck, "
+      "broken, step, ",
+      "level 4: has no name, must have one",
+      "level 4, begin: depends on the random number 'u', must depend on numbers and random ones of "
+      "the episode alone",
+      "setting 0: is of initial_position of body 0, number 0, which is drawn, must vary with "
+      "Draw::none",
+      "setting 1: is of age, must be of a parameter (terms::parameter)",
+      "setting 2: is of friction of body 0, shape 0, which does not vary (Scene::variations)",
+      "setting 3, value: depends on age, must depend on numbers, random ones of the episode and "
+      "levels alone",
+      "setting 4: is of mass of body 0, which another one sets"};
+  CHECK(found == expected);
+}
+
+TEST_CASE("levels are plain values, too", "[task][fast]") {
+  const Expression e = terms::level("step") + 1;
+  CHECK(text_of(e, 80) == "level('step') + 1");
+  const std::vector<Expression> roots{e};
+  CHECK(text_of(from_graph(graph_of(roots))[0], 80) == "level('step') + 1");
+}
+
+}  // namespace manyworlds::test
