@@ -116,11 +116,11 @@ class Environment {
              const BeginArrays& out);
 
   // What the worlds' numbers are that outlive their episodes, [world][level] (Task::levels). Those
-  // that are written, which must be finite, count from the next step on, and until an episode that
-  // ends says otherwise.
+  // that are written to the worlds of a mask, which must be finite, count from the next step on, and
+  // until an episode that ends says otherwise.
   int levels() const;  // numbers of one world
   void read_levels(std::span<double> out) const;
-  void write_levels(std::span<const double> in);
+  void write_levels(std::span<const std::uint8_t> mask, std::span<const double> in);
 
   // What steps, to look at, to record and to draw. Whoever changes worlds in it (write, restore)
   // says so by begin(), for what the task remembers of them.

@@ -46,4 +46,4 @@ class WithLevels:
                 f"levels have shape {np.shape(levels)}; expected "
                 f"{arrays.shape_text(expected, ('worlds', 'levels'))}"
             ) from None
-        self._held.write_levels(all_levels)
+        self._held.write_levels(arrays.mask(mask_or_ids, self._worlds), all_levels)

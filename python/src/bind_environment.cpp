@@ -247,10 +247,10 @@ void bind_environment(nb::module_& m) {
           nb::arg("out").noconvert())
       .def(
           "write_levels",
-          [](HeldEnvironment& self, const In<double>& in) {
-            self.run([&](Environment& e) { e.write_levels(span_of(in)); });
+          [](HeldEnvironment& self, const In<std::uint8_t>& mask, const In<double>& in) {
+            self.run([&](Environment& e) { e.write_levels(span_of(mask), span_of(in)); });
           },
-          nb::arg("levels").noconvert())
+          nb::arg("mask").noconvert(), nb::arg("levels").noconvert())
       .def(
           "copy_world",
           [](HeldEnvironment& self, int source, int target) {

@@ -132,16 +132,17 @@ void Environment::read_levels(std::span<double> out) const {
     out[i] = impl_->runner->level(static_cast<int>(i / n), i % n);
   }
 }
-void Environment::write_levels(std::span<const double> in) {
+void Environment::write_levels(std::span<const std::uint8_t> mask, std::span<const double> in) {
   const std::size_t n = impl_->task.levels.size();
+  check_array("the mask's entries", mask.size(), impl_->worlds(), false);
   check_array("levels", in.size(), impl_->worlds() * n, false);
   for (std::size_t i = 0; i < in.size(); ++i) {
-    if (std::isfinite(in[i])) continue;
+    if (!mask[i / n] || std::isfinite(in[i])) continue;
     reject("the level '" + impl_->task.levels[i % n].name + "' of world " + std::to_string(i / n) +
            " is " + std::to_string(in[i]) + ", must be finite");
   }
   for (std::size_t i = 0; i < in.size(); ++i) {
-    impl_->runner->set_level(static_cast<int>(i / n), i % n, in[i]);
+    if (mask[i / n]) impl_->runner->set_level(static_cast<int>(i / n), i % n, in[i]);
   }
 }
 

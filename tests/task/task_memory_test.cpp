@@ -198,10 +198,21 @@ TEST_CASE("a world that is not reset goes on to what its last step says", "[task
   CHECK(levels(p.environment)[0] == 2);
 }
 
+TEST_CASE("levels of worlds that are about to begin are left alone by others'", "[task][fast]") {
+  Played p(stairs(), {.worlds = 2, .autoreset = Autoreset::next_step});
+  p.step();
+  REQUIRE((p.ended(0) && p.ended(1)));
+  const std::vector<double> others{5, 2, 7, 5, 2, 7};
+  p.environment.write_levels(std::vector<std::uint8_t>{1, 0}, others);
+  p.step();
+  CHECK(p.observations[0] == 5);
+  CHECK(p.observations[5] == 2);
+}
+
 TEST_CASE("levels are written, copied and saved with their worlds", "[task][fast]") {
   Played p(stairs(), {.worlds = 3, .seed = 1, .autoreset = Autoreset::same_step});
   Environment& e = p.environment;
-  e.write_levels(std::vector<double>{4, 2.5, 0, 1, 2.25, 0, 1, 2, 0});
+  e.write_levels(p.all(), std::vector<double>{4, 2.5, 0, 1, 2.25, 0, 1, 2, 0});
   CHECK(levels(e) == std::vector<double>{4, 2.5, 0, 1, 2.25, 0, 1, 2, 0});
   for (int step = 0; step < 3; ++step) p.step();
   CHECK(levels(e)[0] == 4);
@@ -220,9 +231,15 @@ TEST_CASE("levels are written, copied and saved with their worlds", "[task][fast
   CHECK(levels(e)[0] == 3);  // after episodes of one step and two
   std::vector<double> bad(9, 1);
   bad[4] = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_WITH(e.write_levels(bad), Catch::Contains("the level 'luck' of world 1 is nan"));
+  CHECK_THROWS_WITH(e.write_levels(p.all(), bad),
+                    Catch::Contains("the level 'luck' of world 1 is nan"));
   CHECK(levels(e)[0] == 3);
-  CHECK_THROWS_AS(e.write_levels(std::vector<double>(8)), std::invalid_argument);
+  CHECK_THROWS_AS(e.write_levels(p.all(), std::vector<double>(8)), std::invalid_argument);
+  CHECK_THROWS_AS(e.write_levels(std::vector<std::uint8_t>(2), std::vector<double>(9)),
+                  std::invalid_argument);
+  bad[0] = 9;
+  e.write_levels(std::vector<std::uint8_t>{1, 0, 0}, bad);  // the others are not looked at
+  CHECK(levels(e)[0] == 9);
 }
 
 TEST_CASE("a world whose numbers a task sets has the bits of a scene that has them",
