@@ -7,8 +7,7 @@
 
 #include "manyworlds/expression_graph.hpp"
 #include "tests/support/newton_scenes.hpp"
-#include "tests/support/policy.hpp"
-#include "tests/support/tables.hpp"
+#include "tests/support/task_bits.hpp"
 #include "tests/support/varied.hpp"
 
 namespace manyworlds::test {
@@ -36,21 +35,6 @@ Task noisy() {
   return task;
 }
 
-// All that a world observes in some steps, under random actions, as world `first` + w would.
-std::vector<float> played(const Task& task, EnvironmentOptions options, int world, int first = 0) {
-  options.seed += static_cast<std::uint64_t>(first);
-  Played p(task, options);
-  std::vector<float> out;
-  const std::size_t n = task.observations.size(), at = static_cast<std::size_t>(world) * n;
-  for (int step = 0; step < 20; ++step) {
-    p.act_at_random(step, first);
-    p.step();
-    out.insert(out.end(), p.observations.begin() + static_cast<std::ptrdiff_t>(at),
-               p.observations.begin() + static_cast<std::ptrdiff_t>(at + n));
-  }
-  return out;
-}
-
 double mean(const std::vector<double>& x) {
   double sum = 0;
   for (const double v : x) sum += v / static_cast<double>(x.size());
@@ -61,22 +45,7 @@ double mean(const std::vector<double>& x) {
 
 TEST_CASE("random numbers are the same bits whatever the lane, batch, threads and instruction set",
           "[task][bits][fast]") {
-  const Task task = noisy();
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
-    std::vector<float> before;
-    for (const Table& table : all_tables()) {
-      if (table.precision != precision) continue;
-      EnvironmentOptions options{.worlds = 19, .threads = 1, .seed = 4, .precision = precision};
-      options.isa = table.isa;
-      const std::vector<float> together = played(task, options, 17);
-      options.worlds = 1;
-      CHECK(played(task, options, 0, 17) == together);
-      options.worlds = 40, options.threads = 2;
-      CHECK(played(task, options, 17) == together);
-      CHECK((before.empty() || before == together));
-      before = together;
-    }
-  }
+  check_same_bits(noisy());
 }
 
 TEST_CASE("goals stay for an episode, and noise is drawn at each step", "[task][fast]") {
