@@ -79,18 +79,29 @@ struct PolygonConstants {
   T normals[2 * kMaxVertices];
 };
 
+// Draws all bodies to a point: acceleration strength d / (d^2 + softening^2)^(3/2).
+template <class T>
+struct AttractorConstants {
+  T position[3];
+  T strength;    // m^3/s^2
+  T softening2;  // m^2, never 0
+};
+
 template <class Real>
 struct ConstantBlocks {
-  const Real* body;      // [body][BodyConstants][lane]
-  const Real* shape;     // [collider][ShapeConstants][lane]
-  const Real* polygon;   // [collider][PolygonConstants][lane]; nullptr without polygons
-  const Real* material;  // [collider, then fixed shape][MaterialOf][lane]
-  const Real* joint;     // [part][JointConstants][lane]
-  const Real* thrust;    // [thrust][ThrustConstants][lane]
-  const Real* link;      // [link][LinkConstants][lane]
-  const Real* drag;      // [link][DragConstants][lane]; nullptr without a medium
-  const Real* dof;       // [dof][DofConstants][lane]
-  const Real* actuator;  // [actuator][ActuatorConstants][lane]
+  const Real* body;       // [body][BodyConstants][lane]
+  const Real* shape;      // [collider][ShapeConstants][lane]
+  const Real* polygon;    // [collider][PolygonConstants][lane]; nullptr without polygons
+  const Real* material;   // [collider, then fixed shape][MaterialOf][lane]
+  const Real* joint;      // [part][JointConstants][lane]
+  const Real* thrust;     // [thrust][ThrustConstants][lane]
+  const Real* link;       // [link][LinkConstants][lane]
+  const Real* drag;       // [link][DragConstants][lane]; nullptr without a medium
+  const Real* dof;        // [dof][DofConstants][lane]
+  const Real* actuator;   // [actuator][ActuatorConstants][lane]
+  const Real* limit;      // [limit, then limit of a ball][LimitConstants][lane]
+  const Real* contact;    // [TreePair::compliance][Compliance][lane]
+  const Real* attractor;  // [attractor][AttractorConstants][lane]
 };
 
 // What is the same in all worlds.
@@ -133,14 +144,6 @@ struct PairClass {
 template <class Real>
 struct Softness {  // numerics of the soft constraint: lambda' = lambda - k (m v + b s) - i lambda
   Real bias_rate, mass_scale, impulse_scale;
-};
-
-// Draws all bodies to a point: acceleration strength d / (d^2 + softening^2)^(3/2).
-template <class T>
-struct AttractorTable {
-  T position[3];
-  T strength;    // m^3/s^2
-  T softening2;  // m^2, never 0
 };
 
 template <class Real>
@@ -192,9 +195,8 @@ struct SceneConstants {
   const JointPart* part;
   const std::int32_t* jointed;  // state bodies that have parts
   std::int32_t jointed_bodies;
-  JointTrees joint_trees;      // no edges: none is solved at once
-  const BreakTable* breaking;  // [breakable]
-  const AttractorTable<Real>* attractor;
+  JointTrees joint_trees;            // no edges: none is solved at once
+  const BreakTable* breaking;        // [breakable]
   const ThrustTable* thrust;         // ordered by body
   const std::int32_t* first_thrust;  // [body + 1]; nullptr: there is none
   // Bodies that a body does not collide with, because of a joint: [first_joined[body] ...);

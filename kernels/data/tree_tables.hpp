@@ -70,23 +70,28 @@ struct DofConstants {
 // How soft a row is (MuJoCo's solref and solimp; src/plan/compliance.hpp): with the violation r and
 // the impedance d(r), the reference acceleration is -damping J v - stiffness d(r) r, and the
 // regularisation R = (1 - d) / d times the row's inverse inertia.
-template <class Real>
+template <class T>
 struct Compliance {
-  Real stiffness, damping;     // 1/s^2, 1/s
-  Real least, gain;            // d = least + gain y(|r| inverse_width)
-  Real inverse_width, middle;  // y = rising x^power up to the middle, then the same from the end
-  Real rising, falling;
-  std::int32_t power;
+  T stiffness, damping;     // 1/s^2, 1/s
+  T least, gain;            // d = least + gain y(|r| inverse_width)
+  T inverse_width, middle;  // y = rising x^power up to the middle, then the same from the end
+  T rising, falling;        // the power is the row's, of all worlds
+};
+// Where a limit ends, and how soft it is.
+template <class T>
+struct LimitConstants {
+  T end;  // rad or m, or what a tendon is in
+  Compliance<T> compliance;
 };
 
-// A length stays on one side of `end`: side 1 above, -1 below. It is the coordinate of a hinge or
+// A length stays on one side of its end: side 1 above, -1 below. It is the coordinate of a hinge or
 // slide, or the sum of several, each times its coefficient (a fixed tendon).
 template <class Real>
 struct TreeLimit {
-  Real side, end;
+  Real side;
   Real margin;          // rad or m, where the row begins
   Real inverse_weight;  // J M^-1 J' at the reference
-  Compliance<Real> compliance;
+  std::int32_t power;   // of its compliance
   std::int32_t first_term, terms;
   std::uint64_t coupled;  // its dofs
 };
@@ -96,13 +101,13 @@ struct TreeTerm {
   Real coefficient;
 };
 
-// The angle of a ball joint's rotation stays below `end`.
+// The angle of a ball joint's rotation stays below its end. Its constants follow those of limits.
 template <class Real>
 struct TreeBallLimit {
   std::int32_t coordinate, dof;  // the first ones
-  Real end, margin;              // rad; where the row begins
+  Real margin;                   // rad, where the row begins
   Real inverse_weight;           // of M^-1 at the reference, the mean over the joint's dofs
-  Compliance<Real> compliance;
+  std::int32_t power;            // of its compliance
 };
 // A torque that draws a ball joint to where its rotation is none.
 struct TreeBallSpring {
@@ -110,15 +115,14 @@ struct TreeBallSpring {
 };
 
 // A force along a hinge's or slide's coordinate (Actuator in manyworlds/control.hpp).
-template <class Real>
 struct TreeActuator {
   std::int32_t control, coordinate, dof;
-  Real gear;
-  Real low, high;  // N or N m, before the gear
 };
 template <class T>
 struct ActuatorConstants {
   T gain[3], bias[3];
+  T gear;
+  T low, high;  // N or N m, before the gear
 };
 
 // What friction may do at a contact, and the rows of it: the normal; the edges of a pyramid; the
@@ -135,7 +139,7 @@ struct TreePair {
   Real margin;                          // m, separation below which a contact acts
   Real inverse_weight;                  // of the rows
   Real friction_weight;                 // times the square of the friction, added to that
-  Compliance<Real> compliance;
+  std::int32_t compliance, power;       // which one of the plan's; its power
   // The dofs that move one link against the other, the last one first: ~dof where they move A.
   std::int32_t first_dof, dofs;
   std::uint64_t coupled;  // those
@@ -184,7 +188,7 @@ struct TreeTable {
   const TreeTerm<Real>* term;  // of limits
   const TreeBallLimit<Real>* ball_limit;
   const TreeBallSpring* ball_spring;
-  const TreeActuator<Real>* actuator;
+  const TreeActuator* actuator;
   const std::uint64_t* ancestors;  // [dof] those on the way to the root
   // Of plans with contacts, else nullptr.
   const TreePair<Real>* pair;  // [key]

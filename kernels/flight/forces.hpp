@@ -100,7 +100,7 @@ void gather_forces(const Constants& t, const Group& g, const Real* motion, Real*
     auto torque = zero_of<typename S::Ang>();
     if (!t.body[b].kinematic) {
       for (int i = 0; i < t.attractors; ++i) {
-        a = a + Attraction<S>(t, g, b, i, m.x).acceleration();
+        a = a + Attraction<S>(g, b, i, m.x).acceleration();
       }
       if (g.force || is_thrust(t, b)) {
         const Load<S> load =

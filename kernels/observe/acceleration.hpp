@@ -45,7 +45,7 @@ MW_INLINE typename S::Vec gravity_of_body(const Constants& t, const Group& g, in
   const Vec x = fma(load_as<Vec>(state_of(t, g, body, kState<S>.linear)), Float(t.dt * Real(-0.5)),
                     load_as<Vec>(state_of(t, g, body, kState<S>.position)));
   for (int i = 0; i < t.attractors; ++i) {
-    out = out + Attraction<S>(t, g, body, i, x).acceleration();
+    out = out + Attraction<S>(g, body, i, x).acceleration();
   }
   return out;
 }

@@ -141,7 +141,7 @@ EnergySums sum_energy(const Constants& t, const Group& g) {
     const Float kinetic = select(there, half * fma(weight, dot(v.v, v.v), spin_energy), zero);
     Float height = dot(m.pull, x);
     for (int i = 0; i < t.attractors; ++i) {
-      const Attraction<S> at(t, g, b, i, x);
+      const Attraction<S> at(g, b, i, x);
       height = fma(at.strength, at.nearness, height);
     }
     const Float potential = weight * height;

@@ -62,7 +62,7 @@ void observe_motion(const Constants& t, const Group& g, kernels::Scratch*, const
            select(there, half * fma(weight, dot(v, v), spin_energy), zero));
     Float height = dot(m.pull, x);
     for (int i = 0; i < t.attractors; ++i) {
-      const Attraction<S> at(t, g, b, i, x);
+      const Attraction<S> at(g, b, i, x);
       height = fma(at.strength, at.nearness, height);
     }
     add_to(rows, row_of(Observed::potential_energy), -(weight * height));

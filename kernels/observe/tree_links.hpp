@@ -199,9 +199,10 @@ class TreeLinks {
     }
     for (int i = 0; i < t_.tree.actuators; ++i) {
       const TreeActuator& a = t_.tree.actuator[i];
-      const Float force = clamp(force_asked(t_, g_, i), Float(a.low), Float(a.high));
+      const auto& own = constants_of_actuator(g_, i);
+      const Float force = clamp(force_asked(t_, g_, i), Float(own.low), Float(own.high));
       Real* to = of(a.dof, kActuator);
-      put(to, fma(Float(a.gear), force, Float::load(to)));
+      put(to, fma(Float(own.gear), force, Float::load(to)));
     }
   }
 

@@ -42,8 +42,8 @@ template <class S>
 struct Attraction {
   typename S::Vec to;        // m
   Float strength, nearness;  // with the body's gravity scale, m^3/s^2; 1 / softened distance, 1/m
-  MW_INLINE Attraction(const Constants& t, const Group& g, int body, int i, typename S::Vec x) {
-    const kernels::AttractorTable<Real>& point = t.attractor[i];
+  MW_INLINE Attraction(const Group& g, int body, int i, typename S::Vec x) {
+    const kernels::AttractorConstants<LaneNumber>& point = constants_of_attractor(g, i);
     to.x = Float(point.position[0]) - x.x, to.y = Float(point.position[1]) - x.y;
     if constexpr (S::kDim == 3) to.z = Float(point.position[2]) - x.z;
     strength = Float(point.strength) * Float(constants_of_body(g, body).gravity_scale);
@@ -63,7 +63,7 @@ MW_INLINE typename S::Vec attraction_of_body(const Constants& t, const Group& g,
                     load_as<Vec>(state_of(t, g, body, kState<S>.position)));
   Vec out = zero_of<Vec>();
   for (int i = 0; i < t.attractors; ++i) {
-    out = out + Attraction<S>(t, g, body, i, x).acceleration();
+    out = out + Attraction<S>(g, body, i, x).acceleration();
   }
   return out;
 }

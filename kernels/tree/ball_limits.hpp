@@ -20,13 +20,14 @@ class BallLimitRows {
     Mask found = mask_from_bits(0);
     for (int i = 0; i < t_.tree.ball_limits; ++i) {
       const Limit& limit = t_.tree.ball_limit[i];
+      const auto& own = constants_of_limit(g, t_.tree.limits + i);
       const AxisAngle at = axis_angle(normalize(load_quat(coordinate_of(t_, g, limit.coordinate))));
-      const Float margin(limit.margin), distance = Float(limit.end) - at.angle;
+      const Float margin(limit.margin), distance = Float(own.end) - at.angle;
       const Mask near = distance < margin;
       const Vec3 spin{Float::load(velocity_of(t_, g, limit.dof)),
                       Float::load(velocity_of(t_, g, limit.dof + 1)),
                       Float::load(velocity_of(t_, g, limit.dof + 2))};
-      const SoftRow soft = soft_row(limit.compliance, Float(limit.inverse_weight),
+      const SoftRow soft = soft_row(own.compliance, limit.power, Float(limit.inverse_weight),
                                     distance - margin, -dot(at.axis, spin));
       Row& row = rows_[i];
       store(row.axis[0], at.axis);

@@ -5,7 +5,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-using Compliance = kernels::Compliance<Real>;
+using Compliance = kernels::Compliance<LaneNumber>;
 
 MW_INLINE Float whole_power(Float x, int power) {
   Float y = x;
@@ -13,10 +13,10 @@ MW_INLINE Float whole_power(Float x, int power) {
   return y;
 }
 
-MW_INLINE Float impedance(const Compliance& c, Float violation) {
+MW_INLINE Float impedance(const Compliance& c, int power, Float violation) {
   const Float x = min(abs(violation) * Float(c.inverse_width), Real(1));
-  const Float rising = Float(c.rising) * whole_power(x, c.power);
-  const Float falling = fnma(Float(c.falling), whole_power(Float(Real(1)) - x, c.power), Real(1));
+  const Float rising = Float(c.rising) * whole_power(x, power);
+  const Float falling = fnma(Float(c.falling), whole_power(Float(Real(1)) - x, power), Real(1));
   return fma(select(x <= Float(c.middle), rising, falling), Float(c.gain), Float(c.least));
 }
 
@@ -24,9 +24,9 @@ MW_INLINE Float impedance(const Compliance& c, Float violation) {
 struct SoftRow {
   Float weight, reference;
 };
-MW_INLINE SoftRow soft_row(const Compliance& c, Float inverse_weight, Float violation,
+MW_INLINE SoftRow soft_row(const Compliance& c, int power, Float inverse_weight, Float violation,
                            Float speed) {
-  const Float d = impedance(c, violation);
+  const Float d = impedance(c, power, violation);
   const Float r = max((Float(Real(1)) - d) * inverse_weight, Real(1e-15));
   const Float pull = Float(c.stiffness) * d * violation;
   return {d / r, -fma(Float(c.damping), speed, pull)};

@@ -17,7 +17,7 @@ class ConstraintRows {
   MW_INLINE ConstraintRows(const Constants& t, const Work& w)
       : limits_(t, w), balls_(t, w), contacts_(t, w) {}
 
-  Mask find(const Group& g) const { return limits_.find(g) | balls_.find(g) | contacts_.find(); }
+  Mask find(const Group& g) const { return limits_.find(g) | balls_.find(g) | contacts_.find(g); }
   // From here on rows that none of these lanes has are left alone.
   void look_at(std::uint32_t lanes) {
     limits_.look_at(lanes), balls_.look_at(lanes), contacts_.look_at(lanes);

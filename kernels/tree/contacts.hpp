@@ -24,7 +24,7 @@ class ContactRows {
   MW_INLINE ContactRows(const Constants& t, const Work& w) : t_(t), w_(w) {}
 
   // Rows of the contacts that were found. Returns lanes that have any.
-  Mask find() const {
+  Mask find(const Group& g) const {
     Mask found = mask_from_bits(0);
     for_each([&](Contact& c, const TreePair& pair) {
       Float inverse_weight(pair.inverse_weight);
@@ -33,15 +33,17 @@ class ContactRows {
         inverse_weight = mu * mu * Float(Real(2) / t_.tree.impedance_ratio) *
                          fma(mu * mu, friction_weight, inverse_weight);
       }
+      const Compliance& compliance = compliance_of_contact(g, pair.compliance);
       const Float violation = Float::load(c.distance) - Float(pair.margin);
       const Mask near = mask_from_bits(c.lanes);
       const Edges speed = along_edges(pair, c, relative(c, pair, w_.tree.velocity));
       for (int e = 0; e < rows_of(pair); ++e) {
         // The tangents of a round cone have no spring.
         const bool tangent = pair.cone == ContactCone::elliptic && e > 0;
-        const SoftRow soft = soft_row(pair.compliance, inverse_weight, violation, speed.along[e]);
+        const SoftRow soft =
+            soft_row(compliance, pair.power, inverse_weight, violation, speed.along[e]);
         const Float reference =
-            tangent ? -(Float(pair.compliance.damping) * speed.along[e]) : soft.reference;
+            tangent ? -(Float(compliance.damping) * speed.along[e]) : soft.reference;
         select(near, soft.weight, Real(0)).store(c.weight);
         select(near, reference, Real(0)).store(c.reference[e]);
       }

@@ -98,13 +98,13 @@ MW_INLINE Float passive_force(const Constants& t, const Group& g, int k) {
   return force;
 }
 
-using TreeActuator = kernels::TreeActuator<Real>;
+using kernels::TreeActuator;
 
 // The force that an actuator asks for, before its range.
 MW_INLINE Float force_asked(const Constants& t, const Group& g, int actuator) {
   const TreeActuator& a = t.tree.actuator[actuator];
   const auto& own = constants_of_actuator(g, actuator);
-  const Float gear(a.gear), length = gear * Float::load(coordinate_of(t, g, a.coordinate));
+  const Float gear(own.gear), length = gear * Float::load(coordinate_of(t, g, a.coordinate));
   const Float speed = gear * Float::load(velocity_of(t, g, a.dof));
   const auto affine = [&](const LaneNumber(&c)[3]) {
     return fma(Float(c[2]), speed, fma(Float(c[1]), length, Float(c[0])));
@@ -116,9 +116,10 @@ MW_INLINE Float force_asked(const Constants& t, const Group& g, int actuator) {
 inline void add_actuators(const Constants& t, const Group& g, const Work& w) {
   for (int i = 0; i < t.tree.actuators; ++i) {
     const TreeActuator& a = t.tree.actuator[i];
-    const Float force = clamp(force_asked(t, g, i), Float(a.low), Float(a.high));
+    const auto& own = constants_of_actuator(g, i);
+    const Float force = clamp(force_asked(t, g, i), Float(own.low), Float(own.high));
     Real* load = w.tree.load + a.dof * kLanes;
-    fma(Float(a.gear), force, Float::load(load)).store(load);
+    fma(Float(own.gear), force, Float::load(load)).store(load);
   }
 }
 

@@ -16,8 +16,9 @@ inline void add_resistance(const Constants& t, const Group& g, const Work& w) {
     const auto& own = constants_of_actuator(g, i);
     const Float control = Float::load(g.control + a.control * kLanes), force = force_asked(t, g, i);
     const Float gain = -fma(Float(own.gain[2]), control, Float(own.bias[2]));
-    const Mask follows = (Float(a.low) < force) & (force < Float(a.high));
-    const Float less = Float(t.h * a.gear * a.gear) * select(follows, gain, Real(0));
+    const Mask follows = (Float(own.low) < force) & (force < Float(own.high));
+    const Float gear(own.gear);
+    const Float less = Float(t.h) * gear * gear * select(follows, gain, Real(0));
     Real* diagonal = w.tree.diagonal + a.dof * kLanes;
     (Float::load(diagonal) + less).store(diagonal);
   }

@@ -19,19 +19,21 @@ class LimitRows {
     Mask found = mask_from_bits(0);
     for (int i = 0; i < t_.tree.limits; ++i) {
       const auto& limit = t_.tree.limit[i];
+      const auto& own = constants_of_limit(g, i);
       const Float side(limit.side), margin(limit.margin);
       const Float length =
           sum(limit, [&](const Term& term) { return coordinate_of(t_, g, term.coordinate); });
-      const Float distance = side * (length - Float(limit.end));
+      const Float distance = side * (length - Float(own.end));
       const Mask near = distance < margin;
+      Row& row = rows_[i];
+      row.lanes = bits(near);
+      if (row.lanes == 0) continue;
       const Float speed =
           side * sum(limit, [&](const Term& term) { return velocity_of(t_, g, term.dof); });
-      const SoftRow soft =
-          soft_row(limit.compliance, Float(limit.inverse_weight), distance - margin, speed);
-      Row& row = rows_[i];
+      const SoftRow soft = soft_row(own.compliance, limit.power, Float(limit.inverse_weight),
+                                    distance - margin, speed);
       select(near, soft.weight, Real(0)).store(row.weight);
       select(near, soft.reference, Real(0)).store(row.reference);
-      row.lanes = bits(near);
       found = found | near;
     }
     return found;

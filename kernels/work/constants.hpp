@@ -35,6 +35,17 @@ MW_INLINE const kernels::ActuatorConstants<LaneNumber>& constants_of_actuator(co
   using Of = kernels::ActuatorConstants<LaneNumber>;
   return reinterpret_cast<const Of*>(g.constants.actuator)[actuator];
 }
+MW_INLINE const kernels::LimitConstants<LaneNumber>& constants_of_limit(const Group& g, int limit) {
+  return reinterpret_cast<const kernels::LimitConstants<LaneNumber>*>(g.constants.limit)[limit];
+}
+MW_INLINE const kernels::Compliance<LaneNumber>& compliance_of_contact(const Group& g, int index) {
+  return reinterpret_cast<const kernels::Compliance<LaneNumber>*>(g.constants.contact)[index];
+}
+MW_INLINE const kernels::AttractorConstants<LaneNumber>& constants_of_attractor(const Group& g,
+                                                                                int attractor) {
+  using Of = kernels::AttractorConstants<LaneNumber>;
+  return reinterpret_cast<const Of*>(g.constants.attractor)[attractor];
+}
 
 // Where the fields of a body's state are.
 template <class S>

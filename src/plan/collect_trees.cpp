@@ -198,12 +198,10 @@ class TreeCollector {
       const Control& control = scene_.controls[i];
       if (control.kind != ControlKind::joint_force) continue;
       const Actuator& a = control.actuator;
-      kernels::TreeActuator<double> out{};
+      kernels::TreeActuator out{};
       out.control = static_cast<int>(i);
       out.coordinate = coordinate_of(control.joint);
       out.dof = builder_.dof_of(out.coordinate);
-      out.gear = a.gear;
-      out.low = a.low, out.high = a.high;
       actuators_.push_back(out);
       actuator_numbers_.push_back(actuator_numbers(a));
     }
@@ -219,7 +217,7 @@ class TreeCollector {
   std::vector<double> start_;
   std::vector<std::pair<int, int>> joint_coordinate_;
   std::vector<int> scene_joints_;
-  std::vector<kernels::TreeActuator<double>> actuators_;
+  std::vector<kernels::TreeActuator> actuators_;
   std::vector<kernels::ActuatorConstants<double>> actuator_numbers_;
   TreeBuilder builder_;
 };

@@ -8,5 +8,6 @@ namespace manyworlds {
 
 // A time constant shorter than 2 dt counts as that, as MuJoCo's flag refsafe has it.
 kernels::Compliance<double> compile(const Compliance& compliance, double dt);
+int power_of(const Compliance& compliance);  // of its impedance, whole
 
 }  // namespace manyworlds

@@ -16,6 +16,7 @@ kernels::ActuatorConstants<double> actuator_numbers(const Actuator& actuator) {
   kernels::ActuatorConstants<double> out{};
   std::copy_n(actuator.gain.data(), 3, out.gain);
   std::copy_n(actuator.bias.data(), 3, out.bias);
+  out.gear = actuator.gear, out.low = actuator.low, out.high = actuator.high;
   return out;
 }
 

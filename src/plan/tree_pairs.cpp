@@ -1,7 +1,10 @@
 // Contacts of trees: what two materials make of one another, as MuJoCo mixes them, and which dofs
 // move the links of a pair of shapes against each other.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <map>
 
 #include "src/plan/compliance.hpp"
 #include "src/plan/plan_data.hpp"
@@ -112,7 +115,8 @@ class TreePairs {
                                  : ContactCone::pyramidal;
     const Compliance compliance = same ? mixed_compliance(of_a, of_b) : first->compliance;
     const Options& o = plan_.scene.options;
-    out.compliance = compile(compliance, o.dt / *o.substeps);
+    out.compliance = index_of(compile(compliance, o.dt / *o.substeps));
+    out.power = power_of(compliance);
     out.margin = of_a.margin + of_b.margin;
     const auto weight = [&](int link) {
       return link < 0 ? 0 : trees_.weights.link[static_cast<std::size_t>(link)][0];
@@ -122,6 +126,15 @@ class TreePairs {
     add_dofs(out);
   }
 
+  // Most pairs have the same one.
+  std::int32_t index_of(const kernels::Compliance<double>& compliance) {
+    std::array<double, sizeof compliance / sizeof(double)> numbers{};
+    std::memcpy(numbers.data(), &compliance, sizeof compliance);
+    const auto next = static_cast<std::int32_t>(trees_.compliances.size());
+    const auto [at, is_new] = seen_.emplace(numbers, next);
+    if (is_new) trees_.compliances.push_back(compliance);
+    return at->second;
+  }
   int root_of(int link) const { return trees_.links[static_cast<std::size_t>(link)].root; }
   int link_of(std::size_t collider) const {
     return link_[static_cast<std::size_t>(plan_.colliders[collider].body)];
@@ -165,6 +178,8 @@ class TreePairs {
   PlanData& plan_;
   PlanTrees& trees_;
   std::vector<int> link_;  // [body with state]
+  std::map<std::array<double, sizeof(kernels::Compliance<double>) / sizeof(double)>, std::int32_t>
+      seen_;
 };
 
 // Newton steps by links take time for each link, and for each row that acts and couples branches;

@@ -100,11 +100,12 @@ void TreeBuilder::add_limits(const NewLength& length, double inverse_weight, dou
   for (const int side : {1, -1}) {
     kernels::TreeLimit<double> limit{};
     limit.side = side;
-    limit.end = length.range[side > 0 ? 0 : 1];
-    if (!std::isfinite(limit.end)) continue;
+    const double end = length.range[side > 0 ? 0 : 1];
+    if (!std::isfinite(end)) continue;
     limit.margin = length.margin;
     limit.inverse_weight = inverse_weight;
-    limit.compliance = compile(length.compliance, dt);
+    limit.power = power_of(length.compliance);
+    trees_.limit_numbers.push_back({end, compile(length.compliance, dt)});
     limit.first_term = count_of(trees_.terms);
     limit.terms = count_of(length.terms);
     for (const auto& term : length.terms) limit.coupled |= std::uint64_t{1} << term.dof;
@@ -118,12 +119,6 @@ PlanTrees TreeBuilder::finish(double dt, const kernels::NewtonOptions<double>& n
   for (const NewLength& joint : limited_joints_) {
     add_limits(joint, trees_.weights.dof[static_cast<std::size_t>(joint.terms[0].dof)], dt);
   }
-  for (const NewLength& ball : limited_balls_) {
-    const auto [coordinate, dof, one] = ball.terms[0];
-    trees_.ball_limits.push_back({coordinate, dof, ball.range[1], ball.margin,
-                                  trees_.weights.dof[static_cast<std::size_t>(dof)],
-                                  compile(ball.compliance, dt)});
-  }
   for (const NewLength& tendon : tendons_) {
     double weight = 0;
     for (const auto& a : tendon.terms) {
@@ -132,6 +127,13 @@ PlanTrees TreeBuilder::finish(double dt, const kernels::NewtonOptions<double>& n
       }
     }
     add_limits(tendon, weight, dt);
+  }
+  for (const NewLength& ball : limited_balls_) {
+    const auto [coordinate, dof, one] = ball.terms[0];
+    trees_.ball_limits.push_back({coordinate, dof, ball.margin,
+                                  trees_.weights.dof[static_cast<std::size_t>(dof)],
+                                  power_of(ball.compliance)});
+    trees_.limit_numbers.push_back({ball.range[1], compile(ball.compliance, dt)});
   }
   for (auto& link : trees_.links) link.first_child = link.next_child = -1;
   for (int i = count_of(trees_.links) - 1; i >= 0; --i) {

@@ -37,10 +37,12 @@ struct PlanTrees {
   std::vector<kernels::TreeLimit<double>> limits;
   std::vector<kernels::TreeTerm<double>> terms;  // of limits
   std::vector<kernels::TreeBallLimit<double>> ball_limits;
+  std::vector<kernels::LimitConstants<double>> limit_numbers;  // of those, then of these
   std::vector<kernels::TreeBallSpring> ball_springs;
-  std::vector<kernels::TreeActuator<double>> actuators;
+  std::vector<kernels::TreeActuator> actuators;
   std::vector<kernels::ActuatorConstants<double>> actuator_numbers;  // [actuator]
   std::vector<kernels::TreePair<double>> pairs;                      // [key]
+  std::vector<kernels::Compliance<double>> compliances;              // of pairs
   std::vector<std::int32_t> pair_dofs;
   bool elliptic = false;
   double impedance_ratio = 1;

@@ -26,6 +26,18 @@ kernels::PrincipalInertia<Real> principal_of(const PlanBody& body, double dt) {
   return out;
 }
 
+// So that the pull of a point on itself is 0, and not 0 / 0, in float.
+constexpr double kMinSoftening2 = 1e-24;  // m^2
+
+template <class Real>
+kernels::AttractorConstants<Real> attractor_constants(const Attractor& a) {
+  kernels::AttractorConstants<Real> out{};
+  copy_numbers(a.position, out.position);
+  out.strength = static_cast<Real>(a.strength);
+  out.softening2 = static_cast<Real>(std::max(a.softening * a.softening, kMinSoftening2));
+  return out;
+}
+
 bool has_polygons(const PlanData& plan) {
   return std::any_of(plan.colliders.begin(), plan.colliders.end(),
                      [](const PlanCollider& c) { return !c.vertices.empty(); });
@@ -133,6 +145,10 @@ Constants<Real>::Constants(const PlanData& plan, Parts parts, int groups, int la
   make(dofs_, parts.dofs, trees.dofs.size(), sizeof(kernels::DofConstants<Real>));
   make(actuators_, parts.actuators, trees.actuators.size(),
        sizeof(kernels::ActuatorConstants<Real>));
+  make(limits_, parts.limits, trees.limit_numbers.size(), sizeof(kernels::LimitConstants<Real>));
+  make(contacts_, parts.contacts, trees.compliances.size(), sizeof(kernels::Compliance<Real>));
+  make(attractors_, parts.attractors, plan.scene.attractors.size(),
+       sizeof(kernels::AttractorConstants<Real>));
 }
 
 template <class Real>
@@ -141,7 +157,8 @@ kernels::ConstantBlocks<Real> Constants<Real>::group(int index) const {
   return {bodies_.group(at, lanes),    shapes_.group(at, lanes), polygons_.group(at, lanes),
           materials_.group(at, lanes), joints_.group(at, lanes), thrusts_.group(at, lanes),
           links_.group(at, lanes),     drags_.group(at, lanes),  dofs_.group(at, lanes),
-          actuators_.group(at, lanes)};
+          actuators_.group(at, lanes), limits_.group(at, lanes), contacts_.group(at, lanes),
+          attractors_.group(at, lanes)};
 }
 
 template <class Real>
@@ -181,6 +198,10 @@ void Constants<Real>::fill(const PlanData& plan, int lane_index) {
   };
   put_all(links_, plan.trees.link_numbers), put_all(drags_, plan.trees.drags);
   put_all(dofs_, plan.trees.dof_numbers), put_all(actuators_, plan.trees.actuator_numbers);
+  put_all(limits_, plan.trees.limit_numbers), put_all(contacts_, plan.trees.compliances);
+  for (std::size_t i = 0; !attractors_.numbers.empty() && i < plan.scene.attractors.size(); ++i) {
+    put(attractors_, i, attractor_constants<Real>(plan.scene.attractors[i]), lane_index);
+  }
   const auto material = [&](std::size_t item, const Material& m) {
     const kernels::MaterialOf<Real> value{static_cast<Real>(m.friction),
                                           static_cast<Real>(m.restitution)};

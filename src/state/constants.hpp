@@ -25,6 +25,8 @@ class Constants {
   struct Parts {
     bool bodies = true, shapes = true, materials = true, joints = true;
     bool links = true, dofs = true, actuators = true;  // of trees
+    bool limits = true, contacts = true;               // of trees, too
+    bool attractors = true;
   };
 
   Constants() = default;
@@ -48,9 +50,9 @@ class Constants {
   };
   template <class Self, class Visit>
   static void for_each_block(Self& self, Visit visit) {
-    for (auto* block :
-         {&self.bodies_, &self.shapes_, &self.polygons_, &self.materials_, &self.joints_,
-          &self.thrusts_, &self.links_, &self.drags_, &self.dofs_, &self.actuators_}) {
+    for (auto* block : {&self.bodies_, &self.shapes_, &self.polygons_, &self.materials_,
+                        &self.joints_, &self.thrusts_, &self.links_, &self.drags_, &self.dofs_,
+                        &self.actuators_, &self.limits_, &self.contacts_, &self.attractors_}) {
       visit(*block);
     }
   }
@@ -62,6 +64,7 @@ class Constants {
   int lanes_ = 1;
   Block bodies_, shapes_, polygons_, materials_, joints_, thrusts_;
   Block links_, drags_, dofs_, actuators_;
+  Block limits_, contacts_, attractors_;
 };
 
 }  // namespace manyworlds

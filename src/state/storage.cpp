@@ -53,6 +53,9 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
   if (own.drag) view.constants.drag = own.drag;
   if (own.dof) view.constants.dof = own.dof;
   if (own.actuator) view.constants.actuator = own.actuator;
+  if (own.limit) view.constants.limit = own.limit;
+  if (own.contact) view.constants.contact = own.contact;
+  if (own.attractor) view.constants.attractor = own.attractor;
   if (t.controls > 0) view.control = control_.data() + at * lanes * index(t.controls);
   if (t.has_joints) {
     view.joint_impulse =
@@ -86,7 +89,7 @@ void Storage<Real>::make_constants(const PlanData& plan) {
   const PlanVaries& v = plan.varies;
   constants_ = Constants<Real>(plan,
                                {v.body_constants(), v.shapes, v.materials, v.shapes || v.joints,
-                                v.links, v.dofs, v.actuators},
+                                v.links, v.dofs, v.actuators, false, false, false},
                                groups_, lanes_);
 }
 

@@ -55,7 +55,7 @@ TablesOf<Real>::TablesOf(const PlanData& plan, const BatchOptions& options, int 
   add_shapes(plan);
   joints_.put(tables_);
   add_trees(plan);
-  add_attractors(plan);
+  tables_.attractors = static_cast<std::int32_t>(plan.scene.attractors.size());
   add_pairs(plan);
   if (plan.audited()) tables_.audit_every = options.audit_every;
   for (int lane = 0; lane < lanes; ++lane) constants_.fill(plan, lane);
@@ -258,22 +258,6 @@ void TablesOf<Real>::add_trees(const PlanData& plan) {
   tables_.tree.damped &= tables_.tree.stages == 1 && o.solver.implicit_damping;
   tables_.tree.damped |= tables_.tree.implicit;
   for (int i = 0; i < 3; ++i) tables_.tree.wind[i] = static_cast<Real>(o.wind[i]);
-}
-
-// So that the pull of a point on itself is 0, and not 0 / 0, in float.
-constexpr double kMinSoftening2 = 1e-24;  // m^2
-
-template <class Real>
-void TablesOf<Real>::add_attractors(const PlanData& plan) {
-  for (const Attractor& a : plan.scene.attractors) {
-    kernels::AttractorTable<Real> out{};
-    copy(a.position, out.position);
-    out.strength = static_cast<Real>(a.strength);
-    out.softening2 = static_cast<Real>(std::max(a.softening * a.softening, kMinSoftening2));
-    attractors_.push_back(out);
-  }
-  tables_.attractors = static_cast<std::int32_t>(attractors_.size());
-  tables_.attractor = attractors_.data();
 }
 
 template <class Real>

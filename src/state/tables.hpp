@@ -28,7 +28,6 @@ class TablesOf {
   void add_pairs(const PlanData& plan);
   void add_pair_classes(const PlanData& plan);
   void add_trees(const PlanData& plan);
-  void add_attractors(const PlanData& plan);
   void add_options(const PlanData& plan);
   void add_flight(const PlanData& plan);
   void add_solver(const Options& options);
@@ -41,7 +40,6 @@ class TablesOf {
   std::vector<std::int32_t> collider_row_, collider_body_, first_collider_, pair_of_;
   std::vector<kernels::FixedTable<Real>> fixed_;
   std::vector<kernels::PairClass<Real>> classes_;
-  std::vector<kernels::AttractorTable<Real>> attractors_;
   std::optional<TreeTables<Real>> trees_;
   AlignedBuffer<Real> fixed_rows_, hulls_, delta_v_rows_, factor_rows_;
 };

@@ -11,19 +11,6 @@ void copy(const double (&from)[N], Real (&to)[N]) {
   std::transform(from, from + N, to, [](double x) { return static_cast<Real>(x); });
 }
 
-template <class Real>
-kernels::Compliance<Real> compliance(const kernels::Compliance<double>& c) {
-  return {static_cast<Real>(c.stiffness),
-          static_cast<Real>(c.damping),
-          static_cast<Real>(c.least),
-          static_cast<Real>(c.gain),
-          static_cast<Real>(c.inverse_width),
-          static_cast<Real>(c.middle),
-          static_cast<Real>(c.rising),
-          static_cast<Real>(c.falling),
-          c.power};
-}
-
 }  // namespace
 
 template <class Real>
@@ -54,29 +41,24 @@ TreeTables<Real>::TreeTables(const PlanTrees& trees, int first_coordinate, int f
   dofs_ = trees.dofs;
   table_.damped = trees.damped;
   for (const auto& from : trees.limits) {
-    limits_.push_back({static_cast<Real>(from.side), static_cast<Real>(from.end),
-                       static_cast<Real>(from.margin), static_cast<Real>(from.inverse_weight),
-                       compliance<Real>(from.compliance), from.first_term, from.terms,
-                       from.coupled});
+    limits_.push_back({static_cast<Real>(from.side), static_cast<Real>(from.margin),
+                       static_cast<Real>(from.inverse_weight), from.power, from.first_term,
+                       from.terms, from.coupled});
   }
   for (const auto& from : trees.terms) {
     terms_.push_back({from.coordinate, from.dof, static_cast<Real>(from.coefficient)});
   }
   for (const auto& from : trees.ball_limits) {
-    ball_limits_.push_back({from.coordinate, from.dof, static_cast<Real>(from.end),
-                            static_cast<Real>(from.margin), static_cast<Real>(from.inverse_weight),
-                            compliance<Real>(from.compliance)});
+    ball_limits_.push_back({from.coordinate, from.dof, static_cast<Real>(from.margin),
+                            static_cast<Real>(from.inverse_weight), from.power});
   }
   ball_springs_ = trees.ball_springs;
-  for (const auto& from : trees.actuators) {
-    actuators_.push_back({from.control, from.coordinate, from.dof, static_cast<Real>(from.gear),
-                          static_cast<Real>(from.low), static_cast<Real>(from.high)});
-  }
+  actuators_ = trees.actuators;
   for (const auto& from : trees.pairs) {
     pairs_.push_back({from.link_a, from.link_b, from.only_link, from.cone, from.material_a,
                       from.material_b, static_cast<Real>(from.margin),
                       static_cast<Real>(from.inverse_weight),
-                      static_cast<Real>(from.friction_weight), compliance<Real>(from.compliance),
+                      static_cast<Real>(from.friction_weight), from.compliance, from.power,
                       from.first_dof, from.dofs, from.coupled});
   }
   pair_dofs_ = trees.pair_dofs;

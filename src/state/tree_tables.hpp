@@ -26,7 +26,7 @@ class TreeTables {
   std::vector<kernels::TreeTerm<Real>> terms_;
   std::vector<kernels::TreeBallLimit<Real>> ball_limits_;
   std::vector<kernels::TreeBallSpring> ball_springs_;
-  std::vector<kernels::TreeActuator<Real>> actuators_;
+  std::vector<kernels::TreeActuator> actuators_;
   std::vector<kernels::TreePair<Real>> pairs_;
   std::vector<std::int32_t> pair_dofs_;
   std::vector<std::uint64_t> ancestors_;

@@ -121,7 +121,7 @@ TEST_CASE("what is welded to the world counts as the world", "[robots][fast]") {
 TEST_CASE("the power of an impedance is whole, whatever mixing left of it", "[robots][fast]") {
   Compliance compliance;
   compliance.power = 2.9999999999999996;
-  CHECK(compile(compliance, 0.002).power == 3);
+  CHECK(power_of(compliance) == 3);
 }
 
 }  // namespace manyworlds::test

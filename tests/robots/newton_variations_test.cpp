@@ -264,7 +264,7 @@ TEST_CASE("a plan has numbers per world only of what varies", "[fast][robots][pa
   // In the lanes, and as they are written, in double.
   CHECK(joints - none >= dofs * 4 * real);
   CHECK(joints - none < dofs * 4 * real + 11 * sizeof(double) + 32);
-  CHECK(controls - none < actuators * (6 * real + 3 * sizeof(double)) + 32);
+  CHECK(controls - none < actuators * (9 * real + 3 * sizeof(double)) + 32);
 }
 
 }  // namespace manyworlds::test
