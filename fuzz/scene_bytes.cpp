@@ -235,6 +235,9 @@ Variation SceneBytes::variation(int bodies) {
   if (rarely() || (owner == ParameterInfo::control && byte() > 128)) {
     out.control = ControlId(integer(0, 2));
   }
+  if (rarely() || (owner == ParameterInfo::attractor && byte() > 128)) {
+    out.attractor = integer(0, 2);
+  }
   if (rarely() || (owner == ParameterInfo::shape && out.body && byte() > 128)) {
     out.shape = ShapeId(out.body, integer(0, 2));
   }

@@ -220,10 +220,10 @@ template <>
 struct Members<Variation> {
   static constexpr const char* name = "Variation";
   static void visit(auto& value, auto&& visit) {
-    auto& [parameter, body, shape, joint, control, low, high, draw, together] = value;
+    auto& [parameter, body, shape, joint, control, attractor, low, high, draw, together] = value;
     visit("parameter", parameter), visit("body", body), visit("shape", shape);
-    visit("joint", joint), visit("control", control), visit("low", low);
-    visit("high", high), visit("draw", draw), visit("together", together);
+    visit("joint", joint), visit("control", control), visit("attractor", attractor);
+    visit("low", low), visit("high", high), visit("draw", draw), visit("together", together);
   }
 };
 template <>

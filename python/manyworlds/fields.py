@@ -23,7 +23,8 @@ class Field:
     name: str
     group: str  # "state", "parameter" (a number of the scene) or "observed"
     observer: str  # that an observed one needs; else ""
-    item: str  # what has one: "body", "shape", "joint", "control", "world", "coordinate", "dof", "ray"
+    # What has one: "body", "shape", "joint", "control", "attractor", "world", "coordinate", "dof", "ray".
+    item: str
     items: int
     components: int
     unit: str

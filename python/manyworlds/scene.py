@@ -109,6 +109,7 @@ class Variation:
     shape: ShapeRef = -1  # an int is one of that body; -1: every shape
     joint: JointRef = -1  # -1: every one that has the parameter
     control: ControlRef = -1
+    attractor: int = -1  # in Scene.attractors; -1: every one
     low: Numbers = (0.0, 0.0, 0.0)  # [0] alone counts where the parameter is one number
     high: Numbers = (0.0, 0.0, 0.0)
     draw: Draw = "uniform"

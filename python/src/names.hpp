@@ -46,16 +46,25 @@ MW_NAMES(Field, MW_NAME(position), MW_NAME(orientation), MW_NAME(linear_velocity
          MW_NAME(generalized_acceleration));
 MW_NAMES(ControlKind, MW_NAME(target_position), MW_NAME(target_speed), MW_NAME(thrust),
          MW_NAME(torque), MW_NAME(joint_force));
-MW_NAMES(Parameter, MW_NAME(size), MW_NAME(density), MW_NAME(mass), MW_NAME(friction),
-         MW_NAME(restitution), MW_NAME(gravity), MW_NAME(gravity_scale), MW_NAME(linear_drag),
-         MW_NAME(angular_drag), MW_NAME(armature), MW_NAME(damping), MW_NAME(stiffness),
-         MW_NAME(rest), MW_NAME(gain), MW_NAME(bias), MW_NAME(kp), MW_NAME(kv), MW_NAME(limit_low),
-         MW_NAME(limit_high), MW_NAME(motor_speed), MW_NAME(motor_force), MW_NAME(drive_stiffness),
-         MW_NAME(drive_damping), MW_NAME(break_force), MW_NAME(break_torque), MW_NAME(anchor_a),
-         MW_NAME(anchor_b), MW_NAME(axes_a), MW_NAME(axes_b), MW_NAME(initial_position),
-         MW_NAME(initial_rotation), MW_NAME(initial_linear_velocity),
-         MW_NAME(initial_angular_velocity), MW_NAME(center_of_mass), MW_NAME(inertia_scale),
-         MW_NAME(wind), MW_NAME(control_low), MW_NAME(control_high));
+MW_NAMES(Parameter, MW_NAME(size), MW_NAME(density), MW_NAME(shape_position),
+         MW_NAME(shape_rotation), MW_NAME(mass), MW_NAME(friction), MW_NAME(restitution),
+         MW_NAME(gravity), MW_NAME(gravity_scale), MW_NAME(linear_drag), MW_NAME(angular_drag),
+         MW_NAME(armature), MW_NAME(damping), MW_NAME(stiffness), MW_NAME(rest), MW_NAME(gain),
+         MW_NAME(bias), MW_NAME(kp), MW_NAME(kv), MW_NAME(gear), MW_NAME(force_low),
+         MW_NAME(force_high), MW_NAME(limit_solref), MW_NAME(limit_solimp), MW_NAME(contact_solref),
+         MW_NAME(contact_solimp), MW_NAME(limit_low), MW_NAME(limit_high), MW_NAME(motor_speed),
+         MW_NAME(motor_force), MW_NAME(drive_stiffness), MW_NAME(drive_damping),
+         MW_NAME(drive_frequency), MW_NAME(drive_damping_ratio), MW_NAME(motor_position),
+         MW_NAME(limit_stiffness), MW_NAME(limit_damping), MW_NAME(limit_frequency),
+         MW_NAME(limit_damping_ratio), MW_NAME(spring_stiffness), MW_NAME(spring_damping),
+         MW_NAME(spring_frequency), MW_NAME(spring_damping_ratio), MW_NAME(length), MW_NAME(cone),
+         MW_NAME(pulley_ratio), MW_NAME(control_point), MW_NAME(control_direction),
+         MW_NAME(break_force), MW_NAME(break_torque), MW_NAME(anchor_a), MW_NAME(anchor_b),
+         MW_NAME(axes_a), MW_NAME(axes_b), MW_NAME(initial_position), MW_NAME(initial_rotation),
+         MW_NAME(initial_linear_velocity), MW_NAME(initial_angular_velocity),
+         MW_NAME(center_of_mass), MW_NAME(inertia_scale), MW_NAME(wind),
+         MW_NAME(attractor_position), MW_NAME(attractor_strength), MW_NAME(control_low),
+         MW_NAME(control_high));
 MW_NAMES(Draw, MW_NAME(none), MW_NAME(uniform), MW_NAME(log_uniform));
 MW_NAMES(Precision, MW_NAME(f32), MW_NAME(f64));
 MW_NAMES(Isa, MW_NAME(scalar), MW_NAME(avx2), MW_NAME(avx512));

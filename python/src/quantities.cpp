@@ -33,6 +33,7 @@ std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of) {
     if (item == "body") return plan.bodies();
     if (item == "joint") return static_cast<int>(scene.joints.size());
     if (item == "control") return static_cast<int>(scene.controls.size());
+    if (item == "attractor") return static_cast<int>(scene.attractors.size());
     if (item == "coordinate") return plan.coordinates();
     if (item == "dof") return plan.items(ItemKind::dof);
     if (item == "tendon") return static_cast<int>(scene.tendons.size());

@@ -251,6 +251,23 @@ def test_numbers_of_joints_and_controls_vary():
         scene.validate()
 
 
+def test_how_soft_limits_and_contacts_are_varies():
+    scene = arm()
+    low, high = (0.02, 0.8, 0), (0.04, 1.2, 0)
+    scene.add(mw.Variation(parameter="limit_solref", joint="rail", low=low, high=high))
+    low, high = (0.8, 0.9, 1e-3), (0.9, 0.95, 2e-3)
+    scene.add(mw.Variation(parameter="contact_solimp", low=low, high=high))
+    scene.add(mw.vary("gear", 0.5, 2))
+    back = _core.round_trip(scene)
+    assert back.variations[0].parameter == "limit_solref" and back.variations[0].joint == 0
+    batch = mw.Batch(scene, worlds=6, seed=3)
+    solref, solimp = batch.get("limit_solref"), batch.get("contact_solimp")
+    assert solref.shape == (6, 3, 2) and solimp.shape[2] == 3
+    assert len(np.unique(solref[:, 0])) == 12 and batch.get("gear").shape == (6, 1, 1)
+    assert (solimp[..., 1] >= 0.9).all() and (solimp[..., 1] <= 0.95).all()
+    batch.step(10)
+
+
 def test_a_keyframe_without_a_rotation_is_refused():
     scene = arm()
     scene.add(mw.Keyframe(name="lost", generalized_position=[0] * 10))

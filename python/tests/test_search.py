@@ -223,6 +223,7 @@ def test_policies_are_searched_by_their_weights():
         (Number("mass", "bal"), "'x': .*bal"),
         (Number("mass", 0), "'x': .*fixed"),
         (Number("kp"), "newton"),
+        (Number("attractor_strength", attractor=1), "'x': attractor is 1, must be one of 0"),
         (Number("size", "ball", 3, component=0), "'x': shape is 3, must be 0 to 0"),
         (Number("friction", "box"), "'mu' and 'x' both set friction of shape 2"),
     ],

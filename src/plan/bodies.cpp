@@ -31,9 +31,14 @@ void principal_axes(const MassProperties& m, PlanBody& body) {
   body.principal = Quat(axes).normalized();
 }
 
+bool is_offset(Parameter parameter) {
+  return parameter == Parameter::shape_position || parameter == Parameter::shape_rotation;
+}
+// May its shapes lie elsewhere about its centre of mass?
 bool may_shift(const PlanData& plan, int body) {
   return std::any_of(plan.varied.begin(), plan.varied.end(), [&](const VariedNumber& n) {
-    return n.of.body == body && n.parameter == Parameter::center_of_mass;
+    return n.of.body == body &&
+           (n.parameter == Parameter::center_of_mass || is_offset(n.parameter));
   });
 }
 
@@ -43,7 +48,7 @@ bool may_be_reshaped(const PlanData& plan, int body) {
   const std::size_t shapes = plan.scene.bodies[static_cast<std::size_t>(body)].shapes.size();
   for (const VariedNumber& n : plan.varied) {
     if (n.of.body != body) continue;
-    if (n.parameter == Parameter::size) return true;
+    if (n.parameter == Parameter::size || is_offset(n.parameter)) return true;
     if (n.parameter == Parameter::density && shapes > 1) return true;
   }
   return false;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/plan/plan_data.hpp"
+#include "src/scene/joint_numbers.hpp"
 #include "src/scene/tree_order.hpp"
 
 namespace manyworlds {
@@ -30,12 +31,6 @@ std::optional<TreeJointKind> tree_kind(const JointType& type) {
   if (std::holds_alternative<HingeJoint>(type)) return TreeJointKind::hinge;
   if (std::holds_alternative<SliderJoint>(type)) return TreeJointKind::slide;
   return std::nullopt;  // fixed
-}
-const std::optional<Limit>* tree_limit(const JointType& type) {
-  if (const auto* hinge = std::get_if<HingeJoint>(&type)) return &hinge->limit;
-  if (const auto* slider = std::get_if<SliderJoint>(&type)) return &slider->limit;
-  if (const auto* ball = std::get_if<BallJoint>(&type)) return &ball->limit;
-  return nullptr;
 }
 
 class TreeCollector {
@@ -124,10 +119,11 @@ class TreeCollector {
     if (single) joint.reference = d.reference, joint.rest = d.rest;
     joint.sprung = may_have(Parameter::stiffness, index);
     joint.damped = may_have(Parameter::damping, index);
-    if (const auto* limit = tree_limit(from.type); limit && *limit) {
-      joint.range = {(*limit)->low, (*limit)->high};
-      joint.margin = (*limit)->margin;
-      joint.compliance = (*limit)->compliance;
+    if (const Limit* limit = limit_of(from.type)) {
+      joint.range = {limit->low, limit->high};
+      joint.margin = limit->margin;
+      joint.compliance = limit->compliance;
+      joint.limited = may_have(Parameter::limit_high, index);
     }
     joint_coordinate_.emplace_back(index, static_cast<int>(start_.size()));
     builder_.add(joint);

@@ -65,6 +65,7 @@ class Fingerprint {
   // How a number is drawn does not matter to a world that has it.
   void add(const VariedNumber& n) {
     add(n.parameter), add(n.of.body), add(n.of.shape), add(n.component), add(n.low), add(n.high);
+    if (n.of.attractor >= 0) add(n.of.attractor);
     if (n.of.joint >= 0 || n.of.control >= 0) add(n.of.joint), add(n.of.control);
   }
   std::uint64_t value() const { return hasher_.value(); }

@@ -30,7 +30,7 @@ struct PlanBody {
   Quat principal = Quat::Identity();  // principal axes in the user's body frame
   bool aligned = true;                // both are trivial: reading and writing copies bits
   bool reshaped = false;              // its shapes, or how mass is spread over them, may vary
-  bool shifted = false;               // its centre of mass may vary, whatever its shapes
+  bool shifted = false;               // its centre of mass or where its shapes are may vary
   double radius = 0;                  // bounding sphere about the centre of mass
   double core_radius = 0;             // inner sphere about the centre of mass
 };
@@ -98,11 +98,15 @@ struct PlanVaries {
   bool materials = false;  // friction, restitution
   bool delta_v = false;    // gravity
   bool drag = false;
-  bool joints = false;  // limits, drives, loads and frames of joints on bodies
-  bool starts = false;  // how bodies begin
-  bool ranges = false;  // of controls
-  // Of trees: centres of mass and principal axes of links, armatures and the like of joints, gains.
+  bool joints = false;   // limits, drives, springs, loads and frames of joints on bodies
+  bool thrusts = false;  // where controls act, and along what
+  bool starts = false;   // how bodies begin
+  bool ranges = false;   // of controls
+  // Of trees: centres of mass and principal axes of links, armatures and the like of joints, gains
+  // and ranges of forces, limits, how soft contacts are.
   bool links = false, dofs = false, actuators = false;
+  bool limits = false, contacts = false;
+  bool attractors = false;
   bool body_constants() const { return masses || delta_v || drag; }
 };
 

@@ -4,12 +4,23 @@
 #include <numbers>
 
 #include "src/plan/plan_data.hpp"
+#include "src/scene/joint_numbers.hpp"
 
 namespace manyworlds {
+
+const SoftContact& PlanMaterial::in(const Scene& scene) const {
+  return scene.bodies[static_cast<std::size_t>(body)]
+      .shapes[static_cast<std::size_t>(shape)]
+      .material.soft;
+}
 
 kernels::LinkConstants<double> link_numbers(const Vec3& center, const Quat& principal) {
   const Quat q = principal.normalized();
   return {{center.x(), center.y(), center.z()}, {q.w(), q.x(), q.y(), q.z()}};
+}
+
+kernels::LimitConstants<double> limit_numbers(double end, const Compliance& compliance, double dt) {
+  return {end, compile(compliance, dt)};
 }
 
 kernels::ActuatorConstants<double> actuator_numbers(const Actuator& actuator) {
@@ -60,6 +71,18 @@ void number_trees(PlanData& plan) {
   for (std::size_t i = 0; plan.varies.actuators && i < trees.actuators.size(); ++i) {
     const auto control = static_cast<std::size_t>(trees.actuators[i].control);
     trees.actuator_numbers[i] = actuator_numbers(plan.scene.controls[control].actuator);
+  }
+  const double h = plan.scene.options.dt / *plan.scene.options.substeps;
+  for (std::size_t i = 0; plan.varies.limits && i < trees.limit_numbers.size(); ++i) {
+    if (trees.limited_joints[i] < 0) continue;
+    const int joint = trees.scene_joints[static_cast<std::size_t>(trees.limited_joints[i])];
+    const Limit& limit = *limit_of(plan.scene.joints[static_cast<std::size_t>(joint)].type);
+    const bool lower = i < trees.limits.size() && trees.limits[i].side > 0;
+    trees.limit_numbers[i] = limit_numbers(lower ? limit.low : limit.high, limit.compliance, h);
+  }
+  for (std::size_t i = 0; i < trees.mixed.size(); ++i) {
+    const auto& [a, b] = trees.mixed[i];
+    trees.compliances[i] = compile(mixed_compliance(a.in(plan.scene), b.in(plan.scene)), h);
   }
 }
 

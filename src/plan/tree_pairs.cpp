@@ -37,7 +37,7 @@ double share_of_first(const SoftContact& a, const SoftContact& b) {
   return a.weight / (a.weight + b.weight);
 }
 
-Compliance mixed_compliance(const SoftContact& a, const SoftContact& b) {
+Compliance mean_compliance(const SoftContact& a, const SoftContact& b) {
   const Compliance &x = a.compliance, &y = b.compliance;
   const double share = share_of_first(a, b);
   const auto mean = [&](double Compliance::*member) {
@@ -101,8 +101,10 @@ class TreePairs {
     };
     out.only_link = stays(out.link_a) ? out.link_b : stays(out.link_b) ? out.link_a : -1;
     const std::size_t colliders = plan_.colliders.size();
-    const SoftContact& of_a = is_fixed(c.list) ? soft(plan_.fixed[a]) : soft(plan_.colliders[a]);
-    const SoftContact& of_b = soft(plan_.colliders[b]);
+    const PlanMaterial from_a =
+        is_fixed(c.list) ? material(plan_.fixed[a]) : material(plan_.colliders[a]);
+    const PlanMaterial from_b = material(plan_.colliders[b]);
+    const SoftContact &of_a = from_a.in(plan_.scene), &of_b = from_b.in(plan_.scene);
     const auto material_a = static_cast<std::int32_t>(is_fixed(c.list) ? colliders + a : a);
     const auto material_b = static_cast<std::int32_t>(b);
     const SoftContact* first = of_b.priority > of_a.priority ? &of_b : &of_a;
@@ -113,9 +115,9 @@ class TreePairs {
     out.cone = dimensions == 1   ? ContactCone::frictionless
                : trees_.elliptic ? ContactCone::elliptic
                                  : ContactCone::pyramidal;
-    const Compliance compliance = same ? mixed_compliance(of_a, of_b) : first->compliance;
-    const Options& o = plan_.scene.options;
-    out.compliance = index_of(compile(compliance, o.dt / *o.substeps));
+    const Compliance compliance = mixed_compliance(of_a, of_b);
+    out.compliance = plan_.varies.contacts ? index_of(from_a, from_b, compliance)
+                                           : index_of(compiled(compliance));
     out.power = power_of(compliance);
     out.margin = of_a.margin + of_b.margin;
     const auto weight = [&](int link) {
@@ -126,7 +128,18 @@ class TreePairs {
     add_dofs(out);
   }
 
-  // Most pairs have the same one.
+  // Where materials vary each two have their own.
+  std::int32_t index_of(const PlanMaterial& a, const PlanMaterial& b,
+                        const Compliance& compliance) {
+    const auto next = static_cast<std::int32_t>(trees_.mixed.size());
+    const auto [at, is_new] = mixed_.emplace(std::pair(a, b), next);
+    if (is_new) {
+      trees_.mixed.emplace_back(a, b);
+      trees_.compliances.push_back(compiled(compliance));
+    }
+    return at->second;
+  }
+  // Else most pairs have the same one.
   std::int32_t index_of(const kernels::Compliance<double>& compliance) {
     std::array<double, sizeof compliance / sizeof(double)> numbers{};
     std::memcpy(numbers.data(), &compliance, sizeof compliance);
@@ -140,10 +153,11 @@ class TreePairs {
     return link_[static_cast<std::size_t>(plan_.colliders[collider].body)];
   }
   template <class Planned>
-  const SoftContact& soft(const Planned& s) const {
-    return plan_.scene.bodies[static_cast<std::size_t>(s.scene_body)]
-        .shapes[static_cast<std::size_t>(s.shape)]
-        .material.soft;
+  static PlanMaterial material(const Planned& s) {
+    return {s.scene_body, s.shape};
+  }
+  kernels::Compliance<double> compiled(const Compliance& compliance) const {
+    return compile(compliance, plan_.scene.options.dt / *plan_.scene.options.substeps);
   }
 
   std::vector<int> dofs_of(int link) const {  // the last one first; -1: the world
@@ -180,6 +194,7 @@ class TreePairs {
   std::vector<int> link_;  // [body with state]
   std::map<std::array<double, sizeof(kernels::Compliance<double>) / sizeof(double)>, std::int32_t>
       seen_;
+  std::map<std::pair<PlanMaterial, PlanMaterial>, std::int32_t> mixed_;
 };
 
 // Newton steps by links take time for each link, and for each row that acts and couples branches;
@@ -194,6 +209,11 @@ void choose_space(PlanTrees& trees, const TreePairs::Couplings& of_contacts) {
 }
 
 }  // namespace
+
+Compliance mixed_compliance(const SoftContact& a, const SoftContact& b) {
+  if (a.priority == b.priority) return mean_compliance(a, b);
+  return a.priority > b.priority ? a.compliance : b.compliance;
+}
 
 void collect_tree_pairs(PlanData& plan) {
   if (!plan.has_trees()) return;

@@ -61,21 +61,26 @@ void TreeBuilder::add(const NewTreeJoint& joint) {
     trees_.entries += dof.depth + 1;
     ++link.dofs;
   }
+  const int own = count_of(trees_.joints) - 1;
   if (joint.kind == kernels::TreeJointKind::ball) {
-    add_ball(joint, out.coordinate, out.dof);
+    add_ball(joint, own);
   } else if (joint.range) {
     limited_joints_.push_back(
-        {{{out.coordinate, out.dof, 1}}, *joint.range, joint.margin, joint.compliance});
+        {{{out.coordinate, out.dof, 1}}, *joint.range, joint.margin, joint.compliance, own});
   }
   ++link.joints;
   trees_.coordinates += kernels::coordinates_of(joint.kind);
 }
 
-void TreeBuilder::add_ball(const NewTreeJoint& joint, int coordinate, int dof) {
+void TreeBuilder::add_ball(const NewTreeJoint& joint, int own) {
+  const auto [coordinate, dof] =
+      std::pair(trees_.joints.back().coordinate, trees_.joints.back().dof);
   if (is_sprung(joint)) trees_.ball_springs.push_back({coordinate, dof});
   // Beyond half a turn there is no angle.
-  if (!joint.range || (*joint.range)[1] - joint.margin > std::numbers::pi) return;
-  limited_balls_.push_back({{{coordinate, dof, 1}}, *joint.range, joint.margin, joint.compliance});
+  if (!joint.range) return;
+  if ((*joint.range)[1] - joint.margin > std::numbers::pi && !joint.limited) return;
+  limited_balls_.push_back(
+      {{{coordinate, dof, 1}}, *joint.range, joint.margin, joint.compliance, own});
 }
 
 void TreeBuilder::add_drag(const Medium& medium) {
@@ -105,7 +110,8 @@ void TreeBuilder::add_limits(const NewLength& length, double inverse_weight, dou
     limit.margin = length.margin;
     limit.inverse_weight = inverse_weight;
     limit.power = power_of(length.compliance);
-    trees_.limit_numbers.push_back({end, compile(length.compliance, dt)});
+    trees_.limit_numbers.push_back(limit_numbers(end, length.compliance, dt));
+    trees_.limited_joints.push_back(length.joint);
     limit.first_term = count_of(trees_.terms);
     limit.terms = count_of(length.terms);
     for (const auto& term : length.terms) limit.coupled |= std::uint64_t{1} << term.dof;
@@ -133,7 +139,8 @@ PlanTrees TreeBuilder::finish(double dt, const kernels::NewtonOptions<double>& n
     trees_.ball_limits.push_back({coordinate, dof, ball.margin,
                                   trees_.weights.dof[static_cast<std::size_t>(dof)],
                                   power_of(ball.compliance)});
-    trees_.limit_numbers.push_back({ball.range[1], compile(ball.compliance, dt)});
+    trees_.limit_numbers.push_back(limit_numbers(ball.range[1], ball.compliance, dt));
+    trees_.limited_joints.push_back(ball.joint);
   }
   for (auto& link : trees_.links) link.first_child = link.next_child = -1;
   for (int i = count_of(trees_.links) - 1; i >= 0; --i) {

@@ -27,6 +27,13 @@ struct PlanAnchor {
   Vec3 position = Vec3::Zero();  // m
 };
 
+// The material of a shape of the scene.
+struct PlanMaterial {
+  int body = 0, shape = 0;
+  auto operator<=>(const PlanMaterial&) const = default;
+  const SoftContact& in(const Scene& scene) const;
+};
+
 struct PlanTrees {
   std::vector<kernels::TreeLink<double>> links;
   std::vector<kernels::LinkConstants<double>> link_numbers;  // [link]
@@ -38,11 +45,14 @@ struct PlanTrees {
   std::vector<kernels::TreeTerm<double>> terms;  // of limits
   std::vector<kernels::TreeBallLimit<double>> ball_limits;
   std::vector<kernels::LimitConstants<double>> limit_numbers;  // of those, then of these
+  std::vector<int> limited_joints;  // [limit, then limit of a ball] its joint; -1: a tendon's
   std::vector<kernels::TreeBallSpring> ball_springs;
   std::vector<kernels::TreeActuator> actuators;
   std::vector<kernels::ActuatorConstants<double>> actuator_numbers;  // [actuator]
   std::vector<kernels::TreePair<double>> pairs;                      // [key]
   std::vector<kernels::Compliance<double>> compliances;              // of pairs
+  // [compliance] of two materials, where those vary
+  std::vector<std::pair<PlanMaterial, PlanMaterial>> mixed;
   std::vector<std::int32_t> pair_dofs;
   bool elliptic = false;
   double impedance_ratio = 1;
@@ -83,6 +93,7 @@ struct NewTreeJoint {
   double armature = 0, damping = 0;
   double stiffness = 0;                 // of a hinge, slide or ball
   bool sprung = false, damped = false;  // has a spring or damper in some world, if not in this
+  bool limited = false;                 // a ball whose range acts in some world, if not in this
   double reference = 0, rest = 0;       // of a hinge or slide, rad or m
   std::optional<std::array<double, 2>> range = {};  // rad or m; of a ball 0 to the largest angle
   double margin = 0;                                // of the range
@@ -95,6 +106,7 @@ struct NewLength {
   std::array<double, 2> range{};
   double margin = 0;
   Compliance compliance = {};
+  int joint = -1;  // whose coordinate it is; -1: a tendon
 };
 
 // Adds links, each before its children and all links of a tree in a row, and the joints that move
@@ -112,7 +124,7 @@ class TreeBuilder {
  private:
   PlanTrees trees_;
   std::vector<NewLink> links_;
-  void add_ball(const NewTreeJoint& joint, int coordinate, int dof);
+  void add_ball(const NewTreeJoint& joint, int own);
   void add_limits(const NewLength& length, double inverse_weight, double dt);
 
   std::vector<NewLength> limited_joints_, tendons_;
@@ -121,8 +133,12 @@ class TreeBuilder {
 
 // tree_numbers.cpp
 kernels::LinkConstants<double> link_numbers(const Vec3& center, const Quat& principal);
+kernels::LimitConstants<double> limit_numbers(double end, const Compliance& compliance, double dt);
 kernels::ActuatorConstants<double> actuator_numbers(const Actuator& actuator);
 kernels::DragConstants<double> drag_numbers(const Medium& medium, double mass, const Vec3& moments);
+
+// tree_pairs.cpp: how soft contacts of two materials are.
+Compliance mixed_compliance(const SoftContact& a, const SoftContact& b);
 
 // tree_weights.cpp
 TreeWeights weights_of(const PlanTrees& trees, const std::vector<NewLink>& links);

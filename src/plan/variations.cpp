@@ -11,6 +11,8 @@ void collect_variations(PlanData& plan) {
   for (const VariedNumber& n : plan.varied) {
     switch (n.parameter) {
       case Parameter::size:
+      case Parameter::shape_position:
+      case Parameter::shape_rotation:
         varies.shapes = varies.masses = true;
         varies.links = plan.has_trees();
         break;
@@ -38,19 +40,42 @@ void collect_variations(PlanData& plan) {
       case Parameter::gain:
       case Parameter::bias:
       case Parameter::kp:
-      case Parameter::kv: varies.actuators = true; break;
+      case Parameter::kv:
+      case Parameter::gear:
+      case Parameter::force_low:
+      case Parameter::force_high: varies.actuators = true; break;
+      case Parameter::limit_solref:
+      case Parameter::limit_solimp: varies.limits = true; break;
+      case Parameter::contact_solref:
+      case Parameter::contact_solimp: varies.contacts = true; break;
       case Parameter::limit_low:
-      case Parameter::limit_high:
+      case Parameter::limit_high: (plan.has_trees() ? varies.limits : varies.joints) = true; break;
       case Parameter::motor_speed:
       case Parameter::motor_force:
       case Parameter::drive_stiffness:
       case Parameter::drive_damping:
+      case Parameter::drive_frequency:
+      case Parameter::drive_damping_ratio:
+      case Parameter::motor_position:
+      case Parameter::limit_stiffness:
+      case Parameter::limit_damping:
+      case Parameter::limit_frequency:
+      case Parameter::limit_damping_ratio:
+      case Parameter::spring_stiffness:
+      case Parameter::spring_damping:
+      case Parameter::spring_frequency:
+      case Parameter::spring_damping_ratio:
+      case Parameter::length:
+      case Parameter::cone:
+      case Parameter::pulley_ratio:
       case Parameter::break_force:
       case Parameter::break_torque:
       case Parameter::anchor_a:
       case Parameter::anchor_b:
       case Parameter::axes_a:
       case Parameter::axes_b: varies.joints = true; break;
+      case Parameter::control_point:
+      case Parameter::control_direction: varies.thrusts = true; break;
       case Parameter::initial_position:
       case Parameter::initial_rotation:
         // Lengths of joints and how far they are apart are those at the beginning.
@@ -64,6 +89,8 @@ void collect_variations(PlanData& plan) {
         varies.links = plan.has_trees();
         break;
       case Parameter::wind: varies.delta_v = true; break;
+      case Parameter::attractor_position:
+      case Parameter::attractor_strength: varies.attractors = true; break;
       case Parameter::control_low:
       case Parameter::control_high: varies.ranges = true; break;
     }
@@ -78,7 +105,7 @@ void derive_again(PlanData& plan) {
     collect_bodies(plan);
     collect_colliders(plan);
   }
-  if (plan.varies.masses || plan.varies.shapes || plan.varies.joints) {
+  if (plan.varies.masses || plan.varies.shapes || plan.varies.joints || plan.varies.thrusts) {
     collect_joints(plan);
     collect_controls(plan);
   }

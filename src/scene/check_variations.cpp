@@ -1,11 +1,13 @@
 // Checks of what varies from world to world.
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include "src/scene/checks.hpp"
+#include "src/scene/joint_numbers.hpp"
 #include "src/scene/variations.hpp"
 
 namespace manyworlds::detail {
@@ -15,13 +17,15 @@ namespace {
 std::string place_of(const NumberOwner& of) {
   if (of.joint >= 0) return "joint " + std::to_string(of.joint);
   if (of.control >= 0) return "control " + std::to_string(of.control);
+  if (of.attractor >= 0) return "attractor " + std::to_string(of.attractor);
   if (of.body < 0) return "the world";
   return "body " + std::to_string(of.body) +
          (of.shape >= 0 ? ", shape " + std::to_string(of.shape) : "");
 }
 
 // Range of numbers that a scene may have, whatever else is in it.
-bool check_number(Checker& checker, const std::string& field, Parameter parameter, double value) {
+bool check_number(Checker& checker, const std::string& field, Parameter parameter, int component,
+                  double value) {
   std::string unit = info(parameter).unit;
   const ParameterInfo::Owner owner = info(parameter).owner;
   const bool of_joint = owner == ParameterInfo::joint || owner == ParameterInfo::control;
@@ -39,10 +43,14 @@ bool check_number(Checker& checker, const std::string& field, Parameter paramete
     case Parameter::inertia_scale: return checker.positive(field, value, unit, 1e-6, 1e6);
     case Parameter::gravity:
     case Parameter::wind:
+    case Parameter::attractor_position:
+    case Parameter::attractor_strength:
     case Parameter::anchor_a:
     case Parameter::anchor_b:
     case Parameter::axes_a:
     case Parameter::axes_b:
+    case Parameter::shape_position:
+    case Parameter::shape_rotation:
     case Parameter::initial_position:
     case Parameter::initial_rotation:
     case Parameter::initial_linear_velocity:
@@ -56,7 +64,25 @@ bool check_number(Checker& checker, const std::string& field, Parameter paramete
     case Parameter::limit_high:
     case Parameter::motor_speed:
     case Parameter::gain:
-    case Parameter::bias: return checker.finite(field, value, unit);
+    case Parameter::bias:
+    case Parameter::gear:
+    case Parameter::force_low:
+    case Parameter::force_high:
+    case Parameter::limit_solref:
+    case Parameter::contact_solref: return checker.finite(field, value, unit);
+    case Parameter::limit_solimp:
+    case Parameter::contact_solimp:
+      if (component < 2) return checker.between(field, value, 0, 1);
+      return checker.not_negative(field, value, unit);
+    case Parameter::motor_position:
+    case Parameter::control_point:
+    case Parameter::control_direction: return checker.finite(field, value, unit);
+    case Parameter::cone: return checker.between(field, value, 0, std::numbers::pi);
+    case Parameter::pulley_ratio:
+      return checker.positive(field, value, unit, kMinSize, kLargestSize);
+    case Parameter::drive_frequency:
+    case Parameter::limit_frequency:
+    case Parameter::spring_frequency:
     case Parameter::kp:
       if (value > 0) return checker.finite(field, value, unit);
       checker.add(field, "is " + number_text(value) + ", must be > 0");
@@ -68,26 +94,53 @@ bool check_number(Checker& checker, const std::string& field, Parameter paramete
 const char* who_can(Parameter parameter) {
   switch (parameter) {
     case Parameter::size: return "a shape of a moving body with a size";
+    case Parameter::shape_position:
+    case Parameter::shape_rotation: return "a shape of a moving body";
     case Parameter::density: return "a dynamic body whose mass is not given";
     case Parameter::armature:
     case Parameter::damping:
     case Parameter::stiffness: return "a hinge, slider or ball joint";
     case Parameter::rest: return "a hinge or slider";
     case Parameter::gain:
-    case Parameter::bias: return "a control of kind joint_force";
+    case Parameter::bias:
+    case Parameter::gear:
+    case Parameter::force_low:
+    case Parameter::force_high: return "a control of kind joint_force";
     case Parameter::kp:
       return "a position servo, of gain (kp, 0, 0) and bias (0, -kp, -kv), kp > 0";
     case Parameter::kv:
       return "a position servo, of gain (kp, 0, 0) and bias (0, -kp, -kv), kp > 0, or a velocity "
              "servo, of gain (kv, 0, 0) and bias (0, 0, -kv), kv > 0";
     case Parameter::limit_low:
-    case Parameter::limit_high:
-      return "a hinge, slider, distance or wheel joint with a limit that is finite there";
+    case Parameter::limit_high: return "a joint with a limit that is finite there";
+    case Parameter::limit_solref:
+    case Parameter::limit_solimp: return "a hinge, slider or ball joint with a finite limit";
     case Parameter::motor_speed:
     case Parameter::motor_force: return "a hinge, slider or wheel with a drive";
     case Parameter::drive_stiffness:
     case Parameter::drive_damping:
       return "a hinge, slider or wheel whose drive has a spring of stiffness and damping";
+    case Parameter::drive_frequency:
+    case Parameter::drive_damping_ratio:
+      return "a hinge, slider or wheel whose drive has a spring of a frequency";
+    case Parameter::motor_position: return "a hinge, slider or wheel whose drive has a spring";
+    case Parameter::limit_stiffness:
+    case Parameter::limit_damping:
+      return "a joint whose limit has a spring of stiffness and damping";
+    case Parameter::limit_frequency:
+    case Parameter::limit_damping_ratio: return "a joint whose limit has a spring of a frequency";
+    case Parameter::spring_stiffness:
+    case Parameter::spring_damping:
+      return "a distance, wheel or target joint with a spring of stiffness and damping";
+    case Parameter::spring_frequency:
+    case Parameter::spring_damping_ratio:
+      return "a distance, wheel or target joint with a spring of a frequency";
+    case Parameter::length: return "a distance joint or pulley with a length";
+    case Parameter::cone: return "a ball joint with a cone";
+    case Parameter::pulley_ratio: return "a pulley";
+    case Parameter::control_point: return "a control of kind thrust";
+    case Parameter::control_direction:
+      return "a control of kind thrust or, in space, of kind torque";
     case Parameter::break_force:
     case Parameter::break_torque: return "a joint with such a load, which is finite";
     case Parameter::axes_a:
@@ -111,7 +164,8 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
   };
   const std::string every =
       std::string("-1: ") + parameter.name + " is of the " + to_string(parameter.owner);
-  const NumberOwner of{body_of(v).index(), v.shape.index(), v.joint.index(), v.control.index()};
+  const NumberOwner of{body_of(v).index(), v.shape.index(), v.joint.index(), v.control.index(),
+                       v.attractor};
   const int body = of.body, shape = of.shape;
   const bool of_shape = parameter.owner == ParameterInfo::shape;
   if (v.body && v.shape.body() && v.body != v.shape.body()) {
@@ -140,13 +194,17 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
   if (parameter.owner != ParameterInfo::control && of.control != -1) {
     return reject("control", of.control, every);
   }
+  if (parameter.owner != ParameterInfo::attractor && of.attractor != -1) {
+    return reject("attractor", of.attractor, every);
+  }
   const auto check_index = [&](const char* field, int index, std::size_t count) {
     if (-1 <= index && index < static_cast<int>(count)) return true;
     return reject(field, index, "-1 or the index of one of " + std::to_string(count));
   };
   if (!check_index("body", body, scene.bodies.size()) ||
       !check_index("joint", of.joint, scene.joints.size()) ||
-      !check_index("control", of.control, scene.controls.size())) {
+      !check_index("control", of.control, scene.controls.size()) ||
+      !check_index("attractor", of.attractor, scene.attractors.size())) {
     return false;
   }
   const auto can = [&] {
@@ -175,13 +233,18 @@ bool leaves_plane(Parameter parameter, int component) {
   switch (parameter) {
     case Parameter::gravity:
     case Parameter::wind:
+    case Parameter::attractor_position:
     case Parameter::anchor_a:
     case Parameter::anchor_b:
+    case Parameter::control_point:
+    case Parameter::control_direction:
+    case Parameter::shape_position:
     case Parameter::initial_position:
     case Parameter::initial_linear_velocity:
     case Parameter::center_of_mass: return component == 2;
     case Parameter::axes_a:
     case Parameter::axes_b:
+    case Parameter::shape_rotation:
     case Parameter::initial_rotation:
     case Parameter::initial_angular_velocity: return component < 2;
     default: return false;
@@ -196,8 +259,8 @@ void check_range(Checker& checker, const Scene& scene, bool sound, const Variati
     low = element_name(low, static_cast<std::size_t>(n.component));
     high = element_name(high, static_cast<std::size_t>(n.component));
   }
-  const bool good = check_number(checker, low, v.parameter, n.low) &&
-                    check_number(checker, high, v.parameter, n.high);
+  const bool good = check_number(checker, low, v.parameter, n.component, n.low) &&
+                    check_number(checker, high, v.parameter, n.component, n.high);
   if (!good) return;
   if (checker.planar() && leaves_plane(n.parameter, n.component)) {
     if (n.low != 0 || n.high != 0) checker.add(high, "must be 0 in a planar scene, as " + low);
@@ -208,6 +271,10 @@ void check_range(Checker& checker, const Scene& scene, bool sound, const Variati
   } else if (n.low > n.high) {
     checker.add(low, "is " + number_text(n.low) + ", must be at most " + high + ", which is " +
                          number_text(n.high));
+  } else if (is_solref(v.parameter) && (n.low > 0) != (n.high > 0)) {
+    checker.add(low, "is " + number_text(n.low) + " and " + high + " " + number_text(n.high) +
+                         ", both must be > 0 (time constant, damping ratio) or neither "
+                         "(-stiffness, -damping)");
   } else if (v.draw == Draw::log_uniform && n.low <= 0) {
     checker.add(low, "is " + number_text(n.low) + ", must be > 0 for a logarithmic draw");
   } else if (v.draw == Draw::none && (sound || !is_of_shapes(v.parameter))) {
@@ -220,9 +287,9 @@ void check_range(Checker& checker, const Scene& scene, bool sound, const Variati
   }
 }
 
-using Key = std::tuple<Parameter, int, int, int, int, int>;
+using Key = std::tuple<Parameter, int, int, int, int, int, int>;
 Key key_of(Parameter parameter, const VariedNumber& n) {
-  return {parameter, n.of.body, n.of.shape, n.of.joint, n.of.control, n.component};
+  return {parameter, n.of.body, n.of.shape, n.of.joint, n.of.control, n.of.attractor, n.component};
 }
 // The variation before that has this number, or one that it is made of; -1: none.
 int already_varied(const std::map<Key, int>& seen, const VariedNumber& n) {
@@ -318,7 +385,7 @@ void check_variations(Checker checker, const Scene& scene, bool sound) {
   check_end("variations at their lowest:", [](Parameter) { return false; });
   check_end("variations at their highest:", [](Parameter) { return true; });
   if (checker.count() != before) return;
-  for (const Parameter low : {Parameter::limit_low, Parameter::control_low}) {
+  for (const Parameter low : {Parameter::limit_low, Parameter::control_low, Parameter::force_low}) {
     const auto is_low_end = [&](Parameter parameter) { return parameter == low; };
     const auto is_of_low_end = [&](const VariedNumber& n) { return is_low_end(n.parameter); };
     if (std::none_of(varied.begin(), varied.end(), is_of_low_end)) continue;

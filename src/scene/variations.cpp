@@ -3,29 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <type_traits>
 #include <variant>
 
 #include "src/base/enum_names.hpp"
-#include "src/scene/joint_numbers.hpp"
 #include "src/scene/rotation_vector.hpp"
+#include "src/scene/scene_numbers.hpp"
 #include "src/scene/shape/shape.hpp"
 
 namespace manyworlds {
 
 namespace {
-
-template <class List>
-auto& at(List& list, int index) {
-  return list[static_cast<std::size_t>(index)];
-}
-auto& body_of(auto& scene, const NumberOwner& of) { return at(scene.bodies, of.body); }
-auto& shape_of(auto& scene, const NumberOwner& of) {
-  return at(body_of(scene, of).shapes, of.shape);
-}
-auto& dynamics_of(auto& scene, const NumberOwner& of) {
-  return at(scene.joints, of.joint).dynamics;
-}
 
 int sizes_of(const Geometry& geometry) { return traits_of(geometry).sizes(); }
 
@@ -38,32 +25,6 @@ void set_mass(Scene& scene, Body& body, double mass) {
 MassProperties& given_mass(Scene& scene, Body& body) {
   if (!body.mass_properties) body.mass_properties = mass_properties(scene, body);
   return *body.mass_properties;
-}
-
-// Vectors and rotations that the scene holds as they are; nullptr: the parameter is none.
-template <class Of>
-auto* vector_of(Of& scene, Parameter parameter, const NumberOwner& of) {
-  using Pointer = std::conditional_t<std::is_const_v<Of>, const Vec3*, Vec3*>;
-  switch (parameter) {
-    case Parameter::gravity: return Pointer(&scene.options.gravity);
-    case Parameter::wind: return Pointer(&scene.options.wind);
-    case Parameter::anchor_a: return Pointer(&at(scene.joints, of.joint).frame_a.position);
-    case Parameter::anchor_b: return Pointer(&at(scene.joints, of.joint).frame_b.position);
-    case Parameter::initial_position: return Pointer(&body_of(scene, of).position);
-    case Parameter::initial_linear_velocity: return Pointer(&body_of(scene, of).linear_velocity);
-    case Parameter::initial_angular_velocity: return Pointer(&body_of(scene, of).angular_velocity);
-    default: return Pointer(nullptr);
-  }
-}
-template <class Of>
-auto* quaternion_of(Of& scene, Parameter parameter, const NumberOwner& of) {
-  using Pointer = std::conditional_t<std::is_const_v<Of>, const Quat*, Quat*>;
-  switch (parameter) {
-    case Parameter::axes_a: return Pointer(&at(scene.joints, of.joint).frame_a.rotation);
-    case Parameter::axes_b: return Pointer(&at(scene.joints, of.joint).frame_b.rotation);
-    case Parameter::initial_rotation: return Pointer(&body_of(scene, of).rotation);
-    default: return Pointer(nullptr);
-  }
 }
 
 int numbers_of(const Scene& scene, Parameter parameter, const NumberOwner& of) {
@@ -95,17 +56,17 @@ bool control_can(ControlKind kind, const Actuator& a, Parameter parameter) {
 bool is_about(const Variation& v, const NumberOwner& of) {
   const auto is = [](auto id, int index) { return !id || id.index() == index; };
   return is(body_of(v), of.body) && is(v.shape, of.shape) && is(v.joint, of.joint) &&
-         is(v.control, of.control);
+         is(v.control, of.control) && (v.attractor < 0 || v.attractor == of.attractor);
 }
 
 }  // namespace
 
 bool is_of_bodies(Parameter parameter) {
   return parameter == Parameter::wind ||
-         (parameter >= Parameter::limit_low && parameter <= Parameter::initial_angular_velocity);
+         (parameter >= Parameter::motor_speed && parameter <= Parameter::initial_angular_velocity);
 }
 bool is_of_newton(Parameter parameter) {
-  return parameter >= Parameter::armature && parameter <= Parameter::kv;
+  return parameter >= Parameter::armature && parameter <= Parameter::contact_solimp;
 }
 
 const ParameterInfo& info(Parameter parameter) {
@@ -126,6 +87,7 @@ const char* to_string(ParameterInfo::Owner owner) {
     case ParameterInfo::shape: return "shape";
     case ParameterInfo::joint: return "joint";
     case ParameterInfo::control: return "control";
+    case ParameterInfo::attractor: return "attractor";
   }
   return "?";
 }
@@ -153,6 +115,9 @@ std::vector<NumberOwner> owners_of(const Scene& scene, Parameter parameter) {
     case ParameterInfo::control:
       for (int c = 0; c < count(scene.controls); ++c) out.push_back({.control = c});
       break;
+    case ParameterInfo::attractor:
+      for (int a = 0; a < count(scene.attractors); ++a) out.push_back({.attractor = a});
+      break;
   }
   return out;
 }
@@ -161,12 +126,18 @@ bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of) {
   switch (parameter) {
     case Parameter::gravity:
     case Parameter::wind:
+    case Parameter::attractor_position:
+    case Parameter::attractor_strength:
     case Parameter::control_low:
     case Parameter::control_high:
     case Parameter::friction:
     case Parameter::restitution:
+    case Parameter::contact_solref:
+    case Parameter::contact_solimp:
     case Parameter::anchor_a:
     case Parameter::anchor_b: return true;
+    case Parameter::shape_position:
+    case Parameter::shape_rotation:
     case Parameter::initial_position:
     case Parameter::initial_rotation:
     case Parameter::initial_linear_velocity:
@@ -189,18 +160,44 @@ bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of) {
     case Parameter::gain:
     case Parameter::bias:
     case Parameter::kp:
-    case Parameter::kv: {
+    case Parameter::kv:
+    case Parameter::gear:
+    case Parameter::force_low:
+    case Parameter::force_high: {
       const Control& control = at(scene.controls, of.control);
       return control_can(control.kind, control.actuator, parameter);
     }
+    case Parameter::limit_solref:
+    case Parameter::limit_solimp: return has_finite_limit(at(scene.joints, of.joint));
     case Parameter::limit_low:
     case Parameter::limit_high:
     case Parameter::motor_speed:
     case Parameter::motor_force:
     case Parameter::drive_stiffness:
     case Parameter::drive_damping:
+    case Parameter::drive_frequency:
+    case Parameter::drive_damping_ratio:
+    case Parameter::motor_position:
+    case Parameter::limit_stiffness:
+    case Parameter::limit_damping:
+    case Parameter::limit_frequency:
+    case Parameter::limit_damping_ratio:
+    case Parameter::spring_stiffness:
+    case Parameter::spring_damping:
+    case Parameter::spring_frequency:
+    case Parameter::spring_damping_ratio:
+    case Parameter::length:
+    case Parameter::cone:
+    case Parameter::pulley_ratio:
     case Parameter::break_force:
     case Parameter::break_torque: return joint_has(at(scene.joints, of.joint), parameter);
+    case Parameter::control_point:
+      return at(scene.controls, of.control).kind == ControlKind::thrust;
+    case Parameter::control_direction: {
+      const ControlKind kind = at(scene.controls, of.control).kind;  // planar torques are about z
+      return kind == ControlKind::thrust ||
+             (kind == ControlKind::torque && scene.space == Space::spatial);
+    }
     case Parameter::axes_a:
     case Parameter::axes_b: return has_axes(at(scene.joints, of.joint).type);
   }
@@ -225,10 +222,10 @@ std::vector<VariedNumber> varied_numbers(const Scene& scene) {
 }
 
 double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of, int component) {
-  if (const Vec3* vector = vector_of(scene, parameter, of)) return (*vector)[component];
   if (const Quat* rotation = quaternion_of(scene, parameter, of)) {
     return rotation_vector(*rotation)[component];
   }
+  if (const double* number = held_number(scene, parameter, of, component)) return *number;
   switch (parameter) {
     case Parameter::size: {
       const Geometry& geometry = shape_of(scene, of).geometry;
@@ -244,42 +241,22 @@ double get_number(const Scene& scene, Parameter parameter, const NumberOwner& of
                  ? mass_properties(scene, body_of(scene, of)).center[component]
                  : 0;
     case Parameter::inertia_scale: return body_of(scene, of).motion == Motion::dynamic ? 1 : 0;
-    case Parameter::control_low: return at(scene.controls, of.control).low;
-    case Parameter::control_high: return at(scene.controls, of.control).high;
-    case Parameter::friction: return shape_of(scene, of).material.friction;
-    case Parameter::restitution: return shape_of(scene, of).material.restitution;
-    case Parameter::gravity_scale: return body_of(scene, of).gravity_scale;
-    case Parameter::linear_drag: return body_of(scene, of).linear_drag;
-    case Parameter::angular_drag: return body_of(scene, of).angular_drag;
-    case Parameter::armature: return dynamics_of(scene, of).armature;
-    case Parameter::damping: return dynamics_of(scene, of).damping;
-    case Parameter::stiffness: return dynamics_of(scene, of).stiffness;
-    case Parameter::rest: return dynamics_of(scene, of).rest;
     case Parameter::gain:
     case Parameter::bias:
     case Parameter::kp:
-    case Parameter::kv: {
+    case Parameter::kv:
+    case Parameter::gear:
+    case Parameter::force_low:
+    case Parameter::force_high: {
       const Control& control = at(scene.controls, of.control);
       return get_number(control.kind, control.actuator, parameter, component);
-    }
-    case Parameter::limit_low:
-    case Parameter::limit_high:
-    case Parameter::motor_speed:
-    case Parameter::motor_force:
-    case Parameter::drive_stiffness:
-    case Parameter::drive_damping:
-    case Parameter::break_force:
-    case Parameter::break_torque: {
-      const double* number = number_of(at(scene.joints, of.joint), parameter);
-      return number != nullptr ? *number : 0;
     }
     default: return 0;
   }
 }
 
 double get_number(ControlKind kind, const Actuator& a, Parameter parameter, int component) {
-  if (parameter == Parameter::gain) return a.gain[component];
-  if (parameter == Parameter::bias) return a.bias[component];
+  if (const double* number = actuator_number(a, parameter, component)) return *number;
   if (!control_can(kind, a, parameter)) return 0;
   return parameter == Parameter::kp ? a.gain.x() : 0 - a.bias.z();  // never -0
 }
@@ -287,8 +264,8 @@ double get_number(ControlKind kind, const Actuator& a, Parameter parameter, int 
 namespace {
 
 void set_number(Scene& scene, const VariedNumber& n, double value) {
-  if (Vec3* vector = vector_of(scene, n.parameter, n.of)) {
-    (*vector)[n.component] = value;
+  if (double* number = held_number(scene, n.parameter, n.of, n.component)) {
+    *number = value;
     return;
   }
   switch (n.parameter) {
@@ -303,34 +280,8 @@ void set_number(Scene& scene, const VariedNumber& n, double value) {
       given_mass(scene, body_of(scene, n.of)).center[n.component] = value;
       break;
     case Parameter::inertia_scale: given_mass(scene, body_of(scene, n.of)).inertia *= value; break;
-    case Parameter::control_low: at(scene.controls, n.of.control).low = value; break;
-    case Parameter::control_high: at(scene.controls, n.of.control).high = value; break;
-    case Parameter::friction: shape_of(scene, n.of).material.friction = value; break;
-    case Parameter::restitution: shape_of(scene, n.of).material.restitution = value; break;
-    case Parameter::gravity_scale: body_of(scene, n.of).gravity_scale = value; break;
-    case Parameter::linear_drag: body_of(scene, n.of).linear_drag = value; break;
-    case Parameter::angular_drag: body_of(scene, n.of).angular_drag = value; break;
-    case Parameter::armature: dynamics_of(scene, n.of).armature = value; break;
-    case Parameter::damping: dynamics_of(scene, n.of).damping = value; break;
-    case Parameter::stiffness: dynamics_of(scene, n.of).stiffness = value; break;
-    case Parameter::rest: dynamics_of(scene, n.of).rest = value; break;
-    case Parameter::gain:
-    case Parameter::bias:
-    case Parameter::kp:
-    case Parameter::kv:
+    default:  // of an actuator
       set_number(at(scene.controls, n.of.control).actuator, n.parameter, n.component, value);
-      break;
-    case Parameter::limit_low:
-    case Parameter::limit_high:
-    case Parameter::motor_speed:
-    case Parameter::motor_force:
-    case Parameter::drive_stiffness:
-    case Parameter::drive_damping:
-    case Parameter::break_force:
-    case Parameter::break_torque:
-      *number_of(at(scene.joints, n.of.joint), n.parameter) = value;
-      break;
-    default: break;
   }
 }
 
@@ -349,15 +300,13 @@ void set_numbers(Scene& scene, const std::vector<VariedNumber>& numbers, const d
 }
 
 void set_number(Actuator& a, Parameter parameter, int component, double value) {
-  if (parameter == Parameter::gain) {
-    a.gain[component] = value;
-  } else if (parameter == Parameter::bias) {
-    a.bias[component] = value;
-  } else {
-    const bool position = parameter == Parameter::kp;
-    if (position || is_velocity_servo(a)) a.gain.x() = value;
-    a.bias[position ? 1 : 2] = 0 - value;  // never -0
+  if (double* number = actuator_number(a, parameter, component)) {
+    *number = value;
+    return;
   }
+  const bool position = parameter == Parameter::kp;
+  if (position || is_velocity_servo(a)) a.gain.x() = value;
+  a.bias[position ? 1 : 2] = 0 - value;  // never -0
 }
 
 }  // namespace manyworlds

@@ -10,7 +10,7 @@ namespace manyworlds {
 // What has a number: indices of the scene, of which those count that its ParameterInfo::owner asks
 // for; the others are -1.
 struct NumberOwner {
-  int body = -1, shape = -1, joint = -1, control = -1;
+  int body = -1, shape = -1, joint = -1, control = -1, attractor = -1;
   bool operator==(const NumberOwner&) const = default;
 };
 
@@ -26,7 +26,7 @@ struct VariedNumber {
 inline BodyId body_of(const Variation& v) { return v.shape.body() ? v.shape.body() : v.body; }
 
 // All that may have a parameter, in the order of Batch::read: bodies with state, shapes, joints,
-// controls, or the world.
+// controls, attractors, or the world.
 std::vector<NumberOwner> owners_of(const Scene& scene, Parameter parameter);
 
 // Of joints and controls of Solver::newton; of joints on bodies and how bodies begin, which all

@@ -137,8 +137,7 @@ Constants<Real>::Constants(const PlanData& plan, Parts parts, int groups, int la
        sizeof(kernels::MaterialOf<Real>));
   make(joints_, parts.joints && !plan.parts.empty(), plan.parts.size(),
        sizeof(kernels::JointConstants<Real>));
-  make(thrusts_, parts.joints && !plan.thrusts.empty(), plan.thrusts.size(),
-       sizeof(kernels::ThrustConstants<Real>));
+  make(thrusts_, parts.thrusts, plan.thrusts.size(), sizeof(kernels::ThrustConstants<Real>));
   const PlanTrees& trees = plan.trees;
   make(links_, parts.links, trees.links.size(), sizeof(kernels::LinkConstants<Real>));
   make(drags_, parts.links, trees.drags.size(), sizeof(kernels::DragConstants<Real>));

@@ -26,7 +26,7 @@ class Constants {
     bool bodies = true, shapes = true, materials = true, joints = true;
     bool links = true, dofs = true, actuators = true;  // of trees
     bool limits = true, contacts = true;               // of trees, too
-    bool attractors = true;
+    bool attractors = true, thrusts = true;
   };
 
   Constants() = default;

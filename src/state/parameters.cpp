@@ -180,6 +180,8 @@ void Worlds<Real>::write(Parameter parameter, int world, const double* in) {
   if (!changed || (of_starts && !data().varies.joints)) return;  // a reset reads them
   const int lane_index = lane_index_of(world);
   const bool moves = parameter == Parameter::size || parameter == Parameter::density ||
+                     parameter == Parameter::shape_position ||
+                     parameter == Parameter::shape_rotation ||
                      parameter == Parameter::center_of_mass;
   if (data().has_trees()) {  // whose links stay where their coordinates are
     apply_values(world);
@@ -218,6 +220,18 @@ double Worlds<Real>::gravity(int world, int component) const {
   const auto& at = number_at_[static_cast<std::size_t>(Parameter::gravity)];
   const int i = at[static_cast<std::size_t>(component)];
   return i >= 0 ? values_of(world)[i] : plan_.scene().options.gravity[component];
+}
+
+template <class Real>
+Attractor Worlds<Real>::attractor_of(int world, std::size_t index) const {
+  Attractor out = plan_.scene().attractors[index];
+  if (!data().varies.attractors) return out;
+  for (std::size_t c = 0; c < 3; ++c) {
+    out.position[static_cast<Eigen::Index>(c)] =
+        number(Parameter::attractor_position, world, 3 * index + c);
+  }
+  out.strength = number(Parameter::attractor_strength, world, index);
+  return out;
 }
 
 template <class Real>
@@ -288,6 +302,7 @@ void Worlds<Real>::copy_world(int from, int to) {
   template void Worlds<Real>::set_next(Parameter, int, std::size_t, double);     \
   template double Worlds<Real>::gravity(int, int) const;                         \
   template double Worlds<Real>::gravity_scale(int, int) const;                   \
+  template Attractor Worlds<Real>::attractor_of(int, std::size_t) const;         \
   template std::size_t Worlds<Real>::world_bytes() const;                        \
   template void Worlds<Real>::write_world(int, std::byte*) const;                \
   template void Worlds<Real>::read_world(int, const std::byte*);                 \

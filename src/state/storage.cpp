@@ -87,10 +87,11 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
 template <class Real>
 void Storage<Real>::make_constants(const PlanData& plan) {
   const PlanVaries& v = plan.varies;
-  constants_ = Constants<Real>(plan,
-                               {v.body_constants(), v.shapes, v.materials, v.shapes || v.joints,
-                                v.links, v.dofs, v.actuators, false, false, false},
-                               groups_, lanes_);
+  constants_ = Constants<Real>(
+      plan,
+      {v.body_constants(), v.shapes, v.materials, v.shapes || v.joints, v.links, v.dofs,
+       v.actuators, v.limits, v.contacts, v.attractors, v.shapes || v.thrusts},
+      groups_, lanes_);
 }
 
 template <class Real>

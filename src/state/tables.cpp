@@ -159,7 +159,11 @@ void TablesOf<Real>::add_flight(const PlanData& plan) {
   for (const PlanPart& p : plan.parts) {
     if (!p.what.force) continue;
     ++flight.springs;
-    flight.damped = flight.damped || p.constants.damping > 0;
+    const auto may_damp = [&](const VariedNumber& n) {
+      return n.parameter == Parameter::spring_damping && n.of.joint == p.joint && n.high > 0;
+    };
+    flight.damped = flight.damped || p.constants.damping > 0 ||
+                    std::any_of(plan.varied.begin(), plan.varied.end(), may_damp);
   }
 }
 

@@ -270,7 +270,8 @@ Energy Worlds<Real>::energy(int world) const {
     e.kinetic += 0.5 * b.mass * v.squaredNorm() + 0.5 * w.dot(b.inertia.cwiseProduct(w));
     const Vec3 x = center_of_mass(world, body);
     double height = g.dot(x);
-    for (const Attractor& a : plan_.scene().attractors) {
+    for (std::size_t k = 0; k < plan_.scene().attractors.size(); ++k) {
+      const Attractor a = attractor_of(world, k);
       height += a.strength / std::hypot((a.position - x).norm(), std::max(a.softening, 1e-12));
     }
     e.potential -= b.mass * gravity_scale(world, body) * height;

@@ -158,6 +158,7 @@ class Worlds final : public WorldsBase {
   Actuator actuator_of(int world, int control) const;  // with this world's numbers
   double gravity(int world, int component) const;
   double gravity_scale(int world, int scene_body) const;
+  Attractor attractor_of(int world, std::size_t index) const;
 
   void initialise(int world);
   // Of trees (tree_state.cpp): their coordinates as drawn; the bodies from the coordinates.

@@ -299,6 +299,9 @@ class TaskChecker {
       case ParameterInfo::control:
         found = bounded(n.index, scene.controls.size(), "the control") && found;
         break;
+      case ParameterInfo::attractor:
+        found = bounded(n.index, scene.attractors.size(), "the attractor") && found;
+        break;
     }
     if (!found || can_vary(scene, parameter, owner_of(n))) return;
     issues_.push_back({place, to_string(e) + ": there is no such number that could vary"});

@@ -236,6 +236,7 @@ NumberOwner owner_of(const Expression::Node& n) {
   if (owner == ParameterInfo::shape) of.shape = n.shape;
   if (owner == ParameterInfo::joint) of.joint = n.index;
   if (owner == ParameterInfo::control) of.control = n.index;
+  if (owner == ParameterInfo::attractor) of.attractor = n.index;
   return of;
 }
 

@@ -45,11 +45,23 @@ std::string named(std::string xml) {
   return xml;
 }
 
+void write_softness(mjtNum* to_solref, mjtNum* to_solimp, const std::vector<double>& solref,
+                    const std::vector<double>& solimp, std::size_t item) {
+  std::copy_n(solref.begin() + static_cast<std::ptrdiff_t>(2 * item), 2, to_solref);
+  std::copy_n(solimp.begin() + static_cast<std::ptrdiff_t>(3 * item), 3, to_solimp);
+}
+
 void write_into(mjModel& m, const Batch& batch, int world) {
   const auto all = [&](Parameter p) { return test::numbers(batch, p, world); };
   const auto armature = all(Parameter::armature), damping = all(Parameter::damping),
              stiffness = all(Parameter::stiffness), rest = all(Parameter::rest),
-             gain = all(Parameter::gain), bias = all(Parameter::bias), mass = all(Parameter::mass);
+             gain = all(Parameter::gain), bias = all(Parameter::bias), mass = all(Parameter::mass),
+             low = all(Parameter::limit_low), high = all(Parameter::limit_high),
+             limit_solref = all(Parameter::limit_solref),
+             limit_solimp = all(Parameter::limit_solimp),
+             contact_solref = all(Parameter::contact_solref),
+             contact_solimp = all(Parameter::contact_solimp), gear = all(Parameter::gear),
+             force_low = all(Parameter::force_low), force_high = all(Parameter::force_high);
   for (int j = 1; j < m.njnt; ++j) {  // 0 is free
     const auto i = static_cast<std::size_t>(j - 1);
     const int dofs = m.jnt_type[j] == mjJNT_BALL ? 3 : 1;
@@ -58,8 +70,19 @@ void write_into(mjModel& m, const Batch& batch, int world) {
     }
     m.jnt_stiffness[j] = stiffness[i];
     if (dofs == 1) m.qpos_spring[m.jnt_qposadr[j]] = rest[i];
+    m.jnt_range[2 * j] = low[i], m.jnt_range[2 * j + 1] = high[i];
+    write_softness(m.jnt_solref + mjNREF * j, m.jnt_solimp + mjNIMP * j, limit_solref, limit_solimp,
+                   i);
+  }
+  for (int g = 0; g < m.ngeom; ++g) {
+    write_softness(m.geom_solref + mjNREF * g, m.geom_solimp + mjNIMP * g, contact_solref,
+                   contact_solimp, static_cast<std::size_t>(g));
   }
   for (int a = 0; a < m.nu; ++a) {
+    const auto i = static_cast<std::size_t>(a);
+    m.actuator_gear[6 * a] = gear[i];
+    m.actuator_forcelimited[a] = 1;
+    m.actuator_forcerange[2 * a] = force_low[i], m.actuator_forcerange[2 * a + 1] = force_high[i];
     for (int c = 0; c < 3; ++c) {
       m.actuator_gainprm[mjNGAIN * a + c] = gain[static_cast<std::size_t>(3 * a + c)];
       m.actuator_biasprm[mjNBIAS * a + c] = bias[static_cast<std::size_t>(3 * a + c)];
@@ -90,7 +113,18 @@ TEST_CASE("robots move as in MuJoCo's model with the same numbers written into i
                       of(vary(Parameter::gain, 0.5, 2), 0),
                       of(vary(Parameter::kp, 5, 60), 1),
                       of(vary(Parameter::kv, 0.1, 2), 1),
-                      of(vary(Parameter::kv, 1, 10), 2)};
+                      of(vary(Parameter::kv, 1, 10), 2),
+                      vary(Parameter::force_low, -4, -0.5),
+                      vary(Parameter::force_high, 0.5, 4)};
+  for (const Parameter end : {Parameter::limit_low, Parameter::limit_high}) {
+    vary_around(scene, end, 0.03);
+  }
+  for (const Parameter p : {Parameter::limit_solref, Parameter::contact_solref, Parameter::gear}) {
+    vary_by_share(scene, p, 0.3);
+  }
+  for (const Parameter p : {Parameter::limit_solimp, Parameter::contact_solimp}) {
+    vary_by_share(scene, p, 0.04);
+  }
   scene.options.solver.tolerance = 1e-26, scene.options.solver.iterations = 200;
   scene.options.solver.line_search_iterations = 100;
   scene.options.solver.line_search_tolerance = 1e-8;

@@ -142,11 +142,13 @@ TEST_CASE("every member and every bit of a scene goes through JSON", "[fast][rec
   for (int p = 0; p < kParameterCount; ++p) {
     varied.variations.push_back(vary(static_cast<Parameter>(p), -0.1, 1.0 / 3, Draw::none));
     varied.variations.back().high.z() = 7.7;
+    varied.variations.back().attractor = p;
   }
   const Scene varied_back = scene_from_json(scene_to_json(varied));
   REQUIRE(varied_back.variations.size() == varied.variations.size());
   for (std::size_t p = 0; p < varied.variations.size(); ++p) {
     CHECK(varied_back.variations[p].parameter == varied.variations[p].parameter);
+    CHECK(varied_back.variations[p].attractor == varied.variations[p].attractor);
     CHECK(varied_back.variations[p].low == varied.variations[p].low);
     CHECK(varied_back.variations[p].high == varied.variations[p].high);
   }

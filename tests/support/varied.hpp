@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -40,21 +41,46 @@ inline Variation vary_three(Parameter parameter, const Vec3& low, const Vec3& hi
   v.low = low, v.high = high, v.draw = draw;
   return v;
 }
+// Of one that has the parameter, without a range yet.
+inline Variation vary_of(Parameter parameter, const NumberOwner& of) {
+  Variation v = vary_three(parameter, Vec3::Zero(), Vec3::Zero());
+  if (of.shape >= 0) {
+    v.shape = ShapeId(BodyId(of.body), of.shape);
+  } else if (of.body >= 0) {
+    v.body = BodyId(of.body);
+  }
+  if (of.joint >= 0) v.joint = JointId(of.joint);
+  if (of.control >= 0) v.control = ControlId(of.control);
+  v.attractor = of.attractor;
+  return v;
+}
 // One variation for each that has the parameter: of its own numbers, give or take `width`.
 inline void vary_around(Scene& scene, Parameter parameter, double width) {
   const bool rotates = parameter == Parameter::axes_a || parameter == Parameter::axes_b ||
                        parameter == Parameter::initial_rotation ||
+                       parameter == Parameter::shape_rotation ||
                        parameter == Parameter::initial_angular_velocity;
   for (const NumberOwner& of : owners_of(scene, parameter)) {
     if (!can_vary(scene, parameter, of)) continue;
-    Variation v = vary_three(parameter, Vec3::Zero(), Vec3::Zero());
-    if (of.body >= 0) v.body = BodyId(of.body);
-    if (of.joint >= 0) v.joint = JointId(of.joint);
+    Variation v = vary_of(parameter, of);
     for (int c = 0; c < info(parameter).numbers; ++c) {
       if (scene.space == Space::planar && info(parameter).numbers == 3 && (c == 2) != rotates) {
         continue;
       }
       const double own = get_number(scene, parameter, of, c);
+      v.low[c] = own - width, v.high[c] = own + width;
+    }
+    scene.variations.push_back(v);
+  }
+}
+
+// The same by a share of its own numbers.
+inline void vary_by_share(Scene& scene, Parameter parameter, double share) {
+  for (const NumberOwner& of : owners_of(scene, parameter)) {
+    if (!can_vary(scene, parameter, of)) continue;
+    Variation v = vary_of(parameter, of);
+    for (int c = 0; c < info(parameter).numbers; ++c) {
+      const double own = get_number(scene, parameter, of, c), width = share * std::abs(own);
       v.low[c] = own - width, v.high[c] = own + width;
     }
     scene.variations.push_back(v);

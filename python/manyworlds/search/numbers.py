@@ -115,6 +115,11 @@ class Numbers:
                 return np.array([int(plan.joint(number.joint))], np.intp)
             if owner == "control" and number.control != -1:
                 return np.array([int(plan.control(number.control))], np.intp)
+            if owner == "attractor" and number.attractor != -1:
+                count = len(plan.scene.attractors)
+                if not 0 <= number.attractor < count:
+                    raise IndexError(f"attractor is {number.attractor}, must be one of {count}")
+                return np.array([number.attractor], np.intp)
             if owner == "shape" and (number.body != -1 or number.shape != -1):
                 return np.array([plan.row(s) for s in _shapes(plan, number)], np.intp)
         except (ValueError, IndexError, TypeError) as error:

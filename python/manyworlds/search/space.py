@@ -26,8 +26,8 @@ class Number:
     """A number of the scene that is ``offset + factor * value`` of a search's parameter.
 
     ``parameter`` and what it is of are those of ``Variation``: "size", "mass", "friction", ...; without
-    body, shape, joint and control it is of every one that has it. ``component``: of sizes, gravity, gain
-    and bias, which are three numbers each.
+    body, shape, joint, control and attractor it is of every one that has it. ``component``: of sizes,
+    gravity, gain and the like, which are two or three numbers each.
     """
 
     parameter: SceneParameter
@@ -35,6 +35,7 @@ class Number:
     shape: ShapeRef = -1  # an int is one of that body
     joint: JointRef = -1
     control: ControlRef = -1
+    attractor: int = -1
     component: Optional[int] = None
     factor: float = 1.0
     offset: float = 0.0
