@@ -109,15 +109,16 @@ class Environment {
   bool finish_step(const StepArrays& out, const GoOn& go_on);
   int steps_left() const;  // physics steps of a step that was ended early; 0: there is none
 
-  // Next episodes of the worlds of a mask, [world]; with seeds, [world], their first ones.
+  // Next episodes of the worlds of a mask, [world]; with seeds, [world], their first ones, where
+  // levels begin again, too.
   // What is told of the others stays.
   void reset(std::span<const std::uint8_t> mask, const BeginArrays& out);
   void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
              const BeginArrays& out);
 
-  // What the worlds' numbers are that outlive their episodes, [world][level] (Task::levels). Those
-  // that are written to the worlds of a mask, which must be finite, count from the next step on, and
-  // until an episode that ends says otherwise.
+  // Levels (Task::levels) of all worlds, [world][level]. Written values, of the worlds of a mask,
+  // must be finite. They apply from the next step until the end of an episode changes them; those
+  // that are written as they are change nothing.
   int levels() const;  // numbers of one world
   void read_levels(std::span<double> out) const;
   void write_levels(std::span<const std::uint8_t> mask, std::span<const double> in);
@@ -126,7 +127,7 @@ class Environment {
   // says so by begin(), for what the task remembers of them.
   Batch& batch();
   const Batch& batch() const;
-  // The worlds of a mask begin an episode in the state that they have.
+  // The worlds of a mask begin an episode in the state, and with the numbers, that they have.
   void begin(std::span<const std::uint8_t> mask, const BeginArrays& out);
   // World `to` becomes what world `from` is, with what the task remembers of it.
   void copy_world(int from, int to);

@@ -205,9 +205,9 @@ Expression previous(const Expression& value);
 // delayed(previous(...), 1). Each step is a number that a world remembers. Throws
 // std::invalid_argument for other numbers of steps.
 Expression delayed(const Expression& value, int steps);
-// By as many steps as `steps` says in this world and step: rounded down, kept within 0 and `most`,
-// 0 to 256, which is what is remembered. What is not a number counts as `most`.
-Expression delayed(const Expression& value, const Expression& steps, int most);
+// By as many steps as `steps` says in this world and step: rounded down, kept within 0 and
+// `max_steps`, 0 to 256, which is what is remembered. What is not a number counts as `max_steps`.
+Expression delayed(const Expression& value, const Expression& steps, int max_steps);
 // Steps in a row, up to this one, at whose end the condition was true; 0 at the beginning.
 Expression held(const Expression& condition);
 // The largest that `value` has been since the beginning, which counts.

@@ -2,10 +2,11 @@
 // ends. Plain values, as a Scene is; Environment (environment.hpp) runs it for thousands of worlds.
 //
 // Episodes begin where the scene does: with its jitter (Body::jitter) and variations, of which a
-// task may set some itself (Setting).
+// task may set some itself (InitialParameter).
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,22 +47,22 @@ struct Info {
 };
 
 // A number that every world keeps over its episodes: how hard its task is, how often it succeeded.
-// Whoever reads it (terms::level) finds the same through a whole episode.
+// It is the same through a whole episode (terms::level).
 struct Level {
   std::string name = {};
-  // In the world's first episode: of numbers and random ones of the episode.
+  // Its value in the first episode of a seed, of numbers and random ones of the episode; 0 where
+  // that is not a number.
   Expression begin = 0;
-  // In its next episode: of what the world is, and what of it is remembered, at the end of the step
-  // that ends this one. An episode that a reset ends before leaves the number as it is, and so does
-  // what is not a number.
-  Expression next = 0;
+  // Its value in the episode after this one, worked out at the end of the step that ends this one;
+  // none: it stays. It also stays where that is not a number, and where a reset ends the episode.
+  std::optional<Expression> next = std::nullopt;
 };
 
-// What a number of the scene is where an episode begins, instead of one that is drawn.
-struct Setting {
-  Expression number = 0;  // terms::parameter(...), which varies, with Draw::none
+// What a number of the scene is where an episode begins by a reset, instead of one that is drawn.
+struct InitialParameter {
+  Expression parameter = 0;  // terms::parameter(...), which varies, with Draw::none
   // Of numbers, random ones of the episode, and levels; kept within the range that the variation
-  // declares. What is not a number leaves it as it is.
+  // declares. Where it is not a number, the scene's own number counts.
   Expression value = 0;
 };
 
@@ -87,7 +88,7 @@ struct Task {
   std::vector<Info> infos = {};
 
   std::vector<Level> levels = {};
-  std::vector<Setting> settings = {};
+  std::vector<InitialParameter> initial_parameters = {};
 
   std::vector<Ray> rays = {};      // for terms::ray_distance
   std::vector<Point> points = {};  // for terms::point_position and point_velocity

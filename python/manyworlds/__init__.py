@@ -51,7 +51,7 @@ from .scene import (
 )
 from .shapes import *  # noqa: F403
 from .surfaces import *  # noqa: F403
-from .tasks import Action, Info, Level, Observation, Reward, Setting, Task, TaskError
+from .tasks import Action, Info, Level, Observation, Reward, InitialParameter, Task, TaskError
 from .state_view import View
 
 from . import pickling as _pickling  # of the values above; isort: skip
@@ -101,7 +101,7 @@ __all__ = [
     "STEP_CONTACT",
     "Scene",
     "SceneError",
-    "Setting",
+    "InitialParameter",
     "ShapeId",
     "Site",
     "SiteId",

@@ -31,19 +31,16 @@ class WithLevels:
         return out
 
     def set_levels(self, levels: ArrayLike, mask_or_ids: Optional[Ids] = None) -> None:
-        """Other numbers, finite, of all worlds or of some: (worlds that are meant, levels), or what fits that
-        by broadcasting.
+        """Other numbers, finite, of all worlds or of some: (worlds that are meant, levels), or what broadcasts
+        to that.
 
-        They count from the next step on, until an episode that ends says otherwise. Raises ValueError.
+        They apply from the next step until the end of an episode changes them; those that stay as they are
+        change nothing. Raises ValueError, TypeError, IndexError.
         """
         chosen = arrays.indices(mask_or_ids, self._worlds, "ids")
+        if len(np.unique(chosen)) < len(chosen):
+            raise ValueError("ids name a world twice; expected each once")
         all_levels = self.levels()
-        try:
-            all_levels[chosen] = np.asarray(levels, np.float64)
-        except ValueError:
-            expected = len(chosen), all_levels.shape[1]
-            raise ValueError(
-                f"levels have shape {np.shape(levels)}; expected "
-                f"{arrays.shape_text(expected, ('worlds', 'levels'))}"
-            ) from None
+        shape = len(chosen), all_levels.shape[1]
+        all_levels[chosen] = arrays.broadcast(levels, shape, ("worlds", "levels"), "levels", np.float64)
         self._held.write_levels(arrays.mask(mask_or_ids, self._worlds), all_levels)

@@ -105,7 +105,7 @@ _HOLD_EXPRESSIONS: dict[type, tuple[str, ...]] = {
     tasks.Reward: ("value",),
     tasks.Info: ("value",),
     tasks.Level: ("begin", "next"),
-    tasks.Setting: ("number", "value"),
+    tasks.InitialParameter: ("parameter", "value"),
 }
 
 
@@ -113,8 +113,10 @@ def _exchanged(members: Members, exchange: Callable[[Any], Any]) -> Members:
     """The members of a task with other values where expressions may be."""
 
     def part(one: Any) -> Any:
-        where = _HOLD_EXPRESSIONS.get(type(one), ())
-        return dataclasses.replace(one, **{name: exchange(getattr(one, name)) for name in where})
+        for kind, names in _HOLD_EXPRESSIONS.items():
+            if isinstance(one, kind):
+                return dataclasses.replace(one, **{n: exchange(getattr(one, n)) for n in names})
+        return one
 
     return members | {
         "controls": [exchange(value) for value in members["controls"]],
@@ -122,7 +124,7 @@ def _exchanged(members: Members, exchange: Callable[[Any], Any]) -> Members:
         "rewards": [part(one) for one in members["rewards"]],
         "infos": [part(one) for one in members.get("infos", [])],
         "levels": [part(one) for one in members.get("levels", [])],
-        "settings": [part(one) for one in members.get("settings", [])],
+        "initial_parameters": [part(one) for one in members.get("initial_parameters", [])],
         "terminated": exchange(members["terminated"]),
         "truncated": exchange(members["truncated"]),
     }

@@ -121,19 +121,19 @@ def previous(value: Value) -> Expression:
     return _x.previous(value)
 
 
-def delayed(value: Value, steps: Value, most: Optional[int] = None) -> Expression:
+def delayed(value: Value, steps: Value, max_steps: Optional[int] = None) -> Expression:
     """What ``value`` was so many steps before, 0 to 256; in the first steps where the world began.
 
     In ``Task.controls`` 0 is the step to take, so ``delayed(t.action(), 2)`` is what was asked for two steps
     ago, 0 where there was none. ``steps`` may be an expression, such as a random number of the episode:
-    rounded down, kept within 0 and ``most``, which says how much is remembered; what is not a number counts as
-    ``most``. Each step is a number that a world remembers. Raises ValueError for other numbers of steps,
-    TypeError for an expression without ``most``.
+    rounded down, kept within 0 and ``max_steps``, which says how much is remembered; what is not a number counts as
+    ``max_steps``. Each step is a number that a world remembers. Raises ValueError for other numbers of steps,
+    TypeError for an expression without ``max_steps``.
     """
-    if most is not None:
-        return _x.delayed_by(value, steps, arrays.integer(most, "most", 0, 256))
+    if max_steps is not None:
+        return _x.delayed_by(value, steps, arrays.integer(max_steps, "max_steps", 0, 256))
     if isinstance(steps, Expression):
-        raise TypeError("steps is an expression; expected `most`, too: how many steps are remembered")
+        raise TypeError("steps is an expression; expected `max_steps`, too: how many steps are remembered")
     return _x.delayed(value, arrays.integer(steps, "steps", 0, 256))
 
 
@@ -195,27 +195,27 @@ class Info:
 class Level:
     """A number that every world keeps over its episodes: how hard its task is, how often it succeeded.
 
-    Whoever reads it (``Terms.level``) finds the same through a whole episode. ``begin`` is what it is in the
-    world's first one: of numbers and random ones of the episode. ``next`` is what it is in the next: of what the
-    world is, and what of it is remembered, at the end of the step that ends this one. An episode that a reset
-    ends before leaves it as it is, and so does what is not a number.
+    It is the same through a whole episode (``Terms.level``). ``begin`` is its value in the first episode of a
+    seed, of numbers and random ones of the episode; 0 where that is not a number. ``next`` is its value in the
+    episode after this one, worked out at the end of the step that ends this one; None: it stays. It also
+    stays where that is not a number, and where a reset ends the episode.
     """
 
     name: str = ""
     begin: Value = 0.0
-    next: Value = 0.0
+    next: Optional[Value] = None
 
 
 @dataclass(slots=True, eq=False)
-class Setting:
-    """What a number of the scene is where an episode begins, instead of one that is drawn.
+class InitialParameter:
+    """What a number of the scene is where an episode begins by a reset, instead of one that is drawn.
 
-    ``number``: ``Terms.parameter(...)``, which varies with the draw "none". ``value``: of numbers, random ones
-    of the episode, and levels; kept within the range that the variation declares. What is not a number leaves
-    it as it is.
+    ``parameter``: ``Terms.parameter(...)``, which varies with the draw "none". ``value``: of numbers, random
+    ones of the episode, and levels; kept within the range that the variation declares. Where it is not a
+    number, the scene's own number counts.
     """
 
-    number: Value = 0.0
+    parameter: Value = 0.0
     value: Value = 0.0
 
 
@@ -242,7 +242,7 @@ class Task:
     infos: list[Info] = field(default_factory=list)
 
     levels: list[Level] = field(default_factory=list)
-    settings: list[Setting] = field(default_factory=list)
+    initial_parameters: list[InitialParameter] = field(default_factory=list)
 
     rays: list[Ray] = field(default_factory=list)  # for ray_distance
     points: list[Point] = field(default_factory=list)  # for point_position, point_velocity
@@ -292,16 +292,14 @@ class Task:
     def level(self, name: str, begin: Value = 0.0, next: Optional[Value] = None) -> Expression:
         """Adds a number that worlds keep over their episodes (``Level``), and returns it as an expression.
 
-        ``next`` may be said later, of the expression that is returned: ``task.levels[-1].next = ...``; None:
-        it stays, but for ``Environment.set_levels``.
+        ``next`` may be said later, of the expression that is returned: ``task.levels[-1].next = ...``.
         """
-        level = _x.level(name)
-        self.levels.append(Level(name, begin, level if next is None else next))
-        return level
+        self.levels.append(Level(name, begin, next))
+        return _x.level(name)
 
-    def begin_with(self, number: Expression, value: Value) -> None:
-        """Sets a number of the scene, ``t.parameter(...)``, where episodes begin (``Setting``)."""
-        self.settings.append(Setting(number, value))
+    def initial_parameter(self, parameter: Expression, value: Value) -> None:
+        """Says what ``t.parameter(...)`` is where episodes begin (``InitialParameter``)."""
+        self.initial_parameters.append(InitialParameter(parameter, value))
 
     def validate(self) -> list[Issue]:
         """Everything that is wrong with the task and its scene; empty: it can be run."""

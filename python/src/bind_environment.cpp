@@ -212,7 +212,7 @@ void bind_tasks(nb::module_& m) {
         out["Action"] = to_python(Action{});
         out["Info"] = to_python(Info{});
         out["Level"] = to_python(Level{});
-        out["Setting"] = to_python(Setting{});
+        out["InitialParameter"] = to_python(InitialParameter{});
         out["Task"] = to_python(Task{});
         return out;
       },

@@ -194,10 +194,10 @@ void bind_terms(Functions& m) {
       nb::arg("a"), nb::arg("steps"));
   m.def_static(
       "delayed_by",
-      [](nb::handle a, nb::handle steps, int most) {
-        return terms::delayed(operand(a), operand(steps), most);
+      [](nb::handle a, nb::handle steps, int max_steps) {
+        return terms::delayed(operand(a), operand(steps), max_steps);
       },
-      nb::arg("a"), nb::arg("steps"), nb::arg("most"));
+      nb::arg("a"), nb::arg("steps"), nb::arg("max_steps"));
   one(m, "held", terms::held);
   one(m, "largest", terms::largest);
 }

@@ -67,9 +67,11 @@ struct Described<Level> {
   }
 };
 template <>
-struct Described<Setting> {
-  static constexpr const char* name = "Setting";
-  static void fields(auto&& visit, auto& s) { visit("number", s.number), visit("value", s.value); }
+struct Described<InitialParameter> {
+  static constexpr const char* name = "InitialParameter";
+  static void fields(auto&& visit, auto& s) {
+    visit("parameter", s.parameter), visit("value", s.value);
+  }
 };
 template <>
 struct Described<Task> {
@@ -80,7 +82,7 @@ struct Described<Task> {
     visit("observations", s.observations), visit("rewards", s.rewards);
     visit("terminated", s.terminated), visit("truncated", s.truncated);
     visit("max_steps", s.max_steps), visit("solved_at", s.solved_at), visit("infos", s.infos);
-    visit("levels", s.levels), visit("settings", s.settings);
+    visit("levels", s.levels), visit("initial_parameters", s.initial_parameters);
     visit("rays", s.rays), visit("points", s.points);
   }
 };

@@ -12,6 +12,7 @@
 #include "src/base/scratch_folder.hpp"
 #include "src/film/browser.hpp"
 #include "src/film/encoder.hpp"
+#include "src/film/programs.hpp"
 #include "src/page/base64.hpp"
 
 namespace manyworlds {

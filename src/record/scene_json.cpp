@@ -36,13 +36,13 @@ struct Words<std::variant<Ts...>> {
 template <>
 struct JsonMembers<Variation> {
   static void visit(Variation& value, auto& visit) {
-    auto& [parameter, body, shape, joint, control, low, high, draw, together] = value;
+    auto& [parameter, body, shape, joint, control, attractor, low, high, draw, together] = value;
     if (shape.body()) body = shape.body();
     int index = shape.index();
     visit("parameter", parameter), visit("body", body), visit("shape", index);
     shape = index == -1 ? ShapeId() : ShapeId(body, index);
-    visit("joint", joint), visit("control", control), visit("low", low), visit("high", high);
-    visit("draw", draw), visit("together", together);
+    visit("joint", joint), visit("control", control), visit("attractor", attractor);
+    visit("low", low), visit("high", high), visit("draw", draw), visit("together", together);
   }
 };
 // The corners are all that a box has.

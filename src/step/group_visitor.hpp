@@ -31,8 +31,9 @@ class GroupVisitor {
 
 // How worlds begin an episode.
 struct Beginning {
+  bool first = false;                         // of all episodes of their seeds
   bool resets = false;                        // or in the state that they have
-  std::span<const std::uint64_t> seeds = {};  // [world] of first episodes; empty: the next ones
+  std::span<const std::uint64_t> seeds = {};  // [world] of resets to first episodes
 };
 
 // Visits the groups around their steps. A call that steps in parts begins with the first of

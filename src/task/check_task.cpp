@@ -27,7 +27,7 @@ std::string named(const char* what, std::size_t i, const std::string& name) {
 enum class When {
   after_steps,
   before_steps,    // controls
-  before_episode,  // settings
+  before_episode,  // initial parameters
   before_first,    // where levels begin
 };
 
@@ -51,7 +51,7 @@ class TaskChecker {
             task_.controls[i], When::before_steps);
     }
     check_levels();
-    check_settings();
+    check_initial_parameters();
     check_observations();
     for (std::size_t i = 0; i < task_.rewards.size(); ++i) {
       check(named("reward", i, task_.rewards[i].name), task_.rewards[i].value);
@@ -120,31 +120,31 @@ class TaskChecker {
         issues_.push_back({place, "has the name of one before it, must have its own"});
       }
       check(place + ", begin", level.begin, When::before_first);
-      check(place + ", next", level.next);
+      if (level.next) check(place + ", next", *level.next);
     }
   }
 
-  void check_settings() {
+  void check_initial_parameters() {
     std::set<std::pair<Parameter, std::size_t>> numbers;
-    for (std::size_t i = 0; i < task_.settings.size(); ++i) {
-      const Setting& s = task_.settings[i];
-      const std::string place = named("setting", i, "");
+    for (std::size_t i = 0; i < task_.initial_parameters.size(); ++i) {
+      const InitialParameter& s = task_.initial_parameters[i];
+      const std::string place = named("initial parameter", i, "");
       check(place + ", value", s.value, When::before_episode);
-      if (s.number.node().term != Term::parameter) {
-        issues_.push_back({place, "is of " + to_string(s.number) +
+      if (s.parameter.node().term != Term::parameter) {
+        issues_.push_back({place, "is of " + to_string(s.parameter) +
                                       ", must be of a parameter (terms::parameter)"});
         continue;
       }
       const std::size_t before = issues_.size();
-      check(place, s.number);
+      check(place, s.parameter);
       if (issues_.size() > before || !plan_) continue;
-      const NumberOwner of = owner_of(s.number.node());
+      const NumberOwner of = owner_of(s.parameter.node());
       const auto& varied = plan_->data().varied;
       const auto at = std::find_if(varied.begin(), varied.end(), [&](const VariedNumber& v) {
-        return v.parameter == static_cast<Parameter>(s.number.node().of) && v.of == of &&
-               v.component == s.number.node().axis;
+        return v.parameter == static_cast<Parameter>(s.parameter.node().of) && v.of == of &&
+               v.component == s.parameter.node().axis;
       });
-      const std::string is = "is of " + to_string(s.number) + ", which ";
+      const std::string is = "is of " + to_string(s.parameter) + ", which ";
       if (at == varied.end()) {
         issues_.push_back({place, is + "does not vary (Scene::variations)"});
       } else if (task_.scene.variations[static_cast<std::size_t>(at->variation)].draw !=

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "src/base/enum_names.hpp"
+#include "src/scene/checks.hpp"
 #include "src/task/environment_data.hpp"
 
 namespace manyworlds {
@@ -51,8 +53,8 @@ Environment::Impl::Impl(const Task& t, const EnvironmentOptions& options)
 Environment::Environment(const Task& task, const EnvironmentOptions& options)
     : impl_(Pimpl<Impl>::make(task, options)) {
   const std::vector<std::uint8_t> all(impl_->worlds(), 1);
-  if (task.settings.empty()) {
-    begin(all, {});
+  if (task.initial_parameters.empty()) {
+    impl_->begin(*impl_->batch.impl_, all, {.first = true}, {});
   } else {  // once more, with them
     std::vector<std::uint64_t> seeds;
     for (std::size_t w = 0; w < all.size(); ++w) seeds.push_back(options.seed + w);
@@ -117,7 +119,7 @@ void Environment::reset(std::span<const std::uint8_t> mask, std::span<const std:
                         const BeginArrays& out) {
   impl_->check_to_begin("reset", mask, out);
   check_array("seeds", seeds.size(), impl_->worlds(), false);
-  impl_->begin(*impl_->batch.impl_, mask, {.resets = true, .seeds = seeds}, out);
+  impl_->begin(*impl_->batch.impl_, mask, {.first = true, .resets = true, .seeds = seeds}, out);
 }
 void Environment::begin(std::span<const std::uint8_t> mask, const BeginArrays& out) {
   impl_->check_to_begin("begin", mask, out);
@@ -134,12 +136,15 @@ void Environment::read_levels(std::span<double> out) const {
 }
 void Environment::write_levels(std::span<const std::uint8_t> mask, std::span<const double> in) {
   const std::size_t n = impl_->task.levels.size();
+  impl_->check_between_steps("write_levels");
   check_array("the mask's entries", mask.size(), impl_->worlds(), false);
   check_array("levels", in.size(), impl_->worlds() * n, false);
+  const double max = batch().precision() == Precision::f32 ? std::numeric_limits<float>::max()
+                                                           : std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < in.size(); ++i) {
-    if (!mask[i / n] || std::isfinite(in[i])) continue;
+    if (!mask[i / n] || std::abs(in[i]) <= max) continue;
     reject("the level '" + impl_->task.levels[i % n].name + "' of world " + std::to_string(i / n) +
-           " is " + std::to_string(in[i]) + ", must be finite");
+           " is " + detail::number_text(in[i]) + ", must be a finite number of the batch's type");
   }
   for (std::size_t i = 0; i < in.size(); ++i) {
     if (mask[i / n]) impl_->runner->set_level(static_cast<int>(i / n), i % n, in[i]);

@@ -17,7 +17,7 @@ using kernels::Operation;
 
 // Expressions are walked through and destroyed by functions that call themselves.
 constexpr int kMaxDepth = 2000;
-constexpr int kMostDelay = 256;
+constexpr int kMaxDelay = 256;
 
 const char* word_of(ObservedItem item) {
   switch (item) {
@@ -205,9 +205,9 @@ namespace {
 
 // What the value was 0, 1 ... steps before.
 std::vector<Expression> before(E value, const char* what, int steps) {
-  if (steps < 0 || steps > kMostDelay) {
+  if (steps < 0 || steps > kMaxDelay) {
     throw std::invalid_argument(std::string("delayed: ") + what + " is " + std::to_string(steps) +
-                                ", must be 0 to " + std::to_string(kMostDelay));
+                                ", must be 0 to " + std::to_string(kMaxDelay));
   }
   std::vector<Expression> out{value};
   for (int i = 0; i < steps; ++i) out.push_back(previous(out.back()));
@@ -217,10 +217,10 @@ std::vector<Expression> before(E value, const char* what, int steps) {
 }  // namespace
 
 Expression delayed(E value, int steps) { return before(value, "steps", steps).back(); }
-Expression delayed(E value, E steps, int most) {
-  const std::vector<Expression> was = before(value, "most", most);
+Expression delayed(E value, E steps, int max_steps) {
+  const std::vector<Expression> was = before(value, "max_steps", max_steps);
   Expression out = was.back();
-  for (int i = most - 1; i >= 0; --i)
+  for (int i = max_steps - 1; i >= 0; --i)
     out = select(steps < i + 1, was[static_cast<std::size_t>(i)], out);
   return out;
 }

@@ -53,7 +53,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   // [begins with the next step, age, what the program remembers, levels, those of the next
   // episode, key]
   std::size_t numbers() const override {
-    return 2 + p_->memory.row.size() + 2 * levels_.count() + (draws_ ? 2 : 0);
+    return 2 + p_->memory.row.size() + levels_.numbers() + (draws_ ? 2 : 0);
   }
 
   void save_world(int world, std::span<double> to) const override {
@@ -83,7 +83,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     return static_cast<double>(levels_.get(world, level));
   }
   void set_level(int world, std::size_t level, double value) override {
-    levels_.set(world, level, static_cast<Real>(value));
+    levels_.write(world, level, static_cast<Real>(value));
   }
 
   void before_steps(const VisitedGroup<Real>& g) override {
@@ -138,37 +138,32 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
                         const Beginning& how) override {
     if (opening_.rows() == 0) return;
     Thread& thread = threads_[at(g.thread)];
-    std::uint32_t first = 0;  // lanes whose first episode begins
     for_each_lane(lanes, [&](int l) {
       const int world = g.group * lanes_ + l;
       const std::uint64_t seed = how.seeds.empty() ? worlds.seed(world) : how.seeds[at(world)];
-      const std::uint64_t episode = !how.resets         ? worlds.episode(world)
-                                    : how.seeds.empty() ? std::uint64_t{worlds.episode(world)} + 1
-                                                        : 0;
-      if (draws_) key_[at(world)] = Draws(seed, episode).key();
-      if (episode == 0) first |= 1u << l;
+      const std::uint64_t next =
+          how.resets ? std::uint64_t{worlds.episode(world)} + 1 : worlds.episode(world);
+      if (draws_) key_[at(world)] = Draws(seed, how.seeds.empty() ? next : 0).key();
       levels_.begin_episode(world);
     });
-    if (first != 0 && levels_.count() > 0) {
+    if (how.first && levels_.count() > 0) {
       put_opening_numbers(g, thread, lanes);
       run(g, opening_, thread, true);
-      for_each_lane(first, [&](int l) {
+      for_each_lane(lanes, [&](int l) {
         for (std::size_t i = 0; i < levels_.count(); ++i) {
           const Real begins = value(thread, p_->level_begins[i], l);
-          levels_.set(g.group * lanes_ + l, i, std::isnan(begins) ? Real(0) : begins);
+          levels_.begin(g.group * lanes_ + l, i, std::isnan(begins) ? Real(0) : begins);
         }
       });
     }
-    if (!how.resets || p_->settings.empty()) return;
+    if (!how.resets || p_->initial_parameters.empty()) return;
     put_opening_numbers(g, thread, lanes);
     run(g, opening_, thread, true);
     for_each_lane(lanes, [&](int l) {
-      for (std::size_t i = 0; i < p_->settings.size(); ++i) {
-        const Real found = value(thread, p_->setting_values[i], l);
-        const HostNumber& of = p_->settings[i];
-        if (!std::isnan(found)) {
-          worlds.set_next(of.of, g.group * lanes_ + l, of.item, static_cast<double>(found));
-        }
+      for (std::size_t i = 0; i < p_->initial_parameters.size(); ++i) {
+        const HostNumber& of = p_->initial_parameters[i];
+        worlds.set_next(of.of, g.group * lanes_ + l, of.item,
+                        static_cast<double>(value(thread, p_->initial_values[i], l)));
       }
     });
   }
@@ -341,8 +336,9 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
       if (!out.terminated.empty()) out.terminated[world] = terminated;
       if (!out.truncated.empty()) out.truncated[world] = truncated;
       const bool ended = terminated || truncated;
-      for (std::size_t i = 0; ended && i < levels_.count(); ++i) {
-        levels_.set_next(first + l, i, value(thread, p_->level_nexts[i], l));
+      if (ended) {
+        levels_.end_episode(first + l,
+                            [&](std::size_t i) { return value(thread, p_->level_nexts[i], l); });
       }
       begin_now[world] = begins || (ended && autoreset_ == Autoreset::same_step);
       begin_next[world] = ended && autoreset_ == Autoreset::next_step;

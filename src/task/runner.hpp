@@ -23,10 +23,10 @@ struct TaskPrograms {
   std::vector<std::array<double, 2>> action_range, control_range;
   bool ranges_vary = false;  // of controls, from world to world
   int max_steps;
-  Program opening;                   // before an episode begins: knows no state of the world
-  std::vector<int> level_begins;     // its rows, by level, and those of settings
-  std::vector<HostNumber> settings;  // what they set
-  std::vector<int> setting_values;
+  Program opening;                // before an episode begins: knows no state of the world
+  std::vector<int> level_begins;  // its rows, by level, and those of initial parameters
+  std::vector<HostNumber> initial_parameters;
+  std::vector<int> initial_values;
   Program before, after;
   std::vector<int> controls;                                   // rows of `before`
   std::vector<int> observations, rewards, infos, level_nexts;  // rows of `after`

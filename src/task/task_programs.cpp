@@ -46,12 +46,12 @@ std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, con
       add_all(call.in);
     }
   }
-  for (const auto* numbers : {&programs.inputs.numbers, &programs.settings}) {
+  for (const auto* numbers : {&programs.inputs.numbers, &programs.initial_parameters}) {
     for (const HostNumber& n : *numbers) add(n.kind, n.stream, n.count, n.of, n.item);
   }
   for (const auto* rows :
        {&programs.controls, &programs.observations, &programs.rewards, &programs.memory.row,
-        &programs.level_begins, &programs.level_nexts, &programs.setting_values}) {
+        &programs.level_begins, &programs.level_nexts, &programs.initial_values}) {
     add_all(*rows);
   }
   return hash.value();
@@ -70,16 +70,18 @@ TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : max_steps(task.
   for (const Level& level : task.levels) inputs.levels.push_back(level.name);
   ProgramBuilder start(plan, inputs, memory);
   for (const Level& level : task.levels) level_begins.push_back(start.add(level.begin));
-  for (const Setting& s : task.settings) {
-    settings.push_back(start.number_of(s.number.node()));
-    setting_values.push_back(start.add(s.value));
+  for (const InitialParameter& s : task.initial_parameters) {
+    initial_parameters.push_back(start.number_of(s.parameter.node()));
+    initial_values.push_back(start.add(s.value));
   }
   opening = start.take();
   ProgramBuilder builder(plan, inputs, memory);
   for (const Observation& o : task.observations) observations.push_back(builder.add(o.value));
   for (const Reward& r : task.rewards) rewards.push_back(builder.add(r.value));
   for (const Info& i : task.infos) infos.push_back(builder.add(i.value));
-  for (const Level& level : task.levels) level_nexts.push_back(builder.add(level.next));
+  for (const Level& level : task.levels) {
+    level_nexts.push_back(builder.add(level.next.value_or(terms::level(level.name))));
+  }
   terminated = builder.add(task.terminated);
   truncated = builder.add(task.truncated | terms::lost());
   ProgramBuilder first(plan, inputs, memory, &builder);

@@ -219,6 +219,11 @@ TEST_CASE("steps of tasks allocate nothing, with the worlds that begin anew in t
     task.levels = {{"episodes", 0, terms::level("episodes") + 1}};
     task.observations.push_back({"level", terms::level("episodes")});
     task.observations.push_back({"late", terms::delayed(task.observations[0].value, 3)});
+    Variation friction = vary(Parameter::friction, 0, 2, Draw::none);
+    friction.shape = ShapeId(BodyId(0), 0);
+    task.scene.variations = {friction};
+    const Expression of = terms::parameter(Parameter::friction, friction.shape);
+    task.initial_parameters = {{of, 0.1 * terms::level("episodes")}};
     for (const Autoreset autoreset : {Autoreset::next_step, Autoreset::same_step}) {
       Played p(task, {.worlds = 40, .threads = 1, .autoreset = autoreset});
       p.step();

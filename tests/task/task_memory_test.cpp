@@ -54,7 +54,7 @@ Task stairs(Draw draw = Draw::none) {
                  {"luck", terms::uniform("luck", Every::episode, 2, 3),
                   max(terms::level("luck"), terms::uniform("luck", Every::episode, 2, 3))},
                  {"broken", 7, log(terms::level("broken") * -1)}};
-  task.settings = {{terms::parameter(Parameter::initial_position, BodyId(0), 0), step}};
+  task.initial_parameters = {{terms::parameter(Parameter::initial_position, BodyId(0), 0), step}};
   task.observations = {{"step", step},
                        {"x", terms::position(BodyId(0), 0)},
                        {"luck", terms::level("luck")},
@@ -111,8 +111,10 @@ TEST_CASE("what is delayed is what was seen as many steps before, or where the e
   }
 }
 
-TEST_CASE("delays, levels and settings have the same bits whatever the batch and instruction set",
-          "[task][bits][fast]") {
+TEST_CASE(
+    "delays, levels and initial parameters have the same bits whatever the batch and instruction "
+    "set",
+    "[task][bits][fast]") {
   for (const Task& task : {late(), stairs()}) {
     REQUIRE(validate(task).empty());
     check_same_bits(task);
@@ -156,19 +158,52 @@ TEST_CASE("levels stay for an episode, and go on where it ends by itself", "[tas
   }
 }
 
-TEST_CASE("a world that is not reset goes on to what its last step says", "[task][fast]") {
-  Played p(stairs(), {.worlds = 1, .autoreset = Autoreset::disabled});
+TEST_CASE("a level changes by the step that ends an episode, and by none after it",
+          "[task][fast]") {
+  Task task = stairs();
+  task.levels[0].next = 10 * terms::age();
+  Played p(task, {.worlds = 1, .autoreset = Autoreset::disabled});
   for (int step = 0; step < 4; ++step) p.step();
   CHECK(p.ended(0));
   CHECK(levels(p.environment)[0] == 1);
+  const EnvironmentSnapshot snapshot = p.environment.save();
+  p.environment.restore(snapshot);
+  p.step();
+  p.environment.write_levels(p.all(), levels(p.environment));  // changes nothing
   p.environment.reset(p.all(), p.observations);
-  CHECK(levels(p.environment)[0] == 2);
-  CHECK(p.observations[0] == 2);
-  p.environment.begin(p.all(), p.observations);
-  CHECK(levels(p.environment)[0] == 2);
+  CHECK(levels(p.environment)[0] == 10);
+  CHECK(p.observations[0] == 10);
 }
 
-TEST_CASE("levels of worlds that are about to begin are left alone by others'", "[task][fast]") {
+TEST_CASE("levels that are written hold where worlds begin in their state", "[task][fast]") {
+  Played p(stairs(), {.worlds = 1});
+  for (int episode = 0; episode < 2; ++episode) {
+    p.environment.write_levels(p.all(), std::vector<double>{4, 2, 7});
+    p.environment.begin(p.all(), p.observations);
+    CHECK(p.observations[0] == 4);
+    p.environment.reset(p.all(), p.observations);
+    CHECK(p.observations[0] == 4);
+    CHECK(p.observations[1] == 4);
+  }
+}
+
+TEST_CASE("a world of a seed begins as ever, whatever was before", "[task][fast]") {
+  Task task = stairs();
+  // Not a number in about every second episode: then the scene's own.
+  const Expression u = terms::uniform("u", Every::episode, -1, 3);
+  task.initial_parameters[0].value = log(u);
+  task.levels.push_back({"kept", 3});
+  Played p(task, {.worlds = 40, .seed = 2}), q(task, {.worlds = 40, .seed = 2});
+  for (int step = 0; step < 9; ++step) p.step();
+  std::vector<std::uint64_t> seeds(40);
+  for (std::size_t w = 0; w < 40; ++w) seeds[w] = 2 + w;
+  p.environment.reset(p.all(), seeds, p.observations);
+  CHECK(p.observations == q.observations);
+  CHECK(levels(p.environment) == levels(q.environment));
+  CHECK(levels(p.environment)[3] == 3);
+}
+
+TEST_CASE("writing some worlds' levels leaves pending levels of others alone", "[task][fast]") {
   Played p(stairs(), {.worlds = 2, .autoreset = Autoreset::next_step});
   p.step();
   REQUIRE((p.ended(0) && p.ended(1)));
@@ -207,6 +242,8 @@ TEST_CASE("levels are written, copied and saved with their worlds", "[task][fast
   CHECK_THROWS_AS(e.write_levels(p.all(), std::vector<double>(8)), std::invalid_argument);
   CHECK_THROWS_AS(e.write_levels(std::vector<std::uint8_t>(2), std::vector<double>(9)),
                   std::invalid_argument);
+  bad[4] = 1e300;  // more than a float holds
+  CHECK_THROWS_AS(e.write_levels(p.all(), bad), std::invalid_argument);
   bad[0] = 9;
   e.write_levels(std::vector<std::uint8_t>{1, 0, 0}, bad);  // the others are not looked at
   CHECK(levels(e)[0] == 9);
@@ -217,8 +254,8 @@ TEST_CASE("a world whose numbers a task sets has the bits of a scene that has th
   Task task = stairs();
   task.scene.bodies[0].jitter.angular_velocity = Vec3(1, 1, 1);
   task.scene.variations.push_back(vary(Parameter::gravity_scale, 0.5, 2, Draw::none));
-  task.settings.push_back({terms::parameter(Parameter::gravity_scale, BodyId(0)),
-                           terms::uniform("pull", Every::episode, 0, 3)});
+  task.initial_parameters.push_back({terms::parameter(Parameter::gravity_scale, BodyId(0)),
+                                     terms::uniform("pull", Every::episode, 0, 3)});
   task.scene.options.gravity = Vec3(0, 0, -10);
   task.terminated = 0;
   REQUIRE(validate(task).empty());
@@ -236,18 +273,19 @@ TEST_CASE("a world whose numbers a task sets has the bits of a scene that has th
   }
 }
 
-TEST_CASE("what is wrong with delays, levels and settings is said", "[task][fast]") {
+TEST_CASE("what is wrong with delays, levels and initial parameters is said", "[task][fast]") {
   CHECK_THROWS_WITH(terms::delayed(1, -1), "delayed: steps is -1, must be 0 to 256");
-  CHECK_THROWS_WITH(terms::delayed(1, 2, 257), "delayed: most is 257, must be 0 to 256");
+  CHECK_THROWS_WITH(terms::delayed(1, 2, 257), "delayed: max_steps is 257, must be 0 to 256");
   Task task = stairs(Draw::uniform);
   const auto mass = terms::parameter(Parameter::mass, BodyId(0));
   task.levels.push_back({"step", terms::level("step"), terms::level("stairs")});
   task.levels.push_back({"", terms::uniform("u", Every::step), 0});
-  task.settings.push_back({terms::age(), 1});
-  task.settings.push_back({terms::parameter(Parameter::friction, ShapeId(BodyId(0), 0)), 1});
+  task.initial_parameters.push_back({terms::age(), 1});
+  task.initial_parameters.push_back(
+      {terms::parameter(Parameter::friction, ShapeId(BodyId(0), 0)), 1});
   task.scene.variations[1].draw = Draw::none;
-  task.settings.push_back({mass, terms::age()});
-  task.settings.push_back({mass, 2});
+  task.initial_parameters.push_back({mass, terms::age()});
+  task.initial_parameters.push_back({mass, 2});
   std::vector<std::string> found;
   for (const Issue& issue : validate(task)) found.push_back(issue.place + ": " + issue.message);
   const std::vector<std::string> expected{
@@ -260,13 +298,16 @@ TEST_CASE("what is wrong with delays, levels and settings is said", "[task][fast
       "level 4: has no name, must have one",
       "level 4, begin: depends on the random number 'u', must depend on numbers and random ones of "
       "the episode alone",
-      "setting 0: is of initial_position of body 0, number 0, which is drawn, must vary with "
+      "initial parameter 0: is of initial_position of body 0, number 0, which is drawn, must vary "
+      "with "
       "Draw::none",
-      "setting 1: is of age, must be of a parameter (terms::parameter)",
-      "setting 2: is of friction of body 0, shape 0, which does not vary (Scene::variations)",
-      "setting 3, value: depends on age, must depend on numbers, random ones of the episode and "
+      "initial parameter 1: is of age, must be of a parameter (terms::parameter)",
+      "initial parameter 2: is of friction of body 0, shape 0, which does not vary "
+      "(Scene::variations)",
+      "initial parameter 3, value: depends on age, must depend on numbers, random ones of the "
+      "episode and "
       "levels alone",
-      "setting 4: is of mass of body 0, which another one sets"};
+      "initial parameter 4: is of mass of body 0, which another one sets"};
   CHECK(found == expected);
 }
 
