@@ -56,11 +56,12 @@ def test_levels_go_on_where_episodes_end(autoreset):
             e.set_levels("hard")
         with pytest.raises(ValueError, match="name a world twice"):
             e.set_levels(1, [0, 0])
-        with pytest.raises(IndexError):
-            e.set_levels(1, [3])
+        for world in (3, -1):
+            with pytest.raises(IndexError):
+                e.set_levels(1, [world])
         e.set_levels(4, np.array([True, False, False]))
         e.set_levels(9, [])
-        e.set_levels(6, -1)
+        e.set_levels(6, 2)
         np.testing.assert_array_equal(e.levels().ravel(), [4, 1, 6])
 
 

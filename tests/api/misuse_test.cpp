@@ -95,7 +95,7 @@ const std::vector<Misuse> kEnumsInScenes = {
     in_scene("control 0: kind is 5, must be target_position, target_speed, thrust, torque or "
              "joint_force",
              [](Scene& s) { s.controls[0].kind = none<ControlKind>(5); }),
-    in_scene("variation 0: parameter is 99, must be size, density, mass, ",
+    in_scene("variation 0: parameter is 99, must be size, density, shape_position, ",
              [](Scene& s) { s.variations = {vary(none<Parameter>(99), 0, 1)}; }),
     in_scene("variation 0: draw is 3, must be none, uniform or log_uniform",
              [](Scene& s) { s.variations = {vary(Parameter::friction, 0.1, 1, none<Draw>(3))}; }),
