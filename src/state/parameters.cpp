@@ -212,8 +212,8 @@ template <class Real>
 void Worlds<Real>::set_next(Parameter parameter, int world, std::size_t item, double value) {
   const int at = number_at_[static_cast<std::size_t>(parameter)][item];
   const VariedNumber& n = data().varied[static_cast<std::size_t>(at)];
-  const double own = get_number(plan_.scene(), parameter, n.of, n.component);
-  values_of(world)[at] = std::clamp(std::isnan(value) ? own : value, n.low, n.high);
+  if (std::isnan(value)) value = get_number(plan_.scene(), parameter, n.of, n.component);
+  values_of(world)[at] = std::clamp(value, n.low, n.high);
 }
 
 template <class Real>

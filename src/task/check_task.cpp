@@ -125,7 +125,7 @@ class TaskChecker {
   }
 
   void check_initial_parameters() {
-    std::set<std::pair<Parameter, std::size_t>> numbers;
+    std::set<std::ptrdiff_t> set;  // which of the numbers that vary
     for (std::size_t i = 0; i < task_.initial_parameters.size(); ++i) {
       const InitialParameter& s = task_.initial_parameters[i];
       const std::string place = named("initial parameter", i, "");
@@ -150,8 +150,7 @@ class TaskChecker {
       } else if (task_.scene.variations[static_cast<std::size_t>(at->variation)].draw !=
                  Draw::none) {
         issues_.push_back({place, is + "is drawn, must vary with Draw::none"});
-      } else if (!numbers.emplace(at->parameter, static_cast<std::size_t>(at - varied.begin()))
-                      .second) {
+      } else if (!set.insert(at - varied.begin()).second) {
         issues_.push_back({place, is + "another one sets"});
       }
     }
