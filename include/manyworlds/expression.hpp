@@ -191,6 +191,8 @@ Expression parameter(Parameter of, BodyId body, int component = 0);
 Expression parameter(Parameter of, ShapeId shape, int component = 0);
 Expression parameter(Parameter of, JointId joint, int component = 0);
 Expression parameter(Parameter of, ControlId control, int component = 0);
+// Of an attractor, its index in Scene::attractors.
+Expression attractor_parameter(Parameter of, int attractor, int component = 0);
 
 // A number of this world that outlives its episodes, and is the same for the whole of one
 // (Task::levels, by name).

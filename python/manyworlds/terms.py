@@ -237,10 +237,11 @@ class Terms:
         shape: Optional[ShapeRef] = None,
         joint: Optional[JointRef] = None,
         control: Optional[ControlRef] = None,
+        attractor: Optional[int] = None,
     ) -> Expression:
         """A number of the scene as this world has it (``Scene.variations``), of what has it.
 
-        A shape that is an int is one of ``body``. ``component`` counts within the parameter's numbers.
+        A shape that is an int is one of ``body``, an attractor one of ``Scene.attractors``. ``component`` counts within the parameter's numbers.
         Raises ValueError where it is no number of what is given.
         """
         if shape is not None:
@@ -248,6 +249,8 @@ class Terms:
         for kind, ref in (("body", body), ("joint", joint), ("control", control)):
             if ref is not None:
                 return _x.parameter(parameter, kind, self._index(kind, ref), -1, component)
+        if attractor is not None:
+            return _x.parameter(parameter, "attractor", attractor, -1, component)
         return _x.parameter(parameter, "world", -1, -1, component)
 
     def _shape(self, shape: ShapeRef, body: Optional[BodyRef]) -> tuple[int, int]:

@@ -132,7 +132,7 @@ Observed observed_named(const std::string& name) {
   throw nb::value_error(("the observed number " + unknown_name(name, known)).c_str());
 }
 
-// Of what has it: "world", "body", "shape" (`body` and `shape`), "joint", "control".
+// Of what has it: "world", "body", "shape" (`body` and `shape`), "joint", "control", "attractor".
 Expression parameter_of(nb::handle parameter, const std::string& owner, int index, int shape,
                         int component) {
   const auto of = from_python<Parameter>(parameter, "the parameter");
@@ -140,6 +140,7 @@ Expression parameter_of(nb::handle parameter, const std::string& owner, int inde
   if (owner == "body") return terms::parameter(of, BodyId(index), component);
   if (owner == "shape") return terms::parameter(of, ShapeId(BodyId(index), shape), component);
   if (owner == "joint") return terms::parameter(of, JointId(index), component);
+  if (owner == "attractor") return terms::attractor_parameter(of, index, component);
   return terms::parameter(of, ControlId(index), component);
 }
 

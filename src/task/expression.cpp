@@ -192,6 +192,9 @@ Expression parameter(Parameter of, JointId joint, int component) {
 Expression parameter(Parameter of, ControlId control, int component) {
   return number_of(of, ParameterInfo::control, control.index(), -1, component);
 }
+Expression attractor_parameter(Parameter of, int attractor, int component) {
+  return number_of(of, ParameterInfo::attractor, attractor, -1, component);
+}
 
 Expression level(std::string_view name) {
   Expression::Node node;
