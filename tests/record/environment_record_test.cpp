@@ -39,6 +39,37 @@ TEST_CASE("episodes of an environment are recorded and replayed", "[fast][record
   }
 }
 
+TEST_CASE("resets of an environment are recorded with the numbers that its task sets",
+          "[fast][record][task]") {
+  const Folder folder;
+  Task task = tasks::find("Pusher")->make();
+  task.max_steps = 7;
+  const ShapeId shape(BodyId(0), 0);
+  Variation friction = vary(Parameter::friction, 0, 5, Draw::none);
+  friction.shape = shape;
+  task.scene.variations = {friction};
+  task.levels = {{"episodes", 0, terms::level("episodes") + 1}};
+  task.initial_parameters = {
+      {terms::parameter(Parameter::friction, shape),
+       terms::level("episodes") + terms::uniform("friction", Every::episode)}};
+  REQUIRE(validate(task).empty());
+  Played p(task, {.worlds = 11, .autoreset = Autoreset::same_step});
+  Recorder recorder(p.environment.batch(), folder / "run.h5", {.every = task.frame_skip});
+  const std::vector<std::uint8_t> some{1, 0, 1, 1, 0, 0, 0, 1, 1, 0, 1};
+  for (int step = 0; step < 30; ++step) {
+    p.act_at_random(step);
+    if (step == 4) p.environment.reset(some, p.observations);
+    if (step == 19) {
+      p.environment.reset(some, std::vector<std::uint64_t>(11, 77), p.observations);
+    }
+    p.step();
+  }
+  recorder.close();
+  const ReplayResult result = replay(Recording::open(folder / "run.h5"));
+  CHECK(result.compared > 0);
+  CHECK(result.different == 0);
+}
+
 TEST_CASE("a step of a task that is ended early and finished is recorded as both parts",
           "[fast][record][task]") {
   const Folder folder;

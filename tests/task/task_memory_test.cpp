@@ -273,6 +273,32 @@ TEST_CASE("a world whose numbers a task sets has the bits of a scene that has th
   }
 }
 
+TEST_CASE("a task reads and sets attractors", "[task][fast]") {
+  Task task;
+  task.scene = one_crate(Space::spatial);
+  task.scene.attractors = {{Vec3(1, 0, 0), 2}, {Vec3(0, 3, 0), 5}};
+  Variation strength = vary(Parameter::attractor_strength, 1, 10, Draw::none);
+  strength.attractor = 1;
+  task.scene.variations = {strength};
+  const Expression of = terms::attractor_parameter(Parameter::attractor_strength, 1);
+  task.levels = {{"pull", terms::uniform("pull", Every::episode, 2, 9)}};
+  task.initial_parameters = {{of, terms::level("pull")}};
+  task.observations = {{"own", of},
+                       {"fixed", terms::attractor_parameter(Parameter::attractor_position, 0, 0)}};
+  REQUIRE(validate(task).empty());
+  Played p(task, {.worlds = 3, .precision = Precision::f64});
+  for (int w = 0; w < 3; ++w) {
+    const std::size_t at = Played::size(2 * w);
+    CHECK(p.observations[at] ==
+          static_cast<float>(numbers(p.environment.batch(), Parameter::attractor_strength, w)[1]));
+    CHECK((p.observations[at] >= 2 && p.observations[at + 1] == 1));
+  }
+  CHECK(p.observations[0] != p.observations[2]);
+  task.observations[0].value = terms::attractor_parameter(Parameter::attractor_strength, 2);
+  REQUIRE(validate(task).size() == 1);
+  CHECK_THAT(validate(task)[0].message, Catch::Contains("the attractor must be 0 to 1"));
+}
+
 TEST_CASE("what is wrong with delays, levels and initial parameters is said", "[task][fast]") {
   CHECK_THROWS_WITH(terms::delayed(1, -1), "delayed: steps is -1, must be 0 to 256");
   CHECK_THROWS_WITH(terms::delayed(1, 2, 257), "delayed: max_steps is 257, must be 0 to 256");
@@ -309,6 +335,16 @@ TEST_CASE("what is wrong with delays, levels and initial parameters is said", "[
       "levels alone",
       "initial parameter 4: is of mass of body 0, which another one sets"};
   CHECK(found == expected);
+}
+
+TEST_CASE("a snapshot of a task that goes on otherwise is refused", "[task][fast]") {
+  Task task = stairs(), other = task, sets = task;
+  other.levels[0].next = terms::level("step") + 2;
+  sets.initial_parameters[0].value = 2 * terms::level("step");
+  const EnvironmentSnapshot saved = Environment(task, {.worlds = 2}).save();
+  Environment(task, {.worlds = 2}).restore(saved);
+  CHECK_THROWS_AS(Environment(other, {.worlds = 2}).restore(saved), SnapshotError);
+  CHECK_THROWS_AS(Environment(sets, {.worlds = 2}).restore(saved), SnapshotError);
 }
 
 TEST_CASE("levels are plain values, too", "[task][fast]") {
