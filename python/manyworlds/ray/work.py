@@ -94,7 +94,7 @@ class Report:
     """What came of a call in some worlds, in the order of worlds.
 
     21 bytes a world: of a block of 4096 it stays below the 100 kB up to which Ray sends what a call returns
-    with its answer; what is larger goes through the object store, which takes 2 ms more.
+    with its answer; what is larger goes through the object store.
     """
 
     hashes: NDArray[np.uint64]  # (worlds,), of each world's state
