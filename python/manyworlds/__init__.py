@@ -51,7 +51,7 @@ from .scene import (
 )
 from .shapes import *  # noqa: F403
 from .surfaces import *  # noqa: F403
-from .tasks import Action, Info, Level, Observation, Reward, InitialParameter, Task, TaskError
+from .tasks import Action, Info, InitialParameter, Level, Observation, Reward, Task, TaskError
 from .state_view import View
 
 from . import pickling as _pickling  # of the values above; isort: skip
@@ -78,6 +78,7 @@ __all__ = [
     "Field",
     "FilmReport",
     "Info",
+    "InitialParameter",
     "Issue",
     "Jitter",
     "JointId",
@@ -85,9 +86,9 @@ __all__ = [
     "Keyframe",
     "KeyframeId",
     "Kind",
-    "MassProperties",
     "Level",
     "LiveView",
+    "MassProperties",
     "Medium",
     "Observation",
     "Options",
@@ -101,7 +102,6 @@ __all__ = [
     "STEP_CONTACT",
     "Scene",
     "SceneError",
-    "InitialParameter",
     "ShapeId",
     "Site",
     "SiteId",

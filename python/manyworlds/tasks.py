@@ -27,6 +27,8 @@ from .terms import Terms as Terms
 
 Value = Union[Expression, float]  # numbers are expressions
 
+_MAX_DELAY = 256  # steps, as in the library
+
 
 def sin(a: Value) -> Expression:
     """Sine of rad, of up to 1e5 rad."""
@@ -131,10 +133,10 @@ def delayed(value: Value, steps: Value, max_steps: Optional[int] = None) -> Expr
     TypeError for an expression without ``max_steps``.
     """
     if max_steps is not None:
-        return _x.delayed_by(value, steps, arrays.integer(max_steps, "max_steps", 0, 256))
+        return _x.delayed_by(value, steps, arrays.integer(max_steps, "max_steps", 0, _MAX_DELAY))
     if isinstance(steps, Expression):
         raise TypeError("steps is an expression; expected `max_steps`, too: how many steps are remembered")
-    return _x.delayed(value, arrays.integer(steps, "steps", 0, 256))
+    return _x.delayed(value, arrays.integer(steps, "steps", 0, _MAX_DELAY))
 
 
 def held(condition: Value) -> Expression:
