@@ -57,8 +57,8 @@ class WorldsBase {
   virtual double number(Parameter parameter, int world, std::size_t item) const = 0;  // of these
   virtual std::string check(Parameter parameter, int world, const double* in) const = 0;
   virtual void write(Parameter parameter, int world, const double* in) = 0;
-  // One of them that varies and is not drawn, kept within its range, from the world's next reset on;
-  // where it is not a number, the scene's own.
+  // One of them that varies and is not drawn, kept within its range, from the world's next reset
+  // on; where it is not a number, the scene's own.
   virtual void set_next(Parameter parameter, int world, std::size_t item, double value) = 0;
 
   // A world as bytes (snapshot_format.hpp), and what its next reset draws from.
