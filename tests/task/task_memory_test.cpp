@@ -286,7 +286,7 @@ TEST_CASE("a task reads and sets attractors", "[task][fast]") {
   task.observations = {{"own", of},
                        {"fixed", terms::attractor_parameter(Parameter::attractor_position, 0, 0)}};
   REQUIRE(validate(task).empty());
-  Played p(task, {.worlds = 3, .precision = Precision::f64});
+  Played p(task, {.worlds = 3});
   for (int w = 0; w < 3; ++w) {
     const std::size_t at = Played::size(2 * w);
     CHECK(p.observations[at] ==
