@@ -1,6 +1,7 @@
 // Lists of candidates: dense (a block is one pair in every lane, some lanes idle) or rows (each
 // lane has its own pairs, packed). Both keep the order of the keys inside a lane, so both give the
 // solver the same rows in the same order.
+#include "kernels/lane/ints.hpp"
 #include "kernels/work/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -14,6 +15,10 @@ constexpr float kDenseOccupancy = 0.45f;
 #else
 constexpr float kDenseOccupancy = 0.55f;
 #endif
+// Of so few blocks, dense ones are faster as well where rows would be more than this share of them:
+// what packing saves is less than moving velocities lane by lane costs.
+constexpr unsigned kFewBlocks = 16;
+constexpr float kPackedShare = 0.8f;
 
 std::int32_t dummy_code(const Constants& t, bool fixed) {
   return (fixed ? 0 : t.colliders) | (t.colliders << 16);
@@ -51,10 +56,6 @@ class RowPacker {
   int count_[kLanes];
 };
 
-}  // namespace
-
-namespace {
-
 // Drops the last candidates of lanes that have too many: the same ones in both layouts.
 void limit_candidates(const Constants& t, Work& w, int at) {
   const auto& pairs = t.pair_class[at];
@@ -71,6 +72,33 @@ void limit_candidates(const Constants& t, Work& w, int at) {
       }
     }
   }
+}
+
+// As many as the lists take in rows: the candidates of the lane that has most.
+unsigned blocks_in_rows(const Constants& t, const Work& w) {
+  unsigned out = 0;
+  for (int c = 0; c < t.classes; ++c) {
+    const std::uint32_t* masks = w.hit_masks + first_hit(t, w, c);
+    Ints count(0);
+    for (int i = 0; i < w.hit_count[c]; ++i) count = count + select(masks[i], Ints(1), Ints(0));
+    alignas(64) std::int32_t of_lane[kLanes];
+    count.store(of_lane);
+    std::int32_t most = 0;
+    for (const std::int32_t n : of_lane) most = n > most ? n : most;
+    out += static_cast<unsigned>(most);
+  }
+  return out;
+}
+
+bool dense_is_faster(const Constants& t, const Work& w, unsigned all, unsigned active) {
+  // Parts of joints are blocks of which every lane is active.
+  const auto parts = static_cast<unsigned>(t.parts), dense = all + parts;
+  if (static_cast<float>(active + parts * kLanes) >=
+      kDenseOccupancy * static_cast<float>(dense * kLanes)) {
+    return true;
+  }
+  return all <= kFewBlocks && static_cast<float>(blocks_in_rows(t, w) + parts) >=
+                                  kPackedShare * static_cast<float>(dense);
 }
 
 }  // namespace
@@ -97,12 +125,7 @@ kernels::Layout choose_layout(const Constants& t, const Group&, kernels::Scratch
   // Rows of trees are of one pair of shapes in all lanes, and there is room for all of them.
   if (t.tree.links > 0) wish = kernels::Layout::dense, fits = true;
   w.dense = wish == kernels::Layout::dense;
-  if (wish == kernels::Layout::automatic) {
-    // Parts of joints are blocks of which every lane is active.
-    const auto parts = static_cast<unsigned>(t.parts);
-    w.dense = static_cast<float>(active + parts * kLanes) >=
-              kDenseOccupancy * static_cast<float>((all + parts) * kLanes);
-  }
+  if (wish == kernels::Layout::automatic) w.dense = dense_is_faster(t, w, all, active);
   w.dense = w.dense && fits;
   for (int i = 0; !w.dense && i < t.bodies * kLanes; ++i) w.met[i] = 0;
   return w.dense ? kernels::Layout::dense : kernels::Layout::rows;
