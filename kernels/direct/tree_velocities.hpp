@@ -108,6 +108,7 @@ MW_INLINE TreeSide<S> load_tree_side(const Work& w, const std::int32_t* offset, 
 template <class S, class A, bool kDense>
 class TreeVelocities {
  public:
+  static constexpr bool kIsDense = kDense;
   std::conditional_t<A::kMoves, TreeVelocity<S>, Still> a;
   TreeVelocity<S> b;
 

@@ -189,8 +189,9 @@ MW_INLINE Float pull_of(Float error, Float rate, Float cap) {
 template <class V>
 MW_INLINE V pull_of(V error, Float rate, Float cap) {
   const V pull = error * rate;
-  const Float length = sqrt(dot(pull, pull));
-  return pull * (cap / max(length, cap));
+  const Float square = dot(pull, pull);
+  if (all(surely_within(square, cap))) return pull;  // what else is the same, and takes long
+  return pull * (cap / max(sqrt(square), cap));
 }
 // Of a joint that begins apart by less than `slack`: what opens beyond that closes as fast as ever.
 template <class V>

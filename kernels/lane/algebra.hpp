@@ -6,6 +6,12 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
+// Lanes in which a vector of this squared length is no longer than `bound`, however the root of it
+// is rounded. False where either leaves the range in which that can be told from the squares.
+MW_INLINE Mask surely_within(Float square, Float bound) {
+  return fma(square, Real(1.001), Real(1e-35)) < bound * bound;
+}
+
 // ---- plane -------------------------------------------------------------------------------------
 
 struct Vec2 {

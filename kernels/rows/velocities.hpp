@@ -47,6 +47,7 @@ MW_INLINE SideVelocities<S, A> load_sides(const Real* array, const RowBodies& s)
 // The velocities of a block, loaded once and stored once.
 template <class S, class A, bool kDense>
 struct RowVelocities : SideVelocities<S, A> {
+  static constexpr bool kIsDense = kDense;
   using SideVelocities<S, A>::a, SideVelocities<S, A>::b;
 
   MW_INLINE RowVelocities(const Work& w, const RowBodies& s)
