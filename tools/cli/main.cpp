@@ -409,10 +409,9 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds report throughput --scenes stack10 --json\n"
       "  manyworlds report throughput --peers build/peers/bin --peers-only\n"
       "\n"
-      "Peers step the same standard scenes alternately with manyworlds, in some 30 minutes, or "
-      "two\n"
-      "with --quick; the fastest of each scene comes first. A peer that fails is a line of the\n"
-      "report.");
+      "Peers step the same standard scenes alternately with manyworlds, in up to an hour, or two\n"
+      "minutes with --quick; the fastest of each scene comes first. A peer that fails is a line\n"
+      "of the report.");
   throughput->callback([&] { code = report_throughput_command(all.report); });
   add_report_page(*command, all.report_page, code);
 }
