@@ -98,7 +98,7 @@ TypicalWorlds::TypicalWorlds(const Plan& plan, const Kernels& kernels, int steps
     for (int l = 0; l < kernels::kLists; ++l) {
       if (!view.cache[l].keys) continue;
       const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
-      save(saved, view.cache[l].rows, lanes * (t.capacity[l] + 2) * row);
+      save(saved, view.cache[l].rows, lanes * (t.capacity[l] + kernels::kFirstRow) * row);
       save(saved, view.cache[l].keys, lanes * (t.capacity[l] + 1));
     }
     step(g, 1, kernels::Layout::automatic);

@@ -180,7 +180,7 @@ void begin(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     for (int l = 0; l < kLanes; ++l) w.lane_count[list][l] = w.cursor[list][l] = 0;
     const std::int32_t* keys = g.cache[list].keys;
     for (int l = 0; keys && l < kLanes; ++l) {
-      w.key_at_cursor[list][l] = keys[l * (t.capacity[list] + 1)];
+      w.key_at_cursor[list][l] = keys[l];
     }
   }
   w.overflow = w.partly_asleep = 0;

@@ -7,10 +7,14 @@ namespace manyworlds::kernels {
 
 inline constexpr int kEndOfKeys = 0x7fffffff;
 
+// Rows of a lane's stored impulses: one that stays zero, one for what nobody reads, then those of
+// its manifolds. What is used of a group is together, however much there is room for.
+inline constexpr int kZeroRow = 0, kSpillRow = 1, kFirstRow = 2;
+
 template <class Real>
 struct ContactCache {
-  Real* rows;  // [lane][capacity + 2][cache row]; row `capacity` stays zero, the last is spill
-  std::int32_t* keys;  // [lane][capacity + 1], ascending, closed by kEndOfKeys
+  Real* rows;          // [kFirstRow + capacity][lane][cache row]
+  std::int32_t* keys;  // [capacity + 1][lane]; of a lane ascending, closed by kEndOfKeys
 };
 
 template <class Real>

@@ -140,6 +140,20 @@ MW_INLINE Float gather(const Real* from, Ints at) {
 #endif
 }
 
+// to[at] = values in the lanes of the mask.
+MW_INLINE void scatter(Ints values, std::uint32_t mask, std::int32_t* to, Ints at) {
+#if defined(MW_ISA_AVX512)
+  _mm512_mask_i32scatter_epi32(to, static_cast<__mmask16>(mask), at.v, values.v, 4);
+#else
+  alignas(64) std::int32_t value[kLanes], place[kLanes];
+  values.store(value), at.store(place);
+  for (; mask != 0; mask &= mask - 1) {
+    const int l = __builtin_ctz(mask);
+    to[place[l]] = value[l];
+  }
+#endif
+}
+
 // A number of items of which each lane has its own, [item][..., number, ...][lane]: of item 0 it is
 // `of_first`.
 template <class Item>

@@ -13,7 +13,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 class CacheWriter {
  public:
   CacheWriter(const Constants& t, const Group& g, const Work& w) : t_(t), g_(g), w_(w) {
-    for (auto& list : count_) {
+    for (auto& list : place_) {
       for (auto& n : list) n = 0;
     }
   }
@@ -21,33 +21,28 @@ class CacheWriter {
   template <class S, int N>
   void put(const ContactBlock<S, N>& s, ListId list) {
     const int id = static_cast<int>(list);
-    const int capacity = t_.capacity[id], row = kernels::cache_row_size(t_.dimension, list);
+    const int row = kernels::cache_row_size(t_.dimension, list);
     const std::uint32_t mask = s.mask & ~w_.frozen;
+    const Ints lanes = Ints::lanes(), place = Ints::load(place_[id]);
+    // Lanes without this contact write to a row that nobody reads.
+    const Ints to =
+        select(mask, place + Ints(kernels::kFirstRow * kLanes), Ints(kernels::kSpillRow * kLanes));
     alignas(64) std::int32_t o[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      // Lanes without this contact write to an unused row.
-      int at = capacity + 1;
-      if ((mask >> l) & 1u) {
-        at = count_[id][l]++;
-        g_.cache[id].keys[l * (capacity + 1) + at] = s.key[l];
-      }
-      o[l] = (l * (capacity + 2) + at) * row;
-    }
+    ((to + lanes) * Ints(row)).store(o);
+    scatter(Ints::load(s.key), mask, g_.cache[id].keys, place + lanes);
+    (place + select(mask, Ints(kLanes), Ints(0))).store(place_[id]);
     write(s, g_.cache[id].rows, o);
   }
 
   // Ends every lane's keys, after merging in those of sleeping pairs.
   void close() {
     for (int id = 0; id < kLists; ++id) {
-      const int capacity = t_.capacity[id];
-      if (capacity == 0) continue;
+      if (t_.capacity[id] == 0) continue;
       if ((w_.partly_asleep | w_.untouched) != 0) {
         close_sleeping_lanes(id);
         continue;
       }
-      for (int l = 0; l < kLanes; ++l) {
-        g_.cache[id].keys[l * (capacity + 1) + count_[id][l]] = kernels::kEndOfKeys;
-      }
+      for (int l = 0; l < kLanes; ++l) end(id, l);
     }
   }
 
@@ -56,25 +51,26 @@ class CacheWriter {
     for (int l = 0; l < kLanes; ++l) {
       if ((w_.untouched >> l) & 1u) continue;
       if ((w_.partly_asleep >> l) & 1u) merge_kept(id, l);
-      g_.cache[id].keys[l * (t_.capacity[id] + 1) + count_[id][l]] = kernels::kEndOfKeys;
+      end(id, l);
     }
   }
+  void end(int id, int l) { g_.cache[id].keys[place_[id][l] + l] = kernels::kEndOfKeys; }
 
   // Two ascending lists into one, from the back, in the place of the first.
   void merge_kept(int id, int l) {
     const int capacity = t_.capacity[id];
     const int row = kernels::cache_row_size(t_.dimension, static_cast<ListId>(id));
-    std::int32_t* keys = g_.cache[id].keys + l * (capacity + 1);
-    Real* rows = g_.cache[id].rows + l * (capacity + 2) * row;
+    std::int32_t* keys = g_.cache[id].keys + l;
+    Real* rows = g_.cache[id].rows + (kernels::kFirstRow * kLanes + l) * row;
     const std::int32_t* kept_keys = w_.kept_keys[id] + l * capacity;
     const Real* kept_rows = w_.kept_rows[id] + l * capacity * row;
-    int fresh = count_[id][l], kept = w_.kept[id][l];
-    count_[id][l] = fresh + kept;
+    int fresh = place_[id][l] / kLanes, kept = w_.kept[id][l];
+    place_[id][l] += kept * kLanes;
     while (kept > 0) {
-      const bool from_fresh = fresh > 0 && keys[fresh - 1] > kept_keys[kept - 1];
-      const int to = fresh + kept - 1;
-      const Real* from = from_fresh ? rows + --fresh * row : kept_rows + --kept * row;
-      keys[to] = from_fresh ? keys[fresh] : kept_keys[kept];
+      const bool from_fresh = fresh > 0 && keys[(fresh - 1) * kLanes] > kept_keys[kept - 1];
+      const int to = (fresh + kept - 1) * kLanes;
+      const Real* from = from_fresh ? rows + --fresh * kLanes * row : kept_rows + --kept * row;
+      keys[to] = from_fresh ? keys[fresh * kLanes] : kept_keys[kept];
       for (int i = 0; i < row; ++i) rows[to * row + i] = from[i];
     }
   }
@@ -118,7 +114,7 @@ class CacheWriter {
   const Constants& t_;
   const Group& g_;
   const Work& w_;
-  std::int32_t count_[kLists][kLanes];
+  alignas(64) std::int32_t place_[kLists][kLanes];  // manifolds so far, times kLanes
 };
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

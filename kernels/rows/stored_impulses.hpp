@@ -12,19 +12,19 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 inline void find_stored(const Constants& t, const Group& g, Work& w, ListId list,
                         std::uint32_t mask, const std::int32_t* key, std::int32_t* offset) {
   const int id = static_cast<int>(list);
-  const std::int32_t capacity = t.capacity[id];
   const std::int32_t* keys = g.cache[id].keys;
-  const Ints wanted = Ints::load(key), first = Ints::lanes() * Ints(capacity + 1);
+  const Ints wanted = Ints::load(key), lanes = Ints::lanes();
   Ints at = Ints::load(w.cursor[id]), found = Ints::load(w.key_at_cursor[id]);
   for (std::uint32_t behind; (behind = (found < wanted) & mask) != 0;) {
-    at = at + select(behind, Ints(1), Ints(0));
-    found = gather(keys, first + at);
+    at = at + select(behind, Ints(kLanes), Ints(0));
+    found = gather(keys, lanes + at);
   }
   at.store(w.cursor[id]);
   found.store(w.key_at_cursor[id]);
-  const Ints row = select((found == wanted) & mask, at, Ints(capacity));
+  const Ints row = select((found == wanted) & mask, at + Ints(kernels::kFirstRow * kLanes),
+                          Ints(kernels::kZeroRow * kLanes));
   const Ints size(kernels::cache_row_size(t.dimension, list));
-  ((Ints::lanes() * Ints(capacity + 2) + row) * size).store(offset);
+  ((row + lanes) * size).store(offset);
 }
 
 // Drops the lanes whose list is full and counts the others.

@@ -243,7 +243,7 @@ struct Work {
   Real* loads;                              // [breakable joint] impulses of the step so far
   std::int32_t* reached;                    // [body] by a joint that broke
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
-  std::int32_t cursor[kLists][kLanes];      // where matching stands in the stored keys
+  std::int32_t cursor[kLists][kLanes];      // kLanes times where matching stands in the stored keys
   std::int32_t key_at_cursor[kLists][kLanes];
   // sleep
   std::uint32_t frozen;         // lanes that were frozen when the step began

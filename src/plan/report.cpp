@@ -1,4 +1,5 @@
 // The plan for people: what is in, what is out and why, and what it takes.
+#include "kernels/data/group.hpp"
 #include "manyworlds/fields.hpp"
 #include "src/plan/state_layout.hpp"
 
@@ -36,7 +37,7 @@ PlanReport describe(const PlanData& plan) {
     const int capacity = plan.capacity[static_cast<std::size_t>(l)];
     if (capacity == 0) continue;
     const int row = kernels::cache_row_size(plan.dimension(), static_cast<kernels::ListId>(l));
-    const int bytes = (capacity + 2) * row * 4 + (capacity + 1) * 4;
+    const int bytes = (capacity + kernels::kFirstRow) * row * 4 + (capacity + 1) * 4;
     out.arrays.push_back({kLists[l],
                           "[" + std::to_string(capacity) + "][" + std::to_string(row) + "] + keys",
                           static_cast<std::size_t>(bytes)});

@@ -19,7 +19,8 @@ Storage<Real>::Storage(const kernels::SceneConstants<Real>& tables, int groups, 
     const std::size_t capacity = index(t.capacity[l]);
     if (capacity == 0) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
-    cache_rows_[l] = AlignedBuffer<Real>(index(lane_count()) * (capacity + 2) * index(row));
+    cache_rows_[l] =
+        AlignedBuffer<Real>(index(lane_count()) * (capacity + kernels::kFirstRow) * index(row));
     cache_keys_[l] = AlignedBuffer<std::int32_t>(index(lane_count()) * (capacity + 1));
   }
   if (t.has_joints) {
@@ -64,7 +65,8 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
     const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
-    view.cache[l].rows = cache_rows_[l].data() + at * lanes * index(t.capacity[l] + 2) * index(row);
+    view.cache[l].rows =
+        cache_rows_[l].data() + at * lanes * index(t.capacity[l] + kernels::kFirstRow) * index(row);
     view.cache[l].keys = cache_keys_[l].data() + at * lanes * index(t.capacity[l] + 1);
   }
   if (!disabled_joints_.empty())
@@ -115,10 +117,25 @@ Real& Storage<Real>::number(int lane_index, int row) const {
 }
 
 template <class Real>
+std::int32_t* Storage<Real>::keys_of(int lane_index, std::size_t list) const {
+  const std::size_t rows = index(tables_.capacity[list] + 1);
+  return cache_keys_[list].data() + group_of(lane_index) * rows * index(lanes_) +
+         lane_of(lane_index);
+}
+
+template <class Real>
+Real* Storage<Real>::rows_of(int lane_index, std::size_t list) const {
+  const std::size_t rows = index(tables_.capacity[list] + kernels::kFirstRow);
+  const std::size_t before = group_of(lane_index) * rows + kernels::kFirstRow;
+  const auto size = kernels::cache_row_size(tables_.dimension, static_cast<kernels::ListId>(list));
+  return cache_rows_[list].data() + (before * index(lanes_) + lane_of(lane_index)) * index(size);
+}
+
+template <class Real>
 void Storage<Real>::clear_contacts(int lane_index) {
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
-    cache_keys_[l][index(lane_index) * index(tables_.capacity[l] + 1)] = kernels::kEndOfKeys;
+    *keys_of(lane_index, l) = kernels::kEndOfKeys;
   }
 }
 
@@ -142,17 +159,18 @@ void Storage<Real>::keep_contacts(int lane_index, Keep keep) {
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
     const auto list = static_cast<kernels::ListId>(l);
-    const std::size_t capacity = index(t.capacity[l]);
-    const std::size_t row = index(kernels::cache_row_size(t.dimension, list));
-    std::int32_t* keys = cache_keys_[l].data() + index(lane_index) * (capacity + 1);
-    Real* rows = cache_rows_[l].data() + index(lane_index) * (capacity + 2) * row;
+    const std::size_t row = index(kernels::cache_row_size(t.dimension, list)),
+                      lanes = index(lanes_);
+    std::int32_t* keys = keys_of(lane_index, l);
+    Real* rows = rows_of(lane_index, l);
     std::size_t kept = 0;
-    for (std::size_t i = 0; keys[i] != kernels::kEndOfKeys; ++i) {
+    for (std::size_t i = 0; keys[i] != kernels::kEndOfKeys; i += lanes) {
       const kernels::PairOfKey pair = kernels::pair_of_key(t, keys[i]);
       const int a = is_fixed(list) ? -1 : t.collider_body[pair.a];
       if (!keep(a, t.collider_body[pair.b])) continue;
       std::copy_n(rows + i * row, row, rows + kept * row);
-      keys[kept++] = keys[i];
+      keys[kept] = keys[i];
+      kept += lanes;
     }
     keys[kept] = kernels::kEndOfKeys;
   }

@@ -123,6 +123,9 @@ class Storage {
   void for_each_part(int a, int b, Visit&& visit) const;
   void find_idle_in(std::size_t group);
   void clear_part(int lane_index, int part);  // of a joint, its impulses
+  // A lane's keys, and the rows of its manifolds; the next one is as many on as there are lanes.
+  std::int32_t* keys_of(int lane_index, std::size_t list) const;
+  Real* rows_of(int lane_index, std::size_t list) const;
   template <class Keep>
   void keep_contacts(int lane_index, Keep keep);  // keep(body a or -1, body b)
 

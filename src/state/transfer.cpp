@@ -148,19 +148,18 @@ void Storage<Real>::for_each_part(int a, int b, Visit&& visit) const {
     };
     visit.numbers(part, at(a), at(b), per_world, lanes);
   };
-  const auto in_row = [&](Part part, auto& buffer, std::size_t stride, std::size_t count) {
-    visit.numbers(part, buffer.data() + index(a) * stride, buffer.data() + index(b) * stride, count,
-                  std::size_t{1});
-  };
   in_lanes(Part::state, state_, index(t.state_size));
-  in_row(Part::status, status_, 1, 1);
+  visit.numbers(Part::status, status_.data() + a, status_.data() + b, 1, std::size_t{1});
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
     const std::size_t capacity = index(t.capacity[l]);
     const std::size_t row =
         index(kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l)));
-    in_row(Part::keys, cache_keys_[l], capacity + 1, capacity + 1);
-    in_row(Part::rows, cache_rows_[l], (capacity + 2) * row, capacity * row);
+    in_lanes(Part::keys, cache_keys_[l], capacity + 1);
+    Real *rows_a = rows_of(a, l), *rows_b = rows_of(b, l);
+    for (std::size_t i = 0; i < capacity; ++i, rows_a += lanes * row, rows_b += lanes * row) {
+      visit.numbers(Part::rows, rows_a, rows_b, row, std::size_t{1});
+    }
   }
   in_lanes(Part::joints, joint_impulse_, index(t.parts) * kernels::kPartImpulses);
   in_lanes(Part::controls, control_, index(t.controls));
