@@ -256,6 +256,10 @@ void carve(const Constants& t, Work& w, Carver& c) {
   c.take(w.pose_rows, count(t.row_block * lanes));
   c.take(w.bounds, count(t.colliders * 2 * dim * lanes));
   c.take(w.beyond, count(t.colliders * lanes));
+  if (drops_distant(t)) {
+    c.take(w.travel, count(t.colliders * lanes));
+    c.take(w.facing, count(t.colliders * 2 * lanes));
+  }
   const auto [hits, longest] = t.sparse ? room_of_sparse(t) : room_of_tables(t);
   c.take(w.hits, count(hits));
   c.take(w.hit_masks, count(hits));

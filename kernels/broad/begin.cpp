@@ -44,6 +44,7 @@ MW_INLINE Float margin_of(const Constants& t, const Group& g, Work& w, Float spe
     const Float pull = acceleration_of_loads(t, g, t.collider[index].body);
     travel = fma(pull, Float(t.dt * t.dt), travel);
   }
+  if (w.travel) travel.store(w.travel + index * kLanes);
   const Float margin = clamp(travel, Float(t.half_margin), constants_of_shape(g, index).margin_cap);
   max(travel - margin, Float(Real(0))).store(w.beyond + index * kLanes);
   return margin;
@@ -124,6 +125,10 @@ void planar_collider(const Constants& t, const Group& g, Work& w, int index) {
     speed = fma(abs(omega), constants_of_body(g, c.body).radius, speed);
   }
   const Float margin = margin_of(t, g, w, speed, index);
+  if (w.facing) {
+    q.c.store(w.facing + index * 2 * kLanes);
+    q.s.store(w.facing + (index * 2 + 1) * kLanes);
+  }
   const auto* polygon = g.constants.polygon ? &constants_of_polygon(g, index) : nullptr;
   put_bounds(w, index,
              put_shape(PlanarPlacement{c, constants, polygon, p, q, margin, w.pose_rows, o}));

@@ -103,7 +103,7 @@ bool dense_is_faster(const Constants& t, const Work& w, unsigned all, unsigned a
 
 }  // namespace
 
-kernels::Layout choose_layout(const Constants& t, const Group&, kernels::Scratch* scratch,
+kernels::Layout choose_layout(const Constants& t, const Group& g, kernels::Scratch* scratch,
                               kernels::Layout wish) {
   Work& w = work_of(scratch);
   unsigned blocks[kLists] = {}, all = 0, active = 0;
@@ -127,8 +127,10 @@ kernels::Layout choose_layout(const Constants& t, const Group&, kernels::Scratch
   w.dense = wish == kernels::Layout::dense;
   if (wish == kernels::Layout::automatic) w.dense = dense_is_faster(t, w, all, active);
   w.dense = w.dense && fits;
-  for (int i = 0; !w.dense && i < t.bodies * kLanes; ++i) w.met[i] = 0;
-  return w.dense ? kernels::Layout::dense : kernels::Layout::rows;
+  if (w.dense) return kernels::Layout::dense;
+  drop_distant(t, g, w);
+  for (int i = 0; i < t.bodies * kLanes; ++i) w.met[i] = 0;
+  return kernels::Layout::rows;
 }
 
 void list_candidates(const Constants& t, Work& w) {

@@ -43,6 +43,23 @@ MW_INLINE std::int32_t code_of_hit(const Constants& t, const Work& w, int class_
   return c.a[place] | (c.b[place] << 16);
 }
 
+// A rectangle and another or a circle, both of which move.
+MW_INLINE bool is_rectangle_pair(const kernels::PairClass<Real>& c) {
+  using K = kernels::ShapeKind;
+  return !is_fixed(c.list) && shape_a(c.kind) == K::rectangle &&
+         (shape_b(c.kind) == K::rectangle || shape_b(c.kind) == K::circle);
+}
+// Whether their distance may be asked. With sleep, what bounds take for near hangs together.
+MW_INLINE bool drops_distant(const Constants& t) {
+  bool has = false;
+  for (int i = 0; !t.sparse && !t.has_sleep && i < t.classes; ++i) {
+    has |= is_rectangle_pair(t.pair_class[i]);
+  }
+  return has;
+}
+// Takes lanes out of the hits of such pairs whose shapes stay apart in the step.
+void drop_distant(const Constants& t, const Group& g, Work& w);
+
 // Fills w.candidates with the hits of the class at work.
 void list_candidates(const Constants& t, Work& w);
 // Keeps of `from` the lanes in `keep[block]`, in `to`, with their axis.

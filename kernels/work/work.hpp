@@ -225,7 +225,10 @@ struct Work {
   Real* pose_rows;  // [lane][row_block], the last kDummyRow of a block are the dummy's
   Real* body_rows;  // [lane][bodies + 1][body_row], see body_row_size
   Real* bounds;     // [collider][centre dim, half extent dim][lane], margin included
-  Real* beyond;     // [collider][lane], how much farther its body may move than the margin's cap
+  // Where drop_distant has work (work/stages.hpp), else nullptr:
+  Real* travel;  // [collider][lane], how far any of its points may move in the step, m
+  Real* facing;  // [collider][cos, sin][lane], its orientation for the contacts of this step
+  Real* beyond;  // [collider][lane], how much farther its body may move than the margin's cap
   // broad phase
   std::int32_t* hits;        // [key] candidate index within its class, compacted per class
   std::uint32_t* hit_masks;  // [key]
