@@ -256,7 +256,7 @@ void carve(const Constants& t, Work& w, Carver& c) {
   c.take(w.pose_rows, count(t.row_block * lanes));
   c.take(w.bounds, count(t.colliders * 2 * dim * lanes));
   c.take(w.beyond, count(t.colliders * lanes));
-  if (drops_distant(t)) {
+  if (can_drop_distant(t)) {
     c.take(w.travel, count(t.colliders * lanes));
     c.take(w.facing, count(t.colliders * 2 * lanes));
   }

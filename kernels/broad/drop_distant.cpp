@@ -1,14 +1,15 @@
 // drop_distant: what the bounds of rectangles take for near and is not.
 //
-// A rectangle at an angle fills half of its bounds: of the pairs of rectangles that bounds take for
-// near in a pile, a third stay apart in the step (bin2d). In dense blocks such a lane idles as
-// others do; in rows it takes a place that another pair could have. So in rows the distance itself
-// is asked before candidates are packed.
+// A rectangle at an angle fills half of its bounds, and much of what those take for near in a pile
+// stays apart in the step. In dense blocks such a lane idles as others do; in rows it takes a place
+// that another pair could have. So in rows the distance itself is asked before candidates are
+// packed.
 //
 // Both layouts have the same rows, since no pair is dropped that could have one
 // (rows/approach.hpp): a point has a row if its separation is less than the margin and what both
 // sides approach each other by in the step, at most their travel. Poses are up to half a step
 // ahead, which is at most half of the travel again.
+#include "kernels/shape/rectangle.hpp"
 #include "kernels/work/constants.hpp"
 #include "kernels/work/stages.hpp"
 
@@ -16,46 +17,31 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 namespace {
 
-// Of a rectangle or circle, in all lanes.
-struct Outline {
-  Vec2 centre;
-  Rot2 facing;
-  Vec2 half;
-  Float radius, travel;
+MW_INLINE Vec2 centre_of(const Work& w, int shape) {
+  return load_vec2(w.bounds + shape * 4 * kLanes);
+}
+MW_INLINE RectanglePose rectangle(const Work& w, const Group& g, int shape) {
+  const auto& half = constants_of_shape(g, shape).half;
+  return {centre_of(w, shape), load_rot2(w.facing + shape * 2 * kLanes), {half[0], half[1]}};
+}
 
-  MW_INLINE Outline(const Work& w, const Group& g, int shape)
-      : centre(load_vec2(w.bounds + shape * 4 * kLanes)),
-        facing(load_rot2(w.facing + shape * 2 * kLanes)),
-        half{constants_of_shape(g, shape).half[0], constants_of_shape(g, shape).half[1]},
-        radius(constants_of_shape(g, shape).radius),
-        travel(Float::load(w.travel + shape * kLanes)) {}
-};
-
-// Shapes that are farther apart have no row, m. Rounding loses a few units in the last place of
-// `apart`, the way between their centres.
-MW_INLINE Float reach_of(const Constants& t, const Outline& a, const Outline& b, Vec2 apart) {
+// Shapes that are farther apart have no row, m. Rounding loses a few units in the last place of the
+// way between their centres.
+MW_INLINE Float reach_of(const Constants& t, const Work& w, int a, int b) {
+  const Vec2 apart = centre_of(w, b) - centre_of(w, a);
   const Float slack = (abs(apart.x) + abs(apart.y)) * Float(Real(1e-5));
-  return fma(a.travel + b.travel, Float(Real(1.5)), Float(t.margin)) + slack;
+  const Float travel = Float::load(w.travel + a * kLanes) + Float::load(w.travel + b * kLanes);
+  return fma(travel, Float(Real(1.5)), Float(t.margin)) + slack;
 }
 
-MW_INLINE Mask may_touch_circle(const Constants& t, const Outline& a, const Outline& b) {
-  const Float zero(Real(0));
-  const Vec2 d = b.centre - a.centre, local = rotate_inverse(a.facing, d);
-  const Vec2 out{max(abs(local.x) - a.half.x, zero), max(abs(local.y) - a.half.y, zero)};
-  const Float reach = reach_of(t, a, b, d) + b.radius;
-  return dot(out, out) < reach * reach;
+MW_INLINE Mask may_touch_circle(const Constants& t, const Group& g, const Work& w, int a, int b) {
+  const Float reach = reach_of(t, w, a, b) + Float(constants_of_shape(g, b).radius);
+  return distance2_from(rectangle(w, g, a), centre_of(w, b)) < reach * reach;
 }
-
-MW_INLINE Mask may_touch_rectangle(const Constants& t, const Outline& a, const Outline& b) {
-  const Vec2 d = b.centre - a.centre;
-  const Vec2 in_a = rotate_inverse(a.facing, d), in_b = rotate_inverse(b.facing, d);
-  const Float c = abs(fma(a.facing.c, b.facing.c, a.facing.s * b.facing.s));
-  const Float s = abs(fms(a.facing.c, b.facing.s, a.facing.s * b.facing.c));
-  const Float ax = abs(in_a.x) - a.half.x - fma(b.half.x, c, b.half.y * s);
-  const Float ay = abs(in_a.y) - a.half.y - fma(b.half.x, s, b.half.y * c);
-  const Float bx = abs(in_b.x) - b.half.x - fma(a.half.x, c, a.half.y * s);
-  const Float by = abs(in_b.y) - b.half.y - fma(a.half.x, s, a.half.y * c);
-  return max(max(ax, ay), max(bx, by)) < reach_of(t, a, b, d);
+MW_INLINE Mask may_touch_rectangle(const Constants& t, const Group& g, const Work& w, int a,
+                                   int b) {
+  const auto [ax, ay, bx, by] = separations(rectangle(w, g, a), rectangle(w, g, b));
+  return max(max(ax, ay), max(bx, by)) < reach_of(t, w, a, b);
 }
 
 template <class MayTouch>
@@ -76,21 +62,15 @@ MW_INLINE void keep_near(Work& w, const kernels::PairClass<Real>& c, int at, May
 }  // namespace
 
 void drop_distant(const Constants& t, const Group& g, Work& w) {
-  // What pulls bodies together within the step is not in their travel, but gravity pulls all alike.
-  const bool coast =
-      t.uniform_gravity && !t.delta_v_varies && !t.first_thrust && !g.force && t.attractors == 0;
-  if (!w.travel || !coast) return;
+  // What pulls bodies together within the step is not in their travel.
+  if (!w.travel || g.force) return;
   for (int i = 0; i < t.classes; ++i) {
     const auto& c = t.pair_class[i];
     if (!is_rectangle_pair(c)) continue;
     if (shape_b(c.kind) == kernels::ShapeKind::circle) {
-      keep_near(w, c, i, [&](int a, int b) {
-        return may_touch_circle(t, Outline(w, g, a), Outline(w, g, b));
-      });
+      keep_near(w, c, i, [&](int a, int b) { return may_touch_circle(t, g, w, a, b); });
     } else {
-      keep_near(w, c, i, [&](int a, int b) {
-        return may_touch_rectangle(t, Outline(w, g, a), Outline(w, g, b));
-      });
+      keep_near(w, c, i, [&](int a, int b) { return may_touch_rectangle(t, g, w, a, b); });
     }
   }
 }

@@ -15,13 +15,7 @@ struct RectangleRectangle {
                                 Manifold<S, 2>& m) {
     const Float zero(Real(0)), one(Real(1)), tie(Real(1e-3));
     const Vec2 d = b.p - a.p;
-    const Vec2 in_a = rotate_inverse(a.q, d), in_b = rotate_inverse(b.q, d);
-    const Float c = abs(fma(a.q.c, b.q.c, a.q.s * b.q.s));
-    const Float s = abs(fms(a.q.c, b.q.s, a.q.s * b.q.c));
-    const Float ax = abs(in_a.x) - a.half.x - fma(b.half.x, c, b.half.y * s);
-    const Float ay = abs(in_a.y) - a.half.y - fma(b.half.x, s, b.half.y * c);
-    const Float bx = abs(in_b.x) - b.half.x - fma(a.half.x, c, a.half.y * s);
-    const Float by = abs(in_b.y) - b.half.y - fma(a.half.x, s, a.half.y * c);
+    const auto [ax, ay, bx, by] = separations(a, b);
     const Mask a_uses_y = ax < ay, b_uses_y = bx < by;
     const Float best_a = max(ax, ay), best_b = max(bx, by);
     const Mask from_b = (best_a + Float(t.face_tie) < best_b) | (max(best_a, zero) < best_b);

@@ -40,11 +40,27 @@ MW_INLINE RayHit<Vec2> cast(const RayOf<Vec2>& ray, const RectanglePose& r) {
   return clipped(ray, clip, normal);
 }
 
-MW_INLINE Float distance_from(const RectanglePose& r, Vec2 p) {
+MW_INLINE Float distance2_from(const RectanglePose& r, Vec2 p) {
   const Float zero(Real(0));
   const Vec2 local = rotate_inverse(r.q, p - r.p);
   const Vec2 out{max(abs(local.x) - r.half.x, zero), max(abs(local.y) - r.half.y, zero)};
-  return sqrt(dot(out, out));
+  return dot(out, out);
+}
+MW_INLINE Float distance_from(const RectanglePose& r, Vec2 p) { return sqrt(distance2_from(r, p)); }
+
+// How far two rectangles are apart along the axes of either, < 0: by how much they overlap.
+struct RectangleAxes {
+  Float ax, ay, bx, by;
+};
+MW_INLINE RectangleAxes separations(const RectanglePose& a, const RectanglePose& b) {
+  const Vec2 d = b.p - a.p;
+  const Vec2 in_a = rotate_inverse(a.q, d), in_b = rotate_inverse(b.q, d);
+  const Float c = abs(fma(a.q.c, b.q.c, a.q.s * b.q.s));
+  const Float s = abs(fms(a.q.c, b.q.s, a.q.s * b.q.c));
+  return {abs(in_a.x) - a.half.x - fma(b.half.x, c, b.half.y * s),
+          abs(in_a.y) - a.half.y - fma(b.half.x, s, b.half.y * c),
+          abs(in_b.x) - b.half.x - fma(a.half.x, c, a.half.y * s),
+          abs(in_b.y) - b.half.y - fma(a.half.x, s, a.half.y * c)};
 }
 
 MW_INLINE Corners<4> load_corners(const RectanglePose& r) {

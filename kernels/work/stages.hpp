@@ -49,13 +49,15 @@ MW_INLINE bool is_rectangle_pair(const kernels::PairClass<Real>& c) {
   return !is_fixed(c.list) && shape_a(c.kind) == K::rectangle &&
          (shape_b(c.kind) == K::rectangle || shape_b(c.kind) == K::circle);
 }
-// Whether their distance may be asked. With sleep, what bounds take for near hangs together.
-MW_INLINE bool drops_distant(const Constants& t) {
-  bool has = false;
-  for (int i = 0; !t.sparse && !t.has_sleep && i < t.classes; ++i) {
-    has |= is_rectangle_pair(t.pair_class[i]);
+// Whether there are some whose distance may be asked: what moves them is in their speeds, but for
+// gravity, which pulls all alike. With sleep, what bounds take for near hangs together.
+MW_INLINE bool can_drop_distant(const Constants& t) {
+  if (t.sparse || t.has_sleep) return false;
+  if (!t.uniform_gravity || t.delta_v_varies || t.first_thrust || t.attractors > 0) return false;
+  for (int i = 0; i < t.classes; ++i) {
+    if (is_rectangle_pair(t.pair_class[i])) return true;
   }
-  return has;
+  return false;
 }
 // Takes lanes out of the hits of such pairs whose shapes stay apart in the step.
 void drop_distant(const Constants& t, const Group& g, Work& w);
