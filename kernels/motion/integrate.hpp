@@ -261,17 +261,17 @@ void advance_displacement(const Constants& t, Work& w) {
 template <class S, bool kDense>
 void next_substep(const Constants& t, Work& w) {
   ++w.substep, w.sweep = 0;
-  const auto next = [&](int at, Float delta_v, Float factor) __attribute__((always_inline)) {
+  const auto update = [&](int at, Float delta_v, Float factor) __attribute__((always_inline)) {
     const Float v = Float::load(w.velocity + at);
     const Float part = Float::load(w.impulse_part + at) + (v - Float::load(w.warmed + at));
-    Float u = v + delta_v;
-    if (t.has_drag) u = u * factor;
-    u = u + part;
+    Float next = v + delta_v;
+    if (t.has_drag) next = next * factor;
+    next = next + part;
     part.store(w.impulse_part + at);
-    u.store(w.velocity + at);
-    u.store(w.warmed + at);
+    next.store(w.velocity + at);
+    next.store(w.warmed + at);
   };
-  for_each_register<S, kDense>(t, w, next);
+  for_each_register<S, kDense>(t, w, update);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE
