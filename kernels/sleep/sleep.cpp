@@ -232,12 +232,13 @@ void keep_sleeping_contacts(const Constants& t, const Group& g, Work& w) {
     const int l = __builtin_ctz(m);
     for (int id = 0; id < kLists; ++id) {
       const int capacity = t.capacity[id];
+      if (capacity == 0) continue;
       const ListId list = static_cast<ListId>(id);
       const int row = kernels::cache_row_size(t.dimension, list);
       int kept = 0;
       const std::int32_t* keys = g.cache[id].keys + l;
       const Real* rows = g.cache[id].rows + (kernels::kFirstRow * kLanes + l) * row;
-      for (int at = 0; capacity > 0 && keys[at] != kernels::kEndOfKeys; at += kLanes) {
+      for (int at = 0; keys[at] != kernels::kEndOfKeys; at += kLanes) {
         if (!pair_sleeps(t, g, list, keys[at], l)) continue;
         w.kept_keys[id][l * capacity + kept] = keys[at];
         for (int i = 0; i < row; ++i) {
