@@ -153,13 +153,15 @@ MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& 
     out.speed[i] = v;
     if (ahead) m.separation[i] = m.separation[i] - turns.along(out.a, out.b, i);
     const Float end_speed = fma(dt, pull.relative, v);
-    const Float travel = dt * min(min(v, end_speed), zero) * speculation;
+    const Float way = dt * min(v, end_speed), travel = min(way, zero) * speculation;
     m.valid[i] = m.valid[i] & active;
     if constexpr (!A::kMoves) m.valid[i] = m.valid[i] & !m.guard[i];
     out.close[i] = (m.valid[i] & !m.guard[i]) & (m.separation[i] + travel < margin);
     out.near = out.near | out.close[i];
     const Float fall = dt * min(min(v, fma(dt, pull.closing, v)), zero) * speculation;
-    out.touching = out.touching | (out.close[i] & (m.separation[i] + fall < zero));
+    // What overlaps, if only by rounding, and leaves has no impulse to wait for.
+    const Mask stays = m.separation[i] + way < margin;
+    out.touching = out.touching | (out.close[i] & stays & (m.separation[i] + fall < zero));
   }
 }
 
