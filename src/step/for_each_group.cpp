@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "src/base/float_mode.hpp"
+
 #if defined(MW_EXECUTOR_THREADS)
 #include <thread>
 #include <vector>
@@ -31,6 +33,8 @@ int allowed_threads() {
 }
 
 void run_range(int begin, int end, int worker, Executor::Task task, void* context) {
+  // Groups ask for it, whoever runs them; to find it set costs less than to set it for each.
+  const FloatMode mode(FloatMode::flush);
   for (int g = begin; g < end; ++g) task(context, g, worker);
 }
 
