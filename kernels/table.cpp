@@ -2,6 +2,7 @@
 #include "kernels/data/table.hpp"
 
 #include "kernels/motion/free_motion.hpp"
+#include "kernels/motion/free_step.hpp"
 #include "kernels/observe/observe.hpp"
 #include "kernels/rows/touched.hpp"
 #include "kernels/sleep/sleep.hpp"
@@ -80,6 +81,9 @@ kernels::Kernels<Real> make_table() {
   out.free_motion[static_cast<int>(InertiaKind::planar)] = free_motion<Planar>;
   out.free_motion[static_cast<int>(InertiaKind::isotropic)] = free_motion<Isotropic>;
   out.free_motion[static_cast<int>(InertiaKind::tensor)] = free_motion<Tensor>;
+  out.free_step[static_cast<int>(InertiaKind::planar)] = free_step<Planar>;
+  out.free_step[static_cast<int>(InertiaKind::isotropic)] = free_step<Isotropic>;
+  out.free_step[static_cast<int>(InertiaKind::tensor)] = free_step<Tensor>;
   const auto sweeps = [&](InertiaKind kind, FillSweeps* fill) {
     auto& of = out.sweeps[static_cast<int>(kind)];
     fill(of[0], of[1]);

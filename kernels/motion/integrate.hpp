@@ -181,22 +181,33 @@ void enter_velocities(const Constants& t, const Group& g, Work& w) {
   }
 }
 
+// What drag leaves of velocities in a substep, where that is not the same in all lanes.
+template <class S, bool kDense>
+void enter_factors(const Constants& t, const Group& g, Work& w) {
+  if (!w.factor) return;
+  clear_padding<S, kDense>(t, w, w.factor);
+  for (int b = 0; b < t.bodies; ++b) {
+    const auto& constants = constants_of_body(g, b);
+    const Float linear = constants.linear_factor, angular = constants.angular_factor;
+    if constexpr (S::kDim == 3) {
+      put_velocity<S, kDense>(w, w.factor, b,
+                              {{linear, linear, linear}, {angular, angular, angular}});
+    } else {
+      put_velocity<S, kDense>(w, w.factor, b, {{linear, linear}, angular});
+    }
+  }
+}
+
+// A velocity after what gravity, inputs and drag do to it in a substep.
+MW_INLINE Float pulled(const Constants& t, Float v, Float delta_v, Float factor) {
+  v = v + delta_v;
+  return t.has_drag ? v * factor : v;
+}
+
 // Velocities at the start of the first substep, before any impulse; impulse_part keeps them.
 template <class S, bool kDense>
 void apply_first_delta_v(const Constants& t, const Group& g, Work& w) {
-  if (w.factor) {
-    clear_padding<S, kDense>(t, w, w.factor);
-    for (int b = 0; b < t.bodies; ++b) {
-      const auto& constants = constants_of_body(g, b);
-      const Float linear = constants.linear_factor, angular = constants.angular_factor;
-      if constexpr (S::kDim == 3) {
-        put_velocity<S, kDense>(w, w.factor, b,
-                                {{linear, linear, linear}, {angular, angular, angular}});
-      } else {
-        put_velocity<S, kDense>(w, w.factor, b, {{linear, linear}, angular});
-      }
-    }
-  }
+  enter_factors<S, kDense>(t, g, w);
   if constexpr (std::is_same_v<S, Tensor>) {
     for (int b = 0; b < t.bodies; ++b) {
       if (w.touched[b] == 0 || t.body[b].kinematic) continue;  // kinematic: no inertia
@@ -215,8 +226,7 @@ void apply_first_delta_v(const Constants& t, const Group& g, Work& w) {
     }
   }
   for_each_register<S, kDense>(t, w, [&](int at, Float delta_v, Float factor) {
-    Float v = Float::load(w.velocity + at) + delta_v;
-    if (t.has_drag) v = v * factor;
+    const Float v = pulled(t, Float::load(w.velocity + at), delta_v, factor);
     v.store(w.velocity + at);
     v.store(w.impulse_part + at);
   });
@@ -264,14 +274,31 @@ void next_substep(const Constants& t, Work& w) {
   const auto update = [&](int at, Float delta_v, Float factor) __attribute__((always_inline)) {
     const Float v = Float::load(w.velocity + at);
     const Float part = Float::load(w.impulse_part + at) + (v - Float::load(w.warmed + at));
-    Float next = v + delta_v;
-    if (t.has_drag) next = next * factor;
-    next = next + part;
+    const Float next = pulled(t, v, delta_v, factor) + part;
     part.store(w.impulse_part + at);
     next.store(w.velocity + at);
     next.store(w.warmed + at);
   };
   for_each_register<S, kDense>(t, w, update);
+}
+
+// All substeps of bodies that no impulse reaches, in registers: what the passes above do to them,
+// operation by operation.
+template <class S>
+void free_substeps(const Constants& t, Work& w) {
+  const Float h(t.h);
+  const auto update = [&](int at, Float delta_v, Float factor) __attribute__((always_inline)) {
+    Float v = pulled(t, Float::load(w.velocity + at), delta_v, factor);
+    Float moved = fma(h, v, Float::load(w.displacement + at));
+    const Float part = v - v;  // impulses have done nothing, which makes -0 a 0
+    for (int k = 1; k < t.substeps; ++k) {
+      v = pulled(t, v, delta_v, factor) + part;
+      moved = fma(h, v, moved);
+    }
+    v.store(w.velocity + at);
+    moved.store(w.displacement + at);
+  };
+  for_each_register<S, true>(t, w, update);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -47,9 +47,10 @@ struct Run {
   }
 };
 
-// Poses, and the rows of all contacts; velocities are then in the layout of the group.
+// Poses, and the rows of all contacts; velocities are then in the layout of the group. `watched`:
+// somebody reads what the passes of the solver leave, so that they have to run.
 template <class Real>
-const StageCalls<Real>& find_rows(const Run<Real>& run) {
+const StageCalls<Real>& find_rows(const Run<Real>& run, bool watched) {
   const GroupStep<Real>& p = run.step;
   const auto& t = p.tables;
   run(StageCall<Real>{StepStage::begin, p.kernels.begin});
@@ -59,8 +60,10 @@ const StageCalls<Real>& find_rows(const Run<Real>& run) {
     layout = p.kernels.choose_layout(t, run.group, run.scratch, p.layout);
     run.lap(StepStage::broad_phase);
   }
+  if (watched && layout == kernels::Layout::none) layout = kernels::Layout::dense;
   const StageCalls<Real>& calls = p.stages[layout];
   if (calls.enter) run(StageCall<Real>{StepStage::begin, calls.enter});
+  if (layout == kernels::Layout::none) return calls;
   const auto* collide = p.kernels.collide[static_cast<int>(t.dimension)];
   for (int c = 0; c < t.classes; ++c) {
     p.kernels.set_class(run.scratch, c);
@@ -69,6 +72,12 @@ const StageCalls<Real>& find_rows(const Run<Real>& run) {
   if (t.has_contacts) {
     if (layout == kernels::Layout::rows) run(p.kernels.gather_met);
     run.lap(StepStage::collide);
+    // What is near may still touch nothing.
+    const bool chosen = p.layout != kernels::Layout::automatic;
+    if (!watched && !chosen && p.stages.can_step_freely() &&
+        p.kernels.counters(run.scratch).manifolds == 0) {
+      return p.stages[kernels::Layout::none];
+    }
   }
   return calls;
 }
@@ -97,7 +106,7 @@ class Audit {
   // Of `steps` steps those up to the next one that is audited; all where none is.
   int ahead(int steps) const {
     const auto& t = run_.step.tables;
-    return t.audit_every > 0 ? std::min(steps, audit_.ahead(t, run_.group)) : steps;
+    return t.audit_every > 0 && steps > 1 ? std::min(steps, audit_.ahead(t, run_.group)) : steps;
   }
   // Whether the last of as many steps as are ahead is to be audited.
   bool count(int steps) const {
@@ -139,7 +148,7 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
   const auto& observer = *p.kernels.observer;
   const auto* contacts = wanted && wanted->of_contacts && t.has_contacts ? wanted : nullptr;
   if (contacts) observer.watch(run.scratch, contacts->places);
-  const StageCalls<Real>& calls = find_rows(run);
+  const StageCalls<Real>& calls = find_rows(run, contacts || (wanted && wanted->saved));
   if (contacts) observer.watch(run.scratch, nullptr);
   const bool adds_up = contacts && contacts->totals[0];
   const std::span<const StageCall<Real>> solve = calls.solve;
@@ -179,7 +188,7 @@ void tree_steps(const Run<Real>& run, int steps, const kernels::ObserverView<Rea
   for (int i = 0; i < substeps; ++i) {
     for (int s = 0; s < t.tree.stages; ++s) {
       run(StageCall<Real>{StepStage::tree, tree.pose});
-      if (t.has_contacts) find_rows(run);
+      if (t.has_contacts) find_rows(run, true);
       const bool last = i + 1 == substeps && s + 1 == t.tree.stages;
       if (loads && last) observer.keep_tree_state(t, run.group, run.scratch, *wanted);
       run(StageCall<Real>{StepStage::tree, t.tree.stages == 1 ? tree.step : tree.runge_kutta[s]});
@@ -237,7 +246,7 @@ void observe_contacts(const GroupStep<Real>& p, const kernels::GroupView<Real>& 
   kernels::GroupView<Real> all_awake = group;
   all_awake.asleep = wanted.none_asleep;
   observer.watch(scratch, wanted.places);
-  find_rows(Run<Real>{p, all_awake, scratch, nullptr});
+  find_rows(Run<Real>{p, all_awake, scratch, nullptr}, true);
   observer.watch(scratch, nullptr);
   observer.asleep[kind](t, group, scratch, wanted);
 }
@@ -337,7 +346,7 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
 template <class Real>
 void collide_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
                    kernels::Scratch* scratch) {
-  if (p.tables.has_contacts) find_rows(Run<Real>{p, group, scratch, nullptr});
+  if (p.tables.has_contacts) find_rows(Run<Real>{p, group, scratch, nullptr}, true);
 }
 
 template int step_group<float>(const GroupStep<float>&, const kernels::GroupView<float>&,

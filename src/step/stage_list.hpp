@@ -42,14 +42,21 @@ class StageList {
             const kernels::Kernels<Real>& kernels);
 
   const StageCalls<Real>& operator[](kernels::Layout layout) const {
-    return layout == kernels::Layout::dense ? dense_ : rows_;
+    switch (layout) {
+      case kernels::Layout::none: return free_;
+      case kernels::Layout::rows: return rows_;
+      default: return dense_;
+    }
   }
+  // Whether layout `none` has a step of its own; else it has the passes of `dense`.
+  bool can_step_freely() const { return can_step_freely_; }
   // What joints hold in a state; nullptr: there are none.
   kernels::Stage<Real> gap_energy() const { return gap_energy_; }
 
  private:
-  StageCalls<Real> dense_, rows_;
+  StageCalls<Real> dense_, rows_, free_;
   kernels::Stage<Real> gap_energy_ = nullptr;
+  bool can_step_freely_ = false;
 };
 
 }  // namespace manyworlds
