@@ -147,6 +147,7 @@ MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& 
   out.near = out.touching = zero < zero;
   SideTurns<S, A> turns;
   const bool ahead = looks_ahead(t, w) && turns.find(t, sides);
+  const bool springs = t.solver.kind == kernels::Solver::penalty;
   for (int i = 0; i < N; ++i) {
     Float v = normal_speed + out.b.set(i, sides.b, m.point_b[i], m.normal);
     if constexpr (A::kMoves) v = v - out.a.set(i, sides.a, m.point_a[i], m.normal);
@@ -159,9 +160,11 @@ MW_INLINE void measure_approach(const Constants& t, const Group& g, const Work& 
     out.close[i] = (m.valid[i] & !m.guard[i]) & (m.separation[i] + travel < margin);
     out.near = out.near | out.close[i];
     const Float fall = dt * min(min(v, fma(dt, pull.closing, v)), zero) * speculation;
-    // What overlaps, if only by rounding, and leaves has no impulse to wait for.
-    const Mask stays = m.separation[i] + way < margin;
-    out.touching = out.touching | (out.close[i] & stays & (m.separation[i] + fall < zero));
+    Mask touches = out.close[i] & (m.separation[i] + fall < zero);
+    // What overlaps, if only by rounding, and leaves has no impulse to wait for, but of springs,
+    // which push whatever overlaps.
+    if (!springs) touches = touches & (m.separation[i] + way < margin);
+    out.touching = out.touching | touches;
   }
 }
 
