@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -26,10 +27,10 @@ TEST_CASE("forces act through one call of step and are cleared", "[fast][batch]"
       const double t = 0.5;
       CHECK((velocity(batch, 4, 0) - t * Vec3(3, 2, 0)).norm() < tight);
       CHECK((position(batch, 4, 0) - 0.5 * t * t * Vec3(3, 2, 0)).norm() < tight);
-      CHECK(spin(batch, 4, 0).z() == Approx(6 * t).margin(10 * tight));
+      CHECK(spin(batch, 4, 0).z() == approx(6 * t, 10 * tight));
       batch.step(30);
       CHECK((velocity(batch, 4, 0) - t * Vec3(3, 2, 0)).norm() < tight);
-      CHECK(spin(batch, 4, 0).z() == Approx(6 * t).margin(10 * tight));
+      CHECK(spin(batch, 4, 0).z() == approx(6 * t, 10 * tight));
       for (int w = 0; w < 9; ++w)
         if (w != 4) CHECK(velocity(batch, w, 0).norm() + position(batch, w, 0).norm() == 0);
     }
@@ -123,7 +124,7 @@ TEST_CASE("a kinematic platform carries a box", "[fast][batch]") {
       batch.step(180);
       CHECK((velocity(batch, 0, 1) - scene.bodies[0].linear_velocity).norm() < 1e-3);
       const Vec3 on_top = position(batch, 0, 1) - position(batch, 0, 0);
-      CHECK(on_top.dot(up_of(space)) == Approx(0.35).margin(2e-3));
+      CHECK(on_top.dot(up_of(space)) == approx(0.35, 2e-3));
       CHECK(std::abs(on_top.x()) < 0.1);  // slipped only while it was picked up
     }
   }

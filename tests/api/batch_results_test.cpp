@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/tables.hpp"
 
@@ -29,7 +30,7 @@ TEST_CASE("statuses have names and lost worlds are counted", "[fast][batch]") {
     CHECK(batch.status(2) == Status::ok);
     for (int w : {0, 1, 3}) {
       CHECK(batch.status(w) == Status::out_of_bounds);
-      CHECK(position(batch, w, 0).z() == Approx(-1.25).margin(1e-4));  // it still steps
+      CHECK(position(batch, w, 0).z() == approx(-1.25, 1e-4));  // it still steps
     }
     CHECK(batch.lost_worlds() == 3);
     batch.reset();
@@ -137,7 +138,7 @@ TEST_CASE("contact summary agrees with the contacts", "[fast][batch]") {
     const ContactSummary summary = batch.measure_contacts();
     CHECK(points > 1);
     CHECK(summary.points_per_world == Approx(points));
-    CHECK(summary.max_penetration == Approx(deepest).margin(1e-6));
+    CHECK(summary.max_penetration == approx(deepest, 1e-6));
     CHECK(summary.manifolds_per_world > 0);
     CHECK(summary.manifolds_per_world <= summary.points_per_world + 1e-9);
     CHECK(batch.hash() == hash);  // looking changes nothing

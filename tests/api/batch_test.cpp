@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/tables.hpp"
@@ -250,10 +251,10 @@ TEST_CASE("angular velocities are drawn within their range", "[fast][batch]") {
       REQUIRE(velocity(batch, w, 0) == Vec3::Zero());
       low = low.cwiseMin(spin), high = high.cwiseMax(spin);
     }
-    CHECK(low.z() == Approx(1).margin(0.02));
-    CHECK(high.z() == Approx(5).margin(0.02));
-    CHECK(low.x() == Approx(planar ? 0 : -1).margin(0.02));
-    CHECK(high.x() == Approx(planar ? 0 : 1).margin(0.02));
+    CHECK(low.z() == approx(1, 0.02));
+    CHECK(high.z() == approx(5, 0.02));
+    CHECK(low.x() == approx(planar ? 0 : -1, 0.02));
+    CHECK(high.x() == approx(planar ? 0 : 1, 0.02));
     CHECK(low.y() == 0);
     CHECK(high.y() == 0);
   }
@@ -293,8 +294,8 @@ TEST_CASE("what is drawn for the bodies of a chain moves those after them as one
     CHECK(by < 1 + 1e-5);
     CHECK(turn[2].angularDistance(turn[1]) < 1e-5);
     // Speeds of the centres of mass.
-    CHECK(spin[1].x() == Approx(spin[0].x()).margin(1e-5));
-    CHECK(spin[1].z() == Approx(spin[0].z()).margin(1e-5));
+    CHECK(spin[1].x() == approx(spin[0].x(), 1e-5));
+    CHECK(spin[1].z() == approx(spin[0].z(), 1e-5));
     CHECK(std::abs(spin[1].y() - spin[0].y()) <= 5 + 1e-5);
     CHECK((spin[2] - spin[1]).norm() < 1e-5);
     CHECK((linear[2] - linear[1] - spin[2].cross(center[2] - center[1])).norm() < 1e-4);
@@ -308,7 +309,7 @@ TEST_CASE("orientations are uniform over all rotations when asked for", "[fast][
   Mat3 second = Mat3::Zero();
   Vec3 first = Vec3::Zero();
   for (int w = 0; w < 4000; ++w) {
-    REQUIRE(rotation(batch, w, 0).norm() == Approx(1).margin(1e-6));
+    REQUIRE(rotation(batch, w, 0).norm() == approx(1, 1e-6));
     const Vec3 z = rotation(batch, w, 0).normalized() * Vec3::UnitZ();
     first += z / 4000;
     second += z * z.transpose() / 4000;

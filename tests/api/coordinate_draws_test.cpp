@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/newton_scenes.hpp"
 #include "tests/support/scene_cases.hpp"
 #include "tests/support/tables.hpp"
@@ -45,10 +46,10 @@ TEST_CASE("coordinates are drawn about where the scene begins", "[fast][newton][
   const Numbers hinge = begun(scene, Field::generalized_position, 7);
   CHECK(*std::min_element(hinge.begin(), hinge.end()) >= 0.2 - kRounding);
   CHECK(*std::max_element(hinge.begin(), hinge.end()) < 0.6 + kRounding);
-  CHECK(mean(hinge) == Approx(0.4).margin(0.01));
+  CHECK(mean(hinge) == approx(0.4, 0.01));
   CHECK(deviation(hinge) == Approx(0.4 / std::sqrt(12)).epsilon(0.05));
   const Numbers spin = begun(scene, Field::generalized_velocity, 5);
-  CHECK(mean(spin) == Approx(1).margin(0.15));
+  CHECK(mean(spin) == approx(1, 0.15));
   CHECK(deviation(spin) == Approx(2).epsilon(0.06));
   for (const double speed : begun(scene, Field::generalized_velocity, 6)) CHECK(speed == 2);
   // The jitter of the free root stays below: another number of the same world.
@@ -96,7 +97,7 @@ TEST_CASE("draws depend on the world's seed and episode alone", "[fast][newton][
     CHECK(of(batch, Field::generalized_position, 1) == before);
     // Bodies are where the coordinates put them.
     const double angle = of(batch, Field::generalized_position, 1)[0];
-    CHECK(position(batch, 1, BodyId(0)).z() == Approx(-kLength * std::sin(angle)).margin(1e-6));
+    CHECK(position(batch, 1, BodyId(0)).z() == approx(-kLength * std::sin(angle), 1e-6));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/hashes.hpp"
 #include "tests/support/newton_scenes.hpp"
 #include "tests/support/tables.hpp"
@@ -39,8 +40,8 @@ TEST_CASE("coordinates and velocities place the bodies", "[fast][newton]") {
       CHECK(q.angularDistance(rotation(batch, 0, 0)) < 2 * slack);
       const Energy e = batch.energy(0);
       CHECK(e.kinetic == Approx(kAboutHinge * speed * speed / 2).epsilon(1e-5));
-      CHECK(e.potential == Approx(kMass * 10 * arm.z()).margin(1e-4));
-      CHECK(of(batch, Field::generalized_position)[0] == Approx(angle).margin(slack));
+      CHECK(e.potential == approx(kMass * 10 * arm.z(), 1e-4));
+      CHECK(of(batch, Field::generalized_position)[0] == approx(angle, slack));
       // The other worlds stay where they are.
       CHECK(of(batch, Field::generalized_position, 1) == Numbers{0});
       CHECK((position(batch, 1, BodyId(0)) - Vec3(kLength, 0, 0)).norm() < slack);
@@ -50,7 +51,7 @@ TEST_CASE("coordinates and velocities place the bodies", "[fast][newton]") {
     batch.write(Field::generalized_position, std::span<const double>(all));
     for (int w = 0; w < 3; ++w) {
       const double angle = all[static_cast<std::size_t>(w)];
-      CHECK(position(batch, w, BodyId(0)).z() == Approx(-kLength * std::sin(angle)).margin(slack));
+      CHECK(position(batch, w, BodyId(0)).z() == approx(-kLength * std::sin(angle), slack));
     }
     CHECK(batch.size(Field::generalized_acceleration) == 3);
     CHECK(batch.lane_blocks(Field::generalized_position).items == 1);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/newton_scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -60,7 +61,7 @@ TEST_CASE("a pendulum in joint coordinates tells what its hinge carries", "[fast
       put_angle(batch, kPi / 2, 3);
       batch.step();
       const double pull = weight + kMass * kLength * 9;
-      CHECK(force_on_b(batch).norm() == Approx(pull).margin(2 * slack));
+      CHECK(force_on_b(batch).norm() == approx(pull, 2 * slack));
       CHECK(std::abs(force_on_b(batch).x()) < 4e-4 * pull);  // it has gone on by so much
       // What pushes from outside is not the hinge's.
       put_angle(batch, kPi / 2);
@@ -129,13 +130,13 @@ TEST_CASE("springs, dampers, limits and motors act within their joint, rotors in
     Joint& joint = scene.joints[0];
     joint.dynamics.stiffness = 30, joint.dynamics.damping = 4;
     auto [sprung, turned] = torque(scene, table, 0.4, 2);
-    CHECK(sprung == Approx(kAboutHinge * turned).margin(slack));
-    CHECK(sprung == Approx(-30 * 0.4 - 4 * (2 + turned * scene.options.dt)).margin(slack));
+    CHECK(sprung == approx(kAboutHinge * turned, slack));
+    CHECK(sprung == approx(-30 * 0.4 - 4 * (2 + turned * scene.options.dt), slack));
     joint.dynamics = {};
     std::get<HingeJoint>(joint.type).limit = Limit{-0.1, 0.1};
     std::tie(sprung, turned) = torque(scene, table, 0.15, 1);
     CHECK(turned < -1);
-    CHECK(sprung == Approx(kAboutHinge * turned).margin(slack));
+    CHECK(sprung == approx(kAboutHinge * turned, slack));
     std::get<HingeJoint>(joint.type).limit.reset();
     joint.dynamics.armature = 3;
     Control motor;
@@ -144,7 +145,7 @@ TEST_CASE("springs, dampers, limits and motors act within their joint, rotors in
     scene.add(motor);
     std::tie(sprung, turned) = torque(scene, table, 0, 0);
     CHECK(turned == Approx(5 / (kAboutHinge + 3)).epsilon(1e-4));
-    CHECK(sprung == Approx(5 - 3 * turned).margin(slack));
+    CHECK(sprung == approx(5 - 3 * turned, slack));
   }
 }
 
@@ -191,7 +192,7 @@ TEST_CASE("joints in joint coordinates tell where they are, in their order",
     const double slack = pick(table, 1e-5, 1e-12);
     Batch batch(plan, observing(table));
     batch.look();
-    CHECK(numbers(batch, Observed::joint_position)[0] == Approx(0.5).margin(slack));
+    CHECK(numbers(batch, Observed::joint_position)[0] == approx(0.5, slack));
     Numbers q = of(batch, Field::generalized_position), v = of(batch, Field::generalized_velocity);
     const Quat lean(Eigen::AngleAxisd(0.7, Vec3(0.6, 0.8, 0)));
     const Quat hand = lean * Eigen::AngleAxisd(-0.4, Vec3::UnitZ());
@@ -205,11 +206,11 @@ TEST_CASE("joints in joint coordinates tell where they are, in their order",
     batch.look();
     const Numbers place = numbers(batch, Observed::joint_position),
                   speed = numbers(batch, Observed::joint_speed);
-    CHECK(place[0] == Approx(9).margin(slack));
-    CHECK(place[1] == Approx(0.7).margin(slack));
-    CHECK(place[2] == Approx(-0.4).margin(slack));
-    CHECK(speed[0] == Approx(-2).margin(slack));
-    CHECK(speed[1] == Approx(1.5).margin(slack));
+    CHECK(place[0] == approx(9, slack));
+    CHECK(place[1] == approx(0.7, slack));
+    CHECK(place[2] == approx(-0.4, slack));
+    CHECK(speed[0] == approx(-2, slack));
+    CHECK(speed[1] == approx(1.5, slack));
     CHECK(speed[2] == Approx(0).margin(slack));
   }
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/newton_scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -105,8 +106,8 @@ TEST_CASE("contacts of the newton solver carry what rests on them", "[fast][newt
           const Vec3 force = c.normal * c.normal_impulse + c.friction_impulse;
           total += force, moment += (c.point - center).cross(force);
         }
-        CHECK(total.z() == Approx(weight * std::cos(slope)).margin(slack));
-        CHECK(total.x() == Approx(-weight * std::sin(slope)).margin(slack));
+        CHECK(total.z() == approx(weight * std::cos(slope), slack));
+        CHECK(total.x() == approx(-weight * std::sin(slope), slack));
         CHECK(std::abs(total.y()) < slack);
         CHECK(moment.norm() < 0.1 * slack);
         const auto observed = [&](Observed what) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
@@ -56,9 +57,9 @@ TEST_CASE("a hinge tells its angle, its speed and what it carries", "[fast][obse
         const Vec3 along = rotation(batch, 0, 0) * Vec3::UnitX();
         const double angle = std::atan2(Vec3::UnitX().cross(along).dot(axis), along.x());
         CHECK(numbers(batch, Observed::joint_position)[0] ==
-              Approx(angle).margin(pick(table, 1e-6, 1e-12)));
+              approx(angle, pick(table, 1e-6, 1e-12)));
         CHECK(numbers(batch, Observed::joint_speed)[0] ==
-              Approx(spin(batch, 0, 0).dot(axis)).margin(pick(table, 1e-6, 1e-12)));
+              approx(spin(batch, 0, 0).dot(axis), pick(table, 1e-6, 1e-12)));
       }
       batch.step(600);  // at rest: the drive holds the rod's weight, the hinge carries it
       const Vec3 along = rotation(batch, 0, 0) * Vec3::UnitX();
@@ -84,7 +85,7 @@ TEST_CASE("a hinge that turns steadily pulls its body to its axis", "[fast][obse
       Batch batch(plan, observing(table));
       batch.step(480);  // 6 rad: within (-pi, pi] it is 6 - 2 pi
       CHECK(numbers(batch, Observed::joint_speed)[0] == Approx(3).epsilon(1e-3));
-      CHECK(numbers(batch, Observed::joint_position)[0] == Approx(6 - 2 * kPi).margin(0.02));
+      CHECK(numbers(batch, Observed::joint_position)[0] == approx(6 - 2 * kPi, 0.02));
       const Vec3 along = rotation(batch, 0, 0) * Vec3::UnitX();
       CHECK((force_on_b(batch) + 2 * 9 * 0.5 * along).norm() < 0.1);
     }
@@ -121,8 +122,8 @@ TEST_CASE("sliders, wheels, springs and ropes tell where they are", "[fast][obse
       Batch batch(plan, observing(table));
       batch.step(20);  // the rope's weights still fly
       const auto speed = numbers(batch, Observed::joint_speed);
-      CHECK(speed[0] == Approx(velocity(batch, 0, 0).dot(up)).margin(pick(table, 1e-6, 1e-12)));
-      CHECK(speed[1] == Approx(velocity(batch, 0, 1).dot(up)).margin(pick(table, 1e-6, 1e-12)));
+      CHECK(speed[0] == approx(velocity(batch, 0, 0).dot(up), pick(table, 1e-6, 1e-12)));
+      CHECK(speed[1] == approx(velocity(batch, 0, 1).dot(up), pick(table, 1e-6, 1e-12)));
       CHECK(speed[4] == Approx(0).margin(1e-3));
       CHECK(numbers(batch, Observed::joint_position)[4] == Approx(5 + 2 * 5).epsilon(1e-4));
       // x1 + 2 x2 is constant: T = 3 m1 m2 g / (4 m1 + m2), and B hangs on twice that.
@@ -154,8 +155,8 @@ TEST_CASE("a ball joint tells its cone and its twist", "[fast][observe][joint]")
     batch.look();
     const auto angles = numbers(batch, Observed::joint_position);
     REQUIRE(angles.size() == 2);
-    CHECK(angles[0] == Approx(0.7).margin(pick(table, 1e-5, 1e-10)));
-    CHECK(angles[1] == Approx(-0.4).margin(pick(table, 1e-5, 1e-10)));
+    CHECK(angles[0] == approx(0.7, pick(table, 1e-5, 1e-10)));
+    CHECK(angles[1] == approx(-0.4, pick(table, 1e-5, 1e-10)));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/pair_check.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -61,7 +62,7 @@ void check_cases(Space space, const Geometry& geometry, const std::vector<Case>&
           CHECK(hits[i].shape == ShapeId());
           CHECK(hits[i].normal.norm() == 0);
         } else {
-          CHECK(hits[i].distance == Approx(cases[i].distance).margin(10 * near));
+          CHECK(hits[i].distance == approx(cases[i].distance, 10 * near));
           CHECK((hits[i].normal - cases[i].normal).norm() < 10 * near);
           CHECK(hits[i].body == BodyId(0));
           CHECK(hits[i].shape.index() == 0);
@@ -250,7 +251,7 @@ TEST_CASE("rays end where a slow march along them does", "[fast][observe]") {
             continue;
           }
           const double t = hits[i].distance;
-          CHECK(hits[i].normal.norm() == Approx(1).margin(1e-5));
+          CHECK(hits[i].normal.norm() == approx(1, 1e-5));
           CHECK(hits[i].normal.dot(rays[i].direction) < 1e-3);
           if (t == 0) {
             CHECK(height(0) < near);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "manyworlds/scenes.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/tables.hpp"
 
@@ -92,7 +93,7 @@ TEST_CASE("a box at rest: the impulses of a step are its weight times dt", "[fas
           CHECK(c.body_b == BodyId(1));
           CHECK((c.normal - up_of(space)).norm() < 1e-5);
           CHECK(std::abs(c.point.dot(up_of(space))) < 0.01);
-          CHECK(std::abs(c.point.x()) == Approx(0.5).margin(0.01));
+          CHECK(std::abs(c.point.x()) == approx(0.5, 0.01));
           CHECK(c.normal_impulse ==
                 Approx(weight / static_cast<double>(contacts.size())).epsilon(0.01));
           deepest = std::max(deepest, -c.separation);

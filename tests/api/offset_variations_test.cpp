@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/tables.hpp"
@@ -126,7 +127,7 @@ TEST_CASE("bodies of worlds rest on shapes that are where their numbers say",
       batch.step(300);
       for (int w = 0; w < batch.worlds(); ++w) {
         const double offset = three(batch, Parameter::shape_position, w, 1).dot(up);
-        CHECK(position(batch, w, 0).dot(up) == Approx(0.2 - offset).margin(2e-3));
+        CHECK(position(batch, w, 0).dot(up) == approx(0.2 - offset, 2e-3));
       }
     }
   }

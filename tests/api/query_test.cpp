@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "manyworlds/query.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/pair_check.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
@@ -66,10 +67,10 @@ TEST_CASE("distances prove themselves", "[fast][query]") {
              << " kinds " << kinds << " round " << round << " distance " << s.distance);
         CHECK(s.normal.norm() == Approx(1));
         CHECK((s.point_b - s.point_a - s.distance * s.normal).norm() < 1e-12);
-        CHECK(separation_along(solid_a, solid_b, s.normal) == Approx(s.distance).margin(1e-9));
+        CHECK(separation_along(solid_a, solid_b, s.normal) == approx(s.distance, 1e-9));
         CHECK(std::abs(signed_distance(solid_a, s.point_a)) < 1e-9);
         CHECK(std::abs(signed_distance(solid_b, s.point_b)) < 1e-9);
-        CHECK(separation(solid_a, solid_b) == Approx(s.distance).margin(1e-9));
+        CHECK(separation(solid_a, solid_b) == approx(s.distance, 1e-9));
         CHECK(overlap(a, pose_a, b, pose_b, space) == (s.distance <= 0));
         if (s.distance < 0) {
           ++overlapping;
@@ -79,7 +80,7 @@ TEST_CASE("distances prove themselves", "[fast][query]") {
           }
         }
         const Separation turned = distance(b, pose_b, a, pose_a, space);
-        CHECK(turned.distance == Approx(s.distance).margin(1e-12));
+        CHECK(turned.distance == approx(s.distance, 1e-12));
       }
       CHECK(overlapping > 20);
       CHECK(overlapping < 190);
@@ -105,7 +106,7 @@ TEST_CASE("distances of cylinders and hulls prove themselves", "[fast][query]") 
       INFO("kinds " << kinds << " round " << round << " distance " << s.distance);
       CHECK(s.normal.norm() == Approx(1));
       CHECK((s.point_b - s.point_a - s.distance * s.normal).norm() < 1e-12);
-      CHECK(separation_along(solid_a, solid_b, s.normal) == Approx(s.distance).margin(1e-9));
+      CHECK(separation_along(solid_a, solid_b, s.normal) == approx(s.distance, 1e-9));
       // Where rounds meet, the search gets near.
       CHECK(std::abs(signed_distance(solid_a, s.point_a)) < 1e-6);
       CHECK(std::abs(signed_distance(solid_b, s.point_b)) < 1e-6);
@@ -117,7 +118,7 @@ TEST_CASE("distances of cylinders and hulls prove themselves", "[fast][query]") 
           CHECK(separation_along(solid_a, solid_b, random.direction()) < s.distance + 1e-9);
       }
       const Separation turned = distance(b, pose_b, a, pose_a);
-      CHECK(turned.distance == Approx(s.distance).margin(1e-9));
+      CHECK(turned.distance == approx(s.distance, 1e-9));
     }
     CHECK(overlapping > 5);
     CHECK(overlapping < 95);
@@ -221,7 +222,7 @@ TEST_CASE("manifolds go with distances and turn with their order", "[fast][query
         // Box-box prefers faces a little to the least overlap.
         CHECK(deepest(points) < s.distance + std::max(1e-9, rounding()));
         CHECK(deepest(points) > s.distance - 0.01 - 0.1 * std::abs(s.distance));
-        CHECK(deepest(turned) == Approx(deepest(points)).margin(1e-3));
+        CHECK(deepest(turned) == approx(deepest(points), 1e-3));
         CHECK(points[0].normal.norm() == Approx(1));
         CHECK(points[0].normal.dot(turned[0].normal) < 0);
       }

@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 
@@ -18,7 +19,7 @@ namespace manyworlds {
 namespace {
 
 using Json = nlohmann::json;
-using test::contains, test::content, test::Outcome, test::ScratchFolder;
+using test::approx, test::contains, test::content, test::Outcome, test::ScratchFolder;
 
 // Least error of each case over its points, and what is wrong with them.
 std::map<std::string, double> least_errors(const Json& report) {
@@ -232,7 +233,7 @@ exit 3
   const Json &good = scene["engines"][0], &slow = scene["engines"][1];
   CHECK(good["engine"] == "Good");
   CHECK(good["world_steps_per_s"] == 1000.0);
-  CHECK(good["worst_overlap_m"].get<double>() == Approx(0.004).margin(1e-6));
+  CHECK(good["worst_overlap_m"].get<double>() == approx(0.004, 1e-6));
   CHECK(good["settings"] ==
         "--scenes ball2d --worlds 128 --warm-up 60 --steps 60 --visit 16 --poses");
   CHECK(good["ratio"].get<double>() > 1);
@@ -283,7 +284,7 @@ echo '{"engine": "Turned", "version": "1", "scene": "'$2'", "world_steps_per_s":
     INFO(scene);
     REQUIRE(scene["engines"].size() == 1);
     CHECK(scene["engines"][0]["worst_overlap_m"].is_null());
-    CHECK(scene["engines"][0]["worst_gap_m"].get<double>() == Approx(1).margin(1e-5));
+    CHECK(scene["engines"][0]["worst_gap_m"].get<double>() == approx(1, 1e-5));
   }
 }
 

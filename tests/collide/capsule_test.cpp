@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -141,7 +142,7 @@ TEST_CASE("coincident capsules part", "[fast][collide]") {
           INFO(name(table) << " shape " << other.index());
           REQUIRE(!batch.contacts(0).empty());
           for (const Contact& c : batch.contacts(0)) {
-            CHECK(c.normal.norm() == Approx(1).margin(1e-6));
+            CHECK(c.normal.norm() == approx(1, 1e-6));
             CHECK(c.point.allFinite());
             CHECK(c.separation < -0.1);
           }

@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/pair_check.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -58,7 +59,7 @@ void check_face(const Scene& scene, double overlap, double spanned, double toler
     std::set<int> ids;
     for (const Contact& c : contacts) {
       CHECK((c.normal - up * (c.body_a == BodyId(0) ? 1.0 : -1.0)).norm() < tight);
-      CHECK(c.separation == Approx(-overlap).margin(tight));
+      CHECK(c.separation == approx(-overlap, tight));
       CHECK(c.normal_impulse == 0);
       ids.insert(c.feature);
     }
@@ -214,7 +215,7 @@ TEST_CASE("coincident shapes get finite unit normals", "[fast][collide]") {
         const auto contacts = batch.contacts(0);
         REQUIRE(!contacts.empty());
         for (const Contact& c : contacts) {
-          CHECK(c.normal.norm() == Approx(1).margin(1e-6));
+          CHECK(c.normal.norm() == approx(1, 1e-6));
           CHECK(c.point.allFinite());
           CHECK(c.separation < -0.1);
         }
@@ -285,7 +286,7 @@ TEST_CASE("the twins agree with a dense search over directions", "[fast][twin]")
         offer(d.normalized());
       }
     }
-    CHECK(most == Approx(truth).margin(2e-3));
+    CHECK(most == approx(truth, 2e-3));
   }
 }
 

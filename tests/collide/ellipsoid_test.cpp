@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "manyworlds/query.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/hashes.hpp"
 #include "tests/support/pair_check.hpp"
 #include "tests/support/scenes.hpp"
@@ -112,7 +113,7 @@ TEST_CASE("rays hit ellipsoids where the quadric says", "[fast][observe]") {
     if (way.dot(normal) > -0.1) continue;
     const auto found = hit(on - 0.7 * way, way);
     REQUIRE(found);
-    CHECK(found->distance == Approx(0.7).margin(1e-5));
+    CHECK(found->distance == approx(0.7, 1e-5));
     CHECK((found->normal - normal).norm() < 1e-4);
   }
 }
@@ -196,7 +197,7 @@ TEST_CASE("an ellipsoid on a height field rests as on a plane", "[fast][field]")
     Batch batch(compile(scene), options_of(table));
     batch.step(240);
     INFO(name(table));
-    CHECK(position(batch, 0, 0).z() == Approx(0.15).margin(3e-3));
+    CHECK(position(batch, 0, 0).z() == approx(0.15, 3e-3));
     CHECK(velocity(batch, 0, 0).norm() < 1e-2);
   }
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "manyworlds/query.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/height_field.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/tables.hpp"
@@ -73,7 +74,7 @@ TEST_CASE("in a batch rays see height fields", "[fast][field][observe]") {
       const double x = 0.4 * static_cast<double>(i) - 0.9;
       const double z = surface(std::get<HeightField>(scene.bodies[0].shapes[0].geometry), x, 0.2);
       CHECK(hits[i].body == BodyId(0));
-      CHECK(hits[i].distance == Approx(3 - z).margin(1e-5));
+      CHECK(hits[i].distance == approx(3 - z, 1e-5));
     }
   }
 }

@@ -7,6 +7,7 @@
 #include "manyworlds/hull.hpp"
 #include "manyworlds/plan.hpp"
 #include "src/scene/convex_hull.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/mass.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scene_cases.hpp"
@@ -59,7 +60,7 @@ TEST_CASE("coplanar faces of a hull are one, counter-clockwise from outside", "[
   REQUIRE(hull.faces.size() == 6);
   for (const detail::HullFace& f : hull.faces) {
     REQUIRE(f.outline.size() == 4);
-    CHECK(f.normal.cwiseAbs().maxCoeff() == Approx(1).margin(1e-9));
+    CHECK(f.normal.cwiseAbs().maxCoeff() == approx(1, 1e-9));
     for (std::size_t i = 0; i < 4; ++i) {
       const auto at = [&](std::size_t k) {
         return hull.vertices[static_cast<std::size_t>(f.outline[k % 4])];

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "manyworlds/query.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/mass.hpp"
 #include "tests/support/scene_cases.hpp"
 #include "tests/support/scenes.hpp"
@@ -75,14 +76,14 @@ TEST_CASE("rays and distances see the rounding", "[fast][query][observe]") {
     return ray_cast(s, {}, ray, Space::planar);
   };
   const double near = has_table({Isa::scalar, Precision::f64}) ? 1e-12 : 1e-5;
-  CHECK(cast({-2, 0, 0}, Vec3::UnitX())->distance == Approx(1.4).margin(near));
-  CHECK(cast({-2, 0.36, 0}, Vec3::UnitX())->distance == Approx(1.42).margin(near));
+  CHECK(cast({-2, 0, 0}, Vec3::UnitX())->distance == approx(1.4, near));
+  CHECK(cast({-2, 0.36, 0}, Vec3::UnitX())->distance == approx(1.42, near));
   CHECK((cast({-2, 0.36, 0}, Vec3::UnitX())->normal - Vec3(-0.8, 0.6, 0)).norm() < 1e-5);
   CHECK_FALSE(cast({-2, 0.41, 0}, Vec3::UnitX()));
   CHECK(cast({0.55, 0.2, 0}, Vec3::UnitX())->distance == 0);
   CHECK(cast({0.57, 0.37, 0}, Vec3::UnitX())->distance == 0);
   CHECK(cast({0.58, 0.38, 0}, Vec3(-1, -1, 0))->distance ==
-        Approx(0.08 * std::sqrt(2.0) - 0.1).margin(1e-5));
+        approx(0.08 * std::sqrt(2.0) - 0.1, 1e-5));
   const auto d = distance(s, {}, shape(Circle{0.2}), {Vec3(0.8, 0.7, 0), Quat::Identity()});
   CHECK(d.distance == Approx(0.2));
   CHECK((d.normal - Vec3(0.6, 0.8, 0)).norm() < 1e-9);
@@ -107,8 +108,8 @@ TEST_CASE("rounded squares stack and rest on terrain, with bits of their own",
       Batch batch(compile(scene), options_of(table, 5));
       batch.step(600);
       INFO(name(table));
-      for (int i = 0; i < 5; ++i) CHECK(position(batch, 2, i).y() == Approx(0.5 + i).margin(0.02));
-      CHECK(position(batch, 2, 5).y() == Approx(0.2).margin(2e-3));
+      for (int i = 0; i < 5; ++i) CHECK(position(batch, 2, i).y() == approx(0.5 + i, 0.02));
+      CHECK(position(batch, 2, 5).y() == approx(0.2, 2e-3));
       CHECK(max_speed(batch, 2) < 0.02);
       std::vector<std::uint64_t> hashes;
       for (int w = 0; w < 5; ++w) hashes.push_back(batch.hash(w));

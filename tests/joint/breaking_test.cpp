@@ -1,6 +1,7 @@
 // Joints that break and joints that are taken away.
 #include <catch2/catch.hpp>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
@@ -41,7 +42,7 @@ TEST_CASE("a joint breaks under more than it bears, and holds under less", "[fas
         holds.step(240);
         CHECK(holds.joint_enabled(0, JointId(0)));
         CHECK(holds.status(0) == Status::ok);
-        CHECK(height(holds) == Approx(-1).margin(1e-3));
+        CHECK(height(holds) == approx(-1, 1e-3));
 
         Batch breaks(compile(hanging(space, type, 0.99 * weight)), options_of(table));
         breaks.step(4);
@@ -52,7 +53,7 @@ TEST_CASE("a joint breaks under more than it bears, and holds under less", "[fas
         breaks.step(60);
         const Vec3 v = velocity(breaks, 0, 0);
         CHECK(-v.dot(up_of(space)) == Approx(kGravity * 63.5 / 60).epsilon(0.02));
-        CHECK(height(breaks) == Approx(y - 5.6).margin(0.3));
+        CHECK(height(breaks) == approx(y - 5.6, 0.3));
       }
     }
   }
@@ -99,7 +100,7 @@ TEST_CASE("of a chain that is too heavy the uppermost joint breaks, and the rest
       // Nothing was thrown up: all fall side by side.
       const double fall = -velocity(batch, 0, 0).dot(up);
       for (int i = 1; i < kLinks; ++i) {
-        CHECK(-velocity(batch, 0, i).dot(up) == Approx(fall).margin(0.05));
+        CHECK(-velocity(batch, 0, i).dot(up) == approx(fall, 0.05));
       }
     }
   }
@@ -156,7 +157,7 @@ TEST_CASE("joints are taken away and put back by hand", "[fast][joint]") {
       batch.set_joint_enabled(1, JointId(0), false);
       batch.step(6);
       INFO(name(table));
-      CHECK(height(batch, 0) == Approx(-1).margin(1e-3));
+      CHECK(height(batch, 0) == approx(-1, 1e-3));
       CHECK(height(batch, 1) < -1.03);
       CHECK(batch.status(1) == Status::ok);  // it did not break
       batch.set_joint_enabled(1, JointId(0), true);
@@ -188,7 +189,7 @@ TEST_CASE("what hangs still and asleep wakes and falls when its joint is cut", "
     CHECK(height(batch, 0, 1) < -2.5);
     CHECK_FALSE(batch.joint_enabled(1, JointId(1)));
     CHECK(height(batch, 1, 1) < -2.5);
-    CHECK(height(batch, 2, 1) == Approx(-2).margin(0.01));
+    CHECK(height(batch, 2, 1) == approx(-2, 0.01));
     CHECK(batch.asleep(2));
   }
 }

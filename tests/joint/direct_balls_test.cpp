@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "manyworlds/scenes.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/joint_twin.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/random.hpp"
@@ -149,7 +150,7 @@ TEST_CASE("rods under a load rest where their cones end", "[fast][joint]") {
         CHECK(worst_gap(batch, 0) < 1e-5);
         for (const Joint& joint : scene.joints) {
           const Ends ends = ends_of(batch, 0, joint);
-          CHECK(lean_of(ends.a, ends.b) == Approx(cone).margin(1e-4));
+          CHECK(lean_of(ends.a, ends.b) == approx(cone, 1e-4));
         }
       }
     }
@@ -179,7 +180,7 @@ TEST_CASE("a pendulum within a cone swings as on a limited hinge", "[fast][joint
     lean = std::max(lean, lean_of(ends.a, ends.b));
   }
   CHECK(worst < 1e-5);
-  CHECK(lean == Approx(0.4).margin(1e-3));
+  CHECK(lean == approx(0.4, 1e-3));
 }
 
 TEST_CASE("ball joints with limits have the same bits wherever a world is", "[bits][fast][joint]") {
@@ -211,7 +212,7 @@ TEST_CASE("a limit of the twist shares out the spin", "[fast][joint]") {
       CHECK((spin_of(batch, b) - shared * Vec3::UnitZ()).norm() < 1e-4);
     }
     const Ends ends = ends_of(batch, 0, scene.joints[0]);
-    CHECK(twist_of(ends.a, ends.b) == Approx(0.5).margin(1e-4));
+    CHECK(twist_of(ends.a, ends.b) == approx(0.5, 1e-4));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scenes/loaded_trees.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
@@ -212,7 +213,7 @@ TEST_CASE("limits in a tree stop what falls on them", "[joint][fast]") {
         }
         INFO(name(table) << " reversed " << reversed << " deepest " << deepest);
         CHECK(deepest < 0.01);
-        CHECK(Eigen::AngleAxisd(rotation(batch, 0, 0)).angle() == Approx(0.5).margin(5e-3));
+        CHECK(Eigen::AngleAxisd(rotation(batch, 0, 0)).angle() == approx(0.5, 5e-3));
         CHECK(max_speed(batch, 0) < 1e-2);
       }
     }
@@ -273,7 +274,7 @@ TEST_CASE("a joint that is disabled lets its branch of the tree fall", "[joint][
       INFO(name(table));
       for (int w = 0; w < 9; ++w) {
         const double fallen = height - position(batch, w, 3).dot(up_of(space));
-        CHECK(fallen == Approx(w == 4 ? 0.5 * 10 * 0.25 : 0).margin(0.03));
+        CHECK(fallen == approx(w == 4 ? 0.5 * 10 * 0.25 : 0, 0.03));
         CHECK(anchor_gap(batch, w, 2) < 1e-4);
         CHECK(anchor_gap(batch, w, 5) < 1e-4);
       }

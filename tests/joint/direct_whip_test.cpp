@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
@@ -99,12 +100,12 @@ Peak simulated(int substeps) {
 TEST_CASE("a chain that falls from the horizontal lashes like a whip", "[joint][fast]") {
   if (!has_table(double_table())) return;
   const Peak exact = Angles().fall(2.9, 2900);
-  CHECK(exact.speed == Approx(70.17).margin(0.01));  // what report stability allows B17 hung
+  CHECK(exact.speed == approx(70.17, 0.01));  // what report stability allows B17 hung
   for (const int substeps : {4, 64}) {
     const Peak peak = simulated(substeps);
     INFO(substeps << " substeps");
     CHECK(peak.speed == Approx(exact.speed).epsilon(substeps == 4 ? 0.015 : 0.01));
-    CHECK(peak.time == Approx(exact.time).margin(0.02));
+    CHECK(peak.time == approx(exact.time, 0.02));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/contraption.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied_bits.hpp"
@@ -153,7 +154,7 @@ TEST_CASE("anchors of worlds are where bodies are drawn to", "[fast][joint][para
       for (int w = 0; w < ropes.worlds(); ++w) {
         const auto own = numbers(ropes, Parameter::anchor_a, w);
         const Vec3 anchor(own[0], own[1], own[2]);
-        CHECK((position(ropes, w, 0) - anchor).norm() == Approx(anchor.norm()).margin(2e-3));
+        CHECK((position(ropes, w, 0) - anchor).norm() == approx(anchor.norm(), 2e-3));
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "manyworlds/scenes.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/tables.hpp"
@@ -190,7 +191,7 @@ TEST_CASE("a heavy cart stands still on light wheels (B24)", "[fast][joint]") {
     batch.step(120);
     const double rest = position(batch, 0, 0).y();
     INFO(name(table) << " rests at " << rest);
-    CHECK(rest == Approx(0.55).margin(0.01));
+    CHECK(rest == approx(0.55, 0.01));
     double low = rest, high = rest;
     for (int i = 0; i < 600; ++i) {
       batch.step();

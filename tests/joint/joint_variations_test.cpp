@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/contraption.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied_bits.hpp"
@@ -68,13 +69,13 @@ TEST_CASE("limits of worlds hold where they are", "[fast][joint][parameters]") {
       batch.step(240);
       const auto end = gravity < 0 ? Parameter::limit_low : Parameter::limit_high;
       for (int w = 0; w < batch.worlds(); ++w) {
-        CHECK(position(batch, w, 0).x() == Approx(numbers(batch, end, w)[0]).margin(2e-3));
+        CHECK(position(batch, w, 0).x() == approx(numbers(batch, end, w)[0], 2e-3));
       }
       // Written, they move what lies on them.
       std::vector<double> moved = {gravity < 0 ? -0.4 : 0.4};
       batch.write(end, 7, moved);
       batch.step(240);
-      CHECK(position(batch, 7, 0).x() == Approx(moved[0]).margin(2e-3));
+      CHECK(position(batch, 7, 0).x() == approx(moved[0], 2e-3));
       moved[0] = gravity < 0 ? -0.6 : 0.6;
       CHECK_THROWS_AS(batch.write(end, 7, moved), std::invalid_argument);
     }

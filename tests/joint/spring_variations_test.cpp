@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/contraption.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/tables.hpp"
@@ -97,7 +98,7 @@ TEST_CASE("ropes of worlds are as long as their numbers say", "[fast][joint][par
       batch.step(300);
       for (int w = 0; w < batch.worlds(); ++w) {
         const double length = numbers(batch, Parameter::length, w)[0];
-        CHECK(position(batch, w, 0).norm() == Approx(length).margin(1e-3));
+        CHECK(position(batch, w, 0).norm() == approx(length, 1e-3));
       }
     }
   }
@@ -157,7 +158,7 @@ TEST_CASE("pulleys of worlds have ratios and ropes of their own", "[fast][joint]
         const double of_a = (position(batch, w, 0) - (Vec3(-1, 0, 0) + 2 * up)).norm(),
                      of_b = (position(batch, w, 1) - (Vec3(1, 0, 0) + 2 * up)).norm();
         CHECK(of_a + numbers(batch, Parameter::pulley_ratio, w)[0] * of_b ==
-              Approx(numbers(batch, Parameter::length, w)[0]).margin(5e-3));
+              approx(numbers(batch, Parameter::length, w)[0], 5e-3));
       }
     }
   }

@@ -6,6 +6,7 @@
 #include "manyworlds/batch.hpp"
 #include "manyworlds/mjcf.hpp"
 #include "tests/mjcf/mujoco_reference.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
@@ -52,7 +53,7 @@ void check_reset(const std::string& xml) {
         REQUIRE(found.size() == static_cast<std::size_t>(count));
         batch.read(field, 1, found);
         for (int i = 0; i < count; ++i) {
-          CHECK(found[static_cast<std::size_t>(i)] == Approx(expected[i]).margin(tolerance));
+          CHECK(found[static_cast<std::size_t>(i)] == approx(expected[i], tolerance));
         }
       };
       check(Field::generalized_position, d->qpos, static_cast<int>(m.nq));
@@ -60,7 +61,7 @@ void check_reset(const std::string& xml) {
       std::vector<double> controls(static_cast<std::size_t>(2 * m.nu));
       batch.read_controls(controls);
       for (int i = 0; i < m.nu; ++i) {
-        CHECK(controls[static_cast<std::size_t>(m.nu + i)] == Approx(d->ctrl[i]).margin(tolerance));
+        CHECK(controls[static_cast<std::size_t>(m.nu + i)] == approx(d->ctrl[i], tolerance));
       }
       // And it goes on as MuJoCo does.
       mj_step(&m, d);
@@ -68,7 +69,7 @@ void check_reset(const std::string& xml) {
       std::vector<double> q(plan.numbers(Field::generalized_position));
       batch.read(Field::generalized_position, 1, q);
       for (std::size_t i = 0; i < q.size(); ++i) {
-        CHECK(q[i] == Approx(d->qpos[i]).margin(pick(table, 1e-5, 1e-7)));
+        CHECK(q[i] == approx(d->qpos[i], pick(table, 1e-5, 1e-7)));
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenes/cradle.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/tables.hpp"
@@ -65,8 +66,8 @@ TEST_CASE("plastic impacts of balls end with one velocity", "[fast][closed_form]
       Batch batch(compile(scene), options_of(table));
       batch.step(20);
       INFO(name(table));
-      CHECK(velocity(batch, 0, 0).x() == Approx(1.5).margin(pick(table, 1e-5, 1e-9)));
-      CHECK(velocity(batch, 0, 1).x() == Approx(1.5).margin(pick(table, 1e-5, 1e-9)));
+      CHECK(velocity(batch, 0, 0).x() == approx(1.5, pick(table, 1e-5, 1e-9)));
+      CHECK(velocity(batch, 0, 1).x() == approx(1.5, pick(table, 1e-5, 1e-9)));
     }
   }
 }
@@ -228,7 +229,7 @@ TEST_CASE("a bouncing ball keeps e^2 of its energy at each rebound", "[fast][clo
                    0.5 + std::sqrt(2 * drop.height / drop.gravity) * (1 + drop.e) / (1 - drop.e))
               batch.step();
             CHECK(velocity(batch, 0, 0).norm() < 1e-3);
-            CHECK(position(batch, 0, 0).dot(up_of(space)) == Approx(0.5).margin(2e-3));
+            CHECK(position(batch, 0, 0).dot(up_of(space)) == approx(0.5, 2e-3));
           }
         }
       }
@@ -287,7 +288,7 @@ TEST_CASE("Newton's cradle sends out as many balls as come in", "[fast][closed_f
       CHECK(kinetic_energy(batch, 0) == Approx(energy).epsilon(1e-3));
       for (int i = 0; i < 5; ++i) {
         INFO("ball " << i);
-        CHECK(velocity(batch, 0, i).x() == Approx(i >= 5 - moving ? 1 : 0).margin(2e-3));
+        CHECK(velocity(batch, 0, i).x() == approx(i >= 5 - moving ? 1 : 0, 2e-3));
       }
     }
   }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/tables.hpp"
 
@@ -76,7 +77,7 @@ TEST_CASE("a body circles an attractor, and the orbit's error falls with the squ
       const double error = (position(batch, 0, 0) - Vec3(1.7, 0.5, 0)).norm();
       INFO("rate " << rate << " error " << error << " energy " << worst);
       CHECK(worst < 2e-2 * 900 / (rate * rate));
-      if (last > 0) CHECK(std::log2(last / error) == Approx(2).margin(0.15));
+      if (last > 0) CHECK(std::log2(last / error) == approx(2, 0.15));
       last = error;
     }
   }
@@ -113,7 +114,7 @@ TEST_CASE("attractors act beside contacts and joints, on dynamic bodies only", "
       Batch batch(compile(scene), options);
       batch.step(300);
       INFO(name(table));
-      for (int b = 1; b <= 4; ++b) CHECK(position(batch, 0, b).norm() == Approx(1.1).margin(0.005));
+      for (int b = 1; b <= 4; ++b) CHECK(position(batch, 0, b).norm() == approx(1.1, 0.005));
       CHECK(position(batch, 0, 0).norm() == 0);
       CHECK(batch.asleep(0, batch.body_in_row(1)));
     }
@@ -137,7 +138,7 @@ TEST_CASE("a ball that bounces on a planet keeps its height", "[fast][field]") {
         if (i >= 1000) top = std::max(top, position(batch, 0, 0).dot(up));
       }
       INFO(name(table) << " height " << top);  // after eight bounces or more
-      CHECK(top == Approx(12.5).margin(0.06));
+      CHECK(top == approx(12.5, 0.06));
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
@@ -66,8 +67,7 @@ TEST_CASE("as many balls leave a free cradle as come in", "[fast][closed_form]")
               for (int i = 0; i < balls; ++i) {
                 INFO(name(table) << " ball " << i << " of " << balls << ", " << moving
                                  << " moving, after " << batch.time() << " s");
-                CHECK(velocity(batch, 0, i).x() ==
-                      Approx(i >= balls - moving ? 2 : 0).margin(margin));
+                CHECK(velocity(batch, 0, i).x() == approx(i >= balls - moving ? 2 : 0, margin));
               }
             };
             while (velocity(batch, 0, balls - 1).x() < 1 && batch.time() < 1) batch.step();
@@ -122,8 +122,7 @@ TEST_CASE("elastic balls in a box keep their energy", "[slow][closed_form]") {
       batch.step(3600);
       for (int w = 0; w < 8; ++w) {
         INFO(name(table) << " world " << w);
-        CHECK(kinetic_energy(batch, w) / start[static_cast<std::size_t>(w)] ==
-              Approx(1).margin(1e-3));
+        CHECK(kinetic_energy(batch, w) / start[static_cast<std::size_t>(w)] == approx(1, 1e-3));
       }
     }
   }

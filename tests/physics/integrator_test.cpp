@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/hashes.hpp"
 #include "tests/support/joints.hpp"
@@ -149,7 +150,7 @@ TEST_CASE("implicit Euler takes springs of any stiffness", "[fast][integrator]")
         CHECK(max_speed(batch, 0) < 0.3);
         const double low = up_of(space).dot(position(batch, 0, 3));
         const double sag = 10 * (4 + 3 + 2 + 1) / stiffness;
-        CHECK(low == Approx(-(4 * 0.3 + 7 * 0.2 + sag)).margin(0.1));
+        CHECK(low == approx(-(4 * 0.3 + 7 * 0.2 + sag), 0.1));
       }
     }
   }
@@ -235,7 +236,7 @@ TEST_CASE("bodies fly by the integrator until they meet something", "[fast][inte
         both.step(280);
         CHECK(both.status(0) == Status::ok);
         for (int b : {0, 1}) {
-          CHECK(up_of(space).dot(position(both, 0, b)) == Approx(0.2).margin(0.02));
+          CHECK(up_of(space).dot(position(both, 0, b)) == approx(0.2, 0.02));
         }
       }
     }
@@ -256,7 +257,7 @@ TEST_CASE("a pile stands and sleeps whatever the integrator", "[fast][integrator
     batch.step(180);
     INFO(to_string(integrator));
     CHECK(batch.asleep(0, batch.body_in_row(3)));
-    CHECK(position(batch, 0, 3).z() == Approx(3.5).margin(0.02));
+    CHECK(position(batch, 0, 3).z() == approx(3.5, 0.02));
     CHECK(max_penetration(batch, 0) < 0.01);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -39,7 +40,7 @@ TEST_CASE("a cube carries loads of any size on ground and on a slab", "[fast][lo
             INFO(name(table) << (space == Space::planar ? " 2D " : " 3D ") << size << " m x "
                              << weights << (slab ? " on a slab" : ""));
             CHECK(batch.status(0) == Status::ok);
-            CHECK(up.dot(position(batch, 0, 0)) / size == Approx(0.5).margin(0.02));
+            CHECK(up.dot(position(batch, 0, 0)) / size == approx(0.5, 0.02));
           }
         }
       }
@@ -60,7 +61,7 @@ TEST_CASE("a pile carries what presses on its top", "[fast][load]") {
       Batch batch(compile(scene), options_of(table));
       press(batch, 2, Vec3(0, 0, -10 * weight), 300);
       INFO(name(table) << ' ' << size << " m");
-      CHECK(position(batch, 0, 2).z() / size == Approx(2.5).margin(0.25));
+      CHECK(position(batch, 0, 2).z() / size == approx(2.5, 0.25));
       CHECK(position(batch, 0, 2).head<2>().norm() < 0.1 * size);
     }
   }
@@ -77,7 +78,7 @@ TEST_CASE("what a force presses on something touches it", "[fast][load]") {
       Batch batch(compile(scene), options_of(table));
       press(batch, 0, {-500 * mass, 0, 0}, 10);
       INFO(name(table));
-      CHECK(position(batch, 0, 0).x() == Approx(0.01).margin(3e-4));
+      CHECK(position(batch, 0, 0).x() == approx(0.01, 3e-4));
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/newton_scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -106,7 +107,7 @@ TEST_CASE("forces, torques and gravity scales act on links", "[fast][newton]") {
     for (int w = 0; w < 2; ++w) {
       for (int b = 0; b < 4; ++b) {
         const double scale = scales[w][static_cast<std::size_t>(b)];
-        CHECK(velocity(free, w, BodyId(b)).z() == Approx(-scale).margin(1e-5));
+        CHECK(velocity(free, w, BodyId(b)).z() == approx(-scale, 1e-5));
       }
     }
   }
@@ -180,7 +181,7 @@ TEST_CASE("elliptic cones of the newton solver are round", "[fast][newton]") {
       INFO(name(table) << ", heading " << heading);
       const Vec3 gained = speed(heading, table);
       CHECK(gained.head<2>().norm() == Approx(along_x).epsilon(pick(table, 0.01, 1e-8)));
-      CHECK(std::atan2(gained.y(), gained.x()) == Approx(heading).margin(pick(table, 1e-5, 1e-12)));
+      CHECK(std::atan2(gained.y(), gained.x()) == approx(heading, pick(table, 1e-5, 1e-12)));
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/contraption.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/hashes.hpp"
@@ -66,10 +67,10 @@ TEST_CASE("hard rows remove a share of an overlap in a substep", "[fast][solver]
           INFO(name(table) << ' ' << to_string(solver) << " split " << split);
           const double rounding = pick(table, 3e-7, 1e-15);
           if (split) {
-            CHECK(depth == Approx(slop + 0.01 * (1 - share) * (1 - share)).margin(rounding));
+            CHECK(depth == approx(slop + 0.01 * (1 - share) * (1 - share), rounding));
             CHECK(std::abs(speed) <= rounding);
           } else {  // the first substep's speed stays, so the second needs none
-            CHECK(depth == Approx(slop + 0.01 * (1 - 2 * share)).margin(rounding));
+            CHECK(depth == approx(slop + 0.01 * (1 - 2 * share), rounding));
             CHECK(speed == Approx(share * 0.01 / h).epsilon(1e-4));
           }
         }
@@ -182,8 +183,7 @@ TEST_CASE("every solver holds a stack and settles a pile", "[solver]") {
         for (int w = 0; w < 8; ++w) {
           CHECK(max_speed(batch, w) < 0.02);
           for (int b = 0; b < 5; ++b) {
-            CHECK(up_of(space).dot(position(batch, w, b)) ==
-                  Approx(0.5 + b).margin(0.02 + 0.01 * b));
+            CHECK(up_of(space).dot(position(batch, w, b)) == approx(0.5 + b, 0.02 + 0.01 * b));
             CHECK(std::abs(position(batch, w, b).x()) < 0.05);
           }
         }
@@ -261,8 +261,8 @@ TEST_CASE("four substeps turn a jointed rod as four steps do", "[fast][solver]")
       };
       INFO(to_string(solver));
       const double fine = kept(1.0 / 240, 1);
-      CHECK(fine == Approx(1).margin(0.02));
-      CHECK(kept(1.0 / 60, 4) == Approx(fine).margin(2e-3));
+      CHECK(fine == approx(1, 0.02));
+      CHECK(kept(1.0 / 60, 4) == approx(fine, 2e-3));
     }
   }
 }
@@ -311,7 +311,7 @@ TEST_CASE("conjugate gradients take impulses whose squares are infinite", "[fast
     Batch batch(compile(scene), options_of(table));
     batch.step(120);
     CHECK(batch.status(0) == Status::ok);
-    CHECK(position(batch, 0, 2).y() == Approx(2.5).margin(0.01));
+    CHECK(position(batch, 0, 2).y() == approx(2.5, 0.01));
   }
 }
 

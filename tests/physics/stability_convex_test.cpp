@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "manyworlds/hull.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/crowd.hpp"
 #include "tests/support/tables.hpp"
 
@@ -38,7 +39,7 @@ void check_stack(const Scene& scene, int count, double height, int steps, double
       INFO(name(table) << " world " << w << " top " << top.transpose() << " speed "
                        << max_speed(batch, w));
       CHECK(batch.status(w) == Status::ok);
-      CHECK(top.z() == Approx((count - 0.5) * height).margin(sag));
+      CHECK(top.z() == approx((count - 0.5) * height, sag));
       CHECK(top.head<2>().norm() < lean);
       CHECK(max_speed(batch, w) < 0.05);
     }
@@ -126,7 +127,7 @@ TEST_CASE("a fixed hull stands among fixed shapes of other kinds", "[fast][colli
       batch.step(60);
       INFO(name(table));
       for (int w = 0; w < 16; ++w) {
-        CHECK(position(batch, w, 0).z() == Approx(0.7).margin(5e-3));
+        CHECK(position(batch, w, 0).z() == approx(0.7, 5e-3));
         CHECK(std::isfinite(position(batch, w, 1).z()));
       }
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -106,7 +107,7 @@ TEST_CASE("a pyramid of boxes of 5 cm stands", "[slow][stability]") {
     const double top = position(batch, 0, batch.bodies() - 1).y();
     INFO(name(table) << " top " << top << " speed " << max_speed(batch, 0));
     CHECK(batch.status(0) == Status::ok);
-    CHECK(top == Approx(0.05 * 29.5).margin(0.05 * 0.5));
+    CHECK(top == approx(0.05 * 29.5, 0.05 * 0.5));
     CHECK(max_speed(batch, 0) < 0.05);
   }
 }
@@ -125,7 +126,7 @@ TEST_CASE("cubes of a millimetre and of a kilometre fall and stack", "[slow][sta
                          << max_penetration(batch, 0) / size << " speed "
                          << max_speed(batch, 0) / root);
         CHECK(batch.status(0) == Status::ok);
-        CHECK(top == Approx(4.5).margin(0.02));
+        CHECK(top == approx(4.5, 0.02));
         CHECK(max_penetration(batch, 0) < 0.02 * size);
         CHECK(max_speed(batch, 0) < 0.05 * root);
       }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -49,7 +50,7 @@ void check_standing(const Batch& batch, int world, double sag, double lean) {
   const int boxes = batch.bodies(world);
   const Vec3 up = up_of(scene.space), top = position(batch, world, boxes - 1);
   CHECK(batch.status(world) == Status::ok);
-  CHECK(top.dot(up) == Approx(boxes - 0.5).margin(sag));
+  CHECK(top.dot(up) == approx(boxes - 0.5, sag));
   CHECK(Vec3(top - top.dot(up) * up).norm() < lean);
   const double weight = mass_properties(scene, scene.bodies[1]).mass * 10;
   const double h = scene.options.dt / *batch.plan().resolved().substeps;

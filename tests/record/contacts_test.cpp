@@ -9,6 +9,8 @@
 #include "manyworlds/scenes.hpp"
 #include "tests/record/forged.hpp"
 
+#include "tests/support/approx.hpp"
+
 namespace manyworlds::test {
 namespace {
 
@@ -60,7 +62,7 @@ TEST_CASE("what a crate presses on the ground with is its weight", "[fast][recor
         CHECK(c.body_b == BodyId(1));
         CHECK(c.normal[up] == Approx(1));
         CHECK(std::abs(c.point[up]) < 0.02);
-        CHECK(c.point.norm() == Approx(0.5 * std::sqrt(up)).margin(0.02));
+        CHECK(c.point.norm() == approx(0.5 * std::sqrt(up), 0.02));
         sum += c.force;
       }
       CHECK(sum == Approx(10 * mass).epsilon(1e-3));

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "src/plan/plan_data.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/scene_cases.hpp"
 #include "tests/support/tables.hpp"
@@ -81,7 +82,7 @@ TEST_CASE("a ball joint's spring swings at its frequency, far from rest, too", "
       batch.write(Field::generalized_position, std::span<const double>(q));
       batch.step(350);
       CHECK(angle_of(read(batch, Field::generalized_position)) ==
-            Approx(expected).margin(pick(table, 1e-4, 1e-8)));
+            approx(expected, pick(table, 1e-4, 1e-8)));
     }
   }
 }

@@ -6,6 +6,7 @@
 #include "manyworlds/batch.hpp"
 #include "src/plan/compliance.hpp"
 #include "src/plan/plan_data.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
@@ -113,7 +114,7 @@ TEST_CASE("what is welded to the world counts as the world", "[robots][fast]") {
     const auto one = read(a), other = read(b);
     REQUIRE(one.size() == other.size());
     for (std::size_t i = 0; i < one.size(); ++i) {
-      CHECK(other[i] == Approx(one[i]).margin(pick(table, 1e-3, 1e-9)));
+      CHECK(other[i] == approx(one[i], pick(table, 1e-3, 1e-9)));
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "src/scene/variations.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/hashes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/robots.hpp"
@@ -243,7 +244,7 @@ TEST_CASE("a link whose size is written stays where its coordinates are",
     CHECK(read(Field::generalized_position) == q);
     const auto after = read(Field::position);
     for (std::size_t i = 0; i < x.size(); ++i) {
-      CHECK(after[i] == Approx(x[i]).margin(pick(table, 2e-6, 1e-12)));
+      CHECK(after[i] == approx(x[i], pick(table, 2e-6, 1e-12)));
     }
     CHECK(numbers(batch, Parameter::mass, 1)[1] == mass);  // that of body 1 is its own
     CHECK(numbers(batch, Parameter::mass, 1)[2] != numbers(batch, Parameter::mass, 0)[2]);

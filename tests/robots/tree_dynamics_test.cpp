@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tree_bits.hpp"
 
@@ -55,7 +56,7 @@ void check_accelerations(const kernels::Kernels<Real>& kernels, double tolerance
       const Numbers next = twin.advanced(q, group.velocity(lane), kDt);
       for (int c = 0; c < next.size(); ++c) {
         // A quaternion that was not unit is made so.
-        CHECK(group.position(lane)[c] == Approx(next[c]).margin(tolerance));
+        CHECK(group.position(lane)[c] == approx(next[c], tolerance));
       }
     }
   }

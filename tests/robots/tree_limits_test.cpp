@@ -2,6 +2,7 @@
 // the law that lanes do not see each other.
 #include <catch2/catch.hpp>
 
+#include "tests/support/approx.hpp"
 #include "tests/support/tree_bits.hpp"
 
 namespace manyworlds::test {
@@ -183,7 +184,8 @@ TEST_CASE("trees: a rod comes to rest on its limit where the soft row carries it
       group.set(lane, Numbers::Zero(1), Numbers::Zero(1));
     }
     group.step(5000);
-    CHECK(group.position(0)[0] == Approx(deep).margin(1e-9));
+    // Newton's iterations end where a step gains less than their tolerance.
+    CHECK(group.position(0)[0] == approx(deep, 1e-8));
     CHECK(std::abs(group.velocity(0)[0]) < 1e-9);
   });
 }

@@ -8,6 +8,7 @@
 
 #include "examples/birds/knocked_out.hpp"
 #include "manyworlds/scenes.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -122,16 +123,15 @@ TEST_CASE("a crane's load comes to rest below its trolley and goes where it is d
     std::vector<double> from;
     for (int w = 0; w < kWorlds; ++w) {
       CHECK(std::abs(hanging(w).x()) < 0.02);
-      CHECK(hanging(w).y() == Approx(-6).margin(0.01));
+      CHECK(hanging(w).y() == approx(-6, 0.01));
       CHECK(velocity(batch, w, load).norm() < 0.02);
       from.push_back(position(batch, w, trolley).x());
     }
     set_all_controls(batch, {-2, 0.5});
     step_seconds(batch, 2);
     for (int w = 0; w < kWorlds; ++w) {
-      CHECK(position(batch, w, trolley).x() - from[static_cast<std::size_t>(w)] ==
-            Approx(-4).margin(0.2));
-      CHECK(hanging(w).norm() == Approx(7).margin(0.1));
+      CHECK(position(batch, w, trolley).x() - from[static_cast<std::size_t>(w)] == approx(-4, 0.2));
+      CHECK(hanging(w).norm() == approx(7, 0.1));
     }
     check_ok(batch);
   }

@@ -10,6 +10,7 @@
 
 #include "manyworlds/gymnasium.hpp"
 #include "manyworlds/scenes.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/policy.hpp"
 #include "tests/support/tables.hpp"
 
@@ -122,7 +123,7 @@ TEST_CASE("terms of links are where bodies are before a step, and then one step 
   Played p(task, {.worlds = 4, .threads = 1, .seed = 3, .precision = Precision::f64});
   const auto check = [&](const std::vector<float>& expected) {
     for (std::size_t i = 0; i < expected.size(); i += 2) {
-      CHECK(p.observations[i + 1] == Approx(expected[i]).margin(1e-6));
+      CHECK(p.observations[i + 1] == approx(expected[i], 1e-6));
     }
   };
   check(p.observations);

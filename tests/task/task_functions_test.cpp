@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "manyworlds/expression_graph.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/policy.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
@@ -94,7 +95,7 @@ TEST_CASE("logarithms, powers and remainders at the ends of their ranges", "[tas
     CAPTURE(i, text_of(all[i].first, 60), p.observations[i]);
     const auto wanted = static_cast<float>(all[i].second);
     CHECK((std::isnan(wanted) ? std::isnan(p.observations[i])
-                              : p.observations[i] == Approx(wanted).margin(1e-7)));
+                              : p.observations[i] == approx(wanted, 1e-7)));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "manyworlds/expression_graph.hpp"
+#include "tests/support/approx.hpp"
 #include "tests/support/newton_scenes.hpp"
 #include "tests/support/task_bits.hpp"
 #include "tests/support/varied.hpp"
@@ -92,9 +93,9 @@ TEST_CASE("random numbers have the distributions that they say", "[task][fast]")
   CHECK(*low < 1e-3);
   CHECK(*high < 1);
   CHECK(*high > 1 - 1e-3);
-  CHECK(mean(of[0]) == Approx(0.5).margin(0.01));  // 5 sigma
-  CHECK(mean(of[1]) == Approx(-1.5).margin(0.01));
-  CHECK(mean(of[2]) == Approx(2).margin(0.11));
+  CHECK(mean(of[0]) == approx(0.5, 0.01));  // 5 sigma
+  CHECK(mean(of[1]) == approx(-1.5, 0.01));
+  CHECK(mean(of[2]) == approx(2, 0.11));
   std::vector<double> squares, together, episode;
   std::size_t within = 0;
   for (std::size_t w = 0; w < kWorlds; ++w) {
@@ -104,7 +105,7 @@ TEST_CASE("random numbers have the distributions that they say", "[task][fast]")
     episode.push_back((of[0][w] - 0.5) * (of[5][w] - 0.5));
   }
   CHECK(mean(squares) == Approx(9).epsilon(0.05));
-  CHECK(static_cast<double>(within) / kWorlds == Approx(0.6827).margin(0.017));
+  CHECK(static_cast<double>(within) / kWorlds == approx(0.6827, 0.017));
   CHECK(of[4] == of[0]);
   CHECK(std::abs(mean(together)) < 0.003);  // 5 sigma of 1 / 12
   CHECK(std::abs(mean(episode)) < 0.003);
