@@ -22,7 +22,7 @@ const char* to_string(Stage stage) {
 }
 
 const char* to_string(kernels::Layout layout) {
-  static constexpr const char* kNames[] = {"automatic", "dense", "rows", "none"};
+  static constexpr const char* kNames[] = {"automatic", "dense", "rows"};
   return kNames[static_cast<int>(layout)];
 }
 
@@ -43,7 +43,7 @@ void StageRunner::run(Stage stage, const Group& group) {
   const auto inertia = static_cast<int>(tables_.inertia_kind);
   const auto& solver =
       kernels_
-          .solver[inertia][tables_.has_friction ? 1 : 0][layout_ == kernels::Layout::rows ? 1 : 0];
+          .solver[inertia][tables_.has_friction ? 1 : 0][layout_ == kernels::Layout::dense ? 0 : 1];
   switch (stage) {
     case Stage::free_motion: return kernels_.free_motion[inertia](tables_, group, scratch_, 1);
     case Stage::begin: return kernels_.begin(tables_, group, scratch_);

@@ -125,10 +125,6 @@ kernels::Layout choose_layout(const Constants& t, const Group& g, kernels::Scrat
   // Rows of trees are of one pair of shapes in all lanes, and there is room for all of them.
   if (t.tree.links > 0) wish = kernels::Layout::dense, fits = true;
   w.dense = wish == kernels::Layout::dense;
-  if (wish == kernels::Layout::automatic && all == 0) {
-    w.dense = true;
-    return kernels::Layout::none;
-  }
   if (wish == kernels::Layout::automatic) w.dense = dense_is_faster(t, w, all, active);
   w.dense = w.dense && fits;
   if (w.dense) return kernels::Layout::dense;

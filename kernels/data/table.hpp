@@ -12,8 +12,7 @@ struct Scratch;  // per-thread work memory; its layout belongs to the kernels
 template <class Real>
 struct ObserverTable;  // kernels/data/observer.hpp
 
-// Of the contacts of a group; none: there are none in any lane.
-enum class Layout : int { automatic, dense, rows, none };
+enum class Layout : int { automatic, dense, rows };
 
 template <class Real>
 using Stage = void (*)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*);
@@ -143,7 +142,7 @@ struct Kernels {
 
   Stage<Real> begin;        // poses, bounds, inertia
   Stage<Real> broad_phase;  // candidate masks of every class
-  // Of this group: by occupancy, or as wished if the blocks fit.
+  // Dense or rows for this group: by occupancy, or as wished if the blocks fit.
   Layout (*choose_layout)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*, Layout);
   // Narrow phase and rows of one class (set_class). [dimension: planar, spatial]
   Stage<Real> collide[2][kPairKinds];
@@ -158,7 +157,7 @@ struct Kernels {
   void (*free_motion[kInertiaKinds])(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*,
                                      int steps);
 
-  // In layout `none` of plans without joints: from the velocities to the commit.
+  // Where nothing touches, in plans without joints: from the velocities to the commit.
   Stage<Real> free_step[kInertiaKinds];
 
   FlightTable<Real> flight[kInertiaKinds];

@@ -1,6 +1,6 @@
-// free_step: a whole step of a group in which no pair of shapes is near, instead of the passes of
-// the solver. What those do to a body that no impulse reaches is done here operation by operation:
-// a world has the same bits whether the worlds beside it touch something or not.
+// free_step: the step of a group in which nothing touches, instead of the passes of the solver.
+// What those do to a body that no impulse reaches is done here operation by operation: a world has
+// the same bits whether the worlds beside it touch something or not.
 #pragma once
 
 #include "kernels/motion/finish.hpp"

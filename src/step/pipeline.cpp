@@ -53,17 +53,19 @@ template <class Real>
 const StageCalls<Real>& find_rows(const Run<Real>& run, bool watched) {
   const GroupStep<Real>& p = run.step;
   const auto& t = p.tables;
+  const bool chosen = p.layout != kernels::Layout::automatic;
+  const StageCalls<Real>* free_step = watched || chosen ? nullptr : p.stages.free_step();
+  const auto& counters = p.kernels.counters(run.scratch);
   run(StageCall<Real>{StepStage::begin, p.kernels.begin});
   kernels::Layout layout = kernels::Layout::dense;
   if (t.has_contacts) {
     run(p.kernels.broad_phase);
     layout = p.kernels.choose_layout(t, run.group, run.scratch, p.layout);
     run.lap(StepStage::broad_phase);
+    if (free_step && counters.active == 0) return *free_step;
   }
-  if (watched && layout == kernels::Layout::none) layout = kernels::Layout::dense;
   const StageCalls<Real>& calls = p.stages[layout];
   if (calls.enter) run(StageCall<Real>{StepStage::begin, calls.enter});
-  if (layout == kernels::Layout::none) return calls;
   const auto* collide = p.kernels.collide[static_cast<int>(t.dimension)];
   for (int c = 0; c < t.classes; ++c) {
     p.kernels.set_class(run.scratch, c);
@@ -72,12 +74,7 @@ const StageCalls<Real>& find_rows(const Run<Real>& run, bool watched) {
   if (t.has_contacts) {
     if (layout == kernels::Layout::rows) run(p.kernels.gather_met);
     run.lap(StepStage::collide);
-    // What is near may still touch nothing.
-    const bool chosen = p.layout != kernels::Layout::automatic;
-    if (!watched && !chosen && p.stages.can_step_freely() &&
-        p.kernels.counters(run.scratch).manifolds == 0) {
-      return p.stages[kernels::Layout::none];
-    }
+    if (free_step && counters.manifolds == 0) return *free_step;
   }
   return calls;
 }

@@ -198,8 +198,8 @@ bool steps_freely(const PlanData& plan, const kernels::SceneConstants<Real>& t) 
          !plan.runs(StepStage::joints) && !plan.runs(StepStage::flight);
 }
 template <class Real>
-StageCalls<Real> free_calls(const kernels::SceneConstants<Real>& t,
-                            const kernels::Kernels<Real>& kernels) {
+StageCalls<Real> free_step_calls(const kernels::SceneConstants<Real>& t,
+                                 const kernels::Kernels<Real>& kernels) {
   StageCalls<Real> out;
   out.end.push_back({StepStage::finish, kernels.free_step[static_cast<int>(t.inertia_kind)]});
   if (t.has_sleep) out.end.push_back({StepStage::settle, kernels.settle});
@@ -214,8 +214,7 @@ StageList<Real>::StageList(const PlanData& plan, const kernels::SceneConstants<R
   if (!tables.has_substeps || plan.has_trees()) return;
   dense_ = Builder<Real>(plan, tables, kernels, kernels::Layout::dense).build();
   rows_ = Builder<Real>(plan, tables, kernels, kernels::Layout::rows).build();
-  can_step_freely_ = steps_freely(plan, tables);
-  free_ = can_step_freely_ ? free_calls(tables, kernels) : dense_;
+  if (steps_freely(plan, tables)) free_step_ = free_step_calls(tables, kernels);
   if (plan.runs(StepStage::joints)) {
     gap_energy_ = kernels.joints[static_cast<int>(tables.inertia_kind)][0].gap_energy;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "kernels/data/observer.hpp"
@@ -42,21 +43,17 @@ class StageList {
             const kernels::Kernels<Real>& kernels);
 
   const StageCalls<Real>& operator[](kernels::Layout layout) const {
-    switch (layout) {
-      case kernels::Layout::none: return free_;
-      case kernels::Layout::rows: return rows_;
-      default: return dense_;
-    }
+    return layout == kernels::Layout::dense ? dense_ : rows_;
   }
-  // Whether layout `none` has a step of its own; else it has the passes of `dense`.
-  bool can_step_freely() const { return can_step_freely_; }
+  // Of a group in which nothing touches; nullptr: the passes of the solver have work even there.
+  const StageCalls<Real>* free_step() const { return free_step_ ? &*free_step_ : nullptr; }
   // What joints hold in a state; nullptr: there are none.
   kernels::Stage<Real> gap_energy() const { return gap_energy_; }
 
  private:
-  StageCalls<Real> dense_, rows_, free_;
+  StageCalls<Real> dense_, rows_;
+  std::optional<StageCalls<Real>> free_step_;
   kernels::Stage<Real> gap_energy_ = nullptr;
-  bool can_step_freely_ = false;
 };
 
 }  // namespace manyworlds
