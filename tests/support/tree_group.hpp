@@ -16,7 +16,7 @@ inline PlanTrees trees_of(const std::vector<TwinLink>& links, double dt, bool by
     builder.add(link.frame);
     for (const NewTreeJoint& joint : link.joints) builder.add(joint);
   }
-  PlanTrees trees = builder.finish(dt, {100, 50, 1e-12, 1e-6, 0});
+  PlanTrees trees = builder.finish(dt, {100, 50, 1e-26, 1e-6, 0});
   trees.by_links = by_links;
   return trees;
 }
