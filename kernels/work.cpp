@@ -276,11 +276,13 @@ void carve(const Constants& t, Work& w, Carver& c) {
       c.take(w.kept_rows[l], count(lanes * t.capacity[l] * cached));
     }
   }
+  // Lanes are packed a register at a time (list_candidates), and end anywhere in the last one.
+  w.candidate_room = (longest / lanes + 2) * lanes;
   for (CandidateList* list : {&w.candidates, &w.found}) {
-    c.take(list->code, count(longest * lanes));
-    c.take(list->key, count(longest * lanes));
-    c.take(list->axis, count(longest * lanes));
-    c.take(list->mask, count(longest));
+    c.take(list->code, count(w.candidate_room * lanes));
+    c.take(list->key, count(w.candidate_room * lanes));
+    c.take(list->axis, count(w.candidate_room * lanes));
+    c.take(list->mask, count(w.candidate_room));
   }
   c.take(w.keep, count(longest));
   if (t.inertia_kind == kernels::InertiaKind::planar) {

@@ -2,6 +2,7 @@
 // lane has its own pairs, packed). Both keep the order of the keys inside a lane, so both give the
 // solver the same rows in the same order.
 #include "kernels/lane/ints.hpp"
+#include "kernels/lane/rows.hpp"
 #include "kernels/work/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -55,6 +56,70 @@ class RowPacker {
   std::int32_t dummy_;
   int count_[kLanes];
 };
+
+#if defined(MW_ISA_AVX512)
+
+// Hits of the class at work as rows. They are packed lane by lane, as many hits at once as a
+// register holds, and then transposed: no branch depends on which lanes a hit has.
+void list_rows(const Constants& t, Work& w, CandidateList& to) {
+  const auto& pairs = t.pair_class[w.class_index];
+  const int first = first_hit(t, w, w.class_index), n = w.hit_count[w.class_index];
+  const std::int32_t* hits = w.hits + first;
+  const auto* masks = reinterpret_cast<const std::int32_t*>(w.hit_masks + first);
+  const int room = w.candidate_room;
+  std::int32_t *packed_codes = w.found.code, *packed_keys = w.found.key;  // [lane][room]
+  alignas(64) std::int32_t count[kLanes] = {};
+  for (int i = 0; i < n; i += kLanes) {
+    const Ints mask = load_first(masks + i, n - i), hit = load_first(hits + i, n - i);
+    const Ints key = hit + Ints(pairs.first_key);
+    const Ints code = t.sparse ? load_first(w.sparse.hit_code + first + i, n - i)
+                               : gather(pairs.a, hit) + gather(pairs.b, hit) * Ints(1 << 16);
+    for (int l = 0; l < kLanes; ++l) {
+      const std::uint32_t which = with_any_of(mask, 1 << l);
+      const int at = l * room + count[l];
+      store_packed(code, which, packed_codes + at);
+      store_packed(key, which, packed_keys + at);
+      count[l] += __builtin_popcount(which);
+    }
+  }
+  int most = 0;
+  for (const int c : count) most = c > most ? c : most;
+  const Ints counts = Ints::load(count), dummy(dummy_code(t, is_fixed(pairs.list)));
+  alignas(64) std::int32_t lane[kLanes];
+  (Ints::lanes() * Ints(room)).store(lane);
+  for (int s = 0; s < most; s += 4) {
+    Float code[4], key[4];
+    load_rows4(reinterpret_cast<const Real*>(packed_codes) + s, lane, code[0], code[1], code[2],
+               code[3]);
+    load_rows4(reinterpret_cast<const Real*>(packed_keys) + s, lane, key[0], key[1], key[2],
+               key[3]);
+    for (int k = 0; k < 4; ++k) {
+      const std::uint32_t there = Ints(s + k) < counts;
+      select(there, as_ints(code[k]), dummy).store(to.code + (s + k) * kLanes);
+      select(there, as_ints(key[k]), Ints(0)).store(to.key + (s + k) * kLanes);
+      to.mask[s + k] = there;
+    }
+  }
+  to.count = most;
+}
+
+#else
+
+void list_rows(const Constants& t, Work& w, CandidateList& to) {
+  const auto& pairs = t.pair_class[w.class_index];
+  const int first = first_hit(t, w, w.class_index);
+  RowPacker packer(to, dummy_code(t, is_fixed(pairs.list)));
+  for (int i = 0; i < w.hit_count[w.class_index]; ++i) {
+    const std::int32_t code = code_of_hit(t, w, w.class_index, i);
+    const std::int32_t key = pairs.first_key + w.hits[first + i];
+    for (std::uint32_t m = w.hit_masks[first + i]; m != 0; m &= m - 1) {
+      packer.add(__builtin_ctz(m), code, key);
+    }
+  }
+  packer.close();
+}
+
+#endif
 
 // Drops the last candidates of lanes that have too many: the same ones in both layouts.
 void limit_candidates(const Constants& t, Work& w, int at) {
@@ -153,15 +218,7 @@ void list_candidates(const Constants& t, Work& w) {
     to.count = n;
     return;
   }
-  RowPacker packer(to, dummy_code(t, is_fixed(pairs.list)));
-  for (int i = 0; i < n; ++i) {
-    const std::int32_t code = code_of_hit(t, w, w.class_index, i);
-    const std::int32_t key = pairs.first_key + hits[i];
-    for (std::uint32_t m = masks[i]; m != 0; m &= m - 1) {
-      packer.add(__builtin_ctz(m), code, key);
-    }
-  }
-  packer.close();
+  list_rows(t, w, to);
 }
 
 void compact(const Constants& t, Work& w, const CandidateList& from, const std::uint32_t* keep,

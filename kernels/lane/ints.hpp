@@ -154,6 +154,23 @@ MW_INLINE void scatter(Ints values, std::uint32_t mask, std::int32_t* to, Ints a
 #endif
 }
 
+#if defined(MW_ISA_AVX512)
+// The first n numbers; zero for the others, which are not read.
+MW_INLINE Ints load_first(const std::int32_t* p, int n) {
+  const std::uint32_t there = n < kLanes ? (1u << n) - 1 : kAllLanes;
+  return _mm512_maskz_loadu_epi32(static_cast<__mmask16>(there), p);
+}
+// Which of them have some of these bits set.
+MW_INLINE std::uint32_t with_any_of(Ints a, std::int32_t bits) {
+  return _mm512_test_epi32_mask(a.v, raw::fill(bits));
+}
+// `which` of the values, one after the other, and zeros up to the length of a register.
+MW_INLINE void store_packed(Ints values, std::uint32_t which, std::int32_t* to) {
+  raw::store(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(which), values.v));
+}
+MW_INLINE Ints as_ints(Float a) { return _mm512_castps_si512(a.v.data); }  // its bits
+#endif
+
 // A number of items of which each lane has its own, [item][..., number, ...][lane]: of item 0 it is
 // `of_first`.
 template <class Item>

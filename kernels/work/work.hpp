@@ -239,6 +239,7 @@ struct Work {
   // narrow phase
   CandidateList candidates;  // of the class at work
   CandidateList found;       // box pairs: after the separating-axis test
+  int candidate_room;        // blocks of either
   std::uint32_t* keep;       // [block], lanes that passed it
   BlockList blocks[kLists];
   unsigned char* parts;                     // rows of joints (kernels/joint/)
