@@ -1,6 +1,7 @@
 // What the rows layout alone leaves out has no effect.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <vector>
 
 #include "tests/support/hashes.hpp"
@@ -48,6 +49,49 @@ TEST_CASE("rows miss no contact of rectangles, however small, fast and spinning"
           const auto dense = run(plan, options);
           options.layout = ContactLayout::rows;
           CHECK(run(plan, options) == dense);
+        }
+      }
+    }
+  }
+}
+
+// Rows are packed from what each world has for itself (kernels/broad/candidates.cpp): next to one
+// in which all balls touch all others may be one in which none do. The largest crowds have more
+// pairs than contacts are kept of.
+TEST_CASE("rows hold from none to all of the pairs of a world, next to each other",
+          "[fast][bits]") {
+  constexpr int kWorlds = 37;
+  for (const Space space : {Space::planar, Space::spatial}) {
+    for (const int balls : {2, 6, 7, 17, 33, 64}) {
+      Scene scene = empty_scene(space, 0);
+      const Shape ball =
+          space == Space::planar ? shape_of(Circle{0.5}, 0.5) : shape_of(Sphere{0.5}, 0.5);
+      for (int i = 0; i < balls; ++i) scene.add(body_of(ball, Vec3(2.0 * i, 0, 0)));
+      const Plan plan = compile(scene);
+      std::vector<std::uint64_t> reference;
+      for (const Table& table : all_tables()) {
+        if (table.precision != Precision::f32) continue;
+        BatchOptions options = options_of(table, kWorlds);
+        for (const auto layout : {ContactLayout::dense, ContactLayout::rows}) {
+          options.layout = layout;
+          Batch batch(plan, options);
+          for (int w = 0; w < kWorlds; ++w) {
+            // As many as w, or the rest, are a heap; the others stay where they are.
+            const int heap = w % 3 == 0 ? balls : std::min(w, balls);
+            std::vector<double> positions(batch.size(Field::position) / kWorlds);
+            batch.read(Field::position, w, positions);
+            const std::size_t row = positions.size() / static_cast<std::size_t>(balls);
+            for (int i = 0; i < heap; ++i) {
+              positions[static_cast<std::size_t>(i) * row] = 0.004 * i;
+              positions[static_cast<std::size_t>(i) * row + 1] = 0.003 * (i % 5);
+            }
+            batch.write(Field::position, w, positions);
+          }
+          batch.step(3);
+          const auto found = hashes(batch);
+          if (reference.empty()) reference = found;
+          INFO(balls << " balls, " << name(table) << ", layout " << static_cast<int>(layout));
+          CHECK(found == reference);
         }
       }
     }
