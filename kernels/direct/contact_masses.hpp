@@ -70,11 +70,13 @@ void put_masses(const Constants& t, SidedBlock<S, N, A>& s, const TreeSide<S>& o
   if (!t.has_friction) return;
   const Vec first = load_as<Vec>(s.tangent[0]);
   const auto tangent = [&](const ContactSide<S, N, Free>& side, int i) {
-    Vec along = first;
-    if constexpr (S::kDim == 3) {
-      if (i == 1) along = cross(n, first);
+    const auto arm = load_as<Ang>(side.friction_arm[0]);
+    if constexpr (S::kDim == 2) {
+      return WrenchOf<S>{arm, first};
+    } else {
+      const Vec along = i == 1 ? cross(n, first) : first;
+      return WrenchOf<S>{cross(arm, along), along};
     }
-    return WrenchOf<S>{cross(load_as<Vec>(side.centre[0]), along), along};
   };
   const Float k11 = max(coupling(tangent, 0, 0), least);
   if constexpr (S::kTangents == 1) {

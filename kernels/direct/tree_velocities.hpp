@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernels/direct/response.hpp"
-#include "kernels/rows/velocities.hpp"
+#include "kernels/rows/solve_friction.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -157,5 +157,28 @@ class TreeVelocities {
   const TreeResponse<S, kDense>& response_;
   Work& w_;
 };
+
+// Lanes without a tree get the bits of blocks without one.
+template <int N, class A, bool kDense>
+MW_INLINE void apply_normal_with_friction(const SidedBlock<Planar, N, A>& s, const Float* d,
+                                          const FrictionBudget& budget,
+                                          TreeVelocities<Planar, A, kDense>& v, Float* after,
+                                          Float& twist_after) {
+  std::uint32_t lanes = v.b.tree.lanes;
+  SideVelocities<Planar, A> free;
+  free.b = v.b;
+  if constexpr (A::kMoves) free.a = v.a, lanes |= v.a.tree.lanes;
+  Float after_free[2];
+  apply_normal_with_friction(s, d, budget, free, after_free);
+  apply_normal(s, d, v);
+  solve_friction(s, budget, v, after, twist_after);
+  const Mask tree = mask_from_bits(lanes);
+  const auto put = [&](const Velocity<Planar>& of_free, TreeVelocity<Planar>& to) {
+    static_cast<Velocity<Planar>&>(to) = select(tree, Velocity<Planar>(to), of_free);
+  };
+  put(free.b, v.b);
+  if constexpr (A::kMoves) put(free.a, v.a);
+  after[0] = select(tree, after[0], after_free[0]);
+}
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

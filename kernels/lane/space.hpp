@@ -50,6 +50,22 @@ MW_INLINE Vec3 apply(const Sym3& inertia, Vec3 a) { return mul(inertia, a); }
 
 MW_INLINE Float dot(Float a, Float b) { return a * b; }
 
+// x + a.b and w + the inverse inertia times a, in the plane rounded once.
+MW_INLINE Float add_dot(Float x, Float a, Float b) { return fma(a, b, x); }
+MW_INLINE Float sub_dot(Float x, Float a, Float b) { return fnma(a, b, x); }
+MW_INLINE Float add_dot(Float x, Vec3 a, Vec3 b) { return x + dot(a, b); }
+MW_INLINE Float sub_dot(Float x, Vec3 a, Vec3 b) { return x - dot(a, b); }
+MW_INLINE Float add_applied(Float w, Float inertia, Float a) { return fma(inertia, a, w); }
+MW_INLINE Float sub_applied(Float w, Float inertia, Float a) { return fnma(inertia, a, w); }
+template <class Inertia>
+MW_INLINE Vec3 add_applied(Vec3 w, const Inertia& inertia, Vec3 a) {
+  return w + apply(inertia, a);
+}
+template <class Inertia>
+MW_INLINE Vec3 sub_applied(Vec3 w, const Inertia& inertia, Vec3 a) {
+  return w - apply(inertia, a);
+}
+
 // Loads and stores of [component][lane] blocks, by type.
 MW_INLINE void load(const Real* p, Float& a) { a = Float::load(p); }
 MW_INLINE void load(const Real* p, Vec2& a) { a = load_vec2(p); }

@@ -20,7 +20,8 @@ struct ContactSide {};
 template <class S, int N>
 struct alignas(64) ContactSide<S, N, Free> : SideRows<S, Free> {
   Real arm[N][S::kAng][kLanes];  // r x n
-  Real centre[S::kDim][kLanes];  // friction centre from the body
+  // Of the friction centre r, from the centre of mass: r x t in the plane, r in space.
+  Real friction_arm[S::kAng][kLanes];
 };
 
 struct alignas(64) BlockHeader : RowBodies {

@@ -21,9 +21,11 @@ MW_INLINE void put_tangents(const Sides<Planar, A>& sides, const Manifold<Planar
   const Vec2 tangent{-normal.y, normal.x};
   store(s.tangent[0], tangent);
   const Float b = cross(centre.b, tangent);
+  b.store(s.b.friction_arm[0]);
   Float k = sides.inv_mass() + b * apply(sides.b.body.inertia, b);
   if constexpr (A::kMoves) {
     const Float a = cross(centre.a, tangent);
+    a.store(s.a.friction_arm[0]);
     k = k + a * apply(sides.a.body.inertia, a);
   }
   select(active, one / k, zero).store(s.tangent_mass[0]);
@@ -38,6 +40,8 @@ MW_INLINE void put_tangents(const Sides<S, A>& sides, const Manifold<GeometryOf<
   const Vec3 tangent = select(active, m.tangent, zero_of<Vec3>());
   const Vec3 second = cross(normal, tangent);
   store(s.tangent[0], tangent);
+  store(s.b.friction_arm[0], centre.b);
+  if constexpr (A::kMoves) store(s.a.friction_arm[0], centre.a);
   const Vec3 b1 = cross(centre.b, tangent), b2 = cross(centre.b, second);
   const Vec3 i1 = apply(sides.b.body.inertia, b1), i2 = apply(sides.b.body.inertia, b2);
   Float k11 = inv_mass + dot(b1, i1), k12 = dot(b1, i2), k22 = inv_mass + dot(b2, i2);
@@ -86,11 +90,7 @@ MW_INLINE void put_friction(const Constants& t, const Group& g, const Sides<S, A
   const Float share = one / max(count, one);
   FrictionCentre<S> centre;
   centre.b = sum.b * share;
-  store(s.b.centre[0], centre.b);
-  if constexpr (A::kMoves) {
-    centre.a = sum.a * share;
-    store(s.a.centre[0], centre.a);
-  }
+  if constexpr (A::kMoves) centre.a = sum.a * share;
   const auto normal = load_as<typename S::Vec>(s.normal[0]);
   put_tangents(sides, m, active, normal, centre, s);
   for (int i = 0; i < S::kTangents; ++i) {

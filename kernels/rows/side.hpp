@@ -83,7 +83,7 @@ MW_INLINE typename S::Vec point_velocity(const Velocity<S>& v, typename S::Vec a
 // Adds an impulse p, or `amount` along a direction, with this moment about the centre of mass.
 template <class S>
 MW_INLINE void add_moment(const SideRows<S, Free>& side, typename S::Ang moment, Velocity<S>& v) {
-  v.w = v.w + apply(inertia_of<S>(side), moment);
+  v.w = add_applied(v.w, inertia_of<S>(side), moment);
 }
 template <class S>
 MW_INLINE void add_impulse(const SideRows<S, Free>& side, typename S::Vec p, typename S::Ang moment,
@@ -102,7 +102,7 @@ MW_INLINE void add_impulse(const SideRows<S, Free>& side, typename S::Vec direct
 // a zero could differ.
 template <class S>
 MW_INLINE void take_moment(const SideRows<S, Free>& side, typename S::Ang moment, Velocity<S>& v) {
-  v.w = v.w - apply(inertia_of<S>(side), moment);
+  v.w = sub_applied(v.w, inertia_of<S>(side), moment);
 }
 template <class S>
 MW_INLINE void take_impulse(const SideRows<S, Free>& side, typename S::Vec p,

@@ -141,14 +141,12 @@ MW_INLINE Float work_of_driver(const SidedBlock<S, N, Free>& s, const SideVeloci
   normal_speeds(s, v, speed);
   for (int i = 0; i < N; ++i) work = fnma(Float::load(total[i]), speed[i], work);
   if constexpr (kFriction) {
-    using Vec = typename S::Vec;
-    const Vec t = load_as<Vec>(s.tangent[0]);
-    const Vec slip = slip_of(s, v);
-    work = fnma(Float::load(tangent[0]), dot(t, slip), work);
+    const auto slip = slip_of(s, v);
+    work = fnma(Float::load(tangent[0]), along_tangent(s, 0, slip), work);
     if constexpr (S::kTangents == 2) {
-      const Vec n = load_as<Vec>(s.normal[0]);
-      work = fnma(Float::load(tangent[1]), dot(cross(n, t), slip), work);
+      work = fnma(Float::load(tangent[1]), along_tangent(s, 1, slip), work);
       if constexpr (ContactBlock<S, N>::kTwist) {
+        const auto n = load_as<typename S::Vec>(s.normal[0]);
         work = fnma(Float::load(twist), dot(n, relative_spin(v.a, v.b)), work);
       }
     }

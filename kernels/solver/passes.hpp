@@ -4,17 +4,10 @@
 
 #include "kernels/motion/finish.hpp"
 #include "kernels/rows/contact_cache.hpp"
+#include "kernels/rows/solve_list.hpp"
 #include "kernels/solver/energy.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
-
-// Points of blocks of which the registers hold two: of more, solving two at once costs more than it
-// hides (measured, docs/architecture.md).
-#if defined(MW_ISA_AVX512)
-inline constexpr int kMostInTwos = 2;
-#else
-inline constexpr int kMostInTwos = 1;
-#endif
 
 template <class S, bool kDense, bool kFriction>
 struct Passes {
@@ -22,21 +15,14 @@ struct Passes {
   static void solve(const Constants& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     for_each_list<S>(w, [&]<int N, class A>(BlockList& list) {
-      const auto block = [&](int i) -> auto& { return block_at<SidedBlock<S, N, A>>(list, i); };
-      for (int i = 0; i < list.count;) {
-        const int first = i;
-        if (N <= kMostInTwos && i + 1 < list.count && block(i + 1).apart) {
-          solve_two_blocks<kDense, kFriction, kPass>(t, w, block(i), block(i + 1));
-          i += 2;
-        } else {
-          solve_block<kDense, kFriction, kPass>(t, w, block(i++));
-        }
+      const auto finish = [&](int i) {
         if constexpr (kPass == Pass::relax) {
-          for (int k = first; t.has_restitution && k < i; ++k) {
-            accumulate_bounce(block(k), bounce_at<S, N>(list, k), kFriction);
-          }
+          if (!t.has_restitution) return;
+          accumulate_bounce(block_at<SidedBlock<S, N, A>>(list, i), bounce_at<S, N>(list, i),
+                            kFriction);
         }
-      }
+      };
+      solve_in_twos<kDense, kFriction, kPass, SidedBlock<S, N, A>>(t, w, list, finish);
     });
   }
 
