@@ -41,4 +41,28 @@ MW_INLINE void solve_in_twos(const Constants& t, Work& w, const BlockList& list,
   }
 }
 
+// The velocities of each block are loaded before the one ahead of it is solved, not only of every
+// second: where the registers hold those of both, too, beside what the rows need (measured,
+// docs/architecture.md). Calls finish(i) as above.
+template <bool kDense, bool kFriction, Pass kPass, class Block, class Finish>
+MW_INLINE void solve_ahead(const Constants& t, Work& w, const BlockList& list, Finish finish) {
+  if (list.count == 0) return;
+  const auto block = [&](int i) -> Block& { return block_at<Block>(list, i); };
+  auto v = velocities_of<kDense>(w, block(0));
+  for (int i = 0; i < list.count; ++i) {
+    const bool last = i + 1 == list.count;
+    if (!last && block(i + 1).apart) {
+      const auto next = velocities_of<kDense>(w, block(i + 1));
+      solve_rows<kDense, kFriction, kPass>(t, w, block(i), v);
+      v.store(w, block(i));
+      v = next;
+    } else {
+      solve_rows<kDense, kFriction, kPass>(t, w, block(i), v);
+      v.store(w, block(i));
+      if (!last) v = velocities_of<kDense>(w, block(i + 1));
+    }
+    finish(i);
+  }
+}
+
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

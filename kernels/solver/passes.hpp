@@ -22,7 +22,11 @@ struct Passes {
                             kFriction);
         }
       };
-      solve_in_twos<kDense, kFriction, kPass, SidedBlock<S, N, A>>(t, w, list, finish);
+      if constexpr (S::kDim == 2 && N == 1) {
+        solve_ahead<kDense, kFriction, kPass, SidedBlock<S, N, A>>(t, w, list, finish);
+      } else {
+        solve_in_twos<kDense, kFriction, kPass, SidedBlock<S, N, A>>(t, w, list, finish);
+      }
     });
   }
 
