@@ -73,14 +73,12 @@ foreach(isa IN LISTS MW_ISAS)
       $<$<CONFIG:RelWithDebInfo>:-g1>)
     target_include_directories(mw_kernels_${name} PRIVATE "${PROJECT_SOURCE_DIR}"
       "${PROJECT_SOURCE_DIR}/include")
-    if(MW_UNITY AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-      # Half of what most of these files cost are the vector headers.
-      target_precompile_headers(mw_kernels_${name} PRIVATE
-        "${PROJECT_SOURCE_DIR}/kernels/work/stages.hpp"
-        "${PROJECT_SOURCE_DIR}/kernels/lane/elementary.hpp"
-        "${PROJECT_SOURCE_DIR}/kernels/lane/rows.hpp"
-        "${PROJECT_SOURCE_DIR}/kernels/lane/solve.hpp"
-        "${PROJECT_SOURCE_DIR}/kernels/lane/space.hpp")
+    if(MW_UNITY AND (NOT CMAKE_CXX_COMPILER_LAUNCHER OR MW_CCACHE_PROGRAM))
+      # Half of what most of these files cost are the vector headers. Without a folder in their names
+      # ccache finds them again in another clone.
+      target_precompile_headers(mw_kernels_${name} PRIVATE <kernels/work/stages.hpp>
+        <kernels/lane/elementary.hpp> <kernels/lane/rows.hpp> <kernels/lane/solve.hpp>
+        <kernels/lane/space.hpp>)
     endif()
     set_target_properties(mw_kernels_${name} PROPERTIES
       CXX_VISIBILITY_PRESET hidden

@@ -34,16 +34,12 @@ if(MW_SANITIZE)
   endif()
 endif()
 
-if(MW_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  find_program(MW_CCACHE_PROGRAM ccache REQUIRED)
-  mark_as_advanced(MW_CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${MW_CCACHE_PROGRAM}")
-endif()
+include("${CMAKE_CURRENT_LIST_DIR}/Ccache.cmake")
 
 # mw_precompile(TARGET [HEADER...]): reads once what most files of a target include: these headers,
-# Eigen and parts of the standard library. A cache of single files, ccache, has to do without.
+# Eigen and parts of the standard library. A launcher that is not ours may not know precompiled headers.
 function(mw_precompile target)
-  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER OR MW_CCACHE_PROGRAM)
     target_precompile_headers(${target} PRIVATE <Eigen/Geometry> <algorithm> <functional> <map>
       <memory> <optional> <string> <utility> <variant> <vector> ${ARGN})
     if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)

@@ -19,9 +19,7 @@ function(mw_test_target target)
   target_link_libraries(${target} PRIVATE
     manyworlds Catch2::Catch2 fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
   # Scenes and batches are what nearly every test includes.
-  mw_precompile(${target} <catch2/catch.hpp>
-    "${PROJECT_SOURCE_DIR}/include/manyworlds/batch.hpp"
-    "${PROJECT_SOURCE_DIR}/scenes/builders.hpp")
+  mw_precompile(${target} <catch2/catch.hpp> <manyworlds/batch.hpp> <scenes/builders.hpp>)
   if(TARGET manyworlds_cli)
     target_compile_definitions(${target} PRIVATE MW_HAVE_CLI=1)
   endif()
@@ -130,9 +128,11 @@ add_test(NAME check_floors
   COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_floors.py"
           "${PROJECT_SOURCE_DIR}")
 
-# What tools/run, tools/test and what they share build.
-add_test(NAME tools_run
-  COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/run_test.py")
+# What tools/run, tools/test and what they share build, and how .ci/run sums up its stages.
+foreach(name IN ITEMS run ci)
+  add_test(NAME tools_${name}
+    COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/${name}_test.py")
+endforeach()
 
 foreach(name IN LISTS MW_KERNEL_SETS)
   add_test(NAME check_kernel_symbols_${name}
