@@ -11,7 +11,7 @@ mujoco_dir="$root/.deps/mujoco"
 
 # Of the library and the program, and of their parts (see `build`).
 packages=(
-  ca-certificates cmake g++ ninja-build python3
+  ca-certificates ccache cmake g++ ninja-build python3
   libcli11-dev libeigen3-dev libfmt-dev libqhull-dev libtbb-dev libxsimd-dev nlohmann-json3-dev
 )
 mjcf_packages=(libtinyxml2-dev python3-pip)
@@ -173,11 +173,12 @@ configure() {
 }
 
 # Seconds since the epoch, with a fraction, and `took NAME SINCE`: a share of $spent, such as "compile
-# 92 s", when it was a second or more.
+# 92 s", when it was a second or more. Where .ci/run names a file in MW_TIMES, a line in that, too.
 now() { printf '%s' "${EPOCHREALTIME/,/.}"; }
 spent=()
 took() {
   local seconds
+  [[ -z ${MW_TIMES-} ]] || printf '%s\t%s\t%s\n' "$1" "$2" "$(now)" >>"$MW_TIMES"
   seconds=$(awk -v a="$2" -v b="$(now)" 'BEGIN { printf "%.0f", b - a }')
   ((seconds < 1)) || spent+=("$1 $seconds s")
 }
