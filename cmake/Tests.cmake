@@ -134,6 +134,12 @@ foreach(name IN ITEMS run ci)
     COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/${name}_test.py")
 endforeach()
 
+# What README.md and docs/cli.md promise, and the tables of docs.
+foreach(name docs tables)
+  add_test(NAME tools_${name}
+    COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/${name}_test.py")
+endforeach()
+
 foreach(name IN LISTS MW_KERNEL_SETS)
   add_test(NAME check_kernel_symbols_${name}
     COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_kernel_symbols.py"

@@ -1,6 +1,6 @@
 // Draws worlds of a planar scene as they stand after some time:
 //   picture OUT.svg [SCENE] [SECONDS]      (default: mixed-pile2d, 10 s)
-// docs/picture.svg is made by it. Shows how states are read and what the scene's shapes mean.
+// Shows how to read states and what the shapes of a scene mean.
 #include <manyworlds/manyworlds.hpp>
 
 #include <algorithm>
