@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""README.md is short, and docs/cli.md has every command of the program and no option that it lacks."""
+"""README.md is short. docs/cli.md has every command, and no option that the program lacks."""
 
 import pathlib
 import re

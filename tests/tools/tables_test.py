@@ -42,12 +42,18 @@ class Numbers(unittest.TestCase):
             self.assertEqual(tables.short(value), text)
 
 
+class Table(unittest.TestCase):
+    def test_bars_in_cells_do_not_end_them(self):
+        self.assertEqual(tables.table(["a", "b:"], [["|v|", "1"]]),
+                         "| a | b |\n| --- | ---: |\n| \\|v\\| | 1 |\n")
+
+
 class Accuracy(unittest.TestCase):
     def test_both_precisions_share_a_cell(self):
         points = [{"method": "verlet", "precision": precision, "step_s": step, "error": error,
                    "us_per_world": 2 / step}
                   for precision in ("f32", "f64")
-                  for step, error in ((0.1, None), (0.05, 0.02), (0.02, 0.01), (0.01, 0.005), (0.005, 1))]
+                  for step, error in ((0.1, None), (0.05, 3), (0.02, 0.01), (0.01, 2), (0.005, 1))]
         text = tables.accuracy([{
             "id": "A1", "title": "orbit", "metric": "distance", "unit": "m", "simulated_s": 10,
             "level": 0.01, "cheapest_at_level": [], "points": points,
@@ -105,7 +111,8 @@ class Throughput(unittest.TestCase):
             "gflops": 100, "gigabytes_per_s": 20, "peer_means": {"ratio": 3, "long_visit": None},
             "rows": [self.row("worlds", 16, "a", 2e6), self.row("worlds", 64, "a", 3e6),
                      self.row("worlds", 16, "b", 4e6), self.row("worlds", 64, "b", 5e6),
-                     self.row(isa, "avx2 f32", "a", 1e6), self.row(isa, "avx512 f32", "a", 1e6, hash="bb"),
+                     self.row(isa, "avx2 f32", "a", 1e6),
+                     self.row(isa, "avx512 f32", "a", 1e6, hash="bb"),
                      self.row(isa, "avx2 f32", "b", 1e6), self.row(isa, "avx512 f32", "b", 1e6)],
             "peers": [{"scene": "a", "world_steps_per_s": 2e6, "long_visit": 3e6,
                        "worst_overlap_m": 0.001, "worst_gap_m": None,
