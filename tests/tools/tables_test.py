@@ -36,10 +36,11 @@ def variant(scene, name, ratio, same=True, must=True, **more):
 
 
 class Numbers(unittest.TestCase):
-    def test_have_two_digits(self):
+    def test_have_two_or_three_digits(self):
         for value, text in ((0.064, "0.064"), (9.8e-5, "9.8e-5"), (322, "320"), (7.1e6, "7.1e6"),
                             (3e-10, "3e-10"), (0, "0"), (None, "lost")):
             self.assertEqual(tables.short(value), text)
+        self.assertEqual([tables.whole(v) for v in (6.704, 22123.4)], ["6.7", "22100"])
 
 
 class Table(unittest.TestCase):
