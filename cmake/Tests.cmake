@@ -128,14 +128,9 @@ add_test(NAME check_floors
   COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_floors.py"
           "${PROJECT_SOURCE_DIR}")
 
-# What tools/run, tools/test and what they share build, and how .ci/run sums up its stages.
-foreach(name IN ITEMS run ci)
-  add_test(NAME tools_${name}
-    COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/${name}_test.py")
-endforeach()
-
-# What README.md and docs/cli.md promise, and the tables of docs.
-foreach(name docs tables)
+# tools/run and tools/test build what they need, .ci/run sums up its stages, README and docs/cli.md
+# describe the program that is there, and the tables of docs are written as they should be.
+foreach(name IN ITEMS run ci docs tables)
   add_test(NAME tools_${name}
     COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/${name}_test.py")
 endforeach()
