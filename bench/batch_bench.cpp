@@ -1,5 +1,5 @@
 // What a user does with a whole Batch between and around steps: 1024 worlds of bin-boxes, or of the
-// humanoid, on one thread. docs/batch.md and docs/robots.md give these figures.
+// humanoid, on one thread. docs/batch.md and docs/variations.md give these figures.
 #include <algorithm>
 #include <string>
 #include <vector>

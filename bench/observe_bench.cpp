@@ -1,6 +1,6 @@
 // What observers cost: a batch with one of them and one without take the same steps alternately.
 // The counter `ratio` is the median of their ratios, in processor time of the thread, so that
-// others on the machine matter little; docs/batch.md gives these figures.
+// others on the machine matter little; docs/observers.md gives these figures.
 #include <time.h>
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 //
 // After a step positions, inertias and forces of links are those that the last substep found
 // (Observer::links and its like), as in MuJoCo, coordinates those after it. Costs are of actions as
-// given, also beyond the ranges that controls are kept in. docs/rl.md lists what is different.
+// given, also beyond the ranges that controls are kept in. docs/gymnasium.md lists the differences.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 //
 // A file holds the scenes with all their options, a Snapshot of the worlds at the beginning, every
 // input since then, and every k steps the state fields, hashes and status of each world, and its
-// contacts where that is asked for. Its layout is in docs/batch.md.
+// contacts where that is asked for. Its layout is in docs/recordings.md.
 //
 // Any thread may use its own Batch, Recorder and Recording while others do: those that are in HDF5
 // at the same time wait for one another.

@@ -10,7 +10,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 namespace {
 
 // Above this share of active lanes dense blocks are faster than rows (measured,
-// docs/architecture.md).
+// docs/kernels.md).
 #if defined(MW_ISA_AVX512)
 constexpr float kDenseOccupancy = 0.45f;
 #else

@@ -8,7 +8,7 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // Points of blocks of which the registers hold two: of more, solving two at once costs more than it
-// hides (measured, docs/architecture.md).
+// hides (measured, docs/kernels.md).
 #if defined(MW_ISA_AVX512)
 inline constexpr int kMostInTwos = 2;
 #else
@@ -43,7 +43,7 @@ MW_INLINE void solve_in_twos(const Constants& t, Work& w, const BlockList& list,
 
 // The velocities of each block are loaded before the one ahead of it is solved, not only of every
 // second: where the registers hold those of both, too, beside what the rows need (measured,
-// docs/architecture.md). Calls finish(i) as above.
+// docs/kernels.md). Calls finish(i) as above.
 template <bool kDense, bool kFriction, Pass kPass, class Block, class Finish>
 MW_INLINE void solve_ahead(const Constants& t, Work& w, const BlockList& list, Finish finish) {
   if (list.count == 0) return;

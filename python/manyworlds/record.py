@@ -6,7 +6,7 @@
     x = recording.get("position")                  # (samples, worlds, bodies, components)
     assert recording.replay(isa="scalar").same
 
-The file's layout is in docs/batch.md; the program's ``replay`` reads it, too, and so does h5py.
+The file's layout is in docs/recordings.md; the program's ``replay`` reads it, too, and so does h5py.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What docs/rl.md says carries over from Gymnasium: one policy, flown in its environment and here."""
+"""What docs/gymnasium.md says carries over from Gymnasium: one policy, flown in its environment and here."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_acrobot_carries_over():
 
 
 def test_what_bears_other_names_or_numbers_is_not_taken_for_gymnasiums():
-    """Hopper and Pusher share a name alone; docs/rl.md says so by these numbers."""
+    """Hopper and Pusher share a name alone; docs/gymnasium.md says so by these numbers."""
     hopper = mw.tasks.load("Hopper")
     assert max(c.high for c in hopper.scene.controls) == 100  # N m; 200 there
     assert len(mw.tasks.load("Pusher").actions) == 2  # 7 there

@@ -1,6 +1,6 @@
 """Gymnasium's MuJoCo tasks here and there: the same states, the same actions, the same numbers.
 
-MANYWORLDS_GYM_STATES is how many states of each task are compared; docs/rl.md has the figures of 1000.
+MANYWORLDS_GYM_STATES is how many states of each task are compared; docs/gymnasium.md has the figures of 1000.
 """
 
 import importlib.util
@@ -23,7 +23,7 @@ from manyworlds.gym import mujoco as tasks  # noqa: E402
 
 STATES = int(os.environ.get("MANYWORLDS_GYM_STATES", "300"))
 STEPS = 2  # of the task, from each state
-# Contacts whose points are not MuJoCo's (docs/robots.md), of the two kinds of shapes.
+# Contacts whose points are not MuJoCo's (docs/mujoco.md), of the two kinds of shapes.
 KINDS = mujoco.mjtGeom
 OTHERS = {(KINDS.mjGEOM_CAPSULE, KINDS.mjGEOM_CYLINDER)}
 # Infos that are sums of numbers of the observation, and no nearer than those.

@@ -7,7 +7,7 @@ import pytest
 
 import manyworlds as mw
 
-DOCS = Path(__file__).parents[2] / "docs" / "batch.md"
+DOCS = Path(__file__).parents[2] / "docs" / "observers.md"
 
 
 def falling() -> mw.Scene:

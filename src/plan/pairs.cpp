@@ -140,7 +140,7 @@ void list_pairs(PlanData& plan) {
 }
 
 // Moving shapes up to which there are tables of pairs, and pairs with fixed shapes that are not
-// planes. Measured from 78 to 496 boxes, balls and squares (docs/architecture.md): a search
+// planes. Measured from 78 to 496 boxes, balls and squares (docs/kernels.md): a search
 // takes 1.4 to 2 times as long as a table of up to 200 shapes, and as long in the plane from 500
 // on.
 constexpr int kMaxInTables = 512;

@@ -193,7 +193,7 @@ void add_compare(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds compare humanoid.xml --worlds 2000 --steps 3000 --json\n"
       "\n"
       "Both sides solve with Newton's method, on one thread. Exit code 1\n"
-      "where a difference is beyond its gate (docs/robots.md).");
+      "where a difference is beyond its gate (docs/mujoco.md).");
   command->callback([&] { code = compare_command(all.compare); });
 }
 

@@ -68,7 +68,7 @@ class Pair {
   const Effort& effort() const { return effort_; }
   void set_effort(const Effort& effort);
 
-  // Whether MuJoCo's contacts of these two geoms are ours point for point (docs/robots.md).
+  // Whether MuJoCo's contacts of these two geoms are ours point for point (docs/mujoco.md).
   bool same_points(int geom_a, int geom_b) const;
 
  private:

@@ -2,7 +2,7 @@
 
 The model files are Gymnasium's own, read where its package is installed, by MuJoCo's library
 (``pip install "manyworlds[gym,mjcf]"``). Arguments, observations, rewards, infos and ends are Gymnasium's;
-docs/rl.md says what differs.
+docs/gymnasium.md says what differs.
 """
 
 from __future__ import annotations
