@@ -124,7 +124,7 @@ export class App {
     this.overlays = new Overlays(this.worlds);
     for (const id of MARKS) this.overlays[id] = this.checked(id);
     this.stage.scene.add(this.worlds.group, this.overlays.group);
-    this.worlds.selected = this.chosen.cell;
+    this.worlds.selected = this.worlds.focus = this.chosen.cell;
     this.dirty = true;
   }
 
@@ -282,7 +282,7 @@ export class App {
   choose(cell: number, row: number): void {
     if (cell >= 0 && cell !== this.chosen.cell) this.tether.hold(this.worlds, cell);
     this.chosen = { cell, row };
-    this.worlds.selected = cell;
+    this.worlds.selected = this.worlds.focus = cell;
     if (row < 0) this.follow(false);
     else if (this.following) this.worlds.placeOf(cell, row, this.lastPlace);
     element('world').hidden = cell < 0;

@@ -11,6 +11,11 @@ export class Probe {
     this.app.timeline.seek(time);
   }
 
+  // Without moving the camera, which a click does.
+  choose(cell: number, row: number): void {
+    this.app.choose(cell, row);
+  }
+
   get report() {
     const median = (values: number[]) => [...values].sort((a, b) => a - b)[values.length >> 1] ?? 0;
     return {

@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
+import { setBackground } from './batches';
 import type { Theme } from './coloring';
 
 export interface Box {
@@ -77,6 +78,7 @@ export class Stage {
 
   setTheme(name: 'light' | 'dark'): void {
     this.scene.background = new THREE.Color(THEMES[name].sky);
+    setBackground(THEMES[name].sky);
     this.sky.intensity = name === 'dark' ? 1.3 : 2.0;
     this.sky.groundColor.set(name === 'dark' ? '#5a6376' : '#b9c2d3');
     this.sun.intensity = name === 'dark' ? 1.9 : 2.2;

@@ -9,12 +9,14 @@ import { Drawables, type KindView, type Options } from './drawables';
 import { makeLayout, sidesOf, type Cell, type Layout } from './layout';
 
 const NEAR_PIXELS = 26; // a body of so many pixels across is drawn finely
+const FADED = 0.7; // how far the neighbours of the chosen world fade into the background
 
 export class Worlds {
   readonly planar: boolean;
   readonly layout: Layout;
   readonly coloring: Coloring;
-  selected = -1; // cell
+  selected = -1; // cell, which is tinted
+  focus = -1; // cell whose neighbours are faded
   drawn = 0; // shapes of moving bodies that were written last
   readonly seen: number[] = []; // cells that the camera saw then
   private readonly drawables: Drawables;
@@ -148,10 +150,11 @@ export class Worlds {
     const kind = this.kindOf(cell);
     const { position, rotation, there } = view.poses;
     const lost = this.isLost(cell);
+    const fade = this.fadeOf(cell);
     const tint = lost ? this.coloring.tints.lost : n === this.selected ? this.coloring.tints.selected : null;
-    if (view.ground !== null) putStill(view.ground, cell, tint ?? (this.planar ? this.coloring.tints.fixed : this.coloring.tints.ground), 0);
-    if (view.tile !== null) putStill(view.tile, cell, tint ?? this.coloring.tints.tile, this.planar ? -50 : 0);
-    if (view.wall !== null) putStill(view.wall, cell, tint ?? this.coloring.tints.wall, 0);
+    if (view.ground !== null) putStill(view.ground, cell, tint ?? (this.planar ? this.coloring.tints.fixed : this.coloring.tints.ground), 0, fade);
+    if (view.tile !== null) putStill(view.tile, cell, tint ?? this.coloring.tints.tile, this.planar ? -50 : 0, fade);
+    if (view.wall !== null) putStill(view.wall, cell, tint ?? this.coloring.tints.wall, 0, fade);
     const first = cell.world * kind.rows;
     for (let i = 0; i < view.drawables.length; ++i) {
       const d = view.drawables[i];
@@ -200,7 +203,15 @@ export class Worlds {
       }
       out[o + 6] = qx; out[o + 7] = qy; out[o + 8] = qz; out[o + 9] = qw;
       this.coloring.into(cell, view.poses, d, item, out, o + 13);
+      out[o + 16] = fade;
     }
+  }
+
+  // The same world of another recording is compared with the chosen one, so it does not fade.
+  fadeOf(cell: Cell): number {
+    if (this.focus < 0) return 0;
+    const chosen = this.layout.cells[this.focus];
+    return cell.kind === chosen.kind && cell.world === chosen.world ? 0 : FADED;
   }
 
   // Where a body is drawn.
@@ -256,7 +267,7 @@ export class Worlds {
 
 }
 
-function putStill(batch: Batch, cell: Cell, color: Rgb, z: number): void {
+function putStill(batch: Batch, cell: Cell, color: Rgb, z: number, fade: number): void {
   const o = STRIDE * batch.count++;
   const out = batch.data;
   out.fill(0, o, o + STRIDE);
@@ -265,6 +276,7 @@ function putStill(batch: Batch, cell: Cell, color: Rgb, z: number): void {
   out[o + 2] = z;
   out[o + 3] = out[o + 4] = out[o + 5] = out[o + 9] = 1;
   put(color, out, o + 13);
+  out[o + 16] = fade;
 }
 
 // What contacts press with on each body.
