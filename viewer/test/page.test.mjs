@@ -2,7 +2,7 @@
 // browser.test.mjs.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { near, open, pageOf } from './pages.mjs';
+import { browserOf, near, open, pageOf } from './pages.mjs';
 
 test('neighbours of the chosen world are dimmed, in both themes', async () => {
   const { file } = pageOf('ball2d', '--worlds', '4', '--seconds', '1');
@@ -21,6 +21,35 @@ test('neighbours of the chosen world are dimmed, in both themes', async () => {
     near(await colorOf(2), color.map((c, i) => 0.3 * c + 0.7 * sky[i]), 3, 'a neighbour');
     await view.key('Escape');
     assert.deepEqual(await colorOf(2), color);
+    await view.close();
+  }
+});
+
+test('title and legend have a background, on pages and in films', async () => {
+  const { file } = pageOf('ball2d', '--worlds', '2', '--seconds', '1');
+  for (const [theme, sky, panel, part] of [['light', [0xe9, 0xed, 0xf3], [255, 255, 255], 0.86], ['dark', [0x12, 0x15, 0x1c], [24, 28, 37], 0.84]]) {
+    const page = await browserOf().newPage({ viewport: { width: 400, height: 260 } });
+    await page.goto(`file://${file}#film&color=speed&theme=${theme}`);
+    const { colors, legend, head } = await page.evaluate(async () => {
+      await (await window.manyworldsReady).film();
+      const image = new Image();
+      image.src = `data:image/png;base64,${await window.manyworldsFilm.frame(0.5, 'image/png', true)}`;
+      await image.decode();
+      const pen = new OffscreenCanvas(image.width, image.height).getContext('2d');
+      pen.drawImage(image, 0, 0);
+      const boxes = ['head', 'moment'].map((id) => document.getElementById(id).getBoundingClientRect());
+      // Left of the words.
+      const found = boxes.map(({ left, top, height }) => [...pen.getImageData(left + 4, top + height / 2, 1, 1).data].slice(0, 3));
+      return { colors: found, head: boxes[0].toJSON(), legend: document.getElementById('legend').getBoundingClientRect().toJSON() };
+    });
+    const wanted = panel.map((c, i) => part * c + (1 - part) * sky[i]);
+    for (const color of colors) near(color, wanted, 2, theme);
+    assert.ok(legend.left >= head.left && legend.right <= head.right && legend.bottom <= head.bottom, 'the legend is in the box');
+    await page.close();
+
+    const view = await open(file, { dark: theme === 'dark' });
+    const background = await view.page.evaluate(() => getComputedStyle(document.getElementById('head')).backgroundColor);
+    assert.equal(background, `rgba(${panel.join(', ')}, ${part})`);
     await view.close();
   }
 });
