@@ -67,7 +67,8 @@ export class App {
     if (Number.isFinite(time)) this.timeline.seek(time);
     // Of pictures and films: nothing but the worlds and their name, and no frame but those that are asked for.
     const film = wanted.has('film');
-    if (film) for (const id of ['panel', 'buttons', 'timeline']) element(id).hidden = true;
+    if (film) for (const id of ['panel', 'buttons']) element(id).hidden = true;
+    element('timeline').hidden = film || (this.live === null && this.timeline.end === 0); // a single moment has none
     await this.prepare(this.timeline.time);
     this.resize();
     this.build();
@@ -259,7 +260,7 @@ export class App {
       b: () => toggle('bounds'),
       x: () => toggle('contacts'),
       d: () => toggle('dark'),
-      r: () => this.commands?.reset(),
+      r: () => (this.commands !== null ? this.commands.reset() : toggle('loop')),
       o: () => togglePanel(element('panel').classList.contains('closed')),
     };
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];

@@ -27,6 +27,7 @@ export class Probe {
       frame: this.app.worlds.frame,
       playing: this.app.timeline.playing,
       speed: this.app.timeline.speed,
+      looping: this.app.timeline.looping,
       chosen: { ...this.app.chosen },
       following: this.app.following,
       still: this.app.worlds.still,

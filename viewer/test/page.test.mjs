@@ -1,8 +1,9 @@
 // What the page adds to the picture: which worlds stand out, title, table, timeline, address. Run by ctest, as
 // browser.test.mjs.
 import assert from 'node:assert/strict';
+import { join } from 'node:path';
 import { test } from 'node:test';
-import { browserOf, near, open, pageOf } from './pages.mjs';
+import { browserOf, folder, near, open, pageOf, run } from './pages.mjs';
 
 test('neighbours of the chosen world are dimmed, in both themes', async () => {
   const { file } = pageOf('ball2d', '--worlds', '4', '--seconds', '1');
@@ -52,4 +53,44 @@ test('title and legend have a background, on pages and in films', async () => {
     assert.equal(background, `rgba(${panel.join(', ')}, ${part})`);
     await view.close();
   }
+});
+
+test('a short recording plays again from its start, a long one once', async () => {
+  const { file } = pageOf('ball2d', '--worlds', '1', '--seconds', '0.5');
+  const view = await open(file);
+  assert.equal((await view.report()).looping, true);
+  assert.equal(await view.page.getAttribute('#loop', 'aria-pressed'), 'true');
+  await view.seek(0.4);
+  await view.page.keyboard.press(' ');
+  await view.page.waitForFunction(() => window.manyworlds.report.time === 0.5); // the last frame stays for a moment
+  await view.page.waitForFunction(() => window.manyworlds.report.time < 0.4);
+  assert.equal((await view.report()).playing, true);
+  await view.page.click('#loop');
+  assert.equal(await view.page.getAttribute('#loop', 'aria-pressed'), 'false');
+  await view.page.waitForFunction(() => !window.manyworlds.report.playing);
+  assert.equal((await view.report()).time, 0.5);
+  await view.page.keyboard.press('r');
+  assert.equal((await view.report()).looping, true);
+  await view.close();
+
+  const long = await open(pageOf('ball2d', '--worlds', '1', '--seconds', '11').file);
+  assert.equal((await long.report()).looping, false);
+  await long.close();
+});
+
+test('a single moment has no timeline', async () => {
+  const moment = join(folder, 'moment.h5');
+  run('run', 'stack10', '--worlds', '2', '--steps', '1', '--record', moment, '--record-every', '10');
+  const { file, head } = pageOf(moment, '--every', '2');
+  assert.equal(head.runs[0].times.length, 1);
+  const view = await open(file);
+  assert.equal(await view.page.isVisible('#timeline'), false);
+  await view.page.keyboard.press(' ');
+  await view.calm();
+  assert.equal((await view.report()).time, 0);
+  await view.close();
+
+  const longer = await open(pageOf('stack10', '--worlds', '2', '--seconds', '0.2').file);
+  assert.equal(await longer.page.isVisible('#timeline'), true);
+  await longer.close();
 });
