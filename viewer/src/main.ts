@@ -282,13 +282,13 @@ export class App {
 
   choose(cell: number, row: number): void {
     if (cell >= 0 && cell !== this.chosen.cell) this.tether.hold(this.worlds, cell);
+    this.panel.chose(cell !== this.chosen.cell);
     this.chosen = { cell, row };
     this.worlds.selected = this.worlds.focus = cell;
     if (row < 0) this.follow(false);
     else if (this.following) this.worlds.placeOf(cell, row, this.lastPlace);
     element('world').hidden = cell < 0;
-    element('bodies').replaceChildren();
-    this.lastTable = 0;
+    this.lastTable = -Infinity;
     this.dirty = true;
   }
 

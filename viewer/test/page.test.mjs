@@ -94,3 +94,24 @@ test('a single moment has no timeline', async () => {
   assert.equal(await longer.page.isVisible('#timeline'), true);
   await longer.close();
 });
+
+test('the line of a chosen body scrolls into view', async () => {
+  const view = await open(pageOf('bin-boxes', '--worlds', '2', '--seconds', '0.2').file, { height: 420 });
+  for (const row of [19, 0, 12]) {
+    await view.page.evaluate((r) => window.manyworlds.choose(1, r), row);
+    await view.calm();
+    const { line, box, head } = await view.page.evaluate(() => {
+      const of = (selector) => document.querySelector(selector).getBoundingClientRect().toJSON();
+      return { line: of('#bodies tr.chosen'), box: of('#table-box'), head: of('thead th') };
+    });
+    assert.ok(line.top >= head.bottom - 1 && line.bottom <= box.bottom + 1, `row ${row}: ${line.top} to ${line.bottom} in ${head.bottom} to ${box.bottom}`);
+  }
+  // A click on a line leaves the others where they are.
+  const scrolled = () => view.page.evaluate(() => document.getElementById('table-box').scrollTop);
+  const before = await scrolled();
+  await view.page.click('#bodies tr:nth-child(12)');
+  await view.calm();
+  assert.equal((await view.report()).chosen.row, 11);
+  assert.equal(await scrolled(), before);
+  await view.close();
+});
