@@ -5,7 +5,7 @@ import { obeyAddress } from './address';
 import { colorChoices, hasContacts } from './coloring';
 import { Commands } from './commands';
 import type { FrameSource } from './data';
-import { element } from './elements';
+import { element, showMessage } from './elements';
 import { Film } from './film';
 import { Grab } from './grab';
 import { LiveSource } from './live';
@@ -64,7 +64,7 @@ export class App {
   async begin(): Promise<void> {
     const wanted = new URLSearchParams(window.location.hash.slice(1));
     const time = Number(wanted.get('time') ?? 0);
-    if (Number.isFinite(time)) this.timeline.seek(time);
+    if (Number.isFinite(time)) this.timeline.seek(time); // before anything is drawn
     // Of pictures and films: nothing but the worlds and their name, and no frame but those that are asked for.
     const film = wanted.has('film');
     if (film) for (const id of ['panel', 'buttons']) element(id).hidden = true;
@@ -75,19 +75,29 @@ export class App {
     this.worlds.read(this.timeline.time);
     if (this.worlds.instances > SOFTWARE_SHADOWS && this.stage.software) element('shadows').click();
     this.showAll(false);
-    const refused = obeyAddress(this, wanted);
+    const refused = obeyAddress(this, wanted, false);
     if (film) {
-      if (refused !== '') throw new Error(refused);
+      if (refused.length > 0) throw new Error(refused.join('; '));
       this.stage.endFlight();
-      this.worlds.selected = -1; // who looks on chooses nothing
+      // Whoever looks on chooses nothing.
+      this.worlds.selected = -1;
+      this.overlays.axes = false;
       return;
     }
+    this.complain(refused);
+    window.addEventListener('hashchange', () => {
+      this.complain(obeyAddress(this, new URLSearchParams(window.location.hash.slice(1))));
+    });
     window.addEventListener('resize', () => {
       this.resize();
       if (this.chosen.cell < 0) this.showAll(false);
     });
     requestAnimationFrame((now) => this.tick(now));
     if (this.timeline.end > 0 && !wanted.has('time') && !window.matchMedia('(prefers-reduced-motion: reduce)').matches) this.timeline.play(true);
+  }
+
+  private complain(refused: string[]): void {
+    showMessage(refused.length === 0 ? '' : ['The address of this page asks for what it does not have:', ...refused].join('\n'), true);
   }
 
   // Frames of pictures and films; how long worlds go on, s.
@@ -309,6 +319,14 @@ export class App {
     this.stage.show(this.tether.begin(this.worlds, cell), { fly: true, elevation: 0.55 });
   }
 
+  // Chooses a body and goes with it.
+  showBody(cell: number, row: number): void {
+    this.resize();
+    this.choose(cell, row);
+    this.stage.show(this.tether.around(this.worlds, cell, row), { fly: true, elevation: 0.55 });
+    this.follow(true);
+  }
+
   setTheme(name: 'light' | 'dark'): void {
     this.theme = name;
     document.documentElement.classList.toggle('dark', name === 'dark');
@@ -393,8 +411,6 @@ async function main(): Promise<App> {
 
 window.manyworldsReady = main();
 window.manyworldsReady.catch((error: unknown) => {
-  const message = element('message');
-  message.hidden = false;
-  message.textContent = error instanceof Error ? error.message : String(error);
+  showMessage(error instanceof Error ? error.message : String(error), false);
   console.error(error);
 });

@@ -50,6 +50,7 @@ export class Overlays {
   centers = false;
   bounds = false;
   contacts = false;
+  axes = true; // of the chosen body
   pull: { from: THREE.Vector3; to: THREE.Vector3 } | null = null; // the spring of a drag
   private readonly hidden: Lines; // by what is before them
   private readonly above: Lines;
@@ -72,7 +73,7 @@ export class Overlays {
       if (this.joints) this.addJoints(chosen.cell);
       if (this.centers) this.addCenters(chosen.cell);
       if (this.bounds) this.addBounds(chosen.cell);
-      if (chosen.row >= 0) this.addFrame(chosen);
+      if (this.axes && chosen.row >= 0) this.addFrame(chosen);
     }
     if (this.pull !== null) this.above.add(this.pull.from, this.pull.to, linear('#e02b2b'));
     // Of all that are seen while none is chosen.

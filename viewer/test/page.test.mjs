@@ -115,3 +115,48 @@ test('the line of a chosen body scrolls into view', async () => {
   assert.equal(await scrolled(), before);
   await view.close();
 });
+
+test('the address chooses a body, and says what the page does not have', async () => {
+  const { file, head } = pageOf('free-flight', '--worlds', '4', '--seconds', '2');
+  const { bodies } = head.runs[0].kinds[0];
+  const at = bodies.findIndex((body) => body.row === 3);
+  const view = await open(file, { hash: `#world=2&follow=${bodies[at].name || at}&time=0.5&loop=off&theme=dark` });
+  let report = await view.report();
+  assert.deepEqual([report.chosen, report.following, report.time, report.looping], [{ cell: 2, row: 3 }, true, 0.5, false]);
+  assert.equal(await view.page.isVisible('#message'), false);
+  const begin = await view.body(2, 3);
+  await view.seek(2);
+  const end = await view.body(2, 3);
+  assert.ok(Math.hypot(...end.position.map((x, c) => x - begin.position[c])) > 0.1, 'it moved');
+  near([end.pixel.x, end.pixel.y], [begin.pixel.x, begin.pixel.y], 1.5, 'pixels');
+
+  const complaint = async (hash) => {
+    await view.page.evaluate((text) => { window.location.hash = text; }, hash);
+    await view.page.waitForFunction((text) => window.location.hash === text, hash);
+    await view.calm();
+    return (await view.page.isVisible('#message')) ? view.page.locator('#message-text').textContent() : '';
+  };
+  assert.match(await complaint('#color=heat'), /\ncolor is 'heat'; expected body, speed, spin, rest or height$/);
+  assert.match(await complaint('#world=4'), /\nworld is '4'; expected 0 to 3$/);
+  assert.match(await complaint('#world=1&follow=nobody'), /\nfollow is 'nobody'; expected a body that moves: \S/);
+  assert.match(await complaint('#theme=blue&time=soon'), /\ntime is 'soon'; expected seconds, 0 or later\ntheme is 'blue'; expected light or dark$/);
+  assert.match(await complaint('#colour=speed'), /\n'colour' is unknown; expected time, theme, color, world, follow or loop$/);
+  await view.page.click('#message-close');
+  assert.equal(await view.page.isVisible('#message'), false);
+  await complaint('#loop=maybe');
+  assert.equal(await complaint('#color=speed&loop=on'), '');
+  report = await view.report();
+  assert.equal(report.looping, true);
+  assert.equal(await view.page.inputValue('#color'), 'speed');
+  await view.close();
+
+  // Pages that are opened so, and films, which have no page to say it on.
+  const wrong = await open(file, { hash: '#color=heat' });
+  assert.match(await wrong.page.locator('#message').textContent(), /color is 'heat'; expected body/);
+  await wrong.close();
+  const film = await browserOf().newPage();
+  await film.goto(`file://${file}#film&color=heat&world=9`);
+  const thrown = await film.evaluate(() => window.manyworldsReady.catch((error) => error.message));
+  assert.equal(thrown, "color is 'heat'; expected body, speed, spin, rest or height; world is '9'; expected 0 to 3");
+  await film.close();
+});
