@@ -29,7 +29,8 @@ class FilmError : public std::runtime_error {
 // What frames look like.
 struct FrameOptions {
   int width = 1280, height = 720;  // pixels, 64 to 8192
-  // As behind '#' in the address of a page: "world=3&color=speed&theme=dark".
+  // As behind '#' in the address of a page: "world=3&follow=torso&color=speed&theme=dark". The
+  // camera follows a body by its name or its index in the scene, of world 0 where none is given.
   std::string view = {};
 };
 
