@@ -80,8 +80,10 @@ TEST_CASE("films have a frame for each moment, in order", "[cli]") {
   if (!records(folder)) return;
   const std::string name = "it's \"my\" $film;*.mp4";
   const Outcome made = folder.run(
-      "view ball3d --worlds 2 --seconds 0.1 --fps 4 --speed 0.5 --begin 0.25 --end 1 --size 640x480 "
-      "--world 1 --follow \"a &b\" --color speed --dark --json --mp4 \"it's \\\"my\\\" \\$film;*.mp4\"");
+      "view ball3d --worlds 2 --seconds 0.1 --fps 4 --speed 0.5 --begin 0.25 --end 1 --size "
+      "640x480 "
+      "--world 1 --follow \"a &b\" --color speed --dark --json --mp4 \"it's \\\"my\\\" "
+      "\\$film;*.mp4\"");
   INFO(made.err);
   REQUIRE(made.code == 0);
   const Json json = Json::parse(made.out);
@@ -97,7 +99,8 @@ TEST_CASE("films have a frame for each moment, in order", "[cli]") {
     CHECK(frames[at] == Json(0.25 + 0.125 * k).dump() + " image/jpeg true");
   }
   CHECK(content(folder / "size") == "640x480");
-  CHECK(contains(content(folder / "url"), "/page.html#film&world=1&follow=a%20%26b&color=speed&theme=dark"));
+  CHECK(contains(content(folder / "url"),
+                 "/page.html#film&world=1&follow=a%20%26b&color=speed&theme=dark"));
   CHECK(contains(content(folder / "arguments"), "\n-framerate\n4.000000\n"));
   folder.check_clean();
 }
@@ -179,7 +182,8 @@ TEST_CASE("films refuse options that they cannot have", "[cli]") {
   bad("--png a.png --until 1", "--until: applies only with --mp4");
   bad("--out a.html --at 2", "--at: applies only with --png or --mp4");
   bad("--mp4 film.mp4 --at 2 --begin 1", "--at excludes --begin");
-  bad("--out a.html --dark", "--world, --follow, --color, --dark: applies only with --png or --mp4");
+  bad("--out a.html --dark",
+      "--world, --follow, --color, --dark: applies only with --png or --mp4");
   bad("--out a.html --follow ball", "applies only with --png or --mp4");
 }
 

@@ -299,9 +299,9 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       "of scenes: contact points of a world and frame, the N of the largest forces");
   CLI::Option* live = command->add_flag(
       "--live", view.live, "step a scene and serve its page on this machine until Ctrl-C");
-  for (const char* other :
-       {"--out", "--open", "--png", "--mp4", "--time", "--begin", "--end", "--at", "--until",
-        "--world", "--follow", "--color", "--dark", "--every", "--fps", "--seconds", "--contacts"}) {
+  for (const char* other : {"--out", "--open", "--png", "--mp4", "--time", "--begin", "--end",
+                            "--at", "--until", "--world", "--follow", "--color", "--dark",
+                            "--every", "--fps", "--seconds", "--contacts"}) {
     live->excludes(command->get_option(other));
   }
   command->add_option("--port", view.port, "of --live (default: any that is free)")
@@ -327,7 +327,7 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds view run.h5 --out page.html\n"
       "  manyworlds view bin-boxes --png picture.png --time 1.2 --size 1200x680\n"
       "  manyworlds view run.h5 --mp4 film.mp4 --speed 0.25\n"
-      "  manyworlds view humanoid --random-controls --mp4 film.mp4 --world 5 --follow torso\n"
+      "  manyworlds view humanoid --random-controls --mp4 film.mp4 --world 5 --follow chest\n"
       "  manyworlds view before.h5 after.h5 --out both.html\n"
       "  manyworlds view humanoid.xml --random-controls --worlds 16 --seconds 5\n"
       "  manyworlds view bin-boxes --live --worlds 64\n"

@@ -10,7 +10,7 @@ import type { Worlds } from './worlds';
 
 const SMALL = 0.4; // of the room, sides of what the camera stays with
 const AROUND = 0.75; // of the largest side, of what is shown on each side of it
-const RADII = 6; // of a followed body, likewise
+const RADII = 3; // of a followed body, likewise
 
 export class Tether {
   private near = false;

@@ -136,7 +136,7 @@ test('the address chooses a body, and says what the page does not have', async (
     await view.calm();
     return (await view.page.isVisible('#message')) ? view.page.locator('#message-text').textContent() : '';
   };
-  assert.match(await complaint('#color=heat'), /\ncolor is 'heat'; expected body, speed, spin, rest or height$/);
+  assert.match(await complaint('#color=heat'), /\ncolor is 'heat'; expected body, speed, spin, rest, height or contact$/);
   assert.match(await complaint('#world=4'), /\nworld is '4'; expected 0 to 3$/);
   assert.match(await complaint('#world=1&follow=nobody'), /\nfollow is 'nobody'; expected a body that moves: \S/);
   assert.match(await complaint('#theme=blue&time=soon'), /\ntime is 'soon'; expected seconds, 0 or later\ntheme is 'blue'; expected light or dark$/);
@@ -157,6 +157,6 @@ test('the address chooses a body, and says what the page does not have', async (
   const film = await browserOf().newPage();
   await film.goto(`file://${file}#film&color=heat&world=9`);
   const thrown = await film.evaluate(() => window.manyworldsReady.catch((error) => error.message));
-  assert.equal(thrown, "color is 'heat'; expected body, speed, spin, rest or height; world is '9'; expected 0 to 3");
+  assert.equal(thrown, "color is 'heat'; expected body, speed, spin, rest, height or contact; world is '9'; expected 0 to 3");
   await film.close();
 });
