@@ -10,6 +10,7 @@ export interface Options {
   wireframe: boolean;
   walls: boolean;
   edges: boolean;
+  joints: boolean;
 }
 
 export interface Drawable {
@@ -135,7 +136,7 @@ export class Drawables {
   // m, around what does not move, about the origin of a world.
   readonly still: Sides = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
   private readonly known = new Map<string, MeshUse>();
-  private readonly look: Look;
+  readonly look: Look;
 
   // sides: where what does not move is cut, if it is.
   constructor(runs: Run[], ghosts: boolean, private readonly planar: boolean, private readonly options: Options,
@@ -162,7 +163,7 @@ export class Drawables {
     }
   }
 
-  private add(batch: Batch): Batch {
+  add(batch: Batch): Batch {
     this.batches.push(batch);
     for (const object of batch.objects) this.group.add(object);
     return batch;

@@ -2,17 +2,18 @@
 import * as THREE from 'three';
 
 import { obeyAddress } from './address';
+import { watchClicks } from './clicks';
 import { colorChoices, hasContacts } from './coloring';
 import { Commands } from './commands';
 import type { FrameSource } from './data';
 import { element, showMessage } from './elements';
 import { Film } from './film';
 import { Grab } from './grab';
+import { hasJoints } from './joints';
 import { LiveSource } from './live';
 import { LiveClock } from './live_clock';
 import { Overlays, type Chosen } from './overlays';
 import { Panel } from './panel';
-import { pickBody, pickCell } from './pick';
 import { Probe } from './probe';
 import { openRuns } from './recorded';
 import { Stage, THEMES } from './stage';
@@ -21,9 +22,8 @@ import { Timeline, type Clock } from './timeline';
 import { Worlds, momentOf } from './worlds';
 
 const TABLE_MS = 120; // from one writing of the table to the next
-const CLICK_PIXELS = 5;
 const WAIT_MS = 250; // how long a picture stays while the next frames are decoded
-const MARKS = ['trails', 'joints', 'centers', 'bounds', 'contacts'] as const; // of overlays
+const MARKS = ['trails', 'anchors', 'centers', 'bounds', 'contacts'] as const; // of overlays
 const SOFTWARE_SHADOWS = 3000; // shapes that still have shadows without a graphics card
 
 export class App {
@@ -127,7 +127,7 @@ export class App {
     }
     const { width, height } = this.canvasSize();
     this.worlds = new Worlds(this.sources, this.ghosts, width / height, {
-      wireframe: this.checked('wireframe'), walls: this.checked('walls'), edges: this.checked('edges'),
+      wireframe: this.checked('wireframe'), walls: this.checked('walls'), edges: this.checked('edges'), joints: this.checked('joints'),
     });
     this.worlds.coloring.by = element<HTMLSelectElement>('color').value;
     this.panel = new Panel(this.title, this.sources, this.worlds, (row) => this.choose(this.chosen.cell, row));
@@ -177,6 +177,8 @@ export class App {
       this.dirty = true;
       color.blur();
     };
+    const joints = hasJoints(this.sources.map((source) => source.run));
+    for (const id of ['joints', 'anchors']) (element(id).parentElement as HTMLElement).hidden = !joints;
     element('compare-row').hidden = this.sources.length < 2;
     const compare = element<HTMLSelectElement>('compare');
     compare.onchange = () => {
@@ -186,7 +188,7 @@ export class App {
       this.showAll(false);
       compare.blur();
     };
-    for (const id of ['edges', 'walls', 'wireframe']) element(id).onchange = () => this.build();
+    for (const id of ['edges', 'walls', 'wireframe', 'joints']) element(id).onchange = () => this.build();
     element('shadows').onchange = () => {
       this.stage.shadows = this.checked('shadows');
       this.dirty = true;
@@ -216,29 +218,7 @@ export class App {
     panelButton.onclick = () => togglePanel(element('panel').classList.contains('closed'));
     if (window.innerWidth <= 620) element('panel').classList.add('closed');
     window.addEventListener('keydown', (event) => this.key(event, togglePanel));
-    this.setUpPointer();
-  }
-
-  private setUpPointer(): void {
-    const canvas = element<HTMLCanvasElement>('view');
-    let down: { x: number; y: number } | null = null;
-    canvas.addEventListener('pointerdown', (event) => {
-      down = { x: event.clientX, y: event.clientY };
-    });
-    canvas.addEventListener('pointerup', (event) => {
-      if (down === null || Math.hypot(event.clientX - down.x, event.clientY - down.y) > CLICK_PIXELS) return;
-      this.click(event.clientX, event.clientY);
-    });
-  }
-
-  private click(x: number, y: number): void {
-    const ray = this.stage.ray(x, y);
-    const body = pickBody(this.worlds, ray);
-    const cell = body?.cell ?? pickCell(this.worlds, ray);
-    if (cell < 0) return;
-    const other = cell !== this.chosen.cell;
-    this.choose(cell, body?.row ?? -1);
-    if (other) this.showCell(cell);
+    watchClicks(this, element('view'));
   }
 
   private key(event: KeyboardEvent, togglePanel: (open: boolean) => void): void {
@@ -269,6 +249,7 @@ export class App {
       w: () => toggle('wireframe'),
       b: () => toggle('bounds'),
       x: () => toggle('contacts'),
+      j: () => toggle('joints'),
       d: () => toggle('dark'),
       r: () => (this.commands !== null ? this.commands.reset() : toggle('loop')),
       o: () => togglePanel(element('panel').classList.contains('closed')),

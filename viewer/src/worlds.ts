@@ -6,6 +6,7 @@ import { Coloring, put, type Theme } from './coloring';
 import type { Rgb } from './colors';
 import { LOST, type FrameSource, type Kind, type Poses, type Run } from './data';
 import { Drawables, type KindView, type Options } from './drawables';
+import { Joints } from './joints';
 import { makeLayout, sidesOf, type Cell, type Layout } from './layout';
 
 const NEAR_PIXELS = 26; // a body of so many pixels across is drawn finely
@@ -20,6 +21,7 @@ export class Worlds {
   drawn = 0; // shapes of moving bodies that were written last
   readonly seen: number[] = []; // cells that the camera saw then
   private readonly drawables: Drawables;
+  private readonly joints: Joints | null;
   private readonly frustum = new THREE.Frustum();
   private readonly sphere = new THREE.Sphere();
   private shown: { frame: number; part: number } = { frame: -1, part: 0 };
@@ -31,6 +33,9 @@ export class Worlds {
     this.layout = makeLayout(runs, ghosts && runs.length > 1, aspect);
     this.drawables = new Drawables(runs, ghosts, this.planar, options, sidesOf(this.layout));
     this.coloring = new Coloring(sources, this.planar, this.layout);
+    this.joints = options.joints
+      ? new Joints(runs, this.coloring, this.planar, this.layout, { ...this.drawables.look, wireframe: false }, (batch) => this.drawables.add(batch))
+      : null;
   }
 
   get group(): THREE.Group {
@@ -41,6 +46,12 @@ export class Worlds {
   }
   get objects(): number { // draw calls without shadows
     return this.drawables.objects;
+  }
+  get jointsDrawn(): number {
+    return this.joints?.drawn ?? 0;
+  }
+  get jointPieces() {
+    return this.joints?.pieces ?? {};
   }
   get instances(): number {
     const of = (view: KindView) => view.drawables.filter((d) => d.row >= 0).length;
@@ -113,6 +124,7 @@ export class Worlds {
   write(camera: THREE.Camera, pixels: number): void {
     for (const batch of this.drawables.batches) batch.count = 0;
     this.drawn = 0;
+    if (this.joints !== null) this.joints.drawn = 0;
     this.seen.length = 0;
     this.coloring.findNumberEnds(this.shown.frame);
     this.frustum.setFromProjectionMatrix(new THREE.Matrix4().multiplyMatrices(
@@ -155,6 +167,7 @@ export class Worlds {
     if (view.ground !== null) putStill(view.ground, cell, tint ?? (this.planar ? this.coloring.tints.fixed : this.coloring.tints.ground), 0, fade);
     if (view.tile !== null) putStill(view.tile, cell, tint ?? this.coloring.tints.tile, this.planar ? -50 : 0, fade);
     if (view.wall !== null) putStill(view.wall, cell, tint ?? this.coloring.tints.wall, 0, fade);
+    if (!cell.ghost) this.joints?.write(cell, view.poses, fade);
     const first = cell.world * kind.rows;
     for (let i = 0; i < view.drawables.length; ++i) {
       const d = view.drawables[i];
