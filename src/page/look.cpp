@@ -223,9 +223,13 @@ Json look_of(const Plan& plan, const std::vector<double>& radii, const Room& roo
                       {"mass", mass.mass},
                       {"shapes", std::move(shapes)}});
   }
-  return {{"scene", scene.name},        {"gravity", numbers(scene.options.gravity)},
-          {"rows", plan.bodies()},      {"low", numbers(room.low)},
-          {"high", numbers(room.high)}, {"bodies", std::move(bodies)},
+  return {{"scene", scene.name},
+          {"gravity", numbers(scene.options.gravity)},
+          {"turns", plan.has(Feature::orientation)},
+          {"rows", plan.bodies()},
+          {"low", numbers(room.low)},
+          {"high", numbers(room.high)},
+          {"bodies", std::move(bodies)},
           {"joints", joints_of(scene)}};
 }
 

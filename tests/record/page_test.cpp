@@ -107,6 +107,7 @@ double worst_error(const std::string& page, const Recording& recording) {
   const bool planar = run.at("space") == "planar";
   const std::size_t space = planar ? 2 : 3, rows = kind.at("rows"), worlds = kind.at("worlds");
   const std::size_t turns = kind.at("orientation");
+  CHECK(kind.at("turns") == recording.plan().has(Feature::orientation));
   std::vector<double> radius(rows);
   std::vector<std::vector<Vec3>> points(rows);
   const Scene& scene = recording.plan().scene();

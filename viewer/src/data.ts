@@ -70,6 +70,7 @@ export interface Kind {
   worlds: number;
   names: number[];
   orientation: 0 | 2 | 4;
+  turns: boolean; // orientations are simulated; where not, bodies are drawn without turning
   sizes: { shape: number; values: Float32Array }[]; // [world] size x y z, stretch x y z
   contact_step?: number; // m, of points of contacts
   controls?: { name: string; low: number; high: number; value: number }[]; // of a live page

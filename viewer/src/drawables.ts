@@ -53,6 +53,10 @@ function keyOf(mesh: Mesh): string {
   return `${mesh.kind}-${hash}`;
 }
 
+function useOf(mesh: Mesh, ghost: boolean, turning: boolean): string {
+  return `${keyOf(mesh)}-${ghost}-${turning}`;
+}
+
 // Triangles and lines of several shapes in one, cut at `sides` where there are some.
 class Merged {
   private readonly points: number[] = [];
@@ -127,6 +131,7 @@ interface MeshUse {
   capacity: number;
   mesh: Mesh;
   ghost: boolean;
+  turns: boolean; // marks show how it does
 }
 
 export class Drawables {
@@ -177,8 +182,8 @@ export class Drawables {
         for (const shape of body.shapes) {
           if (shape.mesh < 0 || (body.row === null && !varied.has(shape.shape))) continue;
           const mesh = run.meshes[shape.mesh];
-          const key = `${keyOf(mesh)}-${ghost}`;
-          const one = this.known.get(key) ?? { batches: [], capacity: 0, mesh, ghost };
+          const key = useOf(mesh, ghost, kind.turns);
+          const one = this.known.get(key) ?? { batches: [], capacity: 0, mesh, ghost, turns: kind.turns };
           one.capacity += kind.worlds;
           this.known.set(key, one);
         }
@@ -196,7 +201,7 @@ export class Drawables {
       if ((this.planar || this.options.edges) && level.lines.length > 0 && !use.ghost) {
         batch.addLines(level.lines, this.planar ? 0.8 : 0.35);
       }
-      if (this.planar && level.marks.length > 0 && !use.ghost) batch.addLines(level.marks, 0.55);
+      if (this.planar && level.marks.length > 0 && use.turns && !use.ghost) batch.addLines(level.marks, 0.55);
       use.batches.push(this.add(batch));
     }
   }
@@ -218,7 +223,7 @@ export class Drawables {
         const q = xyzw(shape.rotation);
         view.drawables.push({
           body, row: body.row ?? -1, shape: shape.shape,
-          batches: this.known.get(`${keyOf(mesh)}-${ghost}`)!.batches, mesh,
+          batches: this.known.get(useOf(mesh, ghost, kind.turns))!.batches, mesh,
           color: linear(body.row === null ? '#8d99ae' : PALETTE[b % PALETTE.length]),
           position: shape.position, rotation: q,
           centred: shape.position.every((x) => x === 0) && Math.abs(q[3]) === 1,

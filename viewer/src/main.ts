@@ -68,6 +68,7 @@ export class App {
     // Of pictures and films: nothing but the worlds and their name, and no frame but those that are asked for.
     const film = wanted.has('film');
     if (film) for (const id of ['panel', 'buttons']) element(id).hidden = true;
+    document.documentElement.classList.toggle('film', film);
     element('timeline').hidden = film || (this.live === null && this.timeline.end === 0); // a single moment has none
     await this.prepare(this.timeline.time);
     this.resize();

@@ -160,3 +160,26 @@ test('the address chooses a body, and says what the page does not have', async (
   assert.equal(thrown, "color is 'heat'; expected body, speed, spin, rest, height or contact; world is '9'; expected 0 to 3");
   await film.close();
 });
+
+test('balls turn only where their rotation is simulated, and the page says where it is not', async () => {
+  const made = (...keep) => pageOf('ball2d', '--worlds', '1', '--seconds', '0.2', ...keep);
+  for (const [page, turning] of [[made(), false], [made('--keep', 'orientation'), true]]) {
+    assert.equal(page.head.runs[0].kinds[0].turns, turning);
+    const view = await open(page.file);
+    assert.equal(await view.page.isVisible('#unturned'), !turning);
+    if (!turning) assert.match(await view.page.locator('#unturned').textContent(), /rotation .* is not simulated.* drawn without turning.*--keep orientation/);
+    // The mark that shows how it turns, from the middle to the right.
+    const { pixel, color } = await view.body(0, 0);
+    const seen = await view.pixel({ x: pixel.x + 8, y: pixel.y });
+    const above = await view.pixel({ x: pixel.x + 8, y: pixel.y - 5 });
+    assert.deepEqual(above, color);
+    if (turning) assert.notDeepEqual(seen, color);
+    else assert.deepEqual(seen, color);
+    await view.close();
+  }
+  const film = await browserOf().newPage();
+  await film.goto(`file://${made().file}#film`);
+  await film.evaluate(() => window.manyworldsReady);
+  assert.equal(await film.isVisible('#unturned'), false);
+  await film.close();
+});
