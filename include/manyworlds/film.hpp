@@ -46,6 +46,8 @@ struct FilmOptions {
   double speed = 1;         // simulated seconds per second of the film
   double begin = 0;         // s, simulated
   double end = std::numeric_limits<double>::infinity();  // s, simulated; beyond the end: the end
+  // ffmpeg; empty: the one that FFMPEG in the environment names, or that of PATH.
+  std::filesystem::path encoder = {};
   std::function<void(std::int64_t done, std::int64_t all)> told = {};  // after each frame
   GoOn go_on = {};  // asked now and then; where it says no, nothing is written
 };

@@ -5,11 +5,13 @@
     mw.write_picture([recording], "run.png", time=1.2, size=(1080, 600))
 
 Both programs run apart from this one: chromium (CHROMIUM in the environment names another) and, for films,
-ffmpeg (FFMPEG). Frames are those of ``write_page``'s page at exactly their moments, however long they take.
+ffmpeg: that of FFMPEG in the environment, of PATH, or of the package imageio-ffmpeg. Frames are those of ``write_page``'s page at exactly their moments, however long they take.
 """
 
 from __future__ import annotations
 
+import os
+import shutil
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -116,13 +118,28 @@ def write_film(
     fps = _within(fps, "fps", 0.01, 1000)
     speed = _within(speed, "speed", 1e-6, 1e6)
     begin = arrays.at_least(begin, "begin", 0)
+    encoder = encoder_program()
     last = float("inf") if end is None else arrays.at_least(end, "end", begin)
     view = _view(world, follow, color, dark)
     target = files.path(file, "file")
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "page.html"
         write_page(recordings, page, title=title, worlds=worlds, numbers=numbers)
-        return FilmReport(*_record.film(page, target, width, height, view, fps, speed, begin, last))
+        return FilmReport(*_record.film(page, target, width, height, view, fps, speed, begin, last, encoder))
+
+
+def encoder_program() -> str:
+    """The ffmpeg of the package imageio-ffmpeg, where it is installed and there is no other: none that FFMPEG in the
+    environment names, none on PATH. Else empty.
+    """
+    if os.environ.get("FFMPEG") or shutil.which("ffmpeg"):
+        return ""
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        return str(get_ffmpeg_exe())
+    except (ImportError, RuntimeError):  # not installed, or without a program for this machine
+        return ""
 
 
 def _size(size: tuple[int, int], step: int) -> tuple[int, int]:

@@ -2,8 +2,10 @@
 
 import os
 import signal
+import sys
 import threading
 import time
+import types
 from pathlib import Path
 
 import pytest
@@ -86,9 +88,32 @@ def test_what_is_refused(run, monkeypatch):
     with pytest.raises(ValueError, match=r"failed \(exit code 1\): No space left on device"):
         mw.write_film([run], "film.mp4")
     monkeypatch.setenv("FFMPEG", "no-such-encoder")
-    with pytest.raises(record.FilmError, match="wants an encoder, and found no no-such-encoder; Debian has it"):
+    with pytest.raises(record.FilmError, match="found no no-such-encoder; Debian has it as ffmpeg, PyPI as imageio-ffmpeg"):
         mw.write_film([run], "film.mp4")
     assert not Path("film.mp4").exists() and not Path("a.png").exists()
+
+
+def test_ffmpeg_is_that_of_imageio_ffmpeg_where_there_is_no_other(run, monkeypatch, tmp_path):
+    package = types.ModuleType("imageio_ffmpeg")
+    package.get_ffmpeg_exe = lambda: str(SUPPORT / "fake_encoder.sh")
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", package)
+    monkeypatch.delenv("FFMPEG")
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    assert mw.write_film([run], "film.mp4", fps=1).frames == 3
+    assert Path("film.mp4").read_text().count("image/jpeg") == 3
+    # Another goes first.
+    monkeypatch.setenv("FFMPEG", "no-such-encoder")
+    with pytest.raises(record.FilmError, match="found no no-such-encoder"):
+        mw.write_film([run], "other.mp4")
+    # A package without a program is as none.
+    def fails():
+        raise RuntimeError("No ffmpeg exe could be found")
+
+    monkeypatch.delenv("FFMPEG")
+    package.get_ffmpeg_exe = fails
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(record.FilmError, match="found no ffmpeg; .* imageio-ffmpeg"):
+        mw.write_film([run], "other.mp4")
 
 
 def test_a_film_can_be_interrupted(run, monkeypatch):

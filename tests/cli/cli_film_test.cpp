@@ -159,7 +159,9 @@ TEST_CASE("films say what is wrong, and leave nothing", "[cli]") {
   fs::remove(folder / "film.mp4");
 
   fs::rename(folder / "encoder", folder / "gone");
-  bad("", "wants an encoder, and found no ./encoder; Debian has it as ffmpeg, and FFMPEG names");
+  bad("",
+      "wants an encoder, and found no ./encoder; Debian has it as ffmpeg, PyPI as imageio-ffmpeg "
+      "(Python ");
   fs::rename(folder / "browser", folder / "gone");
   const Outcome picture = folder.run("view ball3d --png a.png");  // at once: nothing is recorded
   folder.check_bad(picture, "wants a browser, and found no ./browser; Debian has it as chromium");
