@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { deflateSync, inflateSync } from 'node:zlib';
 import { folder, near, open, pageOf } from './pages.mjs';
 
 const METAL = [0x4d, 0x57, 0x68];
@@ -104,4 +105,31 @@ test('every type of joint has a look, in the plane and in space', async () => {
     assert.equal(Object.keys(jointPieces).length, 5);
     await view.close();
   }
+});
+
+test('a joint is drawn until it breaks', async () => {
+  const { file, head } = pageOf('ball2d', '--worlds', '2', '--seconds', '0.2', '--contacts', '0');
+  const other = structuredClone(head);
+  const [run] = other.runs;
+  const [kind] = run.kinds;
+  const ball = kind.bodies.findIndex((body) => body.row === 0);
+  kind.joints = [{ name: '', type: 'distance', body_a: null, body_b: ball, a: end(null, [0, 1, 0]), b: end(ball, [0, 0, 0]), form: 'rod', length: 1 }];
+  run.joints_enabled = true;
+  // A channel more, behind that of the status: 1 always, and 1 until frame 3, as what a straight line does not foretell.
+  const { frames, widths } = run.chunks[0];
+  assert.equal(widths.length, 6);
+  const flags = [[2], [2, 0, 0, 1, 2]].flatMap((codes) => Array.from({ length: frames }, (_, f) => codes[f] ?? 0));
+  widths.push(1);
+  const page = readFileSync(file, 'utf8')
+    .replace(/(id="mw-head">).*?(?=<\/script>)/s, (_, tag) => tag + JSON.stringify(other))
+    .replace(/(id="mw-0-0">)(.*?)(?=<\/script>)/s, (_, tag, text) =>
+      tag + deflateSync(Buffer.concat([inflateSync(Buffer.from(text, 'base64')), Buffer.from(flags)])).toString('base64'));
+  const out = join(folder, 'breaks.html');
+  writeFileSync(out, page);
+  const view = await open(out);
+  for (const [frame, joints] of [[0, 2], [2, 2], [3, 1], [frames - 1, 1], [1, 2]]) {
+    await view.seek(head.runs[0].times[frame]);
+    assert.equal((await view.report()).joints, joints, `frame ${frame}`);
+  }
+  await view.close();
 });
