@@ -31,7 +31,7 @@ export class Panel {
       mark.textContent = `, ${lost} lost`;
       about.append(mark);
     }
-    const still = this.sources.some((source) => source.run.kinds.some((kind) => kind.rows > 0 && !kind.turns));
+    const still = this.sources.some((source) => source.run.kinds.some((kind) => kind.rows > 0 && kind.turns === false));
     element('unturned').hidden = !still;
     about.title = this.sources.map((source) => source.run.origin).join('\n');
   }
