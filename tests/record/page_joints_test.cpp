@@ -34,6 +34,7 @@ Json run_of(Batch& batch, const std::function<void()>& steps) {
 TEST_CASE("a page knows what its joints are, and has room for them", "[fast][record][page]") {
   Scene scene;
   scene.space = Space::planar;
+  scene.options.gravity = {0, -10, 0};
   const BodyId a = scene.add({.position = {0, 1, 0}, .shapes = {{.geometry = Circle{0.2}}}});
   const BodyId b = scene.add({.position = {3, 1, 0}, .shapes = {{.geometry = Circle{0.2}}}});
   const auto add = [&](const JointType& type, BodyId from) {
