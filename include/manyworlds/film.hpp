@@ -29,7 +29,8 @@ class FilmError : public std::runtime_error {
 // What frames look like.
 struct FrameOptions {
   int width = 1280, height = 720;  // pixels, 64 to 8192
-  // As behind '#' in the address of a page: "world=3&color=speed&theme=dark".
+  // As behind '#' in the address of a page: "world=3&follow=torso&color=speed&theme=dark". The
+  // camera follows a body by its name or its index in the scene, of world 0 where none is given.
   std::string view = {};
 };
 
@@ -45,6 +46,8 @@ struct FilmOptions {
   double speed = 1;         // simulated seconds per second of the film
   double begin = 0;         // s, simulated
   double end = std::numeric_limits<double>::infinity();  // s, simulated; beyond the end: the end
+  // ffmpeg; empty: the one that FFMPEG in the environment names, or that of PATH.
+  std::filesystem::path encoder = {};
   std::function<void(std::int64_t done, std::int64_t all)> told = {};  // after each frame
   GoOn go_on = {};  // asked now and then; where it says no, nothing is written
 };

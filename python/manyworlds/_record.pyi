@@ -100,7 +100,7 @@ def page(recordings: Sequence[Recording], empty: str | os.PathLike, file: str | 
 def picture(page: str | os.PathLike, file: str | os.PathLike, width: int, height: int, view: str, time: float) -> None:
     """A picture of a page."""
 
-def film(page: str | os.PathLike, file: str | os.PathLike, width: int, height: int, view: str, fps: float, speed: float, begin: float, end: float) -> tuple[int, float, int]:
+def film(page: str | os.PathLike, file: str | os.PathLike, width: int, height: int, view: str, fps: float, speed: float, begin: float, end: float, encoder: str) -> tuple[int, float, int]:
     """A film of a page: frames, seconds and bytes of it."""
 
 def unfinished_recordings(file: str | os.PathLike) -> list[pathlib.Path]:

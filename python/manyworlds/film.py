@@ -5,11 +5,13 @@
     mw.write_picture([recording], "run.png", time=1.2, size=(1080, 600))
 
 Both programs run apart from this one: chromium (CHROMIUM in the environment names another) and, for films,
-ffmpeg (FFMPEG). Frames are those of ``write_page``'s page at exactly their moments, however long they take.
+ffmpeg: that of FFMPEG in the environment, of PATH, or of the package imageio-ffmpeg. Frames are those of ``write_page``'s page at exactly their moments, however long they take.
 """
 
 from __future__ import annotations
 
+import os
+import shutil
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -20,6 +22,7 @@ from numpy.typing import ArrayLike
 
 from . import arrays, files
 from .files import File
+from .ids import BodyId, BodyRef, index_of
 from .page import write_page
 
 if TYPE_CHECKING:
@@ -45,6 +48,7 @@ def write_picture(
     time: Optional[float] = None,
     size: tuple[int, int] = (1280, 720),
     world: Optional[int] = None,
+    follow: Optional[BodyRef] = None,
     color: str = "body",
     dark: bool = False,
     title: str = "",
@@ -56,6 +60,8 @@ def write_picture(
     time    s, simulated; None, and what is beyond the end: the end
     size    width and height, pixels, 64 to 8192
     world   the camera is at this one of those that are shown, from 0 on; None: at all
+    follow  the camera is at this body of that world (of world 0 where world is None), and in films
+            follows it: a name, or an index in the scene, as a BodyId is
     color   of bodies, by: "body", "speed", "spin", "rest", "height", "contact" where contacts were
             recorded, "run" of several recordings, or "number:reward" of a number named reward
     dark    as pages are in the dark
@@ -68,7 +74,7 @@ def write_picture(
 
     width, height = _size(size, 1)
     moment = float("inf") if time is None else arrays.at_least(time, "time", 0)
-    view = _view(world, color, dark)
+    view = _view(world, follow, color, dark)
     target = files.path(file, "file")
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "page.html"
@@ -86,6 +92,7 @@ def write_film(
     end: Optional[float] = None,
     size: tuple[int, int] = (1280, 720),
     world: Optional[int] = None,
+    follow: Optional[BodyRef] = None,
     color: str = "body",
     dark: bool = False,
     title: str = "",
@@ -96,7 +103,7 @@ def write_film(
 
     fps     frames per second of the film, 0.01 to 1000
     speed   simulated seconds per second of the film: 0.25 is slow motion
-    begin   s, simulated: frame k is at begin + k * speed / fps
+    begin   s, simulated, 0 or later: frame k is at begin + k * speed / fps
     end     s, simulated; None, and what is beyond the end: the end
     size    width and height, pixels, even numbers from 64 to 8192
     the others are those of ``write_picture``
@@ -111,13 +118,28 @@ def write_film(
     fps = _within(fps, "fps", 0.01, 1000)
     speed = _within(speed, "speed", 1e-6, 1e6)
     begin = arrays.at_least(begin, "begin", 0)
+    encoder = encoder_program()
     last = float("inf") if end is None else arrays.at_least(end, "end", begin)
-    view = _view(world, color, dark)
+    view = _view(world, follow, color, dark)
     target = files.path(file, "file")
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "page.html"
         write_page(recordings, page, title=title, worlds=worlds, numbers=numbers)
-        return FilmReport(*_record.film(page, target, width, height, view, fps, speed, begin, last))
+        return FilmReport(*_record.film(page, target, width, height, view, fps, speed, begin, last, encoder))
+
+
+def encoder_program() -> str:
+    """The ffmpeg of the package imageio-ffmpeg, where it is installed and there is no other: none that FFMPEG in the
+    environment names, none on PATH. Else empty.
+    """
+    if os.environ.get("FFMPEG") or shutil.which("ffmpeg"):
+        return ""
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        return str(get_ffmpeg_exe())
+    except (ImportError, RuntimeError):  # not installed, or without a program for this machine
+        return ""
 
 
 def _size(size: tuple[int, int], step: int) -> tuple[int, int]:
@@ -136,11 +158,18 @@ def _within(value: float, name: str, low: float, high: float) -> float:
     return value
 
 
-def _view(world: Optional[int], color: str, dark: bool) -> str:
+def _view(world: Optional[int], follow: Optional[BodyRef], color: str, dark: bool) -> str:
     """As behind '#' in the address of a page."""
     if not isinstance(color, str):
         raise TypeError(f"color is of type {type(color).__name__}; expected a str")
     wanted = {"color": color, "theme": "dark" if dark else "light"}
     if world is not None:
         wanted["world"] = str(arrays.integer(world, "world", 0, 2**31 - 1))
+    if isinstance(follow, str):
+        if not follow:
+            raise ValueError("follow is empty; expected the name of a body")
+        wanted["follow"] = follow
+    elif follow is not None:
+        body = index_of(follow, BodyId, int, "follow")
+        wanted["follow"] = str(int(arrays.integer(body, "follow", 0, 2**31 - 1)))
     return urlencode(wanted, quote_via=quote)

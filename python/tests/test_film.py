@@ -2,8 +2,10 @@
 
 import os
 import signal
+import sys
 import threading
 import time
+import types
 from pathlib import Path
 
 import pytest
@@ -43,12 +45,18 @@ def test_a_film_has_a_frame_for_each_moment(run):
     assert frames == [f"{0.5 + 0.125 * k} image/jpeg true" for k in range(5)]
     assert Path("size").read_text() == "320x200"
     assert Path("url").read_text().endswith("/page.html#film&color=number%3Aa%20b&theme=light&world=2")
+    for follow in ("ball & co", mw.BodyId(1), 1):
+        mw.write_film([run], "film.mp4", world=1, follow=follow)
+        wanted = "ball%20%26%20co" if isinstance(follow, str) else "1"
+        assert Path("url").read_text().endswith(f"&world=1&follow={wanted}")
 
 
 def test_a_picture_is_of_one_moment(run):
     mw.write_picture([run], "a.png", time=1.25, dark=True)
     assert Path("a.png").read_text() == "1.25 image/png false\n"
     assert Path("url").read_text().endswith("#film&color=body&theme=dark")
+    mw.write_picture([run], "a.png", follow="ball")
+    assert Path("url").read_text().endswith("#film&color=body&theme=light&follow=ball")
     mw.write_picture([run], "a.png")
     assert Path("a.png").read_text() == "2.0 image/png false\n"
 
@@ -65,6 +73,10 @@ def test_what_is_refused(run, monkeypatch):
         ({"begin": 3}, record.FilmError, r"it would begin at 3\.0 s, and worlds end at 2\.0 s"),
         ({"world": -1}, ValueError, "world"),
         ({"color": 3}, TypeError, "color is of type int"),
+        ({"follow": ""}, ValueError, "follow is empty; expected the name of a body"),
+        ({"follow": -1}, ValueError, "follow is -1"),
+        ({"follow": 1.5}, TypeError, "follow is of type float"),
+        ({"follow": mw.JointId(0)}, TypeError, r"follow is JointId\(0\); expected a BodyId"),
         ({"title": 3}, TypeError, "title"),
     ]:
         with pytest.raises(error, match=message):
@@ -76,9 +88,32 @@ def test_what_is_refused(run, monkeypatch):
     with pytest.raises(ValueError, match=r"failed \(exit code 1\): No space left on device"):
         mw.write_film([run], "film.mp4")
     monkeypatch.setenv("FFMPEG", "no-such-encoder")
-    with pytest.raises(record.FilmError, match="wants an encoder, and found no no-such-encoder; Debian has it"):
+    with pytest.raises(record.FilmError, match="found no no-such-encoder; Debian has it as ffmpeg, PyPI as imageio-ffmpeg"):
         mw.write_film([run], "film.mp4")
     assert not Path("film.mp4").exists() and not Path("a.png").exists()
+
+
+def test_ffmpeg_is_that_of_imageio_ffmpeg_where_there_is_no_other(run, monkeypatch, tmp_path):
+    package = types.ModuleType("imageio_ffmpeg")
+    package.get_ffmpeg_exe = lambda: str(SUPPORT / "fake_encoder.sh")
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", package)
+    monkeypatch.delenv("FFMPEG")
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    assert mw.write_film([run], "film.mp4", fps=1).frames == 3
+    assert Path("film.mp4").read_text().count("image/jpeg") == 3
+    # Another goes first.
+    monkeypatch.setenv("FFMPEG", "no-such-encoder")
+    with pytest.raises(record.FilmError, match="found no no-such-encoder"):
+        mw.write_film([run], "other.mp4")
+    # A package without a program is as none.
+    def fails():
+        raise RuntimeError("No ffmpeg exe could be found")
+
+    monkeypatch.delenv("FFMPEG")
+    package.get_ffmpeg_exe = fails
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(record.FilmError, match="found no ffmpeg; .* imageio-ffmpeg"):
+        mw.write_film([run], "other.mp4")
 
 
 def test_a_film_can_be_interrupted(run, monkeypatch):

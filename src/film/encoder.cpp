@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "manyworlds/film.hpp"
-#include "src/film/programs.hpp"
 
 namespace manyworlds::film {
 
@@ -44,9 +43,9 @@ std::vector<std::string> words(const std::string& program, const fs::path& file,
 
 }  // namespace
 
-Encoder::Encoder(const fs::path& file, const fs::path& name, double fps, const fs::path& folder,
-                 GoOn go_on)
-    : child_(words(encoder_program(), file, fps), {0}, folder / "encoder.log", std::move(go_on)),
+Encoder::Encoder(const std::string& program, const fs::path& file, const fs::path& name, double fps,
+                 const fs::path& folder, GoOn go_on)
+    : child_(words(program, file, fps), {0}, folder / "encoder.log", std::move(go_on)),
       file_(address_of(file)),
       name_(name.string()) {}
 

@@ -11,10 +11,11 @@ namespace manyworlds::film {
 
 class Encoder {
  public:
-  // Writes over `file`, which is there and is called `name` for people. Throws FilmError, and
-  // Stopped where go_on says no, as all do.
-  Encoder(const std::filesystem::path& file, const std::filesystem::path& name, double fps,
-          const std::filesystem::path& folder, GoOn go_on);
+  // Runs `program`. Writes over `file`, which is there and is called `name` for people. Throws
+  // FilmError, and Stopped where go_on says no, as all do.
+  Encoder(const std::string& program, const std::filesystem::path& file,
+          const std::filesystem::path& name, double fps, const std::filesystem::path& folder,
+          GoOn go_on);
   void add(std::string_view jpeg);
   void finish();  // the file is complete
 

@@ -113,7 +113,8 @@ FilmReport write_film(const fs::path& page, const fs::path& file, const FilmOpti
   report.written = unless_stopped([&] {
     OutputFile out(file);
     const ScratchFolder folder;
-    film::encoder_program();  // before anything is drawn
+    const std::string program =
+        film::encoder_program(options.encoder.string());  // before anything is drawn
     Browser browser(folder.path(), options.go_on);
     const double end = std::fmin(options.end, open(browser, page, options.frame));
     if (options.begin > end) {
@@ -124,7 +125,7 @@ FilmReport write_film(const fs::path& page, const fs::path& file, const FilmOpti
     const double last = std::floor((end - options.begin) / step + 1e-6);
     require(last < 1e7, "there would be over ten million frames");
     const auto frames = static_cast<std::int64_t>(last) + 1;
-    Encoder encoder(out.part(), file, options.fps, folder.path(), options.go_on);
+    Encoder encoder(program, out.part(), file, options.fps, folder.path(), options.go_on);
     std::deque<int> questions;
     std::int64_t asked = 0;
     for (std::int64_t done = 0; done < frames; ++done) {

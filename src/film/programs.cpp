@@ -39,9 +39,11 @@ std::string find(const std::string& name) {
 }
 
 std::string find_first(const char* variable, std::vector<std::string> names,
-                       const std::string& what, const std::string& package) {
+                       const std::string& what, const std::string& package,
+                       const std::string& chosen = {}) {
   const char* given = std::getenv(variable);
   if (given != nullptr && *given != 0) names = {given};
+  if (!chosen.empty()) names = {chosen};
   std::string tried;
   for (const std::string& name : names) {
     const std::string file = find(name);
@@ -58,7 +60,10 @@ std::string browser_program() {
   return find_first("CHROMIUM", {"chromium", "chromium-browser", "google-chrome"}, "a browser",
                     "chromium");
 }
-std::string encoder_program() { return find_first("FFMPEG", {"ffmpeg"}, "an encoder", "ffmpeg"); }
+std::string encoder_program(const std::string& given) {
+  return find_first("FFMPEG", {"ffmpeg"}, "an encoder",
+                    "ffmpeg, PyPI as imageio-ffmpeg (Python finds that one by itself)", given);
+}
 
 }  // namespace film
 

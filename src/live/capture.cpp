@@ -102,6 +102,10 @@ Capture capture(const Batch& batch, const Sizes& sizes, std::vector<int> worlds)
     for (int row = 0; row < plan.bodies(); ++row) {
       out.there.push_back(batch.enabled(w, plan.body_in_row(row)));
     }
+    out.first_joint.push_back(out.joints.size());
+    for (std::size_t j = 0; j < plan.scene().joints.size(); ++j) {
+      out.joints.push_back(batch.joint_enabled(w, JointId(static_cast<int>(j))));
+    }
     out.status.push_back(static_cast<std::uint32_t>(batch.status(w)));
   }
   return out;
@@ -113,7 +117,7 @@ std::string frame_of(const Capture& from, const Sizes& sizes, std::span<const in
     const Plan* plan;
   };
   std::vector<Part> parts;
-  std::size_t bodies = 0;
+  std::size_t bodies = 0, joints = 0;
   for (const int w : wanted) {
     const auto found = std::lower_bound(from.worlds.begin(), from.worlds.end(), w);
     if (found == from.worlds.end() || *found != w) continue;
@@ -121,16 +125,17 @@ std::string frame_of(const Capture& from, const Sizes& sizes, std::span<const in
     const Plan& plan = sizes.kind_of(w).plan;
     parts.push_back({i, from.first[i], static_cast<std::size_t>(plan.bodies()), &plan});
     bodies += parts.back().rows;
+    joints += plan.scene().joints.size();
   }
   const Space space = sizes.kinds.front().plan.scene().space;
   const std::size_t width = space == Space::planar ? 2 : 3, spins = space == Space::planar ? 1 : 3;
   const std::size_t turns = space == Space::planar ? 2 : 4;
-  Writer out(kFrameHead + parts.size() * 8 + bodies * (width * 4 + 2 * 4 + 3));
+  Writer out(kFrameHead + parts.size() * 8 + bodies * (width * 4 + 2 * 4 + 3) + joints);
   out.put(kFrameMagic), out.put(std::uint32_t{from.clock.paused});
   out.put(from.time), out.put(static_cast<double>(from.steps));
   out.put(from.clock.speed), out.put(from.clock.reached);
   out.put(static_cast<std::uint32_t>(from.lost)), out.put(static_cast<std::uint32_t>(parts.size()));
-  out.put(static_cast<std::uint32_t>(bodies));
+  out.put(static_cast<std::uint32_t>(bodies)), out.put(static_cast<std::uint32_t>(joints));
   out.fill(kFrameHead);
   for (const Part& p : parts) out.put(static_cast<std::uint32_t>(from.worlds[p.index]));
   for (const Part& p : parts) out.put(from.status[p.index]);
@@ -154,6 +159,11 @@ std::string frame_of(const Capture& from, const Sizes& sizes, std::span<const in
     out.put(page::speed_code(norm(&from.angular[b * spins], spins)));
   });
   each([&](const Part&, std::size_t b) { out.put(from.there[b]); });
+  for (const Part& p : parts) {
+    for (std::size_t j = 0; j < p.plan->scene().joints.size(); ++j) {
+      out.put(from.joints[from.first_joint[p.index] + j]);
+    }
+  }
   return out.take();
 }
 

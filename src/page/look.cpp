@@ -9,18 +9,14 @@
 #include "manyworlds/surface.hpp"
 #include "src/base/enum_names.hpp"
 #include "src/page/base64.hpp"
+#include "src/page/joints.hpp"
+#include "src/page/numbers.hpp"
 
 namespace manyworlds::page {
 namespace {
 
 constexpr int kFine = 32, kCoarse = 12;  // corners of a circle, near and far
 constexpr int kExtent = 64;              // and to measure it, to a quarter of a percent
-
-Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Json numbers(const Quat& q) {
-  const Quat unit = q.normalized();
-  return {unit.w(), unit.x(), unit.y(), unit.z()};
-}
 
 template <class T, class Rows>
 std::string table_of(const Rows& rows) {
@@ -75,13 +71,6 @@ Room seen_from(const Room& room, const Body& body, const Shape& shape) {
     out.add(turn.conjugate() * (in_body - shape.position));
   }
   return out;
-}
-
-const char* type_of(const JointType& type) {
-  constexpr const char* kNames[] = {"ball",     "hinge", "slider", "fixed",
-                                    "distance", "wheel", "pulley", "target"};
-  static_assert(std::size(kNames) == std::variant_size_v<JointType>);
-  return kNames[type.index()];
 }
 
 // Of a polygon that is a rectangle about its origin, along the axes: half its sides.
@@ -201,7 +190,7 @@ Room fixed_room(const Scene& scene) {
 
 Json look_of(const Plan& plan, const std::vector<double>& radii, const Room& room, Meshes& meshes) {
   const Scene& scene = plan.scene();
-  Json bodies = Json::array(), joints = Json::array();
+  Json bodies = Json::array();
   int index = 0;  // of a shape among all of the scene
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
@@ -234,21 +223,14 @@ Json look_of(const Plan& plan, const std::vector<double>& radii, const Room& roo
                       {"mass", mass.mass},
                       {"shapes", std::move(shapes)}});
   }
-  for (const Joint& joint : scene.joints) {
-    const auto end = [](BodyId body, const Frame& frame) {
-      return Json{{"body", body ? Json(body.index()) : Json()},
-                  {"position", numbers(frame.position)},
-                  {"rotation", numbers(frame.rotation)}};
-    };
-    joints.push_back({{"name", joint.name},
-                      {"type", type_of(joint.type)},
-                      {"a", end(joint.body_a, joint.frame_a)},
-                      {"b", end(joint.body_b, joint.frame_b)}});
-  }
-  return {{"scene", scene.name},        {"gravity", numbers(scene.options.gravity)},
-          {"rows", plan.bodies()},      {"low", numbers(room.low)},
-          {"high", numbers(room.high)}, {"bodies", std::move(bodies)},
-          {"joints", std::move(joints)}};
+  return {{"scene", scene.name},
+          {"gravity", numbers(scene.options.gravity)},
+          {"turns", plan.has(Feature::orientation)},
+          {"rows", plan.bodies()},
+          {"low", numbers(room.low)},
+          {"high", numbers(room.high)},
+          {"bodies", std::move(bodies)},
+          {"joints", joints_of(scene)}};
 }
 
 }  // namespace manyworlds::page

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "manyworlds/fields.hpp"
+#include "src/page/joints.hpp"
 
 namespace manyworlds::page {
 namespace {
@@ -74,7 +75,8 @@ Room room_of(const Plan& plan, const std::vector<double>& radii,
   }
   const double margin = std::max(radius, 1e-3);
   room.low.array() -= margin, room.high.array() += margin;
-  const Room fixed = fixed_room(scene);
+  Room fixed = fixed_room(scene);
+  for (const Vec3& anchor : fixed_anchors(scene)) fixed.add(anchor);
   const double extent = (room.high - room.low).maxCoeff();
   if (!fixed.empty()) {
     room.low = room.low.cwiseMin(fixed.low.cwiseMax((room.low.array() - 2 * extent).matrix()));

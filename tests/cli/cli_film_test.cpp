@@ -80,8 +80,10 @@ TEST_CASE("films have a frame for each moment, in order", "[cli]") {
   if (!records(folder)) return;
   const std::string name = "it's \"my\" $film;*.mp4";
   const Outcome made = folder.run(
-      "view ball3d --worlds 2 --seconds 0.1 --fps 4 --speed 0.5 --at 0.25 --until 1 --size 640x480 "
-      "--world 1 --color speed --dark --json --mp4 \"it's \\\"my\\\" \\$film;*.mp4\"");
+      "view ball3d --worlds 2 --seconds 0.1 --fps 4 --speed 0.5 --begin 0.25 --end 1 --size "
+      "640x480 "
+      "--world 1 --follow \"a &b\" --color speed --dark --json --mp4 \"it's \\\"my\\\" "
+      "\\$film;*.mp4\"");
   INFO(made.err);
   REQUIRE(made.code == 0);
   const Json json = Json::parse(made.out);
@@ -97,7 +99,8 @@ TEST_CASE("films have a frame for each moment, in order", "[cli]") {
     CHECK(frames[at] == Json(0.25 + 0.125 * k).dump() + " image/jpeg true");
   }
   CHECK(content(folder / "size") == "640x480");
-  CHECK(contains(content(folder / "url"), "/page.html#film&world=1&color=speed&theme=dark"));
+  CHECK(contains(content(folder / "url"),
+                 "/page.html#film&world=1&follow=a%20%26b&color=speed&theme=dark"));
   CHECK(contains(content(folder / "arguments"), "\n-framerate\n4.000000\n"));
   folder.check_clean();
 }
@@ -106,7 +109,7 @@ TEST_CASE("pictures are of one moment", "[cli]") {
   const Folder folder;
   if (!records(folder)) return;
   const Outcome both = folder.run(
-      "view ball3d --worlds 2 --seconds 0.1 --png a.png --at 1.5 --out page.html --size 65x99");
+      "view ball3d --worlds 2 --seconds 0.1 --png a.png --time 1.5 --out page.html --size 65x99");
   INFO(both.err);
   CHECK(both.code == 0);
   CHECK(content(folder / "a.png") == "1.5 image/png false\n");
@@ -117,6 +120,18 @@ TEST_CASE("pictures are of one moment", "[cli]") {
   CHECK(contains(at_end.out, "a.png: 2 worlds, "));
   CHECK(content(folder / "a.png") == "2.0 image/png false\n");
   folder.check_clean();
+}
+
+TEST_CASE("times of films and pictures have their former names, too", "[cli]") {
+  const Folder folder;
+  if (!records(folder)) return;
+  const Outcome made = folder.run(
+      "view ball3d --worlds 2 --seconds 0.1 --at 0.5 --until 1 --fps 2 --mp4 film.mp4 --png a.png");
+  INFO(made.err);
+  CHECK(made.code == 0);
+  CHECK(content(folder / "a.png") == "0.5 image/png false\n");
+  CHECK(content(folder / "film.mp4") == "0.5 image/jpeg true\n1.0 image/jpeg true\n");
+  CHECK_FALSE(contains(folder.run("view --help").out, "--until"));
 }
 
 TEST_CASE("films say what is wrong, and leave nothing", "[cli]") {
@@ -131,7 +146,7 @@ TEST_CASE("films say what is wrong, and leave nothing", "[cli]") {
   bad("refuses", "the page: there is no world 7, only 0 to 1\n");
   bad("fails", "'film.mp4': ./encoder failed (exit code 1): No space left on device");
   bad("ends", "'film.mp4': ./encoder failed (exit code 8): Unknown encoder");
-  folder.check_bad(folder.run(std::string(kShort) + "--at 3"),
+  folder.check_bad(folder.run(std::string(kShort) + "--begin 3"),
                    "it would begin at 3.0 s, and worlds end at 2.0 s");
   folder.check_bad(folder.run("view ball3d --worlds 2 --seconds 0.1 --mp4 no/such/film.mp4"),
                    "there is no folder 'no/such'");
@@ -144,7 +159,9 @@ TEST_CASE("films say what is wrong, and leave nothing", "[cli]") {
   fs::remove(folder / "film.mp4");
 
   fs::rename(folder / "encoder", folder / "gone");
-  bad("", "wants an encoder, and found no ./encoder; Debian has it as ffmpeg, and FFMPEG names");
+  bad("",
+      "wants an encoder, and found no ./encoder; Debian has it as ffmpeg, PyPI as imageio-ffmpeg "
+      "(Python ");
   fs::rename(folder / "browser", folder / "gone");
   const Outcome picture = folder.run("view ball3d --png a.png");  // at once: nothing is recorded
   folder.check_bad(picture, "wants a browser, and found no ./browser; Debian has it as chromium");
@@ -159,11 +176,17 @@ TEST_CASE("films refuse options that they cannot have", "[cli]") {
   bad("--mp4 film.mp4 --size 641x480", "--size: must be even numbers for a film, is '641x480'");
   bad("--mp4 film.mp4 --speed max", "--speed: must be 0.001 to 1000 for a film, is 'max'");
   bad("--mp4 film.mp4 --speed 0", "is '0'");
-  bad("--mp4 film.mp4 --at 2 --until 1", "--until: must be 2 s (--at) or later, is 1 s");
-  bad("--png a.png --until 1", "--until: is of --mp4");
+  bad("--mp4 film.mp4 --begin 2 --end 1", "--end: must be 2 s (--begin) or later, is 1 s");
   bad("--png a.png --speed 2", "--speed: is of --live and --mp4");
-  bad("--out a.html --at 2", "--at: is of --png and --mp4");
-  bad("--out a.html --dark", "--world, --color and --dark: are of --png and --mp4");
+  bad("--mp4 film.mp4 --time 2", "--time: applies only with --png");
+  bad("--png a.png --begin 1", "--begin: applies only with --mp4");
+  bad("--png a.png --end 1", "--end: applies only with --mp4");
+  bad("--png a.png --until 1", "--until: applies only with --mp4");
+  bad("--out a.html --at 2", "--at: applies only with --png or --mp4");
+  bad("--mp4 film.mp4 --at 2 --begin 1", "--at excludes --begin");
+  bad("--out a.html --dark",
+      "--world, --follow, --color, --dark: applies only with --png or --mp4");
+  bad("--out a.html --follow ball", "applies only with --png or --mp4");
 }
 
 TEST_CASE("a film that is interrupted leaves nothing", "[cli]") {

@@ -102,7 +102,9 @@ TEST_CASE("frames are of the worlds as they are", "[live][fast]") {
         CHECK(std::abs(2 * found * found - 1 - q[i]) < 1e-4);
       }
     }
-    CHECK(frame.size() == at + 3 * static_cast<std::size_t>(plan.bodies()));
+    const std::size_t joints = plan.scene().joints.size();  // a byte each: whether it is there
+    CHECK(number_at<std::uint32_t>(frame, 52) == joints);
+    CHECK(frame.size() == at + 3 * static_cast<std::size_t>(plan.bodies()) + joints);
   }
 }
 

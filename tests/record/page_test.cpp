@@ -107,6 +107,7 @@ double worst_error(const std::string& page, const Recording& recording) {
   const bool planar = run.at("space") == "planar";
   const std::size_t space = planar ? 2 : 3, rows = kind.at("rows"), worlds = kind.at("worlds");
   const std::size_t turns = kind.at("orientation");
+  CHECK(kind.at("turns") == recording.plan().has(Feature::orientation));
   std::vector<double> radius(rows);
   std::vector<std::vector<Vec3>> points(rows);
   const Scene& scene = recording.plan().scene();
@@ -241,6 +242,37 @@ TEST_CASE("a page has what was asked for", "[fast][record][page]") {
     CHECK(there[1 * chunk.frames() + f] == 0);
     CHECK(there[3 * chunk.frames() + f] == (f > 0 ? 1 : 0));
   }
+}
+
+TEST_CASE("a page knows which joints broke or are disabled", "[fast][record][page]") {
+  const Folder folder;
+  Scene scene;
+  for (const double x : {0.0, 3.0}) {
+    const BodyId ball = scene.add({.position = {x, 0, 0}, .shapes = {{.geometry = Sphere{}}}});
+    scene.joints.push_back({.type = DistanceJoint{}, .body_b = ball});
+    scene.joints.back().frame_a.position = {x, 0, 2};
+  }
+  scene.joints[0].break_force = 1;  // N, less than it weighs
+  Batch batch(compile(scene), {.worlds = 2});
+  Recorder recorder(batch, folder / "run.h5", {.every = 4});
+  for (int i = 0; i < 8; ++i) batch.step(1);
+  batch.set_joint_enabled(1, JointId(1), false);
+  for (int i = 0; i < 8; ++i) batch.step(1);
+  recorder.close();
+  const Recording recording = Recording::open(folder / "run.h5");
+  const Recording* const all[] = {&recording};
+  const std::string page = page_of(all, empty_page(folder));
+  const Json run = Json::parse(element(page, "mw-head")).at("runs").at(0);
+  CHECK(run.at("enabled") == false);
+  CHECK(run.at("joints_enabled") == true);
+  Chunk chunk(run.at("chunks").at(0), element(page, "mw-0-0"));
+  REQUIRE(chunk.frames() == 5);
+  for (int skipped = 0; skipped < 3 + 4 + 2; ++skipped) chunk.next(4);
+  chunk.next(2);
+  const std::vector<double> there = chunk.next(4);  // [world][joint][frame]
+  CHECK(chunk.done());
+  CHECK(there == std::vector<double>{1, 0, 0, 0, 0, 1, 1, 1, 1, 1,  //
+                                     1, 0, 0, 0, 0, 1, 1, 1, 0, 0});
 }
 
 // Each list by its definition (src/page/contacts.hpp), from those before it.

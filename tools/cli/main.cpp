@@ -255,20 +255,28 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       ->add_option("--mp4", view.mp4,
                    "a film of the page, by headless Chromium and ffmpeg; no page then")
       ->type_name("FILE.mp4");
-  command
-      ->add_option("--at", view.at,
-                   "when, simulated time: the picture (default: the end), the film's begin (0)")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("S");
-  command->add_option("--until", view.until, "the film's end, simulated time (default: the end)")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("S");
+  const auto add_time = [&](const char* name, std::optional<double>& to, const char* help) {
+    return command->add_option(name, to, help)->check(CLI::NonNegativeNumber)->type_name("S");
+  };
+  CLI::Option* time =
+      add_time("--time", view.time, "simulated time of the picture (default: the end)");
+  CLI::Option* begin =
+      add_time("--begin", view.begin, "simulated time at which the film begins (default: 0)");
+  CLI::Option* end =
+      add_time("--end", view.end, "simulated time at which the film ends (default: the end)");
+  // What they were called before; not in the help.
+  add_time("--at", view.at, "")->group("")->excludes(time)->excludes(begin);
+  add_time("--until", view.until, "")->group("")->excludes(end);
   command->add_option("--size", view.size, "of the picture and the film, in pixels")
       ->type_name("WxH")
       ->capture_default_str();
   command->add_option("--world", view.world, "the picture and the film show this one, from 0 on")
       ->check(CLI::Range(0, 1 << 20))
       ->type_name("N");
+  command
+      ->add_option("--follow", view.follow,
+                   "the camera follows this body of --world (default: 0): its name or index")
+      ->type_name("BODY");
   command
       ->add_option("--color", view.color,
                    "theirs by: body, speed, spin, rest, height, contact, run (default: body)")
@@ -291,8 +299,9 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       "of scenes: contact points of a world and frame, the N of the largest forces");
   CLI::Option* live = command->add_flag(
       "--live", view.live, "step a scene and serve its page on this machine until Ctrl-C");
-  for (const char* other : {"--out", "--open", "--png", "--mp4", "--at", "--until", "--world",
-                            "--color", "--dark", "--every", "--fps", "--seconds", "--contacts"}) {
+  for (const char* other : {"--out", "--open", "--png", "--mp4", "--time", "--begin", "--end",
+                            "--at", "--until", "--world", "--follow", "--color", "--dark",
+                            "--every", "--fps", "--seconds", "--contacts"}) {
     live->excludes(command->get_option(other));
   }
   command->add_option("--port", view.port, "of --live (default: any that is free)")
@@ -316,8 +325,9 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       "Examples:\n"
       "  manyworlds view bin-boxes\n"
       "  manyworlds view run.h5 --out page.html\n"
-      "  manyworlds view bin-boxes --png picture.png --at 1.2 --size 1200x680\n"
+      "  manyworlds view bin-boxes --png picture.png --time 1.2 --size 1200x680\n"
       "  manyworlds view run.h5 --mp4 film.mp4 --speed 0.25\n"
+      "  manyworlds view humanoid --random-controls --mp4 film.mp4 --world 5 --follow chest\n"
       "  manyworlds view before.h5 after.h5 --out both.html\n"
       "  manyworlds view humanoid.xml --random-controls --worlds 16 --seconds 5\n"
       "  manyworlds view bin-boxes --live --worlds 64\n"

@@ -123,10 +123,14 @@ struct ViewArguments {
   int contacts = 64;  // points of a world and frame of scenes at most
   bool open = false;
   std::string png, mp4;         // files; empty: no picture, no film
-  std::optional<double> at;     // s, of the picture (default: the end) and the film's begin (0)
-  std::optional<double> until;  // s, of the film's end
+  std::optional<double> time;   // s, of the picture; default: the end
+  std::optional<double> begin;  // s, of the film; default: 0
+  std::optional<double> end;    // s, of the film; default: the end
+  std::optional<double> at;     // the name that --time and --begin had
+  std::optional<double> until;  // the name that --end had
   std::string size = "1280x720";
   std::optional<int> world;  // of pictures and films; none: all
+  std::string follow;        // a body of that world or of the first; empty: none
   std::string color;         // by what; empty: by body
   bool dark = false;
   bool live = false;  // served while it steps (live_command.hpp)

@@ -131,7 +131,7 @@ int view_command(const ViewArguments& arguments) {
   FilmReport film;
   if (wanted.picture) {
     const PictureOptions picture{
-        .frame = wanted.frame, .time = arguments.at.value_or(kEnd), .go_on = options.go_on};
+        .frame = wanted.frame, .time = wanted.time, .go_on = options.go_on};
     if (!write_picture(out, arguments.png, picture)) return tell_interrupted();
   }
   if (wanted.film) {

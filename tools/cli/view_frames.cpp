@@ -29,6 +29,27 @@ double parse_film_speed(const std::string& text) {
   throw InputError(fmt::format("--speed: must be 0.001 to 1000 for a film, is '{}'", text));
 }
 
+// As a value behind '#' in an address.
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_' || c == '.';
+    out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return out;
+}
+
+// Of what was given by its name or by the one that it had before.
+double time_of(const std::optional<double>& given, const std::optional<double>& before,
+               double otherwise) {
+  return given ? *given : before.value_or(otherwise);
+}
+
+void refuse_without(bool wanted, const char* option, const char* other) {
+  if (!wanted) throw InputError(fmt::format("{}: applies only with {}", option, other));
+}
+
 }  // namespace
 
 FramesWanted frames_wanted(const ViewArguments& arguments) {
@@ -39,24 +60,29 @@ FramesWanted frames_wanted(const ViewArguments& arguments) {
   out.frame.width = size.width, out.frame.height = size.height;
   std::vector<std::string> view;
   if (arguments.world) view.push_back(fmt::format("world={}", *arguments.world));
-  if (!arguments.color.empty()) view.push_back("color=" + arguments.color);
+  if (!arguments.follow.empty()) view.push_back("follow=" + escaped(arguments.follow));
+  if (!arguments.color.empty()) view.push_back("color=" + escaped(arguments.color));
   if (arguments.dark) view.emplace_back("theme=dark");
   out.frame.view = fmt::format("{}", fmt::join(view, "&"));
   if (arguments.speed && !out.film) throw InputError("--speed: is of --live and --mp4");
-  if (arguments.until && !out.film) throw InputError("--until: is of --mp4");
-  if (arguments.at && !out.any()) throw InputError("--at: is of --png and --mp4");
-  if (!view.empty() && !out.any()) {
-    throw InputError("--world, --color and --dark: are of --png and --mp4");
-  }
+  refuse_without(!arguments.time || out.picture, "--time", "--png");
+  refuse_without(!arguments.begin || out.film, "--begin", "--mp4");
+  refuse_without(!arguments.end || out.film, "--end", "--mp4");
+  refuse_without(!arguments.until || out.film, "--until", "--mp4");
+  refuse_without(!arguments.at || out.any(), "--at", "--png or --mp4");
+  refuse_without(view.empty() || out.any(), "--world, --follow, --color, --dark", "--png or --mp4");
+  out.time = time_of(arguments.time, arguments.at, kEnd);
+  out.begin = time_of(arguments.begin, arguments.at, 0);
+  out.end = time_of(arguments.end, arguments.until, kEnd);
   if (out.film) {
     out.speed = parse_film_speed(arguments.speed.value_or("1"));
     if (size.width % 2 != 0 || size.height % 2 != 0) {
       throw InputError(
           fmt::format("--size: must be even numbers for a film, is '{}'", arguments.size));
     }
-    if (arguments.until && *arguments.until < arguments.at.value_or(0)) {
-      throw InputError(fmt::format("--until: must be {} s (--at) or later, is {} s",
-                                   arguments.at.value_or(0), *arguments.until));
+    if (out.end < out.begin) {
+      throw InputError(
+          fmt::format("--end: must be {} s (--begin) or later, is {} s", out.begin, out.end));
     }
     find_encoder();
   }
@@ -71,8 +97,8 @@ FilmReport make_film(const fs::path& page, const ViewArguments& arguments,
   options.frame = wanted.frame;
   options.fps = arguments.fps;
   options.speed = wanted.speed;
-  options.begin = arguments.at.value_or(0);
-  options.end = arguments.until.value_or(kEnd);
+  options.begin = wanted.begin;
+  options.end = wanted.end;
   std::optional<Progress> progress;
   options.told = [&](std::int64_t, std::int64_t frames) {
     if (!progress) progress.emplace(arguments.mp4, frames);

@@ -15,6 +15,8 @@ inline constexpr double kEnd = std::numeric_limits<double>::infinity();
 struct FramesWanted {
   bool picture = false, film = false;
   FrameOptions frame;
+  double time = kEnd;             // s, of the picture
+  double begin = 0, end = kEnd;   // s, of the film
   double speed = 1;               // of the film
   double samples_per_second = 0;  // of scenes, simulated time
 

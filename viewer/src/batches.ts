@@ -1,10 +1,18 @@
 // Draws instances of meshes: one call for each mesh and level of detail, however many worlds.
 //
-// An instance is 16 numbers: position, size, rotation x y z w, stretch, colour. A point p of the mesh
-// is at position + rotation (size p + stretch sign(p)).
+// An instance is 17 numbers: position, size, rotation x y z w, stretch, colour, fade. A point p of the mesh
+// is at position + rotation (size p + stretch sign(p)). Fade is 0 to 1, how far colours are those of the background.
 import * as THREE from 'three';
 
-const STRIDE = 16;
+import { srgb } from './colors';
+
+const STRIDE = 17;
+
+const background = { value: new THREE.Vector3(1, 1, 1) }; // sRGB, as the pixels have it
+
+export function setBackground(hex: string): void {
+  background.value.fromArray(srgb(hex));
+}
 
 const PLACE = `
 attribute vec3 iPosition;
@@ -12,7 +20,9 @@ attribute vec3 iSize;
 attribute vec4 iRotation;
 attribute vec3 iStretch;
 attribute vec3 iColor;
+attribute float iFade;
 varying vec3 vTint;
+varying float vFade;
 vec3 turned(vec3 v) {
   return v + 2.0 * cross(iRotation.xyz, cross(iRotation.xyz, v) + iRotation.w * v);
 }
@@ -23,9 +33,12 @@ function withInstances<M extends THREE.Material>(material: M, shade = 1): M {
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = PLACE + shader.vertexShader
       .replace('#include <beginnormal_vertex>', 'vec3 objectNormal = turned(normal / iSize);')
-      .replace('#include <begin_vertex>', 'vec3 transformed = placed(position); vTint = iColor;');
-    shader.fragmentShader = 'varying vec3 vTint;\n' + shader.fragmentShader
-      .replace('#include <color_fragment>', `diffuseColor.rgb *= ${shade.toFixed(3)} * vTint;`);
+      .replace('#include <begin_vertex>', 'vec3 transformed = placed(position); vTint = iColor; vFade = iFade;');
+    shader.uniforms.background = background;
+    shader.fragmentShader = 'varying vec3 vTint;\nvarying float vFade;\nuniform vec3 background;\n' + shader.fragmentShader
+      .replace('#include <color_fragment>', `diffuseColor.rgb *= ${shade.toFixed(3)} * vTint;`)
+      // After light and tone, so that what is faded has one look in every theme.
+      .replace('#include <fog_fragment>', 'gl_FragColor.rgb = mix(gl_FragColor.rgb, background, vFade);');
   };
   material.customProgramCacheKey = () => `instances-${material.type}-${shade}`;
   return material;
@@ -79,6 +92,7 @@ export class Batch {
     part('iRotation', 4, 6);
     part('iStretch', 3, 10);
     part('iColor', 3, 13);
+    part('iFade', 1, 16);
     this.geometries.push(out);
     return out;
   }
@@ -104,7 +118,7 @@ export class Batch {
     return lines;
   }
 
-  // What was written to data[0 .. count * 16) is drawn from now on.
+  // What was written to data[0 .. count * STRIDE) is drawn from now on.
   finish(): void {
     this.buffer.clearUpdateRanges();
     this.buffer.addUpdateRange(0, this.count * STRIDE);

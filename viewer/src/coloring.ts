@@ -14,6 +14,8 @@ export interface Theme {
   lost: string;
   selected: string;
   fixed: string;
+  metal: string; // of joints, as the next
+  rope: string;
 }
 
 // What bodies can be coloured by, and what it is called.
@@ -58,7 +60,7 @@ export class Coloring {
   maxForce: number;
   private readonly weight: number; // N, of a body in the mean
   readonly tints: Record<keyof Theme, Rgb> =
-    { ground: [1, 1, 1], wall: [1, 1, 1], tile: [1, 1, 1], lost: [1, 0, 0], selected: [0, 0, 1], fixed: [0.5, 0.5, 0.5] };
+    { ground: [1, 1, 1], wall: [1, 1, 1], tile: [1, 1, 1], lost: [1, 0, 0], selected: [0, 0, 1], fixed: [0.5, 0.5, 0.5], metal: [0.3, 0.3, 0.3], rope: [0.4, 0.3, 0.2] };
   private mode = 'body'; // `by` without the name of the number
   private numbers: { now: Float32Array; low: number; high: number } = { now: new Float32Array(0), low: 0, high: 0 };
 

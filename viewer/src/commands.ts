@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 
 import type { App } from './main';
-import { element } from './elements';
+import { element, showMessage } from './elements';
 import type { LiveSource } from './live';
 
 const COUNTS = [1, 4, 16, 64, 256, 1024];
@@ -26,11 +26,7 @@ export class Commands {
     this.setUpWorlds();
     this.setUpParameters();
     source.said = (text) => this.say(text);
-    source.gone = (why) => {
-      const message = element('message');
-      message.hidden = false;
-      message.textContent = why;
-    };
+    source.gone = (why) => showMessage(why, false);
   }
 
   say(text: string): void {

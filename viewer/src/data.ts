@@ -48,8 +48,14 @@ export interface JointEnd {
 export interface Joint {
   name: string;
   type: string;
-  a: JointEnd;
-  b: JointEnd;
+  body_a: number | null; // null: the world
+  body_b: number | null;
+  a: JointEnd | null; // null: within a series of joints, on no body
+  b: JointEnd | null;
+  form?: 'rod' | 'rope' | 'spring' | 'telescope'; // of distance joints
+  length?: number; // m, of a rod, a rope or a spring at rest
+  range?: [number, number] | null; // m, of sliders and wheels; null: without end
+  grounds?: [number[], number[]]; // m, in the world: wheels of a pulley
 }
 
 export interface Kind {
@@ -64,6 +70,7 @@ export interface Kind {
   worlds: number;
   names: number[];
   orientation: 0 | 2 | 4;
+  turns: boolean; // orientations are simulated; where not, bodies are drawn without turning
   sizes: { shape: number; values: Float32Array }[]; // [world] size x y z, stretch x y z
   contact_step?: number; // m, of points of contacts
   controls?: { name: string; low: number; high: number; value: number }[]; // of a live page
@@ -96,6 +103,7 @@ export interface Poses {
   there: Uint8Array; // 0: disabled
   status: Int32Array; // [world]
   force: Float32Array; // N, sum of what contacts press with; 0 where nobody asked
+  joints: Uint8Array; // [world][joint]; 0: disabled or broken
 }
 
 export interface FrameSource {
@@ -123,6 +131,7 @@ export function emptyPoses(kind: Kind): Poses {
     there: new Uint8Array(items).fill(1),
     status: new Int32Array(kind.worlds),
     force: new Float32Array(items),
+    joints: new Uint8Array(kind.worlds * kind.joints.length).fill(1),
   };
 }
 

@@ -10,6 +10,7 @@ export interface Options {
   wireframe: boolean;
   walls: boolean;
   edges: boolean;
+  joints: boolean;
 }
 
 export interface Drawable {
@@ -50,6 +51,10 @@ function keyOf(mesh: Mesh): string {
   for (const x of points) hash = (hash * 31 + Math.round(x * 1e5)) | 0;
   for (const x of mesh.levels[0].lines) hash = (hash * 31 + Math.round(x * 1e5)) | 0;
   return `${mesh.kind}-${hash}`;
+}
+
+function useOf(mesh: Mesh, ghost: boolean, turning: boolean): string {
+  return `${keyOf(mesh)}-${ghost}-${turning}`;
 }
 
 // Triangles and lines of several shapes in one, cut at `sides` where there are some.
@@ -126,6 +131,7 @@ interface MeshUse {
   capacity: number;
   mesh: Mesh;
   ghost: boolean;
+  turns: boolean; // marks show how it does
 }
 
 export class Drawables {
@@ -135,7 +141,7 @@ export class Drawables {
   // m, around what does not move, about the origin of a world.
   readonly still: Sides = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
   private readonly known = new Map<string, MeshUse>();
-  private readonly look: Look;
+  readonly look: Look;
 
   // sides: where what does not move is cut, if it is.
   constructor(runs: Run[], ghosts: boolean, private readonly planar: boolean, private readonly options: Options,
@@ -162,7 +168,7 @@ export class Drawables {
     }
   }
 
-  private add(batch: Batch): Batch {
+  add(batch: Batch): Batch {
     this.batches.push(batch);
     for (const object of batch.objects) this.group.add(object);
     return batch;
@@ -176,8 +182,8 @@ export class Drawables {
         for (const shape of body.shapes) {
           if (shape.mesh < 0 || (body.row === null && !varied.has(shape.shape))) continue;
           const mesh = run.meshes[shape.mesh];
-          const key = `${keyOf(mesh)}-${ghost}`;
-          const one = this.known.get(key) ?? { batches: [], capacity: 0, mesh, ghost };
+          const key = useOf(mesh, ghost, kind.turns);
+          const one = this.known.get(key) ?? { batches: [], capacity: 0, mesh, ghost, turns: kind.turns };
           one.capacity += kind.worlds;
           this.known.set(key, one);
         }
@@ -195,7 +201,7 @@ export class Drawables {
       if ((this.planar || this.options.edges) && level.lines.length > 0 && !use.ghost) {
         batch.addLines(level.lines, this.planar ? 0.8 : 0.35);
       }
-      if (this.planar && level.marks.length > 0 && !use.ghost) batch.addLines(level.marks, 0.55);
+      if (this.planar && level.marks.length > 0 && use.turns && !use.ghost) batch.addLines(level.marks, 0.55);
       use.batches.push(this.add(batch));
     }
   }
@@ -217,7 +223,7 @@ export class Drawables {
         const q = xyzw(shape.rotation);
         view.drawables.push({
           body, row: body.row ?? -1, shape: shape.shape,
-          batches: this.known.get(`${keyOf(mesh)}-${ghost}`)!.batches, mesh,
+          batches: this.known.get(useOf(mesh, ghost, kind.turns))!.batches, mesh,
           color: linear(body.row === null ? '#8d99ae' : PALETTE[b % PALETTE.length]),
           position: shape.position, rotation: q,
           centred: shape.position.every((x) => x === 0) && Math.abs(q[3]) === 1,

@@ -45,10 +45,31 @@ export class Film {
     clock.hidden = !moment;
     this.app.drawAt(time);
     this.pen.drawImage(this.app.stage.renderer.domElement, 0, 0);
+    const words = ['head', 'moment'].map((id) => document.getElementById(id) as HTMLElement);
+    for (const element of words) this.paintBox(element);
     this.app.panel.legend.paint(this.pen, this.canvas.width / window.innerWidth);
-    for (const id of ['head', 'moment']) this.write(document.getElementById(id) as HTMLElement);
+    for (const element of words) this.write(element);
     const blob = await this.canvas.convertToBlob({ type, quality: JPEG_QUALITY });
     return toBase64(blob);
+  }
+
+  // What lies behind the words of an element.
+  private paintBox(element: HTMLElement): void {
+    const { pen } = this;
+    const { left, top, width, height } = element.getBoundingClientRect();
+    if (width === 0) return;
+    const style = getComputedStyle(element);
+    const ratio = this.canvas.width / window.innerWidth;
+    pen.save();
+    pen.scale(ratio, ratio);
+    pen.fillStyle = style.backgroundColor;
+    pen.strokeStyle = style.borderTopColor;
+    pen.lineWidth = 1;
+    pen.beginPath();
+    pen.roundRect(left + 0.5, top + 0.5, width - 1, height - 1, parseFloat(style.borderTopLeftRadius));
+    pen.fill();
+    pen.stroke();
+    pen.restore();
   }
 
   // The words of an element, where and as the page shows them.

@@ -15,6 +15,7 @@ export interface LiveFrame {
   speeds: Uint8Array;
   spins: Uint8Array;
   there: Uint8Array;
+  joints: Uint8Array; // of all worlds, those of one after those of the other
 }
 
 export interface Sized {
@@ -38,6 +39,7 @@ export function frameOf(bytes: ArrayBuffer, planar: boolean, turned: boolean): L
   if (bytes.byteLength < HEAD || head.getUint32(0, true) !== MAGIC) throw new Error('a frame is none');
   const worlds = head.getUint32(44, true);
   const bodies = head.getUint32(48, true);
+  const joints = head.getUint32(52, true);
   const width = planar ? 2 : 3;
   const components = turned ? (planar ? 2 : 4) : 0;
   let at = HEAD;
@@ -60,6 +62,7 @@ export function frameOf(bytes: ArrayBuffer, planar: boolean, turned: boolean): L
     speeds: new Uint8Array(bytes, next(bodies), bodies),
     spins: new Uint8Array(bytes, next(bodies), bodies),
     there: new Uint8Array(bytes, next(bodies), bodies),
+    joints: new Uint8Array(bytes, next(joints), joints),
   };
 }
 

@@ -116,12 +116,17 @@ export class LiveSource implements FrameSource {
   read(index: number, _part: number, kindIndex: number, into: Poses): void {
     const { frame, first } = this.history[index];
     const kind = this.run.kinds[kindIndex];
+    const joints = kind.joints.length;
+    let joint = 0; // of this world, in the frame
     frame.worlds.forEach((world, w) => {
       const { kind: of, world: cell } = this.place[world];
+      const from = joint;
+      joint += this.run.kinds[of].joints.length;
       if (of !== kindIndex) return;
+      into.joints.set(frame.joints.subarray(from, from + joints), cell * joints);
       into.status[cell] = frame.status[w];
-      const from = first.get(world) as number;
-      for (let row = 0; row < kind.rows; ++row) this.readBody(frame, kind, from + row, cell * kind.rows + row, into);
+      const body = first.get(world) as number;
+      for (let row = 0; row < kind.rows; ++row) this.readBody(frame, kind, body + row, cell * kind.rows + row, into);
     });
   }
 

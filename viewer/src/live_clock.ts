@@ -8,10 +8,11 @@ const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 10, Infinity];
 export class LiveClock implements Clock {
   time = 0;
   readonly end = 0;
+  looping = false;
 
   constructor(private readonly source: LiveSource) {
     element('timeline').classList.add('live');
-    for (const id of ['back', 'time']) element(id).hidden = true;
+    for (const id of ['back', 'time', 'loop']) element(id).hidden = true;
     element('on').title = 'One step on (→)';
     const select = element<HTMLSelectElement>('speed');
     select.replaceChildren(...SPEEDS.map((speed) =>

@@ -2,17 +2,18 @@
 import * as THREE from 'three';
 
 import { obeyAddress } from './address';
+import { watchClicks } from './clicks';
 import { colorChoices, hasContacts } from './coloring';
 import { Commands } from './commands';
 import type { FrameSource } from './data';
-import { element } from './elements';
+import { element, showMessage } from './elements';
 import { Film } from './film';
 import { Grab } from './grab';
+import { hasJoints } from './joints';
 import { LiveSource } from './live';
 import { LiveClock } from './live_clock';
 import { Overlays, type Chosen } from './overlays';
 import { Panel } from './panel';
-import { pickBody, pickCell } from './pick';
 import { Probe } from './probe';
 import { openRuns } from './recorded';
 import { Stage, THEMES } from './stage';
@@ -21,9 +22,8 @@ import { Timeline, type Clock } from './timeline';
 import { Worlds, momentOf } from './worlds';
 
 const TABLE_MS = 120; // from one writing of the table to the next
-const CLICK_PIXELS = 5;
 const WAIT_MS = 250; // how long a picture stays while the next frames are decoded
-const MARKS = ['trails', 'joints', 'centers', 'bounds', 'contacts'] as const; // of overlays
+const MARKS = ['trails', 'anchors', 'centers', 'bounds', 'contacts'] as const; // of overlays
 const SOFTWARE_SHADOWS = 3000; // shapes that still have shadows without a graphics card
 
 export class App {
@@ -64,29 +64,41 @@ export class App {
   async begin(): Promise<void> {
     const wanted = new URLSearchParams(window.location.hash.slice(1));
     const time = Number(wanted.get('time') ?? 0);
-    if (Number.isFinite(time)) this.timeline.seek(time);
+    if (Number.isFinite(time)) this.timeline.seek(time); // before anything is drawn
     // Of pictures and films: nothing but the worlds and their name, and no frame but those that are asked for.
     const film = wanted.has('film');
-    if (film) for (const id of ['panel', 'buttons', 'timeline']) element(id).hidden = true;
+    if (film) for (const id of ['panel', 'buttons']) element(id).hidden = true;
+    document.documentElement.classList.toggle('film', film);
+    element('timeline').hidden = film || (this.live === null && this.timeline.end === 0); // a single moment has none
     await this.prepare(this.timeline.time);
     this.resize();
     this.build();
     this.worlds.read(this.timeline.time);
     if (this.worlds.instances > SOFTWARE_SHADOWS && this.stage.software) element('shadows').click();
     this.showAll(false);
-    const refused = obeyAddress(this, wanted);
+    const refused = obeyAddress(this, wanted, false);
     if (film) {
-      if (refused !== '') throw new Error(refused);
+      if (refused.length > 0) throw new Error(refused.join('; '));
       this.stage.endFlight();
-      this.worlds.selected = -1; // who looks on chooses nothing
+      // Whoever looks on chooses nothing.
+      this.worlds.selected = -1;
+      this.overlays.axes = false;
       return;
     }
+    this.complain(refused);
+    window.addEventListener('hashchange', () => {
+      this.complain(obeyAddress(this, new URLSearchParams(window.location.hash.slice(1))));
+    });
     window.addEventListener('resize', () => {
       this.resize();
       if (this.chosen.cell < 0) this.showAll(false);
     });
     requestAnimationFrame((now) => this.tick(now));
     if (this.timeline.end > 0 && !wanted.has('time') && !window.matchMedia('(prefers-reduced-motion: reduce)').matches) this.timeline.play(true);
+  }
+
+  private complain(refused: string[]): void {
+    showMessage(refused.length === 0 ? '' : ['The address of this page asks for what it does not have:', ...refused].join('\n'), true);
   }
 
   // Frames of pictures and films; how long worlds go on, s.
@@ -116,7 +128,7 @@ export class App {
     }
     const { width, height } = this.canvasSize();
     this.worlds = new Worlds(this.sources, this.ghosts, width / height, {
-      wireframe: this.checked('wireframe'), walls: this.checked('walls'), edges: this.checked('edges'),
+      wireframe: this.checked('wireframe'), walls: this.checked('walls'), edges: this.checked('edges'), joints: this.checked('joints'),
     });
     this.worlds.coloring.by = element<HTMLSelectElement>('color').value;
     this.panel = new Panel(this.title, this.sources, this.worlds, (row) => this.choose(this.chosen.cell, row));
@@ -124,7 +136,7 @@ export class App {
     this.overlays = new Overlays(this.worlds);
     for (const id of MARKS) this.overlays[id] = this.checked(id);
     this.stage.scene.add(this.worlds.group, this.overlays.group);
-    this.worlds.selected = this.chosen.cell;
+    this.worlds.selected = this.worlds.focus = this.chosen.cell;
     this.dirty = true;
   }
 
@@ -166,6 +178,8 @@ export class App {
       this.dirty = true;
       color.blur();
     };
+    const joints = hasJoints(this.sources.map((source) => source.run));
+    for (const id of ['joints', 'anchors']) (element(id).parentElement as HTMLElement).hidden = !joints;
     element('compare-row').hidden = this.sources.length < 2;
     const compare = element<HTMLSelectElement>('compare');
     compare.onchange = () => {
@@ -175,7 +189,7 @@ export class App {
       this.showAll(false);
       compare.blur();
     };
-    for (const id of ['edges', 'walls', 'wireframe']) element(id).onchange = () => this.build();
+    for (const id of ['edges', 'walls', 'wireframe', 'joints']) element(id).onchange = () => this.build();
     element('shadows').onchange = () => {
       this.stage.shadows = this.checked('shadows');
       this.dirty = true;
@@ -205,29 +219,7 @@ export class App {
     panelButton.onclick = () => togglePanel(element('panel').classList.contains('closed'));
     if (window.innerWidth <= 620) element('panel').classList.add('closed');
     window.addEventListener('keydown', (event) => this.key(event, togglePanel));
-    this.setUpPointer();
-  }
-
-  private setUpPointer(): void {
-    const canvas = element<HTMLCanvasElement>('view');
-    let down: { x: number; y: number } | null = null;
-    canvas.addEventListener('pointerdown', (event) => {
-      down = { x: event.clientX, y: event.clientY };
-    });
-    canvas.addEventListener('pointerup', (event) => {
-      if (down === null || Math.hypot(event.clientX - down.x, event.clientY - down.y) > CLICK_PIXELS) return;
-      this.click(event.clientX, event.clientY);
-    });
-  }
-
-  private click(x: number, y: number): void {
-    const ray = this.stage.ray(x, y);
-    const body = pickBody(this.worlds, ray);
-    const cell = body?.cell ?? pickCell(this.worlds, ray);
-    if (cell < 0) return;
-    const other = cell !== this.chosen.cell;
-    this.choose(cell, body?.row ?? -1);
-    if (other) this.showCell(cell);
+    watchClicks(this, element('view'));
   }
 
   private key(event: KeyboardEvent, togglePanel: (open: boolean) => void): void {
@@ -258,8 +250,9 @@ export class App {
       w: () => toggle('wireframe'),
       b: () => toggle('bounds'),
       x: () => toggle('contacts'),
+      j: () => toggle('joints'),
       d: () => toggle('dark'),
-      r: () => this.commands?.reset(),
+      r: () => (this.commands !== null ? this.commands.reset() : toggle('loop')),
       o: () => togglePanel(element('panel').classList.contains('closed')),
     };
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -281,13 +274,13 @@ export class App {
 
   choose(cell: number, row: number): void {
     if (cell >= 0 && cell !== this.chosen.cell) this.tether.hold(this.worlds, cell);
+    this.panel.chose(cell !== this.chosen.cell);
     this.chosen = { cell, row };
-    this.worlds.selected = cell;
+    this.worlds.selected = this.worlds.focus = cell;
     if (row < 0) this.follow(false);
     else if (this.following) this.worlds.placeOf(cell, row, this.lastPlace);
     element('world').hidden = cell < 0;
-    element('bodies').replaceChildren();
-    this.lastTable = 0;
+    this.lastTable = -Infinity;
     this.dirty = true;
   }
 
@@ -306,6 +299,14 @@ export class App {
   showCell(cell: number): void {
     this.resize();
     this.stage.show(this.tether.begin(this.worlds, cell), { fly: true, elevation: 0.55 });
+  }
+
+  // Chooses a body and goes with it.
+  showBody(cell: number, row: number): void {
+    this.resize();
+    this.choose(cell, row);
+    this.stage.show(this.tether.around(this.worlds, cell, row), { fly: true, elevation: 0.55 });
+    this.follow(true);
   }
 
   setTheme(name: 'light' | 'dark'): void {
@@ -392,8 +393,6 @@ async function main(): Promise<App> {
 
 window.manyworldsReady = main();
 window.manyworldsReady.catch((error: unknown) => {
-  const message = element('message');
-  message.hidden = false;
-  message.textContent = error instanceof Error ? error.message : String(error);
+  showMessage(error instanceof Error ? error.message : String(error), false);
   console.error(error);
 });

@@ -46,10 +46,11 @@ export interface Chosen {
 export class Overlays {
   readonly group = new THREE.Group();
   trails = false;
-  joints = false;
+  anchors = false;
   centers = false;
   bounds = false;
   contacts = false;
+  axes = true; // of the chosen body
   pull: { from: THREE.Vector3; to: THREE.Vector3 } | null = null; // the spring of a drag
   private readonly hidden: Lines; // by what is before them
   private readonly above: Lines;
@@ -69,10 +70,10 @@ export class Overlays {
   update(chosen: Chosen): void {
     if (chosen.cell >= 0) {
       if (this.trails) this.addTrails(chosen);
-      if (this.joints) this.addJoints(chosen.cell);
+      if (this.anchors) this.addAnchors(chosen.cell);
       if (this.centers) this.addCenters(chosen.cell);
       if (this.bounds) this.addBounds(chosen.cell);
-      if (chosen.row >= 0) this.addFrame(chosen);
+      if (this.axes && chosen.row >= 0) this.addFrame(chosen);
     }
     if (this.pull !== null) this.above.add(this.pull.from, this.pull.to, linear('#e02b2b'));
     // Of all that are seen while none is chosen.
@@ -127,7 +128,7 @@ export class Overlays {
     this.worlds.placeOf(cellIndex, one.row, p);
   }
 
-  private addJoints(cellIndex: number): void {
+  private addAnchors(cellIndex: number): void {
     const cell = this.worlds.layout.cells[cellIndex];
     const kind = this.worlds.kindOf(cell);
     const q = new THREE.Quaternion();
@@ -137,6 +138,7 @@ export class Overlays {
     const axisColor = linear('#2aa6a1');
     for (const joint of kind.joints) {
       [joint.a, joint.b].forEach((end, i) => {
+        if (end === null) return;
         this.frameOf(cellIndex, end.body, q, p);
         ends[i].set(end.position[0], end.position[1], end.position[2]).applyQuaternion(q).add(p);
         if (end.body !== null) this.above.add(p.clone(), ends[i], color, 0.55);
@@ -144,11 +146,11 @@ export class Overlays {
           const [w, x, y, z] = end.rotation;
           const axis = joint.type === 'hinge' ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(1, 0, 0);
           axis.applyQuaternion(new THREE.Quaternion(x, y, z, w)).applyQuaternion(q);
-          const length = 0.5 * (kind.bodies[joint.b.body ?? joint.a.body ?? 0]?.radius ?? 0.1);
+          const length = 0.5 * (kind.bodies[joint.body_b ?? joint.body_a ?? 0]?.radius ?? 0.1);
           this.above.add(ends[0].clone().addScaledVector(axis, -length), ends[0].clone().addScaledVector(axis, length), axisColor);
         }
       });
-      if (['distance', 'pulley', 'target'].includes(joint.type)) this.above.add(ends[0].clone(), ends[1].clone(), color);
+      if (['distance', 'target'].includes(joint.type)) this.above.add(ends[0].clone(), ends[1].clone(), color);
     }
   }
 

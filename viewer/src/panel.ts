@@ -7,10 +7,17 @@ import type { Worlds } from './worlds';
 
 export class Panel {
   readonly legend = new Legend();
+  private scrollTo = false; // the chosen body's line comes into view when it is next written
 
   // choose(row): a body of the chosen world is clicked.
   constructor(private readonly title: string, private readonly sources: FrameSource[],
     private readonly worlds: Worlds, private readonly choose: (row: number) => void) {}
+
+  // Another world or body was chosen.
+  chose(otherWorld: boolean): void {
+    if (otherWorld) element('bodies').replaceChildren();
+    this.scrollTo = true;
+  }
 
   tellAbout(): void {
     const { cells } = this.worlds.layout;
@@ -24,6 +31,8 @@ export class Panel {
       mark.textContent = `, ${lost} lost`;
       about.append(mark);
     }
+    const still = this.sources.some((source) => source.run.kinds.some((kind) => kind.rows > 0 && kind.turns === false));
+    element('unturned').hidden = !still;
     about.title = this.sources.map((source) => source.run.origin).join('\n');
   }
 
@@ -67,5 +76,7 @@ export class Panel {
       });
       if (this.worlds.planar) line.cells[3].hidden = true;
     });
+    if (this.scrollTo) bodies.querySelector('tr.chosen')?.scrollIntoView({ block: 'nearest' });
+    this.scrollTo = false;
   }
 }

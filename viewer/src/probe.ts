@@ -11,6 +11,11 @@ export class Probe {
     this.app.timeline.seek(time);
   }
 
+  // Without moving the camera, which a click does.
+  choose(cell: number, row: number): void {
+    this.app.choose(cell, row);
+  }
+
   get report() {
     const median = (values: number[]) => [...values].sort((a, b) => a - b)[values.length >> 1] ?? 0;
     return {
@@ -22,11 +27,14 @@ export class Probe {
       frame: this.app.worlds.frame,
       playing: this.app.timeline.playing,
       speed: this.app.timeline.speed,
+      looping: this.app.timeline.looping,
       chosen: { ...this.app.chosen },
       following: this.app.following,
       still: this.app.worlds.still,
       cell: { width: this.app.worlds.layout.width, depth: this.app.worlds.layout.depth },
       contacts: this.app.overlays.contactsDrawn,
+      joints: this.app.worlds.jointsDrawn,
+      jointPieces: this.app.worlds.jointPieces,
       drawCalls: this.app.worlds.objects + this.app.overlays.objects,
       allCalls: this.app.stage.renderer.info.render.calls,
       triangles: this.app.stage.renderer.info.render.triangles,
@@ -80,6 +88,16 @@ export class Probe {
       rotation: [...poses.rotation.subarray(4 * item, 4 * item + 4)],
       bounds: boundsOf(this.app.worlds, cell).get(row)?.getSize(new THREE.Vector3()).toArray() ?? [],
     };
+  }
+
+  // Where a place of a world is drawn.
+  pixelOf(cell: number, place: number[]) {
+    const { x, y } = this.app.worlds.layout.cells[cell];
+    return this.app.stage.pixelOf(new THREE.Vector3(place[0] + x, place[1] + y, place[2] ?? 0));
+  }
+
+  jointsOf(cell: number) {
+    return this.app.worlds.kindOf(this.app.worlds.layout.cells[cell]).joints;
   }
 
   // Of a world at the moment that is shown: bodies of the scene, point, normal, force in N.

@@ -13,6 +13,7 @@ interface Head extends Run, ContactSteps {
   quaternion_steps: number;
   angle_steps: number;
   enabled: boolean;
+  joints_enabled: boolean;
   chunks: Chunk[];
 }
 
@@ -24,6 +25,7 @@ interface Decoded {
   spin: Int32Array;
   status: Int32Array;
   there: Int32Array | null;
+  joints: Int32Array | null; // [frame][world][joint]
   contacts: ContactChunk | null;
 }
 
@@ -189,6 +191,7 @@ export class RecordedSource implements FrameSource {
         spin: next(items),
         status: next(kind.worlds),
         there: this.run.enabled ? next(items) : null,
+        joints: this.run.joints_enabled ? next(kind.worlds * kind.joints.length) : null,
         contacts: this.run.contacts === true ? contactsOf(kind.worlds) : null,
       };
     });
@@ -255,6 +258,11 @@ export class RecordedSource implements FrameSource {
       into.speed[i] = a.speed[atA + i];
       into.spin[i] = a.spin[atA + i];
       into.there[i] = a.there === null ? 1 : a.there[atA + i];
+    }
+    if (a.joints !== null) {
+      const joints = kind.worlds * kind.joints.length;
+      const from = (frame - this.first[chunkA]) * joints;
+      into.joints.set(a.joints.subarray(from, from + joints));
     }
     const atStatus = (frame - this.first[chunkA]) * kind.worlds;
     for (let w = 0; w < kind.worlds; ++w) into.status[w] = a.status[atStatus + w];

@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
+import { setBackground } from './batches';
 import type { Theme } from './coloring';
 
 export interface Box {
@@ -21,11 +22,11 @@ const FIELD_OF_VIEW = 32;
 export const THEMES: Record<'light' | 'dark', Theme & { sky: string; skyTop: string }> = {
   light: {
     sky: '#e9edf3', skyTop: '#ffffff', ground: '#e3e8f0', wall: '#8ea3c4', tile: '#fbfbf9', lost: '#e59a94',
-    selected: '#b9cdf3', fixed: '#97a3b6',
+    selected: '#b9cdf3', fixed: '#97a3b6', metal: '#4d5768', rope: '#7a5c34',
   },
   dark: {
     sky: '#12151c', skyTop: '#0d1016', ground: '#4b5568', wall: '#7d93bb', tile: '#222835', lost: '#7c3430',
-    selected: '#4a6bb0', fixed: '#66738a',
+    selected: '#4a6bb0', fixed: '#66738a', metal: '#b4bfd2', rope: '#d3b27c',
   },
 };
 
@@ -77,6 +78,7 @@ export class Stage {
 
   setTheme(name: 'light' | 'dark'): void {
     this.scene.background = new THREE.Color(THEMES[name].sky);
+    setBackground(THEMES[name].sky);
     this.sky.intensity = name === 'dark' ? 1.3 : 2.0;
     this.sky.groundColor.set(name === 'dark' ? '#5a6376' : '#b9c2d3');
     this.sun.intensity = name === 'dark' ? 1.9 : 2.2;

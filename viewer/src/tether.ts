@@ -10,6 +10,7 @@ import type { Worlds } from './worlds';
 
 const SMALL = 0.4; // of the room, sides of what the camera stays with
 const AROUND = 0.75; // of the largest side, of what is shown on each side of it
+const RADII = 3; // of a followed body, likewise
 
 export class Tether {
   private near = false;
@@ -35,6 +36,18 @@ export class Tether {
       low: [cell.x + layout.low[0] + x, cell.y + layout.low[1] + y, layout.low[2] + z],
       high: [cell.x + layout.high[0] + x, cell.y + layout.high[1] + y, layout.high[2] + z],
     };
+  }
+
+  // The box to show of a body that is followed.
+  around(worlds: Worlds, cellIndex: number, row: number): Box {
+    this.hold(worlds, cellIndex);
+    const { low, high } = worlds.layout;
+    const sides = worlds.planar ? [0, 1] : [0, 1, 2];
+    const room = Math.max(...sides.map((c) => high[c] - low[c]));
+    const { radius } = worlds.kindOf(worlds.layout.cells[cellIndex]).bodies.find((body) => body.row === row)!;
+    const half = Math.min(RADII * radius, room / 2);
+    const place = worlds.placeOf(cellIndex, row, new THREE.Vector3()).toArray();
+    return { low: place.map((x) => x - half), high: place.map((x) => x + half) };
   }
 
   // A world that was chosen without being shown: the camera stays, and goes along with what leaves the room.

@@ -3,12 +3,15 @@ import type { FrameSource } from './data';
 import { element } from './elements';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
+const SHORT = 10; // s; what is no longer plays again from its start
+const HOLD_MS = 600; // how long its last frame stays before
 
 export interface Clock {
   readonly end: number; // s
   time: number;
   readonly playing: boolean;
   readonly speed: number;
+  looping: boolean;
   play(on: boolean): void;
   seek(time: number): void;
   step(frames: number): void;
@@ -24,9 +27,13 @@ export class Timeline implements Clock {
   playing = false;
   private speedNow = 1;
   private lastTick = 0;
+  private loops = false;
+  private reachedEnd = 0; // ms, when
 
   constructor(private readonly sources: FrameSource[], private readonly changed: () => void) {
     this.end = Math.max(...sources.map((source) => source.time(source.frames - 1)));
+    this.looping = this.end <= SHORT * (1 + 1e-9);
+    element('loop').onclick = () => { this.looping = !this.looping; };
     element('play').onclick = () => this.play(!this.playing);
     element('back').onclick = () => this.step(-1);
     element('on').onclick = () => this.step(1);
@@ -47,7 +54,16 @@ export class Timeline implements Clock {
     return this.speedNow;
   }
 
+  get looping(): boolean {
+    return this.loops;
+  }
+  set looping(on: boolean) {
+    this.loops = on;
+    element('loop').setAttribute('aria-pressed', String(on));
+  }
+
   play(on: boolean): void {
+    if (this.end === 0) return;
     if (on && this.time >= this.end) this.seek(0);
     this.playing = on;
     const button = element('play');
@@ -85,8 +101,13 @@ export class Timeline implements Clock {
   // now: ms, of the frame that is about to be drawn.
   advance(now: number): void {
     if (this.playing) {
-      this.seek(this.time + ((now - this.lastTick) / 1000) * this.speedNow);
-      if (this.time >= this.end) this.play(false);
+      if (this.time < this.end) {
+        this.seek(this.time + ((now - this.lastTick) / 1000) * this.speedNow);
+        this.reachedEnd = now;
+      } else if (this.looping && now - this.reachedEnd >= HOLD_MS) {
+        this.seek(0);
+      }
+      if (this.time >= this.end && !this.looping) this.play(false);
     }
     this.lastTick = now;
   }

@@ -6,18 +6,22 @@ import { Coloring, put, type Theme } from './coloring';
 import type { Rgb } from './colors';
 import { LOST, type FrameSource, type Kind, type Poses, type Run } from './data';
 import { Drawables, type KindView, type Options } from './drawables';
+import { Joints } from './joints';
 import { makeLayout, sidesOf, type Cell, type Layout } from './layout';
 
 const NEAR_PIXELS = 26; // a body of so many pixels across is drawn finely
+const FADED = 0.7; // how far the neighbours of the chosen world fade into the background
 
 export class Worlds {
   readonly planar: boolean;
   readonly layout: Layout;
   readonly coloring: Coloring;
-  selected = -1; // cell
+  selected = -1; // cell, which is tinted
+  focus = -1; // cell whose neighbours are faded
   drawn = 0; // shapes of moving bodies that were written last
   readonly seen: number[] = []; // cells that the camera saw then
   private readonly drawables: Drawables;
+  private readonly joints: Joints | null;
   private readonly frustum = new THREE.Frustum();
   private readonly sphere = new THREE.Sphere();
   private shown: { frame: number; part: number } = { frame: -1, part: 0 };
@@ -29,6 +33,9 @@ export class Worlds {
     this.layout = makeLayout(runs, ghosts && runs.length > 1, aspect);
     this.drawables = new Drawables(runs, ghosts, this.planar, options, sidesOf(this.layout));
     this.coloring = new Coloring(sources, this.planar, this.layout);
+    this.joints = options.joints
+      ? new Joints(runs, this.coloring, this.planar, this.layout, { ...this.drawables.look, wireframe: false }, (batch) => this.drawables.add(batch))
+      : null;
   }
 
   get group(): THREE.Group {
@@ -39,6 +46,12 @@ export class Worlds {
   }
   get objects(): number { // draw calls without shadows
     return this.drawables.objects;
+  }
+  get jointsDrawn(): number {
+    return this.joints?.drawn ?? 0;
+  }
+  get jointPieces() {
+    return this.joints?.pieces ?? {};
   }
   get instances(): number {
     const of = (view: KindView) => view.drawables.filter((d) => d.row >= 0).length;
@@ -111,6 +124,7 @@ export class Worlds {
   write(camera: THREE.Camera, pixels: number): void {
     for (const batch of this.drawables.batches) batch.count = 0;
     this.drawn = 0;
+    if (this.joints !== null) this.joints.drawn = 0;
     this.seen.length = 0;
     this.coloring.findNumberEnds(this.shown.frame);
     this.frustum.setFromProjectionMatrix(new THREE.Matrix4().multiplyMatrices(
@@ -148,10 +162,12 @@ export class Worlds {
     const kind = this.kindOf(cell);
     const { position, rotation, there } = view.poses;
     const lost = this.isLost(cell);
+    const fade = this.fadeOf(cell);
     const tint = lost ? this.coloring.tints.lost : n === this.selected ? this.coloring.tints.selected : null;
-    if (view.ground !== null) putStill(view.ground, cell, tint ?? (this.planar ? this.coloring.tints.fixed : this.coloring.tints.ground), 0);
-    if (view.tile !== null) putStill(view.tile, cell, tint ?? this.coloring.tints.tile, this.planar ? -50 : 0);
-    if (view.wall !== null) putStill(view.wall, cell, tint ?? this.coloring.tints.wall, 0);
+    if (view.ground !== null) putStill(view.ground, cell, tint ?? (this.planar ? this.coloring.tints.fixed : this.coloring.tints.ground), 0, fade);
+    if (view.tile !== null) putStill(view.tile, cell, tint ?? this.coloring.tints.tile, this.planar ? -50 : 0, fade);
+    if (view.wall !== null) putStill(view.wall, cell, tint ?? this.coloring.tints.wall, 0, fade);
+    if (!cell.ghost) this.joints?.write(cell, view.poses, fade);
     const first = cell.world * kind.rows;
     for (let i = 0; i < view.drawables.length; ++i) {
       const d = view.drawables[i];
@@ -200,7 +216,15 @@ export class Worlds {
       }
       out[o + 6] = qx; out[o + 7] = qy; out[o + 8] = qz; out[o + 9] = qw;
       this.coloring.into(cell, view.poses, d, item, out, o + 13);
+      out[o + 16] = fade;
     }
+  }
+
+  // The same world of another recording is compared with the chosen one, so it does not fade.
+  fadeOf(cell: Cell): number {
+    if (this.focus < 0) return 0;
+    const chosen = this.layout.cells[this.focus];
+    return cell.kind === chosen.kind && cell.world === chosen.world ? 0 : FADED;
   }
 
   // Where a body is drawn.
@@ -256,7 +280,7 @@ export class Worlds {
 
 }
 
-function putStill(batch: Batch, cell: Cell, color: Rgb, z: number): void {
+function putStill(batch: Batch, cell: Cell, color: Rgb, z: number, fade: number): void {
   const o = STRIDE * batch.count++;
   const out = batch.data;
   out.fill(0, o, o + STRIDE);
@@ -265,6 +289,7 @@ function putStill(batch: Batch, cell: Cell, color: Rgb, z: number): void {
   out[o + 2] = z;
   out[o + 3] = out[o + 4] = out[o + 5] = out[o + 9] = 1;
   put(color, out, o + 13);
+  out[o + 16] = fade;
 }
 
 // What contacts press with on each body.

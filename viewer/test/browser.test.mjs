@@ -182,7 +182,7 @@ describe('use', () => {
     const end = await view.body(2, report.chosen.row);
     assert.ok(Math.hypot(...end.position.map((x, c) => x - begin.position[c])) > 0.1, 'it moved');
     near([end.pixel.x, end.pixel.y], [begin.pixel.x, begin.pixel.y], 1.5, 'pixels');
-    await view.page.evaluate(() => { for (const id of ['trails', 'joints', 'centers']) document.getElementById(id).click(); });
+    await view.page.evaluate(() => { for (const id of ['trails', 'anchors', 'centers']) document.getElementById(id).click(); });
     await view.calm();
     await view.key('Escape');
     report = await view.report();

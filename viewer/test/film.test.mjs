@@ -12,7 +12,7 @@ const encoder = join(dirname(fileURLToPath(import.meta.url)), '..', '..', 'tests
 const scene = ['ball2d', '--worlds', '4', '--seconds', '0.6'];
 const size = { width: 320, height: 200 };
 // 6 frames from 0.1 to 0.6 s, each of which the recording has.
-const film = ['--fps', '5', '--speed', '0.5', '--at', '0.1', '--size', '320x200'];
+const film = ['--fps', '5', '--speed', '0.5', '--begin', '0.1', '--size', '320x200'];
 const times = Array.from({ length: 6 }, (_, k) => 0.1 + 0.1 * k);
 let browser;
 
@@ -66,7 +66,7 @@ after(async () => {
 
 test('the program takes pictures', async () => {
   const file = join(folder, 'picture.png');
-  run(['--png', file, '--at', '0.2', '--size', '320x200']);
+  run(['--png', file, '--time', '0.2', '--size', '320x200']);
   const bytes = readFileSync(file);
   assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
   assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [320, 200]);
@@ -121,4 +121,26 @@ test('a browser plays what ffmpeg makes of it', async (t) => {
   assert.ok(!existsSync(join(folder, `frame${times.length + 1}.png`)));
   await checkFrames(frames, 25);
   return undefined;
+});
+
+test('a film follows a body of a world', async () => {
+  run(['--fps', '10', '--out', 'page.html']);
+  const page = await browser.newPage({ viewport: size });
+  await page.goto(`file://${join(folder, 'page.html')}#film&world=2&follow=1`);
+  const found = await page.evaluate(async () => {
+    const app = await window.manyworldsReady;
+    await app.film();
+    const out = [];
+    for (const time of [0, 0.3, 0.6]) {
+      await window.manyworldsFilm.frame(time, 'image/jpeg', true);
+      const { position, pixel } = window.manyworlds.bodyAt(2, 0);
+      out.push({ height: position[1], x: pixel.x, y: pixel.y });
+    }
+    return out;
+  });
+  await page.close();
+  assert.ok(found[0].height - found[2].height > 1, 'it falls');
+  for (const { x, y } of found) assert.ok(Math.hypot(x - found[0].x, y - found[0].y) < 1, JSON.stringify(found));
+  // In the middle of what the title leaves free.
+  assert.ok(Math.abs(found[0].x - size.width / 2) < 3 && Math.abs(found[0].y - size.height / 2) < size.height / 4, JSON.stringify(found));
 });

@@ -247,7 +247,8 @@ void picture(const std::filesystem::path& page, const std::filesystem::path& fil
 std::tuple<std::int64_t, double, std::size_t> film(const std::filesystem::path& page,
                                                    const std::filesystem::path& file, int width,
                                                    int height, const std::string& view, double fps,
-                                                   double speed, double begin, double end) {
+                                                   double speed, double begin, double end,
+                                                   const std::string& encoder) {
   const FilmReport report = Interrupts::during([&](const GoOn& go_on) {
     return write_film(page, file,
                       {.frame = frame_of(width, height, view),
@@ -255,6 +256,7 @@ std::tuple<std::int64_t, double, std::size_t> film(const std::filesystem::path& 
                        .speed = speed,
                        .begin = begin,
                        .end = end,
+                       .encoder = encoder,
                        .go_on = go_on});
   });
   return {report.frames, report.seconds, report.bytes};
@@ -266,7 +268,7 @@ void bind_films(nb::module_& m) {
         "A picture of a page.");
   m.def("film", &film, nb::arg("page"), nb::arg("file"), nb::arg("width"), nb::arg("height"),
         nb::arg("view"), nb::arg("fps"), nb::arg("speed"), nb::arg("begin"), nb::arg("end"),
-        nb::call_guard<nb::gil_scoped_release>(),
+        nb::arg("encoder"), nb::call_guard<nb::gil_scoped_release>(),
         "A film of a page: frames, seconds and bytes of it.");
 }
 

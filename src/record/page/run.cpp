@@ -13,6 +13,7 @@
 #include "src/page/look.hpp"
 #include "src/page/room.hpp"
 #include "src/page/sizes.hpp"
+#include "src/record/page/presence.hpp"
 #include "src/record/recording.hpp"
 #include "src/record/run_again.hpp"
 
@@ -82,7 +83,14 @@ class RunWriter {
       out.worlds += static_cast<int>(kind.worlds);
       out.bodies += static_cast<std::int64_t>(kind.worlds) * kind.plan->bodies();
     }
-    if (!find_enabled(start)) return false;
+    std::vector<Presence::Kind> present;
+    for (const KindPart& kind : kinds_) {
+      present.push_back({kind.plan, all_.first_world[kind.index], kind.worlds});
+    }
+    presence_ = Presence(std::move(present));
+    if (!presence_.find(recording_, start, options_.every, samples_.size(), options_.go_on)) {
+      return false;
+    }
     out.frames = static_cast<std::int64_t>(samples_.size());
     Json chunks = Json::array();
     for (std::size_t first = 0; first < samples_.size(); first += kChunkFrames) {
@@ -113,7 +121,8 @@ class RunWriter {
                 {"angle_steps", kAngleSteps},
                 {"slowest", kSlowest},
                 {"speed_steps", kSpeedSteps},
-                {"enabled", !enabled_.empty()},
+                {"enabled", presence_.any_body_gone()},
+                {"joints_enabled", presence_.any_joint_gone()},
                 {"contacts", recording_.has_contacts()},
                 {"normal_steps", kNormalSteps},
                 {"force_steps", kForceSteps},
@@ -183,45 +192,11 @@ class RunWriter {
     return out;
   }
 
-  // Which bodies are there is in no field: where some come and go, it is simulated again.
-  bool find_enabled(Batch& batch) {
-    bool any = std::any_of(all_.inputs.begin(), all_.inputs.end(), [](const InputRow& row) {
-      return row.input == Input::enable || row.input == Input::disable ||
-             row.input == Input::spawn || brings_state(row.input);
-    });
-    for_each_body(batch, [&](int, BodyId, bool there) { any = any || !there; });
-    if (!any) return true;
-    run_again(recording_, batch, options_.go_on, [&](std::int64_t sample) {
-      if (sample % options_.every != 0) return;
-      for_each_body(batch, [&](int, BodyId, bool there) { enabled_.push_back(there); });
-    });
-    std::size_t each = 0;
-    for_each_body(batch, [&](int, BodyId, bool) { ++each; });
-    if (enabled_.size() != each * samples_.size()) return false;
-    if (std::all_of(enabled_.begin(), enabled_.end(), [](bool there) { return there; })) {
-      enabled_.clear();
-    }
-    return true;
-  }
-  void for_each_body(const Batch& batch, auto&& visit) const {
-    for (const KindPart& kind : kinds_) {
-      for (std::size_t w = 0; w < kind.worlds; ++w) {
-        const int world = all_.first_world[kind.index] + static_cast<int>(w);
-        for (int row = 0; row < kind.plan->bodies(); ++row) {
-          const BodyId body = kind.plan->body_in_row(row);
-          visit(world, body, batch.enabled(world, body));
-        }
-      }
-    }
-  }
-
-  // Of each kind: poses, then status of its worlds, then what is there, then contacts.
+  // Of each kind: poses, then status of its worlds, then which bodies and joints are there, then
+  // contacts.
   void write_chunk(std::size_t first, std::size_t count, ChunkWriter& chunk) {
-    std::size_t before = 0, each = 0;
-    for (const KindPart& kind : kinds_) {
-      each += kind.worlds * static_cast<std::size_t>(kind.plan->bodies());
-    }
-    for (KindPart& kind : kinds_) {
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+      KindPart& kind = kinds_[k];
       std::vector<std::int32_t> status(kind.worlds * count);
       {
         const UsingHdf5 hdf5;
@@ -239,18 +214,9 @@ class RunWriter {
       }
       kind.poses->write(chunk);
       chunk.add(status);
-      const std::size_t items = kind.worlds * static_cast<std::size_t>(kind.plan->bodies());
-      if (!enabled_.empty()) {
-        std::vector<std::int32_t> there(items * count);
-        for (std::size_t i = 0; i < items; ++i) {
-          for (std::size_t f = 0; f < count; ++f) {
-            there[i * count + f] = enabled_[(first + f) * each + before + i];
-          }
-        }
-        chunk.add(there);
-      }
+      presence_.write_bodies(k, first, count, chunk);
+      presence_.write_joints(k, first, count, chunk);
       if (kind.contacts) write_contacts(kind, first, count, chunk);
-      before += items;
     }
   }
 
@@ -300,7 +266,7 @@ class RunWriter {
   const PageOptions& options_;
   std::vector<std::int64_t> samples_;
   std::vector<KindPart> kinds_;
-  std::vector<bool> enabled_;  // [frame][kind][world][row]; empty: all bodies are there
+  Presence presence_{{}};
 };
 
 }  // namespace
