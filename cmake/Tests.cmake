@@ -129,8 +129,8 @@ add_test(NAME check_floors
           "${PROJECT_SOURCE_DIR}")
 
 # tools/run and tools/test build what they need, .ci/run sums up its stages, README and docs/cli.md
-# describe the program that is there, and the tables of docs are written as they should be.
-foreach(name IN ITEMS run ci docs tables)
+# describe the program that is there, and the site and the tables of docs are written as they should be.
+foreach(name IN ITEMS run ci docs site tables)
   add_test(NAME tools_${name}
     COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/${name}_test.py")
 endforeach()
