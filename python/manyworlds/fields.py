@@ -80,7 +80,8 @@ class Fields:
 
         State and observed fields have the batch's precision (float32 or float64), numbers of the
         scene float64. Position is that of the body's origin, velocity that of its centre of mass;
-        units are in ``fields[name].unit``. ``ids``: indices or a bool array (worlds,). ``out``: filled
+        units are in ``fields[name].unit``. ``ids``: a mask of bools (worlds,), or ids without repeats,
+        in the order of the result. ``out``: filled
         in place and returned; it must have this shape and dtype, be C-contiguous, writable, and on the
         CPU. What is no NumPy array is filled, too, if it has DLPack (a torch.Tensor) or is a buffer (a
         bytearray, array.array, memoryview) of just the size; an array over its memory is returned.
@@ -89,7 +90,7 @@ class Fields:
         (TypeError for its dtype), IndexError for wrong ids.
         """
         field = self._field(name)
-        worlds = None if ids is None else arrays.indices(ids, self._worlds, "ids")
+        worlds = None if ids is None else arrays.worlds(ids, self._worlds)
         shape = self._shape(field, self._worlds if worlds is None else len(worlds))
         axes = self._axes(field) if worlds is None else ("ids", *self._axes(field)[1:])
         array = arrays.output(out, shape, axes, field.dtype)
@@ -124,7 +125,7 @@ class Fields:
         of any size, and again by the same call; another ``seed`` draws others. Raises as ``set`` does.
         """
         field = self._field(name)
-        worlds = arrays.indices(ids, self._worlds, "ids")
+        worlds = arrays.worlds(ids, self._worlds)
         chosen = arrays.indices(items, field.items, "items")
         first = self._held.seed if seed is None else arrays.integer(seed, "seed", 0, 2**64 - 1)
         shape = len(chosen), field.components
@@ -153,7 +154,7 @@ class Fields:
             dtype = np.float64 if field.group == "parameter" else None
             shape = self._shape(field, self._worlds)
             return name, arrays.broadcast(values, shape, self._axes(field), name, dtype), None
-        worlds = arrays.indices(ids, self._worlds, "ids")
+        worlds = arrays.worlds(ids, self._worlds)
         shape, axes = self._shape(field, len(worlds)), ("ids", *self._axes(field)[1:])
         numbers = arrays.broadcast(values, shape, axes, name, np.float64)
         return name, numbers, worlds

@@ -105,7 +105,7 @@ class Recorder(InMemory):
         if worlds is None:
             chosen = np.arange(min(count, MAX_WORLDS_BY_DEFAULT), dtype=np.int32)
         else:
-            chosen = arrays.indices(worlds, count, "worlds")
+            chosen = arrays.worlds(worlds, count, "worlds")
             if len(chosen) == 0:
                 raise ValueError("worlds are none; at least one must be recorded")
         self.file = files.path(file, "file")

@@ -95,6 +95,18 @@ def test_resets_begin_next_episodes_or_those_of_seeds():
     assert (env.reset([1], seeds=[4])[1] == first[1]).all()
 
 
+def test_worlds_of_an_environment_are_ids_or_masks():
+    env = make("LunarLander", 4, seed=3)
+    for call in (env.reset, env.begin, lambda ids: env.restore(env.save(), source=0, ids=ids)):
+        call([1, 3]), call(np.array([False, True, False, True])), call(2)
+        with pytest.raises(ValueError, match="name world 0 more than once.*a mask is an array of bools"):
+            call(np.array([0, 0, 1, 1]))
+        with pytest.raises(TypeError, match="float64"):
+            call(np.zeros(4))
+        with pytest.raises(TypeError, match="mix bools and integers"):
+            call([True, 2])
+
+
 def test_next_step_and_same_step_do_what_resets_by_hand_do():
     task, steps = hurried("LunarLander"), 40
     by_hand = make(task, autoreset="disabled")
