@@ -220,6 +220,9 @@ class Batch:
     @property
     def seed(self) -> int: ...
 
+    def seeds(self, out: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu')]) -> None:
+        """Fills the seeds that worlds draw from, (worlds)."""
+
     @property
     def lanes(self) -> int: ...
 

@@ -139,6 +139,21 @@ def seeds(values: Optional[Seeds], ids: Optional[Ids], count: int) -> Optional[N
     return full
 
 
+def one_seed(
+    seed: Optional[int], seeds: Optional[Seeds], redraw: Optional[bool]
+) -> Optional[Seeds]:
+    """What a reset draws from: ``seed``, a number, or ``seeds``; None: neither. TypeError, ValueError."""
+    if redraw is not None and not isinstance(redraw, (bool, np.bool_)):
+        raise TypeError(f"redraw is of type {type(redraw).__name__}; expected a bool")
+    if seed is not None:
+        if seeds is not None:
+            raise ValueError("seed and seeds are both given; expected one of them")
+        seeds = integer(seed, "seed", 0, 2**64 - 1)
+    if seeds is not None and redraw is not None and not redraw:
+        raise ValueError("redraw is False and a seed is given; a seed draws anew, leave out one")
+    return seeds
+
+
 def reals(values: ArrayLike, name: str) -> NDArray[Any]:
     """An array of real numbers of any dtype, order and strides. TypeError."""
     try:

@@ -300,16 +300,27 @@ class Environment(WithLevels, InMemory):
         mask_or_ids: Optional[Ids] = None,
         seeds: Optional[Seeds] = None,
         observations: Optional[Writable] = None,
+        *,
+        seed: Optional[int] = None,
+        redraw: Optional[bool] = None,
     ) -> Observations:
-        """Begins the next episodes of all worlds or of some; with ``seeds`` their first ones.
+        """Starts the next episodes of all worlds or of some.
 
-        ``mask_or_ids``: a bool array (worlds,), or indices. ``seeds``: a number s, with which world
-        i gets the seed s + i, or one for every world that is reset, in the order of ids. Returns
-        observations; those of the other worlds stay.
+        ``reset()`` draws anew, as Gymnasium's does: the draws that follow those of the episode before.
+        ``reset(seed=s)`` draws from the seed s + i in world i; ``reset(redraw=False)`` repeats the first
+        episode of the seeds that the worlds have. With a seed, and with ``redraw=False``, levels start
+        again, too. ``mask_or_ids``: an array of bools (worlds,) is a mask, integers are ids of worlds
+        without repeats; None: all. ``seeds``: as ``seed``, or one for every world that is reset, in the
+        order of ids. Returns observations; those of the other worlds stay. Raises ValueError for seed
+        and seeds, and for ``redraw=False`` with one of them; IndexError and TypeError for wrong ids.
         """
+        seeds = arrays.one_seed(seed, seeds, redraw)
         mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
         own = arrays.seeds(seeds, mask_or_ids, self._worlds)
+        if redraw is not None and not redraw:  # as from those that they have
+            own = np.empty(self._worlds, np.uint64)
+            self._held.batch().seeds(own)
         self._held.reset(mask, own, observations, self.infos if self.task.infos else None)
         self._began(mask, observations)
         return observations

@@ -95,6 +95,27 @@ def test_resets_begin_next_episodes_or_those_of_seeds():
     assert (env.reset([1], seeds=[4])[1] == first[1]).all()
 
 
+def test_resets_repeat_or_draw_anew_as_they_are_told():
+    env = make("LunarLander", 6, seed=3)
+    first = env.observations.copy()
+    second = env.reset().copy()
+    assert (env.reset(redraw=False) == first).all()
+    assert (env.reset(redraw=False) == first).all()
+    assert (env.reset(redraw=True) == second).all()
+    mixed = env.reset([0, 5], redraw=False)
+    assert (mixed[[0, 5]] == first[[0, 5]]).all() and (mixed[1:5] == second[1:5]).all()
+    assert (env.reset(seed=4)[:-1] == first[1:]).all()
+    assert (env.reset(redraw=False)[:-1] == first[1:]).all()
+    assert (env.reset(seed=3) == first).all()
+    for wrong, error, match in (
+        (dict(seed=1, seeds=2), ValueError, "both given"),
+        (dict(seeds=1, redraw=False), ValueError, "redraw is False and a seed is given"),
+        (dict(redraw="no"), TypeError, "redraw is of type str"),
+    ):
+        with pytest.raises(error, match=match):
+            env.reset(**wrong)
+
+
 def test_worlds_of_an_environment_are_ids_or_masks():
     env = make("LunarLander", 4, seed=3)
     for call in (env.reset, env.begin, lambda ids: env.restore(env.save(), source=0, ids=ids)):
