@@ -154,6 +154,34 @@ def one_seed(
     return seeds
 
 
+def actions(values: ArrayLike, shape: Shape, choices: Optional[int]) -> NDArray[Any]:
+    """Actions of a task: integers as int64 where there are ``choices``, else numbers as float32.
+
+    TypeError, ValueError; integers of any size are reported as given.
+    """
+    array = np.asarray(values)
+    if array.shape != shape:
+        expected = shape_text(shape, ("worlds", "numbers"))
+        raise ValueError(f"actions have shape {array.shape}; expected {expected}")
+    if choices is None:
+        if array.dtype.kind not in "fiu":
+            raise TypeError(f"actions are of dtype {array.dtype}; expected numbers")
+        return np.ascontiguousarray(array, dtype=np.float32)
+    if array.dtype.kind == "O" and all(isinstance(a, int) for a in array):  # of any size
+        wrong = np.flatnonzero([not 0 <= a < choices for a in array])
+    elif array.dtype.kind == "u":
+        wrong = np.flatnonzero(array >= choices)
+    elif array.dtype.kind == "i":
+        wrong = np.empty(0)  # the library reports them
+    else:
+        wanted = "integers: the task's actions are choices"
+        raise TypeError(f"actions are of dtype {array.dtype}; expected {wanted}")
+    if wrong.size:
+        found = array[wrong[0]]
+        raise ValueError(f"the action of world {wrong[0]} is {found}, must be 0 to {choices - 1}")
+    return np.ascontiguousarray(array, dtype=np.int64)
+
+
 def reals(values: ArrayLike, name: str) -> NDArray[Any]:
     """An array of real numbers of any dtype, order and strides. TypeError."""
     try:

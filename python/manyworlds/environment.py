@@ -282,16 +282,8 @@ class Environment(WithLevels, InMemory):
         return arrays.output(given, own.shape, axes, own.dtype, name)
 
     def _actions(self, actions: ArrayLike) -> NDArray[Any]:
-        array = np.asarray(actions)
-        if array.shape != self._action_shape:
-            expected = arrays.shape_text(self._action_shape, ("worlds", "numbers"))
-            raise ValueError(f"actions have shape {array.shape}; expected {expected}")
-        if array.dtype != self._action_type:
-            kinds = "iu" if self.discrete else "fiu"
-            if array.dtype.kind not in kinds:
-                wanted = "integers: the task's actions are choices" if self.discrete else "numbers"
-                raise TypeError(f"actions are of dtype {array.dtype}; expected {wanted}")
-        return np.ascontiguousarray(array, dtype=self._action_type)
+        choices = self.task.choices if self.discrete else None
+        return arrays.actions(actions, self._action_shape, choices)
 
     # -- beginnings
 

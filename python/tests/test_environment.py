@@ -95,7 +95,7 @@ def test_resets_begin_next_episodes_or_those_of_seeds():
     assert (env.reset([1], seeds=[4])[1] == first[1]).all()
 
 
-def test_resets_repeat_or_draw_anew_as_they_are_told():
+def test_resets_repeat_or_draw_anew():
     env = make("LunarLander", 6, seed=3)
     first = env.observations.copy()
     second = env.reset().copy()
@@ -126,6 +126,32 @@ def test_worlds_of_an_environment_are_ids_or_masks():
             call(np.zeros(4))
         with pytest.raises(TypeError, match="mix bools and integers"):
             call([True, 2])
+
+
+@pytest.mark.parametrize(
+    "dtype, value",
+    [
+        (np.uint64, 2**63),
+        (np.uint64, 2**64 - 1),
+        (np.uint32, 2**32 - 1),
+        (np.uint16, 2**16 - 1),
+        (np.uint8, 255),
+        (np.int64, -(2**63)),
+        (np.int32, -(2**31)),
+        (np.int8, -128),
+        (object, 2**70),
+        (object, -(2**70)),
+    ],
+)
+def test_actions_of_every_dtype_are_reported_as_given(dtype, value):
+    env = make("LunarLander", 3)
+    before = env.batch.hashes()
+    actions = np.array([3, value, 0], dtype)
+    with pytest.raises(ValueError, match=f"the action of world 1 is {value}, must be 0 to 3"):
+        env.step(actions)
+    assert (env.batch.hashes() == before).all()
+    if dtype is not object:
+        env.step(actions[[0, 2, 0]])
 
 
 def test_next_step_and_same_step_do_what_resets_by_hand_do():
