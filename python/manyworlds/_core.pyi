@@ -360,6 +360,9 @@ class Batch:
     def rollout(self, steps: int, every: int, controls: Annotated[NDArray, dict(order='C', device='cpu', writable=False)] | None, names: Sequence[str], arrays: Sequence[Annotated[NDArray, dict(order='C', device='cpu')]]) -> None:
         """Takes steps and fills arrays (frames, worlds, items, components)."""
 
+def item_of(what: str) -> str:
+    """What has an observed number: "world", "body", "joint", ..."""
+
 class Expression:
     """A number of every world, worked out after each step of a task."""
 

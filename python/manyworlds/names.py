@@ -104,7 +104,7 @@ ContactLayout = Literal["automatic", "dense", "rows"]
 Observer = Literal[
     "contacts", "touching", "penetration", "motion", "joints", "joint_loads", "residual", "rays",
     "acceleration", "points", "links", "link_inertias", "link_velocities", "link_forces", "dof_forces",
-    "tendons", "sites"
+    "tendons", "sites", "drives"
 ]
 Feature = Literal[
     "orientation", "inertia", "friction", "restitution", "contacts", "drag", "gravity", "joints"

@@ -93,7 +93,7 @@ def test_coordinates_are_fields(precision):
     assert (batch.get("generalized_velocity")[:, 2] > 0).all()
     with pytest.raises(ValueError, match="moved by generalized_position"):
         batch.set("position", 0)
-    with pytest.raises(ValueError, match="worlds of the newton solver do not observe"):
+    with pytest.raises(ValueError, match="is residual: the scene .arm. does not have it"):
         mw.Batch(arm(), observe=["residual"])
 
 
