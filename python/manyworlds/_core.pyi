@@ -14,7 +14,7 @@ from manyworlds.tasks import Task
 
 
 def names() -> dict:
-    """Names of the values of every enumeration, by its name."""
+    """Names of the values of every enumeration, by its name, and of fields."""
 
 def unknown_name(found: str, known: Sequence[str]) -> str:
     """

@@ -15,7 +15,7 @@ from .ids import Chooser, KeyframeRef
 from .in_memory import InMemory
 from .inputs import Inputs
 from .kinds import MAX_WORLDS, AnyScene, Kind, plans_of
-from .names import ContactLayout, Ids, Isa, Observer, Precision, Seeds
+from .names import ContactLayout, FieldName, Ids, Isa, Observer, Precision, Seeds
 from .results import Results
 from .rollout import MAX_STEPS, Initial, Trajectories, rollout
 from .scene import Point, Ray
@@ -340,7 +340,7 @@ class Batch(Fields, Inputs, Results, InMemory):
         initial: Initial = None,
         controls: Optional[ArrayLike] = None,
         steps: Optional[int] = None,
-        fields: Sequence[str] = ("position",),
+        fields: Sequence[FieldName] = ("position",),
         every: int = 1,
         out: Optional[Mapping[str, Writable]] = None,
     ) -> Trajectories:

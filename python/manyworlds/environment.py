@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, Optional, Union
+from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -14,12 +14,11 @@ from .arrays import Writable
 from .batch import MAX_THREADS, MAX_WORLDS, Batch
 from .in_memory import InMemory
 from .levels import WithLevels
-from .names import Ids, Isa, Precision, Seeds
+from .names import Autoreset, Ids, Isa, Precision, Seeds
 from .own_batch import _OwnBatch
 from .plan import Plan
 from .tasks import Task, TaskError
 
-AutoresetName = Literal["next_step", "same_step", "disabled"]
 Doubles = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Observations = NDArray[Any]  # float32, or the float64 that was asked for
@@ -72,7 +71,7 @@ class Environment(WithLevels, InMemory):
         seed: int = 0,
         precision: Precision = "f32",
         isa: Optional[Isa] = None,
-        autoreset: AutoresetName = "next_step",
+        autoreset: Autoreset = "next_step",
         *,
         reward_terms: bool = False,
         final_observations: Optional[bool] = None,

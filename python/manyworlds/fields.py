@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core, arrays, draws
 from .arrays import Writable
-from .names import Ids
+from .names import FieldName, Ids, SettableField
+from .names import Field as StateField
 from .state_view import View
 
 
@@ -20,7 +21,7 @@ from .state_view import View
 class Field:
     """What is known of a field: its array is (worlds, items, components)."""
 
-    name: str
+    name: FieldName
     group: str  # "state", "parameter" (a number of the scene) or "observed"
     observer: str  # that an observed one needs; else ""
     # What has one: "body", "shape", "joint", "control", "attractor", "world", "coordinate", "dof", "ray".
@@ -39,7 +40,7 @@ class Fields:
     _worlds: int
     _real: np.dtype[Any]
     _watched: frozenset[str]
-    _fields: Mapping[str, Field]
+    _fields: Mapping[FieldName, Field]
 
     def _find_fields(self) -> None:
         double = np.dtype(np.float64)
@@ -50,11 +51,11 @@ class Fields:
         self._fields = MappingProxyType(found)
 
     @property
-    def fields(self) -> Mapping[str, Field]:
+    def fields(self) -> Mapping[FieldName, Field]:
         """All fields by name: state, numbers of the scene, and what can be observed."""
         return self._fields
 
-    def _field(self, name: str) -> Field:
+    def _field(self, name: FieldName) -> Field:
         if not isinstance(name, str):
             raise TypeError(f"the field is of type {type(name).__name__}; expected a str")
         if name not in self._fields:
@@ -74,7 +75,7 @@ class Fields:
         return "worlds", {"body": "bodies"}.get(field.item, field.item + "s"), "components"
 
     def get(
-        self, name: str, out: Optional[Writable] = None, ids: Optional[Ids] = None
+        self, name: FieldName, out: Optional[Writable] = None, ids: Optional[Ids] = None
     ) -> NDArray[Any]:
         """A field of all worlds, (worlds, items, components), or of those of ``ids``, in this order.
 
@@ -97,7 +98,7 @@ class Fields:
         self._held.read(name, array, worlds)
         return array
 
-    def set(self, name: str, values: ArrayLike, ids: Optional[Ids] = None) -> None:
+    def set(self, name: SettableField, values: ArrayLike, ids: Optional[Ids] = None) -> None:
         """Sets a state field or a number of the scene, in all worlds or in those of ``ids``.
 
         ``values``: (worlds, items, components), or (len(ids), items, components), or what broadcasts to
@@ -110,7 +111,7 @@ class Fields:
 
     def randomize(
         self,
-        name: str,
+        name: SettableField,
         low: ArrayLike,
         high: ArrayLike,
         ids: Optional[Ids] = None,
@@ -144,8 +145,8 @@ class Fields:
         self.set(name, values, worlds)
 
     def _to_write(
-        self, name: str, values: ArrayLike, ids: Optional[Ids] = None
-    ) -> tuple[str, NDArray[Any], Optional[NDArray[np.int32]]]:
+        self, name: FieldName, values: ArrayLike, ids: Optional[Ids] = None
+    ) -> tuple[FieldName, NDArray[Any], Optional[NDArray[np.int32]]]:
         """What is written where, checked but for the ranges of numbers."""
         field = self._field(name)
         if field.group == "observed":
@@ -159,7 +160,7 @@ class Fields:
         numbers = arrays.broadcast(values, shape, axes, name, np.float64)
         return name, numbers, worlds
 
-    def view(self, name: str) -> View:
+    def view(self, name: StateField) -> View:
         """A state field in place, as the step keeps it: see View. Raises ValueError."""
         field = self._field(name)
         if field.group != "state":

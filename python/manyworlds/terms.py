@@ -22,7 +22,7 @@ from .ids import (
     TendonRef,
     index_of,
 )
-from .names import Every, Parameter
+from .names import Every, Observed, Parameter
 from .scene import Scene
 
 Value = Union[Expression, float]  # numbers are expressions
@@ -121,7 +121,7 @@ class Terms:
         """m, of Task.rays."""
         return _x.observed("ray_distance", ray, 0)
 
-    def observed(self, what: str, item: Any = 0, component: Axis = 0) -> Expression:
+    def observed(self, what: Observed, item: Any = 0, component: Axis = 0) -> Expression:
         """A component of an observed field, by its name (``Batch.fields``): whatever has no term.
 
         ``item``: a body, joint, tendon or site by handle, index or name, the index of a ray, point
