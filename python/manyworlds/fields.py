@@ -10,10 +10,11 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core, arrays, draws
+from . import _core, arrays, draws, rotations
 from .arrays import Writable
 from .names import FieldName, Ids, SettableField
 from .names import Field as StateField
+from .plan import Plan
 from .state_view import View
 
 
@@ -41,6 +42,8 @@ class Fields:
     _real: np.dtype[Any]
     _watched: frozenset[str]
     _fields: Mapping[FieldName, Field]
+    _quaternion_starts: Optional[list[int]] = None
+    plan: Plan
 
     def _find_fields(self) -> None:
         double = np.dtype(np.float64)
@@ -103,9 +106,14 @@ class Fields:
 
         ``values``: (worlds, items, components), or (len(ids), items, components), or what broadcasts to
         it as NumPy does: a number, a row (components,), rows (items, components); any dtype, order and
-        strides. ``ids``: indices or a bool array (worlds,). Positions and orientations forget the impulses stored in those worlds, and all
-        wake. Numbers of the scene must vary (Scene.variations) and lie in their range, or nothing
-        changes and ValueError is raised, as for a wrong shape. IndexError for wrong ids.
+        strides. ``ids``: a mask of bools (worlds,), or ids without repeats. Setting positions or
+        orientations clears the stored impulses of those worlds, and all their bodies wake. A state that
+        is not finite freezes its world at the next step (``status``).
+
+        Raises ValueError, and changes nothing, for a wrong shape; for orientations that are not finite
+        or not of length 1 (to 0.001), and quaternions of ``generalized_position`` that are not finite
+        or of length 0; for numbers of the scene that do not vary (Scene.variations) or are out of their
+        range. IndexError for wrong ids.
         """
         self._held.write(*self._to_write(name, values, ids))
 
@@ -154,11 +162,22 @@ class Fields:
         if ids is None:
             dtype = np.float64 if field.group == "parameter" else None
             shape = self._shape(field, self._worlds)
-            return name, arrays.broadcast(values, shape, self._axes(field), name, dtype), None
+            numbers = arrays.broadcast(values, shape, self._axes(field), name, dtype)
+            rotations.check(name, numbers, None, self._rotations_in(name))
+            return name, numbers, None
         worlds = arrays.worlds(ids, self._worlds)
         shape, axes = self._shape(field, len(worlds)), ("ids", *self._axes(field)[1:])
         numbers = arrays.broadcast(values, shape, axes, name, np.float64)
+        rotations.check(name, numbers, worlds, self._rotations_in(name))
         return name, numbers, worlds
+
+    def _rotations_in(self, name: FieldName) -> list[int]:
+        """Where quaternions start in a field that is a list of coordinates."""
+        if name != "generalized_position" or not self._fields[name].items:
+            return []
+        if self._quaternion_starts is None:
+            self._quaternion_starts = rotations.among_coordinates(self.plan, self._fields[name].items)
+        return self._quaternion_starts
 
     def view(self, name: StateField) -> View:
         """A state field in place, as the step keeps it: see View. Raises ValueError."""

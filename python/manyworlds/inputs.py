@@ -174,8 +174,10 @@ class Inputs(Named):
         width = 2 if self._planar else 4
         own = arrays.broadcast(orientation, (count, width), axes, "orientation", np.float64)
         length = np.linalg.norm(own, axis=1)
-        if not np.all(np.isfinite(length) & (length > 0)):
-            raise ValueError("orientation has rows that are not finite, or of length 0")
+        wrong = ~(np.isfinite(length) & (length > 0))
+        if wrong.any():
+            found = own[np.flatnonzero(wrong)[0]].tolist()
+            raise ValueError(f"orientation is {found}; expected finite numbers, not of length 0")
         if not self._planar:
             return own
         half = np.arctan2(own[:, 1], own[:, 0]) / 2
