@@ -58,7 +58,7 @@ def make_task() -> mw.Task:
     t = task.terms
     task.controls = [tasks.where(t.action(), MAX_FORCE, -MAX_FORCE)]
     travel, speed = t.joint_position(0), t.joint_speed(0)  # of the rail
-    lean, turn = t.joint_position(1), t.joint_speed(1)  # of the hinge
+    lean, turn = -t.joint_position(1), -t.joint_speed(1)  # of the hinge; to the right, clockwise
     task.observe("travel", travel, -2 * MAX_TRAVEL, 2 * MAX_TRAVEL)
     task.observe("speed", speed)
     task.observe("lean", lean, -2 * MAX_LEAN, 2 * MAX_LEAN)
@@ -73,9 +73,9 @@ def main() -> NDArray[np.int64]:
     env = mw.Environment(make_task(), worlds, seed=7)
     lengths, done = np.zeros(worlds, np.int64), np.zeros(worlds, bool)
     while not done.all():
-        # Accelerate to where the pole falls (it leans to the left by positive angles).
+        # Accelerate to the side that the pole falls to.
         lean, turn = env.observations[:, 2], env.observations[:, 3]
-        actions = (lean + 0.3 * turn < 0).astype(np.int64)
+        actions = (lean + 0.3 * turn > 0).astype(np.int64)
         _, _, terminated, truncated = env.step(actions)
         lengths += ~done
         done |= terminated | truncated

@@ -15,7 +15,7 @@ import argparse
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,7 +65,7 @@ def main(argv: Sequence[str] | None = None) -> dict[str, tuple[float, float]]:
     random = np.random.default_rng(o.seed)
     controls = torques(steps, scene.options.dt, random)
     hidden = space.named(space.values([random.uniform(0.25, 0.75, len(space))])[0])  # half to twice
-    motion = "generalized_position"
+    motion: Literal["generalized_position"] = "generalized_position"
     seen = np.zeros((steps // EVERY, scene.compile().coordinates))
 
     def error(run: search.Run) -> Array:

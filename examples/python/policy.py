@@ -9,6 +9,8 @@ bench/python/transfer.py plays one file here and in Gymnasium's own environment.
 
 from __future__ import annotations
 
+import importlib
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,8 +24,33 @@ import manyworlds as mw
 Array = NDArray[Any]
 
 
+def task_of_module(name: str) -> mw.Task:
+    """What "module:function" returns. The module is looked for where Python does, and in the current
+    directory. Raises ValueError where there is none, or where it returns no Task."""
+    of, _, function = name.partition(":")
+    if (here := str(Path.cwd())) not in sys.path:
+        sys.path.append(here)
+    try:
+        module = importlib.import_module(of)
+    except ModuleNotFoundError as error:
+        if error.name is None or not (of + ".").startswith(error.name + "."):
+            raise  # a module that it imports
+        raise ValueError(f"the task '{name}': there is no module '{of}'") from None
+    make = getattr(module, function, None)
+    if not callable(make):
+        raise ValueError(f"the task '{name}': the module '{of}' has no function '{function}'")
+    task = make()
+    if not isinstance(task, mw.Task):
+        found = type(task).__name__
+        raise ValueError(f"the task '{name}': it returns a {found}; expected a manyworlds.Task")
+    return task
+
+
 def load_task(name: str) -> mw.Task:
-    """A task of ours ("LunarLander") or one of Gymnasium's MuJoCo tasks ("Hopper-v5")."""
+    """A task of ours ("LunarLander"), one of Gymnasium's MuJoCo tasks ("Hopper-v5"), or what a function
+    returns ("module:function")."""
+    if ":" in name:
+        return task_of_module(name)
     if not name.endswith("-v5"):
         return mw.tasks.load(name)
     from manyworlds.gym import mujoco

@@ -3,6 +3,7 @@
     pip install manyworlds[gym,mjcf] jax optax
     python ppo.py --task LunarLander --seed 1 --seconds 300 --json lander.json
     python ppo.py --task HalfCheetah-v5 --seed 1 --json cheetah.json --policy cheetah.npz
+    python ppo.py --task compose:make_task
 
 Where an episode has ended the next transition is a reset (autoreset "next_step"), and takes no part in
 the loss; the observation before it is where the episode ended, from which a truncated one is bootstrapped.
@@ -37,7 +38,13 @@ TUNED: dict[str, dict[str, float]] = {
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     p = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    p.add_argument("--task", default="LunarLander")
+    p.add_argument(
+        "--task",
+        default="LunarLander",
+        help="a task's name (LunarLander, Hopper-v5, ...), or module:function, a function without "
+        "arguments that returns a manyworlds.Task, of a module in the current directory or where "
+        "Python looks; its episodes need a time limit (Task.max_steps)",
+    )
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--envs", type=int, default=512)
     p.add_argument("--steps", type=int, default=128, help="of a world between two updates")
@@ -59,9 +66,16 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     p.add_argument("--threads", type=int, help="that step the worlds")
     p.add_argument("--json", help="write the learning curve here")
     p.add_argument("--policy", help="write the policy here, an .npz that policy.py loads")
-    task = p.parse_known_args(argv)[0].task
-    p.set_defaults(**TUNED.get(task, {}))
-    return p.parse_args(argv)
+    name = p.parse_known_args(argv)[0].task
+    p.set_defaults(**TUNED.get(name, {}))
+    o = p.parse_args(argv)
+    try:
+        task = load_task(o.task)
+    except ValueError as error:
+        p.error(str(error))
+    if task.max_steps == 0:
+        p.error(f"the task '{o.task}' has no time limit: its max_steps is 0, must be 1 or more")
+    return o
 
 
 class Clock:

@@ -71,7 +71,8 @@ class Batch {
   int threads() const;
   Isa isa() const;
   Precision precision() const;
-  std::uint64_t seed() const;  // BatchOptions::seed
+  std::uint64_t seed() const;              // BatchOptions::seed
+  std::uint64_t seed_of(int world) const;  // seed() + world, or what a reset gave it
   int lanes() const;
   std::string kernel_table() const;     // "avx2 f32 x8"
   std::size_t bytes_per_world() const;  // persistent state, mean over worlds
@@ -143,10 +144,11 @@ class Batch {
   // Reset: initial state with a new draw of the scene's jitter. mask has one byte per world,
   // nonzero = reset. An episode counter per world makes each draw new; reset() of all restarts
   // the counters, the clock and the step count, so it repeats the first draw exactly.
-  void reset();
-  void reset(std::span<const std::uint8_t> mask);
+  void reset();                                    // repeats
+  void reset(std::span<const std::uint8_t> mask);  // draws anew: all ones for every world
   // The first episode of other seeds, one per world; those of worlds that are not reset are
-  // ignored. World i of a batch of seed s has the seed s + i until then.
+  // ignored. World i of a batch of seed s has the seed s + i until then. With the seeds that worlds
+  // have (seed_of()) it repeats their first episode.
   void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds);
   // To a keyframe of the scenes, by its index in each: as the resets above, and what the keyframe
   // gives instead of what they draw. Where the scene of a world that is reset has no such keyframe

@@ -110,7 +110,8 @@ class Environment {
   int steps_left() const;  // physics steps of a step that was ended early; 0: there is none
 
   // Next episodes of the worlds of a mask, [world]; with seeds, [world], their first ones, where
-  // levels begin again, too. What is told of the others stays.
+  // levels begin again, too. What is told of the others stays. With batch().seed_of() of each world
+  // it repeats their first episode.
   void reset(std::span<const std::uint8_t> mask, const BeginArrays& out);
   void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
              const BeginArrays& out);

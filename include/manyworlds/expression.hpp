@@ -113,6 +113,17 @@ inline Expression joint_position(JointId joint, int coordinate = 0) {
 inline Expression joint_speed(JointId joint, int coordinate = 0) {
   return observed(Observed::joint_speed, joint.index(), coordinate);
 }
+// Of every solver, in the last substep.
+inline Expression joint_force(JointId joint, int axis) {  // N, on body B, world axes
+  return observed(Observed::joint_force, joint.index(), axis);
+}
+inline Expression joint_torque(JointId joint, int axis) {  // N m, about B's anchor; planar axis 2
+  return observed(Observed::joint_torque, joint.index(), axis);
+}
+// N or N m along a coordinate, of the drive or spring; with Solver::newton of the actuators.
+inline Expression drive_force(JointId joint, int coordinate = 0) {
+  return observed(Observed::drive_force, joint.index(), coordinate);
+}
 inline Expression touching(BodyId body) {  // a contact acted on it in the last step
   return observed(Observed::touching, body.index());
 }
@@ -135,7 +146,8 @@ inline Expression ray_distance(int ray) {  // m, of Task::rays
   return observed(Observed::ray_distance, ray);
 }
 
-// Of Solver::newton, by MuJoCo's indices (docs/robots.md, "Coordinates").
+// Of Solver::newton, by MuJoCo's indices (docs/robots.md, "Coordinates"). Of other solvers there
+// are link_position, link_center, external_force and external_torque (observed.hpp).
 Expression generalized_position(int coordinate);  // m, rad, or of a quaternion
 Expression generalized_velocity(int dof);         // m/s or rad/s
 // As the last substep found its forces, which is one substep behind the state (observed.hpp).

@@ -46,6 +46,9 @@ int components(Observed what, Space space);
 inline bool is_given(ObservedItem item) {
   return item == ObservedItem::ray || item == ObservedItem::point;
 }
+// Whether worlds of the scene have what it sees: some observers need Solver::newton, and one needs
+// another solver. A Batch refuses the others (std::invalid_argument), as a task does (validate()).
+bool observable(Observer observer, const Scene& scene);
 const char* to_string(Observer observer);
 const char* to_string(Observed what);
 

@@ -22,10 +22,11 @@ namespace manyworlds {
   X(links, body, state, "where links of trees were as their last forces were found")        \
   X(link_inertias, body, state, "inertias of links about the mass centre of their tree")    \
   X(link_velocities, body, state, "velocities of links at the mass centre of their tree")   \
-  X(link_forces, body, step, "what contacts and inputs do to links, about the same")        \
+  X(link_forces, body, step, "forces and torques of contacts and inputs on bodies")         \
   X(dof_forces, dof, step, "generalised forces of actuators and constraints")               \
   X(tendons, tendon, state, "lengths of tendons as the last forces were found")             \
-  X(sites, site, state, "where sites are, of trees as their last forces were found")
+  X(sites, site, state, "where sites are, of trees as their last forces were found")        \
+  X(drives, coordinate, step, "forces and torques of drives and actuators of joints")
 
 // X(what, its observer, components, unit, meaning)
 //   vector: [2 or 3], the plane's x and y or x, y and z
@@ -67,13 +68,15 @@ namespace manyworlds {
   X(link_mass, link_inertias, one, "kg", "")                                                       \
   X(link_angular_velocity, link_velocities, spin, "rad/s", "world axes (cvel)")                    \
   X(link_velocity, link_velocities, vector, "m/s", "of the link there, world axes (cvel)")         \
-  X(external_torque, link_forces, spin, "N m", "about that centre, world axes (cfrc_ext)")         \
-  X(external_force, link_forces, vector, "N", "world axes (cfrc_ext)")                             \
+  X(external_torque, link_forces, spin, "N m",                                                     \
+    "of contacts and inputs, about the mass centre of the tree, world axes (cfrc_ext)")            \
+  X(external_force, link_forces, vector, "N", "of contacts and inputs, world axes (cfrc_ext)")     \
   X(actuator_force, dof_forces, one, "N or N m", "MuJoCo's qfrc_actuator")                         \
   X(constraint_force, dof_forces, one, "N or N m", "of limits and contacts (qfrc_constraint)")     \
   X(tendon_length, tendons, one, "m or rad", "sum of coordinates (ten_length)")                    \
   X(tendon_velocity, tendons, one, "m/s or rad/s", "(ten_velocity)")                               \
-  X(site_position, sites, vector, "m", "world (site_xpos)")
+  X(site_position, sites, vector, "m", "world (site_xpos)")                                        \
+  X(drive_force, drives, one, "N or N m", "of drive, spring or actuators along the coordinate")
 
 // What is read is [world][item of its observer][component]. A plan without orientation (every
 // moving body a centred ball) rotates neither rays nor points.
@@ -106,13 +109,21 @@ namespace manyworlds {
 // included, nothing for kinematic bodies), as MuJoCo's accelerometer in the body's frame; 0 of a
 // body that is disabled or frozen.
 //
-// Links, their inertias, velocities and forces, forces on dofs and tendons are of Solver::newton, 0
-// of others: those of the last substep, where its forces were found, which is where it began
+// With Solver::newton links, their inertias, velocities and forces, forces on dofs, drives and
+// tendons are those of the last substep, where its forces were found, which is where it began
 // (Runge-Kutta: its last stage). So they are one substep behind the state, as MuJoCo's are after
-// mj_step. A state that is looked at without a step tells where links and velocities are in it.
-// So are sites; of other solvers, whose steps have no such place, they are where the state has
-// them. External forces are those of contacts and of inputs (Batch::add_force), not gravity or
-// drag.
+// mj_step. A state that is looked at without a step gives the places of links and their velocities
+// in it.
+//
+// Other solvers have no trees. There links and sites are where the state has them, and external
+// forces are the mean over the last step, with torques about the centre of mass of the body itself.
+// link_inertias, link_velocities, dof_forces and tendons need Solver::newton: Batch and Environment
+// refuse them in other scenes, and name what to use instead (observable()).
+//
+// External forces are those of contacts and of inputs (Batch::add_force), not of gravity, drag,
+// joints or controls. Kinematic bodies have contact forces only. Drive forces are what the drive or
+// the spring of a joint does along a coordinate in the last substep, 0 where it has none; with
+// Solver::newton they are the forces of its actuators (ControlKind::joint_force), after the gear.
 enum class Observer {
 #define MW_OBSERVER_ENUM(name, item, taken, meaning) name,
   MW_OBSERVERS(MW_OBSERVER_ENUM)

@@ -93,7 +93,8 @@ struct ObserverView {
   const Real* frames;
 
   // Beside the blocks of each list: places and features of their points, impulses of the step.
-  bool of_contacts;            // contacts, touching or penetration are asked for
+  // contacts, touching or penetration are asked for, or link_forces of plans without trees
+  bool of_contacts;
   Real* places[kLists];        // [block][point][component][lane], [lane]
   Real* totals[kLists];        // [block][point, tangent, twist][lane]; plans without restitution
   std::uint32_t* none_asleep;  // [body] 0
@@ -107,7 +108,7 @@ struct ObserverView {
   const std::int32_t* joint_of_part;  // [part]
   // Of trees whose joint_loads are asked for, else nullptr.
   const TreeAnchor<Real>* anchor;  // [joint of the scene]
-  bool of_links;                   // what links, dofs, tendons or sites of trees tell is asked for
+  bool of_links;                   // links, dofs, tendons, sites or drives of trees are asked for
   Real* before;  // the group's state before the last stage, where one of the two is; else nullptr
 
   const RayTable* ray;            // [ray]

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/data/pair_keys.hpp"
+#include "kernels/observe/contact_forces.hpp"
 #include "kernels/observe/observe.hpp"
 #include "kernels/rows/body_rows.hpp"
 #include "kernels/rows/contact_block.hpp"
@@ -205,6 +206,7 @@ void observe_contacts(const Constants& t, const Group& g, kernels::Scratch* scra
   const bool idle = t.has_sleep && has_idle_bodies(g);
   Real* const penetration = rows_for(o, Observer::penetration);
   Real* const touching = rows_for(o, Observer::touching);
+  Real* const forces = rows_for(o, Observer::link_forces);
   for_each_observed<S>(w, [&](auto& s, int index, int id) {
     constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
     std::uint32_t lanes = s.mask & live;
@@ -222,10 +224,15 @@ void observe_contacts(const Constants& t, const Group& g, kernels::Scratch* scra
       }
       deepest.store(penetration);
     }
-    if (!touching && !o.contacts) return;
+    if (!touching && !o.contacts && !forces) return;
     const auto total = totals_of<S, N, kAsleep>(t, w, s, index, id, o);
     if (touching) {
       put_touching(t, s.key, id, bits(Float(Real(0)) < total.sum) & lanes, touching);
+    }
+    if (forces) {
+      const ContactForces<S, N> sum(t, s, total);
+      sum.add_to_b(t, lanes, forces);
+      if (!is_fixed(static_cast<ListId>(id))) sum.add_to_a(t, lanes, forces);
     }
     if (o.contacts) {
       put_contacts(s, total, o.places[id] + index * kPlaces<S, N> * kLanes, lanes, o);

@@ -4,6 +4,7 @@
 
 #include "kernels/joint/coordinates.hpp"
 #include "kernels/observe/observe.hpp"
+#include "kernels/work/activity.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -95,6 +96,22 @@ void observe_loads(const Constants& t, const Group& g, kernels::Scratch* scratch
   for (int i = 0; i < count; ++i) zero.store(rows + i * kLanes);
   for (int i = 0; i < t.parts; ++i) {
     observe_load<S>(t, g, w, i, rows + o.joint_of_part[i] * kRows * kLanes);
+  }
+}
+
+// What the drive or the spring of a joint did along its coordinates in the last substep.
+inline void observe_drives(const Constants& t, const Group& g, const ObserverView& o) {
+  const Mask live = mask_from_bits(~frozen_lanes(g) & kAllLanes);
+  const Float zero(Real(0)), inv_h(t.inv_h);
+  for (int i = 0; i < items_of(o, Observer::drives); ++i) {
+    const kernels::JointCoordinate& c = o.coordinate[i];
+    Float force = zero;
+    const std::int32_t joint = t.part[c.part].joint;
+    for (int p = c.part; p < t.parts && t.part[p].joint == joint; ++p) {
+      if (t.part[p].kind != c.what.kind || !t.part[p].drive) continue;
+      force = Float::load(g.joint_impulse + p * kernels::kPartImpulses * kLanes) * inv_h;
+    }
+    select(live, force, zero).store(rows_for(o, Observer::drives) + i * kLanes);
   }
 }
 

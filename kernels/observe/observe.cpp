@@ -2,6 +2,7 @@
 #include "kernels/observe/observe.hpp"
 
 #include "kernels/observe/acceleration.hpp"
+#include "kernels/observe/body_forces.hpp"
 #include "kernels/observe/contacts.hpp"
 #include "kernels/observe/joints.hpp"
 #include "kernels/observe/motion.hpp"
@@ -64,6 +65,9 @@ void fill(kernels::ObserverTable<Real>& out) {
   look(out, Observer::rays)[kind] = observe_rays;
   look(out, Observer::points)[kind] = observe_points<S>;
   look(out, Observer::sites)[kind] = observe_sites<S>;
+  look(out, Observer::links)[kind] = observe_bodies<S>;
+  begin(out, Observer::link_forces)[kind] = begin_forces;
+  look(out, Observer::link_forces)[kind] = add_inputs;
   look(out, Observer::acceleration)[kind] = observe_acceleration<S>;
   begin(out, Observer::acceleration)[kind] = begin_acceleration<S>;
 }
@@ -85,6 +89,9 @@ void look_at_loads(const Constants& t, const Group& g, kernels::Scratch* scratch
                    const ObserverView& o) {
   if (t.tree.links == 0) observe_loads<Tensor>(t, g, scratch, o);
 }
+void look_at_drives(const Constants& t, const Group& g, kernels::Scratch*, const ObserverView& o) {
+  if (t.tree.links == 0) observe_drives(t, g, o);
+}
 void fill_joints(kernels::ObserverTable<Real>& out) {
   const int planar = static_cast<int>(Planar::kKind), tensor = static_cast<int>(Tensor::kKind);
   look(out, Observer::joints)[planar] = observe_joints<Planar>;
@@ -92,6 +99,8 @@ void fill_joints(kernels::ObserverTable<Real>& out) {
   look(out, Observer::joint_loads)[planar] = observe_loads<Planar>;
   look(out, Observer::joint_loads)[tensor] = look_at_loads;
   begin(out, Observer::joint_loads)[tensor] = begin_loads;
+  look(out, Observer::drives)[planar] = look_at_drives;
+  look(out, Observer::drives)[tensor] = look_at_drives;
 }
 
 kernels::ObserverTable<Real> make_table() {

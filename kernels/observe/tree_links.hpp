@@ -45,6 +45,7 @@ class TreeLinks {
   void put_forces() const {
     if (has(Observer::link_forces)) put_external_forces();
     if (has(Observer::dof_forces)) put_dof_forces();
+    if (has(Observer::drives)) put_drives();
   }
 
  private:
@@ -185,6 +186,22 @@ class TreeLinks {
     }
   }
 
+  Float force_of(int actuator) const {
+    const auto& own = constants_of_actuator(g_, actuator);
+    return clamp(force_asked(t_, g_, actuator), Float(own.low), Float(own.high));
+  }
+  // Ball joints have no actuators.
+  void put_drives() const {
+    for (int i = 0; i < items_of(o_, Observer::drives); ++i) {
+      const kernels::TreeJoint<Real>& joint = t_.tree.joint[o_.coordinate[i].part];
+      Float force(Real(0));
+      for (int k = 0; k < t_.tree.actuators; ++k) {
+        if (joint.kind == TreeJointKind::ball || t_.tree.actuator[k].dof != joint.dof) continue;
+        force = fma(Float(constants_of_actuator(g_, k).gear), force_of(k), force);
+      }
+      put(rows_for(o_, Observer::drives) + i * kLanes, force);
+    }
+  }
   void put_dof_forces() const {
     Real* const all = rows_for(o_, Observer::dof_forces);
     constexpr int kRows = rows_of(Observer::dof_forces);
@@ -200,7 +217,7 @@ class TreeLinks {
     for (int i = 0; i < t_.tree.actuators; ++i) {
       const TreeActuator& a = t_.tree.actuator[i];
       const auto& own = constants_of_actuator(g_, i);
-      const Float force = clamp(force_asked(t_, g_, i), Float(own.low), Float(own.high));
+      const Float force = force_of(i);
       Real* to = of(a.dof, kActuator);
       put(to, fma(Float(own.gear), force, Float::load(to)));
     }

@@ -14,7 +14,7 @@ from manyworlds.tasks import Task
 
 
 def names() -> dict:
-    """Names of the values of every enumeration, by its name."""
+    """Names of the values of every enumeration, by its name, and of fields."""
 
 def unknown_name(found: str, known: Sequence[str]) -> str:
     """
@@ -220,6 +220,9 @@ class Batch:
     @property
     def seed(self) -> int: ...
 
+    def seeds(self, out: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu')]) -> None:
+        """Fills the seeds that worlds draw from, (worlds)."""
+
     @property
     def lanes(self) -> int: ...
 
@@ -356,6 +359,9 @@ class Batch:
 
     def rollout(self, steps: int, every: int, controls: Annotated[NDArray, dict(order='C', device='cpu', writable=False)] | None, names: Sequence[str], arrays: Sequence[Annotated[NDArray, dict(order='C', device='cpu')]]) -> None:
         """Takes steps and fills arrays (frames, worlds, items, components)."""
+
+def item_of(what: str) -> str:
+    """What has an observed number: "world", "body", "joint", ..."""
 
 class Expression:
     """A number of every world, worked out after each step of a task."""

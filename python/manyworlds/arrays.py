@@ -83,21 +83,42 @@ def indices(ids: Optional[Ids], count: int, name: str) -> Indices:
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
+def worlds(ids: Optional[Ids], count: int, name: str = "ids") -> Indices:
+    """The worlds that a caller means: every call that takes worlds decides it here.
+
+    None is all of them, in order. An array of bools is a mask over all, (count,). Integers are ids,
+    each below ``count`` and named once, in the caller's order. IndexError, TypeError, ValueError.
+    """
+    if isinstance(ids, (list, tuple)):
+        bools = sum(isinstance(i, (bool, np.bool_)) for i in ids)
+        if 0 < bools < len(ids):
+            raise TypeError(f"{name} mix bools and integers; expected a mask of bools, or integers")
+    chosen = indices(ids, count, name)
+    if len(np.unique(chosen)) < len(chosen):
+        first = next(i for k, i in enumerate(chosen) if i in chosen[:k])
+        raise ValueError(
+            f"{name} name world {first} more than once; expected each once. Integers are ids of "
+            f"worlds; a mask is an array of bools, one for each of {count} worlds"
+        )
+    return chosen
+
+
 def pairs(source: Optional[Ids], saved: int, ids: Optional[Ids], count: int) -> Indices:
     """(source, world) one after the other: which of ``saved`` worlds goes into which of ``count``; a
-    single source goes into every one of ``ids``. IndexError, TypeError, ValueError."""
-    worlds, sources = indices(ids, count, "ids"), indices(source, saved, "source")
+    single source goes into every one of ``ids``, and a source may be named more than once.
+    IndexError, TypeError, ValueError."""
+    targets, sources = worlds(ids, count), indices(source, saved, "source")
     if len(sources) == 1:
-        sources = np.repeat(sources, len(worlds))
-    if len(sources) != len(worlds):
-        raise ValueError(f"source has {len(sources)} worlds, ids {len(worlds)}; expected as many")
-    return np.ascontiguousarray(np.stack([sources, worlds], axis=1).ravel(), dtype=np.int32)
+        sources = np.repeat(sources, len(targets))
+    if len(sources) != len(targets):
+        raise ValueError(f"source has {len(sources)} worlds, ids {len(targets)}; expected as many")
+    return np.ascontiguousarray(np.stack([sources, targets], axis=1).ravel(), dtype=np.int32)
 
 
 def mask(ids: Optional[Ids], count: int) -> NDArray[np.uint8]:
-    """1 for the worlds of ``indices``, else 0."""
+    """1 for the worlds that are meant, else 0."""
     out = np.zeros(count, dtype=np.uint8)
-    out[indices(ids, count, "ids")] = 1
+    out[worlds(ids, count)] = 1
     return out
 
 
@@ -110,14 +131,55 @@ def seeds(values: Optional[Seeds], ids: Optional[Ids], count: int) -> Optional[N
         first = integer(values, "seeds", 0, 2**64 - 1)
         return np.arange(count, dtype=np.uint64) + np.uint64(first)  # wraps around
     each = [integer(s, "a seed", 0, 2**64 - 1) for s in values]  # type: ignore[union-attr]
-    worlds = indices(ids, count, "ids")
-    if len(each) != len(worlds):
-        raise ValueError(f"seeds are {len(each)}, expected one for each of {len(worlds)} worlds")
-    if len(np.unique(worlds)) != len(worlds):
-        raise ValueError("ids name a world more than once, for which there are several seeds")
+    chosen = worlds(ids, count)
+    if len(each) != len(chosen):
+        raise ValueError(f"seeds are {len(each)}, expected one for each of {len(chosen)} worlds")
     full = np.zeros(count, np.uint64)
-    full[worlds] = np.array(each, np.uint64)
+    full[chosen] = np.array(each, np.uint64)
     return full
+
+
+def one_seed(
+    seed: Optional[int], seeds: Optional[Seeds], redraw: Optional[bool]
+) -> Optional[Seeds]:
+    """What a reset draws from: ``seed``, a number, or ``seeds``; None: neither. TypeError, ValueError."""
+    if redraw is not None and not isinstance(redraw, (bool, np.bool_)):
+        raise TypeError(f"redraw is of type {type(redraw).__name__}; expected a bool")
+    if seed is not None:
+        if seeds is not None:
+            raise ValueError("seed and seeds are both given; expected one of them")
+        seeds = integer(seed, "seed", 0, 2**64 - 1)
+    if seeds is not None and redraw is not None and not redraw:
+        raise ValueError("redraw is False and a seed is given; a seed draws anew, leave out one")
+    return seeds
+
+
+def actions(values: ArrayLike, shape: Shape, choices: Optional[int]) -> NDArray[Any]:
+    """Actions of a task: integers as int64 where there are ``choices``, else numbers as float32.
+
+    TypeError, ValueError; integers of any size are reported as given.
+    """
+    array = np.asarray(values)
+    if array.shape != shape:
+        expected = shape_text(shape, ("worlds", "numbers"))
+        raise ValueError(f"actions have shape {array.shape}; expected {expected}")
+    if choices is None:
+        if array.dtype.kind not in "fiu":
+            raise TypeError(f"actions are of dtype {array.dtype}; expected numbers")
+        return np.ascontiguousarray(array, dtype=np.float32)
+    if array.dtype.kind == "O" and all(isinstance(a, int) for a in array):  # of any size
+        wrong = np.flatnonzero([not 0 <= a < choices for a in array])
+    elif array.dtype.kind == "u":
+        wrong = np.flatnonzero(array >= choices)
+    elif array.dtype.kind == "i":
+        wrong = np.empty(0)  # the library reports them
+    else:
+        wanted = "integers: the task's actions are choices"
+        raise TypeError(f"actions are of dtype {array.dtype}; expected {wanted}")
+    if wrong.size:
+        found = array[wrong[0]]
+        raise ValueError(f"the action of world {wrong[0]} is {found}, must be 0 to {choices - 1}")
+    return np.ascontiguousarray(array, dtype=np.int64)
 
 
 def reals(values: ArrayLike, name: str) -> NDArray[Any]:

@@ -15,7 +15,7 @@ from .ids import Chooser, KeyframeRef
 from .in_memory import InMemory
 from .inputs import Inputs
 from .kinds import MAX_WORLDS, AnyScene, Kind, plans_of
-from .names import ContactLayout, Ids, Isa, Observer, Precision, Seeds
+from .names import ContactLayout, FieldName, Ids, Isa, Observer, Precision, Seeds
 from .results import Results
 from .rollout import MAX_STEPS, Initial, Trajectories, rollout
 from .scene import Point, Ray
@@ -179,8 +179,14 @@ class Batch(Fields, Inputs, Results, InMemory):
 
     @property
     def seed(self) -> int:
-        """World i draws from seed + i."""
+        """World i draws from seed + i, until a reset gives it another seed (``seeds``)."""
         return self._held.seed
+
+    def seeds(self, out: Optional[Writable] = None) -> NDArray[np.uint64]:
+        """The seed that each world draws from, (worlds,) uint64: seed + i, or what a reset gave it."""
+        array = arrays.output(out, (self._worlds,), ("worlds",), np.uint64)
+        self._held.seeds(array)
+        return array
 
     @property
     def bytes_per_world(self) -> int:
@@ -287,29 +293,46 @@ class Batch(Fields, Inputs, Results, InMemory):
         mask_or_ids: Optional[Ids] = None,
         seeds: Optional[Seeds] = None,
         keyframe: Optional[KeyframeRef] = None,
+        *,
+        seed: Optional[int] = None,
+        redraw: Optional[bool] = None,
     ) -> None:
-        """Begins anew with new draws of jitter and variations, in all worlds or in some.
+        """Starts all worlds again, or some.
 
-        None: all worlds from their first episode, with the clock, so that it repeats the first draw
-        exactly. Else the next episode of those worlds: a bool array (worlds,), or indices.
-        ``seeds``: the first episode of other seeds, a number s for s + i in world i, or one for
-        every world that is reset, in the order of ids; the clock goes on.
-        ``keyframe``: a KeyframeId, name or index; worlds begin with what it gives instead of what is
-        drawn, and without ``seeds``. Of several kinds of worlds, the keyframe of that index of each,
-        and a name is one of the first kind's. Raises ValueError where a world has no such keyframe,
-        and resets none then.
+        ``reset()`` repeats: every world starts with the same draws of jitter and variations as the
+        first time, and the clock restarts. These calls draw new ones, and the clock goes on:
+
+        ``reset(redraw=True)``   the draws that follow, of the next episode of each world
+        ``reset(seed=s)``        from the seed s + i in world i, and later resets from there
+        ``reset(ids)``           the next episode of some worlds; ``redraw=False`` repeats theirs
+
+        ``mask_or_ids``: an array of bools (worlds,) is a mask, integers are ids of worlds without
+        repeats; None: all. ``seeds``: as ``seed``, or one seed for every world that is reset, in the
+        order of ids. ``keyframe``: a KeyframeId, name or index; worlds start with its values instead
+        of drawn ones. With groups of several scenes it is the keyframe of that index in each, and a
+        name is one of the first scene. Raises ValueError where a world has no such keyframe (and
+        resets none), for two of seed, seeds, keyframe, and for ``redraw=False`` with a seed;
+        IndexError and TypeError for wrong ids.
         """
+        seeds = arrays.one_seed(seed, seeds, redraw)
+        if redraw is None:
+            redraw = mask_or_ids is not None
         if keyframe is not None:
             if seeds is not None:
                 raise ValueError("seeds and keyframe are both given; expected one of them")
+            if mask_or_ids is not None and not redraw:
+                raise ValueError("redraw=False and a keyframe are given for some worlds only")
             index = int(self._plans[0][0].keyframe(keyframe))
-            mask = None if mask_or_ids is None else arrays.mask(mask_or_ids, self._worlds)
+            mask = arrays.mask(mask_or_ids, self._worlds) if redraw else None
             self._held.reset(mask, None, index)
-        elif mask_or_ids is None and seeds is None:
+        elif mask_or_ids is None and seeds is None and not redraw:
             self._held.reset(None, None, None)
         else:
             mask = arrays.mask(mask_or_ids, self._worlds)
-            self._held.reset(mask, arrays.seeds(seeds, mask_or_ids, self._worlds), None)
+            given = arrays.seeds(seeds, mask_or_ids, self._worlds)
+            if given is None and not redraw:
+                given = self.seeds()
+            self._held.reset(mask, given, None)
         self._after_step()
 
     def rollout(
@@ -317,7 +340,7 @@ class Batch(Fields, Inputs, Results, InMemory):
         initial: Initial = None,
         controls: Optional[ArrayLike] = None,
         steps: Optional[int] = None,
-        fields: Sequence[str] = ("position",),
+        fields: Sequence[FieldName] = ("position",),
         every: int = 1,
         out: Optional[Mapping[str, Writable]] = None,
     ) -> Trajectories:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, Optional, Union
+from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -14,12 +14,11 @@ from .arrays import Writable
 from .batch import MAX_THREADS, MAX_WORLDS, Batch
 from .in_memory import InMemory
 from .levels import WithLevels
-from .names import Ids, Isa, Precision, Seeds
+from .names import Autoreset, Ids, Isa, Precision, Seeds
 from .own_batch import _OwnBatch
 from .plan import Plan
 from .tasks import Task, TaskError
 
-AutoresetName = Literal["next_step", "same_step", "disabled"]
 Doubles = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Observations = NDArray[Any]  # float32, or the float64 that was asked for
@@ -72,7 +71,7 @@ class Environment(WithLevels, InMemory):
         seed: int = 0,
         precision: Precision = "f32",
         isa: Optional[Isa] = None,
-        autoreset: AutoresetName = "next_step",
+        autoreset: Autoreset = "next_step",
         *,
         reward_terms: bool = False,
         final_observations: Optional[bool] = None,
@@ -282,16 +281,8 @@ class Environment(WithLevels, InMemory):
         return arrays.output(given, own.shape, axes, own.dtype, name)
 
     def _actions(self, actions: ArrayLike) -> NDArray[Any]:
-        array = np.asarray(actions)
-        if array.shape != self._action_shape:
-            expected = arrays.shape_text(self._action_shape, ("worlds", "numbers"))
-            raise ValueError(f"actions have shape {array.shape}; expected {expected}")
-        if array.dtype != self._action_type:
-            kinds = "iu" if self.discrete else "fiu"
-            if array.dtype.kind not in kinds:
-                wanted = "integers: the task's actions are choices" if self.discrete else "numbers"
-                raise TypeError(f"actions are of dtype {array.dtype}; expected {wanted}")
-        return np.ascontiguousarray(array, dtype=self._action_type)
+        choices = self.task.choices if self.discrete else None
+        return arrays.actions(actions, self._action_shape, choices)
 
     # -- beginnings
 
@@ -300,16 +291,27 @@ class Environment(WithLevels, InMemory):
         mask_or_ids: Optional[Ids] = None,
         seeds: Optional[Seeds] = None,
         observations: Optional[Writable] = None,
+        *,
+        seed: Optional[int] = None,
+        redraw: Optional[bool] = None,
     ) -> Observations:
-        """Begins the next episodes of all worlds or of some; with ``seeds`` their first ones.
+        """Starts the next episodes of all worlds or of some.
 
-        ``mask_or_ids``: a bool array (worlds,), or indices. ``seeds``: a number s, with which world
-        i gets the seed s + i, or one for every world that is reset, in the order of ids. Returns
-        observations; those of the other worlds stay.
+        ``reset()`` draws anew, as Gymnasium's does: the draws that follow those of the episode before.
+        ``reset(seed=s)`` draws from the seed s + i in world i; ``reset(redraw=False)`` repeats the first
+        episode of the seeds that the worlds have. With a seed, and with ``redraw=False``, levels start
+        again, too. ``mask_or_ids``: an array of bools (worlds,) is a mask, integers are ids of worlds
+        without repeats; None: all. ``seeds``: as ``seed``, or one for every world that is reset, in the
+        order of ids. Returns observations; those of the other worlds stay. Raises ValueError for seed
+        and seeds, and for ``redraw=False`` with one of them; IndexError and TypeError for wrong ids.
         """
+        seeds = arrays.one_seed(seed, seeds, redraw)
         mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
         own = arrays.seeds(seeds, mask_or_ids, self._worlds)
+        if redraw is not None and not redraw:  # as from those that they have
+            own = np.empty(self._worlds, np.uint64)
+            self._held.batch().seeds(own)
         self._held.reset(mask, own, observations, self.infos if self.task.infos else None)
         self._began(mask, observations)
         return observations

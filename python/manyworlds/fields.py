@@ -10,9 +10,11 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core, arrays, draws
+from . import _core, arrays, draws, rotations
 from .arrays import Writable
-from .names import Ids
+from .names import FieldName, Ids, SettableField
+from .names import Field as StateField
+from .plan import Plan
 from .state_view import View
 
 
@@ -20,7 +22,7 @@ from .state_view import View
 class Field:
     """What is known of a field: its array is (worlds, items, components)."""
 
-    name: str
+    name: FieldName
     group: str  # "state", "parameter" (a number of the scene) or "observed"
     observer: str  # that an observed one needs; else ""
     # What has one: "body", "shape", "joint", "control", "attractor", "world", "coordinate", "dof", "ray".
@@ -39,7 +41,9 @@ class Fields:
     _worlds: int
     _real: np.dtype[Any]
     _watched: frozenset[str]
-    _fields: Mapping[str, Field]
+    _fields: Mapping[FieldName, Field]
+    _quaternion_starts: Optional[list[int]] = None
+    plan: Plan
 
     def _find_fields(self) -> None:
         double = np.dtype(np.float64)
@@ -50,11 +54,11 @@ class Fields:
         self._fields = MappingProxyType(found)
 
     @property
-    def fields(self) -> Mapping[str, Field]:
+    def fields(self) -> Mapping[FieldName, Field]:
         """All fields by name: state, numbers of the scene, and what can be observed."""
         return self._fields
 
-    def _field(self, name: str) -> Field:
+    def _field(self, name: FieldName) -> Field:
         if not isinstance(name, str):
             raise TypeError(f"the field is of type {type(name).__name__}; expected a str")
         if name not in self._fields:
@@ -74,13 +78,14 @@ class Fields:
         return "worlds", {"body": "bodies"}.get(field.item, field.item + "s"), "components"
 
     def get(
-        self, name: str, out: Optional[Writable] = None, ids: Optional[Ids] = None
+        self, name: FieldName, out: Optional[Writable] = None, ids: Optional[Ids] = None
     ) -> NDArray[Any]:
         """A field of all worlds, (worlds, items, components), or of those of ``ids``, in this order.
 
         State and observed fields have the batch's precision (float32 or float64), numbers of the
         scene float64. Position is that of the body's origin, velocity that of its centre of mass;
-        units are in ``fields[name].unit``. ``ids``: indices or a bool array (worlds,). ``out``: filled
+        units are in ``fields[name].unit``. ``ids``: a mask of bools (worlds,), or ids without repeats,
+        in the order of the result. ``out``: filled
         in place and returned; it must have this shape and dtype, be C-contiguous, writable, and on the
         CPU. What is no NumPy array is filled, too, if it has DLPack (a torch.Tensor) or is a buffer (a
         bytearray, array.array, memoryview) of just the size; an array over its memory is returned.
@@ -89,27 +94,32 @@ class Fields:
         (TypeError for its dtype), IndexError for wrong ids.
         """
         field = self._field(name)
-        worlds = None if ids is None else arrays.indices(ids, self._worlds, "ids")
+        worlds = None if ids is None else arrays.worlds(ids, self._worlds)
         shape = self._shape(field, self._worlds if worlds is None else len(worlds))
         axes = self._axes(field) if worlds is None else ("ids", *self._axes(field)[1:])
         array = arrays.output(out, shape, axes, field.dtype)
         self._held.read(name, array, worlds)
         return array
 
-    def set(self, name: str, values: ArrayLike, ids: Optional[Ids] = None) -> None:
+    def set(self, name: SettableField, values: ArrayLike, ids: Optional[Ids] = None) -> None:
         """Sets a state field or a number of the scene, in all worlds or in those of ``ids``.
 
         ``values``: (worlds, items, components), or (len(ids), items, components), or what broadcasts to
         it as NumPy does: a number, a row (components,), rows (items, components); any dtype, order and
-        strides. ``ids``: indices or a bool array (worlds,). Positions and orientations forget the impulses stored in those worlds, and all
-        wake. Numbers of the scene must vary (Scene.variations) and lie in their range, or nothing
-        changes and ValueError is raised, as for a wrong shape. IndexError for wrong ids.
+        strides. ``ids``: a mask of bools (worlds,), or ids without repeats. Setting positions or
+        orientations clears the stored impulses of those worlds, and all their bodies wake. A state that
+        is not finite freezes its world at the next step (``status``).
+
+        Raises ValueError, and changes nothing, for a wrong shape; for orientations that are not finite
+        or not of length 1 (to 0.001), and quaternions of ``generalized_position`` that are not finite
+        or of length 0; for numbers of the scene that do not vary (Scene.variations) or are out of their
+        range. IndexError for wrong ids.
         """
         self._held.write(*self._to_write(name, values, ids))
 
     def randomize(
         self,
-        name: str,
+        name: SettableField,
         low: ArrayLike,
         high: ArrayLike,
         ids: Optional[Ids] = None,
@@ -124,7 +134,7 @@ class Fields:
         of any size, and again by the same call; another ``seed`` draws others. Raises as ``set`` does.
         """
         field = self._field(name)
-        worlds = arrays.indices(ids, self._worlds, "ids")
+        worlds = arrays.worlds(ids, self._worlds)
         chosen = arrays.indices(items, field.items, "items")
         first = self._held.seed if seed is None else arrays.integer(seed, "seed", 0, 2**64 - 1)
         shape = len(chosen), field.components
@@ -143,8 +153,8 @@ class Fields:
         self.set(name, values, worlds)
 
     def _to_write(
-        self, name: str, values: ArrayLike, ids: Optional[Ids] = None
-    ) -> tuple[str, NDArray[Any], Optional[NDArray[np.int32]]]:
+        self, name: FieldName, values: ArrayLike, ids: Optional[Ids] = None
+    ) -> tuple[FieldName, NDArray[Any], Optional[NDArray[np.int32]]]:
         """What is written where, checked but for the ranges of numbers."""
         field = self._field(name)
         if field.group == "observed":
@@ -152,13 +162,24 @@ class Fields:
         if ids is None:
             dtype = np.float64 if field.group == "parameter" else None
             shape = self._shape(field, self._worlds)
-            return name, arrays.broadcast(values, shape, self._axes(field), name, dtype), None
-        worlds = arrays.indices(ids, self._worlds, "ids")
+            numbers = arrays.broadcast(values, shape, self._axes(field), name, dtype)
+            rotations.check(name, numbers, None, self._rotations_in(name))
+            return name, numbers, None
+        worlds = arrays.worlds(ids, self._worlds)
         shape, axes = self._shape(field, len(worlds)), ("ids", *self._axes(field)[1:])
         numbers = arrays.broadcast(values, shape, axes, name, np.float64)
+        rotations.check(name, numbers, worlds, self._rotations_in(name))
         return name, numbers, worlds
 
-    def view(self, name: str) -> View:
+    def _rotations_in(self, name: FieldName) -> list[int]:
+        """Where quaternions start in a field that is a list of coordinates."""
+        if name != "generalized_position" or not self._fields[name].items:
+            return []
+        if self._quaternion_starts is None:
+            self._quaternion_starts = rotations.among_coordinates(self.plan, self._fields[name].items)
+        return self._quaternion_starts
+
+    def view(self, name: StateField) -> View:
         """A state field in place, as the step keeps it: see View. Raises ValueError."""
         field = self._field(name)
         if field.group != "state":

@@ -47,7 +47,7 @@ class Inputs(Named):
         are set anew. Beyond its range a value counts as the end of the range; one that is not a number
         freezes its world. Raises ValueError for a wrong shape, IndexError for wrong ids.
         """
-        worlds = None if ids is None else arrays.indices(ids, self._worlds, "ids")
+        worlds = None if ids is None else arrays.worlds(ids, self._worlds)
         shape = self._worlds if worlds is None else len(worlds), self._controls
         axes = "worlds" if worlds is None else "ids", "controls"
         self._held.write_controls(arrays.broadcast(values, shape, axes, "controls"), worlds)
@@ -100,7 +100,7 @@ class Inputs(Named):
         ids: Optional[Ids],
         points: Optional[ArrayLike] = None,
     ) -> None:
-        worlds = arrays.indices(ids, self._worlds, "ids")
+        worlds = arrays.worlds(ids, self._worlds)
         chosen = self._choose.bodies(bodies, "bodies")
         spin = kind in ("torque", "angular_impulse")
         full = self._vectors(values, (len(worlds), len(chosen)), kind, spin)
@@ -134,7 +134,7 @@ class Inputs(Named):
         self, enabled: ArrayLike, bodies: Optional[BodyRefs] = None, ids: Optional[Ids] = None
     ) -> None:
         """Enables or disables bodies (see add_force): bools that broadcast to (worlds, bodies)."""
-        worlds = arrays.indices(ids, self._worlds, "ids")
+        worlds = arrays.worlds(ids, self._worlds)
         chosen = self._choose.bodies(bodies, "bodies")
         shape, axes = (len(worlds), len(chosen)), ("worlds", "bodies")
         flags = arrays.broadcast(enabled, shape, axes, "enabled", np.bool_)
@@ -155,7 +155,7 @@ class Inputs(Named):
         m, orientation (w, x, y, z) or planar (cos, sin), velocities in m/s and rad/s. Raises
         ValueError for shapes and for orientations of length 0, IndexError for indices.
         """
-        worlds = arrays.indices(ids, self._worlds, "ids")
+        worlds = arrays.worlds(ids, self._worlds)
         chosen = self._choose.body(body, "body")
         lead = (len(worlds),)
         states = np.zeros((len(worlds), 13))
@@ -174,8 +174,10 @@ class Inputs(Named):
         width = 2 if self._planar else 4
         own = arrays.broadcast(orientation, (count, width), axes, "orientation", np.float64)
         length = np.linalg.norm(own, axis=1)
-        if not np.all(np.isfinite(length) & (length > 0)):
-            raise ValueError("orientation has rows that are not finite, or of length 0")
+        wrong = ~(np.isfinite(length) & (length > 0))
+        if wrong.any():
+            found = own[np.flatnonzero(wrong)[0]].tolist()
+            raise ValueError(f"orientation is {found}; expected finite numbers, not of length 0")
         if not self._planar:
             return own
         half = np.arctan2(own[:, 1], own[:, 0]) / 2
@@ -192,7 +194,7 @@ class Inputs(Named):
         self, enabled: ArrayLike, joints: Optional[JointRefs] = None, ids: Optional[Ids] = None
     ) -> None:
         """Enables (mends) or disables joints: bools that broadcast to (worlds, joints)."""
-        worlds = arrays.indices(ids, self._worlds, "ids")
+        worlds = arrays.worlds(ids, self._worlds)
         chosen = self._choose.joints(joints, "joints")
         shape, axes = (len(worlds), len(chosen)), ("worlds", "joints")
         flags = arrays.broadcast(enabled, shape, axes, "enabled", np.bool_)
@@ -206,7 +208,7 @@ class Inputs(Named):
 
     def wake(self, ids: Optional[Ids] = None) -> None:
         """Wakes everything in these worlds, or in all."""
-        self._held.wake(arrays.indices(ids, self._worlds, "ids"))
+        self._held.wake(arrays.worlds(ids, self._worlds))
 
     def set_rays(self, rays: Sequence[Ray], world: Optional[int] = None) -> None:
         """Other rays, as many as the batch was made with. In one world body and mask cannot change."""

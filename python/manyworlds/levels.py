@@ -37,9 +37,7 @@ class WithLevels:
         They apply from the next step until the end of an episode changes them; those that stay as they are
         change nothing. Raises ValueError, TypeError, IndexError.
         """
-        chosen = arrays.indices(mask_or_ids, self._worlds, "ids")
-        if len(np.unique(chosen)) < len(chosen):
-            raise ValueError("ids name a world twice; expected each once")
+        chosen = arrays.worlds(mask_or_ids, self._worlds)
         all_levels = self.levels()
         shape = len(chosen), all_levels.shape[1]
         all_levels[chosen] = arrays.broadcast(levels, shape, ("worlds", "levels"), "levels", np.float64)

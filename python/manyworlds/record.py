@@ -22,7 +22,7 @@ from . import arrays, files, pickling
 from .batch import MAX_THREADS, Batch, checked_batch
 from .files import File
 from .in_memory import InMemory
-from .names import ContactLayout, Ids, Isa
+from .names import ContactLayout, Field, Ids, Isa
 from .scene import Scene
 
 try:
@@ -105,7 +105,7 @@ class Recorder(InMemory):
         if worlds is None:
             chosen = np.arange(min(count, MAX_WORLDS_BY_DEFAULT), dtype=np.int32)
         else:
-            chosen = arrays.indices(worlds, count, "worlds")
+            chosen = arrays.worlds(worlds, count, "worlds")
             if len(chosen) == 0:
                 raise ValueError("worlds are none; at least one must be recorded")
         self.file = files.path(file, "file")
@@ -282,7 +282,7 @@ class Recording(InMemory):
         scene: Scene = self._held.scene(arrays.index(kind, self.kinds, "kind"))  # type: ignore[assignment]
         return scene
 
-    def get(self, field: str, sample: Optional[int] = None, kind: int = 0) -> NDArray[Any]:
+    def get(self, field: Field, sample: Optional[int] = None, kind: int = 0) -> NDArray[Any]:
         """A state field of a kind's worlds at every sample, (samples, worlds, items, components), or
         at one, (worlds, items, components); float32 or float64, as the batch had it."""
         kind = arrays.index(kind, self.kinds, "kind")

@@ -140,7 +140,7 @@ class Results:
 
     def save(self, ids: Optional[Ids] = None) -> _core.Snapshot:
         """A Snapshot of all worlds with clock and episodes, or of those of ``ids``, in this order."""
-        return self._held.save(None if ids is None else arrays.indices(ids, self._worlds, "ids"))
+        return self._held.save(None if ids is None else arrays.worlds(ids, self._worlds))
 
     def restore(
         self,

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core, arrays
 from .arrays import Writable
+from .names import FieldName
 
 if TYPE_CHECKING:
     from .batch import Batch
@@ -25,7 +26,7 @@ def rollout(
     initial: Initial,
     controls: Optional[ArrayLike],
     steps: Optional[int],
-    fields: Sequence[str],
+    fields: Sequence[FieldName],
     every: int,
     out: Optional[Mapping[str, Writable]],
 ) -> Trajectories:
@@ -75,7 +76,7 @@ def _controls(
     return arrays.broadcast(array, shape, axes, "controls"), count
 
 
-def _names(fields: Sequence[str]) -> list[str]:
+def _names(fields: Sequence[FieldName]) -> list[FieldName]:
     if isinstance(fields, str):
         raise TypeError(f"fields is a str; expected a list of them, such as ['{fields}']")
     names = list(fields)

@@ -22,7 +22,7 @@ from .ids import (
     TendonRef,
     index_of,
 )
-from .names import Every, Parameter
+from .names import Every, Observed, Parameter
 from .scene import Scene
 
 Value = Union[Expression, float]  # numbers are expressions
@@ -121,6 +121,34 @@ class Terms:
         """m, of Task.rays."""
         return _x.observed("ray_distance", ray, 0)
 
+    def observed(self, what: Observed, item: Any = 0, component: Axis = 0) -> Expression:
+        """A component of an observed field, by its name (``Batch.fields``): whatever has no term.
+
+        ``item``: a body, joint, tendon or site by handle, index or name, the index of a ray, point
+        or dof, 0 for the world; of coordinates the joint, and ``component`` counts its coordinates.
+        """
+        kind = _core.item_of(what)
+        kind = "joint" if kind == "coordinate" else kind
+        index = self._index(kind, item) if kind in _HANDLES else item
+        return _x.observed(what, index, self._axis(component))
+
+    def joint_force(self, joint: JointRef, axis: Axis) -> Expression:
+        """N, of the joint on body B in the last substep, world axes; of every solver."""
+        return _x.observed("joint_force", self._index("joint", joint), self._axis(axis))
+
+    def joint_torque(self, joint: JointRef, axis: Axis = 2) -> Expression:
+        """N m, of the joint on body B about its anchor in the last substep; in the plane about axis 2."""
+        return _x.observed("joint_torque", self._index("joint", joint), self._axis(axis))
+
+    def drive_force(self, joint: JointRef, coordinate: int = 0) -> Expression:
+        """N or N m along a coordinate in the last substep: of the joint's drive or spring, with the
+        solver newton of its actuators. 0 where it has none."""
+        return _x.observed("drive_force", self._index("joint", joint), coordinate)
+
+    # Terms of links and dofs are those of the solver newton. Of other solvers there are link_position,
+    # link_center, external_force and external_torque; a task with another one has an issue, which
+    # names the term to use instead.
+
     def generalized_position(self, coordinate: int) -> Expression:
         """m, rad or a number of a quaternion, of the solver newton: MuJoCo's qpos."""
         return _x.generalized_position(coordinate)
@@ -130,7 +158,8 @@ class Terms:
         return _x.generalized_velocity(dof)
 
     def link_position(self, body: BodyRef, axis: Axis) -> Expression:
-        """m, of the body frame where the last forces were found: MuJoCo's xpos after a step."""
+        """m, of the body frame: MuJoCo's xpos after a step, where the last forces were found; of other
+        solvers than newton where the state has it."""
         return self._link("link_position", body, axis)
 
     def link_center(self, body: BodyRef, axis: Axis) -> Expression:
@@ -162,11 +191,13 @@ class Terms:
         return self._link("link_velocity", body, axis)
 
     def external_torque(self, body: BodyRef, axis: Axis) -> Expression:
-        """N m, of contacts and inputs about the mass centre of the body's tree: of cfrc_ext."""
+        """N m, of contacts and inputs about the mass centre of the body's tree: of cfrc_ext. Of other
+        solvers than newton about the body's own mass centre, the mean over the last physics step."""
         return self._link("external_torque", body, axis)
 
     def external_force(self, body: BodyRef, axis: Axis) -> Expression:
-        """N, of contacts and inputs: of cfrc_ext."""
+        """N, of contacts and inputs: of cfrc_ext. Of other solvers than newton the mean over the last
+        physics step."""
         return self._link("external_force", body, axis)
 
     def _link(self, what: str, body: BodyRef, axis: Axis) -> Expression:

@@ -98,6 +98,15 @@ void bind_batch(nb::module_& m) {
       .def_prop_ro("worlds", property<&Batch::worlds>())
       .def_prop_ro("threads", property<&Batch::threads>())
       .def_prop_ro("seed", property<&Batch::seed>())
+      .def(
+          "seeds",
+          [](HeldBatch& s, const Out<std::uint64_t>& out) {
+            s.with([&](Batch& b) {
+              check_size("out", out.size(), static_cast<std::size_t>(b.worlds()));
+              for (int w = 0; w < b.worlds(); ++w) out.data()[w] = b.seed_of(w);
+            });
+          },
+          nb::arg("out").noconvert(), "Fills the seeds that worlds draw from, (worlds).")
       .def_prop_ro("lanes", property<&Batch::lanes>())
       .def_prop_ro("kernel_table", property<&Batch::kernel_table>())
       .def_prop_ro("bytes_per_world", property<&Batch::bytes_per_world>())

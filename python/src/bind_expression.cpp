@@ -10,6 +10,7 @@
 
 #include "bind.hpp"
 #include "expression_graph.hpp"
+#include "quantities.hpp"
 #include "task_fields.hpp"
 
 namespace manyworlds::python {
@@ -206,6 +207,12 @@ void bind_terms(Functions& m) {
 }  // namespace
 
 void bind_expression(nb::module_& parent) {
+  parent.def(
+      "item_of",
+      [](const std::string& what) {
+        return word_of(info(info(observed_named(what)).observer).item);
+      },
+      nb::arg("what"), "What has an observed number: \"world\", \"body\", \"joint\", ...");
   nb::class_<Expression> c(parent, "Expression",
                            "A number of every world, worked out after each step of a task.");
   c.def(

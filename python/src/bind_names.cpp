@@ -4,6 +4,7 @@
 
 #include "bind.hpp"
 #include "names.hpp"
+#include "task_fields.hpp"
 
 namespace nb = nanobind;
 
@@ -29,10 +30,10 @@ void bind_names(nb::module_& m) {
       "names",
       [] {
         return all_names<Space, Motion, Integrator, Rotation, Solver, JointMethod, FrictionCone,
-                         ControlKind, Parameter, Draw, Precision, Isa, ContactLayout, Observer,
-                         Feature, BroadPhase, Status>();
+                         ControlKind, Field, Parameter, Draw, Precision, Isa, ContactLayout,
+                         Observer, Observed, Feature, BroadPhase, Every, Autoreset, Status>();
       },
-      "Names of the values of every enumeration, by its name.");
+      "Names of the values of every enumeration, by its name, and of fields.");
   m.def("unknown_name", &unknown_name, nb::arg("found"), nb::arg("known"),
         "What is wrong with a name, for an error: the known names and the nearest.");
   m.def(

@@ -88,6 +88,16 @@ struct Names<Observer> {
   };
 };
 
+template <>
+struct Names<Observed> {
+  static constexpr const char* kind = "Observed";
+  static constexpr Named<Observed> all[] = {
+#define MW_NAME(name, observer, components, unit, meaning) {Observed::name, #name},
+      MW_OBSERVED(MW_NAME)
+#undef MW_NAME
+  };
+};
+
 template <class Enum>
 const char* name_of(Enum value) {
   for (const auto& n : Names<Enum>::all) {

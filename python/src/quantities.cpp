@@ -6,8 +6,6 @@
 
 namespace manyworlds::python {
 
-namespace {
-
 const char* word_of(ObservedItem item) {
   switch (item) {
     case ObservedItem::world: return "world";
@@ -22,8 +20,6 @@ const char* word_of(ObservedItem item) {
   }
   return "?";
 }
-
-}  // namespace
 
 std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of) {
   const Plan& plan = batch.plan(of.kind);

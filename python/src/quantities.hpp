@@ -22,6 +22,7 @@ struct Quantity {
   const char* meaning;
 };
 
+const char* word_of(ObservedItem item);
 std::vector<Quantity> quantities_of(const Batch& batch, const KindRange& of);
 // Throws nanobind::value_error with the known names and the nearest.
 const Quantity& find_quantity(const std::vector<Quantity>& all, std::string_view name);

@@ -46,21 +46,71 @@ def theirs(name, policy):
     return np.array(out)
 
 
-def ours(name, policy, signs=1):
+def ours(name, policy, signs=(1,)):
     env = mw.Environment(name, 256, seed=1, autoreset="disabled")
     total, going = np.zeros(256), np.ones(256, bool)
     seen = env.reset()
     for _ in range(env.task.max_steps):
-        seen, rewards, ended, truncated = env.step(policy(seen * signs))
+        seen, rewards, ended, truncated = env.step(policy(seen * np.array(signs)))
         total[going] += rewards[going]
         going &= ~(ended | truncated)
     return total
 
 
-def test_cart_pole_carries_over_with_the_signs_of_lean_and_turn():
-    there, here = theirs("CartPole-v1", balance), ours("CartPole", balance, [1, 1, -1, -1])
-    assert there.mean() > 450 and here.mean() > 450
-    assert ours("CartPole", balance).mean() < 50  # without
+def push_after(seen):
+    """Of CartPole: towards the side that the pole falls to."""
+    return (seen[:, 2] + 0.5 * seen[:, 3] > 0).astype(np.int64)
+
+
+@pytest.mark.parametrize("policy, least", [(balance, 450), (push_after, 150)])
+def test_cart_pole_carries_over(policy, least):
+    there, here = theirs("CartPole-v1", policy), ours("CartPole", policy)
+    assert there.mean() > least and here.mean() > least
+    assert ours("CartPole", policy, [1, 1, -1, -1]).mean() < 50  # with the wrong signs
+
+
+def test_cart_pole_has_gymnasiums_ends():
+    there, task = gymnasium.make("CartPole-v1").unwrapped, mw.tasks.load("CartPole")
+    lean = there.theta_threshold_radians
+    assert [o.high for o in task.observations][::2] == pytest.approx([2 * 2.4, 2 * lean])
+    assert there.x_threshold == 2.4 and there.observation_space.high[2] == np.float32(2 * lean)
+    env = mw.Environment(task, 4, autoreset="disabled")
+    for x, angle, ends in ((2.38, 0, False), (2.42, 0, True), (0, 0.2, False), (0, -0.22, True)):
+        put(env, (x, 0, angle, 0))
+        env.step([1, 0, 1, 0])
+        there.state, there.steps_beyond_terminated = np.array([x, 0, angle, 0.0]), None
+        assert there.step(1)[2] is ends and (env.terminated == ends).all()
+
+
+def put(env, state):
+    """Worlds in a state (x, x', lean, lean') of Gymnasium's CartPole."""
+    x, speed, lean, turn = state
+    sin, cos = np.sin(lean), np.cos(lean)
+    env.batch.set("position", [[x, 0], [x, 0]])
+    env.batch.set("orientation", [[1, 0], [cos, -sin]])
+    pole = [speed + 0.5 * turn * cos, -0.5 * turn * sin]  # of its centre of mass
+    env.batch.set("linear_velocity", [[speed, 0], pole])
+    env.batch.set("angular_velocity", [[0], [-turn]])
+    env.begin()
+
+
+@pytest.mark.parametrize("state", [(0, 0, 0.05, 0), (0.3, -0.4, -0.03, 0.2), (-1, 0.5, 0, -0.4)])
+def test_cart_pole_steps_as_gymnasiums(state):
+    """From one state by the same pushes, to what the schemes of integration differ by."""
+    there = gymnasium.make("CartPole-v1").unwrapped
+    there.reset()
+    env = mw.Environment("CartPole", autoreset="disabled")
+    put(env, state)
+    np.testing.assert_allclose(env.observations[0], state, atol=1e-6)
+    there.state = np.array(state, float)
+    before = np.array(state)
+    for action in (1, 1, 0, 1, 0, 0, 1, 0, 1, 1):
+        theirs, mine = there.step(action)[0], env.step([action])[0][0]
+        # A push of 10 N changes velocities by about 0.2 m/s and 0.3 rad/s in a step.
+        assert (np.abs(mine - theirs) < [0.02, 0.02, 0.02, 0.04]).all()
+        push = 1 if action else -1
+        assert np.sign(mine - before)[[1, 3]].tolist() == [push, -push]
+        before = mine.copy()
 
 
 def test_pendulum_carries_over():

@@ -95,6 +95,65 @@ def test_resets_begin_next_episodes_or_those_of_seeds():
     assert (env.reset([1], seeds=[4])[1] == first[1]).all()
 
 
+def test_resets_repeat_or_draw_anew():
+    env = make("LunarLander", 6, seed=3)
+    first = env.observations.copy()
+    second = env.reset().copy()
+    assert (env.reset(redraw=False) == first).all()
+    assert (env.reset(redraw=False) == first).all()
+    assert (env.reset(redraw=True) == second).all()
+    mixed = env.reset([0, 5], redraw=False)
+    assert (mixed[[0, 5]] == first[[0, 5]]).all() and (mixed[1:5] == second[1:5]).all()
+    assert (env.reset(seed=4)[:-1] == first[1:]).all()
+    assert (env.reset(redraw=False)[:-1] == first[1:]).all()
+    assert (env.reset(seed=3) == first).all()
+    for wrong, error, match in (
+        (dict(seed=1, seeds=2), ValueError, "both given"),
+        (dict(seeds=1, redraw=False), ValueError, "redraw is False and a seed is given"),
+        (dict(redraw="no"), TypeError, "redraw is of type str"),
+    ):
+        with pytest.raises(error, match=match):
+            env.reset(**wrong)
+
+
+def test_worlds_of_an_environment_are_ids_or_masks():
+    env = make("LunarLander", 4, seed=3)
+    for call in (env.reset, env.begin, lambda ids: env.restore(env.save(), source=0, ids=ids)):
+        call([1, 3]), call(np.array([False, True, False, True])), call(2)
+        with pytest.raises(ValueError, match="name world 0 more than once.*a mask is an array of bools"):
+            call(np.array([0, 0, 1, 1]))
+        with pytest.raises(TypeError, match="float64"):
+            call(np.zeros(4))
+        with pytest.raises(TypeError, match="mix bools and integers"):
+            call([True, 2])
+
+
+@pytest.mark.parametrize(
+    "dtype, value",
+    [
+        (np.uint64, 2**63),
+        (np.uint64, 2**64 - 1),
+        (np.uint32, 2**32 - 1),
+        (np.uint16, 2**16 - 1),
+        (np.uint8, 255),
+        (np.int64, -(2**63)),
+        (np.int32, -(2**31)),
+        (np.int8, -128),
+        (object, 2**70),
+        (object, -(2**70)),
+    ],
+)
+def test_actions_of_every_dtype_are_reported_as_given(dtype, value):
+    env = make("LunarLander", 3)
+    before = env.batch.hashes()
+    actions = np.array([3, value, 0], dtype)
+    with pytest.raises(ValueError, match=f"the action of world 1 is {value}, must be 0 to 3"):
+        env.step(actions)
+    assert (env.batch.hashes() == before).all()
+    if dtype is not object:
+        env.step(actions[[0, 2, 0]])
+
+
 def test_next_step_and_same_step_do_what_resets_by_hand_do():
     task, steps = hurried("LunarLander"), 40
     by_hand = make(task, autoreset="disabled")

@@ -24,7 +24,7 @@ def test_get_of_some_worlds_is_what_get_has_of_them(precision, name):
     batch = batch_of(precision)
     all_of_them = batch.get(name)
     mask = np.arange(6) % 2 == 0
-    for ids in ([3], [5, 0, 2], [1, 1, 1], mask, np.arange(6), 4, range(2)):
+    for ids in ([3], [5, 0, 2], mask, np.arange(6), 4, range(2)):
         found = batch.get(name, ids=ids)
         wanted = all_of_them[np.atleast_1d(ids)]
         assert found.dtype == all_of_them.dtype and found.tobytes() == wanted.tobytes()

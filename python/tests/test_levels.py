@@ -54,7 +54,7 @@ def test_levels_go_on_where_episodes_end(autoreset):
             e.set_levels([[1], [2]])
         with pytest.raises(TypeError, match="levels"):
             e.set_levels("hard")
-        with pytest.raises(ValueError, match="name a world twice"):
+        with pytest.raises(ValueError, match="name world . more than once"):
             e.set_levels(1, [0, 0])
         for world in (3, -1):
             with pytest.raises(IndexError):

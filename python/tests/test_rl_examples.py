@@ -146,6 +146,48 @@ def test_throughput_is_printed():
     assert len(found) == 3 and min(found.values()) > 1000
 
 
+OWN_TASK = """
+import manyworlds as mw
+
+def make():
+    task = mw.tasks.load("CartPole")
+    task.name, task.max_steps = "Mine", 60
+    return task
+
+def endless():
+    task = make()
+    task.max_steps = 0
+    return task
+
+number = 7
+"""
+
+
+def test_ppo_trains_a_task_of_a_module(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("jax")
+    pytest.importorskip("optax")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "own_task.py").write_text(OWN_TASK)
+    ppo, tiny = example("ppo"), "--envs 8 --steps 16 --updates 2 --minibatch 32 --epochs 1".split()
+    result = ppo.main(["--task", "own_task:make", *tiny])
+    assert result["task"] == "own_task:make" and len(result["curve"]) == 2
+    assert result["curve"][-1]["steps"] > 200 and 0 < result["evaluation"] <= 60
+    for name, message in (
+        ("own_task:endless", "has no time limit: its max_steps is 0"),
+        ("own_task:made", "the module 'own_task' has no function 'made'"),
+        ("own_task:number", "the module 'own_task' has no function 'number'"),
+        ("own_task:print", "the module 'own_task' has no function 'print'"),
+        ("own_tusk:make", "there is no module 'own_tusk'"),
+        ("builtins:dict", "it returns a dict; expected a manyworlds.Task"),
+    ):
+        with pytest.raises(SystemExit):
+            ppo.main(["--task", name, *tiny])
+        assert message in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        ppo.main(["--help"])
+    assert "module:function" in capsys.readouterr().out
+
+
 def test_ppo_learns_to_balance():
     pytest.importorskip("gymnasium")
     pytest.importorskip("jax")

@@ -5,7 +5,7 @@ import pytest
 
 import manyworlds as mw
 from conftest import crates
-from manyworlds import _core
+from manyworlds import _core, rotations
 
 ABOUT_Y = (0.5**0.5, -(0.5**0.5), 0, 0)  # hinges turn about z of their frames
 
@@ -93,7 +93,7 @@ def test_coordinates_are_fields(precision):
     assert (batch.get("generalized_velocity")[:, 2] > 0).all()
     with pytest.raises(ValueError, match="moved by generalized_position"):
         batch.set("position", 0)
-    with pytest.raises(ValueError, match="worlds of the newton solver do not observe"):
+    with pytest.raises(ValueError, match="is residual: the scene .arm. does not have it"):
         mw.Batch(arm(), observe=["residual"])
 
 
@@ -274,3 +274,22 @@ def test_a_keyframe_without_a_rotation_is_refused():
     (issue,) = scene.validate()
     assert issue.place == "keyframe 0 'lost': generalized_position of body 2 'ball'"
     assert issue.message == "is a quaternion of length 0, must not be zero"
+
+
+def test_quaternions_of_coordinates_are_not_of_length_0():
+    batch = mw.Batch(arm(), worlds=3)
+    good = batch.get("generalized_position")
+    found = rotations.among_coordinates(batch.plan, good.shape[1])
+    assert found and np.allclose([np.linalg.norm(good[:, q : q + 4, 0], axis=1) for q in found], 1)
+    before = batch.hashes()
+    for first in found:
+        for value in (0, np.nan, np.inf):
+            wrong = good.copy()
+            wrong[1, first : first + 4] = value
+            match = f"of coordinates {first} to {first + 3} in world 1 is .*expected a quaternion"
+            with pytest.raises(ValueError, match=match):
+                batch.set("generalized_position", wrong)
+            with pytest.raises(ValueError, match=match):
+                batch.set("generalized_position", wrong[[1]], ids=[1])
+    assert (batch.hashes() == before).all()
+    batch.set("generalized_position", good)

@@ -32,5 +32,17 @@ def test_the_stub_is_up_to_date(tmp_path, name):
     assert stub.read_text() == out.read_text(), f"write it anew: {' '.join(run[1:-1])} {stub}"
 
 
+def test_the_names_are_those_of_the_library():
+    spec = importlib.util.spec_from_file_location("write_names", PATTERNS.parent / "write_names.py")
+    write_names = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(write_names)
+    write_names.enumerations = manyworlds.enumerations
+    text = (PACKAGE / "names.py").read_text()
+    assert text == write_names.written(text), "write it anew: python python/write_names.py"
+    fields = manyworlds.Batch("stack10").fields
+    known = manyworlds.enumerations()
+    assert list(fields) == [*known["Field"], *known["Parameter"], *known["Observed"]]
+
+
 def test_the_package_is_typed():
     assert (PACKAGE / "py.typed").exists()

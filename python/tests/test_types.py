@@ -52,6 +52,18 @@ a + "x"  # type: ignore[operator]
 batch = mw.Batch("stack10", worlds=2)
 x: NDArray[Any] = batch.get("position", ids=[1], out=bytearray(120))
 batch.set("linear_velocity", 0, ids=1)
+for name in batch.fields:
+    y: NDArray[Any] = batch.get(name)
+batch.get("positon")  # type: ignore[arg-type]
+batch.set("kinetic_energy", 0)  # type: ignore[arg-type]
+batch.view("friction")  # type: ignore[arg-type]
+batch.rollout(steps=1, fields=["positions"])  # type: ignore[list-item]
+mw.Batch("stack10", observe=["motions"])  # type: ignore[list-item]
+mw.Batch("stack10", isa="avx1024")  # type: ignore[arg-type]
+mw.SolverOptions(method="tgs")  # type: ignore[arg-type]
+t.observed("joint_forces", 0)  # type: ignore[arg-type]
+batch.reset(seed=3)
+batch.reset(redraw=True)
 n: int = batch.step_to(1.0)
 not_a_str: str = batch.step_to(1.0)  # type: ignore[assignment]
 s: mw.Scene = mw.scenes.load("ragdoll")

@@ -12,7 +12,8 @@ struct CartPole {
   BodyId cart, pole;
   // Of the rail and the hinge.
   Expression travel = terms::joint_position(JointId(0)), speed = terms::joint_speed(JointId(0));
-  Expression lean = terms::joint_position(JointId(1)), turn = terms::joint_speed(JointId(1));
+  // To the right, clockwise, as Gymnasium's CartPole-v1 counts; the hinge counts counterclockwise.
+  Expression lean = -terms::joint_position(JointId(1)), turn = -terms::joint_speed(JointId(1));
 };
 
 CartPole make(const Task& task, double max_force, int substeps) {
@@ -76,7 +77,7 @@ Task cart_pole_swing_up() {
                        {"speed", world.speed},
                        // The hinge counts from where the pole begins.
                        {"upright", upright, -1, 1},
-                       {"sideways", sin(terms::angle(world.pole)), -1, 1},
+                       {"sideways", -sin(terms::angle(world.pole)), -1, 1},
                        {"turn", world.turn}};
   task.rewards = {{"upright", (1 + upright) / 2 * (1 - 0.1 * square(world.travel))},
                   {"effort", -0.01 * square(terms::action())}};

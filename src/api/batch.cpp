@@ -47,6 +47,10 @@ int Batch::threads() const { return impl_->executor->threads(); }
 Isa Batch::isa() const { return impl_->core->isa(); }
 Precision Batch::precision() const { return impl_->options.precision; }
 std::uint64_t Batch::seed() const { return impl_->options.seed; }
+std::uint64_t Batch::seed_of(int world) const {
+  const auto p = impl_->find(world);
+  return impl_->worlds(p.kind).seed(p.world);
+}
 int Batch::lanes() const { return impl_->core->lanes(); }
 std::string Batch::kernel_table() const {
   return std::string(to_string(isa())) + " " + to_string(precision()) + " x" +

@@ -5,6 +5,7 @@
 
 #include "kernels/data/pair_keys.hpp"
 #include "src/api/batch_data.hpp"
+#include "src/api/observable.hpp"
 #include "src/api/observer_results.hpp"
 #include "src/base/enum_names.hpp"
 
@@ -51,12 +52,11 @@ void check_observers(const Observers& observers) {
 }
 
 void check_observers(const Observers& observers, const Plan& plan) {
-  if (!plan.data().has_trees()) return;
   for (std::size_t i = 0; i < observers.what.size(); ++i) {
-    if (observers.what[i] != Observer::residual) continue;
-    reject("observe.what[" + std::to_string(i) +
-           "] is residual, which worlds of the newton solver do not observe: they are solved to "
-           "their tolerance (SolverOptions::tolerance)");
+    const Observer observer = observers.what[i];
+    if (observable(observer, plan.scene())) continue;
+    reject("observe.what[" + std::to_string(i) + "] is " + to_string(observer) + ": " +
+           why_not_observable(observer, plan.scene()));
   }
 }
 

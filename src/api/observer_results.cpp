@@ -34,10 +34,10 @@ bool wants_frames(const Observers& observers) {
 
 // Observers that trees have something for where their forces are found.
 bool observes_links(const Observers& observers) {
-  constexpr Observer kOf[] = {
-      Observer::links,       Observer::link_inertias, Observer::link_velocities,
-      Observer::link_forces, Observer::dof_forces,    Observer::tendons,
-      Observer::sites};
+  constexpr Observer kOf[] = {Observer::links,           Observer::link_inertias,
+                              Observer::link_velocities, Observer::link_forces,
+                              Observer::dof_forces,      Observer::tendons,
+                              Observer::sites,           Observer::drives};
   return std::any_of(std::begin(kOf), std::end(kOf),
                      [&](Observer o) { return observes(observers, o); });
 }
@@ -155,7 +155,10 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
   Block block;
   auto& view = block.view;
   const auto reals = [&](std::size_t count) { return block.reals.emplace_back(count).data(); };
-  const bool impulses = has(Observer::contacts) || has(Observer::touching);
+  const PlanData& plan = worlds_[k]->data();
+  // Those of trees need no blocks of contacts.
+  const bool forces = has(Observer::link_forces) && !plan.has_trees();
+  const bool impulses = has(Observer::contacts) || has(Observer::touching) || forces;
   view.of_contacts = impulses || has(Observer::penetration);
   for (int l = 0; t.has_contacts && view.of_contacts && l < kernels::kLists; ++l) {
     view.places[l] = reals(observer.place_reals(t, scratch, l));
@@ -167,7 +170,6 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
     block.none_asleep = AlignedBuffer<std::uint32_t>(bodies);
     view.none_asleep = block.none_asleep.data();
   }
-  const PlanData& plan = worlds_[k]->data();
   for (int i = 0; i < kObserverCount; ++i) {
     if (!has(Observer(i))) continue;
     const std::size_t items = items_of(info(Observer(i)).item, plan, observers_);

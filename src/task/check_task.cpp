@@ -8,6 +8,7 @@
 
 #include "manyworlds/plan.hpp"
 #include "manyworlds/task.hpp"
+#include "src/api/observable.hpp"
 #include "src/api/observer_results.hpp"
 #include "src/base/float_mode.hpp"
 #include "src/plan/plan_data.hpp"
@@ -245,7 +246,15 @@ class TaskChecker {
         break;
       case Term::generalized_position:
       case Term::generalized_velocity:
-        if (plan_) {
+        if (task_.scene.options.solver.method != Solver::newton) {
+          const bool speed = n.term == Term::generalized_velocity;
+          issues_.push_back(
+              {place, to_string(e) + ": " +
+                          needs_newton(task_.scene, speed ? "joint_speed of a joint or velocity of "
+                                                            "a body"
+                                                          : "joint_position of a joint or position "
+                                                            "of a body")});
+        } else if (plan_) {
           const bool velocity = n.term == Term::generalized_velocity;
           const ItemKind of = velocity ? ItemKind::dof : ItemKind::coordinate;
           bounded(n.index, static_cast<std::size_t>(plan_->items(of)),
@@ -311,6 +320,11 @@ class TaskChecker {
     const Expression::Node& n = e.node();
     const ObservedInfo& what = *observed_by(n);
     const Scene& scene = task_.scene;
+    if (!observable(what.observer, scene)) {
+      issues_.push_back(
+          {place, to_string(e) + ": " + why_not_observable(static_cast<Observed>(n.of), scene)});
+      return;
+    }
     const auto item = static_cast<std::size_t>(n.index);
     switch (info(what.observer).item) {
       case ObservedItem::world: bounded(n.index, 1, "the item"); break;

@@ -20,10 +20,9 @@ Observers everything(const Plan& plan) {
   observers.what = {Observer::contacts, Observer::touching,    Observer::penetration,
                     Observer::motion,   Observer::joints,      Observer::joint_loads,
                     Observer::residual, Observer::acceleration};
-  for (const Observer of_trees :
-       {Observer::links, Observer::link_inertias, Observer::link_velocities, Observer::link_forces,
-        Observer::dof_forces, Observer::tendons, Observer::sites}) {
-    observers.what.push_back(of_trees);
+  for (const Observer of_bodies :
+       {Observer::links, Observer::link_forces, Observer::sites, Observer::drives}) {
+    observers.what.push_back(of_bodies);
   }
   for (int i = 0; i < 12; ++i) {
     Ray ray;
@@ -48,6 +47,7 @@ std::vector<double> seen(const Batch& batch, int world, std::optional<Observer> 
   for (int i = 0; i < kObservedCount; ++i) {
     const auto what = static_cast<Observed>(i);
     if (info(what).observer == but) continue;
+    if (!observable(info(what).observer, batch.plan().scene())) continue;
     std::vector<double> v(batch.size(what) / static_cast<std::size_t>(batch.worlds()));
     batch.read(what, world, v);
     all.insert(all.end(), v.begin(), v.end());

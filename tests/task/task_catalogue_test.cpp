@@ -61,7 +61,7 @@ TEST_CASE("every named task is in order and has its name", "[task][fast]") {
 TEST_CASE("CartPole is balanced by linear feedback and not by chance", "[task][fast]") {
   const Task task = task_of("CartPole");
   const double balanced = mean_return(task, [](const float* s, float*, std::int64_t& choice) {
-    choice = s[0] + 2 * s[1] - 30 * s[2] - 6 * s[3] > 0 ? 1 : 0;
+    choice = s[0] + 2 * s[1] + 30 * s[2] + 6 * s[3] > 0 ? 1 : 0;
   });
   CHECK(balanced > 495);
   CHECK(random_return(task) < 40);
@@ -117,12 +117,12 @@ TEST_CASE("CartPoleSwingUp: swinging by energy, then balancing", "[task]") {
   const double swung = mean_return(task, [](const float* s, float* a, std::int64_t&) {
     const float x = s[0], v = s[1], upright = s[2], sideways = s[3], turn = s[4];
     if (upright > 0.9f && std::abs(turn) < 4) {
-      a[0] = (x + 2 * v - 40 * sideways - 8 * turn) / 15;
+      a[0] = (x + 2 * v + 40 * sideways + 8 * turn) / 15;
     } else {
       // Pushes that add energy until the pole has what it needs, and back to the middle.
       const float energy = 0.5f * turn * turn * 0.667f / 9.8f + upright - 1;
       a[0] =
-          (energy < 0 ? 0.6f : -0.2f) * (turn * upright > 0 ? 1.0f : -1.0f) - 0.3f * x - 0.1f * v;
+          (energy < 0 ? 0.6f : -0.2f) * (turn * upright < 0 ? 1.0f : -1.0f) - 0.3f * x - 0.1f * v;
     }
   });
   CHECK(swung > 350);

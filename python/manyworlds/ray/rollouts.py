@@ -13,7 +13,7 @@ from .. import arrays, search
 from ..files import File
 from ..in_memory import InMemory
 from ..kinds import MAX_WORLDS, AnyScene, plans_of
-from ..names import Isa, Precision
+from ..names import FieldName, Isa, Precision
 from ..plan import Plan
 from ..rollout import MAX_STEPS
 from ..search.loop import Goal, SeedsBy
@@ -74,7 +74,7 @@ class Rollouts(InMemory):
         cpus: Optional[float] = None,
         resources: Optional[Mapping[str, float]] = None,
         block: Optional[int] = None,
-        fields: tuple[str, ...] = (),
+        fields: tuple[FieldName, ...] = (),
         threads: Optional[int] = None,
         precision: Precision = "f32",
         isa: Optional[Isa] = None,

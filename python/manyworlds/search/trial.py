@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import arrays
 from ..batch import Batch
 from ..kinds import AnyScene
-from ..names import Isa, Observer, Precision
+from ..names import FieldName, Isa, Observer, Precision
 from ..rollout import MAX_STEPS, Trajectories
 from ..scene import Point, Ray
 from .numbers import Numbers
@@ -48,7 +48,7 @@ class Trial(Rounds):
         begin: Optional[Callable[[Run], None]] = None,
         controls: Union[ArrayLike, Callable[[Run], ArrayLike], None] = None,
         drive: Optional[Callable[[Run], Trajectories]] = None,
-        fields: Sequence[str] = (),
+        fields: Sequence[FieldName] = (),
         every: int = 1,
         worlds: Optional[int] = None,
         threads: Optional[int] = None,
