@@ -134,6 +134,16 @@ add_test(NAME check_floors
 add_test(NAME tools_run
   COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/run_test.py")
 
+# Completion in shells, JSON as docs/cli-json.md says, help and terminals.
+if(TARGET manyworlds_cli)
+  foreach(name IN ITEMS completion cli_json cli_terminal)
+    add_test(NAME ${name}
+      COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/${name}_test.py"
+              $<TARGET_FILE:manyworlds_cli>)
+    set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+  endforeach()
+endif()
+
 foreach(name IN LISTS MW_KERNEL_SETS)
   add_test(NAME check_kernel_symbols_${name}
     COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_kernel_symbols.py"

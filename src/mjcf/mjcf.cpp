@@ -53,7 +53,8 @@ std::string with_real_names(std::string text, const std::vector<mjcf::VirtualFil
 }
 
 // Versions whose structs have one layout and with which the tests pass
-// (tools/scripts/check_mujoco_versions). Any of them may be loaded where headers of another were used.
+// (tools/scripts/check_mujoco_versions). Any of them may be loaded where headers of another were
+// used.
 constexpr std::array kTestedVersions = {4000000, 4000001};
 
 bool is_tested(int version) {
@@ -64,8 +65,8 @@ bool is_tested(int version) {
 void check_version() {
   const int found = mj_version();
   if (found == mjVERSION_HEADER || (is_tested(found) && is_tested(mjVERSION_HEADER))) return;
-  throw mjcf::MujocoFailure("MuJoCo's library is version " + std::to_string(found) +
-                            "; expected " + std::to_string(mjVERSION_HEADER));
+  throw mjcf::MujocoFailure("MuJoCo's library is version " + std::to_string(found) + "; expected " +
+                            std::to_string(mjVERSION_HEADER));
 }
 
 mjcf::Model compile_model(const std::string& xml, const mjVFS* files) {
