@@ -163,6 +163,11 @@ foreach(header IN LISTS mw_headers)
             -include ${header} -x c++ /dev/null)
 endforeach()
 
+# As C++17 each stops with one message.
+add_test(NAME headers_cxx17
+  COMMAND ${CMAKE_COMMAND} -D SOURCE_DIR=${PROJECT_SOURCE_DIR} -D EIGEN=${mw_eigen_include}
+          -D COMPILER=${CMAKE_CXX_COMPILER} -P "${PROJECT_SOURCE_DIR}/cmake/TestCxx17.cmake")
+
 # Every version of clang-format decides differently; Debian 12's is the one that counts.
 find_program(MW_CLANG_FORMAT NAMES clang-format-14 clang-format)
 mark_as_advanced(MW_CLANG_FORMAT)
