@@ -43,6 +43,21 @@ if(MW_LIVE)
   mw_define(tools/cli/live_command.cpp MW_HAVE_LIVE=1)
   target_link_libraries(manyworlds_cli PRIVATE manyworlds_live)
 endif()
+# Scripts that complete the program's commands in shells, made by itself.
+if(NOT CMAKE_CROSSCOMPILING)
+  set(mw_completion "${PROJECT_BINARY_DIR}/completion")
+  file(MAKE_DIRECTORY "${mw_completion}")
+  add_custom_command(TARGET manyworlds_cli POST_BUILD
+    COMMAND manyworlds_cli completion bash > "${mw_completion}/manyworlds"
+    COMMAND manyworlds_cli completion zsh > "${mw_completion}/_manyworlds"
+    VERBATIM)
+  if(MW_INSTALL)
+    install(FILES "${mw_completion}/manyworlds" COMPONENT program
+            DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
+    install(FILES "${mw_completion}/_manyworlds" COMPONENT program
+            DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions")
+  endif()
+endif()
 if(MW_INSTALL)
   # From where it stands to the libraries that are installed with it.
   file(RELATIVE_PATH mw_to_libraries "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}")

@@ -29,6 +29,13 @@ foreach(example IN ITEMS embed lander birds arrays)
   mw_install_test(${example} TestEmbed -D SOURCE_DIR=${mw_examples}/${example})
 endforeach()
 
+# The library within another project.
+add_test(NAME subproject
+  COMMAND ${CMAKE_COMMAND} -D BUILD_DIR=${PROJECT_BINARY_DIR} -D SOURCE_DIR=${PROJECT_SOURCE_DIR}
+          -D COMPILER=${CMAKE_CXX_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
+          -P "${PROJECT_SOURCE_DIR}/cmake/TestSubproject.cmake")
+set_tests_properties(subproject PROPERTIES TIMEOUT 300)
+
 find_program(MW_PKG_CONFIG NAMES pkg-config pkgconf)
 mark_as_advanced(MW_PKG_CONFIG)
 # mw_test_pkg_config(PACKAGE SOURCE): where there is pkg-config to ask.

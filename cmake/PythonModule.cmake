@@ -86,7 +86,10 @@ endif()
 if(TARGET manyworlds::mjcf)
   mw_python_module(_mjcf "${mw_python_dir}/src/mjcf/module.cpp" ${mw_python_converters})
   mw_python_links(manyworlds_python_mjcf manyworlds::mjcf)
-  target_link_libraries(manyworlds_python_mjcf PRIVATE MuJoCo::MuJoCo tinyxml2::tinyxml2)
+  # Not with libmujoco, whose name has a version: manyworlds/mjcf.py loads the installed one before. What
+  # that one lacks is an error at import (now), not in a call.
+  target_link_libraries(manyworlds_python_mjcf PRIVATE tinyxml2::tinyxml2)
+  target_link_options(manyworlds_python_mjcf PRIVATE -Wl,-z,now)
 endif()
 # Our warnings are for our files.
 set_target_properties(nanobind-static PROPERTIES COMPILE_WARNING_AS_ERROR OFF)

@@ -135,6 +135,16 @@ foreach(name IN ITEMS run ci docs site tables)
     COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/${name}_test.py")
 endforeach()
 
+# Completion in shells, JSON as docs/cli-json.md says, help and terminals.
+if(TARGET manyworlds_cli)
+  foreach(name IN ITEMS completion cli_json cli_terminal)
+    add_test(NAME ${name}
+      COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tests/tools/${name}_test.py"
+              $<TARGET_FILE:manyworlds_cli>)
+    set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+  endforeach()
+endif()
+
 foreach(name IN LISTS MW_KERNEL_SETS)
   add_test(NAME check_kernel_symbols_${name}
     COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_kernel_symbols.py"
@@ -153,6 +163,11 @@ foreach(header IN LISTS mw_headers)
             -I "${PROJECT_SOURCE_DIR}/include" -isystem ${mw_eigen_include}
             -include ${header} -x c++ /dev/null)
 endforeach()
+
+# As C++17 each stops with one message.
+add_test(NAME headers_cxx17
+  COMMAND ${CMAKE_COMMAND} -D SOURCE_DIR=${PROJECT_SOURCE_DIR} -D EIGEN=${mw_eigen_include}
+          -D COMPILER=${CMAKE_CXX_COMPILER} -P "${PROJECT_SOURCE_DIR}/cmake/TestCxx17.cmake")
 
 # Every version of clang-format decides differently; Debian 12's is the one that counts.
 find_program(MW_CLANG_FORMAT NAMES clang-format-14 clang-format)

@@ -1,6 +1,6 @@
 """A bridge that carries a load with least mass: CMA-ES over the thickness of a truss's bars.
 
-    pip install "manyworlds[search]"
+    pip install "manyworlds-sim[search]"
     python bridge.py --page bridge.html
 
 A Warren truss of timber: bars hinged to iron nodes, on a pin and a roller, and a crate that hangs from each inner

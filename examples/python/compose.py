@@ -1,6 +1,6 @@
 """A task composed in Python: the scene, what a policy does and sees, and what it is paid for.
 
-    pip install manyworlds
+    pip install manyworlds-sim
     python compose.py
 
 It is the very CartPole that has a name: the same bits in every step.

@@ -1,6 +1,6 @@
 """Design search: the shot that displaces most boxes, by CMA-ES over BirdSling.
 
-    pip install "manyworlds[search]"
+    pip install "manyworlds-sim[search]"
     python design_search.py --generations 8
 
 One world is one candidate: 10,000 shots a generation, all of them simulated at once.

@@ -1,6 +1,6 @@
 """A gait by CMA-ES: 4,096 candidates run at once, one world each.
 
-    pip install "manyworlds[gym,mjcf,search]"
+    pip install "manyworlds-sim[gym,mjcf,search]"
     python gait_search.py
 
 The robot is Gymnasium's HalfCheetah-v5. Hips, knees and ankles follow sines, the fore leg with a lag behind the

@@ -1,6 +1,6 @@
 """A picture of every task that has a name, after some random actions: docs/tasks.png.
 
-pip install "manyworlds[plot]"
+pip install "manyworlds-sim[plot]"
 python gallery.py --out tasks.png
 """
 

@@ -1,6 +1,6 @@
 """System identification: friction and damping of a robot from a recording of its motion, by CMA-ES.
 
-    pip install "manyworlds[search]"
+    pip install "manyworlds-sim[search]"
     python identification.py
 
 A cheetah with hidden friction under its feet and hidden damping in its six joints moves under known torques; its

@@ -1,6 +1,6 @@
 """A launcher: the least counterweight with which a trebuchet hits a mark, by CMA-ES.
 
-    pip install "manyworlds[search]"
+    pip install "manyworlds-sim[search]"
     python launcher.py --mark 60 --page launcher.html
 
 One world is one candidate: a counterweight, a ball and the step in which the sling lets go of it. The beam falls, the

@@ -1,6 +1,6 @@
 """Planning without learning: model predictive path integral control (MPPI) by branching worlds.
 
-    pip install manyworlds
+    pip install manyworlds-sim
     python mppi.py                          # swings a pole up, and keeps it up
     python mppi.py --task humanoid          # stands up from its back, and keeps standing
 

@@ -1,6 +1,6 @@
 """PPO: many worlds on the CPU, the network in JAX on the same CPU (learner.py).
 
-    pip install manyworlds[gym,mjcf] jax optax
+    pip install "manyworlds-sim[gym,mjcf]" jax optax
     python ppo.py --task LunarLander --seed 1 --seconds 300 --json lander.json
     python ppo.py --task HalfCheetah-v5 --seed 1 --json cheetah.json --policy cheetah.npz
     python ppo.py --task compose:make_task

@@ -1,6 +1,6 @@
 """How fast is it? Random actions, by the arrays of Environment and by Gymnasium's interface.
 
-pip install manyworlds[gym]
+pip install "manyworlds-sim[gym]"
 python throughput.py --task LunarLander --worlds 4096
 """
 

@@ -1,6 +1,6 @@
 """A walker's limb lengths and its gait, found together by CMA-ES.
 
-    pip install "manyworlds[search]"
+    pip install "manyworlds-sim[search]"
     python walker.py --page walker.html
 
 One world is one candidate. Where a joint is on its bodies is the same in every world, so limbs are made of two tubes,

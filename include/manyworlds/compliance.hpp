@@ -6,6 +6,8 @@
 // `midpoint`.
 #pragma once
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 struct Compliance {

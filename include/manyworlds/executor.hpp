@@ -2,6 +2,8 @@
 // own; derive from this to step on yours instead (a TBB arena, a job system, a thread pool).
 #pragma once
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 class Executor {

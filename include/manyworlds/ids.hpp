@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 template <class Of>

@@ -22,6 +22,8 @@
 // than the default, since nothing touches them.
 #pragma once
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 enum class Integrator {

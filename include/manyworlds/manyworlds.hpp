@@ -1,6 +1,8 @@
 // Everything a user needs in one include.
 #pragma once
 
+#include "manyworlds/require_cxx20.hpp"  // first
+
 #include "manyworlds/batch.hpp"
 #include "manyworlds/environment.hpp"
 #include "manyworlds/executor.hpp"

@@ -1,6 +1,8 @@
 // What a list of members is (members.hpp), and what it says of each.
 #pragma once
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 // Whether plans that differ in a member have different fingerprints (Plan::fingerprint), and so

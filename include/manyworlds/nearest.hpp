@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 // Edits (insert, remove or change a letter) that turn one word into the other.

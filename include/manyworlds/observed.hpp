@@ -3,6 +3,8 @@
 // nothing, and defines nothing that objects could share.
 #pragma once
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 // X(observer, what has numbers of its own, when they are taken, what it sees)

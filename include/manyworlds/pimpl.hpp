@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 // The members are defined in src/base/pimpl.hpp; Impl::kName is what the object is called.

@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 // A snapshot that cannot be read or does not fit; what() names the place, what was found and what

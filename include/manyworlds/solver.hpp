@@ -32,6 +32,8 @@
 // Springs, limits with springs and drives keep their equations in all.
 #pragma once
 
+#include "manyworlds/require_cxx20.hpp"
+
 namespace manyworlds {
 
 enum class Solver {

@@ -1,6 +1,6 @@
 """Scenes from MJCF, MuJoCo's model format: ``manyworlds.mjcf.load("pile.xml")``.
 
-MuJoCo's own library reads the file; ``pip install "manyworlds[mjcf]"`` brings it. What is read: free
+MuJoCo's own library reads the file; ``pip install "manyworlds-sim[mjcf]"`` installs it. What is read: free
 bodies and static geoms of spheres, capsules, cylinders, boxes, meshes (their convex hulls), planes and
 height fields, and the equality constraints connect and weld. Whatever else would change the motion,
 such as hinges and slides, is an error that names it.
@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import files
+from ._distribution import install_command, needs
 from .files import File
 from .scene import Scene
 
@@ -36,20 +37,47 @@ class MjcfWarning(UserWarning):
     """Something of the file that acts otherwise than it does in MuJoCo."""
 
 
+# Versions of mujoco-core with which the tests pass and whose C structs have one layout
+# (tools/scripts/check_mujoco_versions). pyproject.toml and src/mjcf/mjcf.cpp have the same list.
+_TESTED = ("4.0.0", "4.0.1")
+
+
+def _library() -> Path:
+    """The libmujoco of the installed package mujoco-core. ImportError if there is none that was tested."""
+    with needs("mujoco", extra="mjcf", what="manyworlds.mjcf"):
+        spec = importlib.util.find_spec("mujoco")
+        if spec is None:
+            raise ModuleNotFoundError("No module named 'mujoco'", name="mujoco")
+    folders = [Path(folder) for folder in spec.submodule_search_locations or []]
+    found = {
+        library.name.removeprefix("libmujoco.so."): library
+        for folder in folders
+        for library in folder.glob("libmujoco.so.*")
+    }
+    if len(found) == 1 and found.keys() <= set(_TESTED):
+        return next(iter(found.values()))
+    where = ", ".join(str(folder) for folder in folders)
+    if len(found) > 1:  # each of the packages has overwritten files of the other
+        remedy = f"pip uninstall mujoco mujoco-core, then {install_command('mjcf')}"
+    else:
+        remedy = install_command("mjcf")
+    raise ImportError(
+        f"manyworlds.mjcf found MuJoCo {' and '.join(sorted(found)) or 'without its library'} in {where}; "
+        f"expected one of {', '.join(_TESTED)}; fix it with: {remedy}"
+    )
+
+
 def _extension() -> Any:
-    """The extension module, with the libmujoco that the package mujoco has, if it is installed."""
-    found = importlib.util.find_spec("mujoco")
-    for folder in (found.submodule_search_locations or []) if found else []:
-        for library in sorted(Path(folder).glob("libmujoco.so.*")):
-            ctypes.CDLL(str(library))  # from now on the loader knows it by its name
-    try:
-        from . import _mjcf
-    except ImportError as error:
-        if "libmujoco" in str(error):
-            wanted = 'the MuJoCo that it was built with; pip install "manyworlds[mjcf]"'
-        else:
-            wanted = "a build with MuJoCo's headers (tools/run --all --setup-only, then pip install .)"
-        raise ImportError(f"manyworlds.mjcf needs {wanted}: {error}") from error
+    """The extension module. It is not linked with libmujoco, whose file name has a version, and finds the
+    functions of the installed one because that is loaded first, for the whole process."""
+    if importlib.util.find_spec("manyworlds._mjcf") is None:
+        raise ImportError(
+            "manyworlds.mjcf needs a build with MuJoCo's headers "
+            "(tools/run --all --setup-only, then pip install .)"
+        )
+    ctypes.CDLL(str(_library()), mode=ctypes.RTLD_GLOBAL)
+    from . import _mjcf
+
     return _mjcf
 
 

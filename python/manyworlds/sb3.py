@@ -1,4 +1,4 @@
-"""The tasks as vector environments of Stable-Baselines3, which must be installed:
+"""The tasks as vector environments of Stable-Baselines3 (``pip install "manyworlds-sim[sb3]"``):
 
 from manyworlds.sb3 import VecEnv
 from stable_baselines3 import PPO
@@ -11,11 +11,15 @@ from collections.abc import Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
-from gymnasium.vector import AutoresetMode
-from stable_baselines3.common.vec_env import VecEnv as _VecEnv
-
-from .gym import VectorEnv
+from ._distribution import needs
 from .tasks import Task
+
+with needs("gymnasium", extra="sb3", what="manyworlds.sb3"):
+    from gymnasium.vector import AutoresetMode
+
+    from .gym import VectorEnv
+with needs("stable_baselines3", extra="sb3", what="manyworlds.sb3"):
+    from stable_baselines3.common.vec_env import VecEnv as _VecEnv
 
 
 class VecEnv(_VecEnv):  # type: ignore[misc]

@@ -1,6 +1,7 @@
 """MJCF files: scenes with MuJoCo's own numbers, and clear errors."""
 
 import importlib.util
+import sys
 import tomllib
 from pathlib import Path
 
@@ -106,8 +107,41 @@ def test_what_asks_for_too_much_is_refused_and_limits_widen():
         mw.mjcf.load_string(crowd, limits={"copies": 9.5})
 
 
-def test_the_extra_is_the_mujoco_that_the_library_is_built_with():
+def test_the_extra_accepts_the_versions_that_were_tested():
+    tested = mw.mjcf._TESTED
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     (extra,) = project["optional-dependencies"]["mjcf"]
+    assert extra == f"mujoco-core>={tested[0]},<={tested[-1]}"
     fetched = (ROOT / "tools/scripts/fetch_mujoco.sh").read_text().split("\nversion=")[1].split()[0]
-    assert extra == f"mujoco-core=={fetched}"
+    assert fetched in tested
+    source = (ROOT / "src/mjcf/mjcf.cpp").read_text()
+    numbers = source.split("kTestedVersions = {")[1].split("}")[0].split(",")
+    parts = [[int(part) for part in version.split(".")] for version in tested]
+    assert [int(n) for n in numbers] == [a * 1_000_000 + b * 1000 + c for a, b, c in parts]
+    script = (ROOT / "tools/scripts/check_mujoco_versions").read_text()
+    assert f"versions=({' '.join(tested)})" in script
+
+
+@pytest.mark.parametrize(
+    ("versions", "message"),
+    [
+        (["3.17.0"], r"found MuJoCo 3\.17\.0 in .*; expected one of 4\.0\.0, .*pip install 'manyworlds-sim\[mjcf\]'"),
+        (["3.17.0", "4.0.1"], r"found MuJoCo 3\.17\.0 and 4\.0\.1 in .*pip uninstall mujoco mujoco-core, then pip"),
+        ([], r"found MuJoCo without its library in "),
+    ],
+)
+def test_a_mujoco_that_was_not_tested_is_refused(versions, message, monkeypatch, tmp_path):
+    package = tmp_path / "mujoco"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    for version in versions:
+        (package / f"libmujoco.so.{version}").touch()
+    monkeypatch.delitem(sys.modules, "mujoco", raising=False)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    with pytest.raises(ImportError, match=message):
+        mw.mjcf.load_string(BALL)
+
+
+def test_the_module_is_not_linked_with_one_version():
+    module = importlib.util.find_spec("manyworlds._mjcf").origin
+    assert b"libmujoco.so" not in Path(module).read_bytes()

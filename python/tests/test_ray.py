@@ -15,7 +15,7 @@ import pytest
 import manyworlds as mw
 from manyworlds import search
 
-ray = pytest.importorskip("ray", reason="Ray is not installed (pip install 'manyworlds[ray]')")
+ray = pytest.importorskip("ray", reason="Ray is not installed (pip install 'manyworlds-sim[ray]')")
 
 from manyworlds.ray import Rollouts, ShardError  # noqa: E402
 
@@ -334,7 +334,7 @@ with Rollouts("CartPole", 4, shards=0) as here:
 try:
     Rollouts("CartPole", 4, shards=1)
 except ModuleNotFoundError as error:
-    assert "pip install" in str(error)
+    assert "pip install 'manyworlds-sim[ray]'" in str(error)
 else:
     raise AssertionError
 """

@@ -1,5 +1,6 @@
 #include "manyworlds/mjcf.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -51,11 +52,25 @@ std::string with_real_names(std::string text, const std::vector<mjcf::VirtualFil
   return text;
 }
 
+// Versions whose structs have one layout and with which the tests pass
+// (tools/scripts/check_mujoco_versions). Any of them may be loaded where headers of another were
+// used.
+constexpr std::array kTestedVersions = {4000000, 4000001};
+
+bool is_tested(int version) {
+  return std::find(kTestedVersions.begin(), kTestedVersions.end(), version) !=
+         kTestedVersions.end();
+}
+
+void check_version() {
+  const int found = mj_version();
+  if (found == mjVERSION_HEADER || (is_tested(found) && is_tested(mjVERSION_HEADER))) return;
+  throw mjcf::MujocoFailure("MuJoCo's library is version " + std::to_string(found) + "; expected " +
+                            std::to_string(mjVERSION_HEADER));
+}
+
 mjcf::Model compile_model(const std::string& xml, const mjVFS* files) {
-  if (mj_version() != mjVERSION_HEADER) {
-    throw mjcf::MujocoFailure("MuJoCo's library is version " + std::to_string(mj_version()) +
-                              "; expected " + std::to_string(mjVERSION_HEADER));
-  }
+  check_version();
   std::array<char, 2048> error{};
   mjcf::SpecPtr spec(
       mj_parseXMLString(xml.c_str(), files, error.data(), static_cast<int>(error.size())));

@@ -7,6 +7,7 @@ write down what they were asked for, and a program that says how it was called.
 
 import os
 import pathlib
+import pty
 import shutil
 import subprocess
 import sys
@@ -190,6 +191,20 @@ class Run(unittest.TestCase):
 
 
 class Progress(unittest.TestCase):
+    def test_a_dumb_terminal_gets_no_escapes(self):
+        code = ("import progress; s = progress.Screen('x'); s.tell('1 of 2'); s.tell('2 of 2'); "
+                "s.erase()")
+        for term, escapes in (("xterm", True), ("dumb", False), (None, False)):
+            environment = {k: v for k, v in os.environ.items() if k != "TERM"}
+            environment.update({"TERM": term} if term else {}, PYTHONPATH=str(ROOT / "tools/scripts"))
+            terminal, end = pty.openpty()
+            subprocess.run([sys.executable, "-c", code], stderr=end, env=environment, check=True)
+            os.close(end)
+            text = os.read(terminal, 4096)
+            os.close(terminal)
+            self.assertEqual(b"\x1b" in text, escapes, text)
+            self.assertEqual(text.count(b"\n"), 0 if escapes else 2, text)
+
     def test_times_for_people(self):
         for seconds, text in ((1, "5 s"), (42, "40 s"), (79, "1 min 20 s"), (120, "2 min"),
                               (430, "7 min")):

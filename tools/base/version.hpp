@@ -2,7 +2,7 @@
 #pragma once
 
 #ifndef MW_VERSION
-#define MW_VERSION "0.1.0"
+#define MW_VERSION "0.2.0"
 #endif
 
 namespace manyworlds::tools {

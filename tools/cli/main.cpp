@@ -21,6 +21,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "completion.hpp"
 #include "options.hpp"
 #include "src/base/output_file.hpp"
 #include "tools/base/tell.hpp"
@@ -46,6 +47,7 @@ struct AllOptions {
   ViewArguments view;
   ReportOptions report;
   ReportPageOptions report_page;
+  std::string shell;  // of completion
 };
 
 constexpr const char* kAppFooter =
@@ -156,6 +158,7 @@ void add_verify(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command = app.add_subcommand(
       "verify", "Check on this machine that a world's bits do not depend on how it is run");
   command->add_flag("--quick", all.verify.quick, "fewer scenes and steps");
+  command->add_flag("--json", all.verify.json, "print JSON instead of text");
   add_scene_list(*command, all.verify.scenes);
   add_seed(*command, all.verify_seed, "seed of the worlds compared (default: 1)");
   command->footer(
@@ -211,6 +214,7 @@ void add_soak(CLI::App& app, AllOptions& all, int& code) {
   add_plan_options(*command, all.soak);
   add_seed(*command, all.soak.seed, "world i draws from seed + i (default: random, printed)");
   add_dump_option(*command, all.soak);
+  add_json_option(*command, all.soak);
   command->footer(
       "Examples:\n"
       "  manyworlds soak bin-boxes\n"
@@ -507,9 +511,12 @@ int run_program(int argc, char** argv) {
   add_view(app, all, code);
   add_report(app, all, code);
   add_info(app, all, code);
+  add_completion(app, all.shell, code);
   try {
     app.parse(argc, argv);  // runs the subcommand's callback
   } catch (const CLI::Success& help) {
+    const std::vector<std::string> unknown = app.remaining(true);  // "nosuch --help"
+    if (!unknown.empty()) return complain(describe(CLI::ExtrasError("manyworlds", unknown), app));
     return after_output(app.exit(help));
   } catch (const CLI::ParseError& error) {
     return complain(describe(error, app));

@@ -84,6 +84,7 @@ struct VerifyOptions {
   std::vector<std::string> scenes;  // empty: a chosen handful
   std::uint64_t seed = 1;
   bool quick = false;
+  bool json = false;
 };
 
 struct CompareOptions {

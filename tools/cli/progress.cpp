@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 
 #include "tools/base/tell.hpp"
@@ -15,6 +17,12 @@ constexpr std::chrono::seconds kPatience{2};
 constexpr std::chrono::milliseconds kRedraw{100};
 constexpr int kBarWidth = 30;  // characters
 
+// A terminal that can erase a line; TERM=dumb says that it cannot.
+bool takes_escapes() {
+  const char* term = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && term != nullptr && std::string_view(term) != "dumb";
+}
+
 double seconds(std::chrono::steady_clock::duration d) {
   return std::chrono::duration<double>(d).count();
 }
@@ -24,7 +32,7 @@ double seconds(std::chrono::steady_clock::duration d) {
 Progress::Progress(std::string label, std::int64_t total)
     : label_(std::move(label)),
       total_(std::max<std::int64_t>(total, 1)),
-      terminal_(isatty(STDERR_FILENO) == 1),
+      terminal_(takes_escapes()),
       start_(std::chrono::steady_clock::now()),
       last_draw_(start_) {}
 

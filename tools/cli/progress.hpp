@@ -1,5 +1,5 @@
-// A progress bar for people: on standard error, only when that is a terminal, and only once a job
-// has run for two seconds.
+// A progress bar on standard error. It appears if that is a terminal which takes escape sequences
+// (TERM is set and not "dumb"), once a job has run for two seconds.
 #pragma once
 
 #include <chrono>

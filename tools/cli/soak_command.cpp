@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <random>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "job.hpp"
@@ -23,6 +26,34 @@ using tools::counted, tools::length;
 constexpr int kWorldsAtOnce = 1024;
 constexpr std::size_t kLostShownBySoak = 20;
 
+void print_text(const LostWorlds& worlds, double seconds, double deepest) {
+  fmt::print("  {:<13}{}\n", "time", fmt::format("{:.3g} s", seconds));
+  fmt::print("  {:<13}{} at most, at the end\n", "penetration", length(deepest));
+  fmt::print("  {:<13}{}\n", "overflowed", worlds.overflowed());
+  fmt::print("  {:<13}{}\n", "lost worlds", worlds.lost().size());
+  for (const auto& [reason, count] : worlds.by_reason()) {
+    fmt::print("    {:<11}{}\n", count, reason);
+  }
+}
+
+// The lost and flagged worlds, and how to see the first of them again.
+void add_lost(nlohmann::ordered_json& json, const LostWorlds& worlds, const JobOptions& options,
+              int steps) {
+  std::int64_t lost_worlds = 0;
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const LostWorld& world : worlds.lost()) {
+    lost_worlds += lost(world.status) ? 1 : 0;
+    if (list.size() >= kLostShownBySoak) continue;
+    list.push_back({{"world", world.world},
+                    {"seed", world.seed},
+                    {"status", to_string(world.status)},
+                    {"command", reproduce_command(options, steps, world.seed)}});
+  }
+  json["lost_worlds"] = lost_worlds;
+  json["diverged_worlds"] = static_cast<std::int64_t>(worlds.lost().size()) - lost_worlds;
+  json["first_lost"] = std::move(list);
+}
+
 }  // namespace
 
 int soak_command(const JobOptions& options) {
@@ -37,6 +68,8 @@ int soak_command(const JobOptions& options) {
   double seconds = 0;
   std::int64_t whole = 0;  // worlds that took all steps
   Timed last;
+  std::string kernels;
+  int threads = 0;
   {
     const std::int64_t all = options.worlds;
     const std::int64_t batches = (all + kWorldsAtOnce - 1) / kWorldsAtOnce;
@@ -47,9 +80,13 @@ int soak_command(const JobOptions& options) {
       Batch batch = make_batch(job, options, count, batch_seed, options.threads);
       const RandomControls controls = asked_controls(batch, options, batch_seed);
       if (first == 0) {
+        kernels = batch.kernel_table();
+        threads = batch.threads();
+      }
+      if (first == 0 && !options.json) {
         fmt::print("{}: {} x {}, seed {}, {}, {}\n", options.scene,
-                   counted(options.worlds, "world"), counted(job.steps, "step"), seed,
-                   batch.kernel_table(), counted(batch.threads(), "thread"));
+                   counted(options.worlds, "world"), counted(job.steps, "step"), seed, kernels,
+                   counted(threads, "thread"));
         std::fflush(stdout);
       }
       dumps.watch(batch, first);
@@ -62,12 +99,22 @@ int soak_command(const JobOptions& options) {
     }
   }
 
-  fmt::print("  {:<13}{}\n", "time", fmt::format("{:.3g} s", seconds));
-  fmt::print("  {:<13}{} at most, at the end\n", "penetration", length(deepest));
-  fmt::print("  {:<13}{}\n", "overflowed", worlds.overflowed());
-  fmt::print("  {:<13}{}\n", "lost worlds", worlds.lost().size());
-  for (const auto& [reason, count] : worlds.by_reason()) {
-    fmt::print("    {:<11}{}\n", count, reason);
+  if (options.json) {
+    nlohmann::ordered_json json = {{"scene", options.scene},
+                                   {"worlds", options.worlds},
+                                   {"worlds_done", whole},
+                                   {"steps", job.steps},
+                                   {"seed", seed},
+                                   {"kernels", kernels},
+                                   {"threads", threads},
+                                   {"seconds", seconds},
+                                   {"max_penetration_m", deepest},
+                                   {"overflowed_worlds", worlds.overflowed()}};
+    add_lost(json, worlds, options, job.steps);
+    if (tools::interrupted() != 0) json["interrupted"] = tools::interrupt_name();
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    print_text(worlds, seconds, deepest);
   }
   std::fflush(stdout);
   print_lost(worlds, options, job.steps, kLostShownBySoak);

@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "job.hpp"
@@ -312,6 +314,32 @@ void print_row(const std::string& scene, Precision precision, const Verifier& ve
   std::fflush(stdout);
 }
 
+nlohmann::ordered_json row_json(const std::string& scene, Precision precision,
+                                const Verifier& verifier) {
+  nlohmann::ordered_json compared = nlohmann::ordered_json::object();
+  nlohmann::ordered_json different = nlohmann::ordered_json::object();
+  for (std::size_t column = 0; column < kColumns; ++column) {
+    compared[kNames[column]] = verifier.tally().compared[column];
+    different[kNames[column]] = verifier.tally().different[column];
+  }
+  return {{"scene", scene},
+          {"precision", to_string(precision)},
+          {"compared", compared},
+          {"different", different},
+          {"hash", hex(verifier.hash())}};
+}
+
+void print_json(const VerifyOptions& options, nlohmann::ordered_json rows, long long compared,
+                long long different, const std::vector<std::string>& differences) {
+  nlohmann::ordered_json isas = nlohmann::ordered_json::array();
+  for (const Isa isa : available_isas()) isas.push_back(to_string(isa));
+  const nlohmann::ordered_json json = {
+      {"seed", options.seed},      {"worlds", kWorlds},    {"isas", isas},
+      {"rows", std::move(rows)},   {"compared", compared}, {"different", different},
+      {"differences", differences}};
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
 }  // namespace
 
 int verify_command(const VerifyOptions& options) {
@@ -321,7 +349,8 @@ int verify_command(const VerifyOptions& options) {
     probe.scene = name;
     prepare(probe);  // every name is checked before the first line
   }
-  print_head(options);
+  if (!options.json) print_head(options);
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
 
   Progress progress("verify", 2 * static_cast<std::int64_t>(names.size()));
   long long compared = 0;
@@ -333,7 +362,11 @@ int verify_command(const VerifyOptions& options) {
       Verifier verifier(name, precision, options);
       verifier.compare_all();
       progress.erase();
-      print_row(name, precision, verifier);
+      if (options.json) {
+        rows.push_back(row_json(name, precision, verifier));
+      } else {
+        print_row(name, precision, verifier);
+      }
       progress.advance(1);
       const Tally& tally = verifier.tally();
       for (const int count : tally.compared) compared += count;
@@ -342,6 +375,10 @@ int verify_command(const VerifyOptions& options) {
     }
   }
   progress.erase();
+  if (options.json) {
+    print_json(options, std::move(rows), compared, different, differences);
+    return different == 0 ? kOk : kWorldLost;
+  }
   if (different == 0) {
     fmt::print("\nall {} comparisons equal\n", compared);
     return kOk;

@@ -90,7 +90,7 @@ class Screen:
 
     def __init__(self, name):
         self.name = name
-        self.terminal = sys.stderr.isatty()
+        self.terminal = sys.stderr.isatty() and os.environ.get("TERM", "dumb") != "dumb"
         self.shown = False
         self.last = time.monotonic()
 

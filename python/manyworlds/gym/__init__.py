@@ -5,14 +5,18 @@
     envs = gymnasium.make_vec("manyworlds/LunarLander-v0", num_envs=4096)
     envs = gymnasium.make_vec("manyworlds/Ant-v5", num_envs=4096)  # and its other MuJoCo tasks: ``mujoco``
 
+Needs Gymnasium: ``pip install "manyworlds-sim[gym]"``; its MuJoCo tasks need ``[gym,mjcf]``.
 docs/rl.md explains the rest by example.
 """
 
-from . import mujoco
-from .check import check_vector_env
-from .registration import ids, register
-from .single_env import Env
-from .vector_env import VectorEnv
+from .._distribution import needs
+
+with needs("gymnasium", extra="gym", what="manyworlds.gym"):
+    from . import mujoco
+    from .check import check_vector_env
+    from .registration import ids, register
+    from .single_env import Env
+    from .vector_env import VectorEnv
 
 __all__ = ["Env", "VectorEnv", "check_vector_env", "ids", "mujoco", "register"]
 

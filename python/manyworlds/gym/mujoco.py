@@ -1,7 +1,7 @@
 """Gymnasium's MuJoCo tasks, version 5, stepped here: "manyworlds/Ant-v5" and its like.
 
 The model files are Gymnasium's own, read where its package is installed, by MuJoCo's library
-(``pip install "manyworlds[gym,mjcf]"``). Arguments, observations, rewards, infos and ends are Gymnasium's;
+(``pip install "manyworlds-sim[gym,mjcf]"``). Arguments, observations, rewards, infos and ends are Gymnasium's;
 docs/gymnasium.md says what differs.
 """
 

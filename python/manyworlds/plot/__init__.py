@@ -1,21 +1,17 @@
 """Pictures of worlds: ``manyworlds.plot.draw(batch, world=3).figure.savefig("world.png")``.
 
-Needs matplotlib: pip install "manyworlds[plot]".
+Needs matplotlib: ``pip install "manyworlds-sim[plot]"``.
 """
 
 from __future__ import annotations
 
 from typing import Any, Optional
 
-try:
-    from .picture import Camera, Picture
-except ModuleNotFoundError as error:
-    if not (error.name or "").startswith("matplotlib"):
-        raise
-    raise ImportError(
-        f'manyworlds.plot needs matplotlib; pip install "manyworlds[plot]": {error}'
-    ) from error
+from .._distribution import needs
 from ..batch import Batch, checked_batch
+
+with needs("matplotlib", extra="plot", what="manyworlds.plot"):
+    from .picture import Camera, Picture
 
 __all__ = ["Camera", "Picture", "draw"]
 

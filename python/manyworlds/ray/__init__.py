@@ -10,7 +10,7 @@ World i has the seed ``seed + i`` whatever actor steps it, and how many of them 
 trajectories are the same in one process (``shards=0``), on one machine and on a hundred. An actor that dies,
 or hangs, is replaced, and its worlds catch up. docs/scale.md explains the rest.
 
-Ray is needed where ``shards`` is not 0: ``pip install "manyworlds[ray]"``.
+Ray is needed where ``shards`` is not 0: ``pip install "manyworlds-sim[ray]"``.
 """
 
 from .rollouts import Rollouts

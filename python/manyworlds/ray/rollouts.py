@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 
 from .. import arrays, search
+from .._distribution import needs
 from ..files import File
 from ..in_memory import InMemory
 from ..kinds import MAX_WORLDS, AnyScene, plans_of
@@ -130,13 +131,9 @@ class Rollouts(InMemory):
         checkpoint_every: int,
         folder: Optional[File],
     ) -> Crew:
-        try:
+        with needs("ray", extra="ray", what="Rollouts with shards other than 0"):
             from . import cluster
             from .crew import Crew, Options
-        except ModuleNotFoundError as error:
-            raise ModuleNotFoundError(
-                'actors need the package ray: pip install "manyworlds[ray]", or shards=0 for none'
-            ) from error
 
         nodes = cluster.cpus_of_nodes()
         count = self._shards(len(nodes) if shards is None else shards)

@@ -12,7 +12,7 @@
     mw.show(found.record("best.h5"))
 
 docs/search.md explains the rest by example. CmaEs needs the package cma, Sobol SciPy, tables pyarrow:
-``pip install "manyworlds[search]"``.
+``pip install "manyworlds-sim[search]"``.
 """
 
 from .loop import Asked, Search

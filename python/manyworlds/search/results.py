@@ -144,7 +144,7 @@ class Results:
 
     def table(self) -> Any:
         """The columns as a pyarrow.Table, status as a dictionary. ImportError without pyarrow."""
-        pa = needed("pyarrow", "pyarrow", "search.Results.table")
+        pa = needed("pyarrow", "search.Results.table")
         columns = self.columns()
         arrays = {}
         for name, column in columns.items():
@@ -167,9 +167,9 @@ class Results:
         part = path.with_name(f"{path.name}.part-{os.getpid()}")
         try:
             if path.suffix == ".parquet":
-                needed("pyarrow.parquet", "pyarrow", "search.Results.save").write_table(table, part)
+                needed("pyarrow.parquet", "search.Results.save").write_table(table, part)
             else:
-                needed("pyarrow.feather", "pyarrow", "search.Results.save").write_feather(
+                needed("pyarrow.feather", "search.Results.save").write_feather(
                     table, str(part), compression="uncompressed"
                 )
             os.replace(part, path)
@@ -185,5 +185,5 @@ def checked_file(file: File) -> Path:
         raise ValueError(
             f"file is {str(path)!r}; expected a name that ends with .parquet, .arrow or .feather"
         )
-    needed("pyarrow", "pyarrow", "search.Results.save")
+    needed("pyarrow", "search.Results.save")
     return path

@@ -15,6 +15,7 @@ from typing import Any, Optional, Protocol, Union
 import numpy as np
 
 from .. import arrays
+from .._distribution import needs
 from .space import Doubles, Space
 
 MAX_CANDIDATES = 100_000_000
@@ -38,15 +39,10 @@ class Strategy(Protocol):
         """What those of the last ``ask`` cost, (points,), finite; less is better."""
 
 
-def needed(module: str, package: str, what: str) -> Any:
-    """An imported module. ImportError that says how to get it."""
-    try:
+def needed(module: str, what: str) -> Any:
+    """Imports a module of the extra ``search``. ImportError, with the command to install it."""
+    with needs(module.partition(".")[0], extra="search", what=what):
         return import_module(module)
-    except ImportError as error:
-        raise ImportError(
-            f"{what} needs {package}: pip install {package}, or the extra search "
-            f'(pip install "manyworlds[search]"): {error}'
-        ) from error
 
 
 def _candidates(value: Any) -> int:
@@ -89,7 +85,7 @@ class Sobol:
 
     def start(self, space: Space, seed: int) -> None:
         """Begins anew. ImportError without SciPy."""
-        qmc = needed("scipy.stats.qmc", "scipy>=1.15", "search.Sobol")
+        qmc = needed("scipy.stats.qmc", "search.Sobol")
         if len(space) > qmc.Sobol.MAXDIM:
             raise ValueError(
                 f"the space has {len(space)} parameters; a Sobol sequence has {qmc.Sobol.MAXDIM} at most"
@@ -200,7 +196,7 @@ class CmaEs:
 
     def start(self, space: Space, seed: int) -> None:
         """Begins anew. ImportError without cma, ValueError for what ``start_at`` names."""
-        cma = needed("cma", "cma", "search.CmaEs")
+        cma = needed("cma", "search.CmaEs")
         middle = np.full(len(space), 0.5)
         for name, value in self.start_at.items():
             i = space.index(name)
