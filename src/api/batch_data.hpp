@@ -9,6 +9,7 @@
 #include "src/api/batch_core.hpp"
 #include "src/base/enum_names.hpp"
 #include "src/base/pimpl.hpp"
+#include "src/base/index_check.hpp"
 #include "src/dispatch/kernels.hpp"
 
 namespace manyworlds {
@@ -127,19 +128,12 @@ struct Batch::Impl {
     int kind, world;
   };
   Place find(int world) const {
-    if (world < 0 || world >= first_world.back()) {
-      reject("world is " + std::to_string(world) + ", must be 0 to " +
-             std::to_string(first_world.back() - 1));
-    }
+    check_index("world", world, static_cast<std::size_t>(first_world.back()));
     int kind = 0;
     while (world >= first_world[static_cast<std::size_t>(kind) + 1]) ++kind;
     return {kind, world - first_world[static_cast<std::size_t>(kind)]};
   }
-  void check_kind(int kind) const {
-    if (kind >= 0 && static_cast<std::size_t>(kind) < kinds.size()) return;
-    reject("kind is " + std::to_string(kind) + ", must be 0 to " +
-           std::to_string(kinds.size() - 1));
-  }
+  void check_kind(int kind) const { check_index("kind", kind, kinds.size()); }
   WorldsBase& worlds(int kind) const { return core->worlds(kind); }
   const Plan& plan(int kind) const { return kinds[static_cast<std::size_t>(kind)].plan; }
   struct BodyPlace {
@@ -170,11 +164,7 @@ struct Batch::Impl {
   }
   Place find_joint(int world, JointId joint) const {
     const Place p = find(world);
-    const int joints = static_cast<int>(plan(p.kind).scene().joints.size());
-    if (!joint || joint.index() >= joints) {
-      reject("joint is " + std::to_string(joint.index()) + ", must be 0 to " +
-             std::to_string(joints - 1));
-    }
+    check_index("joint", joint.index(), plan(p.kind).scene().joints.size());
     return p;
   }
   std::size_t world_size(Field field, int kind) const { return plan(kind).numbers(field); }
