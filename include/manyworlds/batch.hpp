@@ -26,8 +26,9 @@
 
 namespace manyworlds {
 
-// Asked now and then by a call that takes long, on its thread: false ends the call early. Must not
-// throw, nor use what it is asked by. Empty: nothing is asked.
+// Asked now and then by a call that takes long, on its thread: false ends the call early. An
+// exception ends it in the same state as false does (steps() counts the steps taken) and reaches
+// the caller. Must not use what it is asked by. Empty: nothing is asked.
 using GoOn = std::function<bool()>;
 
 class Batch {

@@ -7,9 +7,10 @@
 #include <string>
 
 #include "src/api/batch_core.hpp"
+#include "src/base/asked.hpp"
 #include "src/base/enum_names.hpp"
-#include "src/base/pimpl.hpp"
 #include "src/base/index_check.hpp"
+#include "src/base/pimpl.hpp"
 #include "src/dispatch/kernels.hpp"
 
 namespace manyworlds {
@@ -89,8 +90,9 @@ struct Batch::Impl {
   void make_core_within_memory();
 
   // Steps, all worlds or those of a mask, with questions between them unless `go_on` is empty;
-  // returns how many.
-  int step(int n, std::span<const std::uint8_t> mask, const GoOn& go_on, const Visit& visit = {});
+  // returns how many. What `go_on` threw is rethrown by the caller, who first counts the steps.
+  int step(int n, std::span<const std::uint8_t> mask, Asked& go_on, const Visit& visit = {});
+  int step_all(const Batch& batch, int n, Asked& go_on);  // counted, and reported to listeners
 
   // Told after the change; see batch_listen.cpp.
   void tell(const Batch& batch, Input input, int world, BodyId body = {},
