@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "commands.hpp"
 #include "job.hpp"
 #include "progress.hpp"
+#include "tools/base/interrupt.hpp"
 #include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
 
@@ -129,6 +131,7 @@ class Verifier {
   // Robots move by random controls, so that limits and contacts act.
   void steps(Batch& batch, int first, int count, int steps_per_call = 1) const {
     timed_steps(batch, count, steps_per_call, nullptr, controls_of(batch, first));
+    tools::stop_if_interrupted();  // a batch that took fewer steps must not be compared
   }
   RandomControls controls_of(const Batch& batch, int first) const {
     if (!is_robot_) return {};
@@ -177,6 +180,7 @@ class Verifier {
     for (int step = 0; step < options.steps; step += RandomControls::kPeriod) {
       const int count = std::min(RandomControls::kPeriod, options.steps - step);
       controls.apply(batch, step);
+      tools::stop_if_interrupted();
       batch.step(some, count);
       batch.step(others, count);
     }
@@ -324,34 +328,50 @@ int verify_command(const VerifyOptions& options) {
   print_head(options);
 
   Progress progress("verify", 2 * static_cast<std::int64_t>(names.size()));
+  const tools::Interruptible interruptible;
   long long compared = 0;
   long long different = 0;
+  std::size_t rows = 0;  // printed
   std::vector<std::string> differences;
+  const auto add = [&](const Tally& tally) {
+    for (const int count : tally.compared) compared += count;
+    for (const int count : tally.different) different += count;
+    differences.insert(differences.end(), tally.differences.begin(), tally.differences.end());
+  };
   for (const std::string& name : names) {
     for (const Precision precision : {Precision::f32, Precision::f64}) {
+      if (tools::interrupted() != 0) break;
       progress.set_label(fmt::format("verify {} {}", name, to_string(precision)));
-      Verifier verifier(name, precision, options);
-      verifier.compare_all();
-      progress.erase();
-      print_row(name, precision, verifier);
-      progress.advance(1);
-      const Tally& tally = verifier.tally();
-      for (const int count : tally.compared) compared += count;
-      for (const int count : tally.different) different += count;
-      differences.insert(differences.end(), tally.differences.begin(), tally.differences.end());
+      std::optional<Verifier> verifier;
+      try {
+        verifier.emplace(name, precision, options);
+        verifier->compare_all();
+        progress.erase();
+        print_row(name, precision, *verifier);
+        ++rows;
+        progress.advance(1);
+      } catch (const tools::Interrupted&) {  // what was compared by then counts
+      }
+      if (verifier) add(verifier->tally());
     }
   }
   progress.erase();
+  const bool whole = rows == 2 * names.size();
   if (different == 0) {
-    fmt::print("\nall {} comparisons equal\n", compared);
-    return kOk;
+    fmt::print("\nall {} comparisons equal{}\n", compared, whole ? "" : " so far");
+  } else {
+    fmt::print("\n{} of {} comparisons differ\n", different, compared);
   }
-  fmt::print("\n{} of {} comparisons differ\n", different, compared);
   std::fflush(stdout);
   for (const std::string& difference : differences) {
     tools::tell("manyworlds: {}\n", difference);
   }
-  return kWorldLost;
+  if (!whole) {
+    tools::tell("manyworlds: interrupted by {} after {} of {}\n", tools::interrupt_name(), rows,
+                counted(static_cast<long long>(2 * names.size()), "row"));
+    return tools::interrupt_code();
+  }
+  return different == 0 ? kOk : kWorldLost;
 }
 
 }  // namespace manyworlds::cli
