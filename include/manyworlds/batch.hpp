@@ -36,7 +36,7 @@ class Batch {
   // Throws std::invalid_argument for options that make no sense (worlds < 1, threads not 0 to
   // kMaxThreads or given beside an executor, an ISA that is not available, a value that an
   // enumeration does not have), and for worlds that need more memory than the machine has; it says
-  // how much that is.
+  // how much that is. Throws std::system_error where options.threads cannot be started.
   explicit Batch(Plan plan, const BatchOptions& options = {});
 
   // Several kinds of world: `worlds` of each plan, in this order. options.worlds is ignored.
