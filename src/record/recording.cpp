@@ -208,9 +208,9 @@ const Recording::Impl& Recording::impl() const {
 }
 
 Recording Recording::open(const std::filesystem::path& file) {
-  const record::UsingHdf5 hdf5;
   const std::string label = label_of(file);
   return described(label, [&] {
+    const record::UsingHdf5 hdf5;
     std::error_code ignored;  // what cannot be looked at cannot be read either, and is said below
     const std::filesystem::file_status kind = std::filesystem::status(file, ignored);
     if (std::filesystem::is_directory(kind)) throw RecordError("is a directory");
@@ -234,9 +234,9 @@ Recording Recording::open(const std::filesystem::path& file) {
 }
 
 Recording Recording::from_bytes(std::span<const std::byte> bytes) {
-  const record::UsingHdf5 hdf5;
   const std::string label = "recording: ";
   return described(label, [&] {
+    const record::UsingHdf5 hdf5;
     record::check_frame(bytes);
     return Recording(std::make_unique<Impl>(record::open_bytes(bytes), label));
   });
