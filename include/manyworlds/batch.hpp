@@ -26,8 +26,9 @@
 
 namespace manyworlds {
 
-// Asked now and then by a call that takes long, on its thread: false ends the call early. Must not
-// throw, nor use what it is asked by. Empty: nothing is asked.
+// Asked now and then by a call that takes long, on its thread: false ends the call early. An
+// exception ends it in the same state as false does (steps() counts the steps taken) and reaches
+// the caller. Must not use what it is asked by. Empty: nothing is asked.
 using GoOn = std::function<bool()>;
 
 class Batch {
@@ -35,7 +36,7 @@ class Batch {
   // Throws std::invalid_argument for options that make no sense (worlds < 1, threads not 0 to
   // kMaxThreads or given beside an executor, an ISA that is not available, a value that an
   // enumeration does not have), and for worlds that need more memory than the machine has; it says
-  // how much that is.
+  // how much that is. Throws std::system_error where options.threads cannot be started.
   explicit Batch(Plan plan, const BatchOptions& options = {});
 
   // Several kinds of world: `worlds` of each plan, in this order. options.worlds is ignored.

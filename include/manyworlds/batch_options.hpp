@@ -28,7 +28,7 @@ inline constexpr int kMaxThreads = 1024;  // of a Batch, its own or its executor
 
 struct BatchOptions {
   int worlds = 1;
-  int threads = 0;         // 0: as many as the process may run on (affinity mask)
+  int threads = 0;         // 0: as many as the process may run on (affinity mask) and can start
   std::uint64_t seed = 0;  // world i draws from seed + i
   Precision precision = Precision::f32;
   std::optional<Isa> isa = std::nullopt;  // default_isa()

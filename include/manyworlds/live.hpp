@@ -26,7 +26,7 @@
 
 namespace manyworlds {
 
-// The page cannot be served: the port is taken, `page` cannot be read.
+// The page cannot be served: the port is taken, `page` cannot be read, no thread can be started.
 class LiveError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -124,7 +124,8 @@ class Plan {
   BodyId body_in_row(int row) const;
   // Of all joints of the scene, as observers see them (observed.hpp).
   int coordinates() const;
-  // Where those of a joint begin, joint by joint in the order of the scene.
+  // Where those of a joint begin, joint by joint in the order of the scene. Both throw
+  // std::invalid_argument for a joint that is not in the scene.
   int first_observed(JointId joint) const;
   // The same; with Solver::newton where it begins in generalized_position, which has other
   // coordinates in another order (ItemKind::coordinate).

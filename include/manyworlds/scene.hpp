@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -122,6 +123,19 @@ struct CoordinateDraw {
   double farthest = std::numeric_limits<double>::infinity();
 };
 
+namespace detail {
+
+// Throws std::out_of_range: "joint is -1, must be 0 to 4".
+[[noreturn]] void throw_no_item(const char* what, int index, std::size_t count);
+template <class List>
+auto& item(List& list, const char* what, int index) {
+  const auto i = static_cast<std::size_t>(index);
+  if (index < 0 || i >= list.size()) throw_no_item(what, index, list.size());
+  return list[i];
+}
+
+}  // namespace detail
+
 struct Scene {
   std::string name = {};
   Space space = Space::spatial;
@@ -167,6 +181,7 @@ struct Scene {
   // std::invalid_argument, with the names that there are, for a name that none has or several have.
   BodyId body(std::string_view name) const;
   ShapeId shape(std::string_view name) const;  // of all bodies' shapes
+  // Also throws std::out_of_range for a body that is not in the scene.
   ShapeId shape(BodyId body, std::string_view name) const;
   JointId joint(std::string_view name) const;
   ControlId control(std::string_view name) const;
@@ -174,26 +189,24 @@ struct Scene {
   SiteId site(std::string_view name) const;
   KeyframeId keyframe(std::string_view name) const;
 
-  // What a handle stands for. Throw std::out_of_range where there is none.
-  Body& at(BodyId id) { return bodies.at(static_cast<std::size_t>(id.index())); }
-  const Body& at(BodyId id) const { return bodies.at(static_cast<std::size_t>(id.index())); }
-  Shape& at(ShapeId id) { return at(id.body()).shapes.at(static_cast<std::size_t>(id.index())); }
+  // The item of a handle. Throws std::out_of_range for a handle that is none of this scene.
+  Body& at(BodyId id) { return detail::item(bodies, "body", id.index()); }
+  const Body& at(BodyId id) const { return detail::item(bodies, "body", id.index()); }
+  Shape& at(ShapeId id) { return detail::item(at(id.body()).shapes, "shape", id.index()); }
   const Shape& at(ShapeId id) const {
-    return at(id.body()).shapes.at(static_cast<std::size_t>(id.index()));
+    return detail::item(at(id.body()).shapes, "shape", id.index());
   }
-  Joint& at(JointId id) { return joints.at(static_cast<std::size_t>(id.index())); }
-  const Joint& at(JointId id) const { return joints.at(static_cast<std::size_t>(id.index())); }
-  Control& at(ControlId id) { return controls.at(static_cast<std::size_t>(id.index())); }
-  const Control& at(ControlId id) const {
-    return controls.at(static_cast<std::size_t>(id.index()));
-  }
-  Tendon& at(TendonId id) { return tendons.at(static_cast<std::size_t>(id.index())); }
-  const Tendon& at(TendonId id) const { return tendons.at(static_cast<std::size_t>(id.index())); }
-  Site& at(SiteId id) { return sites.at(static_cast<std::size_t>(id.index())); }
-  const Site& at(SiteId id) const { return sites.at(static_cast<std::size_t>(id.index())); }
-  Keyframe& at(KeyframeId id) { return keyframes.at(static_cast<std::size_t>(id.index())); }
+  Joint& at(JointId id) { return detail::item(joints, "joint", id.index()); }
+  const Joint& at(JointId id) const { return detail::item(joints, "joint", id.index()); }
+  Control& at(ControlId id) { return detail::item(controls, "control", id.index()); }
+  const Control& at(ControlId id) const { return detail::item(controls, "control", id.index()); }
+  Tendon& at(TendonId id) { return detail::item(tendons, "tendon", id.index()); }
+  const Tendon& at(TendonId id) const { return detail::item(tendons, "tendon", id.index()); }
+  Site& at(SiteId id) { return detail::item(sites, "site", id.index()); }
+  const Site& at(SiteId id) const { return detail::item(sites, "site", id.index()); }
+  Keyframe& at(KeyframeId id) { return detail::item(keyframes, "keyframe", id.index()); }
   const Keyframe& at(KeyframeId id) const {
-    return keyframes.at(static_cast<std::size_t>(id.index()));
+    return detail::item(keyframes, "keyframe", id.index());
   }
 };
 
@@ -213,7 +226,7 @@ std::vector<Issue> validate(const Scene& scene);
 // A frame of a body (none: the world) in the world, as the bodies begin.
 Frame frame_in_world(const Scene& scene, BodyId body, const Frame& frame);
 // A joint of two bodies (none: the world) with both frames where `frame` is in the world as the
-// bodies begin.
+// bodies begin. Both functions throw std::out_of_range for a body that is not in the scene.
 Joint joint_at(const Scene& scene, BodyId body_a, BodyId body_b, const Frame& frame,
                JointType type);
 

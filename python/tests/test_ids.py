@@ -221,3 +221,39 @@ def test_kinds_have_names_of_their_own():
             one.add_impulse((1, 0, 0), bodies=0)
         with pytest.raises(ValueError, match="2 kinds of worlds"):
             batch.add_impulse((1, 0, 0), bodies="lid")
+
+
+NO_INDICES = [-(2**31), -2, -1, 10**6, 2**31 - 1]  # of a small scene
+BAD_IDS = {
+    "row": lambda b, i: b.plan.row(i),
+    "body_in_row": lambda b, i: b.plan.body_in_row(i),
+    "first_coordinate": lambda b, i: b.plan.first_coordinate(i),
+    "first_observed": lambda b, i: b.plan.first_observed(i),
+    "joint handle": lambda b, i: b.plan.first_coordinate(mw.JointId(i)),
+    "row of a shape": lambda b, i: b.plan.row(mw.ShapeId(mw.BodyId(1), i)),
+    "row of a shape's body": lambda b, i: b.plan.row(mw.ShapeId(mw.BodyId(i), 0)),
+    "hash": lambda b, i: b.hash(i),
+    "contacts": lambda b, i: b.contacts(i),
+    "copy_world": lambda b, i: b.copy_world(0, i),
+    "spawn": lambda b, i: b.spawn(i, (0, 0, 0)),
+    "add_force": lambda b, i: b.add_force((1, 0, 0), bodies=i),
+    "set_joints_enabled": lambda b, i: b.set_joints_enabled(True, joints=i),
+    "wake": lambda b, i: b.wake(ids=i),
+}
+
+
+@pytest.mark.parametrize("call", BAD_IDS)
+@pytest.mark.parametrize("index", NO_INDICES)
+def test_an_index_that_there_is_not_is_an_index_error_in_plain_words(batch, call, index):
+    with pytest.raises(IndexError) as error:
+        BAD_IDS[call](batch, index)
+    text = str(error.value)
+    assert str(index) in text and "must be 0 to " in text
+    assert "::" not in text and "_M_" not in text
+
+
+@pytest.mark.parametrize("index", [-2, 4, 2**31 - 1])
+def test_a_joint_of_a_body_that_there_is_not(index):
+    for bodies in ((index, 1), (1, index)):
+        with pytest.raises((IndexError, ValueError), match=f"is {index}, must be -1 to 3"):
+            workshop().joint_at(*bodies, mw.Frame(), mw.BallJoint())

@@ -1,5 +1,9 @@
 """Wrong calls: each raises an error that says what was found and what was expected."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -179,3 +183,29 @@ def test_a_wrong_call_says_what_is_wrong(index):
 def test_a_batch_is_refused_with_a_reason(arguments, error, match):
     with pytest.raises(error, match=match):
         mw.Batch(**{"scene": "stack10", **arguments})
+
+
+THREADS = """
+import resource
+import manyworlds as mw
+
+with open("/proc/self/statm") as file:
+    used = int(file.read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (1 << 30), -1))
+try:
+    mw.Batch("ball3d", 64, threads=600)
+except RuntimeError as error:
+    print(error)
+batch = mw.Batch("ball3d", 64, threads=2)
+batch.step(3)
+print(batch.steps)
+"""
+
+
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="its address space")
+def test_threads_that_cannot_be_started_are_an_error():
+    done = subprocess.run([sys.executable, "-c", THREADS], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    said, steps = done.stdout.splitlines()
+    assert said.startswith("threads: 600 cannot be started, this process may have ")
+    assert steps == "3"

@@ -7,7 +7,9 @@
 #include <string>
 
 #include "src/api/batch_core.hpp"
+#include "src/base/asked.hpp"
 #include "src/base/enum_names.hpp"
+#include "src/base/index_check.hpp"
 #include "src/base/pimpl.hpp"
 #include "src/dispatch/kernels.hpp"
 
@@ -88,8 +90,9 @@ struct Batch::Impl {
   void make_core_within_memory();
 
   // Steps, all worlds or those of a mask, with questions between them unless `go_on` is empty;
-  // returns how many.
-  int step(int n, std::span<const std::uint8_t> mask, const GoOn& go_on, const Visit& visit = {});
+  // returns how many. What `go_on` threw is rethrown by the caller, who first counts the steps.
+  int step(int n, std::span<const std::uint8_t> mask, Asked& go_on, const Visit& visit = {});
+  int step_all(const Batch& batch, int n, Asked& go_on);  // counted, and reported to listeners
 
   // Told after the change; see batch_listen.cpp.
   void tell(const Batch& batch, Input input, int world, BodyId body = {},
@@ -127,19 +130,12 @@ struct Batch::Impl {
     int kind, world;
   };
   Place find(int world) const {
-    if (world < 0 || world >= first_world.back()) {
-      reject("world is " + std::to_string(world) + ", must be 0 to " +
-             std::to_string(first_world.back() - 1));
-    }
+    check_index("world", world, static_cast<std::size_t>(first_world.back()));
     int kind = 0;
     while (world >= first_world[static_cast<std::size_t>(kind) + 1]) ++kind;
     return {kind, world - first_world[static_cast<std::size_t>(kind)]};
   }
-  void check_kind(int kind) const {
-    if (kind >= 0 && static_cast<std::size_t>(kind) < kinds.size()) return;
-    reject("kind is " + std::to_string(kind) + ", must be 0 to " +
-           std::to_string(kinds.size() - 1));
-  }
+  void check_kind(int kind) const { check_index("kind", kind, kinds.size()); }
   WorldsBase& worlds(int kind) const { return core->worlds(kind); }
   const Plan& plan(int kind) const { return kinds[static_cast<std::size_t>(kind)].plan; }
   struct BodyPlace {
@@ -170,11 +166,7 @@ struct Batch::Impl {
   }
   Place find_joint(int world, JointId joint) const {
     const Place p = find(world);
-    const int joints = static_cast<int>(plan(p.kind).scene().joints.size());
-    if (!joint || joint.index() >= joints) {
-      reject("joint is " + std::to_string(joint.index()) + ", must be 0 to " +
-             std::to_string(joints - 1));
-    }
+    check_index("joint", joint.index(), plan(p.kind).scene().joints.size());
     return p;
   }
   std::size_t world_size(Field field, int kind) const { return plan(kind).numbers(field); }

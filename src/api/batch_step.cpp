@@ -27,8 +27,7 @@ void check_steps(const char* what, int n) {
 // As many steps at a time as take about kPause: at first by the slowest steps that were ever seen,
 // since worlds that slept may be awake now, then by what the last ones took. A call that is shorter
 // is in one piece, and so is one that does not ask.
-int Batch::Impl::step(int n, std::span<const std::uint8_t> mask, const GoOn& go_on,
-                      const Visit& visit) {
+int Batch::Impl::step(int n, std::span<const std::uint8_t> mask, Asked& go_on, const Visit& visit) {
   const FloatMode mode;  // the caller's may trap
   int taken = 0;
   if (!go_on) {
@@ -55,12 +54,19 @@ int Batch::Impl::step(int n, std::span<const std::uint8_t> mask, const GoOn& go_
   return taken;
 }
 
+int Batch::Impl::step_all(const Batch& batch, int n, Asked& go_on) {
+  if (n == 0) return 0;
+  const int taken = step(n, {}, go_on);
+  steps += taken;
+  tell_step(batch, taken);
+  return taken;
+}
+
 int Batch::step(int n, const GoOn& go_on) {
   check_steps("n", n);
-  if (n == 0) return 0;
-  const int taken = impl_->step(n, {}, go_on);
-  impl_->steps += taken;
-  impl_->tell_step(*this, taken);
+  Asked asked(go_on);
+  const int taken = impl_->step_all(*this, n, asked);
+  asked.rethrow();
   return taken;
 }
 
@@ -68,9 +74,11 @@ int Batch::step(std::span<const std::uint8_t> mask, int n, const GoOn& go_on) {
   impl_->check_mask(mask);
   check_steps("n", n);
   if (n == 0) return 0;
-  const int taken = impl_->step(n, mask, go_on);
+  Asked asked(go_on);
+  const int taken = impl_->step(n, mask, asked);
   impl_->for_each_masked(mask,
                          [this](int, int, int world) { impl_->tell(*this, Input::reset, world); });
+  asked.rethrow();
   return taken;
 }
 
@@ -84,9 +92,11 @@ int Batch::step_to(double clock, int max_steps, const GoOn& go_on) {
   const double whole = std::floor((due + slack) / impl_->dt);
   if (whole < 1) return 0;
   const int n = static_cast<int>(std::min(whole, static_cast<double>(max_steps)));
-  const int taken = step(n, go_on);
+  Asked asked(go_on);
+  const int taken = impl_->step_all(*this, n, asked);
   // Time beyond max_steps is dropped, but for the fraction of a step that is still to come.
   impl_->clock += (taken < n ? taken : whole) * impl_->dt;
+  asked.rethrow();
   return taken;
 }
 

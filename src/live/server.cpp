@@ -1,7 +1,10 @@
 #include "src/live/server.hpp"
 
 #include <atomic>
+#include <exception>
 #include <map>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -53,7 +56,12 @@ struct Server::Impl {
         .resized = [this] { to_all([](Session& s) { s.resized(); }); },
     });
     accept();
-    thread = std::thread([this] { context.run(); });
+    try {
+      thread = std::thread([this] { serve(); });
+    } catch (const std::system_error& error) {
+      content.hub.stop_listening();
+      throw LiveError(std::string("live: its thread cannot be started: ") + error.what());
+    }
   }
 
   ~Impl() {
@@ -177,6 +185,17 @@ struct Server::Impl {
     sessions.emplace(page, session);
     pages = static_cast<int>(sessions.size());
     session->accept(asked);
+  }
+
+  // An exception (out of memory) drops the request that caused it; the server continues.
+  void serve() noexcept {
+    for (;;) {
+      try {
+        context.run();
+        return;
+      } catch (const std::exception&) {
+      }
+    }
   }
 
   void respond(const std::shared_ptr<Request>& request, http::status status, std::string text) {

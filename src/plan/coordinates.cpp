@@ -1,4 +1,5 @@
 // The coordinates of joints, for observers.
+#include "src/base/index_check.hpp"
 #include "src/plan/plan_data.hpp"
 
 namespace manyworlds {
@@ -40,10 +41,12 @@ void collect_coordinates(PlanData& plan) {
 }
 
 int Plan::first_coordinate(JointId joint) const {
-  return data_->first_coordinate.at(static_cast<std::size_t>(joint.index()));
+  check_index("joint", joint.index(), scene().joints.size());
+  return data_->first_coordinate[static_cast<std::size_t>(joint.index())];
 }
 int Plan::first_observed(JointId joint) const {
-  return data_->first_observed.at(static_cast<std::size_t>(joint.index()));
+  check_index("joint", joint.index(), scene().joints.size());
+  return data_->first_observed[static_cast<std::size_t>(joint.index())];
 }
 int Plan::coordinates() const { return static_cast<int>(data_->coordinates.size()); }
 

@@ -1,21 +1,10 @@
 // Where bodies and shapes of the scene are in arrays of numbers.
 #include <stdexcept>
-#include <string>
 
+#include "src/base/index_check.hpp"
 #include "src/plan/plan_data.hpp"
 
 namespace manyworlds {
-
-namespace {
-
-void check_index(const char* what, int index, std::size_t count) {
-  if (index >= 0 && static_cast<std::size_t>(index) < count) return;
-  throw std::invalid_argument(std::string(what) + " is " + std::to_string(index) +
-                              ", must be 0 to " +
-                              std::to_string(static_cast<std::int64_t>(count) - 1));
-}
-
-}  // namespace
 
 std::optional<int> Plan::find_row(BodyId body) const {
   check_index("body", body.index(), data_->state_body.size());

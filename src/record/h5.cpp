@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <new>
+
+#include "src/base/thread_room.hpp"
 
 namespace manyworlds::record {
 
@@ -43,6 +46,7 @@ std::string trimmed(std::string text) {
 }
 
 Handle open_attribute(hid_t object, const std::string& name) {
+  need_room();
   if (H5Aexists(object, name.c_str()) <= 0) fail("has no attribute '" + name + "'");
   Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, kDamagedAttribute, name);
   const Handle space(H5Aget_space(attribute), H5Sclose, kDamagedAttribute, name);
@@ -73,17 +77,37 @@ void fail(const std::string& what) {
   throw RecordError(what);
 }
 
-UsingHdf5::UsingHdf5() : lock_(hdf5_mutex) {
+void need_room(std::size_t more) {
+  // Several times the growth of HDF5's caches in one call.
+  constexpr std::size_t kRoom = 8 << 20;
+  if (!has_room(kRoom + more)) throw std::bad_alloc();
+}
+
+namespace {
+
+// Returns false if HDF5 cannot be started. HDF5 must not be called then: every call would try to
+// start it again, from a half-initialized state.
+bool start_hdf5() {
+  need_room();
+  if (H5open() < 0) return false;
   // After a damaged file HDF5 has something left that it cannot close, and says so at the program's
   // exit, unless it is told before not to print errors.
-  [[maybe_unused]] static const int quiet =
-      H5open() + std::atexit([] { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); });
+  std::atexit([] { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); });
+  return true;
+}
+
+}  // namespace
+
+UsingHdf5::UsingHdf5() : lock_(hdf5_mutex) {
+  static const bool started = start_hdf5();
+  if (!started) throw RecordError("HDF5 cannot be started");
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 UsingHdf5::~UsingHdf5() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
 Handle create_file(const std::shared_ptr<Storage>& storage) {
+  need_room();
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot make file properties");
   check(H5Pset_userblock(creation, kFrameSize), "cannot leave room for the frame");
   check(H5Pset_obj_track_times(creation, false), "cannot make file properties");  // equal bytes
@@ -93,12 +117,14 @@ Handle create_file(const std::shared_ptr<Storage>& storage) {
 }
 
 Handle open_file(const std::shared_ptr<Storage>& storage) {
+  need_room();
   const Handle access = file_properties();
   set_storage(access, storage);
   return {H5Fopen("recording", H5F_ACC_RDONLY, access), H5Fclose, kNotOpened};
 }
 
 Handle open_bytes(std::span<const std::byte> bytes) {
+  need_room(3 * bytes.size());  // its copies
   const Handle access = file_properties();
   check(H5Pset_fapl_core(access, std::size_t{1} << 20, false), "cannot open what is in memory");
   // HDF5 copies the bytes; it only reads them.
@@ -111,12 +137,14 @@ Handle open_bytes(std::span<const std::byte> bytes) {
 }
 
 Handle create_group(hid_t parent, const std::string& name) {
+  need_room();
   const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "cannot create group", name);
   check(H5Pset_obj_track_times(creation, false), "cannot create group '" + name + "'");
   return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose,
           "cannot create group", name};
 }
 bool has_link(hid_t parent, const std::string& name) {
+  need_room();
   return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0;
 }
 
@@ -150,6 +178,7 @@ Handle open_group(hid_t parent, const std::string& name) {
 }
 Handle open_dataset(hid_t parent, const std::string& name) {
   Handle dataset = open_object(parent, name, H5I_DATASET);
+  need_room();
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose, kDamaged, name);
   if (H5Pget_layout(creation) == H5D_VIRTUAL || H5Pget_nfilters(creation) != 0 ||
       H5Pget_external_count(creation) != 0) {
@@ -172,6 +201,7 @@ std::string type_name(hid_t type) {
 }
 
 void write_text(hid_t object, const std::string& name, const std::string& text) {
+  need_room();
   const Handle type = text_type(text.size());
   const Handle attribute(
       H5Acreate2(object, name.c_str(), type, one_number_space(), H5P_DEFAULT, H5P_DEFAULT),
@@ -194,6 +224,7 @@ std::string read_text(hid_t object, const std::string& name) {
 
 template <class T>
 void write_number(hid_t object, const std::string& name, T value) {
+  need_room();
   const Handle attribute(H5Acreate2(object, name.c_str(), NumberType<T>::in_file(),
                                     one_number_space(), H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose, "cannot write attribute", name);
@@ -225,6 +256,7 @@ MW_INSTANTIATE(std::uint64_t)
 #undef MW_INSTANTIATE
 
 void write_text_table(hid_t parent, const std::string& name, const std::string& text) {
+  need_room(text.size());
   const Handle type = text_type(text.size());
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot create", name);
   check(H5Pset_obj_track_times(creation, false), "cannot create '" + name + "'");
@@ -250,6 +282,7 @@ std::string read_text_table(hid_t parent, const std::string& name) {
          std::to_string(size) + " bytes");
   }
   std::string text(size, '\0');
+  need_room(size);
   check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()),
         kDamaged + (" '" + name + "'"));
   return trimmed(text);

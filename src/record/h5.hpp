@@ -24,9 +24,16 @@ namespace manyworlds::record {
 // Throws RecordError. What HDF5 itself says is forgotten: it tells of its own insides.
 [[noreturn]] void fail(const std::string& what);
 
+// Throws std::bad_alloc unless there is free memory for a call of HDF5, and `more` bytes besides.
+// Called before each HDF5 call that allocates. HDF5 1.10 does not survive a failed allocation: it
+// ends the program (H5I_register calls exit), frees memory twice, or follows a null pointer.
+void need_room(std::size_t more = 0);
+
 // While one lives, its thread is the only one of ours in HDF5, which may not be built for more than
 // one; and HDF5 prints no errors, as it otherwise does, for the whole program. May be nested. It
 // computes in the library's floating-point mode: HDF5 finds out by computing what numbers are like.
+// The first one starts HDF5. It throws std::bad_alloc if there is no memory for that, RecordError
+// if HDF5 fails.
 class UsingHdf5 {
  public:
   UsingHdf5();

@@ -25,6 +25,7 @@ std::string text(const Dims& dims) {
 Table::Table(hid_t parent, const std::string& name, hid_t in_file, hid_t in_memory,
              std::size_t size, const Dims& row, std::size_t chunk_bytes)
     : in_memory_(in_memory), row_(row), row_bytes_(size), name_(name) {
+  need_room();
   for (const hsize_t n : row) row_bytes_ *= static_cast<std::size_t>(n);
   chunk_rows_ = std::max<std::size_t>(1, chunk_bytes / row_bytes_);
   const Dims none = joined(0, row), most = joined(H5S_UNLIMITED, row);
@@ -55,6 +56,7 @@ void Table::add_bytes(std::span<const std::byte> bytes) {
 
 void Table::flush() {
   if (buffer_.empty()) return;
+  need_room(buffer_.size());
   const hsize_t count = buffer_.size() / row_bytes_;
   const std::string what = "cannot write '" + name_ + "'";
   const Dims all = joined(rows_ + count, row_), block = joined(count, row_);
@@ -75,6 +77,7 @@ TableReader::TableReader(hid_t parent, const std::string& name, hid_t in_file, h
                          const char* type, const Dims& row)
     : in_memory_(in_memory), row_(row), name_(name) {
   dataset_ = open_dataset(parent, name);
+  need_room();
   const std::string what = "is damaged: cannot read '" + name + "'";
   const Handle found(H5Dget_type(dataset_), H5Tclose, what);
   if (H5Tequal(found, in_file) <= 0) {
@@ -121,6 +124,7 @@ void TableReader::read_into(hsize_t first, hsize_t count, std::int64_t at, void*
   Dims start(row_.size() + 1, 0), block = joined(count, row_);
   start[0] = first;
   if (at >= 0) start[1] = static_cast<hsize_t>(at), block[1] = 1;
+  need_room();
   const Handle source(H5Dget_space(dataset_), H5Sclose, what);
   check(H5Sselect_hyperslab(source, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr),
         what);

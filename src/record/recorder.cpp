@@ -1,6 +1,7 @@
 // Writes a recording: the scenes and the snapshot at once, inputs and samples as they come.
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numeric>
 #include <utility>
 
@@ -49,9 +50,13 @@ std::vector<int> checked_worlds(const Batch& batch, const RecordOptions& options
 
 std::shared_ptr<record::RecordingFile> create(const std::filesystem::path& path) {
   try {
-    return std::make_shared<record::RecordingFile>(path);
+    auto file = std::make_shared<record::RecordingFile>(path);
+    const record::UsingHdf5 started;
+    return file;
   } catch (const FileError& error) {
     throw RecordError(error.what());
+  } catch (const std::bad_alloc&) {
+    throw RecordError("'" + path.string() + "': not enough memory");
   }
 }
 
@@ -133,6 +138,7 @@ void Recorder::Listener::flush_if_due() {
   if (std::chrono::duration<double>(now - flushed_).count() < options_.flush_seconds) return;
   if (log_.has_open_forces()) return;
   flush_tables();
+  record::need_room();
   record::check(H5Fflush(h5_, H5F_SCOPE_LOCAL), "cannot be written");
   file_->checkpoint();
   flushed_ = Clock::now();
@@ -221,6 +227,7 @@ void Recorder::Listener::flush_tables() {
 
 void Recorder::Listener::finish() {
   flush_tables();
+  record::need_room();
   close_tables();
   record::check(H5Fflush(h5_, H5F_SCOPE_LOCAL), "cannot be written");
   h5_.close_now("cannot be closed");

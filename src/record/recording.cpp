@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/base/enum_names.hpp"
+#include "src/base/index_check.hpp"
 #include "src/base/printable.hpp"
 #include "src/record/described.hpp"
 #include "src/record/frame.hpp"
@@ -156,10 +157,7 @@ void Recording::Impl::read_kind(hid_t parent, int index) {
 }
 
 Recording::Impl::Place Recording::Impl::place(int world) const {
-  if (world < 0 || world >= worlds()) {
-    throw std::invalid_argument("world is " + std::to_string(world) + ", must be 0 to " +
-                                std::to_string(worlds() - 1));
-  }
+  check_index("world", world, static_cast<std::size_t>(worlds()));
   std::size_t kind = 0;
   while (world >= first_world[kind + 1]) ++kind;
   return {kind, static_cast<std::size_t>(world - first_world[kind])};
@@ -181,12 +179,6 @@ std::vector<double> Recording::Impl::read(Field field, std::size_t kind, std::in
 // ---- the public face ---------------------------------------------------------------------------
 
 namespace {
-
-void check_index(const char* what, std::int64_t index, std::size_t count) {
-  if (index >= 0 && static_cast<std::size_t>(index) < count) return;
-  throw std::invalid_argument(std::string(what) + " is " + std::to_string(index) +
-                              ", must be 0 to " + std::to_string(count - 1));
-}
 
 template <class Item>
 const Item& at(const std::vector<Item>& items, const char* what, std::int64_t index) {
@@ -216,9 +208,9 @@ const Recording::Impl& Recording::impl() const {
 }
 
 Recording Recording::open(const std::filesystem::path& file) {
-  const record::UsingHdf5 hdf5;
   const std::string label = label_of(file);
   return described(label, [&] {
+    const record::UsingHdf5 hdf5;
     std::error_code ignored;  // what cannot be looked at cannot be read either, and is said below
     const std::filesystem::file_status kind = std::filesystem::status(file, ignored);
     if (std::filesystem::is_directory(kind)) throw RecordError("is a directory");
@@ -242,9 +234,9 @@ Recording Recording::open(const std::filesystem::path& file) {
 }
 
 Recording Recording::from_bytes(std::span<const std::byte> bytes) {
-  const record::UsingHdf5 hdf5;
   const std::string label = "recording: ";
   return described(label, [&] {
+    const record::UsingHdf5 hdf5;
     record::check_frame(bytes);
     return Recording(std::make_unique<Impl>(record::open_bytes(bytes), label));
   });

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/base/asked.hpp"
 #include "src/record/recording.hpp"
 
 namespace manyworlds::record {
@@ -42,8 +43,9 @@ std::int64_t run_again(const Recording& recording, Batch& batch, const GoOn& go_
   std::int64_t at = 0;
   int call_steps = 0;
   std::size_t next = 0;
+  Asked asked(go_on);
   bool goes_on = true;
-  const GoOn ask = [&] { return goes_on = goes_on && (!go_on || go_on()); };
+  const GoOn ask = [&] { return goes_on = asked(); };
   try {
     batch.restore(all.start);
     for (std::int64_t sample = 0; sample < recording.samples() && ask(); ++sample) {
@@ -63,6 +65,7 @@ std::int64_t run_again(const Recording& recording, Batch& batch, const GoOn& go_
   } catch (const std::invalid_argument& error) {
     throw RecordError("input " + std::to_string(next) + ": " + error.what());
   }
+  asked.rethrow();  // as it is: it is no fault of the recording
   return at;
 }
 

@@ -4,6 +4,7 @@
 
 #include "manyworlds/nearest.hpp"
 #include "manyworlds/scene.hpp"
+#include "src/base/index_check.hpp"
 
 namespace manyworlds {
 
@@ -83,6 +84,10 @@ Handle find(std::string_view name, const Named<Handle>& all, const char* one, co
 }
 
 }  // namespace
+
+void detail::throw_no_item(const char* what, int index, std::size_t count) {
+  throw std::out_of_range(wrong_index_text(what, index, count));
+}
 
 BodyId Scene::body(std::string_view wanted) const {
   return find(wanted, names_of<BodyId>(bodies), "body", "bodies");

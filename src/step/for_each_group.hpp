@@ -7,7 +7,8 @@
 
 namespace manyworlds {
 
-// threads = 0: as many as the process may run on.
+// threads = 0: as many as the process may run on and can start. Throws std::system_error if the
+// given number cannot be started; the text says how many the process may have.
 std::shared_ptr<Executor> make_executor(int threads);
 
 }  // namespace manyworlds

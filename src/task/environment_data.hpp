@@ -99,16 +99,22 @@ struct Environment::Impl {
   }
 
   bool step(const float* numbers, const StepArrays& out, const GoOn& go_on) {
-    runner->actions = numbers;
-    if (advance(*batch.impl_, out, go_on)) return true;
-    actions.assign(numbers, numbers + worlds() * task.actions.size());
-    return false;
+    return step(numbers, worlds() * task.actions.size(), runner->actions, actions, out, go_on);
   }
   bool step(const std::int64_t* each, const StepArrays& out, const GoOn& go_on) {
-    runner->choices = each;
-    if (advance(*batch.impl_, out, go_on)) return true;
-    choices.assign(each, each + worlds());
-    return false;
+    return step(each, worlds(), runner->choices, choices, out, go_on);
+  }
+  // Of `count` actions. Those of a step that ends early are kept for finish_step.
+  template <class Number>
+  bool step(const Number* in, std::size_t count, const Number*& read, std::vector<Number>& kept,
+            const StepArrays& out, const GoOn& go_on) {
+    if (go_on) kept.reserve(count);  // no allocation may fail once steps were taken
+    read = in;
+    Asked asked(go_on);
+    const bool whole = advance(*batch.impl_, out, asked);
+    if (!whole) kept.assign(in, in + count);
+    asked.rethrow();
+    return whole;
   }
   bool finish_step(const StepArrays& out, const GoOn& go_on) {
     if (discrete()) {
@@ -116,11 +122,14 @@ struct Environment::Impl {
     } else {
       runner->actions = actions.data();
     }
-    return advance(*batch.impl_, out, go_on);
+    Asked asked(go_on);
+    const bool whole = advance(*batch.impl_, out, asked);
+    asked.rethrow();
+    return whole;
   }
 
   // A step, or what is left of it. An empty `go_on` is not asked.
-  bool advance(Batch::Impl& b, const StepArrays& out, const GoOn& go_on) {
+  bool advance(Batch::Impl& b, const StepArrays& out, Asked& go_on) {
     const bool begins = steps_left == 0;
     const int n = begins ? task.frame_skip : steps_left;
     runner->out = out;

@@ -99,6 +99,40 @@ TEST_CASE("a call that is ended early is one of so many steps", "[fast][batch]")
   CHECK(ended.batch.steps() == taken + 5 + more);
 }
 
+TEST_CASE("a question that throws ends the call as a no does", "[fast][batch]") {
+  struct Enough {};
+  const Scene scene = crowd(Space::spatial);
+  Driven thrown(scene), whole(scene);
+  const auto throws_at = [](int n) {
+    return [n]() mutable {
+      if (--n == 0) throw Enough();
+      return true;
+    };
+  };
+  CHECK_THROWS_AS(thrown.batch.step(1'000'000, throws_at(3)), Enough);
+  const auto taken = static_cast<int>(thrown.batch.steps());
+  CHECK(taken >= 3);
+  CHECK(taken < 1000);
+  CHECK(thrown.heard->calls == std::vector<int>{taken});
+  whole.batch.step(taken);
+  check_equal(thrown.batch, whole.batch);
+
+  const std::vector<std::uint8_t> all(kWorlds, 1);
+  CHECK_THROWS_AS(thrown.batch.step(all, 1'000'000, throws_at(1)), Enough);
+  CHECK(thrown.batch.steps() == taken);  // steps with a mask do not count
+  CHECK(thrown.heard->resets == kWorlds);
+
+  // The clock of step_to has moved by what was stepped: what is due is still due.
+  Driven timed(scene);
+  const double dt = scene.options.dt;
+  CHECK_THROWS_AS(timed.batch.step_to(1000.5 * dt, 1'000'000, throws_at(2)), Enough);
+  const auto done = static_cast<int>(timed.batch.steps());
+  CHECK(done > 0);
+  CHECK(timed.batch.step_to(1000.5 * dt, 1'000'000) == 1000 - done);
+  CHECK(timed.batch.steps() == 1000);
+  CHECK_THROWS_AS(timed.batch.measure_contacts(throws_at(2)), Enough);
+}
+
 TEST_CASE("steps of some worlds alone ask, too", "[fast][batch]") {
   const Scene scene = crowd(Space::planar);
   const std::vector<std::uint8_t> mask = {1, 0, 1, 1, 0, 0, 0, 1, 0};

@@ -7,6 +7,7 @@ namespace manyworlds::test {
 extern const char* const kSourceFolder;
 #if MW_HAVE_CLI
 extern const char* const kProgram;
+extern const char* const kFailingThreads;  // tests/preload, for LD_PRELOAD
 #endif
 
 }  // namespace manyworlds::test

@@ -131,6 +131,27 @@ TEST_CASE("an environment that stands in the middle of a step says so, and refus
   p.step();
 }
 
+TEST_CASE("a step whose question throws stands where one that was ended early does",
+          "[task][fast]") {
+  struct Enough {};
+  const auto throws = []() -> bool { throw Enough(); };
+  for (const char* name : {"LunarLander", "Pendulum"}) {  // choices, and numbers
+    const Task task = slow(tasks::find(name)->make());
+    Played p = play(task, Autoreset::same_step), other = play(task, Autoreset::same_step);
+    p.act_at_random(1), other.act_at_random(1);
+    REQUIRE_THROWS_AS(step(p, throws), Enough);
+    const auto taken = static_cast<int>(p.environment.batch().steps());
+    CHECK(taken > 0);
+    CHECK(p.environment.steps_left() == kFrames - taken);
+    p.act_at_random(2);  // the step has those of its own
+    CHECK_THROWS_AS(p.environment.finish_step(p.arrays(), throws), Enough);
+    CHECK(p.environment.steps_left() == kFrames - static_cast<int>(p.environment.batch().steps()));
+    p.environment.finish_step(p.arrays());
+    other.step();
+    check_equal(p, other);
+  }
+}
+
 TEST_CASE("a step that was ended early is given up where all worlds begin", "[task][fast]") {
   const Task task = slow(tasks::find("CartPole")->make());
   Played p = play(task, Autoreset::disabled), other = play(task, Autoreset::disabled);

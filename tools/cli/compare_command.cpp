@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "tools/base/interrupt.hpp"
 #include "tools/base/machine.hpp"
 #include "tools/base/median.hpp"
 #include "tools/base/tell.hpp"
@@ -43,16 +44,18 @@ struct Findings {
   std::vector<compare::FreePaths> free;  // one, in float64
   std::vector<compare::Speed> speeds;
   std::vector<std::string> failures;
+  int done = 0, all = 0;  // comparisons
 };
 
 void add_failures(Findings& findings, const std::vector<std::string>& failures) {
   findings.failures.insert(findings.failures.end(), failures.begin(), failures.end());
 }
 
-Findings find(const MjcfFiles& files, const CompareOptions& compared) {
+// Fills `findings` comparison by comparison. Throws tools::Interrupted.
+void find(const MjcfFiles& files, const CompareOptions& compared, Findings& findings) {
   const JobOptions& options = compared.job;
-  Findings findings;
-  const compare::Settings settings{compared.tolerance, options.seed.value_or(0)};
+  compare::Settings settings{compared.tolerance, options.seed.value_or(0)};
+  settings.pause = tools::stop_if_interrupted;
   const std::vector<compare::Kernels> all = compare::kernels();
   if (all.empty() || all.front().precision != Precision::f64) {
     // Gates that were not evaluated would hold.
@@ -62,15 +65,20 @@ Findings find(const MjcfFiles& files, const CompareOptions& compared) {
   for (const std::string& warning : pair.warnings()) {
     tools::tell("manyworlds: warning: {}\n", warning);
   }
+  // States, paths and both speeds of each, and the paths without contacts.
+  findings.all = static_cast<int>(all.size()) * (compared.no_speed ? 2 : 4) + 1;
   for (const compare::Kernels& kernels : all) {
     const auto samples = compare::draw_samples(pair, kernels.precision, options.worlds);
     findings.states.push_back(compare::compare_states(pair, samples, kernels));
     add_failures(findings, findings.states.back().failures());
+    ++findings.done;
     findings.paths.push_back(compare::compare_paths(pair, kernels, kPaths, options.steps));
+    ++findings.done;
     for (const compare::Effort& effort : {kConverged, kFast}) {
       if (compared.no_speed) break;
       findings.speeds.push_back(compare::compare_speed(pair, kernels, effort, kSpeedWorlds,
                                                        kMujocoWorlds, kSpeedSteps, kRounds));
+      ++findings.done;
       if (!findings.speeds.back().same_hash) {
         findings.failures.push_back("the same steps from the same state ended in different hashes");
       }
@@ -80,8 +88,8 @@ Findings find(const MjcfFiles& files, const CompareOptions& compared) {
     without.disable_contacts();
     findings.free.push_back(compare::compare_free_paths(without, kernels, kFreePaths));
     add_failures(findings, findings.free.back().failures());
+    ++findings.done;
   }
-  return findings;
 }
 
 Json times_of(const std::vector<double>& times) {
@@ -147,12 +155,14 @@ Json to_json(const Findings& findings, const CompareOptions& compared) {
                       {"mujoco_contacts_per_world", one.mujoco_contacts},
                       {"hash", hex(one.hash)}});
   }
-  return {{"model", options.scene},           {"mujoco", mj_versionString()},
-          {"machine", tools::machine_line()}, {"seed", options.seed.value_or(0)},
-          {"tolerance", compared.tolerance},  {"states", states},
-          {"not_compared", kNotCompared},     {"paths", paths},
-          {"paths_without_contacts", free},   {"speed", speeds},
-          {"failures", findings.failures}};
+  Json json = {{"model", options.scene},           {"mujoco", mj_versionString()},
+               {"machine", tools::machine_line()}, {"seed", options.seed.value_or(0)},
+               {"tolerance", compared.tolerance},  {"states", states},
+               {"not_compared", kNotCompared},     {"paths", paths},
+               {"paths_without_contacts", free},   {"speed", speeds},
+               {"failures", findings.failures}};
+  if (findings.done < findings.all) json["interrupted"] = tools::interrupt_name();
+  return json;
 }
 
 std::string share(int count, int states) { return fmt::format("{:.2g}", double(count) / states); }
@@ -212,21 +222,32 @@ void print_speed(const compare::Speed& s) {
       with_prefix(loop), s.mujoco_contacts, ours / loop, with_prefix(batch), ours / batch);
 }
 
+int tell_interrupted(const Findings& findings) {
+  std::fflush(stdout);
+  tools::tell("manyworlds: interrupted by {} after {} of {}\n", tools::interrupt_name(),
+              findings.done, counted(findings.all, "comparison"));
+  return tools::interrupt_code();
+}
+
 }  // namespace
 
 int compare_command(const CompareOptions& compared) {
   const JobOptions& options = compared.job;
   const MjcfFiles files = read_mjcf_files(options.scene, options.mjcf);
   Findings findings;
+  const tools::Interruptible interruptible;
   try {
-    findings = find(files, compared);
+    find(files, compared, findings);
+  } catch (const tools::Interrupted&) {        // what was compared by then is printed
   } catch (const std::runtime_error& error) {  // MjcfError, MujocoFailure
     throw InputError(error.what());
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", options.scene, error.what()));
   }
+  const bool whole = findings.done == findings.all;
   if (options.json) {
     fmt::print("{}\n", to_json(findings, compared).dump(2));
+    if (!whole) return tell_interrupted(findings);
     return findings.failures.empty() ? kOk : kWorldLost;
   }
   fmt::print(
@@ -238,13 +259,13 @@ int compare_command(const CompareOptions& compared) {
   for (const auto& one : findings.free) print_free(one);
   for (const auto& one : findings.speeds) print_speed(one);
   if (findings.failures.empty()) {
-    fmt::print("\nall gates hold\n");
-    return kOk;
+    fmt::print("\nall gates hold{}\n", whole ? "" : " so far");
+    return whole ? kOk : tell_interrupted(findings);
   }
   fmt::print("\n{} fail\n", counted(static_cast<long long>(findings.failures.size()), "gate"));
   std::fflush(stdout);
   for (const std::string& failure : findings.failures) tools::tell("manyworlds: {}\n", failure);
-  return kWorldLost;
+  return whole ? kWorldLost : tell_interrupted(findings);
 }
 
 }  // namespace manyworlds::cli

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -85,6 +86,8 @@ Batch make_batch(const Job& job, const JobOptions& options, int worlds, std::uin
     const std::string text = error.what();
     if (text.starts_with("worlds: ")) throw InputError("--" + text);
     throw;
+  } catch (const std::system_error& error) {
+    throw InputError(std::string("--") + error.what());  // "threads: 600 cannot be started, ..."
   }
 }
 

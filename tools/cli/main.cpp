@@ -522,7 +522,10 @@ int run_program(int argc, char** argv) {
     return complain(describe(error, app));
   } catch (const std::bad_alloc&) {
     return complain("not enough memory for so many worlds (--worlds)");
-  } catch (const std::system_error& error) {  // of fmt, where it cannot print
+  } catch (const std::system_error& error) {
+    const std::string_view text = error.what();
+    if (text.starts_with("threads: ")) return complain(text);  // of replay and the like
+    // Of fmt, where it cannot print.
     return complain("cannot write to standard output: " + reason_of(error.code().value()));
   } catch (const std::exception& error) {
     return complain(error.what());  // InputError, SceneError, std::invalid_argument

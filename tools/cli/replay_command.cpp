@@ -10,6 +10,8 @@
 
 #ifdef MW_HAVE_RECORD
 #include "manyworlds/record.hpp"
+#include "tools/base/interrupt.hpp"
+#include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
 #endif
 
@@ -22,7 +24,7 @@ namespace {
 using tools::counted;
 
 void print_json(const ReplayArguments& arguments, const Recording& recording,
-                const ReplayResult& result) {
+                const ReplayResult& result, bool whole) {
   nlohmann::ordered_json json = {{"file", arguments.file},
                                  {"worlds", result.worlds},
                                  {"samples", result.samples},
@@ -37,6 +39,7 @@ void print_json(const ReplayArguments& arguments, const Recording& recording,
     json["difference"] = {
         {"world", d->world}, {"step", d->step}, {"body", d->body.index()}, {"what", d->what}};
   }
+  if (!whole) json["interrupted"] = tools::interrupt_name();
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
@@ -93,13 +96,22 @@ int replay_command(const ReplayArguments& arguments) {
   options.isa = arguments.job.isa;
   options.threads = arguments.job.threads;
   options.layout = arguments.job.layout;
+  const tools::Interruptible interruptible;
+  options.go_on = [] { return tools::interrupted() == 0; };
   const auto before = std::chrono::steady_clock::now();
   const ReplayResult result = replay(recording, options);
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - before;
+  const bool whole = result.samples == recording.samples();
   if (arguments.job.json) {
-    print_json(arguments, recording, result);
+    print_json(arguments, recording, result, whole);
   } else {
     print_text(arguments, recording, result, spent.count());
+  }
+  if (!whole) {
+    std::fflush(stdout);
+    tools::tell("manyworlds: interrupted by {} after {} of {}\n", tools::interrupt_name(),
+                result.samples, counted(recording.samples(), "sample"));
+    return tools::interrupt_code();
   }
   return result.different == 0 ? kOk : kWorldLost;
 }

@@ -3,46 +3,25 @@
 // those that the same world has in a reference batch.
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <limits>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "job.hpp"
 #include "progress.hpp"
+#include "tools/base/interrupt.hpp"
 #include "tools/base/tell.hpp"
 #include "tools/base/text.hpp"
+#include "verify_output.hpp"
 
 namespace manyworlds::cli {
 namespace {
 
 using tools::counted, tools::hex;
-
-constexpr int kWorlds = 40;
-
-// What is varied. The order is the order of the table's columns.
-enum Column {
-  kAlone,
-  kPosition,
-  kSize,
-  kThreads,
-  kKernels,
-  kCalls,
-  kMasks,
-  kSaved,
-  kReset,
-  kFrozen,
-  kEnergy,
-  kColumns
-};
-constexpr std::array<const char*, kColumns> kNames = {"alone",   "position", "size",  "threads",
-                                                      "kernels", "calls",    "masks", "saved",
-                                                      "reset",   "frozen",   "energy"};
 
 struct Outcome {
   std::uint64_t hash = 0;
@@ -53,23 +32,12 @@ std::string text_of(const Outcome& o) {
   return fmt::format("hash {}, status {}", hex(o.hash), to_string(o.status));
 }
 
-struct Tally {
-  std::array<int, kColumns> compared{};
-  std::array<int, kColumns> different{};
-  std::vector<std::string> differences;  // the first of each column
-};
-
 std::vector<std::string> chosen_scenes(const VerifyOptions& options) {
   if (!options.scenes.empty()) return options.scenes;
   if (options.quick) return {"bin-spheres", "bin-boxes", "bin2d", "ant"};
   return {"bin-spheres", "bin-boxes",   "bin2d",   "mixed-pile", "mixed-pile2d",
           "ball3d",      "free-flight", "chain2d", "chain3d",    "pendulum",
           "hopper",      "cheetah",     "ant",     "humanoid"};
-}
-
-bool available(Isa isa) {
-  const std::vector<Isa> isas = available_isas();
-  return std::find(isas.begin(), isas.end(), isa) != isas.end();
 }
 
 // A body that forces act on, or none.
@@ -131,6 +99,7 @@ class Verifier {
   // Robots move by random controls, so that limits and contacts act.
   void steps(Batch& batch, int first, int count, int steps_per_call = 1) const {
     timed_steps(batch, count, steps_per_call, nullptr, controls_of(batch, first));
+    tools::stop_if_interrupted();  // a batch that took fewer steps must not be compared
   }
   RandomControls controls_of(const Batch& batch, int first) const {
     if (!is_robot_) return {};
@@ -179,6 +148,7 @@ class Verifier {
     for (int step = 0; step < options.steps; step += RandomControls::kPeriod) {
       const int count = std::min(RandomControls::kPeriod, options.steps - step);
       controls.apply(batch, step);
+      tools::stop_if_interrupted();
       batch.step(some, count);
       batch.step(others, count);
     }
@@ -268,78 +238,6 @@ class Verifier {
   Tally tally_;
 };
 
-void print_head(const VerifyOptions& options) {
-  std::string isas;
-  std::string missing;
-  for (const Isa isa : {Isa::scalar, Isa::avx2, Isa::avx512}) {
-    std::string& list = available(isa) ? isas : missing;
-    list += fmt::format("{}{}", list.empty() ? "" : ", ", to_string(isa));
-  }
-  fmt::print(
-      "Hashes and status of single worlds, compared with those of a batch of {} (seed {}, {},\n",
-      kWorlds, options.seed, to_string(default_isa()));
-  fmt::print("1 thread, step(1) calls); on {}:\n", isas);
-  fmt::print("  alone     each world as a batch of 1\n");
-  fmt::print("  position  all worlds moved by 1, 3 and 7 places\n");
-  fmt::print("  size      batches of {}\n", options.quick ? "1, 4, ... 40" : "1, 2, ... 40");
-  fmt::print("  threads   1, 2, 3 and 4\n");
-  fmt::print(
-      "  kernels   layouts auto, dense, rows x broad phases all-pairs, "
-      "sort-and-sweep, sparse; robots have one\n");
-  fmt::print("  calls     step(7) and one call for all steps\n");
-  fmt::print("  masks     a third of the worlds takes up to 5 steps, then the others\n");
-  fmt::print("  saved     half of the steps, a snapshot, the rest in another batch\n");
-  fmt::print("  reset     after a third of the run, and all over\n");
-  fmt::print("  frozen    beside a world that a NaN force froze half way\n");
-  fmt::print("  energy    worlds of the batch of {} that gain energy from nothing\n", kWorlds);
-  fmt::print("Robots get random controls every 5 steps, and resets at random times.\n");
-  if (!missing.empty()) fmt::print("Not on this CPU or not in this build: {}\n", missing);
-  fmt::print("\n{:<14}{:<6}", "scene", "");
-  for (const char* name : kNames) fmt::print("{:>9}", name);
-  fmt::print("  hash of all\n");
-  std::fflush(stdout);
-}
-
-void print_row(const std::string& scene, Precision precision, const Verifier& verifier) {
-  const Tally& tally = verifier.tally();
-  fmt::print("{:<14}{:<6}", scene, to_string(precision));
-  for (std::size_t column = 0; column < kColumns; ++column) {
-    const int different = tally.different[column];
-    const int compared = tally.compared[column];
-    fmt::print("{:>9}", different > 0  ? fmt::format("{} BAD", different)
-                        : compared > 0 ? fmt::format("{}", compared)
-                                       : "-");
-  }
-  fmt::print("  {}\n", hex(verifier.hash()));
-  std::fflush(stdout);
-}
-
-nlohmann::ordered_json row_json(const std::string& scene, Precision precision,
-                                const Verifier& verifier) {
-  nlohmann::ordered_json compared = nlohmann::ordered_json::object();
-  nlohmann::ordered_json different = nlohmann::ordered_json::object();
-  for (std::size_t column = 0; column < kColumns; ++column) {
-    compared[kNames[column]] = verifier.tally().compared[column];
-    different[kNames[column]] = verifier.tally().different[column];
-  }
-  return {{"scene", scene},
-          {"precision", to_string(precision)},
-          {"compared", compared},
-          {"different", different},
-          {"hash", hex(verifier.hash())}};
-}
-
-void print_json(const VerifyOptions& options, nlohmann::ordered_json rows, long long compared,
-                long long different, const std::vector<std::string>& differences) {
-  nlohmann::ordered_json isas = nlohmann::ordered_json::array();
-  for (const Isa isa : available_isas()) isas.push_back(to_string(isa));
-  const nlohmann::ordered_json json = {
-      {"seed", options.seed},      {"worlds", kWorlds},    {"isas", isas},
-      {"rows", std::move(rows)},   {"compared", compared}, {"different", different},
-      {"differences", differences}};
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-}
-
 }  // namespace
 
 int verify_command(const VerifyOptions& options) {
@@ -350,45 +248,40 @@ int verify_command(const VerifyOptions& options) {
     prepare(probe);  // every name is checked before the first line
   }
   if (!options.json) print_head(options);
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
 
   Progress progress("verify", 2 * static_cast<std::int64_t>(names.size()));
-  long long compared = 0;
-  long long different = 0;
-  std::vector<std::string> differences;
+  const tools::Interruptible interruptible;
+  VerifyTotals totals;
   for (const std::string& name : names) {
     for (const Precision precision : {Precision::f32, Precision::f64}) {
+      if (tools::interrupted() != 0) break;
       progress.set_label(fmt::format("verify {} {}", name, to_string(precision)));
-      Verifier verifier(name, precision, options);
-      verifier.compare_all();
-      progress.erase();
-      if (options.json) {
-        rows.push_back(row_json(name, precision, verifier));
-      } else {
-        print_row(name, precision, verifier);
+      std::optional<Verifier> verifier;
+      try {
+        verifier.emplace(name, precision, options);
+        verifier->compare_all();
+        progress.erase();
+        totals.rows.push_back({name, precision, verifier->tally(), verifier->hash()});
+        if (!options.json) print_row(totals.rows.back());
+        progress.advance(1);
+      } catch (const tools::Interrupted&) {  // comparisons made until then count
       }
-      progress.advance(1);
-      const Tally& tally = verifier.tally();
-      for (const int count : tally.compared) compared += count;
-      for (const int count : tally.different) different += count;
-      differences.insert(differences.end(), tally.differences.begin(), tally.differences.end());
+      if (verifier) totals.add(verifier->tally());
     }
   }
   progress.erase();
+  totals.whole = totals.rows.size() == 2 * names.size();
   if (options.json) {
-    print_json(options, std::move(rows), compared, different, differences);
-    return different == 0 ? kOk : kWorldLost;
+    print_json(options, totals);
+  } else {
+    print_sum(totals);
   }
-  if (different == 0) {
-    fmt::print("\nall {} comparisons equal\n", compared);
-    return kOk;
+  if (!totals.whole) {
+    tools::tell("manyworlds: interrupted by {} after {} of {}\n", tools::interrupt_name(),
+                totals.rows.size(), counted(static_cast<long long>(2 * names.size()), "row"));
+    return tools::interrupt_code();
   }
-  fmt::print("\n{} of {} comparisons differ\n", different, compared);
-  std::fflush(stdout);
-  for (const std::string& difference : differences) {
-    tools::tell("manyworlds: {}\n", difference);
-  }
-  return kWorldLost;
+  return totals.different == 0 ? kOk : kWorldLost;
 }
 
 }  // namespace manyworlds::cli

@@ -42,9 +42,18 @@ using tools::counted, tools::with_prefix;
 constexpr double kMaxPoses = 2.5e6;
 constexpr int kMaxWorlds = 256;
 
-// Steps a scene and records it in `file`.
-void record(const ViewArguments& arguments, double samples_per_second, const std::string& scene,
-            const fs::path& file) {
+// A recording that was made here and ended early.
+struct Cut {
+  std::string scene;
+  int steps = 0, wanted = 0;
+};
+std::string text_of(const Cut& cut) {
+  return fmt::format("after {} of {} of {}", cut.steps, counted(cut.wanted, "step"), cut.scene);
+}
+
+// Steps a scene and records it in `file`; says where a signal ended it early.
+std::optional<Cut> record(const ViewArguments& arguments, double samples_per_second,
+                          const std::string& scene, const fs::path& file) {
   JobOptions options = arguments.job;
   options.scene = scene;
   if (!options.seconds) options.seconds = arguments.seconds;
@@ -66,20 +75,40 @@ void record(const ViewArguments& arguments, double samples_per_second, const std
   const RandomControls controls = asked_controls(batch, options, seed);
   const tools::Interruptible interruptible;
   JobRecorder recorder(batch, options);
+  Timed done;
   {
     Progress progress(scene, job.steps);
-    timed_steps(batch, job.steps, steps_per_call(options), &progress, controls);
+    done = timed_steps(batch, job.steps, steps_per_call(options), &progress, controls);
   }
   recorder.finish(batch);
   if (!recorder.failure().empty()) throw InputError(recorder.failure());
+  if (done.steps == job.steps) return std::nullopt;
+  return Cut{scene, done.steps, job.steps};
 }
 
 bool is_recording(const std::string& source) {
   return source.ends_with(".h5") || source.find(".h5.part-") != std::string::npos;
 }
 
-int tell_interrupted() {
-  tools::tell("manyworlds: {}: nothing was written\n", tools::interrupt_name());
+void print_json(const nlohmann::ordered_json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+// `written`: the files that are whole, of those that were to be written.
+int tell_interrupted(const ViewArguments& arguments, const std::vector<std::string>& written) {
+  if (arguments.job.json) {
+    print_json({{"interrupted", tools::interrupt_name()}, {"written", written}});
+    std::fflush(stdout);
+  }
+  tools::tell("manyworlds: {}: nothing {}was written\n", tools::interrupt_name(),
+              written.empty() ? "" : fmt::format("but {} ", fmt::join(written, ", ")));
+  return tools::interrupt_code();
+}
+
+int tell_cut(const Cut& cut, const fs::path& page) {
+  std::fflush(stdout);
+  tools::tell("manyworlds: interrupted by {} {}; {} shows what was done by then\n",
+              tools::interrupt_name(), text_of(cut), page.string());
   return tools::interrupt_code();
 }
 
@@ -99,23 +128,32 @@ int view_command(const ViewArguments& arguments) {
   const auto before = std::chrono::steady_clock::now();
   const tools::Interruptible interruptible;
   std::vector<Recording> recordings;
+  std::optional<Cut> cut;
+  bool made_here = false;
   for (const std::string& source : arguments.sources) {
+    if (cut) break;  // those after it would have no steps at all
     if (is_recording(source)) {
       recordings.push_back(Recording::open(source));
     } else {
       const ScratchFolder folder;
       const fs::path file = folder / "run.h5";
-      record(arguments, wanted.samples_per_second, source, file);
+      cut = record(arguments, wanted.samples_per_second, source, file);
+      made_here = true;
       recordings.push_back(Recording::open(file));
     }
   }
   std::vector<const Recording*> all;
   for (const Recording& one : recordings) all.push_back(&one);
   // What was recorded until Ctrl-C makes a page, but neither picture nor film.
-  const bool cut_short = tools::interrupted() != 0;
-  if (cut_short && wanted.any()) return tell_interrupted();
+  const bool cut_short = made_here && tools::interrupted() != 0;
+  if (cut_short && wanted.any()) return tell_interrupted(arguments, {});
   PageOptions options;
   options.title = arguments.title;
+  if (cut) {
+    const std::string& name = recordings.front().plan().scene().name;
+    options.title = fmt::format("{}, interrupted {}",
+                                arguments.title.empty() ? name : arguments.title, text_of(*cut));
+  }
   options.max_worlds = arguments.worlds;
   options.every = arguments.every;
   options.go_on = [cut_short] { return cut_short || tools::interrupted() == 0; };
@@ -126,17 +164,20 @@ int view_command(const ViewArguments& arguments) {
                        : unnamed ? folder->path() / "page.html"
                                  : folder->path() / page_name(arguments.sources.front());
   const PageReport page = write_page(all, empty, out, options);
-  if (!page.written) return tell_interrupted();
+  std::vector<std::string> written;
+  if (!page.written) return tell_interrupted(arguments, written);
+  if (!unnamed) written.push_back(out.string());
   if (folder && !unnamed) folder->keep();  // for the browser that opens it
   FilmReport film;
   if (wanted.picture) {
     const PictureOptions picture{
         .frame = wanted.frame, .time = wanted.time, .go_on = options.go_on};
-    if (!write_picture(out, arguments.png, picture)) return tell_interrupted();
+    if (!write_picture(out, arguments.png, picture)) return tell_interrupted(arguments, written);
+    written.push_back(arguments.png);
   }
   if (wanted.film) {
     film = make_film(out, arguments, wanted);
-    if (!film.written) return tell_interrupted();
+    if (!film.written) return tell_interrupted(arguments, written);
   }
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - before;
   const bool opened =
@@ -157,8 +198,12 @@ int view_command(const ViewArguments& arguments) {
                  {"bytes", page.bytes},
                  {"seconds", spent.count()},
                  {"opened", opened}});
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-    return kOk;
+    if (cut) {
+      json["interrupted"] = tools::interrupt_name();
+      json["cut"] = {{"scene", cut->scene}, {"steps", cut->steps}, {"of", cut->wanted}};
+    }
+    print_json(json);
+    return cut ? tell_cut(*cut, out) : kOk;
   }
   std::vector<std::string> made;
   if (!unnamed) made.push_back(out.string());
@@ -178,7 +223,7 @@ int view_command(const ViewArguments& arguments) {
   if (!opened && !unnamed && (arguments.out.empty() || arguments.open)) {
     fmt::print("no desktop to open it on: open {} in a browser\n", fs::absolute(out).string());
   }
-  return kOk;
+  return cut ? tell_cut(*cut, out) : kOk;
 }
 
 #else

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Settings {
   std::uint64_t seed = 0;
   // Compare states in which shapes touch whose contact points are not MuJoCo's, too.
   bool every_shape = false;
+  // Called every few milliseconds of work. An exception of it ends the comparison.
+  std::function<void()> pause = {};
 };
 
 // How far both solvers go.
@@ -50,6 +53,9 @@ class Pair {
   Pair(const MjcfFiles& files, const Settings& settings);
 
   const Settings& settings() const { return settings_; }
+  void pause() const {
+    if (settings_.pause) settings_.pause();
+  }
   const mjModel& mujoco() const { return *mujoco_; }
   Scene scene(Precision precision) const;
   const std::vector<std::string>& warnings() const { return warnings_; }

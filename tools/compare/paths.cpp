@@ -100,6 +100,7 @@ Parting compare_paths(const Pair& pair, const Kernels& kernels, int paths, int s
   out.ours.assign(count, -1), out.own.assign(count, -1);
   const auto unscaled = [](double) { return 1.0; };
   for (int s = 0; s < steps; ++s) {
+    pair.pause();
     side.step(s % 5 == 0);
     for (std::size_t p = 0; p < count; ++p) {
       const double time = (s + 1) * side.dt();
@@ -131,7 +132,10 @@ std::vector<std::string> FreePaths::failures() const {
 FreePaths compare_free_paths(const Pair& pair, const Kernels& kernels, int paths, int steps) {
   const mjcf::LogCapture log;
   Side side(pair, kernels, paths, 0.5);
-  for (int s = 0; s < steps; ++s) side.step(s % 50 == 0);
+  for (int s = 0; s < steps; ++s) {
+    pair.pause();
+    side.step(s % 50 == 0);
+  }
   FreePaths out{steps, {}, {}};
   const auto relative = [](double expected) { return 1 + std::abs(expected); };
   for (std::size_t p = 0; p < static_cast<std::size_t>(paths); ++p) {

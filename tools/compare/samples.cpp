@@ -54,6 +54,7 @@ std::vector<Sample> draw_samples(const Pair& pair, Precision precision, int coun
   Random random(pair.settings().seed, 0);
   std::vector<Sample> out;
   for (int i = 0; i < count; ++i) {
+    pair.pause();
     mj_resetData(&m, &d);
     for (int k = 0; k < m.nv; ++k) d.qvel[k] = random.uniform(-1, 1);
     draw_controls(m, random, d.ctrl);

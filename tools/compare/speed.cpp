@@ -35,8 +35,9 @@ std::vector<double> read_all(const Batch& batch, Field field) {
   return out;
 }
 
-Inputs draw_inputs(const mjModel& m, Batch& batch, std::uint64_t seed, int steps) {
-  Random random(seed, 2);
+Inputs draw_inputs(const Pair& pair, Batch& batch, int steps) {
+  const mjModel& m = pair.mujoco();
+  Random random(pair.settings().seed, 2);
   const auto worlds = static_cast<std::size_t>(batch.worlds());
   std::vector<int> phases(worlds);
   for (int& phase : phases) phase = random.integer(0, kRunIn / kHeld - 1);
@@ -48,6 +49,7 @@ Inputs draw_inputs(const mjModel& m, Batch& batch, std::uint64_t seed, int steps
     }
   };
   for (int block = 0; block < kRunIn / kHeld; ++block) {
+    pair.pause();
     std::transform(phases.begin(), phases.end(), back.begin(),
                    [&](int phase) { return std::uint8_t{phase == block}; });
     batch.reset(back);
@@ -66,12 +68,13 @@ double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void run_ours(Batch& batch, const Inputs& inputs, Speed& speed) {
+void run_ours(const Pair& pair, Batch& batch, const Inputs& inputs, Speed& speed) {
   batch.reset();
   batch.write(Field::generalized_position, std::span<const double>(inputs.q));
   batch.write(Field::generalized_velocity, std::span<const double>(inputs.v));
   const Clock::time_point start = Clock::now();
   for (int s = 0; s < speed.steps; s += kHeld) {
+    pair.pause();
     set_controls(batch, inputs.u[static_cast<std::size_t>(s / kHeld)]);
     batch.step(std::min(kHeld, speed.steps - s));
   }
@@ -85,11 +88,13 @@ void run_ours(Batch& batch, const Inputs& inputs, Speed& speed) {
   }
 }
 
-void run_mujoco(const mjModel& m, mjData& d, const Inputs& inputs, Speed& speed) {
+void run_mujoco(const Pair& pair, mjData& d, const Inputs& inputs, Speed& speed) {
   const mjcf::LogCapture log;
+  const mjModel& m = pair.mujoco();
   speed.mujoco_contacts = 0;
   double seconds = 0;
   for (int w = 0; w < speed.mujoco_worlds; ++w) {
+    pair.pause();
     mj_resetData(&m, &d);
     std::copy_n(inputs.q.begin() + static_cast<std::ptrdiff_t>(w) * m.nq, m.nq, d.qpos);
     std::copy_n(inputs.v.begin() + static_cast<std::ptrdiff_t>(w) * m.nv, m.nv, d.qvel);
@@ -126,7 +131,8 @@ MujocoBatch make_mujoco_batch(const mjModel& m, int worlds, bool persistent) {
   return batch;
 }
 
-double run_mujoco_batch(mjBatch& batch, const Inputs& inputs, const Speed& speed) {
+double run_mujoco_batch(const Pair& pair, mjBatch& batch, const Inputs& inputs,
+                        const Speed& speed) {
   const mjcf::LogCapture log;
   mjb_reset(&batch, nullptr, 0, nullptr, mjSTAGE_NONE);
   // A row of each world's state has this component at the same place.
@@ -142,6 +148,7 @@ double run_mujoco_batch(mjBatch& batch, const Inputs& inputs, const Speed& speed
   put(mjSTATE_QVEL, inputs.v);
   const Clock::time_point start = Clock::now();
   for (int s = 0; s < speed.steps; s += kHeld) {
+    pair.pause();
     put(mjSTATE_CTRL, inputs.u[static_cast<std::size_t>(s / kHeld)]);
     mjb_step(&batch, nullptr, 0, std::min(kHeld, speed.steps - s), mjSTAGE_NONE);
   }
@@ -166,12 +173,12 @@ Speed compare_speed(Pair& pair, const Kernels& kernels, const Effort& effort, in
     batches[persistent] = make_mujoco_batch(pair.mujoco(), speed.mujoco_worlds, persistent);
   }
   std::vector<double> by_batch[2];
-  const Inputs inputs = draw_inputs(pair.mujoco(), batch, pair.settings().seed, steps);
+  const Inputs inputs = draw_inputs(pair, batch, steps);
   for (int round = 0; round < rounds; ++round) {
-    run_ours(batch, inputs, speed);
-    run_mujoco(pair.mujoco(), *data, inputs, speed);
+    run_ours(pair, batch, inputs, speed);
+    run_mujoco(pair, *data, inputs, speed);
     for (int i = 0; i < 2; ++i) {
-      by_batch[i].push_back(run_mujoco_batch(*batches[i], inputs, speed));
+      by_batch[i].push_back(run_mujoco_batch(pair, *batches[i], inputs, speed));
     }
   }
   speed.mujoco_batch = *std::max_element(by_batch, by_batch + 2, [](const auto& a, const auto& b) {

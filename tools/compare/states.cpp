@@ -154,6 +154,7 @@ StateComparison compare_states(const Pair& pair, const std::vector<Sample>& samp
   };
   std::vector<bool> stepped;
   for (int i = 0; i < batch.worlds(); ++i) {
+    pair.pause();
     const Sample& s = samples[static_cast<std::size_t>(i)];
     const Links links(batch, pair, i, s);
     add(kPosition, difference(links.position)), add(kRotation, difference(links.rotation));
