@@ -9,6 +9,9 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "manyworlds/batch.hpp"
@@ -33,6 +36,32 @@ struct EnvironmentOptions {
   std::optional<Isa> isa = std::nullopt;
   Autoreset autoreset = Autoreset::next_step;
   std::shared_ptr<Executor> executor = nullptr;
+  // Calls that step or begin worlds throw NonFiniteError where a result is not finite, after they
+  // have done all that they do.
+  bool check = false;
+};
+
+// An observation, a reward or an end that was not a finite number. Its world is frozen then
+// (Status::non_finite) and its episode is truncated, not terminated.
+struct NonFinite {
+  std::string expression = {};  // "observation 3 'lean'", as validate() names it
+  int world = 0;
+  std::int64_t step = 0;  // of the world's episode, from 1; 0: where it began
+  // Infinite or not a number. An end that compares what is not a number counts as not a number.
+  double value = 0;
+};
+std::string to_string(
+    const NonFinite& fault);  // "reward 0 'pace' is nan in world 7 at step 12 of ..."
+
+// The first one of a call, by world and then in the order of NonFinite::expression.
+class NonFiniteError : public std::runtime_error {
+ public:
+  explicit NonFiniteError(NonFinite what)
+      : std::runtime_error(to_string(what)), fault_(std::move(what)) {}
+  const NonFinite& fault() const { return fault_; }
+
+ private:
+  NonFinite fault_;
 };
 
 // The caller's arrays that a step writes to, [world] or [world][number]. Those that are empty are
@@ -48,6 +77,8 @@ struct StepArrays {
   std::span<double> observations_f64 = {}, final_observations_f64 = {};
   std::span<double> infos = {};        // [world][info]
   std::span<double> final_infos = {};  // as final_observations; requires infos
+  // Was it lost at the end of the step (Status)? Also of worlds that then begin anew (same_step).
+  std::span<std::uint8_t> lost = {};
 };
 
 // Those of a beginning; of worlds that do not begin they stay.
@@ -115,6 +146,17 @@ class Environment {
   void reset(std::span<const std::uint8_t> mask, const BeginArrays& out);
   void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
              const BeginArrays& out);
+
+  // The first fault of each expression since the environment was made, in the order in which they
+  // were found.
+  std::vector<NonFinite> non_finite() const;
+  int non_finite_expressions() const;  // how many those are
+
+  // The value of an expression in every world, [world], as an Info of the task would have had it
+  // after the last step or beginning, but of the state that worlds have now. Changes nothing.
+  // Throws std::invalid_argument for what is no expression of the task's scene, for what the task
+  // does not observe or remember (the task can have an Info for it), and in the middle of a step.
+  void evaluate(const Expression& expression, std::span<double> out) const;
 
   // Levels (Task::levels) of all worlds, [world][level]. Written values, of the worlds of a mask,
   // must be finite. They apply from the next step until the end of an episode changes them; those

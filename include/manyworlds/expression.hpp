@@ -38,6 +38,10 @@ class Expression {
   std::shared_ptr<const Node> node_;
 };
 
+// The whole expression as Python writes it: "1 - 0.1 * (position(0, 'x') * position(0, 'x'))".
+// Beyond 20,000 characters, subexpressions that are nested deeply are "...".
+std::string to_string(const Expression& expression);
+
 Expression operator+(const Expression& a, const Expression& b);
 Expression operator-(const Expression& a, const Expression& b);
 Expression operator*(const Expression& a, const Expression& b);
@@ -183,8 +187,11 @@ inline Expression site_position(SiteId site, int axis) {  // m
 Expression action(
     int index = 0);  // that led here; of discrete tasks its number. 0 at the beginning
 Expression control(ControlId control);  // that led here: of the scene
-Expression age();                       // steps of the task since the episode began, with this one
-Expression lost();                      // the world is lost (Status)
+// Steps of the task since the episode began, including this one. In Task::controls the step to take
+// counts: 1 in the first step.
+Expression age();
+Expression time_step();  // s, of one step of the task: frame_skip steps of the scene
+Expression lost();       // the world is lost (Status)
 
 // A random number from low to high, or a normal one. It depends on its name, on the seed and the
 // episode of the world and, where it is of every step, on age() alone; before the steps, where
@@ -210,6 +217,10 @@ Expression attractor_parameter(Parameter of, int attractor, int component = 0);
 // (Task::levels, by name).
 Expression level(std::string_view name);
 
+// A number of this world that the task remembers from step to step (Task::memories, by name). In
+// Task::controls it is as the last step left it.
+Expression memory(std::string_view name);
+
 // What `value` was at the end of the step before; in the first step where the world began. In
 // Task::controls: what it is.
 Expression previous(const Expression& value);
@@ -222,10 +233,26 @@ Expression delayed(const Expression& value, int steps);
 // By as many steps as `steps` says in this world and step: rounded down, kept within 0 and
 // `max_steps`, 0 to 256, which is what is remembered. What is not a number counts as `max_steps`.
 Expression delayed(const Expression& value, const Expression& steps, int max_steps);
+
+// Functions of all steps of the episode so far. In Task::controls the step to take counts, so their
+// operands must be known before it; previous(...) reads the state and what the last step left.
+//
 // Steps in a row, up to this one, at whose end the condition was true; 0 at the beginning.
 Expression held(const Expression& condition);
-// The largest that `value` has been since the beginning, which counts.
+// The largest value since the beginning, which counts.
 Expression largest(const Expression& value);
+// 1 once the condition was true in this episode, the beginning included; 0 before.
+Expression latched(const Expression& condition);
+// The sum of the values at the ends of the steps so far; 0 at the beginning.
+Expression summed(const Expression& value);
+// Exponential moving average: starts at `value`, and moves by `factor` times the difference from
+// it in each step; 1 follows at once, 0 never.
+Expression smoothed(const Expression& value, const Expression& factor);
+// The same with a time constant, s: factor = 1 - exp(-time_step() / time_constant).
+Expression smoothed_over(const Expression& value, const Expression& time_constant);
+// Cycles since the beginning without whole ones, 0 up to 1: grows by frequency (Hz) times
+// time_step() in each step. A negative frequency runs backwards.
+Expression phase(const Expression& frequency);
 
 }  // namespace terms
 }  // namespace manyworlds

@@ -26,7 +26,7 @@ ExpressionGraph graph_of(std::span<const Expression> roots);
 // Throws std::invalid_argument, which names the node, for what graph_of() does not make.
 std::vector<Expression> from_graph(const ExpressionGraph& graph);
 
-// As Python writes it, of at most about `size` characters: what is nested deeply is "...".
+// As Python writes it. Where it has more than `size` characters, what is nested deeply is "...".
 std::string text_of(const Expression& expression, std::size_t size);
 
 }  // namespace manyworlds

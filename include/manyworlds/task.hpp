@@ -58,6 +58,17 @@ struct Level {
   std::optional<Expression> next = std::nullopt;
 };
 
+// A number of every world that lasts for an episode (terms::memory). Where an episode begins it is
+// `begin`, computed from the state there. At the end of each step of the task, before anything else
+// is computed, all memories become their `next` at once: in `next`, memories are what they were
+// before the step. So observations, rewards, ends, infos and levels of a step see memories after
+// their update, and controls see them as the last step left them.
+struct Memory {
+  std::string name = {};
+  Expression begin = 0;                           // of anything but memories
+  std::optional<Expression> next = std::nullopt;  // none: it stays
+};
+
 // What a number of the scene is where an episode begins by a reset, instead of one that is drawn.
 struct InitialParameter {
   Expression parameter = 0;  // terms::parameter(...), which varies, with Draw::none
@@ -74,7 +85,7 @@ struct Task {
   int choices = 0;  // discrete tasks: the action is one of 0 to choices - 1, and `actions` is empty
   std::vector<Action> actions = {};
   // What each control of the scene is set to before the steps: of actions, numbers, random ones,
-  // parameters, levels and previous().
+  // parameters, levels, memories, age() and previous().
   std::vector<Expression> controls = {};
 
   std::vector<Observation> observations = {};
@@ -88,6 +99,7 @@ struct Task {
   std::vector<Info> infos = {};
 
   std::vector<Level> levels = {};
+  std::vector<Memory> memories = {};
   std::vector<InitialParameter> initial_parameters = {};
 
   std::vector<Ray> rays = {};      // for terms::ray_distance

@@ -24,6 +24,12 @@ enum class Operation : std::int32_t {
   previous,  // a of the step before; a itself at the beginning
   held,      // steps in a row at whose end a was not 0; 0 at the beginning
   largest,   // of a since the beginning
+  latched,   // 1 once a was not 0, the beginning included
+  summed,    // of a over the steps; 0 at the beginning
+  smoothed,  // moves towards a by c times the difference; a at the beginning
+  phase,     // grows by a in each step, within 0 and 1; 0 at the beginning
+  // of the beginning alone
+  begins,  // a at the beginning, else b
   // arithmetic; truth is 1, and what is not 0
   add,
   subtract,

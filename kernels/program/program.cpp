@@ -44,6 +44,14 @@ void run_program(const Group& g, const ObserverView* seen, const kernels::Progra
         case Operation::held:
           return run.beginning ? zero : select(holds(a()), row(run.memory, at.b) + one, zero);
         case Operation::largest: return run.beginning ? a() : max(row(run.memory, at.b), a());
+        case Operation::latched:
+          return truth(run.beginning ? holds(a()) : holds(a()) | holds(row(run.memory, at.b)));
+        case Operation::summed: return run.beginning ? zero : row(run.memory, at.b) + a();
+        case Operation::smoothed:
+          return run.beginning ? a() : row(run.memory, at.b) + c() * (a() - row(run.memory, at.b));
+        case Operation::phase:
+          return run.beginning ? zero : modulo(row(run.memory, at.b) + a(), one);
+        case Operation::begins: return run.beginning ? a() : b();
         case Operation::add: return a() + b();
         case Operation::subtract: return a() - b();
         case Operation::multiply: return a() * b();

@@ -13,11 +13,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from . import joints, mjcf, query, scenes, shapes, surfaces, tasks
-from ._core import Expression, Snapshot, SnapshotError, __version__, available_isas
+from ._core import Expression, NonFiniteError, Snapshot, SnapshotError, __version__, available_isas
 from ._core import names as enumerations
 from .batch import Batch
 from .bodies import Body, Jitter, MassProperties
-from .environment import Environment, EnvironmentSnapshot
+from .environment import Environment, EnvironmentSnapshot, NonFinite
 from .fields import Field
 from .film import FilmReport, write_film, write_picture
 from .ids import BodyId, ControlId, JointId, KeyframeId, ShapeId, SiteId, TendonId
@@ -51,7 +51,7 @@ from .scene import (
 )
 from .shapes import *  # noqa: F403
 from .surfaces import *  # noqa: F403
-from .tasks import Action, Info, InitialParameter, Level, Observation, Reward, Task, TaskError
+from .tasks import Action, Info, InitialParameter, Level, Memory, Observation, Reward, Task, TaskError
 from .state_view import View
 
 from . import pickling as _pickling  # of the values above; isort: skip
@@ -90,6 +90,9 @@ __all__ = [
     "LiveView",
     "MassProperties",
     "Medium",
+    "Memory",
+    "NonFinite",
+    "NonFiniteError",
     "Observation",
     "Options",
     "Page",

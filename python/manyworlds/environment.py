@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
 from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _core, arrays, shown, tasks
-from ._core import Snapshot
 from .arrays import Writable
 from .batch import MAX_THREADS, MAX_WORLDS, Batch
+from .environment_snapshot import EnvironmentSnapshot as EnvironmentSnapshot
+from .environment_snapshot import WithSnapshots
 from .in_memory import InMemory
 from .levels import WithLevels
 from .names import Autoreset, Ids, Isa, Precision, Seeds
 from .own_batch import _OwnBatch
 from .plan import Plan
+from .task_results import NonFinite as NonFinite
+from .task_results import WithResults
 from .tasks import Task, TaskError
 
 Doubles = NDArray[np.float64]
@@ -24,20 +27,7 @@ Flags = NDArray[np.bool_]
 Observations = NDArray[Any]  # float32, or the float64 that was asked for
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class EnvironmentSnapshot:
-    """The worlds of an Environment with what its task remembers of them; can be pickled."""
-
-    worlds: Snapshot
-    task: int  # of which task: equal for tasks that compute the same
-    memory: Doubles  # (worlds, numbers)
-    # Of the last step or reset, as the array has them that it filled.
-    observations: Observations  # (worlds, observations)
-    terminated: Flags  # (worlds,)
-    truncated: Flags
-
-
-class Environment(WithLevels, InMemory):
+class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
     """A task in many worlds, one SIMD lane for each; what Gymnasium's classes are built on.
 
     task         a Task, or the name of one (``tasks.names()``)
@@ -50,6 +40,8 @@ class Environment(WithLevels, InMemory):
                  begins its next episode instead of stepping it (reward 0, no end), with "same_step"
                  the step that ends it begins the next and ``final_observations`` has where it ended,
                  with "disabled" it steps on until it is reset
+    check        True: ``step``, ``reset`` and ``begin`` raise NonFiniteError where an observation, a
+                 reward or an end is not a finite number, after they have done all that they do
     reward_terms, final_observations  whether these arrays are filled by ``step``
     observation_dtype  "float32" or "float64": of observations
 
@@ -57,7 +49,12 @@ class Environment(WithLevels, InMemory):
     step or reset are ``observations`` (worlds, observations) float32, ``rewards`` (worlds,) float64,
     ``terminated`` and ``truncated`` (worlds,) bool, ``reward_terms`` (worlds, rewards) float64,
     ``infos`` (worlds, infos) float64, and ``final_observations`` and ``final_infos`` of "same_step":
-    the same arrays in every step. Raises TaskError, ValueError, TypeError.
+    the same arrays in every step. ``lost_at_end`` (worlds,) bool says which worlds were lost at the end
+    of the last step, also those that then began anew.
+
+    A world with an observation, a reward or an end that is not a finite number is lost (``lost()``), and its
+    episode is truncated, not terminated. The first such fault of each expression is a RuntimeWarning and
+    in ``non_finite()``. Raises TaskError, ValueError, TypeError.
     An environment is used by one thread at a time.
     """
 
@@ -73,6 +70,7 @@ class Environment(WithLevels, InMemory):
         isa: Optional[Isa] = None,
         autoreset: Autoreset = "next_step",
         *,
+        check: bool = False,
         reward_terms: bool = False,
         final_observations: Optional[bool] = None,
         observation_dtype: DTypeLike = np.float32,
@@ -90,7 +88,10 @@ class Environment(WithLevels, InMemory):
         count = 0 if threads is None else arrays.integer(threads, "threads", 1, MAX_THREADS)
         seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
         self._plan = Plan(task.scene)  # of now: the task is its maker's
-        self._held = _core.Environment(task, self._worlds, count, seed, precision, isa, autoreset)
+        self._named_faults = 0  # expressions that were warned of
+        self._held = _core.Environment(
+            task, self._worlds, count, seed, precision, isa, autoreset, bool(check)
+        )
         self.autoreset: str = autoreset.replace("-", "_")
         self.discrete = task.choices > 0
         n, seen, parts = self._worlds, len(task.observations), len(task.rewards)
@@ -101,6 +102,7 @@ class Environment(WithLevels, InMemory):
         self.rewards: Doubles = np.zeros(n, np.float64)
         self.terminated: Flags = np.zeros(n, np.bool_)
         self.truncated: Flags = np.zeros(n, np.bool_)
+        self.lost_at_end: Flags = np.zeros(n, np.bool_)
         self.reward_terms: Optional[Doubles] = np.zeros((n, parts)) if reward_terms else None
         if final_observations is None:
             final_observations = self.autoreset == "same_step"
@@ -239,19 +241,27 @@ class Environment(WithLevels, InMemory):
             )
         given = self._actions(actions)
         told = (self.infos, self.final_infos) if self.task.infos else (None, None)
-        out = observations, rewards, terminated, truncated, reward_terms, final_observations, *told
+        out = observations, rewards, terminated, truncated, reward_terms, final_observations
+        out += *told, self.lost_at_end
         if self._batch is not None:
             self._batch._before_step(self.task.frame_skip)
         try:
-            self._step(given, *out)
-        except BaseException:  # whatever a signal's handler raised
+            faults = self._step(given, *out)
+        except BaseException as error:  # whatever a signal's handler raised
             if self._unfilled is None and self.steps_left > 0:
                 self._unfilled = out
+            if isinstance(error, _core.NonFiniteError):  # the step was taken
+                self._stepped(observations, terminated, truncated)
             raise
+        self._stepped(observations, terminated, truncated)
+        if faults > self._named_faults:
+            self._warn(2)
+        return observations, rewards, terminated, truncated
+
+    def _stepped(self, observations: Observations, terminated: Flags, truncated: Flags) -> None:
         self._last = observations, terminated, truncated
         if self._batch is not None:
             self._batch._after_step()
-        return observations, rewards, terminated, truncated
 
     def finish_step(self) -> tuple[Observations, Doubles, Flags, Flags]:
         """Takes a step that Ctrl-C ended early to its end, with its actions and into its arrays.
@@ -262,10 +272,15 @@ class Environment(WithLevels, InMemory):
         """
         if self._unfilled is None:
             raise ValueError("no step was ended early")
-        self._held.finish_step(*self._unfilled)
         observations, rewards, terminated, truncated = self._unfilled[:4]
-        self._unfilled = None
-        self._last = observations, terminated, truncated
+        try:
+            faults = self._held.finish_step(*self._unfilled)
+        finally:
+            if self.steps_left == 0:
+                self._unfilled = None
+                self._last = observations, terminated, truncated
+        if faults > self._named_faults:
+            self._warn(2)
         return observations, rewards, terminated, truncated
 
     @property
@@ -312,8 +327,7 @@ class Environment(WithLevels, InMemory):
         if redraw is not None and not redraw:  # as from those that they have
             own = np.empty(self._worlds, np.uint64)
             self._held.batch().seeds(own)
-        self._held.reset(mask, own, observations, self.infos if self.task.infos else None)
-        self._began(mask, observations)
+        self._begin(mask, observations, self._held.reset, mask, own)
         return observations
 
     def begin(
@@ -322,72 +336,34 @@ class Environment(WithLevels, InMemory):
         """Worlds begin an episode in the state that they have; see ``reset``."""
         mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
-        self._held.begin(mask, observations, self.infos if self.task.infos else None)
-        self._began(mask, observations)
+        self._begin(mask, observations, self._held.begin, mask)
         return observations
+
+    def _begin(
+        self,
+        mask: NDArray[np.uint8],
+        observations: Observations,
+        call: Callable[..., int],
+        *arguments: Any,
+    ) -> None:
+        try:
+            faults = call(*arguments, observations, self.infos if self.task.infos else None)
+        except _core.NonFiniteError:  # the worlds have begun
+            self._began(mask, observations)
+            raise
+        self._began(mask, observations)
+        if faults > self._named_faults:
+            self._warn(3)
 
     def _began(self, mask: NDArray[np.uint8], observations: Observations) -> None:
         chosen = mask.view(np.bool_)
         self.terminated[chosen] = False
         self.truncated[chosen] = False
+        self.lost_at_end[chosen] = False
         self._unfilled = None
         self._last = observations, self.terminated, self.truncated
         if self._batch is not None:
             self._batch._after_step()
-
-    def copy_world(self, source: int, target: int) -> None:
-        """World ``target`` becomes what ``source`` is, with what the task remembers of it."""
-        self._held.copy_world(
-            arrays.index(source, self._worlds, "source"),
-            arrays.index(target, self._worlds, "target"),
-        )
-
-    def save(self) -> EnvironmentSnapshot:
-        """All worlds, with what the task remembers of them and ``observations``."""
-        worlds, task, memory = self._held.save()
-        last = (array.copy() for array in self._last)
-        return EnvironmentSnapshot(worlds, task, memory, *last)
-
-    def restore(
-        self,
-        snapshot: EnvironmentSnapshot,
-        source: Optional[Ids] = None,
-        ids: Optional[Ids] = None,
-    ) -> Observations:
-        """Worlds go on bit by bit as the saved ones did, in this or another Environment of the task.
-
-        ``source``, ``ids``: as in ``Batch.restore``. Restored as a whole, later episodes are
-        drawn as they would have been; single worlds draw from the seeds that are here. A world that was to begin with its next step steps on beyond its end where
-        ``autoreset`` is not "next_step". Returns ``observations``, with the rows of the snapshot, as
-        ``terminated`` and ``truncated`` have. Raises SnapshotError, and changes nothing, for a snapshot
-        of another task or precision.
-        """
-        if not isinstance(snapshot, EnvironmentSnapshot):
-            found = type(snapshot).__name__
-            raise TypeError(f"snapshot is of type {found}; expected an EnvironmentSnapshot")
-        saved = snapshot.worlds.worlds
-        own = self.observations, self.terminated, self.truncated
-        last = snapshot.observations, snapshot.terminated, snapshot.truncated
-        for array, name, mine in zip(last, ("observations", "terminated", "truncated"), own):
-            wanted = saved, *mine.shape[1:]
-            if np.shape(array) != wanted:
-                raise _core.SnapshotError(
-                    f"snapshot: {name} have shape {np.shape(array)}, expected {wanted}: it is of "
-                    "another task, or was changed"
-                )
-        held = snapshot.worlds, snapshot.task, np.ascontiguousarray(snapshot.memory, np.float64)
-        if source is None and ids is None:
-            self._held.restore(*held, None)
-            rows = worlds = np.arange(saved)
-        else:
-            pairs = arrays.pairs(source, saved, ids, self._worlds)
-            self._held.restore(*held, pairs)
-            rows, worlds = pairs[::2], pairs[1::2]
-        for array, mine in zip(last, own):
-            mine[worlds] = array[rows]
-        self._unfilled = None
-        self._last = own
-        return self.observations
 
     def lost(self) -> Flags:
         """Which worlds are lost, (worlds,) bool: frozen, or out of their bounds."""

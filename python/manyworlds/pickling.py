@@ -105,6 +105,7 @@ _HOLD_EXPRESSIONS: dict[type, tuple[str, ...]] = {
     tasks.Reward: ("value",),
     tasks.Info: ("value",),
     tasks.Level: ("begin", "next"),
+    tasks.Memory: ("begin", "next"),
     tasks.InitialParameter: ("parameter", "value"),
 }
 
@@ -124,6 +125,7 @@ def _exchanged(members: Members, exchange: Callable[[Any], Any]) -> Members:
         "rewards": [part(one) for one in members["rewards"]],
         "infos": [part(one) for one in members.get("infos", [])],
         "levels": [part(one) for one in members.get("levels", [])],
+        "memories": [part(one) for one in members.get("memories", [])],
         "initial_parameters": [part(one) for one in members.get("initial_parameters", [])],
         "terminated": exchange(members["terminated"]),
         "truncated": exchange(members["truncated"]),

@@ -14,20 +14,26 @@ environment. Truth is 1, and what is not 0; ``&``, ``|``, ``~`` are and, or, not
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from typing import Any, Optional, Union
 
-from . import _core, arrays, shown
+from . import _core, shown
 from ._core import Expression
 from ._core import expressions as _x
+from .over_steps import delayed as delayed
+from .over_steps import held as held
+from .over_steps import largest as largest
+from .over_steps import latched as latched
+from .over_steps import phase as phase
+from .over_steps import previous as previous
+from .over_steps import smoothed as smoothed
+from .over_steps import summed as summed
 from .scene import Issue, Point, Ray, Scene, SceneError
 from .terms import Terms as Terms
 
 Value = Union[Expression, float]  # numbers are expressions
-
-_MAX_DELAY = 256  # steps, as in the library
 
 
 def sin(a: Value) -> Expression:
@@ -118,37 +124,6 @@ def arctan2(y: Value, x: Value) -> Expression:
     return _x.arctan2(y, x)
 
 
-def previous(value: Value) -> Expression:
-    """What ``value`` was at the end of the step before; in the first step where the world began."""
-    return _x.previous(value)
-
-
-def delayed(value: Value, steps: Value, max_steps: Optional[int] = None) -> Expression:
-    """What ``value`` was so many steps before, 0 to 256; in the first steps where the world began.
-
-    In ``Task.controls`` 0 is the step to take, so ``delayed(t.action(), 2)`` is what was asked for two steps
-    ago, 0 where there was none. ``steps`` may be an expression, such as a random number of the episode:
-    rounded down, kept within 0 and ``max_steps``, which says how much is remembered; what is not a number counts as
-    ``max_steps``. Each step is a number that a world remembers. Raises ValueError for other numbers of steps,
-    TypeError for an expression without ``max_steps``.
-    """
-    if max_steps is not None:
-        return _x.delayed_by(value, steps, arrays.integer(max_steps, "max_steps", 0, _MAX_DELAY))
-    if isinstance(steps, Expression):
-        raise TypeError("steps is an expression; expected `max_steps`, too: how many steps are remembered")
-    return _x.delayed(value, arrays.integer(steps, "steps", 0, _MAX_DELAY))
-
-
-def held(condition: Value) -> Expression:
-    """Steps in a row, up to this one, at whose end the condition was true."""
-    return _x.held(condition)
-
-
-def largest(value: Value) -> Expression:
-    """The largest that ``value`` has been since the episode began."""
-    return _x.largest(value)
-
-
 @dataclass(slots=True)
 class Action:
     """One number of a continuous action. Beyond its range it counts as the end of the range.
@@ -209,6 +184,22 @@ class Level:
 
 
 @dataclass(slots=True, eq=False)
+class Memory:
+    """A number of every world that lasts for an episode (``Terms.memory``).
+
+    ``begin``: its value where an episode begins, computed from the state there; of anything but memories.
+    ``next``: at the end of each step of the task, before anything else is computed, all memories become their
+    ``next`` at once: in ``next``, memories are what they were before the step. None: it stays. So
+    observations, rewards, ends and infos of a step see memories after their update; controls see them as
+    the last step left them.
+    """
+
+    name: str = ""
+    begin: Value = 0.0
+    next: Optional[Value] = None
+
+
+@dataclass(slots=True, eq=False)
 class InitialParameter:
     """What a number of the scene is where an episode begins by a reset, instead of one that is drawn.
 
@@ -232,7 +223,7 @@ class Task:
     choices: int = 0  # discrete tasks: the action is 0 to choices - 1, and `actions` is empty
     actions: list[Action] = field(default_factory=list)
     # What each control of the scene is set to: of actions, numbers, random ones, parameters,
-    # levels and previous(...).
+    # levels, memories, age() and previous(...).
     controls: list[Value] = field(default_factory=list)
 
     observations: list[Observation] = field(default_factory=list)
@@ -244,6 +235,7 @@ class Task:
     infos: list[Info] = field(default_factory=list)
 
     levels: list[Level] = field(default_factory=list)
+    memories: list[Memory] = field(default_factory=list)
     initial_parameters: list[InitialParameter] = field(default_factory=list)
 
     rays: list[Ray] = field(default_factory=list)  # for ray_distance
@@ -298,6 +290,23 @@ class Task:
         """
         self.levels.append(Level(name, begin, next))
         return _x.level(name)
+
+    def memory(
+        self,
+        name: str,
+        begin: Value = 0.0,
+        next: Union[Value, Callable[[Expression], Value], None] = None,
+    ) -> Expression:
+        """Adds a number that worlds remember from step to step (``Memory``), and returns it as an expression.
+
+        ``next`` may be a function of that expression: ``task.memory("best", x, lambda best: maximum(best, x))``.
+        It may be said later, too: ``task.memories[-1].next = ...``.
+        """
+        own = _x.memory(name)
+        if callable(next) and not isinstance(next, Expression):
+            next = next(own)
+        self.memories.append(Memory(name, begin, next))
+        return own
 
     def initial_parameter(self, parameter: Expression, value: Value) -> None:
         """Says what ``t.parameter(...)`` is where episodes begin (``InitialParameter``)."""

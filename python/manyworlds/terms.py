@@ -232,8 +232,15 @@ class Terms:
         return _x.control(self._index("control", control))
 
     def age(self) -> Expression:
-        """Steps of the task since the episode began, with this one."""
+        """Steps of the task since the episode began, including this one.
+
+        In ``Task.controls`` the step to take counts: 1 in the first step. ``age() * time_step()`` is in s.
+        """
         return _x.age()
+
+    def time_step(self) -> Expression:
+        """s, of one step of the task: ``frame_skip`` steps of the scene."""
+        return _x.time_step()
 
     def lost(self) -> Expression:
         """Whether the world is lost (``Status.lost()``)."""
@@ -258,6 +265,13 @@ class Terms:
     def level(self, name: str) -> Expression:
         """A number of this world that outlives its episodes (``Task.levels``), by its name."""
         return _x.level(name)
+
+    def memory(self, name: str) -> Expression:
+        """A number of this world that the task remembers from step to step (``Task.memories``), by name.
+
+        In ``Task.controls`` it is as the last step left it, elsewhere as this step leaves it.
+        """
+        return _x.memory(name)
 
     def parameter(
         self,

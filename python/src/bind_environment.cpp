@@ -35,7 +35,8 @@ std::span<std::uint8_t> flags(const MaybeOut<bool>& array) {
 }
 
 void make(HeldEnvironment* self, nb::object task, nb::object worlds, nb::object threads,
-          std::uint64_t seed, nb::object precision, nb::object isa, nb::object autoreset) {
+          std::uint64_t seed, nb::object precision, nb::object isa, nb::object autoreset,
+          bool check) {
   const Task t = from_python<Task>(task, "task");
   EnvironmentOptions options;
   options.worlds = from_python<int>(worlds, "worlds");
@@ -44,6 +45,7 @@ void make(HeldEnvironment* self, nb::object task, nb::object worlds, nb::object 
   options.precision = from_python<Precision>(precision, "precision");
   options.isa = from_python<std::optional<Isa>>(isa, "isa");
   options.autoreset = from_python<Autoreset>(autoreset, "autoreset");
+  options.check = check;
   const nb::gil_scoped_release release;
   new (self) HeldEnvironment(t, options);
 }
@@ -61,7 +63,7 @@ StepArrays arrays_of(const ObservationsOut& observations, const MaybeOut<double>
                      const MaybeOut<bool>& terminated, const MaybeOut<bool>& truncated,
                      const MaybeOut<double>& reward_terms,
                      const ObservationsOut& final_observations, const MaybeOut<double>& infos,
-                     const MaybeOut<double>& final_infos) {
+                     const MaybeOut<double>& final_infos, const MaybeOut<bool>& lost) {
   return {.observations = span_if<float>(observations),
           .final_observations = span_if<float>(final_observations),
           .rewards = span_or_none(rewards),
@@ -71,7 +73,8 @@ StepArrays arrays_of(const ObservationsOut& observations, const MaybeOut<double>
           .observations_f64 = span_if<double>(observations),
           .final_observations_f64 = span_if<double>(final_observations),
           .infos = span_or_none(infos),
-          .final_infos = span_or_none(final_infos)};
+          .final_infos = span_or_none(final_infos),
+          .lost = flags(lost)};
 }
 
 BeginArrays arrays_of(const ObservationsOut& observations, const MaybeOut<double>& infos) {
@@ -84,34 +87,40 @@ BeginArrays arrays_of(const ObservationsOut& observations, const MaybeOut<double
 
 // f(environment, go on), without the GIL. What is over by then is taken to its end, so that a
 // signal rarely meets the middle of a step.
+// Returns how many expressions have not been finite so far.
 template <class F>
-void run_step(HeldEnvironment& self, F f) {
+int run_step(HeldEnvironment& self, F f) {
   constexpr std::chrono::milliseconds kWhole(150);
+  int faults = 0;
   self.run([&](Environment& e) {
     Interrupts::during([&](const GoOn& go_on) { return f(e, go_on); }, kWhole);
+    faults = e.non_finite_expressions();
   });
+  return faults;
 }
 
 template <class T>
-void step(HeldEnvironment& self, const In<T>& actions, const ObservationsOut& observations,
-          const MaybeOut<double>& rewards, const MaybeOut<bool>& terminated,
-          const MaybeOut<bool>& truncated, const MaybeOut<double>& reward_terms,
-          const ObservationsOut& final_observations, const MaybeOut<double>& infos,
-          const MaybeOut<double>& final_infos) {
+int step(HeldEnvironment& self, const In<T>& actions, const ObservationsOut& observations,
+         const MaybeOut<double>& rewards, const MaybeOut<bool>& terminated,
+         const MaybeOut<bool>& truncated, const MaybeOut<double>& reward_terms,
+         const ObservationsOut& final_observations, const MaybeOut<double>& infos,
+         const MaybeOut<double>& final_infos, const MaybeOut<bool>& lost) {
   const StepArrays out = arrays_of(observations, rewards, terminated, truncated, reward_terms,
-                                   final_observations, infos, final_infos);
-  run_step(self,
-           [&](Environment& e, const GoOn& go_on) { return e.step(span_of(actions), out, go_on); });
+                                   final_observations, infos, final_infos, lost);
+  return run_step(self, [&](Environment& e, const GoOn& go_on) {
+    return e.step(span_of(actions), out, go_on);
+  });
 }
 
-void finish_step(HeldEnvironment& self, const ObservationsOut& observations,
-                 const MaybeOut<double>& rewards, const MaybeOut<bool>& terminated,
-                 const MaybeOut<bool>& truncated, const MaybeOut<double>& reward_terms,
-                 const ObservationsOut& final_observations, const MaybeOut<double>& infos,
-                 const MaybeOut<double>& final_infos) {
+int finish_step(HeldEnvironment& self, const ObservationsOut& observations,
+                const MaybeOut<double>& rewards, const MaybeOut<bool>& terminated,
+                const MaybeOut<bool>& truncated, const MaybeOut<double>& reward_terms,
+                const ObservationsOut& final_observations, const MaybeOut<double>& infos,
+                const MaybeOut<double>& final_infos, const MaybeOut<bool>& lost) {
   const StepArrays out = arrays_of(observations, rewards, terminated, truncated, reward_terms,
-                                   final_observations, infos, final_infos);
-  run_step(self, [&](Environment& e, const GoOn& go_on) { return e.finish_step(out, go_on); });
+                                   final_observations, infos, final_infos, lost);
+  return run_step(self,
+                  [&](Environment& e, const GoOn& go_on) { return e.finish_step(out, go_on); });
 }
 
 void def_steps(nb::class_<HeldEnvironment>& c) {
@@ -119,21 +128,34 @@ void def_steps(nb::class_<HeldEnvironment>& c) {
   const auto def = [&](const char* name, auto f, const char* text, auto... actions) {
     c.def(name, f, actions..., out("observations"), out("rewards"), out("terminated"),
           out("truncated"), out("reward_terms"), out("final_observations"), out("infos"),
-          out("final_infos"), text);
+          out("final_infos"), out("lost"), text);
   };
   const char* const text =
-      "One step of the task in every world, without the GIL, into arrays; None: not wanted.";
+      "One step of the task in every world, without the GIL, into arrays; None: not wanted. "
+      "Returns "
+      "how many expressions have not been finite so far.";
   const auto actions = nb::arg("actions").noconvert();
   def("step_choices", &step<std::int64_t>, text, actions);
   def("step_numbers", &step<float>, text, actions);
-  def("finish_step", &finish_step, "The rest of a step that was ended early.");
+  def("finish_step", &finish_step, "The rest of a step that was ended early, as a step.");
 }
 
-void reset(HeldEnvironment& self, const In<std::uint8_t>& mask,
-           const std::optional<In<std::uint64_t>>& seeds, const ObservationsOut& observations,
-           const MaybeOut<double>& infos) {
-  const BeginArrays out = arrays_of(observations, infos);
+// As run_step().
+template <class F>
+int run_beginning(HeldEnvironment& self, F f) {
+  int faults = 0;
   self.run([&](Environment& e) {
+    f(e);
+    faults = e.non_finite_expressions();
+  });
+  return faults;
+}
+
+int reset(HeldEnvironment& self, const In<std::uint8_t>& mask,
+          const std::optional<In<std::uint64_t>>& seeds, const ObservationsOut& observations,
+          const MaybeOut<double>& infos) {
+  const BeginArrays out = arrays_of(observations, infos);
+  return run_beginning(self, [&](Environment& e) {
     if (seeds) {
       e.reset(span_of(mask), span_of(*seeds), out);
     } else {
@@ -142,10 +164,49 @@ void reset(HeldEnvironment& self, const In<std::uint8_t>& mask,
   });
 }
 
-void begin(HeldEnvironment& self, const In<std::uint8_t>& mask, const ObservationsOut& observations,
-           const MaybeOut<double>& infos) {
+int begin(HeldEnvironment& self, const In<std::uint8_t>& mask, const ObservationsOut& observations,
+          const MaybeOut<double>& infos) {
   const BeginArrays out = arrays_of(observations, infos);
-  self.run([&](Environment& e) { e.begin(span_of(mask), out); });
+  return run_beginning(self, [&](Environment& e) { e.begin(span_of(mask), out); });
+}
+
+// (expression, world, step, value) of the first fault of each expression.
+nb::list non_finite(HeldEnvironment& self) {
+  nb::list out;
+  for (const NonFinite& f : self.with([](Environment& e) { return e.non_finite(); })) {
+    out.append(nb::make_tuple(f.expression, f.world, f.step, f.value));
+  }
+  return out;
+}
+
+void evaluate(HeldEnvironment& self, nb::handle expression, const Out<double>& out) {
+  const auto e = from_python<Expression>(expression, "expression");
+  self.run([&](Environment& environment) { environment.evaluate(e, span_of(out)); });
+}
+
+// A FloatingPointError with the members of NonFinite.
+void bind_non_finite_error(nb::module_& m) {
+  PyObject* type =
+      nb::exception<NonFiniteError>(m, "NonFiniteError", PyExc_FloatingPointError).inc_ref().ptr();
+  nb::setattr(
+      type, "__doc__",
+      nb::str("An observation, a reward or an end of Environment(check=True) is not finite: "
+              "`expression`, `world`, `step` (of the world's episode), `value`."));
+  nb::register_exception_translator(
+      [](const std::exception_ptr& thrown, void* payload) {
+        try {
+          std::rethrow_exception(thrown);
+        } catch (const NonFiniteError& error) {
+          const NonFinite& f = error.fault();
+          nb::object made = nb::handle(static_cast<PyObject*>(payload))(nb::str(error.what()));
+          made.attr("expression") = nb::str(f.expression.c_str(), f.expression.size());
+          made.attr("world") = f.world;
+          made.attr("step") = f.step;
+          made.attr("value") = f.value;
+          PyErr_SetObject(static_cast<PyObject*>(payload), made.ptr());
+        }
+      },
+      type);
 }
 
 using MemoryIn = In<double>;
@@ -212,6 +273,7 @@ void bind_tasks(nb::module_& m) {
         out["Action"] = to_python(Action{});
         out["Info"] = to_python(Info{});
         out["Level"] = to_python(Level{});
+        out["Memory"] = to_python(Memory{});
         out["InitialParameter"] = to_python(InitialParameter{});
         out["Task"] = to_python(Task{});
         return out;
@@ -223,10 +285,11 @@ void bind_tasks(nb::module_& m) {
 
 void bind_environment(nb::module_& m) {
   bind_tasks(m);
+  bind_non_finite_error(m);
   nb::class_<HeldEnvironment> c(m, "Environment",
                                 "A task in many worlds. Private: use manyworlds.Environment.");
   c.def("__init__", &make, nb::arg("task"), nb::arg("worlds"), nb::arg("threads"), nb::arg("seed"),
-        nb::arg("precision"), nb::arg("isa").none(), nb::arg("autoreset"))
+        nb::arg("precision"), nb::arg("isa").none(), nb::arg("autoreset"), nb::arg("check") = false)
       .def("close", &HeldEnvironment::close)
       .def_prop_ro("closed", &HeldEnvironment::closed)
       .def_prop_ro(
@@ -261,6 +324,11 @@ void bind_environment(nb::module_& m) {
       .def("restore", &restore, nb::arg("worlds"), nb::arg("task"), nb::arg("memory").noconvert(),
            nb::arg("pairs").noconvert().none(),
            "All worlds, or pairs (world of the snapshot, world of the environment).")
+      .def("non_finite", &non_finite,
+           nb::sig("def non_finite(self) -> list[tuple[str, int, int, float]]"),
+           "(expression, world, step, value) of the first fault of each expression.")
+      .def("evaluate", &evaluate, nb::arg("expression"), nb::arg("out").noconvert(),
+           "The value of an expression in every world.")
       .def("batch", &batch_of, nb::rv_policy::take_ownership);
   def_steps(c);
 }

@@ -69,10 +69,14 @@ void one(Functions& m, const char* name, F f) {
       name, [f](nb::handle a) { return f(operand(a)); }, nb::arg("a"));
 }
 template <class F>
-void two(Functions& m, const char* name, F f) {
+void two(Functions& m, const char* name, const char* second, F f) {
   m.def_static(
       name, [f](nb::handle a, nb::handle b) { return f(operand(a), operand(b)); }, nb::arg("a"),
-      nb::arg("b"));
+      nb::arg(second));
+}
+template <class F>
+void two(Functions& m, const char* name, F f) {
+  two(m, name, "b", f);
 }
 
 void bind_operators(nb::class_<Expression>& c) {
@@ -121,7 +125,13 @@ void bind_values(nb::module_& m, nb::class_<Expression>& c) {
         "(nodes, roots): expressions as plain values, of which what they share is one.");
   m.def("expressions_of_graph", &from_values, nb::arg("nodes"), nb::arg("roots"),
         "The expressions of such a graph. Raises TypeError and ValueError.");
-  c.def("__repr__", [](E a) { return "<manyworlds.Expression " + text_of(a, 72) + ">"; });
+  c.def(
+       "__repr__", [](E a) { return "<manyworlds.Expression " + text_of(a, 400) + ">"; },
+       "The text of str(), of at most about 400 characters.")
+      .def(
+          "__str__", [](E a) { return to_string(a); },
+          "The whole expression as Python writes it. Beyond 20,000 characters, subexpressions that "
+          "are nested deeply are \"...\".");
 }
 
 Observed observed_named(const std::string& name) {
@@ -190,6 +200,9 @@ void bind_terms(Functions& m) {
                nb::arg("shape"), nb::arg("component"));
   m.def_static(
       "level", [](const std::string& name) { return terms::level(name); }, nb::arg("name"));
+  m.def_static(
+      "memory", [](const std::string& name) { return terms::memory(name); }, nb::arg("name"));
+  m.def_static("time_step", &terms::time_step);
   one(m, "previous", terms::previous);
   m.def_static(
       "delayed", [](nb::handle a, int steps) { return terms::delayed(operand(a), steps); },
@@ -202,6 +215,11 @@ void bind_terms(Functions& m) {
       nb::arg("a"), nb::arg("steps"), nb::arg("max_steps"));
   one(m, "held", terms::held);
   one(m, "largest", terms::largest);
+  one(m, "latched", terms::latched);
+  one(m, "summed", terms::summed);
+  two(m, "smoothed", "factor", terms::smoothed);
+  two(m, "smoothed_over", "time_constant", terms::smoothed_over);
+  one(m, "phase", terms::phase);
 }
 
 }  // namespace

@@ -67,6 +67,13 @@ struct Described<Level> {
   }
 };
 template <>
+struct Described<Memory> {
+  static constexpr const char* name = "Memory";
+  static void fields(auto&& visit, auto& s) {
+    visit("name", s.name), visit("begin", s.begin), visit("next", s.next);
+  }
+};
+template <>
 struct Described<InitialParameter> {
   static constexpr const char* name = "InitialParameter";
   static void fields(auto&& visit, auto& s) {
@@ -82,7 +89,8 @@ struct Described<Task> {
     visit("observations", s.observations), visit("rewards", s.rewards);
     visit("terminated", s.terminated), visit("truncated", s.truncated);
     visit("max_steps", s.max_steps), visit("solved_at", s.solved_at), visit("infos", s.infos);
-    visit("levels", s.levels), visit("initial_parameters", s.initial_parameters);
+    visit("levels", s.levels), visit("memories", s.memories);
+    visit("initial_parameters", s.initial_parameters);
     visit("rays", s.rays), visit("points", s.points);
   }
 };

@@ -35,7 +35,10 @@ def test_tasks_and_their_expressions_in_a_line(name):
     text = fits(repr(task))
     assert f"manyworlds.Task '{name}': " in text and f"{len(task.observations)} obs" in text
     for part in (*task.observations, *task.rewards):
-        assert fits(repr(part.value)).startswith("<manyworlds.Expression ")
+        text = str(part.value)
+        whole = f"<manyworlds.Expression {text}>"
+        assert repr(part.value) == (whole if len(text) <= 400 else repr(part.value))
+        assert len(repr(part.value)) <= 450 and "\n" not in text
 
 
 def test_expressions_read_as_python():
@@ -44,8 +47,9 @@ def test_expressions_read_as_python():
     for value, text in [
         (a, "angle(2)"),
         (abs(a) > 0.2, "0.2 < abs(angle(2))"),
-        (2 * b - a / 3, "(2 * velocity(1, 'y')) - (angle(2) / 3)"),
-        (~(a == b) | (a <= 1), "(~(angle(2) == velocity(1, 'y'))) | (angle(2) <= 1)"),
+        (2 * b - a / 3, "2 * velocity(1, 'y') - angle(2) / 3"),
+        (2 * (b - (a - 3)), "2 * (velocity(1, 'y') - (angle(2) - 3))"),
+        (~(a == b) | (a <= 1), "~(angle(2) == velocity(1, 'y')) | (angle(2) <= 1)"),
         (tasks.where(t.lost(), -a, t.age()), "where(lost(), -angle(2), age())"),
         (
             t.joint_speed(0, 1) + t.direction(3, "x", 1),
@@ -56,14 +60,36 @@ def test_expressions_read_as_python():
         (mw.Expression(-1.5e-300), "-1.5e-300"),
     ]:
         assert repr(value) == f"<manyworlds.Expression {text}>"
+        assert str(value) == f"{value}" == text
+
+
+def test_the_text_of_an_expression_makes_it_again():
+    names = {name: getattr(tasks, name) for name in ("where", "maximum", "sqrt", "latched", "smoothed")}
+    names |= {name: getattr(tasks.Terms(), name) for name in ("angle", "velocity", "age")}
+    t = tasks.Terms()
+    a, b = t.angle(2), t.velocity(1, "y")
+    for value in (
+        1 - 0.1 * a**2 - 10 * (abs(b) > 0.2),
+        -(a**b) + (-a) ** b - (2 - (a - b)) * -3,
+        (a < b) & ((b < 1) | ~(a <= 2)) & ((a < b) == (b == 0)),
+        a % 3 * b / (a / b) % (a + b) - tasks.sqrt(tasks.maximum(a, 1) + 1),
+        tasks.smoothed(tasks.where(tasks.latched(a > 1), a, -b), 0.1) ** (a**b) ** 0.5,
+    ):
+        again = eval(str(value), {"abs": abs}, names)
+        assert str(again) == str(value)
+        assert mw._core.expression_graph([again]) == mw._core.expression_graph([value])
 
 
 def test_large_expressions_are_cut():
     a = tasks.Terms().angle(0)
     for i in range(1300):
         a = a + i if i % 2 else tasks.maximum(a, a * a)
-    text = fits(repr(a))
-    assert text.count("...") >= 1 and text.endswith(" + 1299>")
+    assert len(repr(a)) <= 500 and "..." in repr(a) and repr(a).endswith(" + 1299>")
+    assert len(str(a)) <= 20_001 and "..." in str(a)
+    total = tasks.Terms().age()
+    for i in range(300):
+        total = total + i
+    assert str(total) == " + ".join(["age()", *map(str, range(300))])
 
 
 def test_what_runs_in_a_line():

@@ -29,6 +29,10 @@ class BatchCore {
   virtual void begin(Executor& executor, std::span<const std::uint8_t> worlds,
                      const Beginning& beginning, GroupVisitor& visitor) = 0;
 
+  // Shows all groups to the visitor as they are between steps, one by one, with what was last
+  // observed of them. Of batches of one kind, without sleep.
+  virtual void visit(GroupVisitor& visitor) = 0;
+
   virtual ObserverResults* observer_results() = 0;  // nullptr: nothing is observed
   virtual void look(Executor& executor) = 0;        // at the current state
   virtual void look_again() = 0;                    // at the next step also at what rests

@@ -377,6 +377,21 @@ void ObserverResultsOf<Real>::take(std::size_t thread, std::size_t k, int group,
   });
 }
 
+template <class Real>
+const kernels::ObserverView<Real>& ObserverResultsOf<Real>::recall(int group) {
+  const kernels::ObserverView<Real>& view = blocks_[0][0].view;
+  const std::size_t lanes = at(kernels_.lanes);
+  for (int i = 0; i < kObserverCount; ++i) {
+    if (!view.rows[i]) continue;
+    const std::size_t rows = at(view.items[i]) * rows_of(i);
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const Real* from = kinds_[0].rows[at(i)].data() + at(world_in(0, group, l)) * rows;
+      for (std::size_t r = 0; r < rows; ++r) view.rows[i][r * lanes + l] = from[r];
+    }
+  }
+  return view;
+}
+
 template class ObserverResultsOf<float>;
 template class ObserverResultsOf<double>;
 

@@ -70,6 +70,8 @@ class ObserverResultsOf final : public ObserverResults {
   // by a look at the state alone, which knows nothing of contacts.
   const kernels::ObserverView<Real>& ask(std::size_t thread, std::size_t kind, int group);
   void take(std::size_t thread, std::size_t kind, int group, std::uint32_t lanes, bool stepped);
+  // What was last seen of a group of the first kind, as take() took it.
+  const kernels::ObserverView<Real>& recall(int group);
   // Where the poses for rays are: the thread's scratch, or memory of their own where a plan without
   // contacts has none.
   kernels::Scratch* poses(std::size_t thread, std::size_t kind) const;

@@ -118,6 +118,19 @@ void Stepper<Real>::begin(Executor& executor, std::span<const std::uint8_t> worl
 }
 
 template <class Real>
+void Stepper<Real>::visit(GroupVisitor& visitor) {
+  const FloatMode mode(FloatMode::flush);
+  auto& to = static_cast<GroupVisitorOf<Real>&>(visitor);
+  auto& w = *worlds_.front();
+  for (int g = 0; g < w.storage().groups(); ++g) {
+    const kernels::GroupView<Real> view = w.storage().group(g);
+    const auto* seen = results_ ? &results_->recall(g) : nullptr;
+    to.between_steps({g, 0, kernels_, w.tables(), view, w.storage().controls(g * kernels_.lanes),
+                      seen, w, false});
+  }
+}
+
+template <class Real>
 void Stepper<Real>::look(Executor& executor) {
   steps_ = 0;
   all_groups_ = true;

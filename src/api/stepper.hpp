@@ -23,6 +23,7 @@ class Stepper final : public BatchCore {
   void end_steps(std::span<const std::uint8_t> only) override;
   void begin(Executor& executor, std::span<const std::uint8_t> worlds, const Beginning& beginning,
              GroupVisitor& visitor) override;
+  void visit(GroupVisitor& visitor) override;
   ObserverResults* observer_results() override { return results_.get(); }
   void look(Executor& executor) override;
   void look_again() override { all_groups_ = results_ != nullptr; }

@@ -54,6 +54,8 @@ class GroupVisitorOf : public GroupVisitor {
                                 std::uint32_t lanes, const Beginning& beginning) = 0;
   // After the worlds in these lanes began anew.
   virtual void after_beginning(const VisitedGroup<Real>& group, std::uint32_t lanes) = 0;
+  // Between steps: nothing may change.
+  virtual void between_steps(const VisitedGroup<Real>& group) = 0;
 };
 
 }  // namespace manyworlds

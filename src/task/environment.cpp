@@ -7,13 +7,22 @@
 #include <string>
 #include <utility>
 
+#include "manyworlds/expression_graph.hpp"
 #include "src/base/enum_names.hpp"
 #include "src/scene/checks.hpp"
+#include "src/task/check_task.hpp"
 #include "src/task/environment_data.hpp"
 
 namespace manyworlds {
 
 const char* to_string(Autoreset autoreset) { return name_of(autoreset); }
+
+std::string to_string(const NonFinite& fault) {
+  return fault.expression + " is " + detail::number_text(fault.value) + " in world " +
+         std::to_string(fault.world) +
+         (fault.step == 0 ? " where its episode begins"
+                          : " at step " + std::to_string(fault.step) + " of its episode");
+}
 
 namespace {
 
@@ -48,7 +57,11 @@ Environment::Impl::Impl(const Task& t, const EnvironmentOptions& options)
       plan(compile(task.scene)),
       programs(std::make_shared<TaskPrograms>(task, plan)),
       batch(plan, options_of(task, *programs, options)),
-      runner(make_runner(programs, batch, autoreset)) {}
+      runner(make_runner(programs, batch, autoreset)),
+      check_finite(options.check) {
+  faults.reserve(2 * programs->results.size());
+  named.reserve(programs->results.size());
+}
 
 Environment::Environment(const Task& task, const EnvironmentOptions& options)
     : impl_(Pimpl<Impl>::make(task, options)) {
@@ -124,6 +137,33 @@ void Environment::reset(std::span<const std::uint8_t> mask, std::span<const std:
 void Environment::begin(std::span<const std::uint8_t> mask, const BeginArrays& out) {
   impl_->check_to_begin("begin", mask, out);
   impl_->begin(*impl_->batch.impl_, mask, {}, out);
+}
+
+std::vector<NonFinite> Environment::non_finite() const {
+  std::vector<NonFinite> out;
+  for (const Fault& fault : impl_->named) out.push_back(impl_->describe(fault));
+  return out;
+}
+int Environment::non_finite_expressions() const { return static_cast<int>(impl_->named.size()); }
+
+void Environment::evaluate(const Expression& expression, std::span<double> out) const {
+  impl_->check_between_steps("evaluate");
+  check_array("values", out.size(), impl_->worlds(), false);
+  const auto issues = check_expression(impl_->task, impl_->plan, expression, "evaluate");
+  if (!issues.empty()) reject(to_string(issues.front()));
+  const TaskPrograms programs(impl_->task, impl_->plan, &expression);
+  if (!programs.evaluated_is_known) {
+    reject("evaluate: " + text_of(expression, 200) +
+           " depends on earlier steps in a way that the task does not remember: give the task an "
+           "Info for it");
+  }
+  for (int i = 0; i < kObserverCount; ++i) {
+    if (!programs.after.asks(Observer(i)) || impl_->programs->after.asks(Observer(i))) continue;
+    reject("evaluate: " + text_of(expression, 200) + " depends on the observer '" +
+           to_string(Observer(i)) +
+           "', which the task does not have: give the task an Info for it");
+  }
+  impl_->runner->evaluate(*impl_->batch.impl_->core, programs, out);
 }
 
 int Environment::levels() const { return static_cast<int>(impl_->task.levels.size()); }

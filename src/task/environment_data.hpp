@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "src/api/batch_data.hpp"
@@ -32,6 +33,9 @@ struct Environment::Impl {
   int steps_left = 0;
   std::vector<float> actions;
   std::vector<std::int64_t> choices;
+  // Faults of the call, and the first one of each result so far. They have room for all.
+  std::vector<Fault> faults, named;
+  bool check_finite;
 
   Impl(const Task& t, const EnvironmentOptions& options);
 
@@ -50,6 +54,7 @@ struct Environment::Impl {
     check_array("reward_terms", out.reward_terms.size(), worlds() * task.rewards.size(), true);
     check_array("terminated", out.terminated.size(), worlds(), true);
     check_array("truncated", out.truncated.size(), worlds(), true);
+    check_array("lost", out.lost.size(), worlds(), true);
   }
 
   template <class T>
@@ -139,8 +144,13 @@ struct Environment::Impl {
     b.steps += taken;
     tell_step(b, taken, begins);
     steps_left = n - taken;
-    if (steps_left == 0) begin_some(b);
+    faults.clear();
+    if (steps_left == 0) {
+      runner->take_faults(faults);
+      begin_some(b);
+    }
     forget_call();
+    name_faults();
     return steps_left == 0;
   }
 
@@ -163,9 +173,30 @@ struct Environment::Impl {
     if (how.resets) tell_resets(b, mask);
     steps_left = 0;
     forget_call();
+    faults.clear();
+    name_faults();
+  }
+
+  NonFinite describe(const Fault& fault) const {
+    return {programs->result_names[static_cast<std::size_t>(fault.result)], fault.world, fault.step,
+            fault.value};
   }
 
  private:
+  // Those of the end of the step were taken before worlds began anew.
+  void name_faults() {
+    runner->take_faults(faults);
+    if (faults.empty()) return;
+    for (const Fault& fault : faults) {
+      const auto is_same = [&](const Fault& f) { return f.result == fault.result; };
+      if (std::none_of(named.begin(), named.end(), is_same)) named.push_back(fault);
+    }
+    if (!check_finite) return;
+    throw NonFiniteError(describe(
+        *std::min_element(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
+          return std::tie(a.world, a.result) < std::tie(b.world, b.result);
+        })));
+  }
   void tell_resets(const Batch::Impl& b, std::span<const std::uint8_t> mask) const {
     if (b.listeners.empty()) return;
     b.for_each_masked(mask, [&](int, int, int world) { b.tell(batch, Input::reset, world); });

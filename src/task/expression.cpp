@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "manyworlds/expression_graph.hpp"
 #include "manyworlds/observe.hpp"
 #include "src/base/enum_names.hpp"
 #include "src/task/node.hpp"
@@ -202,6 +203,13 @@ Expression level(std::string_view name) {
   node.text = name;
   return make_expression(std::move(node));
 }
+Expression memory(std::string_view name) {
+  Expression::Node node;
+  node.term = Term::memory;
+  node.text = name;
+  return make_expression(std::move(node));
+}
+Expression time_step() { return leaf(Term::time_step); }
 
 Expression previous(E value) { return arithmetic(Operation::previous, {value}); }
 namespace {
@@ -229,6 +237,13 @@ Expression delayed(E value, E steps, int max_steps) {
 }
 Expression held(E condition) { return arithmetic(Operation::held, {condition}); }
 Expression largest(E value) { return arithmetic(Operation::largest, {value}); }
+Expression latched(E condition) { return arithmetic(Operation::latched, {condition}); }
+Expression summed(E value) { return arithmetic(Operation::summed, {value}); }
+Expression smoothed(E value, E factor) { return arithmetic(Operation::smoothed, {value, factor}); }
+Expression smoothed_over(E value, E time_constant) {
+  return smoothed(value, 1 - exp(-(time_step() / time_constant)));
+}
+Expression phase(E frequency) { return arithmetic(Operation::phase, {frequency * time_step()}); }
 
 }  // namespace terms
 
@@ -280,13 +295,13 @@ std::string parameter_text(const Expression::Node& n) {
 
 }  // namespace
 
-std::string to_string(E expression) {
+std::string describe(E expression) {
   const Expression::Node& n = expression.node();
   const std::string index = std::to_string(n.index), axis = ", axis " + std::to_string(n.axis);
   switch (n.term) {
-    case Term::number: return "a number";
-    case Term::arithmetic: return "arithmetic";
-    case Term::function: return "a function";
+    case Term::number:
+    case Term::arithmetic:
+    case Term::function: return text_of(expression, 72);
     case Term::position: return "position of body " + index + axis;
     case Term::velocity: return "velocity of body " + index + axis;
     case Term::angular_velocity: return "angular_velocity of body " + index + axis;
@@ -303,6 +318,8 @@ std::string to_string(E expression) {
     case Term::uniform: return "the random number '" + n.text + "'";
     case Term::parameter: return parameter_text(n);
     case Term::level: return "the level '" + n.text + "'";
+    case Term::memory: return "the memory '" + n.text + "'";
+    case Term::time_step: return "time_step";
     case Term::raw: return "row " + index + " of the state";
   }
   return "?";

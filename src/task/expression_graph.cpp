@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -21,17 +23,21 @@ namespace {
 using kernels::Operation;
 using Node = Expression::Node;
 
+// How tightly Python's operators bind.
+enum Binding { kComparison, kOr, kAnd, kSum, kProduct, kUnary, kPower, kWhole };
+
 struct OperationName {
   Operation operation;
   std::string_view name, sign;  // `sign`: of Python's operator, empty for functions
   std::size_t operands;
+  Binding binding = kWhole;
 };
 constexpr OperationName kOperations[] = {
-    {Operation::add, "add", "+", 2},
-    {Operation::subtract, "subtract", "-", 2},
-    {Operation::multiply, "multiply", "*", 2},
-    {Operation::divide, "divide", "/", 2},
-    {Operation::negate, "negate", "-", 1},
+    {Operation::add, "add", "+", 2, kSum},
+    {Operation::subtract, "subtract", "-", 2, kSum},
+    {Operation::multiply, "multiply", "*", 2, kProduct},
+    {Operation::divide, "divide", "/", 2, kProduct},
+    {Operation::negate, "negate", "-", 1, kUnary},
     {Operation::absolute, "abs", "", 1},
     {Operation::square_root, "sqrt", "", 1},
     {Operation::minimum, "minimum", "", 2},
@@ -42,21 +48,25 @@ constexpr OperationName kOperations[] = {
     {Operation::arc_tangent, "arctan2", "", 2},
     {Operation::exponential, "exp", "", 1},
     {Operation::logarithm, "log", "", 1},
-    {Operation::power, "power", "**", 2},
+    {Operation::power, "power", "**", 2, kPower},
     {Operation::hyperbolic_tangent, "tanh", "", 1},
     {Operation::arc_cosine, "arccos", "", 1},
-    {Operation::remainder, "mod", "%", 2},
+    {Operation::remainder, "mod", "%", 2, kProduct},
     {Operation::sign, "sign", "", 1},
-    {Operation::less, "less", "<", 2},
-    {Operation::less_equal, "less_equal", "<=", 2},
-    {Operation::equal, "equal", "==", 2},
-    {Operation::both, "both", "&", 2},
-    {Operation::either, "either", "|", 2},
-    {Operation::opposite, "opposite", "~", 1},
+    {Operation::less, "less", "<", 2, kComparison},
+    {Operation::less_equal, "less_equal", "<=", 2, kComparison},
+    {Operation::equal, "equal", "==", 2, kComparison},
+    {Operation::both, "both", "&", 2, kAnd},
+    {Operation::either, "either", "|", 2, kOr},
+    {Operation::opposite, "opposite", "~", 1, kUnary},
     {Operation::choose, "where", "", 3},
     {Operation::previous, "previous", "", 1},
     {Operation::held, "held", "", 1},
     {Operation::largest, "largest", "", 1},
+    {Operation::latched, "latched", "", 1},
+    {Operation::summed, "summed", "", 1},
+    {Operation::smoothed, "smoothed", "", 2},
+    {Operation::phase, "phase", "", 1},
 };
 
 // Which members of a node a term has, in this order.
@@ -82,6 +92,8 @@ constexpr TermName kTerms[] = {
     {Term::uniform, "uniform", {kOf, kIndex}},
     {Term::parameter, "parameter", {kIndex, kShape, kAxis}},
     {Term::level, "level", {}},
+    {Term::memory, "memory", {}},
+    {Term::time_step, "time_step", {}},
 };
 constexpr std::string_view kNumber = "number";
 
@@ -112,7 +124,8 @@ std::optional<TermName> term_of(const Node& node) {
 
 // What is not a number of a term; terms without it have none.
 bool has_text(Term term) {
-  return term == Term::uniform || term == Term::parameter || term == Term::level;
+  return term == Term::uniform || term == Term::parameter || term == Term::level ||
+         term == Term::memory;
 }
 std::string text_of(const Node& node) {
   return node.term == Term::parameter ? info(static_cast<Parameter>(node.of)).name : node.text;
@@ -155,9 +168,9 @@ class Exporter {
   throw std::invalid_argument("nodes[" + std::to_string(at) + "] " + what);
 }
 
-// What `from` says of a random number, a parameter or a level beside its indices.
+// What `from` says of a random number, a parameter, a level or a memory beside its indices.
 void read_text(const ExpressionGraph::Node& from, std::size_t at, Node& node) {
-  if (node.term == Term::level) {
+  if (node.term == Term::level || node.term == Term::memory) {
     node.text = from.text;
     return;
   }
@@ -234,25 +247,27 @@ class Writer {
 
   bool write(const Expression& e, int depth) {
     out.clear();
-    add(e, depth, false);
+    add(e, depth, kComparison);
     return out.size() <= size_;
   }
   std::string out;
 
  private:
-  void add(const Expression& e, int depth, bool inside) {
+  // In parentheses where it binds less tightly than `least`.
+  void add(const Expression& e, int depth, int least) {
     if (out.size() > size_) return;
     const Node& node = e.node();
     if (node.term == Term::number) {
-      out += number_text(node.number);
+      const bool inside = std::signbit(node.number) && kUnary < least;
+      out += (inside ? "(" : "") + number_text(node.number) + (inside ? ")" : "");
     } else if (const auto term = term_of(node)) {
       add_term(node, *term);
     } else if (depth < 0) {
       out += "...";
     } else if (node.term == Term::arithmetic) {
-      add_operation(node, depth, inside);
+      add_operation(node, depth, least);
     } else {
-      out += "a function";
+      add_call("function", node, depth);
     }
   }
 
@@ -282,26 +297,46 @@ class Writer {
     out += ")";
   }
 
-  void add_operation(const Node& node, int depth, bool inside) {
-    const OperationName& operation = name_of(node.operation);
-    if (operation.sign.empty()) {
-      out += std::string(operation.name) + "(";
-      for (std::size_t i = 0; i < node.operands.size(); ++i) {
-        if (i > 0) out += ", ";
-        add(node.operands[i], depth - 1, false);
-      }
-      out += ")";
-      return;
+  void add_call(std::string_view name, const Node& node, int depth) {
+    out += std::string(name) + "(";
+    for (std::size_t i = 0; i < node.operands.size(); ++i) {
+      if (i > 0) out += ", ";
+      add(node.operands[i], depth - 1, kComparison);
     }
+    out += ")";
+  }
+
+  void add_operation(const Node& node, int depth, int least) {
+    const OperationName& operation = name_of(node.operation);
+    const Binding binding = operation.binding;
+    if (node.operation == Operation::previous) return add_previous(node, depth);
+    if (operation.sign.empty()) return add_call(operation.name, node, depth);
+    const bool inside = binding < least;
     if (inside) out += "(";
     if (node.operands.size() == 1) {
       out += operation.sign;
+      add(node.operands[0], depth - 1, binding);
     } else {
-      add(node.operands[0], depth - 1, true);
+      // Python groups from the left, powers from the right, and chains comparisons.
+      const bool from_left = binding != kComparison && binding != kPower;
+      add(node.operands[0], depth - 1, from_left ? binding : binding + 1);
       out += " " + std::string(operation.sign) + " ";
+      add(node.operands[1], depth - 1, binding == kPower ? kUnary : binding + 1);
     }
-    add(node.operands.back(), depth - 1, true);
     if (inside) out += ")";
+  }
+
+  // previous(previous(x)) is delayed(x, 2).
+  void add_previous(const Node& node, int depth) {
+    int steps = 1;
+    const Expression* of = &node.operands[0];
+    for (; of->node().term == Term::arithmetic && of->node().operation == Operation::previous;
+         of = &of->node().operands[0]) {
+      ++steps;
+    }
+    out += steps == 1 ? "previous(" : "delayed(";
+    add(*of, depth - 1, kComparison);
+    out += steps == 1 ? ")" : ", " + std::to_string(steps) + ")";
   }
 
   std::size_t size_;
@@ -332,11 +367,15 @@ std::vector<Expression> from_graph(const ExpressionGraph& graph) {
 
 std::string text_of(const Expression& expression, std::size_t size) {
   Writer writer(size);
+  // Whole, if it fits; else as deep as fits.
+  if (writer.write(expression, std::numeric_limits<int>::max())) return writer.out;
   for (int depth = 12; depth > 0; --depth) {
     if (writer.write(expression, depth)) return writer.out;
   }
   writer.write(expression, 0);
   return writer.out;
 }
+
+std::string to_string(const Expression& expression) { return text_of(expression, 20000); }
 
 }  // namespace manyworlds

@@ -30,7 +30,9 @@ enum class Term {
   uniform,    // Node::text is its name, index its number, of: Every
   parameter,  // of: Parameter, of index, a shape's `shape`, component axis
   level,      // of the name Node::text
-  raw,        // row of the state, as the kernels have it: of the plan, not of users
+  memory,     // of the name Node::text
+  time_step,
+  raw,  // row of the state, as the kernels have it: of the plan, not of users
 };
 
 struct Expression::Node {
@@ -51,9 +53,17 @@ struct Expression::Node {
 Expression make_expression(Expression::Node node);
 Expression arithmetic(kernels::Operation operation, std::vector<Expression> operands);
 
-inline bool remembers(kernels::Operation operation) {
-  return operation == kernels::Operation::previous || operation == kernels::Operation::held ||
-         operation == kernels::Operation::largest;
+// The value depends on earlier steps of the episode, in a row of memory of its own.
+inline bool accumulates(kernels::Operation operation) {
+  switch (operation) {
+    case kernels::Operation::held:
+    case kernels::Operation::largest:
+    case kernels::Operation::latched:
+    case kernels::Operation::summed:
+    case kernels::Operation::smoothed:
+    case kernels::Operation::phase: return true;
+    default: return false;
+  }
 }
 
 // What has the number that a `parameter` node is about.
@@ -64,7 +74,7 @@ const ObservedInfo* observed_by(const Expression::Node& node);
 bool has_item(const ObservedInfo& what);       // is it of an item, Node::index?
 bool has_component(const ObservedInfo& what);  // of several, Node::axis?
 
-// "position of body 3, axis 1"; of what is no leaf, its kind.
-std::string to_string(const Expression& expression);
+// "position of body 3, axis 1"; the text of other expressions, cut to a line.
+std::string describe(const Expression& expression);
 
 }  // namespace manyworlds

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "kernels/data/observer.hpp"
 #include "src/base/random.hpp"
@@ -15,9 +16,10 @@ using kernels::Operation;
 
 int ProgramBuilder::add(const Expression& expression) {
   const Expression::Node* node = &expression.node();
-  if (const auto found = known_.find(node); found != known_.end()) return found->second;
+  auto& known = known_[updates_];
+  if (const auto found = known.find(node); found != known.end()) return found->second;
   const int row = add_node(*node);
-  known_.emplace(node, row);
+  known.emplace(node, row);
   kept_.push_back(expression);
   return row;
 }
@@ -46,21 +48,13 @@ int ProgramBuilder::add_node(const Expression::Node& n) {
                          .count = static_cast<std::uint64_t>(n.index)});
     case Term::parameter: return add_parameter(n);
     case Term::level: return add_level(n.text);
+    case Term::memory: return add_memory(n.text);
+    case Term::time_step:
+      return emit(Operation::constant, -1, -1, -1, task_.frame_skip * plan_.scene().options.dt);
     case Term::raw: return emit(Operation::state, n.index);
   }
-  if (remembers(n.operation)) {
-    // Before the steps the memory is what the last steps left.
-    if (looks_back_) {
-      const int of = looks_back_->remember(looks_back_->add(n.operands[0]));
-      return emit(Operation::previous, -1, of);
-    }
-    const int of = add(n.operands[0]);
-    if (n.operation == Operation::previous) return emit(n.operation, of, remember(of));
-    const std::size_t before = program_.instructions.size();
-    const int row = emit(n.operation, of, static_cast<int>(memory_.row.size()));
-    if (program_.instructions.size() > before) memory_.row.push_back(row);
-    return row;
-  }
+  if (n.operation == Operation::previous) return add_previous(n.operands[0]);
+  if (accumulates(n.operation)) return add_accumulated(n);
   int operand[3] = {-1, -1, -1};
   std::transform(n.operands.begin(), n.operands.end(), operand,
                  [this](const Expression& e) { return add(e); });
@@ -119,6 +113,56 @@ int ProgramBuilder::add_level(const std::string& name) {
   return add_number({.kind = HostNumber::level, .item = static_cast<std::size_t>(at)});
 }
 
+// Before the steps the memory is what the last steps left.
+int ProgramBuilder::add_previous(const Expression& value) {
+  if (looks_back_) {
+    return emit(Operation::previous, -1, looks_back_->remember(looks_back_->add(value)));
+  }
+  const int of = add(value);
+  return emit(Operation::previous, of, remember(of));
+}
+
+// Before the steps this is the same function of the same memory, with the operands of the step to
+// take, so it comes to what it will be after them.
+int ProgramBuilder::add_accumulated(const Expression::Node& n) {
+  const bool cycles = n.operation == Operation::phase;  // of the frequency
+  const int a = add(cycles ? n.operands[0] * terms::time_step() : n.operands[0]);
+  const int c = n.operands.size() > 1 ? add(n.operands[1]) : -1;
+  if (looks_back_) {
+    const auto of = static_cast<std::size_t>(looks_back_->add_node(n));
+    return emit(n.operation, a, looks_back_->program_.instructions[of].b, c);
+  }
+  const std::size_t before = program_.instructions.size();
+  const int row = emit(n.operation, a, static_cast<int>(memory_.row.size()), c);
+  if (program_.instructions.size() > before) memory_.row.push_back(row);
+  return row;
+}
+
+int ProgramBuilder::add_memory(const std::string& name) {
+  const auto is_it = [&name](const Memory& memory) { return memory.name == name; };
+  const auto& all = task_.memories;
+  const auto index =
+      static_cast<std::size_t>(std::find_if(all.begin(), all.end(), is_it) - all.begin());
+  if (looks_back_) {
+    looks_back_->add_memory(name);
+    return emit(Operation::previous, -1, looks_back_->named_[index].number);
+  }
+  Named& own = named_[index];
+  if (own.number < 0) {
+    own.number = static_cast<int>(memory_.row.size());
+    memory_.row.push_back(-1);
+    const bool updates = std::exchange(updates_, false);
+    own.begin = add(all[index].begin);
+    own.before = emit(Operation::previous, own.begin, own.number);
+    updates_ = true;
+    const int next = all[index].next ? add(*all[index].next) : own.before;
+    updates_ = updates;
+    own.after = emit(Operation::begins, own.begin, next);
+    memory_.row[static_cast<std::size_t>(own.number)] = own.after;
+  }
+  return updates_ ? own.before : own.after;
+}
+
 int ProgramBuilder::add_number(const HostNumber& number) {
   auto& all = inputs_.numbers;
   const auto found = std::find(all.begin(), all.end(), number);
@@ -144,8 +188,8 @@ int ProgramBuilder::remember(int row) {
 }
 
 int ProgramBuilder::emit(Operation operation, int a, int b, int c, double number) {
-  // What `held` and `largest` remember is their own: two of the same operand are the same.
-  const int shared = operation == Operation::held || operation == Operation::largest ? -1 : b;
+  // What these remember is their own: two of the same operands are the same.
+  const int shared = accumulates(operation) ? -1 : b;
   const Key key{static_cast<int>(operation), a, shared, c, std::bit_cast<std::uint64_t>(number)};
   const auto [at, fresh] = same_.emplace(key, static_cast<int>(program_.instructions.size()));
   if (fresh) program_.instructions.push_back({operation, a, b, c, number});

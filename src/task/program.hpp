@@ -13,6 +13,7 @@
 
 #include "manyworlds/observed.hpp"
 #include "manyworlds/plan.hpp"
+#include "manyworlds/task.hpp"
 #include "src/task/node.hpp"
 
 namespace manyworlds {
@@ -57,7 +58,7 @@ struct Program {
 
 // What is remembered from step to step: number i is put down from row[i] of the program that looks
 // at worlds after their steps.
-struct Memory {
+struct MemoryRows {
   std::vector<int> row;
 };
 
@@ -66,9 +67,14 @@ class ProgramBuilder {
   // `memory` of the program itself; of one that runs before the steps (`looks_back`) of the one
   // that ran after the last ones, which has everything that this one remembers.
   // Numbers of the host are added to `inputs`.
-  ProgramBuilder(const Plan& plan, InputRows& inputs, Memory& memory,
+  ProgramBuilder(const Plan& plan, const Task& task, InputRows& inputs, MemoryRows& memory,
                  ProgramBuilder* looks_back = nullptr)
-      : plan_(plan), inputs_(inputs), memory_(memory), looks_back_(looks_back) {}
+      : plan_(plan),
+        task_(task),
+        inputs_(inputs),
+        memory_(memory),
+        looks_back_(looks_back),
+        named_(task.memories.size()) {}
 
   int add(const Expression& expression);  // its row
   // The number of a parameter's expression as Batch::read has it.
@@ -77,6 +83,11 @@ class ProgramBuilder {
 
  private:
   using Key = std::tuple<int, int, int, int, std::uint64_t>;
+  // Of one of Task::memories: its number, and rows of what it begins with, what it was before the
+  // step and what it is after it; -1: not yet.
+  struct Named {
+    int number = -1, begin = -1, before = -1, after = -1;
+  };
 
   int add_node(const Expression::Node& node);
   int add_function(const Expression::Node& node);
@@ -84,6 +95,9 @@ class ProgramBuilder {
   int add_coordinate(Field field, int item);
   int add_parameter(const Expression::Node& node);
   int add_level(const std::string& name);
+  int add_memory(const std::string& name);
+  int add_previous(const Expression& value);
+  int add_accumulated(const Expression::Node& node);
   int add_number(const HostNumber& number);
   int emit(kernels::Operation operation, int a = -1, int b = -1, int c = -1, double number = 0);
   int remember(int row);
@@ -96,12 +110,15 @@ class ProgramBuilder {
   Expression state(int body, int component) const;
 
   const Plan& plan_;
+  const Task& task_;
   InputRows& inputs_;
-  Memory& memory_;
+  MemoryRows& memory_;
   ProgramBuilder* looks_back_;
+  std::vector<Named> named_;  // [memory]
+  bool updates_ = false;      // what is added is of a `next`, where memories are as before the step
   Program program_;
   std::map<Key, int> same_;
-  std::unordered_map<const Expression::Node*, int> known_;
+  std::unordered_map<const Expression::Node*, int> known_[2];  // [updates_]
   std::vector<Expression> kept_;  // so that what `known_` points to stays
 };
 

@@ -1,3 +1,5 @@
+// Runs the programs of a task around the steps of a group. This is over 400 lines because what happens
+// to a group before its steps, after them, where its worlds begin and between steps is one order.
 #include "src/task/runner.hpp"
 
 #include <algorithm>
@@ -6,9 +8,13 @@
 #include <limits>
 
 #include "src/base/bits.hpp"
-#include "src/base/random.hpp"
+#include "src/task/fault_log.hpp"
+#include "src/task/finite_check.hpp"
+#include "src/task/host_numbers.hpp"
 #include "src/task/levels.hpp"
 #include "src/task/program_code.hpp"
+#include "src/task/remembered.hpp"
+#include "src/task/result_arrays.hpp"
 
 namespace manyworlds {
 
@@ -27,56 +33,53 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
         autoreset_(autoreset),
         worlds_(batch.worlds()),
         lanes_(batch.lanes()),
-        levels_(at(worlds_), p_->level_nexts.size()) {
+        ends_of_steps_(p_->after, p_->results, std::array{p_->terminated, p_->results.back()},
+                       lanes_),
+        beginnings_(p_->after, p_->observations, {}, lanes_),
+        faults_(p_->results.size()),
+        results_(p_, lanes_),
+        remembered_(p_->memory.row, p_->inputs.actions, worlds_, lanes_),
+        levels_(at(worlds_), p_->level_nexts.size()),
+        host_(p_->inputs, worlds_, lanes_, levels_) {
     const std::size_t groups = at((worlds_ + lanes_ - 1) / lanes_), lanes = at(lanes_);
-    memory_ = AlignedBuffer<Real>(groups * p_->memory.row.size() * lanes);
     age_ = AlignedBuffer<Real>(groups * lanes);
     begin_now.resize(at(worlds_));
     begin_next.resize(at(worlds_));
-    const auto& numbers = p_->inputs.numbers;
-    draws_ = std::any_of(numbers.begin(), numbers.end(), [](const HostNumber& n) {
-      return n.kind == HostNumber::of_episode || n.kind == HostNumber::of_step;
-    });
-    if (draws_) key_.resize(at(worlds_));
     unsound.resize(at(worlds_));
+    flagged_.resize(at(worlds_));
     for (int t = 0; t < batch.threads(); ++t) {
       Thread& thread = threads_.emplace_back();
       const std::size_t rows = std::max({opening_.rows(), before_.rows(), after_.rows()});
       thread.values = AlignedBuffer<Real>(rows * lanes);
       thread.inputs = AlignedBuffer<Real>(at(p_->inputs.count()) * lanes);
       thread.in.reserve(rows);
+      thread.unknown.reserve(rows);
     }
   }
 
   GroupVisitor& visitor() override { return *this; }
 
-  // [begins with the next step, age, what the program remembers, levels, those of the next
-  // episode, key]
+  // [begins with the next step, age, the last actions, what the program remembers and what it did
+  // a step before, levels, those of the next episode, key]
   std::size_t numbers() const override {
-    return 2 + p_->memory.row.size() + levels_.numbers() + (draws_ ? 2 : 0);
+    return first_level() + levels_.numbers() + host_.numbers();
   }
 
   void save_world(int world, std::span<double> to) const override {
     to[0] = begin_next[at(world)];
     to[1] = static_cast<double>(age_[at(world)]);
-    for (std::size_t i = 0; i < p_->memory.row.size(); ++i) {
-      to[2 + i] = static_cast<double>(memory_[remembered(world, i)]);
-    }
-    levels_.save(world, to.subspan(2 + p_->memory.row.size()));
-    if (!draws_) return;  // in halves, which doubles hold exactly
-    to[to.size() - 2] = static_cast<double>(key_[at(world)] >> 32);
-    to[to.size() - 1] = static_cast<double>(key_[at(world)] & 0xffffffffu);
+    remembered_.save(world, to.subspan(2));
+    levels_.save(world, to.subspan(first_level()));
+    host_.save(world, to.last(host_.numbers()));
   }
 
   void restore_world(int world, std::span<const double> from) override {
     begin_next[at(world)] = from[0] != 0 && autoreset_ == Autoreset::next_step;
     age_[at(world)] = static_cast<Real>(from[1]);
-    for (std::size_t i = 0; i < p_->memory.row.size(); ++i) {
-      memory_[remembered(world, i)] = static_cast<Real>(from[2 + i]);
-    }
-    levels_.restore(world, from.subspan(2 + p_->memory.row.size()));
-    if (!draws_) return;
-    key_[at(world)] = half_of_key(from[from.size() - 2]) << 32 | half_of_key(from[from.size() - 1]);
+    flagged_[at(world)] = 0;
+    remembered_.restore(world, from.subspan(2));
+    levels_.restore(world, from.subspan(first_level()));
+    host_.restore(world, from.last(host_.numbers()));
   }
 
   double level(int world, std::size_t level) const override {
@@ -89,10 +92,14 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   void before_steps(const VisitedGroup<Real>& g) override {
     Thread& thread = threads_[at(g.thread)];
     for (int l = 0; l < lanes_; ++l) {
-      if (g.group * lanes_ + l < worlds_) unsound[at(g.group * lanes_ + l)] = 0;
+      const int world = g.group * lanes_ + l;
+      if (world < worlds_) unsound[at(world)] = flagged_[at(world)];
       put_action(g, thread, l);
-      put_numbers(g, thread, l, age_[at(g.group * lanes_ + l)] + 1);
+      const Real age = age_[at(world)] + 1;
+      thread.inputs[at(p_->inputs.age() * lanes_ + l)] = age;
+      host_.put(g, thread.inputs.data(), l, age);
     }
+    std::copy_n(thread.inputs.data(), at(p_->inputs.actions * lanes_), remembered_.acted(g.group));
     run(g, before_, thread, false);
     for (std::size_t i = 0; i < p_->controls.size(); ++i) {
       auto [low, high] = p_->control_range[i];
@@ -118,20 +125,22 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     Real* age = age_.data() + at(g.group * lanes_);
     for (int l = 0; !g.whole && l < lanes_; ++l) {
       put_action(g, thread, l);
-      put_numbers(g, thread, l, age[l] + 1);
+      host_.put(g, thread.inputs.data(), l, age[l] + 1);
     }
     Real* in = thread.inputs.data();
     for (int l = 0; l < lanes_; ++l) {
       in[at(p_->inputs.age() * lanes_ + l)] = age[l] += 1;
-      in[at(p_->inputs.lost() * lanes_ + l)] =
-          has_status(g, l, kernels::kFrozen | kernels::kOutOfBounds) ? 1 : 0;
+      in[at(p_->inputs.lost() * lanes_ + l)] = is_lost(g, l);
     }
     run(g, after_, thread, false);
     const int first = g.group * lanes_, end = std::min(lanes_, worlds_ - first);
-    for (int l = 0; l < end; ++l) put_results(thread, first + l, l);
-    put_rewards(thread, first, end);
-    end_episodes(thread, first, end, age);
-    put_down(g.group, thread, (1u << lanes_) - 1u);
+    for (int l = 0; l < end; ++l) results_.put_results(out, thread.values.data(), first + l, l);
+    results_.put_rewards(out, thread.values.data(), first, end, begin_next);
+    const std::uint32_t suspects = ends_of_steps_.suspects(thread.values.data());
+    const std::uint32_t unknown = suspects == 0 ? 0 : flag(g, thread, suspects);
+    end_episodes(g, thread, end, unknown);
+    remembered_.next_step(g.group);
+    remembered_.put_down(g.group, thread.values.data(), (1u << lanes_) - 1u);
   }
 
   void before_beginning(const VisitedGroup<Real>& g, WorldsBase& worlds, std::uint32_t lanes,
@@ -143,7 +152,7 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
       const std::uint64_t seed = how.seeds.empty() ? worlds.seed(world) : how.seeds[at(world)];
       const std::uint64_t next =
           how.resets ? std::uint64_t{worlds.episode(world)} + 1 : worlds.episode(world);
-      if (draws_) key_[at(world)] = Draws(seed, how.seeds.empty() ? next : 0).key();
+      host_.begin_episode(world, seed, how.seeds.empty() ? next : 0);
       levels_.begin_episode(world);
     });
     if (how.first && levels_.count() > 0) {
@@ -170,12 +179,10 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
 
   void after_beginning(const VisitedGroup<Real>& g, std::uint32_t lanes) override {
     Thread& thread = threads_[at(g.thread)];
-    if (draws_) {
-      for_each_lane(lanes, [&](int l) {
-        const int world = g.group * lanes_ + l;
-        key_[at(world)] = Draws(g.worlds.seed(world), g.worlds.episode(world)).key();
-      });
-    }
+    for_each_lane(lanes, [&](int l) {
+      const int world = g.group * lanes_ + l;
+      host_.begin_episode(world, g.worlds.seed(world), g.worlds.episode(world));
+    });
     put_opening_numbers(g, thread, lanes);
     run(g, after_, thread, true);
     for (int l = 0; l < lanes_; ++l) {
@@ -183,22 +190,74 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
       const int world = g.group * lanes_ + l;
       age_[at(world)] = 0;
       begin_next[at(world)] = 0;
-      if (keeps_last) keep_last(world);
-      put_results(thread, world, l);
+      flagged_[at(world)] = 0;
+      for (int i = 0; i < p_->inputs.actions; ++i)
+        remembered_.acted(g.group)[at(i * lanes_ + l)] = 0;
+      if (keeps_last) results_.keep_last(out, world);
+      results_.put_results(out, thread.values.data(), world, l);
     }
-    put_down(g.group, thread, lanes);
+    const std::uint32_t suspects = beginnings_.suspects(thread.values.data()) & lanes;
+    for_each_lane(suspects, [&](int l) { name_faults(g, thread, l, p_->observations.size()); });
+    remembered_.put_down(g.group, thread.values.data(), lanes);
+  }
+
+  void take_faults(std::vector<Fault>& to) override {
+    faults_.take([&](int result, int world, double value) {
+      to.push_back({result, world, static_cast<std::int64_t>(age_[at(world)]), value});
+    });
+  }
+
+  void evaluate(BatchCore& core, const TaskPrograms& programs, std::span<double> out) override {
+    const ProgramCode<Real> code(programs.after);
+    Thread thread;
+    const auto make = [this](std::size_t rows) { return AlignedBuffer<Real>(rows * at(lanes_)); };
+    thread.values = make(code.rows()), thread.inputs = make(at(programs.inputs.count()));
+    evaluation_ = {&programs, &code, &thread, out};
+    core.visit(*this);
+    evaluation_ = {};
+  }
+
+  void between_steps(const VisitedGroup<Real>& g) override {
+    const auto& [programs, code, thread, to] = evaluation_;
+    Real* in = thread->inputs.data();
+    std::copy_n(remembered_.acted(g.group), at(p_->inputs.actions * lanes_), in);
+    const Real* age = age_.data() + at(g.group * lanes_);
+    for (int l = 0; l < lanes_; ++l) {
+      in[at(p_->inputs.age() * lanes_ + l)] = age[l];
+      in[at(p_->inputs.lost() * lanes_ + l)] = is_lost(g, l);
+      host_.put(g, in, l, age[l], programs->inputs.numbers);
+    }
+    const int first = g.group * lanes_, end = std::min(lanes_, worlds_ - first);
+    for (const bool beginning : {false, true}) {
+      const auto is_so = [&](Real steps) { return (steps == 0) == beginning; };
+      if (std::none_of(age, age + end, is_so)) continue;
+      code->run(g, lanes_,
+                {.input = in,
+                 .memory = remembered_.before(g.group),
+                 .value = thread->values.data(),
+                 .beginning = beginning},
+                thread->in);
+      for (int l = 0; l < end; ++l) {
+        if (!is_so(age[l])) continue;
+        to[at(first + l)] = static_cast<double>(value(*thread, programs->evaluated, l));
+      }
+    }
   }
 
  private:
   struct Thread {
     AlignedBuffer<Real> values, inputs;
-    std::vector<const Real*> in;  // of a call
+    std::vector<const Real*> in;        // of a call
+    std::vector<std::uint8_t> unknown;  // of a lane, see FiniteCheck
   };
 
-  // Of a snapshot, which may have been made up.
-  static std::uint64_t half_of_key(double number) {
-    return number >= 0 && number < 0x1p32 ? static_cast<std::uint64_t>(number) : 0;
-  }
+  // What evaluate() is about.
+  struct Evaluation {
+    const TaskPrograms* programs = nullptr;
+    const ProgramCode<Real>* code = nullptr;
+    Thread* thread = nullptr;
+    std::span<double> out = {};
+  };
 
   template <class Call>
   void for_each_lane(std::uint32_t lanes, Call call) const {
@@ -211,17 +270,50 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
   void put_opening_numbers(const VisitedGroup<Real>& g, Thread& thread, std::uint32_t lanes) const {
     std::fill_n(thread.inputs.data(), thread.inputs.size(), Real(0));
     if (p_->inputs.numbers.empty()) return;
-    for_each_lane(lanes, [&](int l) { put_numbers(g, thread, l, 0); });
+    for_each_lane(lanes, [&](int l) { host_.put(g, thread.inputs.data(), l, 0); });
   }
 
-  // Where in memory_ a number of a world is.
-  std::size_t remembered(int world, std::size_t number) const {
-    const std::size_t row = at(world / lanes_) * p_->memory.row.size() + number;
-    return row * at(lanes_) + at(world % lanes_);
-  }
+  std::size_t first_level() const { return 2 + remembered_.numbers(); }  // in what is saved
 
   static bool has_status(const VisitedGroup<Real>& g, int lane, std::uint32_t bits) {
     return (g.view.status[lane] & bits) != 0;
+  }
+  static Real is_lost(const VisitedGroup<Real>& g, int lane) {
+    return has_status(g, lane, kernels::kFrozen | kernels::kOutOfBounds) ? 1 : 0;
+  }
+
+  // Freezes the worlds of these lanes in which a result is not finite or an end is not known.
+  // Returns the lanes in which it is not known whether the task ends the episode.
+  std::uint32_t flag(const VisitedGroup<Real>& g, Thread& thread, std::uint32_t suspects) {
+    std::uint32_t unknown = 0;
+    for_each_lane(suspects, [&](int l) {
+      const int world = g.group * lanes_ + l;
+      // Worlds that begin now were not asked what they are.
+      if (world >= worlds_ || begin_next[at(world)] != 0) return;
+      ends_of_steps_.find_unknown(thread.values.data(), l, thread.unknown);
+      if (thread.unknown[at(p_->terminated)] || !std::isfinite(value(thread, p_->terminated, l))) {
+        unknown |= 1u << l;
+      }
+      name_faults(g, thread, l, p_->results.size());
+    });
+    return unknown;
+  }
+
+  // Of the first results of a lane. Not of worlds that are frozen already.
+  void name_faults(const VisitedGroup<Real>& g, const Thread& thread, int lane,
+                   std::size_t results) {
+    const int world = g.group * lanes_ + lane;
+    const bool was_frozen = has_status(g, lane, kernels::kFrozen);
+    for (std::size_t i = 0; i < results; ++i) {
+      const int row = p_->results[i];
+      Real found = value(thread, row, lane);
+      const bool is_end = i + 2 >= p_->results.size();
+      if (is_end && thread.unknown[at(row)]) found = std::numeric_limits<Real>::quiet_NaN();
+      if (std::isfinite(found)) continue;
+      g.view.status[lane] |= kernels::kNonFinite;
+      flagged_[at(world)] = 1;
+      if (!was_frozen) faults_.add(i, world, static_cast<double>(found));
+    }
   }
 
   void freeze(const VisitedGroup<Real>& g, int lane) {
@@ -247,30 +339,11 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     }
   }
 
-  // What the host knows of the world in a lane, `age` steps after its episode began.
-  void put_numbers(const VisitedGroup<Real>& g, Thread& thread, int lane, Real age) const {
-    const int world = std::min(g.group * lanes_ + lane, worlds_ - 1);
-    Real* in = thread.inputs.data() + at(p_->inputs.first_number() * lanes_ + lane);
-    for (const HostNumber& n : p_->inputs.numbers) {
-      if (n.kind == HostNumber::parameter) {
-        *in = static_cast<Real>(g.worlds.number(n.of, world, n.item));
-      } else if (n.kind == HostNumber::level) {
-        *in = levels_.get(world, n.item);
-      } else {  // an even count is of the episode, odd ones are of steps
-        const bool each = n.kind == HostNumber::of_step;
-        const std::uint64_t step = each ? 2 * static_cast<std::uint64_t>(age) + 1 : 0;
-        *in = uniform_of<Real>(bits_of_stream(key_[at(world)], n.stream, (n.count << 32) + step));
-      }
-      in += lanes_;
-    }
-  }
-
   void run(const VisitedGroup<Real>& g, const ProgramCode<Real>& code, Thread& thread,
            bool beginning) const {
-    const std::size_t first = at(g.group) * p_->memory.row.size() * at(lanes_);
     code.run(g, lanes_,
              {.input = thread.inputs.data(),
-              .memory = memory_.data() + first,
+              .memory = remembered_.now(g.group),
               .value = thread.values.data(),
               .beginning = beginning},
              thread.in);
@@ -280,49 +353,11 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     return thread.values[at(row * lanes_ + lane)];
   }
 
-  // What is told of a world, where it is wanted.
-  void put_results(const Thread& thread, int world, int lane) const {
-    put(out.observations, p_->observations, thread, world, lane);
-    put(out.observations_f64, p_->observations, thread, world, lane);
-    put(out.infos, p_->infos, thread, world, lane);
-  }
-  template <class T>
-  void put(std::span<T> to, const std::vector<int>& rows, const Thread& thread, int world,
-           int lane) const {
-    if (to.empty()) return;
-    T* own = to.data() + at(world) * rows.size();
-    for (const int row : rows) *own++ = static_cast<T>(value(thread, row, lane));
-  }
-
-  void keep_last(int world) const {
-    const std::size_t n = p_->observations.size();
-    keep(out.observations, out.final_observations, world, n);
-    keep(out.observations_f64, out.final_observations_f64, world, n);
-    keep(out.infos, out.final_infos, world, p_->infos.size());
-  }
-  template <class T>
-  static void keep(std::span<T> from, std::span<T> to, int world, std::size_t n) {
-    if (from.empty() || to.empty()) return;
-    std::copy_n(from.data() + at(world) * n, n, to.data() + at(world) * n);
-  }
-
-  // Of the worlds `first` on, which are lanes 0 to `end`. In steps that begin an episode there is
-  // no reward and no end.
-  void put_rewards(const Thread& thread, int first, int end) const {
-    std::array<double, kMaxLanes> sum{};
-    const std::size_t rewards = p_->rewards.size();
-    for (std::size_t i = 0; i < rewards; ++i) {
-      const Real* row = thread.values.data() + at(p_->rewards[i] * lanes_);
-      for (int l = 0; l < end; ++l) {
-        const double reward = begin_next[at(first + l)] != 0 ? 0 : static_cast<double>(row[l]);
-        sum[at(l)] += reward;
-        if (!out.reward_terms.empty()) out.reward_terms[at(first + l) * rewards + i] = reward;
-      }
-    }
-    if (!out.rewards.empty()) std::copy_n(sum.data(), end, out.rewards.data() + first);
-  }
-
-  void end_episodes(const Thread& thread, int first, int end, const Real* age) {
+  // `unknown`: lanes in which it is not known whether the task ends the episode.
+  void end_episodes(const VisitedGroup<Real>& g, const Thread& thread, int end,
+                    std::uint32_t unknown) {
+    const int first = g.group * lanes_;
+    const Real* age = age_.data() + at(first);
     const Real* failed = thread.values.data() + at(p_->terminated * lanes_);
     const Real* broken_off = thread.values.data() + at(p_->truncated * lanes_);
     const Real most = p_->max_steps > 0 ? static_cast<Real>(p_->max_steps)
@@ -331,8 +366,10 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     for (int l = 0; l < end; ++l) {
       const std::size_t world = at(first + l);
       const bool begins = begin_next[world] != 0;
-      const bool terminated = !begins && failed[l] != 0;
-      const bool truncated = !begins && (broken_off[l] != 0 || age[l] >= most);
+      const bool lost = !begins && is_lost(g, l) != 0;
+      const bool terminated = !begins && failed[l] != 0 && !get_bit(unknown, at(l));
+      const bool truncated = !begins && (broken_off[l] != 0 || age[l] >= most || lost);
+      if (!out.lost.empty()) out.lost[world] = lost;
       if (!out.terminated.empty()) out.terminated[world] = terminated;
       if (!out.truncated.empty()) out.truncated[world] = truncated;
       const bool ended = terminated || truncated;
@@ -347,28 +384,20 @@ class RunnerOf final : public TaskRunner, public GroupVisitorOf<Real> {
     if (some) some_begin.store(true, std::memory_order_relaxed);
   }
 
-  // What the next step has to remember of these lanes.
-  void put_down(int group, const Thread& thread, std::uint32_t lanes) {
-    const std::size_t rows = p_->memory.row.size();
-    Real* to = memory_.data() + at(group) * rows * at(lanes_);
-    for (const int row : p_->memory.row) {
-      for (int l = 0; l < lanes_; ++l) {
-        if (get_bit(lanes, at(l))) to[l] = value(thread, row, l);
-      }
-      to += lanes_;
-    }
-  }
-
   std::shared_ptr<const TaskPrograms> p_;
   ProgramCode<Real> opening_, before_, after_;
   Autoreset autoreset_;
   int worlds_, lanes_;
+  FiniteCheck<Real> ends_of_steps_, beginnings_;
+  FaultLog faults_;
+  ResultArrays<Real> results_;
+  Remembered<Real> remembered_;
   Levels<Real> levels_;
-  AlignedBuffer<Real> memory_;  // [group][number][lane]
-  AlignedBuffer<Real> age_;     // [group][lane]
-  bool draws_;
-  std::vector<std::uint64_t> key_;  // [world] of its draws, from where its episode began
+  HostNumbers<Real> host_;
+  AlignedBuffer<Real> age_;            // [group][lane]
+  std::vector<std::uint8_t> flagged_;  // [world] whose results were not finite in this episode
   std::vector<Thread> threads_;
+  Evaluation evaluation_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "src/base/hash.hpp"
 #include "src/plan/plan_data.hpp"
+#include "src/task/check_task.hpp"
 #include "src/task/runner.hpp"
 
 namespace manyworlds {
@@ -59,7 +60,8 @@ std::uint64_t fingerprint_of(const Task& task, const TaskPrograms& programs, con
 
 }  // namespace
 
-TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : max_steps(task.max_steps) {
+TaskPrograms::TaskPrograms(const Task& task, const Plan& plan, const Expression* extra)
+    : max_steps(task.max_steps) {
   inputs.actions = task.choices > 0 ? 1 : static_cast<int>(task.actions.size());
   for (const Action& a : task.actions) {
     constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -68,14 +70,14 @@ TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : max_steps(task.
   control_range = plan.data().control_range;
   ranges_vary = plan.data().varies.ranges;
   for (const Level& level : task.levels) inputs.levels.push_back(level.name);
-  ProgramBuilder start(plan, inputs, memory);
+  ProgramBuilder start(plan, task, inputs, memory);
   for (const Level& level : task.levels) level_begins.push_back(start.add(level.begin));
   for (const InitialParameter& s : task.initial_parameters) {
     initial_parameters.push_back(start.number_of(s.parameter.node()));
     initial_values.push_back(start.add(s.value));
   }
   opening = start.take();
-  ProgramBuilder builder(plan, inputs, memory);
+  ProgramBuilder builder(plan, task, inputs, memory);
   for (const Observation& o : task.observations) observations.push_back(builder.add(o.value));
   for (const Reward& r : task.rewards) rewards.push_back(builder.add(r.value));
   for (const Info& i : task.infos) infos.push_back(builder.add(i.value));
@@ -84,11 +86,33 @@ TaskPrograms::TaskPrograms(const Task& task, const Plan& plan) : max_steps(task.
   }
   terminated = builder.add(task.terminated);
   truncated = builder.add(task.truncated | terms::lost());
-  ProgramBuilder first(plan, inputs, memory, &builder);
+  for (const Memory& m : task.memories) builder.add(terms::memory(m.name));
+  name_results(task, builder);
+  ProgramBuilder first(plan, task, inputs, memory, &builder);
   for (const Expression& c : task.controls) controls.push_back(first.add(c));
   before = first.take();
+  if (extra) {
+    const std::size_t remembered = memory.row.size();
+    evaluated = builder.add(*extra);
+    evaluated_is_known = memory.row.size() == remembered;
+  }
   after = builder.take();
   fingerprint = fingerprint_of(task, *this, plan);
+}
+
+void TaskPrograms::name_results(const Task& task, ProgramBuilder& builder) {
+  const auto add_all = [this](const char* what, const auto& all, const std::vector<int>& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      results.push_back(rows[i]);
+      result_names.push_back(place_of(what, i, all[i].name));
+    }
+  };
+  add_all("observation", task.observations, observations);
+  add_all("reward", task.rewards, rewards);
+  results.push_back(terminated);
+  result_names.emplace_back("terminated");
+  results.push_back(builder.add(task.truncated));
+  result_names.emplace_back("truncated");
 }
 
 }  // namespace manyworlds

@@ -315,7 +315,7 @@ TEST_CASE("what is wrong with delays, levels and initial parameters is said", "[
   std::vector<std::string> found;
   for (const Issue& issue : validate(task)) found.push_back(issue.place + ": " + issue.message);
   const std::vector<std::string> expected{
-      "level 3 'step': has the name of one before it, must have its own",
+      "level 3 'step': has the name of level 0 'step', must have its own",
       "level 3 'step', begin: depends on the level 'step', must depend on numbers and random ones "
       "of "
       "the episode alone",

@@ -147,7 +147,7 @@ TEST_CASE("expressions read the numbers of the scene that vary, as a batch does"
     std::vector<std::size_t> item;
     const auto add = [&](Parameter p, std::size_t at, const Expression& value) {
       of.push_back(p), item.push_back(at);
-      task.observations.push_back({info(p).name, value});
+      task.observations.push_back({to_string(value), value});
     };
     add(Parameter::gravity, 1, terms::parameter(Parameter::gravity, 1));
     std::size_t shape = 0, row = 0;
@@ -278,7 +278,7 @@ TEST_CASE("random numbers and parameters are plain values, too", "[task][fast]")
     CHECK(again.nodes[i].arguments == graph.nodes[i].arguments);
   }
   CHECK(again.roots == graph.roots);
-  CHECK(text_of(all[0], 99) == "0 + ((1 - 0) * uniform('goal', 'episode'))");
+  CHECK(text_of(all[0], 99) == "0 + (1 - 0) * uniform('goal', 'episode')");
   CHECK(text_of(all[2], 99) == "parameter('friction', 3, 1, 0)");
   CHECK(text_of(all[3], 99) == "(age() % 7) ** tanh(arccos(sign(log(age()))))");
   CHECK_THROWS_WITH(from_graph({{{"uniform", 0, {2, 0}, "x"}}, {0}}),

@@ -51,6 +51,9 @@ def _range(name: str, rest: Sequence[Any], found: Sequence[Range], task: Task) -
         return _ALL
     if name in ("age", "held"):
         return 0.0, steps
+    if name == "time_step":
+        seconds = task.frame_skip * task.scene.options.dt
+        return seconds, seconds
     if name == "ray_distance":
         return 0.0, task.rays[rest[0]].length
     if name == "action":
@@ -135,4 +138,9 @@ _OPERATIONS: dict[str, Callable[..., Range]] = {
     "where": lambda a, b, c: (min(b[0], c[0]), max(b[1], c[1])),
     "previous": lambda a: a,
     "largest": lambda a: a,
+    "latched": lambda a: _TRUTH,
+    "summed": lambda a: (-inf if a[0] < 0 else 0.0, inf if a[1] > 0 else 0.0),
+    # Between the values, as long as the factor is a part.
+    "smoothed": lambda a, b: a if 0 <= b[0] and b[1] <= 1 else _ALL,
+    "phase": lambda a: _TRUTH,
 }

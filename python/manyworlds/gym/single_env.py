@@ -19,7 +19,8 @@ from . import rendering, spaces
 
 class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
     """A task in one world. ``reset(seed=s)`` begins the first episode of the seed s, ``reset()`` the
-    next one; with the seed s + i it is, bit by bit, world i of a VectorEnv with the seed s."""
+    next one; with the seed s + i it is, bit by bit, world i of a VectorEnv with the seed s. ``check``:
+    see ``manyworlds.Environment``."""
 
     metadata: dict[str, Any] = {"render_modes": list(rendering.RENDER_MODES)}
     _instead = "pickle its spec, or the task and arguments that it was made with"
@@ -31,6 +32,7 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
         max_episode_steps: Optional[int] = None,
         precision: Precision = "f32",
         isa: Optional[Isa] = None,
+        check: bool = False,
         reward_terms: bool = False,
         observation_dtype: DTypeLike = np.float32,
         render_mode: Optional[str] = None,
@@ -47,6 +49,7 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
             precision=precision,
             isa=isa,
             autoreset="disabled",
+            check=check,
             reward_terms=reward_terms,
             observation_dtype=observation_dtype,
         )
@@ -60,7 +63,11 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
         """The first episode of the seed, 0 to 2**64 - 1; None: the next episode. Returns (observation,
         info): (observations,) float32 and the task's infos, but for those of steps alone."""
         super().reset(seed=seed)
-        return self.environment.reset(seeds=seed)[0].copy(), self._told(False)
+        observation = self.environment.reset(seeds=seed)[0].copy()
+        info = self._told(False)
+        if self.environment.lost()[0]:
+            info["lost"] = True
+        return observation, info
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """One step of the task. ``action``: an integer below ``task.choices``, or (numbers,).

@@ -38,12 +38,12 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
     copy                False: ``reset`` and ``step`` return the same arrays every time
     seed                of the worlds until ``reset`` gives one; None: a random one
     reward_terms        ``infos["reward_terms"]`` has the parts of the reward by name
-    threads, precision, isa, observation_dtype  as in ``manyworlds.Environment``
+    threads, precision, isa, check, observation_dtype  as in ``manyworlds.Environment``
     render_mode         "rgb_array": ``render()`` draws every world (``manyworlds.plot``)
 
     ``reset(seed=s)`` begins the first episode of the seed s + i in world i, ``reset()`` the next
     episodes. ``infos["lost"]`` tells worlds that went wrong (an action that was not a number, say)
-    from those whose time was up, except with SAME_STEP, where they are new before one can ask.
+    from those whose time was up; with SAME_STEP it is in ``infos["final_info"]``.
     ``environment`` is what steps.
     """
 
@@ -68,6 +68,7 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
         threads: Optional[int] = None,
         precision: Precision = "f32",
         isa: Optional[Isa] = None,
+        check: bool = False,
         observation_dtype: DTypeLike = np.float32,
         render_mode: Optional[str] = None,
     ) -> None:
@@ -87,6 +88,7 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
             precision,
             isa,
             MODES[self.autoreset_mode],  # type: ignore[arg-type]
+            check=check,
             reward_terms=reward_terms,
             observation_dtype=observation_dtype,
         )
@@ -199,11 +201,11 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
             infos |= self._told(e.infos, every, stepped)
             if e.reward_terms is not None and stepped.any():
                 infos |= self._reward_terms(stepped)
-        if e.truncated.any():
-            lost = e.lost() & e.truncated
-            if lost.any():
-                infos |= {"lost": lost, "_lost": lost.copy()}
-        return infos
+        return infos | self._lost()
+
+    def _lost(self) -> dict[str, Any]:
+        lost = self.environment.lost_at_end
+        return {"lost": lost.copy(), "_lost": lost.copy()} if lost.any() else {}
 
     def _told(
         self, values: NDArray[Any], mask: NDArray[np.bool_], stepped: NDArray[np.bool_]
@@ -228,6 +230,7 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
         info = {} if e.reward_terms is None else self._reward_terms(ended)
         if e.final_infos is not None:
             info |= self._told(e.final_infos, ended, ended)
+        info |= self._lost()
         return {
             "final_obs": last,
             "_final_obs": ended,

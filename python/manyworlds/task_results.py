@@ -1,0 +1,63 @@
+"""Results of an Environment's task: values of expressions, and those that were not finite."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from .terms import Value
+
+
+@dataclass(frozen=True, slots=True)
+class NonFinite:
+    """An observation, a reward or an end of a task that was not a finite number."""
+
+    expression: str  # "observation 3 'lean'", as issues of the task name it
+    world: int
+    step: int  # of the world's episode, from 1; 0: where it began
+    value: float  # infinite or nan; nan also for an end that compares what is not a number
+
+    def __str__(self) -> str:
+        value = "nan" if math.isnan(self.value) else f"{self.value}"
+        when = f"at step {self.step} of its episode" if self.step else "where its episode begins"
+        return f"{self.expression} is {value} in world {self.world} {when}"
+
+
+class WithResults:
+    """What an Environment has of the values of expressions."""
+
+    _worlds: int
+    _held: _core.Environment
+    _named_faults: int  # expressions that were warned of
+
+    def _warn(self, stacklevel: int) -> None:
+        """Of the expressions that have not been warned of; `stacklevel` as if this were ``warnings.warn``."""
+        faults = self.non_finite()
+        new, self._named_faults = faults[self._named_faults :], len(faults)
+        for fault in new:
+            warnings.warn(
+                f"{fault}: the world is lost and its episode truncated. Later faults of this expression "
+                "are not reported; Environment(check=True) raises NonFiniteError",
+                RuntimeWarning,
+                stacklevel=stacklevel + 1,
+            )
+
+    def non_finite(self) -> list[NonFinite]:
+        """The first fault of each expression since the environment was made, in the order found."""
+        return [NonFinite(*fault) for fault in self._held.non_finite()]
+
+    def evaluate(self, expression: Value) -> NDArray[np.float64]:
+        """The value of an expression in every world, (worlds,) float64; changes nothing.
+
+        It is what an info of the task would have been after the last step or reset, but of the state that
+        worlds have now. Raises ValueError for what does not exist in the task's scene, and for what the
+        task does not observe or remember: ``Task.tell`` makes it do so.
+        """
+        out = np.empty(self._worlds)
+        self._held.evaluate(expression, out)
+        return out
