@@ -1,6 +1,5 @@
-// Controls: numbers that a caller sets for each world, and that every step acts on until they are
-// set anew. What a policy has in its hands: the targets of drives, thrust at a point of a body,
-// torque.
+// Controls: values that a caller sets for each world. They stay in effect until the caller sets
+// others. A policy acts through them: targets of drives, thrust at a point of a body, torque.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,11 +11,11 @@
 namespace manyworlds {
 
 enum class ControlKind {
-  target_position,  // of a joint's drive, m or rad
-  target_speed,     // of a joint's drive, m/s or rad/s
+  target_position,  // m or rad, target of a joint's drive
+  target_speed,     // m/s or rad/s, target of a joint's drive
   thrust,           // N, along `direction` at `point` of a body
   torque,           // N m, about `direction` of a body
-  joint_force,      // of Solver::newton: of an actuator on a hinge or slider
+  joint_force,      // Solver::newton only: input of an actuator on a hinge or slider
 };
 
 // A force along a joint's coordinate, N or N m. With the control u, clamped to its range, and the
@@ -35,15 +34,15 @@ struct Actuator {
 struct Control {
   std::string name = {};
   ControlKind kind = ControlKind::target_speed;
-  // With a drive (target_position, target_speed), or a hinge or slider (joint_force).
+  // A joint with a drive (target_position, target_speed), or a hinge or slider (joint_force).
   JointId joint = {};
   BodyId body = {};                                 // dynamic; thrust, torque
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  // m, body frame
   Eigen::Vector3d direction{1, 0, 0};  // body frame, need not be unit; a planar torque is about z
-  // Range; what is set beyond it counts as its end. Of joint_force it may be infinite.
+  // Range, to which values are clamped. The range of a joint_force may be infinite.
   double low = -1, high = 1;
-  double initial = 0;      // what a world has when it begins
-  Actuator actuator = {};  // of joint_force
+  double initial = 0;      // value at the start of a world
+  Actuator actuator = {};  // joint_force only
 };
 
 }  // namespace manyworlds

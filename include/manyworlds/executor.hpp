@@ -1,5 +1,5 @@
-// Executor: the threads on which a Batch steps its groups of worlds. By default a Batch brings its
-// own; derive from this to step on yours instead (a TBB arena, a job system, a thread pool).
+// Executor: the threads on which a Batch steps its groups of worlds. By default a Batch creates its
+// threads. Derive from this class to use others (a TBB arena, a job system, a thread pool).
 #pragma once
 
 #include "manyworlds/require_cxx20.hpp"
@@ -12,13 +12,13 @@ class Executor {
 
   virtual ~Executor() = default;
 
-  // Most tasks that run at the same time, at least 1. A Batch keeps scratch memory for each, so
-  // the number must not change while a Batch uses the executor.
+  // Maximum number of concurrent tasks, at least 1. A Batch allocates scratch memory for each: the
+  // number must not change while a Batch uses the executor.
   virtual int threads() const = 0;
 
   // Calls task(context, group, worker) once for every group from 0 to groups - 1, in any order and
-  // on any threads, and returns when all calls have. 0 <= worker < threads(), and calls that
-  // overlap in time have different workers. Tasks neither throw nor wait for each other.
+  // on any threads. Returns when all calls have returned. 0 <= worker < threads(); concurrent calls
+  // have different workers. Tasks neither throw nor wait for each other.
   virtual void run(int groups, Task task, void* context) = 0;
 
  protected:

@@ -1,17 +1,16 @@
-// The table of state fields: the one place that names them. Where they lie in the state and in
-// snapshots, the order of hashes, reading and writing, inputs that listeners receive, recordings,
-// Python's fields and docs/conventions.md all follow from it. The kernels read it, too, so it
-// includes nothing and defines no function.
+// The table of state fields, which defines their layout in the state and in snapshots, the order of
+// hashes, reading and writing, inputs of listeners, recordings, Python's fields and the table in
+// docs/conventions.md. Kernels include it: it has no includes and defines no function.
 #pragma once
 
 namespace manyworlds {
 
-// What has a value of a field: a body with state, the world, a shape of the scene; of plans with
-// Solver::newton a joint coordinate, and a degree of freedom (dof) of the velocities; a particle.
+// Owner of a field's value: a body with state, the world, a shape of the scene, a particle. Plans
+// with Solver::newton also have joint coordinates, and degrees of freedom (dof) of the velocities.
 enum class ItemKind { body, world, shape, coordinate, dof, particle };
 inline constexpr int kItemKinds = 6;
 
-// When a plan has a field.
+// Plans that have a field.
 enum class FieldPresence { always, with_orientation };  // with Feature::orientation
 
 // X(name, kind of item, presence, planar components, spatial components, unit, frame and meaning,

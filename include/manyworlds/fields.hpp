@@ -1,4 +1,4 @@
-// State fields, as the table has them (field_table.hpp).
+// Functions of state fields, from the table in field_table.hpp.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace manyworlds {
 
 const char* to_string(ItemKind kind);  // "body", "dof"
 
-// Throws std::invalid_argument for a value that is no field.
+// Throws std::invalid_argument if the value is not a field.
 const FieldInfo& info(Field field);
 int components(Field field, Space space);
 std::string component_names(Field field, Space space);  // "x y z", "w x y z", "cos sin"

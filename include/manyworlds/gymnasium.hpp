@@ -1,15 +1,15 @@
-// Gymnasium's MuJoCo tasks, version 5, for its models: observations, rewards, infos and ends are
-// those of gymnasium.envs.mujoco 1.x, so that policies carry over.
+// Gymnasium's MuJoCo tasks, version 5, for Gymnasium's models. Observations, rewards, infos and
+// ends of episodes equal those of gymnasium.envs.mujoco 1.x, so that policies transfer.
 //
 //   const Task ant = gymnasium::ant(load_mjcf(".../gymnasium/envs/mujoco/assets/ant.xml").scene);
 //
-// The model files are Gymnasium's and come with its package. What is changed in a model (sizes,
-// gains, names aside that a task asks for) keeps the task. All throw std::invalid_argument where
-// the model is not one of theirs, with what was expected of it.
+// The model files are part of the package gymnasium. A changed model keeps the task if the names
+// that the task requires remain; sizes and gains may differ. All functions throw
+// std::invalid_argument if the model does not fit the task, and say what they expect.
 //
-// After a step positions, inertias and forces of links are those that the last substep found
-// (Observer::links and its like), as in MuJoCo, coordinates those after it. Costs are of actions as
-// given, also beyond the ranges that controls are kept in. docs/gymnasium.md lists the differences.
+// After a step, positions, inertias and forces of links are from the last substep, as in MuJoCo
+// (Observer::links and similar); coordinates are from its end. Costs use actions as passed, before
+// controls are clamped to their ranges. docs/gymnasium.md lists the differences.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ namespace manyworlds::gymnasium {
 using Range = std::array<double, 2>;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The arguments of each task have the names and defaults of Gymnasium's. Weights are of parts of
-// the reward, noise is the half range (or standard deviation) of what worlds begin with.
+// Arguments have Gymnasium's names and defaults. Weights scale terms of the reward. Noise is the
+// half range (or standard deviation) of the initial state.
 struct InvertedPendulumOptions {
   int frame_skip = 2;
   double reset_noise_scale = 0.01;
@@ -79,7 +79,7 @@ struct AntOptions {
   int frame_skip = 5;
   double forward_reward_weight = 1, ctrl_cost_weight = 0.5, contact_cost_weight = 5e-4;
   double healthy_reward = 1;
-  int main_body = 1;  // MuJoCo's body, whose x and y count as the ant's; 0 is the world
+  int main_body = 1;  // MuJoCo's body whose x and y are the ant's; 0 is the world
   bool terminate_when_unhealthy = true;
   Range healthy_z_range = {0.2, 1};     // m
   Range contact_force_range = {-1, 1};  // N and N m
@@ -101,7 +101,7 @@ struct HumanoidOptions {
 };
 struct HumanoidStandupOptions {
   int frame_skip = 5;
-  double uph_cost_weight = 1;  // of no effect, as in Gymnasium
+  double uph_cost_weight = 1;  // no effect, as in Gymnasium
   double ctrl_cost_weight = 0.1, impact_cost_weight = 0.5e-6;
   Range impact_cost_range = {-kInfinity, 10};
   double reset_noise_scale = 1e-2;
@@ -123,21 +123,21 @@ Task ant(const Scene& model, const AntOptions& options = {});
 Task humanoid(const Scene& model, const HumanoidOptions& options = {});
 Task humanoid_standup(const Scene& model, const HumanoidStandupOptions& options = {});
 
-// The tasks by name, with their arguments by name: for bindings and programs.
+// The tasks and their arguments by name, for bindings and programs.
 struct Argument {
   enum class Kind { integer, number, flag, range };
   const char* name;
   Kind kind;
-  Range value;  // in its first number, but for a range; a flag is 1 or 0
+  Range value;  // only a range uses the second value; a flag is 1 or 0
 };
 struct Entry {
-  const char* name;                 // "Ant-v5", as Gymnasium has it
-  const char* model;                // "ant.xml", among Gymnasium's assets
-  std::vector<Argument> arguments;  // with their defaults
-  // Of as many arguments in the same order; their kinds are not looked at.
+  const char* name;                 // "Ant-v5", as in Gymnasium
+  const char* model;                // "ant.xml", in Gymnasium's assets
+  std::vector<Argument> arguments;  // with the defaults
+  // Takes as many arguments, in the same order; ignores their kind.
   std::function<Task(const Scene& model, const std::vector<Argument>& arguments)> make;
 };
 const std::vector<Entry>& all();
-const Entry* find(std::string_view name);  // nullptr when unknown
+const Entry* find(std::string_view name);  // nullptr if unknown
 
 }  // namespace manyworlds::gymnasium

@@ -1,11 +1,11 @@
-// Gymnasium's MuJoCo tasks (gymnasium.hpp) of a model's file. Of the library manyworlds::mjcf.
+// Gymnasium's MuJoCo tasks (gymnasium.hpp), loaded from a model file. Part of manyworlds::mjcf.
 //
 //   const Task ant = gymnasium::ant("gymnasium/envs/mujoco/assets/ant.xml", {.frame_skip = 4});
 //   const Task same = gymnasium::task_of_file("Ant-v5", file, {{"frame_skip", 4}});
 //
-// All throw MjcfError for a file that cannot be read or that holds what is not simulated, and
-// std::invalid_argument for a model that is not one of the task's; both name the file. What was
-// read but does not act as in MuJoCo is told by load_mjcf() alone (MjcfResult::warnings).
+// All functions throw MjcfError if the file cannot be read or contains an unsupported element, and
+// std::invalid_argument if the model does not fit the task. Both name the file. Only load_mjcf()
+// reports warnings (MjcfResult::warnings).
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace manyworlds::gymnasium {
 
 using Path = std::filesystem::path;
 
-// `files`: from which other folders the model may read, and how much.
+// `files`: other folders from which the model may read, and its limits.
 Task inverted_pendulum(const Path& model, const InvertedPendulumOptions& options = {},
                        const MjcfOptions& files = {});
 Task inverted_double_pendulum(const Path& model, const InvertedDoublePendulumOptions& options = {},
@@ -39,10 +39,9 @@ Task humanoid(const Path& model, const HumanoidOptions& options = {},
 Task humanoid_standup(const Path& model, const HumanoidStandupOptions& options = {},
                       const MjcfOptions& files = {});
 
-// The task of a name, "Ant-v5", with the arguments that are given, by their names, and the defaults
-// of the others: a flag is 1 or 0, a range both of its numbers, others the first. Throws
-// std::invalid_argument for a task or an argument that there is not, too, with those that there
-// are.
+// The task with a name such as "Ant-v5". Arguments that are not listed have their defaults. A flag
+// is 1 or 0, a range has two values, others use the first. For an unknown task or argument, throws
+// std::invalid_argument, which lists the known ones.
 using Arguments = std::map<std::string, Range, std::less<>>;
 Task task_of_file(std::string_view name, const Path& model, const Arguments& arguments = {},
                   const MjcfOptions& files = {});

@@ -1,4 +1,4 @@
-// Convex hulls of clouds of points.
+// Convex hulls of point clouds.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace manyworlds {
 
-// The corners of the convex hull of the points, each of them one of the points; those that stick
-// out of it by less than a millionth of its size are left out. m, in the frame of the points.
+// The convex hull of the points, in m, in their frame. Its corners are a subset of the points.
+// Points that protrude by less than a millionth of the hull's size are omitted.
 //
-// Throws SceneError (plan.hpp) with every issue when there are fewer than 4 points, coordinates
-// that are not finite, points all in one plane, or more than 64 corners:
+// Throws SceneError (plan.hpp), which lists all issues, if there are fewer than 4 points,
+// coordinates that are not finite, coplanar points, or more than 64 corners:
 //   hull: points[2].y is nan m, must be finite
 //   hull: points lie in a plane, must enclose a volume
 //   hull: vertices are 80, must be at most 64

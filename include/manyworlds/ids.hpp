@@ -1,6 +1,6 @@
-// Ids: which body, shape, joint, control, tendon, site or keyframe of a scene. Handles with types
-// of their own, so that one is not taken for another, nor for the row of an array: fixed bodies are
-// in the scene, but have no row (Plan::row).
+// Ids of the bodies, shapes, joints, controls, tendons, sites and keyframes of a scene. Each has a
+// separate type, so that the compiler rejects an id of another type or an array row. Fixed bodies
+// are in the scene but have no row (Plan::row).
 #pragma once
 
 #include <compare>
@@ -14,10 +14,10 @@ namespace manyworlds {
 template <class Of>
 class Id {
  public:
-  constexpr Id() = default;  // none; where a joint or a frame asks, the world
+  constexpr Id() = default;  // none; in a joint or frame: the world
   constexpr explicit Id(int index) : index_(index) {}
   constexpr int index() const { return index_; }  // in its list of the Scene; -1: none
-  constexpr explicit operator bool() const { return index_ >= 0; }  // is one
+  constexpr explicit operator bool() const { return index_ >= 0; }  // true unless none
   friend constexpr auto operator<=>(const Id&, const Id&) = default;
 
  private:

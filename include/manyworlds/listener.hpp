@@ -1,5 +1,5 @@
-// BatchListener: receives everything that changes the worlds of a Batch from outside, so that
-// a recorder (record.hpp) misses nothing. Without listeners it costs nothing.
+// BatchListener: receives every call that changes the worlds of a Batch, so that a recorder
+// (record.hpp) is complete. No cost without listeners.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ enum class Input : std::uint8_t {
 inline constexpr int kInputCount = static_cast<int>(Input::disable_joint) + 1;
 const char* to_string(Input input);  // "force", "write_position"
 
-// Of which field an input is the write, and the other way round.
+// Conversions between a field and the input that writes it.
 inline constexpr Input kFirstWrite = static_cast<Input>(static_cast<int>(Input::wake) + 1);
 inline constexpr bool is_write(Input input) { return input >= kFirstWrite && input < Input::reset; }
 inline constexpr Input write_of(Field field) {
@@ -51,13 +51,13 @@ struct InputCall {
   int world = 0;
   BodyId body = {};  // none, and no joint: the whole world
   JointId joint = {};
-  std::span<const double> values = {};  // lives as long as the call
+  std::span<const double> values = {};  // valid during the call
 };
 
 class BatchListener {
  public:
   virtual ~BatchListener() = default;
-  // Both come after the change, on the caller's thread, and may read the batch but not change it.
+  // Both run after the change on the caller's thread. They may read the batch but not change it.
   virtual void on_input(const Batch& batch, const InputCall& call) noexcept = 0;
   virtual void on_step(const Batch& batch, int n) noexcept = 0;  // a step() call of n steps
 };

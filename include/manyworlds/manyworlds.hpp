@@ -1,4 +1,4 @@
-// Everything a user needs in one include.
+// The whole public API of the core library in one include.
 #pragma once
 
 #include "manyworlds/require_cxx20.hpp"  // first

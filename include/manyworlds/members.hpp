@@ -1,11 +1,10 @@
-// The members of everything that a scene consists of, by name: the one list that JSON, Python, and
-// the fingerprint of a plan are read and written by. For loaders and editors, too:
+// The members of all structs of a scene, by name. JSON, Python and the fingerprint of a plan use
+// this list. Loaders and editors can use it, too:
 //
 //   Members<Body>::visit(body, [](const char* name, auto& member, Counted = {}) { ... });
 //
-// Each list names all members in a structured binding, so that one that is added to a struct and
-// not here does not compile. Those of shapes and options are in
-// shape_members.hpp and option_members.hpp.
+// Each list names all members in a structured binding: a new member that is missing here does not
+// compile. shape_members.hpp and option_members.hpp list the members of shapes and options.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +23,7 @@ struct Members<MassProperties> {
   static void visit(auto& value, auto&& visit) {
     auto& [mass, center, inertia, axes] = value;
     visit("mass", mass), visit("center", center), visit("inertia", inertia);
-    visit("axes", axes,
-          counted_if(axes.has_value(), "found from inertia, as before there was a choice"));
+    visit("axes", axes, counted_if(axes.has_value(), "the default: axes found from inertia"));
   }
 };
 template <>
@@ -44,21 +42,16 @@ struct Members<Body> {
   static void visit(auto& value, auto&& visit) {
     auto& [name_, motion, enabled, position, rotation, linear_velocity, angular_velocity, shapes,
            mass_properties, gravity_scale, linear_drag, angular_drag, jitter] = value;
-    const Counted begun = counted_if(
-        motion == Motion::fixed, "where a body begins does not matter to a world that has begun");
-    visit("name", name_, not_counted("names are for people"));
+    const Counted begun = counted_if(motion == Motion::fixed, kInitial);
+    visit("name", name_, not_counted(kName));
     visit("motion", motion), visit("shapes", shapes), visit("mass_properties", mass_properties);
     visit("gravity_scale", gravity_scale), visit("linear_drag", linear_drag);
     visit("angular_drag", angular_drag);
-    visit("enabled", enabled,
-          not_counted("what a world begins with does not matter to one that has begun"));
+    visit("enabled", enabled, not_counted(kInitial));
     visit("position", position, begun), visit("rotation", rotation, begun);
-    visit("linear_velocity", linear_velocity,
-          not_counted("what a world begins with does not matter to one that has begun"));
-    visit("angular_velocity", angular_velocity,
-          not_counted("what a world begins with does not matter to one that has begun"));
-    visit("jitter", jitter,
-          not_counted("what a world begins with does not matter to one that has begun"));
+    visit("linear_velocity", linear_velocity, not_counted(kInitial));
+    visit("angular_velocity", angular_velocity, not_counted(kInitial));
+    visit("jitter", jitter, not_counted(kInitial));
   }
 };
 // -- joints
@@ -177,7 +170,7 @@ struct Members<Joint> {
   static void visit(auto& value, auto&& visit) {
     auto& [name_, type, body_a, body_b, frame_a, frame_b, collide, break_force, break_torque, after,
            dynamics] = value;
-    visit("name", name_, not_counted("names are for people"));
+    visit("name", name_, not_counted(kName));
     visit("type", type), visit("body_a", body_a), visit("body_b", body_b);
     visit("frame_a", frame_a), visit("frame_b", frame_b), visit("collide", collide);
     visit("break_force", break_force), visit("break_torque", break_torque);
@@ -208,11 +201,10 @@ struct Members<Control> {
   static constexpr const char* name = "Control";
   static void visit(auto& value, auto&& visit) {
     auto& [name_, kind, joint, body, point, direction, low, high, initial, actuator] = value;
-    visit("name", name_, not_counted("names are for people"));
+    visit("name", name_, not_counted(kName));
     visit("kind", kind), visit("joint", joint), visit("body", body), visit("point", point);
     visit("direction", direction), visit("low", low), visit("high", high);
-    visit("initial", initial,
-          not_counted("what a world begins with does not matter to one that has begun"));
+    visit("initial", initial, not_counted(kInitial));
     visit("actuator", actuator, counted_if(actuator != Actuator{}, kOfNewton));
   }
 };
@@ -239,7 +231,7 @@ struct Members<Tendon> {
   static constexpr const char* name = "Tendon";
   static void visit(auto& value, auto&& visit) {
     auto& [name_, terms, limit] = value;
-    visit("name", name_, not_counted("names are for people"));
+    visit("name", name_, not_counted(kName));
     visit("terms", terms), visit("limit", limit);
   }
 };
@@ -278,28 +270,26 @@ struct Members<CoordinateDraw> {
     visit("farthest", farthest);
   }
 };
-// -- the whole
+// -- scene
 template <>
 struct Members<Scene> {
   static constexpr const char* name = "Scene";
   static void visit(auto& value, auto&& visit) {
     auto& [name_, space, bodies, joints, controls, attractors, options, variations, exclusions,
            tendons, keyframes, coordinate_draws, sites] = value;
-    visit("name", name_, not_counted("names are for people"));
+    visit("name", name_, not_counted(kName));
     visit("space", space), visit("bodies", bodies), visit("joints", joints);
     visit("controls", controls), visit("attractors", attractors), visit("options", options);
     visit("variations", variations,
-          not_counted("what they vary is counted number by number, and not how it is drawn"));
-    visit("exclusions", exclusions,
-          counted_if(!exclusions.empty(), "without any it is what it was before there were some"));
+          not_counted("each varied parameter is counted, not its distribution"));
+    visit("exclusions", exclusions, counted_if(!exclusions.empty(), "the default: no exclusions"));
     const bool limited = std::any_of(tendons.begin(), tendons.end(),
                                      [](const Tendon& tendon) { return tendon.limit.has_value(); });
-    visit("tendons", tendons, counted_if(limited, "those without limits are only looked at"));
-    visit("keyframes", keyframes,
-          not_counted("what a world is reset to does not matter to one that has begun"));
-    visit("coordinate_draws", coordinate_draws,
-          not_counted("what a world begins with does not matter to one that has begun"));
-    visit("sites", sites, not_counted("they are looked at and move nothing"));
+    visit("tendons", tendons,
+          counted_if(limited, "tendons without limits are for observation only"));
+    visit("keyframes", keyframes, not_counted(kInitial));
+    visit("coordinate_draws", coordinate_draws, not_counted(kInitial));
+    visit("sites", sites, not_counted("sites are for observation only"));
   }
 };
 

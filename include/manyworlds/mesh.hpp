@@ -1,5 +1,5 @@
-// TriangleMesh: a closed surface of triangles, and the mass properties of the solid inside it. For
-// bodies whose mass is spread differently from the shapes that they collide with:
+// TriangleMesh: a closed surface of triangles, and the mass properties of the solid inside it. Use
+// it for bodies whose mass distribution differs from their collision shapes:
 //   body.mass_properties = mass_properties(mesh, 2700);  // the mesh in the body frame, aluminium
 //
 // Everything here is in double precision.
@@ -12,20 +12,20 @@
 
 namespace manyworlds {
 
-// The surface of a solid. The vertices of a triangle run counter-clockwise seen from outside; every
-// edge belongs to two triangles, which run along it in opposite directions. Vertices are the same
-// when their indices are: those that only lie in the same place do not close a surface.
+// The surface of a solid. The vertices of a triangle are counter-clockwise seen from outside. Every
+// edge belongs to two triangles with opposite directions. Vertices are equal if their indices are
+// equal: two vertices at the same position do not close a surface.
 //
-// Parts that do not hang together add up. A cavity is a surface inside another one, wound the other
-// way, so that its triangles run counter-clockwise seen from within the cavity. Triangles that pass
-// through one another are not looked for: space that is enclosed twice counts twice.
+// Separate components add up. A cavity is a surface inside another one with the opposite winding:
+// its triangles are counter-clockwise seen from inside the cavity. Intersecting triangles are not
+// detected: space that is enclosed twice counts twice.
 struct TriangleMesh {
-  std::vector<Vec3> vertices = {};                 // m, in mesh axes; a triangle need not use all
+  std::vector<Vec3> vertices = {};                 // m, in mesh axes; some may be unused
   std::vector<std::array<int, 3>> triangles = {};  // indices into vertices
 };
 
-// Everything that is wrong, at its place; empty means that the functions below will succeed. Of one
-// kind of problem, the first 10 are listed and the rest counted:
+// All issues, each with its location; empty if the functions below will succeed. Lists the first 10
+// issues of a type and counts the others:
 //   vertices[7].y is nan m, must be finite
 //   triangles[3][1] is 12, must be >= 0 and < 8, the number of vertices
 //   triangles[3] has vertex 5 more than once, must have three different ones
@@ -33,16 +33,16 @@ struct TriangleMesh {
 //   edge 2-6 is used once, must be used twice, in opposite directions (open)
 //   9990 more edges are used once, must be used twice, in opposite directions (open)
 //   volume is -8 m^3, must be > 0 (the triangles run clockwise seen from outside)
-// Edges are judged when all indices are valid, the volume when there is no other issue.
+// Edges are checked if all indices are valid, the volume if there is no other issue.
 std::vector<Issue> validate(const TriangleMesh& mesh);
 
 // m^3. Throws SceneError (plan.hpp), with the issues of validate().
 double volume(const TriangleMesh& mesh);
 
-// Of the solid that the mesh encloses, filled evenly with `density` in kg/m^3: the centre of mass
-// in mesh axes, the inertia about the centre of mass, also in mesh axes. Exact up to rounding,
-// however far from its origin the mesh lies: no more digits are lost than its coordinates lost.
-// Throws SceneError (plan.hpp), with the issues of validate() and that of the density.
+// Mass properties of the enclosed solid with uniform `density` in kg/m^3: the centre of mass, and
+// the inertia about it, in mesh axes. Exact up to rounding; the distance of the mesh from its
+// origin costs no more digits than its coordinates have lost. Throws SceneError (plan.hpp) with the
+// issues of validate() and of the density.
 //
 // The sum of signed tetrahedra: Blow and Binstock, "How to find the inertia tensor (or other mass
 // properties) of a 3D solid body represented by a triangle mesh", 2004; the moments of one

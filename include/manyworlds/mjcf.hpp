@@ -1,42 +1,42 @@
-// Reading MJCF, MuJoCo's model format, through MuJoCo's own library. A separate, optional library:
-// link manyworlds::mjcf.
+// Loads MJCF, MuJoCo's model format, with MuJoCo's library. A separate, optional library: link
+// manyworlds::mjcf.
 //
-// What is read: bodies and static geoms, made of spheres, capsules, cylinders, ellipsoids, boxes,
-// meshes (their convex hulls, as in MuJoCo), planes and height fields. Poses, masses and inertias
-// are those that MuJoCo's compiler computes. Whatever would change the motion and is not simulated
-// here is an error; what only shapes the accuracy of MuJoCo's solver is a warning; what is only
-// seen (lights, cameras, materials, textures) is ignored. Sites are kept, as points with names.
+// The loader reads bodies and static geoms: spheres, capsules, cylinders, ellipsoids, boxes, meshes
+// (their convex hulls, as in MuJoCo), planes and height fields. MuJoCo's compiler computes poses,
+// masses and inertias. Sites are read as named points. Lights, cameras, materials and textures are
+// ignored. Settings that affect only the accuracy of MuJoCo's solver are warnings. Unsupported
+// elements that change the motion are errors.
 //
-// A model with any joint but free ones is articulated: its scene is one of trees for
-// Solver::newton, which moves as in MuJoCo. Read are
-//   - every body that moves, as a body of its own; those without joints are held by a fixed joint
-//     to their parent, but for those without mass, which are part of it;
+// A model with a joint other than a free joint is articulated. Its scene has trees for
+// Solver::newton and moves as in MuJoCo. The loader reads
+//   - every moving body as a separate body. A body without joints has a fixed joint to its parent,
+//     or is merged with the parent if it has no mass;
 //   - joints with armature, damping, stiffness, springref, ref, range, margin and the softness of
-//     limits; several of one body are a series (Joint::after);
-//   - actuators on hinges and slides without activation, of gain fixed or affine and bias none or
+//     limits; several joints of one body form a series (Joint::after);
+//   - actuators on hinges and slides without activation, with gain fixed or affine and bias none or
 //     affine (motor, position, velocity, damper, general), as controls (ControlKind::joint_force);
 //   - friction, condim 1 and 3, softness, margin, gap, priority and solmix of geoms; which pairs
-//     collide, excludes included;
-//   - fixed tendons, with their limits or to be looked at;
+//     collide, with excludes;
+//   - fixed tendons, with limits or for observation only;
 //   - keyframes (qpos, qvel and ctrl; a time is a warning);
 //   - timestep, integrator, cone, impratio, gravity, gravcomp, wind, density and viscosity of a
-//     medium (inertia model), iterations and tolerances, and the flags that switch off constraints,
+//     medium (inertia model), iterations and tolerances, and the flags that disable constraints,
 //     limits, contacts, springs, dampers, gravity, clampctrl and filterparent.
-// The solver is Newton's, whatever the file says. Refused are other integrators than Euler, RK4
-// and implicitfast, drag of ellipsoids, friction loss, tendons that pull, equalities, contact
-// pairs, condim 4 and 6, mocap bodies, and all other actuators and flags that change the motion.
+// The solver is always Newton. Errors are: integrators other than Euler, RK4 and implicitfast, drag
+// of ellipsoids, friction loss, tendons that exert forces, equalities, contact pairs, condim 4 and
+// 6, mocap bodies, and all other actuators and flags that change the motion.
 //
-// A model whose joints are all free is made for the default solver: what is welded to a free body
-// is part of it, equality constraints connect and weld become ball and fixed joints, and what
-// shapes the softness of MuJoCo's contacts is a warning.
+// A model with free joints only uses the default solver. Bodies welded to a free body are merged
+// with it. The equality constraints connect and weld become ball and fixed joints. Settings for the
+// softness of MuJoCo's contacts are warnings.
 //
-// Files need not be trusted. Before MuJoCo reads one, it and all that it includes are read into
-// memory, each once, and checked: regular files alone, from the model's own folder or from those
-// that MjcfOptions::roots names, symbolic links followed first; root element <mujoco>; and no size
-// beyond MjcfLimits. MuJoCo opens no file itself. Textures and skins are not opened at all, since
-// nothing is drawn, and <size> and <custom> are left out. A model within the limits may still keep
-// MuJoCo busy for minutes: read untrusted models in a separate process, with limits
-// of memory and time, as the program manyworlds does.
+// Loading is safe for untrusted files. Before MuJoCo runs, the loader reads the model and its
+// includes into memory, each once, and checks them. It follows symbolic links first. It accepts
+// only regular files in the model's folder or in MjcfOptions::roots, with root element <mujoco> and
+// sizes within MjcfLimits. MuJoCo opens no file. Textures and skins are never opened; <size> and
+// <custom> are dropped. A model within the limits may still take MuJoCo minutes to compile. Read
+// untrusted models in a separate process with limits of memory and time, as the program manyworlds
+// does.
 #pragma once
 
 #include <cstdint>
@@ -57,20 +57,20 @@ struct FilesAccess;
 }
 
 struct MjcfResult {
-  // Bodies in MuJoCo's order: a fixed body for each static body that has geoms (the worldbody is
-  // named "world"), a dynamic body for each that moves. options.dt and options.gravity are the
-  // file's; options.length_unit is the median size of the dynamic geoms.
-  // Of an articulated model, joints are in MuJoCo's order, with fixed ones where their bodies are,
-  // and controls in that of the actuators; worlds begin at the reference (MuJoCo's qpos0). Of other
-  // models, joints are those of the active equalities, in order; where they begin apart
+  // Bodies are in MuJoCo's order: a fixed body for each static body with geoms (the worldbody is
+  // named "world"), a dynamic body for each moving body. options.dt and options.gravity are the
+  // file's values. options.length_unit is the median size of the dynamic geoms.
+  // In an articulated model, joints are in MuJoCo's order, with each fixed joint at the position of
+  // its body; controls are in the order of the actuators; worlds start at MuJoCo's qpos0. In other
+  // models, joints are the active equalities, in order. If a joint starts with a gap,
   // JointOptions::pull_speed is finite.
   Scene scene = {};
-  // What was read but does not act as it does in MuJoCo, one sentence each.
+  // Elements that were read but act differently from MuJoCo, one sentence each.
   std::vector<std::string> warnings = {};
 };
 
-// A file that cannot be read, or that holds something we do not simulate. what() has one line per
-// problem: "pile.xml: joint 'hip' of body 'leg', line 12: is a hinge, which is ...; expected ...".
+// The file cannot be read or contains an unsupported element. what() has one line per problem:
+// "pile.xml: joint 'hip' of body 'leg', line 12: is a hinge, which is ...; expected ...".
 class MjcfError : public std::runtime_error {
  public:
   explicit MjcfError(std::vector<std::string> problems);
@@ -81,34 +81,34 @@ class MjcfError : public std::runtime_error {
   std::vector<std::string> problems_;
 };
 
-// What a model may ask for. An error names the limit that it reaches: "pile.xml: replicate, line 7:
+// Limits of a model. An error names the limit that the model exceeds: "pile.xml: replicate, line 7:
 // makes 3000000 elements; expected at most 10000 (limit 'copies')".
 struct MjcfLimits {
   std::int64_t file_bytes = std::int64_t{64} << 20;    // of each file
   std::int64_t total_bytes = std::int64_t{256} << 20;  // of all files, and of all names and numbers
                                                        // after replicate and attach
-  std::int64_t files = 1000;                           // opened for one model
-  std::int64_t depth = 200;         // elements inside one another, through includes and attach
-  std::int64_t elements = 100000;   // written, in all files of the model
-  std::int64_t copies = 10000;      // elements that replicate, attach and flexcomp make
-  std::int64_t samples = 1 << 24;   // of a height field, rows x columns; of all sensors together
-  std::int64_t vertices = 1000000;  // of a mesh
+  std::int64_t files = 1000;                           // files opened for a model
+  std::int64_t depth = 200;         // nesting of elements, through includes and attach
+  std::int64_t elements = 100000;   // elements written in all files of the model
+  std::int64_t copies = 10000;      // elements made by replicate, attach and flexcomp
+  std::int64_t samples = 1 << 24;   // rows x columns of a height field; all sensors together
+  std::int64_t vertices = 1000000;  // vertices of a mesh
 };
-// The names of the members, in order, and the member of a name. mjcf_limit() throws
-// std::invalid_argument, which lists the names, for any other.
+// The names of the members, in order, and the member with a name. For an unknown name, mjcf_limit()
+// throws std::invalid_argument, which lists the names.
 std::vector<std::string> mjcf_limit_names();
 std::int64_t& mjcf_limit(MjcfLimits& limits, std::string_view name);
 
 struct MjcfOptions {
-  // Folders besides the model's own from which includes, meshes, height fields and attached models
-  // may be read, with all that is in them. A text has no folder: only with a root can it name
-  // files, which are then looked up in the first.
+  // Folders, in addition to the model's, from which includes, meshes, height fields and attached
+  // models may be read, with all subfolders. A model given as text has no folder: its files are
+  // looked up in the first root, and without a root it cannot name files.
   std::vector<std::filesystem::path> roots;
   MjcfLimits limits;
 };
 
-// A model's files, read and checked but not compiled. What happens to them on disk later does not
-// matter any more. Cheap to copy.
+// A model's files, read and checked but not compiled. Later changes on disk have no effect. Cheap
+// to copy.
 class MjcfFiles {
  public:
   // Throw MjcfError.
@@ -124,9 +124,9 @@ class MjcfFiles {
   std::shared_ptr<const Impl> impl_;
 };
 
-// Read and compile. All throw MjcfError and leave nothing behind. The scene still has to pass
-// validate(), which compile(Scene) runs. Any thread may call them; compilations wait for one
-// another, because MuJoCo reports errors through one handler per process.
+// Read and compile a model. Both throw MjcfError. compile(Scene) also runs validate() on the scene.
+// Any thread may call them. Compilations run one at a time, because MuJoCo reports errors through
+// one handler per process.
 MjcfResult load_mjcf(const std::filesystem::path& file, const MjcfOptions& options = {});
 MjcfResult load_mjcf_string(std::string_view xml, const MjcfOptions& options = {});
 

@@ -1,4 +1,4 @@
-// The known word closest to an unknown one, for error texts.
+// The known word closest to an unknown one, for error messages.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace manyworlds {
 
-// Edits (insert, remove or change a letter) that turn one word into the other.
+// Number of edits (insert, remove or change a letter) from one word to the other.
 std::size_t edit_distance(std::string_view a, std::string_view b);
-// The one with the fewest edits from `word`, the first of those; nothing if none is near: if each
-// takes more than a third of its letters, and more than one.
+// The known word with the fewest edits from `word`; the first of several. Empty if every word needs
+// more than one edit and more than a third of its letters.
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string> known);
 
 }  // namespace manyworlds

@@ -1,4 +1,4 @@
-// The members of options (options.hpp) by name, as members.hpp has those of everything else.
+// The members of options (options.hpp) by name, in addition to members.hpp.
 #pragma once
 
 #include "manyworlds/member_list.hpp"
@@ -14,13 +14,12 @@ struct Members<SolverOptions> {
            line_search_iterations, line_search_tolerance, impedance_ratio, cone, implicit_damping] =
         value;
     const Counted swept =
-        counted_if(method != Solver::tgs_soft || iterations_of(value) != 1,
-                   "the default solver is what there was before there was a choice");
-    const Counted hard = counted_if(has_hard_rows(method), "of solvers with hard rows alone");
+        counted_if(method != Solver::tgs_soft || iterations_of(value) != 1, "the default solver");
+    const Counted hard = counted_if(has_hard_rows(method), "only solvers with hard rows use it");
     visit("method", method, swept), visit("iterations", iterations, swept);
-    visit("relaxation", relaxation, counted_if(method == Solver::sor, "of sor alone"));
+    visit("relaxation", relaxation, counted_if(method == Solver::sor, "only sor uses it"));
     visit("push_out_share", push_out_share, hard), visit("split_impulse", split_impulse, hard);
-    const Counted newton = counted_if(method == Solver::newton, "of newton alone");
+    const Counted newton = counted_if(method == Solver::newton, "only newton uses it");
     visit("tolerance", tolerance, newton);
     visit("line_search_iterations", line_search_iterations, newton);
     visit("line_search_tolerance", line_search_tolerance, newton);
@@ -28,7 +27,7 @@ struct Members<SolverOptions> {
     visit("implicit_damping", implicit_damping, newton);
     visit("cone", cone,
           counted_if(method == Solver::newton && cone != FrictionCone::pyramidal,
-                     "pyramids are what there was before there was a choice"));
+                     "the default: pyramids"));
   }
 };
 template <>
@@ -40,8 +39,7 @@ struct Members<ContactOptions> {
         value;
     visit("frequency", frequency), visit("damping_ratio", damping_ratio);
     visit("fixed_frequency", fixed_frequency,
-          counted_if(fixed_frequency.has_value(),
-                     "the default is what there was before there was a choice"));
+          counted_if(fixed_frequency.has_value(), "the default"));
     visit("push_out_speed", push_out_speed), visit("slop", slop);
     visit("restitution_threshold", restitution_threshold);
     visit("restitution_sweeps", restitution_sweeps);
@@ -55,9 +53,7 @@ struct Members<JointOptions> {
   static constexpr const char* name = "JointOptions";
   static void visit(auto& value, auto&& visit) {
     auto& [method, frequency, damping_ratio, pull_speed] = value;
-    visit("method", method,
-          counted_if(method == JointMethod::tree,
-                     "sweeps are what there was before there was a choice"));
+    visit("method", method, counted_if(method == JointMethod::tree, "the default: sweeps"));
     visit("frequency", frequency), visit("damping_ratio", damping_ratio);
     visit("pull_speed", pull_speed);
   }
@@ -87,7 +83,7 @@ struct Members<Options> {
     const Counted by_integrator =
         counted_if(integrator != Integrator::symplectic_euler ||
                        rotation.value_or(Rotation::splitting) != Rotation::splitting,
-                   "the default integrator is what there was before there was a choice");
+                   "the default integrator");
     visit("dt", dt), visit("substeps", substeps), visit("gravity", gravity), visit("wind", wind);
     visit("density", density), visit("length_unit", length_unit);
     visit("contact", contact), visit("joint", joint), visit("sleep", sleep);
@@ -95,7 +91,7 @@ struct Members<Options> {
     visit("solver", solver);
     visit("integrator", integrator, by_integrator), visit("rotation", rotation, by_integrator);
     visit("angular_momentum", angular_momentum, by_integrator);
-    visit("medium", medium, counted_if(value.medium != Medium{}, "none by default"));
+    visit("medium", medium, counted_if(value.medium != Medium{}, "the default: no medium"));
   }
 };
 

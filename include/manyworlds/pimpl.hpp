@@ -1,5 +1,5 @@
-// Pimpl: what stands behind a public object. Using an object that was moved from is an error that
-// says so.
+// Pimpl: pointer to the implementation of a public object. Use of a moved-from object is reported
+// as an error.
 #pragma once
 
 #include <memory>
@@ -9,17 +9,17 @@
 
 namespace manyworlds {
 
-// The members are defined in src/base/pimpl.hpp; Impl::kName is what the object is called.
+// The members are defined in src/base/pimpl.hpp; Impl::kName is the object's name.
 template <class Impl>
 class Pimpl {
  public:
   explicit Pimpl(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-  // Makes Impl(arguments...), in the library's floating-point mode.
+  // Constructs Impl(arguments...) in the library's floating-point mode.
   template <class... Arguments>
   static Pimpl make(Arguments&&... arguments);
 
-  // For as long as the expression lasts, the thread is in the library's floating-point mode. Throws
-  // std::invalid_argument when there is nothing behind the object.
+  // Sets the thread to the library's floating-point mode until the end of the expression. Throws
+  // std::invalid_argument if the object was moved from.
   class Use;
   Use operator->() const;
   Impl& operator*() const;

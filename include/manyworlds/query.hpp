@@ -1,14 +1,13 @@
-// Queries on single shapes, outside of any Batch: do two shapes overlap, how far are they apart,
-// where would they touch, where does a ray hit. In double precision (manifolds and rays in float32
-// when the library was built without float64 kernels).
+// Queries on single shapes, without a Batch: overlap, distance, contact manifold and ray cast. In
+// double precision; manifolds and rays are in float32 if the library has no float64 kernels.
 //
-// `pose` places the body that the shape belongs to; Shape::position and rotation count as well, its
-// material, filter and density do not. A shape that is neither of space nor of the plane alone (a
-// capsule) takes the other's; of two such `space` decides. All throw SceneError for a shape or pose
-// that validate() would not accept, with its place ("body 0 'a', shape 0: ..."), and
-// std::invalid_argument for a pair that makes no sense (two planes).
+// A pose is that of the body that the shape belongs to. Shape::position and rotation apply too;
+// material, filter and density are ignored. Planar or spatial follows from the shapes; `space`
+// decides if both are capsules, which exist in both. All functions throw SceneError for a shape or
+// pose that validate() rejects, with its location ("body 0 'a', shape 0: ..."), and
+// std::invalid_argument for a pair without a meaning (two planes).
 //
-// A few microseconds each, manifold() some hundreds: it sets up a world of two bodies.
+// Each call takes a few microseconds; manifold() takes some hundreds, since it builds a world.
 #pragma once
 
 #include <optional>
@@ -24,16 +23,16 @@ struct Pose {
   Quat rotation = Quat::Identity();  // need not be unit
 };
 
-// How two shapes lie to each other.
+// Distance and nearest points of two shapes.
 struct Separation {
-  double distance = 0;          // m; negative: the least way that takes them apart, times -1
-  Vec3 point_a = Vec3::Zero();  // m, world: the nearest points of A and B, when they overlap the
-  Vec3 point_b = Vec3::Zero();  // deepest ones
+  double distance = 0;          // m; if they overlap, minus the shortest separating translation
+  Vec3 point_a = Vec3::Zero();  // m, world: the nearest points of A and B, or the deepest points
+  Vec3 point_b = Vec3::Zero();  // if they overlap
   Vec3 normal = Vec3::UnitX();  // unit, from A to B: point_b = point_a + distance normal
 };
 
-// Closed forms over the features of both shapes. A terrain is its line: what is wholly behind it is
-// apart from it.
+// Closed forms over the features of both shapes. A terrain counts as its line, without the solid
+// behind it.
 Separation distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                     std::optional<Space> space = std::nullopt);
 bool overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
@@ -45,18 +44,18 @@ struct ManifoldPoint {
   double separation = 0;        // m, negative when the shapes overlap there
   int feature = 0;              // which features touch; equal ids persist in motion
 };
-// The points in which the step would let the shapes touch, no farther apart than `margin` m: found
-// by its own collision kernels. One of the shapes at least must be able to move.
+// Contact points of the step's collision kernels with a separation of at most `margin` m. At least
+// one of the shapes must be able to move.
 std::vector<ManifoldPoint> manifold(const Shape& a, const Pose& pose_a, const Shape& b,
                                     const Pose& pose_b, double margin = 0,
                                     std::optional<Space> space = std::nullopt);
 
-// Where a ray of the world hits the shape, as observed rays do; nothing where it misses. Its body
-// and mask do not count. Body and shape of the hit are 0.
+// The hit of a ray, as an observed ray returns it; empty if the ray misses. The ray's body and mask
+// are ignored. Body and shape of the hit are 0.
 std::optional<RayHit> ray_cast(const Shape& shape, const Pose& pose, const Ray& ray,
                                std::optional<Space> space = std::nullopt);
 
-// The geometry with another size (Parameter::size), of which it takes as many numbers as it has.
+// The geometry with another size (Parameter::size); uses the first values of `size` that apply.
 Geometry resized(Geometry geometry, const Vec3& size);
 
 }  // namespace manyworlds

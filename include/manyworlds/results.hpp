@@ -1,4 +1,4 @@
-// What a Batch says of its worlds.
+// Results of a Batch: status, energy, contacts and stage times of its worlds.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace manyworlds {
 // Why a world is lost or what went wrong in it; a set of bits.
 enum class Status : std::uint32_t {
   ok = 0,
-  non_finite = 1,        // frozen: a number was not finite
+  non_finite = 1,        // frozen: a value was not finite
   out_of_range = 2,      // frozen: |x| > 1e10 m or |v| > 1e5 m/s
   out_of_bounds = 4,     // a body left Options::bounds; the world still steps
   contact_overflow = 8,  // more contacts than the plan's capacity; the newest were dropped
-  joint_broken = 16,     // a joint bore more than it could (Joint::break_force) since the reset
-  diverged = 32,         // it gained energy that nothing gave it (BatchOptions::audit_every)
+  joint_broken = 16,     // a joint broke since the reset (Joint::break_force)
+  diverged = 32,         // energy increased without a source (BatchOptions::audit_every)
 };
 inline constexpr Status operator|(Status a, Status b) {
   return static_cast<Status>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
@@ -41,7 +41,7 @@ struct Energy {
   double potential = 0;
 };
 
-// What the contacts of the last step looked like, over all worlds (see Batch::measure_contacts).
+// Contacts of the last step, over all worlds (see Batch::measure_contacts).
 struct ContactSummary {
   double points_per_world = 0;  // points closer than 4 slop
   double manifolds_per_world = 0;
@@ -57,7 +57,7 @@ struct Contact {
   Vec3 point = Vec3::Zero();           // m, world, half way between the surfaces
   double separation = 0;               // m, negative when the shapes overlap
   int feature = 0;                     // which features touch; equal ids persist from step to step
-  double normal_impulse = 0;           // N s, what warm starting would carry into the next substep
+  double normal_impulse = 0;           // N s, the warm start impulse of the next substep
 };
 
 struct StageTime {

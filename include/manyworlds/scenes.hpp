@@ -17,11 +17,11 @@ struct Entry {
   Scene (*make)();
 };
 
-const std::vector<Entry>& all();           // in the order they are listed to people
-const Entry* find(std::string_view name);  // nullptr when unknown
-// "pyramid2d:100" (boxes in the lowest row), "bin-spheres:1000" and "bin-boxes:1000" (bodies):
-// standard scenes in other sizes. Nothing for other names; throws std::invalid_argument for a size
-// that is none.
+const std::vector<Entry>& all();           // in the order of lists and menus
+const Entry* find(std::string_view name);  // nullptr if unknown
+// Standard scenes of other sizes: "pyramid2d:100" (boxes in the lowest row), "bin-spheres:1000" and
+// "bin-boxes:1000" (bodies). Empty for other names. Throws std::invalid_argument if the size is
+// invalid.
 std::optional<Scene> sized(std::string_view name);
 std::string nearest(std::string_view name);  // the known name with the smallest edit distance
 

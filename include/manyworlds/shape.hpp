@@ -1,4 +1,5 @@
-// Shapes: what bodies collide with and take their mass from. Part of Scene (scene.hpp).
+// Shapes: geometry, material and collision filter of a body. A body collides with its shapes and
+// takes its mass from them. Part of Scene (scene.hpp).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +17,8 @@ namespace manyworlds {
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-// Eigen's constructor order: (w, x, y, z). Unaligned, so that structs have the same layout whatever
-// instruction set the user compiles for.
+// Eigen's constructor order: (w, x, y, z). Unaligned, so that structs have the same layout for
+// every instruction set that the caller compiles for.
 using Quat = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 enum class Space { planar, spatial };
@@ -32,8 +33,8 @@ struct Plane {  // spatial, fixed bodies only: all points p with normal . p <= o
   Vec3 normal{0, 0, 1};  // unit, body frame, pointing out of the solid
   double offset = 0;     // m
 };
-// All points no farther than the radius from a straight line of length 2 half_length, centred on
-// the shape frame: along z in a spatial scene, along y in a planar one.
+// All points within the radius of a line segment of length 2 half_length, centred on the shape
+// frame. The segment runs along z in a spatial scene and along y in a planar one.
 struct Capsule {
   double radius = 0.25;      // m
   double half_length = 0.5;  // m, without the round ends
@@ -47,8 +48,8 @@ struct Cylinder {
 struct Ellipsoid {            // spatial, centred on the shape frame
   Vec3 radii{0.5, 0.4, 0.3};  // m, along its axes
 };
-// Spatial, a convex polyhedron: the smallest convex solid around its vertices, 4 to 64 of them.
-// make_hull (hull.hpp) finds those of a cloud of points. Faces that lie in one plane are one.
+// Spatial, a convex polyhedron: the convex hull of 4 to 64 vertices. make_hull (hull.hpp) computes
+// the vertices from a point cloud. Coplanar faces are merged.
 struct Hull {
   std::vector<Vec3> vertices = {};  // m, shape frame, in any order
 };
@@ -71,47 +72,48 @@ struct HalfPlane {    // planar, fixed bodies only: all points p with normal . p
 struct Segment {               // planar, fixed bodies only: a line that is solid from either side
   Vec2 a{-0.5, 0}, b{0.5, 0};  // m, shape frame
 };
-// Planar, fixed bodies only: a chain of segments, solid on the right when going along the points
-// (so hills run from left to right), free on the left. Bodies slide over its vertices as
-// over one smooth ground. At the ends of an open chain the solid falls off at a right angle.
+// Planar, fixed bodies only: a chain of segments. The solid is to the right of the direction of the
+// points, so list the points of a hill from left to right. Bodies slide over inner vertices without
+// a bump. At the ends of an open chain the solid has a vertical side.
 struct Terrain {
   std::vector<Vec2> points = {};  // m, shape frame; 2 or more, of a loop 3 or more
   bool loop = false;              // the last point is joined to the first
 };
-// Spatial, fixed bodies only: everything below a surface of triangles over a grid of points, which
-// is centred on the shape frame. Each cell has two, on either side of the diagonal from its corner
-// of low x and y. Bodies slide and roll over its edges as over one smooth ground; at its border the
-// solid falls off at a right angle. A body that got below the surface is moved up.
+// Spatial, fixed bodies only: the solid below a triangulated grid of heights, centred on the shape
+// frame. The diagonal of each cell starts at its corner of low x and low y. Bodies slide and roll
+// over inner edges without a bump. At the border the solid has a vertical side. A body below the
+// surface is moved up.
 struct HeightField {
-  std::vector<double> heights = {};  // m, of the points: x varies fastest
-  int columns = 2;                   // points along x, 2 or more; as many rows as that leaves
+  std::vector<double> heights = {};  // m, [row][column]; columns run along x, rows along y
+  int columns = 2;                   // points along x, 2 or more
   Vec2 cell{1, 1};                   // m, between points along x and y
   int rows() const { return columns > 0 ? static_cast<int>(heights.size()) / columns : 0; }
 };
 using Geometry = std::variant<Sphere, Box, Plane, Circle, Polygon, HalfPlane, Capsule, Segment,
                               Terrain, Cylinder, Hull, HeightField, Ellipsoid>;
 
-// Contacts of Solver::newton, as MuJoCo mixes those of two geoms: of two materials the one of
-// higher priority decides; where they are equal, friction and dimensions are the larger ones, and
-// the compliance is the mean by weight, or the smaller of two direct ones. Margins add up.
+// Contact parameters of Solver::newton. A pair combines its two materials as MuJoCo does: the
+// material of higher priority decides. At equal priority the pair takes the larger friction and
+// dimensions and the weighted mean of the compliances, or the smaller of two direct ones. Margins
+// add up.
 struct SoftContact {
   int dimensions = 3;  // 1: no friction, 3: friction along the surface
   Compliance compliance = {};
   double margin = 0;  // m, separation below which a contact acts
-  double gap = 0;     // m, by how much farther MuJoCo lists it; it moves nothing
+  double gap = 0;     // m, MuJoCo lists contacts from margin + gap; no effect on the motion
   int priority = 0;
-  double weight = 1;  // of the compliance
+  double weight = 1;  // weight of the compliance in the mean
   bool operator==(const SoftContact&) const = default;
 };
 
 struct Material {
-  double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean of its two
-  double restitution = 0.0;  // 0 to 1; a pair uses the larger of its two
-  SoftContact soft = {};  // of Solver::newton, which uses the larger friction and bounces nothing
+  double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean
+  double restitution = 0.0;  // 0 to 1; a pair uses the larger value
+  SoftContact soft = {};     // Solver::newton only; that solver has no restitution
 };
 
-// Two shapes collide when each one's category is in the other's mask and they are on different
-// bodies of which at least one is dynamic.
+// Two shapes collide if each one's category is in the other's mask, they belong to different bodies
+// and at least one of the bodies is dynamic.
 struct Filter {
   std::uint32_t category = 1;
   std::uint32_t mask = 0xffffffffu;
@@ -119,8 +121,8 @@ struct Filter {
 
 struct Shape {
   Geometry geometry = Sphere{};
-  Vec3 position = Vec3::Zero();        // m, of the shape frame in the body frame
-  Quat rotation = Quat::Identity();    // of the shape frame in the body frame; need not be unit
+  Vec3 position = Vec3::Zero();        // m, shape frame in the body frame
+  Quat rotation = Quat::Identity();    // shape frame in the body frame; need not be unit
   std::optional<double> density = {};  // kg/m^3 (kg/m^2 planar); default Options::density
   Material material = {};
   Filter filter = {};

@@ -76,9 +76,7 @@ struct Members<Polygon> {
   static void visit(auto& value, auto&& visit) {
     auto& [vertices, radius] = value;
     visit("vertices", vertices);
-    visit("radius", radius,
-          counted_if(radius != 0,
-                     "a polygon without a rounding is what it was before there was one"));
+    visit("radius", radius, counted_if(radius != 0, "the default: no rounding"));
   }
 };
 template <>
@@ -157,7 +155,7 @@ struct Members<Shape> {
     auto& [geometry, position, rotation, density, material, filter, name_] = value;
     visit("geometry", geometry), visit("position", position), visit("rotation", rotation);
     visit("density", density), visit("material", material), visit("filter", filter);
-    visit("name", name_, not_counted("names are for people"));
+    visit("name", name_, not_counted(kName));
   }
 };
 

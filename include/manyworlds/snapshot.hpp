@@ -1,10 +1,10 @@
-// Snapshot: the whole state of some worlds of a Batch, to go on from later, elsewhere or many
-// times.
+// Snapshot: the complete state of some worlds of a Batch, from which they continue later, in
+// another process or several times.
 //
-// It holds what the next step depends on: state, stored impulses, sleep, disabled bodies, status;
-// and what the next reset draws from: each world's seed and episode. It does not depend on lanes,
-// threads, instruction sets or places, so a world continues bit by bit wherever it is restored. Not
-// in it: forces that were added for the next step.
+// It contains everything that the next step depends on: state, stored impulses, sleep, disabled
+// bodies and status; and what the next reset draws from: each world's seed and episode. It does not
+// depend on lanes, threads, instruction sets or the position in the batch, so a restored world
+// continues with the same bits. Forces added for the next step are not included.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +27,8 @@ class SnapshotError : public std::runtime_error {
 class Snapshot {
  public:
   int worlds() const;
-  std::int64_t steps() const;                         // that the batch had taken
-  double time() const;                                // s, that the batch had simulated
+  std::int64_t steps() const;                         // steps taken by the batch
+  double time() const;                                // s, time simulated by the batch
   std::size_t size() const { return bytes_.size(); }  // bytes
 
   // Writes a file beside `file` and renames it, so that a partial file is never read.

@@ -1,9 +1,8 @@
-// How contacts and joints are solved: what runs over their rows in every substep of h = dt /
-// substeps.
+// Solvers of the contact and joint rows, which run in every substep of h = dt / substeps.
 //
-// A sweep visits every joint, then every contact, and gives each the impulse that its own equation
-// asks for, with what those before it have done (Gauss-Seidel); contact impulses stay >= 0 and
-// friction within its cone. All solvers share the same rows. What each does in a substep:
+// A sweep visits every joint, then every contact, and applies the impulse that solves its own
+// equation with the current velocities (Gauss-Seidel). Contact impulses stay >= 0 and friction
+// stays within its cone. All solvers use the same rows. In a substep:
 //
 //   tgs_soft:            `iterations` sweeps with soft rows, motion, and a relaxing sweep with hard
 //                        ones, which takes back the speed that removes overlap
@@ -12,24 +11,23 @@
 //   nncg:                the same as sequential_impulse, with conjugate steps between sweeps
 //   penalty:             `iterations` sweeps with soft rows, from impulses of 0, motion
 //
-// All but penalty begin a step with the impulses of the last one.
+// All solvers but penalty start a step with the impulses of the previous step.
 //
-// newton is another method altogether: bodies are links of trees that move in the coordinates of
-// their joints (free bodies in their own), and each of the `substeps` steps of dt / substeps finds
-// the accelerations a that minimise
+// newton uses another formulation. Bodies are links of trees in joint coordinates, and each of the
+// `substeps` steps of dt / substeps computes the accelerations a that minimise
 //   1/2 (a - a0)' M (a - a0) + sum of s(J a - r),
-// with the joint-space inertia M, the accelerations a0 without constraints, and the cost s of
-// limits and contacts that ask for the acceleration r (Compliance). It has one minimum, which
-// Newton's method finds exactly (Todorov 2014). Models move in it as in MuJoCo.
+// where M is the joint-space inertia, a0 the acceleration without constraints, and s the cost of
+// limits and contacts whose reference acceleration is r (Compliance). The problem is convex, and
+// Newton's method finds its minimum (Todorov 2014). Models move as in MuJoCo.
 //
-// Hard rows of joints that have come apart by s ask for the speed SolverOptions::push_out_share
-// s / h (Baumgarte 1972), those of contacts that overlap by s for the same of s - slop, at most
-// ContactOptions::push_out_speed. That speed stays with the bodies, and its impulses count as loads
-// (Observer, Joint::break_force), unless SolverOptions::split_impulse moves overlapping bodies
-// apart without one. Soft rows are springs and dampers of ContactOptions::frequency and
-// JointOptions::frequency, implicit one by one (Catto 2011); friction is hard in all. In
-// sequential_impulse, sor and nncg joints are soft only if JointOptions::frequency is given.
-// Springs, limits with springs and drives keep their equations in all.
+// Hard rows of joints with a gap s have the target speed SolverOptions::push_out_share s / h
+// (Baumgarte 1972). Contacts with a penetration s have the same with s - slop, at most
+// ContactOptions::push_out_speed. The bodies keep that speed, and its impulses count as loads
+// (Observer, Joint::break_force), unless SolverOptions::split_impulse separates bodies without
+// changing velocities. Soft rows are springs and dampers of ContactOptions::frequency and
+// JointOptions::frequency, each integrated implicitly (Catto 2011). Friction is hard in all
+// solvers. Joints of sequential_impulse, sor and nncg are soft only if JointOptions::frequency is
+// set. Springs, limits with springs and drives have the same equations in all solvers.
 #pragma once
 
 #include "manyworlds/require_cxx20.hpp"
@@ -39,21 +37,22 @@ namespace manyworlds {
 enum class Solver {
   tgs_soft,
   sequential_impulse,  // projected Gauss-Seidel
-  // Successive over-relaxation. Rows that may be bounded, of joints, are not over-relaxed.
+  // Successive over-relaxation. Bounded rows of joints are not over-relaxed.
   sor,
   // Nonsmooth nonlinear conjugate gradients, Fletcher-Reeves with a restart whenever the step grows
-  // (Silcowitz-Hansen, Niebe, Erleben 2010). Ends with a sweep.
+  // (Silcowitz-Hansen, Niebe, Erleben 2010). The last iteration is a plain sweep.
   nncg,
   penalty,  // implicit spring-dampers without memory
   newton,   // trees in joint coordinates, MuJoCo's soft constraints
 };
 const char* to_string(Solver solver);
 
-// What friction of newton may do: stay within the four edges of a pyramid, or within a round cone.
+// Friction cone of newton: a pyramid of four edges, or a round cone.
 enum class FrictionCone { pyramidal, elliptic };
 const char* to_string(FrictionCone cone);
 
-// Whether overlaps and gaps close by a share per substep: all but tgs_soft, penalty and newton.
+// True if a share of each penetration and gap is removed per substep: all solvers but tgs_soft,
+// penalty and newton.
 bool has_hard_rows(Solver solver);
 
 }  // namespace manyworlds

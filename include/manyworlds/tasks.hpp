@@ -14,7 +14,7 @@ struct Entry {
   Task (*make)();
 };
 
-const std::vector<Entry>& all();           // in the order they are listed to people
-const Entry* find(std::string_view name);  // nullptr when unknown
+const std::vector<Entry>& all();           // in the order of lists and menus
+const Entry* find(std::string_view name);  // nullptr if unknown
 
 }  // namespace manyworlds::tasks

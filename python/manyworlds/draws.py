@@ -1,4 +1,4 @@
-"""Random numbers by counter, as the library's own draws: the same for a world whatever the batch."""
+"""Counter-based random numbers, as in the library: a world has the same draws in every batch."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ def _mix(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
 
 
 def uniform(seeds: NDArray[np.uint64], name: str, count: int) -> NDArray[np.float64]:
-    """``count`` numbers in [0, 1) for each seed, (seeds, count); another name gives other ones."""
+    """``count`` numbers in [0, 1) for each seed, (seeds, count). Each name has other numbers."""
     stream = np.full(1, zlib.crc32(name.encode()), np.uint64)
-    with np.errstate(over="ignore"):  # it wraps around, as it should
+    with np.errstate(over="ignore"):  # overflow is intended
         key = _mix(_mix(seeds + _STEP) ^ (stream * _STEP + np.uint64(1)))
         index = np.arange(1, count + 1, dtype=np.uint64)
         bits = _mix(key[:, None] + index * _STEP) >> np.uint64(11)

@@ -1,9 +1,9 @@
-"""Handles: which body, shape, joint, control, tendon, site or keyframe of a scene.
+"""Handles of bodies, shapes, joints, controls, tendons, sites and keyframes of a scene.
 
-``Scene.add`` returns them, and ``body("crate")`` and the like of a Scene, Plan or Batch find them.
-Wherever one is taken, a name or a plain int is, too: an int is the index in the scene's list, never
-a row of an array, in which fixed bodies have none (``Plan.row``). A handle of another kind is a
-TypeError. An unknown, empty or shared name is a ValueError with the names that there are.
+``Scene.add`` returns handles. ``body("crate")`` and similar methods of Scene, Plan and Batch find them
+by name. Arguments accept a handle, a name or a plain int. An int is the index in the scene's list, not a
+row of an array: fixed bodies have no row (``Plan.row``). A handle of another type raises TypeError. An
+unknown, empty or shared name raises ValueError, which lists the known names.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class _Handle(int):
-    """An index of one kind of item."""
+    """An index with a type."""
 
     __slots__ = ()
 
@@ -77,7 +77,7 @@ class ShapeId(NamedTuple):
     index: int
 
 
-# What is taken where a body, a shape, a joint, a control, a tendon, a site or a keyframe is asked for.
+# Arguments that identify a body, shape, joint, control, tendon, site or keyframe.
 BodyRef = Union[int, str]  # a BodyId is an int
 JointRef = Union[int, str]
 ControlRef = Union[int, str]
@@ -85,16 +85,16 @@ TendonRef = Union[int, str]
 SiteRef = Union[int, str]
 KeyframeRef = Union[int, str]
 ShapeRef = Union[int, str, ShapeId]
-# One or several of them; a mask of bools is over the rows of arrays.
+# One or several; an array of bools is a mask over the rows of arrays.
 BodyRefs = Union[BodyRef, Sequence[BodyRef], NDArray[np.integer], NDArray[np.bool_]]
 JointRefs = Union[JointRef, Sequence[JointRef], NDArray[np.integer], NDArray[np.bool_]]
 
 
 
 def index_of(ref: Any, kind: type[_Handle], find: Callable[[str], int], name: str) -> Any:
-    """The index that a name, a handle or an int means; what is none of them, as it is.
+    """The index of a name, a handle or an int. Returns other values unchanged.
 
-    Raises TypeError for handles of another kind, ValueError for names.
+    Raises TypeError for a handle of another type, ValueError for an unknown name.
     """
     if isinstance(ref, str):
         return int(find(ref))
@@ -106,8 +106,8 @@ def index_of(ref: Any, kind: type[_Handle], find: Callable[[str], int], name: st
 def indices_of(
     refs: Any, kind: type[_Handle], find: Callable[[str], int], count: int, name: str
 ) -> NDArray[np.int32]:
-    """Indices below ``count`` for one or several names, handles and ints; None is all of them, an
-    array of bools a mask over all. Raises IndexError, TypeError, ValueError."""
+    """Indices below ``count`` for one or several names, handles and ints. None selects all, an array
+    of bools is a mask over all. Raises IndexError, TypeError, ValueError."""
     if isinstance(refs, (list, tuple)) and not isinstance(refs, ShapeId):
         refs = [index_of(ref, kind, find, name) for ref in refs]
     else:
@@ -116,7 +116,7 @@ def indices_of(
 
 
 class Chooser:
-    """What callers mean by bodies and joints of a plan."""
+    """Finds bodies and joints of a plan from arguments."""
 
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
@@ -125,7 +125,7 @@ class Chooser:
         self._row[self._of_row] = np.arange(len(self._of_row), dtype=np.int32)
 
     def bodies(self, refs: Optional[BodyRefs], name: str) -> NDArray[np.int32]:
-        """Indices in the scene. None is every body with a row, an array of bools a mask over rows.
+        """Indices in the scene. None selects every body with a row, an array of bools is a mask over rows.
 
         Raises ValueError for fixed bodies, IndexError, TypeError.
         """
@@ -140,53 +140,53 @@ class Chooser:
         return found
 
     def body(self, ref: BodyRef, name: str) -> int:
-        """Index in the scene: see bodies."""
+        """The index in the scene: see bodies."""
         if not isinstance(ref, str):
             arrays.index(index_of(ref, BodyId, self._plan.body, name), len(self._row), name)
         return int(self.bodies(ref, name)[0])
 
     def joints(self, refs: Optional[JointRefs], name: str) -> NDArray[np.int32]:
-        """Indices in the scene; None is all. Raises ValueError, IndexError, TypeError."""
+        """Indices in the scene; None selects all. Raises ValueError, IndexError, TypeError."""
         return indices_of(refs, JointId, self._plan.joint, self._plan.joints, name)
 
 
 class Named:
-    """What has a plan finds its bodies, shapes, joints, controls, tendons, sites and keyframes by name, and rows."""
+    """Finds rows, and bodies, shapes, joints, controls, tendons, sites and keyframes by name."""
 
     plan: Plan
 
     def body(self, name: BodyRef) -> BodyId:
-        """The body of a name: see Plan.body."""
+        """The body with a name: see Plan.body."""
         return self.plan.body(name)
 
     def joint(self, name: JointRef) -> JointId:
-        """The joint of a name: see Plan.joint."""
+        """The joint with a name: see Plan.joint."""
         return self.plan.joint(name)
 
     def control(self, name: ControlRef) -> ControlId:
-        """The control of a name: see Plan.control."""
+        """The control with a name: see Plan.control."""
         return self.plan.control(name)
 
     def tendon(self, name: TendonRef) -> TendonId:
-        """The tendon of a name: see Plan.tendon."""
+        """The tendon with a name: see Plan.tendon."""
         return self.plan.tendon(name)
 
     def site(self, name: SiteRef) -> SiteId:
-        """The site of a name: see Plan.site."""
+        """The site with a name: see Plan.site."""
         return self.plan.site(name)
 
     def keyframe(self, name: KeyframeRef) -> KeyframeId:
-        """The keyframe of a name: see Plan.keyframe."""
+        """The keyframe with a name: see Plan.keyframe."""
         return self.plan.keyframe(name)
 
     def shape(self, name: str, body: Optional[BodyRef] = None) -> ShapeId:
-        """The shape of a name: see Plan.shape."""
+        """The shape with a name: see Plan.shape."""
         return self.plan.shape(name, body)
 
     def row(self, body: Union[BodyRef, ShapeId]) -> int:
-        """Where a body is in arrays (worlds, bodies, ...): see Plan.row."""
+        """The row of a body in arrays (worlds, bodies, ...): see Plan.row."""
         return self.plan.row(body)
 
     def body_in_row(self, row: int) -> BodyId:
-        """Which body is in a row of such arrays: see Plan.body_in_row."""
+        """The body in a row of such arrays: see Plan.body_in_row."""
         return self.plan.body_in_row(row)

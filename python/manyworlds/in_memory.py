@@ -1,4 +1,4 @@
-"""What holds worlds in memory: neither pickled nor copied, and says what can be."""
+"""Base of objects that own worlds in memory: they cannot be pickled or copied."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any, NoReturn
 
 
 class InMemory:
-    """Refuses ``pickle`` and ``copy``."""
+    """Raises TypeError for ``pickle`` and ``copy``."""
 
     __slots__ = ()
     _instead = ""  # "pickle its scene ..."
@@ -14,5 +14,5 @@ class InMemory:
     def __reduce_ex__(self, protocol: Any) -> NoReturn:
         name = next(c.__name__ for c in type(self).__mro__ if not c.__name__.startswith("_"))
         raise TypeError(
-            f"{name} objects hold what is in memory and cannot be pickled or copied; {self._instead}"
+            f"{name} objects own memory and cannot be pickled or copied; {self._instead}"
         )

@@ -1,7 +1,7 @@
-"""Joints: what holds two bodies together, or one to the world.
+"""Joints connect two bodies, or one body and the world.
 
-A hinge rotates about z of its frames, a slider slides along x. A coordinate (an angle in rad, a travel
-or length in m) is what B's frame has moved against A's; it may have a limit and a drive.
+A hinge rotates about z of its frames, a slider slides along x. A coordinate is the motion of B's frame
+relative to A's: an angle in rad, a travel or length in m. It may have a limit and a drive.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = [
 
 @dataclass(slots=True)
 class Frame:
-    """A place and axes on a body, or in the world."""
+    """A position and axes on a body, or in the world."""
 
     position: Numbers = (0.0, 0.0, 0.0)  # m
     rotation: Numbers = (1.0, 0.0, 0.0, 0.0)  # (w, x, y, z); need not be unit
@@ -53,19 +53,19 @@ class Spring:
 
 @dataclass(slots=True)
 class Limit:
-    """Keeps a coordinate between two values; hard without a spring, but for the newton solver."""
+    """Keeps a coordinate between two values. Hard without a spring, except with the newton solver."""
 
     low: float = 0.0  # m or rad
     high: float = 0.0  # m or rad
     spring: Optional[Spring] = None
-    # Of the newton solver, whose limits have no spring: how soft it is, and from where on it acts.
+    # newton solver only, whose limits have no spring: softness, and the distance at which it acts
     compliance: Compliance = field(default_factory=Compliance)
-    margin: float = 0.0  # m or rad, from the end inwards
+    margin: float = 0.0  # m or rad, distance from the limit
 
 
 @dataclass(slots=True, kw_only=True)
 class Drive:
-    """Pulls a coordinate to targets by a spring; without one, a motor that holds a speed."""
+    """Moves a coordinate to targets with a spring; without one, a motor that holds a speed."""
 
     target_position: float = 0.0  # m or rad
     target_speed: float = 0.0  # m/s or rad/s
@@ -77,15 +77,15 @@ class Drive:
 class BallJoint:
     """The frames' origins coincide. Spatial."""
 
-    cone: Optional[float] = None  # rad, 0 to pi: the most that z of B leans from z of A
+    cone: Optional[float] = None  # rad, 0 to pi: largest angle between z of B and z of A
     twist: Optional[Limit] = None  # rad, about z
-    # Of the newton solver, which takes neither of those: of the angle of the whole rotation, rad.
+    # newton solver only, which supports neither: limit of the rotation angle, rad
     limit: Optional[Limit] = None  # low is 0
 
 
 @dataclass(slots=True, kw_only=True)
 class HingeJoint:
-    """The frames' origins coincide, in space their z axes, too."""
+    """The frames' origins coincide, and in space their z axes, too."""
 
     limit: Optional[Limit] = None  # rad
     drive: Optional[Drive] = None
@@ -93,7 +93,7 @@ class HingeJoint:
 
 @dataclass(slots=True, kw_only=True)
 class SliderJoint:
-    """B's frame slides along x of A's and does not rotate against it."""
+    """B's frame slides along x of A's and does not rotate relative to it."""
 
     limit: Optional[Limit] = None  # m
     drive: Optional[Drive] = None
@@ -106,9 +106,9 @@ class FixedJoint:
 
 @dataclass(slots=True, kw_only=True)
 class DistanceJoint:
-    """The distance of the frames' origins: held, drawn by a spring, or kept within a limit."""
+    """The distance of the frames' origins: fixed, pulled by a spring, or kept within a limit."""
 
-    length: Optional[float] = None  # m; None: as the bodies begin
+    length: Optional[float] = None  # m; None: the distance at the start
     limit: Optional[Limit] = None  # m
     spring: Optional[Spring] = None
 
@@ -119,7 +119,7 @@ class WheelJoint:
 
     suspension: Spring = field(default_factory=Spring)
     travel: Optional[Limit] = None  # m, along x
-    drive: Optional[Drive] = None  # of the rotation about z
+    drive: Optional[Drive] = None  # drives the rotation about z
 
 
 @dataclass(slots=True, kw_only=True)
@@ -129,12 +129,12 @@ class PulleyJoint:
     ground_a: Numbers = (0.0, 0.0, 0.0)  # m, world
     ground_b: Numbers = (0.0, 0.0, 0.0)  # m, world
     ratio: float = 1.0
-    length: Optional[float] = None  # m; None: as the bodies begin
+    length: Optional[float] = None  # m; None: the length at the start
 
 
 @dataclass(slots=True, kw_only=True)
 class TargetJoint:
-    """Draws the origin of B's frame to that of A's, or to a point of the world."""
+    """Pulls the origin of B's frame to the origin of A's, or to a point of the world."""
 
     spring: Spring = field(default_factory=Spring)
     max_force: float = inf  # N
@@ -154,14 +154,14 @@ JointType = Union[
 
 @dataclass(slots=True, kw_only=True)
 class JointDynamics:
-    """Of the newton solver: what acts along each coordinate of a joint, and where its zero is."""
+    """newton solver only: passive forces along each coordinate of a joint, and its zero."""
 
-    armature: float = 0.0  # kg m^2 or kg, inertia of the rotor
+    armature: float = 0.0  # kg m^2 or kg, rotor inertia
     damping: float = 0.0  # N m s/rad or N s/m
-    # N m/rad or N/m. A hinge or slider is drawn towards ``rest``, a ball joint to no rotation.
+    # N m/rad or N/m. Pulls a hinge or slider to ``rest``, a ball joint to coinciding frames.
     stiffness: float = 0.0
-    rest: float = 0.0  # rad or m, of a hinge or slider
-    reference: float = 0.0  # rad or m: the coordinate of a hinge or slider whose frames coincide
+    rest: float = 0.0  # rad or m, hinge or slider
+    reference: float = 0.0  # rad or m, coordinate of a hinge or slider with coinciding frames
 
 
 @dataclass(slots=True, kw_only=True)
@@ -177,7 +177,7 @@ class Joint:
     collide: bool = False  # whether shapes of A and B collide with each other
     break_force: float = inf  # N
     break_torque: float = inf  # N m
-    # Of the newton solver: a joint of the same A and B that this one comes after; -1: none. Each joint
-    # of such a series moves what the one before it moves, in which its frame_a is; the last moves B.
+    # newton solver only: the joint of the same A and B that precedes this one in a series; -1: none.
+    # Each joint's frame_a is in the frame that the preceding joint moves. The last joint moves B.
     after: JointRef = -1
-    dynamics: JointDynamics = field(default_factory=JointDynamics)  # of the newton solver
+    dynamics: JointDynamics = field(default_factory=JointDynamics)  # newton solver only

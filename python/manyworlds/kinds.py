@@ -1,4 +1,4 @@
-"""Kind: the worlds of one scene among those of a batch of several."""
+"""Kind: the worlds with the same plan in a batch of several scenes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ AnyScene = Union[Scene, Plan, str]
 
 
 def plan_of(scene: Any, name: str = "scene") -> Plan:
-    """The Plan of a Scene, a Plan or the name of a scene. TypeError, SceneError, ValueError."""
+    """The Plan of a Scene, a Plan or a scene's name. Raises TypeError, SceneError, ValueError."""
     if isinstance(scene, str):
         scene = scenes.load(scene)
     if not isinstance(scene, (Scene, Plan)):
@@ -34,14 +34,14 @@ def plan_of(scene: Any, name: str = "scene") -> Plan:
 def plans_of(
     scene: Union[AnyScene, Sequence[tuple[AnyScene, int]]], worlds: Optional[int]
 ) -> list[tuple[Plan, int]]:
-    """(plan, worlds) of each kind, from what a Batch is made of."""
+    """(plan, worlds) of each kind, from the arguments of a Batch."""
     if not isinstance(scene, (list, tuple)):
         count = 1 if worlds is None else worlds
         return [(plan_of(scene), arrays.integer(count, "worlds", 1, MAX_WORLDS))]
     if worlds is not None:
-        raise ValueError("worlds stand with each kind, [(scene, worlds), ...], and not beside them")
+        raise ValueError("worlds is set for each kind, [(scene, worlds), ...]; do not pass the argument worlds")
     if not scene:
-        raise ValueError("there are no kinds of worlds; expected [(scene, worlds), ...]")
+        raise ValueError("scene is empty; expected [(scene, worlds), ...]")
     plans = []
     for i, pair in enumerate(scene):
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
@@ -52,7 +52,7 @@ def plans_of(
 
 
 class _Core:
-    """The core of a batch, with worlds counted from the first of a kind."""
+    """The core of a batch, with world indices that start at the first world of a kind."""
 
     def __init__(self, core: _core.Batch, kind: int, first: int) -> None:
         self._core, self._kind, self._first = core, kind, first
@@ -74,7 +74,7 @@ class _Core:
         self._core.read(name, out, worlds, self._kind)
 
     def write(self, name: str, numbers: Any, worlds: Any) -> None:
-        # World by world, which takes doubles.
+        # Written world by world, as doubles.
         self._core.write(name, np.ascontiguousarray(numbers, np.float64), worlds, self._kind)
 
     def blocks(self, name: str) -> Any:
@@ -115,16 +115,16 @@ class _Core:
 
     def set_rays(self, rays: Any, world: Optional[int]) -> None:
         if world is None:
-            raise ValueError("rays are those of all kinds; give a world, or use Batch.set_rays")
+            raise ValueError("all kinds have the same rays; pass a world, or use Batch.set_rays")
         self._core.set_rays(rays, self._first + world)
 
 
 class Kind(Fields, Inputs, InMemory):
-    """The worlds of one plan in a batch, ``batch.kinds[k]``: arrays, controls, forces.
+    """The worlds with the same plan in a batch, ``batch.kinds[k]``: arrays, controls, forces.
 
-    Everything as in a Batch of these worlds alone, which are counted from 0: fields are (worlds, items,
-    components), ``ids`` are of this kind. Stepping, resets, results and snapshots are the batch's,
-    whose index of world i is ``first + i``; ``slice`` picks these worlds from its arrays, as in
+    It works as a Batch of these worlds only, counted from 0: fields are (worlds, items, components), and
+    ``ids`` count worlds of this kind. The batch steps, resets, and has results and snapshots. World i
+    has index ``first + i`` there. ``slice`` selects these worlds from arrays of the batch, as in
     ``batch.status()[kind.slice]``.
     """
 
@@ -148,7 +148,7 @@ class Kind(Fields, Inputs, InMemory):
 
     @property
     def worlds(self) -> int:
-        """How many there are."""
+        """Number of worlds of this kind."""
         return self._worlds
 
     @property
@@ -158,7 +158,7 @@ class Kind(Fields, Inputs, InMemory):
 
     @property
     def slice(self) -> slice:
-        """Where these worlds are in arrays over all worlds of the batch."""
+        """The indices of these worlds in arrays over all worlds of the batch."""
         return slice(self.first, self.first + self._worlds)
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""A batch in a browser while it steps.
+"""Shows a batch in a browser while it steps.
 
     view = mw.view(batch)
     print(view.url)
@@ -25,15 +25,17 @@ __all__ = ["LiveView", "view"]
 
 
 class LiveView(InMemory):
-    """A page that shows a batch for as long as this is open.
+    """A page that shows a batch until ``close``.
 
-    A thread of its own serves it on 127.0.0.1. ``step`` and ``step_to`` of the batch, and ``step``
-    of an environment, carry out before what pages asked for, and show them after what came of it, as resets
-    do; what else changes the worlds is shown by ``update``. Where nobody looks that costs nearly nothing, and no page can hold up a step.
+    A separate thread serves it on 127.0.0.1. ``step`` and ``step_to`` of a batch, and ``step`` of an
+    environment, first apply the requests of pages, then send the new state. Resets also send it. Call
+    ``update`` after other changes. Without a connected page the cost is negligible. A page never delays
+    a step.
 
-    A page may drag bodies (a force in every step call until it lets go), push them (an impulse before the
-    next one) and save snapshots; of a batch, not of an environment, also set gravity and friction where its scene varies
-    them with ``draw="none"``. It can neither pause nor reset nor drive anything: the program steps.
+    A page can drag bodies (a force in every step call until release), hit them (an impulse before the
+    next step call) and save snapshots. For a batch, not for an environment, it can also set gravity and
+    friction that the scene varies with ``draw="none"``. It cannot pause, reset or set controls: the
+    program steps.
     """
 
     __slots__ = ("_batch", "_core")
@@ -45,25 +47,25 @@ class LiveView(InMemory):
 
     @property
     def url(self) -> str:
-        """Of the page, with the token without which nothing is served. Empty when it is closed."""
+        """URL of the page, with the token that the server requires. Empty after ``close``."""
         return self._core.url
 
     @property
     def port(self) -> int:
-        """Of 127.0.0.1; 0 when it is closed."""
+        """Port on 127.0.0.1; 0 after ``close``."""
         return self._core.port
 
     @property
     def pages(self) -> int:
-        """How many are connected."""
+        """Number of connected pages."""
         return self._core.pages
 
     def update(self) -> None:
-        """Shows the worlds as they are: for what changes them but steps and resets."""
+        """Sends the current state to pages. Steps and resets do so without this call."""
         self._core.show()
 
     def close(self) -> None:
-        """Ends the server; pages say so. Twice is once."""
+        """Stops the server; pages show that. A second call has no effect."""
         self._batch._views = tuple(one for one in self._batch._views if one is not self)
         self._core.close()
 
@@ -91,13 +93,13 @@ def view(
 ) -> LiveView:
     """Serves a page that shows a batch, or an environment, while it steps.
 
-    worlds    that a page shows at first; it can ask for up to 1024
+    worlds    number of worlds that a page shows first; it can request up to 1024
     title     default: the name of the scene
-    port      of 127.0.0.1; 0: any that is free
-    folder    where snapshots are saved that a page asks for; default: the current one
+    port      port on 127.0.0.1; 0: any free port
+    folder    folder of snapshots that a page saves; default: the current folder
 
-    Raises LiveError (a ValueError) where it cannot be served, ImportError where the package was built without it,
-    FileNotFoundError where it was built without the page.
+    Raises LiveError (a ValueError) if the page cannot be served, ImportError if the package was built
+    without live pages, FileNotFoundError if it was built without the page.
     """
     from .environment import Environment
 
@@ -115,7 +117,7 @@ def view(
         from . import _live
     except ImportError as error:
         raise ImportError(
-            "this package was built without live pages: they want Boost's headers where it is built "
+            "this package was built without live pages: the build needs Boost's headers "
             "(Debian: libboost-dev)"
         ) from error
     core = _live.Live(batch._held, page, title, port, worlds, max(worlds, 1024), place, not environment)

@@ -1,4 +1,4 @@
-"""The batch inside of an environment."""
+"""The batch of an environment."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _OwnBatch(Batch):
-    """The batch inside of an environment."""
+    """The batch of an environment."""
 
     def __init__(self, environment: Environment) -> None:
         held = environment._held.batch()
@@ -24,7 +24,7 @@ class _OwnBatch(Batch):
         self._plans = [(self.plan, held.worlds)]
         self._kinds = None
         self._real = np.dtype(np.float32 if held.precision == "f32" else np.float64)
-        # What the task looks at is observed; the extension refuses the rest.
+        # The task's observers are active; the extension rejects the others.
         self._watched = frozenset(_core.names()["Observer"])
         self._bodies = self.plan.bodies
         self._controls = held.controls()

@@ -1,4 +1,4 @@
-"""Pages that show recordings in a browser or a notebook: one file, without a server or a network.
+"""Pages: recordings as one HTML file, shown in a browser or notebook without server or network.
 
     recording = mw.record.Recording("run.h5")
     mw.write_page([recording], "page.html")
@@ -28,22 +28,22 @@ if TYPE_CHECKING:
 __all__ = ["Page", "PageReport", "show", "write_page"]
 
 _HEIGHT = 560  # pixels, in a cell
-# Of a batch that a notebook shows by itself: a page of about a megabyte.
+# Limits of a batch as the value of a notebook's cell: a page of about a megabyte.
 _MAX_WORLDS = 64
 _MAX_BODIES = 20_000
 
 
 class PageReport(NamedTuple):
-    """What a page holds."""
+    """Contents of a page."""
 
-    worlds: int  # of all recordings
-    bodies: int  # that move, of all worlds
+    worlds: int  # worlds of all recordings
+    bodies: int  # moving bodies of all worlds
     frames: int
     bytes: int
 
 
 class Page:
-    """A page as text; a notebook shows it in the cell."""
+    """A page as text. A notebook shows it in the cell."""
 
     def __init__(self, text: str, height: int) -> None:
         self.text = text
@@ -72,15 +72,15 @@ def write_page(
     every: int = 1,
     numbers: Optional[Mapping[str, ArrayLike]] = None,
 ) -> PageReport:
-    """Writes a page of recordings: one, or several to be compared.
+    """Writes a page of recordings: one, or several to compare.
 
     title     default: the name of the scene
-    worlds    the first so many of each; None: all
-    every     of the samples every so many
-    numbers   by name, (samples, worlds) of the first recording: what worlds can be coloured by
+    worlds    number of worlds taken from each recording; None: all
+    every     take every n-th sample
+    numbers   values by name, (samples, worlds) of the first recording; the page can color worlds by them
 
-    Raises RecordError where a recording cannot be read or the file not be written, ValueError,
-    TypeError; FileNotFoundError where the package was built without the page.
+    Raises RecordError if a recording cannot be read or the file cannot be written, ValueError, TypeError,
+    and FileNotFoundError if the package was built without the page.
     """
     made = _page(recordings, title, worlds, every, numbers, files.path(file, "file"))
     return PageReport(*made)  # type: ignore[misc]
@@ -95,9 +95,9 @@ def show(
     numbers: Optional[Mapping[str, ArrayLike]] = None,
     height: int = _HEIGHT,
 ) -> Page:
-    """The page of recordings, or of a batch as it is now, for a notebook's cell.
+    """The page of recordings, or of the current state of a batch, for a notebook's cell.
 
-    height    of the cell, in pixels; the others are those of ``write_page``
+    height    height of the cell, in pixels; other arguments as in ``write_page``
     """
     height = arrays.integer(height, "height", 100, 10_000)
     if isinstance(shown, Batch):
@@ -114,9 +114,10 @@ def show(
 
 
 def cell_of(shown: Union[Batch, Environment]) -> Optional[str]:
-    """HTML for a notebook's cell that ends with ``shown``: its repr and the page of its worlds as they are, the
-    first 64 at most. None where that cannot be had, so that the cell has the repr alone: without the page or
-    recordings, of what is closed, has forces for its next step, or is stepped by another thread.
+    """HTML for a notebook's cell with value ``shown``: its repr and a page of its current worlds, at most 64.
+
+    None if no page can be made; the cell then shows the repr. Reasons: the package has no page or no
+    recordings; ``shown`` is closed, has forces for its next step, or another thread steps it.
     """
     if shown.closed:
         return None
@@ -132,14 +133,14 @@ def cell_of(shown: Union[Batch, Environment]) -> Optional[str]:
 
 
 def _empty_page() -> Path:
-    """The page without data: MANYWORLDS_VIEWER, or what came with the package."""
+    """The page without data: MANYWORLDS_VIEWER, or the file in the package."""
     given = os.environ.get("MANYWORLDS_VIEWER")
     place = Path(given) if given else Path(__file__).with_name("viewer.html")
     if place.is_file():
         return place
     raise FileNotFoundError(
         f"there is no page at {place}: the package was built without it. tools/viewer in the "
-        "repository builds it, with Node 18 or later and npm; MANYWORLDS_VIEWER names one that is elsewhere"
+        "repository builds it, with Node 18 or later and npm; MANYWORLDS_VIEWER is the path of another"
     )
 
 

@@ -1,4 +1,4 @@
-"""Plan: what a step of a scene consists of. Immutable; batches share it."""
+"""Plan: the stages and arrays that a step of a scene needs. Immutable, shared by batches."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def _value_text(value: float | str) -> str:
 
 
 class Plan(_core.Plan):
-    """What the step needs for a scene, and nothing else.
+    """The stages and arrays that a step of a scene needs.
 
-    ``keep`` switches features on that the scene does not need, ``broad_phase`` chooses how pairs are
-    found; neither changes a result. Raises SceneError with every issue of the scene.
+    ``keep`` enables features that the scene does not need, ``broad_phase`` chooses the pair search.
+    Neither changes a result. Raises SceneError, which lists all issues of the scene.
     """
 
     def __init__(
@@ -52,12 +52,12 @@ class Plan(_core.Plan):
 
     @property
     def broad_phase(self) -> BroadPhase:
-        """As it was asked for; ``report()["broad_phase"]`` is what it came to."""
+        """The requested pair search; ``report()["broad_phase"]`` is the chosen one."""
         return self._broad_phase
 
     @property
     def keep(self) -> tuple[Feature, ...]:
-        """The features that were asked for."""
+        """The requested features."""
         return self._keep
 
     @property
@@ -68,45 +68,45 @@ class Plan(_core.Plan):
 
     @property
     def resolved(self) -> Options:
-        """The options of the scene, with what they leave to the plan filled in. A copy."""
+        """The options of the scene, with the values that the plan chose. A copy."""
         options: Options = super().resolved  # type: ignore[assignment]
         return options
 
     def body(self, name: BodyRef) -> BodyId:
-        """The body of a name, as Scene.body. Raises ValueError for none or several, IndexError."""
+        """The body with a name, as Scene.body. Raises ValueError if there is none or several, IndexError."""
         return BodyId(self.find("body", name))
 
     def joint(self, name: JointRef) -> JointId:
-        """The joint of a name: see body."""
+        """The joint with a name: see body."""
         return JointId(self.find("joint", name))
 
     def control(self, name: ControlRef) -> ControlId:
-        """The control of a name: see body."""
+        """The control with a name: see body."""
         return ControlId(self.find("control", name))
 
     def tendon(self, name: TendonRef) -> TendonId:
-        """The tendon of a name: see body."""
+        """The tendon with a name: see body."""
         return TendonId(self.find("tendon", name))
 
     def site(self, name: SiteRef) -> SiteId:
-        """The site of a name: see body."""
+        """The site with a name: see body."""
         return SiteId(self.find("site", name))
 
     def keyframe(self, name: KeyframeRef) -> KeyframeId:
-        """The keyframe of a name: see body."""
+        """The keyframe with a name: see body."""
         return KeyframeId(self.find("keyframe", name))
 
     def shape(self, name: str, body: Optional[BodyRef] = None) -> ShapeId:
-        """The shape of a name, among all or among those of a body: see body."""
+        """The shape with a name, of any body or of ``body``: see body."""
         of, index = self.find_shape(name, body)
         return ShapeId(BodyId(of), index)
 
     def body_in_row(self, row: int) -> BodyId:
-        """Which body is in a row of arrays (worlds, bodies, ...). Raises IndexError."""
+        """The body in a row of arrays (worlds, bodies, ...). Raises IndexError."""
         return BodyId(super().body_in_row(row))
 
     def text(self) -> str:
-        """The report for people: choices, features and stages with reasons, pairs, arrays."""
+        """The report as text: choices, features and stages with reasons, pairs, arrays."""
         report: dict[str, Any] = self.report()
         lines = [
             f"broad phase {report['broad_phase']}, {report['bytes_per_world']} bytes per world, "

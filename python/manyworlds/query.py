@@ -1,17 +1,16 @@
-"""Queries on single shapes, outside of any Batch: do two overlap, how far are they apart, where would
-they touch, where does a ray hit.
+"""Queries on single shapes, without a Batch: overlap, distance, contact manifold and ray cast.
 
     from manyworlds import query
     ball, box = mw.Sphere(0.5), mw.Box((1, 1, 1))
     query.distance(ball, mw.Pose((3, 0, 0)), box).distance  # 1.5
 
-A pose places the body that the shape belongs to; ``Shape.position`` and ``rotation`` count as well, its
-material, filter and density do not. A shape that is neither of space nor of the plane alone (a capsule)
-takes the other's; of two such ``space`` ("planar", "spatial") decides. Double precision; manifolds and
-rays in single where the library was built without float64. All raise SceneError for a shape or pose that
-``Scene.validate`` would not accept, ValueError for a pair that makes no sense (two planes), TypeError.
+A pose is that of the shape's body. ``Shape.position`` and ``rotation`` are used; material, filter and
+density are ignored. A capsule exists in both spaces and takes that of the other shape. For two capsules,
+``space`` ("planar", "spatial") decides. Queries use double precision. Manifolds and rays use single
+precision if the library has no float64 kernels. All raise SceneError if ``Scene.validate`` would reject a
+shape or pose, ValueError for a pair without a meaning (two planes), TypeError.
 
-Some microseconds each, ``manifold`` some hundreds: it sets up a world of two bodies.
+A query takes some microseconds. ``manifold`` takes some hundreds, because it sets up a world of two bodies.
 """
 
 from __future__ import annotations
@@ -34,32 +33,32 @@ MANIFOLD_POINT = np.dtype(
         ("normal", np.float64, (3,)),  # unit, from A to B
         ("point", np.float64, (3,)),  # m, world, half way between the surfaces
         ("separation", np.float64),  # m, negative where the shapes overlap
-        ("feature", np.int32),  # which features touch; equal ids persist in motion
+        ("feature", np.int32),  # id of the touching features; stays the same during motion
     ]
 )
 
 
 @dataclass(slots=True)
 class Pose:
-    """Where a body is."""
+    """Position and rotation of a body."""
 
     position: Numbers = (0.0, 0.0, 0.0)  # m, of the body frame in the world
     rotation: Numbers = (1.0, 0.0, 0.0, 0.0)  # (w, x, y, z); need not be unit
 
 
 class Separation(NamedTuple):
-    """How two shapes lie to each other: point_b = point_a + distance * normal."""
+    """Distance of two shapes: point_b = point_a + distance * normal."""
 
-    distance: float  # m; negative: the shortest way that takes them apart, times -1
-    point_a: Vector  # (3,) m, world: the nearest points, when they overlap the deepest ones
+    distance: float  # m; negative: minus the shortest displacement that separates them
+    point_a: Vector  # (3,) m, world: the nearest points; the deepest ones if the shapes overlap
     point_b: Vector
     normal: Vector  # (3,) unit, from A to B
 
 
 class RayHit(NamedTuple):
-    """Where a ray hits a shape."""
+    """The hit of a ray."""
 
-    distance: float  # m; 0 where it begins inside
+    distance: float  # m; 0 if the ray starts inside
     normal: Vector  # (3,) unit, out of the shape, world
 
 
@@ -78,9 +77,9 @@ def distance(
     pose_b: Pose = _HERE,
     space: Optional[Space] = None,
 ) -> Separation:
-    """How far two shapes are apart, and where; closed forms over the features of both.
+    """Distance and nearest points of two shapes, by closed forms over the features of both.
 
-    A terrain is its line: what is wholly behind it is apart from it.
+    A terrain counts as its line: a shape completely behind the line is separated from it.
     """
     far, *vectors = _core.distance(_shape(a), pose_a, _shape(b), pose_b, space)
     return Separation(far, *map(np.array, vectors))
@@ -105,10 +104,10 @@ def manifold(
     margin: float = 0.0,
     space: Optional[Space] = None,
 ) -> NDArray[Any]:
-    """The points in which the step would let two shapes touch, (points,) of dtype MANIFOLD_POINT.
+    """The contact points of two shapes, (points,) of dtype MANIFOLD_POINT.
 
-    Those no farther apart than ``margin`` m, found by the step's own collision kernels. One of the
-    shapes at least must be able to move.
+    The collision kernels of the step find them. Points of a separation above ``margin`` m are omitted.
+    At least one of the shapes must be of a type that can move.
     """
     points = _core.manifold(_shape(a), pose_a, _shape(b), pose_b, margin, space)
     return np.array(points, MANIFOLD_POINT)
@@ -117,9 +116,9 @@ def manifold(
 def ray_cast(
     shape: AnyShape, pose: Pose, ray: Ray, space: Optional[Space] = None
 ) -> Optional[RayHit]:
-    """Where a ray of the world hits a shape, as observed rays do; None where it misses.
+    """The hit of a ray, in the world, as for observed rays. None if it misses.
 
-    ``Ray.body`` and ``mask`` do not count.
+    Ignores ``Ray.body`` and ``mask``.
     """
     hit = _core.ray_cast(_shape(shape), pose, ray, space)
     if hit is None:

@@ -1,4 +1,4 @@
-"""Scene: what one world is. Plain values; independent of batches and steps."""
+"""Scene: the description of one world. Plain values, independent of batches and steps."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class Issue(NamedTuple):
-    """One thing that is wrong with a scene."""
+    """One error of a scene."""
 
     place: str  # "body 3 'crate', shape 1: half_extents.y"
     message: str  # "is -0.2 m, must be > 0"
@@ -45,7 +45,7 @@ class Issue(NamedTuple):
 
 
 class SceneError(ValueError):
-    """A scene that cannot be compiled; ``issues`` lists everything that is wrong with it."""
+    """A scene cannot be compiled; ``issues`` lists all errors."""
 
     def __init__(self, issues: Sequence[Issue]) -> None:
         self.issues = list(issues)
@@ -58,7 +58,7 @@ class SceneError(ValueError):
 
 @dataclass(slots=True, kw_only=True)
 class Actuator:
-    """A force along a joint's coordinate, N or N m, of the newton solver.
+    """A force along a joint's coordinate, N or N m. Only the newton solver uses it.
 
     With the control u, clamped to its range, and the length l = gear x and speed s = gear v of the
     joint's coordinate x and its speed v:
@@ -76,24 +76,24 @@ class Actuator:
 
 @dataclass(slots=True, kw_only=True)
 class Control:
-    """A number that each world is given from outside, and acts on until it is given another."""
+    """A value set for each world, which stays in effect until another is set."""
 
     name: str = ""
     kind: ControlKind = "target_speed"
-    # With a drive (target_position, target_speed), or a hinge or slider (joint_force).
+    # A joint with a drive (target_position, target_speed), or a hinge or slider (joint_force).
     joint: JointRef = -1
     body: BodyRef = -1  # dynamic; thrust, torque
     point: Numbers = (0.0, 0.0, 0.0)  # m, body frame
     direction: Numbers = (1.0, 0.0, 0.0)  # body frame, need not be unit
-    low: float = -1.0  # of joint_force it may be infinite
+    low: float = -1.0  # range, to which values are clamped; a joint_force's may be infinite
     high: float = 1.0
     initial: float = 0.0
-    actuator: Actuator = field(default_factory=Actuator)  # of joint_force
+    actuator: Actuator = field(default_factory=Actuator)  # joint_force only
 
 
 @dataclass(slots=True, kw_only=True)
 class Attractor:
-    """A point that draws bodies with strength d / (d^2 + softening^2)^(3/2), m/s^2."""
+    """A point that accelerates bodies towards it, strength d / (d^2 + softening^2)^(3/2), m/s^2."""
 
     position: Numbers = (0.0, 0.0, 0.0)  # m, world
     strength: float = 0.0  # m^3/s^2; a planet: G M
@@ -102,24 +102,24 @@ class Attractor:
 
 @dataclass(slots=True, kw_only=True)
 class Variation:
-    """A parameter that may differ from world to world, and its range. ``vary`` makes simple ones."""
+    """A parameter that differs from world to world, and its range. ``vary`` makes simple ones."""
 
     parameter: Parameter = "friction"
-    body: BodyRef = -1  # -1: every one that has the parameter
-    shape: ShapeRef = -1  # an int is one of that body; -1: every shape
-    joint: JointRef = -1  # -1: every one that has the parameter
+    body: BodyRef = -1  # -1: every body with the parameter
+    shape: ShapeRef = -1  # an int: a shape of that body; -1: every shape
+    joint: JointRef = -1  # -1: every joint with the parameter
     control: ControlRef = -1
-    attractor: int = -1  # in Scene.attractors; -1: every one
-    low: Numbers = (0.0, 0.0, 0.0)  # [0] alone counts where the parameter is one number
+    attractor: int = -1  # in Scene.attractors; -1: every attractor
+    low: Numbers = (0.0, 0.0, 0.0)  # a parameter of one value uses [0] only
     high: Numbers = (0.0, 0.0, 0.0)
     draw: Draw = "uniform"
-    together: bool = False  # one draw for all that it is about, instead of one for each
+    together: bool = False  # one draw for all owners instead of one for each
 
 
 def vary(
     parameter: Parameter, low: float, high: float, draw: Draw = "uniform", **more: Any
 ) -> Variation:
-    """A Variation of a parameter of one number, between ``low`` and ``high``."""
+    """A Variation of a parameter with one value, between ``low`` and ``high``."""
     ends = (float(low), 0.0, 0.0), (float(high), 0.0, 0.0)
     return Variation(parameter=parameter, low=ends[0], high=ends[1], draw=draw, **more)
 
@@ -134,7 +134,7 @@ class Exclusion:
 
 @dataclass(slots=True, kw_only=True)
 class TendonTerm:
-    """A hinge or slider, and how much of its coordinate counts in a tendon."""
+    """A hinge or slider, and the factor of its coordinate in a tendon's length."""
 
     joint: JointRef = -1
     coefficient: float = 1.0  # m/rad or 1, or any unit that the limit is in
@@ -142,9 +142,9 @@ class TendonTerm:
 
 @dataclass(slots=True, kw_only=True)
 class Tendon:
-    """A length made of coordinates of joints, kept within its limit. Of the solver newton.
+    """A weighted sum of joint coordinates, kept within its limit. Only the newton solver uses it.
 
-    Without a limit it is only looked at: the observer "tendons".
+    A tendon without a limit is for observation only: observer "tendons".
     """
 
     name: str = ""
@@ -154,7 +154,7 @@ class Tendon:
 
 @dataclass(slots=True, kw_only=True)
 class Site:
-    """A point of a body, or of the world, that has a name, to be looked at: the observer "sites"."""
+    """A named point of a body or of the world, for observation only: observer "sites"."""
 
     name: str = ""
     body: BodyRef = -1  # -1: the world
@@ -163,10 +163,10 @@ class Site:
 
 @dataclass(slots=True, kw_only=True)
 class Keyframe:
-    """A state that worlds can be reset to; what is empty is as any reset leaves it.
+    """A state that worlds can be reset to. A reset draws empty members as usual.
 
-    Of the solver newton ``generalized_position`` (coordinates,) and ``generalized_velocity`` (dofs,),
-    as the fields of that name have them, and ``controls`` (controls,).
+    ``generalized_position`` (coordinates,) and ``generalized_velocity`` (dofs,) are for the newton
+    solver and equal the fields of that name. ``controls`` is (controls,).
     """
 
     name: str = ""  # empty, or no other keyframe's
@@ -177,37 +177,37 @@ class Keyframe:
 
 @dataclass(slots=True, kw_only=True)
 class CoordinateDraw:
-    """Numbers of the generalised positions or velocities that worlds begin with, drawn at each reset.
+    """Initial generalised positions or velocities, drawn at each reset. Only for the newton solver.
 
-    ``low`` and ``high`` have one number for each coordinate or dof from ``first`` on; ``normal`` draws
-    have their mean half way between the two and half the range as standard deviation, others are uniform.
-    They act in their order. Of the solver newton.
+    ``low`` and ``high`` have one value for each coordinate or dof from ``first`` on. Draws are uniform
+    in this range. ``normal`` draws have the mean of the two and half the range as standard deviation.
+    Several CoordinateDraw are applied in their order.
     """
 
-    velocity: bool = False  # of dofs, else of coordinates
-    first: int = 0  # as MuJoCo counts qpos and qvel
+    velocity: bool = False  # True: dofs; False: coordinates
+    first: int = 0  # index in MuJoCo's qpos or qvel
     low: Numbers = field(default_factory=list)
     high: Numbers = field(default_factory=list)
     normal: bool = False
-    replaces: bool = False  # what is there by then; else they are added to it
-    nearest: float = -inf  # drawn again until their norm is more than this
-    farthest: float = inf  # and less than that
+    replaces: bool = False  # True: replace the earlier value; False: add to it
+    nearest: float = -inf  # drawn again until the norm is above this
+    farthest: float = inf  # and below this
 
 
 @dataclass(slots=True, kw_only=True)
 class Ray:
-    """A ray that every world casts against all of its shapes."""
+    """A ray that every world casts against all its shapes."""
 
     origin: Numbers = (0.0, 0.0, 0.0)  # m, in the world or, with a body, in that body's frame
     direction: Numbers = (1.0, 0.0, 0.0)  # need not be unit
-    length: float = inf  # m: it sees what is nearer
-    body: BodyRef = -1  # moves and rotates with it; -1: stays
-    mask: int = 0xFFFFFFFF  # of Filter.category
+    length: float = inf  # m, range of the ray
+    body: BodyRef = -1  # the ray moves and rotates with it; -1: fixed in the world
+    mask: int = 0xFFFFFFFF  # hits shapes whose Filter.category is in it
 
 
 @dataclass(slots=True, kw_only=True)
 class Point:
-    """A point that is fixed to a body that can move."""
+    """A point fixed to a moving body."""
 
     position: Numbers = (0.0, 0.0, 0.0)  # m, in the body's frame
     body: BodyRef = -1
@@ -239,7 +239,7 @@ class Scene:
     attractors: list[Attractor] = field(default_factory=list)
     options: Options = field(default_factory=Options)
     variations: list[Variation] = field(default_factory=list)
-    exclusions: list[Exclusion] = field(default_factory=list)  # beside those of joints
+    exclusions: list[Exclusion] = field(default_factory=list)  # in addition to those of joints
     tendons: list[Tendon] = field(default_factory=list)
     keyframes: list[Keyframe] = field(default_factory=list)
     coordinate_draws: list[CoordinateDraw] = field(default_factory=list)
@@ -294,7 +294,7 @@ class Scene:
     @overload
     def add(self, part: Union[Attractor, Variation, Exclusion, CoordinateDraw]) -> int: ...
     def add(self, part: Part) -> int:
-        """Appends a body, joint, control, ... or keyframe and returns its handle or index."""
+        """Appends a body, joint, control, ... or keyframe. Returns its handle or index."""
         places: list[tuple[type, list[Any], type[int]]] = [
             (Body, self.bodies, BodyId),
             (Joint, self.joints, JointId),
@@ -314,41 +314,41 @@ class Scene:
         names = ", ".join(kind.__name__ for kind, _, _ in places)
         raise TypeError(f"cannot add a {type(part).__name__}; expected one of {names}")
 
-    # -- by name. Names may be empty or shared, but then they find nothing.
+    # -- by name. Empty and shared names find nothing.
 
     def body(self, name: BodyRef) -> BodyId:
-        """The body of a name. Raises ValueError, which lists the names, for none or several."""
+        """The body with a name. Raises ValueError, which lists the names, if there is none or several."""
         return BodyId(_core.find_in_scene(self, "body", name))
 
     def joint(self, name: JointRef) -> JointId:
-        """The joint of a name: see body."""
+        """The joint with a name: see body."""
         return JointId(_core.find_in_scene(self, "joint", name))
 
     def control(self, name: ControlRef) -> ControlId:
-        """The control of a name: see body."""
+        """The control with a name: see body."""
         return ControlId(_core.find_in_scene(self, "control", name))
 
     def tendon(self, name: TendonRef) -> TendonId:
-        """The tendon of a name: see body."""
+        """The tendon with a name: see body."""
         return TendonId(_core.find_in_scene(self, "tendon", name))
 
     def site(self, name: SiteRef) -> SiteId:
-        """The site of a name: see body."""
+        """The site with a name: see body."""
         return SiteId(_core.find_in_scene(self, "site", name))
 
     def keyframe(self, name: KeyframeRef) -> KeyframeId:
-        """The keyframe of a name: see body."""
+        """The keyframe with a name: see body."""
         return KeyframeId(_core.find_in_scene(self, "keyframe", name))
 
     def shape(self, name: str, body: Optional[BodyRef] = None) -> ShapeId:
-        """The shape of a name, among all or among those of a body: see body."""
+        """The shape with a name, of any body or of ``body``: see body."""
         of, index = _core.find_shape_in_scene(self, name, body)
         return ShapeId(BodyId(of), index)
 
     def validate(self) -> list[Issue]:
-        """Everything that is wrong with the scene, in its order; empty: it can be compiled.
+        """All errors of the scene, in its order. Empty: the scene can be compiled.
 
-        Values of a wrong type or name raise TypeError or ValueError, which name the place.
+        Raises TypeError or ValueError, which name the member, if a value has a wrong type or name.
         """
         return [Issue(*issue) for issue in _core.validate(self)]
 
@@ -361,19 +361,19 @@ class Scene:
         return Plan(self, broad_phase=broad_phase, keep=keep)
 
     def joint_at(self, body_a: BodyRef, body_b: BodyRef, frame: Frame, type: JointType) -> Joint:
-        """A joint of two bodies (-1: the world) whose frames are where ``frame`` is in the world.
+        """A joint of two bodies (-1: the world) whose frames coincide with ``frame`` in the world.
 
-        The scene must have no issues. The joint is returned, not added.
+        The scene must have no issues. Returns the joint and does not add it.
         """
         return _core.joint_at(self, body_a, body_b, frame, type)
 
     def mass_properties(self, body: BodyRef) -> MassProperties:
-        """Mass (kg), centre (m) and inertia (kg m^2) of a body: its own, or those of its shapes."""
+        """Mass (kg), centre (m) and inertia (kg m^2) of a body, set or computed from its shapes."""
         return _core.mass_properties(self, body)
 
 
 def make_hull(points: Sequence[Numbers]) -> Hull:
-    """The convex hull of points (n, 3) in m. Raises ValueError when it is flat or too detailed."""
+    """The convex hull of points (n, 3) in m. Raises ValueError if it is flat or has over 64 corners."""
     return _core.make_hull(points)
 
 
@@ -382,7 +382,7 @@ def mesh_mass_properties(
 ) -> MassProperties:
     """Mass properties of the solid in a closed mesh: vertices (n, 3) in m, triangles (m, 3).
 
-    Triangles run counter-clockwise seen from outside. ``density`` is in kg/m^3. Raises ValueError
-    with everything that is wrong with the mesh.
+    Triangles are counter-clockwise seen from outside. ``density`` is in kg/m^3. Raises ValueError,
+    which lists all errors of the mesh.
     """
     return _core.mesh_mass_properties(vertices, triangles, density)

@@ -1,4 +1,4 @@
-"""Scenes that have a name: ``manyworlds.scenes.load("lunar-lander")``."""
+"""Named scenes: ``manyworlds.scenes.load("lunar-lander")``."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from .scene import Scene
 
 
 def names() -> list[str]:
-    """The scenes that ``load`` accepts. Some have sizes, too: "pyramid2d:100", "bin-boxes:1000"."""
+    """The names that ``load`` accepts. Some take a size: "pyramid2d:100", "bin-boxes:1000"."""
     return [name for name, _ in _core.scene_names()]
 
 
 def summaries() -> dict[str, str]:
-    """One line about each scene, by its name."""
+    """A line about each scene, by name."""
     return dict(_core.scene_names())
 
 
 def load(name: str) -> Scene:
-    """The scene of that name, to take or to change. Raises ValueError with the nearest name."""
+    """A new copy of the scene with this name. Raises ValueError, with the nearest name, if unknown."""
     return _core.load_scene(name)

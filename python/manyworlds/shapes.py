@@ -1,4 +1,4 @@
-"""What shapes are: geometries, materials, filters. Lengths in m, in the frame of the shape."""
+"""Shapes: geometries, materials, filters. Lengths in m, in the shape frame."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Box:
 
 @dataclass(slots=True)
 class Plane:
-    """All points p with normal . p <= offset are solid. Spatial, of fixed bodies only."""
+    """The solid of all points p with normal . p <= offset. Spatial, fixed bodies only."""
 
     normal: Numbers = (0.0, 0.0, 1.0)  # unit, pointing out of the solid
     offset: float = 0.0  # m
@@ -80,14 +80,14 @@ class Ellipsoid:
 
 @dataclass(slots=True)
 class Hull:
-    """The smallest convex solid around 4 to 64 vertices (``make_hull`` finds them). Spatial."""
+    """The convex hull of 4 to 64 vertices (``make_hull`` finds them). Spatial."""
 
     vertices: Sequence[Numbers] = field(default_factory=list)  # m, (n, 3)
 
 
 @dataclass(slots=True)
 class HeightField:
-    """Everything below triangles over a grid of points, centred. Spatial, of fixed bodies only."""
+    """The solid below triangles over a grid of points, centred. Spatial, fixed bodies only."""
 
     heights: Numbers = field(default_factory=list)  # m, flat: x varies fastest
     columns: int = 2  # points along x
@@ -113,14 +113,14 @@ class Polygon:
 
     @staticmethod
     def box(half_x: float, half_y: float) -> Polygon:
-        """A rectangle centred on the shape frame, of these half extents in m."""
+        """A rectangle centred on the shape frame, with half extents in m."""
         x, y = float(half_x), float(half_y)
         return Polygon([(-x, -y), (x, -y), (x, y), (-x, y)])
 
 
 @dataclass(slots=True)
 class HalfPlane:
-    """All points p with normal . p <= offset are solid. Planar, of fixed bodies only."""
+    """The solid of all points p with normal . p <= offset. Planar, fixed bodies only."""
 
     normal: Numbers = (0.0, 1.0)  # unit, pointing out of the solid
     offset: float = 0.0  # m
@@ -128,7 +128,7 @@ class HalfPlane:
 
 @dataclass(slots=True)
 class Segment:
-    """A line that is solid from either side. Planar, of fixed bodies only."""
+    """A line that is solid from both sides. Planar, fixed bodies only."""
 
     a: Numbers = (-0.5, 0.0)  # m
     b: Numbers = (0.5, 0.0)  # m
@@ -136,10 +136,10 @@ class Segment:
 
 @dataclass(slots=True)
 class Terrain:
-    """A chain of segments, solid on the right of its points in their order. Planar, fixed bodies."""
+    """A chain of segments, solid on the right of its point order. Planar, fixed bodies only."""
 
     points: Sequence[Numbers] = field(default_factory=list)  # m, (n, 2)
-    loop: bool = False  # the last point is joined to the first
+    loop: bool = False  # connect the last point to the first
 
 
 Geometry = Union[
@@ -161,52 +161,53 @@ Geometry = Union[
 
 @dataclass(slots=True, kw_only=True)
 class Compliance:
-    """How soft a constraint of the newton solver is: MuJoCo's solref and solimp.
+    """Softness of a constraint of the newton solver: MuJoCo's solref and solimp.
 
-    A constraint that is violated by r asks for the acceleration -damping v - stiffness d(r) r, and
-    gives way to a share 1 - d(r) of what acts against it. The impedance d goes from min_impedance at 0
-    to max_impedance at ``width``, along a power curve with its inflection at ``midpoint``.
+    A constraint with violation r has the reference acceleration -damping v - stiffness d(r) r, and
+    yields to the fraction 1 - d(r) of the forces against it. The impedance d increases from
+    min_impedance at 0 to max_impedance at ``width``, along a power curve with its inflection at
+    ``midpoint``.
     """
 
-    time_constant: float = 0.02  # s; negative, as the damping ratio: -stiffness, 1/s^2
-    damping_ratio: float = 1.0  # negative, as the time constant: -damping, 1/s
+    time_constant: float = 0.02  # s; if both are negative: -stiffness, 1/s^2
+    damping_ratio: float = 1.0  # if both are negative: -damping, 1/s
     min_impedance: float = 0.9  # in (0, 1)
     max_impedance: float = 0.95  # in (0, 1)
     width: float = 0.001  # m or rad
-    midpoint: float = 0.5  # share of the width, in (0, 1)
+    midpoint: float = 0.5  # fraction of the width, in (0, 1)
     power: float = 2.0  # whole, 1 to 100
 
 
 @dataclass(slots=True, kw_only=True)
 class SoftContact:
-    """Contacts of the newton solver, as MuJoCo mixes those of two geoms.
+    """Contacts of the newton solver, combined for a pair as in MuJoCo.
 
-    Of two materials the one of higher priority decides. Where they are equal, friction and dimensions
-    are the larger ones, and the compliance is the mean by weight, or the smaller of two direct ones.
-    Margins add up.
+    The material of higher priority decides. If priorities are equal, the pair has the larger friction
+    and dimensions, and the mean of the compliances by weight, or the smaller of two direct ones.
+    Margins are added.
     """
 
     dimensions: int = 3  # 1: no friction, 3: friction along the surface
     compliance: Compliance = field(default_factory=Compliance)
     margin: float = 0.0  # m, separation below which a contact acts
-    gap: float = 0.0  # m, by how much farther MuJoCo lists it; it moves nothing
+    gap: float = 0.0  # m, extra distance at which MuJoCo lists a contact; no effect on the motion
     priority: int = 0
-    weight: float = 1.0  # of the compliance
+    weight: float = 1.0  # weight of the compliance in the mean
 
 
 @dataclass(slots=True)
 class Material:
-    """What two shapes feel of each other when they touch."""
+    """Contact properties of a shape."""
 
     friction: float = 0.6  # Coulomb coefficient; a pair takes the geometric mean
     restitution: float = 0.0  # 0 to 1; a pair takes the larger
-    # Of the newton solver, which takes the larger friction and bounces nothing.
+    # newton solver only, which uses the larger friction and no restitution
     soft: SoftContact = field(default_factory=SoftContact)
 
 
 @dataclass(slots=True)
 class Filter:
-    """Two shapes collide when each one's category is in the other's mask."""
+    """Two shapes collide if the category of each is in the mask of the other."""
 
     category: int = 1
     mask: int = 0xFFFFFFFF
@@ -214,7 +215,7 @@ class Filter:
 
 @dataclass(slots=True, kw_only=True)
 class Shape:
-    """A geometry, placed on a body."""
+    """A geometry at a pose on a body."""
 
     geometry: Geometry = field(default_factory=Sphere)
     position: Numbers = (0.0, 0.0, 0.0)  # m, in the body frame

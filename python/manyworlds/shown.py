@@ -1,4 +1,4 @@
-"""How values are shown: a line for repr(), tables for notebooks."""
+"""Text of values: a line for repr(), tables for notebooks."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from html import escape
 from reprlib import Repr
 from typing import Any
 
-MAX_ROWS = 50  # of a table
+MAX_ROWS = 50  # rows of a table
 _MAX_LINE = 100  # characters
 _short = Repr()
 _short.maxstring = _short.maxother = 32
 
 
 def short(value: Any) -> str:
-    """repr() of a name or a number, of 32 characters at most."""
+    """repr() of a name or a number, at most 32 characters."""
     return _short.repr(value)
 
 
 def count(things: Any, one: str, many: str) -> str:
-    """ "1 body", "3 bodies"; of what is no list, its type."""
+    """ "1 body", "3 bodies"; the type of a value that is not a list."""
     try:
         n = len(things)
     except TypeError:
@@ -34,7 +34,7 @@ def line(kind: str, name: Any, *parts: str) -> str:
 
 
 def attempt(f: Callable[[], Any]) -> Any:
-    """What f returns; "?" of a value that has another type than it should."""
+    """The result of f; "?" if a value has a wrong type."""
     try:
         return f()
     except (AttributeError, TypeError):
@@ -42,7 +42,7 @@ def attempt(f: Callable[[], Any]) -> Any:
 
 
 def table(caption: str, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """An HTML table of at most MAX_ROWS rows; every text in it is escaped."""
+    """An HTML table of at most MAX_ROWS rows, with escaped texts."""
     rows = list(rows)
     if not rows:
         return f"<p>{escape(caption)}: none</p>"

@@ -1,4 +1,4 @@
-"""View: a state field in place, without a copy."""
+"""View: direct access to a state field, without a copy."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from .in_memory import InMemory
 
 
 class View(InMemory):
-    """A state field where the step keeps it, (groups, items, components, lanes).
+    """The memory of a state field, (groups, items, components, lanes).
 
-    World w is lane ``i % lanes`` of group ``i // lanes``, ``i = Batch.lane_indices()[w]``; lanes after
-    the last world are unused. Positions are those of centres of mass, orientations those of principal
-    axes: ``Batch.get`` converts them to the body's frame. What is written here acts at the next step;
-    it wakes no body and forgets no stored impulses.
+    World w is lane ``i % lanes`` of group ``i // lanes``, with ``i = Batch.lane_indices()[w]``. Lanes
+    after the last world are unused. Positions are those of centres of mass, orientations those of
+    principal axes: ``Batch.get`` converts them to the body's frame. Written values act at the next step.
+    Writing does not wake bodies or clear the impulses for warm starting.
 
-    ``numpy.asarray(view)``, ``view[...]`` and DLPack give arrays that share this memory and keep it
-    alive. After ``Batch.close()`` a view raises ValueError; arrays made before stay readable, but
-    nothing steps them any more. Do not touch them while another thread steps.
+    ``numpy.asarray(view)``, ``view[...]`` and DLPack return arrays that share this memory and keep it
+    alive. After ``Batch.close()`` a view raises ValueError. Arrays made before stay readable, but steps
+    no longer change them. Do not access them while another thread steps.
     """
 
     __slots__ = ("_held", "_name", "_blocks")
@@ -43,12 +43,12 @@ class View(InMemory):
 
     @property
     def strides(self) -> tuple[int, ...]:
-        """In bytes, as NumPy's."""
+        """Strides in bytes, as in NumPy."""
         return self._open().strides
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """That of the batch: float32 or float64."""
+        """The precision of the batch: float32 or float64."""
         return self._open().dtype
 
     def __len__(self) -> int:

@@ -1,4 +1,4 @@
-"""What geometries look like, as triangles and lines: for those who draw worlds by other means.
+"""Triangles and lines of geometries, for other renderers.
 
     look = mw.surface(mw.Box((1, 2, 3)))
     look.points[look.triangles]  # (12, 3, 3)
@@ -21,17 +21,17 @@ _LOW, _HIGH = (-10.0, -10.0, -10.0), (10.0, 10.0, 10.0)
 
 
 class Surface(NamedTuple):
-    """In the shape frame, lengths in m. Round shapes are inscribed: their points lie on the shape."""
+    """Triangles and lines in the shape frame, in m. Points of round shapes are on the shape."""
 
     points: NDArray[np.float64]  # (n, 3)
-    normals: NDArray[np.float64]  # (n, 3) unit, outward; planar: z
-    # (t, 3) of points, counter-clockwise seen from outside; segments and terrains have none
+    normals: NDArray[np.float64]  # (n, 3) unit, outward; in the plane: z
+    # (t, 3) indices of points, counter-clockwise seen from outside; segments, terrains have none
     triangles: NDArray[np.int32]
-    # (f, 2) first point and number of them: flat faces, convex polygons of consecutive points
+    # (f, 2) first point and count: flat faces, convex polygons of consecutive points
     faces: NDArray[np.int32]
-    # each (k, 3): edges between flat faces, in the plane outlines; closed ones end where they begin
+    # each (k, 3): edges of flat faces, in the plane outlines; closed ones repeat the first point
     lines: list[NDArray[np.float64]]
-    marks: list[NDArray[np.float64]]  # more of them, which show how a round shape turns
+    marks: list[NDArray[np.float64]]  # lines that make the rotation of a round shape visible
 
 
 def surface(
@@ -42,14 +42,14 @@ def surface(
     low: Numbers = _LOW,
     high: Numbers = _HIGH,
 ) -> Surface:
-    """The surface of a geometry, of a planar one its inside and outline.
+    """The surface of a geometry; for a planar one, its inside and outline.
 
-    space      of a capsule, which both spaces have
-    around     corners that stand for a full circle, 8 to 1024
-    low, high  (3,) m, shape frame: the box at which planes and half-planes end
+    space      space of a capsule, which exists in both
+    around     segments of a full circle, 8 to 1024
+    low, high  (3,) m, shape frame: the box to which planes and half-planes are clipped
 
-    Raises ValueError for numbers out of range, SceneError for a geometry that ``Scene.validate``
-    would not accept, TypeError.
+    Raises ValueError if a value is out of range, SceneError if ``Scene.validate`` would reject the
+    geometry, TypeError.
     """
     points, normals, triangles, faces, lines, marks = _core.surface(
         geometry, space, around, low, high

@@ -135,8 +135,8 @@ def test_what_wants_one_kind_says_so():
 @pytest.mark.parametrize(
     "kinds, arguments, error, words",
     [
-        ([], {}, ValueError, "no kinds"),
-        ([("stack10", 3)], {"worlds": 4}, ValueError, "worlds stand with each kind"),
+        ([], {}, ValueError, "scene is empty"),
+        ([("stack10", 3)], {"worlds": 4}, ValueError, "worlds is set for each kind"),
         (["stack10"], {}, TypeError, "kind 0 is 'stack10'"),
         ([("stack10", 0)], {}, ValueError, "worlds of kind 0 is 0"),
         ([("stack10", 1), (3, 1)], {}, TypeError, "the scene of kind 1 is of type int"),

@@ -143,9 +143,9 @@ def test_results_of_replays(tmp_path):
 @pytest.mark.parametrize(
     "make, words",
     [
-        (lambda: lander(), r"Batch objects hold .* pickle its scene or plan, the arg.*save\(\)"),
+        (lambda: lander(), r"Batch objects own .* pickle its scene or plan, the arg.*save\(\)"),
         (lambda: mw.Environment("CartPole"), r"Environment objects .* pickle its task, .*save\(\)"),
-        (lambda: mw.Environment("CartPole").batch, "Batch objects hold .* pickle its scene"),
+        (lambda: mw.Environment("CartPole").batch, "Batch objects own .* pickle its scene"),
         (lambda: lander().view("position"), r"View objects .* pickle numpy.array\(view\)"),
     ],
 )

@@ -219,7 +219,7 @@ def test_policies_are_searched_by_their_weights():
 @pytest.mark.parametrize(
     ("number", "says"),
     [
-        (Number("size", "ball"), "'x' sets size, which is 3 numbers, and gives component none; expected 0 to 2"),
+        (Number("size", "ball"), "'x' sets size, which has 3 components; component is none, expected 0 to 2"),
         (Number("mass", "bal"), "'x': .*bal"),
         (Number("mass", 0), "'x': .*fixed"),
         (Number("kp"), "newton"),
@@ -282,7 +282,7 @@ def test_lost_worlds_and_broken_constraints_cost_finite_numbers():
 def test_what_callbacks_return_is_checked():
     with search.Trial(scene(), SPACE, lambda run: np.zeros(3), 1) as tried:
         with pytest.raises(
-            ValueError, match=r"what the objective returns has shape \(3,\); expected"
+            ValueError, match=r"the value of the objective has shape \(3,\); expected"
         ):
             tried.evaluate(SPACE.values(np.full((2, 6), 0.5)), 0)
         middle = SPACE.values(np.full((2, 6), 0.5))
@@ -299,9 +299,9 @@ def test_what_callbacks_return_is_checked():
         search.Trial(scene(), SPACE, distance, 5, drive=lambda run: {})
     with pytest.raises(ValueError, match="goal is 'max'; expected 'minimize' or 'maximize'"):
         search.Search(SPACE, search.Random(2), "max")
-    with pytest.raises(ValueError, match="no generation was asked for"):
+    with pytest.raises(ValueError, match="no generation to tell of; call ask"):
         search.Search(SPACE, search.Random(2)).tell([1, 2])
-    with pytest.raises(ValueError, match="has a space alone"):
+    with pytest.raises(ValueError, match="has a space but no trial"):
         search.Search(SPACE, search.Random(2)).run(1)
 
 
@@ -342,7 +342,7 @@ def test_a_hash_that_differs_is_said():
     with trial(begin=leaking) as tried, tempfile.TemporaryDirectory() as folder:
         hunt = search.Search(tried, search.Random(8))
         hunt.run(1)
-        with pytest.raises(RuntimeError, match="lets worlds depend on one another"):
+        with pytest.raises(RuntimeError, match="worlds depend on each other"):
             hunt.record(Path(folder) / "best.h5")
 
 

@@ -1,4 +1,4 @@
-// What the step needs and what it can do without, and why.
+// Which features a step needs, and why.
 #include <algorithm>
 
 #include "src/plan/plan_data.hpp"
@@ -71,27 +71,28 @@ void choose_features(PlanData& plan) {
   const bool thrust = !plan.thrusts.empty(), trees = plan.has_trees();
   plan.orientations_matter = !(round && isotropic) || joints || thrust || trees;
   choose.set(Feature::orientation, plan.orientations_matter,
-             trees    ? "links rotate with their joints"
-             : joints ? "joint frames rotate with it"
-             : thrust ? "thrust rotates with it"
-                      : "shapes or inertia depend on it",
+             trees    ? "links have orientations"
+             : joints ? "joint frames depend on it"
+             : thrust ? "the direction of thrust depends on it"
+                      : "shapes or inertia tensors depend on it",
              "every moving body is a centred ball");
   // Joints are solved with full tensors only: few jointed bodies are isotropic.
-  choose.set(Feature::inertia, !planar && (!isotropic || joints || trees),
-             trees       ? "links have it"
-             : isotropic ? "joints are solved with it"
-                         : "some moments of inertia differ",
-             planar ? "the plane has one moment per body" : "every moment of inertia is isotropic");
+  choose.set(
+      Feature::inertia, !planar && (!isotropic || joints || trees),
+      trees       ? "links have inertia tensors"
+      : isotropic ? "joints use inertia tensors"
+                  : "a body has unequal moments of inertia",
+      planar ? "planar bodies have one moment of inertia" : "all inertia tensors are isotropic");
   // A kept tensor needs the orientation that rotates it.
   if (plan.has(Feature::inertia) && !plan.has(Feature::orientation)) {
-    choose.set(Feature::orientation, true, "the kept inertia tensors rotate with it", "");
+    choose.set(Feature::orientation, true, "the kept inertia tensors depend on it", "");
   }
   const bool tensor = !planar && plan.has(Feature::inertia);
   plan.inertia_kind = planar   ? kernels::InertiaKind::planar
                       : tensor ? kernels::InertiaKind::tensor
                                : kernels::InertiaKind::isotropic;
 
-  choose.set(Feature::joints, joints, "bodies are joined", "no joints");
+  choose.set(Feature::joints, joints, "the scene has joints", "no joints");
   const bool contacts = any_pair(plan, most, [](const auto&, const auto&) { return true; });
   choose.set(Feature::contacts, contacts, "some shapes can touch", "no pair of shapes can touch");
   choose.set(Feature::friction,

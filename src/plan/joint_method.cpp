@@ -46,7 +46,7 @@ std::string need_of_levers(const Scene& scene, const std::vector<bool>& in_tree)
     const double lever = std::max(lever_of(scene, joint.body_a, joint.frame_a),
                                   lever_of(scene, joint.body_b, joint.frame_b));
     if (lever > kMost) {
-      return joint_text(j) + " holds a compact body on a long arm (m r^2 / I is " +
+      return joint_text(j) + " connects a compact body on a long arm (m r^2 / I is " +
              short_text(lever) + ")";
     }
   }
@@ -75,7 +75,7 @@ bool is_long_and_touches(const Scene& scene, const SceneTrees& trees) {
 std::string need_of_rows(const SceneTrees& trees) {
   constexpr int kMost = 32;
   for (const int joints : trees.joints_in_loops) {
-    if (joints > kMost) return std::to_string(joints) + " joints hang together in loops";
+    if (joints > kMost) return std::to_string(joints) + " joints are connected in loops";
   }
   return {};
 }
@@ -91,7 +91,7 @@ std::string need_of_masses(const Scene& scene, const std::vector<int>& trees) {
     at->second.second = std::max(at->second.second, mass);
     const double ratio = at->second.second / at->second.first;
     if (ratio > kRatioOfFourSubsteps) {
-      return "jointed bodies have masses of 1 to " + short_text(ratio);
+      return "masses of connected bodies differ by a factor of " + short_text(ratio);
     }
   }
   return {};
@@ -101,7 +101,7 @@ std::string need_of_light_links(const Scene& scene, const SceneTrees& trees) {
   if (rows.empty()) return {};
   const LightRow& row = rows.front();
   return std::to_string(row.joints) + " joints in a row carry loads of " + short_text(row.ratio) +
-         " times their links";
+         " times the mass of their links";
 }
 
 }  // namespace
@@ -112,14 +112,14 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
   if (o.solver.method != Solver::tgs_soft) return {};
   const SceneTrees trees = trees_of(first);
   const std::vector<bool>& in_tree = trees.has_joint;
-  const auto at_once = [](const std::string& why) { return "at once, since " + why; };
+  const auto at_once = [](const std::string& why) { return "solved at once: " + why; };
   if (std::find(in_tree.begin(), in_tree.end(), true) == in_tree.end()) return {};
   if (is_long_and_touches(first, trees)) return {};
   if (o.joint.frequency) {  // what is asked for to be soft is swept over
     const double share = *o.joint.frequency * o.dt / o.substeps.value_or(kLeastSubsteps);
     if (share <= kContactShare) return {};
-    return at_once("joints of " + short_text(*o.joint.frequency) +
-                   " Hz are stiffer than substeps of sweeps hold");
+    return at_once("joint.frequency of " + short_text(*o.joint.frequency) +
+                   " Hz is too stiff for sweeps");
   }
   const SubstepNeed loads = need_of_joints(extremes, length_unit, in_tree);
   if (loads.substeps > kLeastSubsteps) return at_once(loads.why);
@@ -131,7 +131,7 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
     }
     // Sweeps overshoot loads that come suddenly, by half.
     if (may_break(joint)) {
-      return at_once(joint_text(j) + " may break");
+      return at_once(joint_text(j) + " can break");
     }
   }
   if (const std::string why = need_of_rows(trees); !why.empty()) return at_once(why);

@@ -84,7 +84,7 @@ SubstepNeed need_of_light_rows(const Scene& scene) {
     const double turn = speed * row.joints / row.length * scene.options.dt;         // rad
     if (kPerRadian * turn <= out.substeps) continue;
     out = {kPerRadian * turn, "a row of " + std::to_string(row.joints) +
-                                  " light joints lashes when it throws up its load"};
+                                  " light joints whips when it throws its load up"};
   }
   return out;
 }

@@ -1,4 +1,4 @@
-// The plan for people: what is in, what is out and why, and what it takes.
+// The report of a plan: which stages and features it has and why, and its memory.
 #include "kernels/data/group.hpp"
 #include "manyworlds/fields.hpp"
 #include "src/plan/state_layout.hpp"
@@ -31,7 +31,7 @@ PlanReport describe(const PlanData& plan) {
   }
   static constexpr const char* kLists[] = {
       "impulses of pairs, several points", "impulses of pairs, one point",
-      "impulses against fixed, several points", "impulses against fixed, one point"};
+      "impulses of fixed shapes, several points", "impulses of fixed shapes, one point"};
   const bool stores = plan.has(Feature::contacts) && !plan.has_trees();
   for (int l = 0; stores && l < kernels::kLists; ++l) {
     const int capacity = plan.capacity[static_cast<std::size_t>(l)];

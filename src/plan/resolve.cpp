@@ -17,12 +17,13 @@ void resolve_options(PlanData& plan) {
     plan.choices.push_back({option, static_cast<double>(chosen), why});
   };
   const double unit = length_unit_of(plan.scene), slop = slop_of(plan.scene);
-  choose("length_unit", o.length_unit, unit, "size of the smallest shape that moves, m");
+  choose("length_unit", o.length_unit, unit, "size of the smallest moving shape, m");
   const double speed = speed_unit(o);
-  choose("contact.slop", o.contact.slop, slop, "0.005 of the length unit, m");
-  choose("contact.push_out_speed", o.contact.push_out_speed, 1.5 * speed,
-         o.gravity.isZero(0) ? "by the length unit, m/s" : "by gravity and the length unit, m/s");
-  choose("sleep.speed", o.sleep.speed, 0.06 * speed, "as the speed that pushes out, m/s");
+  choose("contact.slop", o.contact.slop, slop, "0.005 length units, m");
+  const char* speeds =
+      o.gravity.isZero(0) ? "from the length unit, m/s" : "from gravity and the length unit, m/s";
+  choose("contact.push_out_speed", o.contact.push_out_speed, 1.5 * speed, speeds);
+  choose("sleep.speed", o.sleep.speed, 0.06 * speed, speeds);
 
   if (!o.joint.method) {
     if (const std::string why = need_of_trees(extremes(plan), *o.length_unit); !why.empty()) {
@@ -33,7 +34,7 @@ void resolve_options(PlanData& plan) {
   const SubstepChoice substeps = choose_substeps(extremes(plan), *o.length_unit);
   choose("substeps", o.substeps, substeps.substeps, substeps.why);
   choose("contact.frequency", o.contact.frequency, kContactShare * substeps.stiff / o.dt,
-         "a quarter of the rate of " + std::to_string(substeps.stiff) + " substeps, Hz");
+         "a quarter of the rate of " + std::to_string(substeps.stiff) + " substeps per step, Hz");
 }
 
 }  // namespace manyworlds

@@ -9,7 +9,7 @@ namespace manyworlds {
 
 namespace {
 
-// Bodies in joint coordinates: contacts are found as ever, and all else is one stage.
+// Bodies in joint coordinates: contact detection is as usual, one stage does the rest of the step.
 void choose_tree_stages(PlanData& plan) {
   for (PlanStage& stage : plan.stages) stage = {false, "bodies move in joint coordinates"};
   const bool contacts = plan.has(Feature::contacts);
@@ -22,7 +22,8 @@ void choose_tree_stages(PlanData& plan) {
       true, "newton, " + count(plan.trees.links.size(), " links, ") +
                 count(plan.trees.dofs.size(), " degrees of freedom, ") +
                 count(plan.trees.limits.size() + plan.trees.ball_limits.size(), " limits, ") +
-                (plan.trees.by_links ? "by articulated bodies" : "by the joint-space inertia")};
+                (plan.trees.by_links ? "solved by articulated bodies"
+                                     : "solved by the joint-space inertia")};
 }
 
 }  // namespace
@@ -33,7 +34,7 @@ void choose_stages(PlanData& plan) {
   const auto set = [&](StepStage stage, bool in, std::string reason) {
     plan.stages[static_cast<std::size_t>(stage)] = {in, std::move(reason)};
   };
-  set(StepStage::tree, false, "bodies move by their own coordinates");
+  set(StepStage::tree, false, "bodies are not in joint coordinates");
   const Options& options = plan.scene.options;
   const bool contacts = plan.has(Feature::contacts), flight = has_flight(options);
   const bool forces_only = std::all_of(plan.parts.begin(), plan.parts.end(),
@@ -44,14 +45,14 @@ void choose_stages(PlanData& plan) {
   const std::string touch = why(Feature::contacts);
   const std::string some = contacts ? touch
                            : joints ? why(Feature::joints)
-                                    : "controls act on bodies";
+                                    : "controls exert forces on bodies";
 
   set(StepStage::free_motion, !substeps && !flight,
-      substeps ? "rows need the substep loop"
-      : flight ? "bodies move by another integrator"
+      substeps ? "contacts, joints or controls need substeps"
+      : flight ? "another integrator is set"
                : touch);
   set(StepStage::flight, flight,
-      flight ? to_string(options.integrator) : "bodies move as the substeps do");
+      flight ? to_string(options.integrator) : "the default integrator is part of the substeps");
   set(StepStage::begin, substeps, substeps ? some : touch);
   set(StepStage::broad_phase, contacts,
       plan.sparse  ? "sort and sweep, no table of pairs"
@@ -59,30 +60,30 @@ void choose_stages(PlanData& plan) {
                    : "masked all-pairs");
   set(StepStage::collide, contacts, touch);
   set(StepStage::joints, joints,
-      plan.has(Feature::joints) && !joints ? "springs are forces of the flight"
+      plan.has(Feature::joints) && !joints ? "springs are forces of the integrator"
                                            : why(Feature::joints));
   set(StepStage::warm_start, substeps, substeps ? some : touch);
 
   const std::string solver = to_string(options.solver.method);
   const int sweeps = iterations_of(options.solver);
   set(StepStage::bias, contacts,
-      solver + (sweeps == 1 ? ", a sweep in every substep"
-                            : ", " + std::to_string(sweeps) + " sweeps in every substep"));
-  set(StepStage::advance, substeps, "displacement, every substep");
+      solver + (sweeps == 1 ? ", one sweep per substep"
+                            : ", " + std::to_string(sweeps) + " sweeps per substep"));
+  set(StepStage::advance, substeps, "displacements, once per substep");
   const bool soft = options.solver.method == Solver::tgs_soft;
   set(StepStage::relax, contacts && soft,
-      !soft                         ? solver + " has no relaxing sweep"
-      : plan.has(Feature::friction) ? "normal rows and friction, every substep"
-                                    : "normal rows, every substep");
+      !soft                         ? solver + " has no relaxation sweep"
+      : plan.has(Feature::friction) ? "normal rows and friction, once per substep"
+                                    : "normal rows, once per substep");
   set(StepStage::restitute, contacts && plan.has(Feature::restitution), why(Feature::restitution));
   set(StepStage::store, contacts, "impulses for the next step's warm start");
   const bool moving_casts = options.contact.cast_between_moving;
   set(StepStage::finish, substeps,
-      !substeps                                   ? "whole steps commit by themselves"
-      : !contacts || !(plan.cast || moving_casts) ? "commit"
-      : !moving_casts                             ? "commit, with casts against fixed shapes"
-      : !plan.cast                                ? "commit, with casts between moving shapes"
-                   : "commit, with casts against fixed and moving shapes");
+      !substeps ? "steps without substeps write the state directly"
+      : !contacts || !(plan.cast || moving_casts) ? "writes the state"
+      : !moving_casts                             ? "writes the state; casts against fixed shapes"
+      : !plan.cast                                ? "writes the state; casts between moving shapes"
+                   : "writes the state; casts against fixed and between moving shapes");
 }
 
 }  // namespace manyworlds

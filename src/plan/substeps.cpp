@@ -32,7 +32,7 @@ Need need_of_sizes(const Scene& scene, double length_unit) {
   const double fall = o.gravity.norm() * o.dt * o.dt / length_unit;
   return {kLeastSubsteps * std::cbrt(fall / kFourSubsteps), "bodies of " + short_text(length_unit) +
                                                                 " m fall by " + short_text(fall) +
-                                                                " of that in a step"};
+                                                                " of their size in a step"};
 }
 
 Need need_of_standing(const Scene& scene) {
@@ -119,7 +119,7 @@ Need need_of_ratios(const std::vector<Scene>& extremes) {
 Need need_of_frequency(const Options& o) {
   if (!o.contact.frequency) return {};
   return {*o.contact.frequency * o.dt / kContactShare,
-          "contacts of " + short_text(*o.contact.frequency) + " Hz"};
+          "contact.frequency is " + short_text(*o.contact.frequency) + " Hz"};
 }
 
 int rounded_up(double substeps) {
@@ -161,10 +161,10 @@ SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_
   SubstepChoice out;
   const Options& o = extremes.front().options;
   if (o.solver.method != Solver::tgs_soft) {
-    out.why = "as for every solver but tgs-soft";
+    out.why = "fixed for solvers other than tgs-soft";
     return out;
   }
-  Need need{kLeastSubsteps, "the least; nothing asks for more"};
+  Need need{kLeastSubsteps, "the minimum is sufficient"};
   std::vector<bool> swept(extremes.front().joints.size(), true);
   if (o.joint.method == JointMethod::tree) {
     swept = trees_of(extremes.front()).has_joint;
@@ -194,7 +194,7 @@ SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_
   }
   out.substeps = rounded_up(need.substeps), out.why = need.why;
   if (need.substeps > kMostSubsteps) {
-    out.why += "; " + short_text(std::ceil(need.substeps)) + " would do, there are no more than " +
+    out.why += "; " + short_text(std::ceil(need.substeps)) + " are needed, the maximum is " +
                std::to_string(kMostSubsteps);
   }
   return out;

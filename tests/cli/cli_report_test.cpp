@@ -132,7 +132,7 @@ TEST_CASE("report stability judges every case in every setting", "[cli][report]"
     if (v["passed"] == true) {
       CHECK(v["lost_worlds"] == 0);
       CHECK(v["value"].get<double>() <= v["limit"].get<double>());
-    } else if (v["setting"] == "as by default, f32") {
+    } else if (v["setting"] == "default, f32") {
       CHECK(known.count(id) == 1);
     }
   }

@@ -111,7 +111,7 @@ TEST_CASE("ratios of mass and loads of joints ask for substeps", "[fast][plan]")
   }
 }
 
-TEST_CASE("rows of light links under a load have the substeps that they lash with",
+TEST_CASE("rows of light links under a load have the substeps that whipping needs",
           "[fast][plan]") {
   for (Space space : {Space::planar, Space::spatial}) {
     const auto loaded = [space](double ratio, int links = 10) {
@@ -130,8 +130,8 @@ TEST_CASE("rows of light links under a load have the substeps that they lash wit
       CHECK(substeps_of(loaded(ratio)) == 9);
     }
     CHECK(says(why(loaded(10), "joint.method"),
-               "10 joints in a row carry loads of 10 times their links"));
-    CHECK(says(why(loaded(10)), "a row of 10 light joints lashes"));
+               "10 joints in a row carry loads of 10 times the mass of their links"));
+    CHECK(says(why(loaded(10)), "a row of 10 light joints whips"));
     CHECK(*compile(loaded(10)).resolved().contact.frequency == 60);
     CHECK(substeps_of(loaded(100)) == 4);                // not thrown up
     CHECK(method(loaded(10, 4)) == JointMethod::sweep);  // no row
@@ -204,7 +204,7 @@ TEST_CASE("a frequency that is given asks for substeps that carry it", "[fast][p
   Scene scene = column(Space::spatial, 1, 1);
   scene.options.contact.frequency = 240;
   CHECK(substeps_of(scene) == 16);
-  CHECK(says(why(scene), "contacts of 240 Hz"));
+  CHECK(says(why(scene), "contact.frequency is 240 Hz"));
 }
 
 TEST_CASE("the worst of all worlds decides", "[fast][plan]") {

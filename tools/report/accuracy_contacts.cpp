@@ -159,8 +159,8 @@ std::vector<Case> contact_cases() {
                            rolling("A15y", Vec3::UnitY()), bouncing(), heap(), elastic_heap()};
 
   const double slope = kPi / 12, a = 5.0 / 7 * kG * std::sin(slope);
-  Case roll =
-      of_contacts("A19", "ball that rolls down 15 degrees", "speed after 1 s", "share", 1e-3, 1);
+  Case roll = of_contacts("A19", "ball that rolls down a slope of 15 degrees",
+                          "relative speed error after 1 s", "share", 1e-3, 1);
   roll.scene = [=] {
     Scene scene = scenes::incline(Space::spatial, slope, 1, Sphere{0.05}, 0.05);
     scene.options.length_unit = 0.1;
@@ -173,7 +173,8 @@ std::vector<Case> contact_cases() {
   };
   out.push_back(roll);
 
-  Case stop = of_contacts("A20", "block that slides to a stop", "distance", "share", 1e-3, 2);
+  Case stop = of_contacts("A20", "block that slides to a stop", "relative error of the distance",
+                          "share", 1e-3, 2);
   stop.scene = [] {
     Scene scene = scenes::incline(Space::spatial, 0, 0.3, Box{Vec3::Constant(0.25)}, 0.25);
     scene.bodies[1].linear_velocity = {5, 0, 0};
@@ -186,7 +187,7 @@ std::vector<Case> contact_cases() {
   out.push_back(stop);
 
   Case bounce = of_contacts("A21", "ball that bounces, restitution 0.8",
-                            "largest error of its height over four bounces", "m", 1e-2, 2.4);
+                            "largest height error over four bounces", "m", 1e-2, 2.4);
   bounce.scene = [] {
     Scene scene = empty(Space::spatial);
     scene.options.contact.restitution_threshold = 0.1;
@@ -209,7 +210,8 @@ std::vector<Case> contact_cases() {
   out.push_back(bounce);
 
   Case grip = of_contacts("A22", "spinning ball that hits the ground and grips",
-                          "velocity after the impact, of the speed before", "share", 1e-4, 0.5);
+                          "velocity error after the impact, relative to the speed before", "share",
+                          1e-4, 0.5);
   grip.scene = [] {
     Scene scene = empty(Space::spatial, 0);
     scene.add(ground(Space::spatial, 1, 0.5));

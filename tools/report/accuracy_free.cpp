@@ -12,7 +12,7 @@ Case tumbling(const std::string& id, const std::string& title, const Vec3& momen
               const Vec3& spin, double seconds, const Quat& end) {
   Case c;
   c.id = id, c.title = title;
-  c.metric = "angle between the orientations at the end", c.unit = "rad";
+  c.metric = "orientation error at the end", c.unit = "rad";
   c.level = 1e-2;
   c.seconds = c.quick_seconds = seconds;
   c.steps = halvings(1.0 / 30, 9), c.quick_steps = halvings(1.0 / 60, 4);
@@ -44,13 +44,13 @@ std::vector<Case> free_cases() {
   out.push_back(tumbling("A2", "free box (MuJoCo)", Vec3(0.13, 0.10, 0.05) / 3, {1, 2, 3}, 5,
                          Quat(-0.3648637429868626, 0.0235633573425886834, 0.0212620010520073973,
                               -0.930519824912734775)));
-  out.push_back(tumbling("A3", "free body with an axis (Drake)", {0.04, 0.04, 0.02}, {2, 4, 6}, 10,
+  out.push_back(tumbling("A3", "free axisymmetric body (Drake)", {0.04, 0.04, 0.02}, {2, 4, 6}, 10,
                          Quat(-0.185871916511537869, 0.195938189833834226, -0.785967065292867107,
                               -0.556161513134346803)));
 
   Case kepler;
   kepler.id = "A4", kepler.title = "orbit of eccentricity 0.6, ten periods";
-  kepler.metric = "distance from the exact place at the end", kepler.unit = "m";
+  kepler.metric = "position error at the end", kepler.unit = "m";
   kepler.level = 1e-2;
   kepler.seconds = kepler.quick_seconds = 20 * kPi;
   kepler.steps = halvings(2 * kPi / 100, 8), kepler.quick_steps = halvings(2 * kPi / 200, 4);
@@ -69,7 +69,7 @@ std::vector<Case> free_cases() {
 
   Case spring;
   spring.id = "A5", spring.title = "mass on a spring, ten swings";
-  spring.metric = "largest distance from cos(2 pi t)", spring.unit = "m";
+  spring.metric = "largest error of cos(2 pi t)", spring.unit = "m";
   spring.level = 1e-2;
   spring.seconds = spring.quick_seconds = 10.25;
   spring.steps = halvings(1.0 / 20, 8), spring.quick_steps = halvings(1.0 / 40, 4);

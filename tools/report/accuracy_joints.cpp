@@ -62,8 +62,8 @@ Case of_joints(const std::string& id, const std::string& title, const std::strin
 }
 
 Case long_pendulum() {
-  Case c = of_joints("A7", "point on a rod (IFToMM A01)",
-                     "largest distance from the exact place, every 0.5 s", "m", 1e-1, 2000, 50);
+  Case c = of_joints("A7", "point on a rod (IFToMM A01)", "largest position error, every 0.5 s",
+                     "m", 1e-1, 2000, 50);
   c.steps = halvings(1.0 / 60, 7);
   const std::vector<double> angles = swing(kG, 0, 0, 0.5, 2000);
   c.scene = [] {
@@ -85,7 +85,8 @@ Case long_pendulum() {
 }
 
 Case heavy_top() {
-  Case c = of_joints("A10", "heavy top that nods", "angle of its axis at 2 s", "rad", 1e-2, 2, 2);
+  Case c = of_joints("A10", "heavy top with nutation", "angle error of its axis at 2 s", "rad",
+                     1e-2, 2, 2);
   c.steps = halvings(1.0 / 60, 8), c.quick_steps = halvings(1.0 / 240, 4);
   c.scene = [] {
     Scene scene = empty(Space::spatial);
@@ -107,8 +108,8 @@ Case heavy_top() {
 Case four_bars(int n, double seconds) {
   Case c =
       of_joints("A11-" + std::to_string(n), std::to_string(n) + " loops of four bars (IFToMM A02)",
-                "largest distance of the first tip from its place, every 0.05 s", "m", 1e-1,
-                seconds, n == 2 ? seconds : 2);
+                "largest position error of the first tip, every 0.05 s", "m", 1e-1, seconds,
+                n == 2 ? seconds : 2);
   c.steps = halvings(1.0 / 60, n == 2 ? 7 : 5);
   const double rate = kG * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n);
   const std::vector<double> angles = swing(rate, kPi / 2, -1, 0.05, seconds);
@@ -128,15 +129,15 @@ Case four_bars(int n, double seconds) {
 
 std::vector<Case> joint_cases() {
   std::vector<Case> out;
-  Case rod = of_joints("A6", "rod on a hinge", "angle at 10 s", "rad", 1e-2, 10, 10);
+  Case rod = of_joints("A6", "rod on a hinge", "angle error at 10 s", "rad", 1e-2, 10, 10);
   rod.scene = [] { return rods(1); };
   rod.error = [](const Batch& b, double) {
     return wrapped(angle_from_down(b, 0) - 0.770957622574773133);
   };
   out.push_back(rod);
   out.push_back(long_pendulum());
-  Case two =
-      of_joints("A8", "double pendulum", "larger error of the angles at 2 s", "rad", 1e-2, 2, 2);
+  Case two = of_joints("A8", "double pendulum", "larger of the two angle errors at 2 s", "rad",
+                       1e-2, 2, 2);
   two.scene = [] { return rods(2); };
   two.error = [](const Batch& b, double) {
     return std::max(wrapped(angle_from_down(b, 0) + 0.0827583068205708),

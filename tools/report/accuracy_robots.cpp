@@ -122,8 +122,7 @@ void add_kept(const std::string& id, const std::string& title, Scene (*scene)(),
     if (!*kept) *kept = kept_at_start(scene());
     return **kept;
   };
-  Case energy = of_robots(id + "e", title, "largest change of the energy, as a share of it",
-                          "share", 1e-3, 10);
+  Case energy = of_robots(id + "e", title, "largest relative energy error", "share", 1e-3, 10);
   energy.scene = scene;
   energy.observe = {Observer::motion};
   energy.over = Over::largest;
@@ -132,7 +131,7 @@ void add_kept(const std::string& id, const std::string& title, Scene (*scene)(),
     return std::abs(kept_of(b).energy - start().energy) / start().energy;
   };
   momenta.id = id + "p";
-  momenta.metric = "larger change of momentum and angular momentum, as shares of them";
+  momenta.metric = "larger relative error of momentum and angular momentum";
   momenta.error = [start](const Batch& b, double) {
     const Kept now = kept_of(b), first = start();
     return std::max((now.momentum - first.momentum).norm() / first.momentum.norm(),
@@ -151,8 +150,8 @@ double damped_place(double damping, double stiffness, double t) {
 // A damper whose time constant is shorter than the longer steps.
 Case damped_slider() {
   constexpr double kDamping = 150, kStiffness = 100;
-  Case c = of_robots("A27", "slider with a spring and a strong damper",
-                     "largest distance from the exact place", "m", 1e-3, 2);
+  Case c = of_robots("A27", "slider with a spring and a strong damper", "largest position error",
+                     "m", 1e-3, 2);
   c.scene = [] {
     Scene scene = newton_scene(0);
     scene.add(lump(Space::spatial, 1, Vec3::Constant(0.01), Vec3::Zero()));
@@ -179,15 +178,15 @@ Case damped_slider() {
 std::vector<Case> robot_cases() {
   std::vector<Case> out;
   Case angles = of_robots("A23", "double pendulum in joint coordinates",
-                          "larger error of the angles at 2 s", "rad", 1e-2, 2);
+                          "larger of the two angle errors at 2 s", "rad", 1e-2, 2);
   angles.scene = swinging_rods;
   angles.error = [](const Batch& b, double) {
     return std::max(turn(angle_from_down(b, 0) + 0.0827583068205708),
                     turn(angle_from_down(b, 1) - 0.407362074911907));
   };
   out.push_back(angles);
-  Case energy = of_robots("A24", "double pendulum in joint coordinates",
-                          "largest change of the energy", "J", 0.1, 10);
+  Case energy = of_robots("A24", "double pendulum in joint coordinates", "largest energy error",
+                          "J", 0.1, 10);
   energy.scene = swinging_rods;
   energy.over = Over::largest;
   energy.error = [](const Batch& b, double) {
@@ -195,8 +194,8 @@ std::vector<Case> robot_cases() {
     return std::abs(e.kinetic + e.potential);
   };
   out.push_back(energy);
-  add_kept("A25", "five bodies on ball joints, flung in space", flying_chain, out);
-  add_kept("A26", "limp ant, flung in space", limp_ant, out);
+  add_kept("A25", "five bodies on ball joints, free motion", flying_chain, out);
+  add_kept("A26", "ant without motors, free motion", limp_ant, out);
   out.push_back(damped_slider());
   return out;
 }

@@ -59,7 +59,8 @@ std::vector<WorthRow> compare_joint_methods(bool quick) {
         const Swing s = same ? usual : swing(load, method, substeps, quick);
         WorthRow row;
         row.scene = fmt::format(
-            "ten links, the last of {:g} times the others' mass, by sweeps in 4 substeps", load);
+            "ten links, the last with {:g} times the mass of the others, swept in 4 substeps",
+            load);
         row.variant = fmt::format("{}, {} substeps", to_string(method), substeps);
         row.plain = 600 * (quick ? 16 : 64) / usual.seconds;
         row.worth = s.seconds / usual.seconds;

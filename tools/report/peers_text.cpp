@@ -13,7 +13,7 @@ namespace {
 std::string protocol_text(const Peers& peers) {
   return fmt::format(
       "{} worlds on one thread, round robin, {} steps of 1/60 s after 60 to warm up, no sleep; by "
-      "processor time, in turns in one run, {}",
+      "processor time, alternating in one run, {}",
       peers.worlds, peers.steps,
       peers.rounds == 1 ? "once" : fmt::format("median of {} rounds", peers.rounds));
 }

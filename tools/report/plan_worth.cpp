@@ -115,7 +115,7 @@ void add_choices(const std::string& name, const Setup& plain, std::vector<Varian
     }
   }
   if (plain.scene.variations.empty() && plan.bodies() > 0) {
-    Variant v{name, "gravity of every world's own", plain, plain};
+    Variant v{name, "gravity per world", plain, plain};
     Variation gravity;
     gravity.parameter = Parameter::gravity;
     gravity.low = gravity.high = plain.scene.options.gravity;
@@ -159,7 +159,7 @@ void add_enlarged(const std::string& name, const Setup& plain, std::vector<Varia
 }
 
 void add_sleep(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
-  Variant v{name, "at rest: without sleep, against with it", plain, plain};
+  Variant v{name, "at rest, without sleep / with sleep", plain, plain};
   v.plain.batch.sleep = true;
   v.settle = 1200;
   v.must_be_same = false;  // sleeping bodies do not move
@@ -203,7 +203,7 @@ void add_substeps(bool quick, std::vector<Variant>& out) {
     Variant v{trial.id, "", plain_setup(scene, 16), plain_setup(scene, 16)};
     const Options chosen = compile(scene).resolved();
     v.name = fmt::format("4 substeps{} instead of {}",
-                         chosen.joint.method ? " of sweeps over joints" : "", *chosen.substeps);
+                         chosen.joint.method ? " and swept joints" : "", *chosen.substeps);
     v.changed.scene.options.substeps = 4;
     v.changed.scene.options.joint.method = JointMethod::sweep;
     v.must_be_same = false;

@@ -29,15 +29,15 @@ Setting with_solver(const char* name, Solver solver, bool split = false) {
 }
 
 std::vector<Setting> settings(bool quick) {
-  std::vector<Setting> out = {{"as by default, f32", Precision::f32},
-                              {"as by default, f64", Precision::f64},
+  std::vector<Setting> out = {{"default, f32", Precision::f32},
+                              {"default, f64", Precision::f64},
                               with_substeps("twice the substeps, f32", 2)};
   if (quick) return out;
   out.push_back(with_substeps("a quarter of the substeps, f32", 0.25));
   out.push_back({"two sweeps per substep, f32", Precision::f32, 1, 1,
                  [](Options& o) { o.solver.iterations = 2; }});
   out.push_back({"a quarter of the step, f32", Precision::f32, 4});
-  out.push_back({"joints swept over, f32", Precision::f32, 1, 1,
+  out.push_back({"swept joints, f32", Precision::f32, 1, 1,
                  [](Options& o) { o.joint.method = JointMethod::sweep; }});
   out.push_back(with_solver("sequential-impulse, 20 sweeps, f32", Solver::sequential_impulse));
   out.push_back(with_solver("split impulses, 20 sweeps, f32", Solver::sequential_impulse, true));

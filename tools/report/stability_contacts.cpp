@@ -42,9 +42,9 @@ Trial mass_ratio(int which) {
   Trial t = trial("B" + std::to_string(which + 1), "", "", "m", 0, 10);
   t.at_end = true;
   if (which == 1) {
-    t.note = "such ratios of mass take 10 to 12 substeps";
-    t.title = "three pyramids, tops 100 to 300 times as dense dropped on them";
-    t.criterion = "a box is off its height at the end", t.limit = 0.1;
+    t.note = "these mass ratios need 10 to 12 substeps";
+    t.title = "three pyramids, tops of 100 to 300 times the density dropped on them";
+    t.criterion = "height error of a box at the end", t.limit = 0.1;
     t.scene = [] {
       Scene scene = grounded(Space::planar, 0.5);
       for (int j = 0; j < 3; ++j) {
@@ -73,7 +73,7 @@ Trial mass_ratio(int which) {
     return t;
   }
   t.title = which == 2 ? "box of 20 m dropped on two of 1 m" : "the same on a thick ground";
-  t.criterion = "the large box has sunk at the end", t.limit = 0.1;
+  t.criterion = "height error of the large box at the end", t.limit = 0.1;
   t.scene = [which] {
     Scene scene = empty(Space::planar, 10);
     scene.options.density = 1;
@@ -88,7 +88,7 @@ Trial mass_ratio(int which) {
     scene.add(box2(10, 10, 0, 26));
     return scene;
   };
-  t.note = "such ratios of mass take 10 to 12 substeps";
+  t.note = "these mass ratios need 10 to 12 substeps";
   t.value = [](const Seen& s, int w) { return std::abs(s.position(w, 2).y() - 11); };
   return t;
 }
@@ -97,7 +97,7 @@ Trial tower(Space space, int boxes) {
   const bool planar = space == Space::planar;
   Trial t = trial("B6-" + std::to_string(boxes) + (planar ? " 2D" : " 3D"),
                   "tower of " + std::to_string(boxes) + (planar ? " squares" : " cubes"),
-                  "its top has moved to the side after 20 s", "m", 0.1, 20);
+                  "sideways displacement of the top after 20 s", "m", 0.1, 20);
   t.at_end = true;
   t.scene = [=] {
     Scene scene = grounded(space, 0.3);
@@ -115,8 +115,8 @@ Trial tower(Space space, int boxes) {
 }
 
 Trial card_house() {
-  Trial t = trial("B9", "house of cards, five stories", "its top card has sunk after 10 s", "m",
-                  0.02, 10);
+  Trial t = trial("B9", "house of cards, five stories",
+                  "vertical displacement of the top card after 10 s", "m", 0.02, 10);
   t.at_end = true;
   t.scene = [] {
     Scene scene = grounded(Space::planar, 0.7);
@@ -142,8 +142,8 @@ Trial card_house() {
 }
 
 Trial cylinders() {
-  Trial t = trial("B11", "five cylinders on each other", "the top one has moved after 20 s", "m",
-                  0.02, 20);
+  Trial t = trial("B11", "stack of five cylinders",
+                  "sideways displacement of the top one after 20 s", "m", 0.02, 20);
   t.at_end = true;
   t.scene = [] {
     Scene scene = grounded(Space::spatial);
@@ -159,8 +159,8 @@ Trial cylinders() {
 }
 
 Trial warm_start() {
-  Trial t = trial("B12", "a circle 100 times as dense is taken off two others",
-                  "speed of those later than 0.05 s after", "m/s", 0.05, 4);
+  Trial t = trial("B12", "circle of 100 times the density removed from two others",
+                  "speed of the two from 0.06 s later on", "m/s", 0.05, 4);
   t.from = 2.06;
   t.scene = [] {
     Scene scene = grounded(Space::planar);
@@ -183,8 +183,7 @@ Trial warm_start() {
 }
 
 Trial overlap() {
-  Trial t =
-      trial("B13", "pyramid spawned with a quarter of overlap", "speed of a box", "m/s", 3.5, 6);
+  Trial t = trial("B13", "pyramid spawned with 25 % overlap", "speed of a box", "m/s", 3.5, 6);
   t.scene = [] {
     Scene scene = grounded(Space::planar);
     for (int row = 0; row < 4; ++row) {
@@ -200,12 +199,12 @@ Trial overlap() {
 
 Trial coincident(int bodies, bool boxes) {
   Trial t = trial("B14-" + std::to_string(bodies) + (boxes ? " boxes" : " spheres"),
-                  std::to_string(bodies) + " with one centre", "speed", "m/s", 4, 5);
+                  std::to_string(bodies) + " bodies at one position", "speed", "m/s", 4, 5);
   if (bodies == 100) {
     t.limit = 40;
     t.note =
-        "speeds of pairs that part (at most 1.5 m/s each) add up along a row: a hundred part at up "
-        "to n / 4 times as much";
+        "separation velocities of pairs (at most 1.5 m/s each) add up along a row: n bodies "
+        "separate at up to n / 4 times as much";
   }
   t.scene = [=] {
     Scene scene = empty(Space::spatial, 0);
@@ -225,7 +224,7 @@ Trial scale(double size) {
   Trial t = trial(size == 0.05  ? "B33 5 cm"
                   : size < 0.05 ? "B33 1 mm"
                                 : "B33 1 km",
-                  "five cubes on each other", "their top has moved, in their size", "", 0.05,
+                  "stack of five cubes", "displacement of the top, in cube sizes", "", 0.05,
                   100 * std::sqrt(size / 10));
   t.at_end = true;
   t.dt = std::sqrt(size) / 60;  // falls take as many steps whatever the size
@@ -239,8 +238,8 @@ Trial scale(double size) {
 }
 
 Trial large_step() {
-  Trial t = trial("B34", "five cubes with steps of 0.1 s", "their top has moved after 20 s", "m",
-                  0.05, 20);
+  Trial t = trial("B34", "stack of five cubes, steps of 0.1 s",
+                  "displacement of the top after 20 s", "m", 0.05, 20);
   t.at_end = true;
   t.dt = 0.1;
   t.scene = [] {
@@ -254,8 +253,7 @@ Trial large_step() {
 
 // A rod whose tip leads on rough ground: no forces fit rigid laws at that instant.
 Trial painleve() {
-  Trial t =
-      trial("B35", "Painleve's rod, friction 2", "energy gained, of what it had", "", 0.01, 3);
+  Trial t = trial("B35", "Painleve's rod, friction 2", "relative energy gain", "", 0.01, 3);
   t.scene = [] {
     Scene scene = grounded(Space::planar, 2);
     const double angle = 63.435 * kPi / 180;
@@ -277,7 +275,7 @@ Trial incline(double friction, double degrees) {
   Trial t = trial(degrees < 0 ? "B36 below" : "B36 above",
                   std::string("block on a slope a degree ") + (degrees < 0 ? "below" : "above") +
                       " its critical angle",
-                  degrees < 0 ? "creep in 10 s" : "speed off its law, as a share",
+                  degrees < 0 ? "creep in 10 s" : "relative error of the speed",
                   degrees < 0 ? "m" : "", degrees < 0 ? 1e-3 : 1e-2, degrees < 0 ? 10 : 3);
   t.at_end = true;
   t.scene = [=] {
@@ -297,7 +295,7 @@ Trial incline(double friction, double degrees) {
 }
 
 Trial rush() {
-  Trial t = trial("B39", "400 circles drawn together by 1000 N each", "speed in the last second",
+  Trial t = trial("B39", "400 circles pulled together by 1000 N each", "speed in the last second",
                   "m/s", 1, 12);
   t.from = 11;
   t.scene = [] {

@@ -12,7 +12,7 @@ namespace {
 
 Trial elastic_balls() {
   Trial t = trial("C6 balls", "20 elastic balls in a closed box, no gravity",
-                  "energy off that of its start after 60 s, as a share", "", 0.01, 60);
+                  "relative energy error within 60 s", "", 0.01, 60);
   t.scene = [] {
     Scene scene = empty(Space::spatial, 0);
     for (int axis = 0; axis < 3; ++axis) {
@@ -49,16 +49,16 @@ Scene ball_on_two(double radius) {
 
 Trial on_two(double radius) {
   Trial t = trial(radius < 0.1 ? "C7 two 5 cm" : "C7 two 50 cm",
-                  "ball at 2 m/s that strikes two touching ones at once",
-                  "its speed is off -0.4 m/s, as a share", "", 0.01, 1);
+                  "ball at 2 m/s that hits two touching balls at once",
+                  "relative error of its velocity of -0.4 m/s", "", 0.01, 1);
   t.at_end = true;
   t.scene = [radius] { return ball_on_two(radius); };
   t.value = [](const Seen& s, int w) { return std::abs(s.velocity(w, 0).x() / -0.4 - 1); };
   return t;
 }
 Trial mirrored() {
-  Trial t = trial("C7 mirror", "the same", "how far the two are off each other's mirror image",
-                  "m/s", 1e-4, 1);
+  Trial t = trial("C7 mirror", "the same",
+                  "difference of one's velocity and the other's mirror image", "m/s", 1e-4, 1);
   t.at_end = true;
   t.scene = [] { return ball_on_two(0.5); };
   t.value = [](const Seen& s, int w) {
@@ -71,8 +71,8 @@ Trial mirrored() {
 // The kernels' own contacts; tests/collide/rough_ground_test.cpp compares them with the ground.
 Trial rough_ground() {
   Trial t = trial("C9 hills", "24 bodies of every shape on hills",
-                  "deepest overlap of any contact, from 5 s on", "m", 6e-3, 10);
-  t.note = "2 slop; bodies that rest sink in by a tenth of that";
+                  "largest penetration from 5 s on", "m", 6e-3, 10);
+  t.note = "the limit is 2 slop; resting bodies sink by a tenth of that";
   t.scene = [] { return scenes::find("hills")->make(); };
   t.whole = [](const Plan& plan, const BatchOptions& options) {
     Batch batch(plan, options);

@@ -36,7 +36,7 @@ Trial ball_and_chain() {
   Trial t = trial("B15", "ball of 672 links' mass on 40 links", "gap of a joint", "m", 0.05, 10);
   t.scene = [] { return chain(40, 0.5, 0.125, with_shape(Circle{8}, Vec3::Zero()), 8); };
   t.value = [](const Seen& s, int w) { return s.worst_gap(w); };
-  t.note = "passes by sweeps with 12 substeps, too";
+  t.note = "also passes with swept joints and 12 substeps";
   return t;
 }
 Trial heavy_rope() {
@@ -54,7 +54,7 @@ Trial stretched(bool gravity) {
   constexpr double kWhip = 70, kPulls = 40;  // m/s
   Trial t = trial(
       gravity ? "B17 hung" : "B17",
-      std::string("chain whose 40 joints begin 1 m apart") + (gravity ? ", under gravity" : ""),
+      std::string("chain whose 40 joints start 1 m apart") + (gravity ? ", under gravity" : ""),
       "speed", "m/s", gravity ? kWhip + kPulls : 50, 3);
   t.scene = [gravity] {
     Scene scene = empty(Space::planar, gravity ? 10 : 0);
@@ -73,7 +73,7 @@ Trial stretched(bool gravity) {
     return scene;
   };
   t.value = [](const Seen& s, int w) { return s.fastest(w); };
-  if (gravity) t.note = "a chain that falls while it contracts lashes like a whip";
+  if (gravity) t.note = "a chain that falls while it contracts whips";
   return t;
 }
 
@@ -116,7 +116,7 @@ Trial grid() {
 // Masses that hang one below the other on springs, soft and stiff alternately.
 Trial spring_chain() {
   Trial t = trial("B20", "eight masses on springs of 1000 and 1e6 N/m",
-                  "extension of a spring off F / k, in F / 1000", "", 0.01, 10);
+                  "error of a spring's extension F / k, in F / 1000", "", 0.01, 10);
   t.at_end = true;
   t.scene = [] {
     Scene scene = empty(Space::planar, 10);
@@ -148,9 +148,9 @@ Trial spring_chain() {
 }
 
 Trial stiff_spring(double stiffness, Integrator integrator) {
-  Trial t = trial(
-      std::string("B21 ") + (stiffness < 1e5 ? "1e2" : "1e8") + " " + to_string(integrator),
-      "a mass on a spring for 600 steps", "distance from where it began, in 1 m", "", 1.01, 10);
+  Trial t =
+      trial(std::string("B21 ") + (stiffness < 1e5 ? "1e2" : "1e8") + " " + to_string(integrator),
+            "mass on a spring, 600 steps", "distance from the rest position, in 1 m", "", 1.01, 10);
   t.scene = [=] {
     Scene scene = empty(Space::planar, 0);
     scene.options.integrator = integrator;
@@ -168,8 +168,8 @@ Trial stiff_spring(double stiffness, Integrator integrator) {
   if (stiffness > 1e5 && integrator != Integrator::symplectic_euler &&
       integrator != Integrator::implicit_euler) {
     t.note =
-        "explicit methods hold springs up to omega h of about 2; implicit-euler and the default "
-        "hold any";
+        "explicit methods are stable up to omega h of about 2; implicit-euler and the default are "
+        "always stable";
   }
   return t;
 }

@@ -39,8 +39,8 @@ int different(const Batch& a, const Batch& b, int but) {
 }
 
 Trial poisoned() {
-  Trial t = trial("B42", "a world with velocities that are not numbers, among others",
-                  "other worlds whose bits it changes, and 1 if it is not flagged", "", 0, 1);
+  Trial t = trial("B42", "one world with NaN velocities among others",
+                  "other worlds with changed bits, plus 1 if it is not flagged", "", 0, 1);
   t.scene = [] { return pile(true); };
   t.whole = [](const Plan& plan, const BatchOptions& options) {
     Batch clean(plan, options), spoilt(plan, options);
@@ -55,8 +55,8 @@ Trial poisoned() {
 }
 
 Trial asleep() {
-  Trial t =
-      trial("B45 pile", "a pile that falls asleep", "share of worlds awake after 10 s", "", 0, 10);
+  Trial t = trial("B45 pile", "a pile that falls asleep", "fraction of worlds awake after 10 s", "",
+                  0, 10);
   t.scene = [] { return pile(false); };
   t.whole = [](const Plan& plan, BatchOptions options) {
     options.sleep = true;
@@ -68,7 +68,7 @@ Trial asleep() {
 }
 Trial as_awake() {
   Trial t = trial("B45 pyramid", "a pyramid of 15 squares that falls asleep",
-                  "a place is off that without sleep after 10 s", "m", 1e-3, 10);
+                  "position difference to a batch without sleep after 10 s", "m", 1e-3, 10);
   t.scene = [] {
     Scene scene = empty(Space::planar, 10);
     scene.add(ground(Space::planar, 0.6));
@@ -95,12 +95,12 @@ Trial as_awake() {
     for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
     return most;
   };
-  t.note = "infinite where a world is still awake";
+  t.note = "the value is infinite while a world is awake";
   return t;
 }
 
 Trial same_bits() {
-  Trial t = trial("B46", "5 s of a pile on 1 and 3 threads, in both layouts, and other batch sizes",
+  Trial t = trial("B46", "5 s of a pile with 1 and 3 threads, both layouts and other batch sizes",
                   "worlds whose bits differ", "", 0, 5);
   t.scene = [] { return pile(true); };
   t.whole = [](const Plan& plan, BatchOptions options) {

@@ -17,7 +17,7 @@ Trial spinning(const std::string& id, const std::string& title, const Vec3& rate
                double seconds, double limit) {
   Trial t;
   t.id = id, t.title = title, t.limit = limit;
-  t.criterion = "energy to that of its start, or the other way round";
+  t.criterion = "energy divided by that at the start, or the inverse";
   t.seconds = seconds, t.dt = dt;
   t.scene = [=] {
     Scene scene = empty(Space::spatial, 0);
@@ -38,7 +38,7 @@ Trial bullet(bool planar) {
   t.id = planar ? "B29 2D" : "B29 3D";
   t.title = planar ? "circle at 200 m/s against a wall of 10 cm"
                    : "sphere at 180 m/s against a wall of 20 cm";
-  t.criterion = "place beyond the middle of the wall", t.unit = "m";
+  t.criterion = "position beyond the middle of the wall", t.unit = "m";
   t.seconds = 1;
   t.scene = [planar] {
     const Space space = planar ? Space::planar : Space::spatial;
@@ -62,7 +62,7 @@ Trial bullet(bool planar) {
 Trial far(double distance) {
   Trial t;
   t.id = distance < 1e4 ? "B32 6 km" : "B32 100 km";
-  t.title = "five cubes so far from the origin";
+  t.title = "stack of five cubes far from the origin";
   t.criterion = "speed", t.unit = "m/s", t.limit = 1;
   t.scene = [distance] {
     Scene scene = empty(Space::spatial, 10);
@@ -76,7 +76,7 @@ Trial far(double distance) {
   };
   t.value = [](const Seen& s, int w) { return s.fastest(w); };
   if (distance > 1e4) {
-    t.note = "a float32 place 100 km away is known to 8 mm: faces of cubes do not meet exactly";
+    t.note = "float32 resolves 8 mm at 100 km, so faces of cubes do not touch exactly";
   }
   return t;
 }
@@ -110,7 +110,7 @@ Trial book(int axis) {
                        : axis == 0 ? "largest"
                                    : "least") +
                       " moment",
-                  axis == 1 ? "how far its time between flips is off" : "its axis has leant by",
+                  axis == 1 ? "relative error of the time between flips" : "tilt of its axis",
                   axis == 1 ? "" : "rad", axis == 1 ? 0.1 : 0.05, 20);
   const Vec3 half(0.08, 0.35, 0.5);  // moments fall from x to z
   const Vec3 moments =
@@ -160,8 +160,8 @@ Trial book(int axis) {
 
 // A ball that flies 12 times its radius in a step lands on the ground.
 Trial landing() {
-  Trial t = trial("B31 landing", "ball of 5 cm that comes at 20 m/s in steps of 30 ms",
-                  "it has sunk at the end", "m", 0.01, 1.2);
+  Trial t = trial("B31 landing", "ball of 5 cm that lands at 20 m/s, steps of 30 ms",
+                  "penetration at the end", "m", 0.01, 1.2);
   t.at_end = true, t.dt = 0.03;
   t.scene = [] {
     Scene scene = empty(Space::spatial, 10);
@@ -176,8 +176,8 @@ Trial landing() {
 }
 // A box that flies past a corner, and over an edge, without touching.
 Trial passing() {
-  Trial t = trial("B31 passing", "box that flies over another at 60 m/s, 2 cm above it",
-                  "share of its speed that it has lost", "", 0.01, 0.5);
+  Trial t = trial("B31 passing", "box that passes 2 cm above another at 60 m/s",
+                  "relative change of its speed", "", 0.01, 0.5);
   t.at_end = true;
   t.scene = [] {
     Scene scene = empty(Space::planar, 0);
@@ -201,8 +201,8 @@ std::vector<Trial> motion_trials() {
       spinning("B26 1000", "box that spins at 1000 rad/s", {1, 1000, 1}, 1.0 / 60, 10, 2.1),
       spinning("B27 middle", "box that tumbles about its middle axis for 100 s", {0.05, 5, 0.05},
                0.005, 100, 1.01),
-      spinning("B27 long", "box that spins about another for 100 s", {20, 0.05, 0.05}, 0.005, 100,
-               1.01),
+      spinning("B27 long", "box that spins about its x axis for 100 s", {20, 0.05, 0.05}, 0.005,
+               100, 1.01),
       book(0),
       book(1),
       book(2),

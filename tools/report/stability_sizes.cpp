@@ -41,8 +41,8 @@ void push_all(Batch& batch, int row, const Vec3& force) {
 Trial press(double size, double weights) {
   const bool much = weights > 1000;
   Trial t = trial(fmt::format("C1 {} x {:g}", size_text(size), weights),
-                  "cube pressed on the ground by so many times its weight",
-                  "it has sunk, in its size", "", much ? 0.5 : 0.02, 10);
+                  "cube pressed on the ground by a multiple of its weight",
+                  "displacement, in cube sizes", "", much ? 0.5 : 0.02, 10);
   t.scene = [size] {
     Scene scene = grounded();
     scene.add(cube(size, {0, 0, size / 2}));
@@ -79,7 +79,7 @@ Scene column(int count, const Vec3& half) {
 // How far a column's top has moved, in the height of the column.
 Trial stack(const std::string& id, const std::string& title, int count, const Vec3& half,
             double seconds) {
-  Trial t = trial(id, title, "its top has moved, in its height", "", 0.02, seconds);
+  Trial t = trial(id, title, "displacement of the top, in stack heights", "", 0.02, seconds);
   t.scene = [=] { return column(count, half); };
   t.whole = [=](const Plan& plan, const BatchOptions& options) {
     return asleep_then(plan, options, seconds, [=](const Seen& s, int w) {
@@ -90,21 +90,21 @@ Trial stack(const std::string& id, const std::string& title, int count, const Ve
 }
 Trial stack(double size, int count) {
   return stack(fmt::format("C2 {} x {}", count, size_text(size)),
-               "cubes on each other, asleep after 20 s", count, Vec3::Constant(size / 2), 20);
+               "stack of cubes, asleep after 20 s", count, Vec3::Constant(size / 2), 20);
 }
 Trial rest(double size) {
-  return stack(fmt::format("C3 rest {}", size_text(size)),
-               "five cubes on each other, asleep after 5 s", 5, Vec3::Constant(size / 2), 5);
+  return stack(fmt::format("C3 rest {}", size_text(size)), "stack of five cubes, asleep after 5 s",
+               5, Vec3::Constant(size / 2), 5);
 }
 Trial cards() {
-  return stack("C3 cards", "ten cards of 1 mm on each other, asleep after 20 s", 10,
+  return stack("C3 cards", "stack of ten cards of 1 mm, asleep after 20 s", 10,
                {0.032, 0.044, 5e-4}, 20);
 }
 
 // A box of 6 cm and 1 kg held against a wall by one finger of 0.1 kg.
 Trial grip(double force) {
   Trial t = trial(fmt::format("C4 {:g} N", force), "box of 1 kg held against a wall by one finger",
-                  "it has slipped", "m", 1e-4, 10);
+                  "slip", "m", 1e-4, 10);
   t.scene = [] {
     Scene scene = empty(Space::spatial, 10);
     Body wall = with_shape(Box{{0.05, 0.2, 0.2}}, {-0.05, 0, 0}, kFriction);
@@ -161,10 +161,10 @@ Scene mixed_drop() {
 }
 Trial drop_overlap() {
   Trial t = trial("C5 overlap", "60 hulls, cylinders and capsules of 10 cm dropped into a bin",
-                  "deepest overlap ever", "m", 0.01, 20);
+                  "largest penetration", "m", 0.01, 20);
   t.note =
-      "bodies fall by half their size in a step, and what one that was stopped does to the "
-      "next shows a step later";
+      "bodies fall by half their size in a step, and an impulse reaches the body behind a stopped "
+      "one a step later";
   t.scene = mixed_drop;
   t.whole = [](const Plan& plan, const BatchOptions& options) {
     Batch batch(plan, options);
@@ -180,8 +180,8 @@ Trial drop_overlap() {
   return t;
 }
 Trial drop_rest() {
-  Trial t = trial("C5 rest", "the same", "share of worlds awake after 20 s", "", 0, 20);
-  t.note = "nothing brakes what rolls along a groove or spins on a point";
+  Trial t = trial("C5 rest", "the same", "fraction of worlds awake after 20 s", "", 0, 20);
+  t.note = "nothing brakes a body that rolls along a groove or spins on a point";
   t.scene = mixed_drop;
   t.whole = [](const Plan& plan, BatchOptions options) {
     options.sleep = true;
@@ -229,8 +229,9 @@ double wave_time(const Plan& plan, const BatchOptions& options) {
   return sum / batch.worlds();
 }
 Trial dominoes() {
-  Trial t = trial("C8", "dominoes of 4.8 cm", "speed of the wave off that at a quarter of the step",
-                  "", 0.05, 4);
+  Trial t = trial("C8", "dominoes of 4.8 cm",
+                  "relative difference of the wave's speed to that at a quarter of the step", "",
+                  0.05, 4);
   t.scene = [] {
     Scene scene = grounded();
     for (int i = 0; i < kDominoes; ++i) {

@@ -11,7 +11,7 @@ namespace {
 // The centre of those above lies over each box, an eighth of it from its edge at least.
 Trial tilted() {
   Trial t = trial("B7 tilted", "five squares, each 15 cm beyond the one below",
-                  "one has moved after 20 s", "m", 0.05, 20);
+                  "largest displacement after 20 s", "m", 0.05, 20);
   t.at_end = true;
   t.scene = [] {
     Scene scene = empty(Space::planar, 10);
@@ -34,7 +34,7 @@ Trial tilted() {
 
 Trial cantilever() {
   Trial t = trial("B7 cantilever", "beam of eight boxes welded to a wall",
-                  "its tip hangs down, in its length", "", 0.05, 10);
+                  "sag of its tip, in beam lengths", "", 0.05, 10);
   t.at_end = true;
   t.scene = [] {
     Scene scene = empty(Space::planar, 10);
@@ -49,7 +49,7 @@ Trial cantilever() {
     return scene;
   };
   t.value = [](const Seen& s, int w) { return std::abs(s.moved(w, 7).y()) / 8; };
-  t.note = "joints are springs that give way: more substeps make them stiffer";
+  t.note = "swept joints are springs; more substeps make them stiffer";
   return t;
 }
 
@@ -67,8 +67,8 @@ double catenary_sag() {
 }
 
 Trial bridge() {
-  Trial t = trial("B19", "bridge of 160 links over 158 m", "its sag is off that of a cable by", "",
-                  0.05, 30);
+  Trial t = trial("B19", "bridge of 160 links over 158 m", "relative error of the sag of a cable",
+                  "", 0.05, 30);
   t.at_end = true;
   t.scene = [] {
     Scene scene = empty(Space::planar, 10);
@@ -95,7 +95,7 @@ Trial bridge() {
     for (int b = 0; b < s.bodies(); ++b) sag = std::max(sag, -s.position(w, b).y());
     return std::abs(sag / right - 1);
   };
-  t.note = "swept over, a row of 160 soft joints stretches: it takes 32 substeps";
+  t.note = "a swept row of 160 soft joints stretches; it needs 32 substeps";
   return t;
 }
 
@@ -131,7 +131,7 @@ Trial cart() {
 
 Trial sliding() {
   Trial t = trial("B37", "boxes that slide to rest from 10 m/s, friction 0.1 to 0.75",
-                  "a way is off v^2 / (2 mu g) by", "", 0.02, 12);
+                  "relative error of a distance v^2 / (2 mu g)", "", 0.02, 12);
   t.at_end = true;
   static constexpr double kFrictions[] = {0.1, 0.35, 0.5, 0.75};
   t.scene = [] {

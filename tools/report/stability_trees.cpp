@@ -59,14 +59,14 @@ Trial chain_gap(double load) {
 Trial chain_gain(double load) {
   Trial t = chain_gap(load);
   t.id = "J2 gain " + text_of(load), t.title = "the same";
-  t.criterion = "energy gained, of M g L", t.limit = 1e-3;
+  t.criterion = "energy gain, in M g L", t.limit = 1e-3;
   t.value = [load](const Seen& s, int w) { return gain_of_chain(s, w, load); };
   return t;
 }
 Trial chain_loss(double load) {
   Trial t = chain_gap(load);
   t.id = "J2 loss " + text_of(load), t.title = "the same";
-  t.criterion = "energy lost, of M g L", t.limit = 0.1;
+  t.criterion = "energy loss, in M g L", t.limit = 0.1;
   t.value = [load](const Seen& s, int w) { return -gain_of_chain(s, w, load); };
   if (load < 1000) t.seconds = kLashing;
   return t;
@@ -74,8 +74,8 @@ Trial chain_loss(double load) {
 
 Trial legs(double times) {
   Trial t = trial("J3 " + text_of(times),
-                  "four welded legs under " + text_of(times) + " times their mass", "overlap", "m",
-                  1e-3, 5);
+                  "four welded legs under " + text_of(times) + " times their mass", "penetration",
+                  "m", 1e-3, 5);
   t.from = 2;
   t.scene = [times] {
     Scene scene = scenes::welded_table(Space::spatial, 1.2 * times);
@@ -117,7 +117,7 @@ Trial driven_arms() {
 // Every stiffness that is asked for, on chains of every length.
 Trial frequencies() {
   Trial t = trial("J5", "joints of 10 to 1000 Hz on chains of 3 to 40 links",
-                  "share of worlds lost", "", 0, 5);
+                  "fraction of worlds lost", "", 0, 5);
   t.scene = [] { return swung_chain(1); };
   t.whole = [](const Plan& plan, const BatchOptions& options) {
     double lost = 0, all = 0;
@@ -139,8 +139,8 @@ Trial frequencies() {
 
 // A chain at rest that breaks at 1.05 times what it bears.
 Trial hung_chain() {
-  Trial t = trial("J6", "ten links that hang at rest, on joints that break 5 % beyond their loads",
-                  "fallen after 2 s", "m", 0.01, 2);
+  Trial t = trial("J6", "ten links at rest on joints that break at 1.05 times their loads",
+                  "fall after 2 s", "m", 0.01, 2);
   t.at_end = true;
   t.scene = [] {
     Scene scene = empty(Space::planar, 10);
@@ -160,7 +160,7 @@ Trial hung_chain() {
 
 Trial gripper() {
   Trial t = trial("J7", "fingers of 50 g on a hand on an arm grip a box of 2 kg with 60 N",
-                  "slipped in 10 s", "m", 1e-3, 11);
+                  "slip in 10 s", "m", 1e-3, 11);
   t.from = 1;
   t.scene = [] {
     Scene scene = scenes::gripper(2);

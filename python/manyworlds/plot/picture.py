@@ -1,4 +1,4 @@
-"""Picture: what a world looks like, drawn by matplotlib."""
+"""Picture: draws a world with matplotlib."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from .pieces import Eye, Piece, View
 from .solids import Floats, Pose, Solid
 from .view import scrolled, view_of
 
-Poses = list[Optional[Pose]]  # of the scene's bodies
+Poses = list[Optional[Pose]]  # one per body of the scene
 
-_FAR = 1e9  # m, where worlds are lost
+_FAR = 1e9  # m, beyond which a world is lost
 
 
 @dataclass(frozen=True)
 class Camera:
-    """From where spatial worlds are seen, in parallel projection. Angles in degrees."""
+    """View direction on spatial worlds, in parallel projection. Angles in degrees."""
 
-    azimuth: float = -60.0  # about z, from x: where the camera stands
+    azimuth: float = -60.0  # position of the camera about z, from x
     elevation: float = 20.0  # above the horizon
 
     def __post_init__(self) -> None:
@@ -48,16 +48,16 @@ class Camera:
 
 
 class Picture:
-    """What worlds of a scene look like; made once, for any number of pictures.
+    """Draws worlds of a scene. One object draws any number of pictures.
 
     scene    a Scene
-    size     of frames in pixels, (width, height)
-    view     ((left, right), (bottom, top)) in m, of the picture's plane; None: what the scene's bodies
-             take up in the beginning, moved along when the first of them leaves
-    camera   of spatial scenes; planar ones show x and y
+    size     size of frames in pixels, (width, height)
+    view     ((left, right), (bottom, top)) in m, in the picture's plane; None: the extent of the scene's
+             bodies at the start, which follows the first dynamic body
+    camera   camera of spatial scenes; planar ones show x and y
 
-    Bodies that no force moves are grey, in spatial scenes see-through, and walls without end are left
-    out; other bodies have colours by their index.
+    Fixed and kinematic bodies are grey, and transparent in spatial scenes. Unbounded walls are omitted.
+    Colors of dynamic bodies depend on their index.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class Picture:
         self.scene = scene
         arrays.numbers(size, (2,), ("",), "size")
         self.size = tuple(arrays.integer(n, "size", 1, 10_000) for n in size)
-        self._known: Optional[Plan] = None  # of worlds that look like this
+        self._known: Optional[Plan] = None  # plan of worlds that this object can draw
         planar = scene.space == "planar"
         self._eye = Eye(*np.eye(3), True) if planar else camera.eye()
         self._solids: list[Solid] = []
@@ -96,14 +96,14 @@ class Picture:
     # -- pictures
 
     def draw(self, batch: Batch, world: int = 0, ax: Optional[Axes] = None) -> Axes:
-        """Draws a world as it is now into axes; None: those of a new figure (``.figure``)."""
+        """Draws the current state of a world into axes; None: axes of a new figure (``.figure``)."""
         poses = self._poses(batch, world)
         if ax is None:
             ax = self._figure().axes[0]
         view = scrolled(self.view, self._leader(poses), self._eye)
         ax.set(xlim=view[0], ylim=view[1], aspect="equal")
         drawn = self._pieces(poses, self._sizes(batch, world), view)
-        drawn.sort(key=lambda piece: piece.depth)  # the farthest first
+        drawn.sort(key=lambda piece: piece.depth)  # farthest first
         paths = PathCollection(
             [Path(p.points) for p in drawn],
             facecolors=["none" if p.fill is None else (*p.fill, p.alpha) for p in drawn],
@@ -114,7 +114,7 @@ class Picture:
         return ax
 
     def frame(self, batch: Batch, world: int = 0) -> NDArray[np.uint8]:
-        """A world as it is now, (height, width, 3) uint8: red, green, blue."""
+        """An image of the current state of a world, (height, width, 3) uint8: red, green, blue."""
         figure = self._figure()
         self.draw(batch, world, figure.axes[0])
         canvas = FigureCanvasAgg(figure)
@@ -127,10 +127,10 @@ class Picture:
         figure.add_axes((0, 0, 1, 1)).set_axis_off()
         return figure
 
-    # -- where things are
+    # -- poses
 
     def _poses(self, batch: Batch, world: int) -> Poses:
-        """None: a body that is not there, or so far away that it has lost its world."""
+        """Poses of all bodies; None: a body is disabled, or so far away that its world is lost."""
         world = arrays.index(world, checked_batch(batch).worlds, "world")
         if batch.plan is not self._known:
             if _looks(batch.plan.scene) != _looks(self.scene):
@@ -153,12 +153,12 @@ class Picture:
         return poses
 
     def _leader(self, poses: Poses) -> Optional[Pose]:
-        """The first body that moves, which the view follows."""
+        """The first dynamic body, which the view follows."""
         motions = [body.motion for body in self.scene.bodies]
         return poses[motions.index("dynamic")] if self._scrolls and "dynamic" in motions else None
 
     def _sizes(self, batch: Batch, world: int) -> Optional[Floats]:
-        """Of all shapes of the scene, (shapes, 3); None: they are as the scene says."""
+        """Sizes of all shapes of the scene, (shapes, 3); None: sizes do not vary."""
         varied = any(variation.parameter == "size" for variation in self.scene.variations)
         return batch.get("size")[world] if varied else None
 
@@ -180,7 +180,7 @@ class Picture:
 
 
 def _looks(scene: Scene) -> Any:
-    """What of a scene is drawn."""
+    """The parts of a scene that a picture shows."""
     return scene.space, [
         (b.motion, [(s.geometry, s.position, s.rotation) for s in b.shapes]) for b in scene.bodies
     ]

@@ -1,4 +1,4 @@
-"""What is drawn of shapes that are where they are: lines and patches, each with its depth."""
+"""Lines and patches, each with its depth, of shapes at given poses."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ View = tuple[tuple[float, float], tuple[float, float]]  # (left, right), (bottom
 _GROUND = "#cfd4dd"
 _LIGHT = np.array([0.3, -0.5, 0.8]) / np.linalg.norm([0.3, -0.5, 0.8])
 _BEHIND = -np.inf
-_LINES = 40  # of a floor's grid, on either side
+_LINES = 40  # lines of a floor's grid on each side
 
 
 class Piece(NamedTuple):
     """A patch, or a line."""
 
-    depth: float  # towards the viewer
+    depth: float  # distance towards the viewer
     points: Floats  # (n, 2)
     fill: Any  # (red, green, blue) of 0 to 1; None: a line
     edge: Any
@@ -30,7 +30,7 @@ class Piece(NamedTuple):
 
 
 class Eye(NamedTuple):
-    """From where one looks: unit vectors to the right and up in the picture and towards the viewer."""
+    """View direction: unit vectors to the right and up in the picture and towards the viewer."""
 
     right: Floats
     up: Floats
@@ -38,12 +38,12 @@ class Eye(NamedTuple):
     planar: bool
 
     def flat(self, points: Floats) -> Floats:
-        """Where points (..., 3) are in the picture, (..., 2)."""
+        """Positions of points (..., 3) in the picture, (..., 2)."""
         return np.stack([points @ self.right, points @ self.up], axis=-1)
 
 
 def pieces_of(solid: Solid, pose: Pose, eye: Eye) -> list[Piece]:
-    """Of a solid that has an end, whose body has this pose."""
+    """Pieces of a bounded solid whose body has this pose."""
     points = solids.placed(solid, solid.points, *pose)
     if solid.is_line:
         return [Piece(0.0, eye.flat(points), None, rgb("#555b66"), 1.0)]
@@ -58,7 +58,7 @@ def _alpha(solid: Solid, eye: Eye) -> float:
 
 
 def _shaded(solid: Solid, corners: Floats, eye: Eye) -> list[Piece]:
-    """The faces that are seen, darker where they turn from the light."""
+    """The visible faces, darker at larger angles to the light."""
     pieces = []
     color = np.array(rgb(solid.color))
     for face in solid.patches:
@@ -76,7 +76,7 @@ def _shaded(solid: Solid, corners: Floats, eye: Eye) -> list[Piece]:
 
 
 def _round(solid: Solid, points: Floats, pose: Pose, eye: Eye) -> list[Piece]:
-    """The outline of a shape that is round or flat, and marks that show how it turns."""
+    """The outline of a round or flat shape, and marks that show its rotation."""
     color = np.array(rgb(solid.color))
     outline = solids.outline_of(eye.flat(points))
     middle = points.mean(axis=0)
@@ -92,7 +92,7 @@ def _round(solid: Solid, points: Floats, pose: Pose, eye: Eye) -> list[Piece]:
 
 
 def half_plane(normal: Floats, offset: float, view: View, eye: Eye) -> list[Piece]:
-    """What the view shows of one."""
+    """The visible part of a half-plane."""
     (left, right), (bottom, top) = view
     reach = 2 * max(right - left, top - bottom)
     middle = _middle(view, eye)
@@ -104,7 +104,7 @@ def half_plane(normal: Floats, offset: float, view: View, eye: Eye) -> list[Piec
 
 
 def floor(normal: Floats, offset: float, view: View, eye: Eye) -> list[Piece]:
-    """A grid on a plane, if that is a floor seen from above: walls would hide what they hold."""
+    """A grid on a plane that is a floor seen from above. Walls are omitted: they would hide bodies."""
     if normal[2] < 0.5 or normal @ eye.towards < 0.01:
         return []
     (left, right), _ = view
@@ -123,14 +123,14 @@ def floor(normal: Floats, offset: float, view: View, eye: Eye) -> list[Piece]:
 
 
 def _middle(view: View, eye: Eye) -> Floats:
-    """A point in the world that is seen in the middle of the picture."""
+    """A point of the world in the middle of the picture."""
     (left, right), (bottom, top) = view
     middle: Floats = (left + right) / 2 * eye.right + (bottom + top) / 2 * eye.up
     return middle
 
 
 def _seen_part(line: Floats, seen: NDArray[np.bool_]) -> Floats:
-    """Of a line, (n, 3), whose seen points are neighbours, those; it may be closed."""
+    """The visible part of a line (n, 3) with contiguous visible points; the line may be closed."""
     if seen.all() or not (line[0] == line[-1]).all():
         return line if seen.all() else line[seen]
     ring, inside = line[:-1], seen[:-1]

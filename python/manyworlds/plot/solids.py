@@ -1,4 +1,4 @@
-"""Shapes ready to be drawn: their surfaces, faces, outlines. Lengths in m, arrays (n, 3) or (n, 2)."""
+"""Surfaces, faces and outlines of shapes. Lengths in m, arrays (n, 3) or (n, 2)."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ Floats = NDArray[np.float64]
 Pose = tuple[Floats, Floats]  # (rotation (3, 3), position (3,)) in the world
 PALETTE = ["#e4572e", "#f3a712", "#29335c", "#669bbc", "#76b041", "#8f5aa8", "#b08968"]
 FIXED = "#8d99ae"
-_ROUND = 24  # corners that stand for a circle
+_ROUND = 24  # segments of a circle
 
 
 def rotation_of(quaternion: ArrayLike) -> Floats:
-    """The matrix (3, 3) of (w, x, y, z), which need not be unit."""
+    """The rotation matrix (3, 3) of a quaternion (w, x, y, z), which need not be unit."""
     q = np.asarray(quaternion, float)
     w, (x, y, z) = q[0], q[1:]
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -38,13 +38,13 @@ def rotation_of(quaternion: ArrayLike) -> Floats:
 
 
 def resized(geometry: Geometry, size: Floats) -> Geometry:
-    """The geometry with other numbers of the field "size", (3,)."""
+    """The geometry with other values of the field "size", (3,)."""
     other: Geometry = _core.resized(geometry, [float(x) for x in size])
     return other
 
 
 def patches_of(look: Surface) -> list[NDArray[np.intp]]:
-    """Polygons of points that a surface consists of: its flat faces, and triangles elsewhere."""
+    """Polygons that cover a surface, as indices of points: its flat faces, and triangles elsewhere."""
     flat = [np.arange(first, first + count) for first, count in look.faces]
     in_face = np.zeros(len(look.points), bool)
     for face in flat:
@@ -77,36 +77,36 @@ def _convex(points: Floats) -> list[int]:
 
 
 class Solid(NamedTuple):
-    """A shape of a body, ready to be placed."""
+    """A shape of a body with its surface."""
 
-    body: int  # of the scene
-    index: int  # of the shape among all shapes of the scene
+    body: int  # index in the scene
+    index: int  # index among all shapes of the scene
     geometry: Geometry
-    rotation: Floats  # in the body
+    rotation: Floats  # in the body frame
     position: Floats
-    look: Surface  # empty: has no end
-    patches: list[NDArray[np.intp]]  # of its points; none: only an outline is drawn
+    look: Surface  # empty: unbounded
+    patches: list[NDArray[np.intp]]  # indices of points; empty: only an outline is drawn
     color: str
 
     @property
     def is_line(self) -> bool:
-        """Whether it has no inside."""
+        """Whether the shape has no inside."""
         return isinstance(self.geometry, (Segment, Terrain))
 
     @property
     def points(self) -> Floats:
-        """(n, 3), shape frame; of lines those of the line."""
+        """Points (n, 3) in the shape frame; for a line, its points."""
         return np.concatenate(self.look.lines) if self.is_line else self.look.points
 
 
 def placed(solid: Solid, corners: Floats, rotation: Floats, position: Floats) -> Floats:
-    """Corners of a shape in the world, whose body has this pose."""
+    """Corners of a shape in the world, for this pose of its body."""
     world: Floats = (corners @ solid.rotation.T + solid.position) @ rotation.T + position
     return world
 
 
 def half_space_of(solid: Solid, rotation: Floats, position: Floats) -> tuple[Floats, float]:
-    """Normal and offset in the world of a plane or a half-plane."""
+    """Normal and offset of a plane or half-plane, in the world."""
     assert isinstance(solid.geometry, (Plane, HalfPlane))
     given = np.zeros(3)
     given[: len(solid.geometry.normal)] = solid.geometry.normal
@@ -116,7 +116,7 @@ def half_space_of(solid: Solid, rotation: Floats, position: Floats) -> tuple[Flo
 
 
 def look_of(geometry: Geometry, planar: bool) -> Surface:
-    """The surface of a geometry; nothing of those without end."""
+    """The surface of a geometry; empty for unbounded ones."""
     look = surface(geometry, "planar" if planar else "spatial", around=_ROUND)
     if not isinstance(geometry, (Plane, HalfPlane)):
         return look
@@ -124,7 +124,7 @@ def look_of(geometry: Geometry, planar: bool) -> Surface:
 
 
 def solid_of(body: int, index: int, shape: Shape, fixed: bool, planar: bool) -> Solid:
-    """Shape ``index`` of a scene, of body ``body``."""
+    """The Solid of shape ``index`` of a scene, on body ``body``."""
     look = look_of(shape.geometry, planar)
     is_round = planar or isinstance(shape.geometry, (Sphere, Capsule, Ellipsoid))
     return Solid(

@@ -1,4 +1,4 @@
-"""What of a world a picture shows by default."""
+"""The default view of a picture."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from . import solids
 from .pieces import Eye, View
 from .solids import Floats, Pose, Solid
 
-_MAX_AROUND = 1  # times what the moving bodies take up: how far the others widen the view
-_INSET = 0.15  # of the view's width and height: how near to its border the leading body comes
+_MAX_AROUND = 1  # most widening by the other bodies, relative to the extent of the moving ones
+_INSET = 0.15  # least distance of the leading body from the border, relative to the view's size
 
 
 def view_of(
     scene: Scene, parts: Sequence[Solid], poses: Sequence[Pose], eye: Eye, size: Sequence[int]
 ) -> View:
-    """Around the bodies that move, wherever jitter and pivots let them be, with the floor below them,
-    and around the others as far as that leaves these large enough to be seen. ``poses``: of the scene's
-    bodies in the beginning, ``size``: of the picture, whose shape the view gets."""
+    """The view around the moving bodies, with their jitter, the reach about their pivots and the floor
+    below. Other bodies widen it at most by ``_MAX_AROUND``. ``poses``: initial poses of the scene's
+    bodies. ``size``: size of the picture, whose aspect ratio the view has."""
     dynamic = [body.motion == "dynamic" for body in scene.bodies]
     room = [_room_of(scene, b, parts, poses) for b in range(len(scene.bodies))]
     moving = [points for points, moves in zip(room, dynamic) if moves] + _swings(scene, room, poses)
@@ -41,7 +41,7 @@ def view_of(
     most = _MAX_AROUND * max(*(high - low), 1e-3)
     points = np.concatenate([points, np.clip(rest, low - most, high + most)])
     low, high = points.min(axis=0), points.max(axis=0)
-    # As wide or high as the picture, so that nothing is cut.
+    # Widen one axis to the aspect ratio of the picture.
     middle, half = (low + high) / 2, 0.55 * np.maximum(high - low, 1e-3)
     width, height = size
     half = np.maximum(half, half[::-1] * np.array([width / height, height / width]))
@@ -50,7 +50,7 @@ def view_of(
 
 
 def scrolled(view: View, leader: Optional[Pose], eye: Eye) -> View:
-    """The view, moved as far as the body that leads has come near its border."""
+    """The view, moved so that the leading body stays away from its border."""
     if leader is None:
         return view
     (left, right), (bottom, top) = view
@@ -62,12 +62,12 @@ def scrolled(view: View, leader: Optional[Pose], eye: Eye) -> View:
 
 
 def _around(middle: Floats, radius: float) -> Floats:
-    """Points that take up as much as a ball."""
+    """Points with the extent of a ball."""
     return middle + radius * np.concatenate([np.eye(3), -np.eye(3)])
 
 
 def _room_of(scene: Scene, b: int, parts: Sequence[Solid], poses: Sequence[Pose]) -> Floats:
-    """Points around what a body takes up in the beginning, with its jitter."""
+    """Points around the initial extent of a body, with its jitter."""
     jitters, leader = [scene.bodies[b].jitter], b
     while jitters[-1].with_body >= 0:
         leader = jitters[-1].with_body
@@ -85,7 +85,7 @@ def _room_of(scene: Scene, b: int, parts: Sequence[Solid], poses: Sequence[Pose]
 
 
 def _swings(scene: Scene, room: Sequence[Floats], poses: Sequence[Pose]) -> list[Floats]:
-    """What moving bodies can reach about the points at which they hang or stand."""
+    """The reach of moving bodies about their pivots on other bodies or the world."""
 
     def moves(body: int) -> bool:
         return body >= 0 and scene.bodies[body].motion == "dynamic"

@@ -1,4 +1,4 @@
-"""The nodes of a cluster, and how many of their cores a shard gets."""
+"""The nodes of a cluster, and the number of cores of a shard."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import ray
 
 
 def cpus_of_nodes() -> list[float]:
-    """Of each node that is alive. Starts Ray on this machine where it is not running."""
+    """Number of cores of each live node. Starts Ray on this machine if it is not running."""
     if not ray.is_initialized():
         ray.init(include_dashboard=False, log_to_driver=False)
     nodes = [n["Resources"].get("CPU", 0.0) for n in ray.nodes() if n["Alive"]]
@@ -16,7 +16,7 @@ def cpus_of_nodes() -> list[float]:
 
 
 def share_of(nodes: Sequence[float], shards: int) -> float:
-    """Cores of each of so many shards: of the smallest node, all or an equal share."""
+    """Cores per shard: those of the smallest node divided by the number of shards per node."""
     on_each = -(-shards // len(nodes))
     share = min(nodes) / on_each
     return float(int(share)) if share >= 1 else share

@@ -1,7 +1,7 @@
-"""The actors that hold the shards: who is replaced when one dies or hangs, and what catches up.
+"""The actors of the shards, and their replacement when one dies or hangs.
 
-A history of what worlds have done, and what was saved last, say how any shard is made anew. As worlds do the
-same however often they are asked, what comes of the replacement is what would have come.
+A replacement restores the last snapshots and repeats the history of calls since then. Steps are
+deterministic, so the replacement returns the results of the lost actor.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .work import Arrays, Report, ShardError, Work
 
 @dataclass
 class Options:
-    """Of actors, and of how they are looked after."""
+    """Options of actors and of their supervision."""
 
     cpus: float
     resources: Mapping[str, float]
@@ -32,12 +32,12 @@ class Options:
 
 @dataclass
 class Call:
-    """A call of a shard that was sent, and where its results will be."""
+    """A call sent to a shard, with references to its results."""
 
     method: str
     arguments: tuple[Any, ...]
     results: list[Any]
-    act: Optional[Act] = None  # what it adds to the history
+    act: Optional[Act] = None  # its entry of the history
     saves: bool = False
 
 
@@ -47,26 +47,26 @@ class Member:
 
     blocks: range
     actor: Any = None
-    ready: Any = None  # a reference that is there once the actor is, and has caught up
-    # References to what shards with its blocks have saved; none: it begins at the beginning.
+    ready: Any = None  # a reference that resolves once the actor has started and repeated the history
+    # References to saved snapshots of its blocks; empty: the shard starts from the seed.
     saved: tuple[Any, ...] = ()
-    files: list[str] = field(default_factory=list)  # in which that is
-    done: int = 0  # entries of the history that its worlds have behind them
-    saved_at: int = 0  # and that those of ``saved`` have
-    since: int = 0  # steps that were sent since the last call that saves
+    files: list[str] = field(default_factory=list)  # files of these snapshots
+    done: int = 0  # entries of the history that its worlds have completed
+    saved_at: int = 0  # entries completed in ``saved``
+    since: int = 0  # steps sent since the last call that saves
     sent: deque[Call] = field(default_factory=deque)
 
 
 class Crew:
-    """Members, each with a share of the blocks. Calls are sent to all of them, and answered in order."""
+    """Members, each with a share of the blocks. Calls go to all of them and return in order."""
 
     def __init__(self, work: Work, shares: Sequence[range], options: Options) -> None:
         self._options = options
         self._work = ray.put(work)
         self.history: list[Act] = []
-        self._dropped = 0  # entries that were before it, and the policy that they ended with
+        self._dropped = 0  # number of removed entries, and the last policy in them
         self._policy_then: list[Act] = []
-        self._divided_at = 0  # in the history; and the files that members began with then
+        self._divided_at = 0  # position in the history, and the files from which members started there
         self._shared_files: list[str] = []
         self.restarts = 0
         self.members = [Member(blocks) for blocks in shares]
@@ -74,7 +74,7 @@ class Crew:
             self._start(member)
 
     def _start(self, member: Member) -> None:
-        """An actor that has what was saved, and has repeated what came after."""
+        """Starts an actor that restores the saved snapshots and repeats the history since then."""
         o = self._options
         kind = ray.remote(_Actor).options(
             num_cpus=o.cpus,
@@ -101,7 +101,7 @@ class Crew:
         act: Optional[Act] = None,
         saves: bool = False,
     ) -> None:
-        """A call of one member's shard; ``act``: what its worlds have done by it."""
+        """Sends a call to one member's shard; ``act``: its entry of the history."""
         call = Call(method, arguments, [None] * returns, act, saves)
         self._submit(member, call)
         member.sent.append(call)
@@ -112,15 +112,15 @@ class Crew:
         call.results = found if isinstance(found, list) else [found]
 
     def receive(self, member: Member) -> list[Any]:
-        """Results of the member's oldest call: the first as it is, references to the others.
+        """Results of the member's oldest call: the first as a value, the others as references.
 
-        An actor that is dead, or silent for longer than ``timeout``, is replaced, and asked the same again.
+        Replaces an actor that is dead or exceeds ``timeout``, and sends the call again.
         Raises what the call raised, and ShardError.
         """
         call = member.sent[0]
         for attempt in range(self._options.max_restarts + 1):
             try:
-                ray.get(member.ready)  # to start and to catch up may take longer than a call
+                ray.get(member.ready)  # starting and repeating may take longer than a call
                 first = ray.get(call.results[0], timeout=self._options.timeout)
                 break
             except (ray.exceptions.RayActorError, ray.exceptions.GetTimeoutError) as error:
@@ -138,7 +138,7 @@ class Crew:
         if call.act is not None:
             member.done += 1
         if call.saves:
-            _remove(set(member.files) - set(first))  # the same where nothing was done since
+            _remove(set(member.files) - set(first))  # equal if nothing was done since
             member.saved, member.files, member.saved_at = (call.results[1],), first, member.done
             self._forget()
         while call.act is not None and member.sent and member.sent[0].saves:
@@ -149,7 +149,7 @@ class Crew:
         self.restarts += 1
         self.stop(member)
         if not all(self._still_there(one) for one in member.saved):
-            # It went with its node: from the beginning.
+            # Lost with its node: start from the seed.
             member.saved, member.saved_at = (), 0
         self._start(member)
         for call in member.sent:
@@ -164,16 +164,16 @@ class Crew:
         return True
 
     def stop(self, member: Member) -> None:
-        """Ends its actor, whatever it does."""
+        """Kills the member's actor."""
         try:
             ray.kill(member.actor, no_restart=True)
-        except ray.exceptions.RayError:  # it is dead
+        except ray.exceptions.RayError:  # already dead
             pass
 
-    # -- what worlds have done
+    # -- history
 
     def act(self, act: Act, method: str, *arguments: Any, returns: int = 1) -> None:
-        """All worlds do this: sends it to all members, with a call that saves them where that is due."""
+        """Sends an entry of the history to all members, and a call that saves if one is due."""
         self.history.append(act)
         due = self._options.checkpoint_every
         for member in self.members:
@@ -183,11 +183,11 @@ class Crew:
                 self._send_save(member)
 
     def _forget(self) -> None:
-        """What all worlds in files have behind them is not asked for again, nor are its policies."""
+        """Removes entries of the history, and policies, that all saved files contain."""
         if self._options.folder is None:
             return
         oldest = min(member.saved_at for member in self.members)
-        if oldest > self._divided_at:  # each has files of its own by now
+        if oldest > self._divided_at:  # each member has separate files by now
             _remove(self._shared_files)
             self._shared_files = []
         count = oldest - self._dropped
@@ -202,7 +202,7 @@ class Crew:
         self.send(member, "save", self._options.folder, name, returns=2, saves=True)
 
     def divide(self, shares: Sequence[range]) -> None:
-        """Other members, with these blocks, go on with the worlds as they are."""
+        """Moves the current worlds to new members with these blocks."""
         for member in self.members:
             self._send_save(member)
         before = self.members
@@ -220,20 +220,20 @@ class Crew:
         self._shared_files += [path for member in before for path in member.files]
 
     def close(self) -> None:
-        """Ends all actors."""
+        """Kills all actors."""
         for member in self.members:
             self.stop(member)
         self.members = []
 
 
 class _Actor:
-    """A shard where Ray has put it."""
+    """A shard in a Ray actor."""
 
     def __init__(self, work: Work, blocks: Sequence[int], saved: Sequence[Any]) -> None:
         found: dict[int, Any] = {}
         for part in ray.get(list(saved)):
             found.update({block: one for block, one in part.items() if block in blocks})
-        # What is saved is read-only where it lies; restoring copies it.
+        # Saved snapshots are read-only in Ray's store; restoring copies them.
         self._shard = Shard(work, blocks, Shard.load(found) if saved else None)
 
     def process(self) -> int:
@@ -268,7 +268,7 @@ def _remove(files: Iterable[str]) -> None:
 
 
 def _fewer(acts: Sequence[Act]) -> list[Act]:
-    """Steps without a policy between them in one entry."""
+    """The entries, with consecutive steps merged into one."""
     out: list[Act] = []
     for act in acts:
         if out and out[-1].steps and act.steps:

@@ -1,4 +1,4 @@
-"""Policies as functions of arrays: NumPy's, JAX's, torch's."""
+"""Policies as functions of arrays of NumPy, JAX or torch."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from .work import Policy
 
 
 def actions_of(policy: Optional[Policy], environment: Environment) -> NDArray[Any]:
-    """What a policy does in an environment's worlds; without one nothing: zeros, or choice 0.
+    """Actions of a policy in an environment's worlds. Without a policy: zeros, or choice 0.
 
-    A torch.nn.Module is called with a tensor and without gradients, anything else with the array of
-    observations. What it returns becomes an array.
+    A torch.nn.Module is called with a tensor, without gradients. Other policies are called with the array
+    of observations. The result is converted to a NumPy array.
     """
     if policy is None:
         kind = np.int64 if environment.discrete else np.float32

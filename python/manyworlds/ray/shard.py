@@ -17,19 +17,19 @@ from .policies import actions_of
 from .work import Arrays, Policy, Report, Work
 
 
-# What trajectories of a task may have.
+# Names of a task's trajectories.
 OF_A_TASK = ("observations", "actions", "rewards", "terminated", "truncated")
 
 
 class Act(NamedTuple):
-    """An entry of a history: worlds step so often, or are given a policy."""
+    """An entry of the history: a number of steps, or a new policy."""
 
     steps: int = 0
-    policy: Any = None  # of an entry without steps; where Ray keeps it, a reference to it
+    policy: Any = None  # policy of an entry without steps, or a reference to it in Ray's store
 
 
 class Shard:
-    """Blocks of worlds, which step under a policy. It does the same wherever it is and however often."""
+    """Blocks of worlds that step under a policy. Results do not depend on where it runs."""
 
     def __init__(self, work: Work, blocks: Sequence[int], saved: Optional[Mapping[int, Any]] = None):
         self._work = work
@@ -43,21 +43,21 @@ class Shard:
 
     @property
     def process(self) -> int:
-        """The id of the process that it is in."""
+        """The id of its process."""
         return os.getpid()
 
     def use(self, policy: Optional[Policy]) -> None:
-        """From now on this policy."""
+        """Sets the policy."""
         self._policy = policy
 
     def run(
         self, steps: int, every: int = 1, keep: Sequence[str] = OF_A_TASK
     ) -> tuple[list[Report], list[Arrays]]:
-        """Steps, and what came of them by block.
+        """Steps all blocks. Returns reports and arrays by block.
 
-        Of a task what is kept of every step: ``observations`` that were acted on (steps, worlds,
-        observations), ``actions``, ``rewards``, ``terminated``, ``truncated``. Of a scene its fields, of
-        every so many steps (frames, worlds, ...).
+        For a task, ``keep`` names the arrays of every step: ``observations`` before the action (steps,
+        worlds, observations), ``actions``, ``rewards``, ``terminated``, ``truncated``. For a scene, the
+        arrays are its fields after every ``every`` steps (frames, worlds, ...).
         """
         reports, arrays = [], []
         for held in self._blocks.values():
@@ -109,7 +109,7 @@ class Shard:
         return Report(batch.hashes(), batch.lost(), none, none.astype(np.int32)), out
 
     def repeat(self, acts: Sequence[Act]) -> None:
-        """What others have done since these worlds were saved, without telling."""
+        """Repeats the history since these worlds were saved, without results."""
         for act in acts:
             if act.steps == 0:
                 self.use(act.policy)
@@ -121,14 +121,14 @@ class Shard:
                         held.step(controls=self._policy(held) if self._policy else None)
 
     def save(self, folder: Optional[str] = None, name: str = "") -> dict[int, Any]:
-        """Snapshots by block; with a folder what ``load`` takes, a file in it for each."""
+        """Snapshots by block; with a folder, paths of files, which ``load`` reads."""
         saved = {block: held.save() for block, held in self._blocks.items()}
         if folder is None:
             return saved
         paths: dict[int, Any] = {}
         for block, snapshot in saved.items():
             path = Path(folder) / f"block{block}_{name}.pickle"
-            part = path.with_suffix(".part")  # never half a file under the name
+            part = path.with_suffix(".part")  # a partial file never has the final name
             part.write_bytes(pickle.dumps(snapshot))
             part.replace(path)
             paths[block] = str(path)
@@ -136,14 +136,14 @@ class Shard:
 
     @staticmethod
     def load(saved: Mapping[int, Any]) -> dict[int, Any]:
-        """Snapshots of what ``save`` has returned."""
+        """Snapshots from the result of ``save``."""
         return {
             block: pickle.loads(Path(one).read_bytes()) if isinstance(one, str) else one
             for block, one in saved.items()
         }
 
     def evaluate(self, policy: Optional[Policy], first: int, episodes: int) -> Arrays:
-        """The first episodes of worlds first, first + 1 ... under a policy, beside the shard's own worlds."""
+        """The first episodes of worlds first, first + 1, ... under a policy, in separate worlds."""
         environment = self._work.make_worlds(episodes, (self._work.seed + first) % 2**64)
         assert isinstance(environment, Environment)
         with environment as e:
@@ -163,7 +163,7 @@ class Shard:
         return out
 
     def try_out(self, trial: tuple[int, Any], values: Any, seeds: Any) -> search.Outcome:
-        """Candidates of a search; ``trial``: its number, and what makes the trial, once."""
+        """Tries candidates of a search. ``trial``: its number and the function that makes it, called once."""
         number, make = trial
         if self._trial[0] != number:
             self._trial = number, make()

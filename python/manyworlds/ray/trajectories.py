@@ -1,4 +1,4 @@
-"""What comes of rollouts: arrays by blocks of worlds, and whole episodes."""
+"""Results of rollouts: arrays by blocks of worlds, and whole episodes."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from .work import Arrays, Report
 
 
 class Trajectories:
-    """What came of a call: a Report of all worlds, and arrays by blocks of worlds."""
+    """Results of a call: a Report of all worlds, and arrays by blocks of worlds."""
 
     def __init__(self, report: Report, held: list[Any]) -> None:
         self.report = report
-        self._held = held  # of each shard: arrays of its blocks, or a reference to them
+        self._held = held  # per shard: arrays of its blocks, or a reference to them
 
     @property
     def references(self) -> list[Any]:
-        """References to lists of arrays by name, one list for each shard, one dict for each of its blocks:
-        for tasks that Ray runs where they are. Without actors the lists themselves."""
+        """References for Ray tasks, one per shard, each to a list with a dict of arrays by name per block.
+        Without actors, the lists."""
         return list(self._held)
 
     @property
     def parts(self) -> Iterator[Arrays]:
-        """Arrays by name of each block, in the order of worlds: where they are on this node, not copied,
-        and read-only."""
+        """Arrays by name of each block, in the order of worlds. Arrays on this node are not copied and
+        read-only."""
         for one in self._held:
             if isinstance(one, list):
                 yield from one
@@ -45,8 +45,8 @@ class Trajectories:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Whole episodes under a policy, each in a world of its own."""
+    """Whole episodes under a policy, each in a separate world."""
 
     returns: NDArray[np.float64]  # (episodes,)
     lengths: NDArray[np.int64]  # (episodes,), steps
-    lost: NDArray[np.bool_]  # (episodes,), ended because the world was lost
+    lost: NDArray[np.bool_]  # (episodes,), the world was lost

@@ -1,4 +1,4 @@
-"""Candidates of a search that the shards try."""
+"""A trial of a search that runs on shards."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Maker:
-    """Makes a trial where it is needed: a trial itself holds worlds, which cannot be sent."""
+    """Makes a trial in an actor. A trial owns worlds, which cannot be sent."""
 
     def __init__(
         self,
@@ -40,7 +40,7 @@ class Maker:
 
 
 class Trials:
-    """What a Search asks of a trial, done by shards in pieces of a block."""
+    """An Evaluator of a Search that splits candidates over shards, in pieces of a block."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class Trials:
         work = rollouts._work
         given = {"threads": work.threads, "precision": work.precision, "isa": work.isa}
         self._maker = Maker(work.what, space, objective, {**given, **arguments})
-        self._maker().close()  # what is wrong with it is said here
+        self._maker().close()  # raises errors early
         self._rollouts = rollouts
         self._number = number
         self._space = space
@@ -66,7 +66,7 @@ class Trials:
     def evaluate(
         self, values: NDArray[np.float64], seeds: NDArray[np.uint64]
     ) -> search.Outcome:
-        """What comes of (candidates, parameters) values, each in a world of its seed (candidates,)."""
+        """Outcome of values (candidates, parameters), each in a world with its seed (candidates,)."""
         rollouts = self._rollouts
         rollouts._check()
         ranges = replace(rollouts._work, worlds=len(values))

@@ -1,4 +1,4 @@
-"""What is to be done, and by which blocks of worlds: what every shard knows."""
+"""The scene or task of all shards, and its division into blocks of worlds."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _LANES, _MOST, _BLOCKS = 16, 4096, 64
 
 @dataclass(frozen=True)
 class Work:
-    """Worlds in blocks of equal size (the last may be smaller), each an Environment or a Batch of its own.
+    """Worlds in blocks of equal size (the last may be smaller), each a separate Environment or Batch.
 
-    A block is what a shard holds, saves and hands over, so a policy sees the same arrays whoever steps them:
-    products of matrices round by the number of their rows.
+    Shards hold, save and exchange whole blocks. A policy therefore gets arrays of the same shape on every
+    shard. This matters because rounding of matrix products depends on the number of rows.
     """
 
     what: Union[Task, AnyScene]
@@ -37,41 +37,41 @@ class Work:
     threads: Optional[int]
     precision: Precision
     isa: Optional[Isa]
-    fields: tuple[str, ...]  # of a scene
+    fields: tuple[str, ...]  # scenes only
 
     @property
     def blocks(self) -> int:
-        """How many."""
+        """Number of blocks."""
         return -(-self.worlds // self.block)
 
     def range(self, block: int) -> range:
-        """Its worlds."""
+        """The worlds of a block."""
         return range(block * self.block, min((block + 1) * self.block, self.worlds))
 
     def make(self, block: int) -> Union[Environment, Batch]:
-        """Its worlds at their beginning."""
+        """The worlds of a block in their initial state."""
         worlds = self.range(block)
         return self.make_worlds(len(worlds), (self.seed + worlds.start) % 2**64)
 
     def make_worlds(self, count: int, seed: int) -> Union[Environment, Batch]:
-        """So many, the first of them of this seed."""
+        """``count`` worlds; the first one has this seed."""
         if isinstance(self.what, Task):
             return Environment(self.what, count, self.threads, seed, self.precision, self.isa)
         return Batch(self.what, count, self.threads, self.precision, seed, self.isa)
 
 
 class ShardError(RuntimeError):
-    """A shard whose actor died or hung more often in one call than ``max_restarts``."""
+    """The actor of a shard died or hung more than ``max_restarts`` times in one call."""
 
 
 def default_block(worlds: int) -> int:
-    """64 blocks, of whole groups of lanes and at most 4096 worlds."""
+    """The block size for 64 blocks: whole groups of lanes, at most 4096 worlds."""
     size = -(-worlds // _BLOCKS)
     return min(_MOST, -(-size // _LANES) * _LANES)
 
 
 def task_of(what: Union[Task, AnyScene]) -> Union[Task, AnyScene]:
-    """A Task where it is the name of one, else as it is. ValueError of a name of neither."""
+    """The Task with this name, or ``what`` unchanged. Raises ValueError for an unknown name."""
     if not isinstance(what, str):
         return what
     if what in tasks.names():
@@ -84,27 +84,27 @@ def task_of(what: Union[Task, AnyScene]) -> Union[Task, AnyScene]:
 
 
 def shares(blocks: int, shards: int) -> list[range]:
-    """Which blocks each shard has: as many as the others, or one more."""
+    """The blocks of each shard. Numbers of blocks differ by at most one."""
     ends = [blocks * (i + 1) // shards for i in range(shards)]
     return [range(first, end) for first, end in zip([0, *ends], ends)]
 
 
 @dataclass(frozen=True)
 class Report:
-    """What came of a call in some worlds, in the order of worlds.
+    """Results of a call in some worlds, in the order of worlds.
 
-    21 bytes a world: of a block of 4096 it stays below the 100 kB up to which Ray sends what a call returns
-    with its answer; what is larger goes through the object store.
+    21 bytes per world: 86 kB for a block of 4096. Ray returns results below 100 kB directly, larger ones
+    through its object store.
     """
 
-    hashes: NDArray[np.uint64]  # (worlds,), of each world's state
+    hashes: NDArray[np.uint64]  # (worlds,), hash of each world's state
     lost: NDArray[np.bool_]  # (worlds,), as Batch.lost
-    returns: NDArray[np.float64]  # (worlds,), sums of rewards over the call; 0 of a scene
-    episodes: NDArray[np.int32]  # (worlds,), how many ended in the call; 0 of a scene
+    returns: NDArray[np.float64]  # (worlds,), sums of rewards over the call; 0 for a scene
+    episodes: NDArray[np.int32]  # (worlds,), number of episodes that ended in the call; 0 for a scene
 
     @staticmethod
     def joined(parts: Sequence[Report]) -> Report:
-        """One of them all."""
+        """The parts as one report."""
         return Report(
             np.concatenate([p.hashes for p in parts]),
             np.concatenate([p.lost for p in parts]),

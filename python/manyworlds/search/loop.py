@@ -1,4 +1,4 @@
-"""The loop of a search: ask a strategy, try its candidates in worlds, tell it what came of them."""
+"""The loop of a search: ask a strategy for candidates, try them in worlds, tell it the outcome."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _MAX_GENERATIONS = 2**31 - 1
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """A generation that is to be tried."""
+    """A generation of candidates."""
 
     generation: int
-    points: Doubles  # (candidates, parameters), the strategy's
+    points: Doubles  # (candidates, parameters), in the strategy's units from 0 to 1
     values: Doubles  # (candidates, parameters)
     seeds: NDArray[np.uint64]  # (candidates,)
 
@@ -38,21 +38,19 @@ class Asked:
 class Search:
     """Candidates of a strategy, tried by a trial.
 
-    trial     a Trial, a TaskTrial or any Evaluator; a Space alone, for whoever asks and tells himself
+    trial     a Trial, a TaskTrial or any Evaluator; a Space if the caller uses ``ask`` and ``tell``
     strategy  CmaEs, Random, Sobol, Grid, or any Strategy
     goal      "minimize" or "maximize" the objective
-    seed      of the strategy and of worlds; the same seed gives the same results, bit by bit, whatever the
-              number of worlds at once and of threads
-    seeds     which worlds begin alike: "search": all, with ``seed``; "generation": those of generation g, with
-              seed + g; "candidate": none, candidate i of generation g begins with seed + i + those tried in
-              generations before
-    lost      the value of a candidate whose world is lost, or whose value is not a number; None: it is told to
-              cost more than all others of its generation
+    seed      seed of the strategy and of worlds; results are bitwise equal for equal seeds, with any number
+              of concurrent worlds and threads
+    seeds     seeds of worlds: "search": ``seed`` for all; "generation": seed + g in generation g;
+              "candidate": seed + n for the n-th candidate of the search
+    lost      value of a candidate whose world is lost, or whose value is not finite; None: its cost is
+              above all others of its generation
 
-    What a strategy is told: the objective's value (its negative where it is maximised) of those that are ok.
-    Candidates that break constraints come after them, in the order of their violation: the largest cost of
-    those that are ok, plus the violation (Deb, An efficient constraint handling method, 2000). Lost ones come
-    after those. So costs are finite whatever happens.
+    The strategy gets finite costs. A valid candidate costs its value, negated if it is maximised. A candidate
+    that violates constraints costs the largest cost of valid ones plus its violation (Deb, An efficient
+    constraint handling method, 2000). Lost candidates cost more than those.
     """
 
     def __init__(
@@ -77,7 +75,7 @@ class Search:
         self.seed = arrays.integer(seed, "seed", 0, 2**64 - 1)
         self.seeds = seeds
         self.lost = lost
-        self.seconds = {"searching": 0.0, "trying": 0.0}  # of wall time, so far
+        self.seconds = {"searching": 0.0, "trying": 0.0}  # wall time so far
         self._sign = 1.0 if goal == "minimize" else -1.0
         self._asked: Optional[Asked] = None
         strategy.start(self.space, self.seed)
@@ -97,20 +95,20 @@ class Search:
 
     @property
     def done(self) -> bool:
-        """Whether the strategy has nothing more to ask."""
+        """Whether the strategy is finished."""
         return self._asked is None and bool(getattr(self.strategy, "done", False))
 
     @property
     def mean(self) -> Optional[dict[str, float]]:
-        """The middle of where the strategy looks, values by name; None where it has none (designs).
+        """The mean of the strategy's distribution, values by name; None if it has none (designs).
 
-        Where values are noisy it is often better than the best candidate, which was lucky, too.
+        With noisy objectives it is often better than the best candidate.
         """
         point = getattr(self.strategy, "mean", None)
         return None if point is None else self.space.named(self.space.values([point])[0])
 
     def ask(self) -> Asked:
-        """The next generation; the same again until it is told of."""
+        """The next generation. Returns the same one until ``tell``."""
         if self._asked is None:
             began = time.perf_counter()
             points = np.asarray(self.strategy.ask(), np.float64)
@@ -121,20 +119,20 @@ class Search:
             first = {"search": 0, "generation": index, "candidate": len(self.results)}[self.seeds]
             start = np.uint64((self.seed + first) % 2**64)
             step = np.arange(count, dtype=np.uint64) if self.seeds == "candidate" else np.uint64(0)
-            with np.errstate(over="ignore"):  # it wraps around, as Batch's seeds do
+            with np.errstate(over="ignore"):  # overflow as in Batch's seeds
                 seeds = np.full(count, start) + step
             self._asked = Asked(index, points, values, seeds)
             self.seconds["searching"] += time.perf_counter() - began
         return self._asked
 
     def tell(self, outcome: Union[Outcome, ArrayLike], seconds: float = 0.0) -> Generation:
-        """What came of the generation that was asked for: an Outcome, or values (candidates,) alone.
+        """Sets the outcome of the last generation from ``ask``: an Outcome, or values (candidates,).
 
-        ``seconds`` is what it took, for the record. ValueError where nothing was asked for.
+        ``seconds`` is the time that it took, for the results. Raises ValueError without a call of ``ask``.
         """
         asked = self._asked
         if asked is None:
-            raise ValueError("no generation was asked for; expected ask() before")
+            raise ValueError("no generation to tell of; call ask() first")
         began = time.perf_counter()
         count = len(asked.points)
         if not isinstance(outcome, Outcome):
@@ -189,17 +187,17 @@ class Search:
         file: Optional[File] = None,
         on_generation: Optional[Callable[[Generation], Any]] = None,
     ) -> Results:
-        """Tries so many further generations, or less where the strategy is done, and returns the results.
+        """Tries further generations until the strategy is done. Returns the results.
 
-        generations    None: until the strategy is done, as a Grid and CmaEs are some time
-        file           where the results' table goes at the end, also where this is interrupted
-        on_generation  called after each; ``print`` prints a line
+        generations    maximum number; None: no maximum, for strategies that end (Grid, CmaEs)
+        file           file of the results' table, written at the end and after an interruption
+        on_generation  called after each generation; ``print`` prints a line
 
-        Ctrl-C, or an error in a callback, leaves ``results`` with all generations before. A later run begins
-        with the generation that was broken off, and gives the bits of one that was not interrupted.
+        After Ctrl-C or an error in a callback, ``results`` has all complete generations. A later run
+        repeats the interrupted generation and gives the same bits as a run without interruption.
         """
         if self.trial is None:
-            raise ValueError("the search has a space alone; expected a trial, or ask() and tell()")
+            raise ValueError("the search has a space but no trial; pass a trial, or use ask() and tell()")
         if generations is None and not hasattr(self.strategy, "done"):
             name = type(self.strategy).__name__
             raise ValueError(f"generations is None, but a {name} is never done; expected a number")
@@ -226,23 +224,23 @@ class Search:
     def record(
         self, file: File, candidate: Optional[Candidate] = None, every: int = 1
     ) -> Recording:
-        """Tries a candidate again, alone, and records its world; None: the best so far.
+        """Repeats a candidate in a single world and records it; None: the best so far.
 
-        ``every``: steps between samples. mw.show and mw.write_page take the Recording. RuntimeError where the
-        world ends in another state than in the search: then a callback lets worlds depend on one another.
+        ``every``: steps between samples. mw.show and mw.write_page accept the Recording. Raises RuntimeError
+        if the final state differs from the search: then worlds depend on each other in a callback.
         """
         if candidate is None:
             candidate = self.results.best
         recorder = getattr(self.trial, "record", None)
         if recorder is None:
-            raise ValueError("the search's trial records nothing; expected a Trial or a TaskTrial")
+            raise ValueError("the search's trial has no record(); expected a Trial or a TaskTrial")
         recording, outcome = recorder(candidate.values, candidate.seed, file, every)
         found = int(outcome.hashes[0])
         if candidate.hash and found != candidate.hash:
             recording.close()
             raise RuntimeError(
                 f"alone, the world ends with hash {found:016x}; in the search it was {candidate.hash:016x}: "
-                "a callback lets worlds depend on one another, or on how many there are"
+                "in a callback, worlds depend on each other or on their number"
             )
         result: Recording = recording
         return result

@@ -1,4 +1,4 @@
-"""How parameters become numbers of a scene: its variations, and what is written into each world."""
+"""Parameters of a search as parameters of a scene: its variations, and the values of each world."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from .space import Doubles, Number, Parameter, Space
 
 @dataclass(frozen=True)
 class _Write:
-    """A column of values into some items of a field."""
+    """Writes a column of values to some items of a field."""
 
-    column: int  # of the parameters
+    column: int  # index of the parameter
     items: NDArray[np.intp]
     component: int
     factor: float
@@ -31,7 +31,7 @@ class _Write:
 
 
 class Numbers:
-    """What the parameters of a space set in a scene, which is copied and gets their variations.
+    """The parameters that a space sets in a scene. ``scene`` is a copy with their variations.
 
     Raises ValueError and SceneError, which name the parameter or the variation.
     """
@@ -72,17 +72,17 @@ class Numbers:
         for (name, item), (low, high) in ranges.items():
             where = self._named(source, fields[name].item, item)
             base = own[name][item]
-            # What keeps its number takes no time at resets; but the scene's own has to be in the range then.
+            # Draw "none" costs no time at resets, but the range must contain the scene's value.
             keeps = bool(((low <= base) & (base <= high)).all())
             draw: Draw = "none" if keeps else "uniform"
             self.scene.add(_variation(name, low, high, {**where, "draw": draw}))
         self.plan = Plan(self.scene)
-        # In the order in which the library applies them: a mass is of the body as its sizes have made it.
+        # In the order in which the library applies them: a mass is set after sizes.
         order = get_args(SceneParameter)
         self._writes = {name: self._writes[name] for name in order if name in self._writes}
 
     def write(self, batch: Batch, values: Doubles) -> None:
-        """Gives every world its numbers; ``values`` are (worlds, parameters)."""
+        """Writes the values (worlds, parameters) to every world."""
         for name, writes in self._writes.items():
             array = batch.get(name)
             for w in writes:
@@ -97,12 +97,12 @@ class Numbers:
         if number.component is None or not 0 <= number.component < count:
             found = "none" if number.component is None else str(number.component)
             raise ValueError(
-                f"parameter {parameter.name!r} sets {number.parameter}, which is {count} numbers, and gives "
-                f"component {found}; expected 0 to {count - 1}"
+                f"parameter {parameter.name!r} sets {number.parameter}, which has {count} components; component "
+                f"is {found}, expected 0 to {count - 1}"
             )
         return number.component
 
-    # Rows of a field's array that a number is of.
+    # Rows of a field's array that a Number sets.
     def _items(
         self, plan: Plan, parameter: Parameter, number: Number, owner: str
     ) -> NDArray[np.intp]:
@@ -126,7 +126,7 @@ class Numbers:
             raise type(error)(f"parameter {parameter.name!r}: {error}") from None
         return self._all(plan, parameter, number)
 
-    # All that have it: those whose draws differ in two worlds.
+    # All items with the parameter: those whose draws differ in two worlds.
     def _all(self, plan: Plan, parameter: Parameter, number: Number) -> NDArray[np.intp]:
         scene = copy.deepcopy(plan.scene)
         ends = np.array([parameter.low, parameter.high]) * number.factor + number.offset
@@ -141,7 +141,7 @@ class Numbers:
             )
         return found
 
-    # What a Variation says of one item.
+    # Members of a Variation that select one item.
     @staticmethod
     def _named(plan: Plan, owner: str, item: int) -> dict[str, Any]:
         if owner == "body":

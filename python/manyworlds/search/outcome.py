@@ -1,4 +1,4 @@
-"""What callbacks of a trial see, and what comes of candidates."""
+"""Arguments of a trial's callbacks, and outcomes of candidates."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from .space import Doubles, Space
 
 
 class Score(NamedTuple):
-    """What an objective may return instead of values alone."""
+    """Values with constraint violations, as the result of an objective."""
 
     value: ArrayLike  # (worlds,)
-    # (worlds,) or (worlds, constraints): by how much each is broken. What is <= 0 is kept.
+    # (worlds,) or (worlds, constraints): amount of the violation; <= 0: the constraint holds
     violation: ArrayLike
 
 
 @dataclass(slots=True)
 class Run:
-    """Worlds that try candidates, as callbacks see them. ``run["mass"]`` is a parameter's (worlds,) values.
+    """Worlds that try candidates; the argument of callbacks. ``run["mass"]``: a parameter's values (worlds,).
 
-    What a callback does with a world must not depend on the others, nor on how many there are.
+    The effect of a callback on a world must not depend on other worlds or on their number.
     """
 
     space: Space
@@ -37,17 +37,17 @@ class Run:
     fields: Trajectories = field(
         default_factory=dict
     )  # (frames, worlds, items, components) of each
-    environment: Optional[Environment] = None  # of a TaskTrial
-    returns: Doubles = field(default_factory=lambda: np.zeros(0))  # (worlds,), of a TaskTrial
-    step: int = 0  # of a TaskTrial: how many were taken
-    recording: bool = False  # whether each step is a call of its own, to be sampled
+    environment: Optional[Environment] = None  # TaskTrial only
+    returns: Doubles = field(default_factory=lambda: np.zeros(0))  # (worlds,), TaskTrial only
+    step: int = 0  # TaskTrial only: number of completed steps
+    recording: bool = False  # whether each step is a separate call, for samples
 
     def __getitem__(self, name: str) -> Doubles:
         column: Doubles = self.values[:, self.space.index(name)]
         return column
 
     def info(self, name: str) -> Doubles:
-        """(worlds,): one of the task's infos as it is now. ValueError."""
+        """The current values (worlds,) of one of the task's infos. Raises ValueError."""
         names = [] if self.environment is None else self.environment.info_names
         if self.environment is None or name not in names:
             raise ValueError(
@@ -60,16 +60,16 @@ Objective = Callable[[Run], Union[ArrayLike, Score]]
 
 
 class Outcome(NamedTuple):
-    """What came of candidates, in their order."""
+    """Outcomes of candidates, in their order."""
 
-    values: Doubles  # (candidates,), not a number where there is none
-    violations: Doubles  # (candidates,), 0: constraints are kept
+    values: Doubles  # (candidates,), NaN if there is none
+    violations: Doubles  # (candidates,), 0: all constraints hold
     lost: NDArray[np.bool_]  # (candidates,): Batch.lost
     hashes: NDArray[np.uint64]  # (candidates,): of each world's last state
 
 
 class Evaluator(Protocol):
-    """What a search needs of a trial; one's own may run elsewhere."""
+    """The interface of a trial. Custom ones can run elsewhere."""
 
     @property
     def space(self) -> Space:
@@ -77,5 +77,5 @@ class Evaluator(Protocol):
         ...
 
     def evaluate(self, values: Doubles, seeds: NDArray[np.uint64]) -> Outcome:
-        """What comes of (candidates, parameters) values, each in a world of its seed (candidates,)."""
+        """Outcome of values (candidates, parameters), each in a world with its seed (candidates,)."""
         ...

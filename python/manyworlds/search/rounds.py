@@ -1,4 +1,4 @@
-"""Candidates of any number in worlds of a batch: rounds of equal size, one world for each candidate."""
+"""Any number of candidates, tried in rounds of equal size with one world for each candidate."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ MAX_WORLDS_AT_ONCE = 16_384
 
 
 class Rounds(InMemory):
-    """Tries candidates in rounds; what a round does is Trial's and TaskTrial's."""
+    """Tries candidates in rounds. Trial and TaskTrial implement a round."""
 
-    _instead = "pickle what it was made with"
+    _instead = "pickle its arguments"
 
     def __init__(self, space: Space, objective: Optional[Objective], worlds: Optional[int]) -> None:
         if not isinstance(space, Space):
@@ -41,11 +41,11 @@ class Rounds(InMemory):
         return self._space
 
     def evaluate(self, values: ArrayLike, seeds: ArrayLike) -> Outcome:
-        """What comes of (candidates, parameters) values, each in a world of its own.
+        """Outcome of values (candidates, parameters), each in a separate world.
 
-        ``seeds``: (candidates,), or one for all. More candidates than ``worlds`` are tried in rounds of
-        equal size. An outcome depends on its candidate's values and seed alone. Raises what callbacks
-        raise, ValueError and TypeError.
+        ``seeds``: (candidates,), or one for all. More candidates than ``worlds`` run in rounds of equal size.
+        An outcome depends only on its candidate's values and seed. Raises the errors of callbacks,
+        ValueError and TypeError.
         """
         rows = self._space.checked(values)
         own = np.asarray(seeds)
@@ -63,7 +63,7 @@ class Rounds(InMemory):
         size = -(-len(rows) // rounds) if rounds else 0
         for first in range(0, len(rows), size or 1):
             count = min(size, len(rows) - first)
-            # The last one fills the last round up.
+            # The last candidate fills the last round.
             chosen = np.minimum(np.arange(first, first + size), len(rows) - 1)
             found = self._round(rows[chosen], each[chosen])
             parts.append([array[:count] for array in found])
@@ -85,7 +85,7 @@ class Rounds(InMemory):
         value, violation = scored if isinstance(scored, Score) else (scored, 0.0)
         count = run.batch.worlds
         axes = ("worlds",)
-        values = arrays.numbers(value, (count,), axes, "what the objective returns", float)
+        values = arrays.numbers(value, (count,), axes, "the value of the objective", float)
         broken = np.asarray(arrays.reals(violation, "the violation"), np.float64)
         broken = np.maximum(broken, 0)
         if broken.ndim == 2:
@@ -96,10 +96,10 @@ class Rounds(InMemory):
     def record(
         self, values: Mapping[str, float], seed: int, file: File, every: int = 1
     ) -> tuple[Recording, Outcome]:
-        """Tries a candidate alone, ``values`` by name, and writes what its world does to ``file``.
+        """Tries a candidate, ``values`` by name, in a single world, and records it to ``file``.
 
-        Returns the Recording, which mw.show and mw.write_page take, and the Outcome. The recording begins
-        once ``begin`` is done; ``every``: steps between samples.
+        Returns the Recording, which mw.show and mw.write_page accept, and the Outcome. The recording starts
+        after ``begin``. ``every``: steps between samples.
         """
         from ..record import Recorder, Recording
 
@@ -118,7 +118,7 @@ class Rounds(InMemory):
         return Recording(file), outcome
 
     def close(self) -> None:
-        """Lets go of the worlds; they are made anew when they are needed."""
+        """Frees the worlds. They are created again when needed."""
         if self._held is not None:
             self._held.close()
         self._held = None

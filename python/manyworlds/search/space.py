@@ -1,4 +1,4 @@
-"""What a search varies: named numbers with ranges, and which numbers of a scene they set."""
+"""The parameters of a search: names, ranges, and the parameters of a scene that they set."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from ..names import Parameter as SceneParameter
 Doubles = NDArray[np.float64]
 Scale = Literal["linear", "log"]
 
-# Columns that every table of results has.
+# Columns of every table of results.
 RESERVED = ("generation", "candidate", "value", "violation", "cost", "status", "seed", "hash")
-_MAX_INTEGER = 2**53  # up to which doubles hold every integer
+_MAX_INTEGER = 2**53  # doubles represent every integer up to this
 
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A number of the scene that is ``offset + factor * value`` of a search's parameter.
+    """Sets a parameter of the scene to ``offset + factor * value`` of a search's parameter.
 
-    ``parameter`` and what it is of are those of ``Variation``: "size", "mass", "friction", ...; without
-    body, shape, joint, control and attractor it is of every one that has it. ``component``: of sizes,
-    gravity, gain and the like, which are two or three numbers each.
+    ``parameter`` ("size", "mass", "friction", ...) and its owner are as in ``Variation``. Without body,
+    shape, joint, control and attractor it is set for every owner. ``component`` selects one of the two or three
+    values of sizes, gravity, gain and similar parameters.
     """
 
     parameter: SceneParameter
     body: BodyRef = -1
-    shape: ShapeRef = -1  # an int is one of that body
+    shape: ShapeRef = -1  # an int: a shape of that body
     joint: JointRef = -1
     control: ControlRef = -1
     attractor: int = -1
@@ -43,12 +43,12 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A number that candidates differ by, from ``low`` to ``high``, both included.
+    """A parameter of candidates, from ``low`` to ``high``, both included.
 
     scale    "linear", or "log": equal steps of the search are equal ratios; low > 0
-    integer  whole numbers alone
-    sets     which numbers of the scene it is, if any; a search declares them as variations and
-             writes them into each world
+    integer  whole numbers only
+    sets     parameters of the scene that it sets, if any; a search declares them as variations and
+             writes them to each world
 
     Raises ValueError and TypeError, which name the parameter.
     """
@@ -95,11 +95,11 @@ class Parameter:
 
     @property
     def numbers(self) -> tuple[Number, ...]:
-        """Those of ``sets``."""
+        """``sets`` as a tuple."""
         return (self.sets,) if isinstance(self.sets, Number) else tuple(self.sets)
 
     def from_unit(self, points: Doubles) -> Doubles:
-        """Values of numbers from 0 to 1; of integers each gets the same share of them."""
+        """Values of points from 0 to 1; each integer has an equal share of this range."""
         low, high = float(self.low), float(self.high)
         end = high + 1 if self.integer else high
         if self.scale == "log":
@@ -113,7 +113,7 @@ class Parameter:
         return clipped
 
     def to_unit(self, values: Doubles) -> Doubles:
-        """The numbers from 0 to 1 that give these values; of integers the middle of those that do."""
+        """Points from 0 to 1 with these values; for an integer, the middle of its share."""
         low, high = float(self.low), float(self.high)
         if self.integer:
             values, high = values + 0.5, high + 1
@@ -126,8 +126,8 @@ class Parameter:
 class Space:
     """The parameters of a search, in their order.
 
-    Points of a strategy are rows of numbers from 0 to 1, (points, parameters); values are rows in the
-    parameters' own units. Raises ValueError for names that are there twice.
+    Points of a strategy are rows of values from 0 to 1, (points, parameters). Values are rows in the units of
+    the parameters. Raises ValueError if two parameters have the same name.
     """
 
     def __init__(self, *parameters: Parameter) -> None:
@@ -140,7 +140,7 @@ class Space:
         if not parameters:
             raise ValueError("the space has no parameters; expected one or more")
         if twice := sorted({n for n in self.names if self.names.count(n) > 1}):
-            raise ValueError(f"several parameters are called {', '.join(map(repr, twice))}")
+            raise ValueError(f"several parameters have the name {', '.join(map(repr, twice))}")
 
     def __len__(self) -> int:
         return len(self.parameters)
@@ -149,14 +149,14 @@ class Space:
         return f"<manyworlds.search.Space: {', '.join(self.names)}>"
 
     def index(self, name: str) -> int:
-        """Of a parameter, by name. ValueError."""
+        """The index of the parameter with this name. Raises ValueError."""
         if name not in self.names:
             known = ", ".join(map(repr, self.names))
             raise ValueError(f"there is no parameter {name!r}; expected one of {known}")
         return self.names.index(name)
 
     def values(self, points: ArrayLike) -> Doubles:
-        """(n, parameters) values of as many points, which must be within 0 to 1."""
+        """Values (n, parameters) of points from 0 to 1, (n, parameters). Raises ValueError."""
         unit = self._rows(points, "points")
         wrong = ~((unit >= 0) & (unit <= 1))
         if wrong.any():
@@ -168,13 +168,13 @@ class Space:
         return np.ascontiguousarray(np.stack(columns, axis=1))
 
     def points(self, values: ArrayLike) -> Doubles:
-        """The points of (n, parameters) values."""
+        """Points of values (n, parameters)."""
         rows = self.checked(values)
         columns = [p.to_unit(rows[:, i]) for i, p in enumerate(self.parameters)]
         return np.ascontiguousarray(np.stack(columns, axis=1))
 
     def row(self, values: Mapping[str, float]) -> Doubles:
-        """(parameters,) of values by name, all of them. ValueError."""
+        """The row (parameters,) of values by name, with all names. Raises ValueError."""
         missing = [n for n in self.names if n not in values]
         unknown = [n for n in values if n not in self.names]
         if missing or unknown:
@@ -186,12 +186,12 @@ class Space:
         return row
 
     def named(self, row: ArrayLike) -> dict[str, float]:
-        """Values by name of a row of them; those of integers are ints."""
+        """Values by name, from a row; integers are ints."""
         numbers = np.asarray(row, np.float64)
         return {p.name: int(x) if p.integer else float(x) for p, x in zip(self.parameters, numbers)}
 
     def checked(self, values: ArrayLike) -> Doubles:
-        """Values (n, parameters) that are within their ranges. ValueError, TypeError."""
+        """Checks that values (n, parameters) are in their ranges. Raises ValueError, TypeError."""
         rows = self._rows(values, "values")
         for i, p in enumerate(self.parameters):
             column = rows[:, i]

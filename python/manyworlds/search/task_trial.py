@@ -1,4 +1,4 @@
-"""Candidates as worlds of a task."""
+"""Trials of candidates in worlds of a task."""
 
 from __future__ import annotations
 
@@ -21,19 +21,18 @@ from .space import Doubles, Space
 
 
 class TaskTrial(Rounds):
-    """Candidates as worlds of a Task, judged by the return of an episode.
+    """Tries candidates in worlds of a Task. The value is the return of an episode.
 
-    task       a Task or the name of one
-    space      the parameters; those with the name of one of the task's actions are that action, the same in
-               every step
-    objective  of a Run after the last step; None: ``run.returns``, the sum of rewards up to the end of the
-               episode
-    steps      of the task; None: its max_steps
-    begin      of a Run whose worlds were reset and have their numbers
-    act        of a Run before each step, the actions (worlds, actions), for policies whose weights are
-               parameters: ``run.environment.observations`` is what they see
+    task       a Task or its name
+    space      the parameters; a parameter with the name of an action is this action in every step
+    objective  function of a Run after the last step; None: ``run.returns``, the sum of rewards until the end
+               of the episode
+    steps      number of steps; None: the task's max_steps
+    begin      function of a Run after the reset, when its worlds have their parameters
+    act        function of a Run before each step that returns actions (worlds, actions), for policies whose
+               weights are parameters; ``run.environment.observations`` are their input
 
-    The others are Environment's. Worlds step on beyond the end of their episode.
+    Other arguments are those of Environment. Worlds continue to step after the end of their episode.
     """
 
     def __init__(
