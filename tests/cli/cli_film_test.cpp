@@ -183,7 +183,9 @@ TEST_CASE("films refuse options that they cannot have", "[cli]") {
   bad("--png a.png --end 1", "--end: applies only with --mp4");
   bad("--png a.png --until 1", "--until: applies only with --mp4");
   bad("--out a.html --at 2", "--at: applies only with --png or --mp4");
-  bad("--mp4 film.mp4 --at 2 --begin 1", "--at excludes --begin");
+  bad("--mp4 film.mp4 --at 2 --begin 1", "--at: excludes --time and --begin");
+  bad("--mp4 film.mp4 --until 2 --end 3", "--until: excludes --end");
+  bad("--live --at 2", "--at, --until: exclude --live");
   bad("--out a.html --dark",
       "--world, --follow, --color, --dark: applies only with --png or --mp4");
   bad("--out a.html --follow ball", "applies only with --png or --mp4");

@@ -262,15 +262,12 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
   const auto add_time = [&](const char* name, std::optional<double>& to, const char* help) {
     return command->add_option(name, to, help)->check(CLI::NonNegativeNumber)->type_name("S");
   };
-  CLI::Option* time =
-      add_time("--time", view.time, "simulated time of the picture (default: the end)");
-  CLI::Option* begin =
-      add_time("--begin", view.begin, "simulated time at which the film begins (default: 0)");
-  CLI::Option* end =
-      add_time("--end", view.end, "simulated time at which the film ends (default: the end)");
-  // What they were called before; not in the help.
-  add_time("--at", view.at, "")->group("")->excludes(time)->excludes(begin);
-  add_time("--until", view.until, "")->group("")->excludes(end);
+  add_time("--time", view.time, "simulated time of the picture (default: the end)");
+  add_time("--begin", view.begin, "simulated time at which the film begins (default: 0)");
+  add_time("--end", view.end, "simulated time at which the film ends (default: the end)");
+  // What they were called before. Not in the help, and so not in lists of what excludes what.
+  add_time("--at", view.at, "")->group("");
+  add_time("--until", view.until, "")->group("");
   command->add_option("--size", view.size, "of the picture and the film, in pixels")
       ->type_name("WxH")
       ->capture_default_str();
@@ -303,9 +300,9 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       "of scenes: contact points of a world and frame, the N of the largest forces");
   CLI::Option* live = command->add_flag(
       "--live", view.live, "step a scene and serve its page on this machine until Ctrl-C");
-  for (const char* other : {"--out", "--open", "--png", "--mp4", "--time", "--begin", "--end",
-                            "--at", "--until", "--world", "--follow", "--color", "--dark",
-                            "--every", "--fps", "--seconds", "--contacts"}) {
+  for (const char* other :
+       {"--out", "--open", "--png", "--mp4", "--time", "--begin", "--end", "--world", "--follow",
+        "--color", "--dark", "--every", "--fps", "--seconds", "--contacts"}) {
     live->excludes(command->get_option(other));
   }
   command->add_option("--port", view.port, "of --live (default: any that is free)")

@@ -122,6 +122,9 @@ std::string page_name(const std::string& source) {
 }  // namespace
 
 int view_command(const ViewArguments& arguments) {
+  if (arguments.live && (arguments.at || arguments.until)) {
+    throw InputError("--at, --until: exclude --live");
+  }
   if (arguments.live) return live_command(arguments);
   const FramesWanted wanted = frames_wanted(arguments);
   const fs::path empty = empty_page();
