@@ -1,5 +1,6 @@
-// Runs the programs of a task around the steps of a group. This is over 400 lines because what happens
-// to a group before its steps, after them, where its worlds begin and between steps is one order.
+// Runs the programs of a task around the steps of a group. This is over 400 lines because what
+// happens to a group before its steps, after them, where its worlds begin and between steps is one
+// order.
 #include "src/task/runner.hpp"
 
 #include <algorithm>
