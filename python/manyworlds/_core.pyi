@@ -430,7 +430,13 @@ class Expression:
 
     __array_ufunc__: None = None
 
-    def __repr__(self) -> str: ...
+    def __repr__(self) -> str:
+        """The text of str(), of at most about 400 characters."""
+
+    def __str__(self) -> str:
+        """
+        The whole expression as Python writes it. Beyond 20,000 characters, subexpressions that are nested deeply are "...".
+        """
 
 def expression_graph(roots: Sequence[Expression]) -> tuple[list[tuple[str | int | float, ...]], list[int]]:
     """
@@ -540,6 +546,12 @@ class expressions:
     def level(name: str) -> Expression: ...
 
     @staticmethod
+    def memory(name: str) -> Expression: ...
+
+    @staticmethod
+    def time_step() -> Expression: ...
+
+    @staticmethod
     def previous(a: object) -> Expression: ...
 
     @staticmethod
@@ -554,6 +566,21 @@ class expressions:
     @staticmethod
     def largest(a: object) -> Expression: ...
 
+    @staticmethod
+    def latched(a: object) -> Expression: ...
+
+    @staticmethod
+    def summed(a: object) -> Expression: ...
+
+    @staticmethod
+    def smoothed(a: object, factor: object) -> Expression: ...
+
+    @staticmethod
+    def smoothed_over(a: object, time_constant: object) -> Expression: ...
+
+    @staticmethod
+    def phase(a: object) -> Expression: ...
+
 def load_task(name: str) -> Task:
     """A task that has a name."""
 
@@ -566,10 +593,15 @@ def validate_task(task: object) -> list[tuple[str, str]]:
 def default_task_values() -> dict:
     """The library's default values of a task's dataclasses, by their names."""
 
+class NonFiniteError(FloatingPointError):
+    """
+    An observation, a reward or an end of Environment(check=True) is not finite: `expression`, `world`, `step` (of the world's episode), `value`.
+    """
+
 class Environment:
     """A task in many worlds. Private: use manyworlds.Environment."""
 
-    def __init__(self, task: object, worlds: object, threads: object, seed: int, precision: object, isa: object | None, autoreset: object) -> None: ...
+    def __init__(self, task: object, worlds: object, threads: object, seed: int, precision: object, isa: object | None, autoreset: object, check: bool = False) -> None: ...
 
     def close(self) -> None: ...
 
@@ -582,9 +614,9 @@ class Environment:
     @property
     def steps_left(self) -> int: ...
 
-    def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None: ...
+    def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> int: ...
 
-    def begin(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None: ...
+    def begin(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> int: ...
 
     def read_levels(self, out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> None: ...
 
@@ -600,20 +632,28 @@ class Environment:
         All worlds, or pairs (world of the snapshot, world of the environment).
         """
 
+    def non_finite(self) -> list[tuple[str, int, int, float]]:
+        """
+        (expression, world, step, value) of the first fault of each expression.
+        """
+
+    def evaluate(self, expression: object, out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> None:
+        """The value of an expression in every world."""
+
     def batch(self) -> Batch: ...
 
-    def step_choices(self, actions: Annotated[NDArray[numpy.int64], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None:
+    def step_choices(self, actions: Annotated[NDArray[numpy.int64], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, lost: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None) -> int:
         """
-        One step of the task in every world, without the GIL, into arrays; None: not wanted.
-        """
-
-    def step_numbers(self, actions: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None:
-        """
-        One step of the task in every world, without the GIL, into arrays; None: not wanted.
+        One step of the task in every world, without the GIL, into arrays; None: not wanted. Returns how many expressions have not been finite so far.
         """
 
-    def finish_step(self, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None) -> None:
-        """The rest of a step that was ended early."""
+    def step_numbers(self, actions: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, lost: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None) -> int:
+        """
+        One step of the task in every world, without the GIL, into arrays; None: not wanted. Returns how many expressions have not been finite so far.
+        """
+
+    def finish_step(self, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, lost: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None) -> int:
+        """The rest of a step that was ended early, as a step."""
 
 def gymnasium_tasks() -> dict:
     """

@@ -251,6 +251,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
             if self._unfilled is None and self.steps_left > 0:
                 self._unfilled = out
             if isinstance(error, _core.NonFiniteError):  # the step was taken
+                self._named_faults = len(self.non_finite())
                 self._stepped(observations, terminated, truncated)
             raise
         self._stepped(observations, terminated, truncated)
@@ -349,6 +350,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
         try:
             faults = call(*arguments, observations, self.infos if self.task.infos else None)
         except _core.NonFiniteError:  # the worlds have begun
+            self._named_faults = len(self.non_finite())
             self._began(mask, observations)
             raise
         self._began(mask, observations)

@@ -51,8 +51,7 @@ def remembering():
 def test_state_in_expressions(autoreset):
     task = pickle.loads(pickle.dumps(remembering()))
     assert task.validate() == []
-    with mw.Environment(task, 7, threads=1, seed=3, precision="f64", autoreset=autoreset) as env:
-        env = env
+    with mw.Environment(task, 7, threads=1, seed=3, autoreset=autoreset) as env:
         actions = np.linspace(-9, 9, 7)[:, None]
         episodes = 0
         for _ in range(30):
@@ -60,7 +59,7 @@ def test_state_in_expressions(autoreset):
             before = dict(zip(env.observation_names, env.observations.T.copy()))
             beginning = before["time"] == 0
             env.step(actions)
-            after = env.observations if autoreset == "next_step" else env.final_observations
+            after = env.observations
             ended = env.terminated | env.truncated
             if autoreset == "same_step":
                 after = np.where(ended[:, None], env.final_observations, env.observations)
@@ -74,12 +73,12 @@ def test_state_in_expressions(autoreset):
             age = np.rint(o["time"] * 60)
             assert o["steps"] == pytest.approx(10 + age) and (o["again"] == o["steps"]).all()
             assert (o["best"] == np.maximum(before["best"], o["x"])).all()
-            assert o["sum"] == pytest.approx(before["sum"] + o["x"], rel=1e-6)
-            assert o["smooth"] == pytest.approx((before["smooth"] + o["x"]) / 2, rel=1e-6)
-            assert o["phase"] == pytest.approx(age * 20 / 60 % 1, abs=1e-6)
+            assert o["sum"] == pytest.approx(before["sum"] + o["x"], rel=1e-5)
+            assert o["smooth"] == pytest.approx((before["smooth"] + o["x"]) / 2, rel=1e-5)
+            assert o["phase"] == pytest.approx(age * 20 / 60 % 1, abs=1e-5)
             filtered = (1 - np.exp(-10 / 60)) * (actions[:, 0] if beginning.all() else 0)
             if beginning.all():  # memories as the last step left them, functions with this one
-                assert o["push"] == pytest.approx(10 + filtered + 0.5, rel=1e-6)
+                assert o["push"] == pytest.approx(10 + filtered + 0.5, rel=1e-5)
             assert x.shape == (7,)
         assert episodes >= 2
 
@@ -110,7 +109,7 @@ def test_evaluate_is_what_an_info_would_be():
                 assert found.shape == (7,) and found.dtype == np.float64
                 wanted = other.infos[:, other.info_names.index(name)]
                 if name != "noise":  # of copies of a task that draws nothing
-                    assert found == pytest.approx(wanted, rel=1e-6, abs=1e-6), name
+                    assert found == pytest.approx(wanted, rel=1e-5, abs=1e-5), name
             assert env.batch.hash() == hashes
             assert (env.observations == other.observations).all()
         again = mw.Environment(task, **arguments)

@@ -243,7 +243,7 @@ Expression smoothed(E value, E factor) { return arithmetic(Operation::smoothed, 
 Expression smoothed_over(E value, E time_constant) {
   return smoothed(value, 1 - exp(-(time_step() / time_constant)));
 }
-Expression phase(E frequency) { return arithmetic(Operation::phase, {frequency * time_step()}); }
+Expression phase(E frequency) { return arithmetic(Operation::phase, {frequency}); }
 
 }  // namespace terms
 

@@ -25,7 +25,7 @@ Task pushed() {
     task.scene.add(thrust);
   }
   task.actions = {{"push", -1, 1}};
-  const Expression x = position(BodyId(0), 0), v = velocity(BodyId(0), 0);
+  const Expression x = terms::position(BodyId(0), 0), v = terms::velocity(BodyId(0), 0);
   const Expression count = memory("count"), best = memory("best"), filter = memory("filter");
   task.memories = {{"count", uniform("first", Every::episode, 2, 5), count + 1},
                    {"best", x, max(best, x)},
@@ -163,7 +163,7 @@ TEST_CASE("memories are saved, restored and copied with their worlds", "[task][f
 
 TEST_CASE("what is wrong with memories is said", "[task][fast]") {
   Task task = pushed();
-  const Expression x = position(BodyId(0), 0);
+  const Expression x = terms::position(BodyId(0), 0);
   task.memories = {{"a", memory("b"), memory("c")}, {"a"}, {""}, {"b", held(memory("a"))}};
   task.controls = {latched(x > 1), summed(memory("b")), previous(summed(x)), memory("nothing")};
   task.observations = {{"x", x}};
