@@ -100,7 +100,7 @@ Task ant(const Scene& model, const AntOptions& o) {
 
   const BodyId main = t.link_of_mujoco(o.main_body);
   const Expression x_velocity = t.rate(link_position(main, 0));
-  const Expression healthy = (o.healthy_z_range[0] <= qpos(2)) & (qpos(2) <= o.healthy_z_range[1]);
+  const Expression healthy = within_or_at(qpos(2), o.healthy_z_range);
   tell_xy(t);
   t.step_info("x_velocity", x_velocity);
   t.step_info("y_velocity", t.rate(link_position(main, 1)));

@@ -1,6 +1,7 @@
 // What Gymnasium's tasks have in common: a task of a model, and expressions in MuJoCo's words.
 #pragma once
 
+#include <cmath>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -14,8 +15,18 @@ using namespace terms;
 
 inline Expression qpos(int coordinate) { return generalized_position(coordinate); }
 inline Expression qvel(int dof) { return generalized_velocity(dof); }
+// An infinite end of a range is no bound: expressions hold finite numbers only.
 inline Expression within(const Expression& x, const Range& range) {
-  return (range[0] < x) & (x < range[1]);
+  Expression inside = 1;
+  if (std::isfinite(range[0])) inside = range[0] < x;
+  if (!std::isfinite(range[1])) return inside;
+  return std::isfinite(range[0]) ? inside & (x < range[1]) : x < range[1];
+}
+inline Expression within_or_at(const Expression& x, const Range& range) {
+  Expression inside = 1;
+  if (std::isfinite(range[0])) inside = range[0] <= x;
+  if (!std::isfinite(range[1])) return inside;
+  return std::isfinite(range[0]) ? inside & (x <= range[1]) : x <= range[1];
 }
 Expression sum(const std::vector<Expression>& all);
 // Of the norm's three numbers, or of as many as there are.

@@ -34,10 +34,11 @@ TEST_CASE("logarithms, powers and remainders are those of mathematics", "[task][
   Task task = ball_at_x();
   const Expression x = terms::position(BodyId(0), 0), size = abs(x) + 0.25;
   task.observations = {{"x", x}};
-  task.rewards = {{"log", log(size)},       {"tanh", tanh(x / 4)},      {"acos", acos(x / 25)},
-                  {"sign", sign(x)},        {"mod", mod(x, 3)},         {"mod", mod(x, -2.5)},
-                  {"pow", pow(size, 1.5)},  {"pow", pow(size, -x / 8)}, {"pow", pow(x, 3)},
-                  {"small", tanh(x / 1000)}};
+  task.rewards = {{"log", log(size)},      {"tanh", tanh(x / 4)},
+                  {"acos", acos(x / 25)},  {"sign", sign(x)},
+                  {"mod", mod(x, 3)},      {"mod down", mod(x, -2.5)},
+                  {"pow", pow(size, 1.5)}, {"pow of x", pow(size, -x / 8)},
+                  {"cube", pow(x, 3)},     {"small", tanh(x / 1000)}};
   Played p(task, {.worlds = 500, .precision = precision});
   p.step();
   const std::size_t terms = task.rewards.size();

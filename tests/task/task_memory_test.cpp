@@ -217,8 +217,8 @@ TEST_CASE("writing some worlds' levels leaves pending levels of others alone", "
 TEST_CASE("levels are written, copied and saved with their worlds", "[task][fast]") {
   Played p(stairs(), {.worlds = 3, .seed = 1, .autoreset = Autoreset::same_step});
   Environment& e = p.environment;
-  e.write_levels(p.all(), std::vector<double>{4, 2.5, 0, 1, 2.25, 0, 1, 2, 0});
-  CHECK(levels(e) == std::vector<double>{4, 2.5, 0, 1, 2.25, 0, 1, 2, 0});
+  e.write_levels(p.all(), std::vector<double>{4, 2.5, 7, 1, 2.25, 7, 1, 2, 7});
+  CHECK(levels(e) == std::vector<double>{4, 2.5, 7, 1, 2.25, 7, 1, 2, 7});
   for (int step = 0; step < 3; ++step) p.step();
   CHECK(levels(e)[0] == 4);
   e.copy_world(0, 1);

@@ -96,7 +96,7 @@ TEST_CASE("memories are what their next made of them, from where the episode beg
       CHECK(std::cos(6.283185307 * double(o[14] + o[15])) == Approx(1).margin(1e-4));
       CHECK(o[16] == Approx(e.over).epsilon(1e-5));
       CHECK(o[17] == o[3]);
-      CHECK(o[18] == (e.age == 0 ? e.count : e.count - 1));
+      CHECK(o[18] == (e.age == 0 ? e.count : e.before));
       CHECK(o[19] == e.held);
       CHECK(o[20] == static_cast<float>(e.age));
     };
