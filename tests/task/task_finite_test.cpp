@@ -276,7 +276,7 @@ TEST_CASE("the text of an expression is all of it, as Python reads it", "[task][
   CHECK(text(1 - 2 * a * a - (b - 3)) == "1 - 2 * angle(2) * angle(2) - (velocity(1, 'y') - 3)");
   CHECK(text((1 - a) * (b + 2) / (a / b)) ==
         "(1 - angle(2)) * (velocity(1, 'y') + 2) / (angle(2) / velocity(1, 'y'))");
-  CHECK(text(!(a < b) | ((a < 1) & (b <= 2))) ==
+  CHECK(text((!(a < b)) | ((a < 1) & (b <= 2))) ==
         "~(angle(2) < velocity(1, 'y')) | (angle(2) < 1) & (velocity(1, 'y') <= 2)");
   CHECK(text(equal(a < b, 1)) == "(angle(2) < velocity(1, 'y')) == 1");
   CHECK(text(-pow(a, -b) + pow(-a, 2)) == "-angle(2) ** -velocity(1, 'y') + (-angle(2)) ** 2");
