@@ -14,7 +14,7 @@ namespace manyworlds::test {
 
 // Both solve until the numbers go no closer to the minimum. Costs fall with the square of what the
 // accelerations are off.
-inline constexpr compare::Settings kConverged{1e-26, 5};
+inline const compare::Settings kConverged{1e-26, 5};
 
 inline compare::Kernels kernels_of(const Table& table) { return {table.precision, table.isa}; }
 
