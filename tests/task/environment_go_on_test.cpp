@@ -143,7 +143,7 @@ TEST_CASE("a step whose question throws stands where one that was ended early do
     const auto taken = static_cast<int>(p.environment.batch().steps());
     CHECK(taken > 0);
     CHECK(p.environment.steps_left() == kFrames - taken);
-    p.act_at_random(2);  // the step has those of its own
+    p.act_at_random(2);                  // the step has those of its own
     for (bool whole = false; !whole;) {  // what is left may be too short for another question
       try {
         p.environment.finish_step(p.arrays(), throws);
