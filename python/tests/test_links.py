@@ -114,12 +114,13 @@ def test_a_state_without_a_step(model):
         assert not found[name].any()
 
 
-def test_other_solvers_have_none():
-    batch = mw.Batch(mw.scenes.load("stack10"), worlds=2, observe=OBSERVE)
+def test_other_solvers_serve_forces_and_refuse_what_only_trees_have():
+    scene = mw.scenes.load("stack10")
+    with pytest.raises(ValueError, match="link_inertias.*only newton has trees of links"):
+        mw.Batch(scene, worlds=2, observe=OBSERVE)
+    batch = mw.Batch(scene, worlds=2, observe=["links", "link_forces"])
     batch.step(3)
-    for name in ("link_position", "link_mass", "external_force"):
-        assert not batch.get(name).any()
-    assert batch.get("actuator_force").shape == (2, 0, 1)
+    assert batch.get("link_position").any() and batch.get("external_force").any()
 
 
 @pytest.mark.parametrize("steps", [0, 1, 4])

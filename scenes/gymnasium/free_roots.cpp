@@ -32,8 +32,11 @@ constexpr Component kForce[] = {
 template <std::size_t n, class Map>
 void observe_links(TaskOf& t, const char* name, const Component (&components)[n], Map map) {
   for (const BodyId body : t.links()) {
+    // Bodies of Gymnasium's ant have no names.
+    const std::string& given = t.task.scene.at(body).name;
+    const std::string link = given.empty() ? std::to_string(body.index()) : given;
     for (const Component& c : components) {
-      t.observe(std::string(name) + " " + t.task.scene.at(body).name + " " + c.name,
+      t.observe(std::string(name) + " " + link + " " + c.name,
                 map(observed(c.what, body.index(), c.axis)));
     }
   }
