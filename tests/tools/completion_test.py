@@ -124,7 +124,7 @@ class Zsh(unittest.TestCase):
         (folder / ".zshrc").write_text(
             f"fpath=({folder} $fpath)\nautoload -Uz compinit\ncompinit -u -D\nPS1='> '\n"
             "bindkey '^I' complete-word\nbindkey '^X' show\n"
-            "show() { print -r -- \"$BUFFER\" >shown; exit }\nzle -N show\n")
+            "show() { print -r -- \"$BUFFER\" >part; mv part shown; exit }\nzle -N show\n")
         environment = {**os.environ, "ZDOTDIR": str(folder), "TERM": "dumb", "HOME": str(folder)}
         child, terminal = pty.fork()
         if child == 0:

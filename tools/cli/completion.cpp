@@ -74,7 +74,7 @@ void collect(const CLI::App& app, std::vector<std::string> path, std::vector<Com
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_positional()) {
       line.arguments.push_back(completion_of(*option));
-    } else {
+    } else if (!option->get_group().empty()) {  // else it is not in the help either
       line.options.push_back(option_of(*option));
     }
   }
