@@ -103,6 +103,10 @@ if(NOT MW_SANITIZE)
     set_tests_properties(fast_tests_forced_${isa} PROPERTIES
       SKIP_REGULAR_EXPRESSION "^skipped: " TIMEOUT 900 COST 1000)
   endforeach()
+  # Scalar kernels run these tests under ThreadSanitizer, too, and have the bits of all others ([bits]).
+  if(TEST fast_tests_forced_scalar)
+    set_tests_properties(fast_tests_forced_scalar PROPERTIES LABELS exhaustive)
+  endif()
 endif()
 
 # What is below holds or not whatever threads do; the builds beside TSan's have checked it.
