@@ -72,7 +72,11 @@ constexpr H5FD_class_t make_driver() {
   H5FD_class_t driver{};
 #if H5_VERSION_GE(1, 13, 0)
   driver.version = H5FD_CLASS_VERSION;
+#ifdef H5_VFD_RESERVED
+  driver.value = H5_VFD_RESERVED;  // its name since 1.13
+#else
   driver.value = H5FD_RESERVED;
+#endif
 #endif
   driver.name = "manyworlds";
   driver.maxaddr = haddr_t{1} << 62;
