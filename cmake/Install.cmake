@@ -41,8 +41,8 @@ endif()
 if(TARGET manyworlds_live)
   mw_install_library(manyworlds_live manyworlds-live)
 endif()
-install(FILES "${PROJECT_SOURCE_DIR}/LICENSE"
-        DESTINATION "${CMAKE_INSTALL_DATADIR}/licenses/manyworlds")
+include(cmake/Licenses.cmake)
+mw_install_licenses(manyworlds "${PROJECT_SOURCE_DIR}/LICENSE")
 
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/manyworlds-config.cmake.in"
   "${PROJECT_BINARY_DIR}/manyworlds-config.cmake" INSTALL_DESTINATION "${mw_package_dir}"

@@ -10,7 +10,8 @@ add_test(NAME installed
   COMMAND ${CMAKE_COMMAND}
           -D BUILD_DIR=${PROJECT_BINARY_DIR} -D SOURCE_DIR=${PROJECT_SOURCE_DIR}
           -D PREFIX=${mw_prefix} -D BINDIR=${CMAKE_INSTALL_BINDIR} -D DATADIR=${CMAKE_INSTALL_DATADIR}
-          -D PROGRAM=${mw_has_program} -D MJCF=${MW_MJCF} -D RECORD=${MW_RECORD} -D VIEWER=${MW_VIEWER}
+          -D PROGRAM=${mw_has_program} -D MJCF=${MW_MJCF} -D RECORD=${MW_RECORD}
+          -D LIVE=${MW_LIVE} -D EXECUTOR=${MW_EXECUTOR} -D VIEWER=${MW_VIEWER}
           -P "${PROJECT_SOURCE_DIR}/cmake/TestInstall.cmake")
 set_tests_properties(installed PROPERTIES FIXTURES_SETUP installed TIMEOUT 300)
 

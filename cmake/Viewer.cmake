@@ -22,6 +22,7 @@ endif()
 set(mw_viewer_dir "${PROJECT_BINARY_DIR}/viewer")
 set(mw_viewer_page "${mw_viewer_dir}/viewer.html")
 set(mw_report_page "${mw_viewer_dir}/report.html")
+set(mw_viewer_licenses "${mw_viewer_dir}/LICENSES.txt")  # of what the pages bundle
 set(mw_viewer_packages "${mw_viewer_dir}/node_modules/.package-lock.json")
 file(GLOB mw_viewer_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/viewer/src/*.*"
   "${PROJECT_SOURCE_DIR}/viewer/src/report/*.*" "${PROJECT_SOURCE_DIR}/viewer/*.mjs" "${PROJECT_SOURCE_DIR}/viewer/tsconfig.json")
@@ -34,7 +35,7 @@ add_custom_command(OUTPUT "${mw_viewer_packages}"
   WORKING_DIRECTORY "${mw_viewer_dir}"
   DEPENDS "${PROJECT_SOURCE_DIR}/viewer/package.json" "${PROJECT_SOURCE_DIR}/viewer/package-lock.json"
   COMMENT "Fetching the packages of the viewer" VERBATIM)
-add_custom_command(OUTPUT "${mw_viewer_page}" "${mw_report_page}"
+add_custom_command(OUTPUT "${mw_viewer_page}" "${mw_report_page}" "${mw_viewer_licenses}"
   COMMAND ${CMAKE_COMMAND} -E copy_directory "${PROJECT_SOURCE_DIR}/viewer/src" "${mw_viewer_dir}/src"
   COMMAND ${CMAKE_COMMAND} -E copy_if_different "${PROJECT_SOURCE_DIR}/viewer/build.mjs"
           "${PROJECT_SOURCE_DIR}/viewer/tsconfig.json" "${mw_viewer_dir}"
@@ -44,7 +45,7 @@ add_custom_command(OUTPUT "${mw_viewer_page}" "${mw_report_page}"
   DEPENDS "${mw_viewer_packages}" ${mw_viewer_sources}
   COMMENT "Bundling the viewer" VERBATIM)
 file(MAKE_DIRECTORY "${mw_viewer_dir}")
-add_custom_target(mw_viewer ALL DEPENDS "${mw_viewer_page}" "${mw_report_page}")
+add_custom_target(mw_viewer ALL DEPENDS "${mw_viewer_page}" "${mw_report_page}" "${mw_viewer_licenses}")
 
 if(MW_INSTALL)
   # With the library, since wheels are made of that, and with the program.

@@ -1,5 +1,5 @@
 // Bundles the pages, each into one file without data: node build.mjs FOLDER makes viewer.html and
-// report.html there.
+// report.html there, and LICENSES.txt of the packages that they contain.
 import { readFile, writeFile, mkdir, readdir, rename } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -15,15 +15,17 @@ async function licences(inputs) {
     const found = /^(.*node_modules\/(?:@[^/]+\/)?[^/]+)\//.exec(input);
     if (found) packages.add(found[1]);
   }
-  const texts = [];
+  const texts = new Map();
   for (const path of [...packages].sort()) {
     const { name, version } = JSON.parse(await readFile(join(here, path, 'package.json'), 'utf8'));
     const file = (await readdir(join(here, path))).find((entry) => /^licen[cs]e/i.test(entry));
     if (!file) throw new Error(`${name} comes without its licence`);
-    texts.push(`${name} ${version}\n\n${(await readFile(join(here, path, file), 'utf8')).trim()}\n`);
+    texts.set(`${name} ${version}`, (await readFile(join(here, path, file), 'utf8')).trim());
   }
-  return `<script type="text/plain" id="licences">\n${texts.join('\n').replaceAll('</script', '<\\/script')}</script>\n`;
+  return texts;
 }
+
+const inOneText = (texts) => [...texts].map(([name, text]) => `${name}\n\n${text}\n`).join('\n');
 
 async function page(name, source) {
   const read = (file) => readFile(join(here, 'src', file), 'utf8');
@@ -40,18 +42,26 @@ async function page(name, source) {
     charset: 'utf8',
   });
   const script = bundled.outputFiles[0].text.replaceAll('</script', '<\\/script');
-  const legal = await licences(Object.keys(bundled.metafile.inputs));
+  const texts = await licences(Object.keys(bundled.metafile.inputs));
+  const escaped = inOneText(texts).replaceAll('</script', '<\\/script');
+  const legal = `<script type="text/plain" id="licences">\n${escaped}</script>\n`;
   const [theme, style] = [await read('theme.css'), await read(`${source}page.css`)];
   const text = (await read(`${source}page.html`))
     .replace('/* theme */', () => theme)
     .replace('/* style */', () => style)
     .replace('/* script */', () => script)
     .replace('</body>', () => `${legal}</body>`);
+  await write(name, text);
+  return texts;
+}
+
+async function write(name, text) {
   await mkdir(folder, { recursive: true });
   const out = join(folder, name);
   await writeFile(`${out}.part`, text);
   await rename(`${out}.part`, out);
 }
 
-await page('viewer.html', '');
-await page('report.html', 'report/');
+const viewer = await page('viewer.html', '');
+const report = await page('report.html', 'report/');
+await write('LICENSES.txt', inOneText(new Map([...new Map([...viewer, ...report])].sort())));
