@@ -29,6 +29,11 @@ if(TARGET mw_viewer)
   file(CREATE_LINK "${mw_viewer_page}" "${mw_python_build}/manyworlds/viewer.html" SYMBOLIC)
 endif()
 
+if(TARGET manyworlds_cli)  # for python -m manyworlds
+  file(MAKE_DIRECTORY "${mw_python_build}/manyworlds/bin")
+  file(CREATE_LINK "${PROJECT_BINARY_DIR}/bin/manyworlds" "${mw_python_build}/manyworlds/bin/manyworlds" SYMBOLIC)
+endif()
+
 if(NOT MW_TESTS)
   return()
 endif()

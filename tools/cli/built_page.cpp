@@ -19,8 +19,9 @@ std::optional<fs::path> find_page(const BuiltPage& page) {
   }
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   const fs::path prefix = program.parent_path().parent_path();
-  for (const fs::path& file :
-       {prefix / "share" / "manyworlds" / page.file, prefix / "viewer" / page.file}) {
+  for (const fs::path& file : {prefix / "share" / "manyworlds" / page.file,  // installed
+                               prefix / "viewer" / page.file,                // in a build tree
+                               prefix / page.file}) {                        // in a Python package
     if (fs::is_regular_file(file, ignored)) return file;
   }
   return std::nullopt;

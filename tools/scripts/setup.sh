@@ -8,6 +8,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 program=tools/$(basename "$0")
 build_dir="$root/build/release"
 mujoco_dir="$root/.deps/mujoco"
+hdf5_dir="$root/.deps/hdf5"
 
 # Of the library and the program, and of their parts (see `build`).
 packages=(
@@ -17,6 +18,7 @@ packages=(
 mjcf_packages=(libtinyxml2-dev python3-pip)
 record_packages=(libhdf5-dev zlib1g-dev)
 live_packages=(libboost-dev zlib1g-dev)
+wheel_packages=(python3-venv zlib1g-dev)
 # Any Node that is there will do: one from elsewhere conflicts with Debian's npm.
 viewer_packages=()
 [[ -n $(type -P node) && -n $(type -P npm) ]] || viewer_packages=(nodejs npm)
@@ -63,6 +65,12 @@ install_packages() {
 fetch_mujoco() {
   "$root/tools/scripts/fetch_mujoco.sh" "$mujoco_dir" >&2 ||
     fail "could not fetch MuJoCo from PyPI (MW_MJCF=OFF $program builds without MJCF files)"
+}
+
+# The HDF5 that wheels contain. Without leave to install anything they contain the system's.
+build_hdf5() {
+  [[ ${MW_INSTALL_PACKAGES:-ON} != OFF ]] || return 0
+  "$root/tools/scripts/build_hdf5.sh" "$hdf5_dir" >&2 || fail "could not build HDF5 for wheels"
 }
 
 # make_python_environment: build/python, with what pyproject.toml's tests want.
@@ -126,7 +134,7 @@ add_parts() {
       parts+=("$part")
     fi
   done
-  for part in mjcf record live python viewer; do
+  for part in mjcf record live python viewer wheel; do
     local name=MW_${part^^}
     case ${!name-} in
       "") ;;
@@ -152,7 +160,8 @@ configure() {
   arguments+=(-D "MW_KERNELS=$(IFS=';'; echo "${kernels[*]}")")
   arguments+=(-D "MW_MJCF=$(on_off mjcf)" -D "MW_RECORD=$(on_off record)" -D "MW_LIVE=$(on_off live)")
   arguments+=(-D "MW_REPORT=$(on_off report)" -D "MW_PYTHON=$(on_off python)")
-  arguments+=(-D "MW_VIEWER=$(on_off viewer)")
+  arguments+=(-D "MW_VIEWER=$(on_off viewer)" -D "MW_WHEEL=$(on_off wheel)")
+  if has wheel && [[ -e $hdf5_dir/version ]]; then arguments+=(-D "MW_HDF5_DIR=$hdf5_dir"); fi
   arguments+=(-D "MW_TESTS=$(on_off tests)" -D "MW_BENCH=$(on_off tests)")
   if has python; then arguments+=(-D "Python_EXECUTABLE=$python_dir/bin/python"); fi
   if [[ -n ${MW_ISAS-} ]]; then arguments+=(-D "MW_ISAS=$MW_ISAS"); else arguments+=(-U MW_ISAS); fi
@@ -184,7 +193,7 @@ took() {
 }
 
 # build TARGET PART...: everything up to an up-to-date TARGET in build/release, with these parts of
-# it: kernels (all sets) or single ones of $all_kernels, mjcf, record, live, report, tests, python, viewer. Parts
+# it: kernels (all sets) or single ones of $all_kernels, mjcf, record, live, report, tests, python, viewer, wheel. Parts
 # share their objects with what was built before, so a build that grows compiles what is new. Two at a
 # time wait for one another. MW_MJCF, MW_RECORD, MW_LIVE, MW_PYTHON and MW_VIEWER in the environment (ON or OFF) overrule,
 # MW_ISAS="scalar;avx2" leaves out the kernels of other instruction sets, BUILD_SHARED_LIBS=ON links anew.
@@ -196,12 +205,13 @@ build() {
   flock 9
   add_parts "$@"
   since=$(now)
-  for part in mjcf record live tests python viewer; do
+  for part in mjcf record live tests python viewer wheel; do
     local -n more=${part}_packages
     if has "$part"; then packages+=("${more[@]}"); fi
   done
   install_packages "${packages[@]}"
   if has mjcf; then fetch_mujoco; fi
+  if has wheel && has record; then build_hdf5; fi
   if has python; then make_python_environment; fi
   took packages "$since"
   since=$(now)

@@ -1,0 +1,91 @@
+# What a Python wheel holds besides the extension modules, which are compiled per Python
+# (python/CMakeLists.txt): the library, recordings, the program and the pages. All of it is made of the
+# objects of the ordinary build. tools/scripts/prebuilt installs the component `wheel`:
+#   wheel/libmanyworlds.so, wheel/libmanyworlds_record.so, wheel/bin/manyworlds, wheel/*.html
+
+set(MW_HDF5_DIR "" CACHE PATH
+    "What tools/scripts/build_hdf5.sh made, for wheels; empty: the system's HDF5")
+if(BUILD_SHARED_LIBS)
+  message(STATUS "MW_WHEEL is ignored with BUILD_SHARED_LIBS=ON: wheels are made of archives")
+  return()
+endif()
+include(cmake/SharedLibrary.cmake)
+add_custom_target(mw_wheel)
+if(TARGET mw_libraries)
+  add_dependencies(mw_wheel mw_libraries)
+endif()
+set(mw_wheel_dir "${PROJECT_BINARY_DIR}/wheel")
+
+# mw_wheel_target(TARGET FOLDER RPATH): compiled for `mw_wheel` alone.
+function(mw_wheel_target target folder rpath)
+  set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON INSTALL_RPATH "${rpath}"
+    RUNTIME_OUTPUT_DIRECTORY "${mw_wheel_dir}/${folder}" LIBRARY_OUTPUT_DIRECTORY "${mw_wheel_dir}/${folder}")
+  add_dependencies(mw_wheel ${target})
+  install(TARGETS ${target} COMPONENT wheel EXCLUDE_FROM_ALL
+          RUNTIME DESTINATION "wheel/${folder}" LIBRARY DESTINATION "wheel/${folder}")
+endfunction()
+if(NOT MW_PYTHON)  # which puts it beside its modules, and has no use for another
+  mw_wheel_target(manyworlds_shared . "$ORIGIN")
+else()
+  add_dependencies(mw_wheel manyworlds_shared)
+  install(TARGETS manyworlds_shared COMPONENT wheel EXCLUDE_FROM_ALL LIBRARY DESTINATION wheel)
+endif()
+
+# Recordings, for the program and for the module _record. HDF5's headers have to be those of the library
+# that is linked, so src/record is compiled again for another HDF5. Its symbols are hidden: a process
+# may also have the HDF5 of h5py.
+if(MW_RECORD)
+  if(MW_HDF5_DIR)
+    add_library(manyworlds_record_shared SHARED ${mw_record_sources})
+    target_compile_definitions(manyworlds_record_shared PRIVATE MW_VERSION="${PROJECT_VERSION}")
+    target_include_directories(manyworlds_record_shared PRIVATE "${PROJECT_SOURCE_DIR}")
+    target_include_directories(manyworlds_record_shared SYSTEM PRIVATE "${MW_HDF5_DIR}/include")
+    target_link_libraries(manyworlds_record_shared PRIVATE nlohmann_json::nlohmann_json
+      "${MW_HDF5_DIR}/lib/libhdf5.a")
+    target_link_options(manyworlds_record_shared PRIVATE -Wl,--exclude-libs,libhdf5.a -Wl,--gc-sections)
+    mw_precompile(manyworlds_record_shared)
+    mw_unity(manyworlds_record_shared)
+    install(FILES "${MW_HDF5_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/licenses/HDF5" COMPONENT wheel
+            EXCLUDE_FROM_ALL)
+  else()
+    file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/manyworlds_record_shared.cpp" CONTENT "")
+    add_library(manyworlds_record_shared SHARED "${PROJECT_BINARY_DIR}/manyworlds_record_shared.cpp")
+    target_link_libraries(manyworlds_record_shared PRIVATE HDF5::HDF5
+      -Wl,--whole-archive "$<TARGET_FILE:manyworlds_record>" -Wl,--no-whole-archive)
+    add_dependencies(manyworlds_record_shared manyworlds_record)
+  endif()
+  target_link_libraries(manyworlds_record_shared PRIVATE manyworlds_shared ZLIB::ZLIB ${CMAKE_DL_LIBS} m)
+  set_target_properties(manyworlds_record_shared PROPERTIES OUTPUT_NAME manyworlds_record)
+  mw_wheel_target(manyworlds_record_shared . "$ORIGIN")
+endif()
+
+if(NOT TARGET manyworlds_cli)
+  return()
+endif()
+# The program, which uses the library beside the package. MuJoCo's library is opened when a model is read:
+# without it, everything else works.
+add_executable(manyworlds_program $<TARGET_OBJECTS:manyworlds_cli>)
+set_target_properties(manyworlds_program PROPERTIES OUTPUT_NAME manyworlds LINKER_LANGUAGE CXX)
+if(MW_MJCF)
+  target_sources(manyworlds_program PRIVATE "${PROJECT_SOURCE_DIR}/tools/program/mujoco.cpp")
+  target_include_directories(manyworlds_program PRIVATE "${PROJECT_SOURCE_DIR}"
+    "$<TARGET_PROPERTY:MuJoCo::MuJoCo,INTERFACE_INCLUDE_DIRECTORIES>")
+  mw_uses(manyworlds_program manyworlds_compare)
+  mw_uses(manyworlds_program manyworlds_mjcf)
+  target_link_libraries(manyworlds_program PRIVATE tinyxml2::tinyxml2)
+endif()
+if(MW_LIVE)
+  mw_uses(manyworlds_program manyworlds_live)
+  target_link_libraries(manyworlds_program PRIVATE ZLIB::ZLIB)
+endif()
+if(MW_RECORD)
+  target_link_libraries(manyworlds_program PRIVATE manyworlds_record_shared)
+endif()
+target_link_libraries(manyworlds_program PRIVATE
+  manyworlds_shared fmt::fmt Threads::Threads ${CMAKE_DL_LIBS})
+mw_wheel_target(manyworlds_program bin "$ORIGIN/..")
+
+if(TARGET mw_viewer)
+  add_dependencies(mw_wheel mw_viewer)
+  install(FILES "${mw_viewer_page}" "${mw_report_page}" DESTINATION wheel COMPONENT wheel EXCLUDE_FROM_ALL)
+endif()

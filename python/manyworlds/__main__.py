@@ -1,0 +1,40 @@
+"""``python -m manyworlds``, and the command ``manyworlds``: runs the program that this package contains."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+from pathlib import Path
+
+_PROGRAM = Path(__file__).with_name("bin") / "manyworlds"
+
+
+def _mujoco_library() -> Path | None:
+    """The libmujoco of the installed package mujoco-core, which the program opens to read MJCF files."""
+    found = importlib.util.find_spec("mujoco")
+    folders = (found.submodule_search_locations or []) if found else []
+    libraries = sorted(library for folder in folders for library in Path(folder).glob("libmujoco.so.*"))
+    return libraries[-1] if libraries else None
+
+
+def main() -> None:
+    """Replaces this process by the program, whose exit status and handling of signals are its own.
+
+    Exits with status 3 if this build of the package has no program.
+    """
+    if not os.access(_PROGRAM, os.X_OK):
+        print(
+            f"manyworlds: error: {_PROGRAM} does not exist: this package was built without the program. "
+            "Wheels made by tools/wheel contain it; tools/run in the repository builds it",
+            file=sys.stderr,
+        )
+        sys.exit(3)
+    library = _mujoco_library()
+    if library is not None:
+        os.environ.setdefault("MANYWORLDS_MUJOCO", str(library))
+    os.execv(_PROGRAM, ["manyworlds", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()
