@@ -14,7 +14,9 @@ def _mujoco_library() -> Path | None:
     """The libmujoco of the installed package mujoco-core, which the program opens to read MJCF files."""
     found = importlib.util.find_spec("mujoco")
     folders = (found.submodule_search_locations or []) if found else []
-    libraries = sorted(library for folder in folders for library in Path(folder).glob("libmujoco.so.*"))
+    libraries = sorted(
+        library for folder in folders for library in Path(folder).glob("libmujoco.so.*")
+    )
     return libraries[-1] if libraries else None
 
 

@@ -37,7 +37,17 @@ def test_exit_status_is_the_programs():
 
 
 def test_process_is_replaced_by_the_program():
-    command = [sys.executable, "-m", "manyworlds", "run", "ball3d", "--worlds", "100", "--steps", "1000000000"]
+    command = [
+        sys.executable,
+        "-m",
+        "manyworlds",
+        "run",
+        "ball3d",
+        "--worlds",
+        "100",
+        "--steps",
+        "1000000000",
+    ]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         wanted = str(launcher._PROGRAM.resolve())
         try:
