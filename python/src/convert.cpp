@@ -1,12 +1,24 @@
 #include "convert.hpp"
 
+#include <nanobind/stl/string.h>
+
 namespace manyworlds::python {
 
 namespace {
 
 nb::object class_named(const char* name) { return nb::module_::import_("manyworlds").attr(name); }
 
-const char* type_of(nb::handle value) { return Py_TYPE(value.ptr())->tp_name; }
+// "int", "numpy.ndarray", and the bare name of a class that is written in Python. The stable ABI
+// has no tp_name, which says the same.
+std::string type_of(nb::handle value) {
+  const nb::handle type = value.type();
+  const std::string name = nb::cast<std::string>(type.attr("__name__"));
+  const auto flags = PyType_GetFlags(reinterpret_cast<PyTypeObject*>(type.ptr()));
+  const bool is_static = (flags & Py_TPFLAGS_HEAPTYPE) == 0;
+  const std::string module =
+      is_static ? nb::cast<std::string>(type.attr("__module__")) : std::string("builtins");
+  return module == "builtins" ? name : module + "." + name;
+}
 
 }  // namespace
 
@@ -20,7 +32,7 @@ void wrong_value(const Place& place, const std::string& what) {
 }
 
 double read_number(nb::handle value, const Place& place) {
-  if (PyFloat_CheckExact(value.ptr())) return PyFloat_AS_DOUBLE(value.ptr());
+  if (PyFloat_CheckExact(value.ptr())) return PyFloat_AsDouble(value.ptr());
   if (PyBool_Check(value.ptr())) wrong_type(place, value, "a number");
   const double number = PyFloat_AsDouble(value.ptr());
   if (number == -1 && PyErr_Occurred()) {
@@ -80,14 +92,14 @@ std::vector<nb::object> read_elements(nb::handle value, const Place& place, int 
     PyErr_Clear();
     wrong_type(place, value, wanted());
   }
-  const Py_ssize_t size = PyList_GET_SIZE(list.ptr());
+  const Py_ssize_t size = PyList_Size(list.ptr());
   if (count >= 0 && size != count) {
     wrong_value(place, "has " + std::to_string(size) + " elements; expected " + wanted());
   }
   std::vector<nb::object> out;
   out.reserve(static_cast<std::size_t>(size));
   for (Py_ssize_t i = 0; i < size; ++i) {
-    out.push_back(nb::borrow(PyList_GET_ITEM(list.ptr(), i)));
+    out.push_back(nb::borrow(PyList_GetItem(list.ptr(), i)));
   }
   return out;
 }

@@ -40,7 +40,8 @@ Handle read_reference(nb::handle value, const Place& place, const char* kind, Fi
 // "" for what has none, which reading it will tell of.
 std::string name_in(nb::handle part) {
   const nb::object name = nb::getattr(part, "name", nb::none());
-  const char* text = PyUnicode_Check(name.ptr()) ? PyUnicode_AsUTF8(name.ptr()) : "";
+  const char* text =
+      PyUnicode_Check(name.ptr()) ? PyUnicode_AsUTF8AndSize(name.ptr(), nullptr) : "";
   if (!text) PyErr_Clear();
   return text ? text : "";
 }
