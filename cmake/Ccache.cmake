@@ -13,7 +13,8 @@ if(MW_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   if(MW_CCACHE_PROGRAM)
     cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH mw_ccache_base)
     set(mw_ccache env "CCACHE_BASEDIR=${mw_ccache_base}" CCACHE_NOHASHDIR=1
-        CCACHE_SLOPPINESS=pch_defines,time_macros "${MW_CCACHE_PROGRAM}")
+        CCACHE_SLOPPINESS=pch_defines,time_macros "${mw_ccache_base}/tools/scripts/ccache_launcher"
+        "${MW_CCACHE_PROGRAM}")
     set(CMAKE_C_COMPILER_LAUNCHER ${mw_ccache})
     set(CMAKE_CXX_COMPILER_LAUNCHER ${mw_ccache})
     add_compile_options(

@@ -89,3 +89,8 @@ if(TARGET mw_viewer)
   add_dependencies(mw_wheel mw_viewer)
   install(FILES "${mw_viewer_page}" "${mw_report_page}" DESTINATION wheel COMPONENT wheel EXCLUDE_FROM_ALL)
 endif()
+if(mw_completion)
+  add_dependencies(mw_wheel manyworlds_cli)  # which writes them
+  install(FILES "${mw_completion}/manyworlds" "${mw_completion}/_manyworlds" DESTINATION completion COMPONENT wheel
+          EXCLUDE_FROM_ALL)
+endif()

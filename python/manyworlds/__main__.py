@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-import importlib.util
+import contextlib
 import os
 import sys
 from pathlib import Path
 
+from .film import encoder_program
+from .mjcf import _library as mujoco_library
+
 _PROGRAM = Path(__file__).with_name("bin") / "manyworlds"
-
-
-def _mujoco_library() -> Path | None:
-    """The libmujoco of the installed package mujoco-core, which the program opens to read MJCF files."""
-    found = importlib.util.find_spec("mujoco")
-    folders = (found.submodule_search_locations or []) if found else []
-    libraries = sorted(
-        library for folder in folders for library in Path(folder).glob("libmujoco.so.*")
-    )
-    return libraries[-1] if libraries else None
 
 
 def main() -> None:
@@ -32,9 +25,10 @@ def main() -> None:
             file=sys.stderr,
         )
         sys.exit(3)
-    library = _mujoco_library()
-    if library is not None:
-        os.environ.setdefault("MANYWORLDS_MUJOCO", str(library))
+    with contextlib.suppress(ImportError):  # models alone need it, and the program says so
+        os.environ.setdefault("MANYWORLDS_MUJOCO", str(mujoco_library()))
+    if encoder := encoder_program():
+        os.environ["FFMPEG"] = encoder
     os.execv(_PROGRAM, ["manyworlds", *sys.argv[1:]])
 
 

@@ -65,19 +65,26 @@ def test_missing_program_is_exit_3(monkeypatch, tmp_path, capsys):
     assert str(tmp_path) in capsys.readouterr().err
 
 
-def test_program_learns_which_libmujoco_is_installed(monkeypatch, tmp_path):
+def test_program_gets_the_installed_libmujoco_and_encoder(monkeypatch, tmp_path):
     package = tmp_path / "mujoco"
     package.mkdir()
     (package / "__init__.py").touch()
     (package / "libmujoco.so.4.0.1").touch()
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.delitem(sys.modules, "mujoco", raising=False)
-    assert launcher._mujoco_library() == package / "libmujoco.so.4.0.1"
     started = []
     monkeypatch.setattr(os, "execv", lambda program, arguments: started.append(arguments))
     monkeypatch.setattr(sys, "argv", ["__main__.py", "plan", "ball3d"])
     monkeypatch.setenv("MANYWORLDS_MUJOCO", "")  # restored at the end
     monkeypatch.delenv("MANYWORLDS_MUJOCO")
+    monkeypatch.setenv("FFMPEG", "")
+    monkeypatch.setattr(launcher, "encoder_program", lambda: "/opt/ffmpeg")
     launcher.main()
     assert started == [["manyworlds", "plan", "ball3d"]]
     assert os.environ["MANYWORLDS_MUJOCO"] == str(package / "libmujoco.so.4.0.1")
+    assert os.environ["FFMPEG"] == "/opt/ffmpeg"
+
+    del os.environ["MANYWORLDS_MUJOCO"]
+    (package / "libmujoco.so.4.0.1").rename(package / "libmujoco.so.3.3.0")
+    launcher.main()
+    assert "MANYWORLDS_MUJOCO" not in os.environ

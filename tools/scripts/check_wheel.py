@@ -34,6 +34,9 @@ def problems(path):
     ):
         if names.count(f"manyworlds/{wanted}") != 1:
             yield f"has no manyworlds/{wanted}"
+    for shell in ("bash-completion/completions/manyworlds", "zsh/site-functions/_manyworlds"):
+        if not any(name.endswith(f".data/data/share/{shell}") for name in names):
+            yield f"has no share/{shell}"
     copied = [name for name in names if ".libs/" in name]
     for name in copied:
         if re.sub(r"^lib|-[0-9a-f]{8}.*$", "", name.rpartition("/")[2]) not in COPIED:
