@@ -1,4 +1,4 @@
-// What a Batch is made with.
+// Options of a Batch.
 #pragma once
 
 #include <cstdint>
@@ -20,31 +20,31 @@ const char* to_string(ContactLayout layout);
 
 // Instruction sets that this CPU and this build can run, narrowest first. Never empty.
 std::vector<Isa> available_isas();
-// What a Batch takes when BatchOptions::isa is empty: MANYWORLDS_ISA, else the widest available.
-// Throws std::invalid_argument when MANYWORLDS_ISA names one that is unknown or not available.
+// Instruction set of a Batch whose BatchOptions::isa is empty: MANYWORLDS_ISA, else the widest
+// available. Throws std::invalid_argument if MANYWORLDS_ISA is unknown or not available.
 Isa default_isa();
 
-inline constexpr int kMaxThreads = 1024;  // of a Batch, its own or its executor's
+inline constexpr int kMaxThreads = 1024;  // threads of a Batch, or of its executor
 
 struct BatchOptions {
   int worlds = 1;
-  int threads = 0;         // 0: as many as the process may run on (affinity mask) and can start
+  int threads = 0;         // 0: as many as the affinity mask allows and the process can start
   std::uint64_t seed = 0;  // world i draws from seed + i
   Precision precision = Precision::f32;
-  std::optional<Isa> isa = std::nullopt;  // default_isa()
-  // Of contacts in memory, by what each group of worlds needs in a step. Chosen, all passes over
-  // contacts run, even where nothing touches. No bit depends on it.
+  std::optional<Isa> isa = std::nullopt;  // empty: default_isa()
+  // Memory layout of contacts. automatic chooses it per step for each group of worlds. With another
+  // value all contact stages run, even without contacts. The layout does not affect the results.
   ContactLayout layout = ContactLayout::automatic;
-  // Bodies at rest fall asleep, island by island (SleepOptions::speed), and cost little until
-  // something wakes them; worlds in which everything sleeps cost nothing.
+  // Islands of bodies at rest fall asleep (SleepOptions::speed) until something wakes them.
+  // Sleeping bodies cost little; worlds in which all bodies sleep cost nothing.
   bool sleep = false;
-  // Every so many steps of its own a world's energy is audited over one step: what it gains beyond
-  // the work of forces, controls, drives and kinematic bodies adds up to Status::diverged. 0:
-  // never; at most 255. Worlds with robots, with the penalty solver, and in which nothing but free
-  // flight happens are not audited.
+  // Each world audits its energy over one of this many of its steps, at most 255; 0: never. The
+  // audit adds up the energy gained beyond the work of forces, controls, drives and kinematic
+  // bodies, and may set Status::diverged (docs/batch.md). Worlds with robots, with the penalty
+  // solver or in free motion are not audited.
   int audit_every = 16;
-  Observers observe = {};                        // what to watch beside the step (observe.hpp)
-  std::shared_ptr<Executor> executor = nullptr;  // step on these threads; threads must then be 0
+  Observers observe = {};                        // what to measure (observe.hpp)
+  std::shared_ptr<Executor> executor = nullptr;  // steps on these threads; threads must then be 0
 };
 
 }  // namespace manyworlds

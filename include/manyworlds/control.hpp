@@ -18,8 +18,8 @@ enum class ControlKind {
   joint_force,      // Solver::newton only: input of an actuator on a hinge or slider
 };
 
-// A force along a joint's coordinate, N or N m. With the control u, clamped to its range, and the
-// length l = gear x and speed s = gear v of the joint's coordinate x and its speed v:
+// A force along a joint's coordinate x of speed v, N or N m. With the clamped control u, the length
+// l = gear x and the speed s = gear v, it is
 //   gear clamp((gain.x + gain.y l + gain.z s) u + bias.x + bias.y l + bias.z s, low, high)
 // A motor has gain 1; a position servo gain kp and bias (0, -kp, -kv); a velocity servo gain kv and
 // bias (0, 0, -kv).

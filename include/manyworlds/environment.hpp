@@ -1,7 +1,8 @@
-// Environment: a task in thousands of worlds. A step maps actions to controls, steps the worlds and
-// works out observations, rewards and ends, group by group on the threads that step.
+// Environment: a task in many worlds. A step maps actions to controls, steps the worlds, and
+// computes observations, rewards and ends of episodes. The stepping threads do this group by group.
 //
-// Worlds depend on nothing but the task, their seed and their actions: not on how many there are.
+// Results of a world depend only on the task, the world's seed and its actions, not on the number
+// of worlds.
 #pragma once
 
 #include <concepts>
@@ -20,11 +21,13 @@
 
 namespace manyworlds {
 
-// What happens to a world whose episode has ended (as Gymnasium's AutoresetMode).
+// What happens to a world whose episode has ended (Gymnasium's AutoresetMode).
 enum class Autoreset {
-  next_step,  // the next step begins its next episode instead of stepping it: reward 0, no end
-  same_step,  // the step that ends it begins the next: `final_observations` has where it ended
-  disabled,   // it steps on until it is reset
+  // The next step starts the next episode instead of stepping the world: reward 0, no end.
+  next_step,
+  // The step that ends an episode starts the next. `final_observations` has the end of the old one.
+  same_step,
+  disabled,  // the world steps on until it is reset
 };
 const char* to_string(Autoreset autoreset);
 
@@ -36,24 +39,24 @@ struct EnvironmentOptions {
   std::optional<Isa> isa = std::nullopt;
   Autoreset autoreset = Autoreset::next_step;
   std::shared_ptr<Executor> executor = nullptr;
-  // Calls that step or begin worlds throw NonFiniteError where a result is not finite, after they
-  // have done all that they do.
+  // Calls that step worlds or start episodes throw NonFiniteError if a result is not finite. They
+  // complete all their work first.
   bool check = false;
 };
 
-// An observation, a reward or an end that was not a finite number. Its world is frozen then
-// (Status::non_finite) and its episode is truncated, not terminated.
+// An observation, reward or end that was not finite. Its world is frozen (Status::non_finite), and
+// its episode is truncated, not terminated.
 struct NonFinite {
-  std::string expression = {};  // "observation 3 'lean'", as validate() names it
+  std::string expression = {};  // "observation 3 'lean'", as in validate()
   int world = 0;
-  std::int64_t step = 0;  // of the world's episode, from 1; 0: where it began
-  // Infinite or not a number. An end that compares what is not a number counts as not a number.
+  std::int64_t step = 0;  // step of the world's episode, from 1; 0: its start
+  // Infinite or NaN. An end that compares a NaN counts as NaN.
   double value = 0;
 };
 std::string to_string(
     const NonFinite& fault);  // "reward 0 'pace' is nan in world 7 at step 12 of ..."
 
-// The first one of a call, by world and then in the order of NonFinite::expression.
+// Contains the first fault of a call: by world, then in the order of NonFinite::expression.
 class NonFiniteError : public std::runtime_error {
  public:
   explicit NonFiniteError(NonFinite what)
@@ -64,24 +67,26 @@ class NonFiniteError : public std::runtime_error {
   NonFinite fault_;
 };
 
-// The caller's arrays that a step writes to, [world] or [world][number]. Those that are empty are
-// not wanted; others must have just the size.
+// Output arrays of a step, [world] or [world][value]. Empty arrays are skipped; others must have
+// the exact size.
 struct StepArrays {
   std::span<float> observations = {};  // [world][observation]
-  std::span<float> final_observations =
-      {};  // same_step: of worlds that ended, the others' stay; requires observations
+  // same_step: last observations of worlds whose episode ended. Entries of other worlds are
+  // unchanged. Requires `observations`.
+  std::span<float> final_observations = {};
   std::span<double> rewards = {};
   std::span<double> reward_terms = {};                      // [world][reward]
   std::span<std::uint8_t> terminated = {}, truncated = {};  // 1 or 0
-  // The same in double: as the worlds of Precision::f64 have them. Either may be wanted, or both.
+  // The same in double, without rounding for Precision::f64. A caller may pass either or both.
   std::span<double> observations_f64 = {}, final_observations_f64 = {};
   std::span<double> infos = {};        // [world][info]
   std::span<double> final_infos = {};  // as final_observations; requires infos
-  // Was it lost at the end of the step (Status)? Also of worlds that then begin anew (same_step).
+  // 1 if the world was lost at the end of the step (Status), also if a new episode then started
+  // (same_step).
   std::span<std::uint8_t> lost = {};
 };
 
-// Those of a beginning; of worlds that do not begin they stay.
+// Output arrays of calls that start episodes. Entries of other worlds are unchanged.
 struct BeginArrays {
   BeginArrays() = default;
   template <class Floats>
@@ -94,21 +99,22 @@ struct BeginArrays {
   std::span<double> infos = {};
 };
 
-// Worlds of an Environment, to go on from later, elsewhere or many times: what they are, and what
-// the task remembers of them. Restored as a whole, later episodes are drawn as they would have
-// been; single worlds draw from the seed of the place that they are restored into. A world that was
-// to begin with its next step (Autoreset::next_step) steps on beyond its end in an Environment of
-// another mode.
+// Saved worlds of an Environment, with the memory of the task. A restore of all worlds also
+// restores the random draws of later episodes. A world restored alone draws from the seed of the
+// world that it replaces.
+//
+// With Autoreset::next_step, a snapshot may contain a world whose episode has ended. In an
+// Environment of another mode that world steps on.
 struct EnvironmentSnapshot {
   Snapshot worlds = {};
-  std::uint64_t task = 0;           // of which task: equal for tasks that compute the same
-  std::vector<double> memory = {};  // [world][number]
+  std::uint64_t task = 0;           // identifies the task: equal for tasks that compute the same
+  std::vector<double> memory = {};  // [world][value]
 };
 
 class Environment {
  public:
-  // Throws SceneError with every issue of the task, std::invalid_argument for options that make no
-  // sense. All worlds are at the beginning of their first episode.
+  // Starts the first episode of all worlds. Throws SceneError with every issue of the task, and
+  // std::invalid_argument for invalid options.
   explicit Environment(const Task& task, const EnvironmentOptions& options = {});
   ~Environment();
   Environment(Environment&&) noexcept;
@@ -117,66 +123,68 @@ class Environment {
   const Task& task() const;
   Autoreset autoreset() const;
   int worlds() const;
-  int observations() const;  // numbers of one world
-  int actions() const;       // numbers of one world; 1 of a discrete task
-  int infos() const;         // numbers of one world
+  int observations() const;  // per world
+  int actions() const;       // per world; 1 for a discrete task
+  int infos() const;         // per world
 
-  // One step of the task in every world. `actions`: [world][action]; of a discrete task one per
-  // world. An action that is not a number, or is infinite and not clamped (Action), freezes its
-  // world, which then is lost; a choice that there is not throws std::invalid_argument before
-  // anything is done. Allocates nothing, except where a world begins whose masses or sizes vary.
+  // One step of the task in every world. `actions` is [world][action], for a discrete task [world].
+  // A NaN freezes its world, which is then lost; so does an infinite action that is not clamped
+  // (Action). An invalid choice throws std::invalid_argument before any change. Allocates only if a
+  // world whose masses or sizes vary starts an episode.
   void step(std::span<const float> actions, const StepArrays& out);
   void step(std::span<const std::int64_t> actions, const StepArrays& out);
-  // As these, asking between physics steps, some 15 times a second, whether to go on. False: it was
-  // ended early. All worlds have then taken as many physics steps, batch().steps() counts them,
-  // forces that were added have acted in them and are gone, and nothing was written to `out`.
-  // Until the step is finished, or all worlds are reset, begun or restored, other calls that step,
-  // begin, copy or save worlds throw std::invalid_argument. The early end allocates.
+  // The same, with `go_on` called between physics steps, about 15 times a second. If it returns
+  // false, the step ends early and returns false. All worlds have then taken the same number of
+  // physics steps, which batch().steps() counts. Added forces have acted in them and are cleared.
+  // `out` is not written.
+  //
+  // Finish the step, or reset, begin or restore all worlds. Until then, other calls that step,
+  // begin, copy, save or evaluate worlds throw std::invalid_argument. Ending early allocates.
   bool step(std::span<const float> actions, const StepArrays& out, const GoOn& go_on);
   bool step(std::span<const std::int64_t> actions, const StepArrays& out, const GoOn& go_on);
-  // Takes a step that was ended early to its end, with its actions: the bits are those of one that
-  // was not. Throws std::invalid_argument when there is none.
+  // Completes a step that ended early, with its actions. The result has the same bits as an
+  // uninterrupted step. Throws std::invalid_argument if no step ended early.
   void finish_step(const StepArrays& out);
   bool finish_step(const StepArrays& out, const GoOn& go_on);
-  int steps_left() const;  // physics steps of a step that was ended early; 0: there is none
+  int steps_left() const;  // physics steps left in a step that ended early, else 0
 
-  // Next episodes of the worlds of a mask, [world]; with seeds, [world], their first ones, where
-  // levels begin again, too. What is told of the others stays. With batch().seed_of() of each world
-  // it repeats their first episode.
+  // Start the next episode in the worlds of a mask, [world]. With `seeds`, [world], start the first
+  // episodes of these seeds and restart the levels. Results of other worlds are unchanged. Seeds
+  // from batch().seed_of() repeat the first episodes.
   void reset(std::span<const std::uint8_t> mask, const BeginArrays& out);
   void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
              const BeginArrays& out);
 
-  // The first fault of each expression since the environment was made, in the order in which they
-  // were found.
+  // The first fault of each expression since construction, in the order of detection.
   std::vector<NonFinite> non_finite() const;
-  int non_finite_expressions() const;  // how many those are
+  int non_finite_expressions() const;  // size of non_finite()
 
-  // The value of an expression in every world, [world], as an Info of the task would have had it
-  // after the last step or beginning, but of the state that worlds have now. Changes nothing.
-  // Throws std::invalid_argument for what is no expression of the task's scene, for what the task
-  // does not observe or remember (the task can have an Info for it), and in the middle of a step.
+  // Computes an expression in every world, [world], at the current state, as an Info does after a
+  // step or at the start of an episode. Changes nothing. Throws std::invalid_argument if the
+  // expression does not fit the task's scene, or in the middle of a step. It also throws if the
+  // expression needs an observer or earlier values that the task does not store; add an Info to the
+  // task then.
   void evaluate(const Expression& expression, std::span<double> out) const;
 
-  // Levels (Task::levels) of all worlds, [world][level]. Written values, of the worlds of a mask,
-  // must be finite. They apply from the next step until the end of an episode changes them; those
-  // that are written as they are change nothing.
-  int levels() const;  // numbers of one world
+  // Levels (Task::levels) of all worlds, [world][level]. write_levels() sets those of the worlds of
+  // a mask; values must be finite. A written level applies from the next step until the end of an
+  // episode changes it. Writing the same value has no effect.
+  int levels() const;  // per world
   void read_levels(std::span<double> out) const;
   void write_levels(std::span<const std::uint8_t> mask, std::span<const double> in);
 
-  // What steps, to look at, to record and to draw. Whoever changes worlds in it (write, restore)
-  // says so by begin(), for what the task remembers of them.
+  // The batch that the environment steps: inspect, record or draw it. After changing its worlds
+  // (write, restore), call begin() to update the memory of the task.
   Batch& batch();
   const Batch& batch() const;
-  // The worlds of a mask begin an episode in the state, and with the numbers, that they have.
+  // Starts an episode in the worlds of a mask, with their current state and parameters.
   void begin(std::span<const std::uint8_t> mask, const BeginArrays& out);
-  // World `to` becomes what world `from` is, with what the task remembers of it.
+  // Copies world `from` to world `to`, with the memory of the task.
   void copy_world(int from, int to);
 
   EnvironmentSnapshot save() const;  // all worlds
-  // As Batch::restore: all worlds of as many, or world `from` of it into world `to`. Throw
-  // SnapshotError for one of another task, and change nothing then.
+  // As Batch::restore: all worlds from a snapshot of as many, or its world `from` to world `to`.
+  // Throw SnapshotError for a snapshot of another task, and change nothing then.
   void restore(const EnvironmentSnapshot& snapshot);
   void restore(const EnvironmentSnapshot& snapshot, int from, int to);
 

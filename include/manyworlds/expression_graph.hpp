@@ -1,4 +1,4 @@
-// Expressions as plain values, to be stored or sent, and as a line of text, for people.
+// Expressions as plain data, to store or send them, and as text.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,22 @@ namespace manyworlds {
 
 struct ExpressionGraph {
   struct Node {
-    std::string name = {};            // "number", a term's or an operation's, as Python has them
-    double number = 0;                // of "number"
-    std::vector<int> arguments = {};  // a term's indices, or the nodes that an operation takes
-    std::string text = {};  // of random numbers and levels: their name; of parameters: which one
+    std::string name = {};            // "number", or a term or operation, as in Python
+    double number = 0;                // value of a "number"
+    std::vector<int> arguments = {};  // indices of a term, or operand nodes of an operation
+    std::string text = {};            // name of a random number, level, memory or parameter
   };
-  std::vector<Node> nodes = {};  // operands before what they make
+  std::vector<Node> nodes = {};  // operands precede their operation
   std::vector<int> roots = {};   // a node for each expression
 };
 
-// What several expressions share is one node. Throws std::invalid_argument for a function of C++.
+// Shared subexpressions become one node. Throws std::invalid_argument for a lane_function().
 ExpressionGraph graph_of(std::span<const Expression> roots);
-// Throws std::invalid_argument, which names the node, for what graph_of() does not make.
+// Throws std::invalid_argument, which names the node, for a graph that graph_of() cannot return.
 std::vector<Expression> from_graph(const ExpressionGraph& graph);
 
-// As Python writes it. Where it has more than `size` characters, what is nested deeply is "...".
+// In Python's syntax. In texts longer than `size` characters, deeply nested subexpressions are
+// "...".
 std::string text_of(const Expression& expression, std::size_t size);
 
 }  // namespace manyworlds

@@ -1,6 +1,6 @@
-// The table of state fields, which defines their layout in the state and in snapshots, the order of
-// hashes, reading and writing, inputs of listeners, recordings, Python's fields and the table in
-// docs/conventions.md. Kernels include it: it has no includes and defines no function.
+// The table of state fields. It defines their layout in the state and in snapshots, the order of
+// hashes, reading and writing, and inputs of listeners. Recordings, Python's fields and the table
+// in docs/conventions.md use it. Kernels include it: it has no includes and defines no function.
 #pragma once
 
 namespace manyworlds {

@@ -40,9 +40,9 @@ std::vector<Issue> validate(const TriangleMesh& mesh);
 double volume(const TriangleMesh& mesh);
 
 // Mass properties of the enclosed solid with uniform `density` in kg/m^3: the centre of mass, and
-// the inertia about it, in mesh axes. Exact up to rounding; the distance of the mesh from its
-// origin costs no more digits than its coordinates have lost. Throws SceneError (plan.hpp) with the
-// issues of validate() and of the density.
+// the inertia about it, in mesh axes. Exact up to rounding. A mesh far from its origin loses no
+// digits beyond those that its coordinates have lost. Throws SceneError (plan.hpp) with the issues
+// of validate() and of the density.
 //
 // The sum of signed tetrahedra: Blow and Binstock, "How to find the inertia tensor (or other mass
 // properties) of a 3D solid body represented by a triangle mesh", 2004; the moments of one

@@ -49,9 +49,9 @@ struct ContactSummary {
   double mean_occupancy = 0;   // active lanes / lanes of the dense contact blocks, last step
 };
 
-// One contact point at the current state, as the next step would see it.
+// One contact point at the current state, as the next step would find it.
 struct Contact {
-  BodyId body_a = {}, body_b = {};     // when one is fixed it is body_a
+  BodyId body_a = {}, body_b = {};     // if one is fixed, it is body_a
   ShapeId shape_a = {}, shape_b = {};  // of these bodies
   Vec3 normal = Vec3::Zero();          // unit, from A to B, world
   Vec3 point = Vec3::Zero();           // m, world, half way between the surfaces

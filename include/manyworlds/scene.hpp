@@ -1,6 +1,5 @@
-// Scene: what one world is. Plain values that a person or a loader fills in; nothing here knows
-// about lanes, batches or steps. validate() lists everything that is wrong with it, compile()
-// (plan.hpp) compiles it for the step.
+// Scene: the description of one world as plain data, independent of lanes, batches and steps.
+// validate() lists all issues of a scene, compile() (plan.hpp) makes a Plan of it.
 //
 // Units are SI (m, kg, s, rad). A planar scene uses x and y, with rotations about z; a spatial
 // scene uses all three axes. Frames: "body" is the frame the user places by Body::position and
@@ -30,8 +29,8 @@ namespace manyworlds {
 
 enum class Motion {
   dynamic,    // moved by forces and contacts
-  kinematic,  // moves with its own velocity, whatever touches it
-  fixed,      // never moves; costs nothing but its contacts
+  kinematic,  // moves with its own velocity; contacts do not affect it
+  fixed,      // never moves; only its contacts cost time
 };
 
 // Mass, centre and inertia of a body. In a planar scene only inertia(2,2) is used.
@@ -39,29 +38,30 @@ struct MassProperties {
   double mass = 1;                  // kg
   Vec3 center = Vec3::Zero();       // m, centre of mass in the body frame
   Mat3 inertia = Mat3::Identity();  // kg m^2 about the centre of mass, body axes
-  // Principal axes of inertia in the body frame (planar: without meaning). Where two moments are
-  // alike inertia does not tell them, but the drag of a medium acts along them. Default: any.
+  // Principal axes of inertia in the body frame (no meaning in planar scenes). If two moments are
+  // equal, inertia does not determine the axes, but the drag of a medium acts along them. Default:
+  // axes found from inertia.
   std::optional<Quat> axes = {};
 };
 
-// How the initial state differs from world to world: every entry is the half range of a uniform
-// draw around the value given in Body, one draw per component, world and body.
+// Random initial states. Every entry is the half range of a uniform draw around the value in Body.
+// Each component, world and body has a separate draw.
 struct Jitter {
   Vec3 position = Vec3::Zero();          // m
   Vec3 linear_velocity = Vec3::Zero();   // m/s
   Vec3 angular_velocity = Vec3::Zero();  // rad/s, world
   double angle = 0;                      // rad, about z
   bool any_orientation = false;          // spatial: orientation uniform over all rotations
-  // What is drawn for that body moves this one, too, as one rigid piece with it and with its change
-  // of velocity, before anything of its own: for assemblies on joints. That body may have one that
-  // it moves with itself: what is drawn for each of such a chain moves all that follow.
+  // A body whose draws also move this one, as one rigid piece with the same change of velocity.
+  // They apply before the draws of this body. Use it for assemblies with joints. Bodies may form a
+  // chain: the draws of each body move all bodies after it.
   BodyId with = {};
 };
 
 struct Body {
   std::string name = {};
   Motion motion = Motion::dynamic;
-  bool enabled = true;  // false: not there until a Batch enables or spawns it; not for fixed bodies
+  bool enabled = true;  // false: absent until a Batch enables or spawns it; not for fixed bodies
   Vec3 position = Vec3::Zero();          // m, of the body frame in the world
   Quat rotation = Quat::Identity();      // of the body frame in the world; need not be unit
   Vec3 linear_velocity = Vec3::Zero();   // m/s, of the centre of mass, world
@@ -76,9 +76,10 @@ struct Body {
 
 // ---- scenes ---------------------------------------------------------------------------------
 
-// A point that draws every dynamic body to it with the acceleration
-//   Body::gravity_scale strength d / (d^2 + softening^2)^(3/2),  d: from the body's centre of mass,
-// or away from it if the strength is negative. A planet: strength G M (Newton).
+// A point that attracts every dynamic body with the acceleration
+//   Body::gravity_scale strength d / (d^2 + softening^2)^(3/2),
+// where d is the vector from the body's centre of mass to the point.  A negative strength repels. A
+// planet of mass M has strength G M (Newton).
 struct Attractor {
   Vec3 position = Vec3::Zero();  // m, world
   double strength = 0;           // m^3/s^2
@@ -90,35 +91,35 @@ struct Exclusion {
   BodyId body_a = {}, body_b = {};
 };
 
-// A point of a body, or of the world, that has a name: MuJoCo's site. It moves nothing; observers
-// and tasks find it (Observer::sites).
+// A named point of a body or of the world (MuJoCo's site). It does not affect the motion. Observers
+// and tasks use it (Observer::sites).
 struct Site {
   std::string name = {};
   BodyId body = {};              // none: the world
   Vec3 position = Vec3::Zero();  // m, in the body's frame or in the world
 };
 
-// A state that worlds can be reset to (Batch::reset): generalized_position and generalized_velocity
-// of Solver::newton, as the fields of that name have them, and the controls. What is empty is as
-// any reset leaves it.
+// A state to which worlds can be reset (Batch::reset). generalized_position and
+// generalized_velocity are the fields of Solver::newton with these names. Empty members keep the
+// values of a plain reset.
 struct Keyframe {
-  std::string name = {};                          // empty, or no other keyframe's
+  std::string name = {};                          // empty or unique
   std::vector<double> generalized_position = {};  // [coordinate], m, rad or of unit quaternions
   std::vector<double> generalized_velocity = {};  // [dof], m/s or rad/s
-  std::vector<double> controls = {};              // [control], as Batch::set_controls takes them
+  std::vector<double> controls = {};              // [control], as in Batch::set_controls
 };
 
-// Numbers of the generalized positions or velocities that worlds of Solver::newton begin with,
-// drawn at each reset anew: each uniform between its low and high, or normal with the mean half way
-// between them and half the range as standard deviation. Draws act in their order.
+// A random draw of initial generalized positions or velocities (Solver::newton), at each reset.
+// Each value is uniform between its low and high. With `normal`, the midpoint is the mean and half
+// the range the standard deviation. Draws apply in their order.
 struct CoordinateDraw {
-  bool velocity = false;  // of dofs, else of coordinates
-  int first = 0;          // of low.size() in a row, as MuJoCo counts qpos and qvel
+  bool velocity = false;  // values are of dofs, else of coordinates
+  int first = 0;          // index of the first of low.size() values, in MuJoCo's qpos or qvel
   std::vector<double> low = {}, high = {};
   bool normal = false;
-  bool replaces = false;  // what is there by then; else they are added to it
-  // Drawn again, up to 1000 times, until the norm of what was drawn is more than the one and less
-  // than the other.
+  bool replaces = false;  // replaces the present values, else adds to them
+  // Repeats the draw, up to 1000 times, until the norm of the drawn values is more than `nearest`
+  // and less than `farthest`.
   double nearest = -std::numeric_limits<double>::infinity();
   double farthest = std::numeric_limits<double>::infinity();
 };
@@ -145,13 +146,13 @@ struct Scene {
   std::vector<Attractor> attractors = {};
   Options options = {};
   std::vector<Variation> variations = {};
-  std::vector<Exclusion> exclusions = {};  // beside those of joints (Joint::collide)
+  std::vector<Exclusion> exclusions = {};  // in addition to those of joints (Joint::collide)
   std::vector<Tendon> tendons = {};
   std::vector<Keyframe> keyframes = {};
   std::vector<CoordinateDraw> coordinate_draws = {};
   std::vector<Site> sites = {};
 
-  // Appends and returns the handle. Shape k of a body is ShapeId(body, k).
+  // Append and return the handle. Shape k of a body is ShapeId(body, k).
   BodyId add(Body body) {
     bodies.push_back(std::move(body));
     return BodyId(static_cast<int>(bodies.size()) - 1);
@@ -177,10 +178,11 @@ struct Scene {
     return KeyframeId(static_cast<int>(keyframes.size()) - 1);
   }
 
-  // The one of a name. Names may be empty or shared, but then they find nothing: throw
-  // std::invalid_argument, with the names that there are, for a name that none has or several have.
+  // Find an item by name. Names may be empty or shared, but then cannot be found. Throw
+  // std::invalid_argument, which lists the existing names, if no item or several items have the
+  // name.
   BodyId body(std::string_view name) const;
-  ShapeId shape(std::string_view name) const;  // of all bodies' shapes
+  ShapeId shape(std::string_view name) const;  // among the shapes of all bodies
   // Also throws std::out_of_range for a body that is not in the scene.
   ShapeId shape(BodyId body, std::string_view name) const;
   JointId joint(std::string_view name) const;
@@ -189,7 +191,7 @@ struct Scene {
   SiteId site(std::string_view name) const;
   KeyframeId keyframe(std::string_view name) const;
 
-  // The item of a handle. Throws std::out_of_range for a handle that is none of this scene.
+  // The item of a handle. Throws std::out_of_range for a handle that is not in this scene.
   Body& at(BodyId id) { return detail::item(bodies, "body", id.index()); }
   const Body& at(BodyId id) const { return detail::item(bodies, "body", id.index()); }
   Shape& at(ShapeId id) { return detail::item(at(id.body()).shapes, "shape", id.index()); }
@@ -212,7 +214,7 @@ struct Scene {
 
 // ---- checks and derived values -----------------------------------------------------------------
 
-// One thing that is wrong with a scene.
+// A problem of a scene.
 struct Issue {
   std::string place = {};    // "body 3 'crate', shape 1: half_extents.y"
   std::string message = {};  // "is -0.2 m, must be > 0"
@@ -220,18 +222,19 @@ struct Issue {
 // "body 3 'crate', shape 1: half_extents.y is -0.2 m, must be > 0"
 std::string to_string(const Issue& issue);
 
-// Every issue at once, in the order of the scene; empty means that compile() will succeed.
+// All issues, in the order of the scene. If it is empty, compile() succeeds.
 std::vector<Issue> validate(const Scene& scene);
 
-// A frame of a body (none: the world) in the world, as the bodies begin.
+// Converts a frame of a body (none: the world) to the world, at the bodies' initial poses.
 Frame frame_in_world(const Scene& scene, BodyId body, const Frame& frame);
-// A joint of two bodies (none: the world) with both frames where `frame` is in the world as the
-// bodies begin. Both functions throw std::out_of_range for a body that is not in the scene.
+// A joint of two bodies (none: the world). At the bodies' initial poses, both of its frames
+// coincide with `frame` in the world. Both functions throw std::out_of_range for a body that is not
+// in the scene.
 Joint joint_at(const Scene& scene, BodyId body_a, BodyId body_b, const Frame& frame,
                JointType type);
 
-// Mass properties of a body: what the user gave, or the sum over its shapes by closed forms and
-// the parallel-axis theorem. Precondition: the body passes validate().
+// Mass properties of a body: Body::mass_properties, else the sum over its shapes by closed forms
+// and the parallel-axis theorem. Precondition: the body passes validate().
 MassProperties mass_properties(const Scene& scene, const Body& body);
 
 }  // namespace manyworlds

@@ -112,8 +112,8 @@ struct Material {
   SoftContact soft = {};     // Solver::newton only; that solver has no restitution
 };
 
-// Two shapes collide if each one's category is in the other's mask, they belong to different bodies
-// and at least one of the bodies is dynamic.
+// Two shapes collide if each one's category is in the other's mask. They must belong to different
+// bodies, at least one of which is dynamic.
 struct Filter {
   std::uint32_t category = 1;
   std::uint32_t mask = 0xffffffffu;

@@ -1,8 +1,8 @@
-// Task: what a policy has to do in a scene: actions, observations, rewards, and when an episode
-// ends. Plain values, as a Scene is; Environment (environment.hpp) runs it for thousands of worlds.
+// Task: actions, observations, rewards and ends of episodes in a scene. Plain data, as a Scene is.
+// Environment (environment.hpp) runs it in many worlds.
 //
-// Episodes begin where the scene does: with its jitter (Body::jitter) and variations, of which a
-// task may set some itself (InitialParameter).
+// Episodes start at the scene's initial state, with its jitter (Body::jitter) and variations. A
+// task may set some of the varied parameters itself (InitialParameter).
 #pragma once
 
 #include <limits>
@@ -16,9 +16,9 @@
 
 namespace manyworlds {
 
-// One number of a continuous action. Beyond its range it counts as the end of the range. Where it
-// is not clamped it counts as given, in costs too; an infinite one then loses the world. Controls
-// of the scene are kept within their own ranges either way.
+// One value of a continuous action. It is clamped to its range. With clamped = false, expressions
+// such as costs use the value as given, and an infinite value makes the world lost. Controls of the
+// scene are clamped to their own ranges in both cases.
 struct Action {
   std::string name = {};
   double low = -1, high = 1;
@@ -28,7 +28,7 @@ struct Action {
 struct Observation {
   std::string name = {};
   Expression value = {};
-  // What the policy is told of its range; the value is not clamped.
+  // Range of the observation space; the value is not clamped.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
@@ -38,63 +38,64 @@ struct Reward {
   Expression value = {};  // of a step; a task's reward is the sum of its rewards
 };
 
-// What people are told beside: in double, of no account to the policy. Those that are named a[0],
-// a[1] and so on are the array a to Gymnasium.
+// Diagnostics in double, which the policy does not observe. In Gymnasium, infos with the names
+// a[0], a[1] and so on form the array a.
 struct Info {
   std::string name = {};
   Expression value = {};
-  bool of_steps_alone = false;  // not told where an episode begins
+  bool of_steps_alone = false;  // not reported at the start of an episode
 };
 
-// A number that every world keeps over its episodes: how hard its task is, how often it succeeded.
-// It is the same through a whole episode (terms::level).
+// A value per world that lasts over episodes, such as difficulty or number of successes. It is
+// constant within an episode (terms::level).
 struct Level {
   std::string name = {};
-  // Its value in the first episode of a seed, of numbers and random ones of the episode; 0 where
-  // that is not a number.
+  // Value in the first episode of a seed. May use constants and random numbers of the episode. A
+  // NaN counts as 0.
   Expression begin = 0;
-  // Its value in the episode after this one, worked out at the end of the step that ends this one;
-  // none: it stays. It also stays where that is not a number, and where a reset ends the episode.
+  // Value in the next episode, computed at the end of the step that ends this one. None: unchanged.
+  // A NaN leaves the level unchanged, and so does an episode that a reset ends.
   std::optional<Expression> next = std::nullopt;
 };
 
-// A number of every world that lasts for an episode (terms::memory). Where an episode begins it is
-// `begin`, computed from the state there. At the end of each step of the task, before anything else
-// is computed, all memories become their `next` at once: in `next`, memories are what they were
-// before the step. So observations, rewards, ends, infos and levels of a step see memories after
-// their update, and controls see them as the last step left them.
+// A value per world that lasts for an episode (terms::memory). It starts at `begin`, computed from
+// the state at the start of the episode. At the end of each step of the task, all memories change
+// to their `next` at once, before anything else is computed. In `next`, memories have their values
+// before the step. Observations, rewards, ends, infos and levels of a step use memories after the
+// change. Controls use memories as the last step left them.
 struct Memory {
   std::string name = {};
-  Expression begin = 0;                           // of anything but memories
-  std::optional<Expression> next = std::nullopt;  // none: it stays
+  Expression begin = 0;                           // may use anything but memories
+  std::optional<Expression> next = std::nullopt;  // none: unchanged
 };
 
-// What a number of the scene is where an episode begins by a reset, instead of one that is drawn.
+// Sets a parameter of the scene at a reset, instead of a draw.
 struct InitialParameter {
-  Expression parameter = 0;  // terms::parameter(...), which varies, with Draw::none
-  // Of numbers, random ones of the episode, and levels; kept within the range that the variation
-  // declares. Where it is not a number, the scene's own number counts.
+  Expression parameter = 0;  // terms::parameter(...), varied with Draw::none
+  // May use constants, random numbers of the episode, and levels. Clamped to the range of the
+  // variation. A NaN gives the scene's own value.
   Expression value = 0;
 };
 
 struct Task {
   std::string name = {};
   Scene scene = {};
-  int frame_skip = 1;  // steps of the scene in a step of the task
+  int frame_skip = 1;  // steps of the scene per step of the task
 
   int choices = 0;  // discrete tasks: the action is one of 0 to choices - 1, and `actions` is empty
   std::vector<Action> actions = {};
-  // What each control of the scene is set to before the steps: of actions, numbers, random ones,
-  // parameters, levels, memories, age() and previous().
+  // Values of the scene's controls, set before the steps. May use actions, constants, random
+  // numbers, parameters, levels, memories, age() and previous().
   std::vector<Expression> controls = {};
 
   std::vector<Observation> observations = {};
   std::vector<Reward> rewards = {};
-  Expression terminated = 0;  // the episode has come to its end
-  Expression truncated = 0;   // it is broken off
-  // Broken off after so many steps of the task; 0: never. A world that is lost is broken off, too.
+  Expression terminated = 0;  // true: the task has ended
+  Expression truncated = 0;   // true: the episode is cut off
+  // Episodes are truncated after this many steps of the task; 0: never. Lost worlds are truncated,
+  // too.
   int max_steps = 0;
-  double solved_at = std::numeric_limits<double>::infinity();  // mean return; said to people only
+  double solved_at = std::numeric_limits<double>::infinity();  // mean return; for information only
 
   std::vector<Info> infos = {};
 
@@ -106,7 +107,7 @@ struct Task {
   std::vector<Point> points = {};  // for terms::point_position and point_velocity
 };
 
-// Every issue of the task and its scene at once; empty means that an Environment can be made.
+// All issues of the task and its scene. If it is empty, an Environment can be made.
 std::vector<Issue> validate(const Task& task);
 
 }  // namespace manyworlds
