@@ -53,8 +53,8 @@ struct NonFinite {
   // Infinite or NaN. An end that compares a NaN counts as NaN.
   double value = 0;
 };
-std::string to_string(
-    const NonFinite& fault);  // "reward 0 'pace' is nan in world 7 at step 12 of ..."
+// "reward 0 'pace' is nan in world 7 at step 12 of ..."
+std::string to_string(const NonFinite& fault);
 
 // Contains the first fault of a call: by world, then in the order of NonFinite::expression.
 class NonFiniteError : public std::runtime_error {
