@@ -12,14 +12,7 @@
 
 #include "src/base/thread_room.hpp"
 #include "tests/support/crowd.hpp"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define MW_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define MW_SANITIZED 1
-#endif
-#endif
+#include "tests/support/sanitized.hpp"
 
 namespace manyworlds::test {
 namespace {

@@ -9,14 +9,7 @@
 
 #include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define MW_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define MW_SANITIZED 1
-#endif
-#endif
+#include "tests/support/sanitized.hpp"
 
 #ifndef MW_SANITIZED  // those need an address space of terabytes
 
