@@ -24,7 +24,7 @@ def try_package(repository):
     assert PACKAGE.is_relative_to(sys.prefix), PACKAGE
     assert (PACKAGE / "py.typed").exists()
     assert set(manyworlds.available_isas()) <= set(
-        os.environ.get("MW_ISAS", "scalar;avx2;avx512").split(";")
+        (os.environ.get("MW_ISAS") or "scalar;avx2;avx512").split(";")
     )
     examples = re.findall(r"```python\n(.*?)```", (repository / "README.md").read_text(), re.S)
     assert examples
