@@ -56,7 +56,7 @@ TEST_CASE("keyframes fit their scene and have names of their own", "[fast][valid
        {"controls[0]", "is inf, must be finite",
         [](Scene& s) { s.keyframes[0].controls[0] = std::numeric_limits<double>::infinity(); }}});
   check_each(keyed_robot(), "keyframe 1 'leap': ",
-             {{"name", "is that of keyframe 0, must be another, or empty",
+             {{"name", "is also that of keyframe 0, must be unique or empty",
                [](Scene& s) { s.keyframes[1].name = "leap"; }}});
   Scene nameless = keyed_robot();
   for (Keyframe& keyframe : nameless.keyframes) keyframe.name.clear();

@@ -17,8 +17,8 @@ Quat quaternion_at(const Numbers& q, std::size_t at) {
   return Quat(q[at], q[at + 1], q[at + 2], q[at + 3]);
 }
 const char* const kPlacedByJoints =
-    ": bodies of the newton solver are moved by generalized_position and generalized_velocity, and "
-    "are always there";
+    ": with the newton solver, bodies are always enabled; set generalized_position and "
+    "generalized_velocity to move them";
 
 }  // namespace
 

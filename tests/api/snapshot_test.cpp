@@ -209,7 +209,7 @@ TEST_CASE("a snapshot of something else is refused and changes nothing", "[fast]
   refused(Batch(plan, options_of(table, 3)).save(), "has 3 worlds, the batch 4");
   Scene heavier = crowd(Space::planar);
   heavier.bodies[3].shapes[0].density = 77;
-  refused(Batch(compile(heavier), options_of(table, 4)).save(), "world 0 is of another plan");
+  refused(Batch(compile(heavier), options_of(table, 4)).save(), "world 0 belongs to another plan");
   Scene elsewhere = crowd(Space::planar);  // where bodies begin and what they are called is free
   elsewhere.bodies[3].position.x() += 1;
   elsewhere.bodies[3].name = "other";
@@ -221,7 +221,7 @@ TEST_CASE("a snapshot of something else is refused and changes nothing", "[fast]
     refused(Batch(plan, options).save(), "has f64 numbers, the batch f32");
   }
   const Snapshot saved = batch.save();
-  CHECK_THROWS_WITH(batch.restore(saved, 4, 0), Catch::Contains("there is no world 4"));
+  CHECK_THROWS_WITH(batch.restore(saved, 4, 0), Catch::Contains("it has no world 4"));
   CHECK_THROWS_WITH(batch.restore(saved, 0, 4), Catch::Contains("world is 4, must be 0 to 3"));
   CHECK_THROWS_WITH(batch.copy_world(0, 4), Catch::Contains("world is 4"));
 }

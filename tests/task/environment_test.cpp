@@ -286,7 +286,7 @@ TEST_CASE("a saved world goes on in another place, and nothing else is let in", 
     Environment environment(other, {.worlds = 20});
     const std::uint64_t before = environment.batch().hash();
     CHECK_THROWS_WITH(environment.restore(saved),
-                      "snapshot: is of another task than 'LunarLander'");
+                      "snapshot: belongs to another task than 'LunarLander'");
     CHECK(environment.batch().hash() == before);
   };
   refuse([](Task& t) { t.max_steps += 1; });
