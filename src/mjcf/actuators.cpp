@@ -20,7 +20,7 @@ const char* transmission_name(int type) {
     case mjTRN_SITE: return "a site";
     case mjTRN_BODY: return "a body";
     case mjTRN_SO3: return "the orientation of a site";
-    default: return "what has no name";
+    default: return "an unknown transmission";
   }
 }
 const char* dynamics_name(int type) {

@@ -37,8 +37,7 @@ std::string content_kind(const tinyxml2::XMLElement& element, const File& file) 
 void require_count(const std::string& place, const File& file, double count, const char* what,
                    std::int64_t most, const char* limit) {
   if (count <= static_cast<double>(most)) return;
-  refuse_size(place, "'" + file.label + "' says that it has " + whole(count) + " " + what, most,
-              limit);
+  refuse_size(place, "'" + file.label + "' declares " + whole(count) + " " + what, most, limit);
 }
 
 void require_length(const std::string& place, const File& file, double expected) {
