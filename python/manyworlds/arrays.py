@@ -306,7 +306,7 @@ def _from_buffer(
     # One after the other, as buffers without a shape have them.
     raw = view.format in ("B", "b", "c") and dtype.itemsize > 1
     numbers = int(np.prod(shape, dtype=np.int64))
-    expected = f"{numbers * dtype.itemsize} bytes" if raw else f"{numbers} numbers"
+    expected = f"{numbers * dtype.itemsize} bytes" if raw else f"{numbers} values"
     if (view.nbytes if raw else array.size) != numbers * (dtype.itemsize if raw else 1):
         raise ValueError(
             f"{name} has {view.nbytes if raw else array.size} {expected.split()[1]}; expected "

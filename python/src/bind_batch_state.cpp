@@ -122,7 +122,7 @@ void write(HeldBatch& self, const std::string& name, const AnyIn& in,
           write_worlds<Parameter>(b, std::get<Parameter>(q.what), chosen, numbers);
         }
       } else {
-        throw std::invalid_argument("numbers of some worlds are float64");
+        throw std::invalid_argument("parameters of some worlds must be float64");
       }
     });
   });

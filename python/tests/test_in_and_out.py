@@ -270,7 +270,7 @@ WRONG = [
     (lambda: bytes(216), ValueError, "out is read-only"),
     (lambda: memoryview(bytes(216)), ValueError, "out is read-only"),
     (lambda: bytearray(215), ValueError, r"out has 215 bytes; expected 216 bytes for \(worlds=6"),
-    (lambda: array.array("f", [0] * 53), ValueError, "out has 53 numbers; expected 54 numbers"),
+    (lambda: array.array("f", [0] * 53), ValueError, "out has 53 values; expected 54 values"),
     (lambda: array.array("d", [0] * 54), TypeError, "out is of dtype float64; expected float32"),
     (lambda: array.array("i", [0] * 54), TypeError, "out is of dtype int32; expected float32"),
     (lambda: memoryview(bytearray(432))[::2], ValueError, "out is not C-contiguous"),

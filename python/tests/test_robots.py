@@ -215,7 +215,7 @@ def test_keyframes_fit_their_scene():
     scene.keyframes[0].generalized_position = [0.0]
     scene.keyframes[1].name = "reach"
     assert [str(issue) for issue in scene.validate()] == [
-        "keyframe 0 'reach': generalized_position has 1 numbers, must have 10, or none",
+        "keyframe 0 'reach': generalized_position has 1 values, must have 10, or none",
         "keyframe 1 'reach': name is also that of keyframe 0, must be unique or empty",
     ]
     scene.keyframes[0].controls = "none"

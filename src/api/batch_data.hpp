@@ -174,7 +174,7 @@ struct Batch::Impl {
   void check_size(What what, std::size_t got, std::size_t wanted) const {
     if (got != wanted) {
       reject(std::string(info(what).name) + " has " + std::to_string(wanted) +
-             " numbers, the buffer has " + std::to_string(got));
+             " values, the buffer has " + std::to_string(got));
     }
   }
   std::size_t world_size(Parameter parameter, int kind) const {

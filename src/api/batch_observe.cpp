@@ -17,7 +17,7 @@ ObserverResults& results_of(BatchCore& core) {
 void check_observed_size(Observed what, std::size_t got, std::size_t wanted) {
   if (got != wanted) {
     reject(std::string(to_string(what)) + " has " + std::to_string(wanted) +
-           " numbers, the buffer has " + std::to_string(got));
+           " values, the buffer has " + std::to_string(got));
   }
 }
 

@@ -52,7 +52,7 @@ void Batch::Impl::check_snapshot_world(const Snapshot& snapshot, std::size_t fro
   const SnapshotHeader header = SnapshotAccess::header(snapshot);
   const std::string place = "world " + std::to_string(from);
   if (header.real_bytes != real_bytes(options)) {
-    refuse("has " + std::string(header.real_bytes == 4 ? "f32" : "f64") + " numbers, the batch " +
+    refuse("has " + std::string(header.real_bytes == 4 ? "f32" : "f64") + " values, the batch is " +
            to_string(options.precision));
   }
   const SnapshotEntry entry = SnapshotAccess::entry(snapshot, from);
@@ -70,7 +70,7 @@ void Batch::Impl::check_snapshot_world(const Snapshot& snapshot, std::size_t fro
 void Batch::restore(const Snapshot& snapshot) {
   const SnapshotHeader header = SnapshotAccess::header(snapshot);
   if (snapshot.worlds() != worlds()) {
-    refuse("has " + std::to_string(snapshot.worlds()) + " worlds, the batch " +
+    refuse("has " + std::to_string(snapshot.worlds()) + " worlds, the batch has " +
            std::to_string(worlds()));
   }
   for (int w = 0; w < worlds(); ++w) {

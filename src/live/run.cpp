@@ -119,7 +119,7 @@ class Loop {
 }  // namespace
 
 std::int64_t Live::run(Batch& batch, const LiveClock& clock, const GoOn& go_on) {
-  if (!(clock.speed > 0)) throw std::invalid_argument("live: speed must be above 0");
+  if (!(clock.speed > 0)) throw std::invalid_argument("live: speed must be > 0");
   const FloatMode mode;
   Impl& impl = *impl_;
   if (!impl.server) throw std::invalid_argument("live: the view is closed");

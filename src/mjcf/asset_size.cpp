@@ -85,7 +85,7 @@ void check_mesh_file(const tinyxml2::XMLElement& mesh, const File& file, const s
     vertices(std::max({points, normals / 3, texture / 3, faces / 3}));
     require_length(place, file, 16 + 12 * (points + normals + faces) + 8 * texture);
   } else {
-    refuse(place, "'" + file.label + "' is of kind '" + kind + "'; expected .obj, .stl or .msh");
+    refuse(place, "'" + file.label + "' is of type '" + kind + "'; expected .obj, .stl or .msh");
   }
 }
 

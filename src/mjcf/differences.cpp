@@ -85,7 +85,7 @@ void compare_height_fields(const Model& model, std::vector<std::string>& warning
     char base[32];
     std::snprintf(base, sizeof base, "%g m", m.hfield_size[4 * m.geom_dataid[g] + 3]);
     warnings.push_back(model.geom_place(g) +
-                       ": is solid without end below its surface, in MuJoCo " + "no more than " +
+                       ": is solid to any depth below its surface, in MuJoCo " + "no deeper than " +
                        base + " below its origin");
   }
 }

@@ -136,7 +136,7 @@ Weight weigh(const XMLElement& root, const std::string& label, const Expansion& 
                          3 * weight.tactiles * expansion.vertices +
                          13 * weight.keys * (weight.bodies + 1);
   if (numbers > static_cast<double>(limits.samples)) {
-    refuse_size(label, "sensors, actuators and keyframes hold " + whole(numbers) + " numbers",
+    refuse_size(label, "sensors, actuators and keyframes hold " + whole(numbers) + " values",
                 limits.samples, "samples");
   }
   return weight;

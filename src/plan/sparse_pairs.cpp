@@ -137,7 +137,7 @@ class Counter {
     }
     if (key <= kMaxKeys) return;
     throw SceneError(
-        {{"shapes", "are " + std::to_string(n) + " that move and " +
+        {{"shapes", "are " + std::to_string(n) + " moving and " +
                         std::to_string(plan_.fixed.size()) + " fixed, in " + std::to_string(kinds) +
                         " types of pair: " + std::to_string(key) +
                         " distinct pairs, must be at most " + std::to_string(kMaxKeys)}});

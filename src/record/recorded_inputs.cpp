@@ -69,7 +69,7 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
   }
   const std::int64_t wanted = brings ? row.count : record::number_count(row.input, plan);
   if (row.count != wanted) {
-    refuse("has " + std::to_string(row.count) + " numbers, must have " + std::to_string(wanted));
+    refuse("has " + std::to_string(row.count) + " values, must have " + std::to_string(wanted));
   }
 }
 

@@ -48,7 +48,7 @@ class Coordinates {
 bool check_numbers(Checker& at, const char* name, const std::vector<double>& numbers,
                    const std::size_t* size) {
   if (size != nullptr && !numbers.empty() && numbers.size() != *size) {
-    at.add(name, "has " + std::to_string(numbers.size()) + " numbers, must have " +
+    at.add(name, "has " + std::to_string(numbers.size()) + " values, must have " +
                      std::to_string(*size) + (*size > 0 ? ", or none" : ""));
     return false;
   }

@@ -81,7 +81,7 @@ void check_header(const SnapshotHeader& header, std::uint64_t size) {
            std::to_string(header.size));
   }
   if (header.real_bytes != 4 && header.real_bytes != 8) {
-    refuse("has numbers of " + std::to_string(header.real_bytes) + " bytes, must be 4 or 8");
+    refuse("has values of " + std::to_string(header.real_bytes) + " bytes, must be 4 or 8");
   }
 }
 

@@ -16,7 +16,7 @@ namespace manyworlds {
 inline void check_array(const char* name, std::size_t found, std::size_t wanted,
                         bool may_be_empty) {
   if (found == wanted || (found == 0 && may_be_empty)) return;
-  reject(std::string(name) + " are " + std::to_string(wanted) + " numbers, the buffer has " +
+  reject(std::string(name) + " are " + std::to_string(wanted) + " values, the buffer has " +
          std::to_string(found));
 }
 
@@ -75,7 +75,7 @@ struct Environment::Impl {
         static_cast<std::size_t>(snapshot.worlds.worlds()) * runner->numbers();
     if (snapshot.memory.size() != wanted) {
       throw SnapshotError("snapshot: the task's memory has " +
-                          std::to_string(snapshot.memory.size()) + " numbers, must be " +
+                          std::to_string(snapshot.memory.size()) + " values, must be " +
                           std::to_string(wanted));
     }
   }

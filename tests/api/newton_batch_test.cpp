@@ -146,7 +146,7 @@ TEST_CASE("a batch names what it does not do to bodies of the newton solver", "[
   refuses(std::string("add_impulse_at") + kPlacedByJoints,
           [&] { batch.add_impulse_at(0, BodyId(1), Vec3::UnitX(), Vec3::Zero()); });
   const Numbers wrong(3, 0.0);
-  refuses("generalized_position has " + std::to_string(kCoordinates) + " numbers, the buffer has 3",
+  refuses("generalized_position has " + std::to_string(kCoordinates) + " values, the buffer has 3",
           [&] { batch.write(Field::generalized_position, 0, wrong); });
   CHECK(batch.enabled(0, BodyId(1)));
   CHECK(batch.joint_enabled(0, JointId(0)));

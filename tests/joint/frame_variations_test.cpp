@@ -196,8 +196,7 @@ TEST_CASE("what is wrong with frames and loads that vary is said", "[fast][scene
   of_first.joint = JointId(0);
   CHECK(issue({of_first}) ==
         "variation 0: break_torque cannot vary here, must belong to a joint with such a load, "
-        "which is "
-        "finite");
+        "which is finite");
   CHECK(issue({vary_three(Parameter::anchor_b, Vec3(0, 1, -1), Vec3(0, 1, 1))}) ==
         "variation 0: high[2] must be 0 in a planar scene, as low[2]");
   CHECK(issue({vary_three(Parameter::axes_a, Vec3(0.1, 0, 0), Vec3(0.2, 0, 0))}) ==

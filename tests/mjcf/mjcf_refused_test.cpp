@@ -130,8 +130,8 @@ TEST_CASE("an actuator that is more than a force on a hinge or slide is refused"
        "actuator 'm', line 1: delay is not simulated yet; expected 0"},
       {around("<option actuatorgroupdisable='3'/>",
               "<actuator><motor name='m' joint='j' group='3'/><motor joint='j'/></actuator>"),
-       "actuator 'm', line 1: switching off its group (actuatorgroupdisable) is not simulated yet; "
-       "expected all groups on"},
+       "actuator 'm', line 1: its disabled group (actuatorgroupdisable) is not simulated yet; "
+       "expected all groups enabled"},
   });
 }
 
@@ -152,8 +152,7 @@ TEST_CASE("options that change how trees move are refused", "[mjcf][robots][fast
        "option: flag actuation='disable' is not simulated with joints yet; expected enable"},
       {option("density='1.2' integrator='implicitfast'"),
        "option: integrator implicitfast in a medium is not simulated with joints yet; expected "
-       "Euler "
-       "or RK4, or density and viscosity 0"},
+       "Euler or RK4, or density and viscosity 0"},
       {around("<option viscosity='2'/>", "", "", "fluidshape='ellipsoid'"),
        "geom 'g' of body 'b', line 1: fluidshape ellipsoid is not simulated yet; expected none"},
       {flag("speculative='enable'"),

@@ -127,7 +127,7 @@ TEST_CASE("a forged recording is refused", "[fast][record]") {
   refused(forged("inputs/call_steps", 0, -4), "input 0: acts for -4 steps");
   refused(forged("inputs/input", 0, kInputCount),
           ("input 0: has unknown type " + std::to_string(kInputCount)).c_str());
-  refused(forged("inputs/input", 0, 2), "input 0: has 3 numbers, must have 6");
+  refused(forged("inputs/input", 0, 2), "input 0: has 3 values, must have 6");
   refused(forged("inputs/world", 1, 2), "input 1: is for world 2 of 2");
   refused(forged("inputs/body", 1, 1), "input 1: is for body 1 of 1");
   refused(forged("inputs/body", 2, 0), "input 2: is for body 0 of 1");

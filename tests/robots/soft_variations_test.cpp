@@ -253,8 +253,7 @@ TEST_CASE("what is wrong with softness and gears that vary is said", "[fast][sce
   of_first.joint = JointId(0);
   CHECK(issue({of_first}) ==
         "variation 0: limit_solimp cannot vary here, must belong to a hinge, slider or ball joint "
-        "with "
-        "a finite limit");
+        "with a finite limit");
   scene.options.solver.method = Solver::tgs_soft;
   scene.joints.clear(), scene.controls.clear();
   CHECK(issue({vary_three(Parameter::contact_solref, {0.01, 1, 0}, {0.02, 1, 0})}) ==

@@ -120,8 +120,7 @@ TEST_CASE("the newton solver names all that it does not take, at once",
       issues_of(scene) ==
       Issues{
           "options.integrator is verlet, the newton solver supports symplectic-euler, runge-kutta4 "
-          "and "
-          "implicit-fast",
+          "and implicit-fast",
           "options.bounds are given, the newton solver supports none",
           "body 1 'torso': enabled is false, the newton solver supports enabled bodies only",
           "body 1 'torso': linear_drag is not 0, the newton solver supports none",
@@ -136,8 +135,7 @@ TEST_CASE("the newton solver names all that it does not take, at once",
           "jointed bodies move along",
           "body 5 'lift': motion is kinematic, the newton solver supports dynamic and fixed bodies",
           "joint 0 'elbow': drive is given, the newton solver supports Joint::dynamics and "
-          "controls "
-          "of kind joint_force instead",
+          "controls of kind joint_force instead",
           "joint 0 'elbow': limit.spring is given, the newton solver supports Limit::compliance "
           "instead",
           "joint 0 'elbow': break_force is given, the newton solver supports none",

@@ -324,8 +324,7 @@ TEST_CASE("what is wrong with delays, levels and initial parameters is said", "[
       "level 4, begin: depends on the random number 'u', must depend on constants and random "
       "numbers of the episode only",
       "initial parameter 0: sets initial_position of body 0, number 0, which is drawn, must vary "
-      "with "
-      "Draw::none",
+      "with Draw::none",
       "initial parameter 1: sets age, must set a parameter (terms::parameter)",
       "initial parameter 2: sets friction of body 0, shape 0, which does not vary "
       "(Scene::variations)",
