@@ -111,7 +111,9 @@ def pairs(source: Optional[Ids], saved: int, ids: Optional[Ids], count: int) -> 
     if len(sources) == 1:
         sources = np.repeat(sources, len(targets))
     if len(sources) != len(targets):
-        raise ValueError(f"source has {len(sources)} worlds, ids {len(targets)}; expected as many")
+        raise ValueError(
+            f"source has {len(sources)} worlds, ids {len(targets)}; expected equal numbers"
+        )
     return np.ascontiguousarray(np.stack([sources, targets], axis=1).ravel(), dtype=np.int32)
 
 
@@ -150,7 +152,7 @@ def one_seed(
             raise ValueError("seed and seeds are both given; expected one of them")
         seeds = integer(seed, "seed", 0, 2**64 - 1)
     if seeds is not None and redraw is not None and not redraw:
-        raise ValueError("redraw is False and a seed is given; a seed draws anew, leave out one")
+        raise ValueError("redraw is False and a seed is given; a seed redraws, pass only one")
     return seeds
 
 
@@ -187,7 +189,7 @@ def reals(values: ArrayLike, name: str) -> NDArray[Any]:
     try:
         array = np.asarray(values)
     except ValueError as error:  # rows of different lengths
-        raise ValueError(f"{name} is no array: {error}") from None
+        raise ValueError(f"{name} is not an array: {error}") from None
     if array.dtype.kind not in "fiub":
         raise TypeError(f"{name} is of dtype {array.dtype}; expected real numbers")
     return array
@@ -228,7 +230,7 @@ def broadcast(
     except ValueError:
         expected = shape_text(shape, axes)
         raise ValueError(
-            f"{name} has shape {array.shape}; expected {expected}, or what broadcasts to it"
+            f"{name} has shape {array.shape}; expected {expected}, or a shape that broadcasts to it"
         ) from None
     return np.ascontiguousarray(full, dtype=dtype)
 
@@ -277,7 +279,7 @@ def _from_dlpack(out: Any, name: str) -> NDArray[Any]:
         array = np.from_dlpack(out)
     except (AttributeError, BufferError, RuntimeError, TypeError, ValueError) as error:
         kind = type(out).__name__
-        raise TypeError(f"{name}, a {kind}, cannot be had through DLPack: {error}") from None
+        raise TypeError(f"{name}, a {kind}, cannot be imported through DLPack: {error}") from None
     if array.flags.writeable or not hasattr(out, "__array__"):
         return array
     # DLPack before its version 1 cannot say that memory may be written to; the type itself can.
@@ -293,8 +295,8 @@ def _from_buffer(
         view = memoryview(out)
     except TypeError:
         raise TypeError(
-            f"{name} is of type {type(out).__name__}; expected a numpy.ndarray, or what has DLPack or "
-            "is a buffer"
+            f"{name} is of type {type(out).__name__}; expected a numpy.ndarray, or "
+            "an object with DLPack or the buffer protocol"
         ) from None
     if not view.c_contiguous:
         raise ValueError(f"{name} is not C-contiguous; it is filled in place, without a copy")
@@ -304,7 +306,7 @@ def _from_buffer(
     # One after the other, as buffers without a shape have them.
     raw = view.format in ("B", "b", "c") and dtype.itemsize > 1
     numbers = int(np.prod(shape, dtype=np.int64))
-    expected = f"{numbers * dtype.itemsize} bytes" if raw else f"{numbers} numbers"
+    expected = f"{numbers * dtype.itemsize} bytes" if raw else f"{numbers} values"
     if (view.nbytes if raw else array.size) != numbers * (dtype.itemsize if raw else 1):
         raise ValueError(
             f"{name} has {view.nbytes if raw else array.size} {expected.split()[1]}; expected "
@@ -313,5 +315,7 @@ def _from_buffer(
     if raw:
         array = array.view(np.uint8).view(dtype)
         if not array.flags.aligned:
-            raise ValueError(f"{name} begins at an address that is no multiple of {dtype.itemsize}")
+            raise ValueError(
+                f"{name} starts at an address that is not a multiple of {dtype.itemsize}"
+            )
     return array.reshape(shape)

@@ -119,8 +119,8 @@ class Batch(Fields, Inputs, Results, InMemory):
         def __getattr__(self, name: str) -> Any:
             if name in _OF_A_KIND and "_plans" in self.__dict__:
                 raise ValueError(
-                    f"the batch has {len(self._plans)} kinds of worlds, each with a plan, arrays, "
-                    "controls and bodies of its own: use batch.kinds[0] for those of the first"
+                    f"the batch has {len(self._plans)} kinds of worlds, each with its own plan, "
+                    "arrays, controls and bodies: use batch.kinds[0] for the first"
                 )
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 

@@ -272,7 +272,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
         early as it does ``step``. Raises ValueError when no step was ended early.
         """
         if self._unfilled is None:
-            raise ValueError("no step was ended early")
+            raise ValueError("no step was interrupted")
         observations, rewards, terminated, truncated = self._unfilled[:4]
         try:
             faults = self._held.finish_step(*self._unfilled)

@@ -77,8 +77,8 @@ class WithSnapshots:
             wanted = saved, *mine.shape[1:]
             if np.shape(array) != wanted:
                 raise _core.SnapshotError(
-                    f"snapshot: {name} have shape {np.shape(array)}, expected {wanted}: it is of "
-                    "another task, or was changed"
+                    f"snapshot: {name} have shape {np.shape(array)}, expected {wanted}: it "
+                    "belongs to another task, or was changed"
                 )
         held = snapshot.worlds, snapshot.task, np.ascontiguousarray(snapshot.memory, np.float64)
         if source is None and ids is None:

@@ -145,7 +145,7 @@ class Fields:
         )
         width = highest / 2 - lowest / 2  # of which no number is too large
         if not (width >= 0).all() or not np.isfinite(width).all():
-            raise ValueError("low and high must be finite numbers, and low no more than high")
+            raise ValueError("low and high must be finite numbers with low <= high")
         seeds = np.uint64(first) + worlds.astype(np.uint64)  # wraps around
         share = draws.uniform(seeds, name, shape[0] * shape[1]).reshape(len(worlds), *shape)
         values = self.get(name, ids=worlds).astype(np.float64)
@@ -183,11 +183,11 @@ class Fields:
         """A state field in place, as the step keeps it: see View. Raises ValueError."""
         field = self._field(name)
         if field.group != "state":
-            raise ValueError(f"{name} is no state field; only those can be seen in place")
+            raise ValueError(f"{name} is not a state field; only those can be viewed in place")
         blocks = self._held.blocks(name)
         if blocks is None:
             raise ValueError(
-                f"the plan has no {name}: no {field.item} of it has any (Plan.text() says why)"
+                f"the plan has no {name}: no {field.item} has any (see Plan.text())"
             )
         return View(self._held, name, blocks)
 

@@ -15,5 +15,5 @@ def path(file: Any, name: str) -> Path:
         raise TypeError(f"{name} is of type {type(file).__name__}; expected a str or a Path")
     text = os.fsdecode(file)
     if "\0" in text:
-        raise ValueError(f"{name} is {text!r}, which holds a character 0")
+        raise ValueError(f"{name} is {text!r}, which contains a NUL character")
     return Path(text)

@@ -147,7 +147,7 @@ def _size(size: tuple[int, int], step: int) -> tuple[int, int]:
         raise TypeError(f"size is {size!r}; expected a width and a height")
     width, height = (arrays.integer(side, f"size[{i}]", _LEAST, _MOST) for i, side in enumerate(size))
     if width % step or height % step:
-        raise ValueError(f"size is {width} x {height}; films want even numbers")
+        raise ValueError(f"size is {width} x {height}; films need even numbers")
     return width, height
 
 

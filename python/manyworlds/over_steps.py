@@ -29,7 +29,9 @@ def delayed(value: Value, steps: Value, max_steps: Optional[int] = None) -> Expr
     if max_steps is not None:
         return _x.delayed_by(value, steps, arrays.integer(max_steps, "max_steps", 0, _MAX_DELAY))
     if isinstance(steps, Expression):
-        raise TypeError("steps is an expression; expected `max_steps`, too: how many steps are remembered")
+        raise TypeError(
+            "steps is an expression; expected `max_steps` too, the number of steps to store"
+        )
     return _x.delayed(value, arrays.integer(steps, "steps", 0, _MAX_DELAY))
 
 

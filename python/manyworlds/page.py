@@ -140,7 +140,8 @@ def _empty_page() -> Path:
         return place
     raise FileNotFoundError(
         f"there is no page at {place}: the package was built without it. tools/viewer in the "
-        "repository builds it, with Node 18 or later and npm; MANYWORLDS_VIEWER is the path of another"
+        "repository builds it, with Node 18 or later and npm; MANYWORLDS_VIEWER sets the path of "
+        "another one"
     )
 
 

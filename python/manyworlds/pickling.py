@@ -54,7 +54,9 @@ def restore_value(form: int, version: str, name: str, members: Members) -> Any:
     """A dataclass of the package. Members that it did not have yet get their defaults."""
     _check(name, form, version)
     if not isinstance(name, str) or name not in _VALUES:
-        raise UnpicklingError(f"a pickle of manyworlds {version} has a {name}, which there is not")
+        raise UnpicklingError(
+            f"a pickle of manyworlds {version} has a {name}, which does not exist in this version"
+        )
     if not isinstance(members, dict):
         found = type(members).__name__
         raise UnpicklingError(f"the pickle of a {name} is damaged: its members are of type {found}")
@@ -68,7 +70,7 @@ def restore_value(form: int, version: str, name: str, members: Members) -> Any:
     try:
         return kind(**members)
     except TypeError as error:  # a member without a default
-        raise UnpicklingError(f"the pickle of a {name} is not whole: {error}") from None
+        raise UnpicklingError(f"the pickle of a {name} is incomplete: {error}") from None
 
 
 # -- expressions as a graph; those of a task as one, so that what they share stays shared

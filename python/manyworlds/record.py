@@ -107,7 +107,7 @@ class Recorder(InMemory):
         else:
             chosen = arrays.worlds(worlds, count, "worlds")
             if len(chosen) == 0:
-                raise ValueError("worlds are none; at least one must be recorded")
+                raise ValueError("worlds is empty; expected at least one")
         self.file = files.path(file, "file")
         self._held = _record.Recorder(
             batch._held, self.file, chosen, every, first_world, flush_seconds, contacts

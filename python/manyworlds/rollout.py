@@ -40,7 +40,7 @@ def rollout(
         raise TypeError(f"out is of type {found}; expected a dict of arrays by field")
     given = dict(out or {})
     if unwanted := sorted(set(given) - set(names)):
-        raise ValueError(f"out has {unwanted}, which fields does not name")
+        raise ValueError(f"out has {unwanted}, which is not in fields")
     frames = count // every
     filled = [
         arrays.output(
@@ -78,10 +78,10 @@ def _controls(
 
 def _names(fields: Sequence[FieldName]) -> list[FieldName]:
     if isinstance(fields, str):
-        raise TypeError(f"fields is a str; expected a list of them, such as ['{fields}']")
+        raise TypeError(f"fields is a str; expected a list of names, such as ['{fields}']")
     names = list(fields)
     if len({*names}) != len(names):
-        raise ValueError(f"fields {names} name one more than once")
+        raise ValueError(f"fields {names} contain a name more than once")
     return names
 
 

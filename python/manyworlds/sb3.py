@@ -33,7 +33,7 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
     def __init__(self, task: Union[Task, str], num_envs: int = 1, **arguments: Any) -> None:
         arguments = {"autoreset_mode": AutoresetMode.SAME_STEP, "copy": True, **arguments}
         if AutoresetMode(arguments["autoreset_mode"]) != AutoresetMode.SAME_STEP:
-            raise ValueError("Stable-Baselines3 wants AutoresetMode.SAME_STEP")
+            raise ValueError("Stable-Baselines3 requires AutoresetMode.SAME_STEP")
         self.env = VectorEnv(task, num_envs, **arguments)
         self.render_mode = self.env.render_mode
         self._actions: Optional[np.ndarray] = None
@@ -85,13 +85,13 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Raises NotImplementedError."""
-        raise NotImplementedError("worlds have no attributes of their own")
+        raise NotImplementedError("worlds have no individual attributes")
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
         """Raises NotImplementedError."""
-        raise NotImplementedError("worlds have no methods of their own")
+        raise NotImplementedError("worlds have no individual methods")
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
         """False for each of the worlds ``indices``."""

@@ -24,7 +24,7 @@ class NonFinite:
 
     def __str__(self) -> str:
         value = "nan" if math.isnan(self.value) else f"{self.value}"
-        when = f"at step {self.step} of its episode" if self.step else "where its episode begins"
+        when = f"at step {self.step} of its episode" if self.step else "at the start of its episode"
         return f"{self.expression} is {value} in world {self.world} {when}"
 
 

@@ -30,7 +30,7 @@ auto span_of(const Array& array) {
 inline void check_size(const char* what, std::size_t found, std::size_t wanted) {
   if (found == wanted) return;
   throw nanobind::value_error((std::string(what) + " has " + std::to_string(found) +
-                               " numbers, must have " + std::to_string(wanted))
+                               " values, must have " + std::to_string(wanted))
                                   .c_str());
 }
 

@@ -71,7 +71,7 @@ void rollout(HeldBatch& self, int steps, int every, const std::optional<AnyIn>& 
   if (steps < 0 || every < 1 || names.size() != arrays.size()) {
     throw nb::value_error("steps must be >= 0, every >= 1, and as many arrays as names");
   }
-  if (self.kinds() > 1) throw nb::value_error("rollouts are of batches with one kind of world");
+  if (self.kinds() > 1) throw nb::value_error("rollouts need a batch with one kind of world");
   const auto count = static_cast<std::size_t>(steps);
   const std::size_t frames = count / static_cast<std::size_t>(every);
   Recorder recorder;

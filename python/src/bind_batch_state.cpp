@@ -122,7 +122,7 @@ void write(HeldBatch& self, const std::string& name, const AnyIn& in,
           write_worlds<Parameter>(b, std::get<Parameter>(q.what), chosen, numbers);
         }
       } else {
-        throw std::invalid_argument("numbers of some worlds are float64");
+        throw std::invalid_argument("parameters of some worlds must be float64");
       }
     });
   });
@@ -143,7 +143,7 @@ nb::object blocks_array(const LaneBlocks& at, nb::handle owner) {
 nb::object blocks(HeldBatch& self, const std::string& name, int kind) {
   const Quantity q = quantity(self, name, kind);
   const auto* field = std::get_if<Field>(&q.what);
-  if (!field) throw nb::value_error((name + " is no state field").c_str());
+  if (!field) throw nb::value_error((name + " is not a state field").c_str());
   return self.with([&](Batch& b) -> nb::object {
     const LaneBlocks at = b.lane_blocks(*field, kind);
     if (at.data == nullptr) return nb::none();

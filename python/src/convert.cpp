@@ -38,7 +38,7 @@ double read_number(nb::handle value, const Place& place) {
   if (number == -1 && PyErr_Occurred()) {
     const bool too_large = PyErr_ExceptionMatches(PyExc_OverflowError) != 0;
     PyErr_Clear();
-    if (too_large) wrong_value(place, "is beyond what a float64 can hold");
+    if (too_large) wrong_value(place, "exceeds the range of a float64");
     wrong_type(place, value, "a number");
   }
   return number;

@@ -13,7 +13,7 @@ constexpr int kMin = std::numeric_limits<int>::min(), kMax = std::numeric_limits
 
 ExpressionGraph::Node read_node(nb::handle value, const Place& place) {
   const std::vector<nb::object> parts = read_elements(value, place, -1, "a node of an expression");
-  if (parts.empty()) wrong_value(place, "is empty; expected a name and what belongs to it");
+  if (parts.empty()) wrong_value(place, "is empty; expected a name and its values");
   ExpressionGraph::Node node;
   node.name = read_text(parts[0], place.element(0));
   if (node.name == "number") {

@@ -180,9 +180,12 @@ def test_check_raises_with_the_expression_the_world_and_the_step():
         env.step(np.zeros((9, 1)))  # worlds 4 and 7 begin anew
     task = falling()
     task.observe("start", tasks.log(task.terms.age() - 1))
-    with pytest.raises(mw.NonFiniteError, match="observation 0 'start' is nan in world 0 where its episode begins"):
+    with pytest.raises(
+        mw.NonFiniteError,
+        match="observation 0 'start' is nan in world 0 at the start of its episode",
+    ):
         mw.Environment(task, threads=1, check=True)
-    with pytest.warns(RuntimeWarning, match="where its episode begins"):
+    with pytest.warns(RuntimeWarning, match="at the start of its episode"):
         mw.Environment(task, threads=1)
 
 
@@ -194,7 +197,7 @@ def test_numbers_that_are_not_finite_and_names_that_are_not_single_are_refused()
     task.reward("r", math.nan)
     task.terminated = (x > 1) & (x < math.inf)
     assert [str(issue) for issue in task.validate()] == [
-        "observation 1 'x' has the name of observation 0 'x', must have its own",
+        "observation 1 'x' has the name of observation 0 'x', must be unique",
         "observation 1 'x' holds the number -inf, must be finite",
         "reward 0 'r' holds the number nan, must be finite",
         "terminated holds the number inf, must be finite",

@@ -63,14 +63,18 @@ def test_a_picture_is_of_one_moment(run):
 
 def test_what_is_refused(run, monkeypatch):
     for wrong, error, message in [
-        ({"size": (641, 480)}, ValueError, "size is 641 x 480; films want even numbers"),
+        ({"size": (641, 480)}, ValueError, "size is 641 x 480; films need even numbers"),
         ({"size": (10, 480)}, ValueError, r"size\[0\]"),
         ({"size": 640}, TypeError, "expected a width and a height"),
         ({"fps": 0}, ValueError, "fps"),
         ({"fps": 2000}, ValueError, "fps is 2000"),
         ({"speed": float("nan")}, ValueError, "speed"),
         ({"begin": 2, "end": 1}, ValueError, "end"),
-        ({"begin": 3}, record.FilmError, r"it would begin at 3\.0 s, and worlds end at 2\.0 s"),
+        (
+            {"begin": 3},
+            record.FilmError,
+            r"the film would start at 3\.0 s, but worlds end at 2\.0 s",
+        ),
         ({"world": -1}, ValueError, "world"),
         ({"color": 3}, TypeError, "color is of type int"),
         ({"follow": ""}, ValueError, "follow is empty; expected the name of a body"),
@@ -88,7 +92,10 @@ def test_what_is_refused(run, monkeypatch):
     with pytest.raises(ValueError, match=r"failed \(exit code 1\): No space left on device"):
         mw.write_film([run], "film.mp4")
     monkeypatch.setenv("FFMPEG", "no-such-encoder")
-    with pytest.raises(record.FilmError, match="found no no-such-encoder; Debian has it as ffmpeg, PyPI as imageio-ffmpeg"):
+    with pytest.raises(
+        record.FilmError,
+        match="found none of no-such-encoder; install Debian's ffmpeg or PyPI's imageio-ffmpeg",
+    ):
         mw.write_film([run], "film.mp4")
     assert not Path("film.mp4").exists() and not Path("a.png").exists()
 
@@ -103,7 +110,7 @@ def test_ffmpeg_is_that_of_imageio_ffmpeg_where_there_is_no_other(run, monkeypat
     assert Path("film.mp4").read_text().count("image/jpeg") == 3
     # Another goes first.
     monkeypatch.setenv("FFMPEG", "no-such-encoder")
-    with pytest.raises(record.FilmError, match="found no no-such-encoder"):
+    with pytest.raises(record.FilmError, match="found none of no-such-encoder"):
         mw.write_film([run], "other.mp4")
     # A package without a program is as none.
     def fails():
@@ -112,7 +119,7 @@ def test_ffmpeg_is_that_of_imageio_ffmpeg_where_there_is_no_other(run, monkeypat
     monkeypatch.delenv("FFMPEG")
     package.get_ffmpeg_exe = fails
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(record.FilmError, match="found no ffmpeg; .* imageio-ffmpeg"):
+    with pytest.raises(record.FilmError, match="found none of ffmpeg; .* imageio-ffmpeg"):
         mw.write_film([run], "other.mp4")
 
 

@@ -144,7 +144,9 @@ def test_unknown_empty_and_shared_names(batch):
     with pytest.raises(ValueError, match="3 shapes are named 'ball': 0 of body 1, 0 of body 2"):
         scene.shape("ball")
     scene.bodies[1].name = "lid"
-    with pytest.raises(ValueError, match="2 bodies are named 'lid': 1, 3; give them names"):
+    with pytest.raises(
+        ValueError, match="2 bodies are named 'lid': 1, 3; give them distinct names"
+    ):
         scene.body("lid")
 
 
@@ -195,7 +197,9 @@ def test_rays_and_tasks_take_names():
         batch.set_rays([mw.Ray(direction=(0, 0, -1), body="lid")] * 1)
         batch.look()
         assert (batch.get("ray_body")[:, 0] == 1).all()
-        with pytest.raises(ValueError, match="rays.0..body is body 0 'ground', must be one that"):
+        with pytest.raises(
+            ValueError, match="rays.0..body is body 0 'ground', must be a body that"
+        ):
             batch.set_rays([mw.Ray(body="ground")])
         with pytest.raises(ValueError, match=r"rays\[0\].body: no body is named 'lit'"):
             batch.set_rays([mw.Ray(body="lit")])

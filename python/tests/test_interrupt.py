@@ -89,7 +89,7 @@ def check():
     try:
         env.finish_step()
     except ValueError as error:
-        assert "no step was ended early" in str(error)
+        assert "no step was interrupted" in str(error)
     assert env.steps_left == 0 and (env.observations == other.observations).all()
     assert (env.batch.hashes() == other.batch.hashes()).all()
     env.save()
@@ -129,7 +129,7 @@ def check():
     try:
         long.finish_step()
     except ValueError as error:
-        assert "no step was ended early" in str(error)
+        assert "no step was interrupted" in str(error)
     else:
         raise AssertionError("there was none to finish")
 """,

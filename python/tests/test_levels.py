@@ -112,5 +112,5 @@ def test_what_cannot_be_delayed_is_said():
         tasks.delayed(1.0, t.age(), -1)
     task = tasks.load("CartPole")
     task.level("hard", next=t.level("soft"))
-    with pytest.raises(mw.TaskError, match="level 0 'hard', next asks for the level 'soft'"):
+    with pytest.raises(mw.TaskError, match="level 0 'hard', next uses the level 'soft'"):
         mw.Environment(task)

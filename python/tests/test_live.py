@@ -102,7 +102,7 @@ def test_a_page_sees_a_batch_and_drags_it():
             batch.step()
         assert np.allclose(batch.get("position")[1, 0], to, atol=0.05)
         page.send(do="reset")
-        assert "does not let pages" in page.receive_while(batch.step)["said"]
+        assert "does not allow pages" in page.receive_while(batch.step)["said"]
     assert view.url == "" and not batch._views
     view.close()
     with pytest.raises((EOFError, OSError)):

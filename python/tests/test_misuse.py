@@ -74,7 +74,7 @@ WRONG = [
         r"the mask of ids has shape \(2,\); expected \(5,\)",
     ),
     # views
-    (lambda b: b.view("friction"), ValueError, "no state field"),
+    (lambda b: b.view("friction"), ValueError, "not a state field"),
     (lambda b: b.view("x"), ValueError, "the field is 'x'"),
     (lambda b: b.view("position")[9], IndexError, "out of bounds"),
     # inputs
@@ -83,7 +83,7 @@ WRONG = [
     (
         lambda b: b.add_force((1, 2, 3)),
         ValueError,
-        r"\(worlds=5, bodies=5, components=2\), or what",
+        r"\(worlds=5, bodies=5, components=2\), or a shape that",
     ),
     (lambda b: b.add_force((1, 2), bodies=6), IndexError, "bodies hold 6, must be 0 to 5"),
     (lambda b: b.add_force((1, 2), ids=[0, 7]), IndexError, "ids hold 7"),

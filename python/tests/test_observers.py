@@ -38,7 +38,9 @@ def test_what_an_imu_and_a_tracker_read():
 
 
 def test_points_that_make_no_sense():
-    with pytest.raises(ValueError, match="points\\[0\\].body is body 0 'ground', must be one that"):
+    with pytest.raises(
+        ValueError, match="points\\[0\\].body is body 0 'ground', must be a body that"
+    ):
         mw.Batch(falling(), points=[mw.Point(body="ground")])
     with pytest.raises(ValueError, match="observe.what\\[0\\] is points"):
         mw.Batch(falling(), observe=["points"])

@@ -98,10 +98,10 @@ def test_what_is_refused(viewer, tmp_path, monkeypatch):
         mw.show(run, numbers={"r": [1, 2]})
     with pytest.raises(ValueError, match="worlds"):
         mw.show(run, worlds=0)
-    with pytest.raises(record.RecordError, match="there is no folder"):
+    with pytest.raises(record.RecordError, match="no such folder: "):
         mw.write_page([run], tmp_path / "no" / "p.html")
     viewer.write_text("<html>")
-    with pytest.raises(record.RecordError, match="is no page of this version"):
+    with pytest.raises(record.RecordError, match="is not a page of this version"):
         mw.show(run)
     viewer.unlink()
     with pytest.raises(FileNotFoundError, match="there is no page at .*tools/viewer"):

@@ -167,7 +167,7 @@ def test_other_versions_and_changed_bytes_are_refused():
     value = pickling.restore_value
     with pytest.raises(UnpicklingError, match="of manyworlds 9.1, has spin, which a Box of"):
         value(1, "9.1", "Box", {"half_extents": (1, 1, 1), "spin": 3})
-    with pytest.raises(UnpicklingError, match="has a system, which there is not"):
+    with pytest.raises(UnpicklingError, match="has a system, which does not exist in this version"):
         value(1, "9.1", "system", {})
     with pytest.raises(UnpicklingError, match="a Box is damaged: its members are of type list"):
         value(1, "9.1", "Box", [1])
@@ -182,9 +182,9 @@ def test_other_versions_and_changed_bytes_are_refused():
 
 
 DAMAGED = [
-    ([("sine", 0)], [0], "'sine', which no expression is"),
-    ([("sin", 0)], [0], r"nodes\[0\] is of node 0, which does not come before it"),
-    ([("sin", -1)], [0], "is of node -1, which does not come before it"),
+    ([("sine", 0)], [0], "'sine', which is not an expression"),
+    ([("sin", 0)], [0], r"nodes\[0\] uses node 0, which does not come before it"),
+    ([("sin", -1)], [0], "uses node -1, which does not come before it"),
     ([("number", "x")], [0], "is of type str; expected a number"),
     ([("number",)], [0], "has 0 values, 'number' must have 1"),
     ([("add", 0)], [0], "'add' must have 2"),

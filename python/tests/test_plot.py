@@ -162,8 +162,8 @@ def test_wrong_arguments_are_errors():
         (dict(size=5), ValueError, "size has shape"),
         (dict(size=(5, 5, 5)), ValueError, "size has shape"),
         (dict(view=(1, 2)), ValueError, "view has shape"),
-        (dict(view=((1, 0), (0, 1))), ValueError, "lower ones first"),
-        (dict(view=((0, np.nan), (0, 1))), ValueError, "lower ones first"),
+        (dict(view=((1, 0), (0, 1))), ValueError, "lower values first"),
+        (dict(view=((0, np.nan), (0, 1))), ValueError, "lower values first"),
         (dict(camera=None), TypeError, "expected a Camera"),
     ):
         with pytest.raises(error, match=words):

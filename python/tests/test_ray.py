@@ -313,7 +313,7 @@ def test_lost_worlds_are_told():
         ({"shards": 99}, "shards is 99, but 40 worlds are 5 blocks of 8; expected at most 5"),
         ({"timeout": 0}, "timeout is 0; expected seconds > 0"),
         ({"block": 0}, "block is 0"),
-        ({"fields": ("position",)}, r"fields are \['position'\]; expected none of a task"),
+        ({"fields": ("position",)}, r"fields are \['position'\]; expected none for a task"),
         ({"precision": "f16"}, "f16"),
         ({"what": "no-such"}, "there is no task and no scene 'no-such'"),
     ],

@@ -193,7 +193,7 @@ def test_tasks_are_searched_by_their_actions():
     assert (columns["value"] == total).all() and (columns["hash"] == env.batch.hashes()).all()
     with pytest.raises(ValueError, match="the task's actions 'steepness' are no parameters"):
         search.TaskTrial(task, Space(Parameter("strength", 0, 1)))
-    with pytest.raises(ValueError, match="parameters 'idle' are no action of the task"):
+    with pytest.raises(ValueError, match="parameters 'idle' are not actions of the task"):
         search.TaskTrial(task, Space(*space.parameters, Parameter("idle", 0, 1)))
 
 
@@ -295,11 +295,11 @@ def test_what_callbacks_return_is_checked():
                 tried.evaluate(middle, seeds)
     with pytest.raises(ValueError, match="steps is 0"):
         search.Trial(scene(), SPACE, distance)
-    with pytest.raises(ValueError, match="drive steps by itself"):
+    with pytest.raises(ValueError, match="drive takes its own steps"):
         search.Trial(scene(), SPACE, distance, 5, drive=lambda run: {})
     with pytest.raises(ValueError, match="goal is 'max'; expected 'minimize' or 'maximize'"):
         search.Search(SPACE, search.Random(2), "max")
-    with pytest.raises(ValueError, match="no generation to tell of; call ask"):
+    with pytest.raises(ValueError, match="no generation is open; call ask"):
         search.Search(SPACE, search.Random(2)).tell([1, 2])
     with pytest.raises(ValueError, match="has a space but no trial"):
         search.Search(SPACE, search.Random(2)).run(1)

@@ -34,7 +34,7 @@ def test_values_cover_their_ranges():
         (lambda: Parameter("a", 0, np.inf), "'a': high is inf, must be finite"),
         (lambda: Parameter("a", 0, 1.5, integer=True), "'a': high is 1.5, must be a whole number"),
         (lambda: Parameter("a", 0, 1, "cubic"), "'a': scale is 'cubic'; expected 'linear' or 'log'"),
-        (lambda: Parameter("seed", 0, 1), "'seed': its name is that of a column"),
+        (lambda: Parameter("seed", 0, 1), "'seed': its name is reserved for a column"),
         (lambda: Parameter("a", "0", 1), "'a': low is of type str; expected a number"),
         (lambda: Parameter("a", 0, 1, sets=["mass"]), "'a': sets holds a str; expected Numbers"),
         (lambda: Space(), "no parameters"),
@@ -158,7 +158,7 @@ def test_other_strategies_and_evaluators_fit():
 
     hunt = search.Search(Elsewhere(), Halving(), seed=1)
     assert hunt.run(12).best.values["a"] == pytest.approx(1, abs=1e-2)
-    with pytest.raises(ValueError, match="Halving is never done; expected a number"):
+    with pytest.raises(ValueError, match="Halving never ends; expected a number"):
         hunt.run()
     with pytest.raises(ValueError, match="has no record\\("):
         hunt.record("x.h5")

@@ -228,7 +228,7 @@ def test_parameters_are_those_of_the_world():
             wanted = env.batch.get(name)[:, 0, 0].astype(np.float32)
             assert (seen[:, column] == wanted).all() and np.ptp(wanted) > 0.1, name
         assert (seen[:, 3] == -10).all()
-    with pytest.raises(ValueError, match="friction is a number of a shape, not of a body"):
+    with pytest.raises(ValueError, match="friction belongs to a shape, not to a body"):
         t.parameter("friction", body="ball")
     with pytest.raises(ValueError, match="nearest: 'mass'"):
         t.parameter("mas", body="ball")

@@ -111,7 +111,7 @@ def test_every_term_is_right_or_refused_with_a_reason(what, kind):
         assert len(issues) == 1, issues
         text = issues[0].message
         assert what.replace("_", " ") in text.replace("_", " ")
-        assert f"the scene '{kind}' does not have it" in text
+        assert f"the scene '{kind}' does not support it" in text
         assert ("newton" in text) and refused(kind)[what] in text
         return
     if item is None:

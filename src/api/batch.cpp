@@ -23,7 +23,7 @@ void Batch::Impl::make_core_within_memory() {
   try {
     core = make_core(kinds, options, isa, threads);
   } catch (const std::bad_alloc&) {
-    reject(memory_text(kinds, needed()) + ", which the machine does not give");
+    reject(memory_text(kinds, needed()) + ", which could not be allocated");
   }
 }
 

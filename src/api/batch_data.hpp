@@ -48,8 +48,7 @@ struct Batch::Impl {
              std::to_string(kMaxThreads));
     }
     if (options.threads != 0 && options.executor) {
-      reject("threads is " + std::to_string(options.threads) +
-             ", must be 0 where an executor brings its own");
+      reject("threads is " + std::to_string(options.threads) + ", must be 0 with an executor");
     }
     if (options.audit_every < 0 || options.audit_every > kernels::kMaxAuditEvery) {
       reject("audit_every is " + std::to_string(options.audit_every) + ", must be 0 to " +
@@ -149,8 +148,9 @@ struct Batch::Impl {
   // Bodies of trees are where the coordinates of their joints put them.
   void reject_in_trees(int kind, const char* what) const {
     if (!kinds[static_cast<std::size_t>(kind)].plan.data().has_trees()) return;
-    reject(std::string(what) + ": bodies of the newton solver are moved by generalized_position " +
-           "and generalized_velocity, and are always there");
+    reject(std::string(what) +
+           ": with the newton solver, bodies are always enabled; set generalized_position " +
+           "and generalized_velocity to move them");
   }
   void check_written(Field field, int kind) const {
     if (info(field).item == ItemKind::body) reject_in_trees(kind, info(field).name);
@@ -174,7 +174,7 @@ struct Batch::Impl {
   void check_size(What what, std::size_t got, std::size_t wanted) const {
     if (got != wanted) {
       reject(std::string(info(what).name) + " has " + std::to_string(wanted) +
-             " numbers, the buffer has " + std::to_string(got));
+             " values, the buffer has " + std::to_string(got));
     }
   }
   std::size_t world_size(Parameter parameter, int kind) const {
@@ -182,7 +182,7 @@ struct Batch::Impl {
   }
   void check_mask(std::span<const std::uint8_t> mask) const {
     if (mask.size() != static_cast<std::size_t>(first_world.back())) {
-      reject("the mask has " + std::to_string(mask.size()) + " entries, the batch " +
+      reject("the mask has " + std::to_string(mask.size()) + " entries, the batch has " +
              std::to_string(first_world.back()) + " worlds");
     }
   }

@@ -18,7 +18,7 @@ void visit_controls(const Impl& impl, std::size_t numbers, Visit visit) {
   std::size_t total = 0;
   for (std::size_t k = 0; k < impl.kinds.size(); ++k) total += of_kind(k);
   if (numbers != total) {
-    reject("controls are " + std::to_string(total) + " numbers, the buffer has " +
+    reject("controls are " + std::to_string(total) + " values, the buffer has " +
            std::to_string(numbers));
   }
   std::size_t at = 0;
@@ -102,7 +102,7 @@ void Batch::set_controls(int world, std::span<const double> in) {
   const auto p = impl_->find(world);
   const std::size_t wanted = impl_->plan(p.kind).scene().controls.size();
   if (in.size() != wanted) {
-    reject("controls of a world are " + std::to_string(wanted) + " numbers, the buffer has " +
+    reject("controls of a world are " + std::to_string(wanted) + " values, the buffer has " +
            std::to_string(in.size()));
   }
   impl_->worlds(p.kind).set_controls(p.world, 1, in.data());

@@ -17,7 +17,7 @@ ObserverResults& results_of(BatchCore& core) {
 void check_observed_size(Observed what, std::size_t got, std::size_t wanted) {
   if (got != wanted) {
     reject(std::string(to_string(what)) + " has " + std::to_string(wanted) +
-           " numbers, the buffer has " + std::to_string(got));
+           " values, the buffer has " + std::to_string(got));
   }
 }
 
@@ -69,7 +69,7 @@ std::vector<StepContact> Batch::step_contacts(int world) const {
 
 bool Batch::touching(int world, BodyId body) const {
   const auto p =
-      impl_->find_body(world, body, "what touches it is not observed, ask the other body");
+      impl_->find_body(world, body, "its contacts are not observed; query the other body");
   std::vector<double> all(static_cast<std::size_t>(impl_->plan(p.kind).bodies()));
   read(Observed::touching, world, all);
   return all[static_cast<std::size_t>(p.row)] != 0;

@@ -52,12 +52,12 @@ void Batch::Impl::check_snapshot_world(const Snapshot& snapshot, std::size_t fro
   const SnapshotHeader header = SnapshotAccess::header(snapshot);
   const std::string place = "world " + std::to_string(from);
   if (header.real_bytes != real_bytes(options)) {
-    refuse("has " + std::string(header.real_bytes == 4 ? "f32" : "f64") + " numbers, the batch " +
+    refuse("has " + std::string(header.real_bytes == 4 ? "f32" : "f64") + " values, the batch is " +
            to_string(options.precision));
   }
   const SnapshotEntry entry = SnapshotAccess::entry(snapshot, from);
   if (entry.fingerprint != fingerprint[static_cast<std::size_t>(kind)]) {
-    refuse(place + " is of another plan than '" + plan(kind).scene().name + "'");
+    refuse(place + " belongs to another plan than '" + plan(kind).scene().name + "'");
   }
   if (entry.size != worlds(kind).world_bytes()) {
     refuse(place + " has " + std::to_string(entry.size) + " bytes, must have " +
@@ -70,7 +70,7 @@ void Batch::Impl::check_snapshot_world(const Snapshot& snapshot, std::size_t fro
 void Batch::restore(const Snapshot& snapshot) {
   const SnapshotHeader header = SnapshotAccess::header(snapshot);
   if (snapshot.worlds() != worlds()) {
-    refuse("has " + std::to_string(snapshot.worlds()) + " worlds, the batch " +
+    refuse("has " + std::to_string(snapshot.worlds()) + " worlds, the batch has " +
            std::to_string(worlds()));
   }
   for (int w = 0; w < worlds(); ++w) {
@@ -94,7 +94,7 @@ void Batch::restore(const Snapshot& snapshot, int from, int to) {
   const auto p = impl_->find(to);
   if (from < 0 || from >= snapshot.worlds()) {
     reject("restore: the snapshot has " + std::to_string(snapshot.worlds()) +
-           " worlds, there is no world " + std::to_string(from));
+           " worlds, it has no world " + std::to_string(from));
   }
   impl_->check_snapshot_world(snapshot, static_cast<std::size_t>(from), p.kind);
   impl_->core->look_again();

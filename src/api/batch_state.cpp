@@ -54,7 +54,7 @@ int Batch::lane_index(int world) const {
 }
 
 void Batch::set_enabled(int world, BodyId body, bool enabled) {
-  const auto p = impl_->find_body(world, body, "it is always there");
+  const auto p = impl_->find_body(world, body, "it is always enabled");
   impl_->reject_in_trees(p.kind, "set_enabled");
   impl_->worlds(p.kind).set_enabled(p.world, p.row, enabled);
   impl_->tell(*this, enabled ? Input::enable : Input::disable, world, body);
@@ -65,7 +65,7 @@ bool Batch::enabled(int world, BodyId body) const {
 }
 void Batch::spawn(int world, BodyId body, const BodyState& state) {
   const FloatMode mode;
-  const auto p = impl_->find_body(world, body, "it stays where the scene has it");
+  const auto p = impl_->find_body(world, body, "it keeps the scene's pose");
   impl_->reject_in_trees(p.kind, "spawn");
   const double norm = state.rotation.norm();
   if (!(norm > 0) || !std::isfinite(norm)) {

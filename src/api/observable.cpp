@@ -41,8 +41,8 @@ const char* instead_of(Observer observer) {
 
 std::string never_left(const Scene& scene) {
   return scene_text(scene) +
-         " does not have it: its solver newton solves to its tolerance and leaves no residual; "
-         "use SolverOptions::tolerance instead";
+         " does not support it: the newton solver iterates to its tolerance and leaves no "
+         "residual; use SolverOptions::tolerance instead";
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ bool observable(Observer observer, const Scene& scene) {
 }
 
 std::string needs_newton(const Scene& scene, const std::string& instead) {
-  return scene_text(scene) + " does not have it: its solver is " +
+  return scene_text(scene) + " does not support it: its solver is " +
          to_string(scene.options.solver.method) + ", and only newton has trees of links; use " +
          instead + " instead";
 }

@@ -42,7 +42,8 @@ void check_observers(const Observers& observers) {
     const std::string place = "observe.what[" + std::to_string(i) + "]";
     const Observer observer = checked_enum(observers.what[i], place);
     if (is_given(info(observer).item) && !observes(observers, observer)) {
-      reject(place + " is " + to_string(observer) + ", which are observed where they are given");
+      reject(place + " is " + to_string(observer) + ", but observe." + to_string(observer) +
+             " is empty; list them there");
     }
   }
   if (observers.contacts_per_world < 0) {
@@ -84,7 +85,7 @@ class ListChecker {
     }
     if (plan_.find_row(body)) return;
     wrong(i, "body", body_text(plan_.scene(), body),
-          std::string("one that can move: ") + otherwise);
+          std::string("a body that can move: ") + otherwise);
   }
   void reject_wrong() const {
     if (wrong_) reject(text_.str());
@@ -113,7 +114,7 @@ void check_rays(std::span<const Ray> rays, const Plan& plan) {
     }
     if (!(ray.length > 0)) checker.wrong(i, "length", ray.length, "> 0 m");
     if (ray.body == BodyId()) continue;
-    checker.check_moving(i, ray.body, -1, "where a fixed one stands, give the ray in the world");
+    checker.check_moving(i, ray.body, -1, "for a fixed body, give the ray in world coordinates");
   }
   checker.reject_wrong();
 }
@@ -122,7 +123,7 @@ void check_points(std::span<const Point> points, const Plan& plan) {
   ListChecker checker("points", plan);
   for (std::size_t i = 0; i < points.size(); ++i) {
     checker.check_finite(i, "position", points[i].position);
-    checker.check_moving(i, points[i].body, 0, "a point of a fixed one stays");
+    checker.check_moving(i, points[i].body, 0, "points of a fixed body do not move");
   }
   checker.reject_wrong();
 }

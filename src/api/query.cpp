@@ -95,7 +95,7 @@ Separation distance(const Shape& a, const Pose& pose_a, const Shape& b, const Po
   fixed_scene(space,
               {body_of("a", a, pose_a, Motion::fixed), body_of("b", b, pose_b, Motion::fixed)});
   if (is_half_space(a.geometry) && is_half_space(b.geometry)) {
-    no_answer("distance: both shapes are planes, which have none");
+    no_answer("distance: both shapes are planes, at least one must be another shape");
   }
   std::optional<Separation> best;
   for (const Convex& part_a : convex_parts(a, pose_a, space)) {
@@ -119,7 +119,7 @@ std::vector<ManifoldPoint> manifold(const Shape& a, const Pose& pose_a, const Sh
     no_answer("manifold: the margin is " + std::to_string(margin) + " m, must be >= 0");
   }
   if (only_fixed(a.geometry) && only_fixed(b.geometry)) {
-    no_answer("manifold: both shapes are of kinds that never move");
+    no_answer("manifold: neither shape can belong to a body that moves, at least one must");
   }
   const Space space = space_of(a.geometry, b.geometry, given);
   const auto motion = [](const Shape& shape) {

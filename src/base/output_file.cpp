@@ -143,7 +143,7 @@ std::string reason_of(int error_number) {
     case EFBIG: return "the file would be larger than this process may write (ulimit -f)";
     case EDQUOT: return "no space left in the quota";
     case EROFS: return "the file system is read-only";
-    case ELOOP: return "symbolic links lead in a circle";
+    case ELOOP: return "symbolic links form a loop";
     default: return std::generic_category().message(error_number);
   }
 }
@@ -170,14 +170,14 @@ bool Descriptor::close() {
 
 OutputFile::OutputFile(const fs::path& file) : file_(file) {
   const FloatMode mode;  // the standard library's paths grow by a floating-point factor
-  if (file.empty()) throw FileError(file, "is no name of a file");
+  if (file.empty()) throw FileError(file, "is not a file name");
   const fs::path path = resolved(file);
   name_ = path.filename().string();
-  if (name_.empty() || name_ == "." || name_ == "..") throw FileError(file, "is no name of a file");
+  if (name_.empty() || name_ == "." || name_ == "..") throw FileError(file, "is not a file name");
   folder_ = Descriptor(open(folder_of(path).c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (folder_.get() < 0) {
     const int why = errno;
-    throw FileError(file, why == ENOENT ? "there is no folder '" + folder_of(path).string() + "'"
+    throw FileError(file, why == ENOENT ? "no such folder: '" + folder_of(path).string() + "'"
                                         : "its folder cannot be used: " + reason_of(why));
   }
   struct stat old {};

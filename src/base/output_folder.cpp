@@ -16,14 +16,14 @@ std::string why_no_folder(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status) || fs::is_directory(status)) return {};
-  return fs::is_regular_file(status) ? "is a file, not a folder" : "is no folder";
+  return fs::is_regular_file(status) ? "is a file, not a folder" : "is not a folder";
 }
 
 }  // namespace
 
 void make_folder(const fs::path& folder) {
   const FloatMode mode;
-  if (folder.empty()) throw FileError(folder, "is no name of a folder");
+  if (folder.empty()) throw FileError(folder, "is not a folder name");
   for (fs::path path = folder;; path = path.parent_path()) {
     const std::string why = why_no_folder(path);
     if (!why.empty()) throw FileError(path, why);
@@ -31,8 +31,8 @@ void make_folder(const fs::path& folder) {
   }
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw FileError(folder, "the folder cannot be made: " + reason_of(error.value()));
-  if (!fs::is_directory(folder, error)) throw FileError(folder, "is no folder");
+  if (error) throw FileError(folder, "the folder cannot be created: " + reason_of(error.value()));
+  if (!fs::is_directory(folder, error)) throw FileError(folder, "is not a folder");
 }
 
 }  // namespace manyworlds

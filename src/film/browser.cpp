@@ -144,11 +144,11 @@ void Browser::receive() {
                              nullptr, false);
   buffer_.erase(0, end + 1);
   searched_ = 0;
-  if (!message.is_object()) throw FilmError(child_.name() + " says what is no message");
+  if (!message.is_object()) throw FilmError(child_.name() + " sent an invalid message");
   const std::string method = message.value("method", "");
   if (method == "Page.loadEventFired") loaded_ = true;
   if (method == "Inspector.targetCrashed") {
-    throw FilmError("the page crashed in " + child_.name() + ", as it does where memory runs out");
+    throw FilmError("the page crashed in " + child_.name() + "; it may have run out of memory");
   }
   if (const auto id = message.find("id"); id != message.end()) {
     const int number = id->get<int>();

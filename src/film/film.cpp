@@ -55,7 +55,7 @@ double open(Browser& browser, const fs::path& page, const FrameOptions& frame) {
   browser.open(page, "film" + (frame.view.empty() ? "" : "&" + frame.view), frame.width,
                frame.height);
   const Json end = browser.answer(browser.ask("manyworldsReady.then((page) => page.film())"));
-  if (!end.is_number()) throw FilmError("'" + page.string() + "' is no page of this version");
+  if (!end.is_number()) throw FilmError("'" + page.string() + "' is not a page of this version");
   return end.get<double>();
 }
 
@@ -83,7 +83,7 @@ bool unless_stopped(F f) {
   } catch (const FileError& error) {
     throw FilmError(error.what());
   } catch (const Json::exception&) {
-    throw FilmError("the browser's answers are not as expected");
+    throw FilmError("the browser sent an unexpected answer");
   }
 }
 
@@ -118,12 +118,12 @@ FilmReport write_film(const fs::path& page, const fs::path& file, const FilmOpti
     Browser browser(folder.path(), options.go_on);
     const double end = std::fmin(options.end, open(browser, page, options.frame));
     if (options.begin > end) {
-      throw FilmError("it would begin at " + Json(options.begin).dump() + " s, and worlds end at " +
-                      Json(end).dump() + " s");
+      throw FilmError("the film would start at " + Json(options.begin).dump() +
+                      " s, but worlds end at " + Json(end).dump() + " s");
     }
     const double step = options.speed / options.fps;
     const double last = std::floor((end - options.begin) / step + 1e-6);
-    require(last < 1e7, "there would be over ten million frames");
+    require(last < 1e7, "the film would have more than ten million frames");
     const auto frames = static_cast<std::int64_t>(last) + 1;
     Encoder encoder(program, out.part(), file, options.fps, folder.path(), options.go_on);
     std::deque<int> questions;

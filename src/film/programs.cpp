@@ -50,19 +50,19 @@ std::string find_first(const char* variable, std::vector<std::string> names,
     if (!file.empty()) return file;
     tried += (tried.empty() ? "" : ", ") + name;
   }
-  throw FilmError("wants " + what + ", and found no " + tried + "; Debian has it as " + package +
-                  ", and " + variable + " names another");
+  throw FilmError("needs " + what + ", found none of " + tried + "; install " + package +
+                  ", or set " + variable + " to its path");
 }
 
 }  // namespace
 
 std::string browser_program() {
   return find_first("CHROMIUM", {"chromium", "chromium-browser", "google-chrome"}, "a browser",
-                    "chromium");
+                    "Debian's chromium");
 }
 std::string encoder_program(const std::string& given) {
   return find_first("FFMPEG", {"ffmpeg"}, "an encoder",
-                    "ffmpeg, PyPI as imageio-ffmpeg (Python finds that one by itself)", given);
+                    "Debian's ffmpeg or PyPI's imageio-ffmpeg (found by Python only)", given);
 }
 
 }  // namespace film

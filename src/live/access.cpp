@@ -13,7 +13,7 @@ namespace manyworlds::live {
 std::string make_token() {
   std::array<std::uint8_t, 16> bytes;
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    throw LiveError("live: the system gave no random numbers");
+    throw LiveError("live: the system returned no random numbers");
   }
   constexpr char kDigits[] = "0123456789abcdef";
   std::string out;

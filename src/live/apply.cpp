@@ -44,7 +44,7 @@ void Live::Impl::pull(Batch& batch, int steps) {
 void Live::Impl::carry_out(Batch& batch, const live::Command& command) {
   using live::Command;
   const auto refused = [&](bool may, const char* what) {
-    if (!may) hub.say(command.page, std::string("this program does not let pages ") + what);
+    if (!may) hub.say(command.page, std::string("this program does not allow pages to ") + what);
     return !may;
   };
   switch (command.kind) {

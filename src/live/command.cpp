@@ -59,19 +59,19 @@ class Message {
   static double number_of(const Json& j, const char* name, double low, double high) {
     const double value = j.is_number() ? j.get<double>() : std::nan("");
     if (!(value >= low && value <= high)) {
-      throw BadMessage(std::string("'") + name + "' is no number in its range");
+      throw BadMessage(std::string("'") + name + "' is not a number in its range");
     }
     return value;
   }
   static int whole_of(const Json& j, const char* name, int low, int high) {
     const double value = number_of(j, name, low, high);
     if (value != std::floor(value)) {
-      throw BadMessage(std::string("'") + name + "' is no whole number");
+      throw BadMessage(std::string("'") + name + "' is not a whole number");
     }
     return static_cast<int>(value);
   }
   void done() const {
-    if (read_ != json_.size()) throw BadMessage("the message has members that it must not have");
+    if (read_ != json_.size()) throw BadMessage("the message has unknown members");
   }
 
  private:
@@ -84,14 +84,14 @@ void read_body(Message& message, const Sizes& sizes, Command& out) {
   const Plan& plan = sizes.kind_of(out.world).plan;
   const int bodies = static_cast<int>(plan.scene().bodies.size());
   out.body = BodyId(message.whole("body", 0, bodies - 1));
-  if (!plan.find_row(out.body)) throw BadMessage("'body' is one that does not move");
+  if (!plan.find_row(out.body)) throw BadMessage("'body' must be a body that moves");
   out.at = message.vector("at");
 }
 
 void read_worlds(Message& message, const Sizes& sizes, Command& out) {
   const Json& j = message.member("worlds");
   if (!j.is_array() || j.size() > static_cast<std::size_t>(sizes.shown)) {
-    throw BadMessage("'worlds' must be a list of worlds that are shown");
+    throw BadMessage("'worlds' must be a list of worlds on the page");
   }
   int before = -1;
   for (const Json& one : j) {
@@ -163,7 +163,8 @@ const KindOfWorlds& Sizes::kind_of(int world) const {
 
 Command parse_command(std::string_view text, const Sizes& sizes) {
   const Json json = Json::parse(text, shallow, false);
-  if (json.is_discarded() || !json.is_object()) throw BadMessage("the message is no JSON object");
+  if (json.is_discarded() || !json.is_object())
+    throw BadMessage("the message is not a JSON object");
   Message message(json);
   const Json& what = message.member("do");
   Command out;
@@ -171,7 +172,7 @@ Command parse_command(std::string_view text, const Sizes& sizes) {
   for (const Named& one : kNames) {
     if (what == one.name) out.kind = one.kind, known = true;
   }
-  if (!known) throw BadMessage("'do' is no command");
+  if (!known) throw BadMessage("'do' is not a command");
   read_members(message, sizes, out);
   message.done();
   return out;

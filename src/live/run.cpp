@@ -119,10 +119,10 @@ class Loop {
 }  // namespace
 
 std::int64_t Live::run(Batch& batch, const LiveClock& clock, const GoOn& go_on) {
-  if (!(clock.speed > 0)) throw std::invalid_argument("live: speed must be above 0");
+  if (!(clock.speed > 0)) throw std::invalid_argument("live: speed must be > 0");
   const FloatMode mode;
   Impl& impl = *impl_;
-  if (!impl.server) throw std::invalid_argument("live: it is closed");
+  if (!impl.server) throw std::invalid_argument("live: the view is closed");
   return Loop(impl, batch, clock).run(go_on);
 }
 

@@ -33,7 +33,7 @@ std::string live_page(std::string empty, const Access& access) {
   const std::size_t place = empty.find(kPlace), policy = empty.find(kConnect);
   if (empty.find(kVersion) == empty.npos || place == empty.npos || policy == empty.npos) {
     throw LiveError(
-        "live: the page is none of this version; expected viewer.html as viewer/ builds it");
+        "live: the page is not of this version; expected viewer.html as viewer/ builds it");
   }
   empty.replace(place, kPlace.size(),
                 "<script type=\"application/json\" id=\"mw-live\">{}</script>");
@@ -155,24 +155,24 @@ struct Server::Impl {
     const bool has_origin = asked.count(http::field::origin) > 0;
     if ((socket || has_origin) && (asked.count(http::field::origin) != 1 ||
                                    !access.origin_allowed(view_of(asked[http::field::origin])))) {
-      return refuse(http::status::forbidden, "this origin may not have the page\n");
+      return refuse(http::status::forbidden, "this origin may not open the page\n");
     }
     const Access::Place place = access.place_of(view_of(asked.target()));
     if (place == Access::Place::nowhere) {
       return refuse(http::status::forbidden,
-                    "the address is not complete: it was printed by the program\n");
+                    "the address is incomplete: open the one that the program printed\n");
     }
     if (asked.method() == http::verb::head) return refuse(http::status::method_not_allowed, "");
     if (asked.method() != http::verb::get) {
-      return refuse(http::status::method_not_allowed, "the page is got, by GET\n");
+      return refuse(http::status::method_not_allowed, "only GET is allowed\n");
     }
     if (place == Access::Place::page) {
-      return socket ? refuse(http::status::bad_request, "here is no socket\n")
+      return socket ? refuse(http::status::bad_request, "this address is not a WebSocket\n")
                     : respond(request, http::status::ok, content.page);
     }
-    if (!socket) return refuse(http::status::upgrade_required, "here is a socket\n");
+    if (!socket) return refuse(http::status::upgrade_required, "this address is a WebSocket\n");
     if (sessions.size() >= kMaxPages) {
-      return refuse(http::status::service_unavailable, "there are too many pages\n");
+      return refuse(http::status::service_unavailable, "too many pages are open\n");
     }
     const int page = ++last_page;
     const auto session = std::make_shared<Session>(std::move(request->stream), page, content.hub,

@@ -50,7 +50,7 @@ void Session::on_read(const beast::error_code& error) {
   if (error) return end();
   if (!closing_) {
     try {
-      if (!socket_.got_text()) throw BadMessage("messages are text");
+      if (!socket_.got_text()) throw BadMessage("messages must be text");
       if (incoming_.size() > kMaxMessage) throw BadMessage("the message is too long");
       if (too_many()) throw BadMessage("too many messages");
       const std::string text = beast::buffers_to_string(incoming_.data());
@@ -58,7 +58,7 @@ void Session::on_read(const beast::error_code& error) {
     } catch (const BadMessage& bad) {
       close(websocket::close_code::policy_error, bad.what());
     } catch (const std::exception&) {  // no memory
-      close(websocket::close_code::internal_error, "the message could not be worked on");
+      close(websocket::close_code::internal_error, "the message could not be processed");
     }
   }
   incoming_.consume(incoming_.size());
@@ -81,9 +81,9 @@ void Session::obey(Command command) {
       seen_ = 0;
       return send(false, head_.of(opened_, *hub_.sizes()));
     case Command::look:
-      if (opened_ == 0) throw BadMessage("'show' comes after 'open'");
+      if (opened_ == 0) throw BadMessage("'show' must follow 'open'");
       if (!command.worlds.empty() && command.worlds.back() >= opened_) {
-        throw BadMessage("'worlds' has one that was not opened");
+        throw BadMessage("'worlds' has a world that was not opened");
       }
       if (worlds_ != command.worlds) seen_ = 0;
       worlds_ = std::move(command.worlds);
@@ -92,12 +92,13 @@ void Session::obey(Command command) {
       if (waits_) ask_for_frame();
       return;
     case Command::frame:
-      if (opened_ == 0) throw BadMessage("'frame' comes after 'open'");
-      if (waits_) throw BadMessage("a frame is on its way already");
+      if (opened_ == 0) throw BadMessage("'frame' must follow 'open'");
+      if (waits_) throw BadMessage("a frame is already requested");
       waits_ = true;
       return ask_for_frame();
     default:
-      if (!hub_.post(std::move(command))) say("busy: nothing steps that could carry this out");
+      if (!hub_.post(std::move(command)))
+        say("busy: too many commands wait for the next step; this one was dropped");
   }
 }
 
@@ -144,7 +145,7 @@ void Session::say(const std::string& text) {
 void Session::send(bool binary, std::string data) {
   if (closing_ || ended_) return;
   if (outgoing_.size() >= kMaxOutgoing) {
-    return close(websocket::close_code::policy_error, "the page does not read");
+    return close(websocket::close_code::policy_error, "the page does not read its messages");
   }
   outgoing_.push_back({binary, std::move(data)});
   if (outgoing_.size() == 1) write();

@@ -20,7 +20,7 @@ const char* transmission_name(int type) {
     case mjTRN_SITE: return "a site";
     case mjTRN_BODY: return "a body";
     case mjTRN_SO3: return "the orientation of a site";
-    default: return "what has no name";
+    default: return "an unknown transmission";
   }
 }
 const char* dynamics_name(int type) {
@@ -126,7 +126,7 @@ void check_actuators(const Model& model, std::vector<std::string>& problems) {
            "damping of an actuator", "0");
     refuse(m.actuator_armature[i] != 0, "armature of an actuator", "0");
     refuse(m.actuator_delay[i] != 0, "delay", "0");
-    refuse(is_off(m, i), "switching off its group (actuatorgroupdisable)", "all groups on");
+    refuse(is_off(m, i), "its disabled group (actuatorgroupdisable)", "all groups enabled");
   }
 }
 

@@ -37,8 +37,7 @@ std::string content_kind(const tinyxml2::XMLElement& element, const File& file) 
 void require_count(const std::string& place, const File& file, double count, const char* what,
                    std::int64_t most, const char* limit) {
   if (count <= static_cast<double>(most)) return;
-  refuse_size(place, "'" + file.label + "' says that it has " + whole(count) + " " + what, most,
-              limit);
+  refuse_size(place, "'" + file.label + "' declares " + whole(count) + " " + what, most, limit);
 }
 
 void require_length(const std::string& place, const File& file, double expected) {
@@ -86,7 +85,7 @@ void check_mesh_file(const tinyxml2::XMLElement& mesh, const File& file, const s
     vertices(std::max({points, normals / 3, texture / 3, faces / 3}));
     require_length(place, file, 16 + 12 * (points + normals + faces) + 8 * texture);
   } else {
-    refuse(place, "'" + file.label + "' is of kind '" + kind + "'; expected .obj, .stl or .msh");
+    refuse(place, "'" + file.label + "' is of type '" + kind + "'; expected .obj, .stl or .msh");
   }
 }
 

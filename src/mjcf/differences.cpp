@@ -50,7 +50,7 @@ void compare_softness(const Model& model, std::vector<std::string>& warnings) {
     if (count > 1) text += " and " + std::to_string(count - 1) + " more";
     warnings.push_back(text + ": " + attribute + " is ignored; " + instead);
   };
-  const char* softness = "contacts are as soft as ContactOptions::frequency says";
+  const char* softness = "contact stiffness follows ContactOptions::frequency";
   const char* margin = "contact margins follow ContactOptions::slop";
   const char* dimension = "contacts are frictional with one sliding coefficient (condim 3)";
 
@@ -85,7 +85,7 @@ void compare_height_fields(const Model& model, std::vector<std::string>& warning
     char base[32];
     std::snprintf(base, sizeof base, "%g m", m.hfield_size[4 * m.geom_dataid[g] + 3]);
     warnings.push_back(model.geom_place(g) +
-                       ": is solid without end below its surface, in MuJoCo " + "no more than " +
+                       ": is solid to any depth below its surface, in MuJoCo " + "no deeper than " +
                        base + " below its origin");
   }
 }

@@ -64,7 +64,7 @@ void write(const XMLElement& element, std::string& out, int& line) {
 void parse(tinyxml2::XMLDocument& document, const std::string& bytes, const std::string& label) {
   if (bytes.empty()) refuse(label, "is an empty file");
   if (bytes.find('\0') != std::string::npos) {
-    refuse(label, "holds a character 0, where MuJoCo would stop to read; expected XML");
+    refuse(label, "contains a NUL character, at which MuJoCo would stop reading; expected XML");
   }
   document.Parse(bytes.data(), bytes.size());
   if (document.Error()) {

@@ -191,17 +191,16 @@ void compare_equalities(const Model& model, std::vector<std::string>& warnings) 
     char text[200];
     std::snprintf(
         text, sizeof text,
-        "equalities: begin up to %.3g m and %.3g rad apart; joints close that in about %g s "
-        "(JointOptions::pull_speed), in MuJoCo as slowly as solref says",
+        "equalities: start up to %.3g m and %.3g rad apart; joints close this gap in about %g s "
+        "(JointOptions::pull_speed), MuJoCo at the rate of solref",
         gap.length, gap.angle, kClosingTime);
     warnings.emplace_back(text);
   }
-  const std::string stiffness =
-      " is ignored; the joint is as stiff as JointOptions::frequency says";
+  const std::string stiffness = " is ignored; joint stiffness follows JointOptions::frequency";
 
-  warn_where("is not active and left out; joints cannot be switched on",
+  warn_where("is inactive and left out; joints cannot be activated later",
              [&](int e) { return m.eq_active0[e] == 0; });
-  warn_where("has both ends on one body or on static ones, so it is left out",
+  warn_where("connects one body to itself or only static bodies, so it is left out",
              [&](int e) { return m.eq_active0[e] != 0 && !has_effect(m, e); });
   warn_where("solref" + stiffness, [&](int e) {
     return is_joint(m, e) &&

@@ -94,8 +94,8 @@ class Scale {
   void require_depth(double depth, const XMLElement& element, const std::string& label) const {
     const std::int64_t most = reader_.limits().depth;
     if (depth <= static_cast<double>(most)) return;
-    refuse_size(place_of(label, element), "holds " + whole(depth) + " elements inside one another",
-                most, "depth");
+    refuse_size(place_of(label, element), "holds " + whole(depth) + " nested elements", most,
+                "depth");
   }
   void require_copies(double elements, const XMLElement& element, const std::string& label) const {
     const std::int64_t most = reader_.limits().copies;
@@ -126,7 +126,8 @@ Weight weigh(const XMLElement& root, const std::string& label, const Expansion& 
   const MjcfLimits& limits = reader.limits();
   const double copies = weight.elements - static_cast<double>(written);
   if (copies > static_cast<double>(limits.copies)) {
-    refuse_size(label, "makes " + whole(copies) + " elements by replicate, attach and the like",
+    refuse_size(label,
+                "makes " + whole(copies) + " elements with replicate, attach and similar elements",
                 limits.copies, "copies");
   }
   reader.add_bytes(label, weight.bytes);
@@ -135,7 +136,7 @@ Weight weigh(const XMLElement& root, const std::string& label, const Expansion& 
                          3 * weight.tactiles * expansion.vertices +
                          13 * weight.keys * (weight.bodies + 1);
   if (numbers > static_cast<double>(limits.samples)) {
-    refuse_size(label, "sensors, actuators and keyframes hold " + whole(numbers) + " numbers",
+    refuse_size(label, "sensors, actuators and keyframes hold " + whole(numbers) + " values",
                 limits.samples, "samples");
   }
   return weight;

@@ -73,7 +73,7 @@ FileReader::FileReader(const MjcfOptions& options) : limits_(options.limits) {
     std::error_code error;
     const fs::path real = fs::canonical(root, error);
     if (error || !fs::is_directory(real)) {
-      throw MjcfError({"MJCF root '" + root.string() + "': is not a folder that can be read"});
+      throw MjcfError({"MJCF root '" + root.string() + "': is not a readable folder"});
     }
     roots_.push_back(real);
   }
@@ -92,10 +92,11 @@ File FileReader::read_part(const std::vector<fs::path>& candidates, const std::s
                            const std::string& place) {
   if (written.find('\0') != std::string::npos || written.empty()) refuse(place, "names no file");
   if (roots_.empty()) {
-    refuse(place,
-           "'" + written +
-               "' is looked up nowhere, since a text has no folder; expected one in the roots "
-               "(MjcfOptions::roots)");
+    refuse(
+        place,
+        "'" + written +
+            "' cannot be searched for: an MJCF string has no folder; expected a file in the roots "
+            "(MjcfOptions::roots)");
   }
   for (const fs::path& candidate : candidates) {
     struct stat about {};
@@ -109,7 +110,7 @@ File FileReader::read_part(const std::vector<fs::path>& candidates, const std::s
 // exchanged.
 File FileReader::read(const fs::path& file, const std::string& place, bool anywhere) {
   const std::string at = anywhere ? place : place + ": '" + file.string() + "'";
-  if (++files_ > limits_.files) refuse_size(place, "is one file more", limits_.files, "files");
+  if (++files_ > limits_.files) refuse_size(place, "is one file too many", limits_.files, "files");
   struct stat about {};
   if (stat(file.c_str(), &about) != 0) {
     if (errno == ENOENT) refuse(at, "no such file");
@@ -157,14 +158,14 @@ void FileReader::check_root(const fs::path& real, const fs::path& file,
     folders += (folders.empty() ? "'" : ", '") + root.string() + "'";
   refuse(place, "'" + file.string() + "'" +
                     (real == file.lexically_normal() ? "" : ", which is '" + real.string() + "',") +
-                    " lies outside of the model's folder; expected a file in " + folders +
-                    ", or in a folder that the roots name (MjcfOptions::roots, --mjcf-root)");
+                    " is outside the model's folder; expected a file in " + folders +
+                    ", or in one of the roots (MjcfOptions::roots, --mjcf-root)");
 }
 
 void FileReader::add_bytes(const std::string& place, double bytes) {
   bytes_ += bytes;
   if (bytes_ > static_cast<double>(limits_.total_bytes)) {
-    refuse_size(place, "brings what the model holds to " + whole(bytes_) + " bytes",
+    refuse_size(place, "brings the model's total to " + whole(bytes_) + " bytes",
                 limits_.total_bytes, "total_bytes");
   }
 }

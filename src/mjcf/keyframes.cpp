@@ -44,8 +44,7 @@ void compare_keyframes(const Model& model, std::vector<std::string>& warnings) {
                        ": ignored; worlds start at the poses of the bodies, at rest");
   }
   if (!timed.empty()) {
-    warnings.push_back(places(model, timed) +
-                       ": time is ignored; worlds have no clocks of their own");
+    warnings.push_back(places(model, timed) + ": time is ignored; worlds have no separate clocks");
   }
 }
 

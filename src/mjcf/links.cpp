@@ -32,10 +32,10 @@ void check_joint(const Model& model, int j, std::vector<std::string>& problems) 
                        expected);
   };
   refuse(acts.springs && any_nonzero(m.jnt_stiffnesspoly + mjNPOLY * j, mjNPOLY),
-         "stiffness with powers of the displacement", "one number");
+         "polynomial stiffness", "one number");
   refuse(acts.springs && m.jnt_springyield[j] != 0, "springyield", "0");
   refuse(acts.dampers && any_nonzero(m.dof_dampingpoly + mjNPOLY * dof, mjNPOLY),
-         "damping with powers of the speed", "one number");
+         "polynomial damping", "one number");
   refuse(acts.friction_loss && m.dof_frictionloss[dof] != 0, "frictionloss", "0");
   refuse(m.jnt_actfrclimited[j] && m.nactuator > 0, "actuatorfrcrange", "none");
 }
@@ -96,7 +96,7 @@ void check_links(const Model& model, std::vector<std::string>& problems) {
     if (!jointed && !collides) continue;  // its parent carries it
     problems.push_back(model.body_place(b) + ": has " +
                        (jointed ? "joints" : "geoms that collide") +
-                       " but no mass, which is not simulated yet; expected a mass of its own");
+                       " but no mass, which is not simulated yet; expected a mass");
   }
   for (int j = 0; j < m.njnt; ++j) {
     if (m.jnt_type[j] != mjJNT_FREE) check_joint(model, j, problems);

@@ -125,7 +125,7 @@ MjcfResult MjcfFiles::compile() const {
     throw;
   } catch (...) {
     // MuJoCo has a C++ library of its own, whose exceptions are none of ours.
-    throw MjcfError({label + ": needs more memory than there is, or MuJoCo failed otherwise"});
+    throw MjcfError({label + ": needs more memory than is available, or MuJoCo failed otherwise"});
   }
 }
 

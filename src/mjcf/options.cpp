@@ -115,12 +115,11 @@ void compare_options(const Model& model, std::vector<std::string>& warnings) {
   }
   if (!found.empty()) {
     warnings.push_back("option: " + found +
-                       " steer MuJoCo's solver and are ignored; ours is set by Options");
+                       " configure MuJoCo's solver and are ignored; use Options instead");
   }
   if (model.articulated && option.solver != mjSOL_NEWTON) {
     warnings.push_back(std::string("option: solver ") + (option.solver == mjSOL_CG ? "CG" : "PGS") +
-                       " and its iterations are ignored; the same minimum is found by Newton's "
-                       "method");
+                       " and its iterations are ignored; Newton's method finds the same minimum");
   }
 }
 

@@ -99,8 +99,8 @@ std::optional<std::string> hull_problem(const Model& model, int geom) {
     const std::string place = model.place(mjOBJ_MESH, mesh);
     if (points.size() > kMaxCorners && issue.place == "vertices") {
       return place +
-             " has a convex hull of more than 64 corners; expected at most 64, to which "
-             "maxhullvert=\"64\" of the mesh limits it";
+             " has a convex hull of more than 64 corners; expected at most 64; set "
+             "maxhullvert=\"64\" on the mesh";
     }
     return place + " has no hull: " + to_string(issue);
   }

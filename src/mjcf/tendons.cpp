@@ -28,7 +28,7 @@ std::string problem_of(const Model& model, int t) {
   const mjModel& m = *model.compiled;
   if (!model.articulated) return "tendons are not simulated yet; expected none";
   if (pulls(m, t)) {
-    return "has stiffness, damping, friction loss or armature, which are not simulated yet of "
+    return "has stiffness, damping, friction loss or armature, which are not simulated yet for "
            "tendons; expected none of them";
   }
   if (limits(m, t) && !is_fixed_tendon(m, t)) {

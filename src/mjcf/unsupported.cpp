@@ -130,8 +130,8 @@ void check_other_elements(const Model& model, std::vector<std::string>& problems
   for (int x = 0; x < m.nexclude; ++x) {
     if (model.articulated || excludes_joined(model, x)) continue;
     problems.push_back(model.place(mjOBJ_EXCLUDE, x) +
-                       ": contact excludes are not simulated yet; expected none but between two "
-                       "free bodies that a connect or a weld holds together");
+                       ": contact excludes are not simulated yet; expected excludes only between "
+                       "two free bodies joined by a connect or a weld");
   }
   refuse(mjOBJ_FLEX, m.nflex, "flexes are");
   refuse(mjOBJ_PLUGIN, m.nplugin, "plugins are");
@@ -150,8 +150,9 @@ void check_medium(const Model& model, std::vector<std::string>& problems) {
   }
   const auto refuse = [&](bool found, const char* attribute) {
     if (found) {
-      problems.push_back(std::string("option: ") + attribute +
-                         " of the medium is not simulated with free bodies alone yet; expected 0");
+      problems.push_back(
+          std::string("option: ") + attribute +
+          " of the medium is not simulated yet in a model of free bodies only; expected 0");
     }
   };
   refuse(option.density != 0, "density");

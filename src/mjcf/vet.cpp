@@ -80,7 +80,7 @@ class ModelReader {
              "is a URDF file, which is not read yet; expected MJCF, whose root is <mujoco>");
     }
     if (!is_called(root, "mujoco")) {
-      refuse(place_of(label, root), "is no model; expected the root <mujoco>");
+      refuse(place_of(label, root), "is not a model; expected the root <mujoco>");
     }
     expand(document, root, depth_);
     for (std::size_t i = 0; i < assets_.size(); ++i) prepare(*assets_[i].first, *assets_[i].second);
@@ -123,7 +123,7 @@ class ModelReader {
       assets_.emplace_back(&document, &element);
     } else if (element.Attribute("file") != nullptr) {
       refuse(place(),
-             "names a file; expected that only of include, mesh, hfield, texture and model");
+             "names a file; expected a file only in include, mesh, hfield, texture and model");
     }
     for (XMLElement *child = element.FirstChildElement(), *next; child != nullptr; child = next) {
       next = child->NextSiblingElement();
@@ -244,7 +244,7 @@ class ModelReader {
     const File file = read_asset(document, element, "", place);
     const auto& open = load_.open_models;
     if (std::find(open.begin(), open.end(), file.real) != open.end()) {
-      refuse(place, "'" + file.label + "' holds itself; expected another model");
+      refuse(place, "'" + file.label + "' contains itself; expected another model");
     }
     load_.open_models.push_back(file.real);
     ModelReader inner(load_, depth_ + 1);

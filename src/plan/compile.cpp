@@ -35,7 +35,7 @@ Plan compile(const Scene& scene, const PlanOptions& options) {
 }
 
 Plan::Plan(std::shared_ptr<const PlanData> data) : data_(std::move(data)) {
-  if (!data_) throw std::invalid_argument("Plan: there is no data, compile() makes a plan");
+  if (!data_) throw std::invalid_argument("Plan: it is empty, compile() makes a plan");
 }
 const Scene& Plan::scene() const { return data_->described; }
 const Options& Plan::resolved() const { return data_->scene.options; }

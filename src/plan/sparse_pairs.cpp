@@ -137,10 +137,10 @@ class Counter {
     }
     if (key <= kMaxKeys) return;
     throw SceneError(
-        {{"shapes", "are " + std::to_string(n) + " that move and " +
+        {{"shapes", "are " + std::to_string(n) + " moving and " +
                         std::to_string(plan_.fixed.size()) + " fixed, in " + std::to_string(kinds) +
-                        " kinds of pair: " + std::to_string(key) +
-                        " pairs to tell apart, must be at most " + std::to_string(kMaxKeys)}});
+                        " types of pair: " + std::to_string(key) +
+                        " distinct pairs, must be at most " + std::to_string(kMaxKeys)}});
   }
 
   static constexpr std::int64_t kMaxKeys = std::numeric_limits<std::int32_t>::max() - 1;

@@ -32,9 +32,9 @@ auto described(const std::string& place, Make&& make) {
   } catch (const SnapshotError& error) {
     throw placed(place, {error.what()});
   } catch (const std::bad_alloc&) {
-    throw placed(place, {"needs more memory than there is"});
+    throw placed(place, {"needs more memory than is available"});
   } catch (const std::length_error&) {
-    throw placed(place, {"needs more memory than there is"});
+    throw placed(place, {"needs more memory than is available"});
   }
 }
 

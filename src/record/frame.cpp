@@ -40,15 +40,15 @@ std::string hex(std::uint64_t number) {
 }
 
 [[noreturn]] void refuse_magic(const std::array<char, 8>& found) {
-  std::string what = "is no recording of manyworlds: ";
+  std::string what = "is not a manyworlds recording: ";
   if (found == std::array<char, 8>{}) {
-    what += "it begins with zeros, as one that was cut off before it was flushed";
+    what += "it begins with zeros, like a recording that was cut off before its first flush";
   } else if (std::memcmp(found.data(), "\x89HDF\r\n\x1a\n", found.size()) == 0) {
     what += "it is an HDF5 file of another program, or one that was copied by h5repack";
   } else {
     const auto end =
         static_cast<std::size_t>(std::find(found.begin(), found.end(), '\0') - found.begin());
-    what += "it begins with '" + printable({found.data(), end}) + "', must with 'MWRECO'";
+    what += "it begins with '" + printable({found.data(), end}) + "', must begin with 'MWRECO'";
   }
   throw RecordError(what);
 }
@@ -74,8 +74,8 @@ void require_length(std::uint64_t size) {
 
 void check_sum(const Frame& frame, std::uint64_t found) {
   if (frame.checksum != found) {
-    throw RecordError("is corrupted: its checksum does not match, it has " + hex(found) +
-                      " and says " + hex(frame.checksum));
+    throw RecordError("is corrupted: its checksum does not match, it is " + hex(found) +
+                      " but the file states " + hex(frame.checksum));
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 // Words of errors: of what is there and cannot be read, though all checksums are right.
 constexpr const char* kDamaged = "is damaged: cannot read";
-constexpr const char* kNotOpened = "is damaged: what it holds cannot be opened";
+constexpr const char* kNotOpened = "is damaged: its contents cannot be opened";
 constexpr const char* kDamagedAttribute = "is damaged: cannot read attribute";
 
 Handle file_properties() {
@@ -163,7 +163,7 @@ Handle open_object(hid_t parent, const std::string& name, H5I_type_t sort) {
     fail("'" + name + "' is a link to another file, must be in this one");
   }
   Handle object(H5Oopen(parent, name.c_str(), inside_only(H5P_LINK_ACCESS)), H5Oclose,
-                link.type == H5L_TYPE_HARD ? kDamaged : "has a link to nothing,", name);
+                link.type == H5L_TYPE_HARD ? kDamaged : "has a broken link,", name);
   const H5I_type_t found = H5Iget_type(object);
   if (found != sort) {
     fail("'" + name + "' is a " + sort_name(found) + ", must be a " + sort_name(sort));
@@ -182,7 +182,7 @@ Handle open_dataset(hid_t parent, const std::string& name) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose, kDamaged, name);
   if (H5Pget_layout(creation) == H5D_VIRTUAL || H5Pget_nfilters(creation) != 0 ||
       H5Pget_external_count(creation) != 0) {
-    fail("'" + name + "' is compressed or lies outside of the file");
+    fail("'" + name + "' is compressed or stored outside the file");
   }
   return dataset;
 }
@@ -190,9 +190,9 @@ Handle open_dataset(hid_t parent, const std::string& name) {
 std::string type_name(hid_t type) {
   const H5T_class_t sort = H5Tget_class(type);
   if (sort == H5T_STRING) {
-    return H5Tis_variable_str(type) > 0 ? "text of any length" : "text";
+    return H5Tis_variable_str(type) > 0 ? "text of variable length" : "text";
   }
-  if (sort != H5T_INTEGER && sort != H5T_FLOAT) return "something else than numbers or text";
+  if (sort != H5T_INTEGER && sort != H5T_FLOAT) return "neither numbers nor text";
   const std::string word = sort == H5T_FLOAT                   ? "float"
                            : H5Tget_sign(type) == H5T_SGN_NONE ? "uint"
                                                                : "int";
@@ -278,7 +278,7 @@ std::string read_text_table(hid_t parent, const std::string& name) {
          " dimensions, must have none");
   }
   if (const hsize_t present = H5Dget_storage_size(dataset); present != size) {
-    fail("'" + name + "' is not all there: it has " + std::to_string(present) + " of " +
+    fail("'" + name + "' is incomplete: it has " + std::to_string(present) + " of " +
          std::to_string(size) + " bytes");
   }
   std::string text(size, '\0');

@@ -101,7 +101,7 @@ TableReader::TableReader(hid_t parent, const std::string& name, hid_t in_file, h
   const hsize_t present = H5Dget_storage_size(dataset_);
   for (const hsize_t n : dims) {
     if (n != 0 && bytes > present / n) {
-      fail("'" + name + "' is not all there: it has " + std::to_string(present) + " bytes for " +
+      fail("'" + name + "' is incomplete: it has " + std::to_string(present) + " bytes for " +
            text(dims) + " numbers of " + std::to_string(H5Tget_size(found)));
     }
     bytes *= n;

@@ -23,7 +23,8 @@ struct LostWorldDumps::Listener final : BatchListener {
     }
     if (batch.forces_pending()) {
       throw std::invalid_argument(
-          "dumps of lost worlds: forces were added for the next step, which no dump would know of");
+          "dumps of lost worlds: forces are pending for the next step, which dumps would miss; "
+          "start them before adding forces");
     }
     try {
       make_folder(folder_);

@@ -41,7 +41,7 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
     record::fail("input " + std::to_string(index) + ": " + what);
   };
   if (static_cast<int>(row.input) >= kInputCount) {
-    refuse("is of unknown kind " + std::to_string(static_cast<int>(row.input)) + ", must be 0 to " +
+    refuse("has unknown type " + std::to_string(static_cast<int>(row.input)) + ", must be 0 to " +
            std::to_string(kInputCount - 1));
   }
   const bool whole_world = row.input == Input::wake || row.input == Input::set_controls ||
@@ -64,12 +64,12 @@ void Recording::Impl::check_input(std::size_t index, std::int64_t values,
   const bool brings = record::brings_state(row.input);
   const std::int64_t most = brings ? states : values;
   if (row.begin < 0 || row.count < 0 || row.count > most || row.begin > most - row.count) {
-    refuse("has its numbers outside of what is there: " + std::to_string(row.count) + " from " +
+    refuse("has values out of range: " + std::to_string(row.count) + " from " +
            std::to_string(row.begin) + " on, of " + std::to_string(most));
   }
   const std::int64_t wanted = brings ? row.count : record::number_count(row.input, plan);
   if (row.count != wanted) {
-    refuse("has " + std::to_string(row.count) + " numbers, must have " + std::to_string(wanted));
+    refuse("has " + std::to_string(row.count) + " values, must have " + std::to_string(wanted));
   }
 }
 
@@ -101,7 +101,7 @@ void Recording::Impl::check_order() const {
           row.step > INT64_MAX - row.call_steps ? INT64_MAX : row.step + row.call_steps;
       if (busy_until > at && busy_until != end) {
         record::fail("input " + std::to_string(next) +
-                     " acts for another number of steps than one before it");
+                     " acts for another number of steps than the input before it");
       }
       busy_until = end;
     }

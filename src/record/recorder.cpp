@@ -27,7 +27,8 @@ std::vector<int> checked_worlds(const Batch& batch, const RecordOptions& options
   }
   if (batch.forces_pending()) {
     throw std::invalid_argument(
-        "record: forces were added for the next step, which the recording would not know of");
+        "record: forces are pending for the next step, which the recording would miss; start it "
+        "before adding forces");
   }
   record::check_contacts(batch, options);
   std::vector<int> worlds = options.worlds;
@@ -38,7 +39,8 @@ std::vector<int> checked_worlds(const Batch& batch, const RecordOptions& options
   for (std::size_t i = 0; i < worlds.size(); ++i) {
     if (worlds[i] < 0 || worlds[i] >= batch.worlds()) {
       throw std::invalid_argument("record: world " + std::to_string(worlds[i]) +
-                                  " is not one of the batch's " + std::to_string(batch.worlds()));
+                                  " is not in the batch, must be 0 to " +
+                                  std::to_string(batch.worlds() - 1));
     }
     if (i > 0 && worlds[i] <= worlds[i - 1]) {
       throw std::invalid_argument("record: worlds must ascend, " + std::to_string(worlds[i]) +
@@ -267,8 +269,8 @@ void Recorder::Listener::fail() {
   }
   if (file_->has_checkpoint()) {
     const std::int64_t last = file_->sealed() ? sampled_step_ : flushed_step_;
-    what += "; what was recorded up to step " + std::to_string(last) + " is in '" +
-            file_->file().part().string() + "', which replays";
+    what += "; '" + file_->file().part().string() + "' holds the recording up to step " +
+            std::to_string(last) + " and can be replayed";
   }
   throw RecordError(what);
 }

@@ -50,7 +50,7 @@ void check_contacts(const Batch& batch, const RecordOptions& options) {
     (void)batch.step_contacts(0);
   } catch (const std::invalid_argument&) {
     throw std::invalid_argument(
-        "record: contacts are to be recorded of a batch that does not observe them; choose "
+        "record: the batch does not observe contacts; choose "
         "Observer::contacts in BatchOptions::observe");
   }
 }

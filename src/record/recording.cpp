@@ -120,11 +120,12 @@ void Recording::Impl::read_kind(hid_t parent, int index) {
   });
   Kind kind{described("scene: ", [&] { return compile(scene, options); }), {}, {}, {}, {}, {}};
   if (kind.plan.fingerprint() != record::read_number<std::uint64_t>(group, "fingerprint")) {
-    record::fail("this program makes another plan of the scene than the one that recorded it");
+    record::fail(
+        "this program compiles the scene to another plan than the program that recorded it");
   }
   const Options& first = kinds.empty() ? scene.options : kinds.front().plan.scene().options;
   if ((!kinds.empty() && scene.space != space()) || scene.options.dt != first.dt) {
-    record::fail("is of another space or dt than kind 0");
+    record::fail("has another space or dt than kind 0");
   }
   kind.worlds = TableReader::open<std::int64_t>(group, "world", {}).read_all<std::int64_t>();
   const std::size_t count = kind.worlds.size();
@@ -215,7 +216,7 @@ Recording Recording::open(const std::filesystem::path& file) {
     const std::filesystem::file_status kind = std::filesystem::status(file, ignored);
     if (std::filesystem::is_directory(kind)) throw RecordError("is a directory");
     if (std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind)) {
-      throw RecordError("is no regular file; expected a recording");
+      throw RecordError("is not a regular file; expected a recording");
     }
     const bool part = record::is_part(file);
     std::shared_ptr<record::Storage> storage;

@@ -26,7 +26,7 @@ Batch batch_of(const Recording& given, const ReplayOptions& options) {
   }
   if (bytes > kFreeBytes && bytes / kMaxBytesPerByte > recording.start.size()) {
     throw RecordError("the snapshot has " + std::to_string(recording.start.size()) +
-                      " bytes, its worlds need some " + std::to_string(bytes));
+                      " bytes, its worlds need about " + std::to_string(bytes));
   }
   BatchOptions batch;
   batch.threads = options.threads;

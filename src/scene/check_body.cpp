@@ -118,12 +118,12 @@ void check_jitter_chain(Checker& checker, const Scene& scene, const Body& body) 
     ++length;
   }
   if (leader == &body) {
-    checker.add("jitter.with", is + ", which in the end moves with this body itself; the last of "
-                                    "a chain must have a jitter.with of -1");
+    checker.add("jitter.with", is + ", which leads back to this body; the last body of a chain "
+                                    "must have a jitter.with of -1");
   } else if (length > kMaxJitterChain) {
-    checker.add("jitter.with", is + ", a chain of more than " + std::to_string(kMaxJitterChain) +
-                                   " bodies; there may be so many up to one whose jitter.with is "
-                                   "-1");
+    checker.add("jitter.with", is + ", which starts a chain of more than " +
+                                   std::to_string(kMaxJitterChain) +
+                                   " bodies; the chain must end earlier, at a jitter.with of -1");
   }
 }
 

@@ -20,7 +20,7 @@ const Drive* drive_of(const JointType& type) {
 std::string index_text(int index, std::size_t count, const char* what) {
   std::string text = "is " + std::to_string(index) + ", must be a " + what;
   if (count > 0) return text + ", 0 to " + std::to_string(count - 1);
-  return text + ", and there is none";
+  return text + ", but the scene has none";
 }
 
 bool in(int index, std::size_t count) {
@@ -63,15 +63,16 @@ void check_target(Checker& checker, const Scene& scene, std::size_t index) {
   const std::string is = "is " + std::to_string(control.joint.index()) + ", ";
   const Drive* drive = drive_of(scene.at(control.joint).type);
   if (drive == nullptr) {
-    checker.add("joint", is + "must be one that has a drive");
+    checker.add("joint", is + "must be a joint with a drive");
   } else if (control.kind == ControlKind::target_position && !drive->spring) {
-    checker.add("joint", is + "must be one whose drive has a spring: a motor holds no position");
+    checker.add("joint",
+                is + "must be a joint whose drive has a spring: a motor does not hold a position");
   }
   for (std::size_t i = 0; i < index; ++i) {
     const Control& other = scene.controls[i];
     if (other.kind != control.kind || other.joint != control.joint) continue;
-    checker.add("joint",
-                is + "must be one whose target is not control " + std::to_string(i) + "'s already");
+    checker.add("joint", is + "must be a joint whose target is not already control " +
+                             std::to_string(i) + "'s");
     break;
   }
 }

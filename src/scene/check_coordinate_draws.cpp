@@ -40,7 +40,7 @@ void check_coordinate_draws(Checker checker, const Scene& scene, bool sound) {
     Checker at = checker.at(named_part("coordinate draw", d, ""));
     if (draw.high.size() != draw.low.size()) {
       at.add("high", "has " + std::to_string(draw.high.size()) +
-                         " numbers, must have as many as low: " + std::to_string(draw.low.size()));
+                         " values, must have as many as low: " + std::to_string(draw.low.size()));
       continue;
     }
     for (std::size_t i = 0; i < draw.low.size(); ++i) check_range(at, draw, i);
@@ -53,7 +53,7 @@ void check_coordinate_draws(Checker checker, const Scene& scene, bool sound) {
     const char* const what = draw.velocity ? "degrees of freedom" : "coordinates";
     if (draw.first < 0 || static_cast<std::size_t>(draw.first) + draw.low.size() > count) {
       at.add("first", "is " + std::to_string(draw.first) + " of " +
-                          std::to_string(draw.low.size()) + " numbers, must be within the " +
+                          std::to_string(draw.low.size()) + " values, must be within the " +
                           std::to_string(count) + " " + what + " of Solver::newton");
     }
   }

@@ -96,7 +96,7 @@ class JointChecker {
     const double most = kFarthest * checked_unit(scene_.options);
     if (gap > most) {
       check_.add("frame_b.position", "is " + number_text(gap) +
-                                         " m from frame_a's as the bodies begin, must be at most " +
+                                         " m from frame_a's at the start, must be at most " +
                                          number_text(most) + " m");
     }
   }
@@ -183,7 +183,7 @@ class JointChecker {
     if (j.length) check_.not_negative("length", *j.length, "m");
     const Body* a = body(joint_.body_a);
     if (joint_.body_a == BodyId() || (a && a->motion == Motion::fixed)) {
-      check_.add("body_a", "does not move, must be a body that hangs on the rope");
+      check_.add("body_a", "does not move, must be a moving body at the end of the rope");
     }
   }
   void check(const TargetJoint& j) {

@@ -48,7 +48,7 @@ class Coordinates {
 bool check_numbers(Checker& at, const char* name, const std::vector<double>& numbers,
                    const std::size_t* size) {
   if (size != nullptr && !numbers.empty() && numbers.size() != *size) {
-    at.add(name, "has " + std::to_string(numbers.size()) + " numbers, must have " +
+    at.add(name, "has " + std::to_string(numbers.size()) + " values, must have " +
                      std::to_string(*size) + (*size > 0 ? ", or none" : ""));
     return false;
   }
@@ -79,8 +79,8 @@ void check_keyframes(Checker checker, const Scene& scene, bool sound) {
     Checker at = checker.at(named_part("keyframe", i, keyframe.name));
     const auto [same, fresh] = first.emplace(keyframe.name, i);
     if (!fresh && !keyframe.name.empty()) {
-      at.add("name",
-             "is that of keyframe " + std::to_string(same->second) + ", must be another, or empty");
+      at.add("name", "is also that of keyframe " + std::to_string(same->second) +
+                         ", must be unique or empty");
     }
     const bool good = check_numbers(at, "generalized_position", keyframe.generalized_position,
                                     sound ? &coordinates.positions : nullptr);

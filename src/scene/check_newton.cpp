@@ -40,7 +40,7 @@ class NewtonChecker {
       if (scene_.controls[i].kind == ControlKind::joint_force) continue;
       Checker at = all_.at(named_part("control", i, scene_.controls[i].name));
       at.add("kind", std::string("is ") + name_of(scene_.controls[i].kind) +
-                         ", the newton solver takes joint_force only");
+                         ", the newton solver supports joint_force only");
     }
     for (std::size_t i = 0; i < scene_.tendons.size(); ++i) check_tendon(i);
     if (!scene_.attractors.empty()) refuse(all_, "attractors", "are given", "none");
@@ -84,7 +84,7 @@ class NewtonChecker {
   }
 
   void refuse(Checker& checker, const char* field, const std::string& found, const char* wanted) {
-    checker.add(field, found + ", the newton solver takes " + wanted);
+    checker.add(field, found + ", the newton solver supports " + wanted);
   }
 
   void check_options() {
@@ -101,7 +101,7 @@ class NewtonChecker {
     }
     if (o.bounds) refuse(all_, "options.bounds", "are given", "none");
     if (o.contact_capacity) {
-      refuse(all_, "options.contact_capacity", "is given", "none: there is room for all contacts");
+      refuse(all_, "options.contact_capacity", "is given", "none: it stores all contacts");
     }
   }
 
@@ -111,24 +111,24 @@ class NewtonChecker {
     if (body.motion == Motion::kinematic) {
       refuse(at, "motion", "is kinematic", "dynamic and fixed bodies");
     }
-    if (!body.enabled) refuse(at, "enabled", "is false", "bodies that are always there");
+    if (!body.enabled) refuse(at, "enabled", "is false", "enabled bodies only");
     if (body.linear_drag != 0) refuse(at, "linear_drag", "is not 0", "none");
     if (body.angular_drag != 0) refuse(at, "angular_drag", "is not 0", "none");
     for (std::size_t k = 0; k < body.shapes.size(); ++k) {
       Checker shape = at.at("shape " + std::to_string(k));
       if (body.shapes[k].material.restitution != 0) {
-        refuse(shape, "material.restitution", "is not 0", "0: nothing bounces");
+        refuse(shape, "material.restitution", "is not 0", "0 only: contacts do not bounce");
       }
     }
     if (body.motion != Motion::dynamic || !is_held(i)) return;
     if (!body.linear_velocity.isZero(0)) {
-      refuse(at, "linear_velocity", "is not 0", "it of free bodies only");
+      refuse(at, "linear_velocity", "is not 0", "it for free bodies only");
     }
     if (!body.angular_velocity.isZero(0)) {
-      refuse(at, "angular_velocity", "is not 0", "it of free bodies only");
+      refuse(at, "angular_velocity", "is not 0", "it for free bodies only");
     }
     if (jitters(body.jitter)) {
-      refuse(at, "jitter", "is given", "it of free bodies only: what they hold moves along");
+      refuse(at, "jitter", "is given", "it for free bodies only: jointed bodies move along");
     }
   }
 
@@ -150,13 +150,13 @@ class NewtonChecker {
                         std::holds_alternative<SliderJoint>(joint.type);
     if (std::holds_alternative<BallJoint>(joint.type)) {
       if (d.reference != 0 || d.rest != 0) {
-        refuse(at, "dynamics", "have a rest or reference", "those of hinges and sliders only");
+        refuse(at, "dynamics", "have a rest or reference", "them for hinges and sliders only");
       }
     } else if (!single && (d.stiffness != 0 || d.reference != 0 || d.rest != 0)) {
-      refuse(at, "dynamics", "have a spring or reference", "those of hinges and sliders only");
+      refuse(at, "dynamics", "have a spring or reference", "them for hinges and sliders only");
     }
     if (std::holds_alternative<FixedJoint>(joint.type) && (d.armature != 0 || d.damping != 0)) {
-      refuse(at, "dynamics", "have armature or damping", "none of a joint that does not move");
+      refuse(at, "dynamics", "have armature or damping", "none for a fixed joint");
     }
   }
   void check_type(Checker& at, const BallJoint& j) {
@@ -189,7 +189,7 @@ class NewtonChecker {
   void check_tendon(std::size_t i) {
     const Tendon& tendon = scene_.tendons[i];
     Checker at = all_.at(named_part("tendon", i, tendon.name));
-    if (tendon.terms.empty()) at.add("terms", "are none, must be at least one");
+    if (tendon.terms.empty()) at.add("terms", "are empty, must have at least one");
     for (std::size_t k = 0; k < tendon.terms.size(); ++k) {
       const std::string name = element_name("terms", k);
       const TendonTerm& term = tendon.terms[k];
@@ -279,7 +279,7 @@ void check_newton(Checker checker, const Scene& scene, bool sound) {
     const Joint& joint = scene.joints[i];
     Checker at = checker.at(named_part("joint", i, joint.name));
     const auto needs = [&](const char* field) {
-      at.add(field, std::string("is given, which takes the newton solver, not ") +
+      at.add(field, std::string("is given, which requires the newton solver, not ") +
                         to_string(scene.options.solver.method));
     };
     if (joint.after) needs("after");
@@ -297,21 +297,21 @@ void check_newton(Checker checker, const Scene& scene, bool sound) {
   const Options& o = scene.options;
   if (o.integrator == Integrator::implicit_fast) {
     checker.add("options.integrator",
-                std::string("is implicit-fast, which takes the newton solver, not ") +
+                std::string("is implicit-fast, which requires the newton solver, not ") +
                     to_string(o.solver.method));
   }
   if (o.medium != Medium{}) {
-    checker.add("options.medium", std::string("is given, which takes the newton solver, not ") +
+    checker.add("options.medium", std::string("is given, which requires the newton solver, not ") +
                                       to_string(o.solver.method));
   }
   if (!scene.tendons.empty()) {
-    checker.add("tendons", std::string("are given, which take the newton solver, not ") +
+    checker.add("tendons", std::string("are given, which require the newton solver, not ") +
                                to_string(scene.options.solver.method));
   }
   for (std::size_t i = 0; i < scene.controls.size(); ++i) {
     if (scene.controls[i].kind != ControlKind::joint_force) continue;
     checker.at(named_part("control", i, scene.controls[i].name))
-        .add("kind", std::string("is joint_force, which takes the newton solver, not ") +
+        .add("kind", std::string("is joint_force, which requires the newton solver, not ") +
                          to_string(scene.options.solver.method));
   }
 }

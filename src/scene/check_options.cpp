@@ -41,11 +41,11 @@ void check_integrator(Checker& checker, const Options& o) {
     const bool splits = *o.rotation == Rotation::splitting;
     if (verlet && !splits) {
       checker.add("options.rotation", std::string("is ") + to_string(*o.rotation) + ", " +
-                                          to_string(o.integrator) + " takes splitting only");
+                                          to_string(o.integrator) + " supports splitting only");
     }
     if (!verlet && !symplectic && splits) {
       checker.add("options.rotation", std::string("is splitting, ") + to_string(o.integrator) +
-                                          " takes quaternion or exponential");
+                                          " supports quaternion or exponential");
     }
   }
   if (!o.angular_momentum) return;
@@ -53,9 +53,8 @@ void check_integrator(Checker& checker, const Options& o) {
     checker.add("options.angular_momentum", "is set, implicit-euler integrates angular velocities");
   } else if (verlet ||
              (symplectic && o.rotation.value_or(Rotation::splitting) == Rotation::splitting)) {
-    checker.add(
-        "options.angular_momentum",
-        "is set, rotation by splitting has no use for it: choose quaternion or exponential");
+    checker.add("options.angular_momentum",
+                "is set, rotation by splitting does not use it: choose quaternion or exponential");
   }
 }
 

@@ -29,7 +29,7 @@ class TreeChecker {
       const auto b = static_cast<std::size_t>(joint.body_b.index());
       if (scene_.bodies[b].motion != Motion::dynamic) {
         at.add("body_b",
-               "is not dynamic, the newton solver takes a dynamic body there: exchange A and B");
+               "is not dynamic, the newton solver needs a dynamic body there: exchange A and B");
         continue;
       }
       const int index = static_cast<int>(i);
@@ -42,13 +42,13 @@ class TreeChecker {
         } else if (turns(joint) && has_ball[b]) {
           // Whose velocity is about the link's axes, which must then be the ball's own.
           at.add("after", "is " + std::to_string(joint.after.index()) +
-                              ", where a ball joint has come: of the joints after one in a series "
-                              "the newton solver takes sliders only");
+                              ", which follows a ball joint: after a ball joint in a series, the "
+                              "newton solver supports sliders only");
         }
       } else if (first[b] >= 0) {
         at.add("body_b", "is " + std::to_string(joint.body_b.index()) + ", which joint " +
                              std::to_string(first[b]) +
-                             " holds already: the newton solver takes trees, or a series of "
+                             " holds already: the newton solver supports trees, or a series of "
                              "joints by Joint::after");
       }
       has_ball[b] = has_ball[b] || std::holds_alternative<BallJoint>(joint.type);
@@ -86,12 +86,12 @@ class TreeChecker {
                                      [](const Body& b) { return b.motion == Motion::dynamic; });
     if (links > kMaxNewtonLinks) {
       all_.add("bodies", "that move are " + std::to_string(links) +
-                             ", the newton solver takes at most " +
+                             ", the newton solver supports at most " +
                              std::to_string(kMaxNewtonLinks) + " yet");
     }
     if (dofs <= kMaxNewtonDofs) return;
     all_.add("bodies", "and joints have " + std::to_string(dofs) +
-                           " degrees of freedom, the newton solver takes at most " +
+                           " degrees of freedom, the newton solver supports at most " +
                            std::to_string(kMaxNewtonDofs) + " yet");
   }
   // Of each circle one body is named.
@@ -106,7 +106,7 @@ class TreeChecker {
         at = static_cast<std::size_t>(a.index());
         if (seen_from[at] != b) continue;
         Checker checker = all_.at(named_part("body", at, scene_.bodies[at].name));
-        checker.add("joints", "hold it in a circle, the newton solver takes trees only");
+        checker.add("joints", "form a loop through it, the newton solver supports trees only");
       }
     }
   }
@@ -152,9 +152,10 @@ class TreeChecker {
     const auto b = static_cast<std::size_t>(joint.body_b.index());
     Checker at = all_.at(named_part("body", b, scene_.bodies[b].name));
     at.add("position", "and rotation are " + number_text(distance) + " m and " +
-                           number_text(angle) + " rad from where joint " + std::to_string(first) +
-                           (alone ? " holds it" : "'s series holds it, its frames coinciding") +
-                           ", must be there for the newton solver");
+                           number_text(angle) + " rad from the pose that joint " +
+                           std::to_string(first) +
+                           (alone ? " gives it" : "'s series gives it with coinciding frames") +
+                           ", must match it for the newton solver");
   }
 
   Checker all_;

@@ -163,14 +163,14 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
     return false;
   };
   const std::string every =
-      std::string("-1: ") + parameter.name + " is of the " + to_string(parameter.owner);
+      std::string("-1: ") + parameter.name + " belongs to the " + to_string(parameter.owner);
   const NumberOwner of{body_of(v).index(), v.shape.index(), v.joint.index(), v.control.index(),
                        v.attractor};
   const int body = of.body, shape = of.shape;
   const bool of_shape = parameter.owner == ParameterInfo::shape;
   if (v.body && v.shape.body() && v.body != v.shape.body()) {
     return reject("shape", shape,
-                  "a shape of body " + std::to_string(v.body.index()) + ", is one of body " +
+                  "a shape of body " + std::to_string(v.body.index()) + ", but belongs to body " +
                       std::to_string(body));
   }
   if (is_of_newton(v.parameter) && scene.options.solver.method != Solver::newton) {
@@ -210,7 +210,7 @@ bool check_target(Checker& checker, const Scene& scene, const Variation& v) {
   const auto can = [&] {
     if (can_vary(scene, v.parameter, of)) return true;
     checker.add(parameter.name,
-                std::string("cannot vary here, must be of ") + who_can(v.parameter));
+                std::string("cannot vary here, must belong to ") + who_can(v.parameter));
     return false;
   };
   if (of.joint >= 0 || of.control >= 0) return can();
@@ -320,8 +320,8 @@ void check_hulls(Checker checker, const Scene& scene, int variation) {
     auto& [low, high] = range.try_emplace(of, n.low, n.high).first->second;
     low = std::min(low, n.low), high = std::max(high, n.high);
     if (high <= kMaxStretch * low) continue;
-    checker.add("size", "of a hull goes from " + number_text(low) + " to " + number_text(high) +
-                            " m, must be by no more than " + number_text(kMaxStretch) + " times");
+    checker.add("size", "of a hull varies from " + number_text(low) + " to " + number_text(high) +
+                            " m, must vary by a factor of at most " + number_text(kMaxStretch));
     return;
   }
 }
@@ -362,7 +362,7 @@ void check_variations(Checker checker, const Scene& scene, bool sound) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (numbers[i] > 0) continue;
     at(static_cast<int>(i))
-        .add(info(scene.variations[i].parameter).name, "is of nothing in this scene");
+        .add(info(scene.variations[i].parameter).name, "matches nothing in this scene");
   }
   if (!sound || checker.count() != before) return;
   for (std::size_t i = 0; i < scene.variations.size(); ++i) {

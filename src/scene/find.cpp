@@ -80,7 +80,7 @@ Handle find(std::string_view name, const Named<Handle>& all, const char* one, co
     text += (i > 0 ? ", " : "") + number_of(found[i]);
   }
   if (found.size() > kMaxNames) text += ", ...";
-  throw std::invalid_argument(text + "; give them names of their own, or take the handle");
+  throw std::invalid_argument(text + "; give them distinct names, or use the handle");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ void check_tiles(detail::Checker& checker, const Scene& scene) {
       if (!scene.bodies[b].name.empty()) part += " '" + scene.bodies[b].name + "'";
       checker.at(part + ", shape " + std::to_string(k))
           .add("cell", "is " + detail::vector_text(field->cell) +
-                           " m: the largest shape that moves can lie over " +
+                           " m: the largest moving shape can cover " +
                            std::to_string(tiles.count()) + " triangles, must be at most " +
                            std::to_string(kMaxTiles));
     }

@@ -264,7 +264,7 @@ std::string Worlds<Real>::check_world(const std::byte* from) const {
     std::memcpy(&value, values + i * sizeof value, sizeof value);
     const VariedNumber& n = data().varied[i];
     if (!(value >= n.low && value <= n.high)) {
-      return std::string(info(n.parameter).name) + " is outside of its declared range";
+      return std::string(info(n.parameter).name) + " is outside its declared range";
     }
   }
   return storage_.check_world(from);

@@ -70,7 +70,7 @@ SnapshotEntry read_entry(const std::vector<std::byte>& bytes, const SnapshotHead
 // What tells a snapshot from other files before anything of its size is allocated or read.
 void check_header(const SnapshotHeader& header, std::uint64_t size) {
   if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
-    refuse("does not begin like a snapshot of manyworlds");
+    refuse("is not a manyworlds snapshot");
   }
   if (header.version < kOldestSnapshotVersion || header.version > kSnapshotVersion) {
     refuse("has format version " + std::to_string(header.version) + ", must be " +
@@ -81,7 +81,7 @@ void check_header(const SnapshotHeader& header, std::uint64_t size) {
            std::to_string(header.size));
   }
   if (header.real_bytes != 4 && header.real_bytes != 8) {
-    refuse("has numbers of " + std::to_string(header.real_bytes) + " bytes, must be 4 or 8");
+    refuse("has values of " + std::to_string(header.real_bytes) + " bytes, must be 4 or 8");
   }
 }
 
@@ -115,13 +115,13 @@ void check(const std::vector<std::byte>& bytes) {
   const std::size_t room = size - sizeof(SnapshotHeader) - kChecksum;
   if (header.worlds == 0 || header.worlds > room / entry_size(header) ||
       header.worlds > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) {
-    refuse("cannot hold the " + std::to_string(header.worlds) + " worlds that its header says");
+    refuse("is too short for the " + std::to_string(header.worlds) + " worlds in its header");
   }
   const std::size_t first = entry_at(header, header.worlds), end = size - kChecksum;
   for (std::size_t i = 0; i < header.worlds; ++i) {
     const SnapshotEntry entry = read_entry(bytes, header, i);
     if (entry.offset < first || entry.offset > end || entry.size > end - entry.offset) {
-      refuse("world " + std::to_string(i) + " lies outside of it");
+      refuse("world " + std::to_string(i) + " is stored outside of it");
     }
   }
 }
@@ -133,7 +133,7 @@ void read_from(const Descriptor& file, std::span<std::byte> to) {
     const ssize_t n = ::read(file.get(), to.data(), to.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) refuse("cannot be read: " + last_error());
-    if (n == 0) refuse("has become shorter while it was read");
+    if (n == 0) refuse("was shortened while it was read");
     to = to.subspan(static_cast<std::size_t>(n));
   }
 }

@@ -48,7 +48,7 @@ class TaskChecker {
     const std::size_t controls = task_.scene.controls.size();
     if (task_.controls.size() != controls) {
       add("controls", "are ", task_.controls.size(),
-          ", must be as many as the scene has: " + std::to_string(controls));
+          ", must match the scene's controls: " + std::to_string(controls));
     }
     for (std::size_t i = 0; i < task_.controls.size(); ++i) {
       check(place_of("control", i, i < controls ? task_.scene.controls[i].name : ""),
@@ -104,7 +104,7 @@ class TaskChecker {
       if (fresh) continue;
       issues_.push_back(
           {place_of(what, i, all[i].name),
-           "has the name of " + place_of(what, at->second, all[i].name) + ", must have its own"});
+           "has the name of " + place_of(what, at->second, all[i].name) + ", must be unique"});
     }
   }
 
@@ -112,24 +112,26 @@ class TaskChecker {
     check_names("action", task_.actions);
     if (task_.choices < 0) add("choices", "is ", task_.choices, ", must be >= 0");
     if (task_.choices > 0 && !task_.actions.empty()) {
-      add("actions", "are ", task_.actions.size(), ", must be none where there are choices");
+      add("actions", "are ", task_.actions.size(), ", must be none with choices");
     }
     for (std::size_t i = 0; i < task_.actions.size(); ++i) {
       const Action& a = task_.actions[i];
       if (!std::isfinite(a.low) || !std::isfinite(a.high) || !(a.low < a.high)) {
-        add_range(place_of("action", i, a.name), a.low, a.high, "must be finite and rising");
+        add_range(place_of("action", i, a.name), a.low, a.high,
+                  "must be finite and have low < high");
       }
     }
   }
 
   void check_observations() {
     check_names("observation", task_.observations);
-    if (task_.observations.empty()) issues_.push_back({"observations", "are none, must be some"});
+    if (task_.observations.empty())
+      issues_.push_back({"observations", "are empty, must have at least one"});
     for (std::size_t i = 0; i < task_.observations.size(); ++i) {
       const Observation& o = task_.observations[i];
       const std::string place = place_of("observation", i, o.name);
       check(place, o.value);
-      if (!(o.low <= o.high)) add_range(place, o.low, o.high, "must rise");
+      if (!(o.low <= o.high)) add_range(place, o.low, o.high, "must have low <= high");
     }
   }
 
@@ -162,8 +164,8 @@ class TaskChecker {
       const std::string place = place_of("initial parameter", i, "");
       check(place + ", value", s.value, When::before_episode);
       if (s.parameter.node().term != Term::parameter) {
-        issues_.push_back({place, "is of " + describe(s.parameter) +
-                                      ", must be of a parameter (terms::parameter)"});
+        issues_.push_back(
+            {place, "sets " + describe(s.parameter) + ", must set a parameter (terms::parameter)"});
         continue;
       }
       const std::size_t before = issues_.size();
@@ -175,14 +177,14 @@ class TaskChecker {
         return v.parameter == static_cast<Parameter>(s.parameter.node().of) && v.of == of &&
                v.component == s.parameter.node().axis;
       });
-      const std::string is = "is of " + describe(s.parameter) + ", which ";
+      const std::string is = "sets " + describe(s.parameter) + ", which ";
       if (at == varied.end()) {
         issues_.push_back({place, is + "does not vary (Scene::variations)"});
       } else if (task_.scene.variations[static_cast<std::size_t>(at->variation)].draw !=
                  Draw::none) {
         issues_.push_back({place, is + "is drawn, must vary with Draw::none"});
       } else if (!set.insert(at - varied.begin()).second) {
-        issues_.push_back({place, is + "another one sets"});
+        issues_.push_back({place, is + "another initial parameter sets"});
       }
     }
   }
@@ -234,13 +236,14 @@ class TaskChecker {
   static const char* wanted(When when) {
     switch (when) {
       case When::before_steps:
-        return "actions, numbers, random ones, parameters, levels, memories, age() and "
-               "previous(...) alone";
+        return "actions, constants, random numbers, parameters, levels, memories, age() and "
+               "previous(...) only";
       case When::before_update:
-        return "actions, numbers, random ones, parameters, levels, age() and previous(...) alone";
-      case When::at_beginning: return "what there is before memories begin";
-      case When::before_episode: return "numbers, random ones of the episode and levels alone";
-      default: return "numbers and random ones of the episode alone";
+        return "actions, constants, random numbers, parameters, levels, age() and previous(...) "
+               "only";
+      case When::at_beginning: return "terms other than memories";
+      case When::before_episode: return "constants, random numbers of the episode and levels only";
+      default: return "constants and random numbers of the episode only";
     }
   }
 

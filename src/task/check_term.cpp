@@ -46,7 +46,7 @@ class TermChecker {
       case Term::angular_velocity:
         body();
         if (planar && n.axis != 2) {
-          issues_.push_back({place, describe(e) + ": the axis must be 2 in the plane"});
+          issues_.push_back({place, describe(e) + ": the axis must be 2 in a planar scene"});
         } else {
           bounded(n.axis, 3, "the axis");
         }
@@ -54,7 +54,7 @@ class TermChecker {
       case Term::angle:
         body();
         if (!planar)
-          issues_.push_back({place, describe(e) + ": there are angles in the plane only"});
+          issues_.push_back({place, describe(e) + ": angles exist in planar scenes only"});
         break;
       case Term::direction:
         axis(n.axis);
@@ -110,9 +110,8 @@ class TermChecker {
     if (std::any_of(all.begin(), all.end(), is_it)) return;
     std::string there;
     for (const Named& one : all) there += (there.empty() ? "" : ", ") + one.name;
-    issues_.push_back({place, std::string("asks for the ") + what + " '" + name +
-                                  "', must be one of " + list +
-                                  (there.empty() ? ", of which there are none" : ": " + there)});
+    issues_.push_back({place, std::string("uses the ") + what + " '" + name + "', must be one of " +
+                                  list + (there.empty() ? ", which is empty" : ": " + there)});
   }
 
   template <class Bounded>
@@ -141,7 +140,7 @@ class TermChecker {
         break;
     }
     if (!found || can_vary(scene, parameter, owner_of(n))) return;
-    issues_.push_back({place, describe(e) + ": there is no such number that could vary"});
+    issues_.push_back({place, describe(e) + ": this parameter cannot vary"});
   }
 
   template <class Bounded>
@@ -162,7 +161,7 @@ class TermChecker {
             scene.bodies[item].motion == Motion::fixed) {
           const bool touch = what.observer == Observer::touching;
           issues_.push_back({place, describe(e) + ": a fixed body is not observed" +
-                                        (touch ? ", ask those that touch it" : "")});
+                                        (touch ? ", observe the bodies that touch it" : "")});
         }
         break;
       case ObservedItem::joint: bounded(n.index, scene.joints.size(), "the joint"); break;
@@ -191,7 +190,7 @@ class TermChecker {
     const bool spin = observed_by(n)->components == ObservedComponents::spin;
     if (spin && task_.scene.space == Space::planar) {
       if (n.axis != 2)
-        issues_.push_back({place, describe(e) + ": the axis must be 2 in the plane"});
+        issues_.push_back({place, describe(e) + ": the axis must be 2 in a planar scene"});
       return;
     }
     const int count = components(static_cast<Observed>(n.of), task_.scene.space);
@@ -205,8 +204,9 @@ class TermChecker {
     if (!row) return;
     const PlanBody& b = plan_->data().bodies[static_cast<std::size_t>(*row)];
     if (!b.reshaped || b.aligned) return;
-    issues_.push_back({place, describe(e) + ": its centre of mass varies from world to world, "
-                                            "must be where its frame is"});
+    issues_.push_back(
+        {place, describe(e) +
+                    ": its centre of mass varies between worlds, must be at the frame's origin"});
   }
 
  private:

@@ -20,7 +20,7 @@ const char* to_string(Autoreset autoreset) { return name_of(autoreset); }
 std::string to_string(const NonFinite& fault) {
   return fault.expression + " is " + detail::number_text(fault.value) + " in world " +
          std::to_string(fault.world) +
-         (fault.step == 0 ? " where its episode begins"
+         (fault.step == 0 ? " at the start of its episode"
                           : " at step " + std::to_string(fault.step) + " of its episode");
 }
 
@@ -119,7 +119,7 @@ bool Environment::step(std::span<const std::int64_t> actions, const StepArrays& 
 
 void Environment::finish_step(const StepArrays& out) { finish_step(out, {}); }
 bool Environment::finish_step(const StepArrays& out, const GoOn& go_on) {
-  if (steps_left() == 0) reject("finish_step: no step was ended early");
+  if (steps_left() == 0) reject("finish_step: no step was interrupted");
   impl_->check(out);
   return impl_->finish_step(out, go_on);
 }
@@ -154,14 +154,13 @@ void Environment::evaluate(const Expression& expression, std::span<double> out) 
   const TaskPrograms programs(impl_->task, impl_->plan, &expression);
   if (!programs.evaluated_is_known) {
     reject("evaluate: " + text_of(expression, 200) +
-           " depends on earlier steps in a way that the task does not remember: give the task an "
-           "Info for it");
+           " depends on earlier steps that the task does not store: add it to the task as an Info");
   }
   for (int i = 0; i < kObserverCount; ++i) {
     if (!programs.after.asks(Observer(i)) || impl_->programs->after.asks(Observer(i))) continue;
     reject("evaluate: " + text_of(expression, 200) + " depends on the observer '" +
            to_string(Observer(i)) +
-           "', which the task does not have: give the task an Info for it");
+           "', which the task does not use: add the expression to the task as an Info");
   }
   impl_->runner->evaluate(*impl_->batch.impl_->core, programs, out);
 }

@@ -16,7 +16,7 @@ namespace manyworlds {
 inline void check_array(const char* name, std::size_t found, std::size_t wanted,
                         bool may_be_empty) {
   if (found == wanted || (found == 0 && may_be_empty)) return;
-  reject(std::string(name) + " are " + std::to_string(wanted) + " numbers, the buffer has " +
+  reject(std::string(name) + " are " + std::to_string(wanted) + " values, the buffer has " +
          std::to_string(found));
 }
 
@@ -63,19 +63,20 @@ struct Environment::Impl {
     check_array(name, own.size(), wanted, true);
     check_array(final_name, last.size(), wanted, true);
     if (own.empty() && !last.empty()) {
-      reject(std::string(final_name) + " are wanted without " + name);
+      reject(std::string(final_name) + " are given without " + name);
     }
   }
 
   void check(const EnvironmentSnapshot& snapshot) const {
     if (snapshot.task != programs->fingerprint) {
-      throw SnapshotError("snapshot: is of another task than '" + task.name + "'");
+      throw SnapshotError("snapshot: belongs to another task than '" + task.name + "'");
     }
     const std::size_t wanted =
         static_cast<std::size_t>(snapshot.worlds.worlds()) * runner->numbers();
     if (snapshot.memory.size() != wanted) {
-      throw SnapshotError("snapshot: the task remembers " + std::to_string(snapshot.memory.size()) +
-                          " numbers, must be " + std::to_string(wanted));
+      throw SnapshotError("snapshot: the task's memory has " +
+                          std::to_string(snapshot.memory.size()) + " values, must be " +
+                          std::to_string(wanted));
     }
   }
   std::span<const double> memory(const EnvironmentSnapshot& snapshot, int world) const {
@@ -87,10 +88,10 @@ struct Environment::Impl {
   void check_between_steps(const char* call) const {
     if (steps_left == 0) return;
     const int taken = task.frame_skip - steps_left;
-    reject(std::string(call) + ": the worlds stand in the middle of a step that was ended after " +
-           std::to_string(taken) + " of its " + std::to_string(task.frame_skip) +
-           " physics steps: finish_step takes it to its end; a reset, begin or restore of all "
-           "worlds gives it up");
+    reject(std::string(call) + ": a step was interrupted after " + std::to_string(taken) +
+           " of its " + std::to_string(task.frame_skip) +
+           " physics steps: finish_step completes it; a reset, begin or restore of all worlds "
+           "discards it");
   }
   // What begins all worlds gives up a step in whose middle they stand.
   void check_to_begin(const char* call, std::span<const std::uint8_t> mask,

@@ -52,7 +52,8 @@ Expression make_expression(Expression::Node node) {
   for (const Expression& e : node.operands) node.depth = std::max(node.depth, e.node().depth + 1);
   if (node.depth > kMaxDepth) {
     throw std::invalid_argument("an expression is nested " + std::to_string(node.depth) +
-                                " deep, at most " + std::to_string(kMaxDepth) + " are possible");
+                                " levels deep, at most " + std::to_string(kMaxDepth) +
+                                " are possible");
   }
   return Expression(std::make_shared<const Expression::Node>(std::move(node)));
 }
@@ -72,7 +73,7 @@ Expression::Expression(double number) {
 }
 
 Expression::Expression(std::shared_ptr<const Node> node) : node_(std::move(node)) {
-  if (!node_) throw std::invalid_argument("Expression: there is no node");
+  if (!node_) throw std::invalid_argument("Expression: the node is null");
 }
 
 Expression lane_function(std::shared_ptr<const LaneFunction> function, std::vector<Expression> in) {
@@ -156,8 +157,8 @@ Expression number_of(Parameter of, ParameterInfo::Owner owner, int index, int sh
                      int component) {
   const ParameterInfo& what = info(of);
   if (what.owner != owner) {
-    throw std::invalid_argument(std::string("parameter: ") + what.name + " is a number of a " +
-                                to_string(what.owner) + ", not of a " + to_string(owner));
+    throw std::invalid_argument(std::string("parameter: ") + what.name + " belongs to a " +
+                                to_string(what.owner) + ", not to a " + to_string(owner));
   }
   Expression::Node node;
   node.term = Term::parameter;

@@ -150,7 +150,7 @@ class Exporter {
       out.text = text_of(node);
     } else {
       throw std::invalid_argument(
-          "the expression holds a function of C++, which has no plain values");
+          "the expression contains a C++ function, which has no plain values");
     }
     graph.nodes.push_back(std::move(out));
     const int index = static_cast<int>(known_.size());
@@ -183,7 +183,8 @@ void read_text(const ExpressionGraph::Node& from, std::size_t at, Node& node) {
   }
   const auto& names = EnumTable<Parameter>::names;
   const auto found = std::find(names.begin(), names.end(), from.text);
-  if (found == names.end()) wrong_node(at, "is the parameter '" + from.text + "', which is none");
+  if (found == names.end())
+    wrong_node(at, "is the parameter '" + from.text + "', which does not exist");
   node.of = static_cast<int>(found - names.begin());
 }
 
@@ -222,12 +223,12 @@ Expression read_node(const ExpressionGraph::Node& from, std::span<const Expressi
     return make_expression(std::move(node));
   }
   const auto* operation = find(kOperations, [&](const auto& o) { return o.name == from.name; });
-  if (operation == nullptr) wrong_node(at, "is '" + from.name + "', which no expression is");
+  if (operation == nullptr) wrong_node(at, "is '" + from.name + "', which is not an expression");
   count(operation->operands);
   std::vector<Expression> operands;
   for (const int of : from.arguments) {
     if (of < 0 || static_cast<std::size_t>(of) >= at) {
-      wrong_node(at, "is of node " + std::to_string(of) + ", which does not come before it");
+      wrong_node(at, "uses node " + std::to_string(of) + ", which does not come before it");
     }
     operands.push_back(before[static_cast<std::size_t>(of)]);
   }

@@ -247,7 +247,8 @@ TEST_CASE("a scene tells what is wrong with its controls", "[fast][control][scen
   CHECK(issue(target(ControlKind::target_speed, 1)) ==
         "control 0: joint is 1, must be a joint, 0 to 0");
   CHECK(issue(target(ControlKind::target_position, 0)) ==
-        "control 0: joint is 0, must be one whose drive has a spring: a motor holds no position");
+        "control 0: joint is 0, must be a joint whose drive has a spring: a motor does not hold a "
+        "position");
   CHECK(issue(thrust(1, Vec3::Zero(), {0, 1, 0})) ==
         "control 0: body is 1, must be a dynamic body");
   CHECK(issue(thrust(2, Vec3::Zero(), {0, 1, 0})) ==
@@ -267,11 +268,11 @@ TEST_CASE("a scene tells what is wrong with its controls", "[fast][control][scen
   scene.controls = {target(ControlKind::target_speed, 0), target(ControlKind::target_speed, 0)};
   REQUIRE(validate(scene).size() == 1);
   CHECK(to_string(validate(scene)[0]) ==
-        "control 1: joint is 0, must be one whose target is not control 0's already");
+        "control 1: joint is 0, must be a joint whose target is not already control 0's");
   std::get<HingeJoint>(scene.joints[0].type).drive.reset();
   scene.controls.pop_back();
   REQUIRE(validate(scene).size() == 1);
-  CHECK(to_string(validate(scene)[0]) == "control 0: joint is 0, must be one that has a drive");
+  CHECK(to_string(validate(scene)[0]) == "control 0: joint is 0, must be a joint with a drive");
 }
 
 }  // namespace manyworlds::test

@@ -107,7 +107,7 @@ TEST_CASE("what is wrong with draws is said", "[fast][validate][draws]") {
   CHECK(validate(scene).empty());
   check_each(
       scene, "coordinate draw 0: ",
-      {{"high", "has 2 numbers, must have as many as low: 1",
+      {{"high", "has 2 values, must have as many as low: 1",
         [](Scene& s) {
           s.coordinate_draws[0].high = {1, 2};
         }},
@@ -117,9 +117,9 @@ TEST_CASE("what is wrong with draws is said", "[fast][validate][draws]") {
         [](Scene& s) { s.coordinate_draws[0].low[0] = std::nan(""); }},
        {"nearest", "is 3, must be < farthest, which is 2",
         [](Scene& s) { s.coordinate_draws[0].nearest = 3, s.coordinate_draws[0].farthest = 2; }},
-       {"first", "is 1 of 1 numbers, must be within the 1 coordinates of Solver::newton",
+       {"first", "is 1 of 1 values, must be within the 1 coordinates of Solver::newton",
         [](Scene& s) { s.coordinate_draws[0].first = 1; }},
-       {"first", "is 0 of 2 numbers, must be within the 1 degrees of freedom of Solver::newton",
+       {"first", "is 0 of 2 values, must be within the 1 degrees of freedom of Solver::newton",
         [](Scene& s) {
           s.coordinate_draws[0] = {.velocity = true, .low = {0, 0}, .high = {0, 0}};
         }}});

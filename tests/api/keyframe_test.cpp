@@ -37,11 +37,11 @@ TEST_CASE("keyframes fit their scene and have names of their own", "[fast][valid
   REQUIRE(kSpeeds.size() == kDofs);
   check_each(
       keyed_robot(), "keyframe 0 'leap': ",
-      {{"generalized_position", "has 18 numbers, must have 19, or none",
+      {{"generalized_position", "has 18 values, must have 19, or none",
         [](Scene& s) { s.keyframes[0].generalized_position.pop_back(); }},
-       {"generalized_velocity", "has 17 numbers, must have 16, or none",
+       {"generalized_velocity", "has 17 values, must have 16, or none",
         [](Scene& s) { s.keyframes[0].generalized_velocity.push_back(0); }},
-       {"controls", "has 2 numbers, must have 1, or none",
+       {"controls", "has 2 values, must have 1, or none",
         [](Scene& s) { s.keyframes[0].controls.push_back(0); }},
        {"generalized_position[4]", "is nan, must be finite",
         [](Scene& s) {
@@ -56,7 +56,7 @@ TEST_CASE("keyframes fit their scene and have names of their own", "[fast][valid
        {"controls[0]", "is inf, must be finite",
         [](Scene& s) { s.keyframes[0].controls[0] = std::numeric_limits<double>::infinity(); }}});
   check_each(keyed_robot(), "keyframe 1 'leap': ",
-             {{"name", "is that of keyframe 0, must be another, or empty",
+             {{"name", "is also that of keyframe 0, must be unique or empty",
                [](Scene& s) { s.keyframes[1].name = "leap"; }}});
   Scene nameless = keyed_robot();
   for (Keyframe& keyframe : nameless.keyframes) keyframe.name.clear();
@@ -67,7 +67,7 @@ TEST_CASE("keyframes fit their scene and have names of their own", "[fast][valid
   scene.controls = {{"jet", ControlKind::thrust, {}, BodyId(0), {}, Vec3::UnitX(), 0, 5, 0}};
   scene.add(Keyframe{.name = "on", .controls = {2}});
   check_each(scene, "keyframe 0 'on': ",
-             {{"generalized_position", "has 7 numbers, must have 0",
+             {{"generalized_position", "has 7 values, must have 0",
                [](Scene& s) { s.keyframes[0].generalized_position = {0, 0, 0, 1, 0, 0, 0}; }}});
   Batch batch(compile(scene), {.worlds = 2, .threads = 1});
   batch.reset(batch.keyframe("on"));

@@ -181,8 +181,8 @@ const std::vector<Misuse> kNumbers = {
        const Plan plan = plan_of();
        Batch(std::vector<Batch::Kind>{{plan, std::numeric_limits<int>::max()}, {plan, 1}});
      }},
-    {"Plan: there is no data, compile() makes a plan", [] { Plan{nullptr}; }},
-    {"Expression: there is no node", [] { Expression{std::shared_ptr<const Expression::Node>()}; }},
+    {"Plan: it is empty, compile() makes a plan", [] { Plan{nullptr}; }},
+    {"Expression: the node is null", [] { Expression{std::shared_ptr<const Expression::Node>()}; }},
 };
 
 }  // namespace

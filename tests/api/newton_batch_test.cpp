@@ -17,8 +17,8 @@ Quat quaternion_at(const Numbers& q, std::size_t at) {
   return Quat(q[at], q[at + 1], q[at + 2], q[at + 3]);
 }
 const char* const kPlacedByJoints =
-    ": bodies of the newton solver are moved by generalized_position and generalized_velocity, and "
-    "are always there";
+    ": with the newton solver, bodies are always enabled; set generalized_position and "
+    "generalized_velocity to move them";
 
 }  // namespace
 
@@ -146,7 +146,7 @@ TEST_CASE("a batch names what it does not do to bodies of the newton solver", "[
   refuses(std::string("add_impulse_at") + kPlacedByJoints,
           [&] { batch.add_impulse_at(0, BodyId(1), Vec3::UnitX(), Vec3::Zero()); });
   const Numbers wrong(3, 0.0);
-  refuses("generalized_position has " + std::to_string(kCoordinates) + " numbers, the buffer has 3",
+  refuses("generalized_position has " + std::to_string(kCoordinates) + " values, the buffer has 3",
           [&] { batch.write(Field::generalized_position, 0, wrong); });
   CHECK(batch.enabled(0, BodyId(1)));
   CHECK(batch.joint_enabled(0, JointId(0)));

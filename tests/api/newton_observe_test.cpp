@@ -27,10 +27,10 @@ TEST_CASE("what needs trees is refused where there are none, with what to use in
     CHECK_FALSE(observable(observer, scene));
     BatchOptions options;
     options.observe.what = {observer};
-    CHECK_THROWS_WITH(Batch(compile(scene), options),
-                      Catch::Contains(std::string("is ") + to_string(observer) +
-                                      ": the scene 'one ball' does not have it: its solver is "
-                                      "tgs-soft"));
+    CHECK_THROWS_WITH(
+        Batch(compile(scene), options),
+        Catch::Contains(std::string("is ") + to_string(observer) +
+                        ": the scene 'one ball' does not support it: its solver is tgs-soft"));
     task.observations[0].value = terms::observed(what);
     const std::vector<Issue> issues = validate(task);
     REQUIRE(issues.size() == 1);

@@ -103,8 +103,8 @@ TEST_CASE("points that make no sense are refused, all that is wrong with them at
   const Table table = widest_tables().front();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_WITH(Batch(plan, observing(table, {{{0, 0, 0}, BodyId(0)}})),
-                    "points[0].body is body 0 'ground', must be one that can move: a point of a "
-                    "fixed one stays");
+                    "points[0].body is body 0 'ground', must be a body that can move: points of a "
+                    "fixed body do not move");
   CHECK_THROWS_WITH(Batch(plan, observing(table, {{}})), "points[0].body is -1, must be 0 to 1");
   CHECK_THROWS_WITH(
       Batch(plan, observing(table, {{{0, 0, 0}, BodyId(1)}, {{0, nan, 0}, BodyId(2)}})),

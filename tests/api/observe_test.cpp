@@ -379,7 +379,7 @@ TEST_CASE("observers that were not chosen say so", "[fast][observe]") {
   CHECK_THROWS_WITH(batch.step_contacts(0), Catch::Contains("Observer::contacts"));
   std::vector<double> wrong(3);
   CHECK_THROWS_WITH(batch.read(Observed::penetration, wrong),
-                    "penetration has 2 numbers, the buffer has 3");
+                    "penetration has 2 values, the buffer has 3");
   std::vector<float> right(2);
   batch.step(3);
   batch.read(Observed::penetration, std::span<float>(right));

@@ -194,20 +194,21 @@ TEST_CASE("what is wrong with offsets and attractors that vary is said",
   CHECK(issue({vary_three(Parameter::shape_rotation, {-1, 0, 0}, {1, 0, 0})}) ==
         "variation 0: high[0] must be 0 in a planar scene, as low[0]");
   CHECK(issue({vary(Parameter::attractor_strength, 0, 1)}) ==
-        "variation 0: attractor_strength is of nothing in this scene");
+        "variation 0: attractor_strength matches nothing in this scene");
   Variation of_second = vary(Parameter::attractor_strength, 0, 1);
   of_second.attractor = 1;
   scene.attractors = {{{1, 0, 0}, 1, 0}};
   CHECK(issue({of_second}) == "variation 0: attractor is 1, must be -1 or the index of one of 1");
   Variation friction = vary(Parameter::friction, 0, 1);
   friction.attractor = 0;
-  CHECK(issue({friction}) == "variation 0: attractor is 0, must be -1: friction is of the shape");
+  CHECK(issue({friction}) ==
+        "variation 0: attractor is 0, must be -1: friction belongs to the shape");
   scene.bodies[0].motion = Motion::fixed;
   scene.bodies[0].shapes.resize(1);
   Variation fixed = vary(Parameter::shape_position, 0, 0);
   fixed.shape = ShapeId(BodyId(0), 0);
   CHECK(issue({fixed}) ==
-        "variation 0: shape_position cannot vary here, must be of a shape of a moving body");
+        "variation 0: shape_position cannot vary here, must belong to a shape of a moving body");
 }
 
 }  // namespace manyworlds::test

@@ -158,7 +158,7 @@ TEST_CASE("written numbers hold from the next step, over resets, and what is wro
   CHECK(message(Parameter::linear_drag, {0, 1, 0}) ==
         "world 1: linear_drag of body 0 is 1, must be 0: it does not vary (Scene::variations)");
   CHECK(message(Parameter::gravity, std::vector<double>(8)) ==
-        "gravity has 9 numbers, the buffer has 8");
+        "gravity has 9 values, the buffer has 8");
   batch.read(Parameter::friction, back);
   CHECK(back == friction);
   CHECK(numbers(batch, Parameter::mass, 0) == std::vector<double>{500});

@@ -123,7 +123,7 @@ TEST_CASE("a file is judged by its kind and header before its size is believed",
   const auto sparse = folder / "sparse";
   std::ofstream(sparse).put('M');
   std::filesystem::resize_file(sparse, kHuge);
-  refused(sparse, "does not begin like a snapshot");
+  refused(sparse, "is not a manyworlds snapshot");
   Batch batch(compile(crowd(Space::planar)), options_of(widest_tables().front(), 2));
   batch.save().save(sparse);
   std::filesystem::resize_file(sparse, kHuge);

@@ -206,10 +206,10 @@ TEST_CASE("a snapshot of something else is refused and changes nothing", "[fast]
     CHECK(hashes(batch) == before);
     CHECK(batch.steps() == 10);
   };
-  refused(Batch(plan, options_of(table, 3)).save(), "has 3 worlds, the batch 4");
+  refused(Batch(plan, options_of(table, 3)).save(), "has 3 worlds, the batch has 4");
   Scene heavier = crowd(Space::planar);
   heavier.bodies[3].shapes[0].density = 77;
-  refused(Batch(compile(heavier), options_of(table, 4)).save(), "world 0 is of another plan");
+  refused(Batch(compile(heavier), options_of(table, 4)).save(), "world 0 belongs to another plan");
   Scene elsewhere = crowd(Space::planar);  // where bodies begin and what they are called is free
   elsewhere.bodies[3].position.x() += 1;
   elsewhere.bodies[3].name = "other";
@@ -218,10 +218,10 @@ TEST_CASE("a snapshot of something else is refused and changes nothing", "[fast]
   if (has_table({table.isa, Precision::f64})) {
     BatchOptions options = options_of(table, 4);
     options.precision = Precision::f64;
-    refused(Batch(plan, options).save(), "has f64 numbers, the batch f32");
+    refused(Batch(plan, options).save(), "has f64 values, the batch is f32");
   }
   const Snapshot saved = batch.save();
-  CHECK_THROWS_WITH(batch.restore(saved, 4, 0), Catch::Contains("there is no world 4"));
+  CHECK_THROWS_WITH(batch.restore(saved, 4, 0), Catch::Contains("it has no world 4"));
   CHECK_THROWS_WITH(batch.restore(saved, 0, 4), Catch::Contains("world is 4, must be 0 to 3"));
   CHECK_THROWS_WITH(batch.copy_world(0, 4), Catch::Contains("world is 4"));
 }

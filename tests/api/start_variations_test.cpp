@@ -255,7 +255,7 @@ TEST_CASE("what is wrong with beginnings that vary is said", "[fast][scene][para
   Variation of_ground = vary_three(Parameter::initial_position, Vec3::Zero(), Vec3::Zero());
   of_ground.body = BodyId(1);
   CHECK(issue(of_ground) ==
-        "variation 0: initial_position cannot vary here, must be of a body that moves");
+        "variation 0: initial_position cannot vary here, must belong to a body that moves");
   scene.bodies[0].mass_properties = MassProperties{};
   CHECK(issue(vary_three(Parameter::center_of_mass, Vec3(1, 0, 0), Vec3(2, 0, 0), Draw::none)) ==
         "variation 0: draw is none, but the scene's center_of_mass of body 0, 0, is not within "

@@ -167,7 +167,7 @@ TEST_CASE("many steps of some worlds are as many single ones", "[batch][fast]") 
   once.step(Mask(6, 0), 5);
   CHECK(once.hash() == often.hash());
   CHECK_THROWS_WITH(once.step(Mask(5, 1)),
-                    Catch::Contains("the mask has 5 entries, the batch 6 worlds"));
+                    Catch::Contains("the mask has 5 entries, the batch has 6 worlds"));
   CHECK_THROWS_AS(once.step(Mask(7, 1), 0), std::invalid_argument);
 }
 

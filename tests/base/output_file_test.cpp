@@ -67,9 +67,9 @@ TEST_CASE("what exists and is no regular file is refused, and stays", "[fast][fi
   fs::create_symlink("/dev/null", folder / "link");
   check_refused(folder / "link", "is a device, not a file");
   fs::create_symlink("round", folder / "round");
-  check_refused(folder / "round", "symbolic links lead in a circle");
-  check_refused(folder / "no" / "file", "there is no folder '" + (folder / "no").string() + "'");
-  check_refused("", "is no name of a file");
+  check_refused(folder / "round", "symbolic links form a loop");
+  check_refused(folder / "no" / "file", "no such folder: '" + (folder / "no").string() + "'");
+  check_refused("", "is not a file name");
   check_refused(folder / "sub" / ".", "is a directory, not a file");
   write_file(folder / "file", "old");
   check_refused(folder / "file" / "file", "its folder cannot be used: Not a directory");

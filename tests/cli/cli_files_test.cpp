@@ -162,7 +162,7 @@ TEST_CASE("what a killed run had recorded is found by the next, and replays", "[
   const Outcome next = folder.run("run ball3d --worlds 4 --steps 2 --record run.h5");
   CHECK(next.code == 0);
   CHECK(next.err ==
-        "manyworlds: note: left by a run that was cut off: manyworlds replay " + part + "\n");
+        "manyworlds: note: an interrupted run left a recording: manyworlds replay " + part + "\n");
   CHECK(folder.parts().size() == 1);
   // Dumps of lost worlds look, too.
   fs::create_directories(folder / "lost");

@@ -141,15 +141,15 @@ TEST_CASE("films say what is wrong, and leave nothing", "[cli]") {
     folder.check_bad(folder.run(kShort, mode), message);
   };
   bad("dies", "./browser ended (exit code 1): no display");
-  bad("babbles", "./browser says what is no message");
+  bad("babbles", "./browser sent an invalid message");
   bad("crashes", "the page crashed in ./browser");
   bad("refuses", "the page: there is no world 7, only 0 to 1\n");
   bad("fails", "'film.mp4': ./encoder failed (exit code 1): No space left on device");
   bad("ends", "'film.mp4': ./encoder failed (exit code 8): Unknown encoder");
   folder.check_bad(folder.run(std::string(kShort) + "--begin 3"),
-                   "it would begin at 3.0 s, and worlds end at 2.0 s");
+                   "the film would start at 3.0 s, but worlds end at 2.0 s");
   folder.check_bad(folder.run("view ball3d --worlds 2 --seconds 0.1 --mp4 no/such/film.mp4"),
-                   "there is no folder 'no/such'");
+                   "no such folder: 'no/such'");
   folder.check_bad(folder.run("view ball3d --worlds 2 --seconds 0.1 --mp4 tmp"),
                    "'tmp': is a directory, not a file");
   // What was there stays.
@@ -160,11 +160,11 @@ TEST_CASE("films say what is wrong, and leave nothing", "[cli]") {
 
   fs::rename(folder / "encoder", folder / "gone");
   bad("",
-      "wants an encoder, and found no ./encoder; Debian has it as ffmpeg, PyPI as imageio-ffmpeg "
-      "(Python ");
+      "needs an encoder, found none of ./encoder; install Debian's ffmpeg or PyPI's imageio-ffmpeg "
+      "(found ");
   fs::rename(folder / "browser", folder / "gone");
   const Outcome picture = folder.run("view ball3d --png a.png");  // at once: nothing is recorded
-  folder.check_bad(picture, "wants a browser, and found no ./browser; Debian has it as chromium");
+  folder.check_bad(picture, "needs a browser, found none of ./browser; install Debian's chromium");
 }
 
 TEST_CASE("films refuse options that they cannot have", "[cli]") {

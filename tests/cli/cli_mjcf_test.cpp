@@ -72,7 +72,7 @@ TEST_CASE("hostile MJCF files are one line and exit code 2", "[cli]") {
     };
     refused("hfield.xml", "hfield.xml: hfield 'h', line 1: has 30000 x 30000 samples");
     refused("crowd.xml", "crowd.xml: replicate, line 1: makes 3000001 elements; expected at most");
-    refused("include.xml", "include.xml: include, line 2: '/etc/passwd' lies outside");
+    refused("include.xml", "include.xml: include, line 2: '/etc/passwd' is outside");
     refused("urdf.xml", "urdf.xml: robot 'r', line 1: is a URDF file");
     refused("empty.xml", "empty.xml: is an empty file");
     refused("fifo.xml", "fifo.xml: is a FIFO; expected a file");
@@ -84,7 +84,7 @@ TEST_CASE("a model that MuJoCo is not done with in time ends as one line", "[cli
   const ScratchFolder folder;
   write(folder, "crowd.xml", world("<replicate count='1000000'>" + kBall + "</replicate>"));
   check_refused(run(folder, "run crowd.xml --mjcf-limit copies=10000000 --mjcf-limit seconds=1"),
-                "crowd.xml: MuJoCo was not done with compiling it after 1 s");
+                "crowd.xml: MuJoCo did not compile it within 1 s");
 }
 
 TEST_CASE("a model that MuJoCo crashes on, or has no memory for, ends as one line", "[cli]") {
@@ -112,15 +112,15 @@ TEST_CASE("the program widens what an MJCF file may open and ask for", "[cli]") 
   const ScratchFolder folder;
   write(folder, "parts/ball.xml", world(kBall));
   write(folder, "model/model.xml", "<mujoco><include file='../parts/ball.xml'/></mujoco>");
-  check_refused(run(folder, "run model/model.xml"), "outside of the model's folder");
+  check_refused(run(folder, "run model/model.xml"), "outside the model's folder");
   const Outcome found = run(folder, "run model/model.xml --worlds 2 --steps 2 --mjcf-root parts");
   CHECK(found.code == 0);
   CHECK(contains(found.out, "hash"));
   check_refused(run(folder, "run parts/ball.xml --mjcf-limit elements=3"), "limit 'elements'");
   check_refused(run(folder, "run parts/ball.xml --mjcf-limit elementz=3"),
-                "--mjcf-limit: there is no limit 'elementz'; there are file_bytes, ");
+                "--mjcf-limit: unknown limit 'elementz'; expected file_bytes, ");
   check_refused(run(folder, "run parts/ball.xml --mjcf-limit elements"),
-                "--mjcf-limit: must be NAME=N, N a whole number of at least 1, is 'elements'");
+                "--mjcf-limit: must be NAME=N with a whole number N of at least 1, is 'elements'");
   check_refused(run(folder, "run parts/ball.xml --mjcf-limit elements=0"), "is 'elements=0'");
   check_refused(run(folder, "run parts/ball.xml --mjcf-root none"), "MJCF root 'none'");
 }

@@ -39,28 +39,28 @@ TEST_CASE("a name that cannot be is told with the option that gave it", "[cli][f
       {report + "--out ''", "--out: must be the name of a folder, is ''"},
       {report + "--out file", "--out: 'file': is a file, not a folder"},
       {report + "--out file/sub", "--out: 'file': is a file, not a folder"},
-      {report + "--out /proc/none", "--out: '/proc/none': the folder cannot be made: "},
-      {report + "--out /dev/null", "--out: '/dev/null': is no folder"},
-      {report + "--out " + long_name, "the folder cannot be made: File name too long"},
+      {report + "--out /proc/none", "--out: '/proc/none': the folder cannot be created: "},
+      {report + "--out /dev/null", "--out: '/dev/null': is not a folder"},
+      {report + "--out " + long_name, "the folder cannot be created: File name too long"},
       {report + "--peers ''", "--peers: must be the name of a folder, is ''"},
       {report + "--peers-only", "--peers-only requires --peers"},
       {report + "--peers none", "--peers: 'none': cannot be read: No such file or directory"},
-      {report + "--peers file", "--peers: 'file': is no folder"},
-      {report + "--peers .", "--peers: '.': there is no program peer_* in it"},
+      {report + "--peers file", "--peers: 'file': is not a folder"},
+      {report + "--peers .", "--peers: '.': it contains no program peer_*"},
       {report + "--peers " + long_name, "cannot be read: File name too long"},
   };
   if (records) {
     const std::vector<Bad> recorded = {
         {job + "--record ''", "--record: must be the name of a file, is ''"},
-        {job + "--record none/a.h5", "--record: 'none/a.h5': there is no folder 'none'"},
+        {job + "--record none/a.h5", "--record: 'none/a.h5': no such folder: 'none'"},
         {job + "--record file/a.h5", "--record: 'file/a.h5': its folder cannot be used: Not a d"},
         {job + "--record .", "--record: '.': is a directory, not a file"},
         {job + "--record " + long_name, "File name too long"},
         {job + "--dump-lost ''", "--dump-lost: must be the name of a folder, is ''"},
         {job + "--dump-lost file", "--dump-lost: 'file': is a file, not a folder"},
         {job + "--dump-lost file/sub", "--dump-lost: 'file': is a file, not a folder"},
-        {job + "--dump-lost /proc/none", "--dump-lost: '/proc/none': the folder cannot be made"},
-        {job + "--dump-lost " + long_name, "the folder cannot be made: File name too long"},
+        {job + "--dump-lost /proc/none", "--dump-lost: '/proc/none': the folder cannot be created"},
+        {job + "--dump-lost " + long_name, "the folder cannot be created: File name too long"},
     };
     all.insert(all.end(), recorded.begin(), recorded.end());
   }

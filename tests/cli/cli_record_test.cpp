@@ -84,7 +84,7 @@ TEST_CASE("what cannot be recorded or replayed is bad input", "[cli]") {
   for (const char* list : {"x", "1-", "3-1", "1,,2", "1,", "1 2", "99999999999"}) {
     bad(run + "--record a.h5 --record-worlds '" + list + "'", "--record-worlds");
   }
-  bad(run + "--record a.h5 --record-worlds 2-8", "there is no world 8, --worlds is 8");
+  bad(run + "--record a.h5 --record-worlds 2-8", "holds 8, must be below --worlds, which is 8");
   bad(run + "--record a.h5 --record-every 0", "--record-every: must be at least 1");
   bad(run + "--record-every 3", "--record");
   bad(run + "--record no/such/folder/a.h5", "no/such/folder/a.h5");
@@ -92,7 +92,7 @@ TEST_CASE("what cannot be recorded or replayed is bad input", "[cli]") {
   bad("replay absent.h5", "'absent.h5': cannot be read");
   bad("replay .", "'.': is a directory");
   std::ofstream(folder / "foreign.h5") << std::string(5000, 'x');
-  bad("replay foreign.h5", "'foreign.h5': is no recording of manyworlds");
+  bad("replay foreign.h5", "'foreign.h5': is not a manyworlds recording");
   REQUIRE(folder.run(run + "--record a.h5").code == 0);
   fs::resize_file(folder / "a.h5", fs::file_size(folder / "a.h5") - 1);
   bad("replay a.h5", "'a.h5': is ");

@@ -300,7 +300,7 @@ TEST_CASE("a report without a page is its JSON, and says how the page is made", 
   CHECK(first.code == 0);
   CHECK(std::count(first.err.begin(), first.err.end(), '\n') == 1);
   CHECK(contains(first.err, "tools/viewer in the repository builds it"));
-  CHECK(contains(first.err, "'manyworlds report page report/accuracy.json' makes it"));
+  CHECK(contains(first.err, "'manyworlds report page report/accuracy.json' then makes the page"));
   CHECK_FALSE(contains(first.out, "accuracy.html"));
   CHECK_FALSE(contains(first.err, "earlier"));
   const std::filesystem::path page = folder / "report" / "accuracy.html";
@@ -318,7 +318,7 @@ TEST_CASE("a report without a page is its JSON, and says how the page is made", 
   CHECK(content(folder / "a" / "b" / "accuracy.html") == content(page));
 
   const Outcome again = test::run_program(alone.string(), folder, command);
-  CHECK(contains(again.err, "report/accuracy.html is of an earlier report"));
+  CHECK(contains(again.err, "report/accuracy.html is from an earlier report"));
   const Outcome none =
       test::run_program(alone.string(), folder, "report page report/accuracy.json");
   CHECK(none.code == 2);
@@ -333,12 +333,12 @@ TEST_CASE("report page says what is no report and what is no page", "[fast][cli]
   std::ofstream(folder / "plan.json") << R"({"report": "plan", "results": []})";
   std::ofstream(folder / "plan.html") << R"({"report": "plan", "results": []})";
   for (const auto& [arguments, message] : std::map<std::string, std::string>{
-           {"none.json", "'none.json': there is no such file"},
-           {".", "'.': is no file"},
-           {"list.json", "'list.json': is no report; expected the JSON of report accuracy, "},
-           {"plan.json other.json", "'other.json': is no report"},
-           {"half.json", "'half.json': is no report"},
-           {"plan.html", "'plan.html': is where its page would go"},
+           {"none.json", "'none.json': no such file"},
+           {".", "'.': is not a file"},
+           {"list.json", "'list.json': is not a report; expected the JSON of report accuracy, "},
+           {"plan.json other.json", "'other.json': is not a report"},
+           {"half.json", "'half.json': is not a report"},
+           {"plan.html", "'plan.html': its page would overwrite it"},
            {"plan.json --out list.json", "report page: cannot write 'list.json': is a file"}}) {
     INFO(arguments);
     const Outcome outcome = run_with_page(folder, "report page " + arguments);
@@ -349,10 +349,10 @@ TEST_CASE("report page says what is no report and what is no page", "[fast][cli]
   }
   for (const std::string command : {"report page plan.json", "report accuracy --quick"}) {
     CHECK(contains(test::run_program(test::kProgram, folder, command, "MANYWORLDS_REPORT=no").err,
-                   "MANYWORLDS_REPORT is 'no', which is no file"));
+                   "MANYWORLDS_REPORT is 'no', which is not a file"));
     CHECK(contains(
         test::run_program(test::kProgram, folder, command, "MANYWORLDS_REPORT=list.json").err,
-        "'list.json': is no page of this version; expected report.html as viewer/ builds it"));
+        "'list.json': is not a page of this version; expected report.html as viewer/ builds it"));
   }
   CHECK_FALSE(std::filesystem::exists(folder / "report"));
 }
@@ -373,7 +373,7 @@ TEST_CASE("report says which cases there are", "[fast][cli][report]") {
   const Outcome outcome =
       test::run_program(test::kProgram, folder, "report accuracy --cases A1,B7 --out here", "");
   CHECK(outcome.code == 2);
-  CHECK(contains(outcome.err, "unknown case 'B7'; there are A1, A2"));
+  CHECK(contains(outcome.err, "unknown case 'B7'; expected A1, A2"));
 }
 
 }  // namespace manyworlds

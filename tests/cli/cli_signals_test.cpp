@@ -55,7 +55,7 @@ TEST_CASE("a page that was cut says so", "[cli][signals]") {
     const Outcome outcome = interrupted(folder, view, json ? SIGTERM : SIGINT);
     const std::string cut = " steps of ball3d";
     CHECK(contains(outcome.err, json ? "interrupted by SIGTERM after " : "interrupted by SIGINT"));
-    CHECK(contains(outcome.err, " of 60000000" + cut + "; page.html shows what was done by then"));
+    CHECK(contains(outcome.err, " of 60000000" + cut + "; page.html shows the steps until then"));
     CHECK(contains(content(folder / "page.html"), ", interrupted after "));
     if (!json) {
       CHECK(contains(outcome.out, "page.html: 8 worlds"));

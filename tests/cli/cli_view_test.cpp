@@ -77,7 +77,7 @@ TEST_CASE("view says what is wrong", "[cli]") {
   const Folder folder;
   if (!records(folder)) return;
   check_bad(folder.run("view ball3d", "absent.html"),
-            "MANYWORLDS_VIEWER is 'absent.html', which is no file");
+            "MANYWORLDS_VIEWER is 'absent.html', which is not a file");
   write_empty_page(folder);
   check_bad(folder.run("view absent.h5 --out a.html"), "'absent.h5': cannot be read");
   check_bad(folder.run("view ball4d --out a.html"), "unknown scene 'ball4d'");
@@ -91,7 +91,7 @@ TEST_CASE("view says what is wrong", "[cli]") {
   CHECK_FALSE(fs::exists(folder / "a.html"));
   std::ofstream(folder / "viewer.html") << "<html>";
   check_bad(folder.run("view ball3d --seconds 0.1 --worlds 2 --out a.html"),
-            "is no page of this version");
+            "is not a page of this version");
 }
 
 TEST_CASE("contacts are recorded where they are asked for, and of scenes that view records",
@@ -127,7 +127,7 @@ TEST_CASE("view without --out leaves its page in the temporary folder, or nothin
     return folder.run(arguments, "viewer.html TMPDIR=tmp env -u DISPLAY -u WAYLAND_DISPLAY");
   };
   std::ofstream(folder / "viewer.html") << "<html>";
-  check_bad(view("view ball3d --seconds 0.1 --worlds 2"), "is no page of this version");
+  check_bad(view("view ball3d --seconds 0.1 --worlds 2"), "is not a page of this version");
   CHECK(fs::is_empty(folder / "tmp"));
   write_empty_page(folder);
   check_bad(view("view absent.h5"), "'absent.h5': cannot be read");
@@ -149,9 +149,9 @@ TEST_CASE("view --live says what it cannot show", "[cli]") {
     CHECK(contains(bare.err, "libboost-dev"));
     return;
   }
-  check_bad(bare, "the page is none of this version");  // it may open no socket
+  check_bad(bare, "the page is not of this version");  // it may open no socket
   check_bad(folder.run("view run.h5 --live"), "'run.h5' is a recording");
-  check_bad(folder.run("view ball3d ball2d --live"), "shows one scene, 2 were given");
+  check_bad(folder.run("view ball3d ball2d --live"), "expects one scene, 2 were given");
   check_bad(folder.run("view ball3d --live --speed fast"),
             "--speed: must be 0.001 to 10000, or max");
   check_bad(folder.run("view ball3d --live --speed 0"), "is '0'");

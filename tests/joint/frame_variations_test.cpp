@@ -191,12 +191,12 @@ TEST_CASE("what is wrong with frames and loads that vary is said", "[fast][scene
                vary_three(Parameter::anchor_a, Vec3(0, -0.1, 0), Vec3(0.1, 0, 0))}) == "0 issues");
   CHECK(issue({vary(Parameter::break_force, 0, 20)}) == "variation 0: low is 0, must be > 0");
   CHECK(issue({vary(Parameter::break_torque, 1, 20)}) ==
-        "variation 0: break_torque is of nothing in this scene");
+        "variation 0: break_torque matches nothing in this scene");
   Variation of_first = vary(Parameter::break_torque, 1, 20);
   of_first.joint = JointId(0);
   CHECK(issue({of_first}) ==
-        "variation 0: break_torque cannot vary here, must be of a joint with such a load, which is "
-        "finite");
+        "variation 0: break_torque cannot vary here, must belong to a joint with such a load, "
+        "which is finite");
   CHECK(issue({vary_three(Parameter::anchor_b, Vec3(0, 1, -1), Vec3(0, 1, 1))}) ==
         "variation 0: high[2] must be 0 in a planar scene, as low[2]");
   CHECK(issue({vary_three(Parameter::axes_a, Vec3(0.1, 0, 0), Vec3(0.2, 0, 0))}) ==
@@ -205,7 +205,7 @@ TEST_CASE("what is wrong with frames and loads that vary is said", "[fast][scene
         "variation 0: low[2] is 0.5, must be at most high[2], which is 0.2");
   scene.joints[0].type = DistanceJoint{};
   CHECK(issue({vary_three(Parameter::axes_a, Vec3::Zero(), Vec3::Zero())}) ==
-        "variation 0: axes_a is of nothing in this scene");
+        "variation 0: axes_a matches nothing in this scene");
   scene.joints[0].type = HingeJoint{};
   scene.joints[0].break_force = std::numeric_limits<double>::infinity();
   scene.options.solver.method = Solver::newton;

@@ -125,19 +125,20 @@ TEST_CASE("what is wrong with limits and drives that vary is said", "[fast][scen
   };
   CHECK(issue({vary(Parameter::limit_low, -1, 0)}) == "0 issues");
   CHECK(issue({vary(Parameter::drive_stiffness, 1, 2)}) ==
-        "variation 0: drive_stiffness is of nothing in this scene");
+        "variation 0: drive_stiffness matches nothing in this scene");
   Variation of_first = vary(Parameter::drive_damping, 1, 2);
   of_first.joint = JointId(0);
-  CHECK(issue({of_first}) ==
-        "variation 0: drive_damping cannot vary here, must be of a hinge, slider or wheel whose "
-        "drive has a spring of stiffness and damping");
+  CHECK(
+      issue({of_first}) ==
+      "variation 0: drive_damping cannot vary here, must belong to a hinge, slider or wheel whose "
+      "drive has a spring of stiffness and damping");
   CHECK(issue({vary(Parameter::motor_force, -1, 2)}) == "variation 0: low is -1, must be >= 0");
   CHECK(issue({vary(Parameter::limit_low, -1, 0.5), vary(Parameter::limit_high, 0.25, 1)}) ==
         "variations at their lowest, limit_low at its highest: joint 0: limit is from 0.5 to 0.25, "
         "low must not be above high");
   std::get<SliderJoint>(scene.joints[0].type).limit->low = -std::numeric_limits<double>::infinity();
   CHECK(issue({vary(Parameter::limit_low, -1, 0)}) ==
-        "variation 0: limit_low is of nothing in this scene");
+        "variation 0: limit_low matches nothing in this scene");
   CHECK(issue({vary(Parameter::armature, 0, 1)}) ==
         "variation 0: parameter is armature, which varies per world only with the newton solver, "
         "not tgs-soft");

@@ -239,7 +239,7 @@ TEST_CASE("what is wrong with springs and lengths that vary is said", "[fast][sc
         "0 issues");
   CHECK(issue({vary(Parameter::length, -1, 1)}) == "variation 0: low is -1, must be >= 0");
   CHECK(issue({vary(Parameter::spring_frequency, 1, 2)}) ==
-        "variation 0: spring_frequency is of nothing in this scene");
+        "variation 0: spring_frequency matches nothing in this scene");
   CHECK(
       issue({vary(Parameter::spring_stiffness, 0, 1), vary(Parameter::spring_damping, 0, 1)}) ==
       "variations at their lowest: joint 0: spring is zero, must have a stiffness, a damping or a "
@@ -249,13 +249,13 @@ TEST_CASE("what is wrong with springs and lengths that vary is said", "[fast][sc
   Variation of_first = vary(Parameter::length, 1, 2);
   of_first.joint = JointId(0);
   CHECK(issue({of_first}) ==
-        "variation 0: length cannot vary here, must be of a distance joint or pulley with a "
+        "variation 0: length cannot vary here, must belong to a distance joint or pulley with a "
         "length");
   Control torque;
   torque.kind = ControlKind::torque, torque.body = BodyId(0), torque.direction = Vec3::UnitZ();
   scene.add(torque);
   CHECK(issue({vary_three(Parameter::control_direction, Vec3::Zero(), Vec3::Zero())}) ==
-        "variation 0: control_direction is of nothing in this scene");
+        "variation 0: control_direction matches nothing in this scene");
   scene.controls[0].kind = ControlKind::thrust, scene.controls[0].direction = Vec3::UnitX();
   CHECK(issue({vary_three(Parameter::control_point, {0, 0, -1}, {0, 0, 1})}) ==
         "variation 0: high[2] must be 0 in a planar scene, as low[2]");

@@ -200,7 +200,7 @@ TEST_CASE("what a program does not let pages command is told to them", "[live][f
     });
     while (!there) live.apply(batch);
     reader.join();
-    CHECK(said.find("does not let pages") != said.npos);
+    CHECK(said.find("does not allow pages") != said.npos);
   }
   CHECK(batch.steps() == 0);
 }

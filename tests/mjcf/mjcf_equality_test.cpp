@@ -127,7 +127,7 @@ TEST_CASE("where a joint's frames coincide MuJoCo's equality is satisfied", "[mj
     const std::string xml = with(c.equality);
     const MjcfResult result = load_mjcf_string(xml);
     for (const std::string& warning : result.warnings) {
-      CHECK_THAT(warning, Catch::Contains("equalities: begin up to"));
+      CHECK_THAT(warning, Catch::Contains("equalities: start up to"));
     }
     const Scene& scene = result.scene;
     CHECK(validate(scene).empty());
@@ -168,11 +168,11 @@ TEST_CASE("where a joint's frames coincide MuJoCo's equality is satisfied", "[mj
 TEST_CASE("joints of equalities without effect are left out", "[mjcf][fast]") {
   CHECK_THAT(only_warning(with("<connect name='e' body1='p' body2='q' anchor='0 0 0' "
                                "active='false'/>")),
-             Catch::Contains("equality 'e', line 1: is not active and left out"));
+             Catch::Contains("equality 'e', line 1: is inactive and left out"));
   for (const std::string equality : {"<weld name='e' body1='p' body2='part'/>",
                                      "<connect name='e' body1='hook' anchor='0 0 0'/>"}) {
     CHECK(load_mjcf_string(with(equality)).scene.joints.empty());
-    CHECK_THAT(only_warning(with(equality)), Catch::Contains("has both ends on one body"));
+    CHECK_THAT(only_warning(with(equality)), Catch::Contains("connects one body to itself"));
   }
   const MjcfResult off = load_mjcf_string(
       with("<weld name='e' body1='p' body2='q'/>", "<option><flag equality='disable'/></option>"));
@@ -197,7 +197,7 @@ TEST_CASE("joined bodies collide unless a contact exclude says otherwise", "[mjc
   // Of parts of bodies, and of bodies that no joint holds together.
   const auto refused = Catch::Contains(
       "exclude 'x': contact excludes are not simulated yet; "
-      "expected none but between two free bodies");
+      "expected excludes only between two free bodies");
   const std::string solid = "<geom size='.1'/>";
   CHECK_THROWS_WITH(load_mjcf_string(bodies(solid, "body1='a' body2='b'")), refused);
   CHECK_THROWS_WITH(load_mjcf_string(bodies(solid, "body1='a' body2='c'")), refused);
@@ -213,7 +213,7 @@ TEST_CASE("softness of equalities is a warning", "[mjcf][fast]") {
     const std::string warning = only_warning(with(weld + attribute + "/>"));
     CHECK_THAT(warning, Catch::Contains("equality 'e', line 1: " +
                                         attribute.substr(0, attribute.find('='))) &&
-                            Catch::Contains("is as stiff as JointOptions::frequency says"));
+                            Catch::Contains("joint stiffness follows JointOptions::frequency"));
   }
 }
 
@@ -235,7 +235,7 @@ TEST_CASE("joints that begin apart close as slowly as in MuJoCo", "[mjcf]") {
 
   const MjcfResult apart = load_mjcf_string(xml("-.1 .6 0"));
   REQUIRE(apart.warnings.size() == 1);
-  CHECK_THAT(apart.warnings[0], Catch::Contains("equalities: begin up to 0.6 m and 0 rad apart"));
+  CHECK_THAT(apart.warnings[0], Catch::Contains("equalities: start up to 0.6 m and 0 rad apart"));
   Batch batch(compile(apart.scene), one_world());
   double fastest = 0;
   for (int step = 0; step < 250; ++step) {

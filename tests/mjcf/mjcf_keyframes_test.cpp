@@ -86,8 +86,8 @@ TEST_CASE("keyframes keep their names, and what is not theirs is said", "[mjcf][
   std::vector<std::string> names;
   for (const Keyframe& keyframe : result.scene.keyframes) names.push_back(keyframe.name);
   CHECK(names == std::vector<std::string>{"squat", "", "unnormalised", "late"});
-  CHECK(result.warnings == std::vector<std::string>{
-                               "key 'late': time is ignored; worlds have no clocks of their own"});
+  CHECK(result.warnings ==
+        std::vector<std::string>{"key 'late': time is ignored; worlds have no separate clocks"});
 }
 
 }  // namespace manyworlds::test

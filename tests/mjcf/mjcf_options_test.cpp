@@ -51,9 +51,9 @@ TEST_CASE("another solver than Newton's is a warning, and its iterations are not
   for (const std::string name : {"PGS", "CG"}) {
     const MjcfResult result = load("<option solver='" + name + "' iterations='3'/>");
     CHECK(result.warnings ==
-          std::vector<std::string>{"option: solver " + name +
-                                   " and its iterations are ignored; the same minimum is found by "
-                                   "Newton's method"});
+          std::vector<std::string>{
+              "option: solver " + name +
+              " and its iterations are ignored; Newton's method finds the same minimum"});
     CHECK_FALSE(result.scene.options.solver.iterations);
   }
 }

@@ -59,15 +59,15 @@ void check(const std::vector<Refused>& table) {
 TEST_CASE("what a joint has and is not simulated is refused", "[mjcf][robots][fast]") {
   check({
       {jointed("type='ball' stiffness='1 2 0'"),
-       "joint 'j' of body 'b', line 1: stiffness with powers of the displacement is not simulated "
+       "joint 'j' of body 'b', line 1: polynomial stiffness is not simulated "
        "yet; expected one number"},
       {jointed("stiffness='1 2 0'"),
-       "joint 'j' of body 'b', line 1: stiffness with powers of the displacement is not simulated "
+       "joint 'j' of body 'b', line 1: polynomial stiffness is not simulated "
        "yet; expected one number"},
       {jointed("stiffness='1' springyield='0.1'"),
        "joint 'j' of body 'b', line 1: springyield is not simulated yet; expected 0"},
       {jointed("damping='1 2 0'"),
-       "joint 'j' of body 'b', line 1: damping with powers of the speed is not simulated yet; "
+       "joint 'j' of body 'b', line 1: polynomial damping is not simulated yet; "
        "expected one number"},
       {jointed("frictionloss='0.1'"),
        "joint 'j' of body 'b', line 1: frictionloss is not simulated yet; expected 0"},
@@ -75,10 +75,9 @@ TEST_CASE("what a joint has and is not simulated is refused", "[mjcf][robots][fa
        "joint 'j' of body 'b', line 1: actuatorfrcrange is not simulated yet; expected none"},
       {inside("<body name='d'><geom size='.1' mass='0'/></body>"),
        "body 'd', line 1: has geoms that collide but no mass, which is not simulated yet; expected "
-       "a mass of its own"},
+       "a mass"},
       {inside("<body name='d'><joint axis='1 0 0'/><body><geom size='.1'/></body></body>"),
-       "body 'd', line 1: has joints but no mass, which is not simulated yet; expected a mass of "
-       "its own"},
+       "body 'd', line 1: has joints but no mass, which is not simulated yet; expected a mass"},
   });
   // What acts on nothing is no problem.
   CHECK(problems_of(
@@ -131,8 +130,8 @@ TEST_CASE("an actuator that is more than a force on a hinge or slide is refused"
        "actuator 'm', line 1: delay is not simulated yet; expected 0"},
       {around("<option actuatorgroupdisable='3'/>",
               "<actuator><motor name='m' joint='j' group='3'/><motor joint='j'/></actuator>"),
-       "actuator 'm', line 1: switching off its group (actuatorgroupdisable) is not simulated yet; "
-       "expected all groups on"},
+       "actuator 'm', line 1: its disabled group (actuatorgroupdisable) is not simulated yet; "
+       "expected all groups enabled"},
   });
 }
 
@@ -153,8 +152,7 @@ TEST_CASE("options that change how trees move are refused", "[mjcf][robots][fast
        "option: flag actuation='disable' is not simulated with joints yet; expected enable"},
       {option("density='1.2' integrator='implicitfast'"),
        "option: integrator implicitfast in a medium is not simulated with joints yet; expected "
-       "Euler "
-       "or RK4, or density and viscosity 0"},
+       "Euler or RK4, or density and viscosity 0"},
       {around("<option viscosity='2'/>", "", "", "fluidshape='ellipsoid'"),
        "geom 'g' of body 'b', line 1: fluidshape ellipsoid is not simulated yet; expected none"},
       {flag("speculative='enable'"),
@@ -186,7 +184,7 @@ TEST_CASE("contacts and constraints that trees do not have yet are refused",
       {around("",
               "<tendon><fixed name='e' stiffness='1'><joint joint='j' coef='1'/></fixed></tendon>"),
        "tendon 'e': has stiffness, damping, friction loss or armature, which are not simulated yet "
-       "of tendons; expected none of them"},
+       "for tendons; expected none of them"},
       {around("",
               "<tendon><fixed name='e'><joint joint='j' coef='1'/></fixed></tendon>"
               "<actuator><motor name='m' tendon='e'/></actuator>"),
@@ -204,8 +202,8 @@ TEST_CASE("contacts and constraints that trees do not have yet are refused",
                               "<keyframe><key name='k'/><key name='l' time='1'/></keyframe>"));
   REQUIRE(inactive.warnings.size() == 2);
   CHECK(inactive.warnings[0] ==
-        "equality 'e', line 1: is not active and left out; joints cannot be switched on");
-  CHECK(inactive.warnings[1] == "key 'l': time is ignored; worlds have no clocks of their own");
+        "equality 'e', line 1: is inactive and left out; joints cannot be activated later");
+  CHECK(inactive.warnings[1] == "key 'l': time is ignored; worlds have no separate clocks");
 }
 
 TEST_CASE("all problems of a model with joints come at once", "[mjcf][robots][fast]") {

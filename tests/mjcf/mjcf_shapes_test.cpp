@@ -213,7 +213,7 @@ TEST_CASE("a height field has MuJoCo's surface", "[mjcf][fast]") {
   const MjcfResult result = load_mjcf_string(xml);
   REQUIRE(result.warnings.size() == 1);
   CHECK_THAT(result.warnings[0], Catch::Contains("geom 'g' of body 'land', line 1: is solid "
-                                                 "without end below its surface") &&
+                                                 "to any depth below its surface") &&
                                      Catch::Contains("0.1 m"));
   const Body& body = result.scene.bodies.at(0);
   CHECK(body.motion == Motion::fixed);

@@ -88,7 +88,7 @@ TEST_CASE("free bodies alone are not compared", "[mjcf][robots][fast]") {
   const MjcfFiles files = MjcfFiles::of_string(
       "<mujoco><worldbody><body><freejoint/><geom size='.1'/></body></worldbody></mujoco>");
   CHECK_THROWS_WITH(compare::Pair(files, kConverged),
-                    "the model has free joints alone, and is not stepped with MuJoCo's physics "
+                    "the model has only free joints, and is not stepped with MuJoCo's physics "
                     "(tgs-soft); expected a hinge, a slide or a ball joint");
 }
 

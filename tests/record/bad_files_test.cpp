@@ -96,12 +96,12 @@ TEST_CASE("files that are no recordings are refused by name", "[fast][record]") 
   write_file(folder / "empty.h5", {});
   refused_file(folder / "empty.h5", "too short");
   write_file(folder / "text.h5", bytes_of_text(std::string(2000, 'x')));
-  refused_file(folder / "text.h5", "is no recording of manyworlds");
+  refused_file(folder / "text.h5", "is not a manyworlds recording");
   // Another program's HDF5 file, and an empty one in our frame.
   const hid_t h5 =
       H5Fcreate((folder / "other.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   H5Fclose(h5);
-  refused_file(folder / "other.h5", "is no recording of manyworlds");
+  refused_file(folder / "other.h5", "is not a manyworlds recording");
   Bytes framed(512);
   const Bytes foreign = bytes_of(folder / "other.h5");
   framed.insert(framed.end(), foreign.begin(), foreign.end());
@@ -126,15 +126,15 @@ TEST_CASE("a forged recording is refused", "[fast][record]") {
   refused(forged("inputs/call_steps", 1, 1), "input 1: acts for 1 steps");
   refused(forged("inputs/call_steps", 0, -4), "input 0: acts for -4 steps");
   refused(forged("inputs/input", 0, kInputCount),
-          ("input 0: is of unknown kind " + std::to_string(kInputCount)).c_str());
-  refused(forged("inputs/input", 0, 2), "input 0: has 3 numbers, must have 6");
+          ("input 0: has unknown type " + std::to_string(kInputCount)).c_str());
+  refused(forged("inputs/input", 0, 2), "input 0: has 3 values, must have 6");
   refused(forged("inputs/world", 1, 2), "input 1: is for world 2 of 2");
   refused(forged("inputs/body", 1, 1), "input 1: is for body 1 of 1");
   refused(forged("inputs/body", 2, 0), "input 2: is for body 0 of 1");
-  refused(forged("inputs/begin", 1, 4), "input 1: has its numbers outside");
-  refused(forged("inputs/begin", 0, -1), "input 0: has its numbers outside");
-  refused(forged("inputs/count", 0, std::int64_t{1} << 62), "input 0: has its numbers outside");
-  refused(forged("start", 3, 0), "does not begin like a snapshot");
+  refused(forged("inputs/begin", 1, 4), "input 1: has values out of range");
+  refused(forged("inputs/begin", 0, -1), "input 0: has values out of range");
+  refused(forged("inputs/count", 0, std::int64_t{1} << 62), "input 0: has values out of range");
+  refused(forged("start", 3, 0), "is not a manyworlds snapshot");
   refused(forged("start", 70, 99), "checksum does not match");
 }
 
@@ -163,7 +163,7 @@ TEST_CASE("a recording of another make is refused", "[fast][record]") {
             H5Dset_extent(data, dims);
             H5Dclose(data);
           }),
-          "'step' is not all there");
+          "'step' is incomplete");
   // What lies in another file is not looked for.
   const Folder folder;
   const std::string other = folder / "other.h5";
@@ -188,13 +188,13 @@ TEST_CASE("a recording of another make is refused", "[fast][record]") {
                 H5Dcreate2(h5, "kinds/0/scene", type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
             H5Dclose(data), H5Sclose(space), H5Tclose(type), H5Pclose(creation);
           }),
-          "'scene' is compressed or lies outside of the file");
+          "'scene' is compressed or stored outside the file");
   // Another scene than the one whose plan was recorded.
   Bytes heavier = honest();
   const std::size_t at = find(heavier, bytes_of_text("\"density\":1000.0"));
   heavier[at + 10] = std::byte{'3'};
   record::seal(std::span(heavier));
-  refused(heavier, "another plan of the scene");
+  refused(heavier, "compiles the scene to another plan");
   Bytes misspelt = honest();
   misspelt[at + 1] = std::byte{'D'};
   record::seal(std::span(misspelt));

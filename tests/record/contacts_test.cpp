@@ -125,7 +125,7 @@ TEST_CASE("contacts are recorded of batches that observe them alone", "[fast][re
   const Folder folder;
   Batch blind(compile(crate_on_ground(Space::spatial)), batch_options(widest_tables().front(), 1));
   CHECK_THROWS_WITH(Recorder(blind, folder / "run.h5", {.contacts = 4}),
-                    Catch::Contains("does not observe them"));
+                    Catch::Contains("does not observe contacts"));
   CHECK_THROWS_WITH(Recorder(blind, folder / "run.h5", {.contacts = -1}),
                     "record: contacts is -1, must be 0 to 65536");
   CHECK(folder.files().empty());

@@ -247,18 +247,18 @@ TEST_CASE("what is no recording at all is told from one", "[fast][record][messag
     if (user == 0 && seteuid(65534) != 0) return "cannot be somebody else";  // root reads all
     const std::string long_name(300, 'x');
     const std::pair<fs::path, const char*> cases[] = {
-        {folder / "text", "begins with 'xxxxxxxx', must with 'MWRECO'"},
+        {folder / "text", "begins with 'xxxxxxxx', must begin with 'MWRECO'"},
         {folder / "escape", "begins with '?"},
         {folder / "empty", "is 0 bytes long, too short for a recording, must be at least 512"},
         {folder / "zeros", "begins with zeros"},
         {folder / "other", "is an HDF5 file of another program"},
-        {folder / "fifo", "is no regular file; expected a recording"},
+        {folder / "fifo", "is not a regular file; expected a recording"},
         {folder / "secret", "Permission denied"},
         {folder / "absent", "No such file or directory"},
         {folder / "text" / "below", "Not a directory"},
         {folder / long_name, "File name too long"},
         {folder.path(), "is a directory"},
-        {"/dev/null", "is no regular file"},
+        {"/dev/null", "is not a regular file"},
         {"", "No such file or directory"},
     };
     for (const auto& [file, why] : cases) {

@@ -87,7 +87,7 @@ TEST_CASE("nothing lost, nothing dumped", "[fast][record]") {
                     Catch::Contains("checkpoint_steps is 0"));
   CHECK_THROWS_AS(LostWorldDumps(batch, "/proc/nowhere"), RecordError);
   batch.add_force(0, batch.body_in_row(0), Vec3(1, 0, 0));
-  CHECK_THROWS_WITH(LostWorldDumps(batch, folder.path()), Catch::Contains("forces were added"));
+  CHECK_THROWS_WITH(LostWorldDumps(batch, folder.path()), Catch::Contains("forces are pending"));
 }
 
 }  // namespace manyworlds::test

@@ -369,11 +369,11 @@ TEST_CASE("pages refuse what they cannot show", "[fast][record][page]") {
   const Recording recording = Recording::open(folder / "run.h5");
   const Recording* const all[] = {&recording};
   const auto empty = empty_page(folder);
-  CHECK_THROWS_WITH(page_of({}, empty), "page: there is no recording");
+  CHECK_THROWS_WITH(page_of({}, empty), "page: no recording is given");
   CHECK_THROWS_WITH(page_of(all, folder / "none.html"), Catch::EndsWith("cannot be read"));
   std::ofstream(folder / "other.html") << "<html></html>";
   CHECK_THROWS_WITH(page_of(all, folder / "other.html"),
-                    Catch::Contains("is no page of this version"));
+                    Catch::Contains("is not a page of this version"));
   CHECK_THROWS_WITH(page_of(all, empty, {.every = 0}),
                     "page: max_worlds is 0 and every is 0, must be at least 0 and 1");
   CHECK_THROWS_WITH(page_of(all, empty, {.numbers = {{"reward", "", {1, 2}}}}),

@@ -285,13 +285,13 @@ TEST_CASE("a Recorder refuses what it cannot record", "[fast][record]") {
   const auto refused = [&](const RecordOptions& options, const char* why) {
     CHECK_THROWS_WITH(Recorder(batch, folder / "run.h5", options), Catch::Contains(why));
   };
-  refused({.worlds = {4}}, "world 4 is not one of the batch's 4");
-  refused({.worlds = {-1}}, "world -1 is not one");
+  refused({.worlds = {4}}, "world 4 is not in the batch, must be 0 to 3");
+  refused({.worlds = {-1}}, "world -1 is not in");
   refused({.worlds = {2, 1}}, "1 comes after 2");
   refused({.every = -1}, "every is -1");
   CHECK_THROWS_AS(Recorder(batch, "/nowhere/at/all.h5"), RecordError);
   batch.add_force(0, batch.body_in_row(0), Vec3(1, 0, 0));
-  refused({}, "forces were added for the next step");
+  refused({}, "forces are pending for the next step");
   batch.step();
   CHECK_NOTHROW(Recorder(batch, folder / "run.h5"));
   CHECK(folder.files().empty());

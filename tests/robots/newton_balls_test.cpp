@@ -58,13 +58,11 @@ TEST_CASE("after a ball joint a series has sliders only", "[robots][fast]") {
   CHECK(series(HingeJoint{}, SliderJoint{}, BallJoint{}).empty());
   CHECK(series(BallJoint{}, SliderJoint{}, SliderJoint{}).empty());
   CHECK(series(BallJoint{}, HingeJoint{}, SliderJoint{}) ==
-        std::vector<std::string>{
-            "joint 1: after is 0, where a ball joint has come: of the joints after one in a "
-            "series the newton solver takes sliders only"});
+        std::vector<std::string>{"joint 1: after is 0, which follows a ball joint: after a ball "
+                                 "joint in a series, the newton solver supports sliders only"});
   CHECK(series(BallJoint{}, SliderJoint{}, BallJoint{}) ==
-        std::vector<std::string>{
-            "joint 2: after is 1, where a ball joint has come: of the joints after one in a "
-            "series the newton solver takes sliders only"});
+        std::vector<std::string>{"joint 2: after is 1, which follows a ball joint: after a ball "
+                                 "joint in a series, the newton solver supports sliders only"});
 }
 
 TEST_CASE("a ball joint's spring swings at its frequency, far from rest, too", "[robots][fast]") {
@@ -152,7 +150,7 @@ TEST_CASE("limits of ball joints are of an angle, and of the newton solver",
               {"limit.margin", "is -0.1, must be >= 0", [&](Scene& s) { limit(s).margin = -0.1; }},
               {"limit.compliance.width", "is -1, must be >= 0",
                [&](Scene& s) { limit(s).compliance.width = -1; }},
-              {"limit", "is given, which takes the newton solver, not tgs-soft",
+              {"limit", "is given, which requires the newton solver, not tgs-soft",
                [&](Scene& s) { s.options.solver.method = Solver::tgs_soft; }}});
 }
 

@@ -248,12 +248,12 @@ TEST_CASE("what is wrong with softness and gears that vary is said", "[fast][sce
         "variations at their lowest: joint 0: limit is from -1 to -2, low must not be above high");
   scene.joints[0].type = SliderJoint{};
   CHECK(issue({solref(Parameter::limit_solref, 500, 1000)}) ==
-        "variation 0: limit_solref is of nothing in this scene");
+        "variation 0: limit_solref matches nothing in this scene");
   Variation of_first = vary(Parameter::limit_solimp, 0, 0);
   of_first.joint = JointId(0);
   CHECK(issue({of_first}) ==
-        "variation 0: limit_solimp cannot vary here, must be of a hinge, slider or ball joint with "
-        "a finite limit");
+        "variation 0: limit_solimp cannot vary here, must belong to a hinge, slider or ball joint "
+        "with a finite limit");
   scene.options.solver.method = Solver::tgs_soft;
   scene.joints.clear(), scene.controls.clear();
   CHECK(issue({vary_three(Parameter::contact_solref, {0.01, 1, 0}, {0.02, 1, 0})}) ==

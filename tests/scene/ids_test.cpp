@@ -92,10 +92,10 @@ TEST_CASE("calls that a fixed body makes no sense of name it and say why", "[fas
   CHECK_THROWS_WITH(batch.add_impulse_at(0, w.ground, x, x),
                     Equals(refused + "no force or impulse moves it"));
   CHECK_THROWS_WITH(batch.add_torque(0, w.post, x), Catch::Contains("body 2 'post' is fixed"));
-  CHECK_THROWS_WITH(batch.set_enabled(0, w.ground, false), Equals(refused + "it is always there"));
-  CHECK_THROWS_WITH(batch.spawn(0, w.ground, {}),
-                    Equals(refused + "it stays where the scene has it"));
-  CHECK_THROWS_WITH(batch.touching(0, w.ground), Catch::Contains("ask the other body"));
+  CHECK_THROWS_WITH(batch.set_enabled(0, w.ground, false),
+                    Equals(refused + "it is always enabled"));
+  CHECK_THROWS_WITH(batch.spawn(0, w.ground, {}), Equals(refused + "it keeps the scene's pose"));
+  CHECK_THROWS_WITH(batch.touching(0, w.ground), Catch::Contains("query the other body"));
   CHECK_THROWS_WITH(plan.row(w.ground), Equals("body 0 'ground' is fixed, it has no row"));
   CHECK_THROWS_AS(plan.row(w.ground), std::invalid_argument);
   // What can be said of it is said.
@@ -162,10 +162,10 @@ TEST_CASE("bodies, shapes, joints and controls are found by their names", "[fast
   // A name that several have means none of them.
   CHECK_THROWS_WITH(plan.shape("ball"),
                     "3 shapes are named 'ball': 0 of body 1, 0 of body 2, 0 of body 3; give them "
-                    "names of their own, or take the handle");
+                    "distinct names, or use the handle");
   w.scene.at(w.crate).name = "lid";
   CHECK_THROWS_WITH(w.scene.body("lid"),
-                    Catch::StartsWith("2 bodies are named 'lid': 1, 3; give them names"));
+                    Catch::StartsWith("2 bodies are named 'lid': 1, 3; give them distinct names"));
   w.scene.joints[0].name.clear();
   CHECK_THROWS_WITH(w.scene.joint("hinge"),
                     "no joint is named 'hinge'; there are no joints with names");
@@ -198,8 +198,9 @@ TEST_CASE("in a batch of several kinds, names, rows and rays are those of the ki
   CHECK_FALSE(batch.ray_hits(2)[0].body);
   CHECK_FALSE(batch.ray_hits(2)[0].shape);
   options.observe.rays[0].body = BodyId(0);
-  CHECK_THROWS_WITH(Batch(compile(w.scene), options),
-                    Catch::Contains("rays[0].body is body 0 'ground', must be one that can move"));
+  CHECK_THROWS_WITH(
+      Batch(compile(w.scene), options),
+      Catch::Contains("rays[0].body is body 0 'ground', must be a body that can move"));
 }
 
 TEST_CASE("contacts and variations name shapes of the scene", "[fast][ids]") {
@@ -234,7 +235,7 @@ TEST_CASE("contacts and variations name shapes of the scene", "[fast][ids]") {
   scene.variations[0].body = BodyId(0);
   const auto issues = validate(scene);
   REQUIRE(issues.size() == 1);
-  CHECK(issues[0].message == "is 1, must be a shape of body 0, is one of body 1");
+  CHECK(issues[0].message == "is 1, must be a shape of body 0, but belongs to body 1");
 }
 
 TEST_CASE("a nearest word is near", "[fast][ids]") {

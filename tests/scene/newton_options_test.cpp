@@ -25,15 +25,15 @@ TEST_CASE("options of the newton solver have ranges", "[fast][validate][newton]"
       robot, "options.medium",
       {{".density", "is -1 kg/m^3, must be >= 0", [](Scene& s) { s.options.medium.density = -1; }},
        {".viscosity", "is nan Pa s", [](Scene& s) { s.options.medium.viscosity = kNan; }},
-       {"", "is given, the newton solver takes none with implicit-fast yet", [](Scene& s) {
+       {"", "is given, the newton solver supports none with implicit-fast yet", [](Scene& s) {
           s.options.medium.density = 1, s.options.integrator = Integrator::implicit_fast;
         }}});
   Scene other = empty_scene(Space::spatial);
   other.add(body_of(shape_of(Sphere{1}), Vec3::Zero()));
   check_each(other, "options.",
-             {{"medium", "is given, which takes the newton solver, not tgs-soft",
+             {{"medium", "is given, which requires the newton solver, not tgs-soft",
                [](Scene& s) { s.options.medium.viscosity = 1; }},
-              {"integrator", "is implicit-fast, which takes the newton solver, not tgs-soft",
+              {"integrator", "is implicit-fast, which requires the newton solver, not tgs-soft",
                [](Scene& s) { s.options.integrator = Integrator::implicit_fast; }}});
   const auto box = [](Scene& s) -> MassProperties& {
     s.bodies[0].mass_properties = {1, Vec3::Zero(), Vec3(1, 2, 2.5).asDiagonal()};

@@ -119,63 +119,63 @@ TEST_CASE("the newton solver names all that it does not take, at once",
   CHECK(
       issues_of(scene) ==
       Issues{
-          "options.integrator is verlet, the newton solver takes symplectic-euler, runge-kutta4 "
-          "and "
-          "implicit-fast",
-          "options.bounds are given, the newton solver takes none",
-          "body 1 'torso': enabled is false, the newton solver takes bodies that are always there",
-          "body 1 'torso': linear_drag is not 0, the newton solver takes none",
-          "body 1 'torso': angular_drag is not 0, the newton solver takes none",
-          "body 1 'torso', shape 0: material.restitution is not 0, the newton solver takes 0: "
-          "nothing bounces",
-          "body 2 'arm': linear_velocity is not 0, the newton solver takes it of free bodies "
+          "options.integrator is verlet, the newton solver supports symplectic-euler, runge-kutta4 "
+          "and implicit-fast",
+          "options.bounds are given, the newton solver supports none",
+          "body 1 'torso': enabled is false, the newton solver supports enabled bodies only",
+          "body 1 'torso': linear_drag is not 0, the newton solver supports none",
+          "body 1 'torso': angular_drag is not 0, the newton solver supports none",
+          "body 1 'torso', shape 0: material.restitution is not 0, the newton solver supports 0 "
+          "only: contacts do not bounce",
+          "body 2 'arm': linear_velocity is not 0, the newton solver supports it for free bodies "
           "only",
-          "body 2 'arm': angular_velocity is not 0, the newton solver takes it of free bodies "
+          "body 2 'arm': angular_velocity is not 0, the newton solver supports it for free bodies "
           "only",
-          "body 2 'arm': jitter is given, the newton solver takes it of free bodies only: what "
-          "they hold moves along",
-          "body 5 'lift': motion is kinematic, the newton solver takes dynamic and fixed bodies",
-          "joint 0 'elbow': drive is given, the newton solver takes Joint::dynamics and controls "
-          "of kind joint_force instead",
-          "joint 0 'elbow': limit.spring is given, the newton solver takes Limit::compliance "
+          "body 2 'arm': jitter is given, the newton solver supports it for free bodies only: "
+          "jointed bodies move along",
+          "body 5 'lift': motion is kinematic, the newton solver supports dynamic and fixed bodies",
+          "joint 0 'elbow': drive is given, the newton solver supports Joint::dynamics and "
+          "controls of kind joint_force instead",
+          "joint 0 'elbow': limit.spring is given, the newton solver supports Limit::compliance "
           "instead",
-          "joint 0 'elbow': break_force is given, the newton solver takes none",
-          "joint 0 'elbow': break_torque is given, the newton solver takes none",
-          "joint 1 'wrist': cone is given, the newton solver takes BallJoint::limit instead",
-          "joint 1 'wrist': twist is given, the newton solver takes BallJoint::limit instead",
-          "joint 1 'wrist': limit.spring is given, the newton solver takes Limit::compliance "
+          "joint 0 'elbow': break_force is given, the newton solver supports none",
+          "joint 0 'elbow': break_torque is given, the newton solver supports none",
+          "joint 1 'wrist': cone is given, the newton solver supports BallJoint::limit instead",
+          "joint 1 'wrist': twist is given, the newton solver supports BallJoint::limit instead",
+          "joint 1 'wrist': limit.spring is given, the newton solver supports Limit::compliance "
           "instead",
-          "joint 1 'wrist': dynamics have a rest or reference, the newton solver takes those of "
+          "joint 1 'wrist': dynamics have a rest or reference, the newton solver supports them for "
           "hinges and sliders only",
-          "joint 3: dynamics have a spring or reference, the newton solver takes those of hinges "
-          "and sliders only",
-          "joint 3: dynamics have armature or damping, the newton solver takes none of a joint "
-          "that does not move",
-          "joint 4: type is distance, the newton solver takes hinge, slider, ball and fixed",
-          "joint 5: type is wheel, the newton solver takes hinge, slider, ball and fixed",
-          "joint 6: type is pulley, the newton solver takes hinge, slider, ball and fixed",
-          "joint 7: type is target, the newton solver takes hinge, slider, ball and fixed",
-          "control 1: kind is target_speed, the newton solver takes joint_force only",
-          "control 2 'jet': kind is thrust, the newton solver takes joint_force only",
-          "attractors are given, the newton solver takes none",
-          "variation 1: parameter is restitution, the newton solver takes all but restitution, "
+          "joint 3: dynamics have a spring or reference, the newton solver supports them for "
+          "hinges and sliders only",
+          "joint 3: dynamics have armature or damping, the newton solver supports none for a fixed "
+          "joint",
+          "joint 4: type is distance, the newton solver supports hinge, slider, ball and fixed",
+          "joint 5: type is wheel, the newton solver supports hinge, slider, ball and fixed",
+          "joint 6: type is pulley, the newton solver supports hinge, slider, ball and fixed",
+          "joint 7: type is target, the newton solver supports hinge, slider, ball and fixed",
+          "control 1: kind is target_speed, the newton solver supports joint_force only",
+          "control 2 'jet': kind is thrust, the newton solver supports joint_force only",
+          "attractors are given, the newton solver supports none",
+          "variation 1: parameter is restitution, the newton solver supports all but restitution, "
           "linear_drag and angular_drag",
-          "joint 3: body_b is 3, which joint 1 holds already: the newton solver takes trees, or a "
-          "series of joints by Joint::after",
-          "joint 4: body_b is 3, which joint 1 holds already: the newton solver takes trees, or a "
-          "series of joints by Joint::after",
-          "joint 5: body_b is 3, which joint 1 holds already: the newton solver takes trees, or a "
-          "series of joints by Joint::after",
-          "joint 6: body_b is 3, which joint 1 holds already: the newton solver takes trees, or a "
-          "series of joints by Joint::after",
-          "joint 7: body_b is 3, which joint 1 holds already: the newton solver takes trees, or a "
-          "series of joints by Joint::after",
+          "joint 3: body_b is 3, which joint 1 holds already: the newton solver supports trees, or "
+          "a series of joints by Joint::after",
+          "joint 4: body_b is 3, which joint 1 holds already: the newton solver supports trees, or "
+          "a series of joints by Joint::after",
+          "joint 5: body_b is 3, which joint 1 holds already: the newton solver supports trees, or "
+          "a series of joints by Joint::after",
+          "joint 6: body_b is 3, which joint 1 holds already: the newton solver supports trees, or "
+          "a series of joints by Joint::after",
+          "joint 7: body_b is 3, which joint 1 holds already: the newton solver supports trees, or "
+          "a series of joints by Joint::after",
       });
 
   Scene flat = empty_scene(Space::planar);
   flat.options.solver.method = Solver::newton;
   flat.add(body_of(shape_of(Circle{}), Vec3::Zero()));
-  CHECK(issues_of(flat) == Issues{"space is planar, the newton solver takes spatial scenes only"});
+  CHECK(issues_of(flat) ==
+        Issues{"space is planar, the newton solver supports spatial scenes only"});
 }
 
 TEST_CASE("numbers of joints and materials of the newton solver have ranges",
@@ -277,11 +277,11 @@ TEST_CASE("series of joints go from A to B, each after the last", "[fast][valida
   CHECK(spoilt([](Scene& s) { s.joints[2].body_b = BodyId(3); }) ==
         Issues{"joint 2: after is 1" + message});
   CHECK(spoilt([](Scene& s) { s.joints[2].after = {}; }) ==
-        Issues{"joint 2: body_b is 2, which joint 0 holds already: the newton solver takes trees, "
-               "or a series of joints by Joint::after"});
+        Issues{"joint 2: body_b is 2, which joint 0 holds already: the newton solver supports "
+               "trees, or a series of joints by Joint::after"});
   CHECK(spoilt([](Scene& s) { s.joints[1].frame_a.position.x() += 0.25; }) ==
-        Issues{"body 2 'arm': position and rotation are 0.25 m and 0 rad from where joint 0's "
-               "series holds it, its frames coinciding, must be there for the newton solver"});
+        Issues{"body 2 'arm': position and rotation are 0.25 m and 0 rad from the pose that joint "
+               "0's series gives it with coinciding frames, must match it for the newton solver"});
 }
 
 TEST_CASE("the newton solver takes trees whose bodies begin in their joints",
@@ -294,8 +294,8 @@ TEST_CASE("the newton solver takes trees whose bodies begin in their joints",
   };
   const auto apart = [](const char* body, const char* gap, int joint) {
     return Issues{"body " + std::string(body) + ": position and rotation are " + gap +
-                  " from where joint " + std::to_string(joint) +
-                  " holds it, must be there for the newton solver"};
+                  " from the pose that joint " + std::to_string(joint) +
+                  " gives it, must match it for the newton solver"};
   };
   CHECK(spoilt([](Scene& s) { s.joints[0].frame_a.position.y() += 0.25; }) ==
         apart("2 'arm'", "0.25 m and 0 rad", 0));
@@ -322,10 +322,10 @@ TEST_CASE("the newton solver takes trees whose bodies begin in their joints",
     scene.add(joint_at(scene, BodyId(a), BodyId(b), at(between), BallJoint{}));
   };
   CHECK(spoilt([&](Scene& s) { join(s, 4, 2); }) ==
-        Issues{"joint 3: body_b is 2, which joint 0 holds already: the newton solver takes trees, "
-               "or a series of joints by Joint::after"});
+        Issues{"joint 3: body_b is 2, which joint 0 holds already: the newton solver supports "
+               "trees, or a series of joints by Joint::after"});
   const Issues circle = {
-      "body 1 'torso': joints hold it in a circle, the newton solver takes trees only"};
+      "body 1 'torso': joints form a loop through it, the newton solver supports trees only"};
   CHECK(spoilt([&](Scene& s) { join(s, 3, 1); }) == circle);
   CHECK(spoilt([&](Scene& s) {
           s.joints.pop_back();
@@ -338,17 +338,19 @@ TEST_CASE("the newton solver takes trees whose bodies begin in their joints",
   }
   join(hanging, 1, 0), join(hanging, 1, 2), join(hanging, 2, 1);
   join(hanging, 3, 4), join(hanging, 4, 3);
-  CHECK(issues_of(hanging) ==
-        Issues{"body 1 'middle': joints hold it in a circle, the newton solver takes trees only",
-               "body 3 'other': joints hold it in a circle, the newton solver takes trees only"});
+  CHECK(
+      issues_of(hanging) ==
+      Issues{
+          "body 1 'middle': joints form a loop through it, the newton solver supports trees only",
+          "body 3 'other': joints form a loop through it, the newton solver supports trees only"});
 
   CHECK(spoilt([&](Scene& s) {
           s.bodies[4].motion = Motion::kinematic;
           s.joints[2].body_a = BodyId(1);
         }) ==
-        Issues{"body 4 'cart': motion is kinematic, the newton solver takes dynamic and fixed "
+        Issues{"body 4 'cart': motion is kinematic, the newton solver supports dynamic and fixed "
                "bodies",
-               "joint 2 'rail': body_b is not dynamic, the newton solver takes a dynamic body "
+               "joint 2 'rail': body_b is not dynamic, the newton solver needs a dynamic body "
                "there: exchange A and B"});
 }
 
@@ -376,13 +378,15 @@ TEST_CASE("other solvers name all that is the newton solver's", "[fast][validate
   for (const Solver solver : {Solver::tgs_soft, Solver::nncg, Solver::penalty}) {
     scene.options.solver.method = solver;
     const std::string needs =
-        std::string(" is given, which takes the newton solver, not ") + to_string(solver);
-    CHECK(issues_of(scene) ==
-          Issues{"joint 0 'elbow': dynamics" + needs, "joint 0 'elbow': limit.margin" + needs,
-                 "joint 0 'elbow': limit.compliance" + needs, "joint 1 'wrist': after" + needs,
-                 std::string("control 0 'motor': kind is joint_force, which takes the newton "
-                             "solver, not ") +
-                     to_string(solver)});
+        std::string(" is given, which requires the newton solver, not ") + to_string(solver);
+    CHECK(
+        issues_of(scene) ==
+        Issues{
+            "joint 0 'elbow': dynamics" + needs, "joint 0 'elbow': limit.margin" + needs,
+            "joint 0 'elbow': limit.compliance" + needs, "joint 1 'wrist': after" + needs,
+            std::string(
+                "control 0 'motor': kind is joint_force, which requires the newton solver, not ") +
+                to_string(solver)});
   }
   // A material may be that of either.
   Scene plain = robot();

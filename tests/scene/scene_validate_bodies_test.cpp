@@ -106,8 +106,8 @@ TEST_CASE("chains of bodies that are drawn together end", "[fast][scene]") {
   std::vector<Issue> issues = validate(scene);
   REQUIRE(issues.size() == 300 - 258);
   CHECK(to_string(issues[0]) ==
-        "body 258 'link258': jitter.with is 257, a chain of more than 256 bodies; there may be so "
-        "many up to one whose jitter.with is -1");
+        "body 258 'link258': jitter.with is 257, which starts a chain of more than 256 bodies; the "
+        "chain must end earlier, at a jitter.with of -1");
   scene.bodies.resize(258);
   CHECK(validate(scene).empty());
   scene.bodies.resize(4);
@@ -116,10 +116,10 @@ TEST_CASE("chains of bodies that are drawn together end", "[fast][scene]") {
   issues = validate(scene);
   REQUIRE(issues.size() == 3);
   CHECK(to_string(issues[0]) ==
-        "body 1 'crate': jitter.with is 2, which in the end moves with this body itself; the last "
-        "of a chain must have a jitter.with of -1");
+        "body 1 'crate': jitter.with is 2, which leads back to this body; the last body of a chain "
+        "must have a jitter.with of -1");
   CHECK(issues[1].place == "body 2 'link2': jitter.with");
-  CHECK(issues[2].message.find("is 2, a chain of more than 256 bodies") == 0);
+  CHECK(issues[2].message.find("is 2, which starts a chain of more than 256 bodies") == 0);
 }
 
 TEST_CASE("spatial bodies may jitter by angle and by orientation", "[fast][scene]") {

@@ -86,9 +86,9 @@ TEST_CASE("each type of joint has checks of its own", "[fast][validate][joint]")
       jointed(Space::spatial, PulleyJoint{}), kElbow,
       {{"ratio", "is 0, must be > 0", [](Scene& s) { type_of<PulleyJoint>(s).ratio = 0; }},
        {"ground_b.y", "is nan m", [](Scene& s) { type_of<PulleyJoint>(s).ground_b.y() = kNan; }},
-       {"body_a", "does not move, must be a body that hangs on the rope",
+       {"body_a", "does not move, must be a moving body at the end of the rope",
         [](Scene& s) { s.joints[0].body_a = {}; }},
-       {"body_a", "does not move, must be a body that hangs on the rope",
+       {"body_a", "does not move, must be a moving body at the end of the rope",
         [](Scene& s) { s.joints[0].body_a = BodyId(0); }}});
   check_each(
       jointed(Space::planar, WheelJoint{Spring{0, 0, 2, 0.5}, std::nullopt, std::nullopt}), kElbow,

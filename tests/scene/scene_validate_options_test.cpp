@@ -55,12 +55,12 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
           "is -0.1, must be"),
       bad("solver.push_out_share", &Options::solver, &SolverOptions::push_out_share, kNan,
           "is nan, must be"),
-      {"rotation", "is quaternion, verlet takes splitting only",
+      {"rotation", "is quaternion, verlet supports splitting only",
        [](Scene& s) {
          s.options.integrator = Integrator::verlet;
          s.options.rotation = Rotation::quaternion;
        }},
-      {"rotation", "is splitting, runge-kutta4 takes quaternion or exponential",
+      {"rotation", "is splitting, runge-kutta4 supports quaternion or exponential",
        [](Scene& s) {
          s.options.integrator = Integrator::runge_kutta4;
          s.options.rotation = Rotation::splitting;
@@ -70,7 +70,7 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
          s.options.integrator = Integrator::implicit_euler;
          s.options.angular_momentum = true;
        }},
-      {"angular_momentum", "is set, rotation by splitting has no use for it",
+      {"angular_momentum", "is set, rotation by splitting does not use it",
        [](Scene& s) { s.options.angular_momentum = true; }},
       bad("density", &Options::density, 0, "is 0 kg"),
       bad("density", &Options::density, -1, "is -1 kg"),

@@ -44,19 +44,20 @@ TEST_CASE("what a variation is about must be there and able to vary", "[fast][sc
   CHECK(only_issue(scene_with(of(vary(Parameter::friction, 0, 1), -1, 0))) ==
         "variation 0: shape is 0, must be -1 where body is -1");
   CHECK(only_issue(scene_with(of(vary(Parameter::mass, 1, 2), 1, 0))) ==
-        "variation 0: shape is 0, must be -1: mass is of the body");
+        "variation 0: shape is 0, must be -1: mass belongs to the body");
   CHECK(only_issue(scene_with(of(vary(Parameter::gravity, 0, 0), 1))) ==
-        "variation 0: body is 1, must be -1: gravity is of the world");
+        "variation 0: body is 1, must be -1: gravity belongs to the world");
   CHECK(only_issue(scene_with(of(vary(Parameter::mass, 1, 2), 0))) ==
-        "variation 0: mass cannot vary here, must be of a dynamic body");
+        "variation 0: mass cannot vary here, must belong to a dynamic body");
   CHECK(only_issue(scene_with(of(vary(Parameter::density, 1, 2), 2, 0))) ==
-        "variation 0: density cannot vary here, must be of a dynamic body whose mass is not given");
+        "variation 0: density cannot vary here, must belong to a dynamic body whose mass is not "
+        "given");
   CHECK(only_issue(scene_with(of(vary(Parameter::size, 1, 2), 0, 0))) ==
-        "variation 0: size cannot vary here, must be of a shape of a moving body with a size");
+        "variation 0: size cannot vary here, must belong to a shape of a moving body with a size");
   Scene empty = empty_scene(Space::spatial);
   empty.add(ground(Space::spatial));
   empty.variations = {vary(Parameter::mass, 1, 2)};
-  CHECK(only_issue(empty) == "variation 0: mass is of nothing in this scene");
+  CHECK(only_issue(empty) == "variation 0: mass matches nothing in this scene");
 }
 
 namespace {
@@ -99,15 +100,15 @@ TEST_CASE("numbers of joints and controls vary where there are such", "[fast][sc
   CHECK(issue_of(of_control(vary(Parameter::gain, 0, 1), 3)) ==
         "variation 0: control is 3, must be -1 or the index of one of 3");
   CHECK(issue_of(of_joint(vary(Parameter::gain, 0, 1), 0)) ==
-        "variation 0: joint is 0, must be -1: gain is of the control");
+        "variation 0: joint is 0, must be -1: gain belongs to the control");
   CHECK(issue_of(of_control(vary(Parameter::rest, 0, 1), 0)) ==
-        "variation 0: control is 0, must be -1: rest is of the joint");
+        "variation 0: control is 0, must be -1: rest belongs to the joint");
   CHECK(issue_of(of(vary(Parameter::damping, 0, 1), 0)) ==
-        "variation 0: body is 0, must be -1: damping is of the joint");
+        "variation 0: body is 0, must be -1: damping belongs to the joint");
   CHECK(issue_of(of_joint(vary(Parameter::armature, 0, 1), 1)) ==
-        "variation 0: armature cannot vary here, must be of a hinge, slider or ball joint");
+        "variation 0: armature cannot vary here, must belong to a hinge, slider or ball joint");
   CHECK(issue_of(of_control(vary(Parameter::kp, 1, 2), 0)) ==
-        "variation 0: kp cannot vary here, must be of a position servo, of gain (kp, 0, 0) and "
+        "variation 0: kp cannot vary here, must belong to a position servo, of gain (kp, 0, 0) and "
         "bias (0, -kp, -kv), kp > 0");
   CHECK(issue_of(of_control(vary(Parameter::kv, 1, 2), 0)).find("or a velocity servo") !=
         std::string::npos);

@@ -91,7 +91,7 @@ TEST_CASE("an environment that stands in the middle of a step says so, and refus
   const auto heard = std::make_shared<Steps>();
   Environment& e = p.environment;
   const EnvironmentSnapshot start = e.save();
-  CHECK_THROWS_WITH(e.finish_step(p.arrays()), Catch::Contains("no step was ended early"));
+  CHECK_THROWS_WITH(e.finish_step(p.arrays()), Catch::Contains("no step was interrupted"));
   e.batch().listen(heard);
   e.batch().add_force(0, e.batch().body_in_row(0), Vec3(1, 0, 0));
   const std::vector<double> untouched(kWorlds, 7.5);

@@ -286,7 +286,7 @@ TEST_CASE("a saved world goes on in another place, and nothing else is let in", 
     Environment environment(other, {.worlds = 20});
     const std::uint64_t before = environment.batch().hash();
     CHECK_THROWS_WITH(environment.restore(saved),
-                      "snapshot: is of another task than 'LunarLander'");
+                      "snapshot: belongs to another task than 'LunarLander'");
     CHECK(environment.batch().hash() == before);
   };
   refuse([](Task& t) { t.max_steps += 1; });
@@ -299,7 +299,7 @@ TEST_CASE("a saved world goes on in another place, and nothing else is let in", 
   CHECK_THROWS_AS(p.environment.restore(saved, 20, 0), std::invalid_argument);
   EnvironmentSnapshot cut = saved;
   cut.memory.pop_back();
-  CHECK_THROWS_WITH(p.environment.restore(cut), Catch::Matchers::Contains("numbers, must be"));
+  CHECK_THROWS_WITH(p.environment.restore(cut), Catch::Matchers::Contains("values, must be"));
 }
 
 TEST_CASE(
@@ -322,7 +322,7 @@ TEST_CASE(
   StepArrays out;
   out.rewards = rewards;
   CHECK_THROWS_WITH(lander.step(std::span<const std::int64_t>(choices), out),
-                    "rewards are 3 numbers, the buffer has 2");
+                    "rewards are 3 values, the buffer has 2");
   CHECK_THROWS_AS(lander.step(std::span<const std::int64_t>(choices).subspan(1), {}),
                   std::invalid_argument);
   const std::vector<std::uint8_t> mask(2);

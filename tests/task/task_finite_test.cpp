@@ -169,7 +169,7 @@ TEST_CASE("each expression is named once, and check throws after the step", "[ta
   task = fragile();
   task.observations.push_back({"start", log(terms::age() - 0.5)});
   CHECK_THROWS_WITH(Environment(task, {.worlds = 2, .check = true}),
-                    "observation 1 'start' is nan in world 0 where its episode begins");
+                    "observation 1 'start' is nan in world 0 at the start of its episode");
   CHECK(lost(Environment(task, {.worlds = 2}).batch().status(1)));
 }
 
@@ -189,14 +189,14 @@ TEST_CASE("numbers that are not finite and names that are not single are issues"
   std::vector<std::string> found;
   for (const Issue& issue : validate(task)) found.push_back(issue.place + ": " + issue.message);
   const std::vector<std::string> expected{
-      "action 1 'a': has the name of action 0 'a', must have its own",
+      "action 1 'a': has the name of action 0 'a', must be unique",
       "memory 0 'm', begin: holds the number nan, must be finite",
       "memory 0 'm', next: holds the number inf, must be finite",
-      "observation 2 'x': has the name of observation 0 'x', must have its own",
+      "observation 2 'x': has the name of observation 0 'x', must be unique",
       "observation 1 'top': holds the number inf, must be finite",
-      "reward 2 'r': has the name of reward 0 'r', must have its own",
+      "reward 2 'r': has the name of reward 0 'r', must be unique",
       "reward 0 'r': holds the number nan, must be finite",
-      "info 1 'i': has the name of info 0 'i', must have its own",
+      "info 1 'i': has the name of info 0 'i', must be unique",
       "info 1 'i': holds the number -inf, must be finite",
       "terminated: holds the number nan, must be finite"};
   CHECK(found == expected);

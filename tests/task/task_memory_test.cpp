@@ -315,25 +315,22 @@ TEST_CASE("what is wrong with delays, levels and initial parameters is said", "[
   std::vector<std::string> found;
   for (const Issue& issue : validate(task)) found.push_back(issue.place + ": " + issue.message);
   const std::vector<std::string> expected{
-      "level 3 'step': has the name of level 0 'step', must have its own",
-      "level 3 'step', begin: depends on the level 'step', must depend on numbers and random ones "
-      "of "
-      "the episode alone",
-      "level 3 'step', next: asks for the level 'stairs', must be one of Task::levels: step, luck, "
+      "level 3 'step': has the name of level 0 'step', must be unique",
+      "level 3 'step', begin: depends on the level 'step', must depend on constants and random "
+      "numbers of the episode only",
+      "level 3 'step', next: uses the level 'stairs', must be one of Task::levels: step, luck, "
       "broken, step, ",
       "level 4: has no name, must have one",
-      "level 4, begin: depends on the random number 'u', must depend on numbers and random ones of "
-      "the episode alone",
-      "initial parameter 0: is of initial_position of body 0, number 0, which is drawn, must vary "
-      "with "
-      "Draw::none",
-      "initial parameter 1: is of age, must be of a parameter (terms::parameter)",
-      "initial parameter 2: is of friction of body 0, shape 0, which does not vary "
+      "level 4, begin: depends on the random number 'u', must depend on constants and random "
+      "numbers of the episode only",
+      "initial parameter 0: sets initial_position of body 0, number 0, which is drawn, must vary "
+      "with Draw::none",
+      "initial parameter 1: sets age, must set a parameter (terms::parameter)",
+      "initial parameter 2: sets friction of body 0, shape 0, which does not vary "
       "(Scene::variations)",
-      "initial parameter 3, value: depends on age, must depend on numbers, random ones of the "
-      "episode and "
-      "levels alone",
-      "initial parameter 4: is of mass of body 0, which another one sets"};
+      "initial parameter 3, value: depends on age, must depend on constants, random numbers of the "
+      "episode and levels only",
+      "initial parameter 4: sets mass of body 0, which another initial parameter sets"};
   CHECK(found == expected);
 }
 

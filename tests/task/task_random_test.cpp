@@ -260,9 +260,9 @@ TEST_CASE("what is wrong with random numbers and parameters is said", "[task][fa
   task.scene.bodies[0].motion = Motion::kinematic;
   task.observations = {{"f", terms::parameter(Parameter::mass, crate)}};
   REQUIRE(validate(task).size() == 1);
-  CHECK(validate(task)[0].message == "mass of body 0: there is no such number that could vary");
+  CHECK(validate(task)[0].message == "mass of body 0: this parameter cannot vary");
   CHECK_THROWS_WITH(terms::parameter(Parameter::friction, crate),
-                    "parameter: friction is a number of a shape, not of a body");
+                    "parameter: friction belongs to a shape, not to a body");
 }
 
 TEST_CASE("random numbers and parameters are plain values, too", "[task][fast]") {
@@ -284,7 +284,7 @@ TEST_CASE("random numbers and parameters are plain values, too", "[task][fast]")
   CHECK_THROWS_WITH(from_graph({{{"uniform", 0, {2, 0}, "x"}}, {0}}),
                     "nodes[0] is drawn every 2, must be 0 or 1");
   CHECK_THROWS_WITH(from_graph({{{"parameter", 0, {0, 0, 0}, "colour"}}, {0}}),
-                    "nodes[0] is the parameter 'colour', which is none");
+                    "nodes[0] is the parameter 'colour', which does not exist");
 }
 
 }  // namespace manyworlds::test

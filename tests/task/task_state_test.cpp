@@ -170,18 +170,16 @@ TEST_CASE("what is wrong with memories is said", "[task][fast]") {
   std::vector<std::string> found;
   for (const Issue& issue : validate(task)) found.push_back(issue.place + ": " + issue.message);
   const std::string known =
-      "actions, numbers, random ones, parameters, levels, age() and previous(...) alone";
+      "actions, constants, random numbers, parameters, levels, age() and previous(...) only";
   const std::vector<std::string> expected{
       "control 0: depends on position of body 0, axis 0, must depend on " + known,
       "control 1: depends on the memory 'b', must depend on " + known,
-      "control 3: asks for the memory 'nothing', must be one of Task::memories: a, a, , b",
-      "memory 1 'a': has the name of memory 0 'a', must have its own",
-      "memory 0 'a', begin: depends on the memory 'b', must depend on what there is before "
-      "memories begin",
-      "memory 0 'a', next: asks for the memory 'c', must be one of Task::memories: a, a, , b",
+      "control 3: uses the memory 'nothing', must be one of Task::memories: a, a, , b",
+      "memory 1 'a': has the name of memory 0 'a', must be unique",
+      "memory 0 'a', begin: depends on the memory 'b', must depend on terms other than memories",
+      "memory 0 'a', next: uses the memory 'c', must be one of Task::memories: a, a, , b",
       "memory 2: has no name, must have one",
-      "memory 3 'b', begin: depends on the memory 'a', must depend on what there is before "
-      "memories begin"};
+      "memory 3 'b', begin: depends on the memory 'a', must depend on terms other than memories"};
   CHECK(found == expected);
 }
 

@@ -81,8 +81,9 @@ TEST_CASE("terms of what is not there are issues of the task", "[task][fast][obs
       Contains("a fixed body is not observed") && Contains("points: points[0].body is body"));
   CHECK_THAT(message(terms::linear_acceleration(BodyId(1), 2)),
              Contains("the axis must be 0 to 1"));
-  CHECK_THAT(message(terms::angular_acceleration(BodyId(1), 0)),
-             Contains("angular_acceleration of body 1, axis 0: the axis must be 2 in the plane"));
+  CHECK_THAT(
+      message(terms::angular_acceleration(BodyId(1), 0)),
+      Contains("angular_acceleration of body 1, axis 0: the axis must be 2 in a planar scene"));
   CHECK_THAT(message(terms::point_velocity(1, 0)),
              Contains("point_velocity of point 1, axis 0: the point must be 0 to 0"));
   task.scene.add(Site{"top", BodyId(1), Vec3(0, 0.5, 0)});

@@ -350,10 +350,10 @@ TEST_CASE("all that is wrong with a task is said at once", "[task][fast]") {
   INFO(all);
   for (const char* part :
        {"frame_skip is 0", "max_steps is -1", "actions are 1, must be none", "action 0 'a' has the",
-        "controls are 1, must be as many as the scene has: 0",
+        "controls are 1, must match the scene's controls: 0",
         "observation 0 'one' position of body 1, axis 0: the body must be 0 to 0",
         "observation 1 'two' position of body 0, axis 3: the axis must be 0 to 2",
-        "observation 2 'three' angle of body 0: there are angles in the plane only",
+        "observation 2 'three' angle of body 0: angles exist in planar scenes only",
         "observation 3 'four' joint_position of joint 0, coordinate 2: the coordinate must be 0 to "
         "1",
         "observation 4 'five' ray_distance of ray 0: the ray must be 0 to 0, but there are none",

@@ -164,7 +164,7 @@ class Run(unittest.TestCase):
         self.assertEqual(outcome.configured["MW_ISAS"], "scalar;avx2")
         outcome = self.checkout(AVX2).run(MW_ISAS="avx512")
         self.assertEqual(outcome.returncode, 3)
-        self.assertIn("MW_ISAS is 'avx512', of which this CPU can run nothing", outcome.stderr)
+        self.assertIn("MW_ISAS is 'avx512', none of which this CPU can run", outcome.stderr)
         outcome = self.checkout().run(MW_RECORD="yes")
         self.assertEqual(outcome.returncode, 3)
         self.assertIn("MW_RECORD is 'yes', must be ON or OFF", outcome.stderr)

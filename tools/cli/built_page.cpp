@@ -15,7 +15,7 @@ std::optional<fs::path> find_page(const BuiltPage& page) {
   std::error_code ignored;
   if (const char* given = std::getenv(page.variable); given != nullptr && *given != 0) {
     if (fs::is_regular_file(given, ignored)) return given;
-    throw InputError(fmt::format("{} is '{}', which is no file", page.variable, given));
+    throw InputError(fmt::format("{} is '{}', which is not a file", page.variable, given));
   }
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   const fs::path prefix = program.parent_path().parent_path();
@@ -30,7 +30,7 @@ std::optional<fs::path> find_page(const BuiltPage& page) {
 std::string why_no_page(const BuiltPage& page) {
   return fmt::format(
       "the page was not built with this program: tools/viewer in the repository builds it, with "
-      "Node 18 or later and npm; {}={} names one that is elsewhere",
+      "Node 18 or later and npm; {}={} sets the path of another one",
       page.variable, page.file);
 }
 

@@ -38,10 +38,10 @@ std::string describe(const CLI::ParseError& error, const CLI::App& app) {
   if (!names.empty()) {
     const std::string what = command == &app ? "command" : command->get_name();
     const std::string all = fmt::format("{}", fmt::join(names, ", "));
-    if (rest.empty()) return fmt::format("a {} is missing: {}", what, all);
+    if (rest.empty()) return fmt::format("missing {}; expected one of {}", what, all);
     const std::string near = meant(rest.front(), names);
     return fmt::format("unknown {} '{}'{}", what, rest.front(),
-                       near.empty() ? "; there are " + all : near);
+                       near.empty() ? "; expected one of " + all : near);
   }
   return fmt::format("{} (see '{} --help')", error.what(), called);
 }

@@ -36,7 +36,7 @@ constexpr int kSpeedWorlds = 1024, kMujocoWorlds = 64, kSpeedSteps = 100, kRound
 constexpr compare::Effort kConverged{1e-6}, kFast{1e-6, 1, 5, false};
 constexpr const char* kNotCompared =
     "joint-space inertia, bias, passive and actuator forces, constraint rows and their forces: "
-    "they are no fields here, and show in qacc, kinetic energy and the next state";
+    "manyworlds has no such fields; their effects show in qacc, kinetic energy and the next state";
 
 struct Findings {
   std::vector<compare::StateComparison> states;
@@ -182,8 +182,8 @@ void print_states(const compare::StateComparison& c) {
                q.most(), q.median(), q.gate, q.holds() ? "" : "  FAILS");
   }
   fmt::print(
-      "  another number of contacts in {}; left out for rounding at the margin {}, for\n"
-      "  shapes whose contact points are not MuJoCo's {}\n",
+      "  different number of contacts in {}; excluded for rounding at the margin {}, for\n"
+      "  shapes whose contact points differ from MuJoCo's {}\n",
       counted(c.other_contacts, "state"), c.uncertain, c.other_points);
 }
 
@@ -196,15 +196,15 @@ void print_paths(const compare::Parting& p) {
                                 : fmt::format("{:.3g} s", time),
                        kept, times.size());
   };
-  fmt::print("\n{}, {} of {:.3g} s: paths part by {:.0e}, median\n", to_string(p.kernels.precision),
-             counted(p.steps, "step"), p.dt, compare::kApart);
-  fmt::print("  from MuJoCo's                          {}\n", text(p.ours));
-  fmt::print("  MuJoCo's from its own, moved by {:.0e}  {}\n", compare::kMoved, text(p.own));
+  fmt::print("\n{}, {} of {:.3g} s: median time until paths differ by {:.0e}\n",
+             to_string(p.kernels.precision), counted(p.steps, "step"), p.dt, compare::kApart);
+  fmt::print("  manyworlds and MuJoCo                  {}\n", text(p.ours));
+  fmt::print("  MuJoCo and MuJoCo, moved by {:.0e}      {}\n", compare::kMoved, text(p.own));
 }
 
 void print_free(const compare::FreePaths& p) {
   const double own = *std::max_element(p.own.begin(), p.own.end());
-  fmt::print("\nf64, {} without contacts: off by {:.2g} (MuJoCo's own, moved by {:.0e}: {:.2g})\n",
+  fmt::print("\nf64, {} without contacts: error {:.2g} (MuJoCo itself, moved by {:.0e}: {:.2g})\n",
              counted(p.steps, "step"), p.most(), compare::kMoved, own);
 }
 
@@ -251,7 +251,8 @@ int compare_command(const CompareOptions& compared) {
     return findings.failures.empty() ? kOk : kWorldLost;
   }
   fmt::print(
-      "{} beside MuJoCo {}, both with Newton's method to {:.0e} (float32 to 1e-07), seed {}\n",
+      "{} compared with MuJoCo {}, both with Newton's method to {:.0e} (float32 to 1e-07), seed "
+      "{}\n",
       options.scene, mj_versionString(), compared.tolerance, options.seed.value_or(0));
   for (const auto& one : findings.states) print_states(one);
   fmt::print("\nnot compared: {}\n", kNotCompared);

@@ -12,11 +12,11 @@ void tell_of_leftovers(const std::vector<std::filesystem::path>& parts,
   for (const std::filesystem::path& part : parts) {
     const std::string word = tools::shell_word(part.string());
     if (std::count(recordings.begin(), recordings.end(), part) > 0) {
-      tools::tell("manyworlds: note: left by a run that was cut off: manyworlds replay {}\n", word);
+      tools::tell("manyworlds: note: an interrupted run left a recording: manyworlds replay {}\n",
+                  word);
     } else {
       tools::tell(
-          "manyworlds: note: left by a run that was cut off, with nothing in it that can be "
-          "read: rm {}\n",
+          "manyworlds: note: an interrupted run left a file without readable contents: rm {}\n",
           word);
     }
   }

@@ -104,7 +104,7 @@ Job prepare_with_sliders(const JobOptions& options, std::vector<std::string>& na
 int live_command(const ViewArguments& arguments) {
   if (arguments.sources.size() != 1) {
     throw InputError(
-        fmt::format("--live: shows one scene, {} were given", arguments.sources.size()));
+        fmt::format("--live: expects one scene, {} were given", arguments.sources.size()));
   }
   const std::string& source = arguments.sources.front();
   if (source.ends_with(".h5")) {
@@ -146,10 +146,9 @@ int live_command(const ViewArguments& arguments) {
   }
   std::fflush(stdout);
   if (!sliders.empty()) {
-    tools::tell("compiled with {} that may vary, for the page's sliders\n",
-                fmt::join(sliders, " and "));
+    tools::tell("compiled with variable {} for the page's sliders\n", fmt::join(sliders, " and "));
   }
-  tools::tell("{}; whoever has the address may look and command; Ctrl-C ends it\n",
+  tools::tell("{}; anyone with the address can view and control them; Ctrl-C ends the server\n",
               counted(batch.worlds(), "world"));
   LiveClock clock;
   clock.speed = speed;
@@ -169,8 +168,8 @@ int live_command(const ViewArguments& arguments) {
 #else
 
 int live_command(const ViewArguments&) {
-  throw not_built("--live", "the server of live pages",
-                  "MW_LIVE=ON (it wants Boost's headers, Debian: libboost-dev)");
+  throw not_built("--live", "live pages",
+                  "MW_LIVE=ON (requires Boost's headers, Debian: libboost-dev)");
 }
 
 #endif

@@ -60,9 +60,8 @@ constexpr const char* kAppFooter =
     "or\n"
     "a file that cannot be written, 130 interrupted (Ctrl-C), 143 terminated.\n"
     "Scenes in other sizes: pyramid2d:100, bin-spheres:1000, bin-boxes:1000.\n"
-    "MANYWORLDS_ISA=scalar|avx2|avx512 chooses the instruction set of all commands; which there "
-    "are\n"
-    "was chosen when the program was built (MW_ISAS=\"scalar;avx2\" tools/run).";
+    "MANYWORLDS_ISA=scalar|avx2|avx512 chooses the instruction set of all commands. The build\n"
+    "defines which ones are available (MW_ISAS=\"scalar;avx2\" tools/run).";
 
 void add_scenes(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command = app.add_subcommand("scenes", "List the named scenes");
@@ -93,15 +92,15 @@ void add_run(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds run bin-boxes --seconds 20 --sleep on\n"
       "  manyworlds run stack10 --record stack.h5 --record-worlds 0,10-19 --record-every 6\n"
       "\n"
-      "Contacts, penetration, energy, lost worlds and hash are of the state after the last\n"
-      "step. The stage split is measured afterwards, in a few more steps. The speed is with\n"
-      "--record, where it is given; calls then end where samples are due.");
+      "Contacts, penetration, energy, lost worlds and hash describe the state after the last\n"
+      "step. The stage split is measured afterwards, in a few more steps. With --record, the\n"
+      "speed includes recording, and calls end at samples.");
   command->callback([&] { code = run_command(all.run); });
 }
 
 void add_plan(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command =
-      app.add_subcommand("plan", "Show what a scene's step consists of, what is left out, and why");
+      app.add_subcommand("plan", "Show which stages a scene's step has, which it omits, and why");
   add_scene_argument(*command, all.plan);
   add_plan_options(*command, all.plan);
   add_json_option(*command, all.plan);
@@ -114,7 +113,7 @@ void add_plan(CLI::App& app, AllOptions& all, int& code) {
 
 void add_model(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command =
-      app.add_subcommand("model", "Show what was read of a model: joints, actuators, pairs");
+      app.add_subcommand("model", "Show a model as it was read: joints, actuators, pairs");
   add_scene_argument(*command, all.model);
   add_plan_options(*command, all.model);
   add_json_option(*command, all.model);
@@ -123,9 +122,9 @@ void add_model(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds model humanoid.xml\n"
       "  manyworlds model humanoid.xml --json\n"
       "\n"
-      "q and v are where coordinates and velocities of a joint begin in generalized_position and\n"
-      "generalized_velocity, MuJoCo's qpos and qvel. What cannot be read is an error, as for\n"
-      "'run'.");
+      "q and v are the first index of a joint's coordinates and velocities in\n"
+      "generalized_position and generalized_velocity, MuJoCo's qpos and qvel. As with 'run',\n"
+      "unsupported elements are errors.");
   command->callback([&] { code = model_command(all.model); });
 }
 
@@ -136,7 +135,7 @@ void add_bench(CLI::App& app, AllOptions& all, int& code) {
   add_batch_options(*command, job);
   add_count(*command, "--steps", job.steps, 1, "timed steps of every run");
   add_count(*command, "--warm-up", all.bench.warm_up, 0, "steps before the clock starts");
-  add_count(*command, "--repeats", all.bench.repeats, 1, "runs; the median counts");
+  add_count(*command, "--repeats", all.bench.repeats, 1, "number of runs; prints their median");
   add_count(*command, "--steps-per-call", job.steps_per_call, 1, "k of the step(k) column");
   add_sleep_options(*command, all.bench.sleep);
   add_plan_options(*command, job);
@@ -180,29 +179,30 @@ void add_compare(CLI::App& app, AllOptions& all, int& code) {
       ->required()
       ->type_name("FILE.xml");
   add_mjcf_options(*command, all.compare.job);
-  add_count(*command, "--worlds", all.compare.job.worlds, 1, "states that are compared");
-  add_count(*command, "--steps", all.compare.job.steps, 1, "of the paths");
-  add_seed(*command, all.compare.job.seed, "of states, velocities and controls (default: 0)");
+  add_count(*command, "--worlds", all.compare.job.worlds, 1, "number of states to compare");
+  add_count(*command, "--steps", all.compare.job.steps, 1, "steps of each path");
+  add_seed(*command, all.compare.job.seed, "seed of states, velocities and controls (default: 0)");
   command
-      ->add_option("--tolerance", all.compare.tolerance, "of both solvers; float32: at least 1e-7")
+      ->add_option("--tolerance", all.compare.tolerance,
+                   "tolerance of both solvers; float32: at least 1e-7")
       ->check(CLI::PositiveNumber)
       ->type_name("X")
       ->capture_default_str();
-  command->add_flag("--no-speed", all.compare.no_speed, "leave out how fast both are");
+  command->add_flag("--no-speed", all.compare.no_speed, "do not compare speed");
   add_json_option(*command, all.compare.job);
   command->footer(
       "Examples:\n"
       "  manyworlds compare humanoid.xml\n"
       "  manyworlds compare humanoid.xml --worlds 2000 --steps 3000 --json\n"
       "\n"
-      "Both sides solve with Newton's method, on one thread. Exit code 1\n"
-      "where a difference is beyond its gate (docs/mujoco.md).");
+      "Both engines solve with Newton's method, on one thread. The exit code is 1\n"
+      "if a difference exceeds its gate (docs/mujoco.md).");
   command->callback([&] { code = compare_command(all.compare); });
 }
 
 void add_soak(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command = app.add_subcommand(
-      "soak", "Run many worlds for many steps from random seeds, count lost ones");
+      "soak", "Run many worlds for many steps from random seeds and count lost worlds");
   all.soak.worlds = 10000;
   all.soak.steps = 1000;
   add_scene_argument(*command, all.soak);
@@ -227,7 +227,7 @@ void add_soak(CLI::App& app, AllOptions& all, int& code) {
 void add_replay(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command =
       app.add_subcommand("replay", "Simulate a recording again and compare every sample");
-  command->add_option("file", all.replay.file, "recording of --record or --dump-lost")
+  command->add_option("file", all.replay.file, "recording from --record or --dump-lost")
       ->required()
       ->type_name("FILE.h5");
   add_kernel_options(*command, all.replay.job);
@@ -245,59 +245,64 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command = app.add_subcommand("view", "Make a page that shows worlds in a browser");
   ViewArguments& view = all.view;
   command
-      ->add_option("what", view.sources,
-                   "recordings (.h5), names of scenes or MJCF files (.xml), side by side")
+      ->add_option(
+          "what", view.sources,
+          "recordings (.h5), names of scenes or MJCF files (.xml); several are shown side by side")
       ->required()
       ->type_name("FILE.h5|NAME|FILE.xml");
-  command->add_option("--out", view.out, "the page; default: one in the temporary folder, opened")
-      ->type_name("PAGE.html");
-  command->add_flag("--open", view.open, "open the page of --out, too");
   command
-      ->add_option("--png", view.png, "a picture of the page, by headless Chromium; no page then")
+      ->add_option("--out", view.out,
+                   "the page to write (default: one in the temporary folder, which is opened)")
+      ->type_name("PAGE.html");
+  command->add_flag("--open", view.open, "also open the page of --out");
+  command->add_option("--png", view.png, "write a picture with headless Chromium instead of a page")
       ->type_name("FILE.png");
   command
       ->add_option("--mp4", view.mp4,
-                   "a film of the page, by headless Chromium and ffmpeg; no page then")
+                   "write a film with headless Chromium and ffmpeg instead of a page")
       ->type_name("FILE.mp4");
   const auto add_time = [&](const char* name, std::optional<double>& to, const char* help) {
     return command->add_option(name, to, help)->check(CLI::NonNegativeNumber)->type_name("S");
   };
   add_time("--time", view.time, "simulated time of the picture (default: the end)");
-  add_time("--begin", view.begin, "simulated time at which the film begins (default: 0)");
-  add_time("--end", view.end, "simulated time at which the film ends (default: the end)");
+  add_time("--begin", view.begin, "start time of the film, simulated (default: 0)");
+  add_time("--end", view.end, "end time of the film, simulated (default: the end)");
   // What they were called before. Not in the help, and so not in lists of what excludes what.
   add_time("--at", view.at, "")->group("");
   add_time("--until", view.until, "")->group("");
-  command->add_option("--size", view.size, "of the picture and the film, in pixels")
+  command->add_option("--size", view.size, "size of the picture or film in pixels")
       ->type_name("WxH")
       ->capture_default_str();
-  command->add_option("--world", view.world, "the picture and the film show this one, from 0 on")
+  command->add_option("--world", view.world, "world that the picture or film shows, from 0")
       ->check(CLI::Range(0, 1 << 20))
       ->type_name("N");
   command
       ->add_option("--follow", view.follow,
-                   "the camera follows this body of --world (default: 0): its name or index")
+                   "body of --world (default: 0) that the camera follows: its name or index")
       ->type_name("BODY");
   command
-      ->add_option("--color", view.color,
-                   "theirs by: body, speed, spin, rest, height, contact, run (default: body)")
+      ->add_option(
+          "--color", view.color,
+          "color bodies by body, speed, spin, rest, height, contact or run (default: body)")
       ->type_name("BY");
-  command->add_flag("--dark", view.dark, "both in the dark");
-  command->add_option("--title", view.title, "of the page (default: the name of the scene)")
+  command->add_flag("--dark", view.dark, "use the dark theme");
+  command->add_option("--title", view.title, "title of the page (default: the name of the scene)")
       ->type_name("TEXT");
-  command->add_option("--worlds", view.worlds, "the first N (default: all recorded, or what fits)")
+  command
+      ->add_option("--worlds", view.worlds,
+                   "show the first N worlds (default: all recorded, or as many as fit)")
       ->check(CLI::Range(1, 1 << 20))
       ->type_name("N");
-  add_count(*command, "--every", view.every, 1, "show one of N samples of recordings");
+  add_count(*command, "--every", view.every, 1, "show every N-th sample of recordings");
   add_count(*command, "--fps", view.fps, 1,
-            "frames per second of scenes, simulated time; with --mp4 of the film");
-  command->add_option("--seconds", view.seconds, "simulated time of scenes")
+            "frames per simulated second of scenes; with --mp4, of the film");
+  command->add_option("--seconds", view.seconds, "simulated time of scenes in seconds")
       ->check(CLI::PositiveNumber)
       ->type_name("S")
       ->capture_default_str();
   add_contacts_option(
       *command, view.contacts, "--contacts",
-      "of scenes: contact points of a world and frame, the N of the largest forces");
+      "contact points per world and frame of scenes, the N with the largest forces");
   CLI::Option* live = command->add_flag(
       "--live", view.live, "step a scene and serve its page on this machine until Ctrl-C");
   for (const char* other :
@@ -305,15 +310,17 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
         "--color", "--dark", "--every", "--fps", "--seconds", "--contacts"}) {
     live->excludes(command->get_option(other));
   }
-  command->add_option("--port", view.port, "of --live (default: any that is free)")
+  command->add_option("--port", view.port, "port of --live (default: any free one)")
       ->check(CLI::Range(1, 65535))
       ->needs(live)
       ->type_name("N");
   command
       ->add_option("--speed", view.speed,
-                   "of --live and --mp4: simulated per real second; live also max (default: 1)")
+                   "simulated seconds per real second with --live or --mp4; --live also takes max "
+                   "(default: 1)")
       ->type_name("X");
-  command->add_flag("--paused", view.paused, "--live waits for the page's play button")
+  command
+      ->add_flag("--paused", view.paused, "start --live paused, until play is pressed in the page")
       ->needs(live);
   add_mjcf_options(*command, view.job);
   add_plan_options(*command, view.job);
@@ -333,31 +340,30 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds view humanoid.xml --random-controls --worlds 16 --seconds 5\n"
       "  manyworlds view bin-boxes --live --worlds 64\n"
       "\n"
-      "The page is one file that needs nothing else: no server, no network. Scenes are recorded\n"
-      "first, as many worlds as make a page of some 10 MB. With --live the page shows worlds "
-      "while\n"
-      "they step, and drags, pushes, resets and pauses them.");
+      "The page is one file that needs no server and no network. Scenes are recorded first, with\n"
+      "as many worlds as fit into a page of about 10 MB. With --live, the page shows worlds while\n"
+      "they step, and can drag bodies, apply external forces, reset and pause.");
   command->callback([&] { code = view_command(all.view); });
 }
 
 // What all reports take.
 void add_report_options(CLI::App& app, ReportOptions& options, const std::string& name) {
-  app.add_flag("--quick", options.quick, "shorter, in under two minutes");
+  app.add_flag("--quick", options.quick, "run a shorter version, in under two minutes");
   add_folder(app, "--out", options.out, fmt::format("folder for {0}.html and {0}.json", name));
   app.add_flag("--json", options.json, "print JSON instead of text");
 }
 
 void add_report_page(CLI::App& report, ReportPageOptions& options, int& code) {
-  CLI::App* page =
-      report.add_subcommand("page", "Make the pages of reports that were measured before");
+  CLI::App* page = report.add_subcommand("page", "Make pages from the JSON of earlier reports");
   page->add_option("file", options.files, "JSON of reports")->required()->type_name("FILE.json");
-  add_folder(*page, "--out", options.out, "for the pages (default: beside the JSON)");
+  add_folder(*page, "--out", options.out, "folder for the pages (default: next to the JSON)");
   page->footer(
       "Examples:\n"
       "  manyworlds report page report/accuracy.json\n"
       "  manyworlds report page report/*.json --out pages\n"
       "\n"
-      "For what was measured by a program that was built without pages, or before they changed.");
+      "Use it for reports from a program that was built without pages, or from an earlier "
+      "version.");
   page->callback([&] { code = report_page_command(options); });
 }
 
@@ -365,8 +371,8 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command =
       app.add_subcommand("report", "Measure accuracy, stability, plans and throughput");
   command->require_subcommand(1);
-  CLI::App* accuracy =
-      command->add_subcommand("accuracy", "Error against run time, where the solution is known");
+  CLI::App* accuracy = command->add_subcommand(
+      "accuracy", "Measure error against run time in scenes with known solutions");
   add_report_options(*accuracy, all.report, "accuracy");
   add_case_list(*accuracy, all.report.cases, "A1,A16");
   accuracy->footer(
@@ -374,13 +380,13 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds report accuracy --quick\n"
       "  manyworlds report accuracy --cases A5,A16 --out /tmp/report\n"
       "\n"
-      "Each case is a scene whose solution is known, run by several integrators or numbers of\n"
-      "substeps with steps of several lengths: once for the error and, without looking at it,\n"
-      "once more for the time. The page has a picture of each.");
+      "Each case is a scene with a known solution. It runs with several integrators or numbers\n"
+      "of substeps and several step lengths: once to measure the error, and once without\n"
+      "observing it to measure the time. The page has a picture of each case.");
   accuracy->callback([&] { code = report_accuracy_command(all.report); });
 
   CLI::App* stability =
-      command->add_subcommand("stability", "Stiff and extreme scenes against criteria");
+      command->add_subcommand("stability", "Test stiff and extreme scenes against criteria");
   add_report_options(*stability, all.report, "stability");
   add_case_list(*stability, all.report.cases, "B9,B13");
   stability->footer(
@@ -388,13 +394,12 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds report stability --quick\n"
       "  manyworlds report stability --cases B13,B15 --json\n"
       "\n"
-      "Each case is run in many worlds that differ a little, with the default settings and with\n"
-      "others, and fails if one of the worlds does. Failures are part of the report, not of the\n"
-      "exit code.");
+      "Each case runs in many slightly different worlds, with the default and with other\n"
+      "settings. It fails if one of its worlds fails. Failures appear in the report and do not\n"
+      "change the exit code.");
   stability->callback([&] { code = report_stability_command(all.report); });
 
-  CLI::App* plan =
-      command->add_subcommand("plan", "What plans leave out, and what leaving it out is worth");
+  CLI::App* plan = command->add_subcommand("plan", "Measure the benefit of omitting unused stages");
   add_report_options(*plan, all.report, "plan");
   add_scene_list(*plan, all.report.scenes);
   plan->footer(
@@ -402,17 +407,18 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds report plan --quick\n"
       "  manyworlds report plan --scenes bin-boxes,ball3d\n"
       "\n"
-      "Each variant (a stage switched back on, another layout, another way to find pairs) steps\n"
-      "alternately with the batch as it is by default, on one thread, and must have its bits.");
+      "Each variant (a stage switched on again, another layout, another broad phase) steps\n"
+      "alternately with the default batch, on one thread, and must produce the same bits.");
   plan->callback([&] { code = report_plan_command(all.report); });
 
   CLI::App* throughput = command->add_subcommand(
-      "throughput", "Speed over worlds, threads, instruction sets, precisions and bodies");
+      "throughput",
+      "Measure speed by number of worlds, threads and bodies, instruction set and precision");
   add_report_options(*throughput, all.report, "throughput");
   add_scene_list(*throughput, all.report.scenes);
   add_folder(*throughput, "--peers", all.report.peers,
-             "compare with the engines in this folder, which tools/peers builds");
-  throughput->add_flag("--peers-only", all.report.peers_only, "with --peers: nothing else")
+             "compare with the engines in this folder, built by tools/peers");
+  throughput->add_flag("--peers-only", all.report.peers_only, "run only the comparison of --peers")
       ->needs("--peers");
   throughput->footer(
       "Examples:\n"
@@ -420,9 +426,9 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "  manyworlds report throughput --scenes stack10 --json\n"
       "  manyworlds report throughput --peers build/peers/bin --peers-only\n"
       "\n"
-      "Peers step the same standard scenes alternately with manyworlds, in up to an hour, or two\n"
-      "minutes with --quick; the fastest of each scene comes first. A peer that fails is a line\n"
-      "of the report.");
+      "Peers step the same standard scenes alternately with manyworlds. This takes up to an hour,\n"
+      "or two minutes with --quick. The fastest engine of each scene comes first. A peer that\n"
+      "fails gets a line in the report.");
   throughput->callback([&] { code = report_throughput_command(all.report); });
   add_report_page(*command, all.report_page, code);
 }
@@ -432,7 +438,7 @@ void add_info(CLI::App& app, AllOptions& all, int& code) {
       app.add_subcommand("info", "Show the CPU, instruction sets, threads and versions");
   command->add_flag("--json", all.info_json, "print JSON instead of text");
   command->add_flag("--options", all.info_options,
-                    "list the options of a scene, as --set takes them, and their defaults");
+                    "list the options of a scene for --set, and their defaults");
   command->footer(
       "Examples:\n  MANYWORLDS_ISA=avx2 manyworlds info\n  manyworlds info --json\n"
       "  manyworlds info --options");

@@ -65,7 +65,7 @@ Limits parse_limits(const MjcfArguments& arguments) {
     const auto [stop, error] = std::from_chars(begin, end, value);
     if (begin == end || error != std::errc{} || stop != end || value < 1) {
       throw InputError(fmt::format(
-          "--mjcf-limit: must be NAME=N, N a whole number of at least 1, is '{}'", text));
+          "--mjcf-limit: must be NAME=N with a whole number N of at least 1, is '{}'", text));
     }
     if (name == "megabytes") {
       limits.child.megabytes = value;
@@ -76,8 +76,8 @@ Limits parse_limits(const MjcfArguments& arguments) {
         mjcf_limit(limits.options.limits, name) = value;
       } catch (const std::invalid_argument&) {
         throw InputError(
-            fmt::format("--mjcf-limit: there is no limit '{}'; there are {}, megabytes, seconds",
-                        name, fmt::join(mjcf_limit_names(), ", ")));
+            fmt::format("--mjcf-limit: unknown limit '{}'; expected {}, megabytes or seconds", name,
+                        fmt::join(mjcf_limit_names(), ", ")));
       }
     }
   }
@@ -181,16 +181,15 @@ void require_harmless(const MjcfFiles& files, const std::string& path, const Chi
   }
   const int sig = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (!in_time || sig == SIGXCPU || sig == SIGKILL) {
-    throw InputError(fmt::format(
-        "{}: MuJoCo was not done with compiling it after {} s; expected it to be (limit 'seconds')",
-        path, limits.seconds));
+    throw InputError(fmt::format("{}: MuJoCo did not compile it within {} s (limit 'seconds')",
+                                 path, limits.seconds));
   }
   if (sig == SIGINT || sig == SIGTERM) throw InputError(fmt::format("{}: interrupted", path));
   if (sig != 0) {
-    throw InputError(fmt::format(
-        "{}: MuJoCo ended with signal {} ({}) while it compiled it; is the model broken, or larger "
-        "than {} MB (limit 'megabytes')?",
-        path, sig, strsignal(sig), limits.megabytes));
+    throw InputError(
+        fmt::format("{}: MuJoCo ended with signal {} ({}) while compiling it; the model may be "
+                    "invalid, or need more than {} MB (limit 'megabytes')",
+                    path, sig, strsignal(sig), limits.megabytes));
   }
   if (!problems.empty()) throw InputError(problems);
 }

@@ -235,7 +235,7 @@ void print_joint(const Scene& scene, const ModelJoint& row, int indent) {
 }
 
 void print_tree(const Scene& scene, const std::vector<ModelBody>& tree) {
-  fmt::print("\nbodies that move, and what moves them\n");
+  fmt::print("\nmoving bodies and their joints\n");
   if (tree.empty()) fmt::print("  none\n");
   for (const ModelBody& row : tree) {
     const Body& body = scene.at(row.body);
@@ -317,7 +317,7 @@ void print_keyframes(const Scene& scene) {
 }
 
 void print_options(const Scene& scene) {
-  fmt::print("\noptions that are not as 'manyworlds info --options' has them\n");
+  fmt::print("\noptions that differ from the defaults ('manyworlds info --options')\n");
   const std::vector<OptionLine> lines = set_options(scene.options);
   if (lines.empty()) fmt::print("  none\n");
   const std::size_t width = widest(
@@ -351,11 +351,11 @@ int model_command(const JobOptions& options) {
   print_keyframes(scene);
   print_pairs(job.plan.report().pairs);
   if (!scene.exclusions.empty()) {
-    fmt::print("  {} of bodies that do not collide, beside those of joints\n",
+    fmt::print("  {} of bodies that do not collide, in addition to those of joints\n",
                counted(static_cast<long long>(scene.exclusions.size()), "pair"));
   }
   print_options(scene);
-  fmt::print("\nleft out, or not as the file says\n");
+  fmt::print("\nignored or changed from the file\n");
   if (warnings.empty()) fmt::print("  nothing\n");
   for (const std::string& warning : warnings) fmt::print("  {}\n", warning);
   return kOk;

@@ -12,7 +12,7 @@ namespace manyworlds::cli {
 inline InputError not_built(const std::string& asked, const std::string& part,
                             const std::string& option) {
   return InputError(asked + ": this program was built without " + part + "; cmake -D " + option +
-                    " adds that, tools/run --all in the repository adds all there is");
+                    " adds it, tools/run --all in the repository adds all parts");
 }
 
 }  // namespace manyworlds::cli

@@ -170,7 +170,7 @@ void add_count(CLI::App& app, const std::string& flag, int& value, int least,
 }
 
 void add_case_list(CLI::App& app, std::vector<std::string>& cases, const std::string& example) {
-  app.add_option("--cases", cases, "only these, as " + example + " (default: all)")
+  app.add_option("--cases", cases, "run only these cases, such as " + example + " (default: all)")
       ->delimiter(',')
       ->type_name("ID,...");
 }
@@ -191,7 +191,7 @@ void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::stri
 
 void add_scene_argument(CLI::App& app, JobOptions& options) {
   app.add_option("scene", options.scene,
-                 "name of a scene, with a size for some (bin-boxes:1000), or an MJCF file (.xml)")
+                 "name of a scene, optionally with a size (bin-boxes:1000), or an MJCF file (.xml)")
       ->required()
       ->type_name("NAME|NAME:SIZE|FILE.xml");
   add_mjcf_options(app, options);
@@ -199,13 +199,13 @@ void add_scene_argument(CLI::App& app, JobOptions& options) {
 
 void add_mjcf_options(CLI::App& app, JobOptions& options) {
   app.add_option("--mjcf-root", options.mjcf.roots,
-                 "folder besides the MJCF file's own that it may take files from; may be repeated")
+                 "another folder from which the MJCF file may load files; may be repeated")
       ->type_name("DIR")
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--mjcf-limit", options.mjcf.limits,
-                 "another limit of what an MJCF file may ask for, which its error names, or of the "
+                 "set a limit on MJCF files, by the name in its error message, or on their "
                  "compilation: seconds=60, megabytes=4096; may be repeated")
       ->type_name("NAME=N")
       ->expected(1)
@@ -223,7 +223,7 @@ void add_plan_options(CLI::App& app, JobOptions& options) {
       ->type_name("N");
   add_choice<Solver>(
       app, "--solver", solvers(), [&options](Solver value) { options.solver = value; },
-      "what solves contacts and joints (default: the scene's)");
+      "solver of contacts and joints (default: the scene's)");
   app.add_option("--iterations", options.iterations,
                  "sweeps over all rows per substep, 1 to 10000 (default: the solver's)")
       ->transform(whole_number(1, 10000))
@@ -232,9 +232,9 @@ void add_plan_options(CLI::App& app, JobOptions& options) {
                                      {to_string(JointMethod::tree), JointMethod::tree}};
   add_choice<JointMethod>(
       app, "--joints", methods, [&options](JointMethod value) { options.joints = value; },
-      "swept over one after the other, or those of a tree at once (default: the scene's)");
+      "solve joints one after the other, or all of a tree at once (default: the scene's)");
   app.add_option("--set", options.set,
-                 "any option of the scene by its path, as contact.frequency=30 or "
+                 "set any option of the scene by its path, such as contact.frequency=30 or "
                  "gravity=0,0,-9.81; 'info --options' lists them; may be repeated")
       ->check(CLI::Validator(
           [](std::string& text) {
@@ -249,10 +249,10 @@ void add_plan_options(CLI::App& app, JobOptions& options) {
   add_choice<BroadPhase>(
       app, "--broad-phase", broad_phases(),
       [&options](BroadPhase value) { options.broad_phase = value; },
-      "how candidate pairs are found; the bits do not depend on it");
+      "method that finds candidate pairs; does not affect the bits");
   add_choice<Feature>(
       app, "--keep", features(), [&options](Feature value) { options.keep.push_back(value); },
-      "keep a stage that the plan would leave out; may be repeated")
+      "keep a feature that the plan would omit; may be repeated")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
@@ -264,7 +264,7 @@ void add_batch_options(CLI::App& app, JobOptions& options) {
       [&options](Precision value) { options.precision = value; },
       "arithmetic of the step (default: f32)");
   app.add_option("--audit-every", options.audit_every,
-                 "audit the energy of each world in one of N steps; 0: never")
+                 "audit the energy of each world every N steps; 0: never")
       ->transform(whole_number(0, 255))
       ->type_name("N")
       ->capture_default_str();
@@ -272,7 +272,7 @@ void add_batch_options(CLI::App& app, JobOptions& options) {
 }
 
 void add_kernel_options(CLI::App& app, JobOptions& options) {
-  app.add_option("--threads", options.threads, "threads; 0: all that the process may use")
+  app.add_option("--threads", options.threads, "number of threads; 0: all that the process may use")
       ->transform(whole_number(0, 1024))
       ->type_name("N")
       ->capture_default_str();
@@ -285,15 +285,15 @@ void add_kernel_options(CLI::App& app, JobOptions& options) {
       "instruction set (default: MANYWORLDS_ISA, else the widest)");
   add_choice<ContactLayout>(
       app, "--layout", layouts(), [&options](ContactLayout value) { options.layout = value; },
-      "storage of contacts between bodies; the bits do not depend on it");
+      "storage of contacts between bodies; does not affect the bits");
 }
 
 void add_length_options(CLI::App& app, JobOptions& options) {
-  CLI::Option* steps = app.add_option("--steps", options.steps, "steps of every world")
+  CLI::Option* steps = app.add_option("--steps", options.steps, "number of steps of each world")
                            ->transform(whole_number(1, std::numeric_limits<int>::max()))
                            ->type_name("N")
                            ->capture_default_str();
-  app.add_option("--seconds", options.seconds, "simulated time instead of a number of steps")
+  app.add_option("--seconds", options.seconds, "simulated time in seconds, instead of --steps")
       ->transform(positive_number())
       ->type_name("S")
       ->excludes(steps);
@@ -306,7 +306,7 @@ void add_random_controls(CLI::App& app, JobOptions& options) {
 
 void add_keyframe(CLI::App& app, JobOptions& options) {
   app.add_option("--keyframe", options.keyframe,
-                 "begin, and reset, at this keyframe of the scene ('manyworlds model' lists them)")
+                 "start and reset at this keyframe of the scene ('manyworlds model' lists them)")
       ->type_name("NAME");
 }
 
@@ -320,7 +320,7 @@ void add_sleep_options(CLI::App& app, std::vector<bool>& sleep) {
   add_choice<std::vector<bool>>(
       app, "--sleep", {{"off", {false}}, {"on", {true}}, {"both", {false, true}}},
       [&sleep](const std::vector<bool>& value) { sleep = value; },
-      "let bodies at rest fall asleep, or not, or one after the other (default: off)");
+      "let bodies at rest fall asleep, or not, or measure both (default: off)");
 }
 
 void add_json_option(CLI::App& app, JobOptions& options) {
@@ -329,26 +329,27 @@ void add_json_option(CLI::App& app, JobOptions& options) {
 
 void add_record_options(CLI::App& app, JobOptions& options) {
   CLI::Option* file =
-      app.add_option("--record", options.record, "record worlds in this file, for 'replay'")
+      app.add_option("--record", options.record, "record worlds to this file, for 'replay'")
           ->check(name_of_a("file"))
           ->type_name("FILE.h5");
   app.add_option("--record-worlds", options.record_worlds,
-                 "which, as 0,5,10-20 (default: the first 64)")
+                 "worlds to record, such as 0,5,10-20 (default: the first 64)")
       ->type_name("LIST")
       ->needs(file);
-  app.add_option("--record-every", options.record_every, "steps from one sample to the next")
+  app.add_option("--record-every", options.record_every, "number of steps between samples")
       ->transform(whole_number(1, std::numeric_limits<int>::max()))
       ->type_name("K")
       ->capture_default_str()
       ->needs(file);
-  app.add_option("--record-flush", options.record_flush,
-                 "s; what is older survives the end of the program (0: after every call)")
+  app.add_option(
+         "--record-flush", options.record_flush,
+         "seconds between flushes; flushed samples survive a crash (0: flush after every call)")
       ->transform(real_number(false))
       ->type_name("SECONDS")
       ->capture_default_str()
       ->needs(file);
   add_contacts_option(app, options.record_contacts, "--record-contacts",
-                      "contact points of a world and sample, the N of the largest forces at most");
+                      "contact points per world and sample, at most the N with the largest forces");
   app.get_option("--record-contacts")->needs(file);
 }
 
@@ -361,7 +362,7 @@ void add_contacts_option(CLI::App& app, int& contacts, const char* flag, const s
 
 void add_dump_option(CLI::App& app, JobOptions& options) {
   app.add_option("--dump-lost", options.dump_lost,
-                 "record how worlds are lost, for 'replay': DIR/world_N.h5, the first 16 of them")
+                 "record how the first 16 lost worlds are lost, for 'replay', as DIR/world_N.h5")
       ->check(name_of_a("folder"))
       ->type_name("DIR");
 }
@@ -375,7 +376,7 @@ void add_folder(CLI::App& app, const std::string& flag, std::string& folder,
 }
 
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes) {
-  app.add_option("--scenes", scenes, "only these scenes, separated by commas")
+  app.add_option("--scenes", scenes, "run only these scenes, separated by commas")
       ->delimiter(',')
       ->type_name("A,B,...");
 }

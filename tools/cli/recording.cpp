@@ -58,8 +58,8 @@ std::vector<int> parse_worlds(const std::string& list, int worlds) {
       throw InputError(fmt::format("--record-worlds: must be like 0,5,10-20, is '{}'", list));
     }
     if (*last >= worlds) {
-      throw InputError(
-          fmt::format("--record-worlds: there is no world {}, --worlds is {}", *last, worlds));
+      throw InputError(fmt::format("--record-worlds: holds {}, must be below --worlds, which is {}",
+                                   *last, worlds));
     }
     for (int world = *first; world <= *last && chosen.size() < kMaxLines; ++world) {
       chosen.insert(world);

@@ -85,10 +85,10 @@ std::string utc_now() {
 
 void tell_of_no_page(const report::ReportFiles& files) {
   std::error_code ignored;
-  tools::tell("{}; then 'manyworlds report page {}' makes it{}\n", why_no_page(kReportPage),
+  tools::tell("{}; 'manyworlds report page {}' then makes the page{}\n", why_no_page(kReportPage),
               tools::shell_word(files.json().string()),
               std::filesystem::exists(files.page(), ignored)
-                  ? fmt::format(". {} is of an earlier report", files.page().string())
+                  ? fmt::format(". {} is from an earlier report", files.page().string())
                   : "");
 }
 
@@ -140,7 +140,7 @@ void check_names(const char* option, const std::vector<std::string>& wanted,
   for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
   for (const std::string& name : wanted) {
     if (std::count(known.begin(), known.end(), name) > 0) continue;
-    throw InputError(fmt::format("{}: unknown {} '{}'; there are {}", option, what, name, all));
+    throw InputError(fmt::format("{}: unknown {} '{}'; expected {}", option, what, name, all));
   }
 }
 

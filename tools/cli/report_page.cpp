@@ -26,9 +26,9 @@ std::optional<std::string> read_report_page() {
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (text.find(kReportVersion) == std::string::npos ||
       text.find(kReportPlace) == std::string::npos) {
-    throw InputError(
-        fmt::format("'{}': is no page of this version; expected report.html as viewer/ builds it",
-                    file->string()));
+    throw InputError(fmt::format(
+        "'{}': is not a page of this version; expected report.html as viewer/ builds it",
+        file->string()));
   }
   return text;
 }

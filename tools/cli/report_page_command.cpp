@@ -36,18 +36,18 @@ bool is_report(const Json& json) {
 Json read_report(const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) {
-    throw InputError(fmt::format("'{}': there is no such file", file.string()));
+    throw InputError(fmt::format("'{}': no such file", file.string()));
   }
   if (!fs::is_regular_file(file, ignored)) {
-    throw InputError(fmt::format("'{}': is no file", file.string()));
+    throw InputError(fmt::format("'{}': is not a file", file.string()));
   }
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in) throw InputError(fmt::format("'{}': cannot be read", file.string()));
   Json report = Json::parse(text, nullptr, false);
   if (is_report(report)) return report;
-  throw InputError(fmt::format("'{}': is no report; expected the JSON of report {}", file.string(),
-                               fmt::join(kReports, ", ")));
+  throw InputError(fmt::format("'{}': is not a report; expected the JSON of report {}",
+                               file.string(), fmt::join(kReports, ", ")));
 }
 
 }  // namespace
@@ -62,7 +62,9 @@ int report_page_command(const ReportPageOptions& options) {
     fs::path page = options.out.empty() ? file : fs::path(options.out) / file.filename();
     page.replace_extension(".html");
     if (page == file) {
-      throw InputError(fmt::format("'{}': is where its page would go", file.string()));
+      throw InputError(fmt::format(
+          "'{}': its page would overwrite it; expected a name that does not end with .html",
+          file.string()));
     }
     pages.emplace_back(std::move(page), page_of(*empty, read_report(file)));
   }

@@ -37,18 +37,18 @@ void print_head(const VerifyOptions& options) {
       kWorlds, options.seed, to_string(default_isa()));
   fmt::print("1 thread, step(1) calls); on {}:\n", isas);
   fmt::print("  alone     each world as a batch of 1\n");
-  fmt::print("  position  all worlds moved by 1, 3 and 7 places\n");
+  fmt::print("  position  all worlds shifted by 1, 3 and 7 indices\n");
   fmt::print("  size      batches of {}\n", options.quick ? "1, 4, ... 40" : "1, 2, ... 40");
   fmt::print("  threads   1, 2, 3 and 4\n");
   fmt::print(
       "  kernels   layouts auto, dense, rows x broad phases all-pairs, "
       "sort-and-sweep, sparse; robots have one\n");
   fmt::print("  calls     step(7) and one call for all steps\n");
-  fmt::print("  masks     a third of the worlds takes up to 5 steps, then the others\n");
+  fmt::print("  masks     a third of the worlds takes up to 5 steps, then the others do\n");
   fmt::print("  saved     half of the steps, a snapshot, the rest in another batch\n");
-  fmt::print("  reset     after a third of the run, and all over\n");
-  fmt::print("  frozen    beside a world that a NaN force froze half way\n");
-  fmt::print("  energy    worlds of the batch of {} that gain energy from nothing\n", kWorlds);
+  fmt::print("  reset     a reset after a third of the run, then the whole run\n");
+  fmt::print("  frozen    next to a world that a NaN force freezes half way\n");
+  fmt::print("  energy    worlds of the batch of {} whose energy grows without a cause\n", kWorlds);
   fmt::print("Robots get random controls every 5 steps, and resets at random times.\n");
   if (!missing.empty()) fmt::print("Not on this CPU or not in this build: {}\n", missing);
   fmt::print("\n{:<14}{:<6}", "scene", "");

@@ -107,7 +107,7 @@ int tell_interrupted(const ViewArguments& arguments, const std::vector<std::stri
 
 int tell_cut(const Cut& cut, const fs::path& page) {
   std::fflush(stdout);
-  tools::tell("manyworlds: interrupted by {} {}; {} shows what was done by then\n",
+  tools::tell("manyworlds: interrupted by {} {}; {} shows the steps until then\n",
               tools::interrupt_name(), text_of(cut), page.string());
   return tools::interrupt_code();
 }

@@ -72,10 +72,10 @@ FramesWanted frames_wanted(const ViewArguments& arguments) {
   refuse_without(!arguments.at || out.any(), "--at", "--png or --mp4");
   refuse_without(view.empty() || out.any(), "--world, --follow, --color, --dark", "--png or --mp4");
   if (arguments.at && (arguments.time || arguments.begin)) {
-    throw InputError("--at: excludes --time and --begin, whose former name it is");
+    throw InputError("--at: excludes --time and --begin, which replace it");
   }
   if (arguments.until && arguments.end) {
-    throw InputError("--until: excludes --end, whose former name it is");
+    throw InputError("--until: excludes --end, which replaces it");
   }
   out.time = time_of(arguments.time, arguments.at, kEnd);
   out.begin = time_of(arguments.begin, arguments.at, 0);

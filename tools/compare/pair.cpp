@@ -15,7 +15,7 @@ Pair::Pair(const MjcfFiles& files, const Settings& settings) : settings_(setting
   warnings_ = std::move(result.warnings);
   if (scene_.options.solver.method != Solver::newton) {
     throw std::invalid_argument(
-        "the model has free joints alone, and is not stepped with MuJoCo's physics (" +
+        "the model has only free joints, and is not stepped with MuJoCo's physics (" +
         std::string(to_string(scene_.options.solver.method)) +
         "); expected a hinge, a slide or a ball joint");
   }
@@ -60,7 +60,7 @@ Scene Pair::scene(Precision precision) const {
 
 mjcf::DataPtr Pair::make_data() const {
   mjcf::DataPtr data(mj_makeData(mujoco_.get()));
-  if (!data) throw mjcf::MujocoFailure("MuJoCo could not make the data of the model");
+  if (!data) throw mjcf::MujocoFailure("MuJoCo could not create the model's data");
   return data;
 }
 

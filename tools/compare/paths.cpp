@@ -121,8 +121,8 @@ std::vector<std::string> FreePaths::failures() const {
     if (ours[p] <= std::max(kFollowed, own[p])) continue;
     char text[200];
     std::snprintf(text, sizeof text,
-                  "f64: path %d without contacts is off by %.2g after %d steps; expected at most "
-                  "%.2g (MuJoCo's own, moved by %.0e: %.2g)",
+                  "f64: path %d without contacts differs by %.2g after %d steps; expected at most "
+                  "%.2g (MuJoCo itself, moved by %.0e: %.2g)",
                   static_cast<int>(p), ours[p], steps, kFollowed, kMoved, own[p]);
     out.emplace_back(text);
   }

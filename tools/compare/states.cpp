@@ -133,8 +133,9 @@ std::vector<std::string> StateComparison::failures() const {
     out.push_back(precision + ": " + quantity.name + " " + text);
   }
   if (100 * other_contacts > states) {
-    out.push_back(precision + ": another number of contacts in " + std::to_string(other_contacts) +
-                  " of " + std::to_string(states) + " states; expected at most 1 %");
+    out.push_back(precision + ": different number of contacts in " +
+                  std::to_string(other_contacts) + " of " + std::to_string(states) +
+                  " states; expected at most 1 %");
   }
   return out;
 }

@@ -78,11 +78,10 @@ std::vector<std::string> find_peers(const std::string& folder) {
     if (it->is_regular_file(no_file) && access(path.c_str(), X_OK) == 0) out.push_back(path);
   }
   const std::string named = "--peers: '" + folder + "': ";
-  if (error == std::errc::not_a_directory) throw std::invalid_argument(named + "is no folder");
+  if (error == std::errc::not_a_directory) throw std::invalid_argument(named + "is not a folder");
   if (error) throw std::invalid_argument(named + "cannot be read: " + error.message());
   if (out.empty()) {
-    throw std::invalid_argument(named +
-                                "there is no program peer_* in it; tools/peers builds them");
+    throw std::invalid_argument(named + "it contains no program peer_*; tools/peers builds them");
   }
   std::sort(out.begin(), out.end());
   return out;
@@ -108,7 +107,7 @@ PeerResult run_peer(const PeerProgram& peer, const std::string& scene,
       out.settings = json.value("settings", "");
       out.world_steps_per_s = json.at("world_steps_per_s");
       out.poses = json.at("poses").get<std::vector<double>>();
-      if (!(out.world_steps_per_s > 0)) throw PeerError("its speed is not above 0");
+      if (!(out.world_steps_per_s > 0)) throw PeerError("its speed must be above 0");
       return out;
     } catch (const Json::exception& error) {
       throw PeerError(printable(error.what()));

@@ -83,7 +83,7 @@ mv "$work/installed/lib/libhdf5.a" "$work/new/lib"
 cp "$crate_dir/ext/hdf5/LICENSE" "$work/new/LICENSE"
 sed -n 's/^#define H5_VERS_INFO.*//; s/^#define H5_VERS_\(MAJOR\|MINOR\|RELEASE\) *\([0-9]*\)$/\2/p' \
   "$work/new/include/H5public.h" | paste -sd. >"$work/new/hdf5_version"
-[ -s "$work/new/hdf5_version" ] || fail "cannot tell the version of HDF5"
+[ -s "$work/new/hdf5_version" ] || fail "cannot determine the version of HDF5"
 echo "$version" >"$work/new/version"
 [ ! -e "$dir" ] || mv -T "$dir" "$work/old" || fail "cannot replace $dir"
 mv -T "$work/new" "$dir" || fail "cannot rename into $dir"

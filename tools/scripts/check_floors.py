@@ -96,22 +96,22 @@ def check_src(file, name):
     if name.startswith("src/"):
         target = Path(name).parts[1]
         if floor in SRC_SIDE:
-            return None if target in SRC_SIDE[floor] else f"src/{floor} may not know src/{target}"
+            return None if target in SRC_SIDE[floor] else f"src/{floor} may not include src/{target}"
         if floor not in SRC_FLOORS:
-            return f"src/{floor} is no floor of src"
+            return f"src/{floor} is not a floor of src"
         if target not in SRC_FLOORS:
-            return f"src/{target} is off the column"
+            return f"src/{target} is not in the column of floors"
         if SRC_FLOORS.index(target) > SRC_FLOORS.index(floor):
             return f"goes up from src/{floor} to src/{target}"
     elif name.startswith("kernels/"):
         if floor == "scene" and name == SCENE_SEES_KERNELS:
             return None
         if floor not in SRC_SEES_KERNELS:
-            return f"src/{floor} may not know the kernels"
+            return f"src/{floor} may not include the kernels"
         if not is_kernel_data(name):
             return "src may include the kernels' plain data headers only"
     elif name.startswith("scenes/"):
-        return "src may not know the scenes"
+        return "src may not include the scenes"
     return None
 
 
@@ -121,7 +121,7 @@ def check_kernel(file, name, quoted):
         floor, target = kernel_floor(file), kernel_floor(name)
         for path, place in ((file, floor), (name, target)):
             if place is None:
-                return f"{Path(path).parent} is no room of kernels"
+                return f"{Path(path).parent} is not a room of kernels"
         return "goes up inside kernels" if target > floor else None
     if quoted:
         shared = is_kernel_data(file) and name in KERNELS_SEE
@@ -143,7 +143,7 @@ def check_tools(file, name):
     floor, target = Path(file).parts[1], Path(name).parts[1]
     for part in (floor, target):
         if part not in TOOLS_FLOORS:
-            return f"tools/{part} is no floor of tools"
+            return f"tools/{part} is not a floor of tools"
     if TOOLS_FLOORS.index(target) > TOOLS_FLOORS.index(floor):
         return f"goes up from tools/{floor} to tools/{target}"
     return None
@@ -200,7 +200,7 @@ def cycles(graph):
             target = resolve(file, name, graph)
             if target in path:
                 circle = " > ".join(path[path.index(target):] + [target])
-                found.append((file, number, f"closes the circle {circle}"))
+                found.append((file, number, f"closes the include cycle {circle}"))
             elif target is not None and target not in done:
                 visit(target)
         path.pop()

@@ -59,7 +59,7 @@ def problems(path):
     for name in documents:
         document = json.loads(archive.read(name))
         if document.get("bomFormat") != "CycloneDX":
-            yield f"{name} is no CycloneDX document"
+            yield f"{name} is not a CycloneDX document"
         components += document.get("components", [])
     if f"{info}/sboms/manyworlds.cdx.json" not in documents:
         yield "has no bill of materials"

@@ -22,7 +22,7 @@ command -v python3 >/dev/null || fail "python3 is missing; apt-get install pytho
 
 mkdir -p "$(dirname "$dir")" || fail "cannot make $(dirname "$dir")"
 # Everything is made beside DIR and renamed, so that DIR is never half there.
-work=$(mktemp -d "$dir.XXXXXX") || fail "cannot write beside $dir"
+work=$(mktemp -d "$dir.XXXXXX") || fail "cannot write next to $dir"
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' INT TERM HUP
 

@@ -34,7 +34,7 @@ python3 -m pip --version >/dev/null 2>&1 || fail "pip is missing; apt-get instal
 
 mkdir -p "$(dirname "$dir")" || fail "cannot make $(dirname "$dir")"
 # Everything is made beside DIR and renamed, so that DIR is never half there.
-work=$(mktemp -d "$dir.XXXXXX") || fail "cannot write beside $dir"
+work=$(mktemp -d "$dir.XXXXXX") || fail "cannot write next to $dir"
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' INT TERM HUP
 

@@ -82,7 +82,7 @@ project = tomllib.load(open(sys.argv[1], "rb"))["project"]
 print(*project["dependencies"], *project["optional-dependencies"]["test"], sep="\n")
 END
   )
-  ((${#requirements[@]} > 0)) || fail "$system_python could not read pyproject.toml (it wants Python 3.11)"
+  ((${#requirements[@]} > 0)) || fail "$system_python could not read pyproject.toml (it needs Python 3.11)"
   if [[ -x $python_dir/bin/python && -f $stamp && $(<"$stamp") == "${requirements[*]}" ]]; then
     return
   fi

@@ -85,7 +85,7 @@ test('the program takes pictures', async () => {
   }, `data:image/png;base64,${bytes.toString('base64')}`);
   await context.close();
   assert.ok(found.includes('243,167,18'), 'no ball');
-  assert.throws(() => run(['--png', file], { CHROMIUM: '/no/such/browser' }), /wants a browser, and found no \/no\/such\/browser/);
+  assert.throws(() => run(['--png', file], { CHROMIUM: '/no/such/browser' }), /needs a browser, found none of \/no\/such\/browser/);
 });
 
 test('each frame of a film is the page at exactly its time', async () => {

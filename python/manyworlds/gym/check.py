@@ -60,10 +60,10 @@ def _own_reference(env: VectorEnv) -> Maker:
 
 
 def _check_spaces(env: gymnasium.vector.VectorEnv[Any, Any, Any]) -> None:
-    _demand(isinstance(env, gymnasium.vector.VectorEnv), "is no gymnasium.vector.VectorEnv")
-    _demand(isinstance(env.num_envs, int) and env.num_envs > 0, "num_envs is no positive int")
+    _demand(isinstance(env, gymnasium.vector.VectorEnv), "is not a gymnasium.vector.VectorEnv")
+    _demand(isinstance(env.num_envs, int) and env.num_envs > 0, "num_envs is not a positive int")
     mode = env.metadata.get("autoreset_mode")
-    _demand(isinstance(mode, AutoresetMode), "metadata['autoreset_mode'] is no AutoresetMode")
+    _demand(isinstance(mode, AutoresetMode), "metadata['autoreset_mode'] is not an AutoresetMode")
     for name in ("observation", "action"):
         single, batched = getattr(env, f"single_{name}_space"), getattr(env, f"{name}_space")
         wanted = batch_space(single, env.num_envs)
@@ -78,10 +78,10 @@ def _check_seeds(env: gymnasium.vector.VectorEnv[Any, Any, Any], seed: int) -> N
         return np.array(observations)
 
     first = start(seed)
-    _demand(_same(first, start(seed)), "the same seed gives other observations")
+    _demand(_same(first, start(seed)), "the same seed gives different observations")
     each = [seed + i for i in range(env.num_envs)]
     _demand(
-        _same(first, start(each)), "seed s gives world i other observations than the seed s + i"
+        _same(first, start(each)), "seed s gives world i different observations than the seed s + i"
     )
     start([None] * env.num_envs)
     start(None)
@@ -136,7 +136,7 @@ def _check_steps(
 
 def _check_observations(env: gymnasium.vector.VectorEnv[Any, Any, Any], found: Any) -> None:
     space = env.observation_space
-    _demand(isinstance(found, np.ndarray), "observations are no NumPy array")
+    _demand(isinstance(found, np.ndarray), "observations are not a NumPy array")
     _demand(found.shape == space.shape, f"observations have shape {found.shape}, not {space.shape}")
     _demand(found.dtype == space.dtype, f"observations are {found.dtype}, not {space.dtype}")
 
@@ -149,21 +149,21 @@ def _check_results(env: gymnasium.vector.VectorEnv[Any, Any, Any], results: Any)
         ("terminated", terminated, np.bool_),
         ("truncated", truncated, np.bool_),
     ):
-        _demand(isinstance(array, np.ndarray), f"{name} are no NumPy array")
+        _demand(isinstance(array, np.ndarray), f"{name} are not a NumPy array")
         _demand(array.shape == (env.num_envs,), f"{name} have shape {array.shape}")
         _demand(array.dtype == dtype, f"{name} are {array.dtype}, not {np.dtype(dtype)}")
 
 
 def _check_infos(infos: Any, num_envs: int, path: str = "infos") -> None:
     """Every key has its mask, every mask its key."""
-    _demand(isinstance(infos, dict), f"{path} is no dict")
+    _demand(isinstance(infos, dict), f"{path} is not a dict")
     for key, value in infos.items():
         if key.startswith("_") and key[1:] in infos:
             _demand(
                 isinstance(value, np.ndarray)
                 and value.dtype == np.bool_
                 and value.shape == (num_envs,),
-                f"{path}['{key}'] is no mask of {num_envs} bools",
+                f"{path}['{key}'] is not a mask of {num_envs} bools",
             )
             continue
         _demand("_" + key in infos, f"{path}['{key}'] has no mask '_{key}'")
@@ -175,11 +175,11 @@ def _check_infos(infos: Any, num_envs: int, path: str = "infos") -> None:
 
 def _check_final(mode: AutoresetMode, ended: np.ndarray, infos: dict[str, Any]) -> None:
     if mode != AutoresetMode.SAME_STEP or not ended.any():
-        _demand("final_obs" not in infos, "there is a final_obs where no world began anew")
+        _demand("final_obs" not in infos, "final_obs is present although no world was reset")
         return
     for key in ("final_obs", "final_info"):
         _demand(key in infos, f"infos have no {key} where episodes end")
-        _demand(_same(infos["_" + key], ended), f"_{key} is not where episodes ended")
+        _demand(_same(infos["_" + key], ended), f"_{key} does not mark the episodes that ended")
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -190,9 +190,9 @@ def _same(a: Any, b: Any) -> bool:
 def _compare(path: str, found: Any, wanted: Any) -> None:
     """Same bits; dicts by their keys, arrays of objects one by one."""
     if isinstance(wanted, Mapping):
-        _demand(isinstance(found, Mapping), f"{path} is no dict")
+        _demand(isinstance(found, Mapping), f"{path} is not a dict")
         keys = set(found) ^ set(wanted)
-        _demand(not keys, f"{path}: {sorted(keys)} are in only one of it and the reference")
+        _demand(not keys, f"{path}: {sorted(keys)} are not in both it and the reference")
         for key in wanted:
             _compare(f"{path}['{key}']", found[key], wanted[key])
     elif isinstance(wanted, np.ndarray) and wanted.dtype == object:
@@ -203,5 +203,5 @@ def _compare(path: str, found: Any, wanted: Any) -> None:
             else:
                 _compare(f"{path}[{i}]", a, b)
     else:
-        text = f"{path} are not those of the reference:\n{found}\n{wanted}"
+        text = f"{path} differ from the reference:\n{found}\n{wanted}"
         _demand(_same(found, wanted), text)

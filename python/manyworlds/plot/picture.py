@@ -134,7 +134,7 @@ class Picture:
         world = arrays.index(world, checked_batch(batch).worlds, "world")
         if batch.plan is not self._known:
             if _looks(batch.plan.scene) != _looks(self.scene):
-                raise ValueError("the batch is of another scene: its bodies or shapes differ")
+                raise ValueError("the batch belongs to another scene: its bodies or shapes differ")
             self._known = batch.plan
         poses: Poses = [*self._first]
         positions = batch.get("position")[world].astype(float)
@@ -192,6 +192,6 @@ def _checked(view: Any) -> View:
     ).tolist()
     if not (-np.inf < left < right < np.inf and -np.inf < bottom < top < np.inf):
         raise ValueError(
-            f"view is {view}; expected ((left, right), (bottom, top)), the lower ones first"
+            f"view is {view}; expected ((left, right), (bottom, top)), the lower values first"
         )
     return (left, right), (bottom, top)

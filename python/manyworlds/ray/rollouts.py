@@ -89,7 +89,7 @@ class Rollouts(InMemory):
             if issues := what.validate():
                 raise TaskError(issues)
             if fields:
-                raise ValueError(f"fields are {list(fields)}; expected none of a task")
+                raise ValueError(f"fields are {list(fields)}; expected none for a task")
         elif not isinstance(what, Plan):
             what = plans_of(what, 1)[0][0].scene
         worlds = arrays.integer(worlds, "worlds", 1, MAX_WORLDS * 1024)
@@ -244,7 +244,7 @@ class Rollouts(InMemory):
     @staticmethod
     def _kept(keep: Sequence[str]) -> tuple[str, ...]:
         if isinstance(keep, str):
-            raise TypeError(f"keep is a str; expected a list of them, such as ['{keep}']")
+            raise TypeError(f"keep is a str; expected a list of names, such as ['{keep}']")
         for name in keep:
             if name not in OF_A_TASK:
                 raise ValueError(f"keep has {name!r}; expected some of {', '.join(OF_A_TASK)}")
@@ -369,7 +369,7 @@ class Rollouts(InMemory):
         """From now on so many actors hold the worlds, which go on as they are. Not of a process without."""
         self._check()
         if self._crew is None:
-            raise ValueError("the rollouts have no actors (shards=0), which cannot be added to")
+            raise ValueError("the rollouts have no actors (shards=0), so none can be added")
         count = self._shards(arrays.integer(shards, "shards", 1, MAX_WORLDS))
         self._crew.divide(shares(self._work.blocks, count))
 

@@ -115,7 +115,7 @@ class Search:
             values = self.space.values(points)
             index, count = len(self.results.generations), len(points)
             if not count:
-                raise ValueError("the strategy asks for no points; expected one or more")
+                raise ValueError("the strategy returned no points; expected one or more")
             first = {"search": 0, "generation": index, "candidate": len(self.results)}[self.seeds]
             start = np.uint64((self.seed + first) % 2**64)
             step = np.arange(count, dtype=np.uint64) if self.seeds == "candidate" else np.uint64(0)
@@ -132,7 +132,7 @@ class Search:
         """
         asked = self._asked
         if asked is None:
-            raise ValueError("no generation to tell of; call ask() first")
+            raise ValueError("no generation is open; call ask() first")
         began = time.perf_counter()
         count = len(asked.points)
         if not isinstance(outcome, Outcome):
@@ -200,7 +200,7 @@ class Search:
             raise ValueError("the search has a space but no trial; pass a trial, or use ask() and tell()")
         if generations is None and not hasattr(self.strategy, "done"):
             name = type(self.strategy).__name__
-            raise ValueError(f"generations is None, but a {name} is never done; expected a number")
+            raise ValueError(f"generations is None, but a {name} never ends; expected a number")
         most = _MAX_GENERATIONS if generations is None else generations
         most = arrays.integer(most, "generations", 0, _MAX_GENERATIONS)
         path = None if file is None else checked_file(file)

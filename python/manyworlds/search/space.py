@@ -62,10 +62,10 @@ class Parameter:
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name:
-            raise TypeError(f"the name of a parameter is {self.name!r}; expected a text")
+            raise TypeError(f"the name of a parameter is {self.name!r}; expected a str")
         wrong = []
         if self.name in RESERVED:
-            wrong.append(f"its name is that of a column of results ({', '.join(RESERVED)})")
+            wrong.append(f"its name is reserved for a column of results ({', '.join(RESERVED)})")
         for end in ("low", "high"):
             value = getattr(self, end)
             if isinstance(value, (bool, np.bool_)) or not isinstance(

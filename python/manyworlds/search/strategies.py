@@ -155,7 +155,7 @@ class Grid:
     def ask(self) -> Doubles:
         """The next ones, (at most candidates, parameters). ValueError once it is done."""
         if self.done:
-            raise ValueError(f"all {self.points} points of the grid were asked for")
+            raise ValueError(f"all {self.points} points of the grid were returned already")
         end = min(self._next + self.candidates, self.points)
         index = np.unravel_index(np.arange(self._next, end), self._shape)
         self._next = end

@@ -67,14 +67,16 @@ class TaskTrial(Rounds):
                 what = (
                     "choices" if self._task.choices else f"actions {', '.join(map(repr, missing))}"
                 )
-                raise ValueError(f"the task's {what} are no parameters; expected act to give them")
+                raise ValueError(
+                    f"the task's {what} are not parameters; expected act to compute them"
+                )
             self._columns = [space.index(n) for n in names]
         used = set() if act is not None else set(names)
         idle = [p.name for p in space.parameters if p.name not in used and not p.numbers]
         if idle and begin is None and act is None:
             raise ValueError(
-                f"parameters {', '.join(map(repr, idle))} are no action of the task ({', '.join(names)}) "
-                "and set nothing; expected begin or act to use them"
+                f"parameters {', '.join(map(repr, idle))} are not actions of the task "
+                f"({', '.join(names)}) and set nothing; expected begin or act to use them"
             )
         self._make(1).close()
 

@@ -63,7 +63,7 @@ class Trial(Rounds):
         self._steps = arrays.integer(steps, "steps", 0, MAX_STEPS)
         if drive is not None and (steps or controls is not None or fields):
             raise ValueError(
-                "drive steps by itself; expected no steps, controls or fields beside it"
+                "drive takes its own steps; expected no steps, controls or fields with it"
             )
         if drive is None and not steps:
             raise ValueError("steps is 0, must be 1 or more, or drive given")

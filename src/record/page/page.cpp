@@ -25,7 +25,7 @@ std::string read_empty(const std::filesystem::path& file) {
   if (!in) throw RecordError(label + "cannot be read");
   if (text.find(kVersion) == std::string::npos || text.find(kPlace) == std::string::npos) {
     throw RecordError(label +
-                      "is no page of this version; expected viewer.html as viewer/ builds it");
+                      "is not a page of this version; expected viewer.html as viewer/ builds it");
   }
   return text;
 }
@@ -38,7 +38,7 @@ struct Page {
 Page make_page(std::span<const Recording* const> recordings, const std::filesystem::path& empty,
                const PageOptions& options) {
   const FloatMode mode;
-  if (recordings.empty()) throw std::invalid_argument("page: there is no recording");
+  if (recordings.empty()) throw std::invalid_argument("page: no recording is given");
   std::string text = read_empty(empty);
   Page out;
   page::Json runs = page::Json::array();
