@@ -1,7 +1,7 @@
-"""What an expression of a task can be, for spaces: from the ranges of what it is made of.
+"""Ranges of a task's expressions for Gymnasium spaces, from the ranges of their operands.
 
-Gymnasium calls a space without bounds a mistake. Where a task gives none they follow from what a world
-can be: the step freezes what is faster or further than `_MOST` says.
+Gymnasium warns about spaces without bounds. If a task declares none, they follow from the bounds of
+a world: a step freezes worlds that exceed `_MOST`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _MOST = {"position": 2e10, "velocity": 2e5, "angular_velocity": 2e6}
 
 
 def range_of(value: Value, task: Task) -> Range:
-    """The least and the most that a value of a task can be; infinite where nothing is known."""
+    """Minimum and maximum of a task's expression; infinite if unknown."""
     if not isinstance(value, _core.Expression):
         return float(value), float(value)
     nodes, (root,) = _core.expression_graph([value])

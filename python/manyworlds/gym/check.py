@@ -1,8 +1,8 @@
-"""Whether a vector environment keeps to Gymnasium's contract.
+"""Checks whether a vector environment fulfils Gymnasium's contract.
 
-Gymnasium has a checker for single environments only. This one looks at spaces, seeds, dtypes, shapes
-and infos; and it steps a slow reference beside, single environments in Gymnasium's own
-SyncVectorEnv, whose observations, rewards, ends and infos must be the same bits in every step.
+Gymnasium's checker supports only single environments. This one checks spaces, seeds, dtypes, shapes
+and infos. It also steps a reference, single environments in Gymnasium's SyncVectorEnv. Its
+observations, rewards, ends and infos must be bitwise equal in every step.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Maker = Callable[[], gymnasium.Env[Any, Any]]
 
 
 class ContractError(AssertionError):
-    """The environment does not keep to the contract."""
+    """The environment violates the contract."""
 
 
 def _demand(condition: Any, text: str) -> None:
@@ -36,10 +36,10 @@ def check_vector_env(
     seed: int = 0,
     reference: Optional[Maker] = None,
 ) -> int:
-    """Steps ``env`` with random actions and raises ContractError where it does not keep to the
-    contract. ``reference`` makes one single environment; those of ``manyworlds.gym`` need none.
+    """Steps ``env`` with random actions. Raises ContractError if it violates the contract.
 
-    Leaves the environment open, somewhere. Returns how many episodes have ended.
+    ``reference`` makes one single environment; those of ``manyworlds.gym`` need none. The
+    environment stays open, in the state after the last step. Returns the number of ended episodes.
     """
     _check_spaces(env)
     if reference is None and isinstance(env.unwrapped, VectorEnv):
