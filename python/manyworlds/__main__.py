@@ -1,4 +1,4 @@
-"""``python -m manyworlds``, and the command ``manyworlds``: runs the program that this package contains."""
+"""``python -m manyworlds`` and the command ``manyworlds``: run the program in this package."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _mujoco_library() -> Path | None:
 
 
 def main() -> None:
-    """Replaces this process by the program, whose exit status and handling of signals are its own.
+    """Replaces this process by the program, which then sets the exit status and handles signals.
 
     Exits with status 3 if this build of the package has no program.
     """

@@ -1,9 +1,9 @@
-"""Pickles and deep copies of scenes, tasks, plans and results: for processes that are spawned, Ray,
+"""Pickles and deep copies of scenes, tasks, plans and results, for spawned processes and
 checkpoints.
 
-A pickle says by which version it was made and in which format. What this version cannot read, and what
-was changed, raises ``pickle.UnpicklingError``. (Reading a pickle may run any code: read those of people
-you trust.) What holds worlds in memory has no pickle (in_memory.py).
+A pickle contains the version and format that wrote it. Unreadable or modified pickles raise
+``pickle.UnpicklingError``. Reading a pickle may run any code: read only pickles from trusted
+sources. Objects that own worlds in memory cannot be pickled (in_memory.py).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _VALUES: dict[str, type] = {}
 
 
 def register(*kinds: type) -> None:
-    """Pickles and copies of these dataclasses go by this module. Classes made from them are others."""
+    """Registers dataclasses for the pickles and copies of this module, without subclasses."""
     for kind in kinds:
         _VALUES[kind.__name__] = kind
         copyreg.pickle(kind, _reduce_value)
@@ -51,7 +51,7 @@ def _reduce_value(value: Any) -> Reduced:
 
 
 def restore_value(form: int, version: str, name: str, members: Members) -> Any:
-    """A dataclass of the package. Members that it did not have yet get their defaults."""
+    """A dataclass of the package. Members that the pickle does not have get their defaults."""
     _check(name, form, version)
     if not isinstance(name, str) or name not in _VALUES:
         raise UnpicklingError(f"a pickle of manyworlds {version} has a {name}, which there is not")
@@ -75,7 +75,7 @@ def restore_value(form: int, version: str, name: str, members: Members) -> Any:
 
 
 class Root(NamedTuple):
-    """Where a pickled task has an expression: which of its graph."""
+    """Reference from a pickled task to an expression: the index of its graph."""
 
     index: int
 
@@ -171,7 +171,7 @@ def _reduce_plan(value: plan.Plan) -> Reduced:
 def restore_plan(
     form: int, version: str, scene: scene.Scene, broad_phase: Any, keep: Any, fingerprint: int
 ) -> plan.Plan:
-    """A Plan, whose worlds go on in those of the one that was pickled."""
+    """A Plan. Worlds of the pickled one continue in its worlds."""
     _check("Plan", form, version)
     found = plan.Plan(scene, broad_phase=broad_phase, keep=keep)
     if found.fingerprint != fingerprint:
