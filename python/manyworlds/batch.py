@@ -21,7 +21,7 @@ from .rollout import MAX_STEPS, Initial, Trajectories, rollout
 from .scene import Point, Ray
 
 MAX_THREADS = 1024
-# What there is one of for each kind of world.
+# Attributes that each group of worlds has separately.
 _OF_A_KIND = frozenset({"plan", "_choose", "_bodies", "_controls", "_joints", "_fields"})
 
 __all__ = ["MAX_THREADS", "MAX_WORLDS", "Batch", "checked_batch"]
@@ -59,7 +59,7 @@ class Batch(Fields, Inputs, Results, InMemory):
     In such a batch these methods of the batch, and rollouts, raise ValueError.
     """
 
-    _views: tuple[Any, ...] = ()  # LiveViews that look on
+    _views: tuple[Any, ...] = ()  # LiveViews that show the batch
 
     _instead = "pickle its scene or plan, the arguments that it was made with, and save()"
 

@@ -23,9 +23,9 @@ class Field:
     """Description of a field, whose array is (worlds, items, components)."""
 
     name: FieldName
-    group: str  # "state", "parameter" (a number of the scene) or "observed"
-    observer: str  # that an observed one needs; else ""
-    # What has one: "body", "shape", "joint", "control", "attractor", "world", "coordinate", "dof", "ray".
+    group: str  # "state", "parameter" (of the scene) or "observed"
+    observer: str  # required for an observed field; else ""
+    # Owner: "body", "shape", "joint", "control", "attractor", "world", "coordinate", "dof", "ray".
     item: str
     items: int
     components: int

@@ -38,7 +38,7 @@ class FilmReport(NamedTuple):
     """Contents of a film."""
 
     frames: int
-    seconds: float  # of the film
+    seconds: float  # duration of the film
     bytes: int
 
 

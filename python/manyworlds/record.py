@@ -192,9 +192,9 @@ class LostWorldDumps(InMemory):
 class Difference(NamedTuple):
     """The first difference between a replay and its recording."""
 
-    world: int  # as the recording calls it
-    step: int  # since the recording began
-    body: int  # of the scene; -1: no field differs, but hash or status does
+    world: int  # index in the recording
+    step: int  # since the start of the recording
+    body: int  # index in the scene; -1: hash or status differs, but no field
     what: str  # "position.x is 1.5, recorded 1.25"
 
 
@@ -205,10 +205,10 @@ class ReplayResult:
     worlds: int
     samples: int
     steps: int
-    compared: int  # hashes, each with its status and fields
-    different: int  # of them
-    difference: Optional[Difference]  # the first
-    lost_worlds: int  # at the end
+    compared: int  # number of compared hashes, each with status and fields
+    different: int  # number of different ones
+    difference: Optional[Difference]  # the first one
+    lost_worlds: int  # number at the end
     kernel_table: str
 
     @property

@@ -165,7 +165,7 @@ class Info:
 
     name: str = ""
     value: Value = 0.0
-    of_steps_alone: bool = False  # not told where an episode begins
+    of_steps_alone: bool = False  # not part of the infos at the start of an episode
 
 
 @dataclass(slots=True, eq=False)
@@ -230,10 +230,10 @@ class Task:
 
     observations: list[Observation] = field(default_factory=list)
     rewards: list[Reward] = field(default_factory=list)
-    terminated: Value = 0.0  # the episode has come to its end
-    truncated: Value = 0.0  # it is broken off; so is a world that is lost
-    max_steps: int = 0  # broken off after so many; 0: never
-    solved_at: float = inf  # mean return; said to people only
+    terminated: Value = 0.0  # the episode ends
+    truncated: Value = 0.0  # the episode is truncated, as for a lost world
+    max_steps: int = 0  # truncation after this number of steps; 0: none
+    solved_at: float = inf  # mean return, as information
     infos: list[Info] = field(default_factory=list)
 
     levels: list[Level] = field(default_factory=list)

@@ -24,13 +24,13 @@ class Candidate:
     """A tried candidate."""
 
     generation: int
-    candidate: int  # its place in the generation
-    values: dict[str, float]  # of the parameters, by name
-    value: float  # of the objective; not a number where it is lost or there is none
-    violation: float  # of its constraints, 0: they are kept
+    candidate: int  # index in the generation
+    values: dict[str, float]  # parameters by name
+    value: float  # of the objective; NaN if the world is lost or there is none
+    violation: float  # of the constraints; 0: all hold
     status: str  # "ok", "infeasible", "lost", "not_finite"
     seed: int  # of its world
-    hash: int  # of its world's last state; 0 where the evaluator gives none
+    hash: int  # of the final state of its world; 0 if the evaluator has none
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,11 +42,11 @@ class Generation:
     values: Doubles  # (candidates, parameters)
     value: Doubles  # (candidates,) of the objective
     violation: Doubles
-    cost: Doubles  # what the strategy was told, finite; less is better
+    cost: Doubles  # as passed to the strategy, finite; lower is better
     status: NDArray[np.uint8]  # index in STATUS
     seed: NDArray[np.uint64]
     hash: NDArray[np.uint64]
-    seconds: float  # that it took to try them
+    seconds: float  # duration of the trials
 
     def __len__(self) -> int:
         return len(self.cost)
