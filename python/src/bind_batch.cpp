@@ -124,11 +124,10 @@ void bind_batch(nb::module_& m) {
            "it.")
       .def("step_to", &step_to, nb::arg("clock"), nb::arg("max_steps"),
            "Takes whole steps up to a time in s, without the GIL. Returns their number.")
-      .def(
-          "reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(),
-          nb::arg("keyframe").none(),
-          "Starts all worlds at their first episode, or worlds of the mask at their next episode. "
-          "With seeds, at the first episode of other seeds. With a keyframe, without seeds.");
+      .def("reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(),
+           nb::arg("keyframe").none(),
+           "Starts all worlds at their first episode, or worlds of the mask at their next episode. "
+           "With seeds, at the first episode of other seeds. With a keyframe, without seeds.");
   bind_batch_state(c);
   bind_batch_inputs(c);
   bind_batch_results(c);

@@ -38,8 +38,8 @@ MjcfOptions options(const std::vector<std::filesystem::path>& roots,
 
 NB_MODULE(_mjcf, m) {
   m.doc() = "MJCF files. Private: use manyworlds.mjcf.";
-  bind_error<MjcfError>(
-      m, "MjcfError", "Errors and unsupported elements of an MJCF file, one per line.");
+  bind_error<MjcfError>(m, "MjcfError",
+                        "Errors and unsupported elements of an MJCF file, one per line.");
   m.def(
       "load",
       [](const std::filesystem::path& file, const std::vector<std::filesystem::path>& roots,
