@@ -11,7 +11,7 @@ _PROGRAM = Path(__file__).with_name("bin") / "manyworlds"
 
 
 def _mujoco_library() -> Path | None:
-    """The libmujoco of the installed package mujoco-core, which the program opens to read MJCF files."""
+    """The libmujoco of the installed package mujoco-core. The program opens it to read MJCF."""
     found = importlib.util.find_spec("mujoco")
     folders = (found.submodule_search_locations or []) if found else []
     libraries = sorted(

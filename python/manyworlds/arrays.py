@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .names import Ids, Seeds
 
 Shape = tuple[int, ...]
-# What ``out`` may be: a NumPy array, or another writable one on the CPU that has DLPack (a torch.Tensor)
+# Types of ``out``: a NumPy array, or another writable one on the CPU with DLPack (a torch.Tensor)
 # or is a buffer (bytearray, array.array, memoryview).
 Writable = Any
 Indices = NDArray[np.int32]

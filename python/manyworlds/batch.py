@@ -125,7 +125,7 @@ class Batch(Fields, Inputs, Results, InMemory):
                 )
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
-    # -- what it is
+    # -- properties
 
     @property
     def kinds(self) -> tuple[Kind, ...]:
@@ -266,7 +266,7 @@ class Batch(Fields, Inputs, Results, InMemory):
         self._held.step(n, mask)
         self._after_step()
 
-    # What pages asked for, before a call of so many steps, and what they see after it.
+    # Before a step call, applies requests of live pages; after it, sends them the state.
     def _before_step(self, steps: int) -> None:
         for view in self._views:
             view._core.apply(steps)

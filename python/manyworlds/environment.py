@@ -24,7 +24,7 @@ from .tasks import Task, TaskError
 
 Doubles = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Observations = NDArray[Any]  # float32, or the float64 that was asked for
+Observations = NDArray[Any]  # float32, or float64 by observation_dtype
 
 
 class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
@@ -121,13 +121,13 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
         self._action_type = np.dtype(np.int64 if self.discrete else np.float32)
         self._step = self._held.step_choices if self.discrete else self._held.step_numbers
         self._batch: Optional[Batch] = None
-        # Those that were filled last: the caller's or the environment's own.
+        # The arrays that were filled last, the caller's or the environment's.
         self._last = self.observations, self.terminated, self.truncated
-        # Those of a step that was ended early, in the order of the extension.
+        # The arrays of a step that was ended early, in the order of the extension.
         self._unfilled: Optional[tuple[Any, ...]] = None
         self.begin()
 
-    # -- what it is
+    # -- properties
 
     @property
     def worlds(self) -> int:
@@ -254,7 +254,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
             self._batch._before_step(self.task.frame_skip)
         try:
             faults = self._step(given, *out)
-        except BaseException as error:  # whatever a signal's handler raised
+        except BaseException as error:  # also exceptions of signal handlers
             if self._unfilled is None and self.steps_left > 0:
                 self._unfilled = out
             if isinstance(error, _core.NonFiniteError):  # the step was taken
@@ -307,7 +307,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
         choices = self.task.choices if self.discrete else None
         return arrays.actions(actions, self._action_shape, choices)
 
-    # -- beginnings
+    # -- starts of episodes
 
     def reset(
         self,

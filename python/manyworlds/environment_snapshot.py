@@ -21,9 +21,9 @@ class EnvironmentSnapshot:
     """Worlds of an Environment with the memories of its task. Can be pickled."""
 
     worlds: Snapshot
-    task: int  # of which task: equal for tasks that compute the same
+    task: int  # fingerprint of the task: equal for tasks with equal results
     memory: NDArray[np.float64]  # (worlds, numbers)
-    # Of the last step or reset, as the array has them that it filled.
+    # Values of the last step or reset, in the array that it filled.
     observations: Observations  # (worlds, observations)
     terminated: Flags  # (worlds,)
     truncated: Flags

@@ -149,7 +149,7 @@ class Fields:
             arrays.broadcast(end, shape, axes, which, np.float64)
             for end, which in ((low, "low"), (high, "high"))
         )
-        width = highest / 2 - lowest / 2  # of which no number is too large
+        width = highest / 2 - lowest / 2  # halves avoid overflow
         if not (width >= 0).all() or not np.isfinite(width).all():
             raise ValueError("low and high must be finite numbers, and low no more than high")
         seeds = np.uint64(first) + worlds.astype(np.uint64)  # wraps around
@@ -161,7 +161,7 @@ class Fields:
     def _to_write(
         self, name: FieldName, values: ArrayLike, ids: Optional[Ids] = None
     ) -> tuple[FieldName, NDArray[Any], Optional[NDArray[np.int32]]]:
-        """What is written where, checked but for the ranges of numbers."""
+        """Checked values and indices for a write; ranges of parameters are not checked."""
         field = self._field(name)
         if field.group == "observed":
             raise ValueError(f"{name} is observed and cannot be set")
@@ -178,7 +178,7 @@ class Fields:
         return name, numbers, worlds
 
     def _rotations_in(self, name: FieldName) -> list[int]:
-        """Where quaternions start in a field that is a list of coordinates."""
+        """First indices of quaternions in a field of coordinates."""
         if name != "generalized_position" or not self._fields[name].items:
             return []
         if self._quaternion_starts is None:

@@ -162,7 +162,7 @@ def _within(value: float, name: str, low: float, high: float) -> float:
 
 
 def _view(world: Optional[int], follow: Optional[BodyRef], color: str, dark: bool) -> str:
-    """As behind '#' in the address of a page."""
+    """The options of a page's address, after '#'."""
     if not isinstance(color, str):
         raise TypeError(f"color is of type {type(color).__name__}; expected a str")
     wanted = {"color": color, "theme": "dark" if dark else "light"}

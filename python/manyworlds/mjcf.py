@@ -39,13 +39,13 @@ class MjcfWarning(UserWarning):
     """An element of the file that behaves differently than in MuJoCo."""
 
 
-# Versions of mujoco-core with which the tests pass and whose C structs have one layout
+# Tested versions of mujoco-core, whose C structs have the same layout
 # (tools/scripts/check_mujoco_versions). pyproject.toml and src/mjcf/mjcf.cpp have the same list.
 _TESTED = ("4.0.0", "4.0.1")
 
 
 def _library() -> Path:
-    """The libmujoco of the installed package mujoco-core. ImportError if there is none that was tested."""
+    """The libmujoco of the installed package mujoco-core. ImportError if none is supported."""
     with needs("mujoco", extra="mjcf", what="manyworlds.mjcf"):
         spec = importlib.util.find_spec("mujoco")
         if spec is None:
@@ -70,8 +70,10 @@ def _library() -> Path:
 
 
 def _extension() -> Any:
-    """The extension module. It is not linked with libmujoco, whose file name has a version, and finds the
-    functions of the installed one because that is loaded first, for the whole process."""
+    """The extension module. It is not linked with libmujoco, whose file name has a version.
+
+    It uses the functions of the installed library, which is loaded first for the whole process.
+    """
     if importlib.util.find_spec("manyworlds._mjcf") is None:
         raise ImportError(
             "manyworlds.mjcf needs a build with MuJoCo's headers "

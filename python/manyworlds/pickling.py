@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from . import _core, bodies, environment, fields, joints, options, plan, scene, shapes, tasks
 
-FORMAT = 1  # of what follows; another one when it is no longer read by what is here
+FORMAT = 1  # format of the contents, for readers of this version
 
 Members = dict[str, Any]
 Reduced = tuple[Callable[..., Any], tuple[Any, ...]]
@@ -71,7 +71,7 @@ def restore_value(form: int, version: str, name: str, members: Members) -> Any:
         raise UnpicklingError(f"the pickle of a {name} is not whole: {error}") from None
 
 
-# -- expressions as a graph; those of a task as one, so that what they share stays shared
+# -- expressions as a graph; one per task, which preserves shared subexpressions
 
 
 class Root(NamedTuple):
@@ -111,7 +111,7 @@ _HOLD_EXPRESSIONS: dict[type, tuple[str, ...]] = {
 
 
 def _exchanged(members: Members, exchange: Callable[[Any], Any]) -> Members:
-    """The members of a task with other values where expressions may be."""
+    """The members of a task, with expressions replaced by other values."""
 
     def part(one: Any) -> Any:
         for kind, names in _HOLD_EXPRESSIONS.items():

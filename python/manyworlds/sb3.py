@@ -83,7 +83,7 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
         """Frees the worlds."""
         self.env.close()
 
-    # Worlds are no objects of their own: what is asked of each is what all of them share.
+    # Worlds are not separate objects: they share all attributes.
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """An attribute of the VectorEnv, once for each of the worlds ``indices``."""

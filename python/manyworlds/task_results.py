@@ -19,8 +19,8 @@ class NonFinite:
 
     expression: str  # "observation 3 'lean'", as issues of the task name it
     world: int
-    step: int  # of the world's episode, from 1; 0: where it began
-    value: float  # infinite or nan; nan also for an end that compares what is not a number
+    step: int  # in the world's episode, from 1; 0: its start
+    value: float  # infinite or NaN; NaN also for an end that compares NaN
 
     def __str__(self) -> str:
         value = "nan" if math.isnan(self.value) else f"{self.value}"
@@ -36,7 +36,7 @@ class WithResults:
     _named_faults: int  # expressions that were warned of
 
     def _warn(self, stacklevel: int) -> None:
-        """Of the expressions that have not been warned of; `stacklevel` as if this were ``warnings.warn``."""
+        """Warns of expressions without an earlier warning; `stacklevel` as in ``warnings.warn``."""
         faults = self.non_finite()
         new, self._named_faults = faults[self._named_faults :], len(faults)
         for fault in new:

@@ -224,7 +224,7 @@ class Task:
 
     choices: int = 0  # discrete tasks: the action is 0 to choices - 1, and `actions` is empty
     actions: list[Action] = field(default_factory=list)
-    # What each control of the scene is set to: of actions, numbers, random ones, parameters,
+    # Values of the scene's controls. They may contain actions, numbers, random numbers, parameters,
     # levels, memories, age() and previous(...).
     controls: list[Value] = field(default_factory=list)
 

@@ -152,9 +152,9 @@ class Terms:
         """
         return _x.observed("drive_force", self._index("joint", joint), coordinate)
 
-    # Terms of links and dofs are those of the solver newton. Of other solvers there are link_position,
-    # link_center, external_force and external_torque; a task with another one has an issue, which
-    # names the term to use instead.
+    # Terms of links and dofs require the newton solver. Only link_position, link_center,
+    # external_force and external_torque work with other solvers. For the rest a task has an issue,
+    # which names the term to use instead.
 
     def generalized_position(self, coordinate: int) -> Expression:
         """m, rad or a component of a quaternion. newton solver only; MuJoCo's qpos."""

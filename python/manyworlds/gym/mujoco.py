@@ -67,7 +67,7 @@ def _task(name: str) -> tuple[str, dict[str, Any]]:
 
 
 def _split(kind: type, given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What is the environment's, and what is the task's."""
+    """Splits arguments into those of the environment and those of the task."""
     own = inspect.signature(kind.__init__).parameters  # type: ignore[misc]
     return (
         {key: value for key, value in given.items() if key in own},

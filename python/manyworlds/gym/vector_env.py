@@ -217,7 +217,7 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
     def _told(
         self, values: NDArray[Any], mask: NDArray[np.bool_], stepped: NDArray[np.bool_]
     ) -> dict[str, Any]:
-        """The task's infos of the worlds of a mask; those of steps alone where they were stepped."""
+        """The task's infos for the worlds of a mask; infos of steps only for stepped worlds."""
         out: dict[str, Any] = {}
         for name, columns, of_steps_alone in self._told_of:
             of = mask & stepped if of_steps_alone else mask

@@ -101,7 +101,7 @@ class Rollouts(InMemory):
         if timeout is not None and not timeout > 0:
             raise ValueError(f"timeout is {timeout}; expected seconds > 0, or None")
         work = Work(what, worlds, seed, size, threads, precision, isa, tuple(fields))
-        work.make_worlds(1, seed).close()  # what is wrong with it is said here
+        work.make_worlds(1, seed).close()  # raises errors of the scene or task here
         self._work = work
         self._trials = 0
         self._closed = False
@@ -158,7 +158,7 @@ class Rollouts(InMemory):
             )
         return count
 
-    # -- what it is
+    # -- properties
 
     @property
     def worlds(self) -> int:
@@ -335,7 +335,7 @@ class Rollouts(InMemory):
         return Evaluation(**joined)
 
     def _spread(self, method: str, arguments: Any, count: int) -> list[Any]:
-        """Results of ``count`` things, of which each shard does some."""
+        """Results of ``count`` items, divided over the shards."""
         assert self._crew is not None
         members = [m for m in zip(self._crew.members, shares(count, self.shards)) if m[1]]
         for member, some in members:

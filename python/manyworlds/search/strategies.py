@@ -214,7 +214,7 @@ class CmaEs:
         options = {
             "popsize": n,
             "CMA_mu": parents,
-            # Draws of its own: numpy's global ones are not touched.
+            # A separate generator: NumPy's global one does not change.
             "randn": lambda *shape: draw.standard_normal(shape),
             "seed": np.nan,
             "verbose": -9,
@@ -257,11 +257,11 @@ _MARGIN = 0.1  # of the range at each end, in which the folding is bent
 
 
 def _folded(points: Doubles) -> Doubles:
-    """Any numbers as ones from 0 to 1: as they are but for a margin m at each end, which a parabola bends over to
-    twice its width, y = (x + m)^2 / 4 m for -m < x < m; mirrored beyond that.
+    """Folds values into 0 to 1, without changes except in a margin m at each end.
 
-    So points gather at an end that is good, and none is beyond it. cma's own bounds are of this kind, too, but
-    work solution by solution, which takes 0.2 s for 10,000; all at once it is a millisecond.
+    Within -m < x < m the value is y = (x + m)^2 / 4 m; values beyond that are mirrored. Points can
+    therefore gather at an end, and none exceeds it. cma's own bounds are similar, but take 0.2 s
+    for 10,000 points; this function takes a millisecond.
     """
     m = _MARGIN
     turn = 1 + 2 * m  # where it is mirrored again
@@ -272,7 +272,7 @@ def _folded(points: Doubles) -> Doubles:
 
 
 def _unfolded(points: Doubles) -> Doubles:
-    """What is folded to these numbers from 0 to 1; of several the one between the mirrors."""
+    """Inverse of ``_folded``; of several values, the one between the mirrors."""
     m = _MARGIN
     low, high = 2 * np.sqrt(m * points) - m, 1 + m - 2 * np.sqrt(m * (1 - points))
     found: Doubles = np.where(points < m, low, np.where(points > 1 - m, high, points))

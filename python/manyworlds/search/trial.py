@@ -81,7 +81,7 @@ class Trial(Rounds):
             "rays": rays,
             "points": points,
         }
-        self._make(1).close()  # what is wrong is said now
+        self._make(1).close()  # raises errors early
 
     def _make(self, worlds: int) -> Batch:
         return Batch(self._numbers.plan, worlds, **self._batch)  # type: ignore[arg-type]
