@@ -173,8 +173,8 @@ class CmaEs:
     candidates  size of a generation
     sigma       initial standard deviation, relative to the range
     start_at    initial mean, values by name; other parameters start in the middle of their range
-    parents     number of best candidates that update the mean; None: half of less than 100
-                candidates, else a tenth. In large generations, half adds noise
+    parents     number of best candidates that update the mean; None: half of the candidates,
+                or a tenth from 100 candidates on, because half of them would add noise
     options     other entries of ``cma.CMAOptions``, such as {"CMA_diagonal": True} for many
                 parameters
 
