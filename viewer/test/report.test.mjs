@@ -127,7 +127,7 @@ test('stability: totals, margins, and the failures alone', async () => {
   assert.ok(bad > 0 && bad < report.results.length);
   assert.equal(await view.page.locator('.matrix td.fail').count(), bad);
   assert.equal(await view.page.locator('.matrix td.pass').count(), report.results.length - bad);
-  const told = await view.hover('Values by their limits, contacts', '[aria-label=dot] circle, [aria-label=dot] path');
+  const told = await view.hover('Values relative to limits, contacts', '[aria-label=dot] circle, [aria-label=dot] path');
   assert.match(told, /case B\d+.*verdict (PASS|FAIL) [\d.e-]+.*limit [\d.e-]+/);
   const rows = view.page.locator('.matrix tbody tr:visible');
   const all = await rows.count();
