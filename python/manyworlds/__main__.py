@@ -14,7 +14,7 @@ _PROGRAM = Path(__file__).with_name("bin") / "manyworlds"
 
 
 def main() -> None:
-    """Replaces this process by the program, whose exit status and handling of signals are its own.
+    """Replaces this process by the program, which then sets the exit status and handles signals.
 
     Exits with status 3 if this build of the package has no program.
     """

@@ -17,9 +17,7 @@ def names() -> dict:
     """Names of the values of every enumeration, by its name, and of fields."""
 
 def unknown_name(found: str, known: Sequence[str]) -> str:
-    """
-    What is wrong with a name, for an error: the known names and the nearest.
-    """
+    """Error message for an unknown name: the known names and the nearest."""
 
 def available_isas() -> list[str]:
     """
@@ -30,27 +28,27 @@ def default_values() -> dict:
     """The library's default value of every dataclass, by its name."""
 
 def validate(scene: object) -> list[tuple[str, str]]:
-    """Every issue of a scene as (place, message)."""
+    """All issues of a scene as (place, message)."""
 
 def round_trip(scene: object) -> object:
     """The scene as the library understands it."""
 
 def find_in_scene(scene: object, kind: str, name: object) -> int:
     """
-    Index of the body, joint, control, tendon, site or keyframe that a name, handle or index means.
+    Index of the body, joint, control, tendon, site or keyframe with this name, handle or index.
     """
 
 def find_shape_in_scene(scene: object, name: str, body: object | None) -> tuple[int, int]:
-    """(body, index) of the shape of a name, of one body or of all."""
+    """(body, index) of the shape with this name, of one body or of all."""
 
 def load_scene(name: str) -> Scene:
-    """A scene that has a name."""
+    """The scene with this name."""
 
 def scene_names() -> list[tuple[str, str]]:
-    """(name, summary) of every scene that has a name."""
+    """(name, summary) of every named scene."""
 
 def joint_at(scene: object, body_a: object, body_b: object, frame: object, type: object) -> object:
-    """A joint of two bodies whose frames are where `frame` is in the world."""
+    """A joint of two bodies whose frames coincide with `frame` in the world."""
 
 def mass_properties(scene: object, body: object) -> object:
     """Mass, centre and inertia of a body of a scene."""
@@ -62,7 +60,7 @@ def make_hull(points: object) -> Hull:
     """The convex hull of points."""
 
 class Plan:
-    """What a step of a scene needs; immutable, shared by batches."""
+    """Stages and arrays of a step; immutable, shared by batches."""
 
     def __init__(self, scene: object, broad_phase: object = 'automatic', keep: object = ()) -> None: ...
 
@@ -72,33 +70,31 @@ class Plan:
 
     @property
     def resolved(self) -> object:
-        """
-        A copy of the scene's options, with what they leave to the plan filled in.
-        """
+        """The options of the scene, with the values that the plan chose. A copy."""
 
     @property
     def bodies(self) -> int:
-        """State bodies: dynamic and kinematic ones."""
+        """Number of dynamic and kinematic bodies."""
 
     @property
     def coordinates(self) -> int:
-        """Coordinates of all joints."""
+        """Number of coordinates of all joints."""
 
     @property
     def fingerprint(self) -> int:
-        """Equal for plans whose worlds can go on in each other."""
+        """Plans with equal fingerprints accept each other's snapshots."""
 
     @property
     def scene_bodies(self) -> int:
-        """All bodies of the scene, with the fixed ones."""
+        """Number of bodies of the scene, including fixed ones."""
 
     @property
     def joints(self) -> int:
-        """Joints of the scene."""
+        """Number of joints."""
 
     def row(self, body: object) -> int:
         """
-        Where a body, by handle, name or index, is in arrays (worlds, bodies, ...), or a shape, by handle, in arrays (worlds, shapes, ...). Raises ValueError for fixed bodies.
+        The row of a body (handle, name or index) in arrays (worlds, bodies, ...), or of a shape (handle) in arrays (worlds, shapes, ...). Raises ValueError for fixed bodies.
         """
 
     def body_in_row(self, row: int) -> int:
@@ -109,22 +105,22 @@ class Plan:
 
     def find(self, kind: str, name: object) -> int:
         """
-        Index of the body, joint, control, tendon, site or keyframe that a name, handle or index means.
+        Index of the body, joint, control, tendon, site or keyframe with this name, handle or index.
         """
 
     def find_shape(self, name: str, body: object | None) -> tuple[int, int]:
-        """(body, index) of the shape of a name, of one body or of all."""
+        """(body, index) of the shape with this name, of one body or of all."""
 
     def first_coordinate(self, joint: object) -> int:
         """
-        Where the coordinates of a joint, by handle, name or index, begin; with the newton solver in generalized_position.
+        Index of the first coordinate of a joint (handle, name or index). With the newton solver it is an index of generalized_position.
         """
 
     def first_observed(self, joint: object) -> int:
-        """Where those of a joint begin in joint_position and joint_speed."""
+        """Index of a joint's first value in joint_position and joint_speed."""
 
     def has(self, feature: object) -> bool:
-        """Whether the step has this feature."""
+        """Whether the plan has this feature."""
 
     def report(self) -> dict:
         """What the plan contains, as a dict."""
@@ -139,54 +135,54 @@ def manifold(a: object, pose_a: object, b: object, pose_b: object, margin: objec
     """[(normal, point, separation, feature)] of two shapes."""
 
 def ray_cast(shape: object, pose: object, ray: object, space: object | None) -> object:
-    """(distance, normal), or None where the ray misses."""
+    """(distance, normal), or None if the ray misses."""
 
 def surface(geometry: object, space: object, around: object, low: object, high: object) -> tuple:
     """(points, normals, triangles, faces, lines, marks) of a geometry."""
 
 def resized(geometry: object, size: object) -> object:
-    """The geometry with other numbers of the parameter size."""
+    """The geometry with other values of the parameter size."""
 
 class SnapshotError(ValueError):
     """
-    A snapshot that is cut, damaged, or of another plan, task or precision.
+    A truncated or corrupt snapshot, or one of another plan, task or precision.
     """
 
 class Snapshot:
     """
-    The whole state of some worlds of a Batch, to go on from later, elsewhere or many times.
+    The complete state of worlds of a Batch, created by Batch.save().
 
-    Made by Batch.save(). It does not depend on lanes, threads or places, so a world continues bit
-    by bit wherever it is restored. Can be pickled.
+    It does not depend on lanes, threads or indices of worlds. Worlds continue with bitwise equal
+    results in every batch of the plan. Can be pickled.
     """
 
     @property
     def worlds(self) -> int:
-        """How many worlds it holds."""
+        """Number of worlds."""
 
     @property
     def steps(self) -> int:
-        """Steps that the batch had taken."""
+        """Number of steps of the batch."""
 
     @property
     def time(self) -> float:
-        """Time that the batch had simulated, s."""
+        """Simulated time of the batch, s."""
 
     @property
     def nbytes(self) -> int:
         """Size in bytes."""
 
     def bytes(self) -> Bytes:
-        """The bytes of a file: what from_bytes() takes."""
+        """The contents of a file, for from_bytes()."""
 
     @staticmethod
     def from_bytes(data: Bytes) -> Snapshot:
         """
-        A snapshot from bytes(). Raises SnapshotError when they are cut or damaged.
+        A snapshot from bytes(). Raises SnapshotError for truncated or corrupt data.
         """
 
     def save(self, file: str | os.PathLike) -> None:
-        """Writes a file; a partial file is never read. Raises SnapshotError."""
+        """Writes a file, atomically. Raises SnapshotError."""
 
     @staticmethod
     def load(file: str | os.PathLike) -> Snapshot:
@@ -206,7 +202,7 @@ class Batch:
     def __init__(self, kinds: object, threads: object, seed: int, precision: object, isa: object | None, layout: object, sleep: bool, observe: object, rays: object, points: object, contacts_per_world: object, audit_every: object) -> None: ...
 
     def close(self) -> None:
-        """Lets go of the worlds; what follows raises ValueError."""
+        """Frees the worlds. Later calls raise ValueError."""
 
     @property
     def closed(self) -> bool: ...
@@ -221,7 +217,7 @@ class Batch:
     def seed(self) -> int: ...
 
     def seeds(self, out: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu')]) -> None:
-        """Fills the seeds that worlds draw from, (worlds)."""
+        """Fills the seeds of worlds, (worlds)."""
 
     @property
     def lanes(self) -> int: ...
@@ -257,12 +253,12 @@ class Batch:
 
     def step_to(self, clock: float, max_steps: int) -> int:
         """
-        Takes whole steps up to a time in s, without the GIL, and returns how many.
+        Takes whole steps up to a time in s, without the GIL. Returns their number.
         """
 
     def reset(self, mask: Annotated[NDArray[numpy.uint8], dict(order='C', device='cpu', writable=False)] | None, seeds: Annotated[NDArray[numpy.uint64], dict(order='C', device='cpu', writable=False)] | None, keyframe: int | None) -> None:
         """
-        All worlds from the first episode, or those in the mask: the next episode, or the first of other seeds. To a keyframe, without seeds.
+        Starts all worlds at their first episode, or worlds of the mask at their next episode. With seeds, at the first episode of other seeds. With a keyframe, without seeds.
         """
 
     def quantities(self, kind: int = 0) -> list:
@@ -271,29 +267,29 @@ class Batch:
         """
 
     def read(self, name: str, out: Annotated[NDArray, dict(order='C', device='cpu')], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None, kind: int = 0) -> None:
-        """Fills an array (worlds, items, components), or that of some worlds."""
+        """Fills an array (worlds, items, components), of all or some worlds."""
 
     def write(self, name: str, numbers: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None, kind: int = 0) -> None:
         """
-        Takes an array (worlds, items, components), or those of some worlds in float64.
+        Sets an array (worlds, items, components), or float64 values of some worlds.
         """
 
     def blocks(self, name: str, kind: int = 0) -> object:
         """
-        A state field in place, (groups, items, components, lanes); None: left out.
+        Memory of a state field, (groups, items, components, lanes); None if omitted.
         """
 
     def lane_indices(self, out: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu')], kind: int = 0) -> None:
         """Fills lane indices, (worlds)."""
 
     def controls(self, kind: int = 0) -> int:
-        """Of a world."""
+        """Number of controls of a world."""
 
     def read_controls(self, out: Annotated[NDArray, dict(order='C', device='cpu')], kind: int = 0) -> None:
         """Fills an array (worlds, controls)."""
 
     def write_controls(self, numbers: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None, kind: int = 0) -> None:
-        """Takes an array (worlds, controls), or that of some worlds."""
+        """Sets an array (worlds, controls), of all or some worlds."""
 
     def apply_external(self, kind: object, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], bodies: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)] | None) -> None:
         """
@@ -301,7 +297,7 @@ class Batch:
         """
 
     def spawn(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], body: int, states: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> None:
-        """Enables a body with a state of 13 numbers in each of the worlds."""
+        """Enables a body with a state of 13 values in each of the worlds."""
 
     def set_enabled(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], bodies: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)]) -> None:
         """Enables and disables bodies, (worlds, bodies)."""
@@ -313,16 +309,16 @@ class Batch:
         """Enables and disables joints, (worlds, joints)."""
 
     def joints_enabled(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')], kind: int = 0) -> None:
-        """Fills which joints hold, (worlds, joints)."""
+        """Fills which joints are enabled, (worlds, joints)."""
 
     def asleep(self, out: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')], kind: int = 0) -> None:
-        """Fills which bodies sleep, (worlds, bodies)."""
+        """Fills which bodies are asleep, (worlds, bodies)."""
 
     def wake(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
-        """Wakes everything in these worlds."""
+        """Wakes all bodies of these worlds."""
 
     def set_rays(self, rays: object, world: int | None) -> None:
-        """Other rays, in one world or in all."""
+        """Replaces the rays, in one world or in all."""
 
     def status(self, out: Annotated[NDArray[numpy.uint32], dict(order='C', device='cpu')]) -> None:
         """Fills status bits, (worlds)."""
@@ -331,28 +327,30 @@ class Batch:
         """Fills hashes of the state, (worlds)."""
 
     def hash(self, world: int | None) -> int:
-        """Of a world, or of all."""
+        """Hash of a world, or of all."""
 
     def energy(self, out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> None:
         """Fills kinetic and potential energy, (worlds, 2)."""
 
     def contacts(self, world: int) -> tuple:
-        """Columns of the contacts at this state."""
+        """Columns of the contacts at the current state."""
 
     def step_contacts(self, world: int) -> tuple:
         """Columns of the last step's contacts."""
 
     def measure_contacts(self) -> dict:
-        """Contacts of all worlds in four numbers."""
+        """Four statistics of the contacts of all worlds."""
 
     def look(self) -> None:
-        """Observes motion, joints and rays at this state."""
+        """Updates observed motion, joints and rays."""
 
     def save(self, worlds: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> Snapshot:
         """A Snapshot of all or of some worlds."""
 
     def restore(self, snapshot: Snapshot, pairs: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> None:
-        """All worlds, or pairs (world of the snapshot, world of the batch)."""
+        """
+        Restores all worlds, or pairs (world of the snapshot, world of the batch).
+        """
 
     def copy_world(self, source: int, target: int) -> None:
         """Copies a world's state."""
@@ -361,10 +359,10 @@ class Batch:
         """Takes steps and fills arrays (frames, worlds, items, components)."""
 
 def item_of(what: str) -> str:
-    """What has an observed number: "world", "body", "joint", ..."""
+    """Owner of an observed field: "world", "body", "joint", ..."""
 
 class Expression:
-    """A number of every world, worked out after each step of a task."""
+    """A value of every world, computed after each step of a task."""
 
     def __init__(self, number: object = 0) -> None: ...
 
@@ -431,20 +429,18 @@ class Expression:
     __array_ufunc__: None = None
 
     def __repr__(self) -> str:
-        """The text of str(), of at most about 400 characters."""
+        """The text of str(), cut to about 400 characters."""
 
     def __str__(self) -> str:
         """
-        The whole expression as Python writes it. Beyond 20,000 characters, subexpressions that are nested deeply are "...".
+        The expression in Python's syntax. Beyond 20,000 characters, deeply nested subexpressions are "...".
         """
 
 def expression_graph(roots: Sequence[Expression]) -> tuple[list[tuple[str | int | float, ...]], list[int]]:
-    """
-    (nodes, roots): expressions as plain values, of which what they share is one.
-    """
+    """(nodes, roots): expressions as plain values, without duplicates."""
 
 def expressions_of_graph(nodes: object, roots: object) -> list[Expression]:
-    """The expressions of such a graph. Raises TypeError and ValueError."""
+    """The expressions of a graph. Raises TypeError and ValueError."""
 
 class expressions:
     """Functions and terms of expressions."""
@@ -582,20 +578,20 @@ class expressions:
     def phase(a: object) -> Expression: ...
 
 def load_task(name: str) -> Task:
-    """A task that has a name."""
+    """The task with this name."""
 
 def task_names() -> list[tuple[str, str]]:
-    """(name, summary) of every task that has a name."""
+    """(name, summary) of every named task."""
 
 def validate_task(task: object) -> list[tuple[str, str]]:
-    """Every issue of a task and its scene as (place, message)."""
+    """All issues of a task and its scene as (place, message)."""
 
 def default_task_values() -> dict:
     """The library's default values of a task's dataclasses, by their names."""
 
 class NonFiniteError(FloatingPointError):
     """
-    An observation, a reward or an end of Environment(check=True) is not finite: `expression`, `world`, `step` (of the world's episode), `value`.
+    An observation, a reward or an end of Environment(check=True) is not finite. Members: `expression`, `world`, `step` (of the world's episode), `value`.
     """
 
 class Environment:
@@ -625,11 +621,11 @@ class Environment:
     def copy_world(self, source: int, target: int) -> None: ...
 
     def save(self) -> tuple:
-        """(Snapshot of all worlds, fingerprint of the task, what it remembers)."""
+        """(Snapshot of all worlds, fingerprint of the task, its memories)."""
 
     def restore(self, worlds: Snapshot, task: int, memory: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], pairs: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None) -> None:
         """
-        All worlds, or pairs (world of the snapshot, world of the environment).
+        Restores all worlds, or pairs (world of the snapshot, world of the environment).
         """
 
     def non_finite(self) -> list[tuple[str, int, int, float]]:
@@ -644,25 +640,21 @@ class Environment:
 
     def step_choices(self, actions: Annotated[NDArray[numpy.int64], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, lost: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None) -> int:
         """
-        One step of the task in every world, without the GIL, into arrays; None: not wanted. Returns how many expressions have not been finite so far.
+        Takes one step of the task in all worlds, without the GIL. Fills the arrays that are not None. Returns the number of expressions with non-finite values so far.
         """
 
     def step_numbers(self, actions: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu', writable=False)], observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, lost: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None) -> int:
         """
-        One step of the task in every world, without the GIL, into arrays; None: not wanted. Returns how many expressions have not been finite so far.
+        Takes one step of the task in all worlds, without the GIL. Fills the arrays that are not None. Returns the number of expressions with non-finite values so far.
         """
 
     def finish_step(self, observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, rewards: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, terminated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, truncated: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None, reward_terms: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_observations: Annotated[NDArray[numpy.float32], dict(order='C', device='cpu')] | Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, final_infos: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')] | None, lost: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu')] | None) -> int:
-        """The rest of a step that was ended early, as a step."""
+        """Completes a step that was ended early."""
 
 def gymnasium_tasks() -> dict:
-    """
-    By the name of each task of Gymnasium's: its model, and its arguments with their defaults.
-    """
+    """Gymnasium's tasks by name: model, and arguments with their defaults."""
 
 def gymnasium_task(name: str, scene: object, arguments: dict) -> object:
-    """
-    A task of Gymnasium's for a model. Arguments that it does not have are not looked at.
-    """
+    """A Gymnasium task for a model. Unknown arguments are ignored."""
 
 __version__: str

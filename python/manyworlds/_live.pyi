@@ -14,13 +14,13 @@ class Live:
     def __init__(self, batch: manyworlds._core.Batch, page: str | os.PathLike, title: str, port: int, worlds: int, max_worlds: int, folder: str | os.PathLike, parameters: bool) -> None: ...
 
     def apply(self, steps: int) -> None:
-        """Carries out what pages asked for; before a call of so many steps."""
+        """Applies requests of pages before a call of this number of steps."""
 
     def show(self) -> None:
-        """Shows the worlds as they are."""
+        """Sends the current state to pages."""
 
     def close(self) -> None:
-        """Ends the server."""
+        """Stops the server."""
 
     @property
     def url(self) -> str: ...

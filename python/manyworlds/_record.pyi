@@ -12,10 +12,12 @@ import manyworlds._core
 
 
 class RecordError(ValueError):
-    """A recording that cannot be written, or that is cut, corrupted or none."""
+    """
+    A recording that cannot be written, or an invalid, truncated or corrupt file.
+    """
 
 class FilmError(ValueError):
-    """A picture or film that cannot be made: a program is missing or fails."""
+    """A picture or film failed: a program is missing or failed."""
 
 class Recorder:
     """Private: use manyworlds.record.Recorder."""
@@ -93,23 +95,19 @@ class Recording:
     def replay(self, isa: object | None, threads: object, layout: object | None) -> dict: ...
 
 def page(recordings: Sequence[Recording], empty: str | os.PathLike, file: str | os.PathLike | None, title: str, worlds: int, every: int, numbers: Sequence[tuple[str, Sequence[float]]]) -> object:
-    """
-    A page as text, or (worlds, bodies, frames, bytes) of one that was written.
-    """
+    """A page as text, or (worlds, bodies, frames, bytes) of a written page."""
 
 def picture(page: str | os.PathLike, file: str | os.PathLike, width: int, height: int, view: str, time: float) -> None:
     """A picture of a page."""
 
 def film(page: str | os.PathLike, file: str | os.PathLike, width: int, height: int, view: str, fps: float, speed: float, begin: float, end: float, encoder: str) -> tuple[int, float, int]:
-    """A film of a page: frames, seconds and bytes of it."""
+    """A film of a page. Returns frames, seconds and bytes."""
 
 def unfinished_recordings(file: str | os.PathLike) -> list[pathlib.Path]:
-    """
-    The part files beside a file that have contents and no writer any more.
-    """
+    """Part files of a file, with data and without a running writer."""
 
 def scene_to_json(scene: object | None) -> str:
-    """A scene as JSON, every number exactly."""
+    """A scene as JSON, with exact numbers."""
 
 def scene_from_json(json: object | None) -> object:
     """The scene of a JSON text."""

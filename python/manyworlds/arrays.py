@@ -1,4 +1,4 @@
-"""Checks and conversions of what callers pass as arrays, the same in every call."""
+"""Checks and conversions of array arguments."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .names import Ids, Seeds
 
 Shape = tuple[int, ...]
-# What ``out`` may be: a NumPy array, or another writable one on the CPU that has DLPack (a torch.Tensor)
+# Types of ``out``: a NumPy array, or another writable one on the CPU with DLPack (a torch.Tensor)
 # or is a buffer (bytearray, array.array, memoryview).
 Writable = Any
 Indices = NDArray[np.int32]
@@ -37,7 +37,7 @@ def integer(value: Any, name: str, low: int, high: int) -> int:
 
 
 def at_least(value: Any, name: str, low: float) -> float:
-    """``value`` as a float from ``low`` to infinity, which is one, too. TypeError, ValueError."""
+    """``value`` as a float from ``low`` to infinity, included. TypeError, ValueError."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(
         value, (int, float, np.integer, np.floating)
     ):
@@ -59,9 +59,9 @@ def index(value: Any, count: int, name: str) -> int:
 
 
 def indices(ids: Optional[Ids], count: int, name: str) -> Indices:
-    """Indices below ``count`` as int32: None is all of them, a bool array a mask over all.
+    """Indices below ``count`` as int32. None selects all; an array of bools is a mask over all.
 
-    Negative ones do not count from the end. IndexError, TypeError.
+    Negative indices are invalid. IndexError, TypeError.
     """
     if ids is None:
         return np.arange(count, dtype=np.int32)
@@ -84,10 +84,10 @@ def indices(ids: Optional[Ids], count: int, name: str) -> Indices:
 
 
 def worlds(ids: Optional[Ids], count: int, name: str = "ids") -> Indices:
-    """The worlds that a caller means: every call that takes worlds decides it here.
+    """Indices of worlds from a caller's argument.
 
-    None is all of them, in order. An array of bools is a mask over all, (count,). Integers are ids,
-    each below ``count`` and named once, in the caller's order. IndexError, TypeError, ValueError.
+    None is all of them, in order. An array of bools is a mask over all, (count,). Integers are ids
+    below ``count``, without repeats, in the caller's order. IndexError, TypeError, ValueError.
     """
     if isinstance(ids, (list, tuple)):
         bools = sum(isinstance(i, (bool, np.bool_)) for i in ids)
@@ -104,9 +104,10 @@ def worlds(ids: Optional[Ids], count: int, name: str = "ids") -> Indices:
 
 
 def pairs(source: Optional[Ids], saved: int, ids: Optional[Ids], count: int) -> Indices:
-    """(source, world) one after the other: which of ``saved`` worlds goes into which of ``count``; a
-    single source goes into every one of ``ids``, and a source may be named more than once.
-    IndexError, TypeError, ValueError."""
+    """(source, world) one after the other: copies of ``saved`` worlds into ``count`` worlds. A
+    single source goes into every one of ``ids``. A source may be repeated. IndexError,
+    TypeError, ValueError.
+    """
     targets, sources = worlds(ids, count), indices(source, saved, "source")
     if len(sources) == 1:
         sources = np.repeat(sources, len(targets))
@@ -118,15 +119,16 @@ def pairs(source: Optional[Ids], saved: int, ids: Optional[Ids], count: int) -> 
 
 
 def mask(ids: Optional[Ids], count: int) -> NDArray[np.uint8]:
-    """1 for the worlds that are meant, else 0."""
+    """1 for the selected worlds, else 0."""
     out = np.zeros(count, dtype=np.uint8)
     out[worlds(ids, count)] = 1
     return out
 
 
 def seeds(values: Optional[Seeds], ids: Optional[Ids], count: int) -> Optional[NDArray[np.uint64]]:
-    """A seed for each of ``count`` worlds: s + i of a number s, else one given for each of ``ids``,
-    in their order."""
+    """A seed for each of ``count`` worlds: s + i for a number s, or one per entry of ``ids``, in
+    order.
+    """
     if values is None:
         return None
     if np.ndim(values) == 0:
@@ -144,7 +146,7 @@ def seeds(values: Optional[Seeds], ids: Optional[Ids], count: int) -> Optional[N
 def one_seed(
     seed: Optional[int], seeds: Optional[Seeds], redraw: Optional[bool]
 ) -> Optional[Seeds]:
-    """What a reset draws from: ``seed``, a number, or ``seeds``; None: neither. TypeError, ValueError."""
+    """The seeds of a reset: ``seed``, a number, or ``seeds``; else None. TypeError, ValueError."""
     if redraw is not None and not isinstance(redraw, (bool, np.bool_)):
         raise TypeError(f"redraw is of type {type(redraw).__name__}; expected a bool")
     if seed is not None:
@@ -159,7 +161,7 @@ def one_seed(
 def actions(values: ArrayLike, shape: Shape, choices: Optional[int]) -> NDArray[Any]:
     """Actions of a task: integers as int64 where there are ``choices``, else numbers as float32.
 
-    TypeError, ValueError; integers of any size are reported as given.
+    Raises TypeError, ValueError. Messages show integers of any size unchanged.
     """
     array = np.asarray(values)
     if array.shape != shape:
@@ -202,7 +204,7 @@ def numbers(
     name: str,
     dtype: Optional[type] = None,
 ) -> NDArray[Any]:
-    """Real numbers of exactly this shape, in order; float32 stays, others become float64."""
+    """Real numbers of exactly this shape, C-contiguous. float32 is kept; others become float64."""
     array = reals(values, name)
     if array.shape != shape:
         expected = shape_text(shape, axes)
@@ -219,7 +221,7 @@ def broadcast(
     name: str,
     dtype: Optional[type] = None,
 ) -> NDArray[Any]:
-    """Numbers that broadcast to this shape, in order; without a dtype as ``numbers``."""
+    """Numbers that broadcast to this shape, C-contiguous; without a dtype as ``numbers``."""
     array = reals(values, name)
     if dtype is None:
         dtype = np.float32 if array.dtype.type is np.float32 else np.float64
@@ -242,10 +244,10 @@ def output(
     dtype: Union[type, np.dtype[Any]],
     name: str = "out",
 ) -> NDArray[Any]:
-    """``out`` as an array that can be filled in place, a new array if it is None.
+    """``out`` as an array that can be filled in place; a new array if it is None.
 
-    What is no NumPy array gives one over the same memory: through DLPack, or as a buffer of just as
-    many numbers of the type, or bytes. TypeError, ValueError.
+    Other objects give an array over the same memory, through DLPack or the buffer protocol. A
+    buffer must have exactly this size, in numbers of the type or in bytes. TypeError, ValueError.
     """
     wanted = np.dtype(dtype)
     if out is None:

@@ -21,44 +21,45 @@ from .rollout import MAX_STEPS, Initial, Trajectories, rollout
 from .scene import Point, Ray
 
 MAX_THREADS = 1024
-# What there is one of for each kind of world.
+# Attributes that each group of worlds has separately.
 _OF_A_KIND = frozenset({"plan", "_choose", "_bodies", "_controls", "_joints", "_fields"})
 
 __all__ = ["MAX_THREADS", "MAX_WORLDS", "Batch", "checked_batch"]
 
 
 class Batch(Fields, Inputs, Results, InMemory):
-    """Worlds of one scene, stepped together on several threads, one SIMD lane for each.
+    """Worlds of one scene that step together on several threads, with one SIMD lane per world.
 
-    scene        a Scene, a Plan, or the name of a scene (``scenes.names()``); for several kinds of
-                 world a list [(scene, worlds), ...] of them, all planar or all spatial, of one dt
-    worlds       how many; None: 1, or as the list says
-    threads      None: as many as the process may run on
-    precision    "f32" or "f64": of the state
+    scene        a Scene, a Plan, or the name of a scene (``scenes.names()``). For worlds with
+                 different plans a list [(scene, worlds), ...], all planar or all spatial, with the
+                 same dt
+    worlds       number of worlds; None: 1, or the sum of the list
+    threads      number of threads; None: all that the process may use
+    precision    precision of the state: "f32" or "f64"
     seed         world i draws from seed + i; 0 to 2**64 - 1
-    isa          "scalar", "avx2", "avx512"; None: the widest there is, or what the environment
-                 variable MANYWORLDS_ISA says
-    layout       of contacts: "automatic", "dense", "rows"; changes no bit
-    sleep        bodies at rest fall asleep and cost little
-    observe      what to watch beside the step: "motion", "contacts", ..., ``enumerations()`` has all;
-                 ``batch.fields`` says which fields each gives
-    rays         Rays that every world casts, which are observed then
-    points       Points of bodies, whose places and velocities are observed then
-    contacts_per_world  room for observed contacts; 0: as many as the plan has room for
-    audit_every  each world's energy is audited in one of so many of its steps (Status.diverged);
-                 0: never, at most 255
+    isa          "scalar", "avx2", "avx512"; None: the environment variable MANYWORLDS_ISA, or the
+                 widest instruction set of the CPU
+    layout       layout of contacts: "automatic", "dense", "rows". Results are bitwise equal
+    sleep        True: bodies at rest fall asleep, which saves most of their cost
+    observe      observers: "motion", "contacts", ...; ``enumerations()`` lists all, and
+                 ``batch.fields`` lists the fields of each
+    rays         Rays that every world casts and observes
+    points       Points of bodies whose positions and velocities are observed
+    contacts_per_world  maximum number of observed contacts; 0: the maximum of the plan
+    audit_every  interval in steps of the energy audit of a world (Status.diverged), at most 255;
+                 0: no audit
 
-    What a world does depends on its scene, seed and inputs alone, not on the number of worlds or
-    threads. Raises SceneError, ValueError, TypeError. A batch is used by one thread at a time; calls
-    that take long let go of the GIL. It can be closed, also by ``with``.
+    A world depends only on its scene, seed and inputs, not on the number of worlds or threads. Only
+    one thread may use a batch at a time. Long calls release the GIL. A batch is a context manager,
+    which closes it. Raises SceneError, ValueError, TypeError.
 
-    Worlds of several kinds lie one after the other. They step, are reset, saved, restored and looked at
-    (status, hashes, energy, contacts) together, by their indices in the batch. Arrays, controls and
-    forces are those of a kind, ``batch.kinds[k].get("position")``; the batch's own raise ValueError, and
-    so do rollouts.
+    Groups of worlds with different plans are stored one after the other. The batch steps, resets,
+    saves and restores them together, and returns their status, hashes, energy and contacts by index
+    in the batch. Arrays, controls and forces belong to a group: ``batch.kinds[k].get("position")``.
+    In such a batch these methods of the batch, and rollouts, raise ValueError.
     """
 
-    _views: tuple[Any, ...] = ()  # LiveViews that look on
+    _views: tuple[Any, ...] = ()  # LiveViews that show the batch
 
     _instead = "pickle its scene or plan, the arguments that it was made with, and save()"
 
@@ -124,11 +125,11 @@ class Batch(Fields, Inputs, Results, InMemory):
                 )
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
-    # -- what it is
+    # -- properties
 
     @property
     def kinds(self) -> tuple[Kind, ...]:
-        """The worlds of each kind, with their arrays; one kind, unless it was made of several."""
+        """The groups of worlds with the same plan, with their arrays. Usually one."""
         if self._kinds is None:
             kinds, first = [], 0
             for i, (plan, worlds) in enumerate(self._plans):
@@ -139,7 +140,7 @@ class Batch(Fields, Inputs, Results, InMemory):
 
     @property
     def worlds(self) -> int:
-        """How many there are."""
+        """Number of worlds."""
         return self._worlds
 
     @property
@@ -149,58 +150,58 @@ class Batch(Fields, Inputs, Results, InMemory):
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """Of the state: float32 or float64."""
+        """The dtype of the state: float32 or float64."""
         return self._real
 
     @property
     def precision(self) -> str:
-        """Of the state: "f32" or "f64"."""
+        """The precision of the state: "f32" or "f64"."""
         return self._held.precision
 
     @property
     def threads(self) -> int:
-        """On which it steps."""
+        """Number of threads of a step."""
         return self._held.threads
 
     @property
     def isa(self) -> str:
-        """The instruction set of its kernels: "scalar", "avx2" or "avx512"."""
+        """The instruction set of the kernels: "scalar", "avx2" or "avx512"."""
         return self._held.isa
 
     @property
     def lanes(self) -> int:
-        """Worlds that share a register."""
+        """Number of worlds in a SIMD register."""
         return self._held.lanes
 
     @property
     def kernel_table(self) -> str:
-        """Which kernels step it: "avx2 f32 x8"."""
+        """The name of the kernels, such as "avx2 f32 x8"."""
         return self._held.kernel_table
 
     @property
     def seed(self) -> int:
-        """World i draws from seed + i, until a reset gives it another seed (``seeds``)."""
+        """World i draws from seed + i, until a reset sets another seed (``seeds``)."""
         return self._held.seed
 
     def seeds(self, out: Optional[Writable] = None) -> NDArray[np.uint64]:
-        """The seed that each world draws from, (worlds,) uint64: seed + i, or what a reset gave it."""
+        """The seed of each world, (worlds,) uint64: seed + i, or the seed of its last reset."""
         array = arrays.output(out, (self._worlds,), ("worlds",), np.uint64)
         self._held.seeds(array)
         return array
 
     @property
     def bytes_per_world(self) -> int:
-        """Of persistent state."""
+        """Size of the persistent state of a world, in bytes."""
         return self._held.bytes_per_world
 
     @property
     def time(self) -> float:
-        """Simulated since construction or reset of all worlds, s."""
+        """Simulated time since construction or reset of all worlds, in s."""
         return self._held.time
 
     @property
     def steps(self) -> int:
-        """Taken since construction or reset of all worlds."""
+        """Number of steps since construction or reset of all worlds."""
         return self._held.steps
 
     @property
@@ -209,7 +210,7 @@ class Batch(Fields, Inputs, Results, InMemory):
         return self._held.closed
 
     def close(self) -> None:
-        """Lets go of the worlds; every later use raises ValueError. Twice is once."""
+        """Frees the worlds. Every later use raises ValueError. A second call has no effect."""
         for view in self._views:
             view.close()
         self._held.close()
@@ -244,15 +245,18 @@ class Batch(Fields, Inputs, Results, InMemory):
     def step(
         self, n: int = 1, controls: Optional[ArrayLike] = None, ids: Optional[Ids] = None
     ) -> None:
-        """Takes n steps of every world, or of some, without the GIL.
+        """Takes n steps of all worlds, or of some, without the GIL.
 
-        ``controls``: set before, for the worlds that step; see set_controls.
-        Forces that were added act in all n steps and are cleared. A world that goes wrong is frozen
-        and flagged (``status``). ``ids``: indices or a bool array (worlds,); the others keep their
-        state, their forces and what was observed of them. ``time`` and ``steps`` are of steps of
-        all worlds and stay. Ctrl-C ends the call between two steps; ``steps`` says how many were
-        taken, and the batch goes on from there. Lanes step together: a few worlds here and there cost as much as their
-        whole groups of lanes.
+        ``controls``: sets the controls of the worlds that step; see set_controls. ``ids``: indices,
+        or an array of bools (worlds,). Other worlds keep their state, forces and observations.
+        ``time`` and ``steps`` count only steps of all worlds.
+
+        Added forces act in all n steps and are then cleared. A world with an invalid state is
+        frozen and flagged (``status``). A group of lanes steps as a whole, so a few scattered
+        worlds cost as much as all worlds of their groups.
+
+        Ctrl-C ends the call between two steps. ``steps`` is then the number of completed steps, and
+        the batch can continue.
         """
         n = arrays.integer(n, "n", 0, MAX_STEPS)
         mask = None if ids is None else arrays.mask(ids, self._worlds)
@@ -262,7 +266,7 @@ class Batch(Fields, Inputs, Results, InMemory):
         self._held.step(n, mask)
         self._after_step()
 
-    # What pages asked for, before a call of so many steps, and what they see after it.
+    # Before a step call, applies requests of live pages; after it, sends them the state.
     def _before_step(self, steps: int) -> None:
         for view in self._views:
             view._core.apply(steps)
@@ -272,11 +276,13 @@ class Batch(Fields, Inputs, Results, InMemory):
             view._core.show()
 
     def step_to(self, clock: float, max_steps: int = 8) -> int:
-        """Takes whole steps until the simulated time reaches ``clock``, in s, and returns how many.
+        """Takes whole steps until the simulated time reaches ``clock``, in s. Returns the number of
+        steps.
 
-        For hosts that run by a clock: never past it (but for up to half a rounding step), at most
-        ``max_steps``, beyond which time is dropped, so that a host that stalled is not behind for ever.
-        Raises ValueError for a clock that is not finite, and for ``max_steps`` below 0.
+        For hosts with a real-time clock. The simulated time does not exceed ``clock``, up to
+        rounding. The call takes at most ``max_steps`` steps and drops the remaining time, so that a
+        stalled host can catch up. Raises ValueError if ``clock`` is not finite or ``max_steps`` is
+        negative.
         """
         if isinstance(clock, (bool, np.bool_)) or not isinstance(clock, (int, float, np.number)):
             raise TypeError(f"clock is of type {type(clock).__name__}; expected a number of s")
@@ -297,22 +303,26 @@ class Batch(Fields, Inputs, Results, InMemory):
         seed: Optional[int] = None,
         redraw: Optional[bool] = None,
     ) -> None:
-        """Starts all worlds again, or some.
+        """Resets all worlds, or some, to a start state.
 
-        ``reset()`` repeats: every world starts with the same draws of jitter and variations as the
-        first time, and the clock restarts. These calls draw new ones, and the clock goes on:
+        ``reset()`` repeats: every world starts with the jitter and variations of its first episode,
+        and the clock restarts at 0. The following calls draw new values, and the clock continues:
 
-        ``reset(redraw=True)``   the draws that follow, of the next episode of each world
-        ``reset(seed=s)``        from the seed s + i in world i, and later resets from there
-        ``reset(ids)``           the next episode of some worlds; ``redraw=False`` repeats theirs
+        ``reset(redraw=True)``   the draws of the next episode of each world
+        ``reset(seed=s)``        draws from the seed s + i in world i, also in later resets
+        ``reset(ids)``           the next episode of some worlds; with ``redraw=False`` their first
 
-        ``mask_or_ids``: an array of bools (worlds,) is a mask, integers are ids of worlds without
-        repeats; None: all. ``seeds``: as ``seed``, or one seed for every world that is reset, in the
-        order of ids. ``keyframe``: a KeyframeId, name or index; worlds start with its values instead
-        of drawn ones. With groups of several scenes it is the keyframe of that index in each, and a
-        name is one of the first scene. Raises ValueError where a world has no such keyframe (and
-        resets none), for two of seed, seeds, keyframe, and for ``redraw=False`` with a seed;
-        IndexError and TypeError for wrong ids.
+        ``mask_or_ids``: an array of bools (worlds,) is a mask, integers are world ids without
+        repeats; None: all. ``seeds``: as ``seed``, or one seed per world of the reset, in the order
+        of ids.
+
+        ``keyframe``: a KeyframeId, name or index; worlds start with its values instead of drawn
+        ones. With several scenes it selects the keyframe with this index in each scene. A name is
+        looked up in the first scene.
+
+        Raises ValueError if a world has no such keyframe (no world is reset), for two of seed,
+        seeds and keyframe, and for ``redraw=False`` with a seed. Raises IndexError and TypeError
+        for wrong ids.
         """
         seeds = arrays.one_seed(seed, seeds, redraw)
         if redraw is None:
@@ -344,22 +354,23 @@ class Batch(Fields, Inputs, Results, InMemory):
         every: int = 1,
         out: Optional[Mapping[str, Writable]] = None,
     ) -> Trajectories:
-        """Takes many steps in one call, without the GIL, and returns what happened.
+        """Takes many steps in one call, without the GIL, and returns fields of the trajectory.
 
-        ``initial``: a Snapshot of all worlds, or a dict of fields as ``set`` takes them; None: from
-        where the worlds are. ``controls``: (steps, worlds, controls), or with axes of length 1 that
-        broadcast, as (steps, 1, controls) for the same in all worlds; or ``steps`` alone, with the
-        controls as they are. Returns {field: (frames, worlds, items, components)}
-        with frames = steps // every, taken after every ``every`` steps; the state before the first
-        step is none of them. ``out``: a dict of arrays to fill. The worlds stay where the rollout
-        ends; the bits are those of stepping and reading one by one. Ctrl-C ends it
-        early, between two steps; frames beyond are not filled.
+        ``initial``: a Snapshot of all worlds, or a dict of fields as in ``set``; None: the current
+        state. ``controls``: (steps, worlds, controls), or an array that broadcasts along axes of
+        length 1, such as (steps, 1, controls) for equal controls in all worlds. With ``steps``
+        alone the controls stay as they are. ``out``: a dict of arrays to fill.
+
+        Returns {field: (frames, worlds, items, components)} with frames = steps // every. A frame
+        is taken after every ``every`` steps; the state before the first step is not included. The
+        worlds keep the final state. Results are bitwise equal to those of single steps. Ctrl-C ends
+        the call between two steps; later frames are not filled.
         """
         return rollout(self, initial, controls, steps, fields, every, out)
 
 
 def checked_batch(batch: Any) -> Batch:
-    """``batch``, if it is one. TypeError."""
+    """Returns ``batch``. Raises TypeError if it is not a Batch."""
     if not isinstance(batch, Batch):
         raise TypeError(f"batch is of type {type(batch).__name__}; expected a Batch")
     return batch

@@ -1,4 +1,4 @@
-"""Counter-based random numbers, as in the library: a world has the same draws in every batch."""
+"""Counter-based random numbers, as in the library. A world's draws are equal in every batch."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ def _mix(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
 
 
 def uniform(seeds: NDArray[np.uint64], name: str, count: int) -> NDArray[np.float64]:
-    """``count`` numbers in [0, 1) for each seed, (seeds, count). Each name has other numbers."""
+    """``count`` numbers in [0, 1) for each seed, (seeds, count). Different names give other
+    numbers.
+    """
     stream = np.full(1, zlib.crc32(name.encode()), np.uint64)
     with np.errstate(over="ignore"):  # overflow is intended
         key = _mix(_mix(seeds + _STEP) ^ (stream * _STEP + np.uint64(1)))

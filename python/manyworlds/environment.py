@@ -1,4 +1,4 @@
-"""Environment: a task in thousands of worlds; actions in, arrays out."""
+"""Environment: a task in thousands of worlds, with arrays of actions and results."""
 
 from __future__ import annotations
 
@@ -24,38 +24,43 @@ from .tasks import Task, TaskError
 
 Doubles = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Observations = NDArray[Any]  # float32, or the float64 that was asked for
+Observations = NDArray[Any]  # float32, or float64 by observation_dtype
 
 
 class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
-    """A task in many worlds, one SIMD lane for each; what Gymnasium's classes are built on.
+    """A task in many worlds, with one SIMD lane per world. The base of the Gymnasium classes.
 
-    task         a Task, or the name of one (``tasks.names()``)
-    worlds       how many
-    threads      None: as many as the process may run on
-    seed         world i draws from seed + i; 0 to 2**64 - 1
-    precision    "f32" or "f64": of the worlds and of expressions
-    isa          "scalar", "avx2", "avx512"; None: the widest there is
-    autoreset    what happens to a world whose episode has ended: with "next_step" the next step
-                 begins its next episode instead of stepping it (reward 0, no end), with "same_step"
-                 the step that ends it begins the next and ``final_observations`` has where it ended,
-                 with "disabled" it steps on until it is reset
-    check        True: ``step``, ``reset`` and ``begin`` raise NonFiniteError where an observation, a
-                 reward or an end is not a finite number, after they have done all that they do
-    reward_terms, final_observations  whether these arrays are filled by ``step``
-    observation_dtype  "float32" or "float64": of observations
+    task         a Task or its name (``tasks.names()``)
+    worlds       number of worlds
+    threads      number of threads; None: all that the process may use
+    seed         world i draws from seed + i
+    precision    precision of the worlds and of expressions: "f32" or "f64"
+    isa          "scalar", "avx2", "avx512"; None: the widest of the CPU
+    autoreset    the treatment of a world after the end of its episode. "next_step": the next step
+                 resets it instead of stepping it, with reward 0 and no end. "same_step": the step
+                 that ends the episode also resets the world, and ``final_observations`` has the
+                 last observations. "disabled": the world steps on until it is reset
+    check        True: ``step``, ``reset`` and ``begin`` raise NonFiniteError, after all their work,
+                 if an observation, a reward or an end is not finite
+    reward_terms, final_observations  whether ``step`` fills these arrays
+    observation_dtype  dtype of observations: "float32" or "float64"
 
-    What a world does depends on the task, its seed and its actions alone. The arrays of the last
-    step or reset are ``observations`` (worlds, observations) float32, ``rewards`` (worlds,) float64,
-    ``terminated`` and ``truncated`` (worlds,) bool, ``reward_terms`` (worlds, rewards) float64,
-    ``infos`` (worlds, infos) float64, and ``final_observations`` and ``final_infos`` of "same_step":
-    the same arrays in every step. ``lost_at_end`` (worlds,) bool says which worlds were lost at the end
-    of the last step, also those that then began anew.
+    A world depends only on the task, its seed and its actions. The following arrays hold the
+    results of the last step or reset. They are the same objects in every step:
 
-    A world with an observation, a reward or an end that is not a finite number is lost (``lost()``), and its
-    episode is truncated, not terminated. The first such fault of each expression is a RuntimeWarning and
-    in ``non_finite()``. Raises TaskError, ValueError, TypeError.
-    An environment is used by one thread at a time.
+    observations                      (worlds, observations), float32 by default
+    rewards                           (worlds,) float64
+    terminated, truncated             (worlds,) bool
+    reward_terms                      (worlds, rewards) float64
+    infos                             (worlds, infos) float64
+    final_observations, final_infos   the last values of an episode, with "same_step"
+    lost_at_end                       (worlds,) bool: worlds lost at the end of the last step, even
+                                      if they were reset in it
+
+    A world is lost (``lost()``) if an observation, a reward or an end is not finite. Its episode is
+    then truncated, not terminated. The first fault of each expression is a RuntimeWarning and an
+    entry of ``non_finite()``. Only one thread may use an environment at a time. Raises TaskError,
+    ValueError, TypeError.
     """
 
     _instead = "pickle its task, the arguments that it was made with, and save()"
@@ -116,43 +121,45 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
         self._action_type = np.dtype(np.int64 if self.discrete else np.float32)
         self._step = self._held.step_choices if self.discrete else self._held.step_numbers
         self._batch: Optional[Batch] = None
-        # Those that were filled last: the caller's or the environment's own.
+        # The arrays that were filled last, the caller's or the environment's.
         self._last = self.observations, self.terminated, self.truncated
-        # Those of a step that was ended early, in the order of the extension.
+        # The arrays of a step that was ended early, in the order of the extension.
         self._unfilled: Optional[tuple[Any, ...]] = None
         self.begin()
 
-    # -- what it is
+    # -- properties
 
     @property
     def worlds(self) -> int:
-        """How many there are."""
+        """Number of worlds."""
         return self._worlds
 
     @property
     def observation_names(self) -> list[str]:
-        """Of the columns of ``observations``."""
+        """Names of the columns of ``observations``."""
         return [o.name for o in self.task.observations]
 
     @property
     def reward_names(self) -> list[str]:
-        """Of the columns of ``reward_terms``."""
+        """Names of the columns of ``reward_terms``."""
         return [r.name for r in self.task.rewards]
 
     @property
     def info_names(self) -> list[str]:
-        """Of the columns of ``infos``."""
+        """Names of the columns of ``infos``."""
         return [i.name for i in self.task.infos]
 
     @property
     def action_shape(self) -> tuple[int, ...]:
-        """(worlds,) of discrete tasks, whose actions are int64; else (worlds, numbers), float32."""
+        """(worlds,) for discrete tasks, with int64 actions; else (worlds, numbers), float32."""
         return self._action_shape
 
     @property
     def batch(self) -> Batch:
-        """The worlds: to look at, to save and restore, to change. Whoever changes them says so by
-        ``begin``, for what the task remembers of them."""
+        """The Batch of the worlds, to inspect, save, restore or change them.
+
+        Call ``begin`` after changes, so that memories and observations follow the new state.
+        """
         if self._batch is None or self._batch.closed:
             self._batch = _OwnBatch(self)
         return self._batch
@@ -163,7 +170,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
         return self._held.closed
 
     def close(self) -> None:
-        """Lets go of the worlds; every later use raises ValueError. Twice is once."""
+        """Frees the worlds. Every later use raises ValueError. A second call has no effect."""
         if self._batch is not None:
             self._batch.close()
         self._held.close()
@@ -203,21 +210,21 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
         reward_terms: Optional[Writable] = None,
         final_observations: Optional[Writable] = None,
     ) -> tuple[Observations, Doubles, Flags, Flags]:
-        """One step of the task in every world, without the GIL.
+        """Takes one step of the task in all worlds, without the GIL.
 
-        ``actions``: (worlds,) integers below ``task.choices`` or (worlds, numbers), of any dtype;
-        int64 and float32 are taken without a copy. An action beyond its range counts as the end of
-        the range, or as given where it is not clamped (``Action``); one that is not a number freezes its
-        world, which is then lost and truncated. A choice that there is not raises ValueError before
-        anything is done.
+        ``actions``: (worlds,) integers below ``task.choices`` or (worlds, numbers), of any dtype.
+        int64 and float32 are not copied. An action is clamped to its range, unless its ``Action``
+        has ``clamped=False``. NaN freezes its world, which is then lost and truncated. An invalid
+        choice raises ValueError before the step.
 
-        Arrays that are given are filled in place of the environment's own, and returned; they may be
-        whatever ``Batch.get`` takes as ``out``. Returns (observations, rewards, terminated, truncated).
+        Optional arrays are filled instead of the environment's arrays, and returned. They have the
+        same requirements as ``out`` of ``Batch.get``. Returns (observations, rewards, terminated,
+        truncated).
 
-        Ctrl-C, and what a signal's handler raises, ends a step that takes longer than some 0.2 s between
-        two of its physics steps. The arrays are then as they were, ``steps_left`` says how many physics
-        steps are still to take, and until ``finish_step``, or a reset, begin or restore of all worlds,
-        other calls that step, begin, copy or save worlds raise ValueError.
+        Ctrl-C, or an exception in a signal handler, ends a step that takes longer than about 0.2 s,
+        between two physics steps. The arrays then keep their values, and ``steps_left`` is the
+        number of remaining physics steps. Other calls that step, begin, copy or save worlds then
+        raise ValueError, until ``finish_step``, or a reset, begin or restore of all worlds.
         """
         observations = self._out("observations", observations)
         rewards = self._out("rewards", rewards)
@@ -247,7 +254,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
             self._batch._before_step(self.task.frame_skip)
         try:
             faults = self._step(given, *out)
-        except BaseException as error:  # whatever a signal's handler raised
+        except BaseException as error:  # also exceptions of signal handlers
             if self._unfilled is None and self.steps_left > 0:
                 self._unfilled = out
             if isinstance(error, _core.NonFiniteError):  # the step was taken
@@ -265,11 +272,11 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
             self._batch._after_step()
 
     def finish_step(self) -> tuple[Observations, Doubles, Flags, Flags]:
-        """Takes a step that Ctrl-C ended early to its end, with its actions and into its arrays.
+        """Completes a step that Ctrl-C ended early, with the same actions and arrays.
 
-        What comes of it has the bits of a step that was not ended, but for forces that were added to
-        ``batch`` before: they act up to where it was. Returns what ``step`` would have; Ctrl-C ends it
-        early as it does ``step``. Raises ValueError when no step was ended early.
+        The results are bitwise equal to those of an uninterrupted step, with one exception: forces
+        added to ``batch`` act only until the interruption. Returns the results of ``step``. Ctrl-C
+        can end it early, too. Raises ValueError if no step was ended early.
         """
         if self._unfilled is None:
             raise ValueError("no step was interrupted")
@@ -286,7 +293,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
 
     @property
     def steps_left(self) -> int:
-        """Physics steps that a step which was ended early has still to take; 0: none was."""
+        """Remaining physics steps of a step that was ended early; 0 if there is none."""
         return self._held.steps_left
 
     def _out(self, name: str, given: Optional[Writable]) -> NDArray[Any]:
@@ -300,7 +307,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
         choices = self.task.choices if self.discrete else None
         return arrays.actions(actions, self._action_shape, choices)
 
-    # -- beginnings
+    # -- starts of episodes
 
     def reset(
         self,
@@ -311,15 +318,19 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
         seed: Optional[int] = None,
         redraw: Optional[bool] = None,
     ) -> Observations:
-        """Starts the next episodes of all worlds or of some.
+        """Starts new episodes in all worlds or in some.
 
-        ``reset()`` draws anew, as Gymnasium's does: the draws that follow those of the episode before.
-        ``reset(seed=s)`` draws from the seed s + i in world i; ``reset(redraw=False)`` repeats the first
-        episode of the seeds that the worlds have. With a seed, and with ``redraw=False``, levels start
-        again, too. ``mask_or_ids``: an array of bools (worlds,) is a mask, integers are ids of worlds
-        without repeats; None: all. ``seeds``: as ``seed``, or one for every world that is reset, in the
-        order of ids. Returns observations; those of the other worlds stay. Raises ValueError for seed
-        and seeds, and for ``redraw=False`` with one of them; IndexError and TypeError for wrong ids.
+        ``reset()`` draws new values, as Gymnasium does: the draws of the next episode.
+        ``reset(seed=s)`` draws from the seed s + i in world i. ``reset(redraw=False)`` repeats the
+        first episode of the current seeds. With a seed, and with ``redraw=False``, levels restart,
+        too.
+
+        ``mask_or_ids``: an array of bools (worlds,) is a mask, integers are world ids without
+        repeats; None: all. ``seeds``: as ``seed``, or one seed per world of the reset, in the order
+        of ids. Returns observations; those of other worlds do not change.
+
+        Raises ValueError for seed with seeds, and for ``redraw=False`` with one of them. Raises
+        IndexError and TypeError for wrong ids.
         """
         seeds = arrays.one_seed(seed, seeds, redraw)
         mask = arrays.mask(mask_or_ids, self._worlds)
@@ -334,7 +345,7 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
     def begin(
         self, mask_or_ids: Optional[Ids] = None, observations: Optional[Writable] = None
     ) -> Observations:
-        """Worlds begin an episode in the state that they have; see ``reset``."""
+        """Starts an episode in worlds at their current state; arguments as in ``reset``."""
         mask = arrays.mask(mask_or_ids, self._worlds)
         observations = self._out("observations", observations)
         self._begin(mask, observations, self._held.begin, mask)

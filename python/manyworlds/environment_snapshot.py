@@ -1,4 +1,4 @@
-"""Worlds of an Environment saved, restored and copied."""
+"""Snapshots of an Environment: save, restore and copy worlds."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ Observations = NDArray[Any]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EnvironmentSnapshot:
-    """The worlds of an Environment with what its task remembers of them; can be pickled."""
+    """Worlds of an Environment with the memories of its task. Can be pickled."""
 
     worlds: Snapshot
-    task: int  # of which task: equal for tasks that compute the same
+    task: int  # fingerprint of the task: equal for tasks with equal results
     memory: NDArray[np.float64]  # (worlds, numbers)
-    # Of the last step or reset, as the array has them that it filled.
+    # Values of the last step or reset, in the array that it filled.
     observations: Observations  # (worlds, observations)
     terminated: Flags  # (worlds,)
     truncated: Flags
 
 
 class WithSnapshots:
-    """What an Environment has of snapshots."""
+    """Snapshot methods of Environment."""
 
     observations: Observations
     terminated: Flags
@@ -41,14 +41,14 @@ class WithSnapshots:
     _unfilled: Optional[tuple[Any, ...]]
 
     def copy_world(self, source: int, target: int) -> None:
-        """World ``target`` becomes what ``source`` is, with what the task remembers of it."""
+        """Copies world ``source``, with the memories of the task, to world ``target``."""
         self._held.copy_world(
             arrays.index(source, self._worlds, "source"),
             arrays.index(target, self._worlds, "target"),
         )
 
     def save(self) -> EnvironmentSnapshot:
-        """All worlds, with what the task remembers of them and ``observations``."""
+        """A snapshot of all worlds, with the memories of the task and ``observations``."""
         worlds, task, memory = self._held.save()
         last = (array.copy() for array in self._last)
         return EnvironmentSnapshot(worlds, task, memory, *last)
@@ -59,13 +59,17 @@ class WithSnapshots:
         source: Optional[Ids] = None,
         ids: Optional[Ids] = None,
     ) -> Observations:
-        """Worlds go on bit by bit as the saved ones did, in this or another Environment of the task.
+        """Restores worlds, which continue bitwise equal to the saved ones. Returns
+        ``observations``.
 
-        ``source``, ``ids``: as in ``Batch.restore``. Restored as a whole, later episodes are
-        drawn as they would have been; single worlds draw from the seeds that are here. A world that was to begin with its next step steps on beyond its end where
-        ``autoreset`` is not "next_step". Returns ``observations``, with the rows of the snapshot, as
-        ``terminated`` and ``truncated`` have. Raises SnapshotError, and changes nothing, for a snapshot
-        of another task or precision.
+        ``source``, ``ids``: as in ``Batch.restore``. The snapshot may be of another Environment of
+        the same task. A restore of all worlds also restores the draws of later episodes. Single
+        worlds draw from the seeds of this environment.
+
+        The returned observations, ``terminated`` and ``truncated`` have the rows of the snapshot.
+        With another ``autoreset`` than "next_step", a world that was due for a reset steps on after
+        its end. Raises SnapshotError, and changes nothing, for a snapshot of another task or
+        precision.
         """
         if not isinstance(snapshot, EnvironmentSnapshot):
             found = type(snapshot).__name__

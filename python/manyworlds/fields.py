@@ -1,4 +1,4 @@
-"""Fields: everything that a batch has an array of. ``Batch.get``, ``set`` and ``view``."""
+"""Fields: the arrays of a batch, for ``Batch.get``, ``set`` and ``view``."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from .state_view import View
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """What is known of a field: its array is (worlds, items, components)."""
+    """Description of a field, whose array is (worlds, items, components)."""
 
     name: FieldName
-    group: str  # "state", "parameter" (a number of the scene) or "observed"
-    observer: str  # that an observed one needs; else ""
-    # What has one: "body", "shape", "joint", "control", "attractor", "world", "coordinate", "dof", "ray".
+    group: str  # "state", "parameter" (of the scene) or "observed"
+    observer: str  # required for an observed field; else ""
+    # Owner: "body", "shape", "joint", "control", "attractor", "world", "coordinate", "dof", "ray".
     item: str
     items: int
     components: int
@@ -35,7 +35,7 @@ class Field:
 
 
 class Fields:
-    """The part of Batch about arrays."""
+    """Array access of Batch."""
 
     _held: _core.Batch
     _worlds: int
@@ -55,7 +55,7 @@ class Fields:
 
     @property
     def fields(self) -> Mapping[FieldName, Field]:
-        """All fields by name: state, numbers of the scene, and what can be observed."""
+        """All fields by name: state, scene parameters, and observed values."""
         return self._fields
 
     def _field(self, name: FieldName) -> Field:
@@ -80,18 +80,21 @@ class Fields:
     def get(
         self, name: FieldName, out: Optional[Writable] = None, ids: Optional[Ids] = None
     ) -> NDArray[Any]:
-        """A field of all worlds, (worlds, items, components), or of those of ``ids``, in this order.
+        """A field of all worlds, (worlds, items, components), or of the worlds ``ids`` in this
+        order.
 
-        State and observed fields have the batch's precision (float32 or float64), numbers of the
-        scene float64. Position is that of the body's origin, velocity that of its centre of mass;
-        units are in ``fields[name].unit``. ``ids``: a mask of bools (worlds,), or ids without repeats,
-        in the order of the result. ``out``: filled
-        in place and returned; it must have this shape and dtype, be C-contiguous, writable, and on the
-        CPU. What is no NumPy array is filled, too, if it has DLPack (a torch.Tensor) or is a buffer (a
-        bytearray, array.array, memoryview) of just the size; an array over its memory is returned.
+        State and observed fields have the precision of the batch (float32 or float64). Scene
+        parameters are float64. Position is the position of the body's origin; velocity is the
+        velocity of its centre of mass. ``fields[name].unit`` is the unit.
 
-        Raises ValueError for an unknown or unobserved field, and for an ``out`` that does not fit
-        (TypeError for its dtype), IndexError for wrong ids.
+        ``ids``: a mask of bools (worlds,), or ids without repeats. ``out``: filled in place and
+        returned. It must have this shape and dtype, and must be C-contiguous, writable and on the
+        CPU. It may also support DLPack (a torch.Tensor) or the buffer protocol (a bytearray,
+        array.array, memoryview of exactly this size). The call then returns an array over the same
+        memory.
+
+        Raises ValueError for an unknown or unobserved field and for an ``out`` with a wrong shape,
+        TypeError for its dtype, IndexError for wrong ids.
         """
         field = self._field(name)
         worlds = None if ids is None else arrays.worlds(ids, self._worlds)
@@ -102,18 +105,20 @@ class Fields:
         return array
 
     def set(self, name: SettableField, values: ArrayLike, ids: Optional[Ids] = None) -> None:
-        """Sets a state field or a number of the scene, in all worlds or in those of ``ids``.
+        """Sets a state field or a scene parameter, in all worlds or in the worlds ``ids``.
 
-        ``values``: (worlds, items, components), or (len(ids), items, components), or what broadcasts to
-        it as NumPy does: a number, a row (components,), rows (items, components); any dtype, order and
-        strides. ``ids``: a mask of bools (worlds,), or ids without repeats. Setting positions or
-        orientations clears the stored impulses of those worlds, and all their bodies wake. A state that
-        is not finite freezes its world at the next step (``status``).
+        ``values``: (worlds, items, components), or (len(ids), items, components), or an array that
+        broadcasts to this shape: a number, a row (components,), rows (items, components). Any
+        dtype, order and strides are valid. ``ids``: a mask of bools (worlds,), or ids without
+        repeats.
 
-        Raises ValueError, and changes nothing, for a wrong shape; for orientations that are not finite
-        or not of length 1 (to 0.001), and quaternions of ``generalized_position`` that are not finite
-        or of length 0; for numbers of the scene that do not vary (Scene.variations) or are out of their
-        range. IndexError for wrong ids.
+        Setting positions or orientations clears the stored impulses of these worlds and wakes all
+        their bodies. A state that is not finite freezes its world at the next step (``status``).
+
+        Raises ValueError, and changes nothing, for a wrong shape. Orientations must be finite and
+        of length 1 (to 0.001); quaternions of ``generalized_position`` must be finite and not of
+        length 0. A scene parameter must vary (Scene.variations), and its values must be in its
+        range. Raises IndexError for wrong ids.
         """
         self._held.write(*self._to_write(name, values, ids))
 
@@ -126,12 +131,13 @@ class Fields:
         items: Optional[Ids] = None,
         seed: Optional[int] = None,
     ) -> None:
-        """Draws a state field or a number of the scene uniformly from ``low`` to ``high``, and sets it.
+        """Draws a state field or a scene parameter uniformly from ``low`` to ``high``, and sets it.
 
-        ``low``, ``high``: numbers, or what broadcasts to (items, components). ``ids``: of which worlds,
-        ``items``: of which bodies, shapes, joints or controls (``fields[name].item``); None: all. World i
-        draws from ``seed`` + i (None: the batch's seed) and the field's name: the same numbers in a batch
-        of any size, and again by the same call; another ``seed`` draws others. Raises as ``set`` does.
+        ``low``, ``high``: numbers, or arrays that broadcast to (items, components). ``ids`` selects
+        worlds, ``items`` selects bodies, shapes, joints or controls (``fields[name].item``); None:
+        all. World i draws from ``seed`` + i (None: the batch's seed) and the name of the field.
+        Equal seeds give equal values in a batch of any size and in every call. Raises the errors of
+        ``set``.
         """
         field = self._field(name)
         worlds = arrays.worlds(ids, self._worlds)
@@ -143,7 +149,7 @@ class Fields:
             arrays.broadcast(end, shape, axes, which, np.float64)
             for end, which in ((low, "low"), (high, "high"))
         )
-        width = highest / 2 - lowest / 2  # of which no number is too large
+        width = highest / 2 - lowest / 2  # halves avoid overflow
         if not (width >= 0).all() or not np.isfinite(width).all():
             raise ValueError("low and high must be finite numbers with low <= high")
         seeds = np.uint64(first) + worlds.astype(np.uint64)  # wraps around
@@ -155,7 +161,7 @@ class Fields:
     def _to_write(
         self, name: FieldName, values: ArrayLike, ids: Optional[Ids] = None
     ) -> tuple[FieldName, NDArray[Any], Optional[NDArray[np.int32]]]:
-        """What is written where, checked but for the ranges of numbers."""
+        """Checked values and indices for a write; ranges of parameters are not checked."""
         field = self._field(name)
         if field.group == "observed":
             raise ValueError(f"{name} is observed and cannot be set")
@@ -172,7 +178,7 @@ class Fields:
         return name, numbers, worlds
 
     def _rotations_in(self, name: FieldName) -> list[int]:
-        """Where quaternions start in a field that is a list of coordinates."""
+        """First indices of quaternions in a field of coordinates."""
         if name != "generalized_position" or not self._fields[name].items:
             return []
         if self._quaternion_starts is None:
@@ -180,7 +186,7 @@ class Fields:
         return self._quaternion_starts
 
     def view(self, name: StateField) -> View:
-        """A state field in place, as the step keeps it: see View. Raises ValueError."""
+        """Direct access to the memory of a state field: see View. Raises ValueError."""
         field = self._field(name)
         if field.group != "state":
             raise ValueError(f"{name} is not a state field; only those can be viewed in place")
@@ -192,9 +198,10 @@ class Fields:
         return View(self._held, name, blocks)
 
     def lane_indices(self, out: Optional[Writable] = None) -> NDArray[np.int32]:
-        """Where worlds live in views, (worlds,) int32: index i is lane i % lanes of group i // lanes.
+        """Indices of worlds in views, (worlds,) int32: index i is lane i % lanes of group i //
+        lanes.
 
-        With sleep, steps may move them.
+        With ``sleep`` steps may change them.
         """
         array = arrays.output(out, (self._worlds,), ("worlds",), np.int32)
         self._held.lane_indices(array)

@@ -1,4 +1,4 @@
-"""Files that callers name."""
+"""File arguments."""
 
 from __future__ import annotations
 

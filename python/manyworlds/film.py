@@ -1,11 +1,12 @@
-"""Pictures and films of worlds, drawn by a headless Chromium and encoded by ffmpeg.
+"""Pictures and films of worlds, drawn by headless Chromium and encoded by ffmpeg.
 
     recording = mw.record.Recording("run.h5")
     mw.write_film([recording], "run.mp4", speed=0.25)
     mw.write_picture([recording], "run.png", time=1.2, size=(1080, 600))
 
-Both programs run apart from this one: chromium (CHROMIUM in the environment names another) and, for films,
-ffmpeg: that of FFMPEG in the environment, of PATH, or of the package imageio-ffmpeg. Frames are those of ``write_page``'s page at exactly their moments, however long they take.
+Both programs run as separate processes. CHROMIUM in the environment names another Chromium. Films
+use the ffmpeg of FFMPEG in the environment, of PATH, or of the package imageio-ffmpeg. Every frame
+shows the page of ``write_page`` at exactly its time, however long rendering takes.
 """
 
 from __future__ import annotations
@@ -34,10 +35,10 @@ _LEAST, _MOST = 64, 8192  # pixels
 
 
 class FilmReport(NamedTuple):
-    """What a film holds."""
+    """Contents of a film."""
 
     frames: int
-    seconds: float  # of the film
+    seconds: float  # duration of the film
     bytes: int
 
 
@@ -57,18 +58,18 @@ def write_picture(
 ) -> None:
     """Writes a PNG file of recordings, all in one picture.
 
-    time    s, simulated; None, and what is beyond the end: the end
+    time    simulated time, s; None, and times after the end: the end
     size    width and height, pixels, 64 to 8192
-    world   the camera is at this one of those that are shown, from 0 on; None: at all
-    follow  the camera is at this body of that world (of world 0 where world is None), and in films
-            follows it: a name, or an index in the scene, as a BodyId is
-    color   of bodies, by: "body", "speed", "spin", "rest", "height", "contact" where contacts were
-            recorded, "run" of several recordings, or "number:reward" of a number named reward
-    dark    as pages are in the dark
+    world   index of the shown world at which the camera is aimed, from 0; None: all
+    follow  the camera is aimed at this body of that world (world 0 if world is None), and follows
+            it in films: a name, or an index in the scene such as a BodyId
+    color   color of bodies: "body", "speed", "spin", "rest", "height"; "contact" if contacts were
+            recorded; "run" for several recordings; "number:reward" for an entry of ``numbers``
+    dark    True: use the dark theme
     title, worlds, numbers    as in ``write_page``
 
-    Raises record.FilmError (a ValueError) where Chromium is missing or fails or the file cannot be written, and
-    what ``write_page`` raises.
+    Raises record.FilmError (a ValueError) if Chromium is missing or fails, or the file cannot be
+    written. Raises the errors of ``write_page``.
     """
     from . import _record
 
@@ -103,14 +104,14 @@ def write_film(
 
     fps     frames per second of the film, 0.01 to 1000
     speed   simulated seconds per second of the film: 0.25 is slow motion
-    begin   s, simulated, 0 or later: frame k is at begin + k * speed / fps
-    end     s, simulated; None, and what is beyond the end: the end
+    begin   start time, s, 0 or later: frame k is at begin + k * speed / fps
+    end     end time, s; None, and times after the end: the end
     size    width and height, pixels, even numbers from 64 to 8192
-    the others are those of ``write_picture``
+    other arguments  as in ``write_picture``
 
-    Between samples of a recording motion is straight: for slow motion record more of them. Raises
-    record.FilmError (a ValueError) where Chromium or ffmpeg is missing or fails or the file cannot be
-    written, and what ``write_page`` raises.
+    Motion between samples is linear. For slow motion, record samples more often. Raises
+    record.FilmError (a ValueError) if Chromium or ffmpeg is missing or fails, or the file cannot be
+    written. Raises the errors of ``write_page``.
     """
     from . import _record
 
@@ -129,8 +130,10 @@ def write_film(
 
 
 def encoder_program() -> str:
-    """The ffmpeg of the package imageio-ffmpeg, where it is installed and there is no other: none that FFMPEG in the
-    environment names, none on PATH. Else empty.
+    """The ffmpeg of the package imageio-ffmpeg, if it is installed and no other is found; else
+    empty.
+
+    FFMPEG in the environment and PATH take precedence.
     """
     if os.environ.get("FFMPEG") or shutil.which("ffmpeg"):
         return ""
@@ -159,7 +162,7 @@ def _within(value: float, name: str, low: float, high: float) -> float:
 
 
 def _view(world: Optional[int], follow: Optional[BodyRef], color: str, dark: bool) -> str:
-    """As behind '#' in the address of a page."""
+    """The options of a page's address, after '#'."""
     if not isinstance(color, str):
         raise TypeError(f"color is of type {type(color).__name__}; expected a str")
     wanted = {"color": color, "theme": "dark" if dark else "light"}

@@ -136,7 +136,7 @@ class Chooser:
         found = indices_of(refs, BodyId, self._plan.body, len(self._row), name)
         fixed = found[self._row[found] < 0]
         if fixed.size:
-            self._plan.row(int(fixed[0]))  # says what is wrong
+            self._plan.row(int(fixed[0]))  # raises the error
         return found
 
     def body(self, ref: BodyRef, name: str) -> int:

@@ -1,5 +1,4 @@
-"""What acts on worlds from outside: the part of Batch about controls, forces, and what comes and
-goes."""
+"""Inputs of Batch: controls, forces, enabled bodies and joints, rays."""
 
 from __future__ import annotations
 
@@ -18,7 +17,7 @@ from .scene import Ray
 
 
 class Inputs(Named):
-    """Controls, forces, bodies and joints that come and go, rays."""
+    """Controls, forces, enabled bodies and joints, rays."""
 
     _held: _core.Batch
     _worlds: int
@@ -33,18 +32,18 @@ class Inputs(Named):
     # -- controls
 
     def get_controls(self, out: Optional[Writable] = None) -> NDArray[Any]:
-        """What controls are set to, (worlds, controls), in the batch's precision."""
+        """The current controls, (worlds, controls), in the precision of the batch."""
         shape = self._worlds, self._controls
         out = arrays.output(out, shape, ("worlds", "controls"), self._real)
         self._held.read_controls(out)
         return out
 
     def set_controls(self, values: ArrayLike, ids: Optional[Ids] = None) -> None:
-        """Sets the scene's controls in all worlds, or in those of ``ids``.
+        """Sets the scene's controls in all worlds, or in the worlds ``ids``.
 
-        ``values``: (worlds, controls) or (len(ids), controls), of any dtype, or what broadcasts to it as
-        in ``set``: a number, a row (controls,), a column (worlds, 1). They act in every step until they
-        are set anew. Beyond its range a value counts as the end of the range; one that is not a number
+        ``values``: (worlds, controls) or (len(ids), controls), of any dtype, or an array that
+        broadcasts as in ``set``: a number, a row (controls,), a column (worlds, 1). Controls stay
+        in effect until they are set again. Values are clamped to the range of the control. NaN
         freezes its world. Raises ValueError for a wrong shape, IndexError for wrong ids.
         """
         worlds = None if ids is None else arrays.worlds(ids, self._worlds)
@@ -61,12 +60,13 @@ class Inputs(Named):
         ids: Optional[Ids] = None,
         points: Optional[ArrayLike] = None,
     ) -> None:
-        """Adds forces, N in the world frame, which act during the next ``step`` call, all its steps.
+        """Adds forces, N in the world frame, which act in all steps of the next ``step`` call.
 
-        ``force``: (worlds, bodies, 3), planar 2, or what broadcasts to it. ``bodies`` are handles,
-        names or indices of the scene's bodies, or a mask over rows; None: all rows. ``ids`` chooses
-        worlds. Through the centre of mass, or at ``points`` (as ``force``, m, world). Rows of zeros do
-        nothing. Raises ValueError for shapes, names and fixed bodies, IndexError for indices.
+        ``force``: (worlds, bodies, 3), planar 2, or an array that broadcasts to it. ``bodies``:
+        handles, names or indices of the scene's bodies, or a mask over rows; None: all rows.
+        ``ids`` selects worlds. Forces act at the centre of mass, or at ``points`` (shape of
+        ``force``, m, world frame). Rows of zeros have no effect. Raises ValueError for shapes,
+        names and fixed bodies, IndexError for indices.
         """
         self._apply("force", force, bodies, ids, points)
 
@@ -83,13 +83,13 @@ class Inputs(Named):
         ids: Optional[Ids] = None,
         points: Optional[ArrayLike] = None,
     ) -> None:
-        """Changes velocities at once by impulses, N s: see add_force."""
+        """Changes velocities immediately by impulses, N s: see add_force."""
         self._apply("impulse", impulse, bodies, ids, points)
 
     def add_angular_impulse(
         self, impulse: ArrayLike, bodies: Optional[BodyRefs] = None, ids: Optional[Ids] = None
     ) -> None:
-        """Changes spins at once by angular impulses, N m s: see add_torque."""
+        """Changes angular velocities immediately by angular impulses, N m s: see add_torque."""
         self._apply("angular_impulse", impulse, bodies, ids)
 
     def _apply(
@@ -125,7 +125,7 @@ class Inputs(Named):
     # -- bodies and joints that come and go, sleep
 
     def get_enabled(self, out: Optional[Writable] = None) -> NDArray[np.bool_]:
-        """Which bodies take part, (worlds, bodies) bool."""
+        """Which bodies are enabled, (worlds, bodies) bool."""
         out = arrays.output(out, (self._worlds, self._bodies), ("worlds", "bodies"), np.bool_)
         self._held.enabled(out)
         return out
@@ -149,11 +149,12 @@ class Inputs(Named):
         angular_velocity: Optional[ArrayLike] = None,
         ids: Optional[Ids] = None,
     ) -> None:
-        """Enables a body with a new state in all worlds or in those of ``ids``.
+        """Enables a body with a new state in all worlds or in the worlds ``ids``.
 
-        Arrays (worlds, components), or what broadcasts to them, as in the state fields: position in
-        m, orientation (w, x, y, z) or planar (cos, sin), velocities in m/s and rad/s. Raises
-        ValueError for shapes and for orientations of length 0, IndexError for indices.
+        Arrays are (worlds, components), or broadcast to it. Units and components are those of the
+        state fields: position in m, orientation (w, x, y, z) or planar (cos, sin), velocities in
+        m/s and rad/s. Raises ValueError for shapes and for orientations of length 0, IndexError for
+        indices.
         """
         worlds = arrays.worlds(ids, self._worlds)
         chosen = self._choose.body(body, "body")
@@ -185,7 +186,7 @@ class Inputs(Named):
         return np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
 
     def get_joints_enabled(self, out: Optional[Writable] = None) -> NDArray[np.bool_]:
-        """Which joints hold, (worlds, joints) bool; False: disabled or broken."""
+        """Which joints are enabled, (worlds, joints) bool. False: disabled or broken."""
         out = arrays.output(out, (self._worlds, self._joints), ("worlds", "joints"), np.bool_)
         self._held.joints_enabled(out)
         return out
@@ -193,7 +194,7 @@ class Inputs(Named):
     def set_joints_enabled(
         self, enabled: ArrayLike, joints: Optional[JointRefs] = None, ids: Optional[Ids] = None
     ) -> None:
-        """Enables (mends) or disables joints: bools that broadcast to (worlds, joints)."""
+        """Enables (repairs) or disables joints: bools that broadcast to (worlds, joints)."""
         worlds = arrays.worlds(ids, self._worlds)
         chosen = self._choose.joints(joints, "joints")
         shape, axes = (len(worlds), len(chosen)), ("worlds", "joints")
@@ -201,17 +202,19 @@ class Inputs(Named):
         self._held.set_joints_enabled(worlds, chosen, flags)
 
     def asleep(self, out: Optional[Writable] = None) -> NDArray[np.bool_]:
-        """Which bodies sleep, (worlds, bodies) bool; never kinematic ones."""
+        """Which bodies are asleep, (worlds, bodies) bool. Kinematic bodies never sleep."""
         out = arrays.output(out, (self._worlds, self._bodies), ("worlds", "bodies"), np.bool_)
         self._held.asleep(out)
         return out
 
     def wake(self, ids: Optional[Ids] = None) -> None:
-        """Wakes everything in these worlds, or in all."""
+        """Wakes all bodies of these worlds; None: all worlds."""
         self._held.wake(arrays.worlds(ids, self._worlds))
 
     def set_rays(self, rays: Sequence[Ray], world: Optional[int] = None) -> None:
-        """Other rays, as many as the batch was made with. In one world body and mask cannot change."""
+        """Replaces the rays; their number must stay the same. In one world, body and mask cannot
+        change.
+        """
         if world is not None:
             world = arrays.index(world, self._worlds, "world")
         self._held.set_rays(rays, world)

@@ -34,7 +34,7 @@ def plan_of(scene: Any, name: str = "scene") -> Plan:
 def plans_of(
     scene: Union[AnyScene, Sequence[tuple[AnyScene, int]]], worlds: Optional[int]
 ) -> list[tuple[Plan, int]]:
-    """(plan, worlds) of each kind, from the arguments of a Batch."""
+    """(plan, worlds) of each group of worlds, from the arguments of a Batch."""
     if not isinstance(scene, (list, tuple)):
         count = 1 if worlds is None else worlds
         return [(plan_of(scene), arrays.integer(count, "worlds", 1, MAX_WORLDS))]
@@ -122,10 +122,10 @@ class _Core:
 class Kind(Fields, Inputs, InMemory):
     """The worlds with the same plan in a batch, ``batch.kinds[k]``: arrays, controls, forces.
 
-    It works as a Batch of these worlds only, counted from 0: fields are (worlds, items, components), and
-    ``ids`` count worlds of this kind. The batch steps, resets, and has results and snapshots. World i
-    has index ``first + i`` there. ``slice`` selects these worlds from arrays of the batch, as in
-    ``batch.status()[kind.slice]``.
+    Methods work as those of a Batch with only these worlds, indexed from 0: fields are (worlds,
+    items, components), and ``ids`` are indices in this group. Only the batch steps, resets, and has
+    results and snapshots. World i of the group has index ``first + i`` in the batch. ``slice``
+    selects these worlds from arrays of the batch: ``batch.status()[kind.slice]``.
     """
 
     _instead = "pickle its plan"
@@ -148,7 +148,7 @@ class Kind(Fields, Inputs, InMemory):
 
     @property
     def worlds(self) -> int:
-        """Number of worlds of this kind."""
+        """Number of worlds of this group."""
         return self._worlds
 
     @property

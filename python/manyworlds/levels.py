@@ -1,4 +1,4 @@
-"""The numbers of an Environment's worlds that outlive their episodes."""
+"""Levels of an Environment: values of worlds that persist over episodes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .tasks import Task
 
 
 class WithLevels:
-    """What an Environment has of ``Task.levels``."""
+    """Methods of Environment for ``Task.levels``."""
 
     task: Task
     _worlds: int
@@ -21,21 +21,21 @@ class WithLevels:
 
     @property
     def level_names(self) -> list[str]:
-        """Of the columns of ``levels()``."""
+        """Names of the columns of ``levels()``."""
         return [level.name for level in self.task.levels]
 
     def levels(self) -> NDArray[np.float64]:
-        """The numbers of ``Task.levels``, (worlds, levels), in the episodes that worlds are in."""
+        """Values of ``Task.levels`` in the current episodes, (worlds, levels)."""
         out = np.empty((self._worlds, len(self.task.levels)))
         self._held.read_levels(out)
         return out
 
     def set_levels(self, levels: ArrayLike, mask_or_ids: Optional[Ids] = None) -> None:
-        """Other numbers, finite, of all worlds or of some: (worlds that are meant, levels), or what broadcasts
-        to that.
+        """Sets finite levels of all worlds or of some: (selected worlds, levels), or broadcast to
+        it.
 
-        They apply from the next step until the end of an episode changes them; those that stay as they are
-        change nothing. Raises ValueError, TypeError, IndexError.
+        They apply from the next step until the end of an episode changes them. Unchanged values
+        have no effect. Raises ValueError, TypeError, IndexError.
         """
         chosen = arrays.worlds(mask_or_ids, self._worlds)
         all_levels = self.levels()

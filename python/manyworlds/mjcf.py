@@ -1,15 +1,17 @@
 """Scenes from MJCF, MuJoCo's model format: ``manyworlds.mjcf.load("pile.xml")``.
 
-MuJoCo's own library reads the file; ``pip install "manyworlds-sim[mjcf]"`` installs it. What is read: free
-bodies and static geoms of spheres, capsules, cylinders, boxes, meshes (their convex hulls), planes and
-height fields, and the equality constraints connect and weld. Whatever else would change the motion,
-such as hinges and slides, is an error that names it.
+MuJoCo's library reads the file; ``pip install "manyworlds-sim[mjcf]"`` installs it. Supported are
+free bodies, static geoms, and the equality constraints connect and weld. Geoms are spheres,
+capsules, cylinders, boxes, meshes (as convex hulls), planes and height fields. Other elements that
+change the motion, such as hinges and slides, raise an error that names them.
 
-A model is read into memory and checked before MuJoCo reads it: it may take files only from its own folder
-and from those in ``roots``, and ask for no more than ``limits`` say. An error names the limit that it
-reaches: ``mw.mjcf.load("crowd.xml", limits={"copies": 50_000})`` allows more. ``limits()`` has them all.
-Load untrusted models in a separate process, which can be killed: even within the limits
-MuJoCo's compiler may take minutes.
+A model is read into memory and checked before MuJoCo reads it. It may read files only from its own
+folder and from ``roots``, within ``limits``. An error names the exceeded limit:
+``mw.mjcf.load("crowd.xml", limits={"copies": 50_000})`` allows more. ``limits()`` returns all of
+them.
+
+Load untrusted models in a separate process that can be killed. Even within the limits, MuJoCo's
+compiler may take minutes.
 """
 
 from __future__ import annotations
@@ -34,16 +36,16 @@ __all__ = ["MjcfError", "MjcfWarning", "limits", "load", "load_string"]
 
 
 class MjcfWarning(UserWarning):
-    """Something of the file that acts otherwise than it does in MuJoCo."""
+    """An element of the file that behaves differently than in MuJoCo."""
 
 
-# Versions of mujoco-core with which the tests pass and whose C structs have one layout
+# Tested versions of mujoco-core, whose C structs have the same layout
 # (tools/scripts/check_mujoco_versions). pyproject.toml and src/mjcf/mjcf.cpp have the same list.
 _TESTED = ("4.0.0", "4.0.1")
 
 
 def _library() -> Path:
-    """The libmujoco of the installed package mujoco-core. ImportError if there is none that was tested."""
+    """The libmujoco of the installed package mujoco-core. ImportError if none is supported."""
     with needs("mujoco", extra="mjcf", what="manyworlds.mjcf"):
         spec = importlib.util.find_spec("mujoco")
         if spec is None:
@@ -68,8 +70,10 @@ def _library() -> Path:
 
 
 def _extension() -> Any:
-    """The extension module. It is not linked with libmujoco, whose file name has a version, and finds the
-    functions of the installed one because that is loaded first, for the whole process."""
+    """The extension module. It is not linked with libmujoco, whose file name has a version.
+
+    It uses the functions of the installed library, which is loaded first for the whole process.
+    """
     if importlib.util.find_spec("manyworlds._mjcf") is None:
         raise ImportError(
             "manyworlds.mjcf needs a build with MuJoCo's headers "
@@ -82,13 +86,14 @@ def _extension() -> Any:
 
 
 def load(file: File, *, roots: Sequence[File] = (), limits: Mapping[str, int] | None = None) -> Scene:
-    """The scene of an MJCF file, with the masses and inertias that MuJoCo's compiler gives it.
+    """The scene of an MJCF file, with masses and inertias from MuJoCo's compiler.
 
-    Bodies come in MuJoCo's order; a fixed one for each static body that has geoms. ``roots`` are folders
-    besides the file's own from which it may include and take meshes; ``limits`` replaces some of
-    ``limits()``. Warns (MjcfWarning) of what acts otherwise than in MuJoCo. Raises MjcfError, a
-    ValueError, with one line for each thing that is wrong or not simulated, and ImportError without
-    MuJoCo.
+    Bodies have MuJoCo's order. Each static body with geoms becomes a fixed body. ``roots``: other
+    folders from which the file may include files and read meshes. ``limits`` replaces entries of
+    ``limits()``.
+
+    Emits MjcfWarning for differences from MuJoCo. Raises MjcfError, a ValueError, with one line for
+    each error or unsupported element, and ImportError without MuJoCo.
     """
     found = _extension().load(files.path(file, "file"), _paths(roots), _limits(limits))
     return _with_warnings(found)
@@ -97,16 +102,16 @@ def load(file: File, *, roots: Sequence[File] = (), limits: Mapping[str, int] | 
 def load_string(
     xml: str, *, roots: Sequence[File] = (), limits: Mapping[str, int] | None = None
 ) -> Scene:
-    """The scene of an MJCF text. Files that it names are looked up in the first of ``roots``."""
+    """The scene of an MJCF text. Its files are read from the first of ``roots``."""
     return _with_warnings(_extension().load_string(xml, _paths(roots), _limits(limits)))
 
 
 def limits() -> dict[str, int]:
-    """What a model may ask for unless ``limits=`` says otherwise.
+    """The default limits of a model.
 
-    ``file_bytes`` of each file, ``total_bytes`` of all, ``files`` opened, ``depth`` of nesting,
-    ``elements`` written, ``copies`` that replicate, attach and the like make, ``samples`` of a height
-    field, ``vertices`` of a mesh.
+    Sizes: ``file_bytes`` of each file, ``total_bytes`` of all files. Counts: opened ``files``,
+    ``depth`` of nesting, ``elements``, ``copies`` by replicate, attach and similar elements,
+    ``samples`` of a height field, ``vertices`` of a mesh.
     """
     return _extension().limits()
 

@@ -1,9 +1,9 @@
-"""Pickles and deep copies of scenes, tasks, plans and results: for processes that are spawned, Ray,
+"""Pickles and deep copies of scenes, tasks, plans and results, for spawned processes and
 checkpoints.
 
-A pickle says by which version it was made and in which format. What this version cannot read, and what
-was changed, raises ``pickle.UnpicklingError``. (Reading a pickle may run any code: read those of people
-you trust.) What holds worlds in memory has no pickle (in_memory.py).
+A pickle contains the version and format that wrote it. Unreadable or modified pickles raise
+``pickle.UnpicklingError``. Reading a pickle may run any code: read only pickles from trusted
+sources. Objects that own worlds in memory cannot be pickled (in_memory.py).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from . import _core, bodies, environment, fields, joints, options, plan, scene, shapes, tasks
 
-FORMAT = 1  # of what follows; another one when it is no longer read by what is here
+FORMAT = 1  # format of the contents, for readers of this version
 
 Members = dict[str, Any]
 Reduced = tuple[Callable[..., Any], tuple[Any, ...]]
@@ -36,7 +36,7 @@ _VALUES: dict[str, type] = {}
 
 
 def register(*kinds: type) -> None:
-    """Pickles and copies of these dataclasses go by this module. Classes made from them are others."""
+    """Registers dataclasses for the pickles and copies of this module, without subclasses."""
     for kind in kinds:
         _VALUES[kind.__name__] = kind
         copyreg.pickle(kind, _reduce_value)
@@ -51,7 +51,7 @@ def _reduce_value(value: Any) -> Reduced:
 
 
 def restore_value(form: int, version: str, name: str, members: Members) -> Any:
-    """A dataclass of the package. Members that it did not have yet get their defaults."""
+    """A dataclass of the package. Members that the pickle does not have get their defaults."""
     _check(name, form, version)
     if not isinstance(name, str) or name not in _VALUES:
         raise UnpicklingError(
@@ -73,11 +73,11 @@ def restore_value(form: int, version: str, name: str, members: Members) -> Any:
         raise UnpicklingError(f"the pickle of a {name} is incomplete: {error}") from None
 
 
-# -- expressions as a graph; those of a task as one, so that what they share stays shared
+# -- expressions as a graph; one per task, which preserves shared subexpressions
 
 
 class Root(NamedTuple):
-    """Where a pickled task has an expression: which of its graph."""
+    """Reference from a pickled task to an expression: the index of its graph."""
 
     index: int
 
@@ -113,7 +113,7 @@ _HOLD_EXPRESSIONS: dict[type, tuple[str, ...]] = {
 
 
 def _exchanged(members: Members, exchange: Callable[[Any], Any]) -> Members:
-    """The members of a task with other values where expressions may be."""
+    """The members of a task, with expressions replaced by other values."""
 
     def part(one: Any) -> Any:
         for kind, names in _HOLD_EXPRESSIONS.items():
@@ -173,7 +173,7 @@ def _reduce_plan(value: plan.Plan) -> Reduced:
 def restore_plan(
     form: int, version: str, scene: scene.Scene, broad_phase: Any, keep: Any, fingerprint: int
 ) -> plan.Plan:
-    """A Plan, whose worlds go on in those of the one that was pickled."""
+    """A Plan. Worlds of the pickled one continue in its worlds."""
     _check("Plan", form, version)
     found = plan.Plan(scene, broad_phase=broad_phase, keep=keep)
     if found.fingerprint != fingerprint:

@@ -1,4 +1,4 @@
-"""Recordings: what worlds did, in an HDF5 file from which it can be done again bit by bit.
+"""Recordings of worlds in HDF5 files, which can be replayed bit by bit.
 
     with mw.record.Recorder(batch, "run.h5", worlds=[0, 5], every=4):
         batch.step(100)
@@ -6,7 +6,7 @@
     x = recording.get("position")                  # (samples, worlds, bodies, components)
     assert recording.replay(isa="scalar").same
 
-The file's layout is in docs/recordings.md; the program's ``replay`` reads it, too, and so does h5py.
+docs/recordings.md describes the layout of the file. The program's ``replay`` and h5py read it, too.
 """
 
 from __future__ import annotations
@@ -64,25 +64,27 @@ _MAX_STEPS = 2**31 - 1
 
 
 class Recorder(InMemory):
-    """Writes what some worlds of a batch do, from now until ``close``.
+    """Records worlds of a batch from now until ``close``.
 
-    batch        a Batch; an environment's, too
-    file         to be written; it is there only once it is complete
+    batch        a Batch, or the batch of an environment
+    file         the file to write; it appears under this name only when it is complete
     worlds       indices, ascending, or a mask; None: the first 64
-    every        a sample is taken at once and after the first step call that ends on or beyond each
-                 multiple of so many steps; 0: only by ``sample``
-    first_world  what the batch's world 0 is called in the file
-    flush_seconds  what is older than so many seconds of wall time when a call of the batch ends is
-                 flushed, and survives the end of the process, whatever that is (see
-                 unfinished_recordings); 0: at each call, inf: never
-    contacts     contact points of a world and sample that are kept at most, those of the largest forces; 0: none
-                 are recorded. Wants a batch made with observe=["contacts"]
+    every        samples are taken now, and after each step call that reaches or passes a multiple
+                 of ``every`` steps; 0: only by ``sample``
+    first_world  index in the file of the batch's world 0
+    flush_seconds  data older than this wall time, in s, is flushed at the end of a batch call. It
+                 survives a crash of the process (see unfinished_recordings). 0: every call flushes;
+                 inf: no flush
+    contacts     maximum number of contact points per world and sample; those with the largest
+                 forces are kept. 0: none. Requires a batch created with observe=["contacts"]
 
-    The batch reports every input to it, so nothing needs to go through the Recorder. Steps of some worlds
-    alone (``ids``) are recorded as the states that they came to. As a context manager it is closed at the
-    end, also after an exception. Without ``close`` no file is left, unless the process is cut off. Raises
-    RecordError, a ValueError, when the file cannot be written (from ``close`` for what failed while
-    stepping), ValueError when forces were added for the next step already or contacts are not observed.
+    The batch reports all inputs to the recorder, so other code needs no change. Steps of some
+    worlds (``ids``) are recorded as their final states. The recorder is a context manager, which
+    closes it, also after an exception. Without ``close`` no file remains.
+
+    Raises RecordError, a ValueError, if the file cannot be written; ``close`` raises it for
+    failures during steps. Raises ValueError if forces are pending for the next step, or if contacts
+    are not observed.
     """
 
     _instead = "pickle the path of its file"
@@ -116,19 +118,20 @@ class Recorder(InMemory):
 
     @property
     def samples(self) -> int:
-        """Taken so far."""
+        """Number of samples."""
         return self._held.samples
 
     def sample(self) -> None:
-        """Takes a sample now; nothing when there is one of this state already."""
+        """Takes a sample now, unless there is one of this state."""
         if self._closed:
             raise ValueError("the recorder is closed")
         self._held.sample()
 
     def close(self) -> None:
-        """Finishes the file and gives it its name. Twice is once.
+        """Completes the file and gives it its name. A second call has no effect.
 
-        RuntimeError while another thread steps the batch: it goes on recording, and can be closed later.
+        Raises RuntimeError while another thread steps the batch. The recorder then continues, and
+        can be closed later.
         """
         self._held.close()
         self._closed = True
@@ -141,14 +144,14 @@ class Recorder(InMemory):
 
 
 class LostWorldDumps(InMemory):
-    """Writes a small recording, "world_17.h5", of every world that gets lost from now until ``close``.
+    """Writes a short recording, "world_17.h5", of every world that becomes lost until ``close``.
 
-    batch             whose worlds are watched
-    folder            is made; the files go there
-    checkpoint_steps  all worlds are saved in memory every so many steps; a dump begins at the last
-                      one before the world was lost, and ends there
-    max_files         files; worlds lost after that are left out
-    first_world       what the batch's world 0 is called in the files
+    batch             the batch to watch
+    folder            folder of the files; created if missing
+    checkpoint_steps  interval in steps of snapshots of all worlds in memory. A recording starts at
+                      the last snapshot before the world was lost, and ends at the loss
+    max_files         maximum number of files; later lost worlds are ignored
+    first_world       index in the files of the batch's world 0
     """
 
     _instead = "pickle what close() returns"
@@ -171,8 +174,11 @@ class LostWorldDumps(InMemory):
         self.files: list[Path] = []
 
     def close(self) -> list[Path]:
-        """Stops watching and returns the files. Raises RecordError for what could not be written, and
-        RuntimeError, as ``Recorder.close``."""
+        """Stops watching and returns the files.
+
+        Raises RecordError for files that could not be written, and RuntimeError as
+        ``Recorder.close``.
+        """
         self.files += self._held.close()  # none when it was closed before
         return self.files
 
@@ -184,30 +190,30 @@ class LostWorldDumps(InMemory):
 
 
 class Difference(NamedTuple):
-    """Where a replay first did something else."""
+    """The first difference between a replay and its recording."""
 
-    world: int  # as the recording calls it
-    step: int  # since the recording began
-    body: int  # of the scene; -1: no field differs, but hash or status does
+    world: int  # index in the recording
+    step: int  # since the start of the recording
+    body: int  # index in the scene; -1: hash or status differs, but no field
     what: str  # "position.x is 1.5, recorded 1.25"
 
 
 @dataclass(frozen=True)
 class ReplayResult:
-    """What came of simulating a recording again."""
+    """Result of a replay."""
 
     worlds: int
     samples: int
     steps: int
-    compared: int  # hashes, each with its status and fields
-    different: int  # of them
-    difference: Optional[Difference]  # the first
-    lost_worlds: int  # at the end
+    compared: int  # number of compared hashes, each with status and fields
+    different: int  # number of different ones
+    difference: Optional[Difference]  # the first one
+    lost_worlds: int  # number at the end
     kernel_table: str
 
     @property
     def same(self) -> bool:
-        """Whether every bit was as recorded."""
+        """Whether every bit equals the recording."""
         return self.different == 0
 
 
@@ -215,10 +221,10 @@ pickling.register(ReplayResult)
 
 
 class Recording(InMemory):
-    """A recording that was opened and checked: every size, index, type and text in it.
+    """An open recording. Every size, index, type and text in it has been checked.
 
-    Raises RecordError, a ValueError, for what is no recording, cut, corrupted or inconsistent. It can
-    be closed, also by ``with``.
+    Raises RecordError, a ValueError, for other files and for truncated, corrupt or inconsistent
+    ones. It is a context manager, which closes it.
     """
 
     _instead = "pickle the path of its file"
@@ -229,37 +235,37 @@ class Recording(InMemory):
 
     @property
     def kinds(self) -> int:
-        """Of worlds; those of a kind have one scene. Batches made in Python have one kind."""
+        """Number of groups of worlds; each has one scene. Batches created in Python have one."""
         return self._held.kinds
 
     @property
     def worlds(self) -> NDArray[np.int64]:
-        """What the recorded worlds were called in their batch, (worlds,), one kind after the other."""
+        """Indices of the recorded worlds in their batch, (worlds,), group by group."""
         return self._held.worlds
 
     @property
     def steps(self) -> NDArray[np.int64]:
-        """Since the recording began, at each sample, (samples,)."""
+        """Steps since the start of the recording, at each sample, (samples,)."""
         return self._held.steps
 
     @property
     def hashes(self) -> NDArray[np.uint64]:
-        """(samples, worlds); see Batch.hash."""
+        """State hashes, (samples, worlds); see Batch.hash."""
         return self._held.hashes
 
     @property
     def status(self) -> NDArray[np.uint32]:
-        """(samples, worlds): bits of Status."""
+        """Bits of Status, (samples, worlds)."""
         return self._held.status
 
     @property
     def inputs(self) -> int:
-        """How many there were."""
+        """Number of recorded inputs."""
         return self._held.inputs
 
     @property
     def precision(self) -> str:
-        """Of the recorded state: "f32" or "f64"."""
+        """Precision of the recorded state: "f32" or "f64"."""
         return self._held.precision
 
     @property
@@ -269,22 +275,25 @@ class Recording(InMemory):
 
     @property
     def finished(self) -> bool:
-        """Whether its Recorder was closed; False for one of unfinished_recordings."""
+        """Whether its Recorder was closed. False for a file of unfinished_recordings."""
         return self._held.finished
 
     @property
     def origin(self) -> str:
-        """By which program, instruction set, threads and seed it was made; for people."""
+        """Program, instruction set, threads and seed of the recorded run, as information."""
         return self._held.origin
 
     def scene(self, kind: int = 0) -> Scene:
-        """A copy of the scene of a kind, with all its options."""
+        """A copy of the scene of a group of worlds, with all options."""
         scene: Scene = self._held.scene(arrays.index(kind, self.kinds, "kind"))  # type: ignore[assignment]
         return scene
 
     def get(self, field: Field, sample: Optional[int] = None, kind: int = 0) -> NDArray[Any]:
-        """A state field of a kind's worlds at every sample, (samples, worlds, items, components), or
-        at one, (worlds, items, components); float32 or float64, as the batch had it."""
+        """A state field of a group's worlds, in the precision of the batch: float32 or float64.
+
+        At every sample (samples, worlds, items, components), or at one sample (worlds, items,
+        components).
+        """
         kind = arrays.index(kind, self.kinds, "kind")
         count = self._held.samples
         first = 0 if sample is None else arrays.index(sample, count, "sample")
@@ -295,12 +304,15 @@ class Recording(InMemory):
 
     @property
     def has_contacts(self) -> bool:
-        """Whether it was recorded with ``contacts``."""
+        """Whether contacts were recorded."""
         return self._held.has_contacts
 
     def contacts(self, sample: int, world: int) -> NDArray[Any]:
-        """Contact points that bore a force in the last step before a sample, structured, (contacts,) of
-        RECORDED_CONTACT. ``world`` counts those of ``worlds``. Empty where none were recorded."""
+        """Contact points with a force in the last step before a sample, (contacts,) of
+        RECORDED_CONTACT.
+
+        ``world`` is an index of ``worlds``. Empty if none were recorded.
+        """
         sample = arrays.index(sample, self._held.samples, "sample")
         bodies, numbers, _ = self._held.contacts(sample, arrays.index(world, len(self.worlds), "world"))
         out = np.empty(len(bodies), RECORDED_CONTACT)
@@ -309,7 +321,7 @@ class Recording(InMemory):
         return out
 
     def contacts_found(self, sample: int, world: int) -> int:
-        """How many there were, of which ``Recorder``'s ``contacts`` were kept."""
+        """Number of contacts before ``Recorder``'s maximum was applied."""
         sample = arrays.index(sample, self._held.samples, "sample")
         return int(self._held.contacts(sample, arrays.index(world, len(self.worlds), "world"))[2])
 
@@ -319,8 +331,10 @@ class Recording(InMemory):
         threads: Optional[int] = None,
         layout: ContactLayout = "automatic",
     ) -> ReplayResult:
-        """Simulates it again from its first state and its inputs, without the GIL, and compares hash,
-        status and fields at every sample, bit by bit."""
+        """Simulates the recording again from its first state and inputs, without the GIL.
+
+        Compares hash, status and fields at every sample, bit by bit.
+        """
         count = 0 if threads is None else arrays.integer(threads, "threads", 1, MAX_THREADS)
         found = self._held.replay(isa, count, layout)
         if found["difference"] is not None:
@@ -328,7 +342,7 @@ class Recording(InMemory):
         return ReplayResult(**found)
 
     def close(self) -> None:
-        """Lets go of the file; every later use raises ValueError. Twice is once."""
+        """Closes the file. Every later use raises ValueError. A second call has no effect."""
         self._held.close()
 
     def __enter__(self) -> Recording:
@@ -352,21 +366,21 @@ class Recording(InMemory):
 
 
 def unfinished_recordings(file: File) -> list[Path]:
-    """What processes that were cut off (kill -9, a power cut) had recorded of ``file``, by name.
+    """Recordings of ``file`` by processes that ended early (kill -9, a power cut), by name.
 
-    The files beside it, "run.h5.part-8c1f03ab5e6d7790", that have contents and no writer any
-    more. Each can be opened and replayed up to where it was last flushed (``Recorder``'s
-    ``flush_seconds``); nothing deletes them. Raises RecordError when ``file`` is no name of a file.
+    These are files in the same folder, "run.h5.part-8c1f03ab5e6d7790", with data and without a
+    running writer. Each can be opened and replayed up to its last flush (``flush_seconds`` of
+    Recorder). Nothing deletes them. Raises RecordError if ``file`` is not a file name.
     """
     return _record.unfinished_recordings(files.path(file, "file"))
 
 
 def scene_to_json(scene: Scene) -> str:
-    """Everything of a scene as JSON, every number exactly."""
+    """A scene as JSON text, with exact numbers."""
     return _record.scene_to_json(scene)
 
 
 def scene_from_json(text: str) -> Scene:
-    """The scene of such a text. Raises RecordError with everything that is missing, unknown or wrong."""
+    """The scene of a JSON text. RecordError lists all missing, unknown and wrong members."""
     scene: Scene = _record.scene_from_json(text)  # type: ignore[assignment]
     return scene

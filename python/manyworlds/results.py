@@ -1,4 +1,4 @@
-"""What came out: the part of Batch about status, hashes, energy, contacts and snapshots."""
+"""Results of Batch: status, hashes, energy, contacts and snapshots."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .names import Ids
 
 
 class Status(IntFlag):
-    """Why a world is lost, or what went wrong in it: a set of bits."""
+    """Faults of a world: a set of bits."""
 
     ok = 0
     non_finite = 1  # frozen: a number was not finite
@@ -26,7 +26,7 @@ class Status(IntFlag):
 
     @classmethod
     def lost(cls) -> Status:
-        """The bits of worlds that are lost."""
+        """The bits that mark a world as lost."""
         return cls.non_finite | cls.out_of_range | cls.out_of_bounds
 
 
@@ -80,13 +80,13 @@ class Results:
         return arrays.index(world, self._worlds, "world")
 
     def status(self, out: Optional[Writable] = None) -> NDArray[np.uint32]:
-        """Bits of Status of every world, (worlds,) uint32. They stay until the world is reset."""
+        """Bits of Status of every world, (worlds,) uint32. A reset of the world clears them."""
         out = arrays.output(out, (self._worlds,), ("worlds",), np.uint32)
         self._held.status(out)
         return out
 
     def status_names(self, world: int) -> list[str]:
-        """The names of a world's status bits; empty: all is well."""
+        """The names of a world's status bits. Empty: no fault."""
         bits = int(self.status()[self._world(world)])
         return [name for name, bit in Status.__members__.items() if bit & bits]
 
@@ -95,7 +95,7 @@ class Results:
         return (self.status() & np.uint32(Status.lost())) != 0
 
     def hash(self, world: Optional[int] = None) -> int:
-        """Hash of the state of a world, or of all: equal for equal bits."""
+        """Hash of the state of a world, or of all worlds. Equal bits have equal hashes."""
         return int(self._held.hash(None if world is None else self._world(world)))
 
     def hashes(self, out: Optional[Writable] = None) -> NDArray[np.uint64]:
@@ -105,7 +105,9 @@ class Results:
         return out
 
     def energy(self, out: Optional[Writable] = None) -> NDArray[np.float64]:
-        """Kinetic and potential energy, J, (worlds, 2) float64. The latter is 0 at the origin."""
+        """Kinetic and potential energy, J, (worlds, 2) float64. Potential energy is 0 at the
+        origin.
+        """
         out = arrays.output(out, (self._worlds, 2), ("worlds", ""), np.float64)
         self._held.energy(out)
         return out
@@ -113,25 +115,25 @@ class Results:
     def contacts(self, world: int) -> NDArray[Any]:
         """Contact points of a world at its current state, structured, (contacts,) of CONTACT.
 
-        Runs the collision stages once more: not for hot loops (see step_contacts).
+        Runs the collision stages again. In loops that run often, use step_contacts.
         """
         return _records(self._held.contacts(self._world(world)), CONTACT)
 
     def step_contacts(self, world: int) -> NDArray[Any]:
-        """Contact points of the last step with its impulses, structured, (contacts,) of STEP_CONTACT.
+        """Contact points of the last step with impulses, structured, (contacts,) of STEP_CONTACT.
 
-        Requires a batch made with observe=["contacts"]; ValueError otherwise.
+        Raises ValueError unless the batch was created with observe=["contacts"].
         """
         if "contacts" not in self._watched:
             raise ValueError("contacts are not observed; make the Batch with observe=['contacts']")
         return _records(self._held.step_contacts(self._world(world)), STEP_CONTACT)
 
     def measure_contacts(self) -> dict[str, float]:
-        """Contacts of all worlds in four numbers; slow, like contacts."""
+        """Four statistics of the contacts of all worlds. As slow as ``contacts``."""
         return self._held.measure_contacts()
 
     def look(self) -> None:
-        """Observes motion, joints, rays and points at the current state, without a step."""
+        """Updates observed motion, joints, rays and points at the current state, without a step."""
         if not self._watched:
             raise ValueError("nothing is observed; make the Batch with observe=[...] or rays=[...]")
         self._held.look()
@@ -139,7 +141,7 @@ class Results:
     # -- snapshots
 
     def save(self, ids: Optional[Ids] = None) -> _core.Snapshot:
-        """A Snapshot of all worlds with clock and episodes, or of those of ``ids``, in this order."""
+        """A Snapshot of all worlds with clock and episodes, or of the worlds ``ids`` in order."""
         return self._held.save(None if ids is None else arrays.worlds(ids, self._worlds))
 
     def restore(
@@ -148,11 +150,12 @@ class Results:
         source: Optional[Ids] = None,
         ids: Optional[Ids] = None,
     ) -> None:
-        """Worlds go on bit by bit as the saved ones did.
+        """Restores worlds from a snapshot. They continue bitwise equal to the saved worlds.
 
-        Without indices all of them, of a snapshot with as many worlds; else world ``source[i]`` of
-        the snapshot into world ``ids[i]`` of the batch (None: all of them; a single source goes into
-        every one of ids). Raises SnapshotError, and changes nothing, when plan or precision differ.
+        Without indices it restores all worlds from a snapshot with the same number of worlds.
+        Otherwise it copies world ``source[i]`` of the snapshot to world ``ids[i]`` of the batch
+        (None: all worlds). A single source is copied to all of ``ids``. Raises SnapshotError, and
+        changes nothing, if plan or precision differ.
         """
         if not isinstance(snapshot, _core.Snapshot):
             found = type(snapshot).__name__
@@ -164,5 +167,5 @@ class Results:
         self._held.restore(snapshot, pairs)
 
     def copy_world(self, source: int, target: int) -> None:
-        """World ``target`` goes on as world ``source`` does."""
+        """Copies the state of world ``source`` to world ``target``."""
         self._held.copy_world(self._world(source), self._world(target))

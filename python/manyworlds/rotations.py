@@ -1,4 +1,4 @@
-"""Checks of rotations that callers set: every setter of a state takes them from here."""
+"""Checks of rotations for all setters of states."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _SLACK = 1e-3  # of the length of an orientation
 def check(
     name: str, numbers: NDArray[Any], worlds: Optional[NDArray[Any]], quaternions: list[int]
 ) -> None:
-    """ValueError for what is no rotation among numbers (worlds, items, components) of a field.
+    """Raises ValueError for invalid rotations in values (worlds, items, components) of a field.
 
-    ``quaternions``: where they start among the items of ``generalized_position``.
+    ``quaternions``: first indices of quaternions among the items of ``generalized_position``.
     """
     if name == "orientation":
         length = np.linalg.norm(numbers.astype(np.float64), axis=2)
@@ -45,8 +45,11 @@ def check(
 
 
 def among_coordinates(plan: Plan, coordinates: int) -> list[int]:
-    """Where quaternions start among generalised coordinates: of ball joints, and of bodies without a
-    joint, whose seven coordinates are a position and a quaternion."""
+    """First indices of quaternions among generalised coordinates.
+
+    Ball joints have one. Bodies without a joint have seven coordinates, a position and a
+    quaternion.
+    """
     of_joints, out = set(), []
     for index, joint in enumerate(plan.scene.joints):
         if isinstance(joint.type, FixedJoint):

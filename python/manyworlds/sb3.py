@@ -1,8 +1,8 @@
-"""The tasks as vector environments of Stable-Baselines3 (``pip install "manyworlds-sim[sb3]"``):
+"""Tasks as vector environments of Stable-Baselines3 (``pip install "manyworlds-sim[sb3]"``):
 
-from manyworlds.sb3 import VecEnv
-from stable_baselines3 import PPO
-PPO("MlpPolicy", VecEnv("LunarLander", num_envs=256)).learn(2_000_000)
+    from manyworlds.sb3 import VecEnv
+    from stable_baselines3 import PPO
+    PPO("MlpPolicy", VecEnv("LunarLander", num_envs=256)).learn(2_000_000)
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ with needs("stable_baselines3", extra="sb3", what="manyworlds.sb3"):
 class VecEnv(_VecEnv):  # type: ignore[misc]
     """A task in ``num_envs`` worlds. Other arguments are those of ``manyworlds.gym.VectorEnv``.
 
-    As Stable-Baselines3 has it: worlds whose episode ends begin the next one in the same step,
-    ``infos[i]["terminal_observation"]`` is where world i ended, and ``"TimeLimit.truncated"``
-    whether it was broken off. Wrap it into VecMonitor for statistics of episodes.
+    As in Stable-Baselines3, the step that ends an episode also starts the next one.
+    ``infos[i]["terminal_observation"]`` is the last observation of world i.
+    ``"TimeLimit.truncated"`` is True if its episode was truncated. Wrap it in VecMonitor for
+    statistics of episodes.
     """
 
     def __init__(self, task: Union[Task, str], num_envs: int = 1, **arguments: Any) -> None:
@@ -41,8 +42,11 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
         super().__init__(num_envs, *spaces)
 
     def reset(self) -> np.ndarray:
-        """Begins an episode in every world, of the seeds that ``seed`` gave, else the next ones. Returns
-        observations (num_envs, observations) float32."""
+        """Starts an episode in every world: the first one of the seeds from ``seed``, else the
+        next.
+
+        Returns observations (num_envs, observations) float32.
+        """
         seeds = list(getattr(self, "_seeds", None) or [None] * self.num_envs)
         observations, _ = self.env.reset(seed=seeds)
         self._reset_seeds()
@@ -51,12 +55,15 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
         return observations
 
     def step_async(self, actions: np.ndarray) -> None:
-        """Keeps the actions, (num_envs,) or (num_envs, numbers), for ``step_wait``."""
+        """Stores the actions, (num_envs,) or (num_envs, numbers), for ``step_wait``."""
         self._actions = np.asarray(actions)
 
     def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
-        """The step. Returns (observations, rewards, ended, infos): float32, float32 and bool arrays, and
-        a dict for each world. RuntimeError without actions."""
+        """Steps. Returns (observations, rewards, ended, infos).
+
+        These are float32, float32 and bool arrays, and a dict for each world. Raises RuntimeError
+        without actions.
+        """
         if self._actions is None:
             raise RuntimeError("step_wait without step_async")
         actions, self._actions = self._actions, None
@@ -69,14 +76,14 @@ class VecEnv(_VecEnv):  # type: ignore[misc]
         return observations, rewards.astype(np.float32), ended, out
 
     def get_images(self) -> Sequence[Optional[np.ndarray]]:
-        """A frame of every world, (height, width, 3) uint8; none without a render_mode."""
+        """An image of every world, (height, width, 3) uint8; empty without a render_mode."""
         return self.env.render() or ()
 
     def close(self) -> None:
-        """Lets go of the worlds."""
+        """Frees the worlds."""
         self.env.close()
 
-    # Worlds are no objects of their own: what is asked of each is what all of them share.
+    # Worlds are not separate objects: they share all attributes.
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """An attribute of the VectorEnv, once for each of the worlds ``indices``."""

@@ -1,4 +1,4 @@
-"""Results of an Environment's task: values of expressions, and those that were not finite."""
+"""Results of an Environment's task: values of expressions, and non-finite results."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .terms import Value
 
 @dataclass(frozen=True, slots=True)
 class NonFinite:
-    """An observation, a reward or an end of a task that was not a finite number."""
+    """An observation, a reward or an end of a task that was not finite."""
 
     expression: str  # "observation 3 'lean'", as issues of the task name it
     world: int
-    step: int  # of the world's episode, from 1; 0: where it began
-    value: float  # infinite or nan; nan also for an end that compares what is not a number
+    step: int  # in the world's episode, from 1; 0: its start
+    value: float  # infinite or NaN; NaN also for an end that compares NaN
 
     def __str__(self) -> str:
         value = "nan" if math.isnan(self.value) else f"{self.value}"
@@ -29,14 +29,14 @@ class NonFinite:
 
 
 class WithResults:
-    """What an Environment has of the values of expressions."""
+    """Methods of Environment for values of expressions."""
 
     _worlds: int
     _held: _core.Environment
     _named_faults: int  # expressions that were warned of
 
     def _warn(self, stacklevel: int) -> None:
-        """Of the expressions that have not been warned of; `stacklevel` as if this were ``warnings.warn``."""
+        """Warns of expressions without an earlier warning; `stacklevel` as in ``warnings.warn``."""
         faults = self.non_finite()
         new, self._named_faults = faults[self._named_faults :], len(faults)
         for fault in new:
@@ -48,15 +48,16 @@ class WithResults:
             )
 
     def non_finite(self) -> list[NonFinite]:
-        """The first fault of each expression since the environment was made, in the order found."""
+        """The first fault of each expression since the environment was created, in order."""
         return [NonFinite(*fault) for fault in self._held.non_finite()]
 
     def evaluate(self, expression: Value) -> NDArray[np.float64]:
-        """The value of an expression in every world, (worlds,) float64; changes nothing.
+        """The value of an expression in every world, (worlds,) float64. Changes nothing.
 
-        It is what an info of the task would have been after the last step or reset, but of the state that
-        worlds have now. Raises ValueError for what does not exist in the task's scene, and for what the
-        task does not observe or remember: ``Task.tell`` makes it do so.
+        The expression is evaluated as an info after the last step or reset, but at the current
+        state. Raises ValueError for items that the task's scene does not have. Also raises
+        ValueError for values that the task does not observe or remember; add them with
+        ``Task.tell``.
         """
         out = np.empty(self._worlds)
         self._held.evaluate(expression, out)

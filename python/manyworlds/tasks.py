@@ -1,4 +1,4 @@
-"""Tasks: what a policy has to do in a scene, as values; and what their expressions are made of.
+"""Tasks: actions, observations, rewards and ends of episodes in a scene, as expressions.
 
     from manyworlds import Task, tasks
     task = Task(name="Balance", scene=scene, choices=2, max_steps=500)
@@ -8,8 +8,8 @@
     task.reward("alive", 1)
     task.terminated = abs(t.angle("pole")) > 0.2
 
-Expressions are worked out after every step in all worlds at once, in the precision of the
-environment. Truth is 1, and what is not 0; ``&``, ``|``, ``~`` are and, or, not.
+All worlds evaluate expressions after every step, in the precision of the environment. True is 1;
+every value except 0 counts as true. ``&``, ``|``, ``~`` are and, or, not.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ Value = Union[Expression, float]  # numbers are expressions
 
 
 def sin(a: Value) -> Expression:
-    """Sine of rad, of up to 1e5 rad."""
+    """Sine of an angle in rad, up to 1e5 rad."""
     return _x.sin(a)
 
 
 def cos(a: Value) -> Expression:
-    """Cosine of rad, of up to 1e5 rad."""
+    """Cosine of an angle in rad, up to 1e5 rad."""
     return _x.cos(a)
 
 
@@ -52,7 +52,7 @@ def exp(a: Value) -> Expression:
 
 
 def log(a: Value) -> Expression:
-    """Natural logarithm: minus infinity of 0, not a number below."""
+    """Natural logarithm: minus infinity at 0, NaN below."""
     return _x.log(a)
 
 
@@ -62,7 +62,7 @@ def tanh(a: Value) -> Expression:
 
 
 def arccos(a: Value) -> Expression:
-    """rad, 0 to pi; not a number beyond -1 to 1."""
+    """Arc cosine, rad, 0 to pi; NaN outside -1 to 1."""
     return _x.arccos(a)
 
 
@@ -72,25 +72,25 @@ def sign(a: Value) -> Expression:
 
 
 def mod(a: Value, b: Value) -> Expression:
-    """``a % b``: what is left beside whole multiples of ``b``, with the sign of ``b``."""
+    """``a % b``: the remainder, with the sign of ``b``."""
     return _x.mod(a, b)
 
 
 def power(a: Value, b: Value) -> Expression:
-    """``a ** b``, to 2 + |b ln a| units in the last place; of ``a`` below 0 where ``b`` is whole.
+    """``a ** b``, to 2 + |b ln a| units in the last place; for negative ``a``, ``b`` must be whole.
 
-    Of a number, whole powers up to 64 are exacter: ``a ** 3`` is a product.
+    If ``b`` is a whole number up to 64, products are used and are more accurate: ``a ** 3``.
     """
     return Expression(a) ** b
 
 
 def sqrt(a: Value) -> Expression:
-    """Square root; of what is below 0 not a number."""
+    """Square root; NaN for negative values."""
     return _x.sqrt(a)
 
 
 def floor(a: Value) -> Expression:
-    """The next whole number below."""
+    """The largest whole number that does not exceed ``a``."""
     return _x.floor(a)
 
 
@@ -100,17 +100,17 @@ def square(a: Value) -> Expression:
 
 
 def minimum(a: Value, b: Value) -> Expression:
-    """The smaller of two."""
+    """The smaller of two values."""
     return _x.minimum(a, b)
 
 
 def maximum(a: Value, b: Value) -> Expression:
-    """The larger of two."""
+    """The larger of two values."""
     return _x.maximum(a, b)
 
 
 def clip(a: Value, low: Value, high: Value) -> Expression:
-    """``a``, at least ``low`` and at most ``high``."""
+    """``a``, clamped to ``low`` and ``high``."""
     return _x.clip(a, low, high)
 
 
@@ -120,16 +120,16 @@ def where(condition: Value, yes: Value, no: Value) -> Expression:
 
 
 def arctan2(y: Value, x: Value) -> Expression:
-    """rad, -pi to pi; 0 for (0, 0)."""
+    """Angle of the vector (x, y), rad, -pi to pi; 0 for (0, 0)."""
     return _x.arctan2(y, x)
 
 
 @dataclass(slots=True)
 class Action:
-    """One number of a continuous action. Beyond its range it counts as the end of the range.
+    """A component of a continuous action. Values are clamped to its range.
 
-    Where it is not ``clamped`` it counts as given, in costs too; an infinite one then loses the world.
-    Controls of the scene are kept within their own ranges either way.
+    With ``clamped=False`` the unclamped value is used, in costs too; an infinite value then makes
+    the world lost. Controls of the scene always clamp to their own ranges.
     """
 
     name: str = ""
@@ -140,7 +140,7 @@ class Action:
 
 @dataclass(slots=True, eq=False)
 class Observation:
-    """An observation; its range is declared, the value is not clamped."""
+    """An observation. Its range is declared; the value is not clamped."""
 
     name: str = ""
     value: Value = 0.0
@@ -150,7 +150,7 @@ class Observation:
 
 @dataclass(slots=True, eq=False)
 class Reward:
-    """A part of the reward of a step; a task's reward is their sum."""
+    """A term of the reward. The reward of a step is the sum of all terms."""
 
     name: str = ""
     value: Value = 0.0
@@ -158,24 +158,24 @@ class Reward:
 
 @dataclass(slots=True, eq=False)
 class Info:
-    """What people are told beside, in double; of no account to the policy.
+    """A diagnostic value, in double precision. The policy does not see it.
 
-    Those named "a[0]", "a[1]" and so on are the array "a" in the infos of Gymnasium's classes.
+    Gymnasium's classes join infos with the names "a[0]", "a[1]" and so on into an array "a".
     """
 
     name: str = ""
     value: Value = 0.0
-    of_steps_alone: bool = False  # not told where an episode begins
+    of_steps_alone: bool = False  # not part of the infos at the start of an episode
 
 
 @dataclass(slots=True, eq=False)
 class Level:
-    """A number that every world keeps over its episodes: how hard its task is, how often it succeeded.
+    """A value of each world that persists over episodes, such as difficulty or number of successes.
 
-    It is the same through a whole episode (``Terms.level``). ``begin`` is its value in the first episode of a
-    seed, of numbers and random ones of the episode; 0 where that is not a number. ``next`` is its value in the
-    episode after this one, worked out at the end of the step that ends this one; None: it stays. It also
-    stays where that is not a number, and where a reset ends the episode.
+    It is constant within an episode (``Terms.level``). ``begin`` is its value in the first episode
+    of a seed. It may contain numbers and random numbers of the episode; NaN counts as 0. ``next``
+    is its value in the next episode, computed at the end of the last step of this one; None: no
+    change. The value also stays if ``next`` is NaN and if a reset ends the episode.
     """
 
     name: str = ""
@@ -185,13 +185,15 @@ class Level:
 
 @dataclass(slots=True, eq=False)
 class Memory:
-    """A number of every world that lasts for an episode (``Terms.memory``).
+    """A value of each world that lasts for an episode (``Terms.memory``).
 
-    ``begin``: its value where an episode begins, computed from the state there; of anything but memories.
-    ``next``: at the end of each step of the task, before anything else is computed, all memories become their
-    ``next`` at once: in ``next``, memories are what they were before the step. None: it stays. So
-    observations, rewards, ends and infos of a step see memories after their update; controls see them as
-    the last step left them.
+    ``begin``: its value at the start of an episode, computed from the state; it cannot contain
+    memories. ``next``: at the end of each step, before all other expressions, all memories change
+    to their ``next`` simultaneously. In ``next``, memories have their values before the step. None:
+    no change.
+
+    Observations, rewards, ends and infos of a step use the updated memories. Controls use the
+    values of the previous step.
     """
 
     name: str = ""
@@ -201,11 +203,11 @@ class Memory:
 
 @dataclass(slots=True, eq=False)
 class InitialParameter:
-    """What a number of the scene is where an episode begins by a reset, instead of one that is drawn.
+    """The value of a scene parameter at a reset, instead of a drawn one.
 
-    ``parameter``: ``Terms.parameter(...)``, which varies with the draw "none". ``value``: of numbers, random
-    ones of the episode, and levels; kept within the range that the variation declares. Where it is not a
-    number, the scene's own number counts.
+    ``parameter``: ``Terms.parameter(...)``, with the variation's draw "none". ``value``: an
+    expression of numbers, random numbers of the episode, and levels. It is clamped to the range of
+    the variation. If it is NaN, the scene's value is used.
     """
 
     parameter: Value = 0.0
@@ -214,7 +216,7 @@ class InitialParameter:
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Task:
-    """What a policy has to do in a scene: actions, observations, rewards, and when it ends."""
+    """A task in a scene: actions, observations, rewards and ends of episodes."""
 
     name: str = ""
     scene: Scene = field(default_factory=Scene)
@@ -222,16 +224,16 @@ class Task:
 
     choices: int = 0  # discrete tasks: the action is 0 to choices - 1, and `actions` is empty
     actions: list[Action] = field(default_factory=list)
-    # What each control of the scene is set to: of actions, numbers, random ones, parameters,
+    # Values of the scene's controls. They may contain actions, numbers, random numbers, parameters,
     # levels, memories, age() and previous(...).
     controls: list[Value] = field(default_factory=list)
 
     observations: list[Observation] = field(default_factory=list)
     rewards: list[Reward] = field(default_factory=list)
-    terminated: Value = 0.0  # the episode has come to its end
-    truncated: Value = 0.0  # it is broken off; so is a world that is lost
-    max_steps: int = 0  # broken off after so many; 0: never
-    solved_at: float = inf  # mean return; said to people only
+    terminated: Value = 0.0  # the episode ends
+    truncated: Value = 0.0  # the episode is truncated, as for a lost world
+    max_steps: int = 0  # truncation after this number of steps; 0: none
+    solved_at: float = inf  # mean return, as information
     infos: list[Info] = field(default_factory=list)
 
     levels: list[Level] = field(default_factory=list)
@@ -260,7 +262,7 @@ class Task:
     def act(
         self, name: str, low: float = -1.0, high: float = 1.0, clamped: bool = True
     ) -> Expression:
-        """Adds a number to the action (``Action``), and returns it as an expression."""
+        """Adds a component to the action (``Action``). Returns it as an expression."""
         self.actions.append(Action(name, low, high, clamped))
         return _x.action(len(self.actions) - 1)
 
@@ -269,14 +271,16 @@ class Task:
         self.observations.append(Observation(name, value, low, high))
 
     def reward(self, name: str, value: Value) -> None:
-        """Adds a part of the reward."""
+        """Adds a term of the reward."""
         self.rewards.append(Reward(name, value))
 
     def tell(
         self, name: str, value: Union[Value, Sequence[Value]], of_steps_alone: bool = False
     ) -> None:
-        """Adds an info; of several values one each, "name[0]" and so on, of which Gymnasium's classes
-        make one array."""
+        """Adds an info. Several values become one info each, "name[0]" and so on.
+
+        Gymnasium's classes join these into one array.
+        """
         if not isinstance(value, (list, tuple)):
             self.infos.append(Info(name, value, of_steps_alone))  # type: ignore[arg-type]
             return
@@ -284,9 +288,9 @@ class Task:
             self.infos.append(Info(f"{name}[{i}]", one, of_steps_alone))
 
     def level(self, name: str, begin: Value = 0.0, next: Optional[Value] = None) -> Expression:
-        """Adds a number that worlds keep over their episodes (``Level``), and returns it as an expression.
+        """Adds a value that persists over episodes (``Level``). Returns it as an expression.
 
-        ``next`` may be said later, of the expression that is returned: ``task.levels[-1].next = ...``.
+        ``next`` may use this expression if it is set later: ``task.levels[-1].next = ...``.
         """
         self.levels.append(Level(name, begin, next))
         return _x.level(name)
@@ -297,10 +301,10 @@ class Task:
         begin: Value = 0.0,
         next: Union[Value, Callable[[Expression], Value], None] = None,
     ) -> Expression:
-        """Adds a number that worlds remember from step to step (``Memory``), and returns it as an expression.
+        """Adds a value that worlds store between steps (``Memory``). Returns it as an expression.
 
-        ``next`` may be a function of that expression: ``task.memory("best", x, lambda best: maximum(best, x))``.
-        It may be said later, too: ``task.memories[-1].next = ...``.
+        ``next`` may be a function of this expression: ``task.memory("best", x, lambda best:
+        maximum(best, x))``. It may also be set later: ``task.memories[-1].next = ...``.
         """
         own = _x.memory(name)
         if callable(next) and not isinstance(next, Expression):
@@ -309,16 +313,16 @@ class Task:
         return own
 
     def initial_parameter(self, parameter: Expression, value: Value) -> None:
-        """Says what ``t.parameter(...)`` is where episodes begin (``InitialParameter``)."""
+        """Sets the value of ``t.parameter(...)`` at resets (``InitialParameter``)."""
         self.initial_parameters.append(InitialParameter(parameter, value))
 
     def validate(self) -> list[Issue]:
-        """Everything that is wrong with the task and its scene; empty: it can be run."""
+        """All errors of the task and its scene. Empty: the task can run."""
         return [Issue(*issue) for issue in _core.validate_task(self)]
 
 
 class TaskError(SceneError):
-    """A task that cannot be run; ``issues`` lists everything that is wrong with it."""
+    """A task with errors; ``issues`` lists all of them."""
 
     def __init__(self, issues: Sequence[Issue]) -> None:
         self.issues = list(issues)
@@ -330,17 +334,17 @@ class TaskError(SceneError):
 
 
 def names() -> list[str]:
-    """The tasks that ``load`` accepts."""
+    """The names that ``load`` accepts."""
     return [name for name, _ in _core.task_names()]
 
 
 def summaries() -> dict[str, str]:
-    """One line about each task, by its name."""
+    """A line about each task, by name."""
     return dict(_core.task_names())
 
 
 def load(name: str) -> Task:
-    """The task of that name, to take or to change. Raises ValueError with the nearest name."""
+    """A new copy of the task with this name. Raises ValueError with the nearest name if unknown."""
     if not isinstance(name, str):
         raise TypeError(f"the task's name is of type {type(name).__name__}; expected a str")
     task: Task = _core.load_task(name)

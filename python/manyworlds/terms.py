@@ -1,4 +1,4 @@
-"""Terms: what a world is at the end of a step, as expressions that tasks are made of."""
+"""Terms: expressions for the state of a world at the end of a step, for tasks."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ _HANDLES = {
 
 
 class Terms:
-    """What a world is at the end of a step, as expressions.
+    """Expressions for the state of a world at the end of a step.
 
-    Bodies, joints, controls, tendons and sites by handle, index or, of a scene that is given, by name. What
-    does not exist raises ValueError here when it is a name, and is an issue of the task when it is an index.
+    Arguments select bodies, joints, controls, tendons and sites by handle, index, or, if a scene is
+    set, by name. An unknown name raises ValueError here. An unknown index is an issue of the task.
     """
 
     def __init__(self, scene: Optional[Scene] = None) -> None:
@@ -66,19 +66,19 @@ class Terms:
         return "xyz".index(axis)
 
     def position(self, body: BodyRef, axis: Axis) -> Expression:
-        """m, of the body frame."""
+        """Position of the body frame, m."""
         return _x.position(self._index("body", body), self._axis(axis))
 
     def velocity(self, body: BodyRef, axis: Axis) -> Expression:
-        """m/s, of the centre of mass."""
+        """Velocity of the centre of mass, m/s."""
         return _x.velocity(self._index("body", body), self._axis(axis))
 
     def angular_velocity(self, body: BodyRef, axis: Axis = 2) -> Expression:
-        """rad/s; in the plane about axis 2."""
+        """Angular velocity, rad/s; in the plane about axis 2."""
         return _x.angular_velocity(self._index("body", body), self._axis(axis))
 
     def angle(self, body: BodyRef) -> Expression:
-        """rad, -pi to pi, in the plane."""
+        """Angle of a planar body, rad, -pi to pi."""
         return _x.angle(self._index("body", body))
 
     def direction(self, body: BodyRef, of: Axis, axis: Axis) -> Expression:
@@ -86,46 +86,48 @@ class Terms:
         return _x.direction(self._index("body", body), self._axis(of), self._axis(axis))
 
     def joint_position(self, joint: JointRef, coordinate: int = 0) -> Expression:
-        """m or rad, from where the joint began."""
+        """Joint coordinate relative to its initial value, m or rad."""
         return _x.observed("joint_position", self._index("joint", joint), coordinate)
 
     def joint_speed(self, joint: JointRef, coordinate: int = 0) -> Expression:
-        """m/s or rad/s."""
+        """Velocity of a joint coordinate, m/s or rad/s."""
         return _x.observed("joint_speed", self._index("joint", joint), coordinate)
 
     def touching(self, body: BodyRef) -> Expression:
-        """1 where a contact acted on the body in the last step; 0 where a world begins."""
+        """1 if a contact acted on the body in the last step; 0 at the start of an episode."""
         return _x.observed("touching", self._index("body", body), 0)
 
     def linear_acceleration(self, body: BodyRef, axis: Axis) -> Expression:
-        """m/s^2, of the centre of mass in the last physics step, impacts included; world."""
+        """Acceleration of the centre of mass in the last physics step, m/s^2; with impacts."""
         return _x.observed("linear_acceleration", self._index("body", body), self._axis(axis))
 
     def angular_acceleration(self, body: BodyRef, axis: Axis = 2) -> Expression:
-        """rad/s^2, in the last physics step; in the plane about axis 2."""
+        """Angular acceleration in the last physics step, rad/s^2; in the plane about axis 2."""
         return _x.observed("angular_acceleration", self._index("body", body), self._axis(axis))
 
     def proper_acceleration(self, body: BodyRef, axis: Axis) -> Expression:
-        """m/s^2, what an accelerometer at the centre of mass reads; body axes, g upwards at rest."""
+        """Accelerometer reading at the centre of mass, m/s^2, body axes; g upwards at rest."""
         return _x.observed("proper_acceleration", self._index("body", body), self._axis(axis))
 
     def point_position(self, point: int, axis: Axis) -> Expression:
-        """m, of Task.points; world."""
+        """Position of a point of Task.points, m, world frame."""
         return _x.observed("point_position", point, self._axis(axis))
 
     def point_velocity(self, point: int, axis: Axis) -> Expression:
-        """m/s, of Task.points; world."""
+        """Velocity of a point of Task.points, m/s, world frame."""
         return _x.observed("point_velocity", point, self._axis(axis))
 
     def ray_distance(self, ray: int) -> Expression:
-        """m, of Task.rays."""
+        """Distance to the hit of a ray of Task.rays, m."""
         return _x.observed("ray_distance", ray, 0)
 
     def observed(self, what: Observed, item: Any = 0, component: Axis = 0) -> Expression:
-        """A component of an observed field, by its name (``Batch.fields``): whatever has no term.
+        """A component of an observed field by its name (``Batch.fields``), for values without a
+        term.
 
-        ``item``: a body, joint, tendon or site by handle, index or name, the index of a ray, point
-        or dof, 0 for the world; of coordinates the joint, and ``component`` counts its coordinates.
+        ``item``: a body, joint, tendon or site by handle, index or name; the index of a ray, point
+        or dof; 0 for the world. For coordinates it is the joint, and ``component`` counts the
+        joint's coordinates.
         """
         kind = _core.item_of(what)
         kind = "joint" if kind == "coordinate" else kind
@@ -133,143 +135,166 @@ class Terms:
         return _x.observed(what, index, self._axis(component))
 
     def joint_force(self, joint: JointRef, axis: Axis) -> Expression:
-        """N, of the joint on body B in the last substep, world axes; of every solver."""
+        """Force of the joint on body B in the last substep, N, world axes. All solvers."""
         return _x.observed("joint_force", self._index("joint", joint), self._axis(axis))
 
     def joint_torque(self, joint: JointRef, axis: Axis = 2) -> Expression:
-        """N m, of the joint on body B about its anchor in the last substep; in the plane about axis 2."""
+        """Torque of the joint on body B about its anchor in the last substep, N m. All solvers.
+
+        In the plane about axis 2.
+        """
         return _x.observed("joint_torque", self._index("joint", joint), self._axis(axis))
 
     def drive_force(self, joint: JointRef, coordinate: int = 0) -> Expression:
-        """N or N m along a coordinate in the last substep: of the joint's drive or spring, with the
-        solver newton of its actuators. 0 where it has none."""
+        """Force of the joint's drive or spring along a coordinate in the last substep, N or N m.
+
+        With the newton solver: force of the joint's actuators. 0 for joints without one.
+        """
         return _x.observed("drive_force", self._index("joint", joint), coordinate)
 
-    # Terms of links and dofs are those of the solver newton. Of other solvers there are link_position,
-    # link_center, external_force and external_torque; a task with another one has an issue, which
-    # names the term to use instead.
+    # Terms of links and dofs require the newton solver. Only link_position, link_center,
+    # external_force and external_torque work with other solvers. For the rest a task has an issue,
+    # which names the term to use instead.
 
     def generalized_position(self, coordinate: int) -> Expression:
-        """m, rad or a number of a quaternion, of the solver newton: MuJoCo's qpos."""
+        """m, rad or a component of a quaternion. newton solver only; MuJoCo's qpos."""
         return _x.generalized_position(coordinate)
 
     def generalized_velocity(self, dof: int) -> Expression:
-        """m/s or rad/s, of the solver newton: MuJoCo's qvel."""
+        """m/s or rad/s. newton solver only; MuJoCo's qvel."""
         return _x.generalized_velocity(dof)
 
     def link_position(self, body: BodyRef, axis: Axis) -> Expression:
-        """m, of the body frame: MuJoCo's xpos after a step, where the last forces were found; of other
-        solvers than newton where the state has it."""
+        """Position of the body frame, m: MuJoCo's xpos after a step.
+
+        With the newton solver it is the position at the last evaluation of forces, with other
+        solvers the position of the state.
+        """
         return self._link("link_position", body, axis)
 
     def link_center(self, body: BodyRef, axis: Axis) -> Expression:
-        """m, of the centre of mass there: xipos."""
+        """Position of the centre of mass at the same instant as ``link_position``, m: xipos."""
         return self._link("link_center", body, axis)
 
     def link_inertia(self, body: BodyRef, axis: Axis) -> Expression:
-        """kg m^2, xx, yy or zz about the mass centre of the body's tree, world axes: of cinert."""
+        """Inertia xx, yy or zz about the mass centre of the body's tree, kg m^2, world axes:
+        cinert.
+        """
         return self._link("link_inertia", body, axis)
 
     def link_product(self, body: BodyRef, index: int) -> Expression:
-        """kg m^2, xy, xz or yz of the same."""
+        """Product of inertia xy, xz or yz about the same point, kg m^2: cinert."""
         return self._link("link_product", body, index)
 
     def link_moment(self, body: BodyRef, axis: Axis) -> Expression:
-        """kg m, its mass times the way from its tree's mass centre to its own: of cinert."""
+        """Mass times the vector from its tree's mass centre to its own, kg m: cinert."""
         return self._link("link_moment", body, axis)
 
     def link_mass(self, body: BodyRef) -> Expression:
-        """kg."""
+        """Mass of the body, kg."""
         return self._link("link_mass", body, 0)
 
     def link_angular_velocity(self, body: BodyRef, axis: Axis) -> Expression:
-        """rad/s, world axes, where the last forces were found: of cvel."""
+        """rad/s, world axes, at the last evaluation of forces: cvel."""
         return self._link("link_angular_velocity", body, axis)
 
     def link_velocity(self, body: BodyRef, axis: Axis) -> Expression:
-        """m/s, of the body where the mass centre of its tree is: of cvel."""
+        """Velocity of the body at the mass centre of its tree, m/s: cvel."""
         return self._link("link_velocity", body, axis)
 
     def external_torque(self, body: BodyRef, axis: Axis) -> Expression:
-        """N m, of contacts and inputs about the mass centre of the body's tree: of cfrc_ext. Of other
-        solvers than newton about the body's own mass centre, the mean over the last physics step."""
+        """Torque of contacts and inputs about the mass centre of the body's tree, N m: cfrc_ext.
+
+        With other solvers than newton: about the body's own mass centre, mean over the last physics
+        step.
+        """
         return self._link("external_torque", body, axis)
 
     def external_force(self, body: BodyRef, axis: Axis) -> Expression:
-        """N, of contacts and inputs: of cfrc_ext. Of other solvers than newton the mean over the last
-        physics step."""
+        """Force of contacts and inputs, N: cfrc_ext.
+
+        With other solvers than newton: mean over the last physics step.
+        """
         return self._link("external_force", body, axis)
 
     def _link(self, what: str, body: BodyRef, axis: Axis) -> Expression:
         return _x.observed(what, self._index("body", body), self._axis(axis))
 
     def actuator_force(self, dof: int) -> Expression:
-        """N or N m, of all actuators: qfrc_actuator."""
+        """Force of all actuators along a dof, N or N m: qfrc_actuator."""
         return _x.observed("actuator_force", dof, 0)
 
     def constraint_force(self, dof: int) -> Expression:
-        """N or N m, of limits and contacts: qfrc_constraint."""
+        """Force of limits and contacts along a dof, N or N m: qfrc_constraint."""
         return _x.observed("constraint_force", dof, 0)
 
     def tendon_length(self, tendon: TendonRef) -> Expression:
-        """m or rad, as its terms are, where the last forces were found: ten_length."""
+        """Length of a tendon at the last evaluation of forces, m or rad: ten_length."""
         return _x.observed("tendon_length", self._index("tendon", tendon), 0)
 
     def tendon_velocity(self, tendon: TendonRef) -> Expression:
-        """m/s or rad/s, there: ten_velocity."""
+        """Velocity of a tendon at the last evaluation of forces, m/s or rad/s: ten_velocity."""
         return _x.observed("tendon_velocity", self._index("tendon", tendon), 0)
 
     def site_position(self, site: SiteRef, axis: Axis) -> Expression:
-        """m, world, there: site_xpos. Of other solvers than newton where the state has it."""
+        """Position of a site, m, world frame: site_xpos.
+
+        With the newton solver it is the position at the last evaluation of forces, with other
+        solvers the position of the state.
+        """
         return _x.observed("site_position", self._index("site", site), self._axis(axis))
 
     def action(self, index: int = 0) -> Expression:
-        """The action that led here; of discrete tasks its number. 0 at the beginning."""
+        """The last action; for discrete tasks its number. 0 at the start of an episode."""
         return _x.action(index)
 
     def control(self, control: ControlRef) -> Expression:
-        """The control of the scene that led here."""
+        """The last value of a control of the scene."""
         return _x.control(self._index("control", control))
 
     def age(self) -> Expression:
-        """Steps of the task since the episode began, including this one.
+        """Number of task steps since the start of the episode, including this one.
 
-        In ``Task.controls`` the step to take counts: 1 in the first step. ``age() * time_step()`` is in s.
+        In ``Task.controls`` the next step counts: 1 in the first step. ``age() * time_step()`` is
+        in s.
         """
         return _x.age()
 
     def time_step(self) -> Expression:
-        """s, of one step of the task: ``frame_skip`` steps of the scene."""
+        """Duration of one step of the task, s: ``frame_skip`` steps of the scene."""
         return _x.time_step()
 
     def lost(self) -> Expression:
-        """Whether the world is lost (``Status.lost()``)."""
+        """1 if the world is lost (``Status.lost()``)."""
         return _x.lost()
 
     def uniform(
         self, name: str, low: Value = 0.0, high: Value = 1.0, *, every: Every = "step"
     ) -> Expression:
-        """A random number from ``low`` to ``high``, of every "step" of the task or "episode".
+        """A random number from ``low`` to ``high``, drawn for every "step" of the task or
+        "episode".
 
-        It depends on its name, the world's seed and episode and, of every step, ``age()`` alone; in
-        ``Task.controls`` on that of the step to take. So one name is one number wherever it stands.
+        It depends only on its name, the seed and episode of the world and, for every step, on
+        ``age()``. In ``Task.controls`` the age is that of the next step. Terms with equal names are
+        equal.
         """
         return _x.uniform(name, every, low, high)
 
     def normal(
         self, name: str, mean: Value = 0.0, deviation: Value = 1.0, *, every: Every = "step"
     ) -> Expression:
-        """A normal random number, drawn as those of ``uniform``."""
+        """A normal random number, drawn as in ``uniform``."""
         return _x.normal(name, every, mean, deviation)
 
     def level(self, name: str) -> Expression:
-        """A number of this world that outlives its episodes (``Task.levels``), by its name."""
+        """A value of this world that persists over episodes (``Task.levels``), by name."""
         return _x.level(name)
 
     def memory(self, name: str) -> Expression:
-        """A number of this world that the task remembers from step to step (``Task.memories``), by name.
+        """A value of this world that the task stores between steps (``Task.memories``), by name.
 
-        In ``Task.controls`` it is as the last step left it, elsewhere as this step leaves it.
+        In ``Task.controls`` it is the value after the last step, elsewhere the value after this
+        step.
         """
         return _x.memory(name)
 
@@ -284,10 +309,11 @@ class Terms:
         control: Optional[ControlRef] = None,
         attractor: Optional[int] = None,
     ) -> Expression:
-        """A number of the scene as this world has it (``Scene.variations``), of what has it.
+        """The value of a scene parameter in this world (``Scene.variations``).
 
-        A shape that is an int is one of ``body``, an attractor one of ``Scene.attractors``. ``component`` counts within the parameter's numbers.
-        Raises ValueError where it is no number of what is given.
+        The arguments select its owner. An int ``shape`` is a shape of ``body``; an attractor is an
+        index of ``Scene.attractors``. ``component`` is an index into the parameter's values. Raises
+        ValueError if the owner does not have this parameter.
         """
         if shape is not None:
             return _x.parameter(parameter, "shape", *self._shape(shape, body), component)

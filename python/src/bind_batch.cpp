@@ -93,7 +93,7 @@ void bind_batch(nb::module_& m) {
         nb::arg("precision"), nb::arg("isa").none(), nb::arg("layout"), nb::arg("sleep"),
         nb::arg("observe"), nb::arg("rays"), nb::arg("points"), nb::arg("contacts_per_world"),
         nb::arg("audit_every"))
-      .def("close", &HeldBatch::close, "Lets go of the worlds; what follows raises ValueError.")
+      .def("close", &HeldBatch::close, "Frees the worlds. Later calls raise ValueError.")
       .def_prop_ro("closed", &HeldBatch::closed)
       .def_prop_ro("worlds", property<&Batch::worlds>())
       .def_prop_ro("threads", property<&Batch::threads>())
@@ -106,7 +106,7 @@ void bind_batch(nb::module_& m) {
               for (int w = 0; w < b.worlds(); ++w) out.data()[w] = b.seed_of(w);
             });
           },
-          nb::arg("out").noconvert(), "Fills the seeds that worlds draw from, (worlds).")
+          nb::arg("out").noconvert(), "Fills the seeds of worlds, (worlds).")
       .def_prop_ro("lanes", property<&Batch::lanes>())
       .def_prop_ro("kernel_table", property<&Batch::kernel_table>())
       .def_prop_ro("bytes_per_world", property<&Batch::bytes_per_world>())
@@ -123,12 +123,11 @@ void bind_batch(nb::module_& m) {
            "Takes n steps, of all worlds or of those in the mask, without the GIL; a signal ends "
            "it.")
       .def("step_to", &step_to, nb::arg("clock"), nb::arg("max_steps"),
-           "Takes whole steps up to a time in s, without the GIL, and returns how many.")
-      .def(
-          "reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(),
-          nb::arg("keyframe").none(),
-          "All worlds from the first episode, or those in the mask: the next episode, or the first "
-          "of other seeds. To a keyframe, without seeds.");
+           "Takes whole steps up to a time in s, without the GIL. Returns their number.")
+      .def("reset", &reset, nb::arg("mask").none(), nb::arg("seeds").none(),
+           nb::arg("keyframe").none(),
+           "Starts all worlds at their first episode, or worlds of the mask at their next episode. "
+           "With seeds, at the first episode of other seeds. With a keyframe, without seeds.");
   bind_batch_state(c);
   bind_batch_inputs(c);
   bind_batch_results(c);

@@ -147,7 +147,7 @@ void bind_batch_inputs(nb::class_<HeldBatch>& c) {
         nb::arg("values").noconvert(), nb::arg("points").none(),
         "Adds forces, torques or impulses, (worlds, bodies, 3); rows of zeros do nothing.")
       .def("spawn", &spawn, ids, nb::arg("body"), nb::arg("states").noconvert(),
-           "Enables a body with a state of 13 numbers in each of the worlds.")
+           "Enables a body with a state of 13 values in each of the worlds.")
       .def("set_enabled", &set_flags<BodyId, &Batch::set_enabled>, ids,
            nb::arg("bodies").noconvert(), nb::arg("values").noconvert(),
            "Enables and disables bodies, (worlds, bodies).")
@@ -157,12 +157,12 @@ void bind_batch_inputs(nb::class_<HeldBatch>& c) {
            nb::arg("joints").noconvert(), nb::arg("values").noconvert(),
            "Enables and disables joints, (worlds, joints).")
       .def("joints_enabled", &get_flags<JointId, &Batch::joint_enabled>, nb::arg("out").noconvert(),
-           kind, "Fills which joints hold, (worlds, joints).")
+           kind, "Fills which joints are enabled, (worlds, joints).")
       .def("asleep", &get_flags<BodyId, static_cast<Getter<BodyId>>(&Batch::asleep)>,
-           nb::arg("out").noconvert(), kind, "Fills which bodies sleep, (worlds, bodies).")
-      .def("wake", &wake, ids, "Wakes everything in these worlds.")
+           nb::arg("out").noconvert(), kind, "Fills which bodies are asleep, (worlds, bodies).")
+      .def("wake", &wake, ids, "Wakes all bodies of these worlds.")
       .def("set_rays", &set_rays, nb::arg("rays"), nb::arg("world").none(),
-           "Other rays, in one world or in all.");
+           "Replaces the rays, in one world or in all.");
 }
 
 }  // namespace manyworlds::python

@@ -116,19 +116,19 @@ void bind_batch_results(nb::class_<HeldBatch>& c) {
           [](HeldBatch& s, std::optional<int> world) {
             return s.run([world](Batch& b) { return world ? b.hash(*world) : b.hash(); });
           },
-          nb::arg("world").none(), "Of a world, or of all.")
+          nb::arg("world").none(), "Hash of a world, or of all.")
       .def("energy", &energy, nb::arg("out").noconvert(),
            "Fills kinetic and potential energy, (worlds, 2).")
-      .def("contacts", &contacts, nb::arg("world"), "Columns of the contacts at this state.")
+      .def("contacts", &contacts, nb::arg("world"), "Columns of the contacts at the current state.")
       .def("step_contacts", &step_contacts, nb::arg("world"),
            "Columns of the last step's contacts.")
-      .def("measure_contacts", &measure_contacts, "Contacts of all worlds in four numbers.")
+      .def("measure_contacts", &measure_contacts, "Four statistics of the contacts of all worlds.")
       .def(
           "look", [](HeldBatch& s) { s.run([](Batch& b) { b.look(); }); },
-          "Observes motion, joints and rays at this state.")
+          "Updates observed motion, joints and rays.")
       .def("save", &save, nb::arg("worlds").none(), "A Snapshot of all or of some worlds.")
       .def("restore", &restore, nb::arg("snapshot"), nb::arg("pairs").none(),
-           "All worlds, or pairs (world of the snapshot, world of the batch).")
+           "Restores all worlds, or pairs (world of the snapshot, world of the batch).")
       .def(
           "copy_world",
           [](HeldBatch& s, int from, int to) { s.run([=](Batch& b) { b.copy_world(from, to); }); },

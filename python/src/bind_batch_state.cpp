@@ -211,12 +211,12 @@ void bind_batch_state(nb::class_<HeldBatch>& c) {
   c.def("quantities", &list_quantities, of_kind,
         "(name, group, observer, item, items, components, unit, meaning) of every field.")
       .def("read", &read, nb::arg("name"), nb::arg("out").noconvert(), nb::arg("worlds").none(),
-           of_kind, "Fills an array (worlds, items, components), or that of some worlds.")
+           of_kind, "Fills an array (worlds, items, components), of all or some worlds.")
       .def("write", &write, nb::arg("name"), nb::arg("numbers").noconvert(),
            nb::arg("worlds").none(), of_kind,
-           "Takes an array (worlds, items, components), or those of some worlds in float64.")
+           "Sets an array (worlds, items, components), or float64 values of some worlds.")
       .def("blocks", &blocks, nb::arg("name"), of_kind,
-           "A state field in place, (groups, items, components, lanes); None: left out.")
+           "Memory of a state field, (groups, items, components, lanes); None if omitted.")
       .def("lane_indices", &lane_indices, nb::arg("out").noconvert(), of_kind,
            "Fills lane indices, (worlds).")
       .def(
@@ -224,12 +224,12 @@ void bind_batch_state(nb::class_<HeldBatch>& c) {
           [](HeldBatch& s, int kind) {
             return s.with([&](Batch& b) { return controls_of(b, s.range(kind)); });
           },
-          of_kind, "Of a world.")
+          of_kind, "Number of controls of a world.")
       .def("read_controls", &read_controls, nb::arg("out").noconvert(), of_kind,
            "Fills an array (worlds, controls).")
       .def("write_controls", &write_controls, nb::arg("numbers").noconvert(),
            nb::arg("worlds").none(), of_kind,
-           "Takes an array (worlds, controls), or that of some worlds.");
+           "Sets an array (worlds, controls), of all or some worlds.");
 }
 
 }  // namespace manyworlds::python

@@ -131,13 +131,12 @@ void def_steps(nb::class_<HeldEnvironment>& c) {
           out("final_infos"), out("lost"), text);
   };
   const char* const text =
-      "One step of the task in every world, without the GIL, into arrays; None: not wanted. "
-      "Returns "
-      "how many expressions have not been finite so far.";
+      "Takes one step of the task in all worlds, without the GIL. Fills the arrays that are not "
+      "None. Returns the number of expressions with non-finite values so far.";
   const auto actions = nb::arg("actions").noconvert();
   def("step_choices", &step<std::int64_t>, text, actions);
   def("step_numbers", &step<float>, text, actions);
-  def("finish_step", &finish_step, "The rest of a step that was ended early, as a step.");
+  def("finish_step", &finish_step, "Completes a step that was ended early.");
 }
 
 // As run_step().
@@ -190,8 +189,8 @@ void bind_non_finite_error(nb::module_& m) {
       nb::exception<NonFiniteError>(m, "NonFiniteError", PyExc_FloatingPointError).inc_ref().ptr();
   nb::setattr(
       type, "__doc__",
-      nb::str("An observation, a reward or an end of Environment(check=True) is not finite: "
-              "`expression`, `world`, `step` (of the world's episode), `value`."));
+      nb::str("An observation, a reward or an end of Environment(check=True) is not finite. "
+              "Members: `expression`, `world`, `step` (of the world's episode), `value`."));
   nb::register_exception_translator(
       [](const std::exception_ptr& thrown, void* payload) {
         try {
@@ -247,7 +246,7 @@ nb::object load(const std::string& name) {
 }
 
 void bind_tasks(nb::module_& m) {
-  m.def("load_task", &load, nb::arg("name"), "A task that has a name.");
+  m.def("load_task", &load, nb::arg("name"), "The task with this name.");
   m.def(
       "task_names",
       [] {
@@ -255,7 +254,7 @@ void bind_tasks(nb::module_& m) {
         for (const tasks::Entry& entry : tasks::all()) out.emplace_back(entry.name, entry.summary);
         return out;
       },
-      "(name, summary) of every task that has a name.");
+      "(name, summary) of every named task.");
   m.def(
       "validate_task",
       [](nb::object task) {
@@ -265,7 +264,7 @@ void bind_tasks(nb::module_& m) {
         }
         return out;
       },
-      nb::arg("task"), "Every issue of a task and its scene as (place, message).");
+      nb::arg("task"), "All issues of a task and its scene as (place, message).");
   m.def(
       "default_task_values",
       [] {
@@ -320,10 +319,10 @@ void bind_environment(nb::module_& m) {
             self.run([&](Environment& e) { e.copy_world(source, target); });
           },
           nb::arg("source"), nb::arg("target"))
-      .def("save", &save, "(Snapshot of all worlds, fingerprint of the task, what it remembers).")
+      .def("save", &save, "(Snapshot of all worlds, fingerprint of the task, its memories).")
       .def("restore", &restore, nb::arg("worlds"), nb::arg("task"), nb::arg("memory").noconvert(),
            nb::arg("pairs").noconvert().none(),
-           "All worlds, or pairs (world of the snapshot, world of the environment).")
+           "Restores all worlds, or pairs (world of the snapshot, world of the environment).")
       .def("non_finite", &non_finite,
            nb::sig("def non_finite(self) -> list[tuple[str, int, int, float]]"),
            "(expression, world, step, value) of the first fault of each expression.")

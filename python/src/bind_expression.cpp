@@ -122,16 +122,16 @@ void bind_values(nb::module_& m, nb::class_<Expression>& c) {
   m.def("expression_graph", &values_of, nb::arg("roots"),
         nb::sig("def expression_graph(roots: Sequence[Expression]) -> "
                 "tuple[list[tuple[str | int | float, ...]], list[int]]"),
-        "(nodes, roots): expressions as plain values, of which what they share is one.");
+        "(nodes, roots): expressions as plain values, without duplicates.");
   m.def("expressions_of_graph", &from_values, nb::arg("nodes"), nb::arg("roots"),
-        "The expressions of such a graph. Raises TypeError and ValueError.");
+        "The expressions of a graph. Raises TypeError and ValueError.");
   c.def(
        "__repr__", [](E a) { return "<manyworlds.Expression " + text_of(a, 400) + ">"; },
-       "The text of str(), of at most about 400 characters.")
+       "The text of str(), cut to about 400 characters.")
       .def(
           "__str__", [](E a) { return to_string(a); },
-          "The whole expression as Python writes it. Beyond 20,000 characters, subexpressions that "
-          "are nested deeply are \"...\".");
+          "The expression in Python's syntax. Beyond 20,000 characters, deeply nested "
+          "subexpressions are \"...\".");
 }
 
 Observed observed_named(const std::string& name) {
@@ -230,9 +230,9 @@ void bind_expression(nb::module_& parent) {
       [](const std::string& what) {
         return word_of(info(info(observed_named(what)).observer).item);
       },
-      nb::arg("what"), "What has an observed number: \"world\", \"body\", \"joint\", ...");
+      nb::arg("what"), "Owner of an observed field: \"world\", \"body\", \"joint\", ...");
   nb::class_<Expression> c(parent, "Expression",
-                           "A number of every world, worked out after each step of a task.");
+                           "A value of every world, computed after each step of a task.");
   c.def(
       "__init__",
       [](Expression* self, nb::handle number) { new (self) Expression(operand(number)); },

@@ -71,9 +71,9 @@ void bind_gymnasium(nb::module_& m) {
         }
         return out;
       },
-      "By the name of each task of Gymnasium's: its model, and its arguments with their defaults.");
+      "Gymnasium's tasks by name: model, and arguments with their defaults.");
   m.def("gymnasium_task", &make, nb::arg("name"), nb::arg("scene"), nb::arg("arguments"),
-        "A task of Gymnasium's for a model. Arguments that it does not have are not looked at.");
+        "A Gymnasium task for a model. Unknown arguments are ignored.");
 }
 
 }  // namespace manyworlds::python

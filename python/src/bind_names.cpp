@@ -35,7 +35,7 @@ void bind_names(nb::module_& m) {
       },
       "Names of the values of every enumeration, by its name, and of fields.");
   m.def("unknown_name", &unknown_name, nb::arg("found"), nb::arg("known"),
-        "What is wrong with a name, for an error: the known names and the nearest.");
+        "Error message for an unknown name: the known names and the nearest.");
   m.def(
       "available_isas",
       [] {

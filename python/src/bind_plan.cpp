@@ -77,7 +77,7 @@ int row(const Plan& p, nb::object body) {
 }  // namespace
 
 void bind_plan(nb::module_& m) {
-  nb::class_<Plan>(m, "Plan", "What a step of a scene needs; immutable, shared by batches.")
+  nb::class_<Plan>(m, "Plan", "Stages and arrays of a step; immutable, shared by batches.")
       .def(
           "__init__",
           [](Plan* self, nb::object scene, nb::object broad_phase, nb::object keep) {
@@ -92,20 +92,19 @@ void bind_plan(nb::module_& m) {
           "scene", [](const Plan& p) { return to_python(p.scene()); }, "A copy of the scene.")
       .def_prop_ro(
           "resolved", [](const Plan& p) { return to_python(p.resolved()); },
-          "A copy of the scene's options, with what they leave to the plan filled in.")
-      .def_prop_ro("bodies", &Plan::bodies, "State bodies: dynamic and kinematic ones.")
-      .def_prop_ro("coordinates", &Plan::coordinates, "Coordinates of all joints.")
+          "The options of the scene, with the values that the plan chose. A copy.")
+      .def_prop_ro("bodies", &Plan::bodies, "Number of dynamic and kinematic bodies.")
+      .def_prop_ro("coordinates", &Plan::coordinates, "Number of coordinates of all joints.")
       .def_prop_ro("fingerprint", &Plan::fingerprint,
-                   "Equal for plans whose worlds can go on in each other.")
+                   "Plans with equal fingerprints accept each other's snapshots.")
       .def_prop_ro(
           "scene_bodies", [](const Plan& p) { return p.scene().bodies.size(); },
-          "All bodies of the scene, with the fixed ones.")
+          "Number of bodies of the scene, including fixed ones.")
       .def_prop_ro(
-          "joints", [](const Plan& p) { return p.scene().joints.size(); }, "Joints of the scene.")
+          "joints", [](const Plan& p) { return p.scene().joints.size(); }, "Number of joints.")
       .def("row", &row, nb::arg("body"),
-           "Where a body, by handle, name or index, is in arrays (worlds, bodies, ...), or a "
-           "shape, by "
-           "handle, in arrays (worlds, shapes, ...). Raises ValueError for fixed bodies.")
+           "The row of a body (handle, name or index) in arrays (worlds, bodies, ...), or of a "
+           "shape (handle) in arrays (worlds, shapes, ...). Raises ValueError for fixed bodies.")
       .def(
           "body_in_row",
           [](const Plan& p, int row) {
@@ -122,28 +121,28 @@ void bind_plan(nb::module_& m) {
           },
           "Indices in the scene of the bodies in all rows.")
       .def("find", &find, nb::arg("kind"), nb::arg("name"),
-           "Index of the body, joint, control, tendon, site or keyframe that a name, handle or "
-           "index means.")
+           "Index of the body, joint, control, tendon, site or keyframe with this name, handle or "
+           "index.")
       .def("find_shape", &find_shape, nb::arg("name"), nb::arg("body").none(),
-           "(body, index) of the shape of a name, of one body or of all.")
+           "(body, index) of the shape with this name, of one body or of all.")
       .def(
           "first_coordinate",
           [](const Plan& p, nb::object joint) {
             return p.first_coordinate(JointId(find(p, "joint", joint)));
           },
           nb::arg("joint"),
-          "Where the coordinates of a joint, by handle, name or index, begin; with the newton "
-          "solver in generalized_position.")
+          "Index of the first coordinate of a joint (handle, name or index). With the newton "
+          "solver it is an index of generalized_position.")
       .def(
           "first_observed",
           [](const Plan& p, nb::object joint) {
             return p.first_observed(JointId(find(p, "joint", joint)));
           },
-          nb::arg("joint"), "Where those of a joint begin in joint_position and joint_speed.")
+          nb::arg("joint"), "Index of a joint's first value in joint_position and joint_speed.")
       .def(
           "has",
           [](const Plan& p, nb::object f) { return p.has(from_python<Feature>(f, "feature")); },
-          nb::arg("feature"), "Whether the step has this feature.")
+          nb::arg("feature"), "Whether the plan has this feature.")
       .def("report", &report, "What the plan contains, as a dict.");
 }
 

@@ -143,12 +143,12 @@ void bind_query(nb::module_& m) {
         nb::arg("margin"), nb::arg("space").none(),
         "[(normal, point, separation, feature)] of two shapes.");
   m.def("ray_cast", &ray_cast_of, nb::arg("shape"), nb::arg("pose"), nb::arg("ray"),
-        nb::arg("space").none(), "(distance, normal), or None where the ray misses.");
+        nb::arg("space").none(), "(distance, normal), or None if the ray misses.");
   m.def("surface", &surface_of, nb::arg("geometry"), nb::arg("space"), nb::arg("around"),
         nb::arg("low"), nb::arg("high"),
         "(points, normals, triangles, faces, lines, marks) of a geometry.");
   m.def("resized", &resized_of, nb::arg("geometry"), nb::arg("size"),
-        "The geometry with other numbers of the parameter size.");
+        "The geometry with other values of the parameter size.");
 }
 
 }  // namespace manyworlds::python

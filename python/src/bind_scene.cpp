@@ -75,7 +75,7 @@ void bind_scene(nb::module_& m) {
   m.def(
       "validate",
       [](nb::object scene) { return issues_of(validate(from_python<Scene>(scene, "scene"))); },
-      nb::arg("scene"), "Every issue of a scene as (place, message).");
+      nb::arg("scene"), "All issues of a scene as (place, message).");
   m.def(
       "round_trip", [](nb::object scene) { return to_python(from_python<Scene>(scene, "scene")); },
       nb::arg("scene"), "The scene as the library understands it.");
@@ -85,16 +85,16 @@ void bind_scene(nb::module_& m) {
         return find_in(names_of_scene(scene), kind, name);
       },
       nb::arg("scene"), nb::arg("kind"), nb::arg("name"),
-      "Index of the body, joint, control, tendon, site or keyframe that a name, handle or index "
-      "means.");
+      "Index of the body, joint, control, tendon, site or keyframe with this name, handle or "
+      "index.");
   m.def(
       "find_shape_in_scene",
       [](nb::object scene, const std::string& name, nb::object body) {
         return find_shape_in(names_of_scene(scene), name, body);
       },
       nb::arg("scene"), nb::arg("name"), nb::arg("body").none(),
-      "(body, index) of the shape of a name, of one body or of all.");
-  m.def("load_scene", &load, nb::arg("name"), "A scene that has a name.");
+      "(body, index) of the shape with this name, of one body or of all.");
+  m.def("load_scene", &load, nb::arg("name"), "The scene with this name.");
   m.def(
       "scene_names",
       [] {
@@ -103,7 +103,7 @@ void bind_scene(nb::module_& m) {
           out.emplace_back(entry.name, entry.summary);
         return out;
       },
-      "(name, summary) of every scene that has a name.");
+      "(name, summary) of every named scene.");
   m.def(
       "joint_at",
       [](nb::object scene, nb::object body_a, nb::object body_b, nb::object frame,
@@ -114,7 +114,7 @@ void bind_scene(nb::module_& m) {
                      from_python<Frame>(frame, "frame"), from_python<JointType>(type, "type")));
       },
       nb::arg("scene"), nb::arg("body_a"), nb::arg("body_b"), nb::arg("frame"), nb::arg("type"),
-      "A joint of two bodies whose frames are where `frame` is in the world.");
+      "A joint of two bodies whose frames coincide with `frame` in the world.");
   m.def(
       "mass_properties",
       [](nb::object scene, nb::object body) {

@@ -28,23 +28,23 @@ Snapshot from_bytes(const nb::bytes& data) {
 void bind_snapshot(nb::module_& m) {
   bind_error<SnapshotError>(
       m, "SnapshotError",
-      "A snapshot that is cut, damaged, or of another plan, task or precision.");
+      "A truncated or corrupt snapshot, or one of another plan, task or precision.");
 
   nb::class_<Snapshot>(
       m, "Snapshot",
-      "The whole state of some worlds of a Batch, to go on from later, elsewhere or many times.\n\n"
-      "Made by Batch.save(). It does not depend on lanes, threads or places, so a world continues "
-      "bit\n"
-      "by bit wherever it is restored. Can be pickled.")
-      .def_prop_ro("worlds", &Snapshot::worlds, "How many worlds it holds.")
-      .def_prop_ro("steps", &Snapshot::steps, "Steps that the batch had taken.")
-      .def_prop_ro("time", &Snapshot::time, "Time that the batch had simulated, s.")
+      "The complete state of worlds of a Batch, created by Batch.save().\n\n"
+      "It does not depend on lanes, threads or indices of worlds. Worlds continue with bitwise "
+      "equal\n"
+      "results in every batch of the plan. Can be pickled.")
+      .def_prop_ro("worlds", &Snapshot::worlds, "Number of worlds.")
+      .def_prop_ro("steps", &Snapshot::steps, "Number of steps of the batch.")
+      .def_prop_ro("time", &Snapshot::time, "Simulated time of the batch, s.")
       .def_prop_ro("nbytes", &Snapshot::size, "Size in bytes.")
-      .def("bytes", &bytes_of, "The bytes of a file: what from_bytes() takes.")
+      .def("bytes", &bytes_of, "The contents of a file, for from_bytes().")
       .def_static("from_bytes", &from_bytes, nb::arg("data"),
-                  "A snapshot from bytes(). Raises SnapshotError when they are cut or damaged.")
+                  "A snapshot from bytes(). Raises SnapshotError for truncated or corrupt data.")
       .def("save", &Snapshot::save, nb::arg("file"), nb::call_guard<nb::gil_scoped_release>(),
-           "Writes a file; a partial file is never read. Raises SnapshotError.")
+           "Writes a file, atomically. Raises SnapshotError.")
       .def_static("load", &Snapshot::load, nb::arg("file"),
                   nb::call_guard<nb::gil_scoped_release>(),
                   "Reads a file that save() wrote. Raises SnapshotError.")

@@ -58,7 +58,7 @@ export function obeyAddress(app: App, wanted: URLSearchParams, timeToo = true): 
       const cell = Math.max(0, app.chosen.cell);
       const kind = app.worlds.kindOf(app.worlds.layout.cells[cell]);
       const row = rowOf(kind, value);
-      if (row < 0) return `a body that moves: ${movingBodies(kind)}`;
+      if (row < 0) return `a moving body: ${movingBodies(kind)}`;
       app.showBody(cell, row);
       return '';
     },

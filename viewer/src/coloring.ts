@@ -18,10 +18,10 @@ export interface Theme {
   rope: string;
 }
 
-// What bodies can be coloured by, and what it is called.
+// Coloring quantities of bodies, with their names.
 export function colorChoices(sources: FrameSource[]): [ColorBy, string][] {
   const out: [ColorBy, string][] =
-    [['body', 'body'], ['speed', 'speed'], ['spin', 'rate of rotation'], ['rest', 'rest and motion'], ['height', 'height']];
+    [['body', 'body'], ['speed', 'speed'], ['spin', 'angular speed'], ['rest', 'rest and motion'], ['height', 'height']];
   if (hasContacts(sources)) out.push(['contact', 'contact force']);
   if (sources.length > 1) out.push(['run', 'recording']);
   for (const { name } of sources[0].run.numbers) out.push([`number:${name}`, name]);
@@ -140,12 +140,12 @@ export class Coloring {
     return (now[first + cell.world] - low) / (high - low || 1);
   }
 
-  // Null where colours are of no number.
+  // Null if colours do not show a value.
   get scale(): Scale | null {
     const between = (name: string, unit: string, low: number, high: number): Scale => ({ name, unit, at: (x) => low + x * (high - low) });
     switch (this.by) {
       case 'speed': return between('speed', 'm/s', 0, this.maxSpeed);
-      case 'spin': return between('rate of rotation', 'rad/s', 0, this.maxSpin);
+      case 'spin': return between('angular speed', 'rad/s', 0, this.maxSpin);
       case 'height': {
         const up = this.planar ? 1 : 2;
         return between('height', 'm', this.layout.low[up], this.layout.high[up]);
@@ -161,7 +161,7 @@ export class Coloring {
     }
   }
 
-  // What single colours mean; null where they mean nothing.
+  // Meaning of single colours; null if they have none.
   get words(): { text: string; color: string }[] | null {
     if (this.by === 'rest') return [{ text: 'at rest', color: REST_COLOR }, { text: 'moving', color: AWAKE_COLOR }];
     if (this.by !== 'run') return null;

@@ -1,4 +1,4 @@
-// What a live page commands by buttons and sliders, and what its program says.
+// Commands of a live page, and messages of its program.
 import * as THREE from 'three';
 
 import type { App } from './main';
@@ -8,7 +8,7 @@ import type { LiveSource } from './live';
 const COUNTS = [1, 4, 16, 64, 256, 1024];
 
 export class Commands {
-  private sliders = ''; // whose they are
+  private sliders = ''; // owner of the sliders
 
   constructor(private readonly app: App, private readonly source: LiveSource) {
     element('live').hidden = false;

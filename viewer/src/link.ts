@@ -77,7 +77,7 @@ export class Link {
     socket.binaryType = 'arraybuffer';
     socket.onmessage = (event: MessageEvent<ArrayBuffer | string>) => this.received(event.data);
     socket.onclose = (event) => {
-      this.listener?.gone(event.reason || 'The program that stepped the worlds is not there any more.');
+      this.listener?.gone(event.reason || 'The program that stepped the worlds has ended.');
     };
   }
 
@@ -87,7 +87,7 @@ export class Link {
     return new Promise((resolve, reject) => {
       const link = new Link(socket);
       socket.onopen = () => resolve(link);
-      socket.onerror = () => reject(new Error('The program that this page came from does not answer.'));
+      socket.onerror = () => reject(new Error('The program that served this page does not respond.'));
     });
   }
 

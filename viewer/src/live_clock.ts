@@ -13,7 +13,7 @@ export class LiveClock implements Clock {
   constructor(private readonly source: LiveSource) {
     element('timeline').classList.add('live');
     for (const id of ['back', 'time', 'loop']) element(id).hidden = true;
-    element('on').title = 'One step on (→)';
+    element('on').title = 'One step forward (→)';
     const select = element<HTMLSelectElement>('speed');
     select.replaceChildren(...SPEEDS.map((speed) =>
       new Option(speed === Infinity ? 'max' : `${speed}×`, String(speed), speed === 1, speed === 1)));

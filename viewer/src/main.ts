@@ -98,7 +98,7 @@ export class App {
   }
 
   private complain(refused: string[]): void {
-    showMessage(refused.length === 0 ? '' : ['The address of this page asks for what it does not have:', ...refused].join('\n'), true);
+    showMessage(refused.length === 0 ? '' : ['Invalid options in the address of this page:', ...refused].join('\n'), true);
   }
 
   // Frames of pictures and films; how long worlds go on, s.

@@ -299,7 +299,7 @@ export class RecordedSource implements FrameSource {
 export async function openRuns(page: Document): Promise<{ title: string; sources: RecordedSource[] }> {
   const text = page.getElementById('mw-head')?.textContent;
   if (text === null || text === undefined) {
-    throw new Error('This page has no recording: manyworlds view makes pages that do.');
+    throw new Error('This page has no recording. Create a page with manyworlds view.');
   }
   const head = JSON.parse(text) as { title: string; runs: unknown[] };
   const sources = await Promise.all(head.runs.map((run, r) =>

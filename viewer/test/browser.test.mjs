@@ -261,7 +261,7 @@ describe('use', () => {
     await lost.close();
   });
 
-  test('two recordings side by side, or in one place', async () => {
+  test('two recordings side by side, or overlaid', async () => {
     const files = ['f32', 'f64'].map((precision) => {
       const file = join(folder, `${precision}.h5`);
       run('run', 'stack10', '--worlds', '3', '--steps', '60', '--precision', precision, '--record', file, '--record-every', '2');
@@ -316,7 +316,7 @@ describe('use', () => {
     const page = await context.newPage();
     await page.goto(`file://${viewer}`);
     await page.waitForFunction(() => !document.getElementById('message').hidden);
-    assert.match(await page.locator('#message').textContent(), /This page has no recording: manyworlds view/);
+    assert.match(await page.locator('#message').textContent(), /This page has no recording\. Create a page with manyworlds view/);
     await context.close();
   });
 });

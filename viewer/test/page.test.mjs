@@ -138,7 +138,7 @@ test('the address chooses a body, and says what the page does not have', async (
   };
   assert.match(await complaint('#color=heat'), /\ncolor is 'heat'; expected body, speed, spin, rest, height or contact$/);
   assert.match(await complaint('#world=4'), /\nworld is '4'; expected 0 to 3$/);
-  assert.match(await complaint('#world=1&follow=nobody'), /\nfollow is 'nobody'; expected a body that moves: \S/);
+  assert.match(await complaint('#world=1&follow=nobody'), /\nfollow is 'nobody'; expected a moving body: \S/);
   assert.match(await complaint('#theme=blue&time=soon'), /\ntime is 'soon'; expected seconds, 0 or later\ntheme is 'blue'; expected light or dark$/);
   assert.match(await complaint('#colour=speed'), /\n'colour' is unknown; expected time, theme, color, world, follow or loop$/);
   await view.page.click('#message-close');
@@ -167,7 +167,7 @@ test('balls turn only where their rotation is simulated, and the page says where
     assert.equal(page.head.runs[0].kinds[0].turns, turning);
     const view = await open(page.file);
     assert.equal(await view.page.isVisible('#unturned'), !turning);
-    if (!turning) assert.match(await view.page.locator('#unturned').textContent(), /rotation .* is not simulated.* drawn without turning.*--keep orientation/);
+    if (!turning) assert.match(await view.page.locator('#unturned').textContent(), /rotation .* is not simulated or drawn.*--keep orientation/);
     // The mark that shows how it turns, from the middle to the right.
     const { pixel, color } = await view.body(0, 0);
     const strip = [];

@@ -101,7 +101,7 @@ test('accuracy: curves, the cheapest to an error, and cases that none reaches', 
   const all = await lines();
   await view.page.locator('.legend').nth(1).getByRole('button', { name: 'runge-kutta4', exact: true }).click();
   assert.equal(await lines(), all - 2); // in both precisions
-  assert.deepEqual(await view.page.$$eval('#contents-list a', (all) => all.map((e) => e.getAttribute('href'))), ['#In-short', '#A3', '#A4']);
+  assert.deepEqual(await view.page.$$eval('#contents-list a', (all) => all.map((e) => e.getAttribute('href'))), ['#Summary', '#A3', '#A4']);
   await view.close();
   await fitsTelephone(file);
 
@@ -127,7 +127,7 @@ test('stability: totals, margins, and the failures alone', async () => {
   assert.ok(bad > 0 && bad < report.results.length);
   assert.equal(await view.page.locator('.matrix td.fail').count(), bad);
   assert.equal(await view.page.locator('.matrix td.pass').count(), report.results.length - bad);
-  const told = await view.hover('Values by their limits, contacts', '[aria-label=dot] circle, [aria-label=dot] path');
+  const told = await view.hover('Values relative to limits, contacts', '[aria-label=dot] circle, [aria-label=dot] path');
   assert.match(told, /case B\d+.*verdict (PASS|FAIL) [\d.e-]+.*limit [\d.e-]+/);
   const rows = view.page.locator('.matrix tbody tr:visible');
   const all = await rows.count();
@@ -186,7 +186,7 @@ test('throughput: sweeps, the same bits, and other engines', async () => {
   const other = await open(changed);
   assert.equal((await other.totals())[1], '1 FAIL: different bits');
   assert.equal((await other.totals())[2], '1 FAIL: other engines');
-  assert.match(await other.hover('Speed beside other engines', '[aria-label=dot] circle'), /engine .*speed [\d.]+ [kM]\/s.*worst (overlap 4 mm|gap 10 mm)/);
+  assert.match(await other.hover('Speed compared with other engines', '[aria-label=dot] circle'), /engine .*speed [\d.]+ [kM]\/s.*worst (overlap 4 mm|gap 10 mm)/);
   assert.equal(await other.page.getByText('peer_bad failed: it fell over').count(), 1);
   assert.equal(await other.page.getByText('100 times as fast as the fastest engine of each scene (geometric mean), 50 times with 16 steps').count(), 1);
   await other.close();
@@ -196,7 +196,7 @@ test('throughput: sweeps, the same bits, and other engines', async () => {
 test('a page says where there is no report, or one that it does not know, and has all licences', async () => {
   for (const [file, said] of [
     [empty, 'There is no report in this page'],
-    [pageOf({ report: 'plan', results: 5 }, 'unknown'), 'This report cannot be shown whole'],
+    [pageOf({ report: 'plan', results: 5 }, 'unknown'), 'This report cannot be shown completely'],
   ]) {
     const view = await open(file);
     await view.page.getByText(said).waitFor();

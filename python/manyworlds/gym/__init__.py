@@ -1,12 +1,12 @@
-"""The tasks as vector environments of Gymnasium. Importing this registers them:
+"""Tasks as vector environments of Gymnasium. Importing this module registers them:
 
     import gymnasium
     import manyworlds.gym
     envs = gymnasium.make_vec("manyworlds/LunarLander-v0", num_envs=4096)
-    envs = gymnasium.make_vec("manyworlds/Ant-v5", num_envs=4096)  # and its other MuJoCo tasks: ``mujoco``
+    envs = gymnasium.make_vec("manyworlds/Ant-v5", num_envs=4096)  # MuJoCo tasks: see ``mujoco``
 
-Needs Gymnasium: ``pip install "manyworlds-sim[gym]"``; its MuJoCo tasks need ``[gym,mjcf]``.
-docs/rl.md explains the rest by example.
+Requires Gymnasium: ``pip install "manyworlds-sim[gym]"``. Its MuJoCo tasks require ``[gym,mjcf]``.
+docs/rl.md has examples.
 """
 
 from .._distribution import needs

@@ -1,7 +1,7 @@
-"""What an expression of a task can be, for spaces: from the ranges of what it is made of.
+"""Ranges of a task's expressions for Gymnasium spaces, from the ranges of their operands.
 
-Gymnasium calls a space without bounds a mistake. Where a task gives none they follow from what a world
-can be: the step freezes what is faster or further than `_MOST` says.
+Gymnasium warns about spaces without bounds. If a task declares none, they follow from the bounds of
+a world: a step freezes worlds that exceed `_MOST`.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ Range = tuple[float, float]
 
 _ALL: Range = (-inf, inf)
 _TRUTH: Range = (0.0, 1.0)
-_UNIT: Range = (-1.00001, 1.00001)  # of what is rounded
+_UNIT: Range = (-1.00001, 1.00001)  # with rounding
 _ANGLE: Range = (-3.1416, 3.1416)
-# Twice what a step commits (Status.out_of_range), for what lies between a body's frame and its centre
-# of mass: m, m/s, rad/s.
+# Twice the limits of Status.out_of_range, to include the offset of a body's frame from its centre of
+# mass: m, m/s, rad/s.
 _MOST = {"position": 2e10, "velocity": 2e5, "angular_velocity": 2e6}
 
 
 def range_of(value: Value, task: Task) -> Range:
-    """The least and the most that a value of a task can be; infinite where nothing is known."""
+    """Minimum and maximum of a task's expression; infinite if unknown."""
     if not isinstance(value, _core.Expression):
         return float(value), float(value)
     nodes, (root,) = _core.expression_graph([value])
@@ -62,7 +62,7 @@ def _range(name: str, rest: Sequence[Any], found: Sequence[Range], task: Task) -
         action = task.actions[rest[0]]
         if not action.clamped:
             return _ALL
-        return min(action.low, 0.0), max(action.high, 0.0)  # 0 at the beginning
+        return min(action.low, 0.0), max(action.high, 0.0)  # 0 at the start of an episode
     if name == "control":
         control = task.scene.controls[rest[0]]
         return control.low, control.high

@@ -155,7 +155,7 @@ def _check_results(env: gymnasium.vector.VectorEnv[Any, Any, Any], results: Any)
 
 
 def _check_infos(infos: Any, num_envs: int, path: str = "infos") -> None:
-    """Every key has its mask, every mask its key."""
+    """Every key has a mask, and every mask has a key."""
     _demand(isinstance(infos, dict), f"{path} is not a dict")
     for key, value in infos.items():
         if key.startswith("_") and key[1:] in infos:
@@ -188,7 +188,7 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def _compare(path: str, found: Any, wanted: Any) -> None:
-    """Same bits; dicts by their keys, arrays of objects one by one."""
+    """Bitwise comparison. Recursive for dicts and arrays of objects."""
     if isinstance(wanted, Mapping):
         _demand(isinstance(found, Mapping), f"{path} is not a dict")
         keys = set(found) ^ set(wanted)

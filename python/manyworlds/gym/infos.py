@@ -1,4 +1,4 @@
-"""A task's infos as Gymnasium has them: those named a[0], a[1] and so on are the array a."""
+"""A task's infos in Gymnasium's format: a[0], a[1] and so on become the array a."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _ELEMENT = re.compile(r"(.+)\[\d+\]")
 
 
 class Told(NamedTuple):
-    """What is told under one name: the columns of ``Environment.infos`` that it is made of."""
+    """An info with one name: its columns of ``Environment.infos``."""
 
     name: str
     columns: Union[int, list[int]]  # several are an array, in their order
@@ -20,7 +20,7 @@ class Told(NamedTuple):
 
 
 def told(infos: Sequence[Info]) -> Iterator[Told]:
-    """Of a task's infos, each in the place of its first."""
+    """The infos of a task, each at the position of its first column."""
     arrays: dict[str, list[int]] = {}
     for column, info in enumerate(infos):
         if element := _ELEMENT.fullmatch(info.name):

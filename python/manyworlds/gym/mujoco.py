@@ -1,8 +1,8 @@
-"""Gymnasium's MuJoCo tasks, version 5, stepped here: "manyworlds/Ant-v5" and its like.
+"""Gymnasium's MuJoCo tasks, version 5, simulated by manyworlds: "manyworlds/Ant-v5" and others.
 
-The model files are Gymnasium's own, read where its package is installed, by MuJoCo's library
-(``pip install "manyworlds-sim[gym,mjcf]"``). Arguments, observations, rewards, infos and ends are Gymnasium's;
-docs/gymnasium.md says what differs.
+MuJoCo's library (``pip install "manyworlds-sim[gym,mjcf]"``) reads the model files of the installed
+Gymnasium package. Arguments, observations, rewards, infos and ends equal Gymnasium's;
+docs/gymnasium.md lists the differences.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ _TASKS: dict[str, tuple[str, dict[str, Any]]] = _core.gymnasium_tasks()
 
 
 def names() -> list[str]:
-    """The tasks that ``task`` accepts: "Ant-v5", ..."""
+    """The names that ``task`` accepts: "Ant-v5", ..."""
     return list(_TASKS)
 
 
 def arguments(name: str) -> dict[str, Any]:
-    """What ``task`` takes beside ``xml_file`` for the task of that name, with its defaults."""
+    """Arguments of ``task`` for this name besides ``xml_file``, with their defaults."""
     return dict(_task(name)[1])
 
 
 def task(name: str, xml_file: Optional[files.File] = None, **given: Any) -> Task:
-    """A task of Gymnasium's, to step or to change.
+    """A Gymnasium task as a Task, which can be changed.
 
-    ``xml_file``: the model, a path that begins with ".", "~" or "/", or the name of a file among
-    Gymnasium's; the others are ``arguments(name)``. Raises ValueError for a task that there is not or a
-    model that does not fit, TypeError for arguments that it does not have, and what ``mjcf.load`` raises.
+    ``xml_file``: the model. A path that starts with ".", "~" or "/", or the name of a Gymnasium
+    file. Other arguments: see ``arguments(name)``. Raises ValueError for an unknown task and an
+    unsuitable model, TypeError for unknown arguments, and the errors of ``mjcf.load``.
     """
     model, known = _task(name)
     if unknown := sorted(set(given) - set(known)):
@@ -51,7 +51,7 @@ def task(name: str, xml_file: Optional[files.File] = None, **given: Any) -> Task
 
 
 def model_path(file: files.File) -> Path:
-    """Where a model is, as Gymnasium finds it."""
+    """The path of a model, found as in Gymnasium."""
     path = Path(file).expanduser()
     if path.is_absolute() or str(file).startswith("."):
         return path
@@ -67,7 +67,7 @@ def _task(name: str) -> tuple[str, dict[str, Any]]:
 
 
 def _split(kind: type, given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What is the environment's, and what is the task's."""
+    """Splits arguments into those of the environment and those of the task."""
     own = inspect.signature(kind.__init__).parameters  # type: ignore[misc]
     return (
         {key: value for key, value in given.items() if key in own},
@@ -76,12 +76,12 @@ def _split(kind: type, given: dict[str, Any]) -> tuple[dict[str, Any], dict[str,
 
 
 def make_vector_env(mujoco_task: str, num_envs: int = 1, **given: Any) -> VectorEnv:
-    """What ``gymnasium.make_vec`` makes: arguments of ``VectorEnv`` and of the task."""
+    """Entry point of ``gymnasium.make_vec``: arguments of ``VectorEnv`` and of the task."""
     own, of_task = _split(VectorEnv, given)
     return VectorEnv(task(mujoco_task, **of_task), num_envs, **own)
 
 
 def make_env(mujoco_task: str, **given: Any) -> Env:
-    """What ``gymnasium.make`` makes: its TimeLimit ends the episodes."""
+    """Entry point of ``gymnasium.make``, whose TimeLimit ends the episodes."""
     own, of_task = _split(Env, given)
     return Env(task(mujoco_task, **of_task), **{"max_episode_steps": 0, **own})

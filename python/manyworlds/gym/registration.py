@@ -1,5 +1,8 @@
-"""The ids registered with Gymnasium: "manyworlds/<task>-v0" for every task that has a name, and
-"manyworlds/<task>-v5" for Gymnasium's MuJoCo tasks."""
+"""Ids in Gymnasium's registry.
+
+"manyworlds/<task>-v0" for every named task, and "manyworlds/<task>-v5" for Gymnasium's MuJoCo
+tasks.
+"""
 
 from __future__ import annotations
 
@@ -30,12 +33,12 @@ _MUJOCO: dict[str, tuple[int, Optional[float]]] = {
 
 
 def ids() -> list[str]:
-    """The ids of all tasks, as ``gymnasium.make`` and ``make_vec`` take them."""
+    """The ids of all tasks, for ``gymnasium.make`` and ``make_vec``."""
     return [f"{NAMESPACE}/{name}-v0" for name in tasks.names()]
 
 
 def register() -> None:
-    """Makes the tasks known to Gymnasium; twice is once."""
+    """Registers the tasks with Gymnasium. A second call has no effect."""
     for name, id in zip(tasks.names(), ids()):
         if id in gymnasium.registry:
             continue

@@ -1,4 +1,4 @@
-"""Frames of the worlds of an environment, by ``manyworlds.plot``."""
+"""Images of an environment's worlds, by ``manyworlds.plot``."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ RENDER_MODES = ["rgb_array"]
 
 
 def metadata(task: Task) -> dict[str, Any]:
-    """What Gymnasium is told of rendering: the modes, and frames in a second of the world's time."""
+    """Gymnasium's metadata of rendering: the modes, and frames per simulated second."""
     per_second = 1 / (task.scene.options.dt * task.frame_skip)
     return {"render_modes": list(RENDER_MODES), "render_fps": max(1, round(per_second))}
 
 
 class Frames:
-    """Makes frames of one task's worlds; ``mode`` None: none. Raises DependencyNotInstalled."""
+    """Draws images of one task's worlds; ``mode`` None: none. Raises DependencyNotInstalled."""
 
     def __init__(self, task: Task, mode: Optional[str]) -> None:
         if mode is not None and mode not in RENDER_MODES:
@@ -36,7 +36,7 @@ class Frames:
         self._picture = Picture(task.scene)
 
     def of(self, environment: Environment) -> Optional[tuple[NDArray[np.uint8], ...]]:
-        """A frame of every world, (height, width, 3); None without a mode."""
+        """An image of every world, (height, width, 3); None without a mode."""
         if self._picture is None:
             return None
         batch = environment.batch

@@ -1,4 +1,4 @@
-"""One world as an ordinary environment of Gymnasium: to look at, to test with, not for speed."""
+"""One world as a Gymnasium environment, for tests and inspection. VectorEnv is much faster."""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ from . import rendering, spaces
 
 
 class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
-    """A task in one world. ``reset(seed=s)`` begins the first episode of the seed s, ``reset()`` the
-    next one; with the seed s + i it is, bit by bit, world i of a VectorEnv with the seed s. ``check``:
-    see ``manyworlds.Environment``."""
+    """A task in one world. Arguments as in ``manyworlds.Environment``.
+
+    ``reset(seed=s)`` starts the first episode of the seed s, ``reset()`` the next one. With the
+    seed s + i, results are bitwise equal to those of world i of a VectorEnv with the seed s.
+    """
 
     metadata: dict[str, Any] = {"render_modes": list(rendering.RENDER_MODES)}
     _instead = "pickle its spec, or the task and arguments that it was made with"
@@ -60,8 +62,11 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """The first episode of the seed, 0 to 2**64 - 1; None: the next episode. Returns (observation,
-        info): (observations,) float32 and the task's infos, but for those of steps alone."""
+        """Starts the first episode of the seed, 0 to 2**64 - 1; None: the next episode.
+
+        Returns (observation, info): (observations,) float32, and the task's infos without those of
+        steps.
+        """
         super().reset(seed=seed)
         observation = self.environment.reset(seeds=seed)[0].copy()
         info = self._told(False)
@@ -70,12 +75,13 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
         return observation, info
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """One step of the task. ``action``: an integer below ``task.choices``, or (numbers,).
+        """Takes one step of the task. ``action``: an integer below ``task.choices``, or (numbers,).
 
-        Returns (observation, reward, terminated, truncated, info); the observation is (observations,)
-        float32 or what was asked for, a copy. ``info`` has the task's infos, "lost" where the world is,
-        "reward_terms" by name if asked for.
-        ValueError for a wrong shape and for a choice that there is not, TypeError for a wrong dtype.
+        Returns (observation, reward, terminated, truncated, info). The observation is a copy,
+        (observations,) of the observation dtype, float32 by default. ``info`` has the task's infos,
+        "lost" if the world is lost, and "reward_terms" by name if requested.
+
+        Raises ValueError for a wrong shape and an invalid choice, TypeError for a wrong dtype.
         """
         e = self.environment
         observations, rewards, terminated, truncated = e.step(np.asarray(action)[None])
@@ -97,21 +103,23 @@ class Env(InMemory, gymnasium.Env[np.ndarray, Any]):
         }
 
     def render(self) -> Optional[NDArray[np.uint8]]:  # type: ignore[override]
-        """The world as it is, (height, width, 3) uint8; None without a render_mode."""
+        """An image of the current state, (height, width, 3) uint8; None without a render_mode."""
         frames = self._frames.of(self.environment)
         return None if frames is None else frames[0]
 
     def view(self, **options: Any) -> LiveView:
-        """A page that shows the world while it steps: ``manyworlds.view`` of the environment."""
+        """A page that shows the world while it steps: see ``manyworlds.view``."""
         return view(self.environment, **options)
 
     def close(self) -> None:
-        """Lets go of the world; later steps raise ValueError."""
+        """Frees the world. Later steps raise ValueError."""
         self.environment.close()
 
 
 class RegisteredEnv(Env):
-    """What ``gymnasium.make`` makes: its TimeLimit ends the episodes, after ``spec.max_episode_steps``."""
+    """Entry point of ``gymnasium.make``, whose TimeLimit ends episodes at
+    ``spec.max_episode_steps``.
+    """
 
     def __init__(self, task: Union[Task, str], **arguments: Any) -> None:
         super().__init__(task, **{"max_episode_steps": 0, **arguments})

@@ -1,4 +1,4 @@
-"""The spaces of a task, and a task as an argument."""
+"""The spaces of a task, and task arguments."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MAX_EPISODE_STEPS = 2**31 - 1
 
 
 def task_of(task: Union[Task, str], max_episode_steps: Optional[int]) -> Task:
-    """The task, or that of a name, with episodes of another length if they are given one."""
+    """The task, or the task with this name; optionally with another episode length."""
     found = tasks.load(task) if isinstance(task, str) else task
     if max_episode_steps is None:
         return found
@@ -27,8 +27,10 @@ def task_of(task: Union[Task, str], max_episode_steps: Optional[int]) -> Task:
 
 
 def observation_space(task: Task, dtype: DTypeLike = np.float32) -> gymnasium.spaces.Box:
-    """A Box, (observations,) of the dtype, of finite bounds: those that the task gives, else what its
-    expressions can be, else the largest numbers."""
+    """A Box, (observations,) of the dtype, with finite bounds.
+
+    Bounds are those of the task, else those of its expressions, else the largest numbers.
+    """
     ends = [range_of(o.value, task) for o in task.observations]
     low = [o.low if o.low > -inf else least for o, (least, _) in zip(task.observations, ends)]
     high = [o.high if o.high < inf else most for o, (_, most) in zip(task.observations, ends)]
@@ -41,7 +43,7 @@ def observation_space(task: Task, dtype: DTypeLike = np.float32) -> gymnasium.sp
 
 
 def action_space(task: Task) -> gymnasium.spaces.Space[Any]:
-    """Discrete(choices), or a Box, (actions,) float32, of the actions' ranges."""
+    """Discrete(choices), or a Box, (actions,) float32, with the ranges of the actions."""
     if task.choices > 0:
         return gymnasium.spaces.Discrete(task.choices)
     low = np.array([a.low for a in task.actions], np.float32)

@@ -1,4 +1,4 @@
-"""VectorEnv: a task in thousands of worlds as Gymnasium's vector environment."""
+"""VectorEnv: a task in thousands of worlds as a Gymnasium vector environment."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ MODES = {
 class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
     """A task in ``num_envs`` worlds.
 
-    task                a Task, or the name of one
-    max_episode_steps   instead of the task's own; 0: episodes have no such end
+    task                a Task or its name
+    max_episode_steps   replaces the task's value; 0: episodes have no maximum
     autoreset_mode      AutoresetMode or its value; see ``manyworlds.Environment``
     copy                False: ``reset`` and ``step`` return the same arrays every time
-    seed                of the worlds until ``reset`` gives one; None: a random one
-    reward_terms        ``infos["reward_terms"]`` has the parts of the reward by name
+    seed                seed of the worlds until ``reset`` sets one; None: a random one
+    reward_terms        True: ``infos["reward_terms"]`` has the terms of the reward by name
     threads, precision, isa, check, observation_dtype  as in ``manyworlds.Environment``
     render_mode         "rgb_array": ``render()`` draws every world (``manyworlds.plot``)
 
-    ``reset(seed=s)`` begins the first episode of the seed s + i in world i, ``reset()`` the next
-    episodes. ``infos["lost"]`` tells worlds that went wrong (an action that was not a number, say)
-    from those whose time was up; with SAME_STEP it is in ``infos["final_info"]``.
-    ``environment`` is what steps.
+    ``reset(seed=s)`` starts the first episode of the seed s + i in world i, ``reset()`` the next
+    episodes. ``infos["lost"]`` separates worlds with a fault, such as a NaN action, from worlds at
+    their time limit. With SAME_STEP it is in ``infos["final_info"]``. ``environment`` is the
+    Environment.
     """
 
     metadata: dict[str, Any] = {
@@ -108,8 +108,10 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
         seed: Seed = None,  # type: ignore[override]
         options: Optional[dict[str, Any]] = None,
     ) -> tuple[NDArray[Any], dict[str, Any]]:
-        """All worlds, or those of ``options["reset_mask"]``; ``seed``: one, or one for each world,
-        of which None is that world's next episode."""
+        """Starts episodes in all worlds, or in those of ``options["reset_mask"]``.
+
+        ``seed``: one seed, or one per world; None for a world: its next episode.
+        """
         mask = self._reset_mask(options)
         seeds = self._seeds(seed)
         if seeds is None or isinstance(seeds, int):
@@ -128,11 +130,14 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
     def step(
         self, actions: NDArray[Any]
     ) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
-        """One step of the task in every world. ``actions``: (num_envs,) integers or (num_envs, numbers).
+        """Takes one step of the task in all worlds.
 
-        Returns (observations, rewards, terminated, truncated, infos): (num_envs, observations) float32,
-        (num_envs,) float64, and twice (num_envs,) bool, copies unless ``copy`` is False. ValueError for a
-        wrong shape and for a choice that there is not, before anything is done; TypeError for a dtype.
+        ``actions``: (num_envs,) integers or (num_envs, numbers). Returns (observations, rewards,
+        terminated, truncated, infos). Arrays are (num_envs, observations) float32, (num_envs,)
+        float64, and two of (num_envs,) bool, as copies unless ``copy`` is False.
+
+        Raises ValueError for a wrong shape and an invalid choice, before the step, and TypeError
+        for a dtype.
         """
         results = self.environment.step(actions)
         infos = self._infos()
@@ -142,15 +147,17 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
         return *results, infos
 
     def render(self) -> Optional[tuple[NDArray[np.uint8], ...]]:  # type: ignore[override]
-        """A frame of every world as it is, (height, width, 3) uint8; None without a render_mode."""
+        """An image of the current state of every world, (height, width, 3) uint8; None without a
+        mode.
+        """
         return self._frames.of(self.environment)
 
     def view(self, **options: Any) -> LiveView:
-        """A page that shows the worlds while they step: ``manyworlds.view`` of the environment."""
+        """A page that shows the worlds while they step: see ``manyworlds.view``."""
         return view(self.environment, **options)
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Lets go of the worlds: what ``close`` does, once."""
+        """Frees the worlds. ``close`` calls it once."""
         self.environment.close()
 
     # -- parts of it
@@ -210,7 +217,7 @@ class VectorEnv(InMemory, gymnasium.vector.VectorEnv[NDArray[Any], NDArray[Any],
     def _told(
         self, values: NDArray[Any], mask: NDArray[np.bool_], stepped: NDArray[np.bool_]
     ) -> dict[str, Any]:
-        """The task's infos of the worlds of a mask; those of steps alone where they were stepped."""
+        """The task's infos for the worlds of a mask; infos of steps only for stepped worlds."""
         out: dict[str, Any] = {}
         for name, columns, of_steps_alone in self._told_of:
             of = mask & stepped if of_steps_alone else mask

@@ -1,4 +1,4 @@
-"""Rollouts on the actors of Ray: as many worlds as there are machines for, with the bits of one.
+"""Rollouts on Ray actors, bitwise equal to those of a single process.
 
     from manyworlds.ray import Rollouts
 
@@ -6,11 +6,11 @@
         for trajectories in rollouts.iterate(200):  # the next 200 steps run meanwhile
             learn(trajectories.parts)
 
-World i has the seed ``seed + i`` whatever actor steps it, and how many of them there are: hashes, returns and
-trajectories are the same in one process (``shards=0``), on one machine and on a hundred. An actor that dies,
-or hangs, is replaced, and its worlds catch up. docs/scale.md explains the rest.
+World i has the seed ``seed + i`` on every actor and with any number of actors. Hashes, returns and
+trajectories are equal in one process (``shards=0``), on one machine and on a hundred. An actor that
+dies or hangs is replaced, and the replacement repeats its steps. docs/scale.md has details.
 
-Ray is needed where ``shards`` is not 0: ``pip install "manyworlds-sim[ray]"``.
+Ray is required unless ``shards`` is 0: ``pip install "manyworlds-sim[ray]"``.
 """
 
 from .rollouts import Rollouts

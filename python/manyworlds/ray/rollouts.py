@@ -33,33 +33,34 @@ _HISTORY = 2**31 - 1
 
 
 class Rollouts(InMemory):
-    """Worlds of a task or a scene on the actors of Ray, or in this process.
+    """Worlds of a task or a scene on Ray actors, or in this process.
 
     what        a Task, a Scene or a Plan, or the name of a task or a scene
-    worlds      how many
+    worlds      number of worlds
     seed        world i draws from seed + i
-    policy      of a task: observations (block's worlds, observations) to actions, for each step; NumPy, JAX
-                or a torch.nn.Module; None: no action (zeros, or choice 0). Of a scene: a Batch to its
-                controls. It must compute what it does from what it is given alone
-    shards      actors; 0: none, in this process, without Ray; None: one for each node of the cluster
-    cpus        of each actor; None: all of its node's (the fewest of any node), or an equal share where there
-                are more shards than nodes
-    resources   that each actor takes, as Ray names them
-    block       worlds that are held, stepped and moved together; what worlds do depends on it where a
-                policy's rounding depends on the number of its rows. None: a 64th, 16 to 4096
-    fields      of a scene: what trajectories have
-    threads     of each shard; None: its cpus, or in this process all that it may run on
-    timeout     seconds for which a call may be silent, once its actor has started and caught up, before
-                that counts as hung and is replaced; calls before it count, too
-    max_restarts  how often a shard may be replaced in one call
-    checkpoint_every  steps after which worlds are saved at the end of a call; 0: never
-    folder      where they are saved, seen by all nodes; None: in Ray's object store. With a folder policies
-                that are out of use are let go of: for who gives new ones again and again
+    policy      for a task: function of observations (worlds of a block, observations) that returns
+                actions for each step; NumPy, JAX or a torch.nn.Module; None: zeros, or choice 0.
+                For a scene: function of a Batch that returns its controls. It must depend only on
+                its argument
+    shards      number of actors; 0: this process, without Ray; None: one per node of the cluster
+    cpus        cores per actor; None: the cores of the smallest node, divided by the actors per
+                node
+    resources   Ray resources of each actor
+    block       number of worlds that are stored, stepped and moved together. It changes results if
+                the rounding of a policy depends on the number of its rows. None: a 64th, 16 to 4096
+    fields      fields of trajectories, for a scene
+    threads     threads per shard; None: its cpus, or in this process all that it may use
+    timeout     maximum duration of a call in s, without the start and recovery of its actor. Then
+                the actor counts as hung and is replaced. Earlier pending calls count, too
+    max_restarts  maximum number of replacements of a shard in one call
+    checkpoint_every  worlds are saved at the end of a call after this number of steps; 0: never
+    folder      folder of the saved worlds, visible to all nodes; None: Ray's object store. With a
+                folder, unused policies are freed, for callers that change the policy often
 
-    Worlds whose actor dies or hangs go on from what was saved last, or from the beginning where that went
-    with its node, and have the same bits. What a policy raises is raised here; then worlds are where their
-    shards came to, and ``closed``. Not for use by several threads. Raises ValueError, TypeError, TaskError,
-    SceneError, ShardError.
+    Worlds of a dead or hung actor continue from the last saved state, or from the start if that was
+    lost with its node. Results are bitwise equal. An exception of a policy is raised here; the
+    worlds then stay as they are, and ``closed`` is True. Not thread-safe. Raises ValueError,
+    TypeError, TaskError, SceneError, ShardError.
     """
 
     _instead = "pickle its task or scene and the arguments that it was made with"
@@ -100,7 +101,7 @@ class Rollouts(InMemory):
         if timeout is not None and not timeout > 0:
             raise ValueError(f"timeout is {timeout}; expected seconds > 0, or None")
         work = Work(what, worlds, seed, size, threads, precision, isa, tuple(fields))
-        work.make_worlds(1, seed).close()  # what is wrong with it is said here
+        work.make_worlds(1, seed).close()  # raises errors of the scene or task here
         self._work = work
         self._trials = 0
         self._closed = False
@@ -157,31 +158,31 @@ class Rollouts(InMemory):
             )
         return count
 
-    # -- what it is
+    # -- properties
 
     @property
     def worlds(self) -> int:
-        """How many there are."""
+        """Number of worlds."""
         return self._work.worlds
 
     @property
     def block(self) -> int:
-        """Worlds of a block."""
+        """Number of worlds in a block."""
         return self._work.block
 
     @property
     def shards(self) -> int:
-        """Actors; 0: none."""
+        """Number of actors; 0: none."""
         return 0 if self._crew is None else len(self._crew.members)
 
     @property
     def restarts(self) -> int:
-        """How often an actor was replaced."""
+        """Number of replaced actors."""
         return 0 if self._crew is None else self._crew.restarts
 
     @property
     def processes(self) -> list[int]:
-        """Ids of the processes in which the shards are."""
+        """Ids of the processes of the shards."""
         self._check()
         if self._crew is None:
             assert self._shard is not None
@@ -203,7 +204,7 @@ class Rollouts(InMemory):
     # -- what worlds do
 
     def use(self, policy: Optional[Policy]) -> None:
-        """Steps from now on are taken under this policy."""
+        """Sets the policy of the following steps."""
         self._check()
         if self._shard is not None:
             self._shard.use(policy)
@@ -227,10 +228,10 @@ class Rollouts(InMemory):
     def run(
         self, steps: int, every: int = 1, keep: Sequence[str] = OF_A_TASK
     ) -> Trajectories:
-        """So many steps of all worlds, and what came of them.
+        """Takes ``steps`` steps of all worlds. Returns Trajectories.
 
-        ``every``: steps of a frame, of a scene. ``keep``: which arrays trajectories of a task have,
-        "observations", "actions", "rewards", "terminated", "truncated"; what is not kept is not sent.
+        ``every``: steps per frame, for a scene. ``keep``: arrays of a task's trajectories,
+        "observations", "actions", "rewards", "terminated", "truncated". Other arrays are not sent.
         """
         steps = arrays.integer(steps, "steps", 1, MAX_STEPS)
         every = arrays.integer(every, "every", 1, MAX_STEPS)
@@ -276,11 +277,11 @@ class Rollouts(InMemory):
         ahead: int = 1,
         keep: Sequence[str] = OF_A_TASK,
     ) -> Iterator[Trajectories]:
-        """Trajectories of ``run(steps)`` again and again, while the next ones are run.
+        """Yields the Trajectories of ``run(steps)`` repeatedly, while the next ones run.
 
-        At most ``ahead`` calls are run before they are asked for, so what waits is bounded by that. Whoever
-        stops early, or gives another policy meanwhile, finds worlds up to ``ahead`` calls further on; a
-        policy that is given counts from the first call that was not sent by then.
+        At most ``ahead`` calls run in advance, which bounds the number of waiting results. If the
+        caller stops early or sets another policy, the worlds are up to ``ahead`` calls further. A
+        new policy applies from the first call that has not been sent.
         """
         steps = arrays.integer(steps, "steps", 1, MAX_STEPS)
         every = arrays.integer(every, "every", 1, MAX_STEPS)
@@ -310,8 +311,11 @@ class Rollouts(InMemory):
                 waiting -= 1
 
     def evaluate(self, policy: Optional[Policy] = None, episodes: int = 100) -> Evaluation:
-        """The first episode of each of so many worlds, of seeds ``seed`` + 0, 1 ..., under a policy, or the
-        one in use; the worlds that run are left alone. ValueError of a scene."""
+        """The first episodes of ``episodes`` separate worlds, with seeds ``seed`` + i, under a
+        policy.
+
+        None: the current policy. The worlds of the rollouts do not change. ValueError for a scene.
+        """
         self._check()
         if not isinstance(self._work.what, Task):
             raise ValueError("a scene has no episodes; expected a task")
@@ -331,7 +335,7 @@ class Rollouts(InMemory):
         return Evaluation(**joined)
 
     def _spread(self, method: str, arguments: Any, count: int) -> list[Any]:
-        """Results of ``count`` things, of which each shard does some."""
+        """Results of ``count`` items, divided over the shards."""
         assert self._crew is not None
         members = [m for m in zip(self._crew.members, shares(count, self.shards)) if m[1]]
         for member, some in members:
@@ -349,11 +353,12 @@ class Rollouts(InMemory):
         seeds: SeedsBy = "search",
         **trial: Any,
     ) -> search.Search:
-        """A search over numbers of the task or scene, whose candidates the shards try.
+        """Searches parameters of the task or scene; the shards try the candidates.
 
-        ``objective`` and ``trial`` are those of search.TaskTrial, or search.Trial of a scene; the others
-        those of search.Search, whose seed is that of the rollouts. Returns the Search after so many
-        generations; ``run`` of it goes on. A candidate's outcome depends on its numbers and seed alone.
+        ``objective`` and ``trial`` are those of search.TaskTrial, or of search.Trial for a scene.
+        Other arguments are those of search.Search, whose seed is that of the rollouts. Returns the
+        Search after ``generations``; its ``run`` continues it. An outcome depends only on its
+        candidate's values and seed.
         """
         self._check()
         self._trials += 1
@@ -366,7 +371,7 @@ class Rollouts(InMemory):
     # -- who does it
 
     def resize(self, shards: int) -> None:
-        """From now on so many actors hold the worlds, which go on as they are. Not of a process without."""
+        """Moves the worlds, unchanged, to this number of actors. Not without actors."""
         self._check()
         if self._crew is None:
             raise ValueError("the rollouts have no actors (shards=0), so none can be added")
@@ -379,7 +384,7 @@ class Rollouts(InMemory):
         return self._closed
 
     def close(self) -> None:
-        """Ends the actors. Twice is once."""
+        """Ends the actors. A second call has no effect."""
         self._closed = True
         if self._crew is not None:
             self._crew.close()

@@ -1,4 +1,4 @@
-"""Searches: which numbers are best, tried by thousands of worlds at once, one for each candidate.
+"""Searches for the best parameters, with thousands of candidates at once, one per world.
 
     from manyworlds import search
 
@@ -11,8 +11,8 @@
     found.run(20, on_generation=print)
     mw.show(found.record("best.h5"))
 
-docs/search.md explains the rest by example. CmaEs needs the package cma, Sobol SciPy, tables pyarrow:
-``pip install "manyworlds-sim[search]"``.
+docs/search.md has examples. CmaEs requires the package cma, Sobol SciPy, tables pyarrow: ``pip
+install "manyworlds-sim[search]"``.
 """
 
 from .loop import Asked, Search

@@ -1,4 +1,4 @@
-"""The loop of a search: ask a strategy for candidates, try them in worlds, tell it the outcome."""
+"""The loop of a search: get candidates from a strategy, try them in worlds, return the outcome."""
 
 from __future__ import annotations
 

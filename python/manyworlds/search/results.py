@@ -1,4 +1,4 @@
-"""What a search has found: every candidate with what came of it, as columns, an Arrow table or a file."""
+"""Results of a search: every candidate with its outcome, as columns, an Arrow table or a file."""
 
 from __future__ import annotations
 
@@ -21,38 +21,38 @@ STATUS = ("ok", "infeasible", "lost", "not_finite")  # by the codes of Generatio
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """One of those that were tried."""
+    """A tried candidate."""
 
     generation: int
-    candidate: int  # its place in the generation
-    values: dict[str, float]  # of the parameters, by name
-    value: float  # of the objective; not a number where it is lost or there is none
-    violation: float  # of its constraints, 0: they are kept
+    candidate: int  # index in the generation
+    values: dict[str, float]  # parameters by name
+    value: float  # of the objective; NaN if the world is lost or there is none
+    violation: float  # of the constraints; 0: all hold
     status: str  # "ok", "infeasible", "lost", "not_finite"
     seed: int  # of its world
-    hash: int  # of its world's last state; 0 where the evaluator gives none
+    hash: int  # of the final state of its world; 0 if the evaluator has none
 
 
 @dataclass(frozen=True, slots=True)
 class Generation:
-    """The candidates that were tried together. ``str`` of it is a line about it."""
+    """Candidates that were tried together. ``str`` returns one line."""
 
     index: int
     space: Space
     values: Doubles  # (candidates, parameters)
     value: Doubles  # (candidates,) of the objective
     violation: Doubles
-    cost: Doubles  # what the strategy was told, finite; less is better
+    cost: Doubles  # as passed to the strategy, finite; lower is better
     status: NDArray[np.uint8]  # index in STATUS
     seed: NDArray[np.uint64]
     hash: NDArray[np.uint64]
-    seconds: float  # that it took to try them
+    seconds: float  # duration of the trials
 
     def __len__(self) -> int:
         return len(self.cost)
 
     def candidate(self, i: int) -> Candidate:
-        """One of them."""
+        """A candidate by index."""
         return Candidate(
             self.index,
             int(i),
@@ -66,7 +66,7 @@ class Generation:
 
     @property
     def best(self) -> Optional[Candidate]:
-        """The first of those that cost least, of those that are ok; None: no one is."""
+        """The first valid candidate with the lowest cost; None if no candidate is valid."""
         good = np.flatnonzero(self.status == 0)
         return self.candidate(good[np.argmin(self.cost[good])]) if good.size else None
 
@@ -80,12 +80,16 @@ class Generation:
 
 
 class Results:
-    """All generations so far.
+    """All complete generations.
 
-    As columns, one row for each candidate: generation, candidate (int32), the parameters by their names
-    (float64, of integers int64), value and violation (float64; value is null where a world was lost or its
-    value is no number), cost (float64: what the strategy was told), status ("ok", "infeasible", "lost",
-    "not_finite"), seed and hash (uint64).
+    Columns, with one row per candidate:
+
+    generation, candidate  int32
+    parameters, by name    float64; int64 for integers
+    value, violation       float64; value is null if the world was lost or the value is not finite
+    cost                   float64, as passed to the strategy
+    status                 "ok", "infeasible", "lost", "not_finite"
+    seed, hash             uint64
     """
 
     def __init__(self, space: Space, goal: str, about: dict[str, Any]) -> None:
@@ -102,7 +106,7 @@ class Results:
 
     @property
     def best(self) -> Candidate:
-        """The first of those that are best, among those that are ok. ValueError where there is none."""
+        """The first of the best valid candidates. Raises ValueError if no candidate is valid."""
         found = [g.best for g in self.generations]
         ok = [c for c in found if c is not None]
         if not ok:
@@ -115,7 +119,7 @@ class Results:
         return choose(ok, key=lambda c: c.value)  # the first of equals
 
     def columns(self) -> dict[str, NDArray[Any]]:
-        """The columns as NumPy arrays (candidates,); value is NaN where the table has null."""
+        """The columns as NumPy arrays (candidates,). A null value becomes NaN."""
 
         def joined(name: str, dtype: Any) -> NDArray[Any]:
             parts = [np.asarray(getattr(g, name), dtype) for g in self.generations]
@@ -160,8 +164,10 @@ class Results:
         return table.replace_schema_metadata({"manyworlds.search": json.dumps(self.about)})
 
     def save(self, file: File) -> Path:
-        """Writes the table: Parquet where ``file`` ends with .parquet, Arrow's IPC file with .arrow or
-        .feather. It is there only once it is complete. ValueError for other names, ImportError."""
+        """Writes the table: Parquet for ".parquet", Arrow's IPC format for ".arrow" and ".feather".
+
+        The file appears only when it is complete. Raises ValueError for other names, ImportError.
+        """
         path = checked_file(file)
         table = self.table()
         part = path.with_name(f"{path.name}.part-{os.getpid()}")
@@ -179,7 +185,7 @@ class Results:
 
 
 def checked_file(file: File) -> Path:
-    """Where a table goes. ValueError, TypeError, ImportError without pyarrow."""
+    """The path of a table. ValueError, TypeError, ImportError without pyarrow."""
     path = files.path(file, "file")
     if path.suffix not in (".parquet", ".arrow", ".feather"):
         raise ValueError(

@@ -1,7 +1,7 @@
-"""Where to look next: designs (random, grid, Sobol) and CMA-ES, by ask and tell.
+"""Strategies: designs (random, grid, Sobol) and CMA-ES, with the methods ask and tell.
 
-A strategy works on points with numbers from 0 to 1, one for each parameter. Anything with the three methods
-of ``Strategy`` is one, so other libraries' optimisers fit in a few lines.
+Points of a strategy have values from 0 to 1, one per parameter. Any object with the three methods
+of ``Strategy`` is a strategy, so optimisers of other libraries fit in a few lines.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ MAX_CANDIDATES = 100_000_000
 
 
 class Strategy(Protocol):
-    """What a search asks for points and tells what came of them.
+    """Interface of strategies.
 
-    ``done`` may be there, too: True once there is nothing more to ask; and ``mean``, (parameters,): the middle
-    of where it looks.
+    Optional members: ``done``, True if there are no more points; ``mean``, (parameters,), the mean
+    of the distribution.
     """
 
     def start(self, space: Space, seed: int) -> None:
-        """Begins anew; the same seed gives the same points."""
+        """Restarts the strategy. Equal seeds give equal points."""
 
     def ask(self) -> Doubles:
         """The next generation, (points, parameters) from 0 to 1."""
         ...
 
     def tell(self, points: Doubles, costs: Doubles) -> None:
-        """What those of the last ``ask`` cost, (points,), finite; less is better."""
+        """Sets the finite costs (points,) of the last generation. Lower is better."""
 
 
 def needed(module: str, what: str) -> Any:
@@ -59,23 +59,24 @@ class Random:
         self.candidates = _candidates(self.candidates)
 
     def start(self, space: Space, seed: int) -> None:
-        """Begins anew."""
+        """Restarts with this seed."""
         self._dimensions = len(space)
         self._draw = np.random.default_rng(seed)
 
     def ask(self) -> Doubles:
-        """The next ones, (candidates, parameters)."""
+        """The next generation, (candidates, parameters)."""
         return self._draw.random((self.candidates, self._dimensions))
 
     def tell(self, points: Doubles, costs: Doubles) -> None:
-        """Nothing: draws do not depend on it."""
+        """No effect: draws do not depend on costs."""
 
 
 @dataclass
 class Sobol:
-    """A scrambled Sobol sequence (SciPy), which fills the space more evenly than draws do.
+    """A scrambled Sobol sequence (SciPy), which covers the space more evenly than random points.
 
-    Generations go on where the one before ended. It is balanced where the points so far are a power of two.
+    Each generation continues the sequence. It is balanced if the total number of points is a power
+    of two.
     """
 
     candidates: int = 8192  # of a generation
@@ -84,7 +85,7 @@ class Sobol:
         self.candidates = _candidates(self.candidates)
 
     def start(self, space: Space, seed: int) -> None:
-        """Begins anew. ImportError without SciPy."""
+        """Restarts with this seed. ImportError without SciPy."""
         qmc = needed("scipy.stats.qmc", "search.Sobol")
         if len(space) > qmc.Sobol.MAXDIM:
             raise ValueError(
@@ -93,22 +94,22 @@ class Sobol:
         self._sequence = qmc.Sobol(len(space), rng=np.random.default_rng(seed), bits=52)
 
     def ask(self) -> Doubles:
-        """The next ones, (candidates, parameters)."""
+        """The next generation, (candidates, parameters)."""
         with warnings.catch_warnings():  # of numbers that are no power of two
             warnings.simplefilter("ignore", UserWarning)
             return np.asarray(self._sequence.random(self.candidates), np.float64)
 
     def tell(self, points: Doubles, costs: Doubles) -> None:
-        """Nothing: the sequence does not depend on it."""
+        """No effect: the sequence does not depend on costs."""
 
 
 @dataclass
 class Grid:
-    """Every combination of equally spaced values, the last parameter's changing fastest.
+    """All combinations of equally spaced values. The last parameter changes fastest.
 
-    levels      of every parameter, or of each by name; both ends are among them. An integer has no more
-                than it has values
-    candidates  of a generation at most; the last one has the rest
+    levels      number of values of every parameter, or by name; both ends are included. For an
+                integer at most its number of values
+    candidates  maximum size of a generation; the last one has the remainder
     """
 
     levels: Union[int, Mapping[str, int]] = 10
@@ -118,7 +119,7 @@ class Grid:
         self.candidates = _candidates(self.candidates)
 
     def start(self, space: Space, seed: int) -> None:
-        """Begins anew; a grid has no draws. ValueError for levels that do not fit."""
+        """Restarts; a grid does not use the seed. ValueError for wrong levels."""
         if isinstance(self.levels, Mapping):
             for name in self.levels:
                 space.index(name)
@@ -149,11 +150,11 @@ class Grid:
 
     @property
     def done(self) -> bool:
-        """Whether all points were asked for."""
+        """Whether ``ask`` has returned all points."""
         return self._next >= self.points
 
     def ask(self) -> Doubles:
-        """The next ones, (at most candidates, parameters). ValueError once it is done."""
+        """The next generation, (at most candidates, parameters). ValueError after the last one."""
         if self.done:
             raise ValueError(f"all {self.points} points of the grid were returned already")
         end = min(self._next + self.candidates, self.points)
@@ -162,23 +163,24 @@ class Grid:
         return np.stack([axis[i] for axis, i in zip(self._axes, index)], axis=1)
 
     def tell(self, points: Doubles, costs: Doubles) -> None:
-        """Nothing: the grid does not depend on it."""
+        """No effect: the grid does not depend on costs."""
 
 
 @dataclass
 class CmaEs:
     """CMA-ES, the package ``cma`` (Hansen, The CMA evolution strategy: a tutorial, 2016).
 
-    candidates  of a generation
-    sigma       first standard deviation, of ranges that are 1 wide
-    start_at    values by name to begin around; what is not named begins in the middle of its range
-    parents     how many of the best count; None: a tenth of the candidates from 100 on, else half. Large
-                generations get lost in noise when half of them count
-    options     further ones of ``cma.CMAOptions``, such as {"CMA_diagonal": True} for many parameters
+    candidates  size of a generation
+    sigma       initial standard deviation, relative to the range
+    start_at    initial mean, values by name; other parameters start in the middle of their range
+    parents     number of best candidates that update the mean; None: half of the candidates,
+                or a tenth from 100 candidates on, because half of them would add noise
+    options     other entries of ``cma.CMAOptions``, such as {"CMA_diagonal": True} for many
+                parameters
 
-    Points beyond a range are folded back into it (``_folded``): cma itself searches without bounds. Only the
-    order of costs counts. ``done`` is True once
-    cma finds one of its stopping criteria met; ``why_done`` says which.
+    Points outside a range are reflected into it (``_folded``); cma searches without bounds. Only
+    the order of costs matters. ``done`` is True once a stopping criterion of cma is met;
+    ``why_done`` lists them.
     """
 
     candidates: int = 10_000
@@ -195,7 +197,9 @@ class CmaEs:
             self.parents = arrays.integer(self.parents, "parents", 1, self.candidates)
 
     def start(self, space: Space, seed: int) -> None:
-        """Begins anew. ImportError without cma, ValueError for what ``start_at`` names."""
+        """Restarts with this seed. ImportError without cma, ValueError for unknown names in
+        ``start_at``.
+        """
         cma = needed("cma", "search.CmaEs")
         middle = np.full(len(space), 0.5)
         for name, value in self.start_at.items():
@@ -210,7 +214,7 @@ class CmaEs:
         options = {
             "popsize": n,
             "CMA_mu": parents,
-            # Draws of its own: numpy's global ones are not touched.
+            # A separate generator: NumPy's global one does not change.
             "randn": lambda *shape: draw.standard_normal(shape),
             "seed": np.nan,
             "verbose": -9,
@@ -227,23 +231,23 @@ class CmaEs:
 
     @property
     def why_done(self) -> dict[str, Any]:
-        """cma's criteria that are met, with their values."""
+        """The stopping criteria that are met, with their values."""
         return dict(self._held.stop())
 
     @property
     def mean(self) -> Doubles:
-        """(parameters,) from 0 to 1: the middle of the distribution, cma's ``xfavorite``."""
+        """Mean of the distribution, (parameters,) from 0 to 1: cma's ``xfavorite``."""
         return _folded(np.asarray(self._held.result.xfavorite, np.float64))
 
     def ask(self) -> Doubles:
-        """The next ones, (candidates, parameters)."""
+        """The next generation, (candidates, parameters)."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             self._asked = self._held.ask()
         return _folded(np.array(self._asked, np.float64))
 
     def tell(self, points: Doubles, costs: Doubles) -> None:
-        """What they cost, (candidates,)."""
+        """Sets the costs of the last generation, (candidates,)."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             self._held.tell(self._asked, costs)
@@ -253,11 +257,11 @@ _MARGIN = 0.1  # of the range at each end, in which the folding is bent
 
 
 def _folded(points: Doubles) -> Doubles:
-    """Any numbers as ones from 0 to 1: as they are but for a margin m at each end, which a parabola bends over to
-    twice its width, y = (x + m)^2 / 4 m for -m < x < m; mirrored beyond that.
+    """Folds values into 0 to 1, without changes except in a margin m at each end.
 
-    So points gather at an end that is good, and none is beyond it. cma's own bounds are of this kind, too, but
-    work solution by solution, which takes 0.2 s for 10,000; all at once it is a millisecond.
+    Within -m < x < m the value is y = (x + m)^2 / 4 m; values beyond that are mirrored. Points can
+    therefore gather at an end, and none exceeds it. cma's own bounds are similar, but take 0.2 s
+    for 10,000 points; this function takes a millisecond.
     """
     m = _MARGIN
     turn = 1 + 2 * m  # where it is mirrored again
@@ -268,7 +272,7 @@ def _folded(points: Doubles) -> Doubles:
 
 
 def _unfolded(points: Doubles) -> Doubles:
-    """What is folded to these numbers from 0 to 1; of several the one between the mirrors."""
+    """Inverse of ``_folded``; of several values, the one between the mirrors."""
     m = _MARGIN
     low, high = 2 * np.sqrt(m * points) - m, 1 + m - 2 * np.sqrt(m * (1 - points))
     found: Doubles = np.where(points < m, low, np.where(points > 1 - m, high, points))

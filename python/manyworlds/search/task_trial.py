@@ -21,18 +21,19 @@ from .space import Doubles, Space
 
 
 class TaskTrial(Rounds):
-    """Tries candidates in worlds of a Task. The value is the return of an episode.
+    """Tries candidates in worlds of a Task. The default value is the return of an episode.
 
     task       a Task or its name
     space      the parameters; a parameter with the name of an action is this action in every step
-    objective  function of a Run after the last step; None: ``run.returns``, the sum of rewards until the end
-               of the episode
+    objective  function of a Run after the last step; None: ``run.returns``, the sum of rewards
+               until the end of the episode
     steps      number of steps; None: the task's max_steps
     begin      function of a Run after the reset, when its worlds have their parameters
-    act        function of a Run before each step that returns actions (worlds, actions), for policies whose
-               weights are parameters; ``run.environment.observations`` are their input
+    act        function of a Run before each step that returns actions (worlds, actions), for
+               policies with parameters as weights; ``run.environment.observations`` are their input
 
-    Other arguments are those of Environment. Worlds continue to step after the end of their episode.
+    Other arguments are those of Environment. Worlds continue to step after the end of their
+    episode.
     """
 
     def __init__(

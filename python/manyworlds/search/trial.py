@@ -1,4 +1,4 @@
-"""Candidates as worlds of a scene."""
+"""Trials of candidates in worlds of a scene."""
 
 from __future__ import annotations
 
@@ -21,21 +21,23 @@ from .space import Doubles, Space
 
 
 class Trial(Rounds):
-    """Candidates as worlds of a scene: they begin, step, and an objective says what came of it.
+    """Tries candidates in worlds of a scene. The objective computes their values.
 
-    scene      a Scene, a Plan or a name; what parameters set is declared in a copy of it
+    scene      a Scene, a Plan or a name; a copy gets the variations of the parameters
     space      the parameters
-    objective  of a Run whose worlds have stepped, (worlds,) values or a Score
-    steps      how many; none with ``drive``
-    begin      of a Run whose worlds were reset and have their numbers: whatever else parameters mean
-               (velocities, positions, what is enabled; no forces, which would act in every step)
-    controls   (steps, 1 or worlds, controls), or what gives it of a Run; None: as the scene has them
-    drive      of a Run, instead of ``steps``, ``controls`` and ``fields``: steps ``run.batch`` itself, and
-               returns what ``run.fields`` is to be, a dict of arrays
-    fields     what ``run.fields`` has of every ``every`` steps, as Batch.rollout
-    worlds     at once; None: as many as there are candidates, up to 16,384
+    objective  function of a Run after the last step; returns values (worlds,) or a Score
+    steps      number of steps; not with ``drive``
+    begin      function of a Run after the reset, when its worlds have their parameters. Applies
+               other parameters: velocities, positions, enabled bodies. Not for forces: they would
+               act in every step
+    controls   (steps, 1 or worlds, controls), or a function of a Run that returns them; None: the
+               scene's values
+    drive      function of a Run, instead of ``steps``, ``controls`` and ``fields``. Steps
+               ``run.batch`` and returns ``run.fields``, a dict of arrays
+    fields     fields of ``run.fields``, recorded after every ``every`` steps as in Batch.rollout
+    worlds     number of concurrent worlds; None: the number of candidates, at most 16,384
 
-    The others are Batch's. World i of a generation begins with the seed of its candidate.
+    Other arguments are those of Batch. Each world starts with the seed of its candidate.
     """
 
     def __init__(
@@ -79,7 +81,7 @@ class Trial(Rounds):
             "rays": rays,
             "points": points,
         }
-        self._make(1).close()  # what is wrong is said now
+        self._make(1).close()  # raises errors early
 
     def _make(self, worlds: int) -> Batch:
         return Batch(self._numbers.plan, worlds, **self._batch)  # type: ignore[arg-type]

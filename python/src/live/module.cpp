@@ -64,9 +64,9 @@ NB_MODULE(_live, m) {
            nb::arg("port"), nb::arg("worlds"), nb::arg("max_worlds"), nb::arg("folder"),
            nb::arg("parameters"))
       .def("apply", &HeldLive::apply, nb::arg("steps"),
-           "Carries out what pages asked for; before a call of so many steps.")
-      .def("show", &HeldLive::show, "Shows the worlds as they are.")
-      .def("close", &HeldLive::close, "Ends the server.")
+           "Applies requests of pages before a call of this number of steps.")
+      .def("show", &HeldLive::show, "Sends the current state to pages.")
+      .def("close", &HeldLive::close, "Stops the server.")
       .def_prop_ro("url", [](const HeldLive& self) { return self.live().url(); })
       .def_prop_ro("port", [](const HeldLive& self) { return self.live().port(); })
       .def_prop_ro("pages", [](const HeldLive& self) { return self.live().pages(); });

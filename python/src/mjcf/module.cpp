@@ -38,8 +38,8 @@ MjcfOptions options(const std::vector<std::filesystem::path>& roots,
 
 NB_MODULE(_mjcf, m) {
   m.doc() = "MJCF files. Private: use manyworlds.mjcf.";
-  bind_error<MjcfError>(
-      m, "MjcfError", "What is wrong in an MJCF file, or not simulated: one line for each thing.");
+  bind_error<MjcfError>(m, "MjcfError",
+                        "Errors and unsupported elements of an MJCF file, one per line.");
   m.def(
       "load",
       [](const std::filesystem::path& file, const std::vector<std::filesystem::path>& roots,
@@ -47,7 +47,7 @@ NB_MODULE(_mjcf, m) {
         return loaded([&, with = options(roots, limits)] { return load_mjcf(file, with); });
       },
       nb::arg("file"), nb::arg("roots"), nb::arg("limits"),
-      "The scene of a file, and what acts otherwise than in MuJoCo.");
+      "The scene of a file, and its differences from MuJoCo.");
   m.def(
       "load_string",
       [](nb::object xml, const std::vector<std::filesystem::path>& roots,
@@ -55,7 +55,7 @@ NB_MODULE(_mjcf, m) {
         const std::string text = from_python<std::string>(xml, "xml");
         return loaded([&, with = options(roots, limits)] { return load_mjcf_string(text, with); });
       },
-      nb::arg("xml").none(), nb::arg("roots"), nb::arg("limits"), "The same of a text.");
+      nb::arg("xml").none(), nb::arg("roots"), nb::arg("limits"), "As load, for a text.");
   m.def(
       "limits",
       [] {
@@ -64,7 +64,7 @@ NB_MODULE(_mjcf, m) {
         for (const std::string& name : mjcf_limit_names()) values[name] = mjcf_limit(limits, name);
         return values;
       },
-      "The limits that hold unless others are given.");
+      "The default limits.");
 }
 
 }  // namespace manyworlds::python

@@ -269,7 +269,7 @@ void bind_films(nb::module_& m) {
   m.def("film", &film, nb::arg("page"), nb::arg("file"), nb::arg("width"), nb::arg("height"),
         nb::arg("view"), nb::arg("fps"), nb::arg("speed"), nb::arg("begin"), nb::arg("end"),
         nb::arg("encoder"), nb::call_guard<nb::gil_scoped_release>(),
-        "A film of a page: frames, seconds and bytes of it.");
+        "A film of a page. Returns frames, seconds and bytes.");
 }
 
 void bind_writing(nb::module_& m) {
@@ -339,22 +339,23 @@ void bind_reading(nb::module_& m) {
 NB_MODULE(_record, m) {
   m.doc() = "Recordings, scenes as JSON. Private: use manyworlds.record.";
   bind_error<RecordError>(m, "RecordError",
-                          "A recording that cannot be written, or that is cut, corrupted or none.");
+                          "A recording that cannot be written, or an invalid, truncated or corrupt "
+                          "file.");
   bind_error<FilmError>(m, "FilmError",
-                        "A picture or film that cannot be made: a program is missing or fails.");
+                        "A picture or film failed: a program is missing or failed.");
   bind_writing(m);
   bind_reading(m);
   m.def("page", &page, nb::arg("recordings"), nb::arg("empty"), nb::arg("file").none(),
         nb::arg("title"), nb::arg("worlds"), nb::arg("every"), nb::arg("numbers"),
-        "A page as text, or (worlds, bodies, frames, bytes) of one that was written.");
+        "A page as text, or (worlds, bodies, frames, bytes) of a written page.");
   bind_films(m);
   m.def("unfinished_recordings", &unfinished_recordings, nb::arg("file"),
         nb::call_guard<nb::gil_scoped_release>(),
-        "The part files beside a file that have contents and no writer any more.");
+        "Part files of a file, with data and without a running writer.");
   m.def(
       "scene_to_json",
       [](nb::object scene) { return scene_to_json(from_python<Scene>(scene, "scene")); },
-      nb::arg("scene").none(), "A scene as JSON, every number exactly.");
+      nb::arg("scene").none(), "A scene as JSON, with exact numbers.");
   m.def(
       "scene_from_json",
       [](nb::object json) {

@@ -48,7 +48,7 @@ function picture(c: AccuracyCase): HTMLElement[] {
       y: logScale([...points.map((p) => p.y), c.level], { label: `error, ${c.unit}`, format: powerOfTen, room: HEIGHT, each: 36 }),
       marks: [
         Plot.ruleY([c.level], { stroke: 'var(--bad)', strokeDasharray: '2 3' }),
-        Plot.text([c.level], { y: (x: number) => x, frameAnchor: 'right', dy: -7, text: () => 'asked for', fill: 'var(--bad)' }),
+        Plot.text([c.level], { y: (x: number) => x, frameAnchor: 'right', dy: -7, text: () => 'required', fill: 'var(--bad)' }),
         Plot.line(of('f32'), { ...lines, strokeDasharray: '5 3' }),
         Plot.line(of('f64'), lines),
         Plot.dot(of('f32'), { ...place, r: 3, stroke: (p: Drawn) => color(p.name), fill: 'var(--paper)' }),
@@ -75,7 +75,7 @@ function picture(c: AccuracyCase): HTMLElement[] {
     chart.redraw();
   });
   const exact = own.filter((p) => p.y === 0).length, lost = own.filter((p) => Number.isNaN(p.y)).length;
-  const left = [exact > 0 ? `${counted(exact, 'point')} without any error` : '', lost > 0 ? `${counted(lost, 'point')} of lost worlds` : '']
+  const left = [exact > 0 ? `${counted(exact, 'point')} with error 0` : '', lost > 0 ? `${counted(lost, 'point')} of lost worlds` : '']
     .filter((text) => text !== '');
   return [chart.element, buttons, ...(left.length ? [make('p', { class: 'quiet' }, `Not drawn: ${left.join(', ')}.`)] : [])];
 }
@@ -102,16 +102,16 @@ function allPoints(c: AccuracyCase): HTMLElement {
 
 function published(c: AccuracyCase): HTMLElement | null {
   if (c.published.length === 0) return null;
-  return table(['published', 'step', 'error', 'wall time there'], c.published.map((p) => [
+  return table(['published', 'step', 'error', 'wall time'], c.published.map((p) => [
     p.engine, stepOf(p), p.error === null ? '' : short(p.error), p.seconds === null ? '' : duration(p.seconds)]));
 }
 
 export function accuracyPage(report: Report<AccuracyCase[]>): void {
   const cases = report.results.map((c) => ({ ...c, metric: raised(c.metric), unit: raised(c.unit) }));
   frame(report, 'Error against run time', [make('p', {},
-    'One thread, as many worlds as the registers hold, fastest of up to five runs; the run time is that of the whole simulated time ' +
-    'divided by the worlds. Lines are float64, dashes float32; crosses are what others published, on their machines. A case passes ' +
-    'where some method reaches the error that is asked for.')]);
+    'One thread, one group of lanes, fastest of up to five runs. The run time is that of the whole simulation divided by the number of worlds. ' +
+    'Lines are float64, dashes float32. Crosses are published values, measured on other machines. A case passes if a method reaches the ' +
+    'required error.')]);
   const failed = cases.filter((c) => c.cheapest_at_level.length === 0);
   const points = cases.flatMap((c) => c.points), lost = points.filter((p) => p.error === null).length;
   totals([
@@ -120,7 +120,7 @@ export function accuracyPage(report: Report<AccuracyCase[]>): void {
     { count: String(points.length), label: 'points' },
     { count: String(lost), label: 'points of lost worlds' },
   ]);
-  section('In short', [failuresButton(failed.length), table(['case', 'error asked for', '', 'cheapest method', 'step', 'run time per world'],
+  section('Summary', [failuresButton(failed.length), table(['case', 'required error', '', 'cheapest method', 'step', 'run time per world'],
     cases.map((c) => {
       const [best] = cheapest(c);
       const mark: Cell = { text: best ? 'PASS' : 'FAIL', mark: best !== undefined };

@@ -70,7 +70,7 @@ export function frame(report: Report<unknown>, title: string, text: Child[]): vo
   document.title = `manyworlds: ${title}`;
   element('title').textContent = title;
   const date = report.date ? `, ${report.date.replace('T', ' ').replace('Z', ' UTC')}` : '';
-  element('about').textContent = `${report.machine}${date}${report.quick ? '. The short form (--quick).' : ''}`;
+  element('about').textContent = `${report.machine}${date}${report.quick ? '. Short run (--quick).' : ''}`;
   element('main').append(make('div', { class: 'text' }, text));
   const dark = element<HTMLButtonElement>('dark');
   const setDark = (on: boolean): void => {

@@ -13,12 +13,12 @@ const PAGES: Record<string, (report: Report<any>) => void> = {
 
 const data = document.getElementById('mw-report');
 if (data === null) {
-  element('main').append(make('p', { class: 'fail' }, 'There is no report in this page: `manyworlds report` puts one in.'));
+  element('main').append(make('p', { class: 'fail' }, 'There is no report in this page. Create one with `manyworlds report`.'));
 } else {
   try {
     const report = JSON.parse(data.textContent ?? '') as Report<unknown>;
     PAGES[report.report](report);
   } catch (error) {
-    element('main').append(make('p', { class: 'fail' }, `This report cannot be shown whole, it may be of another version: ${error}`));
+    element('main').append(make('p', { class: 'fail' }, `This report cannot be shown completely. It may be from another version: ${error}`));
   }
 }

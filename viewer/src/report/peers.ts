@@ -1,4 +1,4 @@
-// Other engines beside manyworlds.
+// Comparison with other engines.
 import * as Plot from '@observablehq/plot';
 import type { PeerEngine, PeerErrors, PeerScene, Throughput } from './data';
 import { distinct, make, table, type Cell } from './dom';
@@ -26,7 +26,7 @@ function picture(speeds: Speed[], names: string[]): HTMLElement[] {
   const height = 60 + 30 * scenes.length;
   let hidden = new Set<string>();
   const color = (s: Speed): string => colorOf(names.indexOf(s.name));
-  const chart = figure('Speed beside other engines', height, (width) => {
+  const chart = figure('Speed compared with other engines', height, (width) => {
     const seen = speeds.filter((s) => !hidden.has(s.name));
     const place = { x: 'speed', y: 'scene' };
     return plot(width, height, {
@@ -67,18 +67,18 @@ export function peersSection({ peer_protocol: protocol, peer_means: means, peer_
     { scene: s.scene, name: OWN, speed: s.world_steps_per_s, ratio: null, errors: s },
     ...s.engines.map((e) => ({ scene: s.scene, name: nameOf(e), speed: e.world_steps_per_s, ratio: e.ratio, errors: e }))]);
   const rounds = protocol ? (protocol.rounds === 1 ? 'once' : `median of ${protocol.rounds} rounds`) : '';
-  const said = protocol ? `${protocol.worlds} worlds on one thread, ${protocol.steps} steps of 1/60 s after 60 to warm up, no sleep; by processor time, in turns in one run, ${rounds}. ` : '';
+  const said = protocol ? `${protocol.worlds} worlds on one thread, ${protocol.steps} steps of 1/60 s after 60 warm-up steps, without sleep. Processor time, engines interleaved in one run, ${rounds}. ` : '';
   const visit = protocol?.long_visit ?? 16;
   const mean = means?.ratio ? `manyworlds is ${short(means.ratio)} times as fast as the fastest engine of each scene (geometric mean)` +
-    (means.long_visit ? `, ${short(means.long_visit)} times with ${visit} steps a visit.` : '.') : '';
-  section('Beside other engines', [
+    (means.long_visit ? `, ${short(means.long_visit)} times with ${visit} steps per visit.` : '.') : '';
+  section('Comparison with other engines', [
     mean === '' ? null : make('p', {}, mean),
-    make('p', {}, `${said}World-steps per second with one step of each world in turn, and with ${visit}; how often as fast manyworlds is (median of the rounds, each ` +
-      'against manyworlds right before and after) in parentheses; and the deepest overlap or widest joint gap of all worlds after the last step, found by the ' +
-      'same code from where the bodies of each engine are. Engines below a third of the fastest one take part once.'),
+    make('p', {}, `${said}World-steps per second with one step, and with ${visit} steps, per visit of a world. In parentheses: speed of manyworlds / speed of the ` +
+      'engine, median of rounds with manyworlds before and after. Worst: the deepest overlap or widest joint gap of all worlds after the last step, computed ' +
+      'by the same code from the poses of each engine. Engines slower than a third of the fastest one run once.'),
     failures.map((failure) => make('p', { class: 'fail' }, failure)),
     speeds.length > 0 ? picture(speeds, [OWN, ...engines]) : null,
-    table(['scene', 'engine', 'world-steps', `${visit} a visit`, 'worst, last step'], peers.flatMap((scene) => rowsOf(scene, nameOf))),
+    table(['scene', 'engine', 'world-steps', `${visit} per visit`, 'worst, last step'], peers.flatMap((scene) => rowsOf(scene, nameOf))),
     distinct(peers.flatMap((s) => s.engines.map((e) => `${nameOf(e)}: ${e.settings}.`))).map((note) => make('p', { class: 'quiet' }, note)),
   ], failures.length > 0 ? { tally: { passed: 0, failed: failures.length } } : {});
 }

@@ -167,8 +167,8 @@ export function legend(groups: Series[][], changed: (hidden: Set<string>) => voi
     for (const button of buttons) button.setAttribute('aria-pressed', String(!hidden.has(button.value)));
     changed(hidden);
   };
-  return make('div', { class: 'legend', role: 'group', 'aria-label': 'What is drawn' }, groups.map((group) => group.map(({ name, swatch: mark }) => {
-    const button = make('button', { 'aria-pressed': 'true', value: name, title: 'Click: hide or show. Double click: this alone.' }, mark, name);
+  return make('div', { class: 'legend', role: 'group', 'aria-label': 'Drawn series' }, groups.map((group) => group.map(({ name, swatch: mark }) => {
+    const button = make('button', { 'aria-pressed': 'true', value: name, title: 'Click: hide or show. Double click: show only this.' }, mark, name);
     button.onclick = () => {
       if (!hidden.delete(name)) hidden.add(name);
       show();

@@ -28,7 +28,7 @@ function margins(group: string, verdicts: Verdict[], chosen: () => string): Retu
   const cases = grouped(verdicts, (v) => v.id);
   const height = 62 + ROW * cases.size;
   const titles = new Map([...cases].map(([id, [first]]) => [id, first.title]));
-  return figure(`Values by their limits, ${group}`, height, (width) => {
+  return figure(`Values relative to limits, ${group}`, height, (width) => {
     const own = verdicts.filter((v) => v.setting === chosen());
     const others = verdicts.filter((v) => v.setting !== chosen());
     const color = (v: Verdict): string => (v.passed ? 'var(--good)' : 'var(--bad)');
@@ -111,8 +111,8 @@ export function stabilityPage(report: Report<Verdict[]>): void {
   const settings = distinct(verdicts.map((v) => v.setting));
   const cases = distinct(verdicts.map((v) => v.id));
   frame(report, 'Stiff and extreme cases', [make('p', {},
-    'Each case is run in many worlds that differ a little where the case allows it. The number is that of the worst of them; a world that is lost ' +
-    'fails its case.')]);
+    'Each case runs in many worlds, with small variations if the case allows them. The value is the maximum over the worlds. A lost world fails ' +
+    'its case.')]);
   const failedIn = (setting: string): Verdict[] => verdicts.filter((v) => v.setting === setting && !v.passed);
   const failed = verdicts.filter((v) => !v.passed).length;
   const [usual] = settings;
@@ -124,15 +124,15 @@ export function stabilityPage(report: Report<Verdict[]>): void {
     { count: `${verdicts.length - failed}`, label: `PASS in ${counted(settings.length, 'setting')}`, mark: true },
     { count: `${failed}`, label: `FAIL in ${counted(settings.length, 'setting')}`, mark: failed === 0 },
   ]);
-  section('By setting', [settingsFigure(verdicts, settings), table(['setting', 'PASS', 'FAIL', 'those that fail'], settings.map((setting) => {
+  section('By setting', [settingsFigure(verdicts, settings), table(['setting', 'PASS', 'FAIL', 'failed cases'], settings.map((setting) => {
     const fails = failedIn(setting);
     return [setting, { text: String(cases.length - fails.length), mark: true }, { text: String(fails.length), ...(fails.length > 0 ? { mark: false } : {}) },
       { text: listed(fails.map((v) => v.id)), left: true }];
   }))]);
   const choice = make('select', { id: 'setting' }, settings.map((s) => make('option', {}, s)));
   const groups = grouped(verdicts, groupOf);
-  section('Cases', [make('div', { class: 'row' }, failuresButton(failed), make('label', {}, 'Large in the plots: ', choice)), make('p', { class: 'quiet' },
-    `A dot left of the line at 1 passes. What is beyond ${powerOfTen(EDGE)} times the limit, lost or not finite is drawn at the right edge.`)]);
+  section('Cases', [make('div', { class: 'row' }, failuresButton(failed), make('label', {}, 'Highlighted setting: ', choice)), make('p', { class: 'quiet' },
+    `A dot left of the line at 1 passes. Values above ${powerOfTen(EDGE)} times the limit, lost worlds and non-finite values are drawn at the right edge.`)]);
   const figures = [...groups].map(([group, all]) => {
     const chart = margins(group, all, () => choice.value);
     const own = [...grouped(all, (v) => v.id).values()].map((vs) => vs.some((v) => !v.passed && v.setting === usual));

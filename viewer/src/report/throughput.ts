@@ -79,7 +79,7 @@ function stages(rows: ThroughputRow[]): HTMLElement[] {
   const names = distinct(parts.map((p) => p.stage));
   const color = (stage: string): string => colorOf(names.indexOf(stage));
   const height = 56 + 34 * rows.length;
-  const chart = figure('Where the time goes', height, (width) => plot(width, height, {
+  const chart = figure('Time by stage', height, (width) => plot(width, height, {
     marginLeft: 96, marginRight: 16, marginTop: 4, marginBottom: 40,
     x: { label: 'share of the time', tickFormat: (x: number) => `${Math.round(100 * x)} %`, domain: [0, 1], grid: true, ticks: width < 500 ? 4 : 10 },
     y: { type: 'band', domain: rows.map((r) => r.scene), label: null, tickSize: 0, padding: 0.2 },
@@ -107,9 +107,9 @@ export function throughputPage(report: Report<Throughput>): void {
   const { gflops, gigabytes_per_s, rows, peers, peer_failures: failures } = report.results;
   frame(report, 'Throughput', [make('p', {},
     `One thread of this machine multiplies and adds at ${gflops.toFixed(0)} GFLOP/s (float32) and copies memory at ${gigabytes_per_s.toFixed(0)} GB/s, read and ` +
-    'written. “Of memory” is the share of that which reading and writing the state of each world once a step would take; beyond 100 % it lies in a ' +
-    'cache. Each row is the fastest of three runs or more of the same steps, after 60 to warm up; the hash is that after those. A scene passes where its hash ' +
-    'is the same with any number of threads, and, in each precision, on every instruction set.')]);
+    'written. “Of memory” is the share of this bandwidth for one read and one write of the state per step; above 100 % the state is in a cache. ' +
+    'Each row is the fastest of at least three runs of the same steps, after 60 warm-up steps. The hash is that after these steps. A scene passes if its ' +
+    'hash is equal with any number of threads and, in each precision, on every instruction set.')]);
   const groups = [...sameWorlds(rows).values()];
   const isSame = (all: ThroughputRow[]): boolean => new Set(all.map((r) => r.hash)).size === 1;
   const wrong = new Set(groups.filter((all) => !isSame(all)).flat());
@@ -119,7 +119,7 @@ export function throughputPage(report: Report<Throughput>): void {
     { count: String(same), label: 'PASS: same bits', mark: true },
     { count: String(groups.length - same), label: 'FAIL: different bits', mark: groups.length === same },
     ...(peers ? [{ count: String(broken), label: 'FAIL: other engines', mark: broken === 0 }] : []),
-    ...(best ? [{ count: perSecond(best.body_steps_per_s), label: `body-steps at most (${best.scene})` }] : []),
+    ...(best ? [{ count: perSecond(best.body_steps_per_s), label: `maximum body-steps (${best.scene})` }] : []),
   ]);
   const choice = make('select', { id: 'metric' }, METRICS.map(({ name }) => make('option', {}, name)));
   const metric = (): Metric => METRICS[Math.max(0, choice.selectedIndex)];
@@ -132,7 +132,7 @@ export function throughputPage(report: Report<Throughput>): void {
     const split = all.filter((r) => Object.keys(r.stage_split).length > 0);
     section(`By ${sweep}`, [chart.element, chart.legend,
       rowsTable(sweep, all, own.length > 0 ? wrong : null),
-      split.length > 0 ? [make('h3', {}, `Where the time goes, ${split[0].worlds} worlds`), stages(split)] : null,
+      split.length > 0 ? [make('h3', {}, `Time by stage, ${split[0].worlds} worlds`), stages(split)] : null,
     ], judged);
     return chart;
   });
