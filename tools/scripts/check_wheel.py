@@ -27,6 +27,7 @@ def problems(path):
     # Ours lie in the package, each once; others in manyworlds_sim.libs.
     for wanted in (
         "libmanyworlds.so",
+        "libmanyworlds_live.so",
         "libmanyworlds_record.so",
         "viewer.html",
         "report.html",
