@@ -1,7 +1,7 @@
 // Batch: N worlds of one or several Plans, and the step.
 //
 // One SIMD lane holds one world; groups of worlds spread over threads. A world's bits after n
-// steps depend on its Plan, its initial state and its inputs, on nothing else: not on its lane,
+// steps depend only on its Plan, its initial state and its inputs. They do not depend on its lane,
 // the batch size, the thread count, the contact layout or the instruction set
 // (docs/determinism.md).
 //
@@ -26,20 +26,20 @@
 
 namespace manyworlds {
 
-// Asked now and then by a call that takes long, on its thread: false ends the call early. An
-// exception ends it in the same state as false does (steps() counts the steps taken) and reaches
-// the caller. Must not use what it is asked by. Empty: nothing is asked.
+// Polled during long calls, on their thread; returning false ends the call early. An exception
+// also ends the call, in the same state (steps() counts the steps taken), and reaches the caller.
+// The function must not use the object whose call polls it. Empty: no polling.
 using GoOn = std::function<bool()>;
 
 class Batch {
  public:
-  // Throws std::invalid_argument for options that make no sense (worlds < 1, threads not 0 to
-  // kMaxThreads or given beside an executor, an ISA that is not available, a value that an
-  // enumeration does not have), and for worlds that need more memory than the machine has; it says
-  // how much that is. Throws std::system_error where options.threads cannot be started.
+  // Throws std::invalid_argument for invalid options: worlds < 1, threads not within 0 to
+  // kMaxThreads or set together with an executor, an ISA that is not available, a value that is
+  // not of its enumeration. Also if the worlds need more memory than the machine has; the message
+  // states how much. Throws std::system_error if options.threads cannot be started.
   explicit Batch(Plan plan, const BatchOptions& options = {});
 
-  // Several kinds of world: `worlds` of each plan, in this order. options.worlds is ignored.
+  // Worlds of several plans: `worlds` of each, in this order. options.worlds is ignored.
   // Plans must be all planar or all spatial.
   struct Kind {
     Plan plan;
@@ -55,7 +55,7 @@ class Batch {
   int worlds() const;
   int kinds() const;
   const Plan& plan(int kind = 0) const;
-  // As those of the kind's Plan: the one of a name, and where a body is in arrays [body].
+  // The methods of plan(kind): items by name, and the row of a body in arrays [body].
   BodyId body(std::string_view name, int kind = 0) const { return plan(kind).body(name); }
   ShapeId shape(std::string_view name, int kind = 0) const { return plan(kind).shape(name); }
   JointId joint(std::string_view name, int kind = 0) const { return plan(kind).joint(name); }
@@ -68,12 +68,12 @@ class Batch {
   int row(BodyId body, int kind = 0) const { return plan(kind).row(body); }
   BodyId body_in_row(int row, int kind = 0) const { return plan(kind).body_in_row(row); }
   int kind_of(int world) const;
-  int bodies(int world = 0) const;  // that have a state (rows of arrays)
+  int bodies(int world = 0) const;  // with a state (rows of arrays)
   int threads() const;
   Isa isa() const;
   Precision precision() const;
   std::uint64_t seed() const;              // BatchOptions::seed
-  std::uint64_t seed_of(int world) const;  // seed() + world, or what a reset gave it
+  std::uint64_t seed_of(int world) const;  // seed() + world, or set by a reset
   int lanes() const;
   std::string kernel_table() const;     // "avx2 f32 x8"
   std::size_t bytes_per_world() const;  // persistent state, mean over worlds
@@ -81,21 +81,21 @@ class Batch {
 
   // ---- Stepping
 
-  // Allocates nothing, throws nothing (after the constructor, reset and the first force call), but
-  // std::invalid_argument for n < 0, a clock that is not finite, or max_steps < 0. The calls return
-  // how many steps were taken: n, unless `go_on`, which is asked between steps some 15 times a
-  // second, ends the call: for hosts that must stay responsive. The bits are those of one call of
-  // so many steps, and so is what inputs, observers and listeners see of it.
+  // Steps all worlds n times and returns the number of steps taken. `go_on` is polled between
+  // steps about 15 times a second, for hosts that must stay responsive. If it ends the call early,
+  // states, inputs, observers and listeners are as after a call with that number of steps.
+  // Allocates nothing after the constructor, reset and the first force call. Throws only
+  // std::invalid_argument, for n < 0, a clock that is not finite, or max_steps < 0.
   int step(int n = 1, const GoOn& go_on = {});
-  // Steps the worlds of a mask alone (one byte per world, nonzero = step): the same bits as a step
-  // of all would give them. The others keep their state, their forces and what was last observed
-  // of them; time() and steps() are of steps of all and stay. Groups of lanes without a world of
-  // the mask cost nothing, one with some as much as a whole one. The first such call allocates.
-  // Recordings keep the state that each comes to, and do not simulate it again.
+  // Steps only the worlds of a mask (one byte per world, nonzero = step), with the same bits as a
+  // step of all worlds. The other worlds keep their state, forces and observations. time() and
+  // steps() count steps of all worlds and do not change. A group of lanes costs nothing if the
+  // mask has none of its worlds, else as much as a full group. The first such call allocates.
+  // Recordings store the resulting states and do not simulate these steps again.
   int step(std::span<const std::uint8_t> mask, int n = 1, const GoOn& go_on = {});
-  // Runs whole steps until the simulated time reaches `clock` s (never past it, up to half a
-  // rounding step) and returns how many. `max_steps` keeps a stalled host from spiralling: time
-  // beyond it is dropped, but what `go_on` ended is still due. For real-time hosts.
+  // For real-time hosts: runs whole steps until the simulated time reaches `clock` s (never past
+  // it, up to half a rounding step) and returns their number. Time beyond `max_steps` steps is
+  // dropped, so that a stalled host can catch up. Time that `go_on` cut off remains due.
   int step_to(double clock, int max_steps = 8, const GoOn& go_on = {});
   double time() const;         // s, simulated since construction or reset of the whole batch
   std::int64_t steps() const;  // taken since construction or reset of the whole batch
@@ -110,73 +110,72 @@ class Batch {
   void read(Field field, int world, std::span<double> out) const;
   void write(Field field, int world, std::span<const double> in);
 
-  // In place, without a copy. Here lie centres of mass, not bodies' origins, and principal axes,
-  // not bodies' own (read() converts). Writing here neither wakes a world nor
-  // clears its impulses, and no listener is notified. Lanes after the last world are unused. The
-  // pointer is valid until the Batch is destroyed.
+  // In place, without a copy. Positions are of centres of mass and orientations of principal axes,
+  // not of the bodies' frames (read() converts). Writing here neither wakes a world nor clears its
+  // impulses, and notifies no listener. Lanes after the last world are unused. The pointer is valid
+  // until the Batch is destroyed.
   LaneBlocks lane_blocks(Field field, int kind = 0);
-  // Where a world lives in the blocks of its kind: with this index i, lane i % lanes of group
-  // i / lanes. With sleep, steps may move it.
+  // Index i of a world in the lane blocks of its kind: lane i % lanes of group i / lanes. With
+  // sleep, steps may change it.
   int lane_index(int world) const;
 
-  // Bodies that come and go. A disabled body takes no part in the step: nothing touches it, it
-  // keeps its state, and the others have the bits that they would have without it. It costs nothing
-  // where it is disabled in all worlds of a group. The first call allocates.
+  // Disables or enables a body. A disabled body has no contacts and keeps its state; the other
+  // bodies have the same bits as without it. It costs nothing if it is disabled in all worlds of a
+  // group. The first call allocates.
   void set_enabled(int world, BodyId body, bool enabled);
   bool enabled(int world, BodyId body) const;                  // true for fixed bodies
   void spawn(int world, BodyId body, const BodyState& state);  // enabled, with this state
 
-  // Joints that come and go. A disabled joint, or one that broke, holds nothing; enabling it
-  // mends it. Its bodies should then satisfy it: what is apart is drawn together.
-  // Both bodies wake. The first call allocates.
+  // Disables or enables a joint. A disabled or broken joint exerts no impulse; enabling it repairs
+  // it. Its bodies should then satisfy it, since an error is corrected within few steps. Both
+  // bodies wake. The first call allocates.
   void set_joint_enabled(int world, JointId joint, bool enabled);
   bool joint_enabled(int world, JointId joint) const;
 
-  // Sleep (BatchOptions::sleep). A body wakes in the very step in which an awake one comes near
-  // it, and at once by a force, an impulse, a written state, or when a body that it slept with is
-  // disabled. Sleeping changes nothing that awake bodies compute.
+  // Sleep (BatchOptions::sleep). A body wakes in the step in which an awake body comes near it. It
+  // wakes at once by a force, an impulse, a written state, or if a body of its island is disabled.
+  // Sleeping bodies do not change the bits of awake ones.
   bool sleeps() const;                        // BatchOptions::sleep
   bool asleep(int world, BodyId body) const;  // false for kinematic and fixed bodies
-  bool asleep(int world) const;               // nothing in it moves: it costs nothing
+  bool asleep(int world) const;               // nothing moves; the world costs nothing
   void wake(int world);
   double awake_fraction() const;     // of worlds
-  std::int64_t group_steps() const;  // executed since construction: what a step costs
+  std::int64_t group_steps() const;  // executed since construction; measures the cost
 
   // Reset: initial state with a new draw of the scene's jitter. mask has one byte per world,
-  // nonzero = reset. An episode counter per world makes each draw new; reset() of all restarts
-  // the counters, the clock and the step count, so it repeats the first draw exactly.
+  // nonzero = reset. A counter of episodes per world makes each draw new. reset() of all worlds
+  // restarts the counters, the clock and the step count, so it repeats the first draw exactly.
   void reset();                                    // repeats
-  void reset(std::span<const std::uint8_t> mask);  // draws anew: all ones for every world
-  // The first episode of other seeds, one per world; those of worlds that are not reset are
-  // ignored. World i of a batch of seed s has the seed s + i until then. With the seeds that worlds
-  // have (seed_of()) it repeats their first episode.
+  void reset(std::span<const std::uint8_t> mask);  // new draws; all ones: every world
+  // Starts the first episode of new seeds, one per world; seeds of worlds that are not reset are
+  // ignored. By default world i has the seed BatchOptions::seed + i. The current seeds (seed_of())
+  // repeat the first episode.
   void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds);
-  // To a keyframe of the scenes, by its index in each: as the resets above, and what the keyframe
-  // gives instead of what they draw. Where the scene of a world that is reset has no such keyframe
-  // they throw std::invalid_argument and reset nothing.
+  // Reset to a keyframe, by its index in each scene. Values of the keyframe replace drawn ones.
+  // If the scene of a world that is reset has no such keyframe, the call throws
+  // std::invalid_argument and resets nothing.
   void reset(KeyframeId keyframe);
   void reset(std::span<const std::uint8_t> mask, KeyframeId keyframe);
-  // What every reset from now on gives a field, instead of the scene's value and its jitter:
-  // canonical, as write(). Empty: the scene's again. Resets nothing by itself.
+  // Sets the values that later resets give a field, instead of the scene's value and jitter. Layout
+  // as write(). Empty restores the scene's values. Does not reset.
   void set_initial(Field field, std::span<const double> in);
 
   // ---- Inputs
 
   // Forces and torques (world frame, N, N m; planar torque in z) act on the centre of mass during
-  // the next step() call, all its steps, and are cleared after it. Impulses (N s, N m s) change
-  // velocities at once. Kinematic bodies ignore them, fixed ones are refused.
+  // all steps of the next step() call and are then cleared. Impulses (N s, N m s) change
+  // velocities at once. Kinematic bodies ignore them; fixed bodies throw std::invalid_argument.
   void add_force(int world, BodyId body, const Vec3& force);
   void add_torque(int world, BodyId body, const Vec3& torque);
   void add_force_at(int world, BodyId body, const Vec3& force, const Vec3& point_world);
   void add_impulse(int world, BodyId body, const Vec3& impulse);
   void add_angular_impulse(int world, BodyId body, const Vec3& impulse);
   void add_impulse_at(int world, BodyId body, const Vec3& impulse, const Vec3& point_world);
-  bool forces_pending() const;  // some were added since the last step() call
+  bool forces_pending() const;  // forces were added since the last step() call
 
-  // Controls (Scene::controls), [world][control]. They act in every step until they are set
-  // anew; beyond its range a value counts as the end of the range, and one that is not a number
-  // freezes its world (Status::non_finite). A world whose controls change wakes. Buffers of the
-  // wrong size throw.
+  // Controls (Scene::controls), [world][control]. They act in every step until they are set again.
+  // Values are clamped to their range; a NaN freezes its world (Status::non_finite). A world whose
+  // controls change wakes. Buffers of the wrong size throw std::invalid_argument.
   int controls(int world = 0) const;
   void set_controls(ConstReals in);
   void set_controls(int world, std::span<const double> in);
@@ -184,12 +183,12 @@ class Batch {
 
   // ---- Parameters
 
-  // Numbers of the scene that differ from world to world (Scene::variations), in double and in
+  // Parameters of the scene that may vary from world to world (Scene::variations), in double and
   // canonical order: [world][shape of the scene], [world][body], [world][joint of the scene],
-  // [world][control] or [world], times info(parameter).numbers. What follows from them (inertia,
-  // centre of mass, bounds) is derived anew; a world that is written wakes. Everything can be read.
-  // Numbers outside of their declared range, and those of what does not vary that are not what
-  // read() gives, throw std::invalid_argument and change nothing.
+  // [world][control] or [world], times info(parameter).numbers. Derived values (inertia, centre of
+  // mass, bounds) are computed again, and a written world wakes. All parameters can be read.
+  // Writing a value outside its declared range throws std::invalid_argument and changes nothing; so
+  // does writing a new value to an item that does not vary.
   std::size_t size(Parameter parameter) const;
   void read(Parameter parameter, std::span<double> out) const;
   void write(Parameter parameter, std::span<const double> in);
@@ -198,36 +197,35 @@ class Batch {
 
   // ---- Observers
 
-  // BatchOptions::observe says which there are. As of the last step of the last step() call, in
-  // canonical order. A frozen world has no contacts. A pair that is asleep reports where it touches
-  // now, and as impulses what it will wake with, times the substeps. Reading what is not observed
-  // throws std::invalid_argument.
+  // The observers of BatchOptions::observe, after the last step of the last step() call, in
+  // canonical order. A frozen world has no contacts. A sleeping pair reports its current contact
+  // points and the impulses with which it will wake, times the number of substeps. Reading an
+  // observer that was not requested throws std::invalid_argument.
   std::size_t size(Observed what) const;
   void read(Observed what, Reals out) const;
   void read(Observed what, int world, std::span<double> out) const;
   std::vector<StepContact> step_contacts(int world) const;
-  bool touching(int world, BodyId body) const;  // a contact acted on it; not of fixed bodies
-  // A contact acted between these two; of those that Observer::contacts had room for.
+  bool touching(int world, BodyId body) const;  // a contact acted on it; not for fixed bodies
+  // A contact acted between these bodies, among those that Observer::contacts stored.
   bool touching(int world, BodyId body_a, BodyId body_b) const;
   std::vector<RayHit> ray_hits(int world) const;
-  // As many as the batch was made with. Of one world, only origin, direction and length change.
+  // The number of rays is fixed. For one world, only origin, direction and length may change.
   void set_rays(std::span<const Ray> rays);
   void set_rays(int world, std::span<const Ray> rays);
-  // What observers see of states (observed.hpp), at the current one, without a step: after a reset,
-  // say.
+  // Updates the observers of states (observed.hpp) without a step, for example after a reset.
   void look();
 
   // ---- Snapshots
 
-  // A restored world goes on bit by bit as the saved one did, whatever the batch: its size,
-  // threads, seed, instruction set or place. A restore of all worlds brings their seeds and
-  // episodes, too, so that later resets draw what they would have drawn. Plans must have the same
-  // fingerprint and the batch the same precision; throws SnapshotError otherwise and changes
+  // A restored world continues with the bits of the saved world. Batch size, threads, seed,
+  // instruction set and the index of the world may differ. Restoring all worlds also restores their
+  // seeds and episodes, so that later resets repeat the original draws. Plans must have the same
+  // fingerprint and batches the same precision; otherwise the call throws SnapshotError and changes
   // nothing.
   Snapshot save() const;                                     // all worlds, clock, steps
-  Snapshot save(std::span<const int> worlds) const;          // these, in this order
-  void restore(const Snapshot& snapshot);                    // of as many worlds as the batch has
-  void restore(const Snapshot& snapshot, int from, int to);  // world `from` of it into world `to`
+  Snapshot save(std::span<const int> worlds) const;          // these worlds, in this order
+  void restore(const Snapshot& snapshot);                    // with as many worlds as the batch
+  void restore(const Snapshot& snapshot, int from, int to);  // its world `from` into world `to`
   void copy_world(int from, int to);
 
   // ---- Results
@@ -236,16 +234,16 @@ class Batch {
   int lost_worlds() const;
   std::uint64_t hash(int world) const;  // of the state fields in canonical order
   std::uint64_t hash() const;           // of all worlds' hashes in order
-  Energy energy(int world) const;       // without what springs of joints hold
-  // Both run the collision stages once more on the current state: not for hot loops.
+  Energy energy(int world) const;       // without springs of joints
+  // Both run the collision stages again on the current state, so they cost a part of a step.
   std::vector<Contact> contacts(int world) const;
-  ContactSummary measure_contacts(const GoOn& go_on = {}) const;  // nothing where it ended early
+  ContactSummary measure_contacts(const GoOn& go_on = {}) const;  // empty if go_on ends it
   // Time spent per stage since the last call, summed over threads; empty until profile(true).
   void profile(bool on);
   std::vector<StageTime> take_stage_times();
 
-  // Tells `listener` of every input and every step() call from now on, for as long as
-  // another owner holds it. What it does then is no part of the promises of step().
+  // Notifies `listener` of every input and every step() call from now on, as long as
+  // another owner holds it. It may allocate and throw, unlike step().
   void listen(std::weak_ptr<BatchListener> listener);
 
  private:

@@ -31,7 +31,7 @@ class Snapshot {
   double time() const;                                // s, time simulated by the batch
   std::size_t size() const { return bytes_.size(); }  // bytes
 
-  // Writes a file beside `file` and renames it, so that a partial file is never read.
+  // Writes a file next to `file` and renames it, so that a partial file is never read.
   // Throws SnapshotError.
   void save(const std::filesystem::path& file) const;
   // Throws SnapshotError when the file cannot be read, is cut, corrupted or something else: a

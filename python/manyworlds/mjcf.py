@@ -1,9 +1,9 @@
 """Scenes from MJCF, MuJoCo's model format: ``manyworlds.mjcf.load("pile.xml")``.
 
-MuJoCo's library reads the file; ``pip install "manyworlds-sim[mjcf]"`` installs it. Supported are
-free bodies, static geoms, and the equality constraints connect and weld. Geoms are spheres,
-capsules, cylinders, boxes, meshes (as convex hulls), planes and height fields. Other elements that
-change the motion, such as hinges and slides, raise an error that names them.
+MuJoCo's library compiles the model; ``pip install "manyworlds-sim[mjcf]"`` installs it. Robots with
+hinges, slides, ball and free joints, actuators and fixed tendons become scenes for
+the solver ``newton``. Models with free joints only use the default solver. An element that changes the
+motion and is not supported raises an error that names it (docs/robots.md).
 
 A model is read into memory and checked before MuJoCo reads it. It may read files only from its own
 folder and from ``roots``, within ``limits``. An error names the exceeded limit:
