@@ -127,8 +127,8 @@ class Batch {
   void spawn(int world, BodyId body, const BodyState& state);  // enabled, with this state
 
   // Disables or enables a joint. A disabled or broken joint exerts no impulse; enabling it repairs
-  // it. Its bodies should then satisfy it, since an error is corrected within few steps. Both
-  // bodies wake. The first call allocates.
+  // it. Its bodies should then satisfy it, since it closes gaps (JointOptions). Both bodies wake.
+  // The first call allocates.
   void set_joint_enabled(int world, JointId joint, bool enabled);
   bool joint_enabled(int world, JointId joint) const;
 

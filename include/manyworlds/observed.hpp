@@ -108,8 +108,8 @@ namespace manyworlds {
 // Accelerations are the change of velocity in the last step of a call, divided by dt. They are 0
 // for bodies that are asleep, disabled, kinematic or frozen, and after look() without a step.
 // Proper acceleration subtracts the acceleration of gravity (with gravity scale and attractors) and
-// is in body axes, as MuJoCo's accelerometer. Gravity is 0 for kinematic bodies. It is 0 for bodies
-// that are disabled or frozen.
+// is in body axes, as MuJoCo's accelerometer. It counts no gravity for kinematic bodies. Proper
+// acceleration is 0 for bodies that are disabled or frozen.
 //
 // With Solver::newton, values of links, dofs, drives and tendons are those of the last force
 // computation: at the start of the last substep (Runge-Kutta: its last stage). They are one substep

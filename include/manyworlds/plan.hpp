@@ -133,8 +133,8 @@ class Plan {
   // another order (ItemKind::coordinate).
   int first_coordinate(JointId joint) const;
   bool has(Feature feature) const;
-  // Snapshots fit all plans with an equal fingerprint. It covers everything but names and initial
-  // values.
+  // Snapshots fit all plans with an equal fingerprint. It omits names, initial values and what is
+  // for observation only.
   std::uint64_t fingerprint() const;
   PlanReport report() const;
   const PlanData& data() const { return *data_; }

@@ -78,7 +78,7 @@ struct Body {
 
 // A point that attracts every dynamic body with the acceleration
 //   Body::gravity_scale strength d / (d^2 + softening^2)^(3/2),
-// where d is the vector from the body's centre of mass to the point.  A negative strength repels. A
+// where d is the vector from the body's centre of mass to the point. A negative strength repels. A
 // planet of mass M has strength G M (Newton).
 struct Attractor {
   Vec3 position = Vec3::Zero();  // m, world

@@ -38,7 +38,7 @@ class Batch(Fields, Inputs, Results, InMemory):
     precision    precision of the state: "f32" or "f64"
     seed         world i draws from seed + i; 0 to 2**64 - 1
     isa          "scalar", "avx2", "avx512"; None: the environment variable MANYWORLDS_ISA, or the
-                 widest instruction set of the CPU
+                 widest that is available
     layout       layout of contacts: "automatic", "dense", "rows". Results are bitwise equal
     sleep        True: bodies at rest fall asleep, which saves most of their cost
     observe      observers: "motion", "contacts", ...; ``enumerations()`` lists all, and

@@ -33,9 +33,9 @@ class Environment(WithLevels, WithResults, WithSnapshots, InMemory):
     task         a Task or its name (``tasks.names()``)
     worlds       number of worlds
     threads      number of threads; None: all that the process may use
-    seed         world i draws from seed + i
+    seed         world i draws from seed + i; 0 to 2**64 - 1
     precision    precision of the worlds and of expressions: "f32" or "f64"
-    isa          "scalar", "avx2", "avx512"; None: the widest of the CPU
+    isa          "scalar", "avx2", "avx512"; None: as in Batch
     autoreset    the treatment of a world after the end of its episode. "next_step": the next step
                  resets it instead of stepping it, with reward 0 and no end. "same_step": the step
                  that ends the episode also resets the world, and ``final_observations`` has the

@@ -24,8 +24,8 @@ def delayed(value: Value, steps: Value, max_steps: Optional[int] = None) -> Expr
     ago, or 0 if there was none. ``steps`` may be an expression, such as a random number of the
     episode. It is rounded down and clamped to 0 and ``max_steps``; NaN counts as ``max_steps``.
 
-    Each world stores ``max_steps`` values. Raises ValueError for other numbers of steps, TypeError
-    for an expression without ``max_steps``.
+    Each world stores ``steps`` values, or ``max_steps`` for an expression. Raises ValueError for
+    other numbers of steps, TypeError for an expression without ``max_steps``.
     """
     if max_steps is not None:
         return _x.delayed_by(value, steps, arrays.integer(max_steps, "max_steps", 0, _MAX_DELAY))

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from . import _core, bodies, environment, fields, joints, options, plan, scene, shapes, tasks
 
-FORMAT = 1  # format of the contents, for readers of this version
+FORMAT = 1  # of the contents; changes when this module can no longer read older ones
 
 Members = dict[str, Any]
 Reduced = tuple[Callable[..., Any], tuple[Any, ...]]

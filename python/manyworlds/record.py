@@ -80,7 +80,7 @@ class Recorder(InMemory):
 
     The batch reports all inputs to the recorder, so other code needs no change. Steps of some
     worlds (``ids``) are recorded as their final states. The recorder is a context manager, which
-    closes it, also after an exception. Without ``close`` no file remains.
+    closes it, also after an exception. Without ``close`` no file remains, except after a crash.
 
     Raises RecordError, a ValueError, if the file cannot be written; ``close`` raises it for
     failures during steps. Raises ValueError if forces are pending for the next step, or if contacts
@@ -235,7 +235,7 @@ class Recording(InMemory):
 
     @property
     def kinds(self) -> int:
-        """Number of groups of worlds; each has one scene. Batches created in Python have one."""
+        """Number of groups of worlds; each has one scene."""
         return self._held.kinds
 
     @property

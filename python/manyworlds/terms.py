@@ -86,7 +86,7 @@ class Terms:
         return _x.direction(self._index("body", body), self._axis(of), self._axis(axis))
 
     def joint_position(self, joint: JointRef, coordinate: int = 0) -> Expression:
-        """Joint coordinate relative to its initial value, m or rad."""
+        """Coordinate of a joint, m or rad; each type of joint has others (docs/observers.md)."""
         return _x.observed("joint_position", self._index("joint", joint), coordinate)
 
     def joint_speed(self, joint: JointRef, coordinate: int = 0) -> Expression:
@@ -98,7 +98,10 @@ class Terms:
         return _x.observed("touching", self._index("body", body), 0)
 
     def linear_acceleration(self, body: BodyRef, axis: Axis) -> Expression:
-        """Acceleration of the centre of mass in the last physics step, m/s^2; with impacts."""
+        """Acceleration of the centre of mass in the last physics step, m/s^2, world frame.
+
+        Includes impacts.
+        """
         return _x.observed("linear_acceleration", self._index("body", body), self._axis(axis))
 
     def angular_acceleration(self, body: BodyRef, axis: Axis = 2) -> Expression:

@@ -49,7 +49,7 @@ WRONG = [
     (lambda b: b.set("position", np.zeros((5, 5, 3))), ValueError, r"\(5, 5, 3\); expected"),
     (lambda b: b.set("position", [1, 2, 3]), ValueError, r"shape \(3,\); expected"),
     (lambda b: b.set("position", "abc"), TypeError, "expected real numbers"),
-    (lambda b: b.set("position", [[1], [1, 2]]), ValueError, "position is no array"),
+    (lambda b: b.set("position", [[1], [1, 2]]), ValueError, "position is not an array"),
     (lambda b: b.set("position", np.zeros((5, 5, 2), complex)), TypeError, "complex128"),
     (lambda b: b.set("position", np.full((5, 5, 2), None)), TypeError, "dtype object"),
     (lambda b: b.set("penetration", np.zeros((5, 1, 1))), ValueError, "not observed"),

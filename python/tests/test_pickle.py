@@ -173,7 +173,7 @@ def test_other_versions_and_changed_bytes_are_refused():
         value(1, "9.1", "Box", [1])
     with pytest.raises(UnpicklingError, match="it has 0 roots"):
         pickling.restore_expression(1, "9.1", [], [])
-    with pytest.raises(UnpicklingError, match="the pickle of a Field is not whole"):
+    with pytest.raises(UnpicklingError, match="the pickle of a Field is incomplete"):
         value(1, "9.1", "Field", {"name": "x"})
     assert value(1, "0.1", "Box", {}) == mw.Box()  # what it did not have yet has its default
     plan = scene.compile()

@@ -191,7 +191,7 @@ def test_tasks_are_searched_by_their_actions():
         total += going * rewards
         going &= ~(terminated | truncated)
     assert (columns["value"] == total).all() and (columns["hash"] == env.batch.hashes()).all()
-    with pytest.raises(ValueError, match="the task's actions 'steepness' are no parameters"):
+    with pytest.raises(ValueError, match="the task's actions 'steepness' are not parameters"):
         search.TaskTrial(task, Space(Parameter("strength", 0, 1)))
     with pytest.raises(ValueError, match="parameters 'idle' are not actions of the task"):
         search.TaskTrial(task, Space(*space.parameters, Parameter("idle", 0, 1)))

@@ -59,8 +59,8 @@ class Rollouts(InMemory):
 
     Worlds of a dead or hung actor continue from the last saved state, or from the start if that was
     lost with its node. Results are bitwise equal. An exception of a policy is raised here; the
-    worlds then stay as they are, and ``closed`` is True. Not thread-safe. Raises ValueError,
-    TypeError, TaskError, SceneError, ShardError.
+    shards may then have stopped at different steps, and ``closed`` is True. Not thread-safe.
+    Raises ValueError, TypeError, TaskError, SceneError, ShardError.
     """
 
     _instead = "pickle its task or scene and the arguments that it was made with"

@@ -11,8 +11,8 @@
     found.run(20, on_generation=print)
     mw.show(found.record("best.h5"))
 
-docs/search.md has examples. CmaEs requires the package cma, Sobol SciPy, tables pyarrow: ``pip
-install "manyworlds-sim[search]"``.
+docs/search.md has examples. CmaEs requires the package cma, Sobol SciPy, tables pyarrow:
+``pip install "manyworlds-sim[search]"``.
 """
 
 from .loop import Asked, Search

@@ -86,7 +86,7 @@ class Results:
 
     generation, candidate  int32
     parameters, by name    float64; int64 for integers
-    value, violation       float64; value is null if the world was lost or the value is not finite
+    value, violation       float64; value is null if the world was lost or the value is NaN
     cost                   float64, as passed to the strategy
     status                 "ok", "infeasible", "lost", "not_finite"
     seed, hash             uint64
