@@ -69,6 +69,8 @@ foreach(isa IN LISTS MW_ISAS)
       -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti
       ${mw_flags_${isa}} ${mw_moves_${isa}} ${mw_quiet_${isa}} ${mw_scopes_${isa}}
       ${optimization} ${mw_search}
+      # No exception passes through a kernel; debuggers have tables of their own where there is -g.
+      $<$<CONFIG:Release>:-fno-asynchronous-unwind-tables>
       # Full debug information doubles the time to compile a kernel; line numbers are free.
       $<$<CONFIG:RelWithDebInfo>:-g1>)
     target_include_directories(mw_kernels_${name} PRIVATE "${PROJECT_SOURCE_DIR}"

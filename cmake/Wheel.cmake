@@ -20,8 +20,10 @@ set(mw_wheel_dir "${PROJECT_BINARY_DIR}/wheel")
 function(mw_wheel_target target folder rpath)
   set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON INSTALL_RPATH "${rpath}"
     RUNTIME_OUTPUT_DIRECTORY "${mw_wheel_dir}/${folder}" LIBRARY_OUTPUT_DIRECTORY "${mw_wheel_dir}/${folder}")
-  # Thread functions of glibc 2.34 remain (Debian's TBB has them, too); without those of 2.35 systems with 2.34 do.
-  target_sources(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tools/program/glibc_2_34.cpp")
+  target_sources(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tools/program/older_symbols.cpp")
+  if(NOT target STREQUAL "manyworlds_mjcf_shared")  # which needs what the program or Python has of MuJoCo
+    target_link_options(${target} PRIVATE -Wl,-z,defs)
+  endif()
   add_dependencies(mw_wheel ${target})
   install(TARGETS ${target} COMPONENT wheel EXCLUDE_FROM_ALL
           RUNTIME DESTINATION "wheel/${folder}" LIBRARY DESTINATION "wheel/${folder}")
@@ -54,6 +56,19 @@ target_link_options(manyworlds_wheel PRIVATE -Wl,-Bsymbolic-functions)
 mw_interface(manyworlds_wheel)
 mw_wheel_target(manyworlds_wheel . "$ORIGIN")
 
+# mw_wheel_component(NAME LIBRARY...): the archive of a component as a shared library, for the program and for
+# the module _NAME.
+function(mw_wheel_component name)
+  set(target manyworlds_${name}_shared)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/${target}.cpp" CONTENT "")
+  add_library(${target} SHARED "${PROJECT_BINARY_DIR}/${target}.cpp")
+  target_link_libraries(${target} PRIVATE
+    -Wl,--whole-archive "$<TARGET_FILE:manyworlds_${name}>" -Wl,--no-whole-archive manyworlds_wheel ${ARGN})
+  add_dependencies(${target} manyworlds_${name})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME manyworlds_${name})
+  mw_wheel_target(${target} . "$ORIGIN")
+endfunction()
+
 # Recordings, for the program and for the module _record. HDF5's headers have to be those of the library
 # that is linked, so src/record is compiled again for another HDF5. Its symbols are hidden: a process
 # may also have the HDF5 of h5py.
@@ -68,29 +83,21 @@ if(MW_RECORD)
     target_link_options(manyworlds_record_shared PRIVATE -Wl,--exclude-libs,libhdf5.a -Wl,--gc-sections)
     mw_precompile(manyworlds_record_shared)
     mw_unity(manyworlds_record_shared)
+    target_link_libraries(manyworlds_record_shared PRIVATE manyworlds_wheel ZLIB::ZLIB ${CMAKE_DL_LIBS} m)
+    set_target_properties(manyworlds_record_shared PROPERTIES OUTPUT_NAME manyworlds_record)
+    mw_wheel_target(manyworlds_record_shared . "$ORIGIN")
     install(FILES "${MW_HDF5_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/licenses/HDF5" COMPONENT wheel
             EXCLUDE_FROM_ALL)
   else()
-    file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/manyworlds_record_shared.cpp" CONTENT "")
-    add_library(manyworlds_record_shared SHARED "${PROJECT_BINARY_DIR}/manyworlds_record_shared.cpp")
-    target_link_libraries(manyworlds_record_shared PRIVATE HDF5::HDF5
-      -Wl,--whole-archive "$<TARGET_FILE:manyworlds_record>" -Wl,--no-whole-archive)
-    add_dependencies(manyworlds_record_shared manyworlds_record)
+    mw_wheel_component(record HDF5::HDF5 ZLIB::ZLIB)
   endif()
-  target_link_libraries(manyworlds_record_shared PRIVATE manyworlds_wheel ZLIB::ZLIB ${CMAKE_DL_LIBS} m)
-  set_target_properties(manyworlds_record_shared PROPERTIES OUTPUT_NAME manyworlds_record)
-  mw_wheel_target(manyworlds_record_shared . "$ORIGIN")
 endif()
 
-# Live pages, for the program and for the module _live.
 if(MW_LIVE)
-  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/manyworlds_live_shared.cpp" CONTENT "")
-  add_library(manyworlds_live_shared SHARED "${PROJECT_BINARY_DIR}/manyworlds_live_shared.cpp")
-  target_link_libraries(manyworlds_live_shared PRIVATE manyworlds_wheel ZLIB::ZLIB Threads::Threads
-    -Wl,--whole-archive "$<TARGET_FILE:manyworlds_live>" -Wl,--no-whole-archive)
-  add_dependencies(manyworlds_live_shared manyworlds_live)
-  set_target_properties(manyworlds_live_shared PROPERTIES OUTPUT_NAME manyworlds_live)
-  mw_wheel_target(manyworlds_live_shared . "$ORIGIN")
+  mw_wheel_component(live ZLIB::ZLIB Threads::Threads)
+endif()
+if(MW_MJCF)
+  mw_wheel_component(mjcf tinyxml2::tinyxml2 -Wl,-z,now)  # what libmujoco lacks is an error at import
 endif()
 
 if(NOT TARGET manyworlds_cli)
@@ -105,8 +112,9 @@ if(MW_MJCF)
   target_include_directories(manyworlds_program PRIVATE "${PROJECT_SOURCE_DIR}"
     "$<TARGET_PROPERTY:MuJoCo::MuJoCo,INTERFACE_INCLUDE_DIRECTORIES>")
   mw_uses(manyworlds_program manyworlds_compare manyworlds_wheel)
-  mw_uses(manyworlds_program manyworlds_mjcf manyworlds_wheel)
-  target_link_libraries(manyworlds_program PRIVATE tinyxml2::tinyxml2)
+  target_link_libraries(manyworlds_program PRIVATE manyworlds_mjcf_shared)
+  # For that library: MuJoCo's functions (mujoco.cpp).
+  target_link_options(manyworlds_program PRIVATE "-Wl,--export-dynamic-symbol=mj*")
 endif()
 if(MW_LIVE)
   target_link_libraries(manyworlds_program PRIVATE manyworlds_live_shared)

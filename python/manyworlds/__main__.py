@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
 from pathlib import Path
@@ -25,8 +24,10 @@ def main() -> None:
             file=sys.stderr,
         )
         sys.exit(3)
-    with contextlib.suppress(ImportError):  # models alone need it, and the program says so
+    try:
         os.environ.setdefault("MANYWORLDS_MUJOCO", str(mujoco_library()))
+    except ImportError as error:  # the program reports it if it reads a model
+        os.environ["MANYWORLDS_NO_MUJOCO"] = str(error)
     if encoder := encoder_program():
         os.environ["FFMPEG"] = encoder
     os.execv(_PROGRAM, ["manyworlds", *sys.argv[1:]])

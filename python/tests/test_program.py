@@ -86,5 +86,7 @@ def test_program_gets_the_installed_libmujoco_and_encoder(monkeypatch, tmp_path)
 
     del os.environ["MANYWORLDS_MUJOCO"]
     (package / "libmujoco.so.4.0.1").rename(package / "libmujoco.so.3.3.0")
+    monkeypatch.setenv("MANYWORLDS_NO_MUJOCO", "")
     launcher.main()
     assert "MANYWORLDS_MUJOCO" not in os.environ
+    assert "3.3.0" in os.environ["MANYWORLDS_NO_MUJOCO"]

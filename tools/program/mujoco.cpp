@@ -18,6 +18,8 @@ constexpr const char* kVariable = "MANYWORLDS_MUJOCO";
 void* open_library() {
   const char* file = std::getenv(kVariable);
   if (file == nullptr || *file == 0) {
+    const char* why = std::getenv("MANYWORLDS_NO_MUJOCO");
+    if (why != nullptr && *why != 0) throw std::runtime_error(why);
     throw std::runtime_error(
         "MJCF files need MuJoCo's library, which is not installed; install it with: "
         "pip install 'manyworlds-sim[mjcf]'");

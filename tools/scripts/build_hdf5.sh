@@ -9,7 +9,7 @@ set -eu
 crate=hdf5-metno-src
 crate_version=0.10.4  # HDF5 2.2.0
 sha256=69c883c565498492954e344c482f8622525e58c7a71100dd9498c4940da82885
-build=2  # increase it when the options below change
+build=3  # increase it when the options below change
 
 say() { echo "build_hdf5: $*" >&2; }
 fail() { say "$*"; exit 1; }
@@ -70,7 +70,7 @@ done
   "$cmake" -S "$crate_dir/ext/hdf5" -B "$work/build" -G Ninja $off \
     -D HDF5_ENABLE_ZLIB_SUPPORT=ON -D HDF5_NO_PACKAGES=ON \
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_C_FLAGS_RELEASE="-Os -DNDEBUG" \
-    -D CMAKE_C_FLAGS="-ffunction-sections -fdata-sections -fvisibility=hidden" \
+    -D CMAKE_C_FLAGS="-ffunction-sections -fdata-sections -fvisibility=hidden -fno-asynchronous-unwind-tables" \
     -D CMAKE_POSITION_INDEPENDENT_CODE=ON -D CMAKE_C_COMPILER_LAUNCHER=$launcher \
     -D CMAKE_INSTALL_LIBDIR=lib -D CMAKE_INSTALL_PREFIX="$work/installed" &&
   "$cmake" --build "$work/build" --parallel "${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}" &&

@@ -13,6 +13,7 @@ import sys
 import zipfile
 
 MAX_MEGABYTES = 12
+PLATFORM = "manylinux_2_34_x86_64"  # Debian 12's TBB needs glibc 2.34
 # Copied in by auditwheel, which adds a hash to the name.
 COPIED = {"fmt": "fmt", "qhull_r": "qhull", "tbb": "TBB", "tinyxml2": "tinyxml2"}
 
@@ -24,10 +25,14 @@ def problems(path):
     if megabytes > MAX_MEGABYTES:
         yield f"has {megabytes:.1f} MB; expected {MAX_MEGABYTES} MB at most"
 
+    if not path.stem.endswith(f"-{PLATFORM}"):
+        yield f"has not the platform {PLATFORM}: something needs newer system libraries"
+
     # Ours lie in the package, each once; others in manyworlds_sim.libs.
     for wanted in (
         "libmanyworlds.so",
         "libmanyworlds_live.so",
+        "libmanyworlds_mjcf.so",
         "libmanyworlds_record.so",
         "viewer.html",
         "report.html",
@@ -38,7 +43,7 @@ def problems(path):
     for shell in ("bash-completion/completions/manyworlds", "zsh/site-functions/_manyworlds"):
         if not any(name.endswith(f".data/data/share/{shell}") for name in names):
             yield f"has no share/{shell}"
-    copied = [name for name in names if ".libs/" in name]
+    copied = [name for name in names if ".libs/" in name and not name.endswith("/")]
     for name in copied:
         if re.sub(r"^lib|-[0-9a-f]{8}.*$", "", name.rpartition("/")[2]) not in COPIED:
             yield f"contains {name}; expected of other projects only {', '.join(COPIED)}"

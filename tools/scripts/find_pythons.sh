@@ -5,7 +5,8 @@ is_usable_python() {
   "$1" - 2>/dev/null <<'END'
 import ensurepip, os, sys, sysconfig, venv
 header = os.path.join(sysconfig.get_path("include"), "Python.h")
-sys.exit(not (sys.implementation.name == "cpython" and sys.version_info >= (3, 10) and os.path.exists(header)))
+wanted = sys.implementation.name == "cpython" and not sysconfig.get_config_var("Py_GIL_DISABLED")
+sys.exit(not (wanted and sys.version_info >= (3, 10) and os.path.exists(header)))
 END
 }
 

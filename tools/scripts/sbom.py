@@ -12,6 +12,7 @@ version is unknown.
 import argparse
 import json
 import pathlib
+import platform
 import re
 import subprocess
 import sys
@@ -27,6 +28,7 @@ from cyclonedx.validation.json import JsonStrictValidator
 from packageurl import PackageURL
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+DISTRIBUTION = "{ID}-{VERSION_ID}".format(**platform.freedesktop_os_release())
 
 
 def component(name, version, license_id, purl, how, home=None):
@@ -63,7 +65,7 @@ def listed(hdf5):
             purl = PackageURL("cargo", None, crate, crate_version)
         else:
             version = debian_version(package)
-            purl = PackageURL("deb", "debian", package, version, {"distro": "debian-12"})
+            purl = PackageURL("deb", "debian", package, version, {"distro": DISTRIBUTION})
         yield component(name, version, license_id, purl, how, home)
 
 

@@ -18,7 +18,7 @@ packages=(
 mjcf_packages=(libtinyxml2-dev python3-pip)
 record_packages=(libhdf5-dev zlib1g-dev)
 live_packages=(libboost-dev zlib1g-dev)
-wheel_packages=(python3-venv zlib1g-dev)
+wheel_packages=(advancecomp python3-dev python3-venv zlib1g-dev)
 # Any Node that is there will do: one from elsewhere conflicts with Debian's npm.
 viewer_packages=()
 [[ -n $(type -P node) && -n $(type -P npm) ]] || viewer_packages=(nodejs npm)
@@ -167,7 +167,10 @@ configure() {
   if [[ -n ${MW_ISAS-} ]]; then arguments+=(-D "MW_ISAS=$MW_ISAS"); else arguments+=(-U MW_ISAS); fi
   arguments+=(-D "BUILD_SHARED_LIBS=${BUILD_SHARED_LIBS:-OFF}")
   local stamp="$build_dir/configured_with"
-  if [[ -f $build_dir/build.ninja && $stamp -nt $root/CMakePresets.json &&
+  # pip's own cmake is gone after its build.
+  local cmake
+  cmake=$(sed -n 's/^CMAKE_COMMAND:INTERNAL=//p' "$build_dir/CMakeCache.txt" 2>/dev/null || true)
+  if [[ -x $cmake && -f $build_dir/build.ninja && $stamp -nt $root/CMakePresets.json &&
     $(<"$stamp") == "${arguments[*]}" ]]; then
     return
   fi
@@ -178,7 +181,7 @@ configure() {
     fail "cmake could not configure build/release"
   }
   printf '%s\n' "${arguments[*]}" >"$stamp"
-  printf '%s\n' "${parts[*]}" >"$build_dir/parts"
+  printf '%s\n' "${parts[*]/#wheel/}" >"$build_dir/parts"  # which no other command needs again
 }
 
 # Seconds since the epoch, with a fraction, and `took NAME SINCE`: a share of $spent, such as "compile
