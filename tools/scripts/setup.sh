@@ -210,6 +210,7 @@ build() {
   since=$(now)
   for part in mjcf record live tests python viewer wheel; do
     local -n more=${part}_packages
+    [[ $part != wheel || ${MW_INSTALL_PACKAGES:-ON} != OFF ]] || continue  # pip install . needs none of them
     if has "$part"; then packages+=("${more[@]}"); fi
   done
   install_packages "${packages[@]}"
