@@ -105,7 +105,7 @@ TEST_CASE("bad input ends with exit code 2, one line that names it, and no outpu
     const char* message;  // part of the line
   };
   const Bad cases[] = {
-      {"", "a command is missing"},
+      {"", "missing command; expected one of scenes, "},
       {"frobnicate", "unknown command 'frobnicate'"},
       {"run", "scene is required"},
       {"rum", "unknown command 'rum'; did you mean 'run'?"},
