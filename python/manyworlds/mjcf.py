@@ -19,6 +19,7 @@ from __future__ import annotations
 import ctypes
 import importlib.util
 import operator
+import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -46,6 +47,8 @@ _TESTED = ("4.0.0", "4.0.1")
 
 def _library() -> Path:
     """The libmujoco of the installed package mujoco-core. ImportError if none is supported."""
+    if sys.version_info < (3, 11):
+        raise ImportError("manyworlds.mjcf needs Python 3.11 or later, as mujoco-core does")
     with needs("mujoco", extra="mjcf", what="manyworlds.mjcf"):
         spec = importlib.util.find_spec("mujoco")
         if spec is None:

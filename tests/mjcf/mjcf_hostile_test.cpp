@@ -187,8 +187,8 @@ TEST_CASE("headers of meshes and height fields are checked before they are decod
   refused("m.stl", "solid of text", "expected 84 by its header");
   refused("m.msh", little(0x7fffffffu) + little(0) + little(0) + little(1), "limit 'vertices'");
   refused("m.msh", little(3) + little(0) + little(0) + little(1), "16 bytes; expected 64");
-  refused("m.dae", "<COLLADA/>", "of kind '.dae'; expected .obj, .stl or .msh");
-  refused("m", "", "of kind ''");
+  refused("m.dae", "<COLLADA/>", "of type '.dae'; expected .obj, .stl or .msh");
+  refused("m", "", "of type ''");
 
   write(folder, "fine.bin", little(2) + little(2) + std::string(16, '\0'));
   CHECK_NOTHROW(load_mjcf(

@@ -9,7 +9,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 CLI = (ROOT / "docs/cli.md").read_text(encoding="utf-8")
 PROGRAM = "".join(p.read_text(encoding="utf-8") for p in sorted((ROOT / "tools/cli").glob("*.?pp")))
-SCRIPTS = "".join((ROOT / "tools" / name).read_text(encoding="utf-8") for name in ("run", "fuzz"))
+SCRIPTS = "".join((ROOT / "tools" / name).read_text(encoding="utf-8") for name in ("run", "fuzz", "wheel"))
 
 
 class Readme(unittest.TestCase):

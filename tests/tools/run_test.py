@@ -33,6 +33,7 @@ for a in "$@"; do [[ $a != MW_*=* ]] || printf '|%s' "$a" >>"$LOG"; done
 echo >>"$LOG"
 mkdir -p "$ROOT/build/release/bin"
 touch "$ROOT/build/release/build.ninja"
+echo "CMAKE_COMMAND:INTERNAL=$0" >"$ROOT/build/release/CMakeCache.txt"
 printf '#!/bin/bash\\necho "program: $*"\\nexit "${PROGRAM_STATUS:-0}"\\n' >"$ROOT/build/release/bin/manyworlds"
 chmod +x "$ROOT/build/release/bin/manyworlds"
 """
@@ -140,6 +141,8 @@ class Run(unittest.TestCase):
         checkout.run("run", "ball3d", "--record", "a.h5")
         again = checkout.run("info")
         self.assertIsNone(again.configured)  # nothing new: not configured again
+        (checkout.root / "build/release/CMakeCache.txt").write_text("CMAKE_COMMAND:INTERNAL=/gone/cmake\n")
+        self.assertIsNotNone(checkout.run("info").configured)
         self.assertEqual(again.built, ["manyworlds_cli"])
         more = checkout.run("verify")
         self.assertEqual(more.configured["MW_RECORD"], "ON")
