@@ -62,7 +62,7 @@ long long read_integer(nb::handle value, const Place& place, long long low, long
 
 bool read_bool(nb::handle value, const Place& place) {
   if (PyBool_Check(value.ptr())) return value.ptr() == Py_True;
-  const std::string_view type = type_of(value);
+  const std::string type = type_of(value);
   if (type == "numpy.bool" || type == "numpy.bool_") return PyObject_IsTrue(value.ptr()) == 1;
   wrong_type(place, value, "a bool");
 }
