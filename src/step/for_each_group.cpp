@@ -66,6 +66,10 @@ class Gate {
     open_ = true;
     opened_.notify_all();
   }
+  void close() {
+    const std::lock_guard lock(mutex_);
+    open_ = false;
+  }
   void pass() {
     std::unique_lock lock(mutex_);
     opened_.wait(lock, [this] { return open_; });
@@ -145,19 +149,22 @@ int start_threads(int most, int least) {
   if (most <= started) return most;
   most = started + std::min(most - started, thread_room(kStack));
   if (most < least) return most;
-  const auto gate = std::make_shared<Gate>();
+  // One for all calls, and never freed: TBB may run a task after this function has returned, or
+  // never.
+  static Gate& gate = *new Gate;
+  gate.close();
   std::vector<std::unique_ptr<tbb::task_arena>> arenas;
   int threads = 1;
   try {
     kept.initialize();
     while (threads < most && has_room(kStack + kRoom)) {
       arenas.push_back(std::make_unique<tbb::task_arena>(2, 1));
-      arenas.back()->enqueue([gate] { gate->pass(); });
+      arenas.back()->enqueue([] { gate.pass(); });
       ++threads;
     }
   } catch (const std::exception&) {  // TBB's std::runtime_error, std::bad_alloc
   }
-  gate->open();
+  gate.open();
   // Another limit of the process keeps TBB from having more, and lets it do with those.
   const auto allowed =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
