@@ -2,7 +2,9 @@
 # clone or after a switch of branches, compiles nothing. Set MW_CCACHE=OFF to compile without it.
 #
 # Paths inside the project are hashed relative to it, which makes clones share their objects. ccache keeps
-# precompiled headers too: GCC wants -fpch-preprocess for that, clang must not store times in them.
+# GCC's precompiled headers too, given -fpch-preprocess. Clang's hold the folder they were made in, so
+# through ccache clang compiles without: MW_PRECOMPILE says whether headers are precompiled. A launcher
+# that is not ours may not know them either.
 
 option(MW_CCACHE "Compile through ccache where it is installed" ${PROJECT_IS_TOP_LEVEL})
 
@@ -17,8 +19,11 @@ if(MW_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
         "${MW_CCACHE_PROGRAM}")
     set(CMAKE_C_COMPILER_LAUNCHER ${mw_ccache})
     set(CMAKE_CXX_COMPILER_LAUNCHER ${mw_ccache})
-    add_compile_options(
-      $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>
-      "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>")
+    add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   endif()
+endif()
+
+set(MW_PRECOMPILE ON)
+if(CMAKE_CXX_COMPILER_LAUNCHER AND NOT (MW_CCACHE_PROGRAM AND CMAKE_CXX_COMPILER_ID STREQUAL GNU))
+  set(MW_PRECOMPILE OFF)
 endif()

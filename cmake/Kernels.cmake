@@ -75,7 +75,7 @@ foreach(isa IN LISTS MW_ISAS)
       $<$<CONFIG:RelWithDebInfo>:-g1>)
     target_include_directories(mw_kernels_${name} PRIVATE "${PROJECT_SOURCE_DIR}"
       "${PROJECT_SOURCE_DIR}/include")
-    if(MW_UNITY AND (NOT CMAKE_CXX_COMPILER_LAUNCHER OR MW_CCACHE_PROGRAM))
+    if(MW_UNITY AND MW_PRECOMPILE)
       # Half of what most of these files cost are the vector headers. Without a folder in their names
       # ccache finds them again in another clone.
       target_precompile_headers(mw_kernels_${name} PRIVATE <kernels/work/stages.hpp>

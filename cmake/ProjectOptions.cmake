@@ -37,9 +37,9 @@ endif()
 include("${CMAKE_CURRENT_LIST_DIR}/Ccache.cmake")
 
 # mw_precompile(TARGET [HEADER...]): reads once what most files of a target include: these headers,
-# Eigen and parts of the standard library. A launcher that is not ours may not know precompiled headers.
+# Eigen and parts of the standard library.
 function(mw_precompile target)
-  if(NOT CMAKE_CXX_COMPILER_LAUNCHER OR MW_CCACHE_PROGRAM)
+  if(MW_PRECOMPILE)
     target_precompile_headers(${target} PRIVATE <Eigen/Geometry> <algorithm> <functional> <map>
       <memory> <optional> <string> <utility> <variant> <vector> ${ARGN})
     if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
