@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/cli/report_page.hpp"
 #include "tests/support/approx.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
@@ -19,7 +20,8 @@ namespace manyworlds {
 namespace {
 
 using Json = nlohmann::json;
-using test::approx, test::contains, test::content, test::Outcome, test::ScratchFolder;
+using test::approx, test::contains, test::content, test::Outcome, test::report_in,
+    test::run_with_page, test::ScratchFolder;
 
 // Least error of each case over its points, and what is wrong with them.
 std::map<std::string, double> least_errors(const Json& report) {
@@ -49,28 +51,6 @@ std::map<std::string, double> least_errors(const Json& report) {
     }
   }
   return least;
-}
-
-// A page without a report, as viewer/ builds it but for what shows it.
-constexpr const char* kBlank =
-    "<meta name=\"manyworlds-report\" content=\"1\">\n<!-- manyworlds: report -->\nend\n";
-constexpr const char* kWithBlank = "MANYWORLDS_REPORT=blank.html";
-
-// `arguments` with the page above.
-Outcome run_with_page(const ScratchFolder& folder, const std::string& arguments) {
-  std::ofstream(folder / "blank.html") << kBlank;
-  return test::run_program(test::kProgram, folder, arguments, kWithBlank);
-}
-
-// What was put into a page.
-Json report_in(const std::string& page) {
-  const std::string start = "<script type=\"application/json\" id=\"mw-report\">";
-  const std::size_t from = page.find(start), to = page.find("</script>");
-  REQUIRE(from != std::string::npos);
-  REQUIRE(to != std::string::npos);
-  CHECK(page.find('<', from + start.size()) == to);  // nothing in it is HTML
-  CHECK(contains(page.substr(to), "end"));
-  return Json::parse(page.substr(from + start.size(), to - from - start.size()));
 }
 
 // A program that stands in for another engine's, in the folder `peers`.

@@ -109,7 +109,9 @@ TEST_CASE("bad input ends with exit code 2, one line that names it, and no outpu
       {"frobnicate", "unknown command 'frobnicate'"},
       {"run", "scene is required"},
       {"rum", "unknown command 'rum'; did you mean 'run'?"},
-      {"report foo", "unknown report 'foo'; expected one of accuracy, stability, plan, throughput"},
+      {"report foo",
+       "unknown report 'foo'; expected one of accuracy, stability, invariants, plan, "
+       "throughput"},
       {"report", "missing report; expected one of accuracy, "},
       {"run ball3d --world 5", "unknown option '--world'; did you mean '--worlds'? (see"},
       {"run ball3d --world=5", "unknown option '--world'; did you mean '--worlds'? (see"},
@@ -426,7 +428,7 @@ TEST_CASE("help tells of sizes of scenes, MW_ISAS, and each report's examples", 
   CHECK(contains(help.out, "bin-boxes:1000"));
   CHECK(contains(help.out, "MW_ISAS"));
   CHECK(contains(run("run --help").out, "bin-boxes:1000"));
-  for (const char* report : {"accuracy", "stability", "plan", "throughput"}) {
+  for (const char* report : {"accuracy", "stability", "invariants", "plan", "throughput"}) {
     const std::string command = std::string("report ") + report;
     CHECK(contains(run(command + " --help").out, "manyworlds " + command + " --quick"));
   }

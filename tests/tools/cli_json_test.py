@@ -10,6 +10,7 @@ import json
 import os
 import pathlib
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -238,6 +239,7 @@ class Keys(unittest.TestCase):
         for name, arguments in {
             "accuracy": ("--cases", "A1,A16"),
             "stability": ("--cases", "B9"),
+            "invariants": ("--families", "energy", "--kinds", "1"),
             "plan": ("--scenes", "ball2d"),
             "throughput": ("--scenes", "ball2d", "--peers", "peers", "--peers-only"),
         }.items():
@@ -252,6 +254,9 @@ class Keys(unittest.TestCase):
                 self.check("report", {**whole, "results": []})
                 # Without sweeps there are no rows.
                 self.check(f"report {name}", results, whole=name != "throughput")
+                if name == "invariants" and self.info["recordings"]:
+                    command = shlex.split(results[0]["command"])
+                    self.check("report invariants --world", self.run_json(*command[1:]))
 
 
 if __name__ == "__main__":

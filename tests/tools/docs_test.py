@@ -29,7 +29,7 @@ class CommandLine(unittest.TestCase):
     def test_has_every_command(self):
         commands = set(re.findall(r'add_subcommand\(\s*"([a-z]+)"', PROGRAM))
         self.assertGreaterEqual(len(commands), 12)
-        reports = {"accuracy", "stability", "plan", "throughput", "page"}
+        reports = {"accuracy", "stability", "invariants", "plan", "throughput", "page"}
         for command in commands - reports | {"plan"}:
             self.assertRegex(CLI, rf"(?m)^## {command}$")
             self.assertIn(f"[`{command}`](#{command})", CLI)

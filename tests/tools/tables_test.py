@@ -83,6 +83,22 @@ class Stability(unittest.TestCase):
         self.assertIn("- C3: soft.", text)
 
 
+class Invariants(unittest.TestCase):
+    def row(self, family, precision, share, worst, **more):
+        return {"family": family, "law": "energy", "criterion": "gain", "unit": "J", "units": "earth",
+                "precision": precision, "share": share, "worst": worst, "limit": 0.1,
+                "required": True, "passed": share <= 0.001, **more}
+
+    def test_settings_are_columns_and_too_many_broken_worlds_are_bold(self):
+        text = tables.invariants([
+            self.row("hit 2D", "f32", 0.125, 3), self.row("hit 2D", "f64", 0.0005, 0.2),
+            self.row("pile", "f32", 0, 0.01, required=False), self.row("pile", "f64", 1, None, required=False)])
+        self.assertEqual(rows(text, "energy"), [["energy", "0/1", "1/1"]])
+        self.assertEqual(rows(text, "hit"), [["hit 2D", "gain: 0.1 J", "**12**", "0.05", "3"]])
+        self.assertEqual(rows(text, "pile"), [
+            ["pile (not required)", "gain: 0.1 J", "0", "**100**", "not finite"]])
+
+
 class Plan(unittest.TestCase):
     def test_scenes_are_columns(self):
         text = tables.plan([

@@ -20,6 +20,7 @@ int view_command(const ViewArguments& arguments);  // with --live, live_command
 int live_command(const ViewArguments& arguments);
 int report_accuracy_command(const ReportOptions& options);
 int report_stability_command(const ReportOptions& options);
+int report_invariants_command(const ReportOptions& options);  // with --world, invariant_world()
 int report_plan_command(const ReportOptions& options);
 int report_throughput_command(const ReportOptions& options);
 int report_page_command(const ReportPageOptions& options);

@@ -368,8 +368,8 @@ void add_report_page(CLI::App& report, ReportPageOptions& options, int& code) {
 }
 
 void add_report(CLI::App& app, AllOptions& all, int& code) {
-  CLI::App* command =
-      app.add_subcommand("report", "Measure accuracy, stability, plans and throughput");
+  CLI::App* command = app.add_subcommand(
+      "report", "Measure accuracy, stability, laws of mechanics, plans and throughput");
   command->require_subcommand(1);
   CLI::App* accuracy = command->add_subcommand(
       "accuracy", "Measure error against run time in scenes with known solutions");
@@ -398,6 +398,25 @@ void add_report(CLI::App& app, AllOptions& all, int& code) {
       "settings. It fails if one of its worlds fails. Failures appear in the report and do not\n"
       "change the exit code.");
   stability->callback([&] { code = report_stability_command(all.report); });
+
+  CLI::App* invariants = command->add_subcommand(
+      "invariants", "Check laws of mechanics over families of random scenes");
+  add_report_options(*invariants, all.report, "invariants");
+  add_invariant_options(*invariants, all.report);
+  invariants->footer(
+      "Examples:\n"
+      "  manyworlds report invariants --quick\n"
+      "  manyworlds report invariants --families energy,rest --kinds 256 --seed 7\n"
+      "  manyworlds report invariants --families FAMILY --world 37 --record world.h5\n"
+      "\n"
+      "Each family draws random scenes, 16 worlds per group, and checks every world against a law\n"
+      "after every step. The report has the share of worlds that break the law and the worst\n"
+      "world. A family passes if at most 0.1 % of its worlds break the law. Failures appear in "
+      "the\n"
+      "report and do not change the exit code. A world depends only on its family, --units,\n"
+      "--precision, --seed and number. --world prints the value of its law after each step, and\n"
+      "--record records it for 'manyworlds view'.");
+  invariants->callback([&] { code = report_invariants_command(all.report); });
 
   CLI::App* plan = command->add_subcommand("plan", "Measure the benefit of omitting unused stages");
   add_report_options(*plan, all.report, "plan");

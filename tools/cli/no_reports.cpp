@@ -13,6 +13,7 @@ namespace {
 
 int report_accuracy_command(const ReportOptions&) { no_report("accuracy"); }
 int report_stability_command(const ReportOptions&) { no_report("stability"); }
+int report_invariants_command(const ReportOptions&) { no_report("invariants"); }
 int report_plan_command(const ReportOptions&) { no_report("plan"); }
 int report_throughput_command(const ReportOptions&) { no_report("throughput"); }
 

@@ -1,14 +1,12 @@
 #include "options.hpp"
 
 #include <charconv>
-#include <cmath>
-#include <functional>
 #include <limits>
-#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "option_checks.hpp"
 #include "set_option.hpp"
 
 namespace manyworlds::cli {
@@ -26,72 +24,6 @@ std::optional<Number> parse(const std::string& text) {
   if (error != std::errc{} || stop != end) return std::nullopt;
   return value;
 }
-
-// "a, b or c"
-std::string any_of(const std::vector<std::string>& names) {
-  std::string list;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) list += i + 1 == names.size() ? " or " : ", ";
-    list += names[i];
-  }
-  return list;
-}
-
-// Checks of numbers. Each leaves the number as CLI11 reads it, too: it takes a leading 0 for octal.
-CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
-  return CLI::Validator(
-      [least, most](std::string& text) -> std::string {
-        std::int64_t value = 0;
-        const char* end = text.data() + text.size();
-        const auto [stop, error] = std::from_chars(text.data(), end, value);
-        if (error == std::errc::invalid_argument || stop != end) {
-          return fmt::format("must be a whole number, is '{}'", text);
-        }
-        const bool beyond = error == std::errc::result_out_of_range;
-        const bool negative = text.front() == '-';
-        if (beyond ? negative : value < least) {
-          return fmt::format("must be at least {}, is {}", least, text);
-        }
-        if (beyond || value > most) return fmt::format("must be at most {}, is {}", most, text);
-        text = fmt::format("{}", value);
-        return {};
-      },
-      std::string());
-}
-
-// Finite, and above 0 or at least that.
-CLI::Validator real_number(bool above_zero) {
-  return CLI::Validator(
-      [above_zero](std::string& text) -> std::string {
-        double value = 0;
-        const char* end = text.data() + text.size();
-        const auto [stop, error] = std::from_chars(text.data(), end, value);
-        if (error == std::errc::invalid_argument || stop != end) {
-          return fmt::format("must be a number, is '{}'", text);
-        }
-        const bool fits = above_zero ? value > 0 : value >= 0;
-        if (error != std::errc{} || !std::isfinite(value) || !fits) {
-          return fmt::format("must be a finite number {} 0, is {}",
-                             above_zero ? "above" : "of at least", text);
-        }
-        text = fmt::format("{}", value);
-        return {};
-      },
-      std::string());
-}
-CLI::Validator positive_number() { return real_number(true); }
-
-// An empty name would stand for an option that is not given.
-CLI::Validator name_of_a(const char* what) {
-  return CLI::Validator(
-      [what](std::string& text) -> std::string {
-        return text.empty() ? fmt::format("must be the name of a {}, is ''", what) : std::string();
-      },
-      std::string());
-}
-
-template <class Value>
-using Choices = std::vector<std::pair<std::string, Value>>;
 
 const Choices<BroadPhase>& broad_phases() {
   static const Choices<BroadPhase> choices = {{"auto", BroadPhase::automatic},
@@ -134,31 +66,6 @@ std::string name_of(const Choices<Value>& choices, Value value) {
   return {};
 }
 
-// An option that takes one name out of a list, each time it is given.
-template <class Value>
-CLI::Option* add_choice(CLI::App& app, const std::string& flag, const Choices<Value>& choices,
-                        std::function<void(Value)> take, const std::string& help) {
-  std::vector<std::string> names;
-  for (const auto& choice : choices) names.push_back(choice.first);
-  const auto on_values = [flag, choices, names, take](const std::vector<std::string>& values) {
-    for (const std::string& text : values) {
-      bool known = false;
-      for (const auto& [name, value] : choices) {
-        if (name != text) continue;
-        take(value);
-        known = true;
-      }
-      if (!known) {
-        throw CLI::ValidationError(flag, fmt::format("must be {}, is '{}'", any_of(names), text));
-      }
-    }
-  };
-  CLI::Option* option = app.add_option_function<std::vector<std::string>>(flag, on_values, help);
-  return option->type_name(fmt::format("{}", fmt::join(names, "|")))
-      ->expected(1)
-      ->allow_extra_args(false);
-}
-
 }  // namespace
 
 void add_count(CLI::App& app, const std::string& flag, int& value, int least,
@@ -167,12 +74,6 @@ void add_count(CLI::App& app, const std::string& flag, int& value, int least,
       ->transform(whole_number(least, std::numeric_limits<int>::max()))
       ->type_name("N")
       ->capture_default_str();
-}
-
-void add_case_list(CLI::App& app, std::vector<std::string>& cases, const std::string& example) {
-  app.add_option("--cases", cases, "run only these cases, such as " + example + " (default: all)")
-      ->delimiter(',')
-      ->type_name("ID,...");
 }
 
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& help) {

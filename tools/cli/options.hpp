@@ -101,6 +101,15 @@ struct ReportOptions {
   bool peers_only = false;          // and no sweeps
   bool quick = false;
   bool json = false;
+
+  // Of invariants.
+  std::vector<std::string> families;  // ids or laws; empty: all
+  std::optional<std::uint64_t> seed;
+  std::optional<int> kinds;  // groups of worlds of a family
+  std::string units;         // "similar" or "earth"; empty: both
+  std::optional<Precision> precision;
+  std::optional<int> world;  // alone, of one family
+  std::string record;        // file of that world
 };
 
 struct ReportPageOptions {
@@ -160,6 +169,7 @@ void add_contacts_option(CLI::App& app, int& contacts, const char* flag, const s
 void add_dump_option(CLI::App& app, JobOptions& options);
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes);
 void add_case_list(CLI::App& app, std::vector<std::string>& cases, const std::string& example);
+void add_invariant_options(CLI::App& app, ReportOptions& options);
 // The name of a folder.
 void add_folder(CLI::App& app, const std::string& flag, std::string& folder,
                 const std::string& help);

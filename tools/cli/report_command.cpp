@@ -16,6 +16,7 @@
 
 #include "built_page.hpp"
 #include "commands.hpp"
+#include "invariant_world.hpp"
 #include "leftovers.hpp"
 #include "manyworlds/scenes.hpp"
 #include "progress.hpp"
@@ -26,6 +27,7 @@
 #include "tools/base/text.hpp"
 #include "tools/base/version.hpp"
 #include "tools/report/accuracy.hpp"
+#include "tools/report/invariants.hpp"
 #include "tools/report/peer_program.hpp"
 #include "tools/report/plan_worth.hpp"
 #include "tools/report/report_files.hpp"
@@ -175,6 +177,45 @@ void print_stability(const std::vector<report::Verdict>& verdicts) {
   }
 }
 
+report::InvariantsOptions invariants_options(const ReportOptions& options) {
+  report::InvariantsOptions out;
+  for (const std::string& name : options.families) out.families.push_back(report::one_word(name));
+  check_names("--families", out.families, report::family_names(), "family or law");
+  out.seed = options.seed.value_or(out.seed);
+  out.kinds = options.kinds.value_or(options.quick ? 4 : out.kinds);
+  out.precision = options.precision;
+  for (const auto units : {invariants::Units::similar, invariants::Units::earth}) {
+    if (options.units == to_string(units)) out.units = units;
+  }
+  return out;
+}
+
+const char* verdict_of(const report::InvariantRow& row) {
+  if (row.passed()) return "pass";
+  return row.family.required ? "FAIL" : "not required";
+}
+
+void print_invariants(const std::vector<report::InvariantRow>& rows) {
+  std::string law;
+  for (const report::InvariantRow& r : rows) {
+    if (to_string(r.family.law) != law) {
+      law = to_string(r.family.law);
+      fmt::print("\n{}\n  {:<34} {:<8} {:<4} {:>9} {:>11} {:>14} {:>7}\n", law, "family", "units",
+                 "", "broken, %", "worst", "limit", "world");
+    }
+    fmt::print("  {:<34} {:<8} {:<4} {:>9.3g} {:>11.3g} {:>14} {:>7}  {}{}{}\n",
+               report::one_word(r.family.id), to_string(r.options.units),
+               to_string(r.options.precision), 100 * r.share(), r.outcome.worst,
+               fmt::format("{:.3g}{}", r.limit(), r.family.unit.empty() ? "" : ' ' + r.family.unit),
+               r.outcome.worst_world, verdict_of(r),
+               r.outcome.silent > 0 ? fmt::format(", {} silent", r.outcome.silent) : "",
+               r.outcome.lost > 0 ? fmt::format(", {} lost", r.outcome.lost) : "");
+  }
+  if (const report::InvariantRow* worst = report::worst_row(rows)) {
+    fmt::print("\nTo see the worst world: {}\n", report::command_of(*worst));
+  }
+}
+
 void print_worth(const std::vector<report::WorthRow>& rows) {
   std::string scene;
   for (const report::WorthRow& r : rows) {
@@ -230,6 +271,16 @@ int report_stability_command(const ReportOptions& options) {
   });
   return finish_report(output, options, report::to_json(verdicts),
                        [&] { print_stability(verdicts); });
+}
+
+int report_invariants_command(const ReportOptions& options) {
+  const report::InvariantsOptions what = invariants_options(options);
+  if (options.world) return invariant_world(what, options);
+  const Output output = output_of("invariants", options);
+  const tools::Interruptible interruptible;
+  const auto rows = run_report(
+      "invariants", [&](const Tell& tell) { return report::run_invariants(what, tell); });
+  return finish_report(output, options, report::to_json(rows), [&] { print_invariants(rows); });
 }
 
 int report_plan_command(const ReportOptions& options) {

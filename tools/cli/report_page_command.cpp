@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kReports[] = {"accuracy", "stability", "plan", "throughput"};
+constexpr const char* kReports[] = {"accuracy", "stability", "invariants", "plan", "throughput"};
 
 bool is_report(const Json& json) {
   if (!json.is_object() || !json.contains("results")) return false;

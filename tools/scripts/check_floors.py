@@ -37,8 +37,9 @@ KERNEL_SYSTEM = {
     "initializer_list", "limits",
     "type_traits", "utility",
 }
-# The program: what its parts share, models beside MuJoCo's, the reports, the command line.
-TOOLS_FLOORS = ["base", "compare", "report", "cli"]
+# The program: what its parts share, models beside MuJoCo's, families of random scenes, the reports, the
+# command line.
+TOOLS_FLOORS = ["base", "compare", "invariants", "report", "cli"]
 # Third-party headers with one home: pattern -> folder whose files may include it, and how many.
 ONE_HOME = {
     r"(oneapi/)?tbb[/.].*": ("src", 1),

@@ -140,6 +140,31 @@ test('stability: totals, margins, and the failures alone', async () => {
   await fitsTelephone(file);
 });
 
+test('invariants: shares by family, and the command for the worst world', async () => {
+  const { report, file } = measured('invariants', '--kinds', '1', '--families', 'momentum');
+  const view = await open(file);
+  const required = report.results.filter((r) => r.required);
+  const [passed, failed, worlds] = await view.totals();
+  assert.equal(passed, `${required.filter((r) => r.passed).length} PASS`);
+  assert.equal(failed, `${required.filter((r) => !r.passed).length} FAIL`);
+  assert.equal(worlds, `${16 * report.results.length} worlds`);
+  const told = await view.hover('Worlds that break the law, momentum', '[aria-label=dot] circle');
+  assert.match(told, /family .+verdict (PASS|FAIL|not required).*broken \d+ of 16 worlds, [\d.]+ %.*worst .+, world \d+.*limit [\d.e-]+/);
+  assert.equal(await view.page.getByText(report.results[0].command).count(), 1);
+  await view.close();
+  await fitsTelephone(file);
+
+  const [first] = report.results;
+  report.results = [{ ...first, broken: 16, share: 1, worst: null, passed: false, required: true },
+    { ...first, units: 'earth', broken: 0, share: 0, worst: 0, passed: true, required: true }];
+  const other = await open(pageOf(report, 'broken'));
+  assert.equal((await other.totals())[1], '1 FAIL');
+  assert.equal(await other.page.getByText('not finite').count(), 1);
+  await other.page.locator('#only-failures').click();
+  assert.equal(await other.page.locator('.filtered').last().locator('tbody tr:visible').count(), 1);
+  await other.close();
+});
+
 test('plan: bits that must be equal, and ratios', async () => {
   const { report, file } = measured('plan', '--scenes', 'ball2d,chain2d');
   const view = await open(file);

@@ -53,6 +53,29 @@ export interface Verdict {
   note: string;
 }
 
+// A family in one precision and one choice of units.
+export interface InvariantRow {
+  family: string;
+  law: string;
+  title: string;
+  criterion: string;
+  unit: string;
+  units: string; // similar or earth
+  precision: Precision;
+  worlds: number;
+  broken: number;
+  share: number; // of worlds that break the law
+  silent: number;
+  lost: number;
+  limit: number;
+  worst: number | null; // null: not finite
+  worst_world: number;
+  seed: number;
+  required: boolean;
+  passed: boolean;
+  command: string; // records the worst world
+}
+
 export interface WorthRow {
   scene: string;
   variant: string;

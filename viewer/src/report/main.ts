@@ -3,12 +3,13 @@ import { element } from '../elements';
 import { accuracyPage } from './accuracy';
 import type { Report } from './data';
 import { make } from './dom';
+import { invariantsPage } from './invariants';
 import { planPage } from './plan';
 import { stabilityPage } from './stability';
 import { throughputPage } from './throughput';
 
 const PAGES: Record<string, (report: Report<any>) => void> = {
-  accuracy: accuracyPage, stability: stabilityPage, plan: planPage, throughput: throughputPage,
+  accuracy: accuracyPage, stability: stabilityPage, invariants: invariantsPage, plan: planPage, throughput: throughputPage,
 };
 
 const data = document.getElementById('mw-report');

@@ -1,0 +1,96 @@
+// The laws of `manyworlds report invariants` over few worlds of each family. A broken world is seen
+// with `manyworlds report invariants --families ID --seed N --world K --record FILE.h5`.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "tools/invariants/family.hpp"
+
+namespace manyworlds::test {
+namespace {
+
+using namespace invariants;
+
+RunOptions some(std::uint64_t seed) {
+  RunOptions options;
+  options.seed = seed, options.kinds = 1;
+  return options;
+}
+
+// The scene with the initial states of another.
+Scene with_states(Scene scene, const Scene& other) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    Body& to = scene.bodies[i];
+    const Body& from = other.bodies.at(i);
+    to.position = from.position, to.rotation = from.rotation;
+    to.linear_velocity = from.linear_velocity, to.angular_velocity = from.angular_velocity;
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("families of invariants have names of their own and limits", "[fast][invariants]") {
+  std::set<std::string> ids;
+  for (const Family& f : families()) {
+    INFO(f.id);
+    CHECK(ids.insert(f.id).second);
+    CHECK(!f.title.empty());
+    CHECK(!f.criterion.empty());
+    CHECK((f.limit > 0 || f.law == Law::independence));
+  }
+}
+
+TEST_CASE("worlds of a kind share their scene but for the states", "[fast][invariants]") {
+  for (const Family& f : families()) {
+    for (const Units units : {Units::similar, Units::earth}) {
+      RunOptions options = some(7);
+      options.units = units;
+      const Drawn first = draw_world(f, options, kWorldsPerKind);
+      const auto plan = compile(first.scene).fingerprint();
+      for (const int world : {1, kWorldsPerKind - 1}) {
+        INFO(f.id << ", " << to_string(units) << ", world " << world);
+        const Drawn other = draw_world(f, options, kWorldsPerKind + world);
+        REQUIRE(other.scene.bodies.size() == first.scene.bodies.size());
+        CHECK(other.steps == first.steps);
+        CHECK(other.twin.has_value() == first.twin.has_value());
+        CHECK(compile(with_states(other.scene, first.scene)).fingerprint() == plan);
+        if (other.twin) {
+          CHECK(compile(with_states(*other.twin, first.scene)).fingerprint() == plan);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a world of a family follows from seed and number", "[fast][invariants]") {
+  for (const Family& f : families()) {
+    INFO(f.id);
+    const Batch a = batch_of(f, some(3), 5), b = batch_of(f, some(3), 5);
+    CHECK(a.hash(0) == b.hash(0));
+    const Outcome first = run(f, some(3)), again = run(f, some(3));
+    CHECK(first.worst_world == again.worst_world);
+    CHECK(first.worst == again.worst);
+    CHECK(first.broken == again.broken);
+  }
+}
+
+// docs/invariants.md has the shares of the others; a family whose law holds again leaves the list.
+TEST_CASE("worlds of families keep their laws", "[fast][invariants]") {
+  const std::set<std::string> broken = {};
+  for (const Family& f : families()) {
+    if (!f.required || broken.count(f.id) > 0) continue;
+    for (const Units units : {Units::similar, Units::earth}) {
+      RunOptions options = some(1);
+      options.kinds = 2, options.units = units;
+      INFO(f.id << ", " << to_string(units));
+      const Outcome outcome = run(f, options);
+      INFO("worst world " << outcome.worst_world << ": " << outcome.worst << " of " << f.limit);
+      CHECK(outcome.broken == 0);
+    }
+  }
+}
+
+}  // namespace manyworlds::test

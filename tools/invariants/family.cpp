@@ -1,0 +1,37 @@
+#include "tools/invariants/family.hpp"
+
+namespace manyworlds::invariants {
+
+Scale draw_scale(Random& random, Units units) {
+  if (units == Units::earth) return {random.log_uniform(0.01, 100), 9.81, 1.0 / 60};
+  const double length = random.log_uniform(1e-3, 100), gravity = 9.81 * random.log_uniform(0.1, 10);
+  return {length, gravity, std::sqrt(length * 9.81 / gravity) / 60};
+}
+
+const char* to_string(Units units) { return units == Units::similar ? "similar" : "earth"; }
+
+const char* to_string(Law law) {
+  switch (law) {
+    case Law::symmetry: return "symmetry";
+    case Law::momentum: return "momentum";
+    case Law::energy: return "energy";
+    case Law::friction: return "friction";
+    case Law::rest: return "rest";
+    case Law::penetration: return "penetration";
+    case Law::similarity: return "similarity";
+    case Law::independence: return "independence";
+  }
+  return "";
+}
+
+std::vector<Family> families() {
+  std::vector<Family> out;
+  for (auto& part :
+       {symmetry_families(), momentum_families(), energy_families(), friction_families(),
+        rest_families(), penetration_families(), similarity_families(), independence_families()}) {
+    out.insert(out.end(), part.begin(), part.end());
+  }
+  return out;
+}
+
+}  // namespace manyworlds::invariants
