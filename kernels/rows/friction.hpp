@@ -31,7 +31,8 @@ MW_INLINE void put_tangents(const Sides<Planar, A>& sides, const Manifold<Planar
   select(active, one / k, zero).store(s.tangent_mass[0]);
 }
 
-// The two tangents share one effective mass, the inverse of a 2x2 matrix.
+// The two tangents share one effective mass, the inverse of a 2x2 matrix. A scalar one brakes
+// what slips.
 template <class S, int N, class A>
 MW_INLINE void put_tangents(const Sides<S, A>& sides, const Manifold<GeometryOf<S>, N>& m,
                             Mask active, Vec3 normal, const FrictionCentre<S>& centre,
@@ -56,6 +57,8 @@ MW_INLINE void put_tangents(const Sides<S, A>& sides, const Manifold<GeometryOf<
   (k22 * scale).store(s.tangent_mass[0]);
   (-(k12 * scale)).store(s.tangent_mass[1]);
   (k11 * scale).store(s.tangent_mass[2]);
+  // The harmonic mean of its eigenvalues, less than twice the smaller one: steps by it converge.
+  select(active, Float(Real(2)) / (k11 + k22), zero).store(s.slip_mass);
 }
 
 template <class S, int N, class A>
