@@ -35,6 +35,12 @@ struct TreeVelocity : Velocity<S> {
   }
 };
 template <class S>
+MW_INLINE void keep_other_lanes(Mask lanes, const TreeVelocity<S>& before, TreeVelocity<S>& v) {
+  keep_other_lanes(lanes, static_cast<const Velocity<S>&>(before), static_cast<Velocity<S>&>(v));
+  v.sum.f = select(lanes, v.sum.f, before.sum.f);
+  v.sum.n = select(lanes, v.sum.n, before.sum.n);
+}
+template <class S>
 MW_INLINE void add_impulse(const SideRows<S, Free>& side, typename S::Vec p, typename S::Ang moment,
                            TreeVelocity<S>& v) {
   Velocity<S> free = v;

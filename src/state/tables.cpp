@@ -17,7 +17,7 @@ namespace {
 constexpr double kStepsThatRest = 2;
 constexpr double kMostSag = 0.01;  // of the length unit, under what presses on fixed shapes
 constexpr double kDeep = 4;        // times the speed per length unit of overlap, up to twice it
-constexpr double kBlow = 1.8;      // of the speed V (kernels/rows/contact.hpp)
+constexpr double kBlow = 1.0;      // of the speed V (kernels/rows/contact.hpp)
 
 template <class Real>
 kernels::Softness<Real> softness(double frequency, double damping_ratio, double h) {
