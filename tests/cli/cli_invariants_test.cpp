@@ -111,6 +111,27 @@ TEST_CASE("report invariants counts the worlds that break a law", "[cli][report]
   CHECK(contains(replayed.out, "different    none"));
 }
 
+TEST_CASE("report invariants --quick measures every family", "[cli][report]") {
+  const ScratchFolder folder;
+  const Outcome outcome = run_with_page(folder, "report invariants --quick --json");
+  INFO(outcome.err);
+  REQUIRE(outcome.code == 0);
+  std::map<std::string, int> rows;
+  const Json report = Json::parse(outcome.out);
+  for (const Json& r : report["results"]) {
+    ++rows[r["family"]];
+    CHECK(r["worlds"] == 4 * 16);
+  }
+  const auto names = known_families(folder);
+  std::set<std::string> laws;
+  for (const Json& r : report["results"]) laws.insert(r["law"].get<std::string>());
+  CHECK(rows.size() + laws.size() == names.size());
+  for (const auto& [family, count] : rows) {
+    INFO(family);
+    CHECK(count == 3);
+  }
+}
+
 TEST_CASE("report invariants says which families there are", "[fast][cli][report]") {
   const ScratchFolder folder;
   const std::vector<std::string> names = known_families(folder);

@@ -98,7 +98,7 @@ void print_text(const OneWorld& one, bool with_values) {
 
 // Steps the world again and records it. Returns a line for people, or nothing if interrupted.
 std::optional<std::string> record(const OneWorld& one, const std::string& file) {
-  Batch batch = report::observed_world(one.family, one.run, one.world);
+  Batch batch = invariants::batch_of(one.family, one.run, one.world);
   JobOptions job;
   job.record = file, job.record_every = 1, job.record_contacts = kContacts;
   JobRecorder recorder(batch, job);

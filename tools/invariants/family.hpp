@@ -28,7 +28,8 @@ struct BodyNow {
 struct Seen {
   int step = 0;  // 0: before the first
   bool last = false;
-  double time = 0;                         // s
+  double time = 0;  // s
+  Precision precision = Precision::f32;
   std::vector<BodyNow> now, before;        // after this step, and after the one before it
   std::vector<BodyNow> twin;               // of the world beside it (Drawn::twin), else empty
   Energy energy = {};                      // J
@@ -139,7 +140,8 @@ std::vector<double> values_of(const Family& family, const RunOptions& options, i
 
 // World number `world` of a family.
 Drawn draw_world(const Family& family, const RunOptions& options, int world);
-// A batch of one world, with the plan that it had among others of its kind.
+// A batch of one world, which observes contacts, with the plan that it had among others of its
+// kind.
 Batch batch_of(const Family& family, const RunOptions& options, int world);
 
 }  // namespace manyworlds::invariants

@@ -48,10 +48,7 @@ Drawn draw_body(Space space, bool prism, Random& kind, Random& state, const Scal
     if (space == Space::planar) at.z() = 0;
     const double yaw = state.uniform(-scenes::kPi, scenes::kPi);
     out.scene.bodies[1] = stand(space, standing, floor, at, yaw);
-    holds = stands(
-        out.scene,
-        base_touches(out.scene, standing, floor, 1, friction, standing.base.size() > 4 ? 0.5 : 0.2),
-        margin);
+    holds = stands(out.scene, base_touches(out.scene, standing, floor, 1, friction, 0.2), margin);
   }
   out.judge = rest_judge(out.scene, out.sleep, floor.rotation * scenes::up_of(space));
   if (!holds) out.judge = [](const Seen&) { return 0.0; };

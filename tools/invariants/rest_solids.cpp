@@ -108,14 +108,11 @@ bool touch_faces(Space space, const Solid& a, const Solid& b, double tolerance, 
       if (std::none_of(corners.begin(), corners.end(), same)) corners.push_back(p);
     }
     if (corners.empty()) continue;
-    // Well inside the support: solvers that keep four points of a manifold cover half of the width
-    // of a disc or polygon of many corners.
-    const double inward = corners.size() > 4 ? std::max(shrink, 0.5) : shrink;
     middle.setZero();
     for (const Vec3& p : corners) middle += p / static_cast<double>(corners.size());
     for (const Vec3& p : corners) {
       out.push_back(
-          {a.body, b.body, p + inward * (middle - p), normal, std::sqrt(a.friction * b.friction)});
+          {a.body, b.body, p + shrink * (middle - p), normal, std::sqrt(a.friction * b.friction)});
       if (flip) std::swap(out.back().a, out.back().b), out.back().normal = -normal;
     }
     return true;

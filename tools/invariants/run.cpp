@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "tools/base/interrupt.hpp"
-#include "tools/invariants/family.hpp"
+#include "tools/invariants/states.hpp"
 
 namespace manyworlds::invariants {
 namespace {
@@ -25,79 +25,6 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return z ^ (z >> 31);
-}
-
-// The initial state of one scene in world `world` of a batch.
-void put_state(Batch& batch, int world, const Scene& scene) {
-  std::vector<double> x, q, v, w;
-  const bool planar = scene.space == Space::planar;
-  for (int row = 0; row < batch.bodies(world); ++row) {
-    const Body& body = scene.at(batch.body_in_row(row));
-    const Quat turn = body.rotation.normalized();
-    const auto add = [&](std::vector<double>& all, const Vec3& value) {
-      all.insert(all.end(), value.data(), value.data() + (planar ? 2 : 3));
-    };
-    add(x, body.position), add(v, body.linear_velocity);
-    if (planar) {
-      const double angle = 2 * std::atan2(turn.z(), turn.w());
-      q.insert(q.end(), {std::cos(angle), std::sin(angle)});
-      w.push_back(body.angular_velocity.z());
-    } else {
-      q.insert(q.end(), {turn.w(), turn.x(), turn.y(), turn.z()});
-      add(w, body.angular_velocity);
-    }
-  }
-  batch.write(Field::position, world, x);
-  batch.write(Field::linear_velocity, world, v);
-  if (batch.size(Field::orientation) > 0) batch.write(Field::orientation, world, q);
-  if (batch.size(Field::angular_velocity) > 0) batch.write(Field::angular_velocity, world, w);
-}
-
-// The states of all worlds of a batch, read in one go.
-class States {
- public:
-  explicit States(const Batch& batch) : batch_(&batch) {}
-  void read() {
-    for (const auto& [field, out] : {std::pair(Field::position, &x_),
-                                     {Field::orientation, &q_},
-                                     {Field::linear_velocity, &v_},
-                                     {Field::angular_velocity, &w_}}) {
-      out->resize(batch_->size(field));
-      batch_->read(field, *out);
-    }
-  }
-  void copy(int world, std::vector<BodyNow>& out) const {
-    const int bodies = batch_->bodies(world);
-    const bool planar = batch_->plan().scene().space == Space::planar;
-    for (int row = 0; row < bodies; ++row) {
-      const auto i = static_cast<std::size_t>(world * bodies + row);
-      BodyNow& b = out[static_cast<std::size_t>(batch_->body_in_row(row).index())];
-      const auto vector = [&](const std::vector<double>& all) {
-        const double* from = all.data() + i * (planar ? 2 : 3);
-        return Vec3(from[0], from[1], planar ? 0 : from[2]);
-      };
-      b.position = vector(x_), b.velocity = vector(v_);
-      if (planar) {
-        b.rotation = Quat(Eigen::AngleAxisd(std::atan2(q_[2 * i + 1], q_[2 * i]), Vec3::UnitZ()));
-        b.spin = Vec3(0, 0, w_[i]);
-      } else {
-        b.rotation = Quat(q_[4 * i], q_[4 * i + 1], q_[4 * i + 2], q_[4 * i + 3]);
-        b.spin = vector(w_);
-      }
-    }
-  }
-
- private:
-  const Batch* batch_;
-  std::vector<double> x_, q_, v_, w_;
-};
-
-std::vector<BodyNow> initial(const Scene& scene) {
-  std::vector<BodyNow> out;
-  for (const Body& b : scene.bodies) {
-    out.push_back({b.position, b.rotation.normalized(), b.linear_velocity, b.angular_velocity});
-  }
-  return out;
 }
 
 BatchOptions batch_options(const Drawn& drawn, const RunOptions& options, int worlds) {
@@ -124,30 +51,31 @@ std::vector<Result> run_kind(const Family& family, const RunOptions& options, in
               batch_options(drawn[0], options, kWorldsPerKind * (twins ? 2 : 1)));
   std::vector<Seen> seen(kWorldsPerKind);
   std::vector<Result> results(kWorldsPerKind);
-  States states(batch);
+  States states;
   for (int w = 0; w < kWorldsPerKind; ++w) {
     const auto i = static_cast<std::size_t>(w);
     put_state(batch, w, drawn[i].scene);
-    seen[i].now = initial(drawn[i].scene);
+    seen[i].precision = options.precision;
+    seen[i].now = initial_states(drawn[i].scene);
     if (!twins) continue;
     put_state(batch, kWorldsPerKind + w, *drawn[i].twin);
-    seen[i].twin = initial(*drawn[i].twin);
+    seen[i].twin = initial_states(*drawn[i].twin);
   }
   const double dt = drawn[0].scene.options.dt;
   for (int step = 0; step <= drawn[0].steps; ++step) {
     if (step > 0) batch.step();
-    states.read();
+    states.read(batch);
     for (int w = 0; w < kWorldsPerKind; ++w) {
       const auto i = static_cast<std::size_t>(w);
       Seen& s = seen[i];
       s.step = step, s.last = step == drawn[0].steps, s.time = step * dt;
       s.before = s.now;
-      states.copy(w, s.now);
+      states.copy(batch, w, s.now);
       s.energy = batch.energy(w), s.hash = batch.hash(w);
       if (drawn[0].contacts && step > 0) s.contacts = batch.step_contacts(w);
       if (drawn[0].sleep) s.asleep = batch.asleep(w);
       if (twins) {
-        states.copy(kWorldsPerKind + w, s.twin);
+        states.copy(batch, kWorldsPerKind + w, s.twin);
         s.twin_hash = batch.hash(kWorldsPerKind + w);
       }
       if (step == 0) s.before = s.now;
@@ -178,7 +106,9 @@ Drawn draw_world(const Family& family, const RunOptions& options, int world) {
 
 Batch batch_of(const Family& family, const RunOptions& options, int world) {
   const Drawn first = draw_world(family, options, world - world % kWorldsPerKind);
-  Batch batch(compile(first.scene), batch_options(first, options, 1));
+  BatchOptions alone = batch_options(first, options, 1);
+  alone.observe.what = {Observer::contacts};
+  Batch batch(compile(first.scene), alone);
   put_state(batch, 0, draw_world(family, options, world).scene);
   return batch;
 }

@@ -95,7 +95,7 @@ class Other {
 
   double operator()(const Seen& seen) {
     if (seen.step == 0) return 0;
-    const Precision precision = precision_of(seen.now);
+    const Precision precision = seen.precision;
     if (!world_) {
       world_.emplace(scene_, precision);
       world_->put(0, scene_);

@@ -19,7 +19,7 @@ class Refined {
   // All at the end, since the precision is seen by then.
   double operator()(const Seen& seen) const {
     if (!seen.last) return 0;
-    const Precision precision = precision_of(seen.now);
+    const Precision precision = seen.precision;
     // Sums of rounding errors, in lengths and radians, that refinement may increase.
     const double floor = precision == Precision::f32 ? 2e-4 : 1e-8;
     const double coarse = mean(precision, 1, 1), half = mean(precision, 2, 1);

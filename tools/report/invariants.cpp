@@ -120,18 +120,6 @@ std::string command_of(const InvariantRow& row) {
       row.options.seed, world, tools::shell_word(file));
 }
 
-Batch observed_world(const Family& family, const RunOptions& options, int world) {
-  const Batch alone = invariants::batch_of(family, options, world);
-  BatchOptions with_contacts;
-  with_contacts.worlds = 1, with_contacts.threads = 1;
-  with_contacts.precision = options.precision;
-  with_contacts.sleep = invariants::draw_world(family, options, world).sleep;
-  with_contacts.observe.what = {Observer::contacts};
-  Batch out(alone.plan(), with_contacts);
-  out.restore(alone.save());
-  return out;
-}
-
 nlohmann::ordered_json to_json(const std::vector<InvariantRow>& rows) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const InvariantRow& r : rows) {

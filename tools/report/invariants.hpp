@@ -52,10 +52,6 @@ const InvariantRow* worst_row(const std::vector<InvariantRow>& rows);
 // The command that records the worst world of a row.
 std::string command_of(const InvariantRow& row);
 
-// World number `world` alone, at its initial state, in a batch that observes contacts.
-Batch observed_world(const invariants::Family& family, const invariants::RunOptions& options,
-                     int world);
-
 nlohmann::ordered_json to_json(const std::vector<InvariantRow>& rows);
 
 }  // namespace manyworlds::report
