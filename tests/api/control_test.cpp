@@ -231,8 +231,9 @@ TEST_CASE("what a control holds does not sleep, and a new control wakes",
   CHECK_FALSE(batch.asleep(1));
   batch.set_controls(0, std::vector<double>{30});
   CHECK_FALSE(batch.asleep(0));
+  const double speed = velocity(batch, 0, 0).z();
   batch.step(30);
-  CHECK(velocity(batch, 0, 0).z() == Approx((30 - 20) / 2.0 * 0.5).epsilon(1e-3));
+  CHECK(velocity(batch, 0, 0).z() - speed == Approx((30 - 20) / 2.0 * 0.5).epsilon(1e-3));
 }
 
 TEST_CASE("a scene tells what is wrong with its controls", "[fast][control][scene]") {
