@@ -108,8 +108,8 @@ unsigned find_participants(const Constants& t, Work& w) {
   return active;
 }
 
-// Takes the participants' impulses back, and keeps what the substeps found.
-template <bool kDense, bool kFriction, class S, int N, class A>
+// Takes the participants' normal impulses back, and keeps what the substeps found.
+template <bool kDense, class S, int N, class A>
 MW_INLINE void take_back(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bounce) {
   Float d[N];
   for (int i = 0; i < N; ++i) {
@@ -125,13 +125,8 @@ MW_INLINE void take_back(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bounce) 
   const Mask part = mask_from_bits(bounce.participants);
   RowVelocities<S, A, kDense> v(w, s), before = v;
   apply_normal(s, d, v);
-  if constexpr (kFriction) {
-    Float f[2] = {-Float::load(bounce.total_tangent[0]), Real(0)}, twist(Real(0));
-    if constexpr (S::kTangents == 2) f[1] = -Float::load(bounce.total_tangent[1]);
-    if constexpr (ContactBlock<S, N>::kTwist) twist = -Float::load(bounce.total_twist);
-    apply_friction(s, f, twist, v);
-  }
-  keep_other_lanes_of_sides(part, before, v);
+  v.b = select(part, v.b, before.b);
+  if constexpr (A::kMoves) v.a = select(part, v.a, before.a);
   v.store(w, s);
 }
 

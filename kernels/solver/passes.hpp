@@ -52,12 +52,11 @@ struct Passes {
     for_each_register<S, kDense>(
         t, w, [&](int at, Float, Float) { Float::load(w.velocity + at).store(w.warmed + at); });
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      take_back<kDense, kFriction>(w, s, bounce_at<S, N>(list, i));
+      take_back<kDense>(w, s, bounce_at<S, N>(list, i));
     });
     play_impacts<S, kDense>(t, w, active);
-    if constexpr (kFriction) rub_impacts<S, kDense>(w);
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      finish_impact<kFriction>(s, bounce_at<S, N>(list, i));
+      finish_impact<kDense, kFriction>(w, s, bounce_at<S, N>(list, i));
     });
     balance(t, g, w);
   }
