@@ -164,16 +164,23 @@ class TreeVelocities {
   Work& w_;
 };
 
+template <class S, class A, bool kDense>
+MW_INLINE std::uint32_t lanes_of_tree(const TreeVelocities<S, A, kDense>& v) {
+  std::uint32_t lanes = v.b.tree.lanes;
+  if constexpr (A::kMoves) lanes |= v.a.tree.lanes;
+  return lanes;
+}
+
 // Lanes without a tree get the bits of blocks without one.
 template <int N, class A, bool kDense>
 MW_INLINE void apply_normal_with_friction(const SidedBlock<Planar, N, A>& s, const Float* d,
                                           const FrictionBudget& budget,
                                           TreeVelocities<Planar, A, kDense>& v, Float* after,
                                           Float& twist_after) {
-  std::uint32_t lanes = v.b.tree.lanes;
+  const std::uint32_t lanes = lanes_of_tree(v);
   SideVelocities<Planar, A> free;
   free.b = v.b;
-  if constexpr (A::kMoves) free.a = v.a, lanes |= v.a.tree.lanes;
+  if constexpr (A::kMoves) free.a = v.a;
   Float after_free[2];
   apply_normal_with_friction(s, d, budget, free, after_free);
   apply_normal(s, d, v);

@@ -92,7 +92,18 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         comes = max(select(impulse[i] < most[i], -closing, zero), comes);
         goes = max(select(zero < impulse[i], closing, zero), goes);
       }
-      const Mask blow = Float(t.blow_speed) < max(comes, goes);
+      Mask blow = Float(t.blow_speed) < max(comes, goes);
+      if constexpr (requires { v.b.tree; }) {
+        // Links that strike: a joint has a share of it, which rows find in turn. Only loads that
+        // come at once are solved so.
+        const Mask of_tree = mask_from_bits(lanes_of_tree(v));
+        Mask load = mask_from_bits(0);
+        if (kPass == Pass::bias && w.substep == 0) {
+          const Float pressed = Float::load(s.press);
+          load = (Float(t.blow_speed * Real(1.2)) < comes) & (comes < pressed + pressed);
+        }
+        blow = (blow & !of_tree) | (load & of_tree);
+      }
       if (any(blow)) {
         const Blow<N> found = settle_blow(s, blow, bias, speed, impulse, most);
         const Velocities before = v;
