@@ -65,7 +65,7 @@ MW_INLINE void solve_friction(const SidedBlock<S, N, A>& s, const FrictionBudget
       // rotate more easily about some axes than about others. The step that is cut back to the
       // bound goes along the slip itself, by one mass, so that an impulse stays as it is only when
       // it opposes the slip that it leaves; the passes of a step converge to that.
-      const Float mass = Float::load(s.slip_mass), least = max(budget.bound, Real(1e-30));
+      const Float mass = Float::load(s.slip_mass), least(Real(1e-30));
       const Float c1 = fnma(mass, v1, budget.before[0]), c2 = fnma(mass, v2, budget.before[1]);
       const Float scale = budget.bound / max(sqrt(fma(c1, c1, c2 * c2)), least);
       const Mask slips = (budget.bound * budget.bound < square) & !none;
