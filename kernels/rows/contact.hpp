@@ -93,16 +93,17 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         goes = max(select(zero < impulse[i], closing, zero), goes);
       }
       Mask blow = Float(t.blow_speed) < max(comes, goes);
-      if constexpr (requires { v.b.tree; }) {
-        // Links that strike: a joint has a share of it, which rows find in turn. Only loads that
-        // come at once are solved so.
-        const Mask of_tree = mask_from_bits(lanes_of_tree(v));
-        Mask load = mask_from_bits(0);
+      // Of links of trees, of which a joint takes a share, and in the plane, where towers of 40
+      // boxes lean more otherwise, only loads that come at once are solved so.
+      constexpr bool kOfTree = requires { v.b.tree; };
+      if constexpr (kOfTree || S::kDim == 2) {
+        Mask loads_only = mask_from_bits(kAllLanes), load = mask_from_bits(0);
+        if constexpr (S::kDim == 3) loads_only = mask_from_bits(lanes_of_tree(v));
         if (kPass == Pass::bias && w.substep == 0) {
           const Float pressed = Float::load(s.press);
           load = (Float(t.blow_speed * Real(1.2)) < comes) & (comes < pressed + pressed);
         }
-        blow = (blow & !of_tree) | (load & of_tree);
+        blow = (blow & !loads_only) | (load & loads_only);
       }
       if (any(blow)) {
         const Blow<N> found = settle_blow(s, blow, bias, speed, impulse, most);
