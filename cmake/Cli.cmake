@@ -6,6 +6,7 @@ find_package(nlohmann_json REQUIRED CONFIG)
 
 include("${CMAKE_CURRENT_LIST_DIR}/Invariants.cmake")
 mw_sources(mw_cli_sources "tools/report/*.cpp" "tools/cli/*.cpp")
+list(FILTER mw_cli_sources EXCLUDE REGEX "/cli/no_invariants\\.cpp$")  # of wheels
 if(MW_REPORT)
   list(FILTER mw_cli_sources EXCLUDE REGEX "/cli/no_reports\\.cpp$")
 else()

@@ -117,7 +117,11 @@ if(MW_MJCF)
   target_link_options(manyworlds_program PRIVATE "-Wl,--export-dynamic-symbol=mj*")
 endif()
 if(MW_REPORT)
-  mw_uses(manyworlds_program manyworlds_invariants manyworlds_wheel)
+  # The families are half a megabyte of a wheel, and for those who work on the engine.
+  target_sources(manyworlds_program PRIVATE "${PROJECT_SOURCE_DIR}/tools/cli/no_invariants.cpp"
+    "${PROJECT_SOURCE_DIR}/tools/invariants/names.cpp")
+  target_include_directories(manyworlds_program PRIVATE "${PROJECT_SOURCE_DIR}"
+    "${PROJECT_SOURCE_DIR}/tools/cli")
 endif()
 mw_uses(manyworlds_program manyworlds_tools_base manyworlds_wheel)
 if(MW_LIVE)

@@ -65,7 +65,7 @@ TEST_CASE("worlds of a kind share their scene but for the states", "[fast][invar
   }
 }
 
-TEST_CASE("a world of a family follows from seed and number", "[fast][invariants]") {
+TEST_CASE("a world of a family follows from seed and number", "[invariants]") {
   for (const Family& f : families()) {
     INFO(f.id);
     const Batch a = batch_of(f, some(3), 5), b = batch_of(f, some(3), 5);
@@ -77,7 +77,7 @@ TEST_CASE("a world of a family follows from seed and number", "[fast][invariants
   }
 }
 
-TEST_CASE("worlds of families keep their laws", "[fast][invariants]") {
+TEST_CASE("worlds of families keep their laws", "[invariants]") {
   // docs/invariants.md has the shares of worlds that break these. A mend takes its families off the
   // list.
   const std::set<std::string> broken = {"arch 2D",

@@ -8,22 +8,6 @@ Scale draw_scale(Random& random, Units units) {
   return {length, gravity, std::sqrt(length * 9.81 / gravity) / 60};
 }
 
-const char* to_string(Units units) { return units == Units::similar ? "similar" : "earth"; }
-
-const char* to_string(Law law) {
-  switch (law) {
-    case Law::symmetry: return "symmetry";
-    case Law::momentum: return "momentum";
-    case Law::energy: return "energy";
-    case Law::friction: return "friction";
-    case Law::rest: return "rest";
-    case Law::penetration: return "penetration";
-    case Law::similarity: return "similarity";
-    case Law::independence: return "independence";
-  }
-  return "";
-}
-
 std::vector<Family> families() {
   std::vector<Family> out;
   for (auto& part :
