@@ -346,112 +346,6 @@ void add_view(CLI::App& app, AllOptions& all, int& code) {
   command->callback([&] { code = view_command(all.view); });
 }
 
-// What all reports take.
-void add_report_options(CLI::App& app, ReportOptions& options, const std::string& name) {
-  app.add_flag("--quick", options.quick, "run a shorter version, in under two minutes");
-  add_folder(app, "--out", options.out, fmt::format("folder for {0}.html and {0}.json", name));
-  app.add_flag("--json", options.json, "print JSON instead of text");
-}
-
-void add_report_page(CLI::App& report, ReportPageOptions& options, int& code) {
-  CLI::App* page = report.add_subcommand("page", "Make pages from the JSON of earlier reports");
-  page->add_option("file", options.files, "JSON of reports")->required()->type_name("FILE.json");
-  add_folder(*page, "--out", options.out, "folder for the pages (default: next to the JSON)");
-  page->footer(
-      "Examples:\n"
-      "  manyworlds report page report/accuracy.json\n"
-      "  manyworlds report page report/*.json --out pages\n"
-      "\n"
-      "Use it for reports from a program that was built without pages, or from an earlier "
-      "version.");
-  page->callback([&] { code = report_page_command(options); });
-}
-
-void add_report(CLI::App& app, AllOptions& all, int& code) {
-  CLI::App* command = app.add_subcommand(
-      "report", "Measure accuracy, stability, laws of mechanics, plans and throughput");
-  command->require_subcommand(1);
-  CLI::App* accuracy = command->add_subcommand(
-      "accuracy", "Measure error against run time in scenes with known solutions");
-  add_report_options(*accuracy, all.report, "accuracy");
-  add_case_list(*accuracy, all.report.cases, "A1,A16");
-  accuracy->footer(
-      "Examples:\n"
-      "  manyworlds report accuracy --quick\n"
-      "  manyworlds report accuracy --cases A5,A16 --out /tmp/report\n"
-      "\n"
-      "Each case is a scene with a known solution. It runs with several integrators or numbers\n"
-      "of substeps and several step lengths: once to measure the error, and once without\n"
-      "observing it to measure the time. The page has a picture of each case.");
-  accuracy->callback([&] { code = report_accuracy_command(all.report); });
-
-  CLI::App* stability =
-      command->add_subcommand("stability", "Test stiff and extreme scenes against criteria");
-  add_report_options(*stability, all.report, "stability");
-  add_case_list(*stability, all.report.cases, "B9,B13");
-  stability->footer(
-      "Examples:\n"
-      "  manyworlds report stability --quick\n"
-      "  manyworlds report stability --cases B13,B15 --json\n"
-      "\n"
-      "Each case runs in many slightly different worlds, with the default and with other\n"
-      "settings. It fails if one of its worlds fails. Failures appear in the report and do not\n"
-      "change the exit code.");
-  stability->callback([&] { code = report_stability_command(all.report); });
-
-  CLI::App* invariants = command->add_subcommand(
-      "invariants", "Check laws of mechanics over families of random scenes");
-  add_report_options(*invariants, all.report, "invariants");
-  add_invariant_options(*invariants, all.report);
-  invariants->footer(
-      "Examples:\n"
-      "  manyworlds report invariants --quick\n"
-      "  manyworlds report invariants --families energy,rest --kinds 256 --seed 7\n"
-      "  manyworlds report invariants --families FAMILY --world 37 --record world.h5\n"
-      "\n"
-      "Each family draws random scenes, 16 worlds per group, and checks every world against a law\n"
-      "after every step. The report has the share of worlds that break the law and the worst\n"
-      "world. A family passes if at most 0.1 % of its worlds break the law. Failures appear in "
-      "the\n"
-      "report and do not change the exit code. A world depends only on its family, --units,\n"
-      "--precision, --seed and number. --world prints the value of its law after each step, and\n"
-      "--record records it for 'manyworlds view'.");
-  invariants->callback([&] { code = report_invariants_command(all.report); });
-
-  CLI::App* plan = command->add_subcommand("plan", "Measure the benefit of omitting unused stages");
-  add_report_options(*plan, all.report, "plan");
-  add_scene_list(*plan, all.report.scenes);
-  plan->footer(
-      "Examples:\n"
-      "  manyworlds report plan --quick\n"
-      "  manyworlds report plan --scenes bin-boxes,ball3d\n"
-      "\n"
-      "Each variant (a stage switched on again, another layout, another broad phase) steps\n"
-      "alternately with the default batch, on one thread, and must produce the same bits.");
-  plan->callback([&] { code = report_plan_command(all.report); });
-
-  CLI::App* throughput = command->add_subcommand(
-      "throughput",
-      "Measure speed by number of worlds, threads and bodies, instruction set and precision");
-  add_report_options(*throughput, all.report, "throughput");
-  add_scene_list(*throughput, all.report.scenes);
-  add_folder(*throughput, "--peers", all.report.peers,
-             "compare with the engines in this folder, built by tools/peers");
-  throughput->add_flag("--peers-only", all.report.peers_only, "run only the comparison of --peers")
-      ->needs("--peers");
-  throughput->footer(
-      "Examples:\n"
-      "  manyworlds report throughput --quick\n"
-      "  manyworlds report throughput --scenes stack10 --json\n"
-      "  manyworlds report throughput --peers build/peers/bin --peers-only\n"
-      "\n"
-      "Peers step the same standard scenes alternately with manyworlds. This takes up to an hour,\n"
-      "or two minutes with --quick. The fastest engine of each scene comes first. A peer that\n"
-      "fails gets a line in the report.");
-  throughput->callback([&] { code = report_throughput_command(all.report); });
-  add_report_page(*command, all.report_page, code);
-}
-
 void add_info(CLI::App& app, AllOptions& all, int& code) {
   CLI::App* command =
       app.add_subcommand("info", "Show the CPU, instruction sets, threads and versions");
@@ -531,7 +425,7 @@ int run_program(int argc, char** argv) {
   add_soak(app, all, code);
   add_replay(app, all, code);
   add_view(app, all, code);
-  add_report(app, all, code);
+  add_report(app, all.report, all.report_page, code);
   add_info(app, all, code);
   add_completion(app, all.shell, code);
   try {

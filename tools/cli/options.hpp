@@ -168,8 +168,6 @@ void add_record_options(CLI::App& app, JobOptions& options);
 void add_contacts_option(CLI::App& app, int& contacts, const char* flag, const std::string& help);
 void add_dump_option(CLI::App& app, JobOptions& options);
 void add_scene_list(CLI::App& app, std::vector<std::string>& scenes);
-void add_case_list(CLI::App& app, std::vector<std::string>& cases, const std::string& example);
-void add_invariant_options(CLI::App& app, ReportOptions& options);
 // The name of a folder.
 void add_folder(CLI::App& app, const std::string& flag, std::string& folder,
                 const std::string& help);
@@ -181,5 +179,8 @@ void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::stri
 // The name an option takes for a value: "auto" for automatic, otherwise the library's own.
 std::string option_name(BroadPhase broad_phase);
 std::string option_name(ContactLayout layout);
+
+// `report` and its subcommands, which set `code` to their exit code (report_subcommands.cpp).
+void add_report(CLI::App& app, ReportOptions& options, ReportPageOptions& pages, int& code);
 
 }  // namespace manyworlds::cli
