@@ -134,8 +134,6 @@ Drawn heavy_on_light(Random& kind, Random& state, const Scale& scale, Space spac
   return out;
 }
 
-using Draw = std::function<Drawn(Random&, Random&, const Scale&)>;
-
 }  // namespace
 
 std::vector<Family> pile_energy_families() {
@@ -145,8 +143,8 @@ std::vector<Family> pile_energy_families() {
     f.id = id, f.law = Law::energy, f.title = title;
     f.criterion =
         "largest rise of the total energy above its running minimum, over 1 % of the kinetic "
-        "energy "
-        "before and 0.1 % of m g size; the minimum may rise by 0.1 % of m g size per second";
+        "energy before and 0.1 % of m g size; the minimum may rise by 0.1 % of m g size per "
+        "second";
     f.limit = 1;
     f.draw = std::move(draw);
     out.push_back(std::move(f));

@@ -59,7 +59,7 @@ Drawn ball_on_ring(Random& kind, Random& state, const Scale& scale, Space space,
   aside.normalize();
 
   // All contacts have the same impulse: rate of approach u = v cos(angle) at each, and the ball
-  // gives way to the sum of them.
+  // is slowed by the sum of them.
   const double approach = speed * std::cos(angle);
   const double impulse = (1 + restitution) * approach /
                          (1 / (mass * ratio) + count * std::pow(std::cos(angle), 2) / mass);
@@ -103,8 +103,6 @@ Drawn cradle(Random& kind, Random& state, const Scale& scale, Space space) {
   out.judge = velocities_judge(expected, speed, last);
   return out;
 }
-
-using Draw = std::function<Drawn(Random&, Random&, const Scale&)>;
 
 }  // namespace
 

@@ -8,6 +8,18 @@ Scale draw_scale(Random& random, Units units) {
   return {length, gravity, std::sqrt(length * 9.81 / gravity) / 60};
 }
 
+std::vector<Family> in_both_spaces(const Family& family, const DrawInSpace& draw) {
+  std::vector<Family> out;
+  for (const Space space : {Space::planar, Space::spatial}) {
+    Family& f = out.emplace_back(family);
+    f.id += space == Space::planar ? " 2D" : " 3D";
+    f.draw = [draw, space](Random& kind, Random& state, const Scale& scale) {
+      return draw(space, kind, state, scale);
+    };
+  }
+  return out;
+}
+
 std::vector<Family> families() {
   std::vector<Family> out;
   for (auto& part :

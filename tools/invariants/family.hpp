@@ -95,10 +95,17 @@ struct Family {
   double limit_f64 = 0;   // in float64; 0: as in float32
   // A world. What its scene is made of comes from `kind`; the states in which its bodies start from
   // `state`. Worlds that share `kind` share a plan, one lane each.
-  std::function<Drawn(Random& kind, Random& state, const Scale& scale)> draw;
+  std::function<Drawn(Random& kind, Random& state, const Scale& scale)> draw = {};
   // false: worlds beyond the limit are reported only (ratios of mass beyond 100, for example).
   bool required = true;
 };
+
+using Draw = decltype(Family::draw);
+using DrawInSpace =
+    std::function<Drawn(Space space, Random& kind, Random& state, const Scale& scale)>;
+
+// The family in the plane and in space, with " 2D" and " 3D" at the end of its id.
+std::vector<Family> in_both_spaces(const Family& family, const DrawInSpace& draw);
 
 // All, in the order of the report.
 std::vector<Family> families();

@@ -136,21 +136,14 @@ Drawn draw_slide(Space space, Random& kind, Random& state, const Scale& scale) {
 std::vector<Family> friction_cone_families();  // friction_cone.cpp
 
 std::vector<Family> friction_families() {
-  std::vector<Family> out;
-  for (const Space space : {Space::spatial, Space::planar}) {
-    Family f;
-    f.id = space == Space::planar ? "slide 2D" : "slide 3D";
-    f.law = Law::friction;
-    f.title = "a body slides without spin on a floor, slope, height field or conveyor";
-    f.criterion =
-        "distance from Coulomb's path (1 % along it, 0.5 degrees aside), yaw (0.02 rad), the "
-        "largest as a share of what is allowed";
-    f.limit = 1;
-    f.draw = [space](Random& kind, Random& state, const Scale& scale) {
-      return draw_slide(space, kind, state, scale);
-    };
-    out.push_back(std::move(f));
-  }
+  Family slide;
+  slide.id = "slide", slide.law = Law::friction;
+  slide.title = "a body slides without spin on a floor, slope, height field or conveyor";
+  slide.criterion =
+      "distance from Coulomb's path (1 % along it, 0.5 degrees aside), yaw (0.02 rad), the "
+      "largest as a share of what is allowed";
+  slide.limit = 1;
+  std::vector<Family> out = in_both_spaces(slide, draw_slide);
   for (Family& f : friction_cone_families()) out.push_back(std::move(f));
   return out;
 }

@@ -200,22 +200,14 @@ Drawn draw_turntable(Random& kind, Random& state, const Scale& scale) {
 }  // namespace
 
 std::vector<Family> friction_cone_families() {
-  std::vector<Family> out;
-  for (const Space space : {Space::spatial, Space::planar}) {
-    Family f;
-    f.id = space == Space::planar ? "cone 2D" : "cone 3D";
-    f.law = Law::friction;
-    f.title = "bodies slide, tip and bounce on floors, slopes, height fields and conveyors";
-    f.criterion =
-        "friction impulse of a manifold in a step in which it slips faster than 10 mu g dt: mu N "
-        "to "
-        "1 %, against the slip to 0.5 degrees, the larger as a share of what is allowed";
-    f.limit = 1;
-    f.draw = [space](Random& kind, Random& state, const Scale& scale) {
-      return draw_cone(space, kind, state, scale);
-    };
-    out.push_back(std::move(f));
-  }
+  Family cone;
+  cone.id = "cone", cone.law = Law::friction;
+  cone.title = "bodies slide, tip and bounce on floors, slopes, height fields and conveyors";
+  cone.criterion =
+      "friction impulse of a manifold in a step in which it slips faster than 10 mu g dt: "
+      "mu N to 1 %, against the slip to 0.5 degrees, the larger as a share of what is allowed";
+  cone.limit = 1;
+  std::vector<Family> out = in_both_spaces(cone, draw_cone);
   Family f;
   f.id = "turntable";
   f.law = Law::friction;

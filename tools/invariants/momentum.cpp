@@ -189,8 +189,6 @@ Drawn free_spin(Random& kind, Random& state, const Scale& scale, Momentum which)
   return out;
 }
 
-using Draw = std::function<Drawn(Random&, Random&, const Scale&)>;
-
 void add(std::vector<Family>& out, const std::string& id, const std::string& title, Momentum which,
          int steps, bool grows, Draw draw) {
   Family f;

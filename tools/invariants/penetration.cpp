@@ -173,23 +173,19 @@ Drawn draw_drop(Space space, Random& kind, Random& state, const Scale& scale) {
   return out;
 }
 
-Family drop_family(Space space) {
+std::vector<Family> drop_families() {
   Family f;
-  f.id = space == Space::planar ? "flat bodies onto floors 2D" : "flat bodies onto floors 3D";
-  f.law = Law::penetration;
+  f.id = "flat bodies onto floors", f.law = Law::penetration;
   f.title = "flat and slender bodies dropped from 0 to 20 half thicknesses onto floors";
   f.criterion = "depth below the floor beyond slop over the half thickness";
   f.limit = 0.02;
-  f.draw = [space](Random& kind, Random& state, const Scale& scale) {
-    return draw_drop(space, kind, state, scale);
-  };
-  return f;
+  return in_both_spaces(f, draw_drop);
 }
 
 }  // namespace
 
 std::vector<Family> penetration_families() {
-  std::vector<Family> all = {drop_family(Space::planar), drop_family(Space::spatial)};
+  std::vector<Family> all = drop_families();
   for (auto& more : {pile_families(), wall_families(), seam_families()}) {
     all.insert(all.end(), more.begin(), more.end());
   }

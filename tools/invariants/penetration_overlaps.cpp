@@ -6,7 +6,7 @@
 namespace manyworlds::invariants {
 
 // A contact's overlap is what the step found, which could be along a poor normal. No direction
-// tells less than the true depth, so the least over some is at most a little too large.
+// yields less than the true depth, so the least over some is at most a little too large.
 double Overlaps::of_pair(const Piece& a, const Piece& b, const StepContact& contact,
                          const std::vector<BodyNow>& at) const {
   const BodyNow &na = at[a.body], &nb = at[b.body];

@@ -161,21 +161,13 @@ Drawn draw_fast(Space space, Random& kind, Random& state, const Scale& scale) {
 }  // namespace
 
 std::vector<Family> wall_families() {
-  std::vector<Family> all;
-  for (const Space space : {Space::planar, Space::spatial}) {
-    Family f;
-    f.id = space == Space::planar ? "fast bodies at walls 2D" : "fast bodies at walls 3D";
-    f.law = Law::penetration;
-    f.title = "bodies of up to 5 lengths and 6 rad a step hit walls from 5 % of their size thick";
-    f.criterion = "bodies whose centre ends behind the wall";
-    f.unit = "bodies";
-    f.limit = 0;
-    f.draw = [space](Random& kind, Random& state, const Scale& scale) {
-      return draw_fast(space, kind, state, scale);
-    };
-    all.push_back(std::move(f));
-  }
-  return all;
+  Family f;
+  f.id = "fast bodies at walls", f.law = Law::penetration;
+  f.title = "bodies of up to 5 lengths and 6 rad a step hit walls from 5 % of their size thick";
+  f.criterion = "bodies whose centre ends behind the wall";
+  f.unit = "bodies";
+  f.limit = 0;
+  return in_both_spaces(f, draw_fast);
 }
 
 }  // namespace manyworlds::invariants

@@ -107,7 +107,7 @@ Assembly logs(Space space, Random& r, const Scale& scale, double) {
 Assembly corner(Random& r, const Scale& scale, double) {
   Assembly out{scene_of(Space::spatial, scale)};
   const double friction = r.log_uniform(0.1, 2), radius = 0.5 * scale.length * r.uniform(0.3, 1);
-  // Upward in the corner's frame: every plane bears some of the weight.
+  // Upward in the corner's frame: every plane carries some of the weight.
   const double x = r.uniform(0.2, 1), y = r.uniform(0.2, 1), z = r.uniform(0.2, 1);
   const Quat turn = Quat::FromTwoVectors(Vec3(x, y, z), Vec3::UnitZ());
   const double mass = draw_mass(r, scale, 1);

@@ -213,20 +213,13 @@ Drawn draw_units(Space space, Random& kind, Random& state, const Scale& scale) {
 }  // namespace
 
 std::vector<Family> similarity_families() {
-  std::vector<Family> all;
-  for (const Space space : {Space::planar, Space::spatial}) {
-    Family f;
-    f.id = space == Space::planar ? "other units 2D" : "other units 3D";
-    f.law = Law::similarity;
-    f.title =
-        "falling bodies and joints, in units of length, time and mass that differ by powers of two";
-    f.criterion = "difference of states over size, radians and body lengths a step";
-    f.limit = 1e-3;
-    f.draw = [space](Random& kind, Random& state, const Scale& scale) {
-      return draw_units(space, kind, state, scale);
-    };
-    all.push_back(std::move(f));
-  }
+  Family f;
+  f.id = "other units", f.law = Law::similarity;
+  f.title =
+      "falling bodies and joints, in units of length, time and mass that differ by powers of two";
+  f.criterion = "difference of states over size, radians and body lengths a step";
+  f.limit = 1e-3;
+  std::vector<Family> all = in_both_spaces(f, draw_units);
   const auto refinement = refinement_families();
   all.insert(all.end(), refinement.begin(), refinement.end());
   return all;
