@@ -86,6 +86,7 @@ void put_masses(const Constants& t, SidedBlock<S, N, A>& s, const TreeSide<S>& o
     const Float scale = inverse_or_zero(fms(k11, k22, k12 * k12));
     put(k22 * scale, s.tangent_mass[0]), put(-(k12 * scale), s.tangent_mass[1]);
     put(k11 * scale, s.tangent_mass[2]);
+    put(Float(Real(2)) * inverse_or_zero(k11 + k22), s.slip_mass);
     if constexpr (ContactBlock<S, N>::kTwist) {
       const auto about = [&](const auto&, int) { return WrenchOf<S>{n, zero_of<Vec>()}; };
       Float arm = zero;

@@ -35,6 +35,12 @@ struct TreeVelocity : Velocity<S> {
   }
 };
 template <class S>
+MW_INLINE void keep_other_lanes(Mask lanes, const TreeVelocity<S>& before, TreeVelocity<S>& v) {
+  keep_other_lanes(lanes, static_cast<const Velocity<S>&>(before), static_cast<Velocity<S>&>(v));
+  v.sum.f = select(lanes, v.sum.f, before.sum.f);
+  v.sum.n = select(lanes, v.sum.n, before.sum.n);
+}
+template <class S>
 MW_INLINE void add_impulse(const SideRows<S, Free>& side, typename S::Vec p, typename S::Ang moment,
                            TreeVelocity<S>& v) {
   Velocity<S> free = v;
@@ -158,16 +164,23 @@ class TreeVelocities {
   Work& w_;
 };
 
+template <class S, class A, bool kDense>
+MW_INLINE std::uint32_t lanes_of_tree(const TreeVelocities<S, A, kDense>& v) {
+  std::uint32_t lanes = v.b.tree.lanes;
+  if constexpr (A::kMoves) lanes |= v.a.tree.lanes;
+  return lanes;
+}
+
 // Lanes without a tree get the bits of blocks without one.
 template <int N, class A, bool kDense>
 MW_INLINE void apply_normal_with_friction(const SidedBlock<Planar, N, A>& s, const Float* d,
                                           const FrictionBudget& budget,
                                           TreeVelocities<Planar, A, kDense>& v, Float* after,
                                           Float& twist_after) {
-  std::uint32_t lanes = v.b.tree.lanes;
+  const std::uint32_t lanes = lanes_of_tree(v);
   SideVelocities<Planar, A> free;
   free.b = v.b;
-  if constexpr (A::kMoves) free.a = v.a, lanes |= v.a.tree.lanes;
+  if constexpr (A::kMoves) free.a = v.a;
   Float after_free[2];
   apply_normal_with_friction(s, d, budget, free, after_free);
   apply_normal(s, d, v);

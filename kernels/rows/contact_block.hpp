@@ -47,6 +47,7 @@ struct alignas(64) ContactBlock : BlockHeader {
   Real gap[N][kLanes];           // m, at the start of the substep
   Real impulse[N][kLanes];       // N s, accumulated, >= 0
   Real tangent_mass[kTangentMass][kLanes];  // inverse of the 2x2, or 1x1
+  Real slip_mass[kLanes];                   // in space, of what slips
   Real tangent_impulse[S::kTangents][kLanes];
   // m/s, by which forces on the bodies press them together in a substep; not of single points of
   // bodies that move.

@@ -31,7 +31,8 @@ MW_INLINE void put_tangents(const Sides<Planar, A>& sides, const Manifold<Planar
   select(active, one / k, zero).store(s.tangent_mass[0]);
 }
 
-// The two tangents share one effective mass, the inverse of a 2x2 matrix.
+// The two tangents share one effective mass, the inverse of a 2x2 matrix. A scalar one brakes
+// what slips.
 template <class S, int N, class A>
 MW_INLINE void put_tangents(const Sides<S, A>& sides, const Manifold<GeometryOf<S>, N>& m,
                             Mask active, Vec3 normal, const FrictionCentre<S>& centre,
@@ -56,6 +57,8 @@ MW_INLINE void put_tangents(const Sides<S, A>& sides, const Manifold<GeometryOf<
   (k22 * scale).store(s.tangent_mass[0]);
   (-(k12 * scale)).store(s.tangent_mass[1]);
   (k11 * scale).store(s.tangent_mass[2]);
+  // The harmonic mean of its eigenvalues, less than twice the smaller one: steps by it converge.
+  select(active, Float(Real(2)) / (k11 + k22), zero).store(s.slip_mass);
 }
 
 template <class S, int N, class A>
@@ -87,11 +90,20 @@ MW_INLINE void put_friction(const Constants& t, const Group& g, const Sides<S, A
     mu = load_materials<A>(t, g, code, s.mask, &Material::friction);
   }
   sqrt(mu.a * mu.b).store(s.friction);
+  const auto normal = load_as<typename S::Vec>(s.normal[0]);
   const Float share = one / max(count, one);
   FrictionCentre<S> centre;
   centre.b = sum.b * share;
-  if constexpr (A::kMoves) centre.a = sum.a * share;
-  const auto normal = load_as<typename S::Vec>(s.normal[0]);
+  if constexpr (A::kMoves) {
+    centre.a = sum.a * share;
+    // What rides on a driven body turns with it: there the arm is that of half a step on. With the
+    // arm of the step's start a rider would leave a turntable by w^2 r dt / 2 in the mean.
+    const Mask drives_a = sides.a.body.inv_mass == zero, drives_b = sides.b.body.inv_mass == zero;
+    auto way = (sides.b.velocity.v - sides.a.velocity.v) * Float(t.dt * Real(0.5));
+    way = way - normal * dot(normal, way);
+    centre.a = select(drives_a, centre.a + way, centre.a);
+    centre.b = select(drives_b, centre.b - way, centre.b);
+  }
   put_tangents(sides, m, active, normal, centre, s);
   for (int i = 0; i < S::kTangents; ++i) {
     select(active, stored.tangent[i], zero).store(s.tangent_impulse[i]);

@@ -61,10 +61,16 @@ MW_INLINE void solve_friction(const SidedBlock<S, N, A>& s, const FrictionBudget
     // Where worlds agree on what touches, nothing slips in most blocks: a root and a quotient less,
     // and the same bits.
     if (!Velocities::kIsDense || !all(surely_within(square, budget.bound) | none)) {
-      // Both zero only without any impulse; the floor keeps 0 / 0 out.
-      const Float shrink = budget.bound / max(sqrt(square), max(budget.bound, Real(1e-30)));
-      after[0] = p1 * shrink;
-      after[1] = p2 * shrink;
+      // What slips is braked against the slip, which the impulse that would stop it is not: bodies
+      // rotate more easily about some axes than about others. The step that is cut back to the
+      // bound goes along the slip itself, by one mass, so that an impulse stays as it is only when
+      // it opposes the slip that it leaves; the passes of a step converge to that.
+      const Float mass = Float::load(s.slip_mass), least(Real(1e-30));
+      const Float c1 = fnma(mass, v1, budget.before[0]), c2 = fnma(mass, v2, budget.before[1]);
+      const Float scale = budget.bound / max(sqrt(fma(c1, c1, c2 * c2)), least);
+      const Mask slips = (budget.bound * budget.bound < square) & !none;
+      after[0] = select(slips, c1 * scale, p1);
+      after[1] = select(slips, c2 * scale, p2);
     }
     d[0] = after[0] - budget.before[0];
     d[1] = after[1] - budget.before[1];

@@ -35,6 +35,18 @@ struct SideVelocities {
   Velocity<S> b;
 };
 
+// Outside of `lanes` v is as before, to the sign of its zeros.
+MW_INLINE void keep_other_lanes(Mask, Still, Still) {}
+template <class S>
+MW_INLINE void keep_other_lanes(Mask lanes, const Velocity<S>& before, Velocity<S>& v) {
+  v = select(lanes, v, before);
+}
+template <class Sides>
+MW_INLINE void keep_other_lanes_of_sides(Mask lanes, const Sides& before, Sides& v) {
+  keep_other_lanes(lanes, before.b, v.b);
+  keep_other_lanes(lanes, before.a, v.a);
+}
+
 // From `array`, which is laid out like Work::velocity.
 template <class S, class A, bool kDense>
 MW_INLINE SideVelocities<S, A> load_sides(const Real* array, const RowBodies& s) {

@@ -17,7 +17,6 @@ namespace {
 constexpr double kStepsThatRest = 2;
 constexpr double kMostSag = 0.01;  // of the length unit, under what presses on fixed shapes
 constexpr double kDeep = 4;        // times the speed per length unit of overlap, up to twice it
-constexpr double kBlow = 1.8;      // of the speed V (kernels/rows/contact.hpp)
 
 template <class Real>
 kernels::Softness<Real> softness(double frequency, double damping_ratio, double h) {
@@ -107,9 +106,11 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
       softness<Real>(o.contact.fixed_frequency.value_or(2 * frequency), o.contact.damping_ratio, h);
   t.fixed_leak = t.soft_fixed.bias_rate * t.soft_fixed.mass_scale *
                  static_cast<Real>(kMostSag * *o.length_unit);
-  t.blow_speed = static_cast<Real>(kBlow * speed_unit(o));
   add_solver(o);
   t.push_out_speed = static_cast<Real>(*o.contact.push_out_speed);
+  // Slower changes may be those of the push-out. Not by the world's own gravity: worlds whose
+  // gravity varies would not have the bits of their scenes.
+  t.blow_speed = t.push_out_speed;
   t.push_out_rate = static_cast<Real>(kDeep * *o.contact.push_out_speed / *o.length_unit);
   t.margin = static_cast<Real>(2 * min_margin(plan));
   t.half_margin = static_cast<Real>(min_margin(plan));

@@ -142,9 +142,7 @@ TEST_CASE("worlds of families keep their laws", "[invariants]") {
                                         "refinement: top",
                                         "seams 2D",
                                         "seams 3D",
-                                        "slide 3D",
                                         "turned 3D",
-                                        "turntable",
                                         "wall 2D",
                                         "wall 3D"};
   for (const Family& f : families()) {
