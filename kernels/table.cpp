@@ -64,12 +64,12 @@ kernels::Kernels<Real> make_table() {
   auto& planar = out.solver[static_cast<int>(InertiaKind::planar)];
   auto& isotropic = out.solver[static_cast<int>(InertiaKind::isotropic)];
   auto& tensor = out.solver[static_cast<int>(InertiaKind::tensor)];
-  fill_solver_planar_dense(planar[1][0], planar[0][0]);
-  fill_solver_planar_rows(planar[1][1], planar[0][1]);
-  fill_solver_isotropic_dense(isotropic[1][0], isotropic[0][0]);
-  fill_solver_isotropic_rows(isotropic[1][1], isotropic[0][1]);
-  fill_solver_tensor_dense(tensor[1][0], tensor[0][0]);
-  fill_solver_tensor_rows(tensor[1][1], tensor[0][1]);
+  fill_solver_planar_dense(planar[0]);
+  fill_solver_planar_rows(planar[1]);
+  fill_solver_isotropic_dense(isotropic[0]);
+  fill_solver_isotropic_rows(isotropic[1]);
+  fill_solver_tensor_dense(tensor[0]);
+  fill_solver_tensor_rows(tensor[1]);
   auto& flat = out.joints[static_cast<int>(InertiaKind::planar)];
   auto& spatial = out.joints[static_cast<int>(InertiaKind::tensor)];
   fill_joints_planar(flat[0], flat[1]);

@@ -17,7 +17,7 @@ enum class Layout : int { automatic, dense, rows };
 template <class Real>
 using Stage = void (*)(const SceneConstants<Real>&, const GroupView<Real>&, Scratch*);
 
-// The solver passes over all four lists, for one inertia kind, friction or not, dense or rows.
+// The solver passes over all four lists, for one inertia kind, dense or rows.
 template <class Real>
 struct SolverTable {
   Stage<Real> enter;          // velocities into the solver's layout
@@ -147,8 +147,8 @@ struct Kernels {
   // Narrow phase and rows of one class (set_class). [dimension: planar, spatial]
   Stage<Real> collide[2][kPairKinds];
   Stage<Real> gather_met;  // after them, of rows: which bodies contacts may act on
-  SolverTable<Real> solver[kInertiaKinds][2][2];  // [inertia][friction][layout: dense, rows]
-  SweepTable<Real> sweeps[kInertiaKinds][2];      // [inertia][layout: dense, rows]
+  SolverTable<Real> solver[kInertiaKinds][2];  // [inertia][layout: dense, rows]
+  SweepTable<Real> sweeps[kInertiaKinds][2];   // [inertia][layout: dense, rows]
   ImpulseTable<Real> impulses[kInertiaKinds];
   // [inertia: planar, tensor][layout: dense, rows]
   JointSolver<Real> joints[kInertiaKinds][2];

@@ -45,7 +45,7 @@ class TreeContacts {
 
   template <Pass kPass>
   void solve(const TreeFactors<S>& factors) const {
-    t_.has_friction ? solve_all<kPass, true>(factors) : solve_all<kPass, false>(factors);
+    solve_all<kPass>(factors);
   }
 
   // What they did in a substep, for restitution.
@@ -56,17 +56,17 @@ class TreeContacts {
   }
 
  private:
-  template <Pass kPass, bool kFriction>
+  template <Pass kPass>
   void solve_all(const TreeFactors<S>& factors) const {
     const TreeResponse<S, kDense> response(t_, w_, factors);
     response.open();
     for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList&) {
       if (meets_tree(s)) {
         TreeVelocities<S, A, kDense> v(response, w_, s);
-        solve_rows<kDense, kFriction, kPass>(t_, w_, s, v);
+        solve_rows<kDense, kPass>(t_, w_, s, v);
         v.store(s);
       } else {
-        solve_block<kDense, kFriction, kPass>(t_, w_, s);
+        solve_block<kDense, kPass>(t_, w_, s);
       }
     });
   }

@@ -38,14 +38,14 @@ MW_INLINE void moved_apart(const Work& w, const SidedBlock<S, N, A>& s, Float* g
 }
 
 // `v`: the velocities of its sides, as they are loaded and as impulses change them.
-template <bool kDense, bool kFriction, Pass kPass, class S, int N, class A, class Velocities>
+template <bool kDense, Pass kPass, class S, int N, class A, class Velocities>
 MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, Velocities& v) {
   Float impulse[N], d[N];
   for (int i = 0; i < N; ++i) impulse[i] = Float::load(s.impulse[i]);
 
   if constexpr (kPass == Pass::warm_start) {
     apply_normal(s, impulse, v);
-    if constexpr (kFriction) {
+    if (t.has_friction) {
       Float f[2] = {Float::load(s.tangent_impulse[0]), Real(0)}, twist(Real(0));
       if constexpr (S::kTangents == 2) f[1] = Float::load(s.tangent_impulse[1]);
       if constexpr (ContactBlock<S, N>::kTwist) twist = Float::load(s.twist_impulse);
@@ -142,7 +142,7 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
     }
     if constexpr (kPass == Pass::bias) mark_reached<S, A, kDense>(w, s);
     // In the bias pass friction steadies stacks, which stand on manifolds of several points.
-    if (kFriction && (kPass == Pass::relax || (N > 1 && t.friction_in_bias))) {
+    if (t.has_friction && (kPass == Pass::relax || (N > 1 && t.friction_in_bias))) {
       Float after[2], twist_after(Real(0));
       apply_normal_with_friction(s, d, friction_budget(s, impulse), v, after, twist_after);
       after[0].store(s.tangent_impulse[0]);
@@ -159,10 +159,10 @@ MW_INLINE RowVelocities<S, A, kDense> velocities_of(const Work& w, const SidedBl
   return {w, s};
 }
 
-template <bool kDense, bool kFriction, Pass kPass, class S, int N, class A>
+template <bool kDense, Pass kPass, class S, int N, class A>
 MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) {
   auto v = velocities_of<kDense>(w, s);
-  solve_rows<kDense, kFriction, kPass>(t, w, s, v);
+  solve_rows<kDense, kPass>(t, w, s, v);
   v.store(w, s);
 }
 

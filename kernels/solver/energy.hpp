@@ -133,14 +133,14 @@ MW_INLINE void join_bodies(const Constants& t, const Work& w, const ContactBlock
 }
 
 // Work that kinematic bodies do at a block by normal impulses, with friction at its centre.
-template <bool kFriction, class S, int N>
-MW_INLINE Float work_of_driver(const SidedBlock<S, N, Free>& s, const SideVelocities<S, Free>& v,
-                               const Real (*total)[kLanes], const Real (*tangent)[kLanes],
-                               const Real* twist) {
+template <class S, int N>
+MW_INLINE Float work_of_driver(const Constants& t, const SidedBlock<S, N, Free>& s,
+                               const SideVelocities<S, Free>& v, const Real (*total)[kLanes],
+                               const Real (*tangent)[kLanes], const Real* twist) {
   Float speed[N], work(Real(0));
   normal_speeds(s, v, speed);
   for (int i = 0; i < N; ++i) work = fnma(Float::load(total[i]), speed[i], work);
-  if constexpr (kFriction) {
+  if (t.has_friction) {
     const auto slip = slip_of(s, v);
     work = fnma(Float::load(tangent[0]), along_tangent(s, 0, slip), work);
     if constexpr (S::kTangents == 2) {
@@ -155,7 +155,7 @@ MW_INLINE Float work_of_driver(const SidedBlock<S, N, Free>& s, const SideVeloci
 }
 
 // Credits the work of kinematic bodies to those that they act on.
-template <bool kDense, bool kFriction, class S, int N>
+template <bool kDense, class S, int N>
 MW_INLINE void credit_driver(const Constants& t, Work& w, const SidedBlock<S, N, Free>& s,
                              const Bounce<S, N>& bounce) {
   const Float zero(Real(0));
@@ -168,9 +168,9 @@ MW_INLINE void credit_driver(const Constants& t, Work& w, const SidedBlock<S, N,
   v.b = select(drives_b, v.b, still);
   alignas(64) Real found[kLanes], more[kLanes];
   const Float before =
-      work_of_driver<kFriction>(s, v, bounce.found, bounce.found_tangent, bounce.found_twist);
+      work_of_driver(t, s, v, bounce.found, bounce.found_tangent, bounce.found_twist);
   const Float after =
-      work_of_driver<kFriction>(s, v, bounce.total, bounce.total_tangent, bounce.total_twist);
+      work_of_driver(t, s, v, bounce.total, bounce.total_tangent, bounce.total_twist);
   (before + before).store(found);
   (after - before).store(more);
   for (int l = 0; l < kLanes; ++l) {
@@ -229,14 +229,13 @@ void keep_share_of_bodies(const Constants& t, const Work& w) {
 }
 
 // The impulses of a block, as far as its bodies keep what they did.
-template <bool kFriction, class S, int N, class A>
+template <class S, int N, class A>
 MW_INLINE void keep_share_of_block(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
                                    Bounce<S, N>& bounce) {
-  if (bounce.participants == 0) return;
   alignas(64) LaneNumber share;
   for (int l = 0; l < kLanes; ++l) {
     share.lane[l] = Real(1);
-    if (!((bounce.participants >> l) & 1u)) continue;
+    if (!((s.mask >> l) & 1u)) continue;
     const int b = body_b_of(w, s, l);
     const int body = A::kMoves && t.body[b].kinematic ? body_a_of(w, s, l) : b;
     share.lane[l] = account(w, body, kShare)[l];
@@ -248,7 +247,7 @@ MW_INLINE void keep_share_of_block(const Constants& t, const Work& w, const Side
     select(less, fma(after - found, x, found), after).store(to);
   };
   for (int i = 0; i < N; ++i) keep(bounce.total[i], bounce.found[i]);
-  if constexpr (kFriction) {
+  if (t.has_friction) {
     for (int c = 0; c < S::kTangents; ++c) keep(bounce.total_tangent[c], bounce.found_tangent[c]);
     keep(bounce.total_twist, bounce.found_twist);
   }

@@ -125,8 +125,7 @@ MW_INLINE unsigned play_impact(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bo
     }
   }
   apply_normal(s, d, v);
-  v.b = select(plays, v.b, before.b);
-  if constexpr (A::kMoves) v.a = select(plays, v.a, before.a);
+  keep_other_lanes_of_sides(plays, before, v);
   v.store(w, s);
   for (int i = 0; i < N; ++i) {
     const Float total = Float::load(bounce.total[i]);

@@ -108,9 +108,10 @@ unsigned find_participants(const Constants& t, Work& w) {
   return active;
 }
 
-// Takes the participants' normal impulses back, and keeps what the substeps found.
+// Takes the participants' impulses back, and keeps what the substeps found.
 template <bool kDense, class S, int N, class A>
-MW_INLINE void take_back(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bounce) {
+MW_INLINE void take_back(const Constants& t, Work& w, SidedBlock<S, N, A>& s,
+                         Bounce<S, N>& bounce) {
   Float d[N];
   for (int i = 0; i < N; ++i) {
     const Float total = Float::load(bounce.total[i]);
@@ -125,8 +126,13 @@ MW_INLINE void take_back(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bounce) 
   const Mask part = mask_from_bits(bounce.participants);
   RowVelocities<S, A, kDense> v(w, s), before = v;
   apply_normal(s, d, v);
-  v.b = select(part, v.b, before.b);
-  if constexpr (A::kMoves) v.a = select(part, v.a, before.a);
+  if (t.has_friction) {
+    Float f[2] = {-Float::load(bounce.total_tangent[0]), Real(0)}, twist(Real(0));
+    if constexpr (S::kTangents == 2) f[1] = -Float::load(bounce.total_tangent[1]);
+    if constexpr (ContactBlock<S, N>::kTwist) twist = -Float::load(bounce.total_twist);
+    apply_friction(s, f, twist, v);
+  }
+  keep_other_lanes_of_sides(part, before, v);
   v.store(w, s);
 }
 

@@ -1,5 +1,5 @@
 // The solver's passes over a group: each contact list in its fixed order. One instantiation per
-// space, friction and layout fills a SolverTable.
+// space and layout fills a SolverTable.
 #pragma once
 
 #include "kernels/motion/finish.hpp"
@@ -9,7 +9,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-template <class S, bool kDense, bool kFriction>
+template <class S, bool kDense>
 struct Passes {
   template <Pass kPass>
   static void solve(const Constants& t, const Group&, kernels::Scratch* scratch) {
@@ -19,13 +19,13 @@ struct Passes {
         if constexpr (kPass == Pass::relax) {
           if (!t.has_restitution) return;
           accumulate_bounce(block_at<SidedBlock<S, N, A>>(list, i), bounce_at<S, N>(list, i),
-                            kFriction);
+                            t.has_friction);
         }
       };
       if constexpr (S::kDim == 2 && N == 1) {
-        solve_ahead<kDense, kFriction, kPass, SidedBlock<S, N, A>>(t, w, list, finish);
+        solve_ahead<kDense, kPass, SidedBlock<S, N, A>>(t, w, list, finish);
       } else {
-        solve_in_twos<kDense, kFriction, kPass, SidedBlock<S, N, A>>(t, w, list, finish);
+        solve_in_twos<kDense, kPass, SidedBlock<S, N, A>>(t, w, list, finish);
       }
     });
   }
@@ -52,11 +52,12 @@ struct Passes {
     for_each_register<S, kDense>(
         t, w, [&](int at, Float, Float) { Float::load(w.velocity + at).store(w.warmed + at); });
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      take_back<kDense>(w, s, bounce_at<S, N>(list, i));
+      take_back<kDense>(t, w, s, bounce_at<S, N>(list, i));
     });
     play_impacts<S, kDense>(t, w, active);
+    if (t.has_friction) rub_impacts<S, kDense>(t, w, active);
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      finish_impact<kDense, kFriction>(w, s, bounce_at<S, N>(list, i));
+      finish_impact(t, s, bounce_at<S, N>(list, i));
     });
     balance(t, g, w);
   }
@@ -69,7 +70,7 @@ struct Passes {
     if (driven) {
       for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
         if constexpr (A::kMoves) {
-          credit_driver<kDense, kFriction>(t, w, s, bounce_at<S, N>(list, i));
+          credit_driver<kDense>(t, w, s, bounce_at<S, N>(list, i));
         }
       });
     }
@@ -88,7 +89,7 @@ struct Passes {
     }
     keep_share_of_bodies<S, kDense>(t, w);
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      keep_share_of_block<kFriction>(t, w, s, bounce_at<S, N>(list, i));
+      keep_share_of_block(t, w, s, bounce_at<S, N>(list, i));
     });
   }
 

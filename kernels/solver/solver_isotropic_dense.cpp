@@ -4,10 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_solver_isotropic_dense(kernels::SolverTable<Real>& with,
-                                 kernels::SolverTable<Real>& without) {
-  with = Passes<Isotropic, true, true>::table();
-  without = Passes<Isotropic, true, false>::table();
+void fill_solver_isotropic_dense(kernels::SolverTable<Real>& out) {
+  out = Passes<Isotropic, true>::table();
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -4,10 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_solver_isotropic_rows(kernels::SolverTable<Real>& with,
-                                kernels::SolverTable<Real>& without) {
-  with = Passes<Isotropic, false, true>::table();
-  without = Passes<Isotropic, false, false>::table();
+void fill_solver_isotropic_rows(kernels::SolverTable<Real>& out) {
+  out = Passes<Isotropic, false>::table();
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

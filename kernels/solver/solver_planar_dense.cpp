@@ -4,10 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_solver_planar_dense(kernels::SolverTable<Real>& with,
-                              kernels::SolverTable<Real>& without) {
-  with = Passes<Planar, true, true>::table();
-  without = Passes<Planar, true, false>::table();
+void fill_solver_planar_dense(kernels::SolverTable<Real>& out) {
+  out = Passes<Planar, true>::table();
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -4,10 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_solver_planar_rows(kernels::SolverTable<Real>& with,
-                             kernels::SolverTable<Real>& without) {
-  with = Passes<Planar, false, true>::table();
-  without = Passes<Planar, false, false>::table();
+void fill_solver_planar_rows(kernels::SolverTable<Real>& out) {
+  out = Passes<Planar, false>::table();
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -4,10 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_solver_tensor_dense(kernels::SolverTable<Real>& with,
-                              kernels::SolverTable<Real>& without) {
-  with = Passes<Tensor, true, true>::table();
-  without = Passes<Tensor, true, false>::table();
+void fill_solver_tensor_dense(kernels::SolverTable<Real>& out) {
+  out = Passes<Tensor, true>::table();
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -4,10 +4,8 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-void fill_solver_tensor_rows(kernels::SolverTable<Real>& with,
-                             kernels::SolverTable<Real>& without) {
-  with = Passes<Tensor, false, true>::table();
-  without = Passes<Tensor, false, false>::table();
+void fill_solver_tensor_rows(kernels::SolverTable<Real>& out) {
+  out = Passes<Tensor, false>::table();
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

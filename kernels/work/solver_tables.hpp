@@ -5,8 +5,7 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// with / without friction
-using FillSolver = void(kernels::SolverTable<Real>& with, kernels::SolverTable<Real>& without);
+using FillSolver = void(kernels::SolverTable<Real>& out);
 FillSolver fill_solver_planar_dense, fill_solver_planar_rows;
 FillSolver fill_solver_isotropic_dense, fill_solver_isotropic_rows;
 FillSolver fill_solver_tensor_dense, fill_solver_tensor_rows;

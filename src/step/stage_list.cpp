@@ -18,7 +18,7 @@ class Builder {
       : plan_(plan),
         t_(tables),
         layout_(layout == kernels::Layout::dense ? 0 : 1),
-        solver_(k.solver[kind()][tables.has_friction ? 1 : 0][layout_]),
+        solver_(k.solver[kind()][layout_]),
         sweeps_(k.sweeps[kind()][layout_]),
         impulses_(k.impulses[kind()]),
         joints_(k.joints[kind()][layout_]),
