@@ -5,6 +5,7 @@
 //   s > 0: bias = s / h, i = 0 (speculative)
 //   s <= 0: bias = a r s, soft gains a, r, i with a = 1 - i (tables.hpp, Softness), but
 //           m bias >= -max(m c, i lambda + m c / 8)
+// where i sets in over the last of a gap (kTouching),
 // with the push-out speed c, against fixed shapes up to twice as much where what they overlap is
 // half of the length unit or deeper. What a load takes comes on top, so that no load is too much.
 // A spring sags under what presses on it by F / (m w^2), however small the bodies. Against fixed
@@ -23,6 +24,7 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr Real kUnlimited = Real(1e30);       // N s
+inline constexpr Real kTouching = Real(1.0 / 1024);  // of the margin
 inline constexpr Real kPushUnderLoad = Real(0.125);  // of c
 
 enum class Pass { warm_start, bias, relax };
@@ -66,25 +68,28 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         moved_apart<kDense>(w, s, gaps);
         for (int i = 0; i < N; ++i) gaps[i].store(s.gap[i]);
       }
+      // Hard rows leave gaps that are zero but for rounding. Their signs shall decide nothing, so
+      // softness sets in gradually.
+      const Float soften(soft.impulse_scale / (t.margin * kTouching));
       for (int i = 0; i < N; ++i) {
         const Float gap = gaps[i];
-        const Mask apart = zero < gap;
-        bias[i] = gap * select(apart, inv_h, rate);
-        keep[i] = select(apart, zero, soft.impulse_scale);
+        bias[i] = gap * select(zero < gap, inv_h, rate);
+        keep[i] = clamp(fnma(gap, soften, soft.impulse_scale), zero, soft.impulse_scale);
         push_out[i] = A::kMoves ? push : clamp(gap * Float(-t.push_out_rate), push, push + push);
       }
     } else {
       // The substep has moved the bodies; now remove the speed that the push-out has added. A point
       // that is still apart gets no more impulse: whether it will touch is the next substep's, or
       // the next step's, business.
-      const Float h(t.h), touch(t.margin * Real(1.0 / 1024));
+      const Float h(t.h), touch(t.margin * kTouching);
       for (int i = 0; i < N; ++i) {
         const Float gap = fma(h, speed[i], Float::load(s.gap[i]));
         bias[i] = max(gap, zero) * inv_h;
         most[i] = select(touch < gap, impulse[i], kUnlimited);
       }
     }
-    if constexpr (N > 1) {
+    // Blocks in the plane solve their two points in both orders (below).
+    if constexpr (N > 1 && S::kDim == 3) {
       Float comes = zero, goes = zero;
       for (int i = 0; i < N; ++i) {
         if constexpr (kPass == Pass::bias) most[i] = kUnlimited;
@@ -93,12 +98,11 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         goes = max(select(zero < impulse[i], closing, zero), goes);
       }
       Mask blow = Float(t.blow_speed) < max(comes, goes);
-      // Of links of trees, of which a joint takes a share, and in the plane, where towers of 40
-      // boxes lean more otherwise, only loads that come at once are solved so.
-      constexpr bool kOfTree = requires { v.b.tree; };
-      if constexpr (kOfTree || S::kDim == 2) {
-        Mask loads_only = mask_from_bits(kAllLanes), load = mask_from_bits(0);
-        if constexpr (S::kDim == 3) loads_only = mask_from_bits(lanes_of_tree(v));
+      // Of links of trees, of which a joint takes a share, only loads that come at once are solved
+      // so.
+      if constexpr (requires { v.b.tree; }) {
+        const Mask loads_only = mask_from_bits(lanes_of_tree(v));
+        Mask load = mask_from_bits(0);
         if (kPass == Pass::bias && w.substep == 0) {
           const Float pressed = Float::load(s.press);
           load = (Float(t.blow_speed * Real(1.2)) < comes) & (comes < pressed + pressed);
@@ -116,29 +120,55 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         keep_other_lanes_of_sides(blow, before, v);
       }
     }
-    for (int i = 0; i < N; ++i) {
+    // The impulse that point i wants at a speed along the normal.
+    const auto wanted = [&](int i, Float along) {
       const Float mass = Float::load(s.mass[i]);
-      Float x;
       if constexpr (kPass == Pass::bias) {
-        const Float rigid = fnma(mass, speed[i], impulse[i]), cap = mass * push_out[i];
+        const Float rigid = fnma(mass, along, impulse[i]), cap = mass * push_out[i];
         const Float under_load = fma(cap, kPushUnderLoad, keep[i] * impulse[i]);
         const Float push = min(mass * -bias[i], max(cap, under_load));
-        if constexpr (A::kMoves) {
-          x = fnma(keep[i], rigid, rigid + push);
-        } else {
-          const Float lost = keep[i] * rigid, pressed = mass * Float::load(s.press);
-          const Float struck = fnma(keep[i], pressed + pressed, lost);
-          x = rigid + (push - min(lost, max(mass * Float(t.fixed_leak), struck)));
-        }
+        if constexpr (A::kMoves) return max(fnma(keep[i], rigid, rigid + push), zero);
+        const Float lost = keep[i] * rigid, pressed = mass * Float::load(s.press);
+        const Float struck = fnma(keep[i], pressed + pressed, lost);
+        return max(rigid + (push - min(lost, max(mass * Float(t.fixed_leak), struck))), zero);
       } else {
-        x = fnma(mass, speed[i] + bias[i], impulse[i]);
+        return min(max(fnma(mass, along + bias[i], impulse[i]), zero), most[i]);
       }
-      Float total = max(x, zero);
-      if constexpr (kPass == Pass::relax) total = min(total, most[i]);
-      d[i] = total - impulse[i];
-      impulse[i] = total;
-      total.store(s.impulse[i]);
-      couple_following(s, i, d[i], speed);
+    };
+    if constexpr (N == 2) {
+      // The mean of both orders, so that what is symmetric stays so; or the solution, where both
+      // points are hard and pressed.
+      const Float k = Float::load(s.cross_k[0]), gain = Float::load(s.pair_gain), half(Real(0.5));
+      Float total[2] = {wanted(0, speed[0]), wanted(1, speed[1])}, alone[2], both[2];
+      for (int i = 0; i < 2; ++i) alone[i] = -(Float::load(s.mass[i]) * (speed[i] + bias[i]));
+      Mask exact = mask_from_bits(kAllLanes);
+      for (int i = 0; i < 2; ++i) {
+        const Float answer = fnma(Float::load(s.mass[i]), k * alone[1 - i], alone[i]);
+        both[i] = fma(gain, answer, impulse[i]);
+        exact = exact & (zero <= both[i]);
+        if constexpr (kPass == Pass::bias) {
+          exact = exact & (keep[i] <= zero);
+        } else {
+          exact = exact & (both[i] <= most[i]);
+        }
+      }
+      const Float after_last = wanted(0, fma(k, total[1] - impulse[1], speed[0]));
+      const Float after_first = wanted(1, fma(k, total[0] - impulse[0], speed[1]));
+      total[0] = select(exact, both[0], (total[0] + after_last) * half);
+      total[1] = select(exact, both[1], (total[1] + after_first) * half);
+      for (int i = 0; i < N; ++i) {
+        d[i] = total[i] - impulse[i];
+        impulse[i] = total[i];
+        total[i].store(s.impulse[i]);
+      }
+    } else {
+      for (int i = 0; i < N; ++i) {
+        const Float total = wanted(i, speed[i]);
+        d[i] = total - impulse[i];
+        impulse[i] = total;
+        total.store(s.impulse[i]);
+        couple_following(s, i, d[i], speed);
+      }
     }
     if constexpr (kPass == Pass::bias) mark_reached<S, A, kDense>(w, s);
     // In the bias pass friction steadies stacks, which stand on manifolds of several points.

@@ -6,6 +6,7 @@
 #include "kernels/collide/row_builder.hpp"
 #include "kernels/rows/apart.hpp"
 #include "kernels/rows/approach.hpp"
+#include "kernels/rows/couple.hpp"
 #include "kernels/rows/friction.hpp"
 #include "kernels/rows/record.hpp"
 #include "kernels/rows/rest_speed.hpp"
@@ -82,6 +83,7 @@ MW_INLINE void put_couplings(const Sides<S, A>& sides, const Approach<S, N, A>& 
       approach.coupling(inv_mass, i, j).store(s.cross_k[at++]);
     }
   }
+  if constexpr (N == 2) put_pair_gain(s);
 }
 
 template <class S, int N, class A>
