@@ -2,6 +2,7 @@
 // prepare. The one place that connects pairs and lists.
 #pragma once
 
+#include "kernels/collide/at_touch.hpp"
 #include "kernels/collide/box_box.hpp"
 #include "kernels/collide/box_capsule.hpp"
 #include "kernels/collide/box_round.hpp"
@@ -45,12 +46,35 @@ MW_INLINE typename S::Vec origin_of(const Pose& pose) {
   }
 }
 
+// Whether the contacts with a fixed A are those of the moment of touch (at_touch.hpp). A plane has
+// one normal, and balls against balls have a closed form (rows/touch.hpp).
+template <class Pose>
+inline constexpr bool kIsBall =
+    std::is_same_v<Pose, SpherePose> || std::is_same_v<Pose, CirclePose>;
+template <class Pair>
+inline constexpr bool kTurnsToTouch = !std::is_same_v<typename Pair::A, PlanePose> &&
+                                      !(kIsBall<typename Pair::A> && kIsBall<typename Pair::B>);
+
+template <class S>
+MW_INLINE bool searches_touch(const Constants& t, const Work& w, const RowBuilder<S>& rows) {
+  const bool asked = w.recorder && !w.recorder->places;
+  return t.seams && rows.velocity && !asked;
+}
+
+// Out of line: few contacts get here.
+inline __attribute__((noinline)) Float axis_of_boxes(const Constants& t, const BoxPose& a,
+                                                     const BoxPose& b) {
+  return find_box_axes(t, a, b).axis;
+}
+
 template <class S, class Pair, bool kPair>
 void collide_list(const Constants& t, const Group& g, Work& w, const CandidateList& list) {
-  AddContact<S, Pair::kPoints>* const add_contact =
-      row_builder<S>(t, w).template add<Pair::kPoints>(kPair);
+  const RowBuilder<S> rows = row_builder<S>(t, w);
+  AddContact<S, Pair::kPoints>* const add_contact = rows.template add<Pair::kPoints>(kPair);
   const auto& pairs = t.pair_class[w.class_index];
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
+  constexpr bool kSearches = !kPair && kTurnsToTouch<Pair>;
+  const bool search = kSearches && searches_touch(t, w, rows);
   for (int i = 0; i < list.count; ++i) {
     const std::int32_t* code = list.code + i * kLanes;
     const PoseOffsets o = pose_offsets<kPair>(t, w, code);
@@ -59,9 +83,26 @@ void collide_list(const Constants& t, const Group& g, Work& w, const CandidateLi
     load_pose(base_a, o.a, a);
     load_pose(w.pose_rows, o.b, b);
     Manifold<S, Pair::kPoints> m;
-    Pair::collide(t, a, b, Float::load(list.axis + i * kLanes), m);
-    add_contact(t, g, w, pairs.list, pairs, m, mask_from_bits(list.mask[i]), code,
-                list.key + i * kLanes, origin_of<S>(a), b.p);
+    Float axis = Float::load(list.axis + i * kLanes);
+    const Mask active = mask_from_bits(list.mask[i]);
+    typename Pair::B moved = b;
+    [[maybe_unused]] TouchSearch<S, Pair::kPoints> touch;
+    if (search) {
+      touch.start(t, rows.velocity(t, w, code, b.p), active, kIsBall<typename Pair::B>);
+    }
+    for (;;) {
+      Pair::collide(t, a, moved, axis, m);
+      if constexpr (kSearches) {
+        if (search && touch.go_on(m)) {
+          moved.p = b.p + touch.way();
+          if constexpr (std::is_same_v<Pair, BoxBox<S>>) axis = axis_of_boxes(t, a, moved);
+          continue;
+        }
+      }
+      break;
+    }
+    add_contact(t, g, w, pairs.list, pairs, m, active, code, list.key + i * kLanes, origin_of<S>(a),
+                b.p);
   }
 }
 
@@ -145,7 +186,9 @@ void collide_convex_list(const Constants& t, const Group& g, Work& w) {
   const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
   const CandidateList& list = w.candidates;
   const bool exchanged = has_radius(kind_a);  // the method wants what is round as B
-  AddContact<Isotropic, N>* const add_contact = row_builder<Isotropic>(t, w).template add<N>(kPair);
+  const RowBuilder<Isotropic> rows = row_builder<Isotropic>(t, w);
+  AddContact<Isotropic, N>* const add_contact = rows.template add<N>(kPair);
+  const bool search = !kPair && searches_touch(t, w, rows);
   ConvexShape a, b;
   for (int i = 0; i < list.count; ++i) {
     if (list.mask[i] == 0) continue;  // its lanes had too many candidates
@@ -161,6 +204,22 @@ void collide_convex_list(const Constants& t, const Group& g, Work& w) {
     load_convex(t.hulls, kind_b, w.pose_rows, o.b, b);
     Manifold<Isotropic, N> m;
     Vec3 origin_a;
+    // B is moved for the search, and back.
+    const auto at_touch = [&](auto&& collide_now) {
+      const Vec3 origin_b = b.p;
+      Mask lanes = active;
+      TouchSearch<Isotropic, N> touch;
+      if (search) {
+        touch.start(t, rows.velocity(t, w, code, origin_b), active, kind_b == ShapeKind::sphere);
+      }
+      for (;;) {
+        collide_now(lanes);
+        if (!search || !touch.go_on(m)) break;
+        b.p = origin_b + touch.way();
+        lanes = touch.going();
+      }
+      b.p = origin_b;
+    };
     if (!kPair && kind_a == ShapeKind::plane) {
       PlanePose plane;
       load_pose(base_a, o.a, plane);
@@ -175,17 +234,19 @@ void collide_convex_list(const Constants& t, const Group& g, Work& w) {
       load_tile(base_a, o.a, b, active, tile, a);
       if (!any(tile.there)) continue;
       origin_a = a.p;
-      collide_tile<N>(t, a, tile, b, active, m);
+      at_touch([&](Mask lanes) { collide_tile<N>(t, a, tile, b, lanes, m); });
     } else {
       load_convex(kPair ? t.hulls : nullptr, kind_a, base_a, o.a, a);
       origin_a = a.p;
       const ConvexShape &first = exchanged ? b : a, &second = exchanged ? a : b;
-      if constexpr (N == 1) {
-        collide_convex_point(t, first, nullptr, second, active, m);
-      } else {
-        collide_convex_pair(t, first, nullptr, second, active, m);
-      }
-      if (exchanged) exchange_sides(m);
+      at_touch([&](Mask lanes) {
+        if constexpr (N == 1) {
+          collide_convex_point(t, first, nullptr, second, lanes, m);
+        } else {
+          collide_convex_pair(t, first, nullptr, second, lanes, m);
+        }
+        if (exchanged) exchange_sides(m);
+      });
     }
     add_contact(t, g, w, pairs.list, pairs, m, active, code, list.key + i * kLanes, origin_a, b.p);
   }

@@ -15,11 +15,17 @@ using AddContact = void(const Constants& t, const Group& g, Work& w, ListId list
                         const std::int32_t* code, const std::int32_t* key, typename G::Vec pose_a,
                         typename G::Vec pose_b);
 
+// Velocity of the origins of the shapes B in `code`, at pose_b (prepare.hpp).
+template <class G>
+using ShapeVelocity = Velocity<G>(const Constants& t, const Work& w, const std::int32_t* code,
+                                  typename G::Vec pose_b);
+
 // Of an inertia kind and a layout.
 template <class G>
 struct RowBuilder {
   AddContact<G, 1>* single[2];           // [A moves, too]
   AddContact<G, G::kMulti>* several[2];  // points
+  ShapeVelocity<G>* velocity;            // nullptr: contacts are those of the step's start
 
   template <int N>
   MW_INLINE AddContact<G, N>* add(bool pair) const {

@@ -171,6 +171,7 @@ struct SceneConstants {
   bool uniform_friction;  // every shape has that of collider 0
   bool sweep;             // sort and sweep instead of masked all-pairs
   bool sparse;            // pairs are found lane by lane, there are no tables of them
+  bool seams;             // of several fixed shapes that are no planes (collide/at_touch.hpp)
   bool cast;              // cast fast bodies against fixed shapes
   bool cast_moving;       // cast fast bodies against moving shapes
   bool has_bounds;

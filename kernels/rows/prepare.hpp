@@ -176,9 +176,18 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
 }
 
 template <class S, bool kDense>
+Velocity<GeometryOf<S>> shape_velocity(const Constants& t, const Work& w, const std::int32_t* code,
+                                       typename S::Vec pose_b) {
+  RowBodies bodies;
+  const Sides<S, Fixed> sides = find_sides<S, Fixed, kDense>(t, w, code, bodies);
+  return {velocity_at(t, sides.b, pose_b), sides.b.velocity.w};
+}
+
+template <class S, bool kDense>
 RowBuilder<GeometryOf<S>> row_builder_of() {
   return {{add_contact<S, 1, Fixed, kDense>, add_contact<S, 1, Free, kDense>},
-          {add_contact<S, S::kMulti, Fixed, kDense>, add_contact<S, S::kMulti, Free, kDense>}};
+          {add_contact<S, S::kMulti, Fixed, kDense>, add_contact<S, S::kMulti, Free, kDense>},
+          shape_velocity<S, kDense>};
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

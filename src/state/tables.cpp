@@ -241,6 +241,10 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
   t.collider_body = collider_body_.data();
   t.first_collider = first_collider_.data();
   t.fixed = fixed_.data();
+  const auto planes = std::count_if(fixed_.begin(), fixed_.end(), [](const auto& f) {
+    return f.kind == kernels::ShapeKind::plane;
+  });
+  t.seams = t.fixed_shapes - planes > 1;
   t.fixed_rows = fixed_rows_.data();
   hulls_ = AlignedBuffer<Real>(plan.hulls.size());
   for (std::size_t i = 0; i < plan.hulls.size(); ++i) {
