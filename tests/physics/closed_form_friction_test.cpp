@@ -161,4 +161,48 @@ TEST_CASE("a ball on a moving belt takes the belt's speed", "[fast][closed_form]
   }
 }
 
+TEST_CASE("what slides over level tiles passes their seams, and a raised tile stops it",
+          "[fast][closed_form]") {
+  for (const Space space : {Space::planar, Space::spatial}) {
+    for (const bool ball : {false, true}) {
+      for (const double raised : {0.0, 0.2}) {
+        Scene scene;
+        scene.space = space;
+        scene.options.gravity = -kG * up_of(space);
+        const Material smooth{0, 0};
+        for (int i = 0; i < 8; ++i) {
+          Body tile;
+          tile.motion = Motion::fixed;
+          const double top = i == 5 ? raised : 0;
+          tile.position = Vec3(i + 0.5, 0, 0) + (top - 0.5) * up_of(space);
+          const Vec3 half = space == Space::planar ? Vec3(0.5, 0.5, 0) : Vec3(0.5, 1, 0.5);
+          tile.shapes.push_back(scenes::shape_of(scenes::box_of(space, half), smooth));
+          scene.add(tile);
+        }
+        const Vec3 half = space == Space::planar ? Vec3(0.3, 0.3, 0) : Vec3(0.3, 0.3, 0.3);
+        const Geometry geometry =
+            ball ? round_of(space, 0.3) : Geometry(scenes::box_of(space, half));
+        Body body = scenes::body_of(scenes::shape_of(geometry, smooth), Vec3::Zero());
+        body.position = Vec3(0.5, 0, 0) + 0.3 * up_of(space);
+        body.linear_velocity = Vec3(5, 0, 0);
+        scene.add(body);
+        for (const Table& table : all_tables()) {
+          Batch batch(compile(scene), options_of(table));
+          batch.step(66);  // 5.5 m
+          INFO(name(table) << " ball " << ball << " raised " << raised << " at "
+                           << position(batch, 0, 0).transpose());
+          if (raised > 0) {
+            CHECK(velocity(batch, 0, 0).x() < 4);
+          } else {
+            CHECK(velocity(batch, 0, 0).x() == approx(5, 1e-3));
+            CHECK(position(batch, 0, 0).dot(up_of(space)) == approx(0.3, 1e-3));
+          }
+          // It may tip over the edge that it hits.
+          if (raised > 0 && !ball) CHECK(position(batch, 0, 0).x() < 5);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace manyworlds::test

@@ -140,7 +140,6 @@ TEST_CASE("worlds of families keep their laws", "[invariants]") {
                                         "rack 2D",
                                         "rack 3D",
                                         "refinement: top",
-                                        "seams 2D",
                                         "seams 3D",
                                         "turned 3D",
                                         "wall 2D",
