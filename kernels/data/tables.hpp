@@ -60,8 +60,8 @@ struct BodyConstants {
   T linear_factor;              // 1 / (1 + h c), per substep
   T angular_factor;
   PrincipalInertia<T> principal;
-  T radius;       // of the bounding sphere about the centre of mass, m
-  T core_radius;  // of a sphere inside the body about its centre of mass, m; 0: never cast
+  T radius;          // of the bounding sphere about the centre of mass, m
+  T half_thickness;  // the least of its shapes, m; 0: never cast
 };
 
 template <class T>

@@ -3,10 +3,11 @@
 // beside it are committed as if it were not there.
 #pragma once
 
+#include "kernels/collide/cast.hpp"
 #include "kernels/lane/finite.hpp"
 #include "kernels/motion/integrate.hpp"
-#include "kernels/shape/cast.hpp"
 #include "kernels/work/activity.hpp"
+#include "kernels/work/half_turn.hpp"
 #include "kernels/work/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -19,6 +20,15 @@ inline constexpr Real kMinOrientation = Real(1e-3), kMaxOrientation = Real(1e3);
 
 using kernels::kFrozen, kernels::kNonFinite, kernels::kOutOfBounds, kernels::kOutOfRange;
 using kernels::kOverflow;
+
+MW_INLINE Mask within_bounds(const Constants& t, Vec2 x) {
+  return (Float(t.bounds_low[0]) <= x.x) & (x.x <= Float(t.bounds_high[0])) &
+         (Float(t.bounds_low[1]) <= x.y) & (x.y <= Float(t.bounds_high[1]));
+}
+MW_INLINE Mask within_bounds(const Constants& t, Vec3 x) {
+  return within_bounds(t, Vec2{x.x, x.y}) & (Float(t.bounds_low[2]) <= x.z) &
+         (x.z <= Float(t.bounds_high[2]));
+}
 
 // Is a . a <= limit^2? NaN fails every comparison, so it is out of any range.
 template <class A>
@@ -197,6 +207,28 @@ MW_INLINE void rotate_tensors(const Constants& t, const Group& g, Work& w, int f
   }
 }
 
+// The share of its step that a body may go before it hits what it is cast against.
+template <class S, bool kDense, bool kIdle>
+MW_INLINE Float cast_share(const Constants& t, const Group& g, const Work& w, int body,
+                           typename S::Vec old, typename S::Vec step, typename S::Ang turn,
+                           Mask free) {
+  auto ahead = zero_of<typename S::Ang>();
+  if (looks_ahead(t, w)) {
+    ahead = half_turn(t, load_as<typename S::Ang>(state_of(t, g, body, kState<S>.angular)));
+  }
+  Float share(Real(1));
+  if (t.cast) share = cast_against_fixed(t, g, w, body, old, step, turn, ahead, !free);
+  if (t.cast_moving) {
+    const auto moved = [&](int other) {
+      const auto way = get_velocity<S, kDense>(w, w.displacement, other).v;
+      if constexpr (!kIdle) return way;
+      return select(mask_from_bits(idle_lanes(g, other) & kAllLanes), way - way, way);
+    };
+    share = min(share, cast_against_moving(t, g, w, body, old, step, turn, ahead, !free, moved));
+  }
+  return share;
+}
+
 template <class S, bool kDense, class Keep, class Flight>
 void commit_lanes(const Constants& t, const Group& g, Work& w, std::uint32_t commit_bits, Keep keep,
                   const Flight& flight) {
@@ -208,11 +240,11 @@ void commit_lanes(const Constants& t, const Group& g, Work& w, std::uint32_t com
   for (int b = 0; b < t.bodies; ++b) {
     const auto& keep_body = keep.of(b);
     Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
-    const Velocity<S> moved = get_velocity<S, kDense>(w, w.displacement, b);
-    const Mask free = mask_from_bits(~w.touched[b] & kAllLanes);
+    auto [way, angle] = get_velocity<S, kDense>(w, w.displacement, b);
+    Mask free = mask_from_bits(~w.touched[b] & kAllLanes);
     Real* p = state_of(t, g, b, kState<S>.position);
     const auto old = load_as<typename S::Vec>(p);
-    auto step = moved.v;
+    auto step = way;
     if constexpr (kFreeFlight<Flight>) {
       const auto end = flight.of(b);
       step = select(free, end.x - old, step);
@@ -220,13 +252,21 @@ void commit_lanes(const Constants& t, const Group& g, Work& w, std::uint32_t com
     } else if (t.has_gravity || t.slows || w.delta_v) {
       step = select(free, step - drift_excess<S, kDense>(t, g, w, b), step);
     }
-    if (t.cast) step = cast_against_fixed(t, g, b, old, step);
-    if (t.cast_moving) {
-      step = cast_against_moving(t, g, w, b, old, step, [&](int other) {
-        const auto way = get_velocity<S, kDense>(w, w.displacement, other).v;
-        if constexpr (!kIdle) return way;
-        return select(mask_from_bits(idle_lanes(g, other) & kAllLanes), way - way, way);
-      });
+    if (t.cast || t.cast_moving) {
+      auto turn = t.has_orientation ? angle : zero_of<typename S::Ang>();
+      if constexpr (kFreeFlight<Flight>) turn = select(free, v.w * Float(t.dt), turn);
+      const Float share = cast_share<S, kDense, kIdle>(t, g, w, b, old, step, turn, free);
+      const Mask stops = share < Float(Real(1));
+      if (any(stops)) {
+        step = select(stops, step * share, step);
+        angle = select(stops, turn * share, angle);
+        // It stands where the cast left it, whatever it would have done by itself.
+        free = free & !stops;
+        if constexpr (std::is_same_v<S, Tensor>) {
+          w.touched[b] |= bits(stops);
+          put_velocity<S, kDense>(w, w.displacement, b, {way, angle});
+        }
+      }
     }
     const auto x = keep_body(old + step, p);
     store(p, x);
@@ -240,7 +280,7 @@ void commit_lanes(const Constants& t, const Group& g, Work& w, std::uint32_t com
     if constexpr (!std::is_same_v<S, Tensor>) {
       Real* p_angular = state_of(t, g, b, kState<S>.angular);
       store(p_angular, keep_body(v.w, p_angular));
-      if (t.has_orientation) rotate_body<S>(t, g, b, moved.w, keep_body, free, flight);
+      if (t.has_orientation) rotate_body<S>(t, g, b, angle, keep_body, free, flight);
     }
   }
   if constexpr (std::is_same_v<S, Tensor>) {

@@ -2,6 +2,7 @@
 // how fast they are when they do.
 #pragma once
 
+#include "kernels/collide/cast.hpp"
 #include "kernels/rows/sides.hpp"
 #include "kernels/work/half_turn.hpp"
 
@@ -50,9 +51,9 @@ MW_INLINE Pull pull_along(const Constants& t, const Group& g, const Work& w, con
 }
 
 // 1, or 0 in lanes whose rows look no farther than the gap of now. A body fast enough for a cast
-// needs no speculation against a fixed shape, which could stop one that only passes by; one that
-// overlaps it already does not. Half spaces cannot be passed by, and height fields are not cast
-// against.
+// needs no speculation against a fixed shape, which could stop one that only passes by. Where casts
+// end rows look ahead again, also at points that are not there yet. Half spaces and
+// height fields cannot be passed by.
 template <class S, class A>
 MW_INLINE Float speculation_of(const Constants& t, const Group& g, const Sides<S, A>& sides,
                                kernels::PairKind kind, Float deepest) {
@@ -61,11 +62,11 @@ MW_INLINE Float speculation_of(const Constants& t, const Group& g, const Sides<S
   using OfBody = kernels::BodyConstants<LaneNumber>;
   const std::uint32_t real = sides.body_b < Ints(t.bodies);
   const Float core = select(mask_from_bits(real),
-                            gather_numbers<OfBody>(constants_of_body(g, 0).core_radius,
+                            gather_numbers<OfBody>(constants_of_body(g, 0).half_thickness,
                                                    select(real, sides.body_b, Ints(0))),
                             zero);
   const Float travel2 = dot(sides.b.velocity.v, sides.b.velocity.v) * (dt * dt);
-  const Mask cast = (zero < core) & (square(core) < travel2) & (zero <= deepest);
+  const Mask cast = (zero < core) & (square(core) < travel2) & (cast_gap(t, core) < deepest);
   return select(cast, zero, one);
 }
 

@@ -202,6 +202,15 @@ std::vector<PlanFixed> parts_of(const Body& body, const Shape& shape, const Plan
   return {fixed_shape(body, shape, plan)};
 }
 
+// Bodies that rotate through a plane before contacts, which look ahead along straight lines, see
+// it.
+bool has_thin_bodies(const PlanData& plan) {
+  constexpr double kThin = 3;
+  return std::any_of(plan.bodies.begin(), plan.bodies.end(), [](const PlanBody& b) {
+    return b.inv_mass > 0 && b.radius > kThin * b.half_thickness;
+  });
+}
+
 }  // namespace
 
 void choose_polygons(PlanData& plan) {
@@ -215,9 +224,11 @@ void collect_colliders(PlanData& plan) {
     const Body& body = plan.scene.bodies[static_cast<std::size_t>(owner.scene_body)];
     for (std::size_t k = 0; k < body.shapes.size(); ++k) {
       PlanCollider c = local_collider(body.shapes[k], plan);
+      double half_thickness = c.inner_radius;
       if (const auto* hull = std::get_if<Hull>(&body.shapes[k].geometry)) {
         const HullCorners corners = hull_corners(*hull);
         set_hull(corners, c);
+        half_thickness = corners.half_thickness;
         c.hull = put_corners(plan, corners);
       }
       c.body = plan.state_body[static_cast<std::size_t>(owner.scene_body)];
@@ -230,7 +241,8 @@ void collect_colliders(PlanData& plan) {
       // The centre of a symmetric compound comes out of sums: what is only rounding is zero.
       if (c.offset.norm() <= 1e-14 * c.radius) c.offset.setZero();
       owner.radius = std::max(owner.radius, c.offset.norm() + c.radius);
-      owner.core_radius = std::max(owner.core_radius, c.inner_radius - c.offset.norm());
+      owner.half_thickness =
+          k == 0 ? half_thickness : std::min(owner.half_thickness, half_thickness);
       plan.colliders.push_back(std::move(c));
     }
   }
@@ -268,7 +280,7 @@ void lay_out_shapes(PlanData& plan) {
   for (PlanFixed& f : plan.fixed) {
     f.row_offset = offset;
     offset += static_cast<int>(f.row.size());
-    plan.cast = plan.cast || (f.kind != ShapeKind::plane && f.kind != ShapeKind::tile);
+    plan.cast = plan.cast || f.kind != ShapeKind::plane || has_thin_bodies(plan);
   }
   plan.cast = plan.cast && plan.scene.options.contact.cast_against_fixed;
 }

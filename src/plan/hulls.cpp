@@ -35,7 +35,9 @@ HullCorners hull_corners(const Hull& hull) {
     put(v);
     out.radius = std::max(out.radius, (v - out.middle).norm());
   }
-  out.inner_radius = out.radius;
+  out.inner_radius = out.half_thickness = out.radius;
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& v : solid.vertices) mean += v / static_cast<double>(solid.vertices.size());
   int first = 0;
   for (const detail::HullFace& f : solid.faces) {
     const Vec3 m = f.normal.cwiseProduct(out.half);
@@ -48,6 +50,7 @@ HullCorners hull_corners(const Hull& hull) {
                                      static_cast<double>(first), static_cast<double>(count), 0, 0});
     first += count;
     out.inner_radius = std::min(out.inner_radius, reach);
+    out.half_thickness = std::min(out.half_thickness, f.offset - f.normal.dot(mean));
   }
   for (const detail::HullFace& f : solid.faces) {
     for (const int i : f.outline) put(solid.vertices[static_cast<std::size_t>(i)]);

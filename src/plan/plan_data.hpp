@@ -32,7 +32,7 @@ struct PlanBody {
   bool reshaped = false;              // its shapes, or how mass is spread over them, may vary
   bool shifted = false;               // its centre of mass or where its shapes are may vary
   double radius = 0;                  // bounding sphere about the centre of mass
-  double core_radius = 0;             // inner sphere about the centre of mass
+  double half_thickness = 0;          // least half thickness of its shapes
 };
 
 // Its frame: from the centre of mass, principal axes.
@@ -200,6 +200,7 @@ std::vector<PlanFixed> height_field_tiles(const Body& body, const Shape& shape,
 struct HullCorners {
   Vec3 middle, half;                    // m, of the bounding box, shape frame
   double radius = 0, inner_radius = 0;  // about the middle, m
+  double half_thickness = 0;            // of a sphere inside, about the mean of the corners, m
   int vertices = 0, faces = 0;
   std::vector<double> rows;  // kernels/data/tables.hpp
 };

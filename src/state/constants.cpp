@@ -57,7 +57,7 @@ kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody
   copy_numbers(b.inv_inertia, out.inv_inertia);
   out.principal = principal_of<Real>(b, options.dt);
   out.radius = static_cast<Real>(b.radius);
-  out.core_radius = static_cast<Real>(b.inv_mass > 0 ? b.core_radius : 0);
+  out.half_thickness = static_cast<Real>(b.inv_mass > 0 ? b.half_thickness : 0);
   out.linear_factor = out.angular_factor = 1;
   if (b.inv_mass == 0) return out;
   out.gravity_scale = static_cast<Real>(body.gravity_scale);

@@ -98,7 +98,6 @@ TEST_CASE("worlds of families keep their laws", "[invariants]") {
                                         "far bodies 3D",
                                         "far pile 2D",
                                         "far pile 3D",
-                                        "fast bodies at walls 2D",
                                         "fast bodies at walls 3D",
                                         "flat bodies onto floors 2D",
                                         "flat bodies onto floors 3D",

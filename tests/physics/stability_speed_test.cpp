@@ -73,6 +73,43 @@ TEST_CASE("a box at 180 m/s stops at a thin wall", "[slow][stability]") {
   check_stopped(shot(Space::spatial, Box{{0.1, 0.1, 0.1}}, 180, 20, 0), false);
 }
 
+TEST_CASE("hulls, rods and plates at 100 m/s stop at a thin wall", "[slow][stability]") {
+  const double a = 0.1;
+  check_stopped(
+      shot(Space::spatial, Hull{{{-a, -a, -a}, {a, -a, -a}, {0, a, -a}, {0, 0, a}}}, 100, 20, 0),
+      false);
+  check_stopped(shot(Space::spatial, Capsule{0.01, 0.2}, 100, 20, 0), false);
+  check_stopped(shot(Space::spatial, Box{{0.2, 0.2, 0.01}}, 100, 20, 0), false);
+  check_stopped(shot(Space::planar, Polygon::box(0.2, 0.01), 100, 20, 0), false);
+  check_stopped(shot(Space::planar, Capsule{0.01, 0.2}, 100, 20, 0), false);
+}
+
+TEST_CASE("a fast body ends its step where it touches a wall", "[fast][stability]") {
+  // It flies 0.9 m to the wall, 1 m in a step.
+  for (Space space : {Space::planar, Space::spatial}) {
+    const double half = 0.01, face = space == Space::planar ? 0.05 : 0.1;
+    const Geometry plate = space == Space::planar ? box_of(space, Vec3(half, 0.2, 0))
+                                                  : box_of(space, Vec3(half, 0.2, 0.2));
+    Scene scene = shot(space, plate, 60, 0, 0);
+    scene.bodies[1].jitter = {};
+    scene.bodies[1].position.x() = -face - half - 0.9;
+    for (const Table& table : widest_tables()) {
+      Batch batch(compile(scene), options_of(table, 1));
+      std::vector<double> x(batch.size(Field::position)), v(batch.size(Field::linear_velocity));
+      batch.step();
+      batch.read(Field::position, std::span<double>(x));
+      batch.read(Field::linear_velocity, std::span<double>(v));
+      CHECK(x[0] == Approx(-face - half).margin(1e-3));  // a fifth of the slop
+      CHECK(v[0] == Approx(60));
+      batch.step();
+      batch.read(Field::position, std::span<double>(x));
+      batch.read(Field::linear_velocity, std::span<double>(v));
+      CHECK(x[0] < -face - half + 1e-3);
+      CHECK(v[0] < 0.1);
+    }
+  }
+}
+
 TEST_CASE("a body that passes an edge at 200 m/s is not stopped", "[slow][stability]") {
   // The wall ends at height 5; the body's lowest point clears it by 4 to 64 cm.
   for (Space space : {Space::planar, Space::spatial}) {
