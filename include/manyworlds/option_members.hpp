@@ -35,8 +35,8 @@ struct Members<ContactOptions> {
   static constexpr const char* name = "ContactOptions";
   static void visit(auto& value, auto&& visit) {
     auto& [frequency, fixed_frequency, damping_ratio, push_out_speed, slop, restitution_threshold,
-           restitution_sweeps, friction_in_bias_pass, cast_against_fixed, cast_between_moving] =
-        value;
+           restitution_sweeps, friction_in_bias_pass, cast_against_fixed, cast_between_moving,
+           collision_passes] = value;
     visit("frequency", frequency), visit("damping_ratio", damping_ratio);
     visit("fixed_frequency", fixed_frequency,
           counted_if(fixed_frequency.has_value(), "the default"));
@@ -46,6 +46,8 @@ struct Members<ContactOptions> {
     visit("friction_in_bias_pass", friction_in_bias_pass);
     visit("cast_against_fixed", cast_against_fixed);
     visit("cast_between_moving", cast_between_moving);
+    visit("collision_passes", collision_passes,
+          counted_if(collision_passes.value_or(1) != 1, "contacts are found once a step"));
   }
 };
 template <>

@@ -57,15 +57,19 @@ struct ContactOptions {
   std::optional<double> push_out_speed = {};
   std::optional<double> slop = {};  // m: contact margin is 4 slop. Default: 0.005 L
   // m/s, impacts slower than this do not bounce. The speed is the one that gravity would give by
-  // the end of the step. Default: the speed that gravity and attractors give in two steps, the
-  // larger of the two bodies'; a resting body reaches half of it. Without gravity the default is 0:
-  // set a threshold if other forces press bodies together that should rest.
+  // the end of the step. Default: the speed that gravity and attractors give in two collision
+  // passes, the larger of the two bodies'; a resting body reaches half of it. Without gravity the
+  // default is 0: set a threshold if other forces press bodies together that should rest.
   std::optional<double> restitution_threshold = {};
   int restitution_sweeps = 16;  // maximum number of restitution passes
   // tgs_soft: reduces the sway of tall stacks; the step is slightly faster without.
   bool friction_in_bias_pass = true;
   bool cast_against_fixed = true;    // stop fast bodies at thin fixed shapes
   bool cast_between_moving = false;  // also at moving shapes, for bullets
+  // A step consists of as many equal passes, each of which finds contacts and takes its share of
+  // the substeps. Default: 1; the plan chooses more for bodies that gravity moves by much of their
+  // thickness in a step (docs/plan.md). newton finds contacts in every substep and has one pass.
+  std::optional<int> collision_passes = {};
 };
 
 // How tgs_soft solves joints. `sweep` solves them one after the other in every substep. `tree`

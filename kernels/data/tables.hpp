@@ -158,7 +158,8 @@ struct SceneConstants {
   std::int32_t breakable;      // of them
   std::int32_t controls;
   std::int32_t attractors;
-  std::int32_t substeps;
+  std::int32_t passes;    // over the collision stages in a step
+  std::int32_t substeps;  // of a pass
   std::int32_t restitution_sweeps;
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
   bool has_joints;
@@ -222,7 +223,8 @@ struct SceneConstants {
   std::int32_t state_stride;      // rows of the state per body
   std::int32_t state_size;        // rows of the state per world
 
-  Real dt, h, inv_h;
+  Real step_dt;       // s, a step of the scene: as many passes
+  Real dt, h, inv_h;  // s, a pass and its substeps; 1/s
   Softness<Real> soft_pair, soft_fixed;
   Real push_out_speed;
   Real push_out_rate;  // 1/s, of an overlap with a fixed shape: between that speed and twice it

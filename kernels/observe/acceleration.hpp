@@ -42,8 +42,9 @@ MW_INLINE typename S::Vec gravity_of_body(const Constants& t, const Group& g, in
   out.x = constants.gravity[0], out.y = constants.gravity[1];
   if constexpr (S::kDim == 3) out.z = constants.gravity[2];
   if (t.attractors == 0 || t.body[body].kinematic) return out;
-  const Vec x = fma(load_as<Vec>(state_of(t, g, body, kState<S>.linear)), Float(t.dt * Real(-0.5)),
-                    load_as<Vec>(state_of(t, g, body, kState<S>.position)));
+  const Vec x =
+      fma(load_as<Vec>(state_of(t, g, body, kState<S>.linear)), Float(t.step_dt * Real(-0.5)),
+          load_as<Vec>(state_of(t, g, body, kState<S>.position)));
   for (int i = 0; i < t.attractors; ++i) {
     out = out + Attraction<S>(g, body, i, x).acceleration();
   }
@@ -70,7 +71,7 @@ void observe_acceleration(const Constants& t, const Group& g, kernels::Scratch*,
                           const ObserverView& o) {
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  const Float per_step(Real(1) / t.dt);
+  const Float per_step(Real(1) / t.step_dt);
   const std::uint32_t frozen = frozen_lanes(g);
   const bool idle = has_idle_bodies(g);
   for (int b = 0; b < t.bodies; ++b) {

@@ -151,7 +151,7 @@ EnergySums sum_energy(const Constants& t, const Group& g) {
     const Float driver = driven ? driver_speed2<S>(t, g, x) : zero;
     if (driven) out.power = fma(weight * length_of(m.pull), sqrt(driver), out.power);  // lifts
     if constexpr (kQuiet) {
-      Float quiet = fma(length_of(m.pull) * Float(t.dt), push, push * push);
+      Float quiet = fma(length_of(m.pull) * Float(t.step_dt), push, push * push);
       if (driven) quiet = fma(driver, Float(Real(4)), quiet);
       out.quiet = fma(weight, quiet, out.quiet);
     }
@@ -174,7 +174,7 @@ void begin_audit(const Constants& t, const Group& g, kernels::Scratch* scratch) 
   const auto put = [&](AuditSum at, Float x) { x.store(sums + at * kLanes); };
   put(kEnergyBefore, now.energy + Float::load(sums + kGapEnergy * kLanes));
   put(kAuditScale, now.kinetic + now.quiet);
-  put(kGiven, fma(now.power, Float(t.dt), now.terms * Float(kAuditRounding)));
+  put(kGiven, fma(now.power, Float(t.step_dt), now.terms * Float(kAuditRounding)));
   put(kDriven, Float(Real(0)));
 }
 
@@ -184,7 +184,8 @@ void end_audit(const Constants& t, const Group& g, kernels::Scratch* scratch) {
   const auto get = [&](AuditSum at) { return Float::load(audit.sums + at * kLanes); };
   const Float zero(Real(0)), most(Real(4));
   const EnergySums now = sum_energy<S, false>(t, g);
-  const Float given = get(kGiven) + fma(now.power, Float(t.dt), now.terms * Float(kAuditRounding));
+  const Float given =
+      get(kGiven) + fma(now.power, Float(t.step_dt), now.terms * Float(kAuditRounding));
   const Float energy = now.energy + get(kGapEnergy);
   const Float driven = get(kDriven), gain = (energy - get(kEnergyBefore)) - (given + driven);
   const Float share = gain / (get(kAuditScale) + (given + abs(driven)));

@@ -16,7 +16,9 @@ template <class S, int N>
 class ContactForces {
  public:
   ContactForces(const Constants& t, const ContactBlock<S, N>& s, const Totals<S, N>& total)
-      : per_step_(Float(t.inv_h) / Float(static_cast<Real>(t.substeps))), s_(s), total_(total) {
+      : per_step_(Float(t.inv_h) / Float(static_cast<Real>(t.passes * t.substeps))),
+        s_(s),
+        total_(total) {
     const Vec normal = load_as<Vec>(s.normal[0]);
     force_ = fma(normal, total.sum, total.friction);
     if constexpr (S::kDim == 3) twist_ = normal * total.twist;

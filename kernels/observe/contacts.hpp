@@ -55,7 +55,7 @@ void accumulate_totals(const Constants& t, const Group&, kernels::Scratch* scrat
   });
 }
 
-// Impulses of a block over a step.
+// Impulses of a block over a pass.
 template <class S, int N>
 struct Totals {
   Float impulse[N], sum = Float(Real(0));
@@ -80,7 +80,7 @@ MW_INLINE Totals<S, N> totals_of(const Constants& t, const Work& w, const Contac
   constexpr int kSecond = S::kTangents - 1;
   Totals<S, N> out;
   if constexpr (kAsleep) {
-    const Float substeps(static_cast<Real>(t.substeps));
+    const Float substeps(static_cast<Real>(t.passes * t.substeps));
     for (int i = 0; i < N; ++i) out.impulse[i] = Float::load(s.impulse[i]) * substeps;
     if (t.has_friction) {
       set_friction(s, Float::load(s.tangent_impulse[0]) * substeps,
@@ -132,11 +132,24 @@ class Features {
   Real x_ = 0, y_ = 0, points_ = 0;
 };
 
+// The point that an earlier pass of the step has put down; nullptr: none has.
+inline kernels::ContactImpulse<Real>* same_point(const Constants& t, const ObserverView& o,
+                                                 int lane, Real count, std::int32_t key,
+                                                 std::int32_t feature) {
+  if (t.passes == 1) return nullptr;
+  const auto put = static_cast<std::int32_t>(count);
+  auto* const first = o.contacts + lane * o.room;
+  for (auto* p = first; p != first + (put < o.room ? put : o.room); ++p) {
+    if (p->key == key && p->feature == feature) return p;
+  }
+  return nullptr;
+}
+
 // The friction of a manifold acts at its middle; each point reports the share that its normal
-// impulse has.
+// impulse has. Impulses of later passes are added to the point that the first of them found.
 template <class S, int N>
-void put_contacts(const ContactBlock<S, N>& s, const Totals<S, N>& total, const Real* places,
-                  std::uint32_t lanes, const ObserverView& o) {
+void put_contacts(const Constants& t, const ContactBlock<S, N>& s, const Totals<S, N>& total,
+                  const Real* places, std::uint32_t lanes, const ObserverView& o) {
   constexpr int kDim = S::kDim;
   const Float zero(Real(0)), one(Real(1));
   const Float per_impulse = one / select(zero < total.sum, total.sum, one);
@@ -154,12 +167,19 @@ void put_contacts(const ContactBlock<S, N>& s, const Totals<S, N>& total, const 
     for (int i = 0; i < N; ++i) {
       const bool close = ((s.close[i] >> l) & 1u) != 0;
       if (!(Real(0) < s.mass[i][l]) || !(close || Real(0) < impulse[i][l])) continue;
+      const std::int32_t feature = features.of(i);
+      if (auto* const p = same_point(t, o, l, count[l], s.key[l], feature)) {
+        p->impulse += impulse[i][l];
+        for (int c = 0; c < kDim; ++c) p->friction[c] += friction[i][c][l];
+        p->twist += twist[i][l];
+        continue;
+      }
       const auto at = static_cast<std::int32_t>(count[l]);
       count[l] += Real(1);
       if (at >= o.room) continue;
       auto& out = o.contacts[l * o.room + at];
       out.key = s.key[l];
-      out.feature = features.of(i);
+      out.feature = feature;
       out.normal[2] = out.point[2] = out.friction[2] = Real(0);
       for (int c = 0; c < kDim; ++c) {
         out.normal[c] = s.normal[c][l];
@@ -235,7 +255,7 @@ void observe_contacts(const Constants& t, const Group& g, kernels::Scratch* scra
       if (!is_fixed(static_cast<ListId>(id))) sum.add_to_a(t, lanes, forces);
     }
     if (o.contacts) {
-      put_contacts(s, total, o.places[id] + index * kPlaces<S, N> * kLanes, lanes, o);
+      put_contacts(t, s, total, o.places[id] + index * kPlaces<S, N> * kLanes, lanes, o);
     }
   });
 }

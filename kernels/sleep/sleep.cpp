@@ -105,7 +105,7 @@ Readiness rest(const Constants& t, const Group& g, const Work& w, int body, std:
   const Mask still = (speed < Float(t.sleep_speed)) & mask_from_bits(held_lanes(t, g, w, body));
   Real* p = g.rest_time + body * kLanes;
   const Float before = Float::load(p);
-  Float time = select(still, before + Float(t.dt), zero);
+  Float time = select(still, before + Float(t.step_dt), zero);
   time = select(mask_from_bits(w.frozen), before, time);
   Readiness out;
   out.ready = bits(enough <= time) & ~(idle_lanes(g, body) | w.frozen);

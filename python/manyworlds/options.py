@@ -38,12 +38,14 @@ class ContactOptions:
     damping_ratio: float = 10.0
     push_out_speed: Optional[float] = None  # m/s; None: from gravity and sizes
     slop: Optional[float] = None  # m; None: 0.005 of the smallest size
-    # m/s, slower impacts do not bounce; None: the speed that gravity gives in two steps
+    # m/s, slower impacts do not bounce; None: the speed that gravity gives in two passes
     restitution_threshold: Optional[float] = None
     restitution_sweeps: int = 16
     friction_in_bias_pass: bool = True  # tgs_soft only
     cast_against_fixed: bool = True  # stop fast bodies at thin fixed shapes
     cast_between_moving: bool = False  # also at moving shapes
+    # contacts are found as often in a step; None: once, or more often for thin bodies
+    collision_passes: Optional[int] = None
 
 
 @dataclass(slots=True, kw_only=True)

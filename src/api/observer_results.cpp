@@ -79,6 +79,8 @@ ObserverResultsOf<Real>::ObserverResultsOf(const AllWorlds& worlds, const Observ
         kind.room +=
             w.tables().capacity[l] * (is_multi(static_cast<kernels::ListId>(l)) ? several : 1);
       }
+      // Points of a later pass may be others.
+      if (observers_.contacts_per_world == 0 && w.tables().passes > 1) kind.room *= 2;
       kind.contacts.resize(n * at(kind.room));
     }
     kind.frames_vary = std::any_of(plan.bodies.begin(), plan.bodies.end(),

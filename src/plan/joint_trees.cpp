@@ -209,7 +209,7 @@ class JointTreeBuilder {
   // Gaps are closed in a substep, or as fast as joints are said to be.
   void solve_at_once(PlanPart& part) const {
     const Options& o = plan_.scene.options;
-    const double h = o.dt / *o.substeps;
+    const double h = plan_.substep_dt();
     part.what.direct = true;
     part.constants.soft = {1 / h, 0, 0};
     if (o.joint.frequency) {

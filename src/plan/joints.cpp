@@ -50,7 +50,7 @@ class Builder {
       : plan_(plan),
         index_(index),
         joint_(plan.scene.joints[static_cast<std::size_t>(index)]),
-        h_(plan.scene.options.dt / *plan.scene.options.substeps) {}
+        h_(plan.substep_dt()) {}
 
   void build() {
     std::visit([this](const auto& type) { add(type); }, joint_.type);
@@ -121,8 +121,8 @@ class Builder {
     out.constants.limit_soft = hard();
     out.constants.max_impulse = kUnlimited;
     out.constants.ratio = 1;
-    out.constants.max_force = joint_.break_force * o.dt;
-    out.constants.max_torque = joint_.break_torque * o.dt;
+    out.constants.max_force = joint_.break_force * plan_.pass_dt();
+    out.constants.max_torque = joint_.break_torque * plan_.pass_dt();
     return out;
   }
   static void put(const Vec3& from, double* to) { std::copy_n(from.data(), 3, to); }

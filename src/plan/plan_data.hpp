@@ -149,6 +149,12 @@ struct PlanData {
   bool slows = false;  // some body may have linear drag, whatever stages are kept
   int row_block = 0;
 
+  // A step is as many passes, each with its own contacts and substeps (collision_passes.cpp).
+  int passes() const { return *scene.options.contact.collision_passes; }
+  int pass_substeps() const { return *scene.options.substeps / passes(); }
+  double pass_dt() const { return scene.options.dt / passes(); }     // s
+  double substep_dt() const { return pass_dt() / pass_substeps(); }  // s
+
   bool has_trees() const { return scene.options.solver.method == Solver::newton; }
   bool has(Feature f) const { return in[static_cast<std::size_t>(f)]; }
   // Whether the energy of its worlds can be audited (kernels/observe/audit.hpp). Overlaps of

@@ -2,6 +2,7 @@
 // solved, substeps, and how stiff contacts are.
 #include <string>
 
+#include "src/plan/collision_passes.hpp"
 #include "src/plan/joint_method.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/plan/substeps.hpp"
@@ -31,10 +32,20 @@ void resolve_options(PlanData& plan) {
       plan.choices.back().name = to_string(*o.joint.method);
     }
   }
+  const PassChoice passes = choose_passes(extremes(plan));
+  choose("contact.collision_passes", o.contact.collision_passes, passes.passes, passes.why);
+  const int n = *o.contact.collision_passes;
+  const auto whole = [n](int substeps) { return (substeps + n - 1) / n * n; };
   const SubstepChoice substeps = choose_substeps(extremes(plan), *o.length_unit);
-  choose("substeps", o.substeps, substeps.substeps, substeps.why);
-  choose("contact.frequency", o.contact.frequency, kContactShare * substeps.stiff / o.dt,
-         "a quarter of the rate of " + std::to_string(substeps.stiff) + " substeps per step, Hz");
+  if (o.substeps && whole(*o.substeps) != *o.substeps) {
+    const std::string why = std::to_string(*o.substeps) + " rounded up to a multiple of passes";
+    o.substeps.reset();
+    choose("substeps", o.substeps, whole(*plan.described.options.substeps), why);
+  }
+  choose("substeps", o.substeps, whole(substeps.substeps), substeps.why);
+  const int stiff = whole(substeps.stiff);
+  choose("contact.frequency", o.contact.frequency, kContactShare * stiff / o.dt,
+         "a quarter of the rate of " + std::to_string(stiff) + " substeps per step, Hz");
 }
 
 }  // namespace manyworlds

@@ -100,6 +100,11 @@ class NewtonChecker {
       refuse(all_, "options.medium", "is given", "none with implicit-fast yet");
     }
     if (o.bounds) refuse(all_, "options.bounds", "are given", "none");
+    if (o.contact.collision_passes.value_or(1) != 1) {
+      refuse(all_, "options.contact.collision_passes",
+             "is " + std::to_string(*o.contact.collision_passes),
+             "1 only: it finds contacts in every substep");
+    }
     if (o.contact_capacity) {
       refuse(all_, "options.contact_capacity", "is given", "none: it stores all contacts");
     }

@@ -89,6 +89,9 @@ void check_contact(Checker& checker, const ContactOptions& o) {
   }
   checker.between("options.contact.restitution_sweeps", o.restitution_sweeps, 1,
                   kMaxRestitutionSweeps);
+  if (o.collision_passes) {
+    checker.between("options.contact.collision_passes", *o.collision_passes, 1, kMaxPasses);
+  }
 }
 
 void check_joint(Checker& checker, const JointOptions& o) {

@@ -28,6 +28,7 @@ inline constexpr double kMinTime = 1e-9;
 inline constexpr double kInputTolerance = 1e-6;
 
 inline constexpr int kMaxSubsteps = 64;
+inline constexpr int kMaxPasses = 64;  // over the collision stages in a step
 inline constexpr int kMaxBodies = 32767;
 inline constexpr int kMaxShapes = 32767;
 inline constexpr int kMaxJitterChain = 256;  // bodies, since each is drawn with all before it

@@ -49,13 +49,13 @@ template <class Real>
 kernels::BodyConstants<Real> body_constants(const PlanData& plan, const PlanBody& b) {
   const Options& options = plan.scene.options;
   const Body& body = plan.scene.bodies[static_cast<std::size_t>(b.scene_body)];
-  const double h = options.dt / *options.substeps;
+  const double h = plan.substep_dt();
   kernels::BodyConstants<Real> out{};
   out.mass = static_cast<Real>(b.mass);
   out.inv_mass = static_cast<Real>(b.inv_mass);
   copy_numbers(b.inertia, out.inertia);
   copy_numbers(b.inv_inertia, out.inv_inertia);
-  out.principal = principal_of<Real>(b, options.dt);
+  out.principal = principal_of<Real>(b, plan.pass_dt());
   out.radius = static_cast<Real>(b.radius);
   out.half_thickness = static_cast<Real>(b.inv_mass > 0 ? b.half_thickness : 0);
   out.linear_factor = out.angular_factor = 1;

@@ -14,7 +14,7 @@ namespace manyworlds {
 namespace {
 
 // Of gravity: impacts that these give do not bounce (ContactOptions::restitution_threshold).
-constexpr double kStepsThatRest = 2;
+constexpr double kPassesThatRest = 2;
 constexpr double kMostSag = 0.01;  // of the length unit, under what presses on fixed shapes
 constexpr double kDeep = 4;        // times the speed per length unit of overlap, up to twice it
 
@@ -67,7 +67,8 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   auto& t = tables_;
   t.dimension = plan.dimension();
   t.inertia_kind = plan.inertia_kind;
-  t.substeps = *o.substeps;
+  t.passes = plan.passes();
+  t.substeps = plan.pass_substeps();
   t.restitution_sweeps = o.contact.restitution_sweeps;
   t.has_orientation = plan.has(Feature::orientation);
   t.looks_ahead = plan.orientations_matter && plan.parts.empty() && !plan.has_trees();
@@ -96,8 +97,9 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
     copy(o.bounds->min(), t.bounds_low);
     copy(o.bounds->max(), t.bounds_high);
   }
-  const double h = o.dt / *o.substeps;
-  t.dt = static_cast<Real>(o.dt);
+  const double h = plan.substep_dt();
+  t.step_dt = static_cast<Real>(o.dt);
+  t.dt = static_cast<Real>(plan.pass_dt());
   t.h = static_cast<Real>(h);
   t.inv_h = static_cast<Real>(1 / h);
   const double frequency = *o.contact.frequency;
@@ -106,7 +108,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
       softness<Real>(o.contact.fixed_frequency.value_or(2 * frequency), o.contact.damping_ratio, h);
   t.fixed_leak = t.soft_fixed.bias_rate * t.soft_fixed.mass_scale *
                  static_cast<Real>(kMostSag * *o.length_unit);
-  add_solver(o);
+  add_solver(plan);
   t.push_out_speed = static_cast<Real>(*o.contact.push_out_speed);
   // Slower changes may be those of the push-out. Not by the world's own gravity: worlds whose
   // gravity varies would not have the bits of their scenes.
@@ -116,7 +118,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.half_margin = static_cast<Real>(min_margin(plan));
   const bool by_gravity = !o.contact.restitution_threshold;
   t.restitution_threshold = static_cast<Real>(o.contact.restitution_threshold.value_or(0));
-  t.restitution_time = static_cast<Real>(by_gravity ? kStepsThatRest * o.dt : 0);
+  t.restitution_time = static_cast<Real>(by_gravity ? kPassesThatRest * plan.pass_dt() : 0);
   t.sleep_speed = static_cast<Real>(*o.sleep.speed);
   t.sleep_time = static_cast<Real>(o.sleep.time);
   t.face_bias = static_cast<Real>(0.5 * *o.contact.slop);
@@ -128,8 +130,9 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
 }
 
 template <class Real>
-void TablesOf<Real>::add_solver(const Options& o) {
+void TablesOf<Real>::add_solver(const PlanData& plan) {
   static_assert(static_cast<int>(kernels::Solver::newton) == static_cast<int>(Solver::newton));
+  const Options& o = plan.scene.options;
   auto& t = tables_;
   t.solver.kind = static_cast<kernels::Solver>(o.solver.method);
   t.solver.iterations = iterations_of(o.solver);
@@ -140,7 +143,8 @@ void TablesOf<Real>::add_solver(const Options& o) {
   if (!has_hard_rows(o.solver.method)) return;
   const double share = o.solver.split_impulse ? 0 : o.solver.push_out_share;
   t.solver.slop = static_cast<Real>(*o.contact.slop);
-  t.soft_pair = t.soft_fixed = {static_cast<Real>(share * *o.substeps / o.dt), 1, 0};
+  const double rate = share * plan.pass_substeps() / plan.pass_dt();
+  t.soft_pair = t.soft_fixed = {static_cast<Real>(rate), 1, 0};
 }
 
 template <class Real>

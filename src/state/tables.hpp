@@ -30,7 +30,7 @@ class TablesOf {
   void add_trees(const PlanData& plan);
   void add_options(const PlanData& plan);
   void add_flight(const PlanData& plan);
-  void add_solver(const Options& options);
+  void add_solver(const PlanData& plan);
 
   kernels::SceneConstants<Real> tables_{};
   Constants<Real> constants_;

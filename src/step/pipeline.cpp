@@ -137,22 +137,25 @@ class Audit {
   bool due_ = false;
 };
 
-// Contacts and joints: rows in substeps. `wanted` in the last step of a call.
+// One pass of a step over contacts and joints: rows in substeps. `wanted` in the last step of a
+// call, `last`: of the passes of a step.
 template <class Real>
-void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted, bool audited) {
+void solver_pass(const Run<Real>& run, const kernels::ObserverView<Real>* wanted, bool audited,
+                 bool last) {
   const GroupStep<Real>& p = run.step;
   const auto& t = p.tables;
   const auto& observer = *p.kernels.observer;
   const auto* contacts = wanted && wanted->of_contacts && t.has_contacts ? wanted : nullptr;
   if (contacts) observer.watch(run.scratch, contacts->places);
-  const StageCalls<Real>& calls = find_rows(run, contacts || (wanted && wanted->saved));
+  const bool saved = last && wanted && wanted->saved;
+  const StageCalls<Real>& calls = find_rows(run, contacts || saved);
   if (contacts) observer.watch(run.scratch, nullptr);
   const bool adds_up = contacts && contacts->totals[0];
   const std::span<const StageCall<Real>> solve = calls.solve;
   run(calls.prepare);
   for (int s = 0; s < t.substeps; ++s) {
     run(solve.first(calls.residual_at));
-    if (s + 1 == t.substeps && wanted && wanted->saved) look_at_residual(run, calls, *wanted);
+    if (s + 1 == t.substeps && saved) look_at_residual(run, calls, *wanted);
     run(solve.subspan(calls.residual_at));
     if (audited && calls.drive_work) run(StageCall<Real>{StepStage::audit, calls.drive_work});
     if (adds_up) {
@@ -162,6 +165,12 @@ void solver_step(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
     if (s + 1 < t.substeps) run(calls.next);
   }
   run(calls.end);
+  if (last) {
+    run(calls.settle);
+  } else if (contacts) {
+    observer.awake[static_cast<int>(t.inertia_kind)](t, run.group, run.scratch, *contacts);
+    run.lap(StepStage::observe);
+  }
 }
 
 // Bodies in joint coordinates: a step is as many substeps, each of which finds its own contacts.
@@ -207,7 +216,7 @@ void whole_steps(const Run<Real>& run, Move move, int steps) {
   const auto& t = run.step.tables;
   const Audit<Real> audit(run);
   const auto take = [&](int n) {
-    move(t, run.group, run.scratch, n);
+    move(t, run.group, run.scratch, n * t.passes);
     run.lap(t.flight.on ? StepStage::flight : StepStage::free_motion);
   };
   while (steps > 0) {
@@ -315,7 +324,9 @@ int step_group(const GroupStep<Real>& p, const kernels::GroupView<Real>& group,
       if (wanted) look_at_start(p, group, scratch);
       const bool audited = audit.next(steps - taken);
       if (audited) audit.begin();
-      solver_step(run, wanted, audited);
+      for (int pass = 1; pass <= p.tables.passes; ++pass) {
+        solver_pass(run, wanted, audited, pass == p.tables.passes);
+      }
       if (audited) audit.end();
     }
     if (p.wanted && taken < steps) look_at_start(p, group, scratch);

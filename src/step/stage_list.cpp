@@ -175,7 +175,7 @@ class Builder {
     const bool flight = plan_.runs(StepStage::flight);
     add(to, StepStage::finish, flight ? flight_.leave[layout_] : solver_.leave);
     if (t_.breakable > 0) add(to, StepStage::joints, joints_.break_up);
-    add(to, StepStage::settle, settle_);
+    add(out_.settle, StepStage::settle, settle_);
   }
 
   const PlanData& plan_;
@@ -202,7 +202,7 @@ StageCalls<Real> free_step_calls(const kernels::SceneConstants<Real>& t,
                                  const kernels::Kernels<Real>& kernels) {
   StageCalls<Real> out;
   out.end.push_back({StepStage::finish, kernels.free_step[static_cast<int>(t.inertia_kind)]});
-  if (t.has_sleep) out.end.push_back({StepStage::settle, kernels.settle});
+  if (t.has_sleep) out.settle.push_back({StepStage::settle, kernels.settle});
   return out;
 }
 

@@ -27,6 +27,7 @@ struct StageCalls {
   Calls solve;    // to the velocities that a substep ends with, and the displacement
   Calls next;     // to those that the next begins with
   Calls end;
+  Calls settle;  // once a step, after its last pass
 
   // Where in `solve` the solver can be asked how far it is from done, and the passes of one more
   // sweep; nullptr: it has no such rows.

@@ -28,6 +28,10 @@ TEST_CASE("options of the newton solver have ranges", "[fast][validate][newton]"
        {"", "is given, the newton solver supports none with implicit-fast yet", [](Scene& s) {
           s.options.medium.density = 1, s.options.integrator = Integrator::implicit_fast;
         }}});
+  check_each(robot, "options.contact.",
+             {{"collision_passes",
+               "is 2, the newton solver supports 1 only: it finds contacts in every substep",
+               [](Scene& s) { s.options.contact.collision_passes = 2; }}});
   Scene other = empty_scene(Space::spatial);
   other.add(body_of(shape_of(Sphere{1}), Vec3::Zero()));
   check_each(other, "options.",
