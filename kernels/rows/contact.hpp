@@ -2,10 +2,9 @@
 //
 // Soft contact with substeps ("TGS soft", Catto). Normal row of a point with separation s:
 //   lambda' = max(0, rigid - m bias - lost), rigid = lambda - m v, lost = i rigid
-//   s > 0: bias = s / h, i = 0 (speculative)
+//   s > 0: bias = s / h, i = 0 (speculative) but over the last of the gap (kTouching)
 //   s <= 0: bias = a r s, soft gains a, r, i with a = 1 - i (tables.hpp, Softness), but
 //           m bias >= -max(m c, i lambda + m c / 8)
-// where i sets in over the last of a gap (kTouching),
 // with the push-out speed c, against fixed shapes up to twice as much where what they overlap is
 // half of the length unit or deeper. What a load takes comes on top, so that no load is too much.
 // A spring sags under what presses on it by F / (m w^2), however small the bodies. Against fixed

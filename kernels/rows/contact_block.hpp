@@ -77,6 +77,7 @@ struct alignas(64) Bounce {
   Real total_twist[kLanes];
   // The same before restitution, in steps that have any (energy.hpp).
   Real found[N][kLanes], found_tangent[S::kTangents][kLanes], found_twist[kLanes];
+  Real reached[kLanes];  // m/s, of the impact that it takes part in
   // Of one sweep of restitution (solver/impacts.hpp).
   Real target[N][kLanes], played[N][kLanes];  // m/s to leave with; N s so far
   Real approach[kLanes];                      // m/s, of the point that approaches fastest

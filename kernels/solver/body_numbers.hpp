@@ -1,6 +1,6 @@
-// A number of each body and lane that contacts raise and read: through it a contact hears of those
-// that share a body with it. Only bodies that contacts can move have one, so that nothing is heard
-// through the ground.
+// Numbers of each body and lane that contacts raise and read, by which values propagate between
+// contacts that share a body. Only bodies that contacts can move have them, so that nothing
+// propagates through the ground.
 #pragma once
 
 #include "kernels/rows/contact.hpp"
@@ -16,21 +16,29 @@ MW_INLINE int body_b_of(const Work& w, const ContactBlock<S, N>& s, int lane) {
   return (s.offset_b[lane] - w.velocity_base[lane]) / S::kRow;
 }
 
-// [body][lane], at least 0; in the memory of impulse_part, which is unused after the last substep.
-MW_INLINE Real* number_of(const Work& w, int body) { return w.impulse_part + body * kLanes; }
+// Speeds of impacts; the last round in which a body has changed.
+enum class BodyNumber { speed, round };
 
-inline void clear_numbers(const Constants& t, const Work& w) {
-  for (int b = 0; b < t.bodies; ++b) Float(Real(0)).store(number_of(w, b));
+// [body][BodyNumber][lane], at least 0; in the memory of impulse_part, which is unused after the
+// last substep.
+template <BodyNumber kNumber = BodyNumber::speed>
+MW_INLINE Real* number_of(const Work& w, int body) {
+  return w.impulse_part + (body * 2 + static_cast<int>(kNumber)) * kLanes;
+}
+
+template <BodyNumber kNumber = BodyNumber::speed>
+void clear_numbers(const Constants& t, const Work& w) {
+  for (int b = 0; b < t.bodies; ++b) Float(Real(0)).store(number_of<kNumber>(w, b));
 }
 
 // Raises the numbers of a block's bodies to `value`, which is 0 outside of `lanes`.
-template <bool kDense, class S, int N, class A>
+template <bool kDense, BodyNumber kNumber = BodyNumber::speed, class S, int N, class A>
 MW_INLINE void raise_numbers(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
                              Float value, unsigned lanes) {
   if constexpr (kDense) {
     const auto raise = [&](int body) {
       if (t.body[body].kinematic) return;
-      Real* number = number_of(w, body);
+      Real* number = number_of<kNumber>(w, body);
       max(Float::load(number), value).store(number);
     };
     raise(s.body_b);
@@ -39,7 +47,7 @@ MW_INLINE void raise_numbers(const Constants& t, const Work& w, const SidedBlock
     alignas(64) Real of_lane[kLanes];
     value.store(of_lane);
     const auto raise = [&](int body, int lane) {
-      Real& number = number_of(w, body)[lane];
+      Real& number = number_of<kNumber>(w, body)[lane];
       if (!t.body[body].kinematic && number < of_lane[lane]) number = of_lane[lane];
     };
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -51,13 +59,13 @@ MW_INLINE void raise_numbers(const Constants& t, const Work& w, const SidedBlock
 }
 
 // The larger of the numbers of a block's bodies, in `lanes`; elsewhere 0 or more.
-template <bool kDense, class S, int N, class A>
+template <bool kDense, BodyNumber kNumber = BodyNumber::speed, class S, int N, class A>
 MW_INLINE Float largest_number(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
                                unsigned lanes) {
   const Float zero(Real(0));
   if constexpr (kDense) {
     const auto number = [&](int body) {
-      return t.body[body].kinematic ? zero : Float::load(number_of(w, body));
+      return t.body[body].kinematic ? zero : Float::load(number_of<kNumber>(w, body));
     };
     const Float b = number(s.body_b);
     if constexpr (A::kMoves) {
@@ -69,7 +77,7 @@ MW_INLINE Float largest_number(const Constants& t, const Work& w, const SidedBlo
     alignas(64) Real largest[kLanes];
     zero.store(largest);
     const auto look = [&](int body, int lane) {
-      const Real number = number_of(w, body)[lane];
+      const Real number = number_of<kNumber>(w, body)[lane];
       if (!t.body[body].kinematic && largest[lane] < number) largest[lane] = number;
     };
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -79,6 +87,23 @@ MW_INLINE Float largest_number(const Constants& t, const Work& w, const SidedBlo
     }
     return Float::load(largest);
   }
+}
+
+// Rounds over blocks that share bodies, from 1 on: a block plays only in the lanes in which one of
+// its bodies has changed since it did. So a round does nothing where nothing happens, whatever
+// happens elsewhere in a world.
+template <bool kDense, class S, int N, class A>
+MW_INLINE unsigned lanes_to_play(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
+                                 unsigned lanes, int round) {
+  if (lanes == 0) return 0;
+  const Float last = largest_number<kDense, BodyNumber::round>(t, w, s, lanes);
+  return lanes & bits(Float(Real(round)) <= last);
+}
+template <bool kDense, class S, int N, class A>
+MW_INLINE void mark_changed(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
+                            unsigned lanes, int round) {
+  const Float next = select(mask_from_bits(lanes), Float(Real(round + 1)), Float(Real(0)));
+  raise_numbers<kDense, BodyNumber::round>(t, w, s, next, lanes);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -22,7 +22,7 @@ MW_INLINE void hold_speeds(const Constants& t, const Work& w, const SidedBlock<S
                            Bounce<S, N>& bounce, unsigned active) {
   if ((s.mask & active) == 0) return;
   const Mask part = mask_from_bits(bounce.participants);
-  const Float zero(Real(0)), one(Real(1)), never(Real(-1e30)), touch(t.margin * kTouch);
+  const Float zero(Real(0)), never(Real(-1e30)), touch(t.margin * kTouch);
   const RowVelocities<S, A, kDense> v(w, s);
   Float speed[N], gaps[N];
   normal_speeds(s, v, speed);
@@ -40,7 +40,7 @@ MW_INLINE void hold_speeds(const Constants& t, const Work& w, const SidedBlock<S
     select(part, zero, Float::load(bounce.total_tangent[c])).store(bounce.total_tangent[c]);
   }
   select(part, zero, Float::load(bounce.total_twist)).store(bounce.total_twist);
-  raise_numbers<kDense>(t, w, s, select(part, one, zero), bounce.participants);
+  mark_changed<kDense>(t, w, s, bounce.participants, 0);
 }
 
 // One round over a block, in the lanes in which its bodies have changed. Returns those in which it
@@ -48,9 +48,7 @@ MW_INLINE void hold_speeds(const Constants& t, const Work& w, const SidedBlock<S
 template <bool kDense, class S, int N, class A>
 MW_INLINE unsigned rub_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s,
                              Bounce<S, N>& bounce, unsigned open, int round) {
-  open &= s.mask;
-  if (open == 0) return 0;
-  open &= bits(Float(Real(round)) <= largest_number<kDense>(t, w, s, open));
+  open = lanes_to_play<kDense>(t, w, s, open & s.mask, round);
   if (open == 0) return 0;
   const Float zero(Real(0)), tolerance(kFrictionTolerance);
   const Mask plays = mask_from_bits(open), part = mask_from_bits(bounce.participants) & plays;
@@ -90,13 +88,13 @@ MW_INLINE unsigned rub_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s
   keep_other_lanes_of_sides(plays, rubbed, v);
   v.store(w, s);
   const unsigned out = bits(changed & plays);
-  raise_numbers<kDense>(t, w, s, select(changed & plays, Float(Real(round + 1)), zero), out);
+  mark_changed<kDense>(t, w, s, out, round);
   return out;
 }
 
 template <class S, bool kDense>
 void rub_impacts(const Constants& t, Work& w, unsigned active) {
-  clear_numbers(t, w);
+  clear_numbers<BodyNumber::round>(t, w);
   for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
     hold_speeds<kDense>(t, w, s, bounce_at<S, N>(list, i), active);
   });

@@ -18,8 +18,8 @@ inline constexpr int kImpactIterations = 24;  // over all that play in a sweep, 
 // An approach below this share of the fastest at one of its bodies waits. Symmetric racks have
 // ratios of 1/2, and rounding must decide nothing.
 inline constexpr Real kMuchFaster = Real(0.3);
-// Relative change of an impulse that ends the iterations, and approach, as a share of the world's
-// fastest, that is left to the next step.
+// Relative change of an impulse that no other block answers, and approach, as a share of the impact
+// that has reached a block, that is left to the next step.
 inline constexpr Real kImpactTolerance = sizeof(Real) == 4 ? Real(2e-6) : Real(1e-12);
 
 // Where a point can be one of an impact: a far point has met nothing, unless the substeps say so.
@@ -31,17 +31,18 @@ MW_INLINE Mask meets(const ContactBlock<S, N>& s, const Bounce<S, N>& bounce, in
 }
 
 // How fast the participants among `lanes` approach, and the speeds that their points shall leave
-// with. What approaches slower than `slow`, or a thousandth of the threshold, is left to the next
-// step. Returns the fastest approach.
+// with. What approaches slower than a thousandth of the threshold is left to the next step. Returns
+// the lanes in which it plays.
 template <bool kDense, class S, int N, class A>
-MW_INLINE Float weigh_impact(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
-                             Bounce<S, N>& bounce, unsigned lanes, bool first, Float slow) {
+MW_INLINE void weigh_impact(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
+                            Bounce<S, N>& bounce, unsigned lanes, bool first) {
   const Float zero(Real(0));
   lanes &= bounce.participants;
   bounce.playing = 0;
-  if (lanes == 0) return zero;
+  if (lanes == 0) return;
   const Float threshold = Float::load(bounce.threshold);
-  slow = max(threshold * Float(Real(1e-3)), slow);
+  const Float slow =
+      max(threshold * Float(Real(1e-3)), Float::load(bounce.reached) * Float(kImpactTolerance));
   const Float e = Float::load(bounce.restitution);
   const RowVelocities<S, A, kDense> v(w, s);
   Float speed[N], fastest = zero;
@@ -64,7 +65,6 @@ MW_INLINE Float weigh_impact(const Constants& t, const Work& w, const SidedBlock
   fastest.store(bounce.approach);
   bounce.playing = bits(zero < fastest);
   raise_numbers<kDense>(t, w, s, fastest, bounce.playing);
-  return fastest;
 }
 
 // Chooses which of them play, and what they start from. Returns the lanes in which this one does.
@@ -90,11 +90,13 @@ MW_INLINE unsigned choose_impact(const Constants& t, const Work& w, const SidedB
   return bounce.playing;
 }
 
-// One iteration over a block that plays in some of `lanes`. Returns those in which it goes on.
+// One round over a block that plays in some of `lanes`. Returns those in which it has changed.
 template <bool kDense, class S, int N, class A>
-MW_INLINE unsigned play_impact(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bounce,
-                               unsigned lanes, bool first) {
+MW_INLINE unsigned play_impact(const Constants& t, Work& w, SidedBlock<S, N, A>& s,
+                               Bounce<S, N>& bounce, unsigned lanes, int round) {
+  const bool first = round == 0;
   lanes &= bounce.playing;
+  if (!first) lanes = lanes_to_play<kDense>(t, w, s, lanes, round);
   if (lanes == 0) return 0;
   const Float zero(Real(0)), one(Real(1)), tolerance(kImpactTolerance);
   const Mask plays = mask_from_bits(lanes);
@@ -113,11 +115,11 @@ MW_INLINE unsigned play_impact(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bo
     for (int i = 0; i < N; ++i) speed[i] = fma(inv_mass[i], d[i], speed[i]);
   }
   Mask changed = zero < zero;
-  for (int round = 0; round < (N == 1 ? 1 : kBlockIterations); ++round) {
+  for (int k = 0; k < (N == 1 ? 1 : kBlockIterations); ++k) {
     for (int i = 0; i < N; ++i) {
       const Float x = max(fma(mass[i], target[i] - speed[i], played[i]), zero);
       const Float change = select(zero < mass[i], x - played[i], zero);
-      if (round == 0) changed = changed | (tolerance * max(x, played[i]) < abs(change));
+      if (k == 0) changed = changed | (tolerance * max(x, played[i]) < abs(change));
       played[i] = played[i] + change;
       d[i] = d[i] + change;
       speed[i] = fma(inv_mass[i], change, speed[i]);
@@ -132,37 +134,33 @@ MW_INLINE unsigned play_impact(Work& w, SidedBlock<S, N, A>& s, Bounce<S, N>& bo
     select(plays, played[i], Float::load(bounce.played[i])).store(bounce.played[i]);
     select(plays, total + d[i], total).store(bounce.total[i]);
   }
-  return first ? lanes : bits(changed) & lanes;
+  const unsigned out = first ? lanes : bits(changed) & lanes;
+  mark_changed<kDense>(t, w, s, out, round);
+  return out;
 }
 
 // Plays the impacts of the lanes of `active`, sweep after sweep, until nothing approaches any more.
 template <class S, bool kDense>
 void play_impacts(const Constants& t, Work& w, unsigned active) {
-  const Float zero(Real(0));
-  Float slow = zero;
   for (int sweep = 0; sweep < t.restitution_sweeps && active != 0; ++sweep) {
     const bool first = sweep == 0;
-    Float fastest = zero;
     clear_numbers(t, w);
+    clear_numbers<BodyNumber::round>(t, w);
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      auto& bounce = bounce_at<S, N>(list, i);
-      fastest = max(weigh_impact<kDense>(t, w, s, bounce, active, first, slow), fastest);
+      weigh_impact<kDense>(t, w, s, bounce_at<S, N>(list, i), active, first);
     });
-    if (first) slow = fastest * Float(kImpactTolerance);
-    unsigned chosen = 0, coupled = 0;  // lanes in which some play, and several do
+    unsigned chosen = 0;  // lanes in which some play
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      const unsigned plays = choose_impact<kDense>(t, w, s, bounce_at<S, N>(list, i), first);
-      coupled |= chosen & plays;
-      chosen |= plays;
+      chosen |= choose_impact<kDense>(t, w, s, bounce_at<S, N>(list, i), first);
     });
     active = chosen;
     unsigned open = active;
     for (int k = 0; k < kImpactIterations && open != 0; ++k) {
       unsigned goes_on = 0;
       for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-        goes_on |= play_impact<kDense>(w, s, bounce_at<S, N>(list, i), open, k == 0);
+        goes_on |= play_impact<kDense>(t, w, s, bounce_at<S, N>(list, i), open, k);
       });
-      open = goes_on & coupled;
+      open = goes_on;
     }
   }
 }

@@ -29,6 +29,7 @@ MW_INLINE Float find_impacts(const ContactBlock<S, N>& s, Bounce<S, N>& bounce) 
   }
   fastest = select(mask_from_bits(s.mask), fastest, zero);
   bounce.participants = bits(zero < fastest);
+  fastest.store(bounce.reached);
   return fastest;
 }
 
@@ -55,7 +56,9 @@ MW_INLINE Float reach_block(const Constants& t, const Work& w, const SidedBlock<
   }
   const unsigned reached = bits(part) & lanes;
   bounce.participants |= reached;
-  return select(mask_from_bits(reached), speed, zero);
+  const Mask joins = mask_from_bits(reached);
+  select(joins, speed, Float::load(bounce.reached)).store(bounce.reached);
+  return select(joins, speed, zero);
 }
 
 // Joints pass impacts on.
