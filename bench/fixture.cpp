@@ -41,9 +41,7 @@ std::vector<Stage> stages_of_step(const Tables& tables) {
 
 void StageRunner::run(Stage stage, const Group& group) {
   const auto inertia = static_cast<int>(tables_.inertia_kind);
-  const auto& solver =
-      kernels_
-          .solver[inertia][tables_.has_friction ? 1 : 0][layout_ == kernels::Layout::dense ? 0 : 1];
+  const auto& solver = kernels_.solver[inertia][layout_ == kernels::Layout::dense ? 0 : 1];
   switch (stage) {
     case Stage::free_motion: return kernels_.free_motion[inertia](tables_, group, scratch_, 1);
     case Stage::begin: return kernels_.begin(tables_, group, scratch_);

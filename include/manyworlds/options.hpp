@@ -66,8 +66,8 @@ struct ContactOptions {
   bool friction_in_bias_pass = true;
   bool cast_against_fixed = true;    // stop fast bodies at thin fixed shapes
   bool cast_between_moving = false;  // also at moving shapes, for bullets
-  // A step consists of as many equal passes, each of which finds contacts and takes its share of
-  // the substeps. Default: 1; the plan chooses more for bodies that gravity moves by much of their
+  // Number of equal passes of a step. Each pass finds contacts and takes its share of the
+  // substeps. Default: 1; the plan chooses more for bodies that gravity moves by much of their
   // thickness in a step (docs/plan.md). newton finds contacts in every substep and has one pass.
   std::optional<int> collision_passes = {};
 };

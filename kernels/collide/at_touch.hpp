@@ -1,8 +1,9 @@
 // Contacts with fixed shapes, with the normal of the moment of touch.
 //
 // Rows keep one normal for a step. The normal of the step's start stops what slides or rolls over
-// the seam between two fixed shapes: the edge ahead is seen from aside. So the body's shape is
-// moved along its velocity to where it touches, and what is found there becomes the contact.
+// the seam between two fixed shapes: there the nearest feature of the next shape is its side. So
+// the body's shape is moved along its velocity to where it touches, and what is found there becomes
+// the contact.
 //
 // The separation of two convex shapes is a convex function of a translation, s(x) >= s + n . x for
 // what is found at any place, so each place bounds the separation on the whole way from below:
@@ -23,9 +24,9 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr int kTouchRounds = 10;
 inline constexpr Real kLittle = Real(0.125);  // of the overlap
-inline constexpr Real kFarApart = Real(1e6);
+inline constexpr Real kFarApart = Real(1e30);
 
-// Out of line, as are the searches: few contacts get there.
+// Not inlined, like the searches, since it runs for few contacts.
 template <class S, int N>
 __attribute__((noinline)) void take_manifold(Mask use, const Manifold<S, N>& from,
                                              Manifold<S, N>& m) {
@@ -163,7 +164,7 @@ MW_INLINE void TouchSearch<S, N>::take_passing(Mask use, const Place<S, N>& here
 
 template <class S, int N>
 __attribute__((noinline)) bool TouchSearch<S, N>::go_on(Manifold<S, N>& m) {
-  // What touches within the step overlaps soon after.
+  // Search two steps: shapes that touch in this step overlap in the next.
   const Float zero(Real(0)), far(kFarApart), longest = dt_ + dt_;
   Place<S, N> here;
   here.m = m;

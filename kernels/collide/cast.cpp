@@ -253,7 +253,10 @@ Float free_share_of_fixed(const Constants& t, const Group& g, const Work& w, int
     if (fixed.kind == ShapeKind::tile) {  // the first stands for the whole field
       const TileRow& tile = tile_row(t.fixed_rows, fixed.row);
       if (tile.column != 0 || tile.row != 0 || tile.half != 0) continue;
-    } else if (fixed.kind != ShapeKind::plane) {
+    } else if (fixed.kind == ShapeKind::plane) {
+      const Float thin = sweep.core * Real(kernels::kThinBody);
+      near = fast & (thin < Float(constants_of_body(g, body).radius));
+    } else {
       near = fast & comes_near(t, fixed.low, fixed.high, motion, room);
     }
     if (!any(near)) continue;

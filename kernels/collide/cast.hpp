@@ -1,7 +1,8 @@
-// Casts: a body that moves farther in a step than it is thick could pass through a wall, so it is
-// swept against fixed shapes, and on request against moving shapes. It stops where it first touches
-// one. Against what is solid below, contacts with a speculative margin hold at any speed unless a
-// body rotates: planes and height fields are looked at for what rows of contacts miss.
+// Casts: a body that moves farther in a collision pass than it is thick could pass through a wall,
+// so it is swept against fixed shapes, and on request against moving shapes. It stops where it
+// first touches one. Against what is solid below, contacts with a speculative margin hold at any
+// speed unless a body rotates: planes and height fields are looked at for what rows of contacts
+// miss.
 //
 // Each shape of the body is swept as it is, along its path and through its rotation in the step.
 // The separation comes from the general convex method, so any two shapes can meet. A shape that

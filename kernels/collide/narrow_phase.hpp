@@ -61,7 +61,7 @@ MW_INLINE bool searches_touch(const Constants& t, const Work& w, const RowBuilde
   return t.seams && rows.velocity && !asked;
 }
 
-// Out of line: few contacts get here.
+// Not inlined, since it runs for few contacts.
 inline __attribute__((noinline)) Float axis_of_boxes(const Constants& t, const BoxPose& a,
                                                      const BoxPose& b) {
   return find_box_axes(t, a, b).axis;

@@ -95,9 +95,10 @@ struct ObserverView {
   // Beside the blocks of each list: places and features of their points, impulses of the step.
   // contacts, touching or penetration are asked for, or link_forces of plans without trees
   bool of_contacts;
-  Real* places[kLists];        // [block][point][component][lane], [lane]
-  Real* totals[kLists];        // [block][point, tangent, twist][lane]; plans without restitution
-  std::uint32_t* none_asleep;  // [body] 0
+  Real* places[kLists];          // [block][point][component][lane], [lane]
+  Real* totals[kLists];          // [block][point, tangent, twist][lane]; plans without restitution
+  std::uint32_t* none_asleep;    // [body] 0
+  std::uint32_t* asleep_before;  // [body], before the last step put bodies to sleep; several passes
 
   ContactImpulse<Real>* contacts;  // [lane][room]
   std::int32_t room;

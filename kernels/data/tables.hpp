@@ -64,6 +64,9 @@ struct BodyConstants {
   T half_thickness;  // the least of its shapes, m; 0: never cast
 };
 
+// Bodies whose radius is more than so many half thicknesses are cast against planes, too.
+inline constexpr double kThinBody = 3;
+
 template <class T>
 struct ShapeConstants {
   T offset[3];    // shape origin from the centre of mass, principal axes, m

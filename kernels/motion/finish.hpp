@@ -260,11 +260,12 @@ void commit_lanes(const Constants& t, const Group& g, Work& w, std::uint32_t com
       if (any(stops)) {
         step = select(stops, step * share, step);
         angle = select(stops, turn * share, angle);
-        // It stands where the cast left it, whatever it would have done by itself.
+        // A stopped body keeps the pose of the cast, not that of free motion.
         free = free & !stops;
         if constexpr (std::is_same_v<S, Tensor>) {
           w.touched[b] |= bits(stops);
           put_velocity<S, kDense>(w, w.displacement, b, {way, angle});
+          if constexpr (kFreeFlight<Flight>) put_velocity<S, kDense>(w, w.velocity, b, v);
         }
       }
     }

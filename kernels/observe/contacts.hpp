@@ -132,14 +132,13 @@ class Features {
   Real x_ = 0, y_ = 0, points_ = 0;
 };
 
-// The point that an earlier pass of the step has put down; nullptr: none has.
-inline kernels::ContactImpulse<Real>* same_point(const Constants& t, const ObserverView& o,
-                                                 int lane, Real count, std::int32_t key,
-                                                 std::int32_t feature) {
-  if (t.passes == 1) return nullptr;
-  const auto put = static_cast<std::int32_t>(count);
+// The point among the first `stored` of a lane, which earlier passes of the step have stored;
+// nullptr: there is none.
+inline kernels::ContactImpulse<Real>* same_point(const ObserverView& o, int lane, Real stored,
+                                                 std::int32_t key, std::int32_t feature) {
+  const auto count = static_cast<std::int32_t>(stored);
   auto* const first = o.contacts + lane * o.room;
-  for (auto* p = first; p != first + (put < o.room ? put : o.room); ++p) {
+  for (auto* p = first; p != first + (count < o.room ? count : o.room); ++p) {
     if (p->key == key && p->feature == feature) return p;
   }
   return nullptr;
@@ -148,8 +147,8 @@ inline kernels::ContactImpulse<Real>* same_point(const Constants& t, const Obser
 // The friction of a manifold acts at its middle; each point reports the share that its normal
 // impulse has. Impulses of later passes are added to the point that the first of them found.
 template <class S, int N>
-void put_contacts(const Constants& t, const ContactBlock<S, N>& s, const Totals<S, N>& total,
-                  const Real* places, std::uint32_t lanes, const ObserverView& o) {
+void put_contacts(const ContactBlock<S, N>& s, const Totals<S, N>& total, const Real* places,
+                  std::uint32_t lanes, const Real* stored, const ObserverView& o) {
   constexpr int kDim = S::kDim;
   const Float zero(Real(0)), one(Real(1));
   const Float per_impulse = one / select(zero < total.sum, total.sum, one);
@@ -168,12 +167,14 @@ void put_contacts(const Constants& t, const ContactBlock<S, N>& s, const Totals<
       const bool close = ((s.close[i] >> l) & 1u) != 0;
       if (!(Real(0) < s.mass[i][l]) || !(close || Real(0) < impulse[i][l])) continue;
       const std::int32_t feature = features.of(i);
-      if (auto* const p = same_point(t, o, l, count[l], s.key[l], feature)) {
+      if (auto* const p = same_point(o, l, stored[l], s.key[l], feature)) {
         p->impulse += impulse[i][l];
         for (int c = 0; c < kDim; ++c) p->friction[c] += friction[i][c][l];
         p->twist += twist[i][l];
         continue;
       }
+      // What found no room is not known to later passes, which would count it again.
+      if (static_cast<Real>(o.room) <= stored[l]) continue;
       const auto at = static_cast<std::int32_t>(count[l]);
       count[l] += Real(1);
       if (at >= o.room) continue;
@@ -227,6 +228,9 @@ void observe_contacts(const Constants& t, const Group& g, kernels::Scratch* scra
   Real* const penetration = rows_for(o, Observer::penetration);
   Real* const touching = rows_for(o, Observer::touching);
   Real* const forces = rows_for(o, Observer::link_forces);
+  alignas(64) Real stored[kLanes];  // by earlier passes of this step
+  Float(Real(0)).store(stored);
+  if (o.contacts && t.passes > 1) Float::load(rows_for(o, Observer::contacts)).store(stored);
   for_each_observed<S>(w, [&](auto& s, int index, int id) {
     constexpr int N = std::remove_reference_t<decltype(s)>::kPoints;
     std::uint32_t lanes = s.mask & live;
@@ -255,7 +259,7 @@ void observe_contacts(const Constants& t, const Group& g, kernels::Scratch* scra
       if (!is_fixed(static_cast<ListId>(id))) sum.add_to_a(t, lanes, forces);
     }
     if (o.contacts) {
-      put_contacts(t, s, total, o.places[id] + index * kPlaces<S, N> * kLanes, lanes, o);
+      put_contacts(s, total, o.places[id] + index * kPlaces<S, N> * kLanes, lanes, stored, o);
     }
   });
 }

@@ -51,9 +51,9 @@ MW_INLINE Pull pull_along(const Constants& t, const Group& g, const Work& w, con
 }
 
 // 1, or 0 in lanes whose rows look no farther than the gap of now. A body fast enough for a cast
-// needs no speculation against a fixed shape, which could stop one that only passes by. Where casts
-// end rows look ahead again, also at points that are not there yet. Half spaces and
-// height fields cannot be passed by.
+// needs no speculation against a fixed shape, which could stop one that only passes by. Within
+// `cast_gap` of a shape, rows are speculative again, including for points that do not touch yet.
+// Half spaces and height fields cannot be passed by.
 template <class S, class A>
 MW_INLINE Float speculation_of(const Constants& t, const Group& g, const Sides<S, A>& sides,
                                kernels::PairKind kind, Float deepest) {

@@ -67,8 +67,8 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         moved_apart<kDense>(w, s, gaps);
         for (int i = 0; i < N; ++i) gaps[i].store(s.gap[i]);
       }
-      // Hard rows leave gaps that are zero but for rounding. Their signs shall decide nothing, so
-      // softness sets in gradually.
+      // Hard rows leave gaps that are zero but for rounding, which decides their sign. So softness
+      // starts gradually.
       const Float soften(soft.impulse_scale / (t.margin * kTouching));
       for (int i = 0; i < N; ++i) {
         const Float gap = gaps[i];
@@ -140,7 +140,7 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
       const Float k = Float::load(s.cross_k[0]), gain = Float::load(s.pair_gain), half(Real(0.5));
       Float total[2] = {wanted(0, speed[0]), wanted(1, speed[1])}, alone[2], both[2];
       for (int i = 0; i < 2; ++i) alone[i] = -(Float::load(s.mass[i]) * (speed[i] + bias[i]));
-      Mask exact = mask_from_bits(kAllLanes);
+      Mask exact = zero < gain;
       for (int i = 0; i < 2; ++i) {
         const Float answer = fnma(Float::load(s.mass[i]), k * alone[1 - i], alone[i]);
         both[i] = fma(gain, answer, impulse[i]);

@@ -43,8 +43,8 @@ struct alignas(64) ContactBlock : BlockHeader {
   ContactSide<S, N, Free> b;
   Real cross_k[kCross][kLanes];  // off-diagonal entries of K, (0,1) (0,2) (0,3) (1,2) ...
   Real mass[N][kLanes];          // effective; 0 for points that are not there
-  Real pair_gain[kLanes];        // of two points: 1 / (1 - K01^2 / (K00 K11)), at most kMostGain
-  Real separation[N][kLanes];    // m, at the start of the step
+  Real pair_gain[kLanes];        // of two points: 1 / (1 - K01^2 / (K00 K11)); 0: too large
+  Real separation[N][kLanes];    // m, at the start of the pass
   Real gap[N][kLanes];           // m, at the start of the substep
   Real impulse[N][kLanes];       // N s, accumulated, >= 0
   Real tangent_mass[kTangentMass][kLanes];  // inverse of the 2x2, or 1x1

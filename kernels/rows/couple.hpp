@@ -23,14 +23,15 @@ MW_INLINE void couple_all(const ContactBlock<S, N>& s, int k, Float d, Float* sp
   couple_following(s, k, d, speed);
 }
 
-// Two points so close together that more would be lost to rounding are not solved exactly.
-inline constexpr Real kMostGain = Real(256);
+// Of two points that are almost one more than this many roundings would be lost.
+inline constexpr Real kMostGain = Real(4096);
 
 template <class S, class A>
 MW_INLINE void put_pair_gain(SidedBlock<S, 2, A>& s) {
   const Float one(Real(1)), k = Float::load(s.cross_k[0]);
   const Float shared = (k * k) * (Float::load(s.mass[0]) * Float::load(s.mass[1]));
-  (one / max(one - shared, Float(Real(1) / kMostGain))).store(s.pair_gain);
+  const Float apart = one - shared, least(Real(1) / kMostGain);
+  select(least < apart, one / max(apart, least), Float(Real(0))).store(s.pair_gain);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -65,14 +65,6 @@ MW_INLINE Vec3 in_shape(const Mat3& r, Vec3 origin, Vec3 p) {
   return {dot(d, r.x), dot(d, r.y), dot(d, r.z)};
 }
 
-MW_INLINE Float distance_from(const BoxPose& b, Vec3 p) {
-  const Float zero(Real(0));
-  const Vec3 local = in_shape(b.r, b.p, p);
-  const Vec3 out{max(abs(local.x) - b.half.x, zero), max(abs(local.y) - b.half.y, zero),
-                 max(abs(local.z) - b.half.z, zero)};
-  return sqrt(dot(out, out));
-}
-
 // ---- as a convex shape -------------------------------------------------------------------------
 
 // Of whatever is placed as a box is.

@@ -113,17 +113,6 @@ MW_INLINE RayHit<Vec> cast(const RayOf<Vec>& ray, const CapsulePose<Vec>& c) {
                       nearer(ends, cast_side(ray, to, c)));
 }
 
-// From a capsule, given the point from its origin.
-template <class Vec>
-MW_INLINE Float distance_to_capsule(Vec d, Vec axis, Float radius, Float half) {
-  const Vec out = fnma(axis, clamp(dot(axis, d), -half, half), d);
-  return sqrt(dot(out, out)) - radius;
-}
-template <class Vec>
-MW_INLINE Float distance_from(const CapsulePose<Vec>& c, Vec p) {
-  return distance_to_capsule(p - c.p, c.axis, c.radius, c.half);
-}
-
 // The thinnest polygon, of two corners and two edges that look to either side, with a radius around
 // it.
 MW_INLINE Corners<2> load_corners(const CapsulePose<Vec2>& c) {

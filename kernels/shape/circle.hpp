@@ -27,9 +27,4 @@ MW_INLINE RayHit<Vec2> cast(const RayOf<Vec2>& ray, const CirclePose& c) {
   return cast_round(ray, c.p - ray.from, c.radius);
 }
 
-MW_INLINE Float distance_from(const CirclePose& c, Vec2 p) {
-  const Vec2 d = p - c.p;
-  return sqrt(dot(d, d)) - c.radius;
-}
-
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -62,13 +62,6 @@ MW_INLINE RayHit<Vec3> cast(const RayOf<Vec3>& ray, const CylinderPose& c) {
   clip.leave = min(out, clip.leave);
   return clipped(ray, clip, normal);
 }
-MW_INLINE Float distance_from(const CylinderPose& c, Vec3 p) {
-  const Float zero(Real(0));
-  const Vec3 local = in_shape(c.r, c.p, p);
-  const Float beyond = max(abs(local.z) - c.half, zero);
-  const Float rim = max(sqrt(fma(local.x, local.x, local.y * local.y)) - c.radius, zero);
-  return sqrt(fma(rim, rim, beyond * beyond));
-}
 
 // ---- as a convex shape -------------------------------------------------------------------------
 

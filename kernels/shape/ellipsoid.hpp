@@ -69,16 +69,6 @@ MW_INLINE RayHit<Vec3> cast(const RayOf<Vec3>& ray, const EllipsoidPose& e) {
   return begin_inside(ray, dot(from, from) <= one, h);
 }
 
-// From the tangent plane across the gradient at the point: never more than the distance, and exact
-// where the point comes near.
-MW_INLINE Float distance_from(const EllipsoidPose& e, Vec3 p) {
-  const Float one(Real(1));
-  const Vec3 inverse{one / e.radii.x, one / e.radii.y, one / e.radii.z};
-  const Vec3 unit = times(in_shape(e.r, e.p, p), inverse), gradient = times(unit, inverse);
-  const Float length2 = dot(unit, unit), length = sqrt(length2);
-  return (length2 - length) / sqrt(max(dot(gradient, gradient), Real(1e-30)));
-}
-
 // ---- as a convex shape -------------------------------------------------------------------------
 
 MW_INLINE Extent EllipsoidPose::extent(const ConvexShape& s, Vec3 n) {

@@ -96,22 +96,6 @@ MW_INLINE RayHit<Vec3> cast(const RayOf<Vec3>& ray, const HullPose& h) {
   return clipped(ray, clip, normal);
 }
 
-// As of polygons, the largest distance to a face's plane.
-__attribute__((noinline)) inline Float distance_from(const HullPose& h, Vec3 p) {
-  const Vec3 local = in_shape(h.r, h.p, p), inverse = inverse_of(h.half);
-  Float far = Real(-1e30);
-  for (int i = 0; i < h.faces.most; ++i) {
-    alignas(64) std::int32_t o[kLanes];
-    corner_offsets(h.faces.first, h.faces.count, i, 2, o);
-    Vec3 m;
-    Float c;
-    load_rows4(h.faces.corners, o, m.x, m.y, m.z, c);
-    const Vec3 n{m.x * inverse.x, m.y * inverse.y, m.z * inverse.z};
-    far = max(far, (dot(n, local) - c) / sqrt(max(dot(n, n), Real(1e-30))));
-  }
-  return far;
-}
-
 // ---- as a convex shape -------------------------------------------------------------------------
 
 MW_INLINE Vec3 load_hull_corner(const ConvexShape& s, const std::int32_t* o) {

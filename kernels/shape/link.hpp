@@ -34,12 +34,4 @@ MW_INLINE RayHit<Vec2> cast(const RayOf<Vec2>& ray, const LinkPose& l) {
   return h;
 }
 
-// 0 for what comes from behind.
-MW_INLINE Float distance_from(const LinkPose& l, Vec2 p) {
-  const Float zero(Real(0));
-  const Vec2 d = p - l.p;
-  const Float distance = distance_to_capsule(d, l.axis, zero, l.half);
-  return select(cross(l.axis, d) < zero, zero, distance);
-}
-
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

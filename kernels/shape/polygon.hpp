@@ -123,22 +123,4 @@ MW_INLINE RayHit<Vec2> cast(const RayOf<Vec2>& ray, const RoundedPose& p) {
   return begin_inside(ray, (height <= zero) | (nearest2 <= p.radius * p.radius), best);
 }
 
-// The largest distance to an edge's line is a lower bound, which is all that conservative
-// advancement needs; it is exact where it matters, in front of a face.
-MW_INLINE Float distance_from(const PolygonPose& p, Vec2 point) {
-  const Vec2 d = point - p.p;
-  Float far = Real(-1e30);
-  for (int i = 0; i < kernels::kMaxVertices; i += 2) {
-    Vec2 vertex[2], normal[2];
-    load_vertex_pair(p, i, vertex[0], vertex[1]);
-    load_vertex_pair(p, i + kernels::kMaxVertices, normal[0], normal[1]);
-    far = max(far, dot(normal[0], d - vertex[0]));
-    far = max(far, dot(normal[1], d - vertex[1]));
-  }
-  return far;
-}
-MW_INLINE Float distance_from(const RoundedPose& p, Vec2 point) {
-  return distance_from(static_cast<const PolygonPose&>(p), point) - p.radius;
-}
-
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -46,7 +46,6 @@ MW_INLINE Float distance2_from(const RectanglePose& r, Vec2 p) {
   const Vec2 out{max(abs(local.x) - r.half.x, zero), max(abs(local.y) - r.half.y, zero)};
   return dot(out, out);
 }
-MW_INLINE Float distance_from(const RectanglePose& r, Vec2 p) { return sqrt(distance2_from(r, p)); }
 
 // How far two rectangles are apart along the axes of either, < 0: by how much they overlap.
 struct RectangleAxes {

@@ -37,11 +37,6 @@ MW_INLINE RayHit<Vec3> cast(const RayOf<Vec3>& ray, const SpherePose& s) {
   return cast_round(ray, s.p - ray.from, s.radius);
 }
 
-MW_INLINE Float distance_from(const SpherePose& s, Vec3 p) {
-  const Vec3 d = p - s.p;
-  return sqrt(dot(d, d)) - s.radius;
-}
-
 MW_INLINE void SpherePose::load(const Real*, const Real* base, const std::int32_t* o,
                                 ConvexShape& s) {
   SpherePose pose;

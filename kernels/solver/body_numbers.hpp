@@ -16,7 +16,7 @@ MW_INLINE int body_b_of(const Work& w, const ContactBlock<S, N>& s, int lane) {
   return (s.offset_b[lane] - w.velocity_base[lane]) / S::kRow;
 }
 
-// Speeds of impacts; the last round in which a body has changed.
+// Speeds of impacts; the first round in which blocks of the body need not play again.
 enum class BodyNumber { speed, round };
 
 // [body][BodyNumber][lane], at least 0; in the memory of impulse_part, which is unused after the
@@ -90,8 +90,8 @@ MW_INLINE Float largest_number(const Constants& t, const Work& w, const SidedBlo
 }
 
 // Rounds over blocks that share bodies, from 1 on: a block plays only in the lanes in which one of
-// its bodies has changed since it did. So a round does nothing where nothing happens, whatever
-// happens elsewhere in a world.
+// its bodies has changed in this round or the one before. So a round does nothing where nothing
+// happens, whatever happens elsewhere in a world.
 template <bool kDense, class S, int N, class A>
 MW_INLINE unsigned lanes_to_play(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
                                  unsigned lanes, int round) {

@@ -44,7 +44,7 @@ class ContactOptions:
     friction_in_bias_pass: bool = True  # tgs_soft only
     cast_against_fixed: bool = True  # stop fast bodies at thin fixed shapes
     cast_between_moving: bool = False  # also at moving shapes
-    # contacts are found as often in a step; None: once, or more often for thin bodies
+    # number of passes of a step that find contacts; None: 1, or more for thin bodies
     collision_passes: Optional[int] = None
 
 

@@ -79,8 +79,8 @@ ObserverResultsOf<Real>::ObserverResultsOf(const AllWorlds& worlds, const Observ
         kind.room +=
             w.tables().capacity[l] * (is_multi(static_cast<kernels::ListId>(l)) ? several : 1);
       }
-      // Points of a later pass may be others.
-      if (observers_.contacts_per_world == 0 && w.tables().passes > 1) kind.room *= 2;
+      // Points of later passes may be others.
+      if (observers_.contacts_per_world == 0) kind.room *= std::min(w.tables().passes, 4);
       kind.contacts.resize(n * at(kind.room));
     }
     kind.frames_vary = std::any_of(plan.bodies.begin(), plan.bodies.end(),
@@ -169,8 +169,8 @@ typename ObserverResultsOf<Real>::Block ObserverResultsOf<Real>::make_block(
     }
   }
   if (view.of_contacts) {
-    block.none_asleep = AlignedBuffer<std::uint32_t>(bodies);
-    view.none_asleep = block.none_asleep.data();
+    block.asleep = AlignedBuffer<std::uint32_t>(2 * bodies);
+    view.none_asleep = block.asleep.data(), view.asleep_before = view.none_asleep + bodies;
   }
   for (int i = 0; i < kObserverCount; ++i) {
     if (!has(Observer(i))) continue;
@@ -229,7 +229,7 @@ std::size_t ObserverResultsOf<Real>::thread_bytes() const {
   std::size_t bytes = 0;
   for (const auto& blocks : blocks_) {
     for (const Block& b : blocks) {
-      bytes += bytes_of(b.none_asleep, b.contacts, b.pose_memory, b.saved);
+      bytes += bytes_of(b.asleep, b.contacts, b.pose_memory, b.saved);
       for (const auto& reals : b.reals) bytes += bytes_of(reals);
     }
   }

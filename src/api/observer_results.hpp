@@ -95,7 +95,7 @@ class ObserverResultsOf final : public ObserverResults {
   };
   struct Block {  // of a thread and kind, in lanes
     std::vector<AlignedBuffer<Real>> reals;
-    AlignedBuffer<std::uint32_t> none_asleep;
+    AlignedBuffer<std::uint32_t> asleep;
     AlignedBuffer<kernels::ContactImpulse<Real>> contacts;
     kernels::ObserverView<Real> view{};
     std::unique_ptr<kernels::SceneConstants<Real>>

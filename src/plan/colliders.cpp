@@ -202,12 +202,13 @@ std::vector<PlanFixed> parts_of(const Body& body, const Shape& shape, const Plan
   return {fixed_shape(body, shape, plan)};
 }
 
-// Bodies that rotate through a plane before contacts, which look ahead along straight lines, see
-// it.
+// Whether a body can rotate through a plane before contacts, which look ahead along straight lines,
+// see it. Casts decide it for each world.
 bool has_thin_bodies(const PlanData& plan) {
-  constexpr double kThin = 3;
-  return std::any_of(plan.bodies.begin(), plan.bodies.end(), [](const PlanBody& b) {
-    return b.inv_mass > 0 && b.radius > kThin * b.half_thickness;
+  constexpr double kThin = 0.999 * kernels::kThinBody;  // whatever rounds
+  return std::any_of(plan.bodies.begin(), plan.bodies.end(), [&](const PlanBody& b) {
+    const bool varies = plan.varies.shapes || b.reshaped || b.shifted;
+    return b.inv_mass > 0 && (varies || b.radius > kThin * b.half_thickness);
   });
 }
 
@@ -241,8 +242,11 @@ void collect_colliders(PlanData& plan) {
       // The centre of a symmetric compound comes out of sums: what is only rounding is zero.
       if (c.offset.norm() <= 1e-14 * c.radius) c.offset.setZero();
       owner.radius = std::max(owner.radius, c.offset.norm() + c.radius);
-      owner.half_thickness =
-          k == 0 ? half_thickness : std::min(owner.half_thickness, half_thickness);
+      if (body.shapes[k].filter.mask != 0) {
+        const bool first = owner.half_thickness == 0;
+        owner.half_thickness =
+            first ? half_thickness : std::min(owner.half_thickness, half_thickness);
+      }
       plan.colliders.push_back(std::move(c));
     }
   }

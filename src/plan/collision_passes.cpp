@@ -56,6 +56,13 @@ bool has_sheets(const Scene& scene) {
   });
 }
 
+bool meets_others(const Scene& scene, BodyId body) {
+  const Body& own = scene.bodies[static_cast<std::size_t>(body.index())];
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& other) {
+    return &other != &own && filters_let_touch(own, other);
+  });
+}
+
 // visit(body, fall in a step over the half thickness c, a / c, n^2) of each shape.
 template <class Visit>
 void for_each_need(const Scene& scene, Visit visit) {
@@ -87,7 +94,7 @@ PassChoice choose_passes(const std::vector<Scene>& extremes) {
   double most = 1;
   for (const Scene& scene : extremes) {
     for_each_need(scene, [&](BodyId body, double fall, double flatness, double square) {
-      if (square <= most * most) return;
+      if (square <= most * most || !meets_others(scene, body)) return;
       most = std::sqrt(square);
       out.why = body_text(scene, body) + " falls by " + short_text(fall) +
                 " of its half thickness in a step and is " + short_text(flatness) +

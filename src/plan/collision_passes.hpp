@@ -15,7 +15,7 @@ struct PassChoice {
   std::string why;
 };
 
-// Of all worlds: `extremes` as for choose_substeps().
+// Chooses for all worlds of a plan: `extremes` as for choose_substeps().
 PassChoice choose_passes(const std::vector<Scene>& extremes);
 
 }  // namespace manyworlds

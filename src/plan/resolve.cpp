@@ -32,17 +32,24 @@ void resolve_options(PlanData& plan) {
       plan.choices.back().name = to_string(*o.joint.method);
     }
   }
+  const SubstepChoice substeps = choose_substeps(extremes(plan), *o.length_unit);
   const PassChoice passes = choose_passes(extremes(plan));
   choose("contact.collision_passes", o.contact.collision_passes, passes.passes, passes.why);
   const int n = *o.contact.collision_passes;
-  const auto whole = [n](int substeps) { return (substeps + n - 1) / n * n; };
-  const SubstepChoice substeps = choose_substeps(extremes(plan), *o.length_unit);
+  const auto whole = [n](int number) {
+    const int up = (number + n - 1) / n * n;
+    return up <= kMostSubsteps ? up : kMostSubsteps / n * n;
+  };
   if (o.substeps && whole(*o.substeps) != *o.substeps) {
-    const std::string why = std::to_string(*o.substeps) + " rounded up to a multiple of passes";
+    const std::string why =
+        std::to_string(*o.substeps) + " rounded to a multiple of " + std::to_string(n) + " passes";
     o.substeps.reset();
     choose("substeps", o.substeps, whole(*plan.described.options.substeps), why);
   }
-  choose("substeps", o.substeps, whole(substeps.substeps), substeps.why);
+  const bool as_is = whole(substeps.substeps) == substeps.substeps;
+  choose(
+      "substeps", o.substeps, whole(substeps.substeps),
+      substeps.why + (as_is ? "" : "; rounded to a multiple of " + std::to_string(n) + " passes"));
   const int stiff = whole(substeps.stiff);
   choose("contact.frequency", o.contact.frequency, kContactShare * stiff / o.dt,
          "a quarter of the rate of " + std::to_string(stiff) + " substeps per step, Hz");

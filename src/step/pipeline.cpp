@@ -165,12 +165,12 @@ void solver_pass(const Run<Real>& run, const kernels::ObserverView<Real>* wanted
     if (s + 1 < t.substeps) run(calls.next);
   }
   run(calls.end);
-  if (last) {
-    run(calls.settle);
-  } else if (contacts) {
+  if (contacts && t.passes > 1) {
     observer.awake[static_cast<int>(t.inertia_kind)](t, run.group, run.scratch, *contacts);
+    if (t.has_sleep) std::copy_n(run.group.asleep, t.bodies, contacts->asleep_before);
     run.lap(StepStage::observe);
   }
+  if (last) run(calls.settle);
 }
 
 // Bodies in joint coordinates: a step is as many substeps, each of which finds its own contacts.
@@ -216,7 +216,7 @@ void whole_steps(const Run<Real>& run, Move move, int steps) {
   const auto& t = run.step.tables;
   const Audit<Real> audit(run);
   const auto take = [&](int n) {
-    move(t, run.group, run.scratch, n * t.passes);
+    for (int pass = 0; pass < t.passes; ++pass) move(t, run.group, run.scratch, n);
     run.lap(t.flight.on ? StepStage::flight : StepStage::free_motion);
   };
   while (steps > 0) {
@@ -247,14 +247,17 @@ void observe_contacts(const GroupStep<Real>& p, const kernels::GroupView<Real>& 
   const auto& wanted = *p.wanted;
   const auto& observer = *p.kernels.observer;
   const int kind = static_cast<int>(t.inertia_kind);
-  if (taken) observer.awake[kind](t, group, scratch, wanted);
+  const bool several = taken && t.passes > 1;  // passes, which have been observed one by one
+  if (taken && !several) observer.awake[kind](t, group, scratch, wanted);
   if (!t.has_sleep || *group.idle == 0) return;
   kernels::GroupView<Real> all_awake = group;
   all_awake.asleep = wanted.none_asleep;
   observer.watch(scratch, wanted.places);
   find_rows(Run<Real>{p, all_awake, scratch, nullptr}, true);
   observer.watch(scratch, nullptr);
-  observer.asleep[kind](t, group, scratch, wanted);
+  kernels::GroupView<Real> before = group;
+  if (several) before.asleep = wanted.asleep_before;
+  observer.asleep[kind](t, before, scratch, wanted);
 }
 
 // Calls visit(function, scratch) of every observer that is asked for and has one in this table.
