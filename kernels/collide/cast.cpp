@@ -174,7 +174,7 @@ Float free_share(const Sweep& s, const ConvexShape& wall, const ConvexShape& sha
     moving = moving & !stopped;
     if (!any(moving)) break;
     const Float straight = select(zero < closing, room / max(closing, tiny), one);
-    const Float certain = at.gap / max(closing + turning, tiny);
+    const Float certain = max(room, zero) / max(closing + turning, tiny);
     const Float ahead =
         low + max(min(straight, stride), select(zero < closing + turning, certain, one));
     const Float between =

@@ -68,7 +68,7 @@ void put_masses(const Constants& t, SidedBlock<S, N, A>& s, const TreeSide<S>& o
     put(select(zero < mass, inverse_or_zero(max(coupling(normal, i, i), least)), zero), s.mass[i]);
     for (int j = i + 1; j < N; ++j) put(coupling(normal, i, j), s.cross_k[at++]);
   }
-  if constexpr (N == 2) put_pair_gain(s);
+  if constexpr (N == 2) put_pair(s);
   if (!t.has_friction) return;
   const Vec first = load_as<Vec>(s.tangent[0]);
   const auto tangent = [&](const ContactSide<S, N, Free>& side, int i) {

@@ -87,7 +87,7 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         most[i] = select(touch < gap, impulse[i], kUnlimited);
       }
     }
-    // Blocks in the plane solve their two points in both orders (below).
+    // In the plane both points are solved at once below.
     if constexpr (N > 1 && S::kDim == 3) {
       Float comes = zero, goes = zero;
       for (int i = 0; i < N; ++i) {
@@ -119,42 +119,38 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         keep_other_lanes_of_sides(blow, before, v);
       }
     }
-    // The impulse that point i wants at a speed along the normal.
+    // The impulse that point i wants at a speed along the normal; and within its bounds.
     const auto wanted = [&](int i, Float along) {
       const Float mass = Float::load(s.mass[i]);
       if constexpr (kPass == Pass::bias) {
         const Float rigid = fnma(mass, along, impulse[i]), cap = mass * push_out[i];
         const Float under_load = fma(cap, kPushUnderLoad, keep[i] * impulse[i]);
         const Float push = min(mass * -bias[i], max(cap, under_load));
-        if constexpr (A::kMoves) return max(fnma(keep[i], rigid, rigid + push), zero);
+        if constexpr (A::kMoves) return fnma(keep[i], rigid, rigid + push);
         const Float lost = keep[i] * rigid, pressed = mass * Float::load(s.press);
         const Float struck = fnma(keep[i], pressed + pressed, lost);
-        return max(rigid + (push - min(lost, max(mass * Float(t.fixed_leak), struck))), zero);
+        return rigid + (push - min(lost, max(mass * Float(t.fixed_leak), struck)));
       } else {
-        return min(max(fnma(mass, along + bias[i], impulse[i]), zero), most[i]);
+        return fnma(mass, along + bias[i], impulse[i]);
       }
     };
+    const auto bounded = [&](int i, Float x) {
+      if constexpr (kPass == Pass::bias) return max(x, zero);
+      return min(max(x, zero), most[i]);
+    };
     if constexpr (N == 2) {
-      // The mean of both orders, so that what is symmetric stays so; or the solution, where both
-      // points are hard and pressed.
-      const Float k = Float::load(s.cross_k[0]), gain = Float::load(s.pair_gain), half(Real(0.5));
-      Float total[2] = {wanted(0, speed[0]), wanted(1, speed[1])}, alone[2], both[2];
-      for (int i = 0; i < 2; ++i) alone[i] = -(Float::load(s.mass[i]) * (speed[i] + bias[i]));
-      Mask exact = zero < gain;
+      // Each point solves its row as if the other had its share of the solution of both rows
+      // without bounds. With bounds this is the solution, too, and what is symmetric stays so.
+      const Float gain = Float::load(s.pair.gain), k = Float::load(s.pair.coupling);
+      Float alone[2], total[2];
+      for (int i = 0; i < 2; ++i) alone[i] = wanted(i, speed[i]) - impulse[i];
       for (int i = 0; i < 2; ++i) {
-        const Float answer = fnma(Float::load(s.mass[i]), k * alone[1 - i], alone[i]);
-        both[i] = fma(gain, answer, impulse[i]);
-        exact = exact & (zero <= both[i]);
-        if constexpr (kPass == Pass::bias) {
-          exact = exact & (keep[i] <= zero);
-        } else {
-          exact = exact & (both[i] <= most[i]);
-        }
+        const int other = 1 - i;
+        const Float answer = fnma(Float::load(s.mass[other]), k * alone[i], alone[other]);
+        const Float both = bounded(other, fma(gain, answer, impulse[other]));
+        const Float along = fma(Float::load(s.cross_k[0]), both - impulse[other], speed[i]);
+        total[i] = bounded(i, wanted(i, along));
       }
-      const Float after_last = wanted(0, fma(k, total[1] - impulse[1], speed[0]));
-      const Float after_first = wanted(1, fma(k, total[0] - impulse[0], speed[1]));
-      total[0] = select(exact, both[0], (total[0] + after_last) * half);
-      total[1] = select(exact, both[1], (total[1] + after_first) * half);
       for (int i = 0; i < N; ++i) {
         d[i] = total[i] - impulse[i];
         impulse[i] = total[i];
@@ -162,7 +158,7 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
       }
     } else {
       for (int i = 0; i < N; ++i) {
-        const Float total = wanted(i, speed[i]);
+        const Float total = bounded(i, wanted(i, speed[i]));
         d[i] = total - impulse[i];
         impulse[i] = total;
         total.store(s.impulse[i]);

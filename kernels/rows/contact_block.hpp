@@ -24,6 +24,14 @@ struct alignas(64) ContactSide<S, N, Free> : SideRows<S, Free> {
   Real friction_arm[S::kAng][kLanes];
 };
 
+// Of blocks of two points, to solve both rows at once: 1 / (1 - K01^2 / (K00 K11)) and K01.
+template <int N>
+struct PairRows {};
+template <>
+struct PairRows<2> {
+  Real gain[kLanes], coupling[kLanes];
+};
+
 struct alignas(64) BlockHeader : RowBodies {
   std::int32_t key[kLanes];
   std::uint32_t unsure;  // lanes in which nothing is expected to touch in this step
@@ -43,10 +51,10 @@ struct alignas(64) ContactBlock : BlockHeader {
   ContactSide<S, N, Free> b;
   Real cross_k[kCross][kLanes];  // off-diagonal entries of K, (0,1) (0,2) (0,3) (1,2) ...
   Real mass[N][kLanes];          // effective; 0 for points that are not there
-  Real pair_gain[kLanes];        // of two points: 1 / (1 - K01^2 / (K00 K11)); 0: too large
-  Real separation[N][kLanes];    // m, at the start of the pass
-  Real gap[N][kLanes];           // m, at the start of the substep
-  Real impulse[N][kLanes];       // N s, accumulated, >= 0
+  [[no_unique_address]] PairRows<N> pair;
+  Real separation[N][kLanes];               // m, at the start of the pass
+  Real gap[N][kLanes];                      // m, at the start of the substep
+  Real impulse[N][kLanes];                  // N s, accumulated, >= 0
   Real tangent_mass[kTangentMass][kLanes];  // inverse of the 2x2, or 1x1
   Real slip_mass[kLanes];                   // in space, of what slips
   Real tangent_impulse[S::kTangents][kLanes];

@@ -23,15 +23,17 @@ MW_INLINE void couple_all(const ContactBlock<S, N>& s, int k, Float d, Float* sp
   couple_following(s, k, d, speed);
 }
 
-// Of two points that are almost one more than this many roundings would be lost.
-inline constexpr Real kMostGain = Real(4096);
+// By so much stiffer are both of two points that are almost one: what an impulse does to the
+// difference of their speeds is lost to rounding.
+inline constexpr Real kStiffer = sizeof(Real) == 4 ? Real(1.0 / 4096) : Real(1e-7);
 
 template <class S, class A>
-MW_INLINE void put_pair_gain(SidedBlock<S, 2, A>& s) {
-  const Float one(Real(1)), k = Float::load(s.cross_k[0]);
+MW_INLINE void put_pair(SidedBlock<S, 2, A>& s) {
+  const Float one(Real(1)), k = Float::load(s.cross_k[0]), stiffer(kStiffer);
   const Float shared = (k * k) * (Float::load(s.mass[0]) * Float::load(s.mass[1]));
-  const Float apart = one - shared, least(Real(1) / kMostGain);
-  select(least < apart, one / max(apart, least), Float(Real(0))).store(s.pair_gain);
+  const Float share = one / (one + select(one - shared < stiffer + stiffer, stiffer, Real(0)));
+  (share / fnma(shared, share * share, one)).store(s.pair.gain);
+  (k * share).store(s.pair.coupling);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

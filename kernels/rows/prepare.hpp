@@ -83,7 +83,7 @@ MW_INLINE void put_couplings(const Sides<S, A>& sides, const Approach<S, N, A>& 
       approach.coupling(inv_mass, i, j).store(s.cross_k[at++]);
     }
   }
-  if constexpr (N == 2) put_pair_gain(s);
+  if constexpr (N == 2) put_pair(s);
 }
 
 template <class S, int N, class A>
