@@ -191,12 +191,14 @@ TEST_CASE("every solver holds a stack and settles a pile", "[solver]") {
         choose(pile, solver);
         Batch heap(compile(pile), options_of(table, 16));
         std::vector<double> energy(16, std::numeric_limits<double>::infinity());
+        // Penalty solves friction once a substep, which can do work in wedged piles (docs/design.md).
+        const double most = solver == Solver::penalty ? 1e-3 : 1e-4;
         for (int i = 0; i < 5; ++i) {  // balls roll away without end, faster nothing gets
           heap.step(120);
           for (int w = 0; w < 16; ++w) {
             const double now = energy_of(heap, w);
             double& last = energy[static_cast<std::size_t>(w)];
-            CHECK(now < last + 1e-4 * std::abs(now));
+            CHECK(now < last + most * std::abs(now));
             last = now;
             CHECK(heap.status(w) == Status::ok);
             CHECK(max_penetration(heap, w) < 0.03);
