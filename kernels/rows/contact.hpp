@@ -2,7 +2,7 @@
 //
 // Soft contact with substeps ("TGS soft", Catto). Normal row of a point with separation s:
 //   lambda' = max(0, rigid - m bias - lost), rigid = lambda - m v, lost = i rigid
-//   s > 0: bias = s / h, i = 0 (speculative) but over the last of the gap (kTouching)
+//   s > 0: bias = s / h, i = 0 (speculative)
 //   s <= 0: bias = a r s, soft gains a, r, i with a = 1 - i (tables.hpp, Softness), but
 //           m bias >= -max(m c, i lambda + m c / 8)
 // with the push-out speed c, against fixed shapes up to twice as much where what they overlap is
@@ -23,7 +23,6 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr Real kUnlimited = Real(1e30);       // N s
-inline constexpr Real kTouching = Real(1.0 / 1024);  // of the margin
 inline constexpr Real kPushUnderLoad = Real(0.125);  // of c
 
 enum class Pass { warm_start, bias, relax };
@@ -67,20 +66,18 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         moved_apart<kDense>(w, s, gaps);
         for (int i = 0; i < N; ++i) gaps[i].store(s.gap[i]);
       }
-      // Hard rows leave gaps that are zero but for rounding, which decides their sign. So softness
-      // starts gradually.
-      const Float soften(soft.impulse_scale / (t.margin * kTouching));
       for (int i = 0; i < N; ++i) {
         const Float gap = gaps[i];
-        bias[i] = gap * select(zero < gap, inv_h, rate);
-        keep[i] = clamp(fnma(gap, soften, soft.impulse_scale), zero, soft.impulse_scale);
+        const Mask apart = zero < gap;
+        bias[i] = gap * select(apart, inv_h, rate);
+        keep[i] = select(apart, zero, soft.impulse_scale);
         push_out[i] = A::kMoves ? push : clamp(gap * Float(-t.push_out_rate), push, push + push);
       }
     } else {
       // The substep has moved the bodies; now remove the speed that the push-out has added. A point
       // that is still apart gets no more impulse: whether it will touch is the next substep's, or
       // the next step's, business.
-      const Float h(t.h), touch(t.margin * kTouching);
+      const Float h(t.h), touch(t.margin * Real(1.0 / 1024));
       for (int i = 0; i < N; ++i) {
         const Float gap = fma(h, speed[i], Float::load(s.gap[i]));
         bias[i] = max(gap, zero) * inv_h;
