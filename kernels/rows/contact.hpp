@@ -23,6 +23,7 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 inline constexpr Real kUnlimited = Real(1e30);       // N s
+inline constexpr Real kTouching = Real(1.0 / 1024);  // of the margin: a gap that counts as none
 inline constexpr Real kPushUnderLoad = Real(0.125);  // of c
 
 enum class Pass { warm_start, bias, relax };
@@ -66,18 +67,26 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         moved_apart<kDense>(w, s, gaps);
         for (int i = 0; i < N; ++i) gaps[i].store(s.gap[i]);
       }
+      Float apart_by[N];
+      for (int i = 0; i < N; ++i) apart_by[i] = gaps[i];
+      if constexpr (N == 2) {
+        // Hard rows leave gaps that are zero but for rounding: points with the same gap are both
+        // hard or both soft.
+        const Mask level = abs(gaps[0] - gaps[1]) < Float(t.margin * kTouching);
+        const Float mean = (gaps[0] + gaps[1]) * Real(0.5);
+        for (int i = 0; i < N; ++i) apart_by[i] = select(level, mean, gaps[i]);
+      }
       for (int i = 0; i < N; ++i) {
         const Float gap = gaps[i];
-        const Mask apart = zero < gap;
-        bias[i] = gap * select(apart, inv_h, rate);
-        keep[i] = select(apart, zero, soft.impulse_scale);
+        bias[i] = gap * select(zero < gap, inv_h, rate);
+        keep[i] = select(zero < apart_by[i], zero, soft.impulse_scale);
         push_out[i] = A::kMoves ? push : clamp(gap * Float(-t.push_out_rate), push, push + push);
       }
     } else {
       // The substep has moved the bodies; now remove the speed that the push-out has added. A point
       // that is still apart gets no more impulse: whether it will touch is the next substep's, or
       // the next step's, business.
-      const Float h(t.h), touch(t.margin * Real(1.0 / 1024));
+      const Float h(t.h), touch(t.margin * kTouching);
       for (int i = 0; i < N; ++i) {
         const Float gap = fma(h, speed[i], Float::load(s.gap[i]));
         bias[i] = max(gap, zero) * inv_h;
