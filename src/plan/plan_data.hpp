@@ -32,7 +32,7 @@ struct PlanBody {
   bool reshaped = false;              // its shapes, or how mass is spread over them, may vary
   bool shifted = false;               // its centre of mass or where its shapes are may vary
   double radius = 0;                  // bounding sphere about the centre of mass
-  double half_thickness = 0;          // least half thickness of its shapes
+  double half_thickness = 0;          // least of its shapes, m; 0: not cast
 };
 
 // Its frame: from the centre of mass, principal axes.
