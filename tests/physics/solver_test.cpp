@@ -191,7 +191,8 @@ TEST_CASE("every solver holds a stack and settles a pile", "[solver]") {
         choose(pile, solver);
         Batch heap(compile(pile), options_of(table, 16));
         std::vector<double> energy(16, std::numeric_limits<double>::infinity());
-        // Penalty solves friction once a substep, which can do work in wedged piles (docs/design.md).
+        // Penalty solves friction once a substep, which can do work in wedged piles
+        // (docs/design.md).
         const double most = solver == Solver::penalty ? 1e-3 : 1e-4;
         for (int i = 0; i < 5; ++i) {  // balls roll away without end, faster nothing gets
           heap.step(120);
