@@ -67,8 +67,13 @@ MW_INLINE void solve_friction(const SidedBlock<S, N, A>& s, const FrictionBudget
       // it opposes the slip that it leaves; the passes of a step converge to that.
       const Float mass = Float::load(s.slip_mass), least(Real(1e-30));
       const Float c1 = fnma(mass, v1, budget.before[0]), c2 = fnma(mass, v2, budget.before[1]);
-      const Float scale = budget.bound / max(sqrt(fma(c1, c1, c2 * c2)), least);
-      const Mask slips = (budget.bound * budget.bound < square) & !none;
+      // Squares of what is small would be lost, in small worlds only.
+      const Float unit =
+          Float(Real(1)) / max(max(abs(c1), abs(c2)), max(max(abs(p1), abs(p2)), least));
+      const Float b = budget.bound * unit, u1 = c1 * unit, u2 = c2 * unit;
+      const Float w1 = p1 * unit, w2 = p2 * unit;
+      const Float scale = b / max(sqrt(fma(u1, u1, u2 * u2)), least);
+      const Mask slips = (b * b < fma(w1, w1, w2 * w2)) & !none;
       after[0] = select(slips, c1 * scale, p1);
       after[1] = select(slips, c2 * scale, p2);
     }
