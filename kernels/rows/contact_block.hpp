@@ -88,6 +88,7 @@ struct alignas(64) Bounce {
   Real reached[kLanes];  // m/s, of the impact that it takes part in
   // Of one sweep of restitution (solver/impacts.hpp).
   Real target[N][kLanes], played[N][kLanes];  // m/s to leave with; N s so far
+  Real least[N][kLanes];                      // N s, of the friction that follows them
   Real approach[kLanes];                      // m/s, of the point that approaches fastest
   std::uint32_t participants, playing;        // lanes that take part in an impact; in a sweep
 };

@@ -34,7 +34,7 @@ MW_INLINE void hold_speeds(const Constants& t, const Work& w, const SidedBlock<S
     const Mask there = (part & meets(s, bounce, i)) | (!part & (pressed | (gaps[i] < touch)));
     const Float kept = select(part & pressed, speed[i], min(speed[i], zero));
     select(there, kept, never).store(bounce.target[i]);
-    select(part, zero, total).store(bounce.played[i]);
+    select(part, zero, total).store(bounce.least[i]);
   }
   for (int c = 0; c < S::kTangents; ++c) {
     select(part, zero, Float::load(bounce.total_tangent[c])).store(bounce.total_tangent[c]);
@@ -46,8 +46,8 @@ MW_INLINE void hold_speeds(const Constants& t, const Work& w, const SidedBlock<S
 // One round over a block, in the lanes in which its bodies have changed. Returns those in which it
 // has changed them.
 template <bool kDense, class S, int N, class A>
-MW_INLINE unsigned rub_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s,
-                             Bounce<S, N>& bounce, unsigned open, int round) {
+MW_INLINE unsigned solve_friction_of_impact(const Constants& t, Work& w, SidedBlock<S, N, A>& s,
+                                            Bounce<S, N>& bounce, unsigned open, int round) {
   open = lanes_to_play<kDense>(t, w, s, open & s.mask, round);
   if (open == 0) return 0;
   const Float zero(Real(0)), tolerance(kFrictionTolerance);
@@ -76,16 +76,16 @@ MW_INLINE unsigned rub_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s
   const Float size = sum_of<N>(total);
   for (int i = 0; i < N; ++i) {
     const Float target = Float::load(bounce.target[i]), mass = Float::load(s.mass[i]);
-    const Float least = Float::load(bounce.played[i]);
+    const Float least = Float::load(bounce.least[i]);
     const Float x = select(plays, max(fma(mass, target - speed[i], total[i]), least), total[i]);
     d[i] = x - total[i];
     changed = changed | (tolerance * max(x, size) < abs(d[i]));
     x.store(bounce.total[i]);
     couple_following(s, i, d[i], speed);
   }
-  const auto rubbed = v;
+  const auto slowed = v;
   apply_normal(s, d, v);
-  keep_other_lanes_of_sides(plays, rubbed, v);
+  keep_other_lanes_of_sides(plays, slowed, v);
   v.store(w, s);
   const unsigned out = bits(changed & plays);
   mark_changed<kDense>(t, w, s, out, round);
@@ -93,7 +93,7 @@ MW_INLINE unsigned rub_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s
 }
 
 template <class S, bool kDense>
-void rub_impacts(const Constants& t, Work& w, unsigned active) {
+void solve_friction_of_impacts(const Constants& t, Work& w, unsigned active) {
   clear_numbers<BodyNumber::round>(t, w);
   for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
     hold_speeds<kDense>(t, w, s, bounce_at<S, N>(list, i), active);
@@ -101,7 +101,7 @@ void rub_impacts(const Constants& t, Work& w, unsigned active) {
   for (int round = 1; round <= kFrictionRounds && active != 0; ++round) {
     unsigned goes_on = 0;
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      goes_on |= rub_block<kDense>(t, w, s, bounce_at<S, N>(list, i), active, round);
+      goes_on |= solve_friction_of_impact<kDense>(t, w, s, bounce_at<S, N>(list, i), active, round);
     });
     active = goes_on;
   }

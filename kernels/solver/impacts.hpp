@@ -31,8 +31,7 @@ MW_INLINE Mask meets(const ContactBlock<S, N>& s, const Bounce<S, N>& bounce, in
 }
 
 // How fast the participants among `lanes` approach, and the speeds that their points shall leave
-// with. What approaches slower than a thousandth of the threshold is left to the next step. Returns
-// the lanes in which it plays.
+// with. What approaches slower than a thousandth of the threshold is left to the next step.
 template <bool kDense, class S, int N, class A>
 MW_INLINE void weigh_impact(const Constants& t, const Work& w, const SidedBlock<S, N, A>& s,
                             Bounce<S, N>& bounce, unsigned lanes, bool first) {

@@ -55,7 +55,7 @@ struct Passes {
       take_back<kDense>(t, w, s, bounce_at<S, N>(list, i));
     });
     play_impacts<S, kDense>(t, w, active);
-    if (t.has_friction) rub_impacts<S, kDense>(t, w, active);
+    if (t.has_friction) solve_friction_of_impacts<S, kDense>(t, w, active);
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       finish_impact(t, s, bounce_at<S, N>(list, i));
     });
