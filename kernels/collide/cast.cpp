@@ -17,37 +17,40 @@ namespace {
 
 constexpr int kCastRounds = 64;
 constexpr Real kCastTurn = Real(0.25);  // rad from one look to the next
-// What touches may sink by so much of its half thickness, and what has sunk farther by so much in a
-// step.
+// Shares of its half thickness by which a touching shape may sink, and a deeper one per pass.
 constexpr Real kSink = Real(0.2), kSinkOn = Real(0.05);
+constexpr Real kCore = Real(0.5);    // radius of the ball in a jointed body, of its half thickness
 constexpr Real kPoint = Real(0.01);  // of a shape: so small a copy shows where its inside is
 
-// A shape of the plane as a flat polyhedron. A tile's face is one of its sides.
-void load_flat(kernels::ShapeKind kind, const Real* base, const std::int32_t* at, ConvexShape& s) {
+// Corners with a radius around them, in the plane, as a flat polyhedron about the origin. A tile's
+// face is one of its sides.
+template <class FlatCorners>
+void put_flat(const FlatCorners& corners, Float radius, ConvexShape& s) {
   const Float zero(Real(0)), one(Real(1));
   s.kind = kernels::ShapeKind::tile;
   s.margin = zero;
   s.r = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
-  const auto put = [&](const auto& corners, Float radius) {
-    s.vertices = corners.kCount;
-    s.radius = radius;
-    s.face_normal = in_space(corners.normal[0]);
-    Float size2 = zero;
-    for (int i = 0; i < corners.kCount; ++i) {
-      s.vertex[i] = in_space(corners.vertex[i]);
-      size2 = max(size2, dot(s.vertex[i], s.vertex[i]));
-    }
-    s.half = {sqrt(size2), zero, zero};
-  };
+  s.vertices = corners.kCount;
+  s.radius = radius;
+  s.face_normal = in_space(corners.normal[0]);
+  Float size2 = zero;
+  for (int i = 0; i < corners.kCount; ++i) {
+    s.vertex[i] = in_space(corners.vertex[i]);
+    size2 = max(size2, dot(s.vertex[i], s.vertex[i]));
+  }
+  s.half = {sqrt(size2), zero, zero};
+}
+void load_flat(kernels::ShapeKind kind, const Real* base, const std::int32_t* at, ConvexShape& s) {
+  const Float zero(Real(0)), one(Real(1));
   const auto load = [&](const auto& pose) {
     s.p = in_space(pose.p);
     if constexpr (requires { load_corners(pose); }) {
-      put(load_corners(pose), radius_of(pose));
+      put_flat(load_corners(pose), radius_of(pose), s);
     } else if constexpr (requires { pose.radius; }) {
-      put(Corners<1>{{{zero, zero}}, {{one, zero}}}, pose.radius);
+      put_flat(Corners<1>{{{zero, zero}}, {{one, zero}}}, pose.radius, s);
     } else {
       const Vec2 end = pose.axis * pose.half, left = across(pose.axis);
-      put(Corners<2>{{end, -end}, {left, -left}}, zero);
+      put_flat(Corners<2>{{end, -end}, {left, -left}}, zero, s);
     }
   };
   visit_pose(PlanarShapes{}, kind, base, at, nullptr, load) ||
@@ -83,7 +86,7 @@ Vec3 inside_of(const ConvexShape& s, const Real* base, const std::int32_t* at) {
   const Float count = Float::load(counts);
   Vec3 sum = zero_of<Vec3>();
   for (int i = 0; i < s.vertices; ++i) {
-    // Not what a lane with fewer corners repeats.
+    // Lanes with fewer corners repeat the last one.
     sum = select(Float(static_cast<Real>(i)) < count, sum + s.vertex[i], sum);
   }
   return fma(sum, Float(Real(1)) / max(count, Real(1)), s.p);
@@ -236,6 +239,34 @@ Sweep sweep_of(const Constants& t, const Group& g, int body, const CastMotion& m
       sqrt(max(fms(radius, radius, core * core), Real(0))), cast_gap(t, core), core};
 }
 
+// A ball in a shape that joints hold, which may sink: one that stopped where it first touches while
+// the other bodies of its joints go on would stretch these.
+void load_core(const Constants& t, Vec3 centre, Float radius, ConvexShape& s) {
+  if (t.dimension == kernels::Dimension::planar) {
+    put_flat(Corners<1>{{{Real(0), Real(0)}}, {{Real(1), Real(0)}}}, radius, s);
+    s.p = centre;
+  } else {
+    s.kind = kernels::ShapeKind::sphere;
+    set_round(s, centre, {Real(0), Real(0), Real(1)}, radius, Real(0));
+  }
+}
+
+// Calls visit(shape, a point inside) for the shapes of a body that touches(collider).
+template <class Touches, class Visit>
+void for_each_shape(const Constants& t, const Work& w, int body, Float half_thickness,
+                    Touches touches, Visit visit) {
+  alignas(64) std::int32_t at[kLanes];
+  ConvexShape shape;
+  for (int i = t.first_collider[body]; i < t.first_collider[body + 1]; ++i) {
+    if (!touches(i)) continue;
+    for (int l = 0; l < kLanes; ++l) at[l] = w.pose_base[l] + t.collider[i].row;
+    load_any(t, t.hulls, t.collider[i].kind, w.pose_rows, at, shape);
+    const Vec3 centre = inside_of(shape, w.pose_rows, at);
+    if (t.body[body].jointed) load_core(t, centre, half_thickness * kCore, shape);
+    visit(shape, centre);
+  }
+}
+
 }  // namespace
 
 Float free_share_of_fixed(const Constants& t, const Group& g, const Work& w, int body,
@@ -243,12 +274,15 @@ Float free_share_of_fixed(const Constants& t, const Group& g, const Work& w, int
   const Float one(Real(1));
   const Sweep sweep = sweep_of(t, g, body, motion);
   const Float room = Float(constants_of_body(g, body).radius) + sweep.near;
-  alignas(64) std::int32_t at_wall[kLanes], at[kLanes];
-  ConvexShape wall, shape;
+  const bool jointed = t.body[body].jointed;
+  const Mask holds = jointed ? mask_from_bits(0) : held;  // joints always do
+  alignas(64) std::int32_t at_wall[kLanes];
+  ConvexShape wall;
   Float share = one;
   for (int f = 0; f < t.fixed_shapes; ++f) {
     const auto& fixed = t.fixed[f];
     using kernels::ShapeKind;
+    if (jointed && (fixed.kind == ShapeKind::tile || fixed.kind == ShapeKind::plane)) continue;
     Mask near = fast;
     if (fixed.kind == ShapeKind::tile) {  // the first stands for the whole field
       const TileRow& tile = tile_row(t.fixed_rows, fixed.row);
@@ -269,18 +303,14 @@ Float free_share_of_fixed(const Constants& t, const Group& g, const Work& w, int
     } else {
       load_any(t, nullptr, fixed.kind, t.fixed_rows, at_wall, wall);
     }
-    for (int i = t.first_collider[body]; i < t.first_collider[body + 1]; ++i) {
-      const auto& own = t.collider[i];
-      if (!kernels::may_touch_fixed(t, f, i)) continue;
-      for (int l = 0; l < kLanes; ++l) at[l] = w.pose_base[l] + own.row;
-      load_any(t, t.hulls, own.kind, w.pose_rows, at, shape);
-      const Vec3 centre = inside_of(shape, w.pose_rows, at);
+    const auto touches = [&](int own) { return kernels::may_touch_fixed(t, f, own); };
+    for_each_shape(t, w, body, sweep.core, touches, [&](const ConvexShape& shape, Vec3 centre) {
       Mask in_front = near;
       if (fixed.kind == ShapeKind::link) {  // what is behind a link is solid
         in_front = near & (Float(Real(0)) < dot(wall.face_normal, centre - wall.p));
       }
-      share = min(share, free_share(sweep, wall, shape, centre, in_front, through, held));
-    }
+      share = min(share, free_share(sweep, wall, shape, centre, in_front, through, holds));
+    });
   }
   return share;
 }
@@ -288,20 +318,17 @@ Float free_share_of_fixed(const Constants& t, const Group& g, const Work& w, int
 Float free_share_of_moving(const Constants& t, const Group& g, const Work& w, int body, int other,
                            const CastMotion& motion, Mask fast, Mask held) {
   const Sweep sweep = sweep_of(t, g, body, motion);
-  alignas(64) std::int32_t at_wall[kLanes], at[kLanes];
-  ConvexShape wall, shape;
+  alignas(64) std::int32_t at_wall[kLanes];
+  ConvexShape wall;
+  const Mask holds = t.body[body].jointed ? mask_from_bits(0) : held;
   const auto& c = t.collider[other];
   for (int l = 0; l < kLanes; ++l) at_wall[l] = w.pose_base[l] + c.row;
   load_any(t, t.hulls, c.kind, w.pose_rows, at_wall, wall);
   Float share(Real(1));
-  for (int i = t.first_collider[body]; i < t.first_collider[body + 1]; ++i) {
-    const auto& own = t.collider[i];
-    if (!kernels::may_touch(t, other, i)) continue;
-    for (int l = 0; l < kLanes; ++l) at[l] = w.pose_base[l] + own.row;
-    load_any(t, t.hulls, own.kind, w.pose_rows, at, shape);
-    const Vec3 centre = inside_of(shape, w.pose_rows, at);
-    share = min(share, free_share(sweep, wall, shape, centre, fast, fast, held));
-  }
+  const auto touches = [&](int own) { return kernels::may_touch(t, other, own); };
+  for_each_shape(t, w, body, sweep.core, touches, [&](const ConvexShape& shape, Vec3 centre) {
+    share = min(share, free_share(sweep, wall, shape, centre, fast, fast, holds));
+  });
   return share;
 }
 

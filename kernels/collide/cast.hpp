@@ -13,6 +13,9 @@
 //
 // A moving shape is taken to translate without rotation while the step lasts: its rotation matters
 // little to a body that crosses its own size meanwhile.
+//
+// Bodies on joints stop later, where a ball of half their half thickness touches, and rotations of
+// theirs are not looked at: a body that stops alone stretches its joints.
 #pragma once
 
 #include "kernels/lane/space.hpp"
@@ -57,7 +60,8 @@ MW_INLINE Float cast_against_fixed(const Constants& t, const Group& g, const Wor
                                    Vec start, Vec step, Ang turn, Ang ahead, Mask held) {
   const auto& constants = constants_of_body(g, body);
   const Float core = constants.half_thickness, two(Real(2));
-  const Float bend = (Float(constants.radius) - core) * dot(turn, turn);
+  Float bend = (Float(constants.radius) - core) * dot(turn, turn);
+  if (t.body[body].jointed) bend = Real(0);
   const Mask fast =
       (Float(Real(0)) < core) & ((core < sqrt(dot(step, step))) | (two * core < bend));
   if (!any(fast)) return Real(1);

@@ -110,6 +110,7 @@ struct ConstantBlocks {
 // What is the same in all worlds.
 struct BodyTable {
   bool kinematic;
+  bool jointed;  // a joint acts on it
 };
 
 struct ColliderTable {

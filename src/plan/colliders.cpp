@@ -208,8 +208,7 @@ bool has_thin_bodies(const PlanData& plan) {
   constexpr double kThin = 0.999 * kernels::kThinBody;  // whatever rounds
   return std::any_of(plan.bodies.begin(), plan.bodies.end(), [&](const PlanBody& b) {
     const bool varies = plan.varies.shapes || b.reshaped || b.shifted;
-    return b.inv_mass > 0 && b.half_thickness > 0 &&
-           (varies || b.radius > kThin * b.half_thickness);
+    return b.inv_mass > 0 && !b.jointed && (varies || b.radius > kThin * b.half_thickness);
   });
 }
 
@@ -252,11 +251,10 @@ void collect_colliders(PlanData& plan) {
       plan.colliders.push_back(std::move(c));
     }
   }
-  // A body that a cast stops while its joints go on would be torn off: their contacts look ahead.
   for (const Joint& joint : plan.scene.joints) {
     for (const BodyId body : {joint.body_a, joint.body_b}) {
       const int row = body ? plan.state_body[static_cast<std::size_t>(body.index())] : -1;
-      if (row >= 0) plan.bodies[static_cast<std::size_t>(row)].half_thickness = 0;
+      if (row >= 0) plan.bodies[static_cast<std::size_t>(row)].jointed = true;
     }
   }
 }

@@ -32,7 +32,8 @@ struct PlanBody {
   bool reshaped = false;              // its shapes, or how mass is spread over them, may vary
   bool shifted = false;               // its centre of mass or where its shapes are may vary
   double radius = 0;                  // bounding sphere about the centre of mass
-  double half_thickness = 0;          // least of its shapes, m; 0: not cast
+  double half_thickness = 0;          // least of its shapes, m
+  bool jointed = false;               // a joint acts on it
 };
 
 // Its frame: from the centre of mass, principal axes.

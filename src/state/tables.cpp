@@ -183,7 +183,7 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
   for (std::size_t i = 0; i < factor_rows_.size(); ++i) factor_rows_[i] = 1;
   for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
     const PlanBody& b = plan.bodies[i];
-    bodies_.push_back({b.inv_mass == 0});
+    bodies_.push_back({b.inv_mass == 0, b.jointed});
     const auto numbers = body_constants<Real>(plan, b);
     for (std::size_t c = 0; c < dim; ++c) delta_v_rows_[i * row + c] = numbers.delta_v[c];
     for (std::size_t c = 0; c < row; ++c) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "tests/support/joints.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/tables.hpp"
 
@@ -106,6 +107,34 @@ TEST_CASE("a fast body ends its step where it touches a wall", "[fast][stability
       batch.read(Field::linear_velocity, std::span<double>(v));
       CHECK(x[0] < -face - half + 1e-3);
       CHECK(v[0] < 0.1);
+    }
+  }
+}
+
+// Bodies on joints stop where a ball inside them does, so that joints are stretched less.
+TEST_CASE("jointed balls at 60 m/s stop at a thin wall, and stay joined", "[fast][stability]") {
+  for (Space space : {Space::planar, Space::spatial}) {
+    for (int phase = 0; phase < 20; ++phase) {
+      Scene scene = shot(space, round_of(space, 0.1), 60, 0, 0);
+      scene.bodies[1].jitter = {};
+      scene.bodies[1].position.x() += 0.05 * phase;
+      Body second = scene.bodies[1];
+      second.position += 0.25 * up_of(space);
+      scene.add(second);
+      const Vec3 anchor = scene.bodies[1].position + 0.125 * up_of(space);
+      scene.add(joint_at(scene, BodyId(1), BodyId(2), at(anchor), HingeJoint{}));
+      for (const Table& table : widest_tables()) {
+        Batch batch(compile(scene), options_of(table));
+        double gap = 0, farthest = -1e9;
+        for (int i = 0; i < 30; ++i) {
+          batch.step();
+          gap = std::max(gap, worst_gap(batch, 0));
+          for (int b = 0; b < 2; ++b) farthest = std::max(farthest, position(batch, 0, b).x());
+        }
+        INFO(name(table) << " phase " << phase);
+        CHECK(farthest < 0);
+        CHECK(gap < 0.005);
+      }
     }
   }
 }
