@@ -137,4 +137,16 @@ TEST_CASE("snapshots and copies take a world's numbers along", "[fast][parameter
   CHECK_THROWS_AS(foreign.restore(saved), SnapshotError);
 }
 
+// Whether a body is cast against planes follows from its own size.
+TEST_CASE("worlds with sizes of their own cast as scenes with these sizes", "[fast][parameters]") {
+  Scene scene = empty_scene(Space::spatial, 10);
+  scene.add(ground(Space::spatial));
+  Body plate = body_of(shape_of(Box{Vec3(0.1, 0.1, 0.1)}), Vec3(0, 0, 0.12));
+  plate.angular_velocity = Vec3(40, 10, 0), plate.linear_velocity = Vec3(0, 0, -3);
+  scene.add(plate);
+  scene.variations = {vary_three(Parameter::size, Vec3(0.1, 0.1, 0.005), Vec3(0.1, 0.1, 0.1))};
+  scene.variations[0].shape = ShapeId(BodyId(1), 0);
+  check_worlds_are_those_of_scenes(scene, "", 9, 30);
+}
+
 }  // namespace manyworlds::test

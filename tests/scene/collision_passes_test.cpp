@@ -69,6 +69,29 @@ TEST_CASE("flat bodies that fall by much of their thickness have more passes", "
   CHECK(passes_of(without) == 1);
 }
 
+TEST_CASE("bodies that can touch nothing need no passes", "[fast][plan]") {
+  Scene alone = pebble(0.01);
+  alone.bodies.erase(alone.bodies.begin());
+  CHECK(passes_of(alone) == 1);
+  Scene filtered = pebble(0.01);
+  filtered.bodies[1].shapes[0].filter.mask = 2;
+  CHECK(passes_of(filtered) == 1);
+}
+
+TEST_CASE("resolved substeps are valid whatever the passes", "[fast][plan]") {
+  for (const int substeps : {1, 4, 63, 64}) {
+    for (const int passes : {1, 7, 9, 33, 63, 64}) {
+      Scene scene = drop(Box{Vec3(0.5, 0.5, 0.5)}, 1);
+      scene.options.substeps = substeps, scene.options.contact.collision_passes = passes;
+      scene.options = compile(scene).resolved();
+      INFO(substeps << " substeps, " << passes << " passes");
+      CHECK(*scene.options.substeps % passes == 0);
+      CHECK(*scene.options.substeps <= 64);
+      CHECK(*compile(scene).resolved().substeps == *scene.options.substeps);
+    }
+  }
+}
+
 TEST_CASE("substeps are a multiple of the passes", "[fast][plan]") {
   Scene scene = drop(Box{Vec3(0.5, 0.5, 0.5)}, 1);
   scene.options.contact.collision_passes = 3;
@@ -85,6 +108,31 @@ TEST_CASE("small flat bodies stay above the floor", "[fast][physics]") {
   Scene once = scene;
   once.options.contact.collision_passes = 1;
   CHECK(lowest_height(once, 120) < 0);
+}
+
+// The sum over the points carries the weight: also in the step in which the body falls asleep, and
+// while it sleeps; and passes do not count points again.
+TEST_CASE("contacts observed in several passes carry the weight once", "[fast][physics]") {
+  Scene scene = drop(Box{Vec3(0.5, 0.4, 0.3)}, 0.3);
+  scene.options.contact.collision_passes = 4;
+  BatchOptions options;
+  options.observe.what = {Observer::contacts}, options.sleep = true;
+  Batch batch(compile(scene), options);
+  const double weight = 1000 * 8 * 0.5 * 0.4 * 0.3 * 10 * scene.options.dt;
+  int slept = 0;
+  for (int i = 0; i < 120; ++i) {
+    batch.step();
+    if (i < 15) continue;
+    double up = 0;
+    const auto contacts = batch.step_contacts(0);
+    for (const StepContact& c : contacts) up += c.normal_impulse;
+    INFO("step " << i << (batch.asleep(0) ? ", asleep" : ""));
+    CHECK(contacts.size() == 4);
+    CHECK(up == Approx(weight).epsilon(0.01));
+    slept += batch.asleep(0) ? 1 : 0;
+  }
+  CHECK(slept > 0);
+  CHECK(slept < 105);
 }
 
 TEST_CASE("a step of passes is as many steps of one pass", "[fast][physics]") {
