@@ -130,6 +130,13 @@ Separation of_half_space(const Convex& plane, const Convex& b) {
   return s;
 }
 
+// How far its points lie from its first one, m.
+double reach_of(const Convex& c) {
+  double out = 0;
+  for (const Vec3& p : c.points) out = std::max(out, (p - c.points[0]).cwiseAbs().maxCoeff());
+  return out;
+}
+
 Separation swapped(const Separation& s) { return {s.distance, s.point_b, s.point_a, -s.normal}; }
 
 }  // namespace
@@ -199,7 +206,9 @@ Separation separation(const Convex& a, const Convex& b) {
   Vec3 normal = widest.normal;
   if (widest.gap > 0) {
     distance = near.distance;
-    if (near.distance > 1e-300) normal = (near.b - near.a) / near.distance;
+    // The way between points that touch is no more than rounding.
+    const double rounding = 1e-12 * std::max(near.a.cwiseAbs().maxCoeff(), reach_of(a));
+    if (near.distance > rounding) normal = (near.b - near.a) / near.distance;
   }
   Separation s;
   s.distance = distance - a.radius - b.radius;
